@@ -9,6 +9,7 @@
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"
 #include "messages/joint_affixes.hpp"
+#include "messages/topics.hpp"
 #include "params/configuration_files.hpp"
 #include "ros_io/arm_node.hpp"
 #include "ros_io/joint_name.hpp"
@@ -104,6 +105,10 @@ void runArm(ros::NodeHandle& node, const std::string& name, const hjt::FoundPara
     maps.back()["joint.name"].value = affixes(joint.name);
   }
   warnOfParameters(found, node.getNamespace(), maps);
+  if (overrides.find("input.mode") == overrides.end())
+  {
+    throw hjt::ParameterError("input.mode is to be set for an arm: telemetry, beside it, or commands, in place of it");
+  }
   std::vector<hjt::Parameters> parameters;
   for (std::size_t i = 0; i < arm.joints.size(); ++i)
   {
@@ -130,6 +135,8 @@ void runArm(ros::NodeHandle& node, const std::string& name, const hjt::FoundPara
   }
   if (parameters.front().input.mode == hjt::InputMode::COMMANDS)
   {
+    ROS_INFO_STREAM("input.mode is commands: in place of the arm, on "
+                    << ros::names::resolve(hjt::topics::JOINT_STATES));
     hjt::addArmFaults(arm, faultsOf(node.param<std::string>(hjt::FAULT, "")), parameters);
     run<hjt::ArmNode>(node, arm, parameters);
   }

@@ -19,8 +19,8 @@ std::string findArm(const std::string& name, const std::filesystem::path& direct
 ParameterMap armJointParameters(const ArmJoint& joint, const std::filesystem::path& directory,
                                 const std::string& identified);
 
-/// Faults of an arm, each JOINT:KIND:SEVERITY[:PLACE[:ONSET]], JOINT a joint's name or short name, added to those of its
-/// drive. @throws ParameterError naming the fault.
+/// Adds faults to those of the drives, each JOINT:KIND:SEVERITY[:PLACE[:ONSET]], JOINT a joint's name or short name.
+/// @throws ParameterError naming the fault.
 void addArmFaults(const ArmDescription& arm, const std::vector<std::string>& faults, std::vector<Parameters>& drives);
 
 /// Takes out of a checked drive, whose load is that of the links, what a controller's torque holds of the motor beside

@@ -52,14 +52,14 @@ void ArmMotion::at(double time, std::vector<JointMotion>& motion) noexcept
 
 ArmMotion gentleMotion(const ArmDescription& arm)
 {
-  constexpr double ACCELERATION = 2.0;             // [rad/s^2]
-  constexpr std::array SPEEDS{ 0.35, 0.7, 1.05 };  // of the joint that goes farthest [rad/s]
+  constexpr double ACCELERATION = 2.0;                           // [rad/s^2]
+  constexpr std::array SPEEDS{ 0.35, 0.7, 1.05 };                // of the joint that goes farthest [rad/s]
   constexpr std::array WAYS{ 0.6, 0.4, -0.6, 0.5, -0.55, 0.6 };  // from the pose in the middle, both ways [rad]
   constexpr double PERIOD = 0.008;                               // of the set points [s]
   const std::size_t joints = arm.joints.size();
-  const bool is_known = std::all_of(arm.joints.begin(), arm.joints.end(),
-                                    [](const ArmJoint& joint)
-                                    { return joint.speed_limit > 0.0 && joint.torque_limit > 0.0; });
+  const bool is_known =
+      std::all_of(arm.joints.begin(), arm.joints.end(),
+                  [](const ArmJoint& joint) { return joint.speed_limit > 0.0 && joint.torque_limit > 0.0; });
   const std::vector<double>& middle = arm.joints[std::min<std::size_t>(1, joints - 1)].check_up;
   std::vector<ArmSetPoint> points;
   if (!is_known || middle.empty())

@@ -19,8 +19,8 @@ struct ArmSetPoint
 /// Accelerations between set points.
 enum class ArmAccelerations : std::uint8_t
 {
-  GIVEN,    ///< linear between those of the set points, which lie close together
-  OF_CUBICS ///< those of the angles between them; the set points' own are not read
+  GIVEN,     ///< linear between those of the set points, which lie close together
+  OF_CUBICS  ///< those of the angles between them; the set points' own are not read
 };
 
 /// A commanded motion between its set points: angles by cubics that have the set points' angles and speeds. Before the

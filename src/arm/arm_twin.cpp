@@ -66,7 +66,12 @@ void requireDrive(const ArmDescription& arm, std::size_t joint, const std::vecto
 
 ArmTwin::ArmTwin(const ArmDescription& arm, std::vector<Parameters> drives, const std::vector<double>& start,
                  const SurfaceSource& surface_source, double mass_rate)
-  : dynamics_(arm), pose_at_start_(start), zero_(start), motion_(arm.joints.size()), next_(motion_), bias_(arm.joints.size())
+  : dynamics_(arm)
+  , pose_at_start_(start)
+  , zero_(start)
+  , motion_(arm.joints.size())
+  , next_(motion_)
+  , bias_(arm.joints.size())
 {
   const std::size_t joints = arm.joints.size();
   if (drives.size() != joints || start.size() != joints)

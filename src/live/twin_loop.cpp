@@ -66,8 +66,8 @@ void prepareThread()
 }
 }  // namespace
 
-TwinLoop::TwinLoop(Advanced& twin, const Parameters& parameters, Inbox& inbox, Clock clock, ClockKind clock_kind, AfterStep after_step,
-                   AfterCycle after_cycle)
+TwinLoop::TwinLoop(Advanced& twin, const Parameters& parameters, Inbox& inbox, Clock clock, ClockKind clock_kind,
+                   AfterStep after_step, AfterCycle after_cycle)
   : twin_(twin)
   , inbox_(inbox)
   , clock_(std::move(clock))
@@ -210,8 +210,9 @@ void TwinLoop::stampInputs(std::size_t waiting) noexcept
   {
     input->stamp = input->stamp == 0 ? status_.clock : input->stamp;
   }
-  const auto kept_end = std::remove_if(
-      fresh, arrived_.end(), [this](const LiveInput& input) { return std::abs(input.stamp - status_.clock) > FAR_STAMP; });
+  const auto kept_end =
+      std::remove_if(fresh, arrived_.end(),
+                     [this](const LiveInput& input) { return std::abs(input.stamp - status_.clock) > FAR_STAMP; });
   status_.far_stamps += static_cast<std::uint64_t>(arrived_.end() - kept_end);
   arrived_.erase(kept_end, arrived_.end());
 }

@@ -79,11 +79,11 @@ class Advanced
 public:
   virtual ~Advanced() = default;
 
-  virtual bool reset(Stamp stamp) noexcept = 0;           ///< as Twin::reset
+  virtual bool reset(Stamp stamp) noexcept = 0;            ///< as Twin::reset
   virtual void push(const LiveInput& input) noexcept = 0;  ///< as Twin::push
-  virtual bool step(Stamp until) noexcept = 0;            ///< as Twin::step
-  virtual Stamp stamp() const noexcept = 0;               ///< as Twin::stamp
-  virtual void show(LoopStatus& status) noexcept = 0;  ///< once a cycle: fills in what the status has of one twin
+  virtual bool step(Stamp until) noexcept = 0;             ///< as Twin::step
+  virtual Stamp stamp() const noexcept = 0;                ///< as Twin::stamp
+  virtual void show(LoopStatus& status) noexcept = 0;      ///< once a cycle: fills in what the status has of one twin
 
 protected:
   Advanced() = default;
@@ -124,15 +124,15 @@ private:
 class TwinLoop
 {
 public:
-  using Clock = std::function<Stamp()>;          ///< now [ns]; 0 while there is no time yet
-  using AfterStep = std::function<void()>;       ///< called at every simulated instant; must not wait or allocate
+  using Clock = std::function<Stamp()>;     ///< now [ns]; 0 while there is no time yet
+  using AfterStep = std::function<void()>;  ///< called at every simulated instant; must not wait or allocate
   /// Called after each cycle with the instant it has reached; returns the instant of the next output [ns].
   /// Must not wait or allocate.
   using AfterCycle = std::function<Stamp(Stamp)>;
 
   /// Starts the thread. Without `after_cycle` every instant is an output. `parameters`: of the twin or one of several.
-  TwinLoop(Advanced& twin, const Parameters& parameters, Inbox& inbox, Clock clock, ClockKind clock_kind, AfterStep after_step,
-           AfterCycle after_cycle = {});
+  TwinLoop(Advanced& twin, const Parameters& parameters, Inbox& inbox, Clock clock, ClockKind clock_kind,
+           AfterStep after_step, AfterCycle after_cycle = {});
 
   /// Stops the thread.
   ~TwinLoop();
@@ -172,8 +172,8 @@ private:
   const Stamp step_length_;  ///< [ns]
   const bool wait_for_first_input_;
   std::vector<LiveInput> arrived_;  ///< not yet given to the twin, which takes them once it has started
-  Stamp released_{};            ///< no instant simulated now was due before this time of the clock [ns]
-  Stamp start_stamp_{};         ///< first instant since the last start or reset [ns]
+  Stamp released_{};                ///< no instant simulated now was due before this time of the clock [ns]
+  Stamp start_stamp_{};             ///< first instant since the last start or reset [ns]
   std::chrono::steady_clock::time_point start_time_;
   LoopStatus status_;
   TryLockValue<LoopStatus> shown_status_;

@@ -31,8 +31,8 @@ void FaultSubscriber::receive(const harmonic_joint_twin::Fault& message)
   if (!errors.empty())
   {
     ++refused_;
-    ROS_WARN_STREAM_THROTTLE(WARNING_PERIOD, "Refused a message on ~" << topics::INJECT_FAULT << ", " << refused_
-                                                                      << " so far: " << errors);
+    ROS_WARN_STREAM_THROTTLE(
+        WARNING_PERIOD, "Refused a message on ~" << topics::INJECT_FAULT << ", " << refused_ << " so far: " << errors);
     return;
   }
   const Stamp stamp = stampOr(message.header.stamp, ros::Time::now());

@@ -34,7 +34,10 @@ class InputSubscribers
 public:
   InputSubscribers(ros::NodeHandle& node, const Parameters& parameters, Inbox& inbox);
 
-  MessageCounters counters() const noexcept { return { unknown_joint_, missing_effort_, faults_.refused(), too_large_ }; }
+  MessageCounters counters() const noexcept
+  {
+    return { unknown_joint_, missing_effort_, faults_.refused(), too_large_ };
+  }
 
 private:
   void receiveNow(InputKind kind, const ros::MessageEvent<const std_msgs::Float64>& event);

@@ -19,10 +19,10 @@ namespace
 {
 using Node = SurfaceNode;
 
-constexpr double ANGLE_TOLERANCE = 1e-8;  // of the output at given torque [rad]; 0.002 seconds of arc
-constexpr double MOTOR_TOLERANCE = 1e-4;  // of the motor's torque limit [-]
-constexpr double SAME_TORQUE = 1e-6;      // of the torque limit, that equal torques may differ by [-]
-constexpr double OVERLOAD_FACTOR = 10.0;  // beyond the torque limits the tolerances are this much wider
+constexpr double ANGLE_TOLERANCE = 1e-8;   // of the output at given torque [rad]; 0.002 seconds of arc
+constexpr double MOTOR_TOLERANCE = 1e-4;   // of the motor's torque limit [-]
+constexpr double SAME_TORQUE = 1e-6;       // of the torque limit, that equal torques may differ by [-]
+constexpr double OVERLOAD_FACTOR = 10.0;   // beyond the torque limits the tolerances are this much wider
 constexpr double COLLISION_MARGIN = 1.25;  // over the gear's momentary peak torque [-]
 
 /// Flanks in two groups by the sense in which they slide as the drive runs and as its output twists, each again in

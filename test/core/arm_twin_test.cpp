@@ -148,6 +148,45 @@ TEST(ArmTwin, AMassMatrixTakenLessOftenCostsInProportion)
   EXPECT_LT(seldom / often, 2.5);
 }
 
+/// Within an arm a step is divided by the inertia that the pose shows the joint, and less than of a drive alone.
+TEST(ArmTwin, ALightLinkIsDividedLessAndMovesAlike)
+{
+  constexpr double LIGHT = 3e-4;          // [kg.m^2]
+  constexpr double LEAST_TORSION = 5e-4;  // [rad]
+  Parameters parameters = drive();
+  parameters.output.load_inertia = LIGHT;
+  Twin alone(parameters);
+  Twin within(parameters);
+  double torsion = 0.0;
+  const auto step = [&](double inertia)
+  {
+    const Stamp next = within.stamp() + within.stepLength();
+    for (Twin* twin : { &alone, &within })
+    {
+      twin->commandMotorTorque(next, torqueAt(toSeconds(next)));
+      twin->commandLoadTorque(next, 50.0 * torqueAt(toSeconds(next)));
+    }
+    within.coupleArm(inertia, 0.0);
+    EXPECT_TRUE(within.step(next));
+  };
+  while (within.stamp() < toStampLength(0.2))
+  {
+    step(LIGHT);
+    ASSERT_TRUE(alone.step(within.stamp()));
+    ASSERT_NEAR(within.outputs().output_angle, alone.outputs().output_angle, 0.02 * LEAST_TORSION);
+    torsion = std::max(torsion, std::abs(within.outputs().output_angle - within.outputs().motor_angle / 101.0));
+  }
+  EXPECT_GT(torsion, LEAST_TORSION);
+  EXPECT_LE(3 * within.outputs().substeps, alone.outputs().substeps);
+  while (within.stamp() < toStampLength(0.3))
+  {
+    step(0.5);
+    // Other substeps, other ends of the kicks: the ledger closes all the same.
+    ASSERT_NEAR(within.outputs().energy_residual, 0.0, 1e-5) << toSeconds(within.stamp());
+  }
+  EXPECT_EQ(within.outputs().substeps, 1U);
+}
+
 TEST(ArmTwin, FrameAndGravityTurnedTogetherChangeNothing)
 {
   const auto angles = [](const std::string& rpy, const std::array<double, 3>& gravity)
@@ -186,7 +225,8 @@ ArmMotion swing(bool repeats)
   std::vector<ArmSetPoint> points;
   for (const double way : { 0.0, 0.1, 0.0 })
   {
-    points.push_back({ 0.5 * static_cast<double>(points.size()), { { 0.3 + way, 0.0, 0.0 }, { -0.8 - way, 0.0, 0.0 } } });
+    points.push_back(
+        { 0.5 * static_cast<double>(points.size()), { { 0.3 + way, 0.0, 0.0 }, { -0.8 - way, 0.0, 0.0 } } });
   }
   return ArmMotion(points, ArmAccelerations::OF_CUBICS, repeats);
 }

@@ -32,7 +32,8 @@ class ArmTwin(unittest.TestCase):
         cls.command = rospy.Publisher(f"{NODE}/command", JointTrajectory, queue_size=10)
         cls.wrench = rospy.Publisher(f"{NODE}/wrench", WrenchStamped, queue_size=10)
         cls.log = Listener("/rosout", Log)
-        cls.diagnostics = {joint: Diagnostics(f"/{joint}/joint_twin") for joint in JOINTS}
+        cls.diagnostics = {namespace + joint: Diagnostics(f"/{namespace}{joint}/joint_twin")
+                           for namespace in ("", "worn/") for joint in JOINTS}
         cls.states.wait_for(10, 4.0 * PATIENCE)  # the first time it builds its tables
         for publisher in (cls.command, cls.wrench):
             wait_until(lambda each=publisher: each.get_num_connections() == 1, publisher.name)
@@ -56,11 +57,18 @@ class ArmTwin(unittest.TestCase):
     def said(self, text):
         wait_until(lambda: any(text in message.msg for message in self.log.messages()), text)
 
-    def test_1_arm_beside_it_finds_it_sound(self):
-        def verdicts():
-            return {joint: self.diagnostics[joint].values("Drive").get("Verdict") for joint in JOINTS}
+    def test_1_arm_beside_it_finds_it_sound_and_the_worn_joint_of_another(self):
+        def friction(namespace, joint):
+            """Level of that finding."""
+            return self.diagnostics[namespace + joint].values("Drive").get("Friction", "").split(".")[0]
 
-        wait_until(lambda: set(verdicts().values()) == {"OK"}, "all joints OK", 6.0 * PATIENCE)
+        for namespace, sick in (("", None), ("worn/", "elbow")):
+            expected = {joint: "WARN" if joint == sick else "OK" for joint in JOINTS}
+            try:
+                wait_until(lambda n=namespace, e=expected: {joint: friction(n, joint) for joint in JOINTS} == e,
+                           f"the verdicts on {namespace or 'the sound arm'}", 4.0 * PATIENCE)
+            except AssertionError:
+                self.assertEqual({joint: self.diagnostics[namespace + joint].values("Drive") for joint in JOINTS}, {})
         for joint in JOINTS:
             self.assertEqual({status.level for status in self.diagnostics[joint].statuses("Drive")}, {OK}, joint)
 
@@ -158,4 +166,4 @@ class ArmTwin(unittest.TestCase):
 
 if __name__ == "__main__":
     rospy.init_node("arm_twin_test")
-    rostest.rosrun(PACKAGE, "arm_twin", ArmTwin, sys.argv)
+    rostest.rosrun(PACKAGE, "arm_twin_test", ArmTwin, sys.argv)

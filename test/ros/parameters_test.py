@@ -152,8 +152,8 @@ class Parameters(unittest.TestCase):
         self.assertEqual(self.warning(files, changes, "--params-cleared"), "")
 
     def test_what_the_server_had_before_is_named_for_an_arm(self):
-        left = {"arm": "ur5", "input/mode": "commands", "telemetry/torque_per_current": 10.7}
-        self.assertIn("other than as shipped: arm = 'ur5', telemetry/torque_per_current = 10.7. ",
+        left = {"arm": "ur5", "input/mode": "still", "telemetry/torque_per_current": 10.7}
+        self.assertIn("other than as shipped: arm = 'ur5', input/mode = 'still', telemetry/torque_per_current = 10.7. ",
                       self.warning([], left))
         many = configuration_files("elbow", ["size_11.yaml"])
         self.assertRegex(self.warning(many, left), "shipped: arm = 'ur5', (.* = .*, ){11}[0-9]+ more[.] ")

@@ -308,12 +308,12 @@ TEST_F(LoopFixture, AllocatesNothingOnceItRuns)
   setClock(100 * SECOND);
   loop_ = nullptr;
   loop_ = std::make_unique<TwinLoop>(
-      *twin_, inbox_, [this] { return clock_.load(); }, ClockKind::STEPPED,
-      [&](Twin& twin)
+      *advanced_, twin_->parameters(), inbox_, [this] { return clock_.load(); }, ClockKind::STEPPED,
+      [&]
       {
         if (auto* message = ring.claim())
         {
-          if (fillContactForces(twin, 0, *message))
+          if (fillContactForces(*twin_, 0, *message))
           {
             ring.commit();
             ring.pop();
