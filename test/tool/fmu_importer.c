@@ -112,7 +112,9 @@ static Status step(void* instance)
   Status status = 0;
   for (int i = 0; status == 0 && i < steps; ++i)
   {
-    bool event, terminated, early;
+    bool event = true;
+    bool terminated = true;
+    bool early = true;
     double last = NAN;
     status = call(instance, from + i * length, length, true, &event, &terminated, &early, &last);
     if (status == 0 && (event || terminated || early || fabs(last - (from + (i + 1) * length)) > 1e-12))
