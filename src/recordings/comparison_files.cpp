@@ -256,7 +256,7 @@ Json factorJson(const ComparisonRecord& record)
   return record.is_friction_judged ? Json{ { "value", factor.value },
                                            { "low", factor.low() },
                                            { "high", factor.high() },
-                                           { "is_to_own", factor.is_to_own } } :
+                                           { "reference", referenceName(factor.reference) } } :
                                      Json(std::optional<double>());
 }
 }  // namespace

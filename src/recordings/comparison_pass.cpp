@@ -61,6 +61,27 @@ std::vector<std::unique_ptr<JointComparison>> prepareJoints(const ComparisonOpti
   return joints;
 }
 
+/// Where no joint has a reference of its own, and the controller's is that of sound joints.
+void holdAgainstController(const std::vector<std::unique_ptr<JointComparison>>& joints)
+{
+  std::vector<const JointEvidence*> evidences;
+  for (const auto& joint : joints)
+  {
+    if (joint->hasReference())
+    {
+      return;
+    }
+    evidences.push_back(&joint->evidence());
+  }
+  if (controllerIsReference(evidences))
+  {
+    for (const auto& joint : joints)
+    {
+      joint->holdAgainstController();
+    }
+  }
+}
+
 /// Of samples that come by joints: all of one time at once.
 class PayloadCollector
 {
@@ -140,6 +161,7 @@ ComparisonPass passThrough(const ComparisonOptions& options, const ArmRecording&
       },
       fit);
   pass.misfits = recording.isArm() ? fit.whyNotJudged() : std::vector<Misfit>{ pass.found.misfit };
+  holdAgainstController(pass.joints);
   std::vector<MeasuredFriction> frictions;
   for (std::size_t i = 0; i < pass.joints.size(); ++i)
   {

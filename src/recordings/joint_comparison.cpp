@@ -41,7 +41,7 @@ JointComparison::JointComparison(const ArmRecording& recording, std::size_t join
 
 MeasuredFriction JointComparison::friction(const Misfit& misfit) const
 {
-  return measuredFriction(evidence(), parameters_, { sound_.own, is_identified_, 0.0, 1.0, misfit });
+  return measuredFriction(evidence(), parameters_, { sound_.own, is_identified_, has_controller_, 0.0, 1.0, misfit });
 }
 
 ComparedJoint JointComparison::write(const MotionFindings& found, const ArmFriction& arm, const Misfit& misfit,
@@ -60,7 +60,7 @@ ComparedJoint JointComparison::write(const MotionFindings& found, const ArmFrict
         readContents(source_, twin_topic, found, reach.motor_rows, reach.temperature_rows, found.has_load);
     record.twin_states = readTwinStates(source_, twin_topic, toSeconds(found.start));
   }
-  const JointContext context{ sound_.own,          is_identified_, found.duration,
+  const JointContext context{ sound_.own,          is_identified_, has_controller_,       found.duration,
                               arm.factors[joint_], misfit,         arm.deviations[joint_] };
   record.verdict = judge(evidence(), parameters_, context);
   record.friction = frictionFactor(evidence(), context);

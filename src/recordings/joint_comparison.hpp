@@ -27,6 +27,10 @@ public:
 
   const JointEvidence& evidence() const { return comparison_.evidence(); }
 
+  bool hasReference() const { return is_identified_ || !sound_.own.friction.empty(); }  ///< of its friction
+  /// Without a reference the friction is held against what the arm's controller expects.
+  void holdAgainstController() { has_controller_ = true; }
+
   MeasuredFriction friction(const Misfit& misfit) const;
 
   /// Judges, and writes the data of the page. `arm`: what the joints have in common. `twin_topic`: of a twin that was
@@ -42,6 +46,7 @@ private:
   const std::string directory_;
   const SoundJoint sound_;
   const bool is_identified_;
+  bool has_controller_{};
   TableFile<JudgedWindow> windows_;
   RecordingComparison comparison_;
 };

@@ -118,17 +118,23 @@ public:
   /// Takes the misfits as the reading before left them.
   void judgeAll(double duration, CheckedArm& arm)
   {
+    std::vector<const JointEvidence*> evidences;
+    for (std::size_t i = 0; i < joints_.size(); ++i)
+    {
+      forward(i, true);
+      evidences.push_back(joints_[i].get());
+    }
+    const bool has_controller = controllerIsReference(evidences);
     std::vector<MeasuredFriction> frictions;
     const auto context = [&](std::size_t i, double factor, double deviation, const Misfit& of_arm)
     {
       const Misfit& own = arm.joints[i].misfit;
-      return JointContext{
-        OwnReference(), false, duration, factor, own.exists() || !is_arm_ ? own : of_arm, deviation
-      };
+      return JointContext{ OwnReference(), false,  has_controller,
+                           duration,       factor, own.exists() || !is_arm_ ? own : of_arm,
+                           deviation };
     };
     for (std::size_t i = 0; i < joints_.size(); ++i)
     {
-      forward(i, true);
       frictions.push_back(measuredFriction(*joints_[i], parameters_[i], context(i, 1.0, UNWITNESSED, {})));
     }
     const ArmFriction common = commonFriction(frictions, parameters_.front().comparison.repeat_tolerance);

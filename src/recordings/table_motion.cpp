@@ -24,11 +24,12 @@ enum Quantity : std::size_t
   MOMENT,
   VELOCITY,
   TEMPERATURE,
+  TARGET_CURRENT,
   QUANTITIES
 };
 
-constexpr std::array<const char*, QUANTITIES> NAMES{ "actual_q_", "actual_current_", "target_moment_", "actual_qd_",
-                                                     "joint_temperatures_" };
+constexpr std::array<const char*, QUANTITIES> NAMES{ "actual_q_",  "actual_current_",     "target_moment_",
+                                                     "actual_qd_", "joint_temperatures_", "target_current_" };
 
 /// Columns of some joints of a controller's table. `COUNT` of them.
 template <std::size_t COUNT>
@@ -160,6 +161,7 @@ private:
                    source_.current_per_effort * table_.value(CURRENT, i), table_.value(MOMENT, i) };
       rows_[i].received = time;
       rows_[i].recorded_velocity = table_.value(VELOCITY, i);
+      rows_[i].target_current = source_.current_per_effort * table_.value(TARGET_CURRENT, i);
       if (table_.has(TEMPERATURE, i))
       {
         temperatures_[i].push(time, table_.value(TEMPERATURE, i));

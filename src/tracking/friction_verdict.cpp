@@ -23,6 +23,9 @@ constexpr double REPEAT_TORQUE = 0.22;
 /// Of the load: masses of the links, 2 %, and gain, 5 %; standard deviation as a share.
 constexpr double LOAD_SHARE = 0.054;
 
+/// Of what a controller expects of a sound joint, standard deviation as a share.
+constexpr double CONTROLLER_SHARE = 0.05;
+
 /// Bound of a joint's own friction: a smaller change is of no interest however certain. Less friction counts half as
 /// much, since no fault takes a fifth of it.
 constexpr double MORE_THAN_OWN = 0.05;
@@ -140,15 +143,18 @@ double repeatDeviation(double stated, const OwnReference& own)
 }
 
 /// Standard deviation of the logarithm, of all that the factor is uncertain by.
-double deviationOf(const FrictionRatio& ratio, const JointContext& context, bool is_to_own)
+double deviationOf(const FrictionRatio& ratio, const JointContext& context, FrictionReference reference)
 {
+  const bool is_to_own = !context.own.friction.empty();
   const FrictionPoint backward = FrictionPoints::meanOf(ratio.points, -1.0);
   const FrictionPoint forward = FrictionPoints::meanOf(ratio.points, 1.0);
   const double twin = backward.twin + forward.twin;
   const double load = LOAD_SHARE * std::abs(forward.load - backward.load) / twin;
   const double repeat =
       repeatDeviation(std::hypot(REPEAT_SHARE, REPEAT_TORQUE / (0.5 * twin)), is_to_own ? context.own : OwnReference());
-  const double of_reference = is_to_own ? context.own.friction_deviation : 0.0;
+  const double of_reference = is_to_own                                  ? context.own.friction_deviation :
+                              reference == FrictionReference::CONTROLLER ? CONTROLLER_SHARE :
+                                                                           0.0;
   const double size = std::max(std::abs(ratio.value), NO_FRICTION);
   return std::sqrt(std::pow(ratio.deviation / size, 2) + repeat * repeat + std::pow(load / size, 2) +
                    of_reference * of_reference + context.arm_deviation * context.arm_deviation);
@@ -182,19 +188,52 @@ const char* wrongLoad(LoadOrigin load)
   return "the load is not the one that is configured. Give the load of the whole arm (docs/arm.md), or record it.";
 }
 
+const char* referenceName(FrictionReference reference) noexcept
+{
+  switch (reference)
+  {
+    case FrictionReference::CONTROLLER:
+      return "controller";
+    case FrictionReference::OWN:
+      return "own";
+    case FrictionReference::TWIN:
+      break;
+  }
+  return "twin";
+}
+
+bool controllerIsReference(const std::vector<const JointEvidence*>& joints)
+{
+  constexpr double AGREES = 0.2;
+  constexpr std::ptrdiff_t MIN_JOINTS = 3;
+  JointContext context;
+  context.has_controller = true;
+  const auto agrees = [&](const JointEvidence* joint)
+  {
+    const FrictionFactor factor = frictionFactor(*joint, context);
+    return factor.isJudged() && std::abs(factor.value - 1.0) < AGREES;
+  };
+  const auto agree = std::count_if(joints.begin(), joints.end(), agrees);
+  return agree >= MIN_JOINTS && 2 * agree > static_cast<std::ptrdiff_t>(joints.size());
+}
+
 FrictionFactor frictionFactor(const JointEvidence& evidence, const JointContext& context)
 {
   const bool has_own = !context.own.friction.empty();
-  FrictionRatio ratio = has_own ? evidence.friction().ratioTo(context.own.friction) : evidence.friction().ratio();
   FrictionFactor factor;
-  factor.is_to_own = has_own || context.is_identified;
+  factor.reference = has_own || context.is_identified ? FrictionReference::OWN :
+                     context.has_controller           ? FrictionReference::CONTROLLER :
+                                                        FrictionReference::TWIN;
+  const FrictionRatio ratio = has_own ? evidence.friction().ratioTo(context.own.friction) :
+                              factor.reference == FrictionReference::CONTROLLER ? evidence.besideController().ratio() :
+                                                                                  evidence.friction().ratio();
   std::tie(factor.reason, factor.why_not) = whyNone(ratio.points, evidence, has_own);
   if (!factor.isJudged())
   {
     return factor;
   }
   factor.value = ratio.value;
-  factor.deviation = deviationOf(ratio, context, has_own);
+  factor.deviation = deviationOf(ratio, context, factor.reference);
   factor.scatter = ratio.deviation / std::max(std::abs(ratio.value), NO_FRICTION);
   constexpr double SURE = 2.0;  // standard deviations
   factor.is_below_faults = factor.value / context.arm_friction < LEAST_OF_FAULTS &&
@@ -245,11 +284,31 @@ OwnReference ownReference(const std::vector<SoundFriction>& recordings)
 
 namespace
 {
+const char* referenceText(FrictionReference reference)
+{
+  switch (reference)
+  {
+    case FrictionReference::CONTROLLER:
+      return "what the arm's controller expects";
+    case FrictionReference::OWN:
+      return "this joint's own when it was sound";
+    case FrictionReference::TWIN:
+      break;
+  }
+  return "the twin's";
+}
+
+Figure figureOf(FrictionReference reference)
+{
+  return reference == FrictionReference::OWN        ? Figure::FRICTION_OF_OWN :
+         reference == FrictionReference::CONTROLLER ? Figure::FRICTION_OF_CONTROLLER :
+                                                      Figure::FRICTION_OF_TWIN;
+}
+
 std::string frictionText(const FrictionFactor& factor, const JointEvidence& evidence, const JointContext& context,
                          const Finding& finding, double less, double more)
 {
-  std::string text = "Friction is " + factorText(factor) + " times " +
-                     (factor.is_to_own ? "this joint's own when it was sound" : "the twin's") +
+  std::string text = "Friction is " + factorText(factor) + " times " + referenceText(factor.reference) +
                      (context.arm_friction == 1.0 ?
                           "" :
                           ", " + rounded(factor.value / context.arm_friction, 2) + " times what the " +
@@ -318,8 +377,9 @@ Finding judgeFriction(const JointEvidence& evidence, const Parameters& parameter
     return finding;
   }
   const double of_kind = parameters.comparison.friction_tolerance;
-  const double more = factor.is_to_own ? MORE_THAN_OWN : of_kind;
-  const double less = factor.is_to_own ? LESS_THAN_OWN : of_kind;
+  const bool is_to_twin = factor.reference == FrictionReference::TWIN;
+  const double more = is_to_twin ? of_kind : MORE_THAN_OWN;
+  const double less = is_to_twin ? of_kind : LESS_THAN_OWN;
   finding.level = levelOf(departure(factor, context.arm_friction, more, less), 1.0, parameters.indicators.error_factor);
   const double value = factor.value / context.arm_friction;
   if (finding.level != VerdictLevel::OK)
@@ -327,7 +387,7 @@ Finding judgeFriction(const JointEvidence& evidence, const Parameters& parameter
     finding.reason = Reason::FRICTION;
     nameCauses(evidence.assessor().signatures(), value > 1.0 ? 1.0 : -1.0, finding);
   }
-  verdict[factor.is_to_own ? Figure::FRICTION_OF_OWN : Figure::FRICTION_OF_TWIN] = factor.value;
+  verdict[figureOf(factor.reference)] = factor.value;
   verdict[Figure::FRICTION_SCATTER] = factor.scatter;
   verdict[Figure::FRICTION_LOWEST] = 1.0 - less;
   verdict[Figure::FRICTION_HIGHEST] = 1.0 + more;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <string>
 #include <vector>
@@ -18,17 +19,27 @@ struct OwnReference;
 
 constexpr double LEAST_MOTION = 0.02;  ///< a joint whose angles differ by less does not move [rad]
 
-/// Friction of a joint as a multiple of its own when sound, or of the twin's, with what is known of its error
+/// What the friction of a joint is a multiple of.
+enum class FrictionReference : std::uint8_t
+{
+  TWIN,
+  CONTROLLER,  ///< what the arm's controller expects
+  OWN          ///< its own when it was sound
+};
+
+const char* referenceName(FrictionReference reference) noexcept;  ///< "controller"
+
+/// Friction of a joint as a multiple of its reference, with what is known of its error
 /// (docs/compare.md).
 struct FrictionFactor
 {
   double value{ std::numeric_limits<double>::quiet_NaN() };  ///< NaN: the rows show none
   double deviation{};                                        ///< standard deviation of its logarithm [-]
   double scatter{};                                          ///< the part of it that the rows' scatter makes [-]
-  bool is_to_own{};                                          ///< a multiple of the joint's own, else of the twin's
-  bool is_below_faults{};                                    ///< less than any fault leaves of it
-  Reason reason{ Reason::SOUND };                            ///< why it is not judged; SOUND: it is
-  std::string why_not;                                       ///< the same in a sentence; empty: it is judged
+  FrictionReference reference{ FrictionReference::TWIN };
+  bool is_below_faults{};          ///< less than any fault leaves of it
+  Reason reason{ Reason::SOUND };  ///< why it is not judged; SOUND: it is
+  std::string why_not;             ///< the same in a sentence; empty: it is judged
 
   bool isJudged() const { return reason == Reason::SOUND; }
   /// Ends of the 95 % interval.
@@ -45,6 +56,10 @@ private:
 
 /// "1.18 [1.05, 1.32]"
 std::string factorText(const FrictionFactor& factor);
+
+/// Whether the friction of the joints of an arm can be held against what its controller expects: most of them agree
+/// with it, and so it is that of sound joints.
+bool controllerIsReference(const std::vector<const JointEvidence*>& joints);
 
 /// Of the rows that the evidence holds, apart from what the joints of the arm have in common.
 FrictionFactor frictionFactor(const JointEvidence& evidence, const JointContext& context);

@@ -22,6 +22,7 @@ void JointEvidence::Sums::reset() noexcept
 {
   reach = MotionReach();
   friction = FrictionPoints();
+  beside_controller = FrictionPoints();
   torsion.reset();
   std::fill(loads.begin(), loads.end(), std::uint64_t{ 0 });
   current_squares = predicted_squares = temperatures = alarm_time = 0.0;
@@ -135,7 +136,13 @@ void JointEvidence::addRow(const MotionSample& sample, double residual) noexcept
   if (tellsFriction(predicted_))
   {
     const double way = sample.velocity < 0.0 ? -1.0 : 1.0;
-    now_.friction.add(sample.time, sample.velocity, way * (friction + gain * residual), way * friction, sample.load);
+    const double measured = friction + gain * residual;
+    now_.friction.add(sample.time, sample.velocity, way * measured, way * friction, sample.load);
+    if (std::isfinite(sample.target_current))
+    {
+      const double expected = friction + gain * (sample.target_current - predicted_.current);
+      now_.beside_controller.add(sample.time, sample.velocity, way * measured, way * expected, sample.load);
+    }
   }
   if (std::isfinite(sample.motor_angle))
   {

@@ -90,6 +90,9 @@ public:
   bool tellsFriction(const MotionPrediction& predicted) const noexcept;
   const MotionReach& reach() const { return now_.reach; }
   const FrictionPoints& friction() const { return now_.friction; }
+  /// The same beside the friction that the controller expects, in the twin's place: with its target current in place of
+  /// the measured one. Of the rows that hold it.
+  const FrictionPoints& besideController() const { return now_.beside_controller; }
   const TorsionPoints& torsion() const { return now_.torsion; }
   const SignalIndicators& indicators() const { return health_.indicators(); }
   const Assessor& assessor() const { return health_.assessor(); }
@@ -131,6 +134,7 @@ private:
 
     MotionReach reach;
     FrictionPoints friction;
+    FrictionPoints beside_controller;
     TorsionPoints torsion;
     std::vector<std::uint64_t> loads;  // histogram of magnitudes
     double current_squares{};

@@ -24,6 +24,8 @@ struct MotionRow
   /// At the output, of the links' vibration, which the load leaves out [N.m].
   double vibration{};
   double temperature{ std::numeric_limits<double>::quiet_NaN() };  ///< of the drive; NaN: not measured [degC]
+  /// What the controller expects of the motor in this motion; NaN: not recorded [A].
+  double target_current{ std::numeric_limits<double>::quiet_NaN() };
 
   double temperatureOr(double configured) const noexcept
   {

@@ -31,8 +31,9 @@ struct OwnReference
 struct JointContext
 {
   OwnReference own;
-  bool is_identified{};  ///< the twin's friction is that of this joint
-  double duration{};     ///< of the recording [s]
+  bool is_identified{};   ///< the twin's friction is that of this joint
+  bool has_controller{};  ///< without `own` the friction is held against what the arm's controller expects
+  double duration{};      ///< of the recording [s]
   /// Multiple of the reference's friction by what the joints of an arm have in common: temperature or gain, no fault.
   double arm_friction{ 1.0 };
   Misfit misfit;                        ///< of its rows
@@ -75,6 +76,7 @@ enum class Figure : std::uint8_t
   LOWEST_SPEED,            ///< with its sign [rad/s]
   HIGHEST_SPEED,           ///< [rad/s]
   FRICTION_OF_TWIN,        ///< over the twin's [-]
+  FRICTION_OF_CONTROLLER,  ///< over what the arm's controller expects [-]
   FRICTION_OF_OWN,         ///< over the joint's own when it was sound [-]
   FRICTION_OF_ARM,         ///< that all joints of the arm have in common [-]
   FRICTION_SCATTER,        ///< standard deviation of its logarithm by the scatter of the rows [-]
@@ -97,7 +99,7 @@ enum class Figure : std::uint8_t
   LARGEST_CONTACT_LASTED,  ///< [s]
   LARGEST_CONTACT_TORQUE   ///< [N.m]
 };
-constexpr std::size_t FIGURE_COUNT = 37;
+constexpr std::size_t FIGURE_COUNT = 38;
 
 const char* figureName(Figure figure) noexcept;  ///< "rows"
 const char* figureUnit(Figure figure) noexcept;
@@ -127,8 +129,8 @@ struct Finding
   std::vector<WeightedCause> causes;  ///< that would show like this; none at level OK
 };
 
-/// Friction of the joint: a multiple of its own when sound where that is known, else of the twin's; in an arm over what
-/// all joints have in common.
+/// Friction of the joint: a multiple of its own when sound where that is known, else of what the controller expects or
+/// of the twin's; in an arm over what all joints have in common.
 struct JudgedFriction
 {
   double factor{ std::numeric_limits<double>::quiet_NaN() };  ///< NaN: not measured [-]

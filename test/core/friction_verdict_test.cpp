@@ -2,6 +2,7 @@
 // Friction of a measured joint as a factor with an interval: what is judged, and why what is not is not.
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <random>
 #include <string>
 #include <vector>
@@ -82,6 +83,7 @@ public:
       const MotionPrediction predicted = twin_.step(sample);
       const double worn = (factor(sample.time) - 1.0) * predicted.friction_torque / gain();
       sample.current = predicted.current + worn + more + noise(engine);
+      sample.target_current = predicted.current + (expected_ - 1.0) * predicted.friction_torque / gain();
       evidence_.update(sample);
     }
     return evidence_;
@@ -99,10 +101,14 @@ public:
     return judgeFriction(evidence(swing, 60.0, factor), parameters_, context, verdict_);
   }
 
+  /// From now on the controller expects this multiple of the twin's friction; NaN: what it expects is not recorded.
+  void expect(double factor) { expected_ = factor; }
+
   const Verdict& verdict() const { return verdict_; }  ///< that holds what was judged last
 
 private:
   Parameters parameters_;
+  double expected_{ std::numeric_limits<double>::quiet_NaN() };
   Verdict verdict_;
   MotionDriven twin_;
   JointEvidence evidence_;
@@ -192,6 +198,39 @@ TEST_F(FrictionVerdict, WithoutAReferenceDrivesOfOneKindDiffer)
   JointContext context;
   context.is_identified = true;
   EXPECT_EQ(joint_.judged(1.30, context).level, VerdictLevel::WARN) << "the twin's friction is this joint's own";
+}
+
+TEST_F(FrictionVerdict, WhatTheControllerExpectsIsAReferenceWhereMostJointsAgreeWithIt)
+{
+  // Drives of one kind differ by more than what is to be found: half again as much friction as the twin's is sound.
+  const auto evidence = [&](double factor, double expected)
+  {
+    joint_.expect(expected);
+    return JointEvidence(joint_.evidence(swing, 60.0, factor));
+  };
+  const JointEvidence sound = evidence(1.5, 1.5);
+  const JointEvidence worn = evidence(1.5 * 1.3, 1.5);
+  const JointEvidence unlike = evidence(1.5, 0.7);
+  const JointEvidence unknown = evidence(1.5, std::numeric_limits<double>::quiet_NaN());
+  joint_.expect(std::numeric_limits<double>::quiet_NaN());
+  EXPECT_TRUE(controllerIsReference({ &sound, &worn, &sound, &sound }));
+  EXPECT_FALSE(controllerIsReference({ &sound, &unlike, &unlike, &sound, &sound, &unlike }));
+  EXPECT_FALSE(controllerIsReference({ &unknown, &unknown, &unknown, &unknown }));
+  EXPECT_FALSE(controllerIsReference({ &sound, &sound })) << "two joints are no witnesses";
+
+  JointContext context = witnessed({});
+  context.has_controller = true;
+  const auto judged = [&](const JointEvidence& rows, Verdict& verdict)
+  { return judgeFriction(rows, joint_.parameters(), context, verdict).level; };
+  Verdict verdict;
+  EXPECT_EQ(judged(sound, verdict), VerdictLevel::OK);
+  EXPECT_EQ(judged(worn, verdict), VerdictLevel::WARN);
+  EXPECT_NEAR(verdict.friction.factor, 1.3, 0.01);
+  EXPECT_NEAR(verdict[Figure::FRICTION_OF_CONTROLLER], 1.3, 0.01);
+  EXPECT_THAT(verdict.friction_text, HasSubstr("times what the arm's controller expects"));
+  EXPECT_EQ(judged(unknown, verdict), VerdictLevel::NOT_JUDGED);
+  context.own = ownReference({ this->sound() });
+  EXPECT_EQ(frictionFactor(worn, context).reference, FrictionReference::OWN);
 }
 
 TEST_F(FrictionVerdict, TheIntervalHoldsWhatIsUncertain)

@@ -110,7 +110,7 @@ class Compare(tool.ToolTest):
             factor = report["friction_factor"]
             self.assertLess(factor["low"], factor["value"])
             self.assertGreater(factor["high"], factor["value"])
-            self.assertFalse(factor["is_to_own"])
+            self.assertEqual(factor["reference"], "twin")
         self.assertEqual(levels, ["OK", "WARN"])
         self.assertEqual(report["verdict"]["level"], "WARN")
         self.assertIn("lubricant_degradation", self.finding(report, "Friction")["text"])
@@ -145,7 +145,7 @@ class Compare(tool.ToolTest):
             self.succeed("compare", f"{name}.bag", *OPTIONS, *GAIN, "--report", name)
         one, level = factor_of("worn.bag", "usual")
         self.assertAlmostEqual(one["value"], 1.4, delta=0.02)
-        self.assertTrue(one["is_to_own"])
+        self.assertEqual(one["reference"], "own")
         self.assertEqual(level, "WARN")
         alike, level = factor_of("worn.bag", "usual", "again")
         self.assertEqual(level, "WARN")
@@ -161,7 +161,7 @@ class Compare(tool.ToolTest):
         robot.write_bag(self.path("a.bag"), 60.0, 1.3)
         self.succeed("compare", "short.bag", *OPTIONS, *GAIN, "--report", "short")
         found = self.compare("a.bag", "--reference", "short")
-        self.assertFalse(found["friction_factor"]["is_to_own"])
+        self.assertEqual(found["friction_factor"]["reference"], "twin")
         self.assertIn("The reference did not judge this joint's friction", self.finding(found, "Friction")["text"])
 
     def test_dropped_and_damaged_messages_change_little(self):
