@@ -21,7 +21,7 @@ Progress = Callable[[str, float], None]
 Arrays = Union[Mapping[str, "NDArray[Any]"], "NDArray[np.void]"]  # columns by their names
 Recording = Union[Path, Arrays]
 
-__all__ = ["check", "checkup", "compare", "follow", "identify", "indicators", "lives", "remaining", "sweep"]
+__all__ = ["arm", "check", "checkup", "compare", "follow", "identify", "indicators", "lives", "remaining", "sweep"]
 
 _NOISE = "joint_twin: "  # before the tool's messages
 
@@ -166,6 +166,27 @@ def follow(recording: Recording, *, joint: Optional[str] = None, arm: Optional[s
                  {"recording": recording, "joint": joint, "arm": arm, "mode": mode, "bag": bag, "load": load,
                   "identified": identified, "topic": topic, "time_scale": time_scale, "force": force,
                   "progress": progress}, overlays)
+
+
+def arm(motion: Recording, arm: Path, *, faults: Sequence[str] = (), out: Optional[Path] = None,
+        rate: Optional[float] = None, identified: Optional[Path] = None, force: bool = False, overlays: Overlays = (),
+        progress: Optional[Progress] = None) -> Document:
+    """A whole arm in closed loop, its drives, links and controller, along set points: the tool's arm (docs/arm_twin.md).
+
+    motion: CSV of set points, or columns: a structured array or a mapping of arrays with 'time' [s], shape (rows,), and
+    of shape (rows, joints) 'position' [rad] and, if known, 'velocity' [rad/s] and 'acceleration' [rad/s^2]. arm: name in
+    config/arms, or a file. faults: each JOINT:KIND:SEVERITY[:PLACE[:ONSET]]. out: CSV in a controller's columns. rate:
+    of the rows [Hz]; None: that of the arm's states. Others as of identify.
+
+    Returns a dict: 'joints' (one dict each: 'angle_error_rms', 'angle_error_max' [mrad], 'current_rms' [A]),
+    'tool_error_rms', 'tool_error_max' [mm], 'energy_residual' [J], 'solver_failures', and as its 'rows' a dict of
+    arrays as RTDE names them: 'timestamp' [s], shape (rows,), 'target_q', 'target_qd', 'target_qdd', 'target_current'
+    [A], 'target_moment' [N.m], 'actual_q', 'actual_qd', 'actual_current', shape (rows, joints), 'target_TCP_pose',
+    'actual_TCP_pose' (position [m]), shape (rows, 3). InputError, ParameterError.
+    """
+    return _call("arm",
+                 {"motion": motion, "arm": arm, "faults": list(faults), "out": out, "rate": rate,
+                  "identified": identified, "force": force, "progress": progress}, overlays)
 
 
 def _columns(recording: Any) -> Dict[str, "NDArray[np.float64]"]:

@@ -141,6 +141,26 @@ class Commands(Recordings):
                               for recording in ("arm.csv", elbow))
         self.assertEqual(of_arrays, of_file)
 
+    def test_an_arm_in_closed_loop_gives_what_the_tool_writes(self):
+        time = 0.008 * np.arange(40)
+        position = np.array([0.0, -1.2, 1.0, -1.3, -1.5, 0.3]) + 0.1 * (1.0 - np.cos(8.0 * time))[:, None]
+        scene = {"solver.scene": "full_ring"}
+        np.savetxt("motion.csv", np.column_stack([time, position]), "%.17g", ",", comments="",
+                   header="timestamp," + ",".join(f"target_q_{i}" for i in range(6)))
+        fault = "elbow:lubricant_degradation:0.5"
+        found = hjt.arm("motion.csv", "ur5", faults=[fault], out="run.csv", overlays=[scene])
+        of_arrays = hjt.arm({"time": time, "position": position}, "ur5", faults=[fault], overlays=[scene])
+        expected = self.tool("arm", "motion.csv", "--arm", "ur5", "--fault", fault, "--out", "tool.csv", "--set",
+                             "solver.scene=full_ring")
+        written = np.genfromtxt("run.csv", delimiter=",", names=True)
+        self.assertEqual(found["rows"]["target_q"].shape, (len(written), 6))
+        for name, values in found["rows"].items():
+            np.testing.assert_array_equal(of_arrays["rows"][name], values, name)
+            for column in range(values.shape[1] if values.ndim > 1 else 0):
+                np.testing.assert_array_equal(written[f"{name}_{column}"], values[:, column], name)
+        self.assertEqual(found["joints"], expected["joints"])
+        self.assertEqual(found["tool_error_max"], expected["tool_error_max"])
+
     def test_indicators_and_remaining_answer_as_the_tool_of_files_and_arrays(self):
         twin = hjt.Twin(hjt.Parameters())
         rows = twin.run(60000, motor_torque=0.4, load_torque=5.0, every=10)
@@ -214,6 +234,10 @@ class Errors(Recordings):
                 (lambda: hjt.follow("none.csv", joint="elbow", mode="backwards"), hjt.InputError, "mode = 'backwards'"),
                 (lambda: hjt.follow({"time": [0.0], "current": [0.0]}, joint="elbow"), hjt.InputError, "'position'"),
                 (lambda: hjt.indicators("a.txt"), hjt.InputError, "'a.txt' must end in"),
+                (lambda: hjt.arm({"time": [0.0], "position": [0.0]}, "ur5"), hjt.ParameterError, "6"),
+                (lambda: hjt.arm({"time": [0.0, 0.0], "position": np.zeros((2, 6))}, "ur5"), hjt.InputError,
+                 "motion, row 2: the time does not go on"),
+                (lambda: hjt.arm({"time": [0.0]}, "ur5"), hjt.InputError, "'position', of shape (rows, joints)"),
                 (lambda: hjt.remaining({"time": [0.0]}), hjt.InputError, "recordings[0]: column 'motor_torque'"),
                 (lambda: hjt.remaining("a.csv", hours=0.0), hjt.InputError, "hours = 0"),
                 (lambda: hjt.checkup("ur5", "a.csv", joint="knee"), hjt.ParameterError, "has no joint 'knee'"),

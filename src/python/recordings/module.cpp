@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Functions on recordings within Python: the module _recordings, behind python/harmonic_joint_twin/_commands.py, which
 // has their signatures.
-#include <pybind11/stl.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <exception>
 #include <optional>
 #include <string>
 #include <utility>
@@ -15,9 +12,8 @@
 
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "params/choices.hpp"
-#include "params/configuration_files.hpp"
 #include "python/comparison_row.hpp"
-#include "python/overlays.hpp"
+#include "python/recordings/calls.hpp"
 #include "recordings/compare.hpp"
 #include "recordings/follow.hpp"
 #include "recordings/identify.hpp"
@@ -28,183 +24,6 @@ namespace hjt
 {
 namespace
 {
-py::object toPython(const Json& json);
-
-struct ToPython
-{
-  py::object operator()(std::nullptr_t) const { return py::none(); }
-  py::object operator()(double value) const
-  {
-    return std::isfinite(value) ? py::float_(value) : py::object(py::none());
-  }
-  py::object operator()(const std::vector<Json>& values) const
-  {
-    py::list list;
-    for (const Json& value : values)
-    {
-      list.append(toPython(value));
-    }
-    return std::move(list);
-  }
-  py::object operator()(const std::vector<Json::Member>& members) const
-  {
-    py::dict dict;
-    for (const auto& [name, value] : members)
-    {
-      dict[py::str(name)] = toPython(value);
-    }
-    return std::move(dict);
-  }
-  template <class Value>
-  py::object operator()(const Value& value) const
-  {
-    return py::cast(value);
-  }
-};
-
-py::object toPython(const Json& json)
-{
-  return json.visit(ToPython());
-}
-
-/// A function's options by their names. What Python cannot give as the option's type is its TypeError.
-class Given
-{
-public:
-  explicit Given(const py::dict& values) : values_(values) {}
-
-  template <class Value>
-  void take(const char* name, Value& field) const
-  {
-    if (values_.contains(name))
-    {
-      field = py::cast<Value>(values_[name]);
-    }
-  }
-
-  void take(const char* name, std::optional<Span>& field) const
-  {
-    std::optional<std::array<double, 2>> pair;
-    take<std::optional<std::array<double, 2>>>(name, pair);
-    field = pair ? std::make_optional(Span{ (*pair)[0], (*pair)[1] }) : std::nullopt;
-  }
-
-  py::object operator[](const char* name) const
-  {
-    return values_.contains(name) ? py::object(values_[name]) : py::none();
-  }
-
-private:
-  py::dict values_;
-};
-
-/// How Python follows a function: Ctrl-C, an error out of `progress`, and the notices that become warnings.
-class PythonWatch
-{
-public:
-  explicit PythonWatch(py::object progress) : progress_(std::move(progress)) {}
-  PythonWatch(const PythonWatch&) = delete;
-  PythonWatch& operator=(const PythonWatch&) = delete;
-
-  Watch watch()
-  {
-    return { [this](const std::string& what) { return [this, what](double done) { look(what, done); }; },
-             [this]
-             {
-               look({}, 0.0);
-               return ended_;
-             },
-             [this](const std::string& text) { notices_.push_back(text); } };
-  }
-
-  /// @throws what Python raised meanwhile.
-  std::vector<std::string> finish()
-  {
-    if (error_)
-    {
-      std::rethrow_exception(error_);
-    }
-    if (ended_)
-    {
-      throw py::error_already_set();
-    }
-    return std::move(notices_);
-  }
-
-private:
-  /// Nothing of Python is called once it has raised: files are closed first.
-  void look(const std::string& what, double done)
-  {
-    if (ended_)
-    {
-      return;
-    }
-    try
-    {
-      check_();
-      if (!what.empty() && !progress_.is_none() && std::abs(done - shown_) >= STEP)
-      {
-        shown_ = done;
-        const py::gil_scoped_acquire acquire;
-        progress_(what, done);
-      }
-    }
-    catch (const Interrupted&)
-    {
-      ended_ = true;
-    }
-    catch (const py::error_already_set&)
-    {
-      error_ = std::current_exception();
-      ended_ = true;
-    }
-  }
-
-  static constexpr double STEP = 0.01;
-
-  py::object progress_;
-  InterruptCheck check_;
-  double shown_{ -1.0 };
-  bool ended_{};
-  std::exception_ptr error_;
-  std::vector<std::string> notices_;
-};
-
-void takeConfiguration(const Given& given, ConfigurationOptions& options)
-{
-  for (const auto& overlay : given["overlays"])
-  {
-    readOverlay(overlay, configurationDirectory("").string(), options.values);
-  }
-}
-
-using Values = py::array_t<double, py::array::c_style | py::array::forcecast>;
-
-/// A column of a mapping of arrays or a structured array, of shape (rows,) or, of an arm, (rows, joints); none: it is
-/// not there.
-class MotionColumn
-{
-public:
-  MotionColumn(const py::object& columns, const char* name)
-  {
-    const py::object names = py::hasattr(columns, "dtype") ? columns.attr("dtype").attr("names") : columns;
-    if (names.contains(name))
-    {
-      values_ = columns[name].cast<Values>();
-      data_ = values_.data();
-    }
-  }
-
-  explicit operator bool() const { return data_ != nullptr; }
-  py::ssize_t rows() const { return values_.shape(0); }
-  py::ssize_t width() const { return values_.ndim() > 1 ? values_.shape(1) : 1; }
-  double at(std::size_t row, std::size_t joint) const { return data_[row * static_cast<std::size_t>(width()) + joint]; }
-
-private:
-  Values values_;
-  const double* data_{};
-};
-
 /// @throws InputError if columns are missing or not of one shape.
 void takeRows(const py::object& columns, RecordingOptions& options)
 {
@@ -314,20 +133,6 @@ void takeSignals(const Given& given, SignalOptions& options)
       throw InputError(wrong);
     }
   }
-}
-
-using Answer = std::pair<py::object, std::vector<std::string>>;
-
-/// Calls `function` with the options, without the interpreter's lock; gives what `document` makes of its result, and
-/// the notices.
-template <class Options, class Function, class Document>
-Answer call(const Given& given, Options& options, const Function& function, const Document& document)
-{
-  PythonWatch watch(given["progress"]);
-  options.watch = watch.watch();
-  const auto result = withoutLock([&] { return function(options); });
-  const std::vector<std::string> notices = watch.finish();
-  return { document(result), notices };
 }
 
 Answer followIn(const py::dict& arguments)
@@ -444,6 +249,7 @@ PYBIND11_MODULE(_recordings, module)
 {
   module.doc() = "Functions on recordings: options by name in, a document and the notices out.";
   pybind11::module::import("harmonic_joint_twin._hjt");  // its errors and COMPARISON_DTYPE
+  module.def("arm", &hjt::armIn, pybind11::arg("arguments"), "An arm in closed loop along its set points.");
   module.def("follow", &hjt::followIn, pybind11::arg("arguments"), "Joints beside their twins, and their rows.");
   module.def("identify", &hjt::identifyIn, pybind11::arg("arguments"), "Gain, friction, inertia and ripple.");
   module.def("compare", &hjt::compareIn, pybind11::arg("arguments"), "Verdict and page.");

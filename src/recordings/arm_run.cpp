@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "recordings/arm_run.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+
+#include "output/output_file.hpp"
+#include "output/run_summary.hpp"
+#include "recordings/set_points.hpp"
+
+#include "arm/arm_configuration.hpp"
+#include "arm/moving_arm.hpp"
+
+namespace hjt
+{
+namespace
+{
+std::vector<Parameters> drivesOf(const ArmRunOptions& options, const ArmDescription& arm)
+{
+  std::vector<Parameters> drives;
+  for (const ArmJoint& joint : arm.joints)
+  {
+    ParameterMap map = armJointParameters(joint, configDirectory(options), options.identified);
+    readAssignment("solver.scene=auto", map);
+    addOverlays(options, map);
+    drives.push_back(parseParameters(map));
+  }
+  addArmFaults(arm, options.faults, drives);
+  return drives;
+}
+
+std::vector<std::string> columnsOf(std::size_t joints)
+{
+  std::vector<std::string> columns{ "timestamp" };
+  for (const ArmRunQuantity& quantity : armRunQuantities(joints))
+  {
+    for (std::size_t i = 0; i < quantity.width; ++i)
+    {
+      columns.push_back(quantity.name + std::to_string(i));
+    }
+  }
+  return columns;
+}
+
+double distance(const std::array<double, 3>& a, const std::array<double, 3>& b)
+{
+  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+}
+
+/// Makes the rows of a moving arm, and adds up its errors.
+class Recorder
+{
+public:
+  Recorder(const ArmDescription& arm, MovingArm& moving)
+    : arm_(moving), dynamics_(arm), target_(arm.joints.size()), joints_(arm.joints.size())
+  {
+    for (std::size_t i = 0; i < joints_.size(); ++i)
+    {
+      joints_[i].name = arm.joints[i].short_name;
+      Parameters drive = moving.twin().drive(i).parameters();
+      inertia_in_load_.push_back(takeInertiaInLoad(drive));
+    }
+  }
+
+  const std::vector<double>& row(double time)
+  {
+    arm_.wanted(target_);
+    ++rows_;
+    row_.assign(1, time);
+    std::array<std::vector<double>, 8> values;
+    for (std::size_t i = 0; i < target_.size(); ++i)
+    {
+      const std::array<double, 8> numbers = numbersOf(i);
+      for (std::size_t k = 0; k < values.size(); ++k)
+      {
+        values[k].push_back(numbers[k]);
+      }
+      addErrors(i, numbers.back());
+    }
+    for (const std::vector<double>& value : values)
+    {
+      row_.insert(row_.end(), value.begin(), value.end());
+    }
+    const ToolPose wanted = dynamics_.toolPose(target_);
+    const ToolPose tool = arm_.twin().toolPose();
+    for (const ToolPose& pose : { wanted, tool })
+    {
+      row_.insert(row_.end(), pose.position.begin(), pose.position.end());
+    }
+    const double error = distance(tool.position, wanted.position);
+    tool_squares_ += error * error;
+    tool_largest_ = std::max(tool_largest_, error);
+    return row_;
+  }
+
+  ArmRun finish()
+  {
+    const auto rms = [n = std::max(rows_, 1.0)](double squares) { return std::sqrt(squares / n); };
+    ArmRun run;
+    run.tool_error_rms = rms(tool_squares_);
+    run.tool_error_max = tool_largest_;
+    for (ArmRunJoint joint : joints_)  // holds sums of squares so far
+    {
+      joint.angle_error_rms = rms(joint.angle_error_rms);
+      joint.current_rms = rms(joint.current_rms);
+      run.joints.push_back(joint);
+    }
+    return run;
+  }
+
+private:
+  /// Of a joint, in the order of the columns.
+  std::array<double, 8> numbersOf(std::size_t i) const
+  {
+    const ArmController& controller = arm_.controller();
+    const double gain = arm_.twin().drive(i).parameters().telemetry.torque_per_current;
+    const JointReading read = arm_.reading(i);
+    const JointMotion& target = target_[i];
+    return { target.position,
+             target.velocity,
+             target.acceleration,
+             controller.feedForward(i) / gain,
+             controller.rigidTorques()[i] + inertia_in_load_[i] * target.acceleration,
+             read.position,
+             read.velocity,
+             read.current };
+  }
+
+  void addErrors(std::size_t i, double current)
+  {
+    ArmRunJoint& joint = joints_[i];
+    const double error = arm_.twin().motion()[i].position - target_[i].position;
+    joint.angle_error_rms += error * error;
+    joint.angle_error_max = std::max(joint.angle_error_max, std::abs(error));
+    joint.current_rms += current * current;
+  }
+
+  MovingArm& arm_;
+  ArmDynamics dynamics_;
+  std::vector<JointMotion> target_;
+  std::vector<double> inertia_in_load_;
+  std::vector<ArmRunJoint> joints_;
+  std::vector<double> row_;
+  double tool_squares_{};
+  double tool_largest_{};
+  double rows_{};
+};
+}  // namespace
+
+std::vector<ArmRunQuantity> armRunQuantities(std::size_t joints)
+{
+  constexpr std::size_t AXES = 3;
+  return { { "target_q_", joints },       { "target_qd_", joints },      { "target_qdd_", joints },
+           { "target_current_", joints }, { "target_moment_", joints },  { "actual_q_", joints },
+           { "actual_qd_", joints },      { "actual_current_", joints }, { "target_TCP_pose_", AXES },
+           { "actual_TCP_pose_", AXES } };
+}
+
+ArmRun runArm(const ArmRunOptions& options)
+{
+  requireWritable(options.out, options.force, options.motion);
+  const ArmDescription arm = readArmDescription(findArm(options.arm, configDirectory(options)));
+  ArmMotion motion(options.set_points.empty() ? readSetPoints(options.motion, arm) : options.set_points);
+  MovingArm moving(arm, drivesOf(options, arm), motion, surfaceSource(options.watch));
+  Recorder recorder(arm, moving);
+  std::optional<CsvWriter> csv;
+  if (!options.out.empty())
+  {
+    csv.emplace(options.out, columnsOf(arm.joints.size()));
+  }
+  moving.reset(SIMULATION_EPOCH);
+  ArmTwin& twin = moving.twin();
+  const Stamp end = moving.motionBegin() + toStampLength(motion.end() - motion.begin());
+  const double rate = options.rate.value_or(arm.state_rate);
+  const auto row_steps = std::max(std::llround(1e9 / rate / static_cast<double>(twin.stepLength())), 1LL);
+  const auto progress = options.watch.progress("moving the arm");
+  const auto started = std::chrono::steady_clock::now();
+  std::int64_t steps = 0;
+  while (!options.watch.stopped() && moving.step(end))
+  {
+    if (twin.stamp() >= moving.motionBegin() && steps++ % row_steps == 0)
+    {
+      const std::vector<double>& row = recorder.row(motion.begin() + toSeconds(twin.stamp() - moving.motionBegin()));
+      options.take(row);
+      if (csv)
+      {
+        csv->writeRow(row);
+      }
+    }
+    progress(static_cast<double>(twin.stamp() - SIMULATION_EPOCH) / static_cast<double>(end - SIMULATION_EPOCH));
+  }
+  if (csv)
+  {
+    csv->close();
+  }
+  ArmRun run = recorder.finish();
+  run.wall_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+  run.duration = toSeconds(twin.stamp() - SIMULATION_EPOCH);
+  run.energy_residual = twin.energyResidual();
+  for (std::size_t i = 0; i < twin.joints(); ++i)
+  {
+    run.solver_failures += twin.drive(i).counters().solver_failures;
+  }
+  return run;
+}
+
+Report reportOf(const ArmRun& run)
+{
+  const std::vector<Column<ArmRunJoint>> columns{
+    { "joint", &ArmRunJoint::name, "joint" },
+    { "angle_error_rms", [](const ArmRunJoint& joint) { return 1e3 * joint.angle_error_rms; },
+      "angle error, rms [mrad]" },
+    { "angle_error_max", [](const ArmRunJoint& joint) { return 1e3 * joint.angle_error_max; }, "largest [mrad]" },
+    { "current_rms", &ArmRunJoint::current_rms, "current, rms [A]" }
+  };
+  return { { { "duration", "duration [s]", run.duration },
+             { "real_time_factor", "times real time", run.duration / run.wall_time },
+             { "tool_error_rms", "tool position error, rms [mm]", 1e3 * run.tool_error_rms },
+             { "tool_error_max", "largest [mm]", 1e3 * run.tool_error_max },
+             { "energy_residual", "error of the arm's energy [J]", run.energy_residual } },
+           { { "joints", Table(columns, run.joints) } } };
+}
+}  // namespace hjt

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "arm/arm_motion.hpp"
+#include "output/report.hpp"
+#include "recordings/watch.hpp"
+#include "twin/configuration_options.hpp"
+
+namespace hjt
+{
+/// A motion for the twin of a whole arm. `faults`: JOINT:KIND:SEVERITY[:PLACE[:ONSET]].
+struct ArmRunOptions : ConfigurationOptions
+{
+  std::string motion;                   ///< file of set points (readSetPoints)
+  std::vector<ArmSetPoint> set_points;  ///< at hand; none: those of the file
+  std::string arm;                      ///< name in config/arms, or a file
+  std::string identified;               ///< directory of overlays, SHORT_NAME.yaml; empty: none
+  std::string out;                      ///< CSV of every row; empty: none
+  std::optional<double> rate;           ///< of the rows [Hz]; none: that of the arm's states
+  bool force{};                         ///< overwrite files
+  /// Given every row, of the columns of `armRunColumns`.
+  std::function<void(const std::vector<double>&)> take{ [](const std::vector<double>&) {} };
+  Watch watch;
+};
+
+/// Errors of a joint, actual less target.
+struct ArmRunJoint
+{
+  std::string name;          ///< short
+  double angle_error_rms{};  ///< [rad]
+  double angle_error_max{};  ///< [rad]
+  double current_rms{};      ///< [A]
+};
+
+struct ArmRun
+{
+  double duration{};         ///< simulated, with the start in the brakes [s]
+  double wall_time{};        ///< without building tables [s]
+  double tool_error_rms{};   ///< of its position [m]
+  double tool_error_max{};   ///< [m]
+  double energy_residual{};  ///< of the coupling [J]
+  std::vector<ArmRunJoint> joints;
+  std::uint64_t solver_failures{};  ///< steps without an equilibrium: the last good state was held
+};
+
+/// Some of the columns of a controller's recording: `width` numbers from name + "0" on.
+struct ArmRunQuantity
+{
+  const char* name;  ///< "target_q_"
+  std::size_t width;
+};
+
+/// After `timestamp` [s]: angles [rad] and their rates, currents [A], moments [N.m]; position of the tool [m].
+std::vector<ArmRunQuantity> armRunQuantities(std::size_t joints);
+
+/// Moves an arm along its set points, its drives, links and controller in closed loop (docs/arm_twin.md).
+/// @throws ParameterError, InputError: unreadable, or a file that cannot be written.
+ArmRun runArm(const ArmRunOptions& options);
+
+Report reportOf(const ArmRun& run);
+}  // namespace hjt

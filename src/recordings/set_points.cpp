@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "recordings/set_points.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <tuple>
+
+#include "base/csv_rows.hpp"
+#include "base/number_text.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+
+namespace hjt
+{
+namespace
+{
+/// The column of a header by one of its names; -1: none.
+int columnOf(const std::vector<std::string>& header, const std::vector<std::string>& names)
+{
+  for (const std::string& name : names)
+  {
+    const auto found = std::find(header.begin(), header.end(), name);
+    if (found != header.end())
+    {
+      return static_cast<int>(found - header.begin());
+    }
+  }
+  return -1;
+}
+}  // namespace
+
+void fillRates(std::vector<ArmSetPoint>& points, bool has_velocity, bool has_acceleration)
+{
+  const auto slope = [&](std::size_t k, std::size_t i, double JointMotion::*value)
+  {
+    const ArmSetPoint& before = points[k > 0 ? k - 1 : k];
+    const ArmSetPoint& after = points[std::min(k + 1, points.size() - 1)];
+    return after.time > before.time ? (after.joints[i].*value - before.joints[i].*value) / (after.time - before.time) :
+                                      0.0;
+  };
+  for (const auto& [missing, of, rate] :
+       { std::tuple(!has_velocity, &JointMotion::position, &JointMotion::velocity),
+         std::tuple(!has_acceleration, &JointMotion::velocity, &JointMotion::acceleration) })
+  {
+    for (std::size_t k = 0; missing && k < points.size(); ++k)
+    {
+      for (std::size_t i = 0; i < points[k].joints.size(); ++i)
+      {
+        points[k].joints[i].*rate = slope(k, i, of);
+      }
+    }
+  }
+}
+
+void requireMotion(const std::vector<ArmSetPoint>& points, const std::string& what)
+{
+  if (points.empty())
+  {
+    throw InputError(what + " has no row");
+  }
+  for (std::size_t i = 1; i < points.size(); ++i)
+  {
+    if (points[i].time <= points[i - 1].time)
+    {
+      throw InputError(what + ", row " + std::to_string(i + 1) + ": the time does not go on, " +
+                       numberText(points[i].time) + " s after " + numberText(points[i - 1].time) + " s");
+    }
+  }
+}
+
+std::vector<ArmSetPoint> readSetPoints(const std::string& path, const ArmDescription& arm)
+{
+  CsvRows rows(path);
+  const std::vector<std::string>& header = rows.header();
+  const int time = columnOf(header, { "timestamp", "time" });
+  std::vector<std::array<int, 3>> columns;
+  std::string missing = time < 0 ? "timestamp or time" : "";
+  bool has_velocity = true;
+  bool has_acceleration = true;
+  for (std::size_t i = 0; i < arm.joints.size(); ++i)
+  {
+    const std::string number = std::to_string(i);
+    const std::string& name = arm.joints[i].short_name;
+    columns.push_back({ columnOf(header, { "target_q_" + number, name + "_position" }),
+                        columnOf(header, { "target_qd_" + number, name + "_velocity" }),
+                        columnOf(header, { "target_qdd_" + number, name + "_acceleration" }) });
+    if (columns[i][0] < 0)
+    {
+      missing += (missing.empty() ? "" : ", ") + ("target_q_" + number + " or " + name + "_position");
+    }
+    has_velocity = has_velocity && columns[i][1] >= 0;
+    has_acceleration = has_acceleration && columns[i][2] >= 0;
+  }
+  if (!missing.empty())
+  {
+    throw InputError(path + ": no column " + missing);
+  }
+  std::vector<ArmSetPoint> points;
+  const auto number = [&](int column)
+  {
+    const std::optional<double> value = decimalNumber(rows.text(static_cast<std::size_t>(column)));
+    if (!value || !std::isfinite(*value))
+    {
+      throw InputError(rows.place() + ": column '" + header[static_cast<std::size_t>(column)] +
+                       "' is no finite number");
+    }
+    return *value;
+  };
+  while (rows.next())
+  {
+    ArmSetPoint point{ number(time), {} };
+    for (const std::array<int, 3>& column : columns)
+    {
+      point.joints.push_back(
+          { number(column[0]), has_velocity ? number(column[1]) : 0.0, has_acceleration ? number(column[2]) : 0.0 });
+    }
+    points.push_back(point);
+  }
+  requireMotion(points, path);
+  fillRates(points, has_velocity, has_acceleration);
+  return points;
+}
+}  // namespace hjt

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "arm/arm_description.hpp"
+#include "arm/arm_motion.hpp"
+
+namespace hjt
+{
+/// Set points of a CSV file: those of a controller's recording (`timestamp` or `time` [s], `target_q_0` ... [rad] and, if
+/// there, `target_qd_0` ..., `target_qdd_0` ...), or a motion as `joint_twin checkup` writes it. @throws InputError.
+std::vector<ArmSetPoint> readSetPoints(const std::string& path, const ArmDescription& arm);
+
+/// Rates that are not given, by differences of the angles.
+void fillRates(std::vector<ArmSetPoint>& points, bool has_velocity, bool has_acceleration);
+
+/// @throws InputError if there is none, or the time does not go on. `what`: they are of.
+void requireMotion(const std::vector<ArmSetPoint>& points, const std::string& what);
+}  // namespace hjt
