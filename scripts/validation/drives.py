@@ -21,6 +21,12 @@ GAIN = 10.7  # N.m at the joint per ampere of motor current, the controller's ow
 SPEED_BINS = (0.05, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 1.0, 1.3)  # rad/s at the joint
 FEWEST_ROWS = 20  # in a bin
 
+# Of a UR10e, four recordings on three days: overlay of the joint, largest load of the recordings [N.m], and what its
+# friction grows by with the load, as a share of it [%], with the spread of the four and of each.
+UR10E_LOAD_LOSS = {"elbow": ("joints/elbow.yaml", 45.0, (5.7 - 1.5, 6.9 + 1.5)),
+                   "shoulder": ("joints/size_4.yaml", 133.0, (6.2 - 1.0, 6.6 + 1.0))}
+LOAD_LOSS_SPEED = 0.5  # rad/s at the joint
+
 COUNTS = 2 ** 24  # of both encoders of the 101:1 drive, per turn
 DIRECTION_GAP = 0.09e-3  # rad, between the directions of motion without load
 
@@ -28,6 +34,7 @@ DIRECTION_GAP = 0.09e-3  # rad, between the directions of motion without load
 def build(page):
     ur5e(page)
     ur5(page)
+    load_loss(page)
     two_encoders(page)
 
 
@@ -72,6 +79,25 @@ gear's: seals, output bearing and motor are in it.
 
     page.figure("drives_ur5e", "Loss of UR5e joints without load; bars: the two robots of the factory test.", draw,
                 (6.4, 3.0))
+
+
+def load_loss(page):
+    page.heading("UR10e: friction that grows with the load")
+    page.text(f"""
+What the friction of a UR10e grows by with the load (recordings of shamilmamedov/dynamic_calibration; its currents by the
+controller's own ratio at rest), beside a straight line through the twin's loss at {LOAD_LOSS_SPEED:g} rad/s, over the loads of the
+recordings. Nothing is fitted to it. The twin's loss rises slowly at first and faster under load; a line is what the
+recordings can tell.
+""")
+    for joint, (overlay, most, (low, high)) in UR10E_LOAD_LOSS.items():
+        loads = np.linspace(0.0, most, 10)
+        loss = joint_loss(page, [LOAD_LOSS_SPEED], loads, "--config", overlay)[:, 0]
+        page.check(f"drives.ur10e.load_loss.{joint}", f"{joint}, friction by load up to {most:g} N·m, of the load",
+                   "four recordings", Between(round(low, 1), round(high, 1)), 100.0 * np.polyfit(loads, loss, 1)[0],
+                   "%", "spread of the four recordings and of each",
+                   known="" if joint == "elbow" else
+                   "flanks and bearing keep their friction coefficients at any load; those of the catalogue's efficiency "
+                   "at rated load leave more than the robot loses at three times that of the elbow")
 
 
 def recording(page, *parts):
