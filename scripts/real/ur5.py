@@ -6,6 +6,7 @@ import os
 
 import numpy as np
 
+import closed_loop
 from runs import BLUE, GREEN, GREY, RED, figure, read, rms, save, table
 
 FOLDER, PREFIX = "ur5_cb", "ur5_cb_"
@@ -347,6 +348,8 @@ arm answers in every joint's current.
 
 ![Current of the three large joints, measured and predicted](images/real_robot/current.png)
 
+""", *closed_loop.section(runner, judged, fit, JOINTS, by_name.get(SHOWN, judged[0]).name,
+                          os.path.join(images, "closed_loop.png")), """
 ### Verdicts
 
 """ + f"""`joint_twin compare --arm ur5`, alone and with the report of {TRAIN} as `--reference` (of {TRAIN}: that of

@@ -5,6 +5,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "output/output_file.hpp"
 #include "output/run_summary.hpp"
@@ -12,6 +13,7 @@
 
 #include "arm/arm_configuration.hpp"
 #include "arm/moving_arm.hpp"
+#include "base/number_text.hpp"
 
 namespace hjt
 {
@@ -162,7 +164,14 @@ ArmRun runArm(const ArmRunOptions& options)
 {
   requireWritable(options.out, options.force, options.motion);
   const ArmDescription arm = readArmDescription(findArm(options.arm, configDirectory(options)));
-  ArmMotion motion(options.set_points.empty() ? readSetPoints(options.motion, arm) : options.set_points);
+  std::vector<ArmSetPoint> points =
+      options.set_points.empty() ? readSetPoints(options.motion, arm) : options.set_points;
+  if (const double change = straightenTimes(points); change > 0.0)
+  {
+    options.watch.notice("the set points' times do not go with their angles and speeds: moved, a step by up to " +
+                         fixedText(1e3 * change, 1) + " ms");
+  }
+  ArmMotion motion(std::move(points));
   MovingArm moving(arm, drivesOf(options, arm), motion, surfaceSource(options.watch));
   Recorder recorder(arm, moving);
   std::optional<CsvWriter> csv;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <tuple>
 
@@ -28,6 +29,21 @@ int columnOf(const std::vector<std::string>& header, const std::vector<std::stri
   }
   return -1;
 }
+
+/// In which the joints go from one set point to the next at their speeds, least squares [s]; NaN: they are too slow to
+/// tell.
+double stepByMotion(const ArmSetPoint& from, const ArmSetPoint& to, double least_speed)
+{
+  double way = 0.0;
+  double squares = 0.0;
+  for (std::size_t i = 0; i < to.joints.size(); ++i)
+  {
+    const double speed = 0.5 * (from.joints[i].velocity + to.joints[i].velocity);
+    way += speed * (to.joints[i].position - from.joints[i].position);
+    squares += speed * speed;
+  }
+  return squares > least_speed * least_speed ? way / squares : std::numeric_limits<double>::quiet_NaN();
+}
 }  // namespace
 
 void fillRates(std::vector<ArmSetPoint>& points, bool has_velocity, bool has_acceleration)
@@ -51,6 +67,46 @@ void fillRates(std::vector<ArmSetPoint>& points, bool has_velocity, bool has_acc
       }
     }
   }
+}
+
+double straightenTimes(std::vector<ArmSetPoint>& points)
+{
+  constexpr double MOVING = 0.05;      // all joints together [rad/s]
+  constexpr double SAME_RATES = 0.02;  // share by which the speeds may be off the angles' rates
+  constexpr double JITTER = 0.1;       // of a step, rms, that counts
+  constexpr double LONGEST = 4.0;      // step over that of the stamps
+  std::vector<double> steps;
+  double by_stamps = 0.0;  // of the steps in motion [s]
+  double by_motion = 0.0;
+  double squares = 0.0;
+  double moving = 0.0;
+  for (std::size_t k = 1; k < points.size(); ++k)
+  {
+    const double stamped = points[k].time - points[k - 1].time;
+    const double step = stepByMotion(points[k - 1], points[k], MOVING);
+    const bool is_known = step > 0.0 && step < LONGEST * stamped;
+    steps.push_back(is_known ? step : stamped);
+    if (is_known)
+    {
+      by_stamps += stamped;
+      by_motion += step;
+      squares += std::pow(step / stamped - 1.0, 2);
+      moving += 1.0;
+    }
+  }
+  if (!(squares > JITTER * JITTER * moving) || std::abs(by_motion / by_stamps - 1.0) > SAME_RATES)
+  {
+    return 0.0;
+  }
+  double change = 0.0;
+  double stamp = points.front().time;
+  for (std::size_t k = 1; k < points.size(); ++k)
+  {
+    change = std::max(change, std::abs(steps[k - 1] - (points[k].time - stamp)));
+    stamp = points[k].time;
+    points[k].time = points[k - 1].time + steps[k - 1];
+  }
+  return change;
 }
 
 void requireMotion(const std::vector<ArmSetPoint>& points, const std::string& what)

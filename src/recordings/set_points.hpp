@@ -16,6 +16,11 @@ std::vector<ArmSetPoint> readSetPoints(const std::string& path, const ArmDescrip
 /// Rates that are not given, by differences of the angles.
 void fillRates(std::vector<ArmSetPoint>& points, bool has_velocity, bool has_acceleration);
 
+/// Times of set points whose stamps jitter against their angles and speeds, as where rows were stamped after they were
+/// sent: each step becomes the one in which the joints go from row to row at their speeds. Left alone where the speeds
+/// are not the angles' rates, or the stamps go with them. Returns the largest change of a step; 0: none [s].
+double straightenTimes(std::vector<ArmSetPoint>& points);
+
 /// @throws InputError if there is none, or the time does not go on. `what`: they are of.
 void requireMotion(const std::vector<ArmSetPoint>& points, const std::string& what);
 }  // namespace hjt

@@ -140,11 +140,8 @@ void JointEvidence::addRow(const MotionSample& sample, double residual) noexcept
     now_.friction.add(sample.time, sample.velocity, way * measured, way * friction, sample.load);
     if (std::isfinite(sample.target_current))
     {
-      const double temperature = sample.temperatureOr(parameters_.input.temperature);
-      const double by_load = twin_.frictionAt(sample.velocity, sample.load, temperature) -
-                             twin_.frictionAt(sample.velocity, 0.0, temperature);
-      const double expected = way * (friction + gain * (sample.target_current - predicted_.current)) + by_load;
-      now_.beside_controller.add(sample.time, sample.velocity, way * measured, expected, sample.load);
+      const double expected = friction + gain * (sample.target_current - predicted_.current);
+      now_.beside_controller.add(sample.time, sample.velocity, way * measured, way * expected, sample.load);
     }
   }
   if (std::isfinite(sample.motor_angle))

@@ -91,8 +91,7 @@ public:
   const MotionReach& reach() const { return now_.reach; }
   const FrictionPoints& friction() const { return now_.friction; }
   /// The same beside the friction that the controller expects, in the twin's place: with its target current in place of
-  /// the measured one, and what the load adds to the twin's, which a controller of UR leaves out. Of the rows that hold
-  /// one.
+  /// the measured one. Of the rows that hold it.
   const FrictionPoints& besideController() const { return now_.beside_controller; }
   const TorsionPoints& torsion() const { return now_.torsion; }
   const SignalIndicators& indicators() const { return health_.indicators(); }

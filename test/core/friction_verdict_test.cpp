@@ -83,12 +83,7 @@ public:
       const MotionPrediction predicted = twin_.step(sample);
       const double worn = (factor(sample.time) - 1.0) * predicted.friction_torque / gain();
       sample.current = predicted.current + worn + more + noise(engine);
-      const double temperature = parameters_.input.temperature;
-      const double by_load = twin_.frictionAt(sample.velocity, sample.load, temperature) -
-                             twin_.frictionAt(sample.velocity, 0.0, temperature);
-      sample.target_current =
-          predicted.current +
-          ((expected_ - 1.0) * predicted.friction_torque - std::copysign(by_load, sample.velocity)) / gain();
+      sample.target_current = predicted.current + (expected_ - 1.0) * predicted.friction_torque / gain();
       evidence_.update(sample);
     }
     return evidence_;
@@ -106,8 +101,7 @@ public:
     return judgeFriction(evidence(swing, 60.0, factor), parameters_, context, verdict_);
   }
 
-  /// From now on the controller expects this multiple of the twin's friction, but none by the load; NaN: what it expects
-  /// is not recorded.
+  /// From now on the controller expects this multiple of the twin's friction; NaN: what it expects is not recorded.
   void expect(double factor) { expected_ = factor; }
 
   const Verdict& verdict() const { return verdict_; }  ///< that holds what was judged last

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "identification/cross_validation.hpp"
 #include "output/json.hpp"
 #include "params/configuration_files.hpp"
 #include "python/overlays.hpp"
