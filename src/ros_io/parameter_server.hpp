@@ -10,8 +10,8 @@
 namespace hjt
 {
 /// Parameters of an arm's node beside those of its drives: name or file of the arm; directory of overlays that
-/// `joint_twin identify --arm` wrote; name of the parameter that holds another URDF of it; what stands around the names;
-/// faults of an arm without a robot, JOINT:KIND:SEVERITY[:PLACE[:ONSET]], with commas between them.
+/// `joint_twin identify --arm` wrote; name of the parameter that holds another URDF of it; what stands around the
+/// names; faults of an arm without a robot, JOINT:KIND:SEVERITY[:PLACE[:ONSET]], with commas between them.
 constexpr const char* ARM = "arm";
 constexpr const char* IDENTIFIED = "identified";
 constexpr const char* DESCRIPTION = "description";

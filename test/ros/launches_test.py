@@ -32,6 +32,7 @@ LEFT = {"/joint_twin/telemetry/effort": "joint_torque", "/joint_twin/diagnostic_
         "/wrist_1/joint_twin/telemetry/torque_per_current": 10.7, "/drive_markers/twin_of": "old",
         "/diagnostic_aggregator/analyzers/motors": {"type": "diagnostic_aggregator/GenericAnalyzer", "path": "Motors"}}
 OF_ROS = {"rosdistro", "roslaunch", "rosversion", "run_id"}
+JOINTS = ("base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3")
 
 
 def each_pair_in_a_row(names):
@@ -46,6 +47,17 @@ def connections(master):
     """Pairs of node and topic."""
     published, subscribed, _ = master.getSystemState()
     return {(node, topic) for topic, nodes in published + subscribed for node in nodes}
+
+
+def by_nodes(parameters):
+    """Those of a joint by the node that it belongs to: each arm's node has its own below a joint."""
+    found = {}
+    for key, value in parameters.items():
+        if key in JOINTS:
+            found.update({f"{key}/{node}": values for node, values in value.items()})
+        elif key not in OF_ROS:
+            found[key] = value
+    return found
 
 
 class Launches(unittest.TestCase):
@@ -89,8 +101,8 @@ class Launches(unittest.TestCase):
         log = launch.log()
         self.assertNotIn("Found on the parameter server", log)
         self.assertNotIn("FATAL", log)
-        return ({key: value for key, value in parameters.items() if key not in OF_ROS},
-                re.findall(r"\w+ is \w+: .* degC", log), {node for node, topic in state if topic == "/clock"})
+        return (by_nodes(parameters), re.findall(r"\w+ is \w+: .* degC", log),
+                {node for node, topic in state if topic == "/clock"})
 
     def start_master(self):
         port = free_port()
