@@ -55,7 +55,14 @@ void runJoint(ros::NodeHandle& node, const hjt::FoundParameters& found)
   hjt::ParameterMap shipped;
   hjt::readDefaultConfiguration(hjt::configurationDirectory("").string(), shipped);
   warnOfParameters(found, node.getNamespace(), { shipped });
-  const hjt::Parameters parameters = hjt::parseParameters(hjt::readParameterServer(node.getNamespace()));
+  hjt::ParameterMap map = hjt::readParameterServer(node.getNamespace());
+  // Nobody has loaded a configuration: the default one. Who has, has loaded all of it.
+  if (found.areGiven(map))
+  {
+    map.merge(shipped);
+    hjt::writeParameterServer(node.getNamespace(), map);
+  }
+  const hjt::Parameters parameters = hjt::parseParameters(map);
   ROS_DEBUG_STREAM("Parameters:\n" << hjt::describeParameters(parameters));
   for (const std::string& warning : hjt::gearWarnings(parameters))
   {
@@ -119,6 +126,7 @@ void runArm(ros::NodeHandle& node, const std::string& name, const hjt::FoundPara
       map[key] = value;
     }
     parameters.push_back(hjt::parseParameters(map));
+    ros::param::del(hjt::jointName(joint));
     hjt::writeParameterServer(hjt::jointName(joint), map);
     hjt::Parameters& drive = parameters.back();
     if (drive.input.mode != parameters.front().input.mode)

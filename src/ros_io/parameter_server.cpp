@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include <ros/names.h>
 #include <ros/param.h>
 #include <xmlrpcpp/XmlRpcValue.h>
 
@@ -193,7 +194,10 @@ void writeParameterServer(const std::string& parameter_namespace, const Paramete
   {
     tree[FAULTS] = faults;
   }
-  ros::param::set(parameter_namespace, tree);
+  for (const auto& [section, value] : tree)
+  {
+    ros::param::set(ros::names::append(parameter_namespace, section), value);
+  }
 }
 
 ParameterMap readParameterServer(const std::string& parameter_namespace)
@@ -219,6 +223,12 @@ FoundParameters::FoundParameters(int argc, const char* const* argv)
       given_.insert(key);
     }
   }
+}
+
+bool FoundParameters::areGiven(const ParameterMap& map) const
+{
+  return std::all_of(map.begin(), map.end(),
+                     [this](const auto& parameter) { return given_.count(parameter.first) > 0; });
 }
 
 std::string FoundParameters::departures(const std::string& parameter_namespace,

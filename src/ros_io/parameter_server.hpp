@@ -24,7 +24,7 @@ constexpr const char* FAULT = "fault";
 /// @throws ParameterError on a value that no parameter can have, e.g. a list with a text in it.
 ParameterMap readParameterServer(const std::string& parameter_namespace);
 
-/// Puts all parameters below `parameter_namespace`, in place of what is there.
+/// Puts all parameters below `parameter_namespace`, each section in place of that of its name.
 void writeParameterServer(const std::string& parameter_namespace, const ParameterMap& map);
 
 /// Parameters that a node finds on the server and that its start did not set: a server outlives its nodes, so they may
@@ -38,6 +38,9 @@ public:
 
   /// The command line, before ros::init takes `_section/key:=value` out of it.
   FoundParameters(int argc, const char* const* argv);
+
+  /// Whether the command line gave all of `map`.
+  bool areGiven(const ParameterMap& map) const;
 
   /// `section/key = value` of those that depart from one of `shipped`, the first MAX_NAMED by name; empty: none.
   std::string departures(const std::string& parameter_namespace, const std::vector<ParameterMap>& shipped) const;

@@ -11,6 +11,7 @@ import unittest
 import unittest.mock
 
 import catkin_lint
+import citation
 import clang_tidy
 import config_files
 import doc_tables
@@ -405,6 +406,20 @@ class CatkinLint(Tree):
         code, note = catkin_lint.lint(self.root)
         self.assertNotEqual(code, 0)
         self.assertIn("error", note)
+
+
+class Citation(Tree):
+    def test_each_value_is_compared(self):
+        self.write("package.xml", "<package><version>0.1.0</version><license>MIT</license><author>a</author></package>")
+        self.write("CHANGELOG.rst", "0.1.0 (2020-02-01)\n------------------\n")
+        text = "version: 0.1.0\nlicense: MIT\nauthors:\n  - name: a\ndate-released: 2020-02-01\n"
+        self.write("CITATION.cff", text)
+        self.assert_clean(citation.check)
+        for value, key in [("0.1.0", "version"), ("MIT", "license"), ("name: a", "authors"),
+                           ("2020-02-01", "date-released")]:
+            with self.subTest(key):
+                self.write("CITATION.cff", text.replace(value, value + "1"))
+                self.assert_fault(citation.check, key)
 
 
 class Run(Tree):

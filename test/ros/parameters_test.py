@@ -95,6 +95,14 @@ class Parameters(unittest.TestCase):
         tested += [package_path("config", f"{name}.yaml") for name in overlays]
         self.assertEqual(all_configuration_files(), sorted(set(tested)))
 
+    def test_without_a_configuration_it_is_the_default_one_under_the_command_line(self):
+        self.start([], {}, ["_joint/name:=mine", "_diagnostic_period:=0.5"])
+        wait_until(lambda: self.node.process.poll() is not None or self.is_publishing(), "the node to publish")
+        self.check_clean_exit(signal.SIGINT)
+        self.check_output('joint.name: "mine"', "mesh.stiffness: 5.0e+7  # [N/m]")
+        for key, value in [("joint/name", "mine"), ("mesh/stiffness", 5.0e7), ("diagnostic_period", 0.5)]:
+            self.assertEqual(rospy.get_param(f"{NODE}/{key}"), value)
+
     def test_stages_left_out_are_refused(self):
         self.check_refusal({}, "mesh.stiffness", "missing", files=[package_path("config", "gear.yaml")])
 
