@@ -23,11 +23,6 @@ constexpr double REPEAT_TORQUE = 0.22;
 /// Of the load: masses of the links, 2 %, and gain, 5 %; standard deviation as a share.
 constexpr double LOAD_SHARE = 0.054;
 
-/// Bound of a joint's own friction: a smaller change is of no interest however certain. Less friction counts half as
-/// much, since no fault takes a fifth of it.
-constexpr double MORE_THAN_OWN = 0.05;
-constexpr double LESS_THAN_OWN = 0.10;
-
 /// No fault of severity 1 leaves less of the friction.
 constexpr double LEAST_OF_FAULTS = 0.5;
 

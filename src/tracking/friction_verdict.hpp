@@ -18,6 +18,11 @@ struct OwnReference;
 
 constexpr double LEAST_MOTION = 0.02;  ///< a joint whose angles differ by less does not move [rad]
 
+/// Bound of a joint's own friction: a smaller change is of no interest however certain. Less friction counts half as
+/// much, since no fault takes a fifth of it.
+constexpr double MORE_THAN_OWN = 0.05;
+constexpr double LESS_THAN_OWN = 0.10;
+
 /// Friction of a joint as a multiple of its own when sound, or of the twin's, with what is known of its error
 /// (docs/compare.md).
 struct FrictionFactor
