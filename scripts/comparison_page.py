@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Makes the page and the figures of a comparison out of the data that `joint_twin compare` has written into a
-directory; of an arm a page of each joint, and one of the arm.
+directory; of an arm a page of each joint, and one of the arm; or of what `joint_twin trend` has written.
 
 Each figure is drawn twice, for wide and for narrow screens; both lie beside the page and inside it."""
 import argparse
 import base64
 import concurrent.futures
+import datetime
 import json
 import os
 import signal
@@ -20,6 +21,8 @@ except ImportError as missing:
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (the backend is chosen before pyplot is loaded)
+from matplotlib.dates import AutoDateLocator, ConciseDateFormatter  # noqa: E402
+from matplotlib.ticker import MaxNLocator  # noqa: E402
 
 GREY, BLUE, RED, GREEN, ORANGE = "#7a7a7a", "#0072B2", "#D55E00", "#009E73", "#E69F00"
 STYLE = {"font.size": 9, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "grid.color": "0.9",
@@ -227,11 +230,92 @@ FIGURES = {"course": draw_course, "friction": draw_friction, "torsion": draw_tor
            "teeth": draw_teeth, "windows": draw_windows}
 
 
-def draw_all(directory, data):
+def recording_times(trend):
+    """Of each recording: its date, or without dates its number; None: it has none."""
+    if not trend["has_dates"]:
+        return list(range(1, len(trend["recordings"]) + 1))
+    dates = [recording["date"] for recording in trend["recordings"]]
+    return [date and datetime.datetime.strptime(date, "%Y-%m-%dT%H:%M:%SZ") for date in dates]
+
+
+def joint_rows(trend, place):
+    """(time, fields of the joint) of each recording that was read."""
+    return [(time, recording["joints"][place]) for time, recording in zip(recording_times(trend), trend["recordings"])
+            if recording["joints"]]
+
+
+def draw_joint_trend(axes, trend, place):
+    joint, rows = trend["joints"][place], joint_rows(trend, place)
+    axes.set_title(f"{joint['joint']}: {joint['level']}")
+    for level, colour in (("OK", BLUE), ("WARN", ORANGE), ("ERROR", RED), ("NOT JUDGED", GREY)):
+        part = [(time, row) for time, row in rows if row["friction"] is not None and row["level"] == level]
+        if part:
+            value, low, high = (np.array([row[name] for _, row in part])
+                                for name in ("friction", "friction_low", "friction_high"))
+            axes.errorbar([time for time, _ in part], value, yerr=(value - low, high - value), ls="", marker="o", ms=4,
+                          color=colour, elinewidth=0.8)
+    without = [time for time, row in rows if row["friction"] is None]
+    if without:
+        axes.plot(without, np.full(len(without), 0.04), ls="", marker="x", ms=4, color=GREY,
+                  transform=axes.get_xaxis_transform())
+    judged = [(time, row) for time, row in rows if row["friction"] is not None]
+    if joint["level"] == "WARN":
+        at = np.array([(time - judged[0][0]) / (judged[-1][0] - judged[0][0]) for time, _ in judged])
+        logarithms = np.log([row["friction"] for _, row in judged])
+        weights = np.array([np.log(row["friction_high"] / row["friction_low"]) for _, row in judged]) ** -2.0
+        middle = np.average(logarithms - np.log(joint["change"]) * at, weights=weights)
+        axes.plot([time for time, _ in judged], np.exp(middle + np.log(joint["change"]) * at), color=RED)
+    axes.axhline(1.0, color="0.6", lw=0.7)
+
+
+def mark_times(axes, trend):
+    locator = AutoDateLocator(maxticks=5) if trend["has_dates"] else MaxNLocator(5, integer=True)
+    axes.xaxis.set_major_locator(locator)
+    if trend["has_dates"]:
+        axes.xaxis.set_major_formatter(ConciseDateFormatter(locator))
+    else:
+        axes.set_xlabel("number of the recording")
+
+
+def draw_trend_friction(width, trend):
+    columns = 1 if width < 6 else min(3, len(trend["joints"]))
+    lines = -(-len(trend["joints"]) // columns)
+    figure, axes = new_figure(width, 2.2 * lines + 0.4, lines, columns, sharex=True, sharey=True)
+    for place, one in enumerate(axes.flat):
+        draw_joint_trend(one, trend, place)
+    for one in axes[-1]:
+        mark_times(one, trend)
+    return figure
+
+
+def draw_trend_temperature(width, trend):
+    times = recording_times(trend)
+    received = [(joint["joint"], [(time, row["temperature"]) for time, row in joint_rows(trend, place)
+                                  if row["temperature_source"] == "received"])
+                for place, joint in enumerate(trend["joints"])]
+    estimated = [(time, recording["temperature_estimate"]) for time, recording in zip(times, trend["recordings"])
+                 if recording["temperature_estimate"] is not None]
+    if not estimated and not any(rows for _, rows in received):
+        return None
+    figure, axes = new_figure(width, 2.8)
+    axes = axes[0][0]
+    axes.set_title("Temperature of the joints [°C]")
+    for name, rows in [*received, ("by the friction in common", estimated)]:
+        if rows:
+            axes.plot(*zip(*rows), marker="o", ms=3.5, ls="--" if rows is estimated else "-", label=name)
+    axes.legend(loc="best", ncol=2)
+    mark_times(axes, trend)
+    return figure
+
+
+TREND_FIGURES = {"friction": draw_trend_friction, "temperature": draw_trend_temperature}
+
+
+def draw_all(directory, data, figures):
     """Writes every figure there is data for, in each width; their pictures as data URIs by name and width."""
     plt.rcParams.update(STYLE)
     pictures = {}
-    for name, draw in FIGURES.items():
+    for name, draw in figures.items():
         for kind, width in WIDTHS.items():
             figure = draw(width, data)
             if figure is None:
@@ -263,16 +347,24 @@ def make_joint_page(directory):
     data = {name: read_table(directory, name) for name in ("course", "friction", "friction_twin", "spectrum", "torsion",
                                                            "torsion_twin", "teeth", "twin_states", "windows")}
     data["record"] = record
-    pictures = draw_all(directory, data)
+    pictures = draw_all(directory, data, FIGURES)
     health = sorted(record["health"], key=lambda row: -abs(row["score"]))
     write_page(directory, "comparison_page.html", record=record, pictures=pictures, health=health,
                shown=SHOWN_INDICATORS, twin_beside=data["twin_states"] is not None)
 
 
+def make_trend_page(directory):
+    trend = read_record(directory, "trend.json")
+    write_page(directory, "trend_page.html", trend=trend, pictures=draw_all(directory, trend, TREND_FIGURES))
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("directory", help="that `joint_twin compare --report` has written to")
+    parser.add_argument("directory", help="that `--report` of compare or trend has written to")
     directory = parser.parse_args().directory
+    if os.path.exists(os.path.join(directory, "trend.json")):
+        make_trend_page(directory)
+        return
     if not os.path.exists(os.path.join(directory, "arm.json")):
         make_joint_page(directory)
         return

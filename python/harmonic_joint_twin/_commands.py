@@ -21,7 +21,8 @@ Progress = Callable[[str, float], None]
 Arrays = Union[Mapping[str, "NDArray[Any]"], "NDArray[np.void]"]  # columns by their names
 Recording = Union[Path, Arrays]
 
-__all__ = ["arm", "check", "checkup", "compare", "follow", "identify", "indicators", "lives", "remaining", "sweep"]
+__all__ = ["arm", "check", "checkup", "compare", "follow", "identify", "indicators", "lives", "remaining", "sweep",
+           "trend"]
 
 _NOISE = "joint_twin: "  # before the tool's messages
 
@@ -147,6 +148,30 @@ def compare(recording: Recording, report: Path, *, joint: Optional[str] = None, 
                  {"recording": recording, "report": report, "joint": joint, "arm": arm,
                   "reference": reference and list(map(_plain, reference)), "load": load, "identified": identified,
                   "topic": topic, "time_scale": time_scale, "force": force, "progress": progress}, overlays)
+
+
+def trend(recordings: Union[Path, Sequence[Path]], *, joint: Optional[str] = None, arm: Optional[str] = None,
+          reference: Union[Path, Sequence[Path], None] = None, out: Optional[Path] = None,
+          report: Optional[Path] = None, load: Optional[str] = None, identified: Optional[Path] = None,
+          topic: Optional[str] = None, time_scale: Optional[float] = None, force: bool = False,
+          overlays: Overlays = (), progress: Optional[Progress] = None) -> Document:
+    """Friction of a joint, or of all joints of an arm, over the recordings of months: the tool's trend.
+
+    recordings: files, or folders of them. out: CSV file with a row for each recording. report: directory that gets
+    report.html and its data. Others as of compare.
+
+    Returns a dict: 'level', 'text', 'joints' (one dict each: 'level', 'change', 'slope' and their intervals [-],
+    'slope' in 1 / 1000 h or what 'slope_unit' says), 'recordings' (one dict each, by date). InputError, ParameterError.
+    """
+    if isinstance(recordings, (str, os.PathLike)):
+        recordings = [recordings]
+    if isinstance(reference, (str, os.PathLike)):
+        reference = [reference]
+    return _call("trend",
+                 {"recordings": list(map(_plain, recordings)), "joint": joint, "arm": arm,
+                  "reference": reference and list(map(_plain, reference)), "out": out, "report": report, "load": load,
+                  "identified": identified, "topic": topic, "time_scale": time_scale, "force": force,
+                  "progress": progress}, overlays)
 
 
 def follow(recording: Recording, *, joint: Optional[str] = None, arm: Optional[str] = None, mode: str = "motion",

@@ -3,8 +3,6 @@
 
 #include <iostream>
 
-#include "output/text_table.hpp"
-
 namespace hjt
 {
 Json Table::rows() const
@@ -40,7 +38,7 @@ Json Table::columns() const
   return columns;
 }
 
-void Table::print() const
+void Table::print(std::size_t least_width) const
 {
   std::vector<std::string> headings;
   std::vector<std::vector<std::string>> rows(cells_.size());
@@ -56,7 +54,7 @@ void Table::print() const
       rows[row].push_back(cells_[row][i].shortText());
     }
   }
-  printTable(headings, rows);
+  printTable(headings, rows, least_width);
 }
 
 Json documentOf(const Report& report)

@@ -7,6 +7,7 @@
 
 #include "output/json.hpp"
 #include "output/output_file.hpp"
+#include "output/text_table.hpp"
 
 namespace hjt
 {
@@ -44,7 +45,7 @@ public:
   bool empty() const { return cells_.empty(); }
   Json rows() const;     ///< one object a row
   Json columns() const;  ///< one array a column
-  void print() const;
+  void print(std::size_t least_width = NUMBER_WIDTH) const;  ///< each column at least so wide
 
 private:
   std::vector<std::string> keys_;

@@ -47,25 +47,29 @@ void printWrapped(const std::string& text, std::size_t indent)
   }
 }
 
-void printTable(const std::vector<std::string>& headings, const std::vector<std::vector<std::string>>& rows)
+void printTable(const std::vector<std::string>& headings, const std::vector<std::vector<std::string>>& rows,
+                std::size_t least_width)
 {
-  constexpr int NUMBER_WIDTH = 14;
-  const auto width = [&](std::size_t column)
-  { return std::max(NUMBER_WIDTH, static_cast<int>(headings[column].size()) + 2); };
+  constexpr std::size_t GAP = 2;
+  std::vector<int> widths;
   for (std::size_t column = 0; column < headings.size(); ++column)
   {
-    std::cout << std::setw(width(column)) << headings[column];
-  }
-  std::cout << '\n';
-  for (const auto& row : rows)
-  {
-    for (std::size_t column = 0; column < row.size(); ++column)
+    std::size_t width = std::max(least_width, headings[column].size() + GAP);
+    for (const auto& row : rows)
     {
-      // A text may be longer than its heading.
-      const bool is_long = static_cast<int>(row[column].size()) >= width(column);
-      std::cout << (is_long && column > 0 ? "  " : "") << std::setw(width(column)) << row[column];
+      width = std::max(width, row[column].size() + (column > 0 ? GAP : 0));
+    }
+    widths.push_back(static_cast<int>(width));
+  }
+  const auto print = [&widths](const std::vector<std::string>& cells)
+  {
+    for (std::size_t column = 0; column < cells.size(); ++column)
+    {
+      std::cout << std::setw(widths[column]) << cells[column];
     }
     std::cout << '\n';
-  }
+  };
+  print(headings);
+  std::for_each(rows.begin(), rows.end(), print);
 }
 }  // namespace hjt

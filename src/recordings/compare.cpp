@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "recordings/compare.hpp"
 
-#include <spawn.h>
-#include <sys/wait.h>
-
 #include <algorithm>
-#include <array>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -16,17 +10,16 @@
 #include <utility>
 #include <vector>
 
+#include "output/temporary_directory.hpp"
 #include "output/text_table.hpp"
 #include "recordings/comparison_pass.hpp"
+#include "recordings/report_page.hpp"
 
 #include "base/joined.hpp"
 #include "base/number_text.hpp"
 #include "base/whole_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "messages/topics.hpp"
-#include "params/configuration_files.hpp"
-
-extern char** environ;
 
 namespace hjt
 {
@@ -34,7 +27,6 @@ namespace
 {
 namespace fs = std::filesystem;
 
-constexpr const char* PYTHON = "/usr/bin/python3";
 void refuseReferenceAsReport(const ComparisonOptions& options)
 {
   for (const std::string& reference : options.references)
@@ -44,31 +36,6 @@ void refuseReferenceAsReport(const ComparisonOptions& options)
     {
       throw InputError("--report and --reference are the same directory: the reference would be lost");
     }
-  }
-}
-
-/// Runs the script that makes page and pictures of the data. @throws InputError if it does not end well.
-void makePage(const std::string& directory)
-{
-  std::string script = (packageDirectory() / "scripts/comparison_page.py").string();
-  std::string python = PYTHON;
-  std::string argument = directory;
-  std::array<char*, 4> arguments{ python.data(), script.data(), argument.data(), nullptr };
-  pid_t child{};
-  const int refused = posix_spawn(&child, PYTHON, nullptr, nullptr, arguments.data(), environ);
-  int status = 0;
-  if (refused == 0)
-  {
-    while (waitpid(child, &status, 0) < 0 && errno == EINTR)
-    {
-    }
-  }
-  if (refused != 0 || status != 0)
-  {
-    throw InputError("the page was not made" +
-                     (refused != 0 ? ": " + std::string(PYTHON) + ": " + std::strerror(refused) : std::string()) +
-                     "; the data are in " + directory + ", and `" + python + " " + script + " " + directory +
-                     "` makes the page of them");
   }
 }
 
@@ -214,16 +181,15 @@ Json documentOfArm(const ComparisonOptions& options, const ComparedRecording& co
              compared.payload ? std::make_optional(compared.payload->mass_half_width) : std::nullopt },
            { "joints", tableOf(compared).rows() } };
 }
-}  // namespace
 
-ComparedRecording compare(const ComparisonOptions& options)
+/// With its data in `options.report`.
+ComparedRecording compareInto(const ComparisonOptions& options)
 {
   refuseReferenceAsReport(options);
   ArmRecording recording(options);
   ComparisonPass pass = passThrough(options, recording);
   ComparedRecording compared;
   compared.is_arm = recording.isArm();
-  compared.page = (fs::path(options.report) / REPORT_PAGE).string();
   if (pass.payload && pass.payload->isCarried())
   {
     compared.payload = pass.payload;
@@ -258,8 +224,23 @@ ComparedRecording compare(const ComparisonOptions& options)
     compared.text = verdictText(verdict);
     compared.document = compared.joints.front().document;
   }
-  if (options.has_page)
+  return compared;
+}
+}  // namespace
+
+ComparedRecording compare(const ComparisonOptions& options)
+{
+  if (options.report.empty())
   {
+    const TemporaryDirectory directory;
+    ComparisonOptions passing = options;
+    passing.report = directory.path();
+    return compareInto(passing);
+  }
+  ComparedRecording compared = compareInto(options);
+  if (!compared.joints.empty())
+  {
+    compared.page = (fs::path(options.report) / REPORT_PAGE).string();
     makePage(options.report);
   }
   return compared;

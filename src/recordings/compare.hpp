@@ -16,12 +16,10 @@
 
 namespace hjt
 {
-constexpr const char* REPORT_PAGE = "report.html";
-
 struct ComparisonOptions : RecordingOptions
 {
-  std::string report;  ///< directory of the page, its figures and data; of an arm a directory for each joint
-  bool has_page{ true };
+  /// Directory of the page, its figures and data; of an arm a directory for each joint. Empty: nothing is written.
+  std::string report;
   std::vector<std::string> references;  ///< earlier reports of this joint or arm in sound condition; empty: none
 };
 
@@ -53,7 +51,7 @@ struct ComparedRecording
   ArmFriction friction;                      ///< what the joints have in common
   std::vector<ComparedJoint> joints;         ///< from the base on; none: stopped
   Json document;                             ///< the data of the page
-  std::string page;                          ///< its path
+  std::string page;                          ///< its path; empty: none
 };
 
 /// Compares a recorded joint or arm with its twin: verdict, data and figures as a page.

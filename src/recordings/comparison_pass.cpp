@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "harmonic_joint_twin/base/errors.hpp"
+#include "recordings/report_page.hpp"
 
 namespace hjt
 {

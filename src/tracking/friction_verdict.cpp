@@ -26,11 +26,6 @@ constexpr double LOAD_SHARE = 0.054;
 /// Of what a controller expects of a sound joint, standard deviation as a share.
 constexpr double CONTROLLER_SHARE = 0.05;
 
-/// Bound of a joint's own friction: a smaller change is of no interest however certain. Less friction counts half as
-/// much, since no fault takes a fifth of it.
-constexpr double MORE_THAN_OWN = 0.05;
-constexpr double LESS_THAN_OWN = 0.10;
-
 /// No fault of severity 1 leaves less of the friction.
 constexpr double LEAST_OF_FAULTS = 0.5;
 

@@ -19,6 +19,11 @@ struct OwnReference;
 
 constexpr double LEAST_MOTION = 0.02;  ///< a joint whose angles differ by less does not move [rad]
 
+/// Bound of a joint's own friction: a smaller change is of no interest however certain. Less friction counts half as
+/// much, since no fault takes a fifth of it.
+constexpr double MORE_THAN_OWN = 0.05;
+constexpr double LESS_THAN_OWN = 0.10;
+
 /// What the friction of a joint is a multiple of.
 enum class FrictionReference : std::uint8_t
 {

@@ -125,6 +125,7 @@ class Commands(Recordings):
         self.assertIn(verdict["level"], ("OK", "WARN", "not judged"))
         with open("report/report.html", encoding="utf-8") as file:
             self.assertIn(verdict["level"], file.read())
+        self.assertEqual(hjt.trend("arm.csv", arm="ur5"), self.tool("trend", "arm.csv", "--arm", "ur5"))
 
     def test_arrays_at_hand_give_what_their_file_gives(self):
         self.record()

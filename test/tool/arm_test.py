@@ -32,9 +32,9 @@ def angles(time):
     return [0.6 * swing, -0.9 * swing, 1.1 * swing, -0.5 * swing, 0.4 * swing, 0.7 * swing]
 
 
-def arm_csv(currents=None, seconds=20.0, without=(), temperature=None):
+def arm_csv(currents=None, seconds=20.0, without=(), temperature=None, start=0.0):
     """A controller's recording as text. `currents`: six for each row, else none flows. `temperature`: of joint and row,
-    as text; none: not recorded."""
+    as text; none: not recorded. `start`: the first stamp [s]."""
     rows = round(seconds / PERIOD)
     columns = ["timestamp"] + [f"{quantity}_{joint}" for quantity in ("actual_q", "actual_current")
                                for joint in range(6)]
@@ -42,7 +42,7 @@ def arm_csv(currents=None, seconds=20.0, without=(), temperature=None):
     lines = [",".join([columns[i] for i in kept]
                       + [f"joint_temperatures_{joint}" for joint in range(6) if temperature])]
     for row in range(rows):
-        values = [row * PERIOD] + angles(row * PERIOD) + (currents[row] if currents else [0.0] * 6)
+        values = [start + row * PERIOD] + angles(row * PERIOD) + (currents[row] if currents else [0.0] * 6)
         lines.append(",".join([f"{values[i]:.17g}" for i in kept]
                               + [temperature(joint, row) for joint in range(6) if temperature]))
     return "\n".join(lines) + "\n"
@@ -62,11 +62,31 @@ def arm_bag(path, joints, seconds=20.0, effort=0.0):
             bag.write("/joint_states", state, at + genpy.Duration(0, 2_000_000))
 
 
-class Arm(tool.ToolTest):
+class ArmTest(tool.ToolTest):
+    """A test with a made-up arm."""
+
     def columns(self, path):
         with open(self.path(path)) as file:
             rows = list(csv.DictReader(file))
         return {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
+
+    def robot_with_friction(self, raised, share=0.3, path="robot.csv", degrees=25.0, is_recorded=False, start=0.0):
+        """A robot that is the twin at a temperature, friction of these joints raised by a share, with some noise."""
+        self.write("still.csv", arm_csv())
+        self.succeed("follow", "still.csv", "--arm", "ur5", "--out", "robot", "--force", "--set",
+                     f"input.temperature={degrees}")
+        noise = np.random.default_rng(7)
+        currents = []
+        for name, gain in zip(SHORT_NAMES, GAINS):
+            columns = self.columns(f"robot/{name}.csv")
+            more = share / gain * columns["friction_torque"] if name in raised else 0.0
+            currents.append(columns["current_predicted"] + more + noise.normal(0.0, 0.05, len(columns["time"])))
+        temperature = (lambda joint, row: f"{degrees}") if is_recorded else None
+        self.write(path, arm_csv(np.transpose(currents).tolist(), temperature=temperature, start=start))
+        return path
+
+
+class Arm(ArmTest):
 
     def test_load_is_that_of_all_joints_however_they_are_recorded(self):
         self.write("arm.csv", arm_csv())
@@ -160,21 +180,6 @@ class Arm(tool.ToolTest):
         self.fail_with(1, ["holds no load"], "follow", "arm.csv", "--arm", "ur5", "--load", "target_moment")
         self.fail_with(1, ["arm crane", "arms"], "follow", "arm.csv", "--arm", "crane")
         self.fail_with(2, ["--joint"], "follow", "arm.csv", "--arm", "ur5", "--joint", "elbow")
-
-    def robot_with_friction(self, raised, share=0.3, path="robot.csv", degrees=25.0, is_recorded=False):
-        """A robot that is the twin at a temperature, friction of these joints raised by a share, with some noise."""
-        self.write("still.csv", arm_csv())
-        self.succeed("follow", "still.csv", "--arm", "ur5", "--out", "robot", "--force", "--set",
-                     f"input.temperature={degrees}")
-        noise = np.random.default_rng(7)
-        currents = []
-        for name, gain in zip(SHORT_NAMES, GAINS):
-            columns = self.columns(f"robot/{name}.csv")
-            more = share / gain * columns["friction_torque"] if name in raised else 0.0
-            currents.append(columns["current_predicted"] + more + noise.normal(0.0, 0.05, len(columns["time"])))
-        temperature = (lambda joint, row: f"{degrees}") if is_recorded else None
-        self.write(path, arm_csv(np.transpose(currents).tolist(), temperature=temperature))
-        return path
 
     def compare(self, recording, report, *more):
         return self.succeed_json("compare", recording, "--arm", "ur5", "--report", report, *more)

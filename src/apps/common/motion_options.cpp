@@ -47,9 +47,8 @@ void addArmOption(Command& command, RecordingOptions& options)
       .type("NAME|FILE.yaml");
 }
 
-void addArmOptions(Command& command, RecordingOptions& options, bool& json)
+void addJointOptions(Command& command, RecordingOptions& options, bool& json)
 {
-  addRecording(command, options);
   command.add("--joint", options.joint,
               "base, shoulder, elbow, wrist_1 ..., its number from 0, or its name in the messages");
   addReadingOptions(command, options, json);
@@ -66,5 +65,11 @@ void addArmOptions(Command& command, RecordingOptions& options, bool& json)
       .existingDirectory()
       .needs("--arm");
   command.oneOf({ "--joint", "--arm" });
+}
+
+void addArmOptions(Command& command, RecordingOptions& options, bool& json)
+{
+  addRecording(command, options);
+  addJointOptions(command, options, json);
 }
 }  // namespace hjt

@@ -27,5 +27,8 @@ void addReadingOptions(Command& command, RecordingOptions& options, bool& json);
 void addArmOption(Command& command, RecordingOptions& options);
 
 /// `--joint` or `--arm`, and what goes with them.
+void addJointOptions(Command& command, RecordingOptions& options, bool& json);
+
+/// The same, and the recording.
 void addArmOptions(Command& command, RecordingOptions& options, bool& json);
 }  // namespace hjt

@@ -1,69 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cerrno>
-#include <cstdlib>
-#include <cstring>
-#include <filesystem>
 #include <iostream>
-#include <optional>
 #include <string>
 
 #include "apps/common/motion_options.hpp"
+#include "apps/tool/verdict_options.hpp"
 #include "output/exit_code.hpp"
 #include "output/interrupt.hpp"
 #include "output/text_table.hpp"
 #include "recordings/compare.hpp"
 
-#include "harmonic_joint_twin/base/errors.hpp"
-
 namespace hjt
 {
 namespace
 {
-namespace fs = std::filesystem;
-
-struct Options : Printed<ComparisonOptions>
-{
-  std::string fail_on;  // warn or error; empty: the exit code is no verdict
-};
-
-/// A directory that is removed with it.
-class TemporaryDirectory
-{
-public:
-  TemporaryDirectory()
-  {
-    std::string name = (fs::temp_directory_path() / "joint_twin_compare_XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr)
-    {
-      throw InputError("no directory can be made in " + fs::temp_directory_path().string() + ": " +
-                       std::strerror(errno));
-    }
-    path_ = name;
-  }
-  ~TemporaryDirectory()
-  {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  TemporaryDirectory(const TemporaryDirectory&) = delete;
-  TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
-
-  std::string path() const { return path_.string(); }
-
-private:
-  fs::path path_;
-};
-
-/// What the process answers to a verdict.
-int exitCodeOf(const std::string& fail_on, const ComparedRecording& compared)
-{
-  if (fail_on.empty())
-  {
-    return EXIT_DONE;
-  }
-  const HealthLevel least = fail_on == "warn" ? HealthLevel::WARN : HealthLevel::ERROR;
-  return compared.health >= least ? EXIT_DEPARTS : compared.is_judged ? EXIT_DONE : EXIT_NOT_JUDGED;
-}
+using Options = Judging<ComparisonOptions>;
 
 void printArm(const ComparedRecording& compared)
 {
@@ -103,12 +53,6 @@ int run(const Options& given)
     std::cerr << "--report is required: the directory of the page; --json goes without\n";
     return EXIT_USAGE;
   }
-  std::optional<TemporaryDirectory> directory;
-  if (options.report.empty())
-  {
-    options.report = directory.emplace().path();
-    options.has_page = false;
-  }
   const ComparedRecording compared = compare(options);
   if (interruptSignal() != 0)
   {
@@ -117,11 +61,11 @@ int run(const Options& given)
   if (options.json)
   {
     std::cout << compared.document.dump() << '\n';
-    return exitCodeOf(options.fail_on, compared);
+    return exitCodeOf(options.fail_on, compared.health, compared.is_judged);
   }
   compared.is_arm ? printArm(compared) : printJoint(compared);
   std::cout << (compared.is_arm ? "\n" : "") << "written: " << compared.page << '\n';
-  return exitCodeOf(options.fail_on, compared);
+  return exitCodeOf(options.fail_on, compared.health, compared.is_judged);
 }
 
 void declare(Command& command, Options& options)
@@ -131,15 +75,7 @@ void declare(Command& command, Options& options)
       .add("--report", options.report,
            "directory of the page, its figures and data; of an arm a directory for each joint; --json goes without")
       .type("DIR");
-  command
-      .add("--reference", options.references, "earlier reports of this joint or arm in sound condition, for comparison")
-      .follow()
-      .type("DIR")
-      .existingDirectory();
-  command
-      .add("--fail-on", options.fail_on,
-           "exit code 3 if the verdict is this or worse, 4 if nothing can be judged; else the verdict changes none")
-      .choice({ "warn", "error" });
+  addVerdictOptions(command, options, options.fail_on);
 }
 
 const Subcommand COMPARE{ Subject::RECORDING, "compare",

@@ -19,6 +19,7 @@
 #include "recordings/identify.hpp"
 #include "recordings/indicators.hpp"
 #include "recordings/remaining.hpp"
+#include "recordings/trend_report.hpp"
 
 namespace hjt
 {
@@ -73,8 +74,8 @@ void takeRows(const py::object& columns, RecordingOptions& options)
   options.rows_have_load = static_cast<bool>(MotionColumn(columns, "load"));
 }
 
-/// @throws InputError where options contradict each other or are out of range.
-void takeRecording(const Given& given, RecordingOptions& options)
+/// How a recording is read. @throws InputError where options contradict each other or are out of range.
+void takeReading(const Given& given, RecordingOptions& options)
 {
   takeConfiguration(given, options);
   given.take("joint", options.joint);
@@ -96,6 +97,12 @@ void takeRecording(const Given& given, RecordingOptions& options)
   {
     throw InputError("time_scale = " + std::to_string(options.time_scale) + " [-] must be above 0");
   }
+}
+
+/// The recording too.
+void takeRecording(const Given& given, RecordingOptions& options)
+{
+  takeReading(given, options);
   const py::object recording = given["recording"];
   options.recording = py::isinstance<py::str>(recording) ? py::cast<std::string>(recording) : "recording";
   if (!py::isinstance<py::str>(recording))
@@ -206,6 +213,20 @@ Answer compareIn(const py::dict& arguments)
       [](const ComparedRecording& found) { return toPython(found.document); });
 }
 
+Answer trendIn(const py::dict& arguments)
+{
+  const Given given(arguments);
+  TrendOptions options;
+  takeReading(given, options);
+  given.take("recordings", options.recordings);
+  given.take("reference", options.references);
+  given.take("out", options.out);
+  given.take("report", options.report);
+  return call(
+      given, options, [](const TrendOptions& asked) { return trend(asked); },
+      [](const Trend& found) { return toPython(documentOf(found)); });
+}
+
 Answer indicatorsIn(const py::dict& arguments)
 {
   const Given given(arguments);
@@ -253,6 +274,7 @@ PYBIND11_MODULE(_recordings, module)
   module.def("follow", &hjt::followIn, pybind11::arg("arguments"), "Joints beside their twins, and their rows.");
   module.def("identify", &hjt::identifyIn, pybind11::arg("arguments"), "Gain, friction, inertia and ripple.");
   module.def("compare", &hjt::compareIn, pybind11::arg("arguments"), "Verdict and page.");
+  module.def("trend", &hjt::trendIn, pybind11::arg("arguments"), "Friction over many recordings.");
   module.def("indicators", &hjt::indicatorsIn, pybind11::arg("arguments"), "Windows and their assessment.");
   module.def("remaining", &hjt::remainingIn, pybind11::arg("arguments"), "Use and remaining life.");
 }
