@@ -18,6 +18,7 @@ namespace hjt
 {
 struct ComparisonOptions : RecordingOptions
 {
+  bool beside_controller{ true };  ///< without a reference hold the friction against the controller's where that is one
   /// Directory of the page, its figures and data; of an arm a directory for each joint. Empty: nothing is written.
   std::string report;
   std::vector<std::string> references;  ///< earlier reports of this joint or arm in sound condition; empty: none

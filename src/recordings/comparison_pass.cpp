@@ -162,7 +162,10 @@ ComparisonPass passThrough(const ComparisonOptions& options, const ArmRecording&
       },
       fit);
   pass.misfits = recording.isArm() ? fit.whyNotJudged() : std::vector<Misfit>{ pass.found.misfit };
-  holdAgainstController(pass.joints);
+  if (options.beside_controller)
+  {
+    holdAgainstController(pass.joints);
+  }
   std::vector<MeasuredFriction> frictions;
   for (std::size_t i = 0; i < pass.joints.size(); ++i)
   {

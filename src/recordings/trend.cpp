@@ -91,6 +91,7 @@ DatedRecording readRecording(const ComparisonOptions& all, const std::string& pa
   ComparisonOptions options = all;
   options.recording = path;
   options.report.clear();
+  options.beside_controller = false;  // a recording without it would be held against something else
   options.watch.progress = [&progress](const std::string&) { return progress; };
   options.watch.notice = [&recording](const std::string& text) { recording.remarks.push_back(text); };
   try
