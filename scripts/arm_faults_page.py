@@ -22,7 +22,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (after the choice of its backend)
 
 PERIOD = 0.008                   # of the set points [s]
-MOVE, STOP, REST = 1.0, 0.6, 0.2  # [s]
+MOVE, STOP, REST = 1.0, 1.0, 0.2  # [s]
 POSES = ((0.0, -1.4, 1.2, -1.4, -1.5, 0.2), (0.5, -1.1, 1.5, -1.9, -1.2, 0.8), (0.9, -0.8, 1.0, -1.6, -1.7, 0.3),
          (0.3, -1.5, 1.7, -1.2, -1.4, -0.4))
 ORDER = (0, 1, 2, 3, 2, 1) * 2 + (0,)

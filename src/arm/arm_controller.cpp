@@ -25,7 +25,7 @@ JointGains ArmController::defaultGains(const Parameters& drive)
   JointGains gains;
   gains.position = 20.0;
   gains.speed = TWO_PI * SPEED_BANDWIDTH * motorInertia(drive);
-  gains.integral_time = 0.2;
+  gains.integral_time = 0.07;
   return gains;
 }
 
