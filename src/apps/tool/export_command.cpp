@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <string>
@@ -42,6 +43,7 @@ struct ExportedJoint
   double friction_deviation{};  ///< largest of the twin's friction from it [N.m]
   double armature{};            ///< of motor and wave generator [kg.m^2]
   double stiffness{};           ///< in series, secant between plus and minus the rated torque [N.m/rad]
+  double hysteresis{};          ///< dry friction beside it: half the height of the torsion loop [N.m]
   double inertia{};             ///< of circular spline and load [kg.m^2]
   double effort{};              ///< largest torque [N.m]
   double velocity{};            ///< largest speed [rad/s]
@@ -70,11 +72,11 @@ void fitFriction(const Parameters& parameters, ExportedJoint& joint)
 std::string missing(const ExportedJoint& joint, const Parameters& parameters, bool has_armature, bool has_stiffness)
 {
   const auto text = [](double value) { return roundedText(value, 4); };
-  std::string lines =
-      "  Left out: friction by load and temperature (here: no load, " + text(parameters.input.temperature) +
-      " degC) and off its straight line (up to " + text(joint.friction_deviation) +
-      " N.m);\n  stiffness that grows with the torque, hysteresis, lost motion, kinematic error, backlash "
-      "of the brake, faults.\n";
+  std::string lines = "  Left out: friction by load and temperature (here: no load, " +
+                      text(parameters.input.temperature) + " degC) and off its straight line (up to " +
+                      text(joint.friction_deviation) + " N.m);\n  stiffness that grows with the torque, " +
+                      (has_stiffness ? "hysteresis of small swings" : "hysteresis") +
+                      ", lost motion, kinematic error, backlash of the brake, faults.\n";
   lines += has_armature ?
                "" :
                "  Not in this format: inertia of the motor at the joint, " + text(joint.armature) + " kg.m^2.\n";
@@ -122,7 +124,8 @@ std::string sdf(const ExportedJoint& joint, const Parameters& parameters)
          element("damping", joint.damping) + element("friction", joint.friction) +
          "</dynamics>\n      </axis>\n    </joint>\n    <joint name=\"" + joint.name +
          "_torsion\" type=\"revolute\">\n      <parent>motor</parent>\n      <child>output</child>\n" + axis +
-         "<dynamics>" + element("spring_reference", 0.0) + element("spring_stiffness", joint.stiffness) +
+         "<dynamics>" + element("friction", joint.hysteresis) + element("spring_reference", 0.0) +
+         element("spring_stiffness", joint.stiffness) +
          "</dynamics>\n      </axis>\n    </joint>\n  </model>\n</sdf>\n";
 }
 
@@ -132,16 +135,31 @@ std::string mjcfInertial(double inertia)
   return "<inertial pos=\"0 0 0\" mass=\"1\" diaginertia=\"" + text + ' ' + text + ' ' + text + "\"/>\n";
 }
 
+/// MuJoCo lets what friction holds creep; with the greatest impedance that it knows by microradians a second.
+std::string mjcfFriction(double friction)
+{
+  return attribute("frictionloss", friction) + " solimpfriction=\"0.9999 0.9999 0.001 0.5 2\"";
+}
+
+/// MuJoCo's own step, or a shorter one: 4 % of a period of motor against output on the spring. Stable is a third.
+double mjcfTimeStep(const ExportedJoint& joint)
+{
+  constexpr double OWN = 0.002;
+  return std::min(OWN, 0.25 / std::sqrt(joint.stiffness * (1.0 / joint.inertia + 1.0 / joint.armature)));
+}
+
 std::string mjcf(const ExportedJoint& joint, const Parameters& parameters)
 {
   return missing(joint, parameters, true, true) +
-         "<mujoco model=\"harmonic_joint\">\n  <compiler angle=\"radian\"/>\n  <worldbody>\n    <body "
+         "<mujoco model=\"harmonic_joint\">\n  <compiler angle=\"radian\"/>\n  <option" +
+         attribute("timestep", mjcfTimeStep(joint)) +
+         "/>\n  <worldbody>\n    <body "
          "name=\"motor\">\n      " +
          mjcfInertial(1e-6) + "      <joint name=\"" + joint.name + "\" type=\"hinge\" axis=\"0 0 1\"" +
-         attribute("damping", joint.damping) + attribute("frictionloss", joint.friction) +
-         attribute("armature", joint.armature) + "/>\n      <body name=\"output\">\n        " +
-         mjcfInertial(joint.inertia) + "        <joint name=\"" + joint.name +
-         "_torsion\" type=\"hinge\" axis=\"0 0 1\"" + attribute("stiffness", joint.stiffness) +
+         attribute("damping", joint.damping) + mjcfFriction(joint.friction) + attribute("armature", joint.armature) +
+         "/>\n      <body name=\"output\">\n        " + mjcfInertial(joint.inertia) + "        <joint name=\"" +
+         joint.name + "_torsion\" type=\"hinge\" axis=\"0 0 1\"" + attribute("stiffness", joint.stiffness) +
+         mjcfFriction(joint.hysteresis) +
          "/>\n      </body>\n    </body>\n  </worldbody>\n  <actuator>\n    <motor joint=\"" + joint.name +
          "\" ctrllimited=\"true\" ctrlrange=\"-" + roundedText(joint.effort, 6) + ' ' + roundedText(joint.effort, 6) +
          "\"/>\n  </actuator>\n</mujoco>\n";
@@ -204,6 +222,7 @@ int exportJoint(const ExportOptions& options)
   joint.armature = Motor(parameters.motor).inertia() * ratio * ratio;
   joint.inertia = parameters.output.circular_spline_inertia + parameters.output.load_inertia;
   joint.stiffness = 2.0 * rated / (rows[0].output_angle - rows[1].output_angle);
+  joint.hysteresis = parameters.cup.friction_torque;
   fitFriction(parameters, joint);
   std::cout << (options.format == "urdf" ? urdf : options.format == "sdf" ? sdf : mjcf)(joint, parameters);
   return EXIT_DONE;
