@@ -125,8 +125,8 @@ def draw(path, kinds, found, sound):
 
 def table(kinds, found, sound):
     head = " | ".join(f"{joint}: path, repeats, current" for joint in FAULTY)
-    lines = [f"Severity {SEVERITIES[1]}, tool off its path at most [mm], repeatability (ISO 9283) [mm], more current of the joint "
-             "[%, rms]:", "", f"| fault | {head} | at rest [mm] |", "|---|" + "---|" * (len(FAULTY) + 1),
+    lines = [f"Severity {SEVERITIES[1]}, tool off its path at most [mm], repeatability (ISO 9283) [mm], more current "
+             "of the joint [%, rms]:", "", f"| fault | {head} | at rest [mm] |", "|---|" + "---|" * (len(FAULTY) + 1),
              f"| none | {sound['path_max']:.2f}, {sound['repeatability']:.3f}, 0 |" + " |" * len(FAULTY)]
     for kind in kinds:
         cells = [found[kind, joint, SEVERITIES[1]] for joint in FAULTY]

@@ -196,12 +196,12 @@ def follow(recording: Recording, *, joint: Optional[str] = None, arm: Optional[s
 def arm(motion: Recording, arm: Path, *, faults: Sequence[str] = (), out: Optional[Path] = None,
         rate: Optional[float] = None, identified: Optional[Path] = None, force: bool = False, overlays: Overlays = (),
         progress: Optional[Progress] = None) -> Document:
-    """A whole arm in closed loop, its drives, links and controller, along set points: the tool's arm (docs/arm_twin.md).
+    """A whole arm in closed loop, drives, links and controller, along set points: the tool's arm (docs/arm_twin.md).
 
     motion: CSV of set points, or columns: a structured array or a mapping of arrays with 'time' [s], shape (rows,), and
-    of shape (rows, joints) 'position' [rad] and, if known, 'velocity' [rad/s] and 'acceleration' [rad/s^2]. arm: name in
-    config/arms, or a file. faults: each JOINT:KIND:SEVERITY[:PLACE[:ONSET]]. out: CSV in a controller's columns. rate:
-    of the rows [Hz]; None: that of the arm's states. Others as of identify.
+    of shape (rows, joints) 'position' [rad] and, if known, 'velocity' [rad/s] and 'acceleration' [rad/s^2]. arm: name
+    in config/arms, or a file. faults: each JOINT:KIND:SEVERITY[:PLACE[:ONSET]]. out: CSV in a controller's columns.
+    rate: of the rows [Hz]; None: that of the arm's states. Others as of identify.
 
     Returns a dict: 'joints' (one dict each: 'angle_error_rms', 'angle_error_max' [mrad], 'current_rms' [A]),
     'tool_error_rms', 'tool_error_max' [mm], 'energy_residual' [J], 'solver_failures', and as its 'rows' a dict of

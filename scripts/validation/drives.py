@@ -84,9 +84,9 @@ gear's: seals, output bearing and motor are in it.
 def load_loss(page):
     page.heading("UR10e: friction that grows with the load")
     page.text(f"""
-What the friction of a UR10e grows by with the load (recordings of shamilmamedov/dynamic_calibration; its currents by the
-controller's own ratio at rest), beside a straight line through the twin's loss at {LOAD_LOSS_SPEED:g} rad/s, over the loads of the
-recordings. Nothing is fitted to it. The twin's loss rises slowly at first and faster under load; a line is what the
+What the friction of a UR10e grows by with the load (recordings of shamilmamedov/dynamic_calibration; its currents by
+the controller's own ratio at rest), beside a straight line through the twin's loss at {LOAD_LOSS_SPEED:g} rad/s, over
+the loads of the recordings. Nothing is fitted to it. The twin's loss rises slowly at first and faster under load; a line is what the
 recordings can tell.
 """)
     for joint, (overlay, most, (low, high)) in UR10E_LOAD_LOSS.items():
@@ -96,8 +96,8 @@ recordings can tell.
                    "four recordings", Between(round(low, 1), round(high, 1)), 100.0 * np.polyfit(loads, loss, 1)[0],
                    "%", "spread of the four recordings and of each",
                    known="" if joint == "elbow" else
-                   "flanks and bearing keep their friction coefficients at any load; those of the catalogue's efficiency "
-                   "at rated load leave more than the robot loses at three times that of the elbow")
+                   "flanks and bearing keep their friction coefficients at any load; those of the catalogue's "
+                   "efficiency leave more than the robot loses at three times the elbow's load")
 
 
 def recording(page, *parts):
