@@ -35,7 +35,66 @@ def line_amplitude(time, speed, values):
 
 
 class ClosedLoop:
-    """A run of `joint_twin arm` along the targets of each recording, drives identified on the recording of the other sections, the
+    """A run of `joint_twin arm` along the targets of a recording (ur5.Recording)."""
+
+    def __init__(self, runner, recording):
+        self.recording = recording
+        runner.run("arm", f"{recording.name}.csv", "--arm", "ur5", "--identified", "identified_arm", "--out",
+                   f"loop_{recording.name}.csv", "--json")
+        self.data = read(runner.path(f"loop_{recording.name}.csv"))
+
+    def residual(self, name, joint):
+        """Recorded less simulated current, at the rows that were compared [A]."""
+        rows = self.recording.rows["arm", name]
+        time = self.data["timestamp"] - self.recording.data["timestamp"][0]
+        return rows["current_measured"] - np.interp(rows["time"], time, self.data[f"actual_current_{joint}"])
+
+
+def cell(*values, digits=2):
+    return " / ".join("–" if np.isnan(value) else f"{value:.{digits}f}" for value in values)
+
+
+def draw(path, loop, joints):
+    drawing, all_axes = figure(len(joints), 1, (9.0, 5.0), sharex=True)
+    recorded = loop.recording.data
+    start = recorded["timestamp"][0]
+    for axes, (number, name) in zip(all_axes, joints):
+        for data, colour, label in ((recorded, GREY, "recorded"), (loop.data, BLUE, "twin in closed loop")):
+            axes.plot(data["timestamp"] - start,
+                      1e3 * (data[f"actual_q_{number}"] - data[f"target_q_{number}"]
+                             - np.mean(data[f"actual_q_{number}"] - data[f"target_q_{number}"])),
+                      color=colour, lw=0.8, label=label)
+        axes.set_title(f"{name}: actual less target angle [mrad]")
+    all_axes[0].legend(loc="upper right", fontsize=8, ncol=2)
+    all_axes[-1].set_xlabel(f"time in {loop.recording.name} [s]")
+    save(drawing, path)
+
+
+def section(runner, recordings, fit, joints, shown, picture):
+    """Lines of the page. `fit`: of the current, on another recording, told the motion."""
+    rows, tracked, currents = [], [], []
+    for recording in recordings:
+        loop = ClosedLoop(runner, recording)
+        if recording.name == shown:
+            draw(picture, loop, list(enumerate(joints))[1:4])
+        cells = []
+        for number, name in enumerate(joints):
+            moving = recording.moving(name)
+            simple = rms(fit.residual(recording, name)[moving]) if moving.any() else float("nan")
+            current = rms(loop.residual(name, number)[moving]) if moving.any() else float("nan")
+            told = rms(recording.rows["arm", name]["current_residual"][moving]) if moving.any() else float("nan")
+            errors = tracking(loop.data, number), tracking(recording.data, number)
+            lines = [line_amplitude(data["timestamp"], data[f"actual_qd_{number}"], data[f"actual_current_{number}"])
+                     for data in (loop.data, recording.data)]
+            cells.append(f"{cell(*errors)}; {cell(current, told, simple)}; {cell(*lines)}")
+            tracked.append(errors[0] / errors[1])
+            currents.append(current / simple)
+        rows.append([recording.name, *cells])
+    tracked, currents = np.array(tracked), np.array(currents)[~np.isnan(currents)]
+    return [f"""
+### In closed loop
+
+`joint_twin arm` along the targets of each recording, drives identified on the recording of the other sections, the
 controller's gains typical: the twin is told neither angles nor currents. In each cell: actual less target angle, rms
 about its mean, twin / recorded [mrad]; error of the current in moving rows, rms, closed loop / told the motion
 (`follow`) / simple fit told the motion [A]; amplitude of the current at {LOOP_LINES} lines a turn of the joint, twin /

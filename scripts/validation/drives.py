@@ -86,8 +86,8 @@ def load_loss(page):
     page.text(f"""
 What the friction of a UR10e grows by with the load (recordings of shamilmamedov/dynamic_calibration; its currents by
 the controller's own ratio at rest), beside a straight line through the twin's loss at {LOAD_LOSS_SPEED:g} rad/s, over
-the loads of the recordings. Nothing is fitted to it. The twin's loss rises slowly at first and faster under load; a line is what the
-recordings can tell.
+the loads of the recordings. Nothing is fitted to it. The twin's loss rises slowly at first and faster under load; a
+line is what the recordings can tell.
 """)
     for joint, (overlay, most, (low, high)) in UR10E_LOAD_LOSS.items():
         loads = np.linspace(0.0, most, 10)
