@@ -21,6 +21,7 @@ void bindParameters(py::module& module);
 void bindHealth(py::module& module);
 void bindToothValues(py::module& module);
 void bindTwin(py::module& module);
+void bindTwinBatch(py::module& module);
 void bindStatics(py::module& module);
 void bindTracking(py::module& module);
 
@@ -46,10 +47,46 @@ class InterruptCheck
 {
 public:
   InterruptCheck();
-  void operator()();
+  bool operator()();  ///< @returns whether it has looked
 
 private:
   double next_;  // [s]
+};
+
+/// The same of a run, which also tells a function how far it is.
+class RunCheck
+{
+public:
+  /// `progress`: called with 0 ... 1, or Python's None.
+  explicit RunCheck(const py::object& progress) : progress_(progress) {}
+
+  /// Of `all` steps so many are done.
+  void operator()(py::ssize_t done, py::ssize_t all)
+  {
+    if (check_() && !progress_.is_none())
+    {
+      tell(static_cast<double>(done) / static_cast<double>(all));
+    }
+  }
+
+  /// The run is at its end.
+  void end()
+  {
+    if (!progress_.is_none())
+    {
+      tell(1.0);
+    }
+  }
+
+private:
+  void tell(double share)
+  {
+    const py::gil_scoped_acquire acquire;
+    progress_(share);
+  }
+
+  const py::object& progress_;
+  InterruptCheck check_;
 };
 
 /// Calls `work` without the interpreter's lock and gives what it returns. An `Interrupted` out of it becomes Python's

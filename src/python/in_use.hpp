@@ -3,6 +3,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace hjt
 {
@@ -15,13 +16,19 @@ public:
   class Hold
   {
   public:
-    explicit Hold(bool& used) : used_(used) { used_ = true; }
-    Hold(const Hold&) = delete;
-    Hold& operator=(const Hold&) = delete;
-    ~Hold() { used_ = false; }
+    explicit Hold(bool& used) : used_(&used) { *used_ = true; }
+    Hold(Hold&& other) noexcept : used_(std::exchange(other.used_, nullptr)) {}
+    Hold& operator=(Hold&&) = delete;
+    ~Hold()
+    {
+      if (used_ != nullptr)
+      {
+        *used_ = false;
+      }
+    }
 
   private:
-    bool& used_;
+    bool* used_;
   };
 
   /// `what`: name of the object in the error's text.

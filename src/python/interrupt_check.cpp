@@ -16,12 +16,12 @@ constexpr double INTERRUPT_PERIOD = 0.05;  // [s]
 
 InterruptCheck::InterruptCheck() : next_(now() + INTERRUPT_PERIOD) {}
 
-void InterruptCheck::operator()()
+bool InterruptCheck::operator()()
 {
   const double time = now();
   if (time < next_)
   {
-    return;
+    return false;
   }
   next_ = time + INTERRUPT_PERIOD;
   const py::gil_scoped_acquire acquire;
@@ -29,5 +29,6 @@ void InterruptCheck::operator()()
   {
     throw Interrupted{};
   }
+  return true;
 }
 }  // namespace hjt

@@ -54,6 +54,7 @@ PYBIND11_MODULE(_hjt, module)
   hjt::bindHealth(module);
   hjt::bindToothValues(module);
   hjt::bindTwin(module);
+  hjt::bindTwinBatch(module);
   hjt::bindStatics(module);
   hjt::bindTracking(module);
 }

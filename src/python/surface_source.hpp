@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
+#include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "harmonic_joint_twin/surface/surface_source.hpp"
 #include "python/bindings.hpp"
+#include "surface/surface_pool.hpp"
 
 namespace hjt
 {
@@ -14,25 +18,37 @@ namespace hjt
 class SurfaceSourceOf
 {
 public:
-  /// `cache`: a directory; none: the tool's. `progress`: called with 0 ... 1, or Python's None.
-  SurfaceSourceOf(const std::optional<std::string>& cache, const py::object& progress)
+  /// `cache`: a directory; none: the tool's. `progress`: called with 0 ... 1, or Python's None. `builders`: how many
+  /// use this source one after the other; they have equal surfaces in common.
+  SurfaceSourceOf(const std::optional<std::string>& cache, const py::object& progress, std::size_t builders = 1)
   {
     source_.cache_directory = cache ? *cache : surfaceCacheDirectory();
-    source_.progress = [this, &progress](double done)
+    source_.progress = [this, &progress, builders](double done)
     {
       check_();
       if (!progress.is_none())
       {
         const py::gil_scoped_acquire acquire;
-        progress(done);
+        progress((static_cast<double>(finished_) + done) / static_cast<double>(builders));
       }
     };
+    if (builders > 1)
+    {
+      source_.pool = std::make_shared<SurfacePool>(std::numeric_limits<std::size_t>::max());
+    }
     source_.notice = [this](const std::string& what) { notices_.push_back(what); };
   }
   SurfaceSourceOf(const SurfaceSourceOf&) = delete;
   SurfaceSourceOf& operator=(const SurfaceSourceOf&) = delete;
 
   const SurfaceSource& source() const { return source_; }
+
+  /// A builder is ready. May throw what `progress` does.
+  void next()
+  {
+    source_.progress(1.0);
+    ++finished_;
+  }
 
   /// Tells Python's warnings why there is no surface, or why it could not be kept.
   void warn() const
@@ -49,6 +65,7 @@ public:
 private:
   SurfaceSource source_;
   InterruptCheck check_;
+  std::size_t finished_{};
   std::vector<std::string> notices_;
 };
 }  // namespace hjt

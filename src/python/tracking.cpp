@@ -46,8 +46,9 @@ private:
 class TrackerObject
 {
 public:
-  TrackerObject(const Configuration& parameters, const std::string& mode, const std::optional<std::string>& cache)
-    : tracker_(makeTracker(parameters.values(), mode, cache))
+  TrackerObject(const Configuration& parameters, const std::string& mode, const std::optional<std::string>& cache,
+                const py::object& progress)
+    : tracker_(makeTracker(parameters.values(), mode, cache, progress))
   {
   }
 
@@ -59,7 +60,7 @@ public:
 
   py::array_t<ComparisonRow> follow(const Values& time, const Values& position, const Values& current,
                                     const std::optional<Values>& load, const std::optional<Values>& temperature,
-                                    const std::optional<Values>& motor_angle, bool at_end)
+                                    const std::optional<Values>& motor_angle, bool at_end, const py::object& progress)
   {
     const InUse::Hold hold = in_use_.hold();
     const py::ssize_t rows = time.size();
@@ -73,7 +74,7 @@ public:
     withoutLock(
         [&]
         {
-          InterruptCheck check;
+          RunCheck check(progress);
           for (py::ssize_t i = 0; i < rows; ++i)
           {
             MotionRow row;
@@ -89,22 +90,23 @@ public:
             }
             tracker_->push(row);
             take(false, compared);
-            check();
+            check(i + 1, rows);
           }
           take(at_end, compared);
+          check.end();
         });
     return py::array_t<ComparisonRow>(static_cast<py::ssize_t>(compared.size()), compared.data());
   }
 
 private:
   static std::unique_ptr<Tracker> makeTracker(const Parameters& parameters, const std::string& name,
-                                              const std::optional<std::string>& cache)
+                                              const std::optional<std::string>& cache, const py::object& progress)
   {
     for (const auto& [choice, mode] : choiceNames(InputMode{}))
     {
       if (name == choice && mode != InputMode::COMMANDS)
       {
-        SurfaceSourceOf source(cache, py::none());
+        SurfaceSourceOf source(cache, progress);
         auto tracker = withoutLock([&, taken = mode, given = parameters]
                                    { return std::make_unique<Tracker>(given, taken, source.source()); });
         source.warn();
@@ -154,20 +156,22 @@ void bindTracking(py::module& module)
   py::class_<TrackerObject>(
       module, "Tracker",
       "A healthy joint beside a recorded one, as the tool's follow and the node beside a robot.\n\n"
-      "Tracker(parameters, mode='motion', cache=None). mode: 'motion' predicts the current of the recorded motion, "
+      "Tracker(parameters, mode='motion', cache=None, progress=None). mode: 'motion' predicts the current of the "
+      "recorded motion, "
       "'torque' the motion of the recorded current, 'observer' corrects the twin towards the recorded angles. "
       "parameters: those of the joint, e.g. Parameters('joints/elbow.yaml', 'beside_robot.yaml'); telemetry.load says "
-      "what the load is. ParameterError.")
-      .def(py::init<const Configuration&, const std::string&, const std::optional<std::string>&>(),
-           py::arg("parameters"), py::arg("mode") = "motion", py::arg("cache") = py::none())
+      "what the load is. cache, progress: as of Twin. ParameterError.")
+      .def(py::init<const Configuration&, const std::string&, const std::optional<std::string>&, const py::object&>(),
+           py::arg("parameters"), py::arg("mode") = "motion", py::arg("cache") = py::none(),
+           py::arg("progress") = py::none())
       .def("follow", &TrackerObject::follow, py::arg("time"), py::arg("position"), py::arg("current"),
            py::arg("load") = py::none(), py::arg("temperature") = py::none(), py::arg("motor_angle") = py::none(),
-           py::arg("at_end") = true,
+           py::arg("at_end") = true, py::arg("progress") = py::none(),
            "Takes rows of a recording, without the interpreter's lock: arrays of shape (rows,). time [s], ascending; "
            "position of the joint [rad]; current of the motor [A]; load at the output, > 0 resists positive motion "
            "[N.m]; temperature of the drive [degC]; motor_angle [rad]; None: not recorded. at_end: no row follows; "
            "False "
-           "keeps the last 36 ms for the next call.\n\n"
+           "keeps the last 36 ms for the next call. progress: as of Twin.run.\n\n"
            "Returns a structured array of shape (compared rows,) with dtype COMPARISON_DTYPE. Rows that cannot be are "
            "left out and counted. InputError.")
       .def(

@@ -245,8 +245,11 @@ void Twin::Impl::takeInputs() noexcept
         load_clamped = load_torque != input.value;
         break;
       case InputKind::BRAKE:
-        brake_commanded = input.value != 0.0;
-        brake_moves = input.stamp + toStampLength(parameters.brake.delay);
+        if (const bool wanted = input.value != 0.0; wanted != brake_commanded)
+        {
+          brake_commanded = wanted;
+          brake_moves = input.stamp + toStampLength(parameters.brake.delay);
+        }
         break;
       case InputKind::TEMPERATURE:
         temperature = std::clamp(input.value, MIN_TEMPERATURE, MAX_TEMPERATURE);

@@ -342,6 +342,14 @@ TEST(TwinBrake, ActsAfterItsDelay)
   EXPECT_FALSE(twin.outputs().brake_engaged);
   advance(twin, 30 * MILLISECOND);
   EXPECT_TRUE(twin.outputs().brake_engaged);
+  // One that is given again, as in a loop, is no other.
+  Twin told_often(shippedParameters({ "brake.delay=20.0e-3", "input.command_timeout=10.0" }));
+  for (Stamp time = 10; time <= 30; ++time)
+  {
+    told_often.commandBrake(time * MILLISECOND, true);
+    advance(told_often, time * MILLISECOND);
+    EXPECT_EQ(told_often.outputs().brake_engaged, time == 30) << time;
+  }
   // A command that is taken back before its delay is over changes nothing.
   twin.commandBrake(40 * MILLISECOND, false);
   twin.commandBrake(50 * MILLISECOND, true);

@@ -5,6 +5,7 @@ import copy
 import gc
 import math
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -69,6 +70,10 @@ class Run(unittest.TestCase):
         for each in copies:
             np.testing.assert_array_equal(each.run(motor_torque=course(), load_torque=5.0), rows)
             self.assertEqual([(fault.severity, fault.place) for fault in each.active_faults], [(0.3, 20)])
+
+    def test_that_is_pickled_is_an_error_with_a_way_out(self):
+        with self.assertRaisesRegex(TypeError, r"copy\.copy\(twin\) keeps its state within this process"):
+            pickle.dumps(hjt.Twin(hjt.Parameters()))
 
     def test_to_a_time_ends_at_the_last_instant_before(self):
         twin = hjt.Twin(hjt.Parameters())

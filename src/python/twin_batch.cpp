@@ -1,0 +1,356 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "python/thread_team.hpp"
+#include "python/twin_object.hpp"
+#include "surface/parallel_tasks.hpp"
+
+namespace hjt
+{
+namespace
+{
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds BLOCK_TIME{ 25 };  // that a block of steps may take, before it is not lengthened
+constexpr py::ssize_t FIRST_BLOCK = 16384;             // steps of all twins together
+constexpr py::ssize_t PORTION = 32;  // steps that a thread takes at least at once: on the surface some 10 us
+
+using Twins = std::vector<std::pair<py::object, TwinObject*>>;
+
+/// How the twins of a batch are made.
+class BatchBuilder
+{
+public:
+  /// `given`: Parameters or a Twin, for `count` twins alike; or several of them. @throws InputError.
+  BatchBuilder(const py::object& given, const std::optional<py::ssize_t>& count)
+    : alike_(py::isinstance<Configuration>(given) || py::isinstance<TwinObject>(given))
+  {
+    if (alike_ != count.has_value())
+    {
+      throw InputError(alike_ ? "n is missing: how many twins there are to be" :
+                                "n is for one Parameters or one Twin, not for several");
+    }
+    if (count.value_or(1) < 1)
+    {
+      throw InputError("n = " + std::to_string(*count) + " [-] is out of range, allowed: 1 ...");
+    }
+    for (py::ssize_t i = 0; alike_ && i < *count; ++i)
+    {
+      items_.push_back(given);
+    }
+    if (!alike_)
+    {
+      items_ = py::cast<std::vector<py::object>>(py::list(given));
+    }
+    if (items_.empty())
+    {
+      throw InputError("twins has no items, expected: one or more Parameters or Twin");
+    }
+  }
+
+  /// @throws InputError, Python's TypeError.
+  Twins build(const std::optional<std::string>& cache, const py::object& progress) const
+  {
+    SurfaceSourceOf source(cache, progress, items_.size());
+    Twins twins;
+    for (std::size_t i = 0; i < items_.size(); ++i)
+    {
+      const py::object object = twinOf(i, twins, source);
+      auto* const twin = py::cast<TwinObject*>(object);
+      requireFits(i, *twin, twins);
+      twins.emplace_back(object, twin);
+    }
+    source.warn();
+    return twins;
+  }
+
+private:
+  py::object twinOf(std::size_t i, const Twins& before, SurfaceSourceOf& source) const
+  {
+    const py::object& item = items_[i];
+    const bool is_twin = py::isinstance<TwinObject>(item);
+    if (is_twin && !alike_)
+    {
+      return item;
+    }
+    if (!is_twin && !py::isinstance<Configuration>(item))
+    {
+      throw py::type_error("twins" + placeText(i) + " is a " +
+                           py::cast<std::string>(item.attr("__class__").attr("__name__")) +
+                           ", expected: Parameters or Twin");
+    }
+    TwinObject* const model = is_twin ? py::cast<TwinObject*>(item) : alike_ && i > 0 ? before.front().second : nullptr;
+    if (model != nullptr)
+    {
+      py::object copy = py::cast(std::make_unique<TwinObject>(model->twin(), model->parameters()));
+      withoutLock([&] { source.next(); });
+      return copy;
+    }
+    try
+    {
+      return made(py::cast<Configuration>(item), source);
+    }
+    catch (const ParameterError& error)
+    {
+      throw ParameterError((alike_ ? "" : "twins" + placeText(i) + ": ") + error.what());
+    }
+  }
+
+  static py::object made(const Configuration& parameters, SurfaceSourceOf& source)
+  {
+    Twin twin = withoutLock(
+        [&, values = parameters.values()]
+        {
+          Twin built(values, source.source());
+          source.next();
+          return built;
+        });
+    return py::cast(std::make_unique<TwinObject>(std::move(twin), parameters));
+  }
+
+  static void requireFits(std::size_t i, TwinObject& twin, const Twins& before)
+  {
+    for (std::size_t j = 0; j < before.size(); ++j)
+    {
+      if (before[j].second == &twin)
+      {
+        throw InputError("twins" + placeText(i) + " is the same Twin as twins" + placeText(j) +
+                         "; copy.copy makes another");
+      }
+    }
+    if (!before.empty() && twin.twin().stepLength() != before.front().second->twin().stepLength())
+    {
+      throw InputError("twins" + placeText(i) + " steps by " + std::to_string(twin.twin().stepLength()) +
+                       " ns, twins[0] by " + std::to_string(before.front().second->twin().stepLength()) +
+                       " ns (solver.rate): they cannot step together");
+    }
+  }
+
+  static std::string placeText(std::size_t i) { return '[' + std::to_string(i) + ']'; }
+
+  bool alike_;
+  std::vector<py::object> items_;
+};
+
+std::size_t threadCount(const std::optional<int>& threads, std::size_t twins)
+{
+  if (threads.value_or(1) < 1)
+  {
+    throw InputError("threads = " + std::to_string(*threads) + " [-] is out of range, allowed: 1 ...");
+  }
+  return std::min<std::size_t>(threads ? static_cast<unsigned>(*threads) : processors(), twins);
+}
+
+/// Twins that step together, and the threads that they share.
+class TwinBatch
+{
+public:
+  TwinBatch(Twins twins, std::size_t threads) : twins_(std::move(twins)), team_(threads) {}
+
+  py::ssize_t size() const { return static_cast<py::ssize_t>(twins_.size()); }
+  std::size_t threads() const { return team_.size(); }
+
+  /// `place`: negative ones count from the end. @throws py::index_error.
+  py::object at(py::ssize_t place) const
+  {
+    const py::ssize_t i = place < 0 ? place + size() : place;
+    if (i < 0 || i >= size())
+    {
+      throw py::index_error("twin " + std::to_string(place) + " of " + std::to_string(size()));
+    }
+    return twins_[static_cast<std::size_t>(i)].first;
+  }
+
+  StepRows step(const GivenInputs& given, py::ssize_t steps, const py::object& out)
+  {
+    if (steps < 1)
+    {
+      throw InputError("steps = " + std::to_string(steps) + " [-] is out of range, allowed: 1 ...");
+    }
+    RunShape shape{ RunShape::Axes::TWINS, size(), steps };
+    const RunInputs inputs(given, shape);
+    StepRows rows = rowsFor({ size() }, out);
+    march(inputs, steps, steps, rows.mutable_data(), py::none());
+    return rows;
+  }
+
+  StepRows run(const std::optional<py::ssize_t>& given_steps, const GivenInputs& given, py::ssize_t every,
+               const py::object& out, const py::object& progress)
+  {
+    RunShape shape{ RunShape::Axes::TWINS_AND_STEPS, size(), given_steps };
+    const RunInputs inputs(given, shape);
+    const py::ssize_t steps = requireSteps(shape.steps, every);
+    StepRows rows = rowsFor({ size(), steps / every }, out);
+    march(inputs, steps, every, rows.mutable_data(), progress);
+    return rows;
+  }
+
+  StepRows outputs() const
+  {
+    StepRows rows(size());
+    StepRow* row = rows.mutable_data();
+    for (const auto& twin : twins_)
+    {
+      *row++ = rowOf(twin.second->twin());
+    }
+    return rows;
+  }
+
+  py::dict counters() const
+  {
+    py::dict named;
+    for (py::ssize_t i = 0; i < size(); ++i)
+    {
+      for (const auto& item : namedCounters(twins_[static_cast<std::size_t>(i)].second->twin().counters()))
+      {
+        if (i == 0)
+        {
+          named[item.first] = py::array_t<std::int64_t>(size());
+        }
+        auto values = py::reinterpret_borrow<py::array_t<std::int64_t>>(named[item.first]);
+        values.mutable_at(i) = py::cast<std::int64_t>(item.second);
+      }
+    }
+    return named;
+  }
+
+private:
+  /// In blocks of steps, after which all twins are at the same one.
+  void march(const RunInputs& inputs, py::ssize_t steps, py::ssize_t every, StepRow* rows, const py::object& progress)
+  {
+    std::vector<Twin*> twins;
+    std::vector<InUse::Hold> holds;
+    twins.reserve(twins_.size());
+    holds.reserve(twins_.size());
+    for (const auto& twin : twins_)
+    {
+      twins.push_back(&twin.second->twin());
+      holds.push_back(twin.second->inUse().hold());
+    }
+    const py::ssize_t columns = steps / every;
+    withoutLock(
+        [&]
+        {
+          RunCheck check(progress);
+          py::ssize_t block = std::max<py::ssize_t>(FIRST_BLOCK / size(), 1);
+          for (py::ssize_t done = 0; done < steps;)
+          {
+            const py::ssize_t until = std::min(done + block, steps);
+            const Clock::time_point begin = Clock::now();
+            const auto portion = static_cast<std::size_t>(std::max<py::ssize_t>(PORTION / (until - done), 1));
+            team_.run(twins.size(), portion,
+                      [&](std::size_t i)
+                      {
+                        const auto number = static_cast<py::ssize_t>(i);
+                        StepRow* row = rows + number * columns + done / every;
+                        py::ssize_t until_row = every - done % every;
+                        for (py::ssize_t step = done; step < until; ++step)
+                        {
+                          inputs.step(*twins[i], step, number);
+                          if (--until_row == 0)
+                          {
+                            *row++ = rowOf(*twins[i]);
+                            until_row = every;
+                          }
+                        }
+                      });
+            block *= Clock::now() - begin < BLOCK_TIME ? 2 : 1;
+            done = until;
+            check(done, steps);
+          }
+          check.end();
+        });
+  }
+
+  Twins twins_;
+  ThreadTeam team_;
+};
+}  // namespace
+
+void bindTwinBatch(py::module& module)
+{
+  const auto none = [](const char* name) { return py::arg(name) = py::none(); };
+  py::class_<TwinBatch>(
+      module, "TwinBatch",
+      "Twins that step together on all cores, without the interpreter's lock.\n\n"
+      "TwinBatch(twins, n=None, cache=None, progress=None, threads=None). twins: Parameters or a Twin, of which n "
+      "copies "
+      "are made, alike to the noise of their sensors; or several of them, each with its own parameters and faults: "
+      "Parameters make a twin, a Twin is taken as it is. All with the same solver.rate. Equal response surfaces are "
+      "shared. cache: as of Twin. progress: called with 0 ... 1 while the twins are made. threads: how many work, the "
+      "caller's among them; None: one for each processor. InputError, ParameterError.\n\n"
+      "batch[i] is the i-th Twin itself, to be reset, read, given a fault. Each has the same numbers as by itself. One "
+      "that finds no equilibrium stays where it was, with converged = False, and counts that in "
+      "counters['solver_failures']; the others go on.")
+      .def(py::init(
+               [](const py::object& twins, const std::optional<py::ssize_t>& n, const std::optional<std::string>& cache,
+                  const py::object& progress, const std::optional<int>& threads)
+               {
+                 const BatchBuilder builder(twins, n);
+                 threadCount(threads, 1);
+                 Twins built = builder.build(cache, progress);
+                 const std::size_t count = threadCount(threads, built.size());
+                 return std::make_unique<TwinBatch>(std::move(built), count);
+               }),
+           py::arg("twins"), none("n"), none("cache"), none("progress"), none("threads"))
+      .def("__len__", &TwinBatch::size, "How many twins.")
+      .def("__getitem__", &TwinBatch::at, py::arg("twin"), "The Twin of this number. IndexError.")
+      .def(
+          "__reduce__",
+          [](const TwinBatch&) -> py::object
+          {
+            throw py::type_error(
+                "a TwinBatch can be neither copied nor pickled: TwinBatch([copy.copy(twin) for twin in batch]) is "
+                "another at the same instant");
+          },
+          "TypeError: copy the twins.")
+      .def("__repr__",
+           [](const TwinBatch& self)
+           {
+             return "<TwinBatch of " + std::to_string(self.size()) + " twins on " + std::to_string(self.threads()) +
+                    (self.threads() == 1 ? " thread>" : " threads>");
+           })
+      .def(
+          "step",
+          [](TwinBatch& self, const py::object& motor_torque, const py::object& load_torque, const py::object& brake,
+             const py::object& temperature, py::ssize_t steps, const py::object& out) {
+            return self.step({ motor_torque, load_torque, brake, temperature }, steps, out);
+          },
+          none("motor_torque"), none("load_torque"), none("brake"), none("temperature"), py::arg("steps") = 1,
+          none("out"),
+          "Steps of 1 / solver.rate with inputs that stay: the inside of a closed loop.\n\n"
+          "motor_torque, load_torque [N.m], brake (0 or 1), temperature [degC]: a number for all, or an array of shape "
+          "(n,); None: what was commanded before. A given torque does not time out during the steps. out: as of "
+          "run.\n\n"
+          "Returns a structured array of shape (n,) with dtype STEP_DTYPE: the twins after the last step. InputError.")
+      .def(
+          "run",
+          [](TwinBatch& self, const std::optional<py::ssize_t>& steps, const py::object& motor_torque,
+             const py::object& load_torque, const py::object& brake, const py::object& temperature, py::ssize_t every,
+             const py::object& out, const py::object& progress) {
+            return self.run(steps, { motor_torque, load_torque, brake, temperature }, every, out, progress);
+          },
+          none("steps"), none("motor_torque"), none("load_torque"), none("brake"), none("temperature"),
+          py::arg("every") = 1, none("out"), none("progress"),
+          "A block of steps of all twins. Ctrl-C gets through and leaves all at the same step.\n\n"
+          "steps, every: as of Twin.run. motor_torque, load_torque [N.m], brake (0 or 1), temperature [degC]: a "
+          "number; "
+          "an array of shape (steps,) for all twins, (n, 1) or (n, steps); None: what was commanded before. A given "
+          "torque does not time out during the run. out: an array of an earlier call, to be overwritten; None: a new "
+          "one. progress: as of Twin.run.\n\n"
+          "Returns a structured array of shape (n, steps // every) with dtype STEP_DTYPE. InputError.")
+      .def_property_readonly("outputs", &TwinBatch::outputs,
+                             "all outputs and readings of the present instant: array of shape (n,), dtype STEP_DTYPE")
+      .def_property_readonly("counters", &TwinBatch::counters,
+                             "since reset, by name: dict of str to int array of shape (n,)")
+      .def_property_readonly("threads", &TwinBatch::threads, "how many work, the caller's among them [-]");
+}
+}  // namespace hjt
