@@ -43,8 +43,8 @@ public:
   }
 
   bool empty() const { return cells_.empty(); }
-  Json rows() const;     ///< one object a row
-  Json columns() const;  ///< one array a column
+  Json rows() const;                                         ///< one object a row
+  Json columns() const;                                      ///< one array a column
   void print(std::size_t least_width = NUMBER_WIDTH) const;  ///< each column at least so wide
 
 private:
