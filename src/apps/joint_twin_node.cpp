@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <filesystem>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -79,15 +80,39 @@ void runJoint(ros::NodeHandle& node, const hjt::FoundParameters& found)
 }
 
 /// Those of a list with commas.
-std::vector<std::string> faultsOf(const std::string& list)
+std::vector<std::string> itemsOf(const std::string& list)
 {
-  std::vector<std::string> faults;
+  std::vector<std::string> items;
   std::istringstream text(list);
-  for (std::string fault; std::getline(text, fault, ',');)
+  for (std::string item; std::getline(text, item, ',');)
   {
-    faults.push_back(fault);
+    items.push_back(item);
   }
-  return faults;
+  return items;
+}
+
+/// What the reports of the sound arm hold of each joint. @throws InputError if one of them holds no such data.
+std::vector<hjt::SoundJoint> soundJointsOf(const std::string& list, const hjt::ArmDescription& arm,
+                                           const std::vector<hjt::Parameters>& parameters)
+{
+  std::vector<hjt::SoundJoint> joints;
+  for (std::size_t i = 0; i < arm.joints.size(); ++i)
+  {
+    std::vector<std::string> directories;
+    for (const std::string& item : itemsOf(list))
+    {
+      const std::filesystem::path report = item;
+      const bool is_file = std::filesystem::is_regular_file(report);
+      directories.push_back((is_file ? report.parent_path() : report) / arm.joints[i].short_name);
+    }
+    joints.push_back(hjt::readSoundJoint(directories, parameters[i]));
+    if (joints.back().own.is_unjudged)
+    {
+      ROS_WARN_STREAM("The reference did not judge the friction of " << arm.joints[i].short_name
+                                                                     << ": it is no reference of it");
+    }
+  }
+  return joints;
 }
 
 /// All joints of the arm `name`: its files, then the parameters of this node over those of every joint. What comes of
@@ -104,7 +129,9 @@ void runArm(ros::NodeHandle& node, const std::string& name, const hjt::FoundPara
   const std::string identified = node.param<std::string>(hjt::IDENTIFIED, "");
   const hjt::JointAffixes affixes{ node.param<std::string>(hjt::PREFIX, ""), node.param<std::string>(hjt::SUFFIX, "") };
   const hjt::ParameterMap overrides = hjt::readParameterServer(node.getNamespace());
-  ROS_INFO_STREAM("Arm " << arm.origin << (identified.empty() ? "" : ", identified: " + identified));
+  const std::string reference = node.param<std::string>(hjt::REFERENCE, "");
+  ROS_INFO_STREAM("Arm " << arm.origin << (identified.empty() ? "" : ", identified: " + identified)
+                         << (reference.empty() ? "" : ", reference: " + reference));
   std::vector<hjt::ParameterMap> maps;
   for (const hjt::ArmJoint& joint : arm.joints)
   {
@@ -145,12 +172,12 @@ void runArm(ros::NodeHandle& node, const std::string& name, const hjt::FoundPara
   {
     ROS_INFO_STREAM("input.mode is commands: in place of the arm, on "
                     << ros::names::resolve(hjt::topics::JOINT_STATES));
-    hjt::addArmFaults(arm, faultsOf(node.param<std::string>(hjt::FAULT, "")), parameters);
+    hjt::addArmFaults(arm, itemsOf(node.param<std::string>(hjt::FAULT, "")), parameters);
     run<hjt::ArmNode>(node, arm, parameters);
   }
   else
   {
-    run<hjt::TrackerNode>(node, arm, parameters, !identified.empty());
+    run<hjt::TrackerNode>(node, arm, parameters, soundJointsOf(reference, arm, parameters), !identified.empty());
   }
 }
 }  // namespace

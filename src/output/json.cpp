@@ -3,12 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 
 #include "output/ordered_json.hpp"
 #include "output/text_table.hpp"
-
-#include "harmonic_joint_twin/base/errors.hpp"
 
 namespace hjt
 {
@@ -105,25 +102,5 @@ std::string Json::shortText() const
     return "-";
   }
   return JsonWriter::convert(*this).dump();
-}
-
-std::vector<double> readJsonNumbers(const std::string& path, const std::vector<std::string>& names)
-{
-  std::vector<double> numbers;
-  try
-  {
-    std::ifstream file(path);
-    const auto object = nlohmann::json::parse(file);
-    for (const std::string& name : names)
-    {
-      const bool is_there = (numbers.empty() || object.contains(name)) && !object.at(name).is_null();
-      numbers.push_back(is_there ? object.at(name).get<double>() : std::nan(""));
-    }
-  }
-  catch (const nlohmann::json::exception& error)
-  {
-    throw InputError(path + " is no data of `joint_twin compare`: " + error.what());
-  }
-  return numbers;
 }
 }  // namespace hjt

@@ -69,8 +69,4 @@ private:
 
   std::variant<std::nullptr_t, bool, std::int64_t, double, std::string, std::vector<Json>, std::vector<Member>> value_;
 };
-
-/// The numbers of these names in the object that a file holds; null: NaN. All but the first may be missing: NaN.
-/// @throws InputError if the file holds no such object.
-std::vector<double> readJsonNumbers(const std::string& path, const std::vector<std::string>& names);
 }  // namespace hjt

@@ -2,28 +2,23 @@
 #include "recordings/comparison_files.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
-#include <filesystem>
 #include <limits>
 #include <optional>
 
 #include "output/report.hpp"
 
-#include "base/number_table.hpp"
 #include "base/whole_file.hpp"
 #include "harmonic_joint_twin/health/tracked_lines.hpp"
 #include "harmonic_joint_twin/statics/static_analysis.hpp"
 #include "harmonic_joint_twin/statics/torsion_loop.hpp"
 #include "health/baseline_file.hpp"
+#include "tracking/sound_joint.hpp"
 
 namespace hjt
 {
 namespace
 {
-constexpr const char* FRICTION_FILE = "friction.csv";
-
 void writeCourse(const std::string& path, const RecordingComparison& comparison)
 {
   const std::vector<Column<ComparedRow>> columns{
@@ -231,18 +226,6 @@ Json verdictFields(const Verdict& verdict)
 
 namespace
 {
-std::vector<FrictionPoint> readFriction(const std::string& directory)
-{
-  std::vector<FrictionPoint> points;
-  NumberTable<4> friction(directory + "/" + FRICTION_FILE, { "speed", "measured", "twin", "rows" });
-  std::array<double, 4> row{};
-  while (friction.read(row))
-  {
-    points.push_back({ row[0], row[1], 0.0, row[2], static_cast<std::uint64_t>(row[3]), 0.0 });
-  }
-  return points;
-}
-
 /// Standard deviation of the friction by its scatter, as a share; NaN: it was not judged.
 double frictionDeviation(const ComparisonRecord& record)
 {
@@ -260,36 +243,6 @@ Json factorJson(const ComparisonRecord& record)
                                      Json(std::optional<double>());
 }
 }  // namespace
-
-SoundJoint readSoundJoint(const std::vector<std::string>& directories, const Parameters& parameters)
-{
-  SoundJoint sound;
-  std::vector<SoundFriction> frictions;
-  double compliances = 0.0;
-  double temperatures = 0.0;
-  for (const std::string& directory : directories)
-  {
-    const std::vector<double> numbers =
-        readJsonNumbers(directory + "/" + COMPARISON_FILE, { "compliance_ratio", "temperature", "friction_deviation" });
-    compliances += numbers[0];
-    temperatures += numbers[1];
-    if (std::isfinite(numbers[2]))
-    {
-      frictions.push_back({ readFriction(directory), numbers[2] });
-    }
-    const std::string baseline = directory + "/" + BASELINE_FILE;
-    if (sound.baseline.empty() && std::filesystem::exists(baseline))
-    {
-      sound.baseline = readBaseline(baseline, parameters, false);
-    }
-  }
-  const auto count = static_cast<double>(directories.size());
-  sound.own = ownReference(frictions);
-  sound.own.is_unjudged = frictions.empty() && !directories.empty();
-  sound.own.compliance_ratio = compliances / count;
-  sound.own.temperature = temperatures / count;
-  return sound;
-}
 
 Json writeComparison(const std::string& directory, const RecordingComparison& comparison, const Parameters& parameters,
                      const ComparisonRecord& record)

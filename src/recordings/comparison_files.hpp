@@ -12,9 +12,6 @@
 
 namespace hjt
 {
-constexpr const char* COMPARISON_FILE = "comparison.json";
-constexpr const char* BASELINE_FILE = "baseline.yaml";
-
 /// All that a report is made of.
 struct ComparisonRecord
 {
@@ -38,16 +35,4 @@ Json verdictFields(const Verdict& verdict);
 /// @throws InputError if a file cannot be written.
 Json writeComparison(const std::string& directory, const RecordingComparison& comparison, const Parameters& parameters,
                      const ComparisonRecord& record);
-
-/// What an earlier comparison left of the joint when it was sound.
-struct SoundJoint
-{
-  OwnReference own;
-  std::vector<ReferenceBin> baseline;  ///< none: the recording was too short for one
-};
-
-/// Of one or more recordings of the sound joint: their friction is the mean at the speeds of all, and by how much they
-/// differ tells how the joint repeats. A recording in which its friction was not judged is no reference of it.
-/// @throws InputError if a directory holds no comparison, or one of another gear.
-SoundJoint readSoundJoint(const std::vector<std::string>& directories, const Parameters& parameters);
 }  // namespace hjt

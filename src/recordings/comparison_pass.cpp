@@ -7,6 +7,7 @@
 
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "recordings/report_page.hpp"
+#include "tracking/sound_joint.hpp"
 
 namespace hjt
 {

@@ -32,7 +32,7 @@ JointComparison::JointComparison(const ArmRecording& recording, std::size_t join
   , source_(recording.source(joint))
   , is_file_(recording.isFile())
   , directory_(directory)
-  , sound_(references.empty() ? SoundJoint() : readSoundJoint(references, parameters_))
+  , sound_(readSoundJoint(references, parameters_))
   , is_identified_(is_identified)
   , windows_((fs::path(directory) / "windows.csv").string(), WINDOW_COLUMNS)
   , comparison_(parameters_, load, sound_.baseline, [this](const JudgedWindow& window) { windows_.write(window); })

@@ -10,6 +10,8 @@
 #include "recordings/comparison_files.hpp"
 #include "recordings/recording_comparison.hpp"
 
+#include "tracking/sound_joint.hpp"
+
 namespace hjt
 {
 constexpr const char* MADE_WITH = "joint_twin " HJT_VERSION;

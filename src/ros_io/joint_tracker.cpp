@@ -47,8 +47,8 @@ std::string notJudged(const Misfit& misfit)
 }
 }  // namespace
 
-JointTracker::JointTracker(ros::NodeHandle& node, const Parameters& parameters, bool is_identified,
-                           TelemetryStream& stream, std::mutex& mutex)
+JointTracker::JointTracker(ros::NodeHandle& node, const Parameters& parameters, const SoundJoint& sound,
+                           bool is_identified, TelemetryStream& stream, std::mutex& mutex)
   : stream_(stream)
   , mutex_(mutex)
   , name_(node.getNamespace().substr(1))
@@ -57,12 +57,13 @@ JointTracker::JointTracker(ros::NodeHandle& node, const Parameters& parameters, 
   , current_per_effort_(currentPerEffort(parameters))
   // Built before the first row is read, so that the same rows give the same numbers.
   , tracker_(parameters, parameters.input.mode, nodeSurfaceSource(false))
-  , verdict_(tracker_, parameters, is_identified)
+  , verdict_(tracker_, parameters, is_identified, sound.own)
   , outputs_(node, parameters)
   , life_(node, parameters)
   , tasks_(name_, parameters.joint.hardware_id)
   , reset_service_(node.advertiseService("reset", &JointTracker::reset, this))
 {
+  tracker_.setReference(sound.baseline);
   tasks_.add("Input", this, &JointTracker::judgeTelemetry, &JointTracker::reportTelemetry);
   tasks_.add("Drive", this, &JointTracker::judgeComparison, &JointTracker::reportComparison);
   tasks_.add("Health", this, &JointTracker::judgeHealth, &JointTracker::reportHealth);

@@ -26,6 +26,7 @@
 #include "ros_io/life_publisher.hpp"
 #include "ros_io/recent_events.hpp"
 #include "ros_io/telemetry_stream.hpp"
+#include "tracking/sound_joint.hpp"
 #include "tracking/tracker.hpp"
 #include "tracking/verdict_watch.hpp"
 
@@ -61,10 +62,10 @@ private:
 class JointTracker
 {
 public:
-  /// `node`: its topics lie below. `is_identified`: the friction of the parameters is that of this joint.
-  /// @throws ParameterError.
-  JointTracker(ros::NodeHandle& node, const Parameters& parameters, bool is_identified, TelemetryStream& stream,
-               std::mutex& mutex);
+  /// `node`: its topics lie below. `sound`: what is known of this joint. `is_identified`: the friction of the
+  /// parameters is that of this joint. @throws ParameterError.
+  JointTracker(ros::NodeHandle& node, const Parameters& parameters, const SoundJoint& sound, bool is_identified,
+               TelemetryStream& stream, std::mutex& mutex);
 
   const std::string& joint() const { return names_.joint; }
   /// Its load comes with `pushLoad` from the motion of the whole arm.

@@ -10,10 +10,12 @@
 namespace hjt
 {
 /// Parameters of an arm's node beside those of its drives: name or file of the arm; directory of overlays that
-/// `joint_twin identify --arm` wrote; name of the parameter that holds another URDF of it; what stands around the
+/// `joint_twin identify --arm` wrote; reports of the sound arm that `joint_twin compare --arm` wrote, directories or
+/// files in them, with commas between them; name of the parameter that holds another URDF of it; what stands around the
 /// names; faults of an arm without a robot, JOINT:KIND:SEVERITY[:PLACE[:ONSET]], with commas between them.
 constexpr const char* ARM = "arm";
 constexpr const char* IDENTIFIED = "identified";
+constexpr const char* REFERENCE = "reference";
 constexpr const char* DESCRIPTION = "description";
 constexpr const char* PREFIX = "prefix";  ///< before the arm's names of the joints in the messages
 constexpr const char* SUFFIX = "suffix";  ///< behind them

@@ -33,30 +33,37 @@ constexpr std::size_t MAX_NAMES = 500;
 TrackerNode::TrackerNode(ros::NodeHandle& node, const Parameters& parameters)
   : repeat_tolerance_(parameters.comparison.repeat_tolerance)
 {
-  addJoint(node, parameters, false);
+  addJoint(node, parameters, SoundJoint(), false);
   subscribe(node);
 }
 
 TrackerNode::TrackerNode(ros::NodeHandle& node, const ArmDescription& arm, const std::vector<Parameters>& parameters,
-                         bool is_identified)
+                         const std::vector<SoundJoint>& sound, bool is_identified)
   : arm_load_(arm), fit_(parameters), repeat_tolerance_(parameters.front().comparison.repeat_tolerance)
 {
   for (std::size_t i = 0; i < arm.joints.size(); ++i)
   {
-    addJoint(ros::NodeHandle(jointName(arm.joints[i])), parameters[i], is_identified);
+    addJoint(ros::NodeHandle(jointName(arm.joints[i])), parameters[i], sound[i], is_identified);
+  }
+  std::vector<double> frictions;
+  for (const SoundJoint& joint : sound)
+  {
+    const double friction = FrictionPoints::ratioOf(joint.own.friction);
+    frictions.push_back(friction > 0.0 ? friction : 1.0);
   }
   std::vector<Tracker*> trackers;
   for (const auto& joint : joints_)
   {
     trackers.push_back(&joint->tracker());
   }
-  friction_.emplace(std::move(trackers), repeat_tolerance_);
+  friction_.emplace(std::move(trackers), repeat_tolerance_, std::move(frictions));
   subscribe(node);
 }
 
-void TrackerNode::addJoint(ros::NodeHandle node, const Parameters& parameters, bool is_identified)
+void TrackerNode::addJoint(ros::NodeHandle node, const Parameters& parameters, const SoundJoint& sound,
+                           bool is_identified)
 {
-  joints_.push_back(std::make_unique<JointTracker>(node, parameters, is_identified, stream_, mutex_));
+  joints_.push_back(std::make_unique<JointTracker>(node, parameters, sound, is_identified, stream_, mutex_));
   rows_.emplace_back();
   angles_.emplace_back();
 }

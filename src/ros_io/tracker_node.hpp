@@ -29,15 +29,15 @@ public:
   /// Of one joint. @param parameters with input.mode other than commands. @throws ParameterError.
   TrackerNode(ros::NodeHandle& node, const Parameters& parameters);
 
-  /// Of an arm: parameters of each of its joints. `is_identified`: their friction is that of this very arm.
-  /// @throws ParameterError.
+  /// Of an arm: parameters of each of its joints, and what is known of them when they were sound. `is_identified`:
+  /// their friction is that of this very arm. @throws ParameterError.
   TrackerNode(ros::NodeHandle& node, const ArmDescription& arm, const std::vector<Parameters>& parameters,
-              bool is_identified);
+              const std::vector<SoundJoint>& sound, bool is_identified);
 
 private:
   using JointStateEvent = ros::MessageEvent<const sensor_msgs::JointState>;
 
-  void addJoint(ros::NodeHandle node, const Parameters& parameters, bool is_identified);
+  void addJoint(ros::NodeHandle node, const Parameters& parameters, const SoundJoint& sound, bool is_identified);
   void subscribe(ros::NodeHandle& node);
   void receiveTelemetry(const JointStateEvent& event);
   void receiveLoad(const JointStateEvent& event);

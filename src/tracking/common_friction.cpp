@@ -173,9 +173,10 @@ ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double t
   return arm;
 }
 
-ArmFrictionWatch::ArmFrictionWatch(std::vector<Tracker*> joints, double tolerance)
-  : joints_(std::move(joints)), tolerance_(tolerance)
+ArmFrictionWatch::ArmFrictionWatch(std::vector<Tracker*> joints, double tolerance, std::vector<double> sound)
+  : joints_(std::move(joints)), tolerance_(tolerance), sound_(std::move(sound))
 {
+  sound_.resize(joints_.size(), 1.0);
 }
 
 void ArmFrictionWatch::reset()
@@ -184,7 +185,7 @@ void ArmFrictionWatch::reset()
   {
     joint->setTemperature(std::nullopt);
   }
-  *this = ArmFrictionWatch(std::move(joints_), tolerance_);
+  *this = ArmFrictionWatch(std::move(joints_), tolerance_, std::move(sound_));
 }
 
 bool ArmFrictionWatch::look(double time)
@@ -200,10 +201,14 @@ bool ArmFrictionWatch::look(double time)
   next_look_ = time + PERIOD;
   std::vector<MeasuredFriction> joints;
   std::size_t known = 0;
-  for (const Tracker* joint : joints_)
+  for (std::size_t i = 0; i < joints_.size(); ++i)
   {
-    joints.push_back(joint->friction());
-    known += joints.back().ratio ? 1 : 0;
+    joints.push_back(joints_[i]->friction());
+    if (joints.back().ratio)
+    {
+      *joints.back().ratio /= sound_[i];
+      ++known;
+    }
   }
   const ArmFriction found = commonFriction(joints, tolerance_);
   const bool differs = std::abs(found.median - found_.median) > CHANGE ||

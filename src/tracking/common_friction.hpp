@@ -62,8 +62,9 @@ ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double t
 class ArmFrictionWatch
 {
 public:
-  /// `tolerance`: as of commonFriction. The joints must outlive this.
-  ArmFrictionWatch(std::vector<Tracker*> joints, double tolerance);
+  /// `tolerance`: as of commonFriction. `sound`: of each joint, its friction when it was sound over the twin's [-];
+  /// empty: 1. The joints must outlive this.
+  ArmFrictionWatch(std::vector<Tracker*> joints, double tolerance, std::vector<double> sound = {});
 
   /// Forgets what was found; the joints go back to the configured temperature.
   void reset();
@@ -80,6 +81,7 @@ private:
 
   std::vector<Tracker*> joints_;
   double tolerance_;
+  std::vector<double> sound_;
   double next_look_{ -std::numeric_limits<double>::infinity() };  // [s]
   int steady_{};                                                  // looks in a row that differ from what was found
   ArmFriction found_;

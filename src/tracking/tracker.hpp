@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "elements/load.hpp"
 #include "surface/surface_cache.hpp"
@@ -98,6 +100,9 @@ public:
   void setTemperature(std::optional<double> temperature) noexcept { estimated_temperature_ = temperature; }
 
   bool hasEstimate() const noexcept { return estimated_temperature_.has_value(); }
+
+  /// What the signals of the sound joint are; none: learned from the first windows. Allocates.
+  void setReference(std::vector<ReferenceBin> bins) { evidence_.setReference(std::move(bins)); }
 
   /// A row of telemetry; its own load is passed over. Take the comparisons afterwards.
   void push(const MotionRow& row) noexcept;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "tracking/tracker.hpp"
@@ -15,9 +16,10 @@ namespace hjt
 class VerdictWatch
 {
 public:
-  /// `tracker`: must outlive this. `is_identified`: the friction of the parameters is that of this joint.
-  VerdictWatch(Tracker& tracker, const Parameters& parameters, bool is_identified)
-    : tracker_(tracker), parameters_(parameters), is_identified_(is_identified)
+  /// `tracker`: must outlive this. `is_identified`: the friction of the parameters is that of this joint. `own`: of the
+  /// joint when it was sound.
+  VerdictWatch(Tracker& tracker, const Parameters& parameters, bool is_identified, OwnReference own = {})
+    : tracker_(tracker), parameters_(parameters), is_identified_(is_identified), own_(std::move(own))
   {
   }
 
@@ -56,6 +58,7 @@ private:
   Tracker& tracker_;
   const Parameters parameters_;
   const bool is_identified_;
+  const OwnReference own_;
   Misfit misfit_;
   bool settled_{ true };
   double last_row_{};  // [s]

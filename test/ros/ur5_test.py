@@ -42,8 +42,8 @@ def angles(time_s):
     return [0.6 * swing, -1.0 - 0.9 * swing, 1.1 * swing, -0.5 * swing, 0.4 * swing, 0.7 * swing]
 
 
-def run_robot(directory, angles=angles, seconds=SECONDS):
-    """Angles and currents of the joints, a row each PERIOD."""
+def run_robot(directory, angles=angles, seconds=SECONDS, raised=RAISED):
+    """Angles and currents of the joints, a row each PERIOD. `raised`: share of the sick joint's friction more [-]."""
     rows = [[row * PERIOD, *angles(row * PERIOD)] for row in range(round(seconds / PERIOD))]
     still = os.path.join(directory, "still.csv")
     with open(still, "w") as file:
@@ -56,7 +56,7 @@ def run_robot(directory, angles=angles, seconds=SECONDS):
     currents = []
     for joint in JOINTS:
         with open(os.path.join(directory, joint + ".csv")) as file:
-            more = RAISED / GAIN if joint == SICK else 0.0
+            more = raised / GAIN if joint == SICK else 0.0
             currents.append([float(row["current_predicted"]) + more * float(row["friction_torque"])
                              for row in csv.DictReader(file)])
     noise = random.Random(5)

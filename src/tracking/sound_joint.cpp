@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tracking/sound_joint.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+
+#include "base/number_table.hpp"
+#include "base/yaml_number.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "health/baseline_file.hpp"
+#include "tracking/friction_verdict.hpp"
+
+namespace hjt
+{
+namespace
+{
+struct Numbers
+{
+  double compliance_ratio{};    // NaN: not known
+  double temperature{};         // [degC]
+  double friction_deviation{};  // NaN: the friction was not judged
+};
+
+/// JSON is YAML. Null, or missing in older files: NaN.
+Numbers readNumbers(const std::string& path)
+{
+  try
+  {
+    const YAML::Node object = YAML::LoadFile(path);
+    const auto number = [&](const char* name)
+    {
+      const YAML::Node value = object[name];
+      return value && !value.IsNull() ? yamlNumber(value) : std::numeric_limits<double>::quiet_NaN();
+    };
+    if (!object.IsMap() || !object["compliance_ratio"])
+    {
+      throw InputError(path + " is no data of `joint_twin compare`: it has no compliance_ratio");
+    }
+    return { number("compliance_ratio"), number("temperature"), number("friction_deviation") };
+  }
+  catch (const YAML::Exception& error)
+  {
+    throw InputError(path + " is no data of `joint_twin compare`: " + error.what());
+  }
+}
+
+std::vector<FrictionPoint> readFriction(const std::string& directory)
+{
+  std::vector<FrictionPoint> points;
+  NumberTable<4> friction(directory + "/" + FRICTION_FILE, { "speed", "measured", "twin", "rows" });
+  std::array<double, 4> row{};
+  while (friction.read(row))
+  {
+    points.push_back({ row[0], row[1], 0.0, row[2], static_cast<std::uint64_t>(row[3]), 0.0 });
+  }
+  return points;
+}
+}  // namespace
+
+SoundJoint readSoundJoint(const std::vector<std::string>& directories, const Parameters& parameters)
+{
+  SoundJoint sound;
+  if (directories.empty())
+  {
+    return sound;
+  }
+  std::vector<SoundFriction> frictions;
+  double compliances = 0.0;
+  double temperatures = 0.0;
+  for (const std::string& directory : directories)
+  {
+    const Numbers numbers = readNumbers(directory + "/" + COMPARISON_FILE);
+    compliances += numbers.compliance_ratio;
+    temperatures += numbers.temperature;
+    if (std::isfinite(numbers.friction_deviation))
+    {
+      frictions.push_back({ readFriction(directory), numbers.friction_deviation });
+    }
+    const std::string baseline = directory + "/" + BASELINE_FILE;
+    if (sound.baseline.empty() && std::filesystem::exists(baseline))
+    {
+      sound.baseline = readBaseline(baseline, parameters, false);
+    }
+  }
+  const auto count = static_cast<double>(directories.size());
+  sound.own = ownReference(frictions);
+  sound.own.is_unjudged = frictions.empty();
+  sound.own.compliance_ratio = compliances / count;
+  sound.own.temperature = temperatures / count;
+  return sound;
+}
+}  // namespace hjt

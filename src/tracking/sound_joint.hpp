@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "harmonic_joint_twin/health/baseline.hpp"
+#include "tracking/verdict.hpp"
+
+namespace hjt
+{
+// Of what `joint_twin compare` writes into the directory of a joint's report.
+constexpr const char* COMPARISON_FILE = "comparison.json";
+constexpr const char* BASELINE_FILE = "baseline.yaml";
+constexpr const char* FRICTION_FILE = "friction.csv";
+
+/// What earlier comparisons left of the joint when it was sound.
+struct SoundJoint
+{
+  OwnReference own;
+  std::vector<ReferenceBin> baseline;  ///< none: the recordings were too short for one
+};
+
+/// Of one or more recordings of the sound joint, by the directories of their reports: their friction is the mean at the
+/// speeds of all, and by how much they differ tells how the joint repeats. A recording in which its friction was not
+/// judged is no reference of it. None: nothing is known.
+/// @throws InputError if a directory holds no comparison, or one of another gear.
+SoundJoint readSoundJoint(const std::vector<std::string>& directories, const Parameters& parameters);
+}  // namespace hjt
