@@ -111,7 +111,7 @@ def draw(path, kinds, found, sound):
         axis.axvline(without, color="0.4", linewidth=1.0)
         axis.set_xlabel(label)
         axis.grid(alpha=0.3)
-        axis.set_xscale("symlog", linthresh=0.1 if key != "current" else 1.0)
+    axes[2].set_xscale("symlog", linthresh=1.0)
     axes[1].axvline(MAKERS_REPEATABILITY, color="0.4", linewidth=1.0, linestyle="--")
     axes[0].set_yticks(range(len(kinds)))
     axes[0].set_yticklabels([kind.replace("_", " ") for kind in kinds])
@@ -125,13 +125,13 @@ def draw(path, kinds, found, sound):
 
 def table(kinds, found, sound):
     head = " | ".join(f"{joint}: path, repeats, current" for joint in FAULTY)
-    lines = [f"Severity {SEVERITIES[1]}, tool off its path at most [mm], repeatability (ISO 9283) [mm], more current "
+    lines = [f"Severity {SEVERITIES[1]:g}, tool off its path at most [mm], repeatability (ISO 9283) [mm], more current "
              "of the joint [%, rms]:", "", f"| fault | {head} | at rest [mm] |", "|---|" + "---|" * (len(FAULTY) + 1),
              f"| none | {sound['path_max']:.2f}, {sound['repeatability']:.3f}, 0 |" + " |" * len(FAULTY)]
     for kind in kinds:
         cells = [found[kind, joint, SEVERITIES[1]] for joint in FAULTY]
         lines.append(f"| `{kind}` | " + " | ".join(
-            f"{cell['path_max']:.2f}, {cell['repeatability']:.3f}, {cell['current']:+.0f}" for cell in cells) +
+            f"{cell['path_max']:.2f}, {cell['repeatability']:.3f}, {round(cell['current']):+d}" for cell in cells) +
                      f" | {max(cell['at_rest'] for cell in cells):.3f} |")
     return lines
 

@@ -64,6 +64,8 @@ def draw(path, loop, joints):
                       1e3 * (data[f"actual_q_{number}"] - data[f"target_q_{number}"]
                              - np.mean(data[f"actual_q_{number}"] - data[f"target_q_{number}"])),
                       color=colour, lw=0.8, label=label)
+        most = 1.5 * np.percentile(np.abs(recorded[f"actual_q_{number}"] - recorded[f"target_q_{number}"]), 99.0)
+        axes.set_ylim(-1e3 * most, 1e3 * most)
         axes.set_title(f"{name}: actual less target angle [mrad]")
     all_axes[0].legend(loc="upper right", fontsize=8, ncol=2)
     all_axes[-1].set_xlabel(f"time in {loop.recording.name} [s]")
@@ -103,7 +105,8 @@ recorded [A], –: no steady motion of a frequency that the rows resolve.
 The tracking error is within 1.5 of the recorded one in {np.count_nonzero(tracked <= 1.5)} of {len(tracked)} (recording,
 joint); within a factor of two in {np.count_nonzero((tracked <= 2.0) & (tracked >= 0.5))}. The current in moving rows is
 within 0.8 of the simple fit's error in {np.count_nonzero(currents <= 0.8)} of {len(currents)}, and below it in
-{np.count_nonzero(currents < 1.0)}.
+{np.count_nonzero(currents < 1.0)}. What bounds the current: the drives are sound and without errors of manufacture, so
+they make no ripple; and a recording that begins or ends in motion jumps there.
 """, *table(["recording", *joints], rows), f"""
 ![Tracking error of three joints in {shown}, recorded and in closed loop](images/real_robot/closed_loop.png)
 """]
