@@ -89,11 +89,11 @@ std::string temperaturesOf(const DatedRecording& recording)
 /// Keys of a joint's fields, `before` each of them.
 std::vector<Column<DatedRecording>> fieldsOf(std::size_t i, const std::string& before)
 {
-  const auto ofVerdict = [](double JudgedFriction::*field)
+  const auto of_verdict = [](double JudgedFriction::*field)
   { return [field](const ComparedJoint& joint) { return ofFriction(joint, field); }; };
-  return { { before + "friction", ofJoint(i, ofVerdict(&JudgedFriction::factor)) },
-           { before + "friction_low", ofJoint(i, ofVerdict(&JudgedFriction::lower)) },
-           { before + "friction_high", ofJoint(i, ofVerdict(&JudgedFriction::upper)) },
+  return { { before + "friction", ofJoint(i, of_verdict(&JudgedFriction::factor)) },
+           { before + "friction_low", ofJoint(i, of_verdict(&JudgedFriction::lower)) },
+           { before + "friction_high", ofJoint(i, of_verdict(&JudgedFriction::upper)) },
            { before + "level", ofJoint(i, [](const ComparedJoint& joint) { return levelName(joint.verdict.level); }) },
            { before + "reason", ofJoint(i, [](const ComparedJoint& joint) { return reasonName(reasonOf(joint)); }) },
            { before + "temperature", ofJoint(i, [](const ComparedJoint& joint) { return joint.temperature; }) },
