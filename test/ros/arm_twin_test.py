@@ -70,8 +70,8 @@ class ArmTwin(unittest.TestCase):
             except AssertionError:
                 self.assertEqual({joint: self.diagnostics[namespace + joint].values("Drive") for joint in JOINTS}, {})
         for joint in JOINTS:
-            levels = {status.level for status in self.diagnostics[joint].statuses("Drive")}  # STALE: before the first row
-            self.assertEqual(levels - {STALE}, {OK}, joint)
+            levels = {status.level for status in self.diagnostics[joint].statuses("Drive")}
+            self.assertEqual(levels - {STALE}, {OK}, joint)  # stale before the first row
 
     def test_2_it_publishes_as_the_driver_does(self):
         messages = self.states.messages()[-500:]
