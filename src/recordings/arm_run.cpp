@@ -9,6 +9,7 @@
 
 #include "output/output_file.hpp"
 #include "output/run_summary.hpp"
+#include "recordings/rms.hpp"
 #include "recordings/set_points.hpp"
 
 #include "arm/arm_configuration.hpp"
@@ -69,7 +70,6 @@ public:
   const std::vector<double>& row(double time)
   {
     arm_.wanted(target_);
-    ++rows_;
     row_.assign(1, time);
     std::array<std::vector<double>, 8> values;
     for (std::size_t i = 0; i < target_.size(); ++i)
@@ -92,27 +92,32 @@ public:
       row_.insert(row_.end(), pose.position.begin(), pose.position.end());
     }
     const double error = distance(tool.position, wanted.position);
-    tool_squares_ += error * error;
+    tool_.add(error);
     tool_largest_ = std::max(tool_largest_, error);
     return row_;
   }
 
   ArmRun finish()
   {
-    const auto rms = [n = std::max(rows_, 1.0)](double squares) { return std::sqrt(squares / n); };
     ArmRun run;
-    run.tool_error_rms = rms(tool_squares_);
+    run.tool_error_rms = tool_.value();
     run.tool_error_max = tool_largest_;
-    for (ArmRunJoint joint : joints_)  // holds sums of squares so far
+    for (const JointErrors& joint : joints_)
     {
-      joint.angle_error_rms = rms(joint.angle_error_rms);
-      joint.current_rms = rms(joint.current_rms);
-      run.joints.push_back(joint);
+      run.joints.push_back({ joint.name, joint.angle.value(), joint.largest_angle, joint.current.value() });
     }
     return run;
   }
 
 private:
+  struct JointErrors
+  {
+    std::string name;
+    Rms angle;               // [rad]
+    double largest_angle{};  // [rad]
+    Rms current;             // [A]
+  };
+
   /// Of a joint, in the order of the columns.
   std::array<double, 8> numbersOf(std::size_t i) const
   {
@@ -132,22 +137,21 @@ private:
 
   void addErrors(std::size_t i, double current)
   {
-    ArmRunJoint& joint = joints_[i];
+    JointErrors& joint = joints_[i];
     const double error = arm_.twin().motion()[i].position - target_[i].position;
-    joint.angle_error_rms += error * error;
-    joint.angle_error_max = std::max(joint.angle_error_max, std::abs(error));
-    joint.current_rms += current * current;
+    joint.angle.add(error);
+    joint.largest_angle = std::max(joint.largest_angle, std::abs(error));
+    joint.current.add(current);
   }
 
   MovingArm& arm_;
   ArmDynamics dynamics_;
   std::vector<JointMotion> target_;
   std::vector<double> inertia_in_load_;
-  std::vector<ArmRunJoint> joints_;
+  std::vector<JointErrors> joints_;
   std::vector<double> row_;
-  double tool_squares_{};
-  double tool_largest_{};
-  double rows_{};
+  Rms tool_;               // [m]
+  double tool_largest_{};  // [m]
 };
 }  // namespace
 
@@ -161,6 +165,7 @@ std::vector<ArmRunQuantity> armRunQuantities(std::size_t joints)
 }
 
 ArmRun runArm(const ArmRunOptions& options)
+try
 {
   requireWritable(options.out, options.force, options.motion);
   const ArmDescription arm = readArmDescription(findArm(options.arm, configDirectory(options)));
@@ -213,6 +218,10 @@ ArmRun runArm(const ArmRunOptions& options)
     run.solver_failures += twin.drive(i).counters().solver_failures;
   }
   return run;
+}
+catch (const Stopped&)
+{
+  return {};
 }
 
 Report reportOf(const ArmRun& run)

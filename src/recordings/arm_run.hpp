@@ -25,7 +25,7 @@ struct ArmRunOptions : ConfigurationOptions
   std::string out;                      ///< CSV of every row; empty: none
   std::optional<double> rate;           ///< of the rows [Hz]; none: that of the arm's states
   bool force{};                         ///< overwrite files
-  /// Given every row, of the columns of `armRunColumns`.
+  /// Given every row, `timestamp` and those of `armRunQuantities`.
   std::function<void(const std::vector<double>&)> take{ [](const std::vector<double>&) {} };
   Watch watch;
 };
@@ -41,12 +41,12 @@ struct ArmRunJoint
 
 struct ArmRun
 {
-  double duration{};         ///< simulated, with the start in the brakes [s]
-  double wall_time{};        ///< without building tables [s]
-  double tool_error_rms{};   ///< of its position [m]
-  double tool_error_max{};   ///< [m]
-  double energy_residual{};  ///< of the coupling [J]
-  std::vector<ArmRunJoint> joints;
+  double duration{};                ///< simulated, with the start in the brakes [s]
+  double wall_time{};               ///< without building tables [s]
+  double tool_error_rms{};          ///< of its position [m]
+  double tool_error_max{};          ///< [m]
+  double energy_residual{};         ///< of the coupling [J]
+  std::vector<ArmRunJoint> joints;  ///< from the base on; none: stopped before the first step
   std::uint64_t solver_failures{};  ///< steps without an equilibrium: the last good state was held
 };
 

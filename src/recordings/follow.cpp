@@ -8,6 +8,7 @@
 
 #include "output/text_table.hpp"
 #include "recordings/arm_recording.hpp"
+#include "recordings/rms.hpp"
 #include "recordings/tracked_bag.hpp"
 
 #include "harmonic_joint_twin/base/errors.hpp"
@@ -40,22 +41,6 @@ const std::vector<Column<Comparison>> COLUMNS{
   { "sticking", &Comparison::sticking },
   { "after_gap", &Comparison::after_gap },
   { "outside_band", &Comparison::isOutside }
-};
-
-/// Root mean square of what is added.
-class Rms
-{
-public:
-  void add(double value)
-  {
-    squares_ += value * value;
-    ++count_;
-  }
-  double value() const { return count_ > 0 ? std::sqrt(squares_ / static_cast<double>(count_)) : 0.0; }
-
-private:
-  double squares_{};
-  std::uint64_t count_{};
 };
 
 /// One joint beside its twin.

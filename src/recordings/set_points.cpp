@@ -80,6 +80,7 @@ double straightenTimes(std::vector<ArmSetPoint>& points)
   double by_motion = 0.0;
   double squares = 0.0;
   double moving = 0.0;
+  double change = 0.0;
   for (std::size_t k = 1; k < points.size(); ++k)
   {
     const double stamped = points[k].time - points[k - 1].time;
@@ -92,18 +93,15 @@ double straightenTimes(std::vector<ArmSetPoint>& points)
       by_motion += step;
       squares += std::pow(step / stamped - 1.0, 2);
       moving += 1.0;
+      change = std::max(change, std::abs(step - stamped));
     }
   }
   if (!(squares > JITTER * JITTER * moving) || std::abs(by_motion / by_stamps - 1.0) > SAME_RATES)
   {
     return 0.0;
   }
-  double change = 0.0;
-  double stamp = points.front().time;
   for (std::size_t k = 1; k < points.size(); ++k)
   {
-    change = std::max(change, std::abs(steps[k - 1] - (points[k].time - stamp)));
-    stamp = points[k].time;
     points[k].time = points[k - 1].time + steps[k - 1];
   }
   return change;

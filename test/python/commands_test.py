@@ -193,6 +193,18 @@ class Commands(Recordings):
         with self.assertRaises(ZeroDivisionError):
             hjt.follow("arm.csv", arm="ur5", progress=fail)
 
+    def test_an_arm_ends_while_its_first_table_is_built(self):
+        steps = []
+
+        def fail(step, done):
+            steps.append(step)
+            raise ZeroDivisionError
+
+        with unittest.mock.patch.dict(os.environ, {"XDG_CACHE_HOME": os.path.abspath("cache")}):
+            with self.assertRaises(ZeroDivisionError):
+                hjt.arm({"time": [0.0, 1.0], "position": np.zeros((2, 6))}, "ur5", progress=fail)
+        self.assertEqual(steps, ["building the response surface"])
+
     def test_numbers_of_the_command_line_do_not_depend_on_the_locale(self):
         from harmonic_joint_twin import _tool
         with tempfile.TemporaryDirectory() as folder, unittest.mock.patch.dict(os.environ, LOCPATH=folder):

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/common/motion_options.hpp"
+#include "output/exit_code.hpp"
+#include "output/interrupt.hpp"
 #include "output/run_summary.hpp"
 #include "recordings/arm_run.hpp"
 
@@ -14,6 +16,10 @@ int run(const Options& given)
   Options options = given;
   options.watch = consoleWatch();
   const ArmRun found = runArm(options);
+  if (found.joints.empty())
+  {
+    return EXIT_BY_SIGNAL + interruptSignal();
+  }
   Report report = reportOf(found);
   report.lines.insert(report.lines.begin(), { "output", "", options.out });
   printReport(options.json, report.lines, report.tables);

@@ -77,7 +77,6 @@ py::dict arraysOf(const std::vector<double>& values, std::size_t joints)
   }
   return arrays;
 }
-
 }  // namespace
 
 Answer armIn(const py::dict& arguments)
@@ -106,14 +105,13 @@ Answer armIn(const py::dict& arguments)
   }
   std::vector<double> values;
   options.take = [&](const std::vector<double>& row) { values.insert(values.end(), row.begin(), row.end()); };
-  return call(
-      given, options, [](const ArmRunOptions& asked) { return runArm(asked); },
-      [&](const ArmRun& run)
-      {
-        py::object document = toPython(documentOf(reportOf(run)));
-        document["solver_failures"] = run.solver_failures;
-        document["rows"] = arraysOf(values, run.joints.size());
-        return document;
-      });
+  return call(given, options, runArm,
+              [&](const ArmRun& run)
+              {
+                py::object document = toPython(documentOf(reportOf(run)));
+                document["solver_failures"] = run.solver_failures;
+                document["rows"] = arraysOf(values, run.joints.size());
+                return document;
+              });
 }
 }  // namespace hjt

@@ -166,21 +166,21 @@ Answer followIn(const py::dict& arguments)
     rows.resize(std::max(rows.size(), joint + 1));
     rows[joint].push_back(rowOf(now));
   };
-  return call(
-      given, options, [](const FollowOptions& asked) { return follow(asked); },
-      [&](const Followed& followed)
-      {
-        rows.resize(followed.joints.size());
-        py::object document = toPython(documentOf(reportOf(followed)));
-        py::dict arrays;
-        for (std::size_t i = 0; i < rows.size(); ++i)
-        {
-          arrays[py::str(followed.joints[i].name)] =
-              py::array_t<ComparisonRow>(static_cast<py::ssize_t>(rows[i].size()), rows[i].data());
-        }
-        document["comparison"] = followed.is_arm ? py::object(arrays) : arrays[py::str(followed.joints.front().name)];
-        return document;
-      });
+  return call(given, options, follow,
+              [&](const Followed& followed)
+              {
+                rows.resize(followed.joints.size());
+                py::object document = toPython(documentOf(reportOf(followed)));
+                py::dict arrays;
+                for (std::size_t i = 0; i < rows.size(); ++i)
+                {
+                  arrays[py::str(followed.joints[i].name)] =
+                      py::array_t<ComparisonRow>(static_cast<py::ssize_t>(rows[i].size()), rows[i].data());
+                }
+                document["comparison"] =
+                    followed.is_arm ? py::object(arrays) : arrays[py::str(followed.joints.front().name)];
+                return document;
+              });
 }
 
 Answer identifyIn(const py::dict& arguments)
@@ -208,9 +208,7 @@ Answer compareIn(const py::dict& arguments)
   takeRecording(given, options);
   given.take("report", options.report);
   given.take("reference", options.references);
-  return call(
-      given, options, [](const ComparisonOptions& asked) { return compare(asked); },
-      [](const ComparedRecording& found) { return toPython(found.document); });
+  return call(given, options, compare, [](const ComparedRecording& found) { return toPython(found.document); });
 }
 
 Answer trendIn(const py::dict& arguments)
@@ -222,9 +220,7 @@ Answer trendIn(const py::dict& arguments)
   given.take("reference", options.references);
   given.take("out", options.out);
   given.take("report", options.report);
-  return call(
-      given, options, [](const TrendOptions& asked) { return trend(asked); },
-      [](const Trend& found) { return toPython(documentOf(found)); });
+  return call(given, options, trend, [](const Trend& found) { return toPython(documentOf(found)); });
 }
 
 Answer indicatorsIn(const py::dict& arguments)
@@ -241,9 +237,8 @@ Answer indicatorsIn(const py::dict& arguments)
   {
     throw InputError("carry needs baseline and models");
   }
-  return call(
-      given, options, [](const IndicatorsOptions& asked) { return indicators(asked); },
-      [](const AssessedWindows& found) { return toPython(documentOf(reportOf(found))); });
+  return call(given, options, indicators,
+              [](const AssessedWindows& found) { return toPython(documentOf(reportOf(found))); });
 }
 
 Answer remainingIn(const py::dict& arguments)
@@ -259,9 +254,7 @@ Answer remainingIn(const py::dict& arguments)
   {
     throw InputError("hours = " + std::to_string(*options.hours) + " [h] is out of range, allowed: 1e-6 ... 1e7 [h]");
   }
-  return call(
-      given, options, [](const RemainingOptions& asked) { return remaining(asked); },
-      [](const Remaining& found) { return toPython(documentOf(reportOf(found))); });
+  return call(given, options, remaining, [](const Remaining& found) { return toPython(documentOf(reportOf(found))); });
 }
 }  // namespace
 }  // namespace hjt
