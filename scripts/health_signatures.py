@@ -22,7 +22,7 @@ KINEMATICS = {"bearing_inner_race": {"error_inner": 5e-6, "torque_inner": 1e-2},
               "circular_spline_tooth": {"error_circular_spline_2": 5e-5}}
 # Changes as a share of the sound value: stiffness and play go with the size of the cup. Thicker grease multiplies the
 # friction there is, which differs threefold over the temperatures; preload and wear add to it.
-SHARES = ["torsional_stiffness", "second_stiffness", "lost_motion", "hysteresis_area"]
+SHARES = ["torsional_stiffness", "second_stiffness", "lost_motion", "hysteresis", "hysteresis_area"]
 SHARES_OF_GREASE = SHARES + ["running_torque", "coulomb_torque", "viscous_friction"]
 NEIGHBOURS = ["wave_generator_2", "circular_spline_2"]
 # As in the source.
