@@ -136,11 +136,16 @@ struct Torsion
 };
 
 /// Of the second window of a UR5's shoulder, moved by a drive's control on the motor encoder.
-Torsion measured(const Motion& motion, std::vector<std::string> edits = {})
+Torsion measured(const Motion& motion, std::vector<std::string> edits = {}, bool real_sensors = false)
 {
   edits.insert(edits.end(), { "solver.scene=auto", "indicators.window_turns=100000.0",
                               "indicators.window_time=" + std::to_string(WINDOW) });
-  Twin twin(shippedParameters(edits, { "joints/shoulder" }));
+  std::vector<std::string> overlays{ "joints/shoulder" };
+  if (real_sensors)
+  {
+    overlays.emplace_back("real_sensors");
+  }
+  Twin twin(shippedParameters(edits, overlays));
   const Parameters& p = twin.parameters();
   const double ratio = nominalRatio(p.gear);
   const double motor = p.motor.rotor_inertia + p.motor.wave_generator_inertia;
@@ -189,6 +194,11 @@ TEST_P(TorsionIn, IsThatOfTheSlowMotion)
   EXPECT_NEAR(found.lost_motion, of_slow.lost_motion, 0.15 * of_slow.lost_motion);
   EXPECT_GT(found.hysteresis, 0.5 * of_slow.hysteresis);
   EXPECT_LT(found.hysteresis, 1.5 * of_slow.hysteresis);
+  if (GetParam().name != "sine")
+  {
+    // Inertia tells the stiffness from the output encoder's eccentricity, which is a fifth of the torsion.
+    EXPECT_NEAR(measured(GetParam().motion, {}, true).first, of_slow.first, 0.05 * of_slow.first);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Motions, TorsionIn,
