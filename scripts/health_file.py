@@ -10,7 +10,7 @@ HEAD = """\
 # What faults change in the health indicators of a gear, found in the twin's own runs
 # (docs/indicators.md, "Signatures").
 # Written by `scripts/evaluate_health`.
-format: 1
+format: 2
 gear: {gear}
 
 # Errors by the law of docs/indicators.md [-]: of each number of a signature and of its length on another gear in

@@ -22,7 +22,7 @@ KINEMATICS = {"bearing_inner_race": {"error_inner": 5e-6, "torque_inner": 1e-2},
               "circular_spline_tooth": {"error_circular_spline_2": 5e-5}}
 # Changes as a share of the sound value: stiffness and play go with the size of the cup. Thicker grease multiplies the
 # friction there is, which differs threefold over the temperatures; preload and wear add to it.
-SHARES = ["torsional_stiffness", "second_stiffness", "lost_motion", "hysteresis_area"]
+SHARES = ["torsional_stiffness", "second_stiffness", "lost_motion", "hysteresis", "hysteresis_area"]
 SHARES_OF_GREASE = SHARES + ["running_torque", "coulomb_torque", "viscous_friction"]
 NEIGHBOURS = ["wave_generator_2", "circular_spline_2"]
 # As in the source.
@@ -306,7 +306,7 @@ def read(path):
 def write_table(layout, sound, table, page):
     """Severity 0.4, first gear in the check-up: the numbers in which the kinds differ most."""
     shown = [("torsional_stiffness", 1e-3, "K1 [kN·m/rad]"), ("second_stiffness", 1e-3, "K2 [kN·m/rad]"),
-             ("lost_motion", 206265.0, "lost motion [″]"),
+             ("lost_motion", 206265.0, "lost motion [″]"), ("hysteresis", 206265.0, "hysteresis [″]"),
              ("hysteresis_area", 1e3, "loop [mJ]"), ("running_torque", 1e3, "running torque [mN·m]"),
              ("viscous_friction", 1e6, "viscous [µN·m·s/rad]"), ("kinematic_error", 206265.0, "kinematic error [″]"),
              ("error_wave_generator_1", 206265.0, "order 1 [″]"), ("error_wave_generator_2", 206265.0, "order 2 [″]"),

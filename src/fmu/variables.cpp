@@ -242,6 +242,7 @@ const std::vector<ScalarOutput>& scalarOutputs()
     { "indicator_kinematic_error", "rad", "of the last window", F, indicator<S::KINEMATIC_ERROR>, true },
     { "indicator_torsional_stiffness", "N.m/rad", "of the last window", F, indicator<S::TORSIONAL_STIFFNESS>, true },
     { "indicator_lost_motion", "rad", "of the last window", F, indicator<S::LOST_MOTION>, true },
+    { "indicator_hysteresis", "rad", "of the last window", F, indicator<S::HYSTERESIS>, true },
     { "indicator_hysteresis_area", "J", "of the last window", F, indicator<S::HYSTERESIS_AREA>, true },
     { "indicator_running_torque", "N.m", "of the last window", F, indicator<S::RUNNING_TORQUE>, true },
     { "indicator_coulomb_torque", "N.m", "of the last window", F, indicator<S::COULOMB_TORQUE>, true },

@@ -20,6 +20,8 @@ namespace hjt
 {
 namespace
 {
+constexpr int FORMAT = 2;  // by what the indicators mean
+
 std::size_t indicatorNamed(const std::string& name)
 {
   for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
@@ -108,6 +110,10 @@ std::vector<ReferenceBin> readBaseline(const std::string& path, const Parameters
     {
       throw InputError("no list 'baseline' of operating bins");
     }
+    if (!file["format"] || file["format"].as<int>() != FORMAT)
+    {
+      throw InputError("it is of another version, whose indicators mean something else; save it again");
+    }
     const double step = file["load_step"] ? yamlNumber(file["load_step"]) : 0.0;
     if (std::abs(step - loadStep(parameters)) > 1e-6 * loadStep(parameters))
     {
@@ -155,8 +161,8 @@ void writeBaseline(const std::string& path, const Baseline& baseline, bool less_
          "parts over sine\n# and cosine of the angle, inertia.\n"
          "# Each indicator: [windows, mean, spread, spread from one window to the next (0: not known), slopes over the "
          "place, share\n# of the spread that goes with each common cause], units as in docs/indicators.md.\n"
-         "load_step: "
-      << numberText(baseline.loadStep()) << "\nmodel: " << (less_model ? "true" : "false")
+         "format: "
+      << FORMAT << "\nload_step: " << numberText(baseline.loadStep()) << "\nmodel: " << (less_model ? "true" : "false")
       << "  # whether a model's indicators were subtracted\nbaseline:\n";
   FitRoom room;
   for (std::size_t b = 0; b < baseline.bins().size(); ++b)

@@ -39,6 +39,7 @@ inline constexpr std::array<ScalarRow, SCALAR_COUNT> SCALARS{ {
     { ScalarIndicator::TORSIONAL_STIFFNESS, "torsional_stiffness", "N.m/rad", Feature::STIFFNESS },
     { ScalarIndicator::SECOND_STIFFNESS, "second_stiffness", "N.m/rad", Feature::STIFFNESS },
     { ScalarIndicator::LOST_MOTION, "lost_motion", "rad", Feature::LOST_MOTION, COUNT_SHARE, FloorUnit::ENCODER_COUNT },
+    { ScalarIndicator::HYSTERESIS, "hysteresis", "rad", Feature::LOOP_AREA, COUNT_SHARE, FloorUnit::ENCODER_COUNT },
     { ScalarIndicator::HYSTERESIS_AREA, "hysteresis_area", "J", Feature::LOOP_AREA },
     { ScalarIndicator::RUNNING_TORQUE, "running_torque", "N.m", Feature::RUNNING_TORQUE },
     { ScalarIndicator::COULOMB_TORQUE, "coulomb_torque", "N.m", Feature::COULOMB },

@@ -32,6 +32,8 @@ constexpr double LEAST_ACCELERATION = 20.0;  // rms, of the motor, for the inert
 SignalMonitor::SignalMonitor(const Parameters& parameters)
   : ratio_(nominalRatio(parameters.gear))
   , output_(parameters.output)
+  , output_inertia_(parameters.output.circular_spline_inertia + parameters.output.load_inertia)
+  , motor_inertia_(ratio_ * ratio_ * (parameters.motor.rotor_inertia + parameters.motor.wave_generator_inertia))
   , parameters_(parameters.indicators)
   , tracker_(trackedOrders(parameters.gear, parameters.bearing), parameters.life.rated_torque)
   , friction_(FRICTION_WINDOWS * TWO_PI * parameters.indicators.window_turns)
@@ -45,7 +47,8 @@ void SignalMonitor::reset() noexcept
 {
   tracker_.reset();
   friction_.reset();
-  loop_.reset();
+  smoothed_.reset();
+  loop_.restart();
   turn_.reset();
   efficiency_.reset();
   indicators_ = {};
@@ -124,11 +127,19 @@ bool SignalMonitor::update(const SignalSample& given) noexcept
   if (both)
   {
     addTurn(motor_angle, travel, torsion);
-    if (even)
+    // The torque is known at one end of the gear, the load's or the motor's: between it and the gear is inertia.
+    const double output_speed = (sample.output_angle - last_.output_angle) / seconds;
+    smoothed_.update({ torsion, joint_torque, motor_angle, sample.output_angle },
+                     load_known && std::isfinite(output_speed) ? output_speed : velocity / ratio_,
+                     load_known ? output_inertia_ : -motor_inertia_, seconds);
+    if (smoothed_.settled())
     {
-      const double inertia_torque = output_.load_inertia * speed_.acceleration() / ratio_;
-      loop_.add(torsion, joint_torque, std::abs(inertia_torque) < parameters_.lost_motion_torque);
+      loop_.add(smoothed_.sample());
     }
+  }
+  else
+  {
+    smoothed_.reset();
   }
   if (load_known)
   {
@@ -264,6 +275,7 @@ void SignalMonitor::complete(std::int64_t stamp) noexcept
   set(ScalarIndicator::TORSIONAL_STIFFNESS, loop_.stiffness());
   set(ScalarIndicator::SECOND_STIFFNESS, loop_.secondStiffness());
   set(ScalarIndicator::LOST_MOTION, loop_.lostMotion());
+  set(ScalarIndicator::HYSTERESIS, loop_.hysteresis());
   set(ScalarIndicator::HYSTERESIS_AREA, loop_.loopArea());
   friction_.fit();
   set(ScalarIndicator::COULOMB_TORQUE, friction_.coulomb());

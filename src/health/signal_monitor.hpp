@@ -13,6 +13,7 @@
 #include "health/order_tracker.hpp"
 #include "health/ripple_filter.hpp"
 #include "health/signal_sample.hpp"
+#include "health/smoothed_torsion.hpp"
 #include "health/torsion_loop_estimate.hpp"
 #include "health/turn_window.hpp"
 
@@ -103,9 +104,12 @@ private:
 
   const double ratio_;
   const OutputParameters output_;
+  const double output_inertia_;  // of the load and the circular spline [kg.m^2]
+  const double motor_inertia_;   // of the motor and the wave generator, at the output [kg.m^2]
   const IndicatorParameters parameters_;
   OrderTracker tracker_;
   FrictionEstimate friction_;
+  SmoothedTorsion smoothed_;
   TorsionLoopEstimate loop_;
   TurnWindow turn_;
   EfficiencyEstimate efficiency_;

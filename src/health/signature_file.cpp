@@ -27,7 +27,7 @@ namespace
 {
 namespace fs = std::filesystem;
 
-constexpr int FORMAT = 1;
+constexpr int FORMAT = 2;
 constexpr const char* TABLE = "\nsignatures: |\n";  // the last key: rows are read as they stand
 constexpr std::size_t ROW_START = 5;                // cause, motion, speed, direction, severity
 

@@ -318,8 +318,8 @@ void visitFields(P& p, Visitor&& visit)
   visit("indicators.stiffness_torque", "N.m", p.indicators.stiffness_torque, Range{ 1e-2, 1e5 },
         ofOthers("K1 is the stiffness at joint torques below this"));
   visit("indicators.lost_motion_torque", "N.m", p.indicators.lost_motion_torque, Range{ 1e-2, 1e5 },
-        ofOthers("change of torque that passes from one branch of the torsion loop to the other; torsion with more "
-                 "torque of inertia than this is left out"));
+        ofOthers("lost motion is taken between plus and minus this torque; as wide a change passes from one branch of "
+                 "the loop to the other"));
   visit("indicators.baseline_windows", "-", p.indicators.baseline_windows, Range{ 8, 10000 },
         ofOthers("windows at one operating point the healthy reference is learned from"));
   visit("indicators.baseline_classes", "-", p.indicators.baseline_classes, Range{ 1, 1000 },

@@ -381,13 +381,14 @@ TEST(SignalMonitor, DoesNotTellCoulombFromViscousFrictionAtOneSpeed)
   EXPECT_TRUE(std::isnan(found[ScalarIndicator::VISCOUS_FRICTION]));
 }
 
-/// Torsion with dry friction beside the spring: rising and falling branches `lost` apart.
+/// Torsion with dry friction beside the spring: rising and falling branches `WIDTH` apart, from one to the other over
+/// 2 N.m.
 class WithLoop : public testing::Test
 {
 protected:
   static constexpr double STIFFNESS = 31e3;  // [N.m/rad]
   static constexpr double SECOND = 50e3;     // beyond T1
-  static constexpr double LOST = 1.5e-4;     // [rad]
+  static constexpr double WIDTH = 1.5e-4;    // [rad]
   static constexpr double SWING = 40.0;      // [N.m]
 
   void swing()
@@ -395,29 +396,28 @@ protected:
     joint_.load = [](double time) { return SWING * std::sin(TWO_PI * 0.5 * time); };
     joint_.error = [this](double, double load)
     {
-      rising_ = load > last_ || (load == last_ && rising_);
-      last_ = load;
+      centre_ = std::clamp(centre_, load - 1.0, load + 1.0);
       const double beyond = std::copysign(std::max(std::abs(load) - 14.0, 0.0), load);
-      return load / STIFFNESS + beyond * (1.0 / SECOND - 1.0 / STIFFNESS) + (rising_ ? -0.5 : 0.5) * LOST;
+      return load / STIFFNESS + beyond * (1.0 / SECOND - 1.0 / STIFFNESS) + 0.5 * (centre_ - load) * WIDTH;
     };
   }
 
   Synthetic joint_{ shippedParameters() };
 
 private:
-  double last_{ -1.0 };
-  bool rising_{ true };
+  double centre_{};  // [N.m]
 };
 
-TEST_F(WithLoop, StiffnessesLostMotionAndAreaAreFound)
+TEST_F(WithLoop, StiffnessesLostMotionHysteresisAndAreaAreFound)
 {
   swing();
   const SignalIndicators& found = joint_.nextWindow();
-  // This loop jumps where the load turns round, a play does not.
   EXPECT_NEAR(found[ScalarIndicator::TORSIONAL_STIFFNESS], STIFFNESS, 0.04 * STIFFNESS);
   EXPECT_NEAR(found[ScalarIndicator::SECOND_STIFFNESS], SECOND, 0.1 * SECOND);
-  EXPECT_NEAR(found[ScalarIndicator::LOST_MOTION], LOST, 0.05 * LOST);
-  EXPECT_NEAR(found[ScalarIndicator::HYSTERESIS_AREA], LOST * 2.0 * SWING, 0.05 * LOST * 2.0 * SWING);
+  EXPECT_NEAR(found[ScalarIndicator::HYSTERESIS], WIDTH, 0.05 * WIDTH);
+  // Between the middles of the loop at 2.7 N.m either way.
+  EXPECT_NEAR(found[ScalarIndicator::LOST_MOTION], 2.0 * 2.7 / STIFFNESS, 0.05 * 2.0 * 2.7 / STIFFNESS);
+  EXPECT_NEAR(found[ScalarIndicator::HYSTERESIS_AREA], WIDTH * 2.0 * SWING, 0.05 * WIDTH * 2.0 * SWING);
 }
 
 TEST(SignalMonitor, GivesNoStiffnessWithoutASwingingLoad)

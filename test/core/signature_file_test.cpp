@@ -17,7 +17,7 @@ namespace hjt
 {
 namespace
 {
-constexpr const char* SMALL = R"(format: 1
+constexpr const char* SMALL = R"(format: 2
 gear: mine
 errors: {number: 0.1, length: 0.01, line: 0.5, weight: 0.2, severity: 0.3}
 indicators:
@@ -79,7 +79,7 @@ TEST(SignatureFile, SaysWhereItIsDamaged)
 {
   const auto says = [](const std::string& what)
   { return testing::StartsWith("indicators.signatures: mine.yaml" + what); };
-  EXPECT_THAT(refusal(replaced("format: 1", "format: 2")), says(":1: format: 2, expected 1"));
+  EXPECT_THAT(refusal(replaced("format: 2", "format: 3")), says(":1: format: 3, expected 2"));
   EXPECT_THAT(refusal(replaced("gear: mine\n", "")), says(": gear: missing"));
   EXPECT_THAT(refusal(replaced("weight: 0.2", "weight: -0.2")), says(":3: errors.weight: -0.2, expected 0 ... 1000"));
   EXPECT_THAT(refusal(replaced("torque_ball: N.m", "torque_bell: N.m")),

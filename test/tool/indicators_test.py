@@ -261,10 +261,14 @@ record:
         self.write("short.csv", recording(seconds=1.0))
         self.write("no_angle.csv", "time,motor_torque\n0,1\n")
         self.write("bad.yaml",
-                   "load_step: 25.125\nbaseline:\n  - {speed: 1, direction: 0, load: 0, temperature: 0, windows: 3, "
-                   "runs: 3, indicators: {nonsense: [3, 1.0, 0.1, 0.1]}}\n")
-        self.write("other.yaml", "load_step: 2.925\nbaseline:\n  - {speed: 1, direction: 0, load: 0, temperature: 0, "
-                                 "windows: 3, indicators: {}}\n")
+                   "format: 2\nload_step: 25.125\nbaseline:\n  - {speed: 1, direction: 0, load: 0, temperature: 0, "
+                   "windows: 3, runs: 3, indicators: {nonsense: [3, 1.0, 0.1, 0.1]}}\n")
+        self.write("other.yaml",
+                   "format: 2\nload_step: 2.925\nbaseline:\n  - {speed: 1, direction: 0, load: 0, temperature: 0, "
+                   "windows: 3, indicators: {}}\n")
+        self.write("before.yaml", "load_step: 25.125\nbaseline:\n  - {speed: 1}\n")
+        self.fail_with(1, ["before.yaml is no baseline: it is of another version", "save it again"],
+                       "indicators", "short.csv", *COLUMNS, "--baseline", "before.yaml")
         self.fail_with(1, ["other.yaml is no baseline: its load_step is 2.925 [N.m], expected 25.125"],
                        "indicators", "short.csv", *COLUMNS, "--baseline", "other.yaml")
         self.fail_with(1, ["too short for one window"], "indicators", "short.csv", *COLUMNS)
@@ -273,8 +277,8 @@ record:
                        *COLUMNS, "--baseline", "bad.yaml")
         row = "[0, 0, 0, 0, 0, 0, 0]"
         self.write("infinite.yaml",
-                   "load_step: 25.125\nbaseline:\n  - {speed: 1, direction: 0, load: 0, temperature: 0, windows: 30, "
-                   f"runs: 3, place: {row}, leverage: [{', '.join([row] * 7)}], slopes_freedom: .nan, "
+                   "format: 2\nload_step: 25.125\nbaseline:\n  - {speed: 1, direction: 0, load: 0, temperature: 0, "
+                   f"windows: 30, runs: 3, place: {row}, leverage: [{', '.join([row] * 7)}], slopes_freedom: .nan, "
                    "indicators: {}}\n")
         self.fail_with(1, ["infinite.yaml is no baseline", "slopes_freedom must be finite"], "indicators",
                        "short.csv", *COLUMNS, "--baseline", "infinite.yaml")

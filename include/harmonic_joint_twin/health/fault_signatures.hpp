@@ -92,6 +92,7 @@ constexpr bool isShare(Cause cause, ScalarIndicator indicator)
     case ScalarIndicator::TORSIONAL_STIFFNESS:
     case ScalarIndicator::SECOND_STIFFNESS:
     case ScalarIndicator::LOST_MOTION:
+    case ScalarIndicator::HYSTERESIS:
     case ScalarIndicator::HYSTERESIS_AREA:
       return true;
     case ScalarIndicator::RUNNING_TORQUE:
