@@ -49,7 +49,7 @@ DURATION = 29.2                              # [s]; the work ends at 20 s and st
 SLOW_SWEEP = ["bearing_inner_race", "bearing_outer_race", "bearing_ball", "bearing_cage"]  # on the full ring
 WHOLE = -1
 CONDITION = ["  solver.scene: auto", "  input.temperature: 25.0"]
-EXACT = ["  sensors.motor_counts_per_turn: 1000000000", "  sensors.output_bits: 30"]
+EXACT = ["  sensors.motor_counts_per_turn: 1000000000", "  sensors.output_counts_per_turn: 1000000000"]
 LOADS = ["  output.gravity_torque: {grid: [53.4, 56.07]}", "  output.load_inertia: {grid: [3.30, 3.465]}"]
 SEEDS = ["  manufacture.flexspline_pitch_seed: {integer: [100, 9999]}",
          "  manufacture.circular_spline_pitch_seed: {integer: [100, 9999]}"]

@@ -95,10 +95,27 @@ def cup(page, stress):
                "shell of revolution", Between(1.0, 1.7), flange / built_in, "",
                "an upper bound: the strain of warping even along the cup; the shell has "
                f"{MPA * built_in:.0f} MPa")
+    given = page.tool("parameters")["stress"]
+    race = (1.6e-3, *shell.race_section[1:])  # thesis, Table 3.1
+    cones = cup_shell.coning_restraint(cup_shell.Cup(race_section=race))
+    spread = [cup_shell.coning_restraint(cup_shell.Cup(race_section=race, **other))
+              for other in ({"length": 25e-3}, {"length": 40e-3}, {"wall": 0.3e-3}, {"wall": 0.5e-3})]
+    page.check("stress.coning_restraint", "coning that the race holds back, as configured",
+               "shell of revolution with the race's section in its rim", Within(cones, relative=0.2),
+               given["coning_restraint"], "",
+               f"cups of 25 to 40 mm and walls of 0.3 to 0.5 mm make {min(spread):.3f} to {max(spread):.3f}")
+    page.value("stress.shell_coning_restraint", cones, "")
+    warps = [cup_shell.warping_restraint(cup_shell.Cup(diaphragm=(thickness, boss * shell.radius)))
+             for thickness in (0.4e-3, 0.8e-3) for boss in (0.3, 0.7)]
+    page.check("stress.warping_restraint", "warping that the flange holds back, as configured",
+               "shell of revolution with a diaphragm", Between(round(min(warps), 3), round(max(warps), 3)),
+               given["warping_restraint"], "", "a diaphragm once to twice as thick as the wall, on a boss of 0.3 to "
+               "0.7 of its radius: neither is known")
     exponent = math.log(built_in / longer) / math.log(2.0)
     page.text(f"""
-Which part of these bounds a real cup has is decided by two numbers that nobody publishes, `stress.coning_restraint` and
-`stress.warping_restraint`, a tenth each: without load the transition then has
+Which part of these bounds a real cup has is decided by two numbers, `stress.coning_restraint` and
+`stress.warping_restraint`, a tenth each. The shell confirms the first as an upper bound, since rim and race may part;
+the second lies at the stiff end of what a diaphragm can be. Without load the transition then has
 {MPA * amplitude(stress[0.0]["transition"]):.0f} MPa and the flange {MPA * amplitude(stress[0.0]["flange"]):.0f} MPa of
 nominal amplitude. The published life test of a gear of this kind (Machines 13 (2025) 918) ends by fracture at the
 transition, which the twin has as the weakest place from a restraint of about a sixth on. That the stress falls with the

@@ -24,7 +24,7 @@ CLASSES = [
      r"\w+_law|contact_point|rotation_|symmetric_|perfect_|drift_)|teeth\.virtual_work|dynamics\.energy|"
      r"manufacture\.(perfect|closure|work|reproducible|sampling|averaged_|\w+_not_the_other|beat|table_)"),
     ("independent program", "numbers of the thesis' own program, or of one that shares nothing with the twin",
-     r"thesis\.(?!locked|mean_torque)|stress\.(flange|transition)"),
+     r"thesis\.(?!locked|mean_torque)|stress\.(flange|transition|coning|warping)"),
     ("self-consistent", "one way of computing it beside another way of the same model", r""),
 ]
 

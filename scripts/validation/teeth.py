@@ -5,6 +5,7 @@ from teeth_jump import jump
 from teeth_load import load_share, pressure_angle, turning
 from teeth_profiles import clearance_at_rest, profiles
 from teeth_runs import PROFILES, loaded
+from teeth_wear import wear
 
 
 def build(page):
@@ -16,3 +17,4 @@ def build(page):
     pressure_angle(page)
     interference(page, path)
     jump(page)
+    wear(page)

@@ -13,7 +13,8 @@ namespace hjt
 ///
 ///   T0 = f0 (nu n)^(2/3) d_m^3 1e-7   for nu n >= 2000,   f0 160 d_m^3 1e-7  below   [N.mm]
 ///   T1 = f1 (F + F_race) d_m                                                         [N.mm]
-/// where nu  viscosity that the grease acts with: that of its base oil times a factor known at T_0 [mm^2/s];
+/// where nu  viscosity that the friction by speed acts with [mm^2/s]: nu^(2/3) = nu(T_0)^(2/3) (c + (1 - c) r^(2/3)),
+///           c the share that no temperature changes, of what is no grease, and r = nu_oil(T) / nu_oil(T_0);
 ///           the oil's after Walther (ASTM D341), T in kelvin:
 ///           lg lg(nu_oil + 0.7) = lg lg(nu_oil(T_0) + 0.7) - m lg(T / T_0)
 ///       n   in rpm, d_m in mm
@@ -54,7 +55,7 @@ public:
     return 1e-3 * (speed_part + load_part);
   }
 
-  /// Kinematic viscosity that the grease acts with [m^2/s] at a temperature [degC].
+  /// Kinematic viscosity that the friction by speed acts with [m^2/s] at a temperature [degC].
   double viscosity(double temperature) const noexcept
   {
     constexpr double ZERO_CELSIUS = 273.15;  // K
@@ -62,7 +63,15 @@ public:
     const double known = std::log10(1e6 * parameters_.oil_viscosity + OFFSET);
     const double ratio = (temperature + ZERO_CELSIUS) / (parameters_.viscosity_temperature + ZERO_CELSIUS);
     const double oil = 1e-6 * (std::pow(10.0, known * std::pow(ratio, -parameters_.viscosity_slope)) - OFFSET);
-    return viscosity_factor_ * parameters_.viscosity / parameters_.oil_viscosity * oil;
+    const double grease = viscosity_factor_ * parameters_.viscosity / parameters_.oil_viscosity * oil;
+    const double constant = parameters_.constant_share;
+    if (constant == 0.0)
+    {
+      return grease;
+    }
+    const double root = std::cbrt(grease / parameters_.viscosity);
+    const double friction = constant + (1.0 - constant) * root * root;  // over that of the sound grease at T_0
+    return parameters_.viscosity * friction * std::sqrt(friction);
   }
 
 private:

@@ -160,7 +160,7 @@ Baseline::Baseline(const Parameters& parameters, std::shared_ptr<const Signature
   const double share = parameters.indicators.false_alarm_rate / static_cast<double>(2 * INDICATOR_COUNT);
   threshold_ = boost::math::quantile(boost::math::complement(boost::math::normal(), share));
   const double count = std::hypot(TWO_PI / parameters.sensors.motor_counts_per_turn / nominalRatio(parameters.gear),
-                                  TWO_PI / std::exp2(parameters.sensors.output_bits));
+                                  TWO_PI / parameters.sensors.output_counts_per_turn);
   const std::array<double, 3> unit{ 1.0, count, count * nominalRatio(parameters.gear) / TWO_PI };  // by FloorUnit
   for (const ScalarRow& row : SCALARS)
   {

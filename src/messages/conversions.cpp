@@ -13,6 +13,7 @@
 #include "base/printable.hpp"
 #include "messages/time.hpp"
 #include "statics/fatigue_law.hpp"
+#include "statics/inertia_error.hpp"
 #include "twin/growing_fault.hpp"
 
 namespace hjt
@@ -132,6 +133,7 @@ bool fillContactForces(Twin& twin, const SinceMessage& /*since*/, harmonic_joint
   message.header.stamp = toRosTime(outputs.stamp);
   message.wave_generator_angle = outputs.motor_angle;
   message.output_angle = outputs.output_angle;
+  message.mesh_force_error = expectedMeshForceError(twin.parameters(), outputs.motor_velocity, outputs.joint_torque);
   ToothForces forces;
   swapArrays(forces, message);  // the twin writes into the message's own
   const bool found = twin.toothForces(forces);
@@ -247,6 +249,7 @@ bool fillHealth(Twin& twin, const SinceMessage& since, harmonic_joint_twin::Heal
   message.teeth_loaded = static_cast<std::uint32_t>(report.lobes.teeth_loaded);
   std::copy(report.lobes.mesh_force.begin(), report.lobes.mesh_force.end(), message.lobe_mesh_force.begin());
   message.lobe_asymmetry = report.lobes.asymmetry;
+  message.mesh_force_error = report.mesh_force_error;
   message.wave_generator_load = report.lobes.wave_generator_force;
   message.friction_torque = outputs.friction_torque;
   message.grease_temperature = outputs.temperature;

@@ -6,6 +6,7 @@
 
 #include "gear/ratio.hpp"
 #include "messages/time.hpp"
+#include "statics/inertia_error.hpp"
 
 namespace hjt
 {
@@ -35,6 +36,11 @@ void MeasuredDrive::note(const Comparison& comparison, bool is_wanted) noexcept
   since_.joint_torque.add(comparison.joint_torque);
 }
 
+double MeasuredDrive::meshForceError() const noexcept
+{
+  return expectedMeshForceError(parameters_, ratio_ * now_.velocity.measured, now_.joint_torque);
+}
+
 bool MeasuredDrive::moveTo(const Comparison& comparison) noexcept
 {
   now_ = comparison;
@@ -47,6 +53,7 @@ bool MeasuredDrive::moveTo(const Comparison& comparison) noexcept
 void MeasuredDrive::fill(Stamp stamp, harmonic_joint_twin::ContactForces& message) noexcept
 {
   fillContactForces(stamp, gear_, message);
+  message.mesh_force_error = meshForceError();
 }
 
 void MeasuredDrive::fill(Stamp stamp, harmonic_joint_twin::Stress& message) noexcept
@@ -69,6 +76,7 @@ void MeasuredDrive::fill(Stamp stamp, harmonic_joint_twin::Health& message) noex
   message.teeth_loaded = static_cast<std::uint32_t>(lobes.teeth_loaded);
   std::copy(lobes.mesh_force.begin(), lobes.mesh_force.end(), message.lobe_mesh_force.begin());
   message.lobe_asymmetry = lobes.asymmetry;
+  message.mesh_force_error = meshForceError();
   message.wave_generator_load = lobes.wave_generator_force;
   message.friction_torque = std::abs(now_.friction_torque) / ratio_;
   message.grease_temperature = now_.temperature;

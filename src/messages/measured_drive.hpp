@@ -34,6 +34,7 @@ public:
 
 private:
   double motorTorque(const Comparison& comparison) const noexcept;
+  double meshForceError() const noexcept;  // [N]
 
   const Parameters parameters_;
   const Stamp encoders_period_;  // [ns]

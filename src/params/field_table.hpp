@@ -177,6 +177,8 @@ void visitFields(P& p, Visitor&& visit)
         ofOthers("temperature both viscosities are given at"));
   visit("bearing.viscosity_slope", "-", p.bearing.viscosity_slope, Range{ 0.0, 10.0 },
         ofOthers("slope m of the base oil in the viscosity-temperature chart (Walther, ASTM D341)"));
+  visit("bearing.constant_share", "-", p.bearing.constant_share, Range{ 0.0, 1.0 },
+        ofOthers("share of the friction by speed at viscosity_temperature that no temperature changes"));
 
   visit("motor.rotor_inertia", "kg.m^2", p.motor.rotor_inertia, Range{ 1e-9, 10.0 }, ofOthers("motor's rotor"));
   visit("motor.wave_generator_inertia", "kg.m^2", p.motor.wave_generator_inertia, Range{ 0.0, 10.0 },
@@ -276,8 +278,8 @@ void visitFields(P& p, Visitor&& visit)
 
   visit("sensors.motor_counts_per_turn", "-", p.sensors.motor_counts_per_turn, Range{ 1, 1 << 30 },
         ofOthers("counts of the motor encoder after quadrature"));
-  visit("sensors.output_bits", "-", p.sensors.output_bits, Range{ 1, 30 },
-        ofOthers("resolution of the absolute output encoder"));
+  visit("sensors.output_counts_per_turn", "-", p.sensors.output_counts_per_turn, Range{ 2, 1 << 30 },
+        ofOthers("counts of the absolute output encoder"));
   visit("sensors.velocity_window", "s", p.sensors.velocity_window, Range{ 1e-6, 10.0 },
         ofOthers("encoder velocities are differences over this time"));
   visit("sensors.motor_eccentricity", "rad", p.sensors.motor_eccentricity, Range{ -0.1, 0.1 },

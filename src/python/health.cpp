@@ -106,6 +106,8 @@ void bindReport(py::module& module)
       .def_property_readonly(
           "lobe_asymmetry", [](const HealthReport& self) { return self.lobes.asymmetry; },
           "(first - second) / (first + second), 0 when unloaded [-]")
+      .def_readonly("mesh_force_error", &HealthReport::mesh_force_error,
+                    "expected error of a loaded tooth's force at this speed and load, rms: its inertia is left out [N]")
       .def_property_readonly(
           "wave_generator_load", [](const HealthReport& self) { return self.lobes.wave_generator_force; },
           "sum of the wave generator's contact forces [N]")

@@ -9,12 +9,12 @@
 
 namespace hjt
 {
-/// Absolute encoder at the joint's output: the position within one turn, in N bits.
+/// Absolute encoder at the joint's output: the position within one turn, in N counts.
 ///
-/// Law:   n = floor(phi / q) mod 2^N,  q = 2 pi / 2^N
+/// Law:   n = floor(phi / q) mod N,  q = 2 pi / N
 /// where  phi  output angle                      [rad]
-///        N    bits                              [-]
-///        n    count, 0 ... 2^N - 1              [counts]
+///        N    counts per turn                   [-]
+///        n    count, 0 ... N - 1                [counts]
 ///
 /// The count says nothing about whole turns. A drive counts them by watching the count jump, which fails when it looks
 /// less than twice a turn; here the turn is taken from the true angle, so that the unwrapped angle is right however
@@ -23,8 +23,7 @@ class AbsoluteEncoder
 {
 public:
   explicit AbsoluteEncoder(const SensorParameters& parameters)
-    : counts_per_turn_(std::int64_t{ 1 } << parameters.output_bits)
-    , quantum_(TWO_PI / static_cast<double>(counts_per_turn_))
+    : counts_per_turn_(parameters.output_counts_per_turn), quantum_(TWO_PI / static_cast<double>(counts_per_turn_))
   {
   }
 

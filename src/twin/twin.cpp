@@ -7,6 +7,7 @@
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "statics/flexspline_stress.hpp"
 #include "statics/gear_checks.hpp"
+#include "statics/inertia_error.hpp"
 #include "twin/tooth_forces.hpp"
 #include "twin/twin_impl.hpp"
 
@@ -150,7 +151,9 @@ double Twin::motorTorqueReading() const noexcept
 
 HealthReport Twin::health(Stamp since) const noexcept
 {
-  return { impl_->monitor.indicators(), impl_->lobes(), impl_->solverState(since) };
+  const JointOutputs now = outputs();
+  return { impl_->monitor.indicators(), impl_->lobes(), impl_->solverState(since),
+           expectedMeshForceError(impl_->parameters, now.motor_velocity, now.joint_torque) };
 }
 
 void Twin::watchSignals(bool on) noexcept

@@ -22,8 +22,9 @@ namespace hjt
 namespace
 {
 constexpr int COUNTS = 4320;
+constexpr int OUTPUT_COUNTS = 1335000;
 constexpr double QUANTUM = TWO_PI / COUNTS;
-const SensorParameters SENSORS{ COUNTS, 19, 10e-3 };
+const SensorParameters SENSORS{ COUNTS, OUTPUT_COUNTS, 10e-3 };
 
 // The known answers of the authors' own library (Random123, kat_vectors: philox4x32 10).
 TEST(Philox, GivesThePublishedWords)
@@ -81,15 +82,15 @@ TEST(IncrementalEncoder, AngleIsWithinOneCountBelowTheTrueOne)
 TEST(AbsoluteEncoder, WrapsEveryTurnInBothDirections)
 {
   SensorParameters parameters = SENSORS;
-  parameters.output_bits = 4;
+  parameters.output_counts_per_turn = 15;
   const AbsoluteEncoder encoder(parameters);
   for (int turn = -3; turn <= 3; ++turn)
   {
-    for (int count = 0; count < 16; ++count)
+    for (int count = 0; count < 15; ++count)
     {
-      const double angle = TWO_PI * (turn + (count + 0.5) / 16.0);
+      const double angle = TWO_PI * (turn + (count + 0.5) / 15.0);
       ASSERT_EQ(encoder.count(angle), static_cast<std::uint32_t>(count)) << "turn " << turn;
-      ASSERT_NEAR(encoder.unwrappedAngle(angle), angle - TWO_PI * 0.5 / 16.0, 1e-12) << "turn " << turn;
+      ASSERT_NEAR(encoder.unwrappedAngle(angle), angle - TWO_PI * 0.5 / 15.0, 1e-12) << "turn " << turn;
     }
   }
 }
@@ -97,7 +98,7 @@ TEST(AbsoluteEncoder, WrapsEveryTurnInBothDirections)
 TEST(AbsoluteEncoder, UnwrappedAngleIsRightHoweverSeldomRead)
 {
   const AbsoluteEncoder encoder(SENSORS);
-  const double quantum = TWO_PI / (1 << 19);
+  const double quantum = TWO_PI / OUTPUT_COUNTS;
   for (double angle = -100.0; angle < 100.0; angle += 7.3)  // more than a turn between two readings
   {
     const double behind = angle - encoder.unwrappedAngle(angle);
@@ -108,10 +109,10 @@ TEST(AbsoluteEncoder, UnwrappedAngleIsRightHoweverSeldomRead)
   }
 }
 
-TEST(AbsoluteEncoder, ServesTheLargestNumberOfBits)
+TEST(AbsoluteEncoder, ServesTheLargestNumberOfCounts)
 {
   SensorParameters parameters = SENSORS;
-  parameters.output_bits = 30;
+  parameters.output_counts_per_turn = 1 << 30;
   const AbsoluteEncoder encoder(parameters);
   EXPECT_EQ(encoder.count(-1e-9), (1u << 30) - 1u);
 }

@@ -62,6 +62,27 @@ TEST(BearingFriction, OilThinsAsInTheChart)
   }
 }
 
+TEST(BearingFriction, ConstantShareStaysWhereGreaseThinsOrDegrades)
+{
+  BearingParameters parameters = shippedParameters().bearing;
+  parameters.race_preload = 0.0;
+  const BearingFriction gear(parameters);
+  parameters.viscosity *= std::pow(1.0 / 0.6, 1.5);  // a joint: two thirds as much again, of no grease
+  parameters.constant_share = 0.4;
+  const BearingFriction joint(parameters);
+  BearingFriction old_gear = gear;
+  BearingFriction old_joint = joint;
+  old_gear.scaleViscosity(3.0);
+  old_joint.scaleViscosity(3.0);
+  const double extra = joint.torque(100.0, 0.0, 25.0) - gear.torque(100.0, 0.0, 25.0);
+  EXPECT_NEAR(extra, 2.0 / 3.0 * gear.torque(100.0, 0.0, 25.0), 1e-12);
+  for (const double temperature : { 0.0, 25.0, 60.0 })
+  {
+    EXPECT_NEAR(joint.torque(100.0, 0.0, temperature) - gear.torque(100.0, 0.0, temperature), extra, 1e-12);
+    EXPECT_NEAR(old_joint.torque(100.0, 0.0, temperature) - old_gear.torque(100.0, 0.0, temperature), extra, 1e-12);
+  }
+}
+
 TEST(BearingFriction, ShippedOilIsThatOfItsGrease)
 {
   BearingParameters parameters = shippedParameters().bearing;

@@ -16,6 +16,7 @@
 #include "harmonic_joint_twin/statics/static_analysis.hpp"
 #include "random_ring.hpp"
 #include "solver/output_balance.hpp"
+#include "statics/inertia_error.hpp"
 #include "studies/bordered_ring_solver.hpp"
 #include "studies/implicit_ring_stepper.hpp"
 #include "studies/quasi_static_check.hpp"
@@ -684,6 +685,21 @@ TEST(QuasiStaticClaim, HoldsAtLowSpeed)
   EXPECT_LT(result.position.rms, 1e-4 * result.position.size);
   EXPECT_LT(result.torsion.rms, 2e-3 * result.torsion.size);
   EXPECT_GT(result.contact_force.rms, 0.0);
+}
+
+TEST(ExpectedMeshForceError, IsThatOfInertiaInSimilarGears)
+{
+  const Parameters gear = shippedParameters();
+  const double error = expectedMeshForceError(gear, 200.0, 80.0);
+  EXPECT_GT(error, 0.0);
+  EXPECT_EQ(expectedMeshForceError(gear, 0.0, 80.0), 0.0);
+  EXPECT_EQ(expectedMeshForceError(gear, -200.0, -80.0), error);
+  EXPECT_NEAR(expectedMeshForceError(gear, 300.0, 80.0), 2.25 * error, 1e-12);
+  // Half as long, of the same material: an eighth of mass and torque, twice the speed, a quarter of all forces.
+  Parameters half = gear;
+  half.gear.flexspline_inner_radius *= 0.5;
+  half.ring.mass *= 0.125;
+  EXPECT_NEAR(expectedMeshForceError(half, 400.0, 10.0), 0.25 * error, 1e-12);
 }
 }  // namespace
 }  // namespace hjt

@@ -177,6 +177,7 @@ TEST_F(Messages, HoldTheForcesOfEveryTooth)
   EXPECT_EQ(message.mesh_force, forces.mesh_force);
   EXPECT_EQ(message.tooth_x, forces.tooth_x);
   EXPECT_EQ(message.tooth_y, forces.tooth_y);
+  EXPECT_EQ(message.mesh_force_error, twin_.health().mesh_force_error);
   EXPECT_EQ(message.mesh_force.data(), place) << "its own array, not another";
 }
 

@@ -149,6 +149,7 @@ struct BearingParameters
   double oil_viscosity{};
   double viscosity_temperature{};
   double viscosity_slope{};
+  double constant_share{};
 };
 
 struct MotorParameters
@@ -242,7 +243,7 @@ struct SolverParameters
 struct SensorParameters
 {
   int motor_counts_per_turn{};
-  int output_bits{};
+  int output_counts_per_turn{};
   double velocity_window{};
   double motor_eccentricity{};
   std::array<double, 2> motor_lines{};

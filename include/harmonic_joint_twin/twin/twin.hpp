@@ -72,6 +72,7 @@ struct HealthReport
   MotionIndicators motion;     ///< of the last turns, from the true angles
   LobeLoads lobes;             ///< at the current instant
   SolverState solver_state{};  ///< of the steps that Twin::health was asked about
+  double mesh_force_error{};   ///< expected at this speed and load, rms over the loaded teeth: inertia is left out [N]
 };
 
 /// Counters since reset, for diagnostics.

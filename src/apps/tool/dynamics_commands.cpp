@@ -13,6 +13,7 @@
 #include "output/text_table.hpp"
 
 #include "harmonic_joint_twin/base/errors.hpp"
+#include "statics/inertia_error.hpp"
 #include "studies/quasi_static_check.hpp"
 #include "studies/ring_transient.hpp"
 
@@ -195,6 +196,8 @@ int dynamics(const DynamicsOptions& options)
     lines.push_back({ name + ".relative_rms", "", error.rms / error.size });
     lines.push_back({ name + ".relative_max", "", error.max / error.size });
   }
+  lines.push_back({ "expected_mesh_force_error", "mesh_force, error expected from speed and load",
+                    expectedMeshForceError(parameters, setup.speed, setup.load), "N" });
   lines.insert(lines.end(), { { "force_evaluations", "", result.force_evaluations },
                               { "solve_time", "solve time", result.solve_time, "s" },
                               { "series", "", Table(DYNAMICS_COLUMNS, result.rows).columns() },

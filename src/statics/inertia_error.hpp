@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cmath>
+
+#include "harmonic_joint_twin/params/parameters.hpp"
+
+namespace hjt
+{
+/// What the equilibrium of the ring leaves out: error of the flank forces, root mean square over the loaded teeth, as it
+/// is to be expected near a motor speed [rad/s] under a torque at the output [N.m]. [N]
+///
+///   E = a m w^2 r0 sqrt(1 + (T / (p r0^3))^4)
+/// where  m  mass of the toothed rim, r0 its inner radius, w motor speed, T torque
+///        a, p  fitted to the dynamic ring of the shipped gear, 20 and 100 N.m, up to 317 rad/s (docs/model.md)
+///
+/// Where the teeth meet in time with a mode of the ring it is several times larger, at most speeds smaller.
+inline double expectedMeshForceError(const Parameters& parameters, double motor_speed, double torque) noexcept
+{
+  constexpr double SHARE = 5.5e-3;     // a [-]
+  constexpr double PRESSURE = 1.43e6;  // p [Pa]
+  const double radius = parameters.gear.flexspline_inner_radius;
+  const double relative = torque / (PRESSURE * radius * radius * radius);
+  const double square = relative * relative;
+  return SHARE * parameters.ring.mass * motor_speed * motor_speed * radius * std::sqrt(1.0 + square * square);
+}
+}  // namespace hjt
