@@ -25,11 +25,11 @@ from matplotlib.dates import AutoDateLocator, ConciseDateFormatter  # noqa: E402
 from matplotlib.ticker import MaxNLocator  # noqa: E402
 
 GREY, BLUE, RED, GREEN, ORANGE = "#7a7a7a", "#0072B2", "#D55E00", "#009E73", "#E69F00"
-STYLE = {"font.size": 9, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "grid.color": "0.9",
+DPI = 130
+STYLE = {"figure.dpi": DPI, "font.size": 9, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "grid.color": "0.9",
          "grid.linewidth": 0.6, "axes.axisbelow": True, "axes.titlesize": 9.5, "axes.titlelocation": "left",
          "legend.frameon": False, "legend.fontsize": 8, "lines.linewidth": 0.9, "axes.edgecolor": "0.5"}
 WIDTHS = {"wide": 8.6, "narrow": 4.1}  # [inch]
-DPI = 130
 SHOWN_INDICATORS = 12
 LOWEST_ORDER = 0.3   # below it lies what the load's error makes, not ripple
 RING_STRETCH = 10.0  # of the flexspline's deformation
@@ -321,7 +321,7 @@ def draw_all(directory, data, figures):
             if figure is None:
                 continue
             path = os.path.join(directory, f"{name}.png" if kind == "wide" else f"{name}_{kind}.png")
-            figure.savefig(path, dpi=DPI)
+            figure.canvas.print_png(path)  # savefig draws, and lays out, everything twice
             plt.close(figure)
             with open(path, "rb") as file:
                 text = base64.b64encode(file.read()).decode("ascii")

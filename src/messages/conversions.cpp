@@ -265,6 +265,7 @@ bool fillHealth(Twin& twin, const SinceMessage& since, harmonic_joint_twin::Heal
   fillSpan(since.joint_torque, message.joint_torque_min, message.joint_torque_mean, message.joint_torque_max);
   message.energy_residual = outputs.energy_residual;
   message.solver_state = static_cast<std::uint8_t>(report.solver_state);
+  message.on_response_surface = twin.onSurface();
   message.solver_iterations = outputs.iterations;
   message.solver_residual = outputs.residual;
   message.solver_failures = twin.counters().solver_failures;

@@ -77,21 +77,41 @@ SurfaceEnergy SurfaceCell::energy() const noexcept
            value(left.curvature, right.curvature) * per_height_ * per_height_ };
 }
 
-ResponseSurface::ResponseSurface(SurfaceTable table, DeviationTable deviations, std::optional<BallDrops> balls)
-  : table_(std::move(table))
-  , deviations_(std::move(deviations))
-  , balls_(std::move(balls))
-  , pitches_per_radian_(1.0 / table_.pitch)
-  , inverse_ratio_(1.0 / table_.ratio)
-  , line_index_(table_.lines)
+ResponseSurface::Tables::Tables(SurfaceTable of_gear, DeviationTable of_teeth)
+  : table(std::move(of_gear)), deviations(std::move(of_teeth)), line_index(table.lines)
 {
-  for (const DeviationTable::Pitch& pitch : deviations_.pitches)
+  for (const DeviationTable::Pitch& pitch : deviations.pitches)
   {
-    deviation_index_.emplace_back(pitch.lines);
+    deviation_index.emplace_back(pitch.lines);
   }
-  for (std::size_t i = 0; i + 1 < table_.lines.size(); ++i)
+  for (std::size_t i = 0; i + 1 < table.lines.size(); ++i)
   {
-    per_height_.push_back(1.0 / (table_.lines[i + 1] - table_.lines[i]));
+    per_height.push_back(1.0 / (table.lines[i + 1] - table.lines[i]));
+  }
+}
+
+ResponseSurface::ResponseSurface(SurfaceTable table, DeviationTable deviations, std::optional<BallDrops> balls)
+  : tables_(std::make_shared<const Tables>(std::move(table), std::move(deviations)))
+  , balls_(std::move(balls))
+  , pitches_per_radian_(1.0 / tables_->table.pitch)
+  , inverse_ratio_(1.0 / tables_->table.ratio)
+  , lowest_(tables_->table.lines.front())
+  , highest_(tables_->table.lines.back())
+{
+}
+
+ResponseSurface::ResponseSurface(std::vector<Share> shares)
+  : tables_(shares.front().surface->tables_)
+  , shares_(std::move(shares))
+  , pitches_per_radian_(1.0 / tables_->table.pitch)
+  , inverse_ratio_(1.0 / tables_->table.ratio)
+  , lowest_(tables_->table.lines.front())
+  , highest_(tables_->table.lines.back())
+{
+  for (const Share& share : shares_)
+  {
+    lowest_ = std::max(lowest_, share.surface->lowest());
+    highest_ = std::min(highest_, share.surface->highest());
   }
 }
 
@@ -100,68 +120,99 @@ bool ResponseSurface::locate(double motor_angle, double output_angle, Place& pla
   constexpr double MAX_PITCHES = 1e15;  // beyond it an angle has no place within a pitch
   const double pitches = motor_angle * pitches_per_radian_;
   const double v = output_angle - motor_angle * inverse_ratio_;
-  if (!(v >= lowest() && v <= highest() && std::abs(pitches) < MAX_PITCHES))
+  if (!(v >= lowest_ && v <= highest_ && std::abs(pitches) < MAX_PITCHES))
   {
     return false;
   }
-  const auto truncated = static_cast<std::int64_t>(pitches);
-  const std::int64_t pitch = truncated - (pitches < static_cast<double>(truncated) ? 1 : 0);
-  const double part = pitches - static_cast<double>(pitch);
-  const double columns = part * table_.columns;
-  const int column = std::min(static_cast<int>(columns), table_.columns - 1);
-  const std::size_t line = line_index_.below(table_.lines, v);
-  const std::size_t stride = static_cast<std::size_t>(table_.columns) + 1;
-  const SurfaceNode* below = &table_.nodes[line * stride + static_cast<std::size_t>(column)];
-  place.cell = { below,
-                 below + stride,
-                 columns - column,
-                 (v - table_.lines[line]) * per_height_[line],
-                 static_cast<double>(table_.columns),
-                 per_height_[line] };
   place.at = v;
-  place.deviation = {};
-  if (!deviations_.pitches.empty())
-  {
-    locateDeviation(pitch - deviations_.shift, part, place);
-  }
+  tables_->locate(pitches, v, place);
   place.balls = balls_ ? balls_->at(motor_angle, v) : BallDrops::Change{};
+  place.weight = 1.0;
+  place.other_count = 0;
+  for (std::size_t i = 0; i < shares_.size(); ++i)
+  {
+    Cells& cells = i > 0 ? place.others[place.other_count++] : place;
+    cells.weight = shares_[i].weight;
+    if (i > 0)
+    {
+      shares_[i].surface->tables_->locate(pitches, v, cells);
+    }
+  }
   return true;
 }
 
-/// `part` of a pitch beyond a whole one.
-void ResponseSurface::locateDeviation(std::int64_t pitch, double part, Place& place) const noexcept
+void ResponseSurface::Tables::locate(double pitches, double v, Cells& cells) const noexcept
 {
-  const auto count = static_cast<std::int64_t>(deviations_.pitches.size());
+  const auto truncated = static_cast<std::int64_t>(pitches);
+  const std::int64_t pitch = truncated - (pitches < static_cast<double>(truncated) ? 1 : 0);
+  const double part = pitches - static_cast<double>(pitch);
+  const double columns = part * table.columns;
+  const int column = std::min(static_cast<int>(columns), table.columns - 1);
+  const std::size_t line = line_index.below(table.lines, v);
+  const std::size_t stride = static_cast<std::size_t>(table.columns) + 1;
+  const SurfaceNode* below = &table.nodes[line * stride + static_cast<std::size_t>(column)];
+  cells.cell = { below,
+                 below + stride,
+                 columns - column,
+                 (v - table.lines[line]) * per_height[line],
+                 static_cast<double>(table.columns),
+                 per_height[line] };
+  cells.deviation = {};
+  if (!deviations.pitches.empty())
+  {
+    locateDeviation(pitch - deviations.shift, part, v, cells);
+  }
+}
+
+/// `part` of a pitch beyond a whole one.
+void ResponseSurface::Tables::locateDeviation(std::int64_t pitch, double part, double v, Cells& cells) const noexcept
+{
+  const auto count = static_cast<std::int64_t>(deviations.pitches.size());
   const std::int64_t turns = pitch / count - (pitch % count < 0 ? 1 : 0);
   const auto within = static_cast<std::size_t>(pitch - turns * count);
-  const DeviationTable::Pitch& table = deviations_.pitches[within];
-  if (table.lines.empty())
+  const DeviationTable::Pitch& of_pitch = deviations.pitches[within];
+  if (of_pitch.lines.empty())
   {
     return;
   }
-  const double columns = part * table.columns;
-  const int column = std::min(static_cast<int>(columns), table.columns - 1);
-  const std::size_t line = deviation_index_[within].below(table.lines, place.at);
-  const std::size_t stride = static_cast<std::size_t>(table.columns) + 1;
-  const double per_height = 1.0 / (table.lines[line + 1] - table.lines[line]);
-  const SurfaceNode* below = &table.nodes[line * stride + static_cast<std::size_t>(column)];
-  place.deviation = { below,
+  const double columns = part * of_pitch.columns;
+  const int column = std::min(static_cast<int>(columns), of_pitch.columns - 1);
+  const std::size_t line = deviation_index[within].below(of_pitch.lines, v);
+  const std::size_t stride = static_cast<std::size_t>(of_pitch.columns) + 1;
+  const double per_line = 1.0 / (of_pitch.lines[line + 1] - of_pitch.lines[line]);
+  const SurfaceNode* below = &of_pitch.nodes[line * stride + static_cast<std::size_t>(column)];
+  cells.deviation = { below,
                       below + stride,
                       columns - column,
-                      (place.at - table.lines[line]) * per_height,
-                      static_cast<double>(table.columns),
-                      per_height };
-  place.lobes_swapped = deviations_.swaps_lobes && turns % 2 != 0;
+                      (v - of_pitch.lines[line]) * per_line,
+                      static_cast<double>(of_pitch.columns),
+                      per_line };
+  cells.lobes_swapped = deviations.swaps_lobes && turns % 2 != 0;
+}
+
+std::array<double, 2> ResponseSurface::Cells::lobeForces() const noexcept
+{
+  std::array<double, 2> forces{ cell.value(SurfaceNode::LOBE_FORCE), cell.value(SurfaceNode::LOBE_FORCE + 1) };
+  if (!deviation.empty())
+  {
+    forces[lobes_swapped ? 1 : 0] += deviation.value(SurfaceNode::LOBE_FORCE);
+    forces[lobes_swapped ? 0 : 1] += deviation.value(SurfaceNode::LOBE_FORCE + 1);
+  }
+  return forces;
 }
 
 std::array<double, 2> ResponseSurface::lobeForces(const Place& place) noexcept
 {
-  std::array<double, 2> forces{ place.cell.value(SurfaceNode::LOBE_FORCE),
-                                place.cell.value(SurfaceNode::LOBE_FORCE + 1) };
-  if (!place.deviation.empty())
+  std::array<double, 2> forces = place.Cells::lobeForces();
+  for (double& force : forces)
   {
-    forces[place.lobes_swapped ? 1 : 0] += place.deviation.value(SurfaceNode::LOBE_FORCE);
-    forces[place.lobes_swapped ? 0 : 1] += place.deviation.value(SurfaceNode::LOBE_FORCE + 1);
+    force *= place.weight;
+  }
+  for (std::size_t i = 0; i < place.other_count; ++i)
+  {
+    const std::array<double, 2> share = place.others[i].lobeForces();
+    forces[0] += place.others[i].weight * share[0];
+    forces[1] += place.others[i].weight * share[1];
   }
   return forces;
 }
@@ -177,6 +228,10 @@ RingResponse ResponseSurface::response(const Place& place, Eigen::Vector2d& hous
     energy += place.deviation.energy();
     response.velocity_ratio += place.deviation.value(SurfaceNode::VELOCITY_RATIO);
     response.output_stiffness += place.deviation.value(SurfaceNode::OUTPUT_STIFFNESS);
+  }
+  if (place.other_count > 0)
+  {
+    addOthers(place, energy, response);
   }
   if (balls_)
   {
@@ -195,6 +250,27 @@ RingResponse ResponseSurface::response(const Place& place, Eigen::Vector2d& hous
   housing_stiffness[0] = (1.0 - inverse_ratio_) * k_uv + k_uu - inverse_ratio_ * by_output;
   housing_stiffness[1] = by_output;
   return response;
+}
+
+/// The weighted sum of the first share, as given, and the others.
+void ResponseSurface::addOthers(const Place& place, SurfaceEnergy& energy, RingResponse& response) const noexcept
+{
+  energy *= place.weight;
+  response.velocity_ratio *= place.weight;
+  response.output_stiffness *= place.weight;
+  for (std::size_t i = 0; i < place.other_count; ++i)
+  {
+    const Cells& cells = place.others[i];
+    SurfaceEnergy share = cells.cell.energy();
+    if (!cells.deviation.empty())
+    {
+      share += cells.deviation.energy();
+    }
+    share *= cells.weight;
+    energy += share;
+    response.velocity_ratio += cells.weight * cells.value(SurfaceNode::VELOCITY_RATIO);
+    response.output_stiffness += cells.weight * cells.value(SurfaceNode::OUTPUT_STIFFNESS);
+  }
 }
 
 /// The energy's own curvature changes stiffness and velocity ratio: the stiffness between motor and output is minus
@@ -221,6 +297,20 @@ void ResponseSurface::friction(const Place& place, RingFrictionResponse& frictio
   if (!place.deviation.empty())
   {
     x += place.deviation.values<COUNT>();
+  }
+  if (place.other_count > 0)
+  {
+    x *= static_cast<float>(place.weight);
+    for (std::size_t i = 0; i < place.other_count; ++i)
+    {
+      const Cells& cells = place.others[i];
+      const auto weight = static_cast<float>(cells.weight);
+      x += weight * cells.cell.values<COUNT>();
+      if (!cells.deviation.empty())
+      {
+        x += weight * cells.deviation.values<COUNT>();
+      }
+    }
   }
   friction.contact_force = x[Value::CONTACT_FORCE - Value::BILINEAR];
   friction.ring_torque = x[Value::RING_TORQUE - Value::BILINEAR];

@@ -219,7 +219,7 @@ private:
 
 /// The ring in equilibrium as a table over the two angles of the joint: for a gear of equal teeth, which is the same
 /// again after one tooth pitch; with deviations, for one that is the same again after more; with drops of balls, for
-/// one whose bearing is faulty.
+/// one whose bearing is faulty; as a sum of shares, for one between those of other surfaces.
 ///
 /// The stored energy is one function, piecewise bicubic after Hermite, from its values, slopes and mixed derivative at
 /// the nodes; both torques are its derivatives, so what goes in comes out again. What friction needs is bilinear.
@@ -230,14 +230,40 @@ public:
   /// gear, if its bearing is faulty.
   explicit ResponseSurface(SurfaceTable table, DeviationTable deviations = {}, std::optional<BallDrops> balls = {});
 
-  /// A place on the surface.
-  struct Place
+  static constexpr std::size_t MAX_SHARES = 4;
+
+  /// Of another surface in one that lies between several.
+  struct Share
+  {
+    std::shared_ptr<const ResponseSurface> surface;  ///< without shares and balls
+    double weight{};                                 ///< [-]
+  };
+
+  /// One to MAX_SHARES of them, of gears with the same teeth; their weights sum up to 1. It is where all of them are.
+  explicit ResponseSurface(std::vector<Share> shares);
+
+  /// On the table and its deviations.
+  struct Cells
   {
     SurfaceCell cell;
     SurfaceCell deviation;  ///< empty: no deviation here
     bool lobes_swapped{};   ///< against how the deviations were measured
-    double at{};            ///< v [rad]
+    double weight{ 1.0 };   ///< of the values here in those of the surface
+
+    double value(int which) const noexcept
+    {
+      return cell.value(which) + (deviation.empty() ? 0.0 : deviation.value(which));
+    }
+    std::array<double, 2> lobeForces() const noexcept;  ///< mesh force of both lobes [N]
+  };
+
+  /// A place on the surface.
+  struct Place : Cells
+  {
+    double at{};  ///< v [rad]
     BallDrops::Change balls;
+    std::array<Cells, MAX_SHARES - 1> others;  ///< of the shares but the first
+    std::size_t other_count{};
   };
 
   /// False, and nothing done, outside the table or at angles that are no numbers.
@@ -263,8 +289,12 @@ public:
   /// Bilinear, of any value but the energy's.
   static double value(const Place& place, int which) noexcept
   {
-    return place.cell.value(which) + (place.deviation.empty() ? 0.0 : place.deviation.value(which)) +
-           (which == SurfaceNode::CONTACT_FORCE ? place.balls.contact_force : 0.0);
+    double sum = place.weight * place.Cells::value(which);
+    for (std::size_t i = 0; i < place.other_count; ++i)
+    {
+      sum += place.others[i].weight * place.others[i].value(which);
+    }
+    return sum + (which == SurfaceNode::CONTACT_FORCE ? place.balls.contact_force : 0.0);
   }
 
   /// All of these, without those of the energy.
@@ -281,23 +311,38 @@ public:
   /// Mesh force of both lobes [N].
   static std::array<double, 2> lobeForces(const Place& place) noexcept;
 
-  const SurfaceTable& table() const noexcept { return table_; }
-  const DeviationTable& deviations() const noexcept { return deviations_; }
+  /// Of the first share, where there are several.
+  const SurfaceTable& table() const noexcept { return tables_->table; }
+  const DeviationTable& deviations() const noexcept { return tables_->deviations; }
   const std::optional<BallDrops>& balls() const noexcept { return balls_; }
-  double lowest() const noexcept { return table_.lines.front(); }  ///< of v [rad]
-  double highest() const noexcept { return table_.lines.back(); }  ///< [rad]
+  const std::vector<Share>& shares() const noexcept { return shares_; }  ///< none: the tables are its own
+  double lowest() const noexcept { return lowest_; }                     ///< of v [rad]
+  double highest() const noexcept { return highest_; }                   ///< [rad]
 
 private:
-  void stiffen(const SurfaceEnergy& change, RingResponse& response) const noexcept;
-  void locateDeviation(std::int64_t pitch, double part, Place& place) const noexcept;
+  /// Tables and how to find places in them; never changed.
+  struct Tables
+  {
+    Tables(SurfaceTable of_gear, DeviationTable of_teeth);
+    void locate(double pitches, double v, Cells& cells) const noexcept;
+    void locateDeviation(std::int64_t pitch, double part, double v, Cells& cells) const noexcept;
 
-  SurfaceTable table_;
-  DeviationTable deviations_;
+    SurfaceTable table;
+    DeviationTable deviations;
+    LineIndex line_index;
+    std::vector<double> per_height;          // of the intervals between lines [1/rad]
+    std::vector<LineIndex> deviation_index;  // one a pitch
+  };
+
+  void addOthers(const Place& place, SurfaceEnergy& energy, RingResponse& response) const noexcept;
+  void stiffen(const SurfaceEnergy& change, RingResponse& response) const noexcept;
+
+  std::shared_ptr<const Tables> tables_;
   std::optional<BallDrops> balls_;
+  std::vector<Share> shares_;
   double pitches_per_radian_;
   double inverse_ratio_;
-  LineIndex line_index_;
-  std::vector<double> per_height_;          // of the intervals between lines [1/rad]
-  std::vector<LineIndex> deviation_index_;  // one a pitch
+  double lowest_;
+  double highest_;
 };
 }  // namespace hjt

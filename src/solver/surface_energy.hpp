@@ -18,5 +18,15 @@ struct SurfaceEnergy
     by_vv += other.by_vv;
     return *this;
   }
+  SurfaceEnergy& operator*=(double factor) noexcept
+  {
+    value *= factor;
+    by_u *= factor;
+    by_v *= factor;
+    by_uu *= factor;
+    by_uv *= factor;
+    by_vv *= factor;
+    return *this;
+  }
 };
 }  // namespace hjt

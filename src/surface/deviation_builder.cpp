@@ -21,7 +21,8 @@ using Node = SurfaceNode;
 using Strip = std::vector<Node>;
 using Torques = Eigen::Array2d;  // on output and motor [N.m]
 
-constexpr double SHARE = 1e-2;    // of the largest deviation on a line, that the table may be off by [-]
+constexpr double SHARE = 1e-2;  // of the largest deviation of the output torque on a line, that the table misses [-]
+constexpr double MOTOR_SHARE = 3e-2;  // likewise of the motor's, which single contacts roughen [-]
 constexpr double SMALLEST = 0.1;  // a line's largest deviation counts as at least this part of the largest of all [-]
 constexpr int COARSE_LINES = 12;  // a side, before refinement; denser towards no load
 constexpr int MAX_HALVINGS = 5;   // of an interval between two lines
@@ -219,7 +220,10 @@ private:
   }
 
   /// Of a line, by its own largest deviation and that of the coarse lines.
-  Torques toleranceOf(const Line& line) const { return SHARE * line.overload * line.largest.max(SMALLEST * largest_); }
+  Torques toleranceOf(const Line& line) const
+  {
+    return line.overload * Torques(SHARE, MOTOR_SHARE) * line.largest.max(SMALLEST * largest_);
+  }
 
   Torques torques(const Node& deviation) const
   {
@@ -235,11 +239,11 @@ private:
     return std::max(torque[0], torque[1] * ring_.ratio()) > ROUNDING * ring_.torqueLimit();
   }
 
-  /// Whether what lies in a cell is close enough to the deviation measured there.
-  bool agrees(const SurfaceCell& cell, const Node& measured, const Torques& tolerance) const
+  /// By how much what lies in a cell misses the deviation measured there.
+  Torques miss(const SurfaceCell& cell, const Node& measured) const
   {
     const SurfaceEnergy energy = cell.energy();
-    return ((torques(energy.by_u, energy.by_v) - torques(measured)).abs() <= tolerance).all();
+    return torques(energy.by_u, energy.by_v) - torques(measured);
   }
 
   /// For each pitch the fewest columns that give the deviations half way between them.
@@ -277,24 +281,22 @@ private:
     }
   }
 
-  /// Whether every so manyth node of a strip gives those between.
+  /// Whether every so manyth node of a strip gives those between, root mean square.
   bool columnsSuffice(const Strip& strip, int columns, const Torques& tolerance) const
   {
     const std::size_t stride = (strip.size() - 1) / static_cast<std::size_t>(columns);
+    Torques squares = Torques::Zero();
     for (std::size_t first = 0; first + 1 < strip.size(); first += stride)
     {
       const std::array<Node, 2> ends{ strip[first], strip[first + stride] };
       for (std::size_t i = 1; i < stride; ++i)
       {
         const double part = static_cast<double>(i) / static_cast<double>(stride);
-        if (!agrees({ ends.data(), ends.data(), part, 0.0, static_cast<double>(columns), 1.0 }, strip[first + i],
-                    tolerance))
-        {
-          return false;
-        }
+        squares +=
+            miss({ ends.data(), ends.data(), part, 0.0, static_cast<double>(columns), 1.0 }, strip[first + i]).square();
       }
     }
-    return true;
+    return (squares <= static_cast<double>(columns) * (static_cast<double>(stride) - 1.0) * tolerance.square()).all();
   }
 
   /// Coarse lines, denser towards no load.
@@ -361,19 +363,19 @@ private:
     }
   }
 
-  /// Whether two lines' strips of a pitch give that of the line half way between them.
+  /// Whether two lines' strips of a pitch give that of the line half way between them, root mean square. Single kinks,
+  /// where a tooth begins to touch, no grid has.
   bool gives(const Strip& below, const Strip& above, double height, const Line& line, std::size_t pitch) const
   {
     const auto columns = static_cast<std::size_t>(columns_[pitch]);
+    Torques squares = Torques::Zero();
     for (std::size_t i = 0; i < columns; ++i)
     {
-      if (!agrees({ &below[i], &above[i], 0.0, 0.5, static_cast<double>(columns), 1.0 / height }, line.strips[pitch][i],
-                  toleranceOf(line)))
-      {
-        return false;
-      }
+      squares +=
+          miss({ &below[i], &above[i], 0.0, 0.5, static_cast<double>(columns), 1.0 / height }, line.strips[pitch][i])
+              .square();
     }
-    return true;
+    return (squares <= static_cast<double>(columns) * toleranceOf(line).square()).all();
   }
 
   /// A pitch whose edges are yet to be joined.

@@ -16,6 +16,7 @@
 #include "solver/joint_stepper.hpp"
 #include "surface/surface_worker.hpp"
 #include "twin/observed_ring.hpp"
+#include "twin/surface_stages.hpp"
 
 namespace hjt
 {
@@ -40,16 +41,8 @@ struct Twin::Impl
   JointFaults faults;
   FaultList active;
   FaultSchedule waiting;
-  static constexpr int MAX_STAGE_TABLES = 4;
-
-  /// A set of faults of the configured ones, with its surface.
-  struct Stage
-  {
-    FaultList faults;
-    std::shared_ptr<const ResponseSurface> surface;  ///< may be none
-  };
-  std::vector<Stage> stages;  // where the twin waits for its surfaces
-  FaultList surface_faults;   // of the surface requested, where it does not
+  SurfaceStages stages;      // where the twin waits for its surfaces
+  FaultList surface_faults;  // of the surface requested, where it does not
   std::optional<SurfaceWorker> surface_worker;
   bool surface_awaited{};
   JointStepper stepper;
@@ -92,7 +85,6 @@ private:
   Impl(const Impl&) = default;  // its parts refer to the model of the other: copyOf
 
   void prepareSurface(const SurfaceSource& source);
-  void prepareStages(SurfaceSource source);
   const ResponseSurface* presentSurface() const noexcept;
   void useSurface() noexcept;
   void scheduleConfigured(Stamp stamp) noexcept;

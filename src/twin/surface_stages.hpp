@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "harmonic_joint_twin/model/faults/fault_list.hpp"
+#include "harmonic_joint_twin/twin/fault_schedule.hpp"
+#include "surface/surface_worker.hpp"
+
+namespace hjt
+{
+/// Whether both hold the same faults with the same severities, since whenever.
+bool isSame(const FaultList& one, const FaultList& other) noexcept;
+
+/// The response surfaces of a twin that waits for them: one for each set of faults that the configured ones make as they
+/// set in one after the other. Where these are many, each table but the first and the last being a build: of a fault
+/// that grows in more steps than NODES of some of them, and for those between a sum of the nearest, cubic in the
+/// severity; of others none.
+class SurfaceStages
+{
+public:
+  /// `later`: what sets in after `active`.
+  void prepare(const Parameters& parameters, const FaultList& active, FaultSchedule later, SurfaceSource source);
+
+  /// Null: there is none.
+  const ResponseSurface* of(const FaultList& faults) const noexcept;
+
+private:
+  static constexpr int MAX_TABLES = 4;         // that are built without a thought
+  static constexpr std::size_t NODES = 8;      // intervals that a growth is divided into, of a gear of equal teeth
+  static constexpr std::size_t FEW_NODES = 4;  // where teeth differ: each table takes several times as long
+
+  struct Stage
+  {
+    FaultList faults;
+    SurfacePool::Surface surface;  ///< may be none
+  };
+
+  int list(const FaultList& active, FaultSchedule later);
+  void obtain(Stage& stage);
+  std::size_t endOfGrowth(std::size_t first, Fault& growing) const;
+  void interpolate(std::size_t first, std::size_t last, const Fault& growing);
+
+  std::vector<Stage> stages_;
+  const Parameters* parameters_{};  // while it prepares
+  const SurfaceSource* source_{};
+};
+}  // namespace hjt
