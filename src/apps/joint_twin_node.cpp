@@ -172,6 +172,8 @@ void runArm(ros::NodeHandle& node, const std::string& name, const hjt::FoundPara
   {
     ROS_INFO_STREAM("input.mode is commands: in place of the arm, on "
                     << ros::names::resolve(hjt::topics::JOINT_STATES));
+    hjt::addIdentifiedGains(identified, arm);
+    hjt::giveOwnSeeds(parameters);
     hjt::addArmFaults(arm, itemsOf(node.param<std::string>(hjt::FAULT, "")), parameters);
     run<hjt::ArmNode>(node, arm, parameters);
   }

@@ -53,6 +53,33 @@ ParameterMap armJointParameters(const ArmJoint& joint, const fs::path& directory
   return map;
 }
 
+void addIdentifiedGains(const std::string& identified, ArmDescription& arm)
+{
+  const fs::path path = fs::path(identified) / GAINS_FILE;
+  std::error_code error;
+  if (!identified.empty() && fs::exists(path, error))
+  {
+    readGains(path.string(), arm);
+  }
+}
+
+void giveOwnSeeds(std::vector<Parameters>& drives)
+{
+  constexpr int SEEDS = 100'000;  // the parameter's range
+  for (std::size_t i = 0; i < drives.size(); ++i)
+  {
+    ManufactureParameters& errors = drives[i].manufacture;
+    for (PitchParameters* pitch : { &errors.flexspline_pitch, &errors.circular_spline_pitch })
+    {
+      // Without a deviation a seed makes no other gear, and joints alike share a table.
+      if (pitch->deviation > 0.0)
+      {
+        pitch->seed = (pitch->seed + 2 * static_cast<int>(i)) % SEEDS;
+      }
+    }
+  }
+}
+
 void addArmFaults(const ArmDescription& arm, const std::vector<std::string>& faults, std::vector<Parameters>& drives)
 {
   std::vector<ConfigurationOptions> of_joints(arm.joints.size());

@@ -19,6 +19,15 @@ std::string findArm(const std::string& name, const std::filesystem::path& direct
 ParameterMap armJointParameters(const ArmJoint& joint, const std::filesystem::path& directory,
                                 const std::string& identified);
 
+/// Where `identified`, a directory or empty, holds the gains of the arm's controller, they are the joints'.
+/// @throws ParameterError.
+void addIdentifiedGains(const std::string& identified, ArmDescription& arm);
+constexpr const char* GAINS_FILE = "controller.yaml";
+
+/// Drives of an arm are of one series and none is the other: where teeth or spaces have seeded pitch deviations, each
+/// joint's seeds are those configured and twice its number from the base on more.
+void giveOwnSeeds(std::vector<Parameters>& drives);
+
 /// Adds faults to those of the drives, each JOINT:KIND:SEVERITY[:PLACE[:ONSET]], JOINT a joint's name or short name.
 /// @throws ParameterError naming the fault.
 void addArmFaults(const ArmDescription& arm, const std::vector<std::string>& faults, std::vector<Parameters>& drives);

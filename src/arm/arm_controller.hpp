@@ -4,19 +4,10 @@
 #include <vector>
 
 #include "arm/arm_twin.hpp"
+#include "arm/joint_gains.hpp"
 
 namespace hjt
 {
-/// Control of one joint, all seen from the joint.
-struct JointGains
-{
-  double position{};       ///< speed wanted for an error of the angle [1/s]
-  double speed{};          ///< torque for an error of the speed [N.m.s/rad]
-  double integral_time{};  ///< of the speed control [s]
-  double coulomb{};        ///< friction that is fed forward: constant [N.m]
-  double viscous{};        ///< and by speed [N.m.s/rad]
-};
-
 /// Cascaded control of an arm's joints, as in UR's: the angle by the encoder at the output, the speed by that at the
 /// motor, the current's torque; rigid-body torque and friction of the set point fed forward.
 ///

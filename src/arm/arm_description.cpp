@@ -43,6 +43,15 @@ bool isBaseName(const std::string& name)
                      { return is_letter(c) || std::isdigit(static_cast<unsigned char>(c)) != 0 || c == '_'; });
 }
 
+void readGains(const std::string& place, FieldReader& fields, JointGains& gains)
+{
+  fields(place + ".position", "1/s", gains.position, Range{ 0.0, 1e3 }, "speed wanted for an error of the angle");
+  fields(place + ".speed", "N.m.s/rad", gains.speed, Range{ 0.0, 1e6 }, "torque for an error of the speed");
+  fields(place + ".integral_time", "s", gains.integral_time, Range{ 1e-3, 1e6 }, "of the speed's control");
+  fields(place + ".coulomb", "N.m", gains.coulomb, Range{ -1e4, 1e4 }, "friction that is fed forward, constant");
+  fields(place + ".viscous", "N.m.s/rad", gains.viscous, Range{ -1e4, 1e4 }, "and by speed");
+}
+
 /// Reads the joints one after the other.
 class JointReader
 {
@@ -62,6 +71,10 @@ public:
     {
       fields_(place + ".limits.speed", "rad/s", joint.speed_limit, Range{ 1e-3, 100.0 }, "greatest speed");
       fields_(place + ".limits.torque", "N.m", joint.torque_limit, Range{ 1e-3, 1e6 }, "greatest torque at the output");
+    }
+    if (isMapOrNone(place + ".controller") && holds(map_, place + ".controller"))
+    {
+      readGains(place + ".controller", fields_, joint.gains.emplace());
     }
     if (holds(map_, place + ".check_up"))
     {
@@ -162,5 +175,20 @@ ArmDescription readArmDescription(const std::string& path)
   throwIfAny(fields.errors());
   arm.urdf = textOf(description, map.at("description").origin + ": description: ");
   return arm;
+}
+
+void readGains(const std::string& path, ArmDescription& arm)
+{
+  const ParameterMap map = readArmFile(path);
+  FieldReader fields(map, path);
+  for (ArmJoint& joint : arm.joints)
+  {
+    if (holds(map, joint.short_name))
+    {
+      readGains(joint.short_name, fields, joint.gains.emplace());
+    }
+  }
+  fields.refuseUnknownKeys();
+  throwIfAny(fields.errors());
 }
 }  // namespace hjt

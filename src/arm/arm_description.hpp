@@ -2,9 +2,11 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "arm/joint_gains.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"
 
 namespace hjt
@@ -19,6 +21,7 @@ struct ArmJoint
   double speed_limit{};               ///< 0: none given [rad/s]
   double torque_limit{};              ///< at the output, 0: none given [N.m]
   std::vector<double> check_up;       ///< angles of all joints where its check-up begins; empty: none [rad]
+  std::optional<JointGains> gains;    ///< of its controller; none: ArmController::defaultGains
 };
 
 /// Mass at the tip of an arm.
@@ -43,4 +46,7 @@ struct ArmDescription
 
 /// @throws ParameterError naming file, line and key: unreadable, missing, unknown, mistyped or out of range.
 ArmDescription readArmDescription(const std::string& path);
+
+/// A controller's gains, SHORT_NAME.position ... of the joints that the file names. @throws ParameterError alike.
+void readGains(const std::string& path, ArmDescription& arm);
 }  // namespace hjt

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "base/number_text.hpp"
 #include "gear/angle.hpp"
@@ -48,42 +49,70 @@ constexpr std::array<Stroke, 16> STROKES{ {
     { 0.0, 150.0 },
 } };
 
-/// Trapezoid over a distance of one.
-class Trapezoid
+/// Share of a distance over time: the speed a trapezoid, or its mean over the time in which its acceleration comes.
+class Profile
 {
 public:
-  Trapezoid(double distance, double speed, double acceleration)
+  Profile(double distance, const ArmMove& move)
     : distance_(distance)
-    , acceleration_(acceleration)
-    , rise_(std::min(speed, std::sqrt(distance * acceleration)) / acceleration)
-    , end_(distance / (acceleration * rise_) + rise_)
+    , acceleration_(move.acceleration)
+    , rise_(std::min(move.speed, std::sqrt(distance * acceleration_)) / acceleration_)
+    , end_(distance / (acceleration_ * rise_) + rise_)
+    , mean_(move.jerk > 0.0 ? acceleration_ / move.jerk : 0.0)
   {
   }
 
-  double duration() const { return end_; }
+  double duration() const { return end_ + mean_; }
 
-  /// Shares of the distance.
   JointMotion at(double time) const
   {
-    const double peak = acceleration_ * rise_;
-    const double left = end_ - time;
-    JointMotion motion{ (time - 0.5 * rise_) * peak, peak, 0.0 };
-    if (time < rise_)
+    JointMotion motion = trapezoid(time);
+    if (mean_ > 0.0)
     {
-      motion = { 0.5 * acceleration_ * time * time, acceleration_ * time, acceleration_ };
-    }
-    else if (left < rise_)
-    {
-      motion = { distance_ - 0.5 * acceleration_ * left * left, acceleration_ * left, -acceleration_ };
+      const JointMotion before = trapezoid(time - mean_);
+      motion = { (travelled(time) - travelled(time - mean_)) / mean_, (motion.position - before.position) / mean_,
+                 (motion.velocity - before.velocity) / mean_ };
     }
     return { motion.position / distance_, motion.velocity / distance_, motion.acceleration / distance_ };
   }
 
 private:
+  JointMotion trapezoid(double time) const
+  {
+    const double peak = acceleration_ * rise_;
+    const double left = end_ - time;
+    if (time <= 0.0 || left <= 0.0)
+    {
+      return { time <= 0.0 ? 0.0 : distance_, 0.0, 0.0 };
+    }
+    if (time < rise_)
+    {
+      return { 0.5 * acceleration_ * time * time, acceleration_ * time, acceleration_ };
+    }
+    if (left < rise_)
+    {
+      return { distance_ - 0.5 * acceleration_ * left * left, acceleration_ * left, -acceleration_ };
+    }
+    return { (time - 0.5 * rise_) * peak, peak, 0.0 };
+  }
+
+  /// Integral of the trapezoid's position, which is odd about its middle.
+  double travelled(double time) const
+  {
+    const auto risen = [&](double t) { return acceleration_ * t * t * t / 6.0; };
+    if (time > 0.5 * end_)
+    {
+      return distance_ * (time - 0.5 * end_) + travelled(end_ - time);
+    }
+    const double cruised = std::max(time - rise_, 0.0);
+    return time <= 0.0 ? 0.0 : risen(std::min(time, rise_)) + 0.5 * acceleration_ * rise_ * cruised * (rise_ + cruised);
+  }
+
   double distance_;
   double acceleration_;
   double rise_;
-  double end_;
+  double end_;   // of the trapezoid
+  double mean_;  // time over which it is taken [s]
 };
 
 void requireWithin(const ArmDescription& arm, const ArmInstant& instant)
@@ -94,17 +123,89 @@ void requireWithin(const ArmDescription& arm, const ArmInstant& instant)
     const auto refuse = [&](const char* what, double value, double limit, const char* unit)
     {
       // Written so that NaN fails.
-      if (!(std::abs(value) <= limit * (1.0 + 1e-9)))
+      if (limit != 0.0 && !(std::abs(value) <= limit * (1.0 + 1e-9)))
       {
         throw ParameterError(arm.origin + ": " + joint.name + " would have a " + what + " of " +
-                             std::to_string(std::abs(value)) + " " + unit + " in the check-up, its limit is " +
-                             std::to_string(limit));
+                             std::to_string(std::abs(value)) + " " + unit + " at " + numberText(instant.time) +
+                             " s of the motion, its limit is " + std::to_string(limit));
       }
     };
     refuse("speed", instant.joints[i].velocity, joint.speed_limit, "[rad/s]");
     refuse("torque", instant.torques[i], joint.torque_limit, "[N.m]");
   }
 }
+/// Takes moves one after the other.
+class Sampler
+{
+public:
+  Sampler(const ArmDescription& arm, ArmPose start, double period)
+    : arm_(arm), dynamics_(arm), from_(std::move(start)), period_(period)
+  {
+  }
+
+  void rest(double time)
+  {
+    addUntil(begin_ + time, from_, [](double) { return JointMotion{}; });
+  }
+
+  void add(const ArmMove& move)
+  {
+    double distance = 0.0;
+    for (std::size_t i = 0; i < from_.size(); ++i)
+    {
+      distance = std::max(distance, std::abs(move.target[i] - from_[i]));
+    }
+    if (distance > 0.0)
+    {
+      const Profile profile(distance, move);
+      addUntil(begin_ + profile.duration(), move.target,
+               [&, begin = begin_](double time) { return profile.at(time - begin); });
+    }
+    from_ = move.target;
+    rest(move.wait);
+  }
+
+  std::vector<ArmInstant> take() { return std::move(instants_); }
+
+private:
+  template <class Share>
+  void addUntil(double end, const ArmPose& target, const Share& share)
+  {
+    const double longest = static_cast<double>(MAX_INSTANTS) * period_;
+    // Written so that NaN fails.
+    if (!(end < longest))
+    {
+      throw ParameterError(arm_.origin + ": the motion would take more than " + roundedText(longest, 4) + " s");
+    }
+    for (double time = 0.0; (time = static_cast<double>(instants_.size()) * period_) < end;)
+    {
+      addInstant(time, target, share(time));
+    }
+    begin_ = end;
+  }
+
+  void addInstant(double time, const ArmPose& target, const JointMotion& share)
+  {
+    ArmInstant instant;
+    instant.time = time;
+    instant.torques.resize(from_.size());
+    for (std::size_t i = 0; i < from_.size(); ++i)
+    {
+      const double way = target[i] - from_[i];
+      instant.joints.push_back({ from_[i] + way * share.position, way * share.velocity, way * share.acceleration });
+    }
+    dynamics_.torques(instant.joints, instant.torques);
+    requireWithin(arm_, instant);
+    instants_.push_back(instant);
+  }
+
+  const ArmDescription& arm_;
+  ArmDynamics dynamics_;
+  ArmPose from_;
+  double period_;
+  double begin_{};  // of what comes next [s]
+  std::vector<ArmInstant> instants_;
+};
 }  // namespace
 
 std::vector<ArmMove> checkUpMoves(const ArmDescription& arm, std::size_t joint)
@@ -133,58 +234,13 @@ std::vector<ArmMove> checkUpMoves(const ArmDescription& arm, std::size_t joint)
 std::vector<ArmInstant> sampleMoves(const ArmDescription& arm, const ArmPose& start, const std::vector<ArmMove>& moves,
                                     double period)
 {
-  ArmDynamics dynamics(arm);
-  std::vector<ArmInstant> instants;
-  const std::size_t joints = arm.joints.size();
-  ArmPose from = start;
-  const auto add = [&](const ArmPose& target, const JointMotion& share)
-  {
-    ArmInstant instant;
-    instant.time = static_cast<double>(instants.size()) * period;
-    instant.torques.resize(joints);
-    for (std::size_t i = 0; i < joints; ++i)
-    {
-      const double way = target[i] - from[i];
-      instant.joints.push_back({ from[i] + way * share.position, way * share.velocity, way * share.acceleration });
-    }
-    dynamics.torques(instant.joints, instant.torques);
-    requireWithin(arm, instant);
-    instants.push_back(instant);
-  };
-  double begin = REST;  // of the move
-  const auto add_until = [&](double end, const auto& motion, const ArmPose& target)
-  {
-    for (double time = 0.0; (time = static_cast<double>(instants.size()) * period) < end;)
-    {
-      add(target, motion(time));
-    }
-  };
-  add_until(
-      REST, [](double) { return JointMotion{}; }, from);
+  Sampler sampler(arm, start, period);
+  sampler.rest(REST);
   for (const ArmMove& move : moves)
   {
-    double distance = 0.0;
-    for (std::size_t i = 0; i < joints; ++i)
-    {
-      distance = std::max(distance, std::abs(move.target[i] - from[i]));
-    }
-    if (distance > 0.0)
-    {
-      const Trapezoid trapezoid(distance, move.speed, move.acceleration);
-      if (begin + trapezoid.duration() > static_cast<double>(MAX_INSTANTS) * period)
-      {
-        throw ParameterError(arm.origin + ": the check-up would take more than " +
-                             roundedText(static_cast<double>(MAX_INSTANTS) * period, 4) + " s: it moves at " +
-                             roundedText(move.speed, 3) + " rad/s, by the limits of the joints' speed");
-      }
-      add_until(
-          begin + trapezoid.duration(), [&](double time) { return trapezoid.at(time - begin); }, move.target);
-      begin += trapezoid.duration();
-    }
-    from = move.target;
+    sampler.add(move);
   }
-  add_until(
-      begin + REST, [](double) { return JointMotion{}; }, from);
-  return instants;
+  sampler.rest(REST);
+  return sampler.take();
 }
 }  // namespace hjt

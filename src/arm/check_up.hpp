@@ -9,12 +9,15 @@
 
 namespace hjt
 {
-/// Straight move of all joints together, the speed over time a trapezoid, as URScript's movej.
+/// Straight move of all joints together, the speed over time a trapezoid, as URScript's movej; with a limit of the jerk
+/// that trapezoid's mean over the time in which the acceleration comes.
 struct ArmMove
 {
   std::vector<double> target;  ///< angles of all joints [rad]
   double speed{};              ///< of the joint that goes farthest, at most [rad/s]
-  double acceleration{};       ///< of that joint [rad/s^2]
+  double acceleration{};       ///< of that joint, at most [rad/s^2]
+  double jerk{};               ///< of that joint, at most; 0: without limit [rad/s^3]
+  double wait{};               ///< at rest afterwards [s]
 };
 
 /// Joint angles before the first move [rad].
@@ -35,7 +38,7 @@ struct ArmInstant
 std::vector<ArmMove> checkUpMoves(const ArmDescription& arm, std::size_t joint);
 
 /// The moves at the times k `period` [s], at rest before and after. @throws ParameterError naming the joint that goes
-/// beyond the limit of its speed or its torque, and if it takes too long to be kept.
+/// beyond the limit of its speed or its torque, if it has one, and if it takes too long to be kept.
 std::vector<ArmInstant> sampleMoves(const ArmDescription& arm, const ArmPose& start, const std::vector<ArmMove>& moves,
                                     double period);
 }  // namespace hjt

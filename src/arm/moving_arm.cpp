@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "arm/moving_arm.hpp"
 
+#include <cmath>
 #include <utility>
 
 #include "gear/ratio.hpp"
@@ -19,12 +20,12 @@ std::vector<double> anglesOf(const ArmSetPoint& point)
   return angles;
 }
 
-std::vector<JointGains> gainsOf(const std::vector<Parameters>& drives)
+std::vector<JointGains> gainsOf(const ArmDescription& arm, const std::vector<Parameters>& drives)
 {
   std::vector<JointGains> gains;
-  for (const Parameters& drive : drives)
+  for (std::size_t i = 0; i < drives.size(); ++i)
   {
-    gains.push_back(ArmController::defaultGains(drive));
+    gains.push_back(arm.joints[i].gains.value_or(ArmController::defaultGains(drives[i])));
   }
   return gains;
 }
@@ -33,11 +34,15 @@ std::vector<JointGains> gainsOf(const std::vector<Parameters>& drives)
 MovingArm::MovingArm(const ArmDescription& arm, const std::vector<Parameters>& drives, ArmMotion motion,
                      const SurfaceSource& surface_source)
   : twin_(arm, drives, anglesOf(motion.points().front()), surface_source)
-  , controller_(arm, twin_, gainsOf(drives), CONTROL_RATE)
+  , controller_(arm, twin_, gainsOf(arm, drives), CONTROL_RATE)
   , motion_(std::move(motion))
   , commanded_(motion_)
   , set_point_(drives.size())
 {
+  for (const ArmJoint& joint : arm.joints)
+  {
+    fastest_.push_back(joint.speed_limit > 0.0 ? STOP_SPEED * joint.speed_limit : HUGE_VAL);
+  }
   reset(0);
 }
 
@@ -49,6 +54,7 @@ bool MovingArm::reset(Stamp stamp) noexcept
   }
   controller_.reset();
   is_commanded_ = false;
+  stop_.reset();
   motion_begin_ = twin_.stamp() + toStampLength(SETTLING);
   for (std::size_t i = 0; i < twin_.joints(); ++i)
   {
@@ -60,12 +66,42 @@ bool MovingArm::reset(Stamp stamp) noexcept
 bool MovingArm::step(Stamp until) noexcept
 {
   const Stamp next = twin_.stamp() + twin_.stepLength();
-  if (next <= until && controller_.isDue(twin_))
+  const bool controls = next <= until && !stop_ && controller_.isDue(twin_);
+  if (controls)
   {
     wantedAt(next, set_point_);
     controller_.control(twin_, set_point_);
   }
-  return twin_.step(until);
+  const bool stepped = twin_.step(until);
+  if (controls)
+  {
+    watch();
+  }
+  return stepped;
+}
+
+/// Whether the joints are where the controller wants them.
+void MovingArm::watch() noexcept
+{
+  for (std::size_t i = 0; i < twin_.joints() && !stop_; ++i)
+  {
+    const JointMotion& joint = twin_.motion()[i];
+    // Written so that NaN stops.
+    if (!(std::abs(joint.position - set_point_[i].position) <= STOP_DEVIATION))
+    {
+      stop_ = { twin_.stamp(), i, "off its set point" };
+    }
+    else if (!(std::abs(joint.velocity) <= fastest_[i]))
+    {
+      stop_ = { twin_.stamp(), i, "faster than its limit" };
+    }
+  }
+  for (std::size_t i = 0; i < twin_.joints() && stop_; ++i)
+  {
+    const Stamp next = twin_.stamp() + twin_.stepLength();
+    twin_.drive(i).commandMotorTorque(next, 0.0);
+    twin_.drive(i).commandBrake(next, true);
+  }
 }
 
 void MovingArm::follow(ArmMotion& motion) noexcept

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "arm/arm_controller.hpp"
@@ -17,8 +18,19 @@ struct JointReading
   double current{};   ///< of the motor [A]
 };
 
+/// A motion that the arm's controller ended by itself.
+struct ProtectiveStop
+{
+  Stamp stamp{};         ///< when it was seen
+  std::size_t joint{};   ///< of the arm, from the base on
+  const char* reason{};  ///< for people
+};
+
 /// A twin of an arm under its controller, which has it follow set points. After a reset it stands in its brakes for the
 /// first half of SETTLING, is held where it stands for the second, then begins its motion.
+///
+/// Where a joint is STOP_DEVIATION off its set point, or faster than STOP_SPEED of its limit, the controller stops all:
+/// the motors give no torque, the brakes engage, until the next reset. The bounds are assumed; the maker gives none.
 ///
 /// After construction nothing throws or allocates.
 class MovingArm
@@ -26,6 +38,8 @@ class MovingArm
 public:
   static constexpr double CONTROL_RATE = 2000.0;  ///< [Hz]
   static constexpr double SETTLING = 0.5;         ///< [s]
+  static constexpr double STOP_DEVIATION = 0.1;   ///< [rad]
+  static constexpr double STOP_SPEED = 1.1;       ///< of ArmJoint::speed_limit [-]
 
   /// `drives`: as ArmTwin takes them. @throws ParameterError.
   MovingArm(const ArmDescription& arm, const std::vector<Parameters>& drives, ArmMotion motion,
@@ -44,6 +58,9 @@ public:
   /// Present set point; `motion`: of the joints' size.
   void wanted(std::vector<JointMotion>& motion) noexcept { wantedAt(twin_.stamp(), motion); }
 
+  /// None: it moves.
+  const std::optional<ProtectiveStop>& protectiveStop() const noexcept { return stop_; }
+
   JointReading reading(std::size_t joint) const noexcept;
   Stamp motionBegin() const noexcept { return motion_begin_; }  ///< of the motion given at construction [ns]
   ArmTwin& twin() noexcept { return twin_; }
@@ -51,6 +68,7 @@ public:
   const ArmController& controller() const noexcept { return controller_; }
 
 private:
+  void watch() noexcept;
   void wantedAt(Stamp stamp, std::vector<JointMotion>& motion) noexcept;
 
   ArmTwin twin_;
@@ -61,5 +79,7 @@ private:
   Stamp motion_begin_{};
   Stamp command_begin_{};
   std::vector<JointMotion> set_point_;  // of the next control
+  std::vector<double> fastest_;         // at which the joints are stopped [rad/s]
+  std::optional<ProtectiveStop> stop_;
 };
 }  // namespace hjt

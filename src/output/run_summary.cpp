@@ -17,8 +17,6 @@ void warn(std::uint64_t count, const std::string& what)
   }
 }
 
-namespace
-{
 void warnOf(const TwinCounters& counters)
 {
   warn(counters.input.not_finite, "inputs were not finite and refused");
@@ -33,7 +31,6 @@ void warnOf(const TwinCounters& counters)
   warn(counters.coarse_steps, "steps were too long for the joint's fastest natural mode; raise solver.rate");
   warn(counters.solver_failures, "steps did not converge; the last good state was held");
 }
-}  // namespace
 
 int RunSummary::report(const Twin& twin, bool json) const
 {

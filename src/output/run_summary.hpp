@@ -16,6 +16,9 @@ constexpr Stamp SIMULATION_EPOCH = 1'000'000'000'000'000'000;
 /// Tells on stderr of a number of things, unless it is 0.
 void warn(std::uint64_t count, const std::string& what);
 
+/// Tells on stderr of all that was not as it should be.
+void warnOf(const TwinCounters& counters);
+
 /// How a run of the twin ended, for the user and for programs.
 struct RunSummary
 {

@@ -30,8 +30,26 @@ std::vector<Parameters> drivesOf(const ArmRunOptions& options, const ArmDescript
     addOverlays(options, map);
     drives.push_back(parseParameters(map));
   }
+  giveOwnSeeds(drives);
   addArmFaults(arm, options.faults, drives);
   return drives;
+}
+
+/// How the steps of all drives went.
+TwinCounters countersOf(const ArmTwin& twin)
+{
+  TwinCounters sum;
+  for (std::size_t i = 0; i < twin.joints(); ++i)
+  {
+    const TwinCounters& drive = twin.drive(i).counters();
+    for (std::uint64_t TwinCounters::*count :
+         { &TwinCounters::solver_failures, &TwinCounters::step_cuts, &TwinCounters::jumps, &TwinCounters::coarse_steps,
+           &TwinCounters::torque_clamped, &TwinCounters::overloads, &TwinCounters::speed_limited })
+    {
+      sum.*count += drive.*count;
+    }
+  }
+  return sum;
 }
 
 std::vector<std::string> columnsOf(std::size_t joints)
@@ -168,7 +186,8 @@ ArmRun runArm(const ArmRunOptions& options)
 try
 {
   requireWritable(options.out, options.force, options.motion);
-  const ArmDescription arm = readArmDescription(findArm(options.arm, configDirectory(options)));
+  ArmDescription arm = readArmDescription(findArm(options.arm, configDirectory(options)));
+  addIdentifiedGains(options.identified, arm);
   std::vector<ArmSetPoint> points =
       options.set_points.empty() ? readSetPoints(options.motion, arm) : options.set_points;
   if (const double change = straightenTimes(points); change > 0.0)
@@ -213,9 +232,11 @@ try
   run.wall_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   run.duration = toSeconds(twin.stamp() - SIMULATION_EPOCH);
   run.energy_residual = twin.energyResidual();
-  for (std::size_t i = 0; i < twin.joints(); ++i)
+  run.counters = countersOf(twin);
+  if (const std::optional<ProtectiveStop>& stop = moving.protectiveStop())
   {
-    run.solver_failures += twin.drive(i).counters().solver_failures;
+    run.stop = { motion.begin() + toSeconds(stop->stamp - moving.motionBegin()), arm.joints[stop->joint].short_name,
+                 stop->reason };
   }
   return run;
 }
@@ -233,11 +254,25 @@ Report reportOf(const ArmRun& run)
     { "angle_error_max", [](const ArmRunJoint& joint) { return 1e3 * joint.angle_error_max; }, "largest [mrad]" },
     { "current_rms", &ArmRunJoint::current_rms, "current, rms [A]" }
   };
+  const std::string stop =
+      run.stop ? run.stop->joint + " " + run.stop->reason + " at " + roundedText(run.stop->time, 4) + " s" : "none";
   return { { { "duration", "duration [s]", run.duration },
+             { "", "protective stop", stop },
+             { "protective_stop", "",
+               run.stop ?
+                   Json{ { "joint", run.stop->joint }, { "reason", run.stop->reason }, { "time", run.stop->time } } :
+                   Json() },
              { "real_time_factor", "times real time", run.duration / run.wall_time },
              { "tool_error_rms", "tool position error, rms [mm]", 1e3 * run.tool_error_rms },
              { "tool_error_max", "largest [mm]", 1e3 * run.tool_error_max },
-             { "energy_residual", "error of the arm's energy [J]", run.energy_residual } },
+             { "energy_residual", "error of the arm's energy [J]", run.energy_residual },
+             { "solver_failures", "", run.counters.solver_failures },
+             { "step_cuts", "", run.counters.step_cuts },
+             { "jumps", "", run.counters.jumps },
+             { "coarse_steps", "", run.counters.coarse_steps },
+             { "torque_clamped", "", run.counters.torque_clamped },
+             { "speed_limited", "", run.counters.speed_limited },
+             { "overloads", "", run.counters.overloads } },
            { { "joints", Table(columns, run.joints) } } };
 }
 }  // namespace hjt

@@ -2,13 +2,13 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "arm/arm_motion.hpp"
+#include "harmonic_joint_twin/twin/twin.hpp"
 #include "output/report.hpp"
 #include "recordings/watch.hpp"
 #include "twin/configuration_options.hpp"
@@ -39,6 +39,14 @@ struct ArmRunJoint
   double current_rms{};      ///< [A]
 };
 
+/// A protective stop.
+struct ArmRunStop
+{
+  double time{};      ///< of the motion [s]
+  std::string joint;  ///< short
+  std::string reason;
+};
+
 struct ArmRun
 {
   double duration{};                ///< simulated, with the start in the brakes [s]
@@ -47,7 +55,8 @@ struct ArmRun
   double tool_error_max{};          ///< [m]
   double energy_residual{};         ///< of the coupling [J]
   std::vector<ArmRunJoint> joints;  ///< from the base on; none: stopped before the first step
-  std::uint64_t solver_failures{};  ///< steps without an equilibrium: the last good state was held
+  std::optional<ArmRunStop> stop;   ///< none: it came to its end
+  TwinCounters counters;            ///< of all drives: how their steps went
 };
 
 /// Some of the columns of a controller's recording: `width` numbers from name + "0" on.

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <optional>
 #include <tuple>
 
+#include "arm/arm_program.hpp"
 #include "base/csv_rows.hpp"
 #include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
@@ -125,6 +127,10 @@ void requireMotion(const std::vector<ArmSetPoint>& points, const std::string& wh
 
 std::vector<ArmSetPoint> readSetPoints(const std::string& path, const ArmDescription& arm)
 {
+  if (const std::string type = std::filesystem::path(path).extension(); type == ".yaml" || type == ".yml")
+  {
+    return readArmProgram(path, arm);
+  }
   CsvRows rows(path);
   const std::vector<std::string>& header = rows.header();
   const int time = columnOf(header, { "timestamp", "time" });

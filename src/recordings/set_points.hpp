@@ -10,7 +10,8 @@
 namespace hjt
 {
 /// Set points of a CSV file: those of a controller's recording (`timestamp` or `time` [s], `target_q_0` ... [rad] and,
-/// if there, `target_qd_0` ..., `target_qdd_0` ...), or a motion as `joint_twin checkup` writes it. @throws InputError.
+/// if there, `target_qd_0` ..., `target_qdd_0` ...), or a motion as `joint_twin checkup` writes it; or a program
+/// (readArmProgram), FILE.yaml. @throws InputError, ParameterError.
 std::vector<ArmSetPoint> readSetPoints(const std::string& path, const ArmDescription& arm);
 
 /// Rates that are not given, by differences of the angles.

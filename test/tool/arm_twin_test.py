@@ -7,6 +7,7 @@ Argument: the tool.
 import csv
 import json
 import math
+import os
 
 import tool
 
@@ -68,12 +69,78 @@ class ArmTwin(tool.ToolTest):
         elbow = json.loads(done.stdout)["joints"][2]
         self.assertLess(elbow["angle_error_max"], 3.0, elbow)  # [mrad]; with the stamps as they are some 10
 
+    def rows(self):
+        with open(self.path("run.csv"), encoding="utf-8") as file:
+            return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
+
+    def test_a_program_keeps_speed_acceleration_and_jerk_of_its_moves(self):
+        there = [0.0, -1.2, 1.15, -1.3, -1.5, 0.3]
+        self.write("there.yaml", f"start: {START}\nspeed: 0.5\nacceleration: 4.0\nmoves:\n"
+                   f"  - {{to: {there}, jerk: 40.0, wait: 0.2}}\n  - {{to: {START}, speed: 0.25}}\n")
+        done = self.succeed_json("arm", "there.yaml", "--arm", "ur5", "--out", "run.csv", "--set",
+                                 "solver.scene=full_ring")
+        self.assertIsNone(done["protective_stop"])
+        rows = self.rows()
+        waited = [row for row in rows if row["target_q_2"] == there[2]]
+        self.assertAlmostEqual(len(waited) / 125, 0.2, delta=0.012)
+        self.assertEqual([rows[-1][f"target_q_{i}"] for i in range(JOINTS)], START)
+        self.assertLess(abs(rows[-1]["actual_q_2"] - START[2]), 2e-3)
+        forth = rows[:rows.index(waited[0])]
+        speeds = [row["target_qd_2"] for row in forth]
+        rates = [row["target_qdd_2"] for row in forth]
+        jerks = [(after - before) * 125 for before, after in zip(rates, rates[1:])]
+        self.assertAlmostEqual(max(speeds), 0.5, delta=1e-6)
+        self.assertAlmostEqual(max(rates), 4.0, delta=1e-6)
+        self.assertLess(max(map(abs, jerks)), 40.0 + 1e-6)
+        self.assertAlmostEqual(max(row["target_qd_2"] for row in rows[rows.index(waited[-1]):]), 0.0, delta=1e-9)
+        self.assertAlmostEqual(min(row["target_qd_2"] for row in rows), -0.25, delta=1e-6)
+
+    def test_an_arm_that_cannot_follow_stops_in_its_brakes(self):
+        write_motion(self.path("motion.csv"), duration=0.8)
+        with open(self.path("motion.csv"), encoding="utf-8") as file:
+            lines = file.read().splitlines()
+        jump = [line.split(",") for line in lines]
+        for row in jump[40:]:
+            row[3] = str(float(row[3]) + 1.0)  # the elbow, within a row
+        self.write("motion.csv", "\n".join(map(",".join, jump)) + "\n")
+        done = self.run_tool("arm", "motion.csv", "--arm", "ur5", "--out", "run.csv", "--json", "--set",
+                             "solver.scene=full_ring")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("protective stop", done.stderr)
+        stop = json.loads(done.stdout)["protective_stop"]
+        self.assertEqual((stop["joint"], stop["reason"]), ("elbow", "off its set point"))
+        self.assertAlmostEqual(stop["time"], 38 / 125, delta=2 / 125)
+        rows = self.rows()
+        self.assertLess(max(abs(row["actual_qd_2"]) for row in rows[-20:]), 1e-3)  # of the motor, over the ratio
+        self.assertGreater(rows[-1]["target_q_2"] - rows[-1]["actual_q_2"], 0.1)
+
+    def test_gains_of_the_controller_are_taken(self):
+        write_motion(self.path("motion.csv"), duration=0.8)
+        os.makedirs(self.path("slow"))
+        self.write("slow/controller.yaml", "elbow: {position: 5.0, speed: 100.0, integral_time: 1.0, coulomb: 0.0, "
+                   "viscous: 0.0}\n")
+        for name in ("base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3"):
+            self.write(f"slow/{name}.yaml", "gear:\n  teeth_flexspline: 200\n")
+        errors = [self.run_arm(*options)["joints"][2]["angle_error_rms"]
+                  for options in ([], ["--identified", "slow"])]
+        self.assertGreater(errors[1], 3.0 * errors[0])
+        self.write("slow/controller.yaml", "elbow: {position: -5.0, speed: 100.0, integral_time: 1.0}\n")
+        self.fail_with(1, ["elbow.position = -5.0 [1/s] is out of range", "parameter elbow.coulomb is missing"], "arm",
+                       "motion.csv", "--arm", "ur5", "--out", "no.csv", "--identified", "slow")
+
     def test_what_is_wrong_is_named(self):
         write_motion(self.path("motion.csv"), duration=0.1)
         for options, text in ((["--fault", "knee:tooth_wear:0.5"], "JOINT one of base, shoulder, elbow"),
                               (["--fault", "tooth_wear:0.5"], "JOINT one of base"),
                               (["--fault", "elbow:tooth_wear:5"], "severity")):
             self.fail_with(1, [text], "arm", "motion.csv", "--arm", "ur5", "--out", "no.csv", *options)
+        self.write("fast.yaml", f"start: {START}\nmoves:\n  - {{to: {[2.0] + START[1:]}, speed: 9.0, "
+                   "acceleration: 50.0}\n")
+        self.fail_with(1, ["shoulder_pan_joint would have a speed of"], "arm", "fast.yaml", "--arm", "ur5", "--out",
+                       "no.csv")
+        self.write("short.yaml", f"start: {START}\nmoves:\n  - {{to: [1.0], speed: 0.0}}\n")
+        self.fail_with(1, ["moves.0.to", "moves.0.speed = 0.0 [rad/s] is out of range", "moves.0.acceleration"], "arm",
+                       "short.yaml", "--arm", "ur5", "--out", "no.csv")
         self.write("few.csv", "timestamp,target_q_0\n0,0\n")
         self.fail_with(1, ["no column target_q_1 or shoulder_position, target_q_2 or elbow_position"], "arm", "few.csv",
                        "--arm", "ur5", "--out", "no.csv")

@@ -23,7 +23,8 @@ int run(const Options& given)
   Report report = reportOf(found);
   report.lines.insert(report.lines.begin(), { "output", "", options.out });
   printReport(options.json, report.lines, report.tables);
-  warn(found.solver_failures, "steps without an equilibrium: the last good state was held");
+  warnOf(found.counters);
+  warn(found.stop ? 1 : 0, "protective stop: the arm stands in its brakes from there on");
   return reportWritten(options.out, options.json);
 }
 
@@ -32,9 +33,9 @@ void declare(Command& command, Options& options)
   command
       .add("motion", options.motion,
            "set points: timestamp, target_q_0 ... and, if there, target_qd_0 ..., target_qdd_0 ... of a controller's "
-           "recording, or as `joint_twin checkup` writes them")
+           "recording, or as `joint_twin checkup` writes them; or a program of moves")
       .required()
-      .type("FILE.csv");
+      .type("FILE.csv|FILE.yaml");
   command.add("--arm", options.arm, "name in config/arms, or a file").required().type("NAME|FILE.yaml");
   command.add("--identified", options.identified, "overlays of the joints, as `joint_twin identify --arm` writes them")
       .type("DIR")

@@ -109,7 +109,6 @@ Answer armIn(const py::dict& arguments)
               [&](const ArmRun& run)
               {
                 py::object document = toPython(documentOf(reportOf(run)));
-                document["solver_failures"] = run.solver_failures;
                 document["rows"] = arraysOf(values, run.joints.size());
                 return document;
               });
