@@ -217,8 +217,9 @@ def arm(motion: Recording, arm: Path, *, faults: Sequence[str] = (), out: Option
 
 def _columns(recording: Any) -> Dict[str, "NDArray[np.float64]"]:
     names = recording.dtype.names if isinstance(recording, np.ndarray) else list(recording)
-    arrays = {name: np.asarray(recording[name], dtype=np.float64) for name in names}
-    return {name: array for name, array in arrays.items() if array.ndim == 1}
+    arrays = {str(name): np.asarray(recording[name]) for name in names}
+    return {name: array.astype(np.float64) for name, array in arrays.items()
+            if array.ndim == 1 and array.dtype.kind in "biuf"}
 
 
 def _signals(recordings: Union[Recording, Sequence[Recording]]) -> Dict[str, Any]:
@@ -236,30 +237,34 @@ def _signals(recordings: Union[Recording, Sequence[Recording]]) -> Dict[str, Any
 
 
 def indicators(recordings: Union[Recording, Sequence[Recording]], *, models: Sequence[Path] = (),
-               joint: Optional[str] = None, torque_scale: Optional[float] = None, baseline: Optional[Path] = None,
+               joint: Optional[str] = None, torque_scale: Optional[float] = None,
+               columns: Optional[Mapping[str, str]] = None, baseline: Optional[Path] = None,
                save_baseline: Optional[Path] = None, out: Optional[Path] = None, carry: bool = False,
                force: bool = False, overlays: Overlays = (), progress: Optional[Progress] = None) -> Document:
     """Health indicators of recordings of one joint and their assessment: the tool's indicators (docs/health.md).
 
-    recordings: one or several: bag, CSV, run of a data set (HDF5), or columns: a structured array, as of Twin.run, or a
-    mapping of arrays of shape (rows,): 'time' [s], 'motor_torque' [N.m], or the signal that torque_scale makes one,
-    'motor_angle_encoder' or 'output_angle_encoder' [rad] and, if recorded, 'motor_velocity_encoder' [rad/s],
-    'load_torque' [N.m], 'temperature' [degC]. models: the twin's own recording of each, to be subtracted. joint: of a
-    robot's bag; None: the twin's topics. baseline: the reference; None: learned from the first windows. save_baseline:
-    file for the learned one. out: CSV of the windows. carry: the baseline is of another motion. force, overlays,
-    progress: as of identify.
+    recordings: one or several: bag, CSV, run of a data set (HDF5), or columns: a structured array, as of Twin.run, a
+    frame of pandas, or a mapping of arrays of shape (rows,): 'time' [s], 'motor_torque' [N.m], or the signal that
+    torque_scale makes one, 'motor_angle_encoder' or 'output_angle_encoder' [rad] and, if recorded,
+    'motor_velocity_encoder' [rad/s], 'load_torque' [N.m], 'temperature' [degC]. models: the twin's own recording of
+    each, to be subtracted. joint: of a robot's bag; None: the twin's topics. columns: names of the columns that hold
+    'time', 'motor_torque', 'motor_angle', 'output_angle', 'motor_velocity', 'load_torque', 'temperature', where they
+    are others. baseline: the reference; None: learned from the first windows. save_baseline: file for the learned one.
+    out: CSV of the windows. carry: the baseline is of another motion. force, overlays, progress: as of identify.
 
     Returns a dict: 'windows' (one dict each: 'time', 'indicators', 'scores', 'assessment' ...), 'threshold',
     'assessment' of the last. Recordings that are not judged are warned of. InputError, ParameterError.
     """
     return _call("indicators",
                  {**_signals(recordings), "models": [os.fspath(model) for model in models], "joint": joint,
-                  "torque_scale": torque_scale, "baseline": baseline, "save_baseline": save_baseline, "out": out,
-                  "carry": carry, "force": force, "progress": progress}, overlays)
+                  "torque_scale": torque_scale, "columns": columns and dict(columns), "baseline": baseline,
+                  "save_baseline": save_baseline, "out": out, "carry": carry, "force": force, "progress": progress},
+                 overlays)
 
 
 def remaining(recordings: Union[Recording, Sequence[Recording]], *, hours: Optional[float] = None,
-              joint: Optional[str] = None, torque_scale: Optional[float] = None, baseline: Optional[Path] = None,
+              joint: Optional[str] = None, torque_scale: Optional[float] = None,
+              columns: Optional[Mapping[str, str]] = None, baseline: Optional[Path] = None,
               duty: Optional[Path] = None, use_record: Optional[Path] = None, force: bool = False,
               overlays: Overlays = (), progress: Optional[Progress] = None) -> Document:
     """Use of a recorded joint, and how long a drive lasts that is used so: the tool's remaining (docs/life.md).
@@ -273,8 +278,8 @@ def remaining(recordings: Union[Recording, Sequence[Recording]], *, hours: Optio
     """
     return _call("remaining",
                  {**_signals(recordings), "hours": hours, "joint": joint, "torque_scale": torque_scale,
-                  "baseline": baseline, "duty": duty, "use_record": use_record, "force": force, "progress": progress},
-                 overlays)
+                  "columns": columns and dict(columns), "baseline": baseline, "duty": duty, "use_record": use_record,
+                  "force": force, "progress": progress}, overlays)
 
 
 def checkup(arm: Path, out: Path, *, joint: Optional[str] = None, file_format: str = "csv",

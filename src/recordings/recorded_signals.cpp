@@ -290,6 +290,24 @@ bool namesColumn(const SignalSource& source)
                      [&](const ColumnChoice& choice) { return !(source.*choice.given).empty(); });
 }
 
+void nameColumn(SignalSource& source, const std::string& signal, const std::string& column)
+{
+  std::vector<std::string> signals;
+  for (const ColumnChoice& choice : CHOICES)
+  {
+    std::string name = choice.option + 2;  // without its dashes
+    std::replace(name.begin(), name.end(), '-', '_');
+    if (name == signal)
+    {
+      source.*choice.given = column;
+      return;
+    }
+    signals.push_back(name);
+  }
+  throw InputError("columns: '" + signal + "' is no signal" + didYouMean(signal, signals) + "; there are " +
+                   joined(signals, ", "));
+}
+
 void readSignals(const std::string& recording, const SignalOptions& options, const Parameters& parameters,
                  const Take& take)
 {

@@ -39,6 +39,9 @@ struct SignalSource
 /// Whether a column was named.
 bool namesColumn(const SignalSource& source);
 
+/// Names the column of a signal: "motor_torque", as the tool's --motor-torque. @throws InputError naming the signals.
+void nameColumn(SignalSource& source, const std::string& signal, const std::string& column);
+
 /// Recordings of one joint, the parameters of its twin, and where in them its signals lie.
 struct SignalOptions : ConfigurationOptions
 {

@@ -38,7 +38,7 @@ class Notebooks(unittest.TestCase):
 
     def test_each(self):
         names = sorted(name[:-len(".ipynb")] for name in os.listdir(FOLDER) if name.endswith(".ipynb"))
-        self.assertEqual(names, ["fault_in_tooth_forces", "gear_study", "recording_compared"])
+        self.assertEqual(names, ["data_set_to_verdict", "fault_in_tooth_forces", "gear_study", "recording_compared"])
         for name in names:
             with self.subTest(name):
                 self.execute(name)

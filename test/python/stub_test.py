@@ -13,7 +13,7 @@ from harmonic_joint_twin import _hjt
 
 TOOL = sys.argv.pop(1)
 STUB = os.path.join(os.path.dirname(harmonic_joint_twin.__file__), "_hjt.pyi")
-COMMANDS = os.path.join(os.path.dirname(harmonic_joint_twin.__file__), "_commands.py")
+SOURCES = [os.path.join(os.path.dirname(STUB), name) for name in ("_commands.py", "_data_sets.py")]
 
 
 def stub_body(node):
@@ -93,7 +93,7 @@ class Stub(unittest.TestCase):
     @unittest.skipUnless(importlib.util.find_spec("numpy.typing"), "this numpy has no types")
     def test_passes_the_type_checker(self):
         from mypy import api
-        output, errors, code = api.run(["--strict", "--cache-dir", os.devnull, STUB, COMMANDS])
+        output, errors, code = api.run(["--strict", "--cache-dir", os.devnull, STUB, *SOURCES])
         self.assertEqual(code, 0, output + errors)
 
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -120,6 +121,12 @@ void takeSignals(const Given& given, SignalOptions& options)
   given.take("torque_scale", options.torque_scale);
   given.take("force", options.force);
   given.take("at_hand", options.at_hand);
+  std::map<std::string, std::string> columns;
+  given.take("columns", columns);
+  for (const auto& [signal, column] : columns)
+  {
+    nameColumn(options.source, signal, column);
+  }
   for (const auto& [recording, columns] : options.at_hand)
   {
     for (const auto& [name, values] : columns)

@@ -1,0 +1,212 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Data sets and verdicts as frames of pandas, which is loaded when the first of these functions runs."""
+import importlib
+import os
+from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional, Sequence, Union
+
+import numpy as np
+
+from harmonic_joint_twin import _commands, _hjt
+from harmonic_joint_twin._commands import Arrays, Document, Overlays, Path, Progress, Recording
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+Frame = Any  # pandas.DataFrame; pandas has no types
+
+__all__ = ["assess", "drive_fault", "load", "reference", "write_cmapss"]
+
+# A check-up is one window, judged by itself: docs/health.md.
+CHECK_UP = {"indicators.evidence_windows": 1, "indicators.false_alarm_rate": 1e-3}
+ALL_WINDOWS = {"indicators.baseline_windows": 10000}
+DIRECTION_ROWS = 5  # over which the motor's direction is taken: a count of its noise is none
+
+
+def load(folder: Path, group: Optional[str] = "indicators") -> Frame:
+    """A data set of sweep or lives as one frame.
+
+    folder: of the data set. group: of its files, 'indicators' or a name in the plan; None: the index alone.
+
+    Returns a pandas.DataFrame: a row for each sample or window of the group, its columns of one number a row, and
+    beside them the run's columns of index.csv, labels among them; 'file' with its path. Without a group a row for each
+    run. Runs that failed are left out. InputError.
+    """
+    pandas = importlib.import_module("pandas")
+    path = os.path.join(os.fspath(folder), "index.csv")
+    if not os.path.exists(path):
+        raise _hjt.InputError(f"{path} is not there: no data set, or one whose sweep has not ended")
+    index = pandas.read_csv(path)
+    index = index[index["status"] == "ok"].reset_index(drop=True)
+    index["file"] = [os.path.join(os.fspath(folder), file) for file in index["file"]]
+    if group is None:
+        return index
+    h5py = importlib.import_module("h5py")
+    parts = []
+    for file in index["file"]:
+        if not file.endswith(".h5"):
+            raise _hjt.InputError(f"{file} is no HDF5 file: a data set of bags has its index alone, group=None")
+        with h5py.File(file, "r") as run:
+            groups = [name for name, item in run.items() if isinstance(item, h5py.Group)]
+            if group not in groups:
+                raise _hjt.InputError(f"{file} has no group '{group}'; it holds {', '.join(groups)}")
+            columns = {name: column[:] for name, column in run[group].items() if column.ndim == 1}
+        parts.append(pandas.DataFrame({"file": file, **columns}))
+    return pandas.concat(parts, ignore_index=True).merge(index, on="file")
+
+
+def drive_fault(recording: Arrays, kind: str, size: float, *, onset: float = 0.0,
+                ramp: float = 0.0) -> Dict[str, "NDArray[np.float64]"]:
+    """A recording of a joint as it would be with a fault of its brake, sensors or motor (docs/faults.md).
+
+    recording: columns as of indicators, of load(folder, 'signals') or Twin.run. kind and size: 'brake_drag' [N.m at
+    the motor], 'lost_counts' [rad that the motor encoder misses of each turn forward], 'encoder_offset' [rad at the
+    output], 'current_gain' [-, share too much], 'weak_magnets' [-, share of the flux lost]. onset: when it begins [s].
+    ramp: time in which it then grows evenly to its size [s]; 0: at once.
+
+    Returns a dict of the columns. What a controller makes of the fault is not in it. InputError.
+    """
+    columns = _commands._columns(recording)
+    needed = {"brake_drag": ("motor_torque_reading", "motor_angle_encoder"), "lost_counts": ("motor_angle_encoder",),
+              "encoder_offset": ("output_angle_encoder",), "current_gain": ("motor_torque_reading",),
+              "weak_magnets": ("motor_torque_reading",)}
+    if kind not in needed:
+        raise _hjt.InputError(f"kind = '{kind}' must be one of {', '.join(needed)}")
+    for name in ("time", *needed[kind]):
+        if name not in columns:
+            raise _hjt.InputError(f"{kind}: column '{name}' is missing")
+    if not np.isfinite([size, onset, ramp]).all() or ramp < 0.0 or kind == "weak_magnets" and not 0.0 <= size < 1.0:
+        raise _hjt.InputError(f"{kind}: size = {size}, onset = {onset} [s], ramp = {ramp} [s] must be finite, ramp not "
+                              "below 0, the size of weak_magnets 0 ... below 1")
+    since = columns["time"] - onset
+    now = size * (np.clip(since / ramp, 0.0, 1.0) if ramp > 0.0 else (since >= 0.0))
+    if kind == "encoder_offset":
+        columns["output_angle_encoder"] = columns["output_angle_encoder"] + now
+        return columns
+    if kind in ("current_gain", "weak_magnets"):
+        factor = 1.0 + now if kind == "current_gain" else 1.0 / (1.0 - now)
+        columns["motor_torque_reading"] = columns["motor_torque_reading"] * factor
+        return columns
+    travel = np.diff(columns["motor_angle_encoder"], prepend=columns["motor_angle_encoder"][:1])
+    if kind == "lost_counts":
+        missed = now * np.maximum(travel, 0.0) / (2.0 * np.pi)
+        columns["motor_angle_encoder"] = columns["motor_angle_encoder"] - np.cumsum(missed)
+        columns.pop("motor_velocity_encoder", None)  # comes from the angle
+    else:
+        speed = np.convolve(travel, np.ones(DIRECTION_ROWS), "same")
+        columns["motor_torque_reading"] = columns["motor_torque_reading"] + now * np.sign(speed)
+    return columns
+
+
+Recordings = Union[Recording, Sequence[Recording]]
+
+
+def _expanded(recordings: Any) -> Any:
+    """A folder of a data set as its files, a column of a frame as a list."""
+    if isinstance(recordings, (str, os.PathLike)) and os.path.isdir(recordings):
+        return list(load(recordings, group=None)["file"])
+    is_column = hasattr(recordings, "tolist") and getattr(recordings, "ndim", 0) == 1 and \
+        getattr(recordings.dtype, "names", None) is None
+    return recordings.tolist() if is_column else recordings
+
+
+def reference(recordings: Recordings, out: Path, *, joint: Optional[str] = None, torque_scale: Optional[float] = None,
+              columns: Optional[Mapping[str, str]] = None, force: bool = False, overlays: Overlays = (),
+              progress: Optional[Progress] = None) -> Frame:
+    """What a joint's indicators are in sound condition, learned from all windows of its recordings.
+
+    recordings: as of indicators, also a column of a frame with their paths, or the folder of a data set, all of whose
+    runs are then taken for sound. out: the file to write, for assess and for the tool's --baseline. Others as of
+    indicators.
+
+    Returns a pandas.DataFrame: a row for each window, its 'recording', operating point and indicators. InputError,
+    ParameterError.
+    """
+    pandas = importlib.import_module("pandas")
+    found = _commands.indicators(_expanded(recordings), joint=joint, torque_scale=torque_scale, columns=columns,
+                                 save_baseline=out, force=force, overlays=[ALL_WINDOWS, *overlays], progress=progress)
+    points = ("recording", "time", "turns", "speed", "direction", "load", "temperature")
+    return pandas.DataFrame([{**{name: window[name] for name in points}, **window["indicators"]}
+                             for window in found["windows"]])
+
+
+def _verdict(recording: str, windows: List[Dict[str, Any]]) -> Dict[str, Any]:
+    """That of the last window that has one, else of the last."""
+    row: Dict[str, Any] = {"recording": recording, "windows": len(windows), "state": "no whole window", "level": None}
+    if not windows:
+        return row
+    judged = [window for window in windows if window["assessment"]["state"] == "assessed"]
+    last = (judged or windows)[-1]
+    said = last["assessment"]
+    row.update(last["strongest"] or {})
+    row.update(state=said["state"], score=said["largest_score"])
+    if judged:
+        row.update({name: said[name] for name in ("level", "cause", "confidence", "severity", "severity_deviation")})
+        row["alternatives"] = ", ".join(said["alternatives"])
+    return row
+
+
+def assess(recordings: Recordings, reference: Path, *, check_up: bool = False, joint: Optional[str] = None,
+           torque_scale: Optional[float] = None, columns: Optional[Mapping[str, str]] = None, overlays: Overlays = (),
+           progress: Optional[Progress] = None) -> Frame:
+    """Verdicts on recordings of a joint by its reference, each for itself; a run of a data set with its own parameters.
+
+    recordings: as of reference. reference: file that it wrote. check_up: each is a check-up, one window that is judged
+    by itself; else work that goes on, ten windows together. Others as of indicators.
+
+    Returns a pandas.DataFrame, a row for each recording: 'recording', 'windows', 'state' ('assessed': the others hold),
+    'level' ('OK', 'WARN', 'ERROR'), 'cause', 'confidence', 'severity', 'severity_deviation', 'alternatives', 'score'
+    over threshold, and of the 'indicator' furthest off its deviation in 'spreads' and in 'percent'. Recordings that are
+    not judged are warned of. InputError, ParameterError.
+    """
+    pandas = importlib.import_module("pandas")
+    expanded = _expanded(recordings)
+    found = _commands.indicators(expanded, baseline=reference, joint=joint, torque_scale=torque_scale, columns=columns,
+                                 overlays=[*([CHECK_UP] if check_up else []), *overlays], progress=progress)
+    windows: Dict[str, List[Dict[str, Any]]] = {name: [] for name in _commands._signals(expanded)["recordings"]}
+    for window in found["windows"]:
+        windows[window["recording"]].append(window)
+    strongest = {"indicator": None, "spreads": float("nan"), "percent": float("nan")}
+    order = ["recording", "windows", "state", "level", "cause", "confidence", "severity", "severity_deviation",
+             "alternatives", "score", *strongest]
+    return pandas.DataFrame([_verdict(name, several) for name, several in windows.items()], columns=order)
+
+
+def write_cmapss(folder: Path, out: Path, *, duty: Optional[str] = None, seed: int = 1) -> Document:
+    """Lives as C-MAPSS has its engines: train.csv, test.csv and RUL.csv, for programs that read such.
+
+    folder: data set of lives with indicators. out: folder to write to, made if need be. duty: that whose recordings are
+    taken; None: the only one. seed: of where the tests are cut.
+
+    Rows: 'unit' (drive), 'cycle' (check-up, from 1 on), 'hours', settings (speed, load, temperature of the windows) and
+    the indicators that every check-up has, means of its windows. Drives still in use are left out. train.csv: split
+    'train', to the end. test.csv: the others, each cut after one of its check-ups; RUL.csv: the hours they had left.
+
+    Returns a dict: 'train', 'test' (numbers of drives), 'indicators' (names). InputError.
+    """
+    pandas = importlib.import_module("pandas")
+    frame = load(folder)
+    if "life.drive" not in frame:
+        raise _hjt.InputError(f"{folder} holds no lives")
+    duties = sorted(set(frame["duty"]))
+    if duty is None and len(duties) > 1 or duty is not None and duty not in duties:
+        raise _hjt.InputError(f"duty = {duty} must be one of {', '.join(duties)}")
+    frame = frame[(frame["duty"] == (duty or duties[0])) & (frame["life.cause"] != "still in use")]
+    window = [name for name in frame if name.startswith("window_")]
+    first, last = list(frame).index("run"), list(frame).index("file")
+    names = [name for name in list(frame)[last + 1:first] if name not in window]
+    life = {"life.drive": "unit", "life.hours": "hours", "life.remaining": "RUL", "life.split": "split"}
+    settings = {"window_speed": "speed", "window_load": "load", "window_temperature": "temperature"}
+    rows = frame.groupby(list(life), as_index=False)[[*settings, *names]].mean().rename(columns={**life, **settings})
+    names = [name for name in names if rows[name].notna().all()]
+    rows = rows.sort_values(["unit", "hours"])
+    rows.insert(1, "cycle", rows.groupby("unit").cumcount() + 1)
+    kept = ["unit", "cycle", "hours", *settings.values(), *names]
+    train, test = rows[rows["split"] == "train"], rows[rows["split"] != "train"]
+    draw = np.random.RandomState(seed)
+    parts = [drive.iloc[:draw.randint(1, len(drive) + 1)] for _, drive in test.groupby("unit")]
+    cut = pandas.concat(parts) if parts else test
+    os.makedirs(out, exist_ok=True)
+    for name, table in (("train", train[kept]), ("test", cut[kept]),
+                        ("RUL", cut.groupby("unit", as_index=False).last()[["unit", "RUL"]])):
+        table.to_csv(os.path.join(out, name + ".csv"), index=False)
+    return {"train": int(train["unit"].nunique()), "test": int(cut["unit"].nunique()), "indicators": names}

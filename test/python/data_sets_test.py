@@ -1,0 +1,154 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Data sets and verdicts as frames. Argument: the tool."""
+import os
+import sys
+import tempfile
+import unittest
+import warnings
+
+import numpy as np
+
+try:
+    import h5py
+    import pandas
+except ImportError as error:
+    print(f"skipped: {error}")
+    sys.exit(77)
+
+import harmonic_joint_twin as hjt
+
+TOOL = sys.argv.pop(1)
+SOUND, WORN = 12, 2
+PLAN = """
+seed: 5
+duration: 7.1
+set:
+  solver.scene: auto
+  indicators.window_time: 6.0
+  indicators.window_turns: 100000.0
+  output.gravity_torque: {uniform: [10.0, 14.0]}
+duty: [{name: slow, speed: {trapezoid: {peak: 0.5, slope: 5.0, hold: 0.9}}}]
+repeats: %d
+classes: {%s}
+record:
+  indicators: true
+  groups:
+    signals: {rate: 500.0, columns: [motor_angle_encoder, output_angle_encoder, motor_torque_reading]}
+"""
+OLD = "lubricant_degradation: [{kind: lubricant_degradation, severity: 0.9, place: -1, onset: 0.0}]"
+
+
+class DataSets(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        os.chdir(cls.folder.name)
+        for name, repeats, classes in (("sound", SOUND, "healthy: []"), ("old", WORN, OLD)):
+            with open(name + ".yaml", "w", encoding="utf-8") as file:
+                file.write(PLAN % (repeats, classes))
+            hjt.sweep(name + ".yaml", name)
+        cls.learned = hjt.reference("sound", "sound_reference.yaml")
+
+    @classmethod
+    def tearDownClass(cls):
+        os.chdir("/")
+        cls.folder.cleanup()
+
+    def test_a_set_comes_as_one_frame_with_its_labels(self):
+        runs, windows = hjt.load("old", group=None), hjt.load("old")
+        self.assertEqual(list(runs["class"]), ["lubricant_degradation"] * WORN)
+        self.assertEqual(list(windows.file), list(runs.file))
+        with h5py.File(runs.file[1], "r") as file:
+            self.assertEqual(windows.running_torque[1], file["indicators/running_torque"][0])
+            samples = hjt.load("old", "signals").groupby("file").get_group(runs.file[1])
+            np.testing.assert_array_equal(samples["motor_angle_encoder"], file["signals/motor_angle_encoder"][:])
+        with self.assertRaisesRegex(hjt.InputError, "no group 'signal'; it holds .*signals"):
+            hjt.load("old", "signal")
+        with self.assertRaisesRegex(hjt.InputError, "index.csv is not there"):
+            hjt.load("nothing")
+
+    def test_a_folder_is_judged_by_a_reference(self):
+        self.assertEqual(len(self.learned), SOUND)
+        verdicts = hjt.assess("old", "sound_reference.yaml", check_up=True)
+        self.assertEqual(list(verdicts.recording), list(hjt.load("old", group=None).file))
+        self.assertEqual(set(verdicts.state), {"assessed"})
+        self.assertFalse((verdicts.level == "OK").any(), verdicts)
+        self.assertTrue((verdicts.score > 1.0).all(), verdicts)
+        sound = hjt.assess(hjt.load("sound", group=None).file[:3], "sound_reference.yaml", check_up=True)
+        self.assertEqual(list(sound.level), ["OK"] * 3)
+        pandas.testing.assert_frame_equal(hjt.assess(list(verdicts.recording), "sound_reference.yaml", check_up=True),
+                                          verdicts)
+
+    def test_each_file_is_read_with_its_own_parameters(self):
+        windows = hjt.indicators(list(hjt.load("sound", group=None).file[:2]))["windows"]
+        self.assertEqual([window["parameters"] for window in windows], ["run"] * 2)
+        loads = hjt.load("sound", group=None)["set.output.gravity_torque"]
+        self.assertNotEqual(loads[0], loads[1])
+
+    def test_too_few_windows_are_no_verdict(self):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", RuntimeWarning)
+            verdict = hjt.assess("sound", "sound_reference.yaml").iloc[0]
+        self.assertEqual(verdict.state, "too few windows")
+        self.assertIsNone(verdict.level)
+
+    def test_columns_of_any_name_are_read(self):
+        samples = hjt.load("sound", "signals")
+        frame = samples[samples.run == 0]
+        names = {"motor_angle_encoder": "m", "output_angle_encoder": "q", "motor_torque_reading": "i", "time": "t"}
+        columns = {"motor_angle": "m", "output_angle": "q", "motor_torque": "i", "time": "t"}
+        settings = {"overlays": [{"indicators.window_time": 6.0, "indicators.window_turns": 1e5}]}
+        expected = hjt.indicators(frame, **settings)["windows"]
+        found = hjt.indicators(frame.rename(columns=names), columns=columns, **settings)["windows"]
+        self.assertEqual(found, expected)
+        self.assertEqual(len(found), 1)
+        with self.assertRaisesRegex(hjt.InputError, r"'motor_angel' is no signal \(did you mean motor_angle\?\)"):
+            hjt.indicators(frame, columns={"motor_angel": "m"})
+
+    def test_faults_of_brake_sensors_and_motor_grow_from_their_onset(self):
+        time = np.arange(0.0, 4.0, 0.01)
+        angle = 100.0 * np.where(time < 2.0, time, 4.0 - time)
+        sound = {"time": time, "motor_angle_encoder": angle, "motor_torque_reading": np.full_like(time, 0.2),
+                 "output_angle_encoder": angle / 101.0}
+        dragging = hjt.drive_fault(sound, "brake_drag", 0.1, onset=1.0, ramp=1.0)["motor_torque_reading"]
+        np.testing.assert_allclose(dragging[[50, 150, 350]], [0.2, 0.25, 0.1])
+        lost = hjt.drive_fault(sound, "lost_counts", 0.01)["motor_angle_encoder"] - angle
+        np.testing.assert_allclose(lost[[0, 200, 399]], [0.0, -0.01 * 200.0 / (2.0 * np.pi)] + [lost[200]], atol=1e-9)
+        offset = hjt.drive_fault(sound, "encoder_offset", 0.002, onset=3.0)["output_angle_encoder"]
+        np.testing.assert_allclose((offset - sound["output_angle_encoder"])[[0, 399]], [0.0, 0.002], atol=1e-12)
+        weak = hjt.drive_fault(sound, "weak_magnets", 0.2)["motor_torque_reading"]
+        np.testing.assert_allclose(weak, hjt.drive_fault(sound, "current_gain", 0.25)["motor_torque_reading"])
+        np.testing.assert_array_equal(sound["motor_torque_reading"], 0.2)
+        for wrong in (("brake", 0.1), ("weak_magnets", 1.0)):
+            with self.assertRaises(hjt.InputError):
+                hjt.drive_fault(sound, *wrong)
+
+    def test_lives_are_written_as_cmapss_has_them(self):
+        rows = []
+        os.makedirs("lives/runs")
+        for drive, (split, cause, length) in enumerate((("train", "flank_wear", 3), ("test", "flank_wear", 4),
+                                                        ("train", "still in use", 5))):
+            for check_up in range(length):
+                file = f"runs/run_{len(rows)}.h5"
+                with h5py.File("lives/" + file, "w") as run:
+                    for name, value in (("window_end", 9.0), ("window_speed", 1.0), ("window_load", 2.0),
+                                        ("window_temperature", 25.0), ("stiffness", 30.0 - check_up),
+                                        ("loop", float("nan"))):
+                        run.create_dataset("indicators/" + name, data=[value, value])
+                rows.append({"run": len(rows), "file": file, "status": "ok", "duty": "check_up", "life.drive": drive,
+                             "life.split": split, "life.hours": 100.0 * check_up,
+                             "life.remaining": 100.0 * (length - check_up), "life.cause": cause})
+        pandas.DataFrame(rows).to_csv("lives/index.csv", index=False)
+        found = hjt.write_cmapss("lives", "cmapss")
+        self.assertEqual(found, {"train": 1, "test": 1, "indicators": ["stiffness"]})
+        train, test, left = (pandas.read_csv(f"cmapss/{name}.csv") for name in ("train", "test", "RUL"))
+        self.assertEqual(list(train.columns), ["unit", "cycle", "hours", "speed", "load", "temperature", "stiffness"])
+        self.assertEqual(list(train.cycle), [1, 2, 3])
+        self.assertEqual(list(left.RUL), [100.0 * (4 - len(test) + 1)])
+        with self.assertRaisesRegex(hjt.InputError, "holds no lives"):
+            hjt.write_cmapss("sound", "none")
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
