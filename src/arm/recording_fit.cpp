@@ -61,6 +61,22 @@ RecordingFinding velocityFinding(const FittedFactor& own, double of_stamps)
 }
 }  // namespace
 
+double likelyTimeScale(double period)
+{
+  constexpr double FASTEST_ROWS = 0.5e-3;  // [s]
+  constexpr double LONG = 0.5;             // no telemetry comes so rarely [s]
+  if (period < LONG)
+  {
+    return 1.0;
+  }
+  double scale = 1e-3;
+  while (scale * period > SLOW_ROWS)
+  {
+    scale *= 1e-3;
+  }
+  return scale * period > FASTEST_ROWS ? scale : 1.0;
+}
+
 const char* effortUnitName(EffortUnit unit)
 {
   switch (unit)
@@ -315,14 +331,16 @@ std::vector<RecordingFinding> RecordingFit::ofArm() const
     findings.push_back({ "reading", refusal_.clause, refusal_.reason });
     return findings;
   }
-  if (rows_ >= MIN_ROWS && 2 * slow_rows_ > rows_)
+  constexpr std::uint64_t FEW_ROWS = 10;
+  if (rows_ >= FEW_ROWS && 2 * slow_rows_ > rows_)
   {
-    constexpr double LONG = 0.5;  // no telemetry comes so rarely [s]
     const double period = slow_time_ / static_cast<double>(slow_rows_);
     findings.push_back({ "period",
                          "rows come " + rounded(period) + " s apart by their stamps (" + rounded(1.0 / period) +
                              " Hz), more than " + rounded(SLOW_ROWS) + " s: no accelerations, no loads" +
-                             (period > LONG ? " (are they in ms? of a recording --time-scale 0.001)" : ""),
+                             (likelyTimeScale(period) < 1.0 ? ", or the stamps are of another unit (of a recording "
+                                                              "`joint_twin check` tries --time-scale)" :
+                                                              ""),
                          Reason::ROW_RATE });
     return findings;
   }
@@ -345,6 +363,8 @@ std::vector<RecordingFinding> RecordingFit::ofArm() const
           "angles change by more than " + rounded(FASTEST) + " rad/s: they are in degrees, or the stamps are wrong",
           Reason::ANGLE_UNIT });
   }
+  constexpr double MILLI = 1000.0;
+  constexpr double WIDE = 2.0;
   const EffortFit found = effort();
   if (found.is_known && found.unit != joints_.front().effort)
   {
@@ -352,6 +372,11 @@ std::vector<RecordingFinding> RecordingFit::ofArm() const
                          std::string("effort looks like ") + effortUnitName(found.unit) + ", not " +
                              effortUnitName(joints_.front().effort) +
                              ": set telemetry.effort: " + effortKeyword(found.unit),
+                         Reason::EFFORT_UNIT });
+  }
+  else if (std::isfinite(found.factor.value) && std::abs(std::log(found.factor.value / MILLI)) < std::log(WIDE))
+  {
+    findings.push_back({ "effort_unit", "effort looks like the motor's current in mA: divide it by 1000",
                          Reason::EFFORT_UNIT });
   }
   else if (std::isfinite(found.factor.value) && !found.is_known && differs(found.factor, 1.0))

@@ -47,6 +47,10 @@ struct EffortFit
   bool is_known{};      ///< the factor is that of a unit
 };
 
+/// By which stamps are multiplied that are in ms, us or ns, where rows so far apart [s] mean one of these; 1: they do
+/// not.
+double likelyTimeScale(double period);
+
 /// For people: "the motor's current in A".
 const char* effortUnitName(EffortUnit unit);
 /// In configuration.

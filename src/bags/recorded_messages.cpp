@@ -81,6 +81,7 @@ public:
   explicit DirectoryMessages(const std::string& path) : RecordedMessages(path)
   {
     std::vector<std::string> files;
+    std::string compressed;
     for (const fs::directory_entry& entry : fs::directory_iterator(path))
     {
       const std::string ending = entry.path().extension().string();
@@ -88,10 +89,12 @@ public:
       {
         files.push_back(entry.path().string());
       }
+      compressed = ending == ".zstd" ? entry.path().string() : compressed;
     }
     if (files.empty())
     {
-      throw InputError(path + " is a directory without .db3 and .mcap files");
+      throw InputError(path + " is a directory without .db3 and .mcap files" +
+                       (compressed.empty() ? "" : "; `zstd -d " + compressed + "` unpacks one"));
     }
     // NAME_2 before NAME_10
     std::sort(files.begin(), files.end(),

@@ -32,7 +32,7 @@ struct Refused
   const char* text;
 };
 
-constexpr std::array<Refused, 10> REFUSED{ {
+constexpr std::array<Refused, 12> REFUSED{ {
     { "#ROSBAG V1"sv, "a bag of format 1; `rosbag fix` of ROS 1 makes one of format 2.0 of it" },
     { "\x28\xB5\x2F\xFD"sv, "compressed by zstd; `zstd -d FILE` unpacks it" },
     { "\x1F\x8B"sv, "compressed by gzip; `gunzip FILE` unpacks it" },
@@ -44,6 +44,8 @@ constexpr std::array<Refused, 10> REFUSED{ {
     { "\x89HDF"sv, "an HDF5 file; save its table as CSV" },
     { "MATLAB 5.0"sv, "a MATLAB file; writetable saves its table as CSV" },
     { "PAR1"sv, "a Parquet file; save its table as CSV" },
+    { "\xFF\xFE"sv, "a text in UTF-16; `iconv -f UTF-16 -t UTF-8 FILE` makes one in UTF-8 of it" },
+    { "\xFE\xFF"sv, "a text in UTF-16; `iconv -f UTF-16 -t UTF-8 FILE` makes one in UTF-8 of it" },
     { "ULog"sv, "a PX4 log; ulog2csv makes CSV of it" },
 } };
 }  // namespace

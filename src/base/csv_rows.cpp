@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <cstring>
 
+#include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 
 namespace hjt
@@ -35,6 +36,17 @@ char* trimmed(char* begin, char* end)
   *end = '\0';
   return begin;
 }
+/// Behind the quotes that the text begins with; without any its begin.
+char* endOfQuotes(char* begin, char* end)
+{
+  char* const first = std::find_if_not(begin, end, isBlank);
+  if (first == end || *first != '"')
+  {
+    return begin;
+  }
+  char* const last = std::find(first + 1, end, '"');
+  return last == end ? begin : last + 1;
+}
 }  // namespace
 
 CsvRows::CsvRows(const std::string& path) : path_(path), file_(path, std::ios::binary), line_(LONGEST_LINE + 1)
@@ -43,26 +55,56 @@ CsvRows::CsvRows(const std::string& path) : path_(path), file_(path, std::ios::b
   {
     throw InputError(path_ + " cannot be read: " + std::strerror(errno));
   }
-  if (!readLine())
+  readHeader();
+}
+
+/// A line that begins with # is the header if the next one has as many columns, one if it is a number; else a comment.
+void CsvRows::readHeader()
+{
+  bool is_header = false;
+  while (!is_header)
   {
-    throw InputError(path_ + ":1: the header is missing");
-  }
-  header_.assign(texts_.begin(), texts_.end());
-  if (!header_.front().empty() && header_.front().front() == '#')
-  {
+    header_.clear();
+    if (!readLine())
+    {
+      throw InputError(path_ + ":1: the header is missing");
+    }
+    header_.assign(texts_.begin(), texts_.end());
+    is_header = header_.front().empty() || header_.front().front() != '#';
+    if (is_header)
+    {
+      continue;
+    }
     header_.front().erase(0, header_.front().find_first_not_of("# \t"));
     if (header_.front().empty() && header_.size() > 1)
     {
       header_.erase(header_.begin());
+    }
+    const auto place = file_.tellg();
+    const std::size_t line_number = line_number_;
+    is_header = !readLine() || (texts_.size() == header_.size() &&
+                                (header_.size() > 1 || decimalNumber(texts_.front()).has_value()));
+    if (place != std::ifstream::pos_type(-1))  // else it was the last line
+    {
+      file_.clear();
+      file_.seekg(place);
+      line_number_ = line_number;
     }
   }
 }
 
 bool CsvRows::next()
 {
-  if (!readLine())
+  do
   {
-    return false;
+    if (!readLine())
+    {
+      return false;
+    }
+  } while (texts_.front()[0] == '#');
+  while (texts_.size() > header_.size() && *texts_.back() == '\0')
+  {
+    texts_.pop_back();
   }
   if (texts_.size() != header_.size())
   {
@@ -72,7 +114,11 @@ bool CsvRows::next()
     {
       return false;
     }
-    throw InputError(place() + (texts_.size() < header_.size() ? ": too few columns" : ": too many columns"));
+    if (!allows_uneven_)
+    {
+      throw InputError(place() + (texts_.size() < header_.size() ? ": too few columns" : ": too many columns"));
+    }
+    texts_.assign(header_.size(), "");
   }
   return true;
 }
@@ -155,18 +201,20 @@ void CsvRows::split()
     findSeparator();
   }
   texts_.clear();
+  if (separator_ != ',' && !header_.empty())
+  {
+    std::replace(begin, end, ',', '.');
+  }
   if (separator_ == ' ')
   {
     splitAtBlanks(begin, end);
     return;
   }
-  if (separator_ == ';' && !header_.empty())
-  {
-    std::replace(begin, end, ',', '.');
-  }
   for (char* comma = nullptr; comma != end; begin = comma + 1)
   {
-    comma = std::find(begin, end, separator_);
+    char* const quote_end = header_.empty() ? begin : endOfQuotes(begin, end);
+    std::replace(begin, quote_end, ',', '.');
+    comma = std::find(quote_end, end, separator_);
     texts_.push_back(trimmed(begin, comma));
   }
 }

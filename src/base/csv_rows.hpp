@@ -10,7 +10,8 @@ namespace hjt
 {
 /// Rows of a table in a text file with a header. Commas, semicolons, tabs or blanks separate its texts; the header
 /// tells which. Blanks and quotes around a text, a byte order mark and a carriage return before a line's end are not
-/// part of it, nor is a # before the header. Between semicolons a comma is a decimal one. Empty lines are skipped.
+/// part of it, nor is a # before the header. Between other separators, and in quotes, a comma is a decimal one. Empty
+/// lines and lines that begin with # are skipped, and so are empty texts beyond the header's.
 class CsvRows
 {
 public:
@@ -27,6 +28,9 @@ public:
   /// Such a line was left out.
   bool wasCutOff() const { return was_cut_off_; }
 
+  /// From now on any other line with too few or too many columns is a row of empty texts.
+  void allowUneven() { allows_uneven_ = true; }
+
   /// "commas", "blanks".
   const char* separatorName() const;
 
@@ -37,6 +41,7 @@ public:
   std::string place() const { return path_ + ":" + std::to_string(line_number_); }
 
 private:
+  void readHeader();
   bool readLine();
   void findSeparator();
   void split();
@@ -49,6 +54,7 @@ private:
   std::size_t line_number_ = 0;
   char separator_ = ',';
   bool allows_cut_off_ = false;
+  bool allows_uneven_ = false;
   bool was_cut_off_ = false;
   std::vector<std::string> header_;
   std::vector<const char*> texts_;

@@ -83,6 +83,7 @@ public:
   std::string place() const { return rows_.place(); }
 
   void allowCutOff() { rows_.allowCutOff(); }
+  void allowUneven() { rows_.allowUneven(); }
   bool wasCutOff() const { return rows_.wasCutOff(); }
 
 private:

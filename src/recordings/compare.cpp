@@ -109,8 +109,23 @@ std::string departuresOf(const std::vector<ComparedJoint>& lines)
   return text;
 }
 
+/// Joints that are judged, but not against the reference that was given.
+std::string withoutReference(const std::vector<ComparedJoint>& lines)
+{
+  std::vector<std::string> names;
+  for (const ComparedJoint& line : lines)
+  {
+    if (line.friction && line.friction->reference != FrictionReference::OWN)
+    {
+      names.push_back(line.name);
+    }
+  }
+  return names.empty() ? std::string() :
+                         "The reference did not judge the friction of " + joined(names) + ": held against the twin. ";
+}
+
 /// What the joints have in common, and each that departs or is not judged.
-std::string textOf(const std::vector<ComparedJoint>& lines, const ArmFriction& arm)
+std::string textOf(const std::vector<ComparedJoint>& lines, const ArmFriction& arm, bool has_reference)
 {
   std::string text;
   if (arm.median != 1.0)
@@ -127,7 +142,7 @@ std::string textOf(const std::vector<ComparedJoint>& lines, const ArmFriction& a
   {
     text += groupText(group, lines);
   }
-  text += departuresOf(lines);
+  text += departuresOf(lines) + (has_reference ? withoutReference(lines) : "");
   text.pop_back();
   return text;
 }
@@ -143,7 +158,7 @@ std::string payloadText(const IdentifiedPayload& payload)
 }
 
 /// Level and text of an arm by those of its joints. `misfits`: why the rows of each say nothing.
-void judgeArm(const std::vector<Misfit>& misfits, ComparedRecording& compared)
+void judgeArm(const std::vector<Misfit>& misfits, bool has_reference, ComparedRecording& compared)
 {
   for (const ComparedJoint& joint : compared.joints)
   {
@@ -155,7 +170,7 @@ void judgeArm(const std::vector<Misfit>& misfits, ComparedRecording& compared)
                     std::all_of(misfits.begin(), misfits.end(),
                                 [&](const Misfit& misfit) { return misfit.clause == misfits.front().clause; });
   compared.text = (compared.payload ? payloadText(*compared.payload) : "") +
-                  (same ? sentence(misfits.front().clause) : textOf(compared.joints, compared.friction));
+                  (same ? sentence(misfits.front().clause) : textOf(compared.joints, compared.friction, has_reference));
 }
 
 Json documentOfArm(const ComparisonOptions& options, const ComparedRecording& compared)
@@ -182,21 +197,59 @@ Json documentOfArm(const ComparisonOptions& options, const ComparedRecording& co
            { "joints", tableOf(compared).rows() } };
 }
 
+/// Of the currents less what is predicted, as torques of all joints, rms [N.m].
+double residualTorque(const ArmRecording& recording, const ComparisonPass& pass)
+{
+  double squares = 0.0;
+  for (std::size_t i = 0; i < pass.joints.size(); ++i)
+  {
+    squares += std::pow(recording.parameters(i).telemetry.torque_per_current * pass.joints[i]->evidence().residualRms(),
+                        2);
+  }
+  return std::sqrt(squares);
+}
+
+/// A payload is the reason only if every joint fits with it, and clearly better than without.
+bool explains(const ArmRecording& recording, double residual_before, const ComparisonPass& with)
+{
+  constexpr double CLEARLY = 0.9;
+  const auto fits = [](const std::unique_ptr<JointComparison>& joint)
+  { return !joint->friction({}).is_below_faults && joint->frictionReason() != Reason::LOAD_WRONG; };
+  return std::all_of(with.joints.begin(), with.joints.end(), fits) &&
+         residualTorque(recording, with) < CLEARLY * residual_before;
+}
+
+/// With the payload that the currents show where that explains them.
+ComparisonPass passWithPayload(const ComparisonOptions& options, ArmRecording& recording, ComparedRecording& compared)
+{
+  ComparisonPass pass = passThrough(options, recording);
+  if (!pass.payload || !pass.payload->isCarried())
+  {
+    return pass;
+  }
+  const IdentifiedPayload payload = *pass.payload;
+  const double residual = residualTorque(recording, pass);
+  recording.setPayload(payload.payload());
+  pass.joints.clear();  // closes the files that the next pass opens
+  pass = passThrough(options, recording);
+  if (explains(recording, residual, pass) || options.watch.stopped())
+  {
+    compared.payload = payload;
+    return pass;
+  }
+  recording.setPayload(payload.configured);
+  pass.joints.clear();
+  return passThrough(options, recording);
+}
+
 /// With its data in `options.report`.
 ComparedRecording compareInto(const ComparisonOptions& options)
 {
   refuseReferenceAsReport(options);
   ArmRecording recording(options);
-  ComparisonPass pass = passThrough(options, recording);
   ComparedRecording compared;
+  ComparisonPass pass = passWithPayload(options, recording, compared);
   compared.is_arm = recording.isArm();
-  if (pass.payload && pass.payload->isCarried())
-  {
-    compared.payload = pass.payload;
-    recording.setPayload(pass.payload->payload());
-    pass.joints.clear();  // closes the files that the next pass opens
-    pass = passThrough(options, recording);
-  }
   compared.found = pass.found;
   compared.friction = pass.friction;
   if (options.watch.stopped())
@@ -211,7 +264,7 @@ ComparedRecording compareInto(const ComparisonOptions& options)
   }
   if (recording.isArm())
   {
-    judgeArm(pass.misfits, compared);
+    judgeArm(pass.misfits, !options.references.empty(), compared);
     compared.document = documentOfArm(options, compared);
     writeTextFile((fs::path(options.report) / ARM_FILE).string(), compared.document.dump() + "\n");
   }

@@ -44,6 +44,11 @@ MeasuredFriction JointComparison::friction(const Misfit& misfit) const
   return measuredFriction(evidence(), parameters_, { sound_.own, is_identified_, has_controller_, 0.0, 1.0, misfit });
 }
 
+Reason JointComparison::frictionReason() const
+{
+  return frictionFactor(evidence(), { sound_.own, is_identified_, has_controller_, 0.0, 1.0, {} }).reason;
+}
+
 ComparedJoint JointComparison::write(const MotionFindings& found, const ArmFriction& arm, const Misfit& misfit,
                                      const std::string& twin_topic)
 {

@@ -34,6 +34,8 @@ public:
   void holdAgainstController() { has_controller_ = true; }
 
   MeasuredFriction friction(const Misfit& misfit) const;
+  /// Why it is not judged; SOUND: it is.
+  Reason frictionReason() const;
 
   /// Judges, and writes the data of the page. `arm`: what the joints have in common. `twin_topic`: of a twin that was
   /// recorded beside the robot. @throws InputError.

@@ -14,7 +14,6 @@
 #include "recordings/message_rows.hpp"
 #include "recordings/motion_readers.hpp"
 #include "recordings/row_time.hpp"
-#include "recordings/source_watch.hpp"
 
 namespace hjt
 {
@@ -301,12 +300,12 @@ private:
     {
       side_by_side_.clear();
     }
+    orders_[part].add(toSeconds(held.stamp - *start_));
     for (MotionRow& row : rows)
     {
       row.time = time;
       row.received = time_.received(held.recorded);
     }
-    sources_[part].add(held.publisher, rows);
     count_.duration = std::max(count_.duration, time);
     count_.least_delay = std::min(count_.least_delay, held.delay());
     count_.most_delay = std::max(count_.most_delay, held.delay());
@@ -328,8 +327,12 @@ private:
       count_.refused_temperatures += rows.refusedTemperatures();
       if (!count_.misfit.exists())
       {
-        count_.misfit = { Reason::TWO_SOURCES, sources_[i].text() };
+        count_.misfit = { Reason::TWO_SOURCES, rows.sources().text() };
       }
+    }
+    for (const auto& [part, order] : orders_)
+    {
+      count_.misfit = count_.misfit.exists() ? count_.misfit : Misfit{ Reason::STAMPS, order.text() };
     }
     count_.rows = side_by_side_.complete();
     count_.corrupt += side_by_side_.dropped() + without_effort;
@@ -358,7 +361,7 @@ private:
   const TopicLayout layout_;
   SideBySide side_by_side_;
   std::vector<Part> parts_;
-  std::map<std::size_t, SourceWatch> sources_;
+  std::map<std::size_t, RowOrder> orders_;
   RowTime time_;
   std::optional<Stamp> start_;
   MotionCount count_;

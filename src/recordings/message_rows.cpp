@@ -225,6 +225,7 @@ bool MessageRows::takeTelemetry(const sensor_msgs::JointState& message, const Re
   {
     held.rows[i].position = angles_[i].take(toSeconds(held.stamp), held.rows[i].position);
   }
+  sources_.add(held.publisher, held.rows);
   held.agrees = last_ && agree(*last_, held);
   if (waiting_ && held.agrees)
   {

@@ -10,6 +10,7 @@
 #include "bags/recorded_messages.hpp"
 #include "messages/conversions.hpp"
 #include "recordings/recorded_motion.hpp"
+#include "recordings/source_watch.hpp"
 #include "tracking/held_values.hpp"
 #include "tracking/unfolded_angle.hpp"
 
@@ -59,6 +60,8 @@ public:
   std::uint64_t withoutEffort() const { return without_effort_; }
   std::uint64_t folds() const;
   std::uint64_t refusedTemperatures() const;
+  /// Of the rows as they came, true or not.
+  const SourceWatch& sources() const { return sources_; }
 
 private:
   bool takeTelemetry(const sensor_msgs::JointState& message, const RecordedMessage& recorded);
@@ -80,5 +83,6 @@ private:
   std::uint64_t corrupt_{};
   std::uint64_t without_time_{};
   std::uint64_t without_effort_{};
+  SourceWatch sources_;
 };
 }  // namespace hjt

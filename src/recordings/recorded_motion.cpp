@@ -12,6 +12,13 @@ namespace hjt
 {
 namespace
 {
+/// What times are multiplied by after reading: those of a table are scaled as they are read, since their unit decides
+/// what a jump is.
+double scaleOf(const MotionSource& source)
+{
+  return isCsv(source) ? 1.0 : source.time_scale;
+}
+
 void scaleTimes(double scale, MotionRow& row)
 {
   row.time *= scale;
@@ -34,16 +41,17 @@ MotionCount readMotion(const MotionSource& source, const std::function<bool(cons
                        const std::function<void(double)>& progress)
 {
   TimeFit fit;
+  const double scale = scaleOf(source);
   const auto scaled = [&](const std::vector<MotionRow>& read)
   {
     MotionRow row = read.front();
-    scaleTimes(source.time_scale, row);
+    scaleTimes(scale, row);
     fit.add(row.time, row.position, row.recorded_velocity);
     return visit(row);
   };
   MotionCount count = isCsv(source) ? readTableMotion(source, { source.csv_joint }, scaled, progress) :
                                       readMessageMotion(source, { source.joint }, scaled, progress);
-  count.duration *= source.time_scale;
+  count.duration *= scale;
   count.velocity_ratio = fit.factor().value;
   return count;
 }
@@ -53,12 +61,13 @@ MotionCount readArmMotion(const MotionSource& source, const std::vector<std::str
                           const std::function<void(double)>& progress)
 {
   std::vector<MotionRow> rows;
+  const double scale = scaleOf(source);
   const auto scaled = [&](const std::vector<MotionRow>& read)
   {
     rows = read;
     for (MotionRow& row : rows)
     {
-      scaleTimes(source.time_scale, row);
+      scaleTimes(scale, row);
     }
     return visit(rows);
   };
@@ -66,7 +75,7 @@ MotionCount readArmMotion(const MotionSource& source, const std::vector<std::str
   std::iota(numbers.begin(), numbers.end(), 0);
   MotionCount count = isCsv(source) ? readTableMotion(source, numbers, scaled, progress) :
                                       readMessageMotion(source, names, scaled, progress);
-  count.duration *= source.time_scale;
+  count.duration *= scale;
   return count;
 }
 }  // namespace hjt

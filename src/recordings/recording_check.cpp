@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "arm/arm_configuration.hpp"
+#include "base/joined.hpp"
 #include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "recordings/recorded_arms.hpp"
@@ -253,7 +254,11 @@ void readJoints(const RecordingOptions& options, CheckedArm& arm)
     addJoint(name, name, arm);
     arm.joints.back().stated_gain = std::nan("");
   }
-  fit.refuse(arm.found.misfit);
+  fit.refuse(!arm.found.misfit.exists() && !arm.missing.empty() ?
+                 Misfit{ Reason::LOAD_UNKNOWN, "an arm's load takes the angles of all its joints, and there is no angle "
+                                               "or no effort of " +
+                                                   joined(arm.missing) } :
+                 arm.found.misfit);
   takeFit(fit, parameters, arm);
   judging.judgeAll(arm.found.duration, arm);
 }
@@ -282,14 +287,21 @@ void tryRemedies(const RecordingOptions& options, CheckedArm& arm)
   RecordingOptions changed = options;
   TriedRemedy remedy;
   std::string kind;
-  if (hasFinding(arm, "stamps"))
+  const double unit_of_time = likelyTimeScale(arm.timing.period);
+  if (hasFinding(arm, "period") && unit_of_time < 1.0)
+  {
+    kind = "period";
+    changed.time_scale = unit_of_time * options.time_scale;
+    remedy.options = " --time-scale " + roundedText(changed.time_scale, 6);
+  }
+  else if (hasFinding(arm, "stamps"))
   {
     kind = "stamps";
     const std::string factor = plainFactor({ options.time_scale * arm.stamps.value, arm.stamps.uncertainty });
     changed.time_scale = *decimalNumber(factor);
     remedy.options = " --time-scale " + factor;
   }
-  else if (hasFinding(arm, "effort_unit"))
+  else if (hasFinding(arm, "effort_unit") && arm.effort.is_known)
   {
     kind = "effort_unit";
     const std::string assignment = std::string("telemetry.effort=") + effortKeyword(arm.effort.unit);
@@ -305,7 +317,11 @@ void tryRemedies(const RecordingOptions& options, CheckedArm& arm)
   readArm(changed, mended);
   remedy.before = arm.rest.share();
   remedy.after = mended.rest.share();
-  remedy.helps = !hasFinding(mended, kind) && remedy.after < remedy.before;
+  // Another time changes the inertia alone, which may be little of the load.
+  constexpr double NOT_WORSE = 1.05;
+  const double bound = kind == "effort_unit" ? 1.0 : NOT_WORSE;
+  const bool is_left = hasFinding(mended, kind) || (kind == "period" && hasFinding(mended, "stamps"));
+  remedy.helps = !is_left && (std::isfinite(remedy.before) ? remedy.after < bound * remedy.before : remedy.after < 1.0);
   arm.tried.push_back(remedy);
 }
 }  // namespace

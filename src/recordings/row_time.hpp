@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "harmonic_joint_twin/base/stamp.hpp"
 
@@ -11,13 +12,15 @@ namespace hjt
 /// Times of a recording's rows from its first row on [s].
 ///
 /// Stamps that jump back, of a recording played in a loop, or ahead by more than a day, from before there was a time,
-/// begin another round: it counts from BETWEEN after the one before, a gap that cuts the stream.
+/// begin another round: it counts from BETWEEN after the one before, a gap that cuts the stream. Rows that are days
+/// apart one after the other have stamps of another unit, and no rounds.
 class RowTime
 {
 public:
   static constexpr double BACK = 1.0;       ///< less than this is a row out of order [s]
   static constexpr double AHEAD = 86400.0;  ///< [s]
   static constexpr double BETWEEN = 1.0;    ///< [s]
+  static constexpr std::uint64_t MOST_AHEAD = 10;
 
   double at(Stamp stamp)
   {
@@ -27,7 +30,8 @@ public:
       zero_ = start_ = stamp;
     }
     const double step = toSeconds(stamp - *last_);
-    if (step < -BACK || step > AHEAD)
+    ahead_ += step > AHEAD ? 1 : 0;
+    if (step < -BACK || (step > AHEAD && ahead_ <= MOST_AHEAD))
     {
       zero_ = stamp;
       offset_ = time_ + BETWEEN;
@@ -52,5 +56,45 @@ private:
   double offset_{};
   double time_{};
   std::uint64_t rounds_{ 1 };
+  std::uint64_t ahead_{};
+};
+
+/// Do the rows come in the order of their stamps?
+class RowOrder
+{
+public:
+  void add(double stamp)
+  {
+    if (rows_++ > 0)
+    {
+      back_ += stamp < last_ ? 1 : 0;
+      same_ += stamp == last_ ? 1 : 0;
+    }
+    last_ = stamp;
+  }
+
+  /// As a clause; empty: they do, or nearly.
+  std::string text() const
+  {
+    constexpr std::uint64_t FEWEST = 10;
+    constexpr std::uint64_t MOST = 5;  // rows for one that goes back
+    if (rows_ < FEWEST)
+    {
+      return {};
+    }
+    if (same_ + 1 == rows_)
+    {
+      return "all rows have the same stamp: times, speeds and loads are unknown";
+    }
+    return MOST * back_ > rows_ ? "the rows are not in the order of their stamps: " + std::to_string(back_) + " of " +
+                                      std::to_string(rows_) + " go back" :
+                                  std::string();
+  }
+
+private:
+  double last_{};
+  std::uint64_t rows_{};
+  std::uint64_t back_{};
+  std::uint64_t same_{};
 };
 }  // namespace hjt

@@ -92,6 +92,7 @@ std::vector<double> readStatedGains(const MotionSource& source, std::size_t join
     return gains;
   }
   table.allowCutOff();
+  table.allowUneven();
   std::array<double, COLUMNS> row;
   row.fill(std::numeric_limits<double>::quiet_NaN());
   std::array<std::vector<double>, JOINTS> ratios;

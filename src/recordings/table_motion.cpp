@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/joined.hpp"
 #include "base/number_table.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "recordings/motion_readers.hpp"
@@ -15,6 +16,7 @@ namespace hjt
 namespace
 {
 constexpr std::size_t JOINTS = 6;
+constexpr double LATEST = 9e9;  // that a stamp holds [s]
 
 /// Of one joint; the first two have to be there.
 enum Quantity : std::size_t
@@ -40,14 +42,26 @@ public:
 
   JointTable(const std::string& path, const std::vector<int>& numbers)
     // A value that is no number spoils its row, not the file.
-    : table_(path, names(numbers), COLUMNS - 1 - 2 * COUNT, COLUMNS)
+    : names_(names(numbers)), table_(path, names_, COLUMNS - 1 - 2 * COUNT, COLUMNS)
   {
     table_.allowCutOff();
+    table_.allowUneven();
     values_.fill(std::nan(""));
     std::fill_n(values_.begin() + column(MOMENT, 0), COUNT, 0.0);
   }
 
-  bool read() { return table_.read(values_); }
+  bool read()
+  {
+    if (!table_.read(values_))
+    {
+      return false;
+    }
+    for (std::size_t i = 0; i < column(VELOCITY, 0); ++i)
+    {
+      was_finite_[i] = was_finite_[i] || std::isfinite(values_[i]);
+    }
+    return true;
+  }
   double time() const { return values_[0]; }
   double value(Quantity quantity, std::size_t joint) const { return values_[column(quantity, joint)]; }
   bool has(Quantity quantity, std::size_t joint) const { return table_.hasColumn(column(quantity, joint)); }
@@ -58,6 +72,20 @@ public:
   {
     const auto is_finite = [](double value) { return std::isfinite(value); };
     return std::all_of(values_.begin(), values_.begin() + column(VELOCITY, 0), is_finite);
+  }
+
+  /// Of the columns that have to hold numbers, those that never did.
+  std::vector<std::string> neverFinite() const
+  {
+    std::vector<std::string> never;
+    for (std::size_t i = 0; i < column(VELOCITY, 0); ++i)
+    {
+      if (!was_finite_[i])
+      {
+        never.push_back("'" + names_[i] + "'");
+      }
+    }
+    return never;
   }
 
   bool isAllZero() const { return areZero(ANGLE, MOMENT); }
@@ -85,8 +113,10 @@ private:
     return names;
   }
 
+  typename NumberTable<COLUMNS>::Names names_;
   NumberTable<COLUMNS> table_;
   std::array<double, COLUMNS> values_{};
+  std::array<bool, COLUMNS> was_finite_{};
 };
 
 /// False of a motion that was made up without currents: its rows at zero are no failed reading.
@@ -133,10 +163,7 @@ public:
     }
     if (count_.rows == 0)
     {
-      throw InputError(source_.path + " has no rows" +
-                       (count_.corrupt == 0 ? std::string() :
-                                              "; " + std::to_string(count_.corrupt) +
-                                                  " rows hold no finite number in a column of time, angle or current"));
+      throw InputError(source_.path + " has no rows" + whyNone());
     }
     finish();
     return count_;
@@ -145,7 +172,8 @@ public:
 private:
   bool take(const VisitRows& visit)
   {
-    const Stamp stamp = std::llround(1e9 * table_.time());
+    const double seconds = source_.time_scale * table_.time();
+    const Stamp stamp = std::llround(1e9 * std::clamp(seconds, -LATEST, LATEST));
     if (count_.rows++ == 0)
     {
       count_.start = stamp;
@@ -153,7 +181,8 @@ private:
     }
     // Differences of the numbers themselves where there is one round: as they stand in the file.
     const double by_stamps = times_.at(stamp);
-    const double time = times_.rounds() == 1 ? table_.time() - first_ : by_stamps;
+    const double time = times_.rounds() == 1 ? source_.time_scale * (table_.time() - first_) : by_stamps;
+    order_.add(seconds);
     count_.duration = std::max(count_.duration, time);
     for (std::size_t i = 0; i < COUNT; ++i)
     {
@@ -169,6 +198,19 @@ private:
       }
     }
     return visit(rows_);
+  }
+
+  std::string whyNone() const
+  {
+    if (count_.corrupt == 0)
+    {
+      return {};
+    }
+    const std::vector<std::string> never = table_.neverFinite();
+    const std::string rows = "; none of " + std::to_string(count_.corrupt) + " rows holds ";
+    return never.empty() ? rows + "finite numbers in all columns of time, angle and current" :
+                           rows + "a finite number in " + joined(never) +
+                               (never.front() == "'timestamp'" ? ": the time has to be a number, in s" : "");
   }
 
   void finish()
@@ -191,6 +233,7 @@ private:
     {
       count_.remarks.push_back(roundsText(times_.rounds()));
     }
+    count_.misfit = { Reason::STAMPS, order_.text() };
   }
 
   const MotionSource& source_;
@@ -200,6 +243,7 @@ private:
   std::vector<MotionRow> rows_;
   std::vector<TemperatureRecord> temperatures_;
   RowTime times_;
+  RowOrder order_;
   double first_{};
   MotionCount count_;
 };

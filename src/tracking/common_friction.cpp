@@ -168,7 +168,7 @@ ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double t
   {
     arm.misfit = { Reason::LESS_THAN_FAULTS,
                    "several joints show less friction than any fault leaves: the arm is led by hand or carried, or "
-                   "gains or ratios are others than configured" };
+                   "gains, ratios or signs are others than configured" };
   }
   return arm;
 }

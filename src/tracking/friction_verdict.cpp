@@ -108,8 +108,8 @@ Gap whyImpossible(const FrictionFactor& factor, const std::vector<FrictionPoint>
   {
     return { Reason::LESS_THAN_FAULTS,
              "Friction is " + factorText(factor) +
-                 " times the expected one, less than any fault leaves of it: the arm is led by hand or held, or gain "
-                 "or ratio are others than configured." };
+                 " times the expected one, less than any fault leaves of it: the arm is led by hand or held, or "
+                 "gain, ratio or sign are others than configured." };
   }
   if (const double way = impossibleWay(points); way != 0.0)
   {
@@ -120,7 +120,8 @@ Gap whyImpossible(const FrictionFactor& factor, const std::vector<FrictionPoint>
   if (!(factor.high() < factor.value * std::exp(WIDEST)))
   {
     return { Reason::FRICTION_SCATTER, "The rows scatter too much to know the friction: " + factorText(factor) +
-                                           " times the expected one; " + wrongLoad(load) };
+                                           " times the expected one. Too few of them are steady, or " +
+                                           wrongLoad(load) };
   }
   return { Reason::SOUND, "" };
 }
@@ -178,7 +179,8 @@ const char* wrongLoad(LoadOrigin load)
     case LoadOrigin::RECORDED:
       return "the load is not the one that was recorded.";
     case LoadOrigin::ARM:
-      return "the load is not that of the arm's links and payload. Check the payload; or something touched the arm.";
+      return "the load is not that of the arm's links and payload, something touched the arm, or angles, stamps or "
+             "currents are disturbed.";
   }
   return "the load is not the one that is configured. Give the load of the whole arm (docs/arm.md), or record it.";
 }

@@ -59,6 +59,19 @@ bool movesBothWays(const std::vector<FrictionPoint>& points)
   return points.front().speed < 0.0 && points.back().speed > 0.0;
 }
 
+bool isAtRest(const JointEvidence& evidence)
+{
+  const MotionReach& reach = evidence.reach();
+  return evidence.friction().points().empty() && reach.most_angle - reach.least_angle < LEAST_MOTION;
+}
+
+/// Mean product of measured and predicted current [A^2].
+double agreement(const JointEvidence& evidence)
+{
+  return 0.5 * (std::pow(evidence.currentRms(), 2) + std::pow(evidence.predictedRms(), 2) -
+                std::pow(evidence.residualRms(), 2));
+}
+
 /// Why the recorded current says nothing about the drive: not that of its motor, or of another load; none: it fits.
 std::optional<Reason> whyItDoesNotFit(const JointEvidence& evidence, const Parameters& parameters,
                                       const JointContext& context)
@@ -71,14 +84,25 @@ std::optional<Reason> whyItDoesNotFit(const JointEvidence& evidence, const Param
   constexpr double MAX_RATIO = 4.0;
   constexpr double MAX_UNEXPLAINED = 0.5;
   constexpr double SPREAD = 2.0;  // of the residual over the predicted current: a constant load has none
+  constexpr double AGREES = 0.7;  // correlation of measured and predicted current
   const double noticeable = 2.0 * parameters.telemetry.current_deviation;
   const double measured = evidence.currentRms();
   const double predicted = evidence.predictedRms();
+  if (isAtRest(evidence))
+  {
+    return std::nullopt;  // stiction holds it at any current
+  }
   if (predicted > noticeable && measured < MIN_RATIO * predicted)
   {
     return Reason::EFFORT_NOT_CURRENT;
   }
-  if (measured > noticeable && measured > MAX_RATIO * predicted && evidence.residualSpread() > SPREAD * predicted)
+  if (predicted > noticeable && measured > 0.5 * predicted && -agreement(evidence) > AGREES * measured * predicted)
+  {
+    return Reason::EFFORT_NOT_CURRENT;  // but of the opposite sign
+  }
+  // Spikes, noise and a load from outside are large as well, but not a multiple of the prediction.
+  if (measured > noticeable && measured > MAX_RATIO * predicted && evidence.residualSpread() > SPREAD * predicted &&
+      agreement(evidence) > AGREES * measured * predicted)
   {
     return Reason::EFFORT_TOO_LARGE;
   }

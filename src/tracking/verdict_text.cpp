@@ -121,6 +121,11 @@ std::string reasonText(const Verdict& verdict, Reason reason)
     case Reason::LOAD_WRONG:
       return wrongLoadText(verdict);
     case Reason::EFFORT_NOT_CURRENT:
+      if (current > 0.5 * predicted)
+      {
+        return "The recorded effort goes against the current that this motion takes: effort or angle of this joint is "
+               "of the opposite sign.";
+      }
       return "The recorded effort is " + rounded(current, 2) + " A rms where this motion takes some " +
              rounded(predicted, 2) + " A: it is not the motor's current.";
     case Reason::EFFORT_TOO_LARGE:

@@ -209,7 +209,7 @@ class Check(tool.ToolTest):
 
         write_driver_bag(self.path("short.bag"), columns, rate=125.0, names=tool.JOINT_NAMES[:5])
         for more in ((), ("--arm", "ur5")):
-            found = self.check("short.bag", *more)
+            found = self.check("short.bag", *more, exit_code=1)
             self.assertEqual((found["missing_joints"], found["load"]), (["wrist_3_joint"], "unknown"))
         self.assertTrue(any("no effort of wrist_3_joint" in line for line in self.lines("short.bag", "--arm", "ur5")))
         self.fail_with(1, ["no messages on /states", "/joint_states"], "check", "short.bag", "--topic", "/states")

@@ -186,6 +186,64 @@ class Recordings(tool.ToolTest):
             file.write("\n".join([lines[0].replace(",", ";")] +
                                  [line.replace(",", ";").replace(".", ",") for line in lines[1:]]))
         self.assert_as_plain(self.check("comma.csv"))
+        decimal = [lines[0]] + [",".join('"' + cell.replace(".", ",") + '"' for cell in line.split(","))
+                                for line in lines[1:]]
+        between_tabs = [lines[0].replace(",", "\t")] + [line.replace(",", "\t").replace(".", ",") for line in lines[1:]]
+        with_comments = ["# by hand", "# ur5"] + lines[:500] + ["# a pause"] + lines[500:]
+        for changed in (decimal, between_tabs, with_comments, lines[:1] + [line + "," for line in lines[1:]]):
+            with open(self.path("other.csv"), "w", encoding="ascii") as file:
+                file.write("\n".join(changed))
+            self.assert_as_plain(self.check("other.csv"))
+
+    def test_times_of_another_unit_are_tried(self):
+        for scale in (1e3, 1e6, 1e9):
+            changed = dict(self.columns, timestamp=np.round(scale * (1.6e9 + self.columns["timestamp"])))
+            write_csv(self.path("a.csv"), changed)
+            found = self.check("a.csv", "--arm", "ur5")
+            self.assertEqual(found["findings"][0]["kind"], "period")
+            tried, = found["tried"]
+            self.assertTrue(tried["helps"])
+            self.assertAlmostEqual(float(tried["options"].split()[1]) * scale, 1.0, places=9)
+            self.assert_as_plain(self.check("a.csv", "--arm", "ur5", *tried["options"].split()))
+        write_csv(self.path("a.csv"), dict(self.columns, timestamp=np.arange(len(changed["timestamp"]))))
+        found = self.check("a.csv", "--arm", "ur5")
+        self.assertEqual(([tried["helps"] for tried in found["tried"]], found["next"]), ([False], []))
+
+    def test_rows_whose_stamps_tell_nothing_are_named(self):
+        times = self.columns["timestamp"]
+        mixed = np.random.default_rng(3).permutation(times)
+        for stamps, part in ((times[::-1], "go back"), (0.0 * times, "same stamp"), (mixed, "go back")):
+            changed = dict(self.columns, timestamp=stamps)
+            write_bag(self.path("a.bag"), [(seconds, state) for seconds, (_, state) in
+                                           zip(times, states(changed))])
+            write_csv(self.path("a.csv"), changed)
+            for name in ("a.csv", "a.bag"):
+                found = self.check(name, "--arm", "ur5")
+                self.assertIn(part, found["findings"][0]["text"], name)
+                self.assertFalse(found["usable"])
+        whole = dict(self.columns, actual_current_4=np.full(len(times), np.nan))
+        self.fail_with(1, ["'actual_current_4'"], "check", write_csv(self.path("a.csv"), whole), "--arm", "ur5")
+
+    def test_angles_in_degrees_are_no_second_source(self):
+        noise = np.random.default_rng(4)
+        rows = list(states(self.columns))
+        for _, state in rows:
+            state.position = [float(np.degrees(angle + noise.normal(0.0, 1e-4))) for angle in state.position]
+            state.velocity = list(np.degrees(state.velocity))
+        write_bag(self.path("a.bag"), rows)
+        found = self.check("a.bag", "--arm", "ur5")
+        self.assertEqual([finding["kind"] for finding in found["findings"]], ["angle_unit"])
+
+    def test_a_current_of_the_other_sign_is_named_and_no_payload(self):
+        changed = dict(self.columns)
+        for name in ("actual_current_2", "actual_q_3", "actual_qd_3"):
+            changed[name] = -changed[name]
+        write_csv(self.path("a.csv"), changed)
+        arm = self.succeed_json("compare", "a.csv", "--arm", "ur5")
+        levels = {joint["joint"]: joint["verdict"]["level"] for joint in arm["joints"]}
+        self.assertEqual((levels["elbow"], levels["wrist_1"]), ("NOT JUDGED", "NOT JUDGED"))
+        self.assertIn("opposite sign", arm["text"])
+        self.assertIsNone(arm["payload_mass"])
 
     def test_a_cut_line_and_rows_without_numbers_are_left_out(self):
         name = write_csv(self.path("a.csv"), self.columns)
@@ -302,6 +360,17 @@ class Recordings(tool.ToolTest):
             self.succeed("compare", "two.bag", "--arm", "ur5", "--report", "report", "--force")
             with open(self.path("report/arm.json"), encoding="utf-8") as file:
                 self.assertIn(part, json.load(file)["text"].lower())
+
+    def test_two_arms_under_the_same_names_are_two_sources(self):
+        rows = list(states(self.columns))
+        other = [(seconds + 0.003, state) for seconds, state in states(
+            {name: np.roll(values, 900) if name != "timestamp" else values for name, values in self.columns.items()})]
+        for _, state in other:
+            state.header.stamp += genpy.Duration.from_sec(0.003)
+        write_bag(self.path("two.bag"), sorted(rows + other[::2], key=lambda row: row[0]))
+        found = self.check("two.bag", "--arm", "ur5")
+        self.assertFalse(found["usable"])
+        self.assertIn("two sources", found["findings"][0]["text"])
 
     def test_rounds_of_a_loop_and_rows_before_the_time(self):
         rows = list(states(self.columns))[5:]  # in the first all angles are exactly zero
