@@ -76,7 +76,6 @@ def errors(pairs):
 
 def write(bench, path):
     pairs = [pair_of(bench, gear, motion, model) for gear in CARRIED for motion in CARRIED_MOTIONS for model in MODELS]
-    content = health_file.read(path)
-    content["carried"] = {name: [float(f"{deviation:.3g}"), float(f"{share:.3g}"), round(freedom, 1)]
-                          for name, (deviation, share, freedom) in errors(pairs).items()}
-    health_file.write(path, content)
+    health_file.replace(path, "carried", {
+        name: [float(f"{deviation:.3g}"), float(f"{share:.3g}"), round(freedom, 1)]
+        for name, (deviation, share, freedom) in errors(pairs).items()})

@@ -332,25 +332,15 @@ def main():
     parser.add_argument("--jobs", type=int, default=2, help="runs at a time [2]")
     parser.add_argument("--fit", action="store_true", help="fit the signatures of the causes, and the errors of a "
                         "reference that is carried, again, and nothing else")
-    parser.add_argument("--signatures", type=pathlib.Path, metavar="FILE", help="make the signatures of one gear from "
-                        "its own faults in the check-up, for parameter indicators.signatures, and nothing else")
-    parser.add_argument("--overlay", action="append", metavar="FILE", help="with --signatures: the gear and its joint, "
-                        "as --config of joint_twin; repeatable [joints/shoulder.yaml]")
-    parser.add_argument("--joint", default="shoulder", help="of a UR5, whose check-up is driven [shoulder]")
     parser.add_argument("--quick", action="store_true", help="one gear, one severity: tables on the "
                         "terminal, the page stays")
     parser.add_argument("--series", type=int, metavar="GEARS", help="sound runs of so many drawn gears, into the "
                         "page's table of them, and nothing else; four minutes each on two cores")
     parser.add_argument("--figures", action="store_true", help="draw the figures of the single faults again too")
     options = parser.parse_args()
-    bench = health_runs.Bench(options.tool, options.work, options.jobs, options.joint)
+    bench = health_runs.Bench(options.tool, options.work, options.jobs)
     page = options.docs / "health.md"
     file = options.docs.parent / "config" / "signatures" / "size_25.yaml"
-    if options.signatures:
-        overlays = options.overlay or ["joints/shoulder.yaml"]
-        health_signatures.write_own(bench, overlays, file, options.signatures)
-        print(f"evaluate_health: wrote {options.signatures}", file=sys.stderr)
-        return
     if options.fit:
         health_carried.write(bench, file)
         health_signatures.write(bench, file, options.docs / "indicators.md")

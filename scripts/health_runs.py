@@ -56,7 +56,7 @@ def at_work(motion, windows=WORK_WINDOWS):
 
 # `alike`: all teeth are, so that any fault has a response surface. Else every tooth is solved in faulty
 # runs.
-Gear = collections.namedtuple("Gear", "name alike settings overlays", defaults=[("joints/shoulder.yaml",)])
+Gear = collections.namedtuple("Gear", "name alike settings")
 
 
 def even(name, stiffness, clearance, preload, viscosity):
@@ -189,14 +189,13 @@ def speed_rows(moves, end, draw=None):
 class Bench:
     """Makes runs below a folder."""
 
-    def __init__(self, tool, work, jobs, joint="shoulder"):
+    def __init__(self, tool, work, jobs):
         self.tool, self.work, self.jobs = tool, work.resolve(), jobs
-        self.joint = joint  # of a UR5, whose check-up is driven
         self.references = set()  # files of those that are made
         work.mkdir(parents=True, exist_ok=True)
         listed = subprocess.run([tool, "faults", "--json"], check=True, capture_output=True, text=True).stdout
         self.kinds = json.loads(listed)
-        subprocess.run([tool, "checkup", "--arm", "ur5", "--joint", joint, "--force", "--out",
+        subprocess.run([tool, "checkup", "--arm", "ur5", "--joint", "shoulder", "--force", "--out",
                         work / "check_up.csv"], check=True, stdout=subprocess.DEVNULL)
 
     def speeds(self, name, motion, seed, paths):
@@ -204,7 +203,7 @@ class Bench:
         if motion.steady:
             return [f"{{constant: {math.radians(motion.steady):.6f}}}"]
         if not motion.moves:
-            return [f"{{csv: {{file: {motion.tag}.csv, column: {self.joint}_velocity}}}}"]
+            return [f"{{csv: {{file: {motion.tag}.csv, column: shoulder_velocity}}}}"]
         end = motion.windows * motion.window
         speeds = []
         for path in range(paths):
@@ -215,11 +214,11 @@ class Bench:
             speeds.append(f"{{csv: {{file: {file}, column: shoulder_velocity}}}}")
         return speeds
 
-    def sweep(self, name, gear, motion, temperature, classes, repeats=1, seed=1, scene="auto", others=(), paths=1):
-        """Bags of the runs that went well, each with its row of the index."""
+    def plan(self, name, gear, motion, temperature, classes, repeats=1, seed=1, scene="auto", others=(), paths=1):
+        """File of a plan of runs; `others`: settings, and no payload."""
         name = name.replace(" ", "_")
         lines = [f"name: {name}", f"seed: {seed}", f"duration: {motion.windows * motion.window + 1.3:.3f}",
-                 f"overlays: [{', '.join([*gear.overlays, 'real_sensors.yaml'])}]", "set:", f"  solver.scene: {scene}",
+                 "overlays: [joints/shoulder.yaml, real_sensors.yaml]", "set:", f"  solver.scene: {scene}",
                  f"  input.temperature: {temperature}", "  indicators.window_turns: 100000.0",
                  f"  indicators.window_time: {motion.window}", "  publish.indicators_rate: 1.0",
                  *(f"  publish.{topic}_rate: 0.001" for topic in
@@ -235,13 +234,19 @@ class Bench:
         speeds = self.speeds(name, motion, seed, paths)
         lines += [f"repeats: {repeats * paths // len(speeds)}", "duty:"]
         for path, speed in enumerate(speeds):
-            lines += [f"  - name: {motion.tag}_{path}", f"    speed: {speed}", "    bandwidth: 8.0",
+            name_of_path = f"{motion.tag}_{path}" if path else motion.tag
+            lines += [f"  - name: {name_of_path}", f"    speed: {speed}", "    bandwidth: 8.0",
                       f"    load: {{constant: {load}}}"]
         lines += ["classes:", *classes, "record:", "  format: bag"]
         plan = self.work / f"{name}.yaml"
         plan.write_text("\n".join(lines) + "\n")
-        out = self.work / name
-        print(f"evaluate_health: {name}", file=sys.stderr)
+        return plan
+
+    def sweep(self, *arguments, **options):
+        """Bags of the runs of a plan that went well, each with its row of the index."""
+        plan = self.plan(*arguments, **options)
+        out = plan.with_suffix("")
+        print(f"evaluate_health: {out.name}", file=sys.stderr)
         done = subprocess.run([self.tool, "sweep", plan, "--out", out, "--jobs", str(self.jobs), "--json"], check=False,
                               stdout=subprocess.PIPE)
         # 1: some run failed, as its row in the index says; or all was refused, and nothing reported.
@@ -259,22 +264,23 @@ class Bench:
         return self.sweep(f"{purpose}_{gear.name}_{motion.tag}", gear, motion, temperature, ["  healthy: []"], repeats,
                           seed, others=others, paths=paths)
 
-    def faulty(self, trial, motion, temperature, others=()):
+    def fault_classes(self, trial):
         """Every kind at every severity, from the start on."""
-        gear = trial.gear
-        classes = []
-        for kind in self.kinds:
-            classes += [f"  {kind['kind']}:",
-                        f"    - {{kind: {kind['kind']}, severity: {{grid: {trial.severities}}}, "
-                        f"place: {place_of(kind, trial.tooth)}, onset: 0.0}}"]
-        return self.sweep(f"{trial.name}_{gear.name}_{motion.tag}", gear, motion, temperature, classes, 1, trial.seed,
-                          "auto" if gear.alike else "full_ring", others)
+        return [line for kind in self.kinds for line in (
+            f"  {kind['kind']}:", f"    - {{kind: {kind['kind']}, severity: {{grid: {trial.severities}}}, "
+                                  f"place: {place_of(kind, trial.tooth)}, onset: 0.0}}")]
 
-    def differences(self, trial):
-        """(motion, sound runs, runs with faults) of a trial: the same temperatures, no noise."""
-        grid = f"{{grid: {SAME}}}"
-        return [(motion, self.sound("same", trial.gear, motion, grid, 1, 1, QUIET),
-                 self.faulty(trial, motion, grid, QUIET)) for motion in trial.motions]
+    def faulty(self, trial, motion, temperature):
+        return self.sweep(f"{trial.name}_{trial.gear.name}_{motion.tag}", trial.gear, motion, temperature,
+                          self.fault_classes(trial), 1, trial.seed, "auto" if trial.gear.alike else "full_ring")
+
+    def signatures(self, trials, path):
+        """Of the trials' faults, each beside a sound run at the same temperature, without noise."""
+        plans = [self.plan(f"same_{trial.gear.name}_{motion.tag}", trial.gear, motion, f"{{grid: {SAME}}}",
+                           ["  healthy: []", *self.fault_classes(trial)], 1, trial.seed, others=QUIET)
+                 for trial in trials for motion in trial.motions]
+        subprocess.run([self.tool, "signatures", *plans, "--out", path, "--runs", self.work, "--jobs", str(self.jobs),
+                        "--force"], check=True, stdout=subprocess.DEVNULL)
 
     def beside(self, model, bags, motion, temperature, seed, repeats=1, paths=1):
         """Bags of a model beside the runs `bags`, in their order: same path, temperature and payload."""

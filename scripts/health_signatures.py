@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Fits the signatures of the causes to the model's own faults: how the indicators change with the severity, and how far
-that is to be trusted on another gear. Written into a file of signatures and as a table."""
+"""Has the tool make the signatures of the causes, and fits how far they are to be trusted on another gear. Written into
+a file of signatures and as a table."""
 import collections
 import itertools
 import math
@@ -9,17 +9,8 @@ import numpy
 
 import health_file
 import page_section
-from health_runs import CALIBRATED, CHECK_UP, COMPARED, DRAWN, FITTED, Gear, Trial, once, split_table
+from health_runs import CALIBRATED, COMPARED, DRAWN, FITTED, once, split_table
 
-SEVERITIES = [0.1, 0.16, 0.25, 0.4, 0.63, 1.0]    # of the rows, between those run in straight lines through 0
-# Lines that stand alone by kinematics, whatever the motion; a damaged tooth of the circular spline is no kind of fault.
-# Sizes at severity 1 are assumed [rad], [N.m]; of the torque one per cent of what the motor is rated at, since load and
-# speed make it larger or smaller by more than tenfold.
-KINEMATICS = {"bearing_inner_race": {"error_inner": 5e-6, "torque_inner": 1e-2},
-              "bearing_outer_race": {"error_outer": 5e-6, "torque_outer": 1e-2},
-              "bearing_ball": {"error_ball": 5e-6, "torque_ball": 1e-2},
-              "bearing_cage": {"error_cage_lobes": 1e-5, "torque_cage_lobes": 1e-2},
-              "circular_spline_tooth": {"error_circular_spline_2": 5e-5}}
 # Changes as a share of the sound value: stiffness and play go with the size of the cup. Thicker grease multiplies the
 # friction there is, which differs threefold over the temperatures; preload and wear add to it.
 SHARES = ["torsional_stiffness", "second_stiffness", "lost_motion", "hysteresis", "hysteresis_area"]
@@ -58,15 +49,6 @@ class Layout:
         self.names = [name for name in indicators if not name.endswith(("_cos", "_sin"))]
         self.lines = {name for name in self.names if name.startswith(("error_", "torque_", "ripple_"))}
 
-    def numbers(self, cause, window, sound):
-        """Change of a window; a line with a phase: length of its change. Not determined: 0."""
-        def change(name):
-            if None in (window[name], sound[name]):
-                return 0.0
-            return (window[name] - sound[name]) / (sound[name] if name in shares(cause) else 1.0)
-        return numpy.array([math.hypot(change(name + "_cos"), change(name + "_sin")) if name in self.locked
-                            else change(name) for name in self.names])
-
     def terms(self, window):
         """(number, has a phase, half the square of the sound line's amplitude, residual) of each that was compared."""
         residual = window["residual"]
@@ -81,57 +63,9 @@ class Layout:
                 yield number, name in self.locked, 0.5 * sum(value ** 2 for value in amplitudes), residual[part]
 
 
-def windows_of(bench, bags):
-    """The runs' own, by bag."""
-    report = bench.indicators(bags)
-    return {window["recording"]: window for window in report["windows"]}
-
-
 def kind_of(window):
     """Of motion."""
     return window["speed"], abs(window["direction"])
-
-
-def changes(bench, trials):
-    """(layout, sound values of the scalars of the first gear in the check-up, kinds of motion by gear and motion,
-    changes by cause, gear, motion and severity)."""
-    found, kinds = collections.defaultdict(list), {}
-    layout, values = None, None
-    for trial in trials:
-        for motion, sound, faulty in bench.differences(trial):
-            windows = windows_of(bench, [*sound, *faulty])
-            kinds[trial.gear.name, motion.tag] = numpy.mean([kind_of(windows[str(bag)]) for bag, _ in sound], axis=0)
-            same = {row["set.input.temperature"]: windows[str(bag)]["indicators"] for bag, row in sound}
-            layout = layout or Layout(next(iter(same.values())))
-            if values is None:
-                values = [numpy.mean([window[name] or 0.0 for window in same.values()]) for name in layout.names]
-            for bag, row in faulty:
-                if str(bag) in windows:
-                    found[row["class"], trial.gear.name, motion.tag, float(row["fault_severity"])].append(
-                        layout.numbers(row["class"], windows[str(bag)]["indicators"],
-                                       same[row["set.input.temperature"]]))
-    return layout, values, kinds, {key: numpy.mean(own, axis=0) for key, own in found.items()}
-
-
-def table_of(layout, faults, trials, kinds, found):
-    rows = []
-    for fault, trial in itertools.product(faults, trials):
-        for motion in trial.motions:
-            own = {severity: change for (cause, gear, tag, severity), change in found.items()
-                   if (cause, gear, tag) == (fault["kind"], trial.gear.name, motion.tag)}
-            if not own:
-                continue
-            known = [0.0, *sorted(own)]
-            numbers = numpy.array([numpy.zeros(len(layout.names)), *(own[severity] for severity in known[1:])])
-            for severity in SEVERITIES:
-                rows.append((fault["kind"], motion.tag, severity, kinds[trial.gear.name, motion.tag],
-                             [numpy.interp(severity, known, column) for column in numbers.T]))
-    for cause, lines in KINEMATICS.items():
-        for (line, size), severity in itertools.product(lines.items(), SEVERITIES):
-            rows.append((cause, "kinematics", severity, (0.0, 0.0),
-                         [severity * size if name == line else 0.0 for name in layout.names]))
-    return Table([row[0] for row in rows], [row[1] for row in rows], numpy.array([row[2] for row in rows]),
-                 numpy.array([row[3] for row in rows]), numpy.array([row[4] for row in rows]))
 
 
 def likeness(kinds, kind):
@@ -260,38 +194,17 @@ def severity_error(alarms, errors):
     return numpy.quantile(shares_off, WITHIN)
 
 
-def fill(content, layout, sound, table):
-    """Of a file."""
-    content["indicators"] = {name: health_file.unit_of(name, content) for name in layout.names}
-    content["sound"] = {name: float(f"{value:.3g}") for name, value in zip(layout.names, sound)
-                        if name not in layout.lines}
-    content["signatures"] = [
-        [cause, motion, health_file.short(speed, 4), health_file.short(direction, 2), str(severity),
-         *map(health_file.short, change)]
-        for cause, motion, severity, (speed, direction), change in zip(*table)]
-
-
-def write_own(bench, overlays, basis, path):
-    """Of one gear, in the check-up alone. How far signatures and carried references are off takes many gears: these
-    numbers are those of the file `basis`."""
-    trials = [Trial("own", Gear(path.stem, True, [], overlays), [CHECK_UP], [0.15, 0.4, 1.0], 90, 2)]
-    layout, sound, kinds, found = changes(bench, trials)
-    content = {**health_file.read(basis), "gear": path.stem}
-    fill(content, layout, sound, table_of(layout, bench.kinds, trials, kinds, found))
-    health_file.write(path, content)
-
-
 def write(bench, path, page):
-    layout, sound, kinds, found = changes(bench, FITTED)
-    table = table_of(layout, bench.kinds, FITTED, kinds, found)
-    alarms = alarms_of(layout, calibration_windows(bench), table)
+    """Errors and `carried` of the file stay until the new ones are known: the tool takes them over."""
+    bench.signatures(FITTED, path)
+    table, _ = read(path)
+    windows = calibration_windows(bench)
+    layout = Layout(windows[0][2]["indicators"])
+    alarms = alarms_of(layout, windows, table)
     errors = fitted_errors(alarms)
     report(alarms, errors)
-    content = health_file.read(path)
-    content["errors"] = {**errors._asdict(), "severity": round(severity_error(alarms, errors), 2)}
-    fill(content, layout, sound, table)
-    health_file.write(path, content)
-    write_table(layout, sound, table, page)
+    health_file.replace(path, "errors", {**errors._asdict(), "severity": round(severity_error(alarms, errors), 2)})
+    write_table(layout, health_file.read(path)["sound"], table, page)
 
 
 def read(path):
@@ -318,8 +231,8 @@ def write_table(layout, sound, table, page):
     for cause, motion, severity, _, change in zip(*table):
         if motion == "check_up" and severity == 0.4 and cause not in shown_causes:
             shown_causes.add(cause)
-            by_name = {name: number * (value if name in shares(cause) else 1.0)
-                       for name, number, value in zip(layout.names, change, sound)}
+            by_name = {name: number * (sound[name] if name in shares(cause) else 1.0)
+                       for name, number in zip(layout.names, change)}
             lines.append(f"| `{cause}` | " + " | ".join(f"{scale * by_name[name]:.2g}" for name, scale, _ in shown)
                          + " |")
     page_section.write(page, "signatures", lines)

@@ -278,6 +278,23 @@ def section(runner, telemetry, images):
     all_errors = {recording.name: errors_of(recording, fit) for recording in recordings}
     judged_errors = {recording.name: all_errors[recording.name] for recording in judged}
 
+    verdicts, raised_lines, judged_right = verdict_section(runner, by_name, judged)
+    draw_current(os.path.join(images, "current.png"), by_name.get(SHOWN, judged[0]))
+    draw_means(os.path.join(images, "means.png"), judged_errors)
+    means, means_of, worst_means = met(judged_errors, "means", WANTED_MEANS)
+    moving, moving_of, worst_moving = met(judged_errors, "moving", WANTED_MOVING)
+    summary = [f"Of {means_of} (recording, large joint) that were not identified on, {means} have means over 0.1 s "
+               f"within {WANTED_MEANS:g} of the fit's (worst {worst_means:.2f}), and {moving} of {moving_of} have "
+               f"moving rows within {WANTED_MOVING:g} of it (worst {worst_moving:.2f}).", judged_right]
+    print("\n".join([*share_table(all_errors), *raised_lines, *summary]))
+    return [*heading, *introduction(summary, recordings), *load_table(recordings),
+            *current_section(all_errors, [*judged_errors, TRAIN]),
+            *closed_loop.section(runner, judged, fit, JOINTS, by_name.get(SHOWN, judged[0]).name,
+                                 os.path.join(images, "closed_loop.png")), *verdicts]
+
+
+def verdict_section(runner, by_name, judged):
+    """(lines of the page, those of the raised friction, a sentence)."""
     verdicts = Verdicts(runner)
     other = judged[0].name
     alone = {name: verdicts.start(name, f"report_{name}") for name in (TRAIN, *(r.name for r in judged))}
@@ -297,19 +314,29 @@ def section(runner, telemetry, images):
     false_alarms = sum(joint["level"] in ("WARN", "ERROR") for runs in (alone, beside) for run in runs.values()
                        for joint in run.result()["joints"])
     raised_lines, right = raised_table(raised)
+    sentence = (f"Sound joints called WARN or worse: {false_alarms} of {2 * len(JOINTS) * len(alone)}. Raised friction "
+                f"judged right: {right} of {len(raised)}.")
+    lines = ["""
+### Verdicts
 
-    draw_current(os.path.join(images, "current.png"), by_name.get(SHOWN, judged[0]))
-    draw_means(os.path.join(images, "means.png"), judged_errors)
-    means, means_of, worst_means = met(judged_errors, "means", WANTED_MEANS)
-    moving, moving_of, worst_moving = met(judged_errors, "moving", WANTED_MOVING)
-    summary = [f"Of {means_of} (recording, large joint) that were not identified on, {means} have means over 0.1 s "
-               f"within {WANTED_MEANS:g} of the fit's (worst {worst_means:.2f}), and {moving} of {moving_of} have "
-               f"moving rows within {WANTED_MOVING:g} of it (worst {worst_moving:.2f}).",
-               f"Sound joints called WARN or worse: {false_alarms} of {2 * len(JOINTS) * len(alone)}. Raised friction "
-               f"judged right: {right} of {len(raised)}."]
-    print("\n".join([*share_table(all_errors), *raised_lines, *summary]))
+""" + f"""`joint_twin compare --arm ur5`, alone and with the report of {TRAIN} as `--reference` (of {TRAIN}: that of
+{other}). The arm is sound in all of them. Numbers: friction as a multiple of the reference's, at the speeds of both; –:
+not shown.
+""", *table(["recording", "verdict alone", *JOINTS, "verdict with reference"], sound), f"""
+{100.0 * RAISED:.0f} % of the identified friction of one joint, or of all, added to the recorded current. Right: the
+raised joint is named and no other; of all, none is named. A joint whose friction the recording does not show cannot be
+named.
+""", *raised_lines, """
+### Limits of these recordings
 
-    lines = heading + [f"""
+One arm, sound. No encoder on the other side of the gear, so no torsion; no temperature; no payload. Some rows of no5
+and no7 are missing, up to 0.4 s.
+"""]
+    return lines, raised_lines, sentence
+
+
+def introduction(summary, recordings):
+    return [f"""
 CB series, six joints (K. Kufieta, *Force Estimation in Robotic Manipulators*, NTNU 2014). The recordings are not part
 of this project. The twins get what a driver's `/joint_states` has: angles and currents of the six joints. The load of
 each joint follows from the angles of all ([arm.md](arm.md)). All six are identified on {TRAIN} alone
@@ -326,14 +353,18 @@ person pushes the arm: contact is no fault, but no twin predicts it. no7 is the 
 
 Load of the arm less the controller's `target_moment` [N·m], rms, of the range of that, and in per cent where the range
 is 1 N·m or more. Angles are the measured ones.
-""", *load_table(recordings), f"""
+"""]
+
+
+def current_section(all_errors, names):
+    lines = [f"""
 ### Error of the predicted current
 
 Rms [A]. *arm*: from `/joint_states` alone. *moment*: identified and predicted with the recorded `target_moment`. *fit*:
 gain, Coulomb and viscous friction with the recorded moment, least squares over all rows of {TRAIN}. Moving: faster than
 {MOVING:g} rad/s. Means: of the error over {MEAN:g} s around each moving row.
 """]
-    for name in [*judged_errors, TRAIN]:
+    for name in names:
         lines += ["", f"**{name}**" + (" (identified on)" if name == TRAIN else ""), "", *error_table(all_errors[name])]
     lines += ["""
 The twin's error over the fit's: of the means, and of all moving rows. Wanted: 0.5 and 0.7.
@@ -348,21 +379,5 @@ arm answers in every joint's current.
 
 ![Current of the three large joints, measured and predicted](images/real_robot/current.png)
 
-""", *closed_loop.section(runner, judged, fit, JOINTS, by_name.get(SHOWN, judged[0]).name,
-                          os.path.join(images, "closed_loop.png")), """
-### Verdicts
-
-""" + f"""`joint_twin compare --arm ur5`, alone and with the report of {TRAIN} as `--reference` (of {TRAIN}: that of
-{other}). The arm is sound in all of them. Numbers: friction as a multiple of the reference's, at the speeds of both; –:
-not shown.
-""", *table(["recording", "verdict alone", *JOINTS, "verdict with reference"], sound), f"""
-{100.0 * RAISED:.0f} % of the identified friction of one joint, or of all, added to the recorded current. Right: the
-raised joint is named and no other; of all, none is named. A joint whose friction the recording does not show cannot be
-named.
-""", *raised_lines, """
-### Limits of these recordings
-
-One arm, sound. No encoder on the other side of the gear, so no torsion; no temperature; no payload. Some rows of no5
-and no7 are missing, up to 0.4 s.
 """]
     return lines

@@ -233,6 +233,10 @@ load and than the {number(1000.0 * NO_LOAD)} mN·m of none.
 """)
     if page.fast:
         return
+    draw_efficiency(page)
+
+
+def draw_efficiency(page):
     loads = np.linspace(2.0, 150.0, 38)
     rows = losses(page, [RPM_2000], loads)
     slow = losses(page, [RPM_2000 / 4.0], loads)

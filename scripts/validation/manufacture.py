@@ -182,10 +182,13 @@ def pitch_errors(page):
         page.check(f"manufacture.averaged_{line}", f"line at {line} of the shipped gear over that on straight flanks",
                    "more teeth in mesh average", Between(0.6, 1.0), shipped.line(line) / both.line(line), "",
                    "an average cannot add; 0.6 is that over a lobe of 45° to either side")
+    draw_pitch_errors(page, (flexspline, spline, both))
 
+
+def draw_pitch_errors(page, turns):
     def draw(figure):
         axes = figure.subplots(3, 2, sharex="col", gridspec_kw={"width_ratios": [1.15, 1.0]})
-        for (left, right), turn, title, color in zip(axes, (flexspline, spline, both),
+        for (left, right), turn, title, color in zip(axes, turns,
                                                      ("flexspline only", "circular spline only", "both"),
                                                      (BLUE, ORANGE, GREEN)):
             shape, swell = turn.band([CIRCULAR_SPLINE, CIRCULAR_SPLINE + 1, FLEXSPLINE])

@@ -27,9 +27,7 @@ def leading_share(row):
     return 100.0 * sum(max(force, 0.0) for force in forces) / sum(abs(force) for force in forces)
 
 
-def load_share(page, rows):
-    page.heading("Teeth in mesh and load share")
-
+def draw_load(page, rows):
     def draw_share(figure):
         left, right = figure.subplots(1, 2)
         for name, (label, colour) in PROFILES.items():
@@ -58,6 +56,11 @@ def load_share(page, rows):
         axis.legend()
 
     page.figure("teeth_forces", f"Force on each tooth of one lobe at {LIMIT} N·m.", draw_forces, size=(8.0, 2.8))
+
+
+def load_share(page, rows):
+    page.heading("Teeth in mesh and load share")
+    draw_load(page, rows)
     table = []
     for name, (label, _) in PROFILES.items():
         for load in (14, RATED, LIMIT, MOMENTARY):

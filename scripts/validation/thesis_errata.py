@@ -10,45 +10,7 @@ from thesis_data import (INSERTION, MEASURED, OPERATION, PITCH, RATIO, TEETH_CS,
 from thesis_drive import share_engaged
 from thesis_gear import circular_spline_inertia, circular_spline_mass, ring_coefficients, wave_generator_inertia
 from thesis_insertion import LITERATURE, ball_load, independent_ring, independent_teeth, perimeter_growth
-
-
-def foot(a, b, x, y):
-    """Foot on the ellipse of the normal through (x, y), by Newton on its parameter."""
-    angle = np.arctan2(a * y, b * x)
-    for _ in range(50):
-        cos, sin = np.cos(angle), np.sin(angle)
-        value = (a * a - b * b) * cos * sin - a * x * sin + b * y * cos
-        slope = (a * a - b * b) * (cos**2 - sin**2) - a * x * cos - b * y * sin
-        angle = angle - value / slope
-    return a * np.cos(angle), b * np.sin(angle)
-
-
-def quartic_root(a, b, x, y, leading):
-    """Eq. 5.9-5.10 with a given coefficient A: the real root nearest to x."""
-    second = 2.0 * a**2 * x * (b**2 - a**2)
-    third = a**4 * x**2
-    roots = np.roots([leading, second, third + b**2 * a**2 * y**2 - a**2 * leading, -a**2 * second, -a**2 * third])
-    real = roots[np.abs(roots.imag) < 1e-9 * np.abs(roots)].real
-    return float(real[np.argmin(np.abs(real - x))]) if len(real) else float("nan")
-
-
-def palmgren(speed, viscosity, diameter, factor=1.5):
-    """Eq. 7.32a for rpm, mm^2/s, mm. [N.m]"""
-    return 1e-3 * factor * (viscosity * speed)**(2.0 / 3.0) * diameter**3 * 1e-7
-
-
-def ray_point(a, b, theta, psi):
-    """Where the ray at psi meets the ellipse turned by theta."""
-    radius = a * b / math.hypot(b * math.cos(psi - theta), a * math.sin(psi - theta))
-    return radius * math.cos(psi), radius * math.sin(psi)
-
-
-def printed_height(a, b, theta, x):
-    """Eq. 7.18-7.19 as printed. [m]"""
-    cos, sin = math.cos(theta), math.sin(theta)
-    square = a**2 * cos**2 + b**2 * sin**2
-    inside = square - x**2 * (cos**4 + sin**4 + 2.0 * cos**2 * sin**2) + (a**2 - b**2) * x * cos * sin
-    return a * b * math.sqrt(inside) / square
+from thesis_forms import foot, palmgren, printed_height, quartic_root, ray_point
 
 
 def chapter_3(page):
@@ -110,12 +72,11 @@ def chapter_3(page):
     ]
 
 
-def chapter_5(page):
-    m = MEASURED
-    numbers, ring = thesis_insertion(page)
-    bending = parameters(page, *INSERTION)["ring"]["bending_stiffness"]
-    force = ring.teeth["wave_generator_force"]
-    a, b, tooth = ring.a, ring.b, 10
+SHOWN_TOOTH = 10
+
+
+def contact_point(page, ring, force):
+    a, b, tooth = ring.a, ring.b, SHOWN_TOOTH
     x, y = float(ring.x[tooth]), float(ring.y[tooth])
     exact_x, exact_y = foot(a, b, ring.x, ring.y)
     depth = (exact_x - ring.x) * np.cos(ring.normal) + (exact_y - ring.y) * np.sin(ring.normal)
@@ -124,26 +85,10 @@ def chapter_5(page):
     right = quartic_root(a, b, x, y, a**4 + b**4 - 2.0 * a**2 * b**2)
     wrong = quartic_root(a, b, x, y, a**2 + b**2 - 2.0 * a**2 * b**2)
     normal = wrapped_degrees(math.atan2(a * a * x, b * b * y))
-    third_quadrant = int(
-        np.sum((ring.normal % (2.0 * math.pi) >= math.pi) & (ring.normal % (2.0 * math.pi) < 1.5 * math.pi)))
-    stiffness = m.young_modulus * m.rim_thickness * m.tooth_length / (PITCH * m.flexspline_radius - m.tooth_base)
     page.check("thesis.contact_point",
                "eq. 5.11 against the true foot of the normal: largest difference of overlap among teeth in contact",
                "the equilibrium of chapter 6", Within(2.0, absolute=0.5), 1e6 * off, "µm", "known to be *up to 2 µm*")
-    literal = independent_teeth(independent_ring("polar", "one_force"))
-    fourth = math.radians(-30.0)
-    printed_overlap = (ring.a * math.cos(ring.psi[tooth]) - x) * math.cos(ring.normal[tooth]) + (
-        ring.b * math.sin(ring.psi[tooth]) + y) * math.sin(ring.normal[tooth])
     return [
-        [
-            "5.1, 5.2", "one bending force F_F on a tooth",
-            f"then the wave generator presses a tooth with {np.max(literal['wave_generator_force']):.0f} N; with the "
-            f"bending forces of both segments, as in fig. 5.16, with chapter 6's {np.max(force):.1f} N", "both segments"
-        ],
-        [
-            "5.5", "x = r sin ψ0, y = r cos ψ0",
-            f"puts tooth 0 on the minor axis, where the force is {force[50]:.0f} N and not {force[0]:.1f} N", "cos, sin"
-        ],
         [
             "5.8b", "slope of the normal a²x/(b²y)",
             f"tooth 10: normal at {normal:.1f}°, by eq. 5.15 {math.degrees(ring.normal[tooth]):.1f}°", "a²y/(b²x)"
@@ -164,6 +109,33 @@ def chapter_5(page):
             f"{off * ring.contact_stiffness:.0f} N, among teeth in contact",
             "foot of the normal; polar law kept for chapter 6"
         ],
+    ]
+
+
+def chapter_5(page):
+    m = MEASURED
+    numbers, ring = thesis_insertion(page)
+    force = ring.teeth["wave_generator_force"]
+    tooth = SHOWN_TOOTH
+    x, y = float(ring.x[tooth]), float(ring.y[tooth])
+    third_quadrant = int(
+        np.sum((ring.normal % (2.0 * math.pi) >= math.pi) & (ring.normal % (2.0 * math.pi) < 1.5 * math.pi)))
+    stiffness = m.young_modulus * m.rim_thickness * m.tooth_length / (PITCH * m.flexspline_radius - m.tooth_base)
+    literal = independent_teeth(independent_ring("polar", "one_force"))
+    fourth = math.radians(-30.0)
+    printed_overlap = (ring.a * math.cos(ring.psi[tooth]) - x) * math.cos(ring.normal[tooth]) + (
+        ring.b * math.sin(ring.psi[tooth]) + y) * math.sin(ring.normal[tooth])
+    return [
+        [
+            "5.1, 5.2", "one bending force F_F on a tooth",
+            f"then the wave generator presses a tooth with {np.max(literal['wave_generator_force']):.0f} N; with the "
+            f"bending forces of both segments, as in fig. 5.16, with chapter 6's {np.max(force):.1f} N", "both segments"
+        ],
+        [
+            "5.5", "x = r sin ψ0, y = r cos ψ0",
+            f"puts tooth 0 on the minor axis, where the force is {force[50]:.0f} N and not {force[0]:.1f} N", "cos, sin"
+        ],
+        *contact_point(page, ring, force),
         [
             "5.19, 5.35, 5.36, 7.7", "second case up to 2π, third from 2π",
             f"no angle meets the third case; {third_quadrant} teeth should. Harmless: all four cases are one "
@@ -190,6 +162,13 @@ def chapter_5(page):
             f"at {math.degrees(fourth):.0f}° a push outwards would have F_y = {-math.sin(fourth):+.1f} F, not the "
             f"normal's {math.sin(fourth):+.1f} F; eq. 5.28 and 5.41 are right", "eq. 5.28, 5.41"
         ],
+        *dashpots_and_bending(page),
+    ]
+
+
+def dashpots_and_bending(page):
+    bending = parameters(page, *INSERTION)["ring"]["bending_stiffness"]
+    return [
         [
             "5.51, Table 6.1", "c_F = 0 in 5.4, 1e-2 in the table; c_T = 1e-2 in 7.2", "two values of one constant",
             "neither dashpot; the cup has dry friction"
@@ -274,7 +253,6 @@ def chapter_6(page):
 
 
 def chapter_7(page):
-    m = MEASURED
     numbers, ring = thesis_insertion(page)
     rows, rings = locked_table(page)
     force = ring.teeth["wave_generator_force"]
@@ -284,16 +262,7 @@ def chapter_7(page):
     theta, psi = math.radians(45.0), math.radians(30.0)
     x, y = ray_point(ring.a, ring.b, theta, psi)
     given = parameters(page, *OPERATION)
-    bearing = given["bearing"]
-    load_torque = bearing["load_factor"] * rows[-1]["wave_generator_force_sum"] * bearing["pitch_diameter"]
-    module = m.circular_spline_tooth_height / 2.25
-    degrees = np.linspace(0.0, 12.0, 1201)
-    shares = np.array([share_engaged(rings[0].rho, math.radians(angle)) for angle in degrees])
-    published = degrees[(shares >= 0.25) & (shares <= 0.35)]
     wave = float(np.max(np.abs(rings[0].teeth["angle_deviation"])))
-    inertia = given["output"]["circular_spline_inertia"]
-    flank = math.degrees(given["mesh"]["flank_angle"])
-    friction_share = given["mesh"]["friction_kinetic"] * math.tan(given["mesh"]["flank_angle"])
     page.check("thesis.absolute_gamma", "eq. 7.27 with |γ| and no friction, at rest, no load",
                "the equilibrium of chapter 6", Within(12.0, absolute=0.5), absolute, "N·m", "known to two digits")
     page.check("thesis.symmetric_gamma", "the same with signed γ", "symmetry", Within(0.0, absolute=1e-6), signed,
@@ -329,6 +298,22 @@ def chapter_7(page):
             f"{friction:.0f} N·m against a motor of {given['motor']['torque_limit']:g} N·m",
             "the race rolls; μ F on its slip"
         ],
+        *motor_and_teeth(given, rows, rings),
+    ]
+
+
+def motor_and_teeth(given, rows, rings):
+    m = MEASURED
+    bearing = given["bearing"]
+    load_torque = bearing["load_factor"] * rows[-1]["wave_generator_force_sum"] * bearing["pitch_diameter"]
+    module = m.circular_spline_tooth_height / 2.25
+    degrees = np.linspace(0.0, 12.0, 1201)
+    shares = np.array([share_engaged(rings[0].rho, math.radians(angle)) for angle in degrees])
+    published = degrees[(shares >= 0.25) & (shares <= 0.35)]
+    inertia = given["output"]["circular_spline_inertia"]
+    flank = math.degrees(given["mesh"]["flank_angle"])
+    friction_share = given["mesh"]["friction_kinetic"] * math.tan(given["mesh"]["flank_angle"])
+    return [
         [
             "7.32, 7.33", "d_m *mean diameter*, *distance from the axis*, 26.67 mm",
             f"{1e3 * palmgren(2000.0, 80.0, 26.67):.1f} mN·m at 2000 rpm, with the diameter "

@@ -27,27 +27,8 @@ namespace
 {
 namespace fs = std::filesystem;
 
-constexpr int FORMAT = 2;
 constexpr const char* TABLE = "\nsignatures: |\n";  // the last key: rows are read as they stand
 constexpr std::size_t ROW_START = 5;                // cause, motion, speed, direction, severity
-
-/// Index of the indicator that a number of a signature speaks of.
-std::array<std::size_t, SIGNATURE_SIZE> indicatorsOfNumbers()
-{
-  std::array<std::size_t, SIGNATURE_SIZE> indicators{};
-  for (std::size_t i = 0; i < SCALAR_COUNT; ++i)
-  {
-    indicators[i] = i;
-  }
-  for (const LineSignal signal : ALL_LINE_SIGNALS)
-  {
-    for (std::size_t line = 0; line < LINE_COUNT && hasLine(signal, line); ++line)
-    {
-      indicators[signatureNumber(signal, line)] = amplitudeIndex(signal, line);
-    }
-  }
-  return indicators;
-}
 
 std::size_t lineOf(const YAML::Node& node)
 {
@@ -95,12 +76,12 @@ private:
         fail(0, "no file of signatures: it has no keys");
       }
       const YAML::Node format = section(file, "format");
-      if (!format.IsScalar() || format.Scalar() != std::to_string(FORMAT))
+      if (!format.IsScalar() || format.Scalar() != std::to_string(SIGNATURE_FORMAT))
       {
         fail(lineOf(format), "format: " + (format.IsScalar() ? format.Scalar() : "no number") + ", expected " +
-                                 std::to_string(FORMAT) +
+                                 std::to_string(SIGNATURE_FORMAT) +
                                  ": the file is of another version; make it again with "
-                                 "`scripts/evaluate_health --signatures`");
+                                 "`joint_twin signatures`");
       }
       set_.gear = section(file, "gear").as<std::string>();
       readErrors(section(file, "errors"));
@@ -137,14 +118,9 @@ private:
 
   void readErrors(const YAML::Node& errors)
   {
-    const std::vector<std::pair<const char*, double*>> keys{ { "number", &set_.number_error },
-                                                             { "length", &set_.length_error },
-                                                             { "line", &set_.line_error },
-                                                             { "weight", &set_.evidence_weight },
-                                                             { "severity", &set_.severity_error } };
-    for (const auto& [key, value] : keys)
+    for (const SignatureErrorRow& row : SIGNATURE_ERRORS)
     {
-      *value = number(section(errors, key), std::string("errors.") + key, { 0.0, 1e3 });
+      set_.*row.value = number(section(errors, row.key), std::string("errors.") + row.key, { 0.0, 1e3 });
     }
   }
 
@@ -288,6 +264,23 @@ std::string readText(const std::string& path)
   return text;
 }
 }  // namespace
+
+std::array<std::size_t, SIGNATURE_SIZE> indicatorsOfNumbers()
+{
+  std::array<std::size_t, SIGNATURE_SIZE> indicators{};
+  for (std::size_t i = 0; i < SCALAR_COUNT; ++i)
+  {
+    indicators[i] = i;
+  }
+  for (const LineSignal signal : ALL_LINE_SIGNALS)
+  {
+    for (std::size_t line = 0; line < LINE_COUNT && hasLine(signal, line); ++line)
+    {
+      indicators[signatureNumber(signal, line)] = amplitudeIndex(signal, line);
+    }
+  }
+  return indicators;
+}
 
 SignatureSet parseSignatures(const std::string& text, const std::string& path)
 {

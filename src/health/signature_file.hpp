@@ -1,13 +1,34 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "harmonic_joint_twin/health/fault_signatures.hpp"
 
 namespace hjt
 {
+/// Of the files that this software reads and writes.
+constexpr int SIGNATURE_FORMAT = 2;
+
+/// A number of section `errors` of a file.
+struct SignatureErrorRow
+{
+  const char* key;
+  double SignatureSet::*value;
+};
+constexpr std::array<SignatureErrorRow, 5> SIGNATURE_ERRORS{ { { "number", &SignatureSet::number_error },
+                                                               { "length", &SignatureSet::length_error },
+                                                               { "line", &SignatureSet::line_error },
+                                                               { "weight", &SignatureSet::evidence_weight },
+                                                               { "severity", &SignatureSet::severity_error } } };
+
+/// Of each number of a signature, index of the indicator that it speaks of.
+std::array<std::size_t, SIGNATURE_SIZE> indicatorsOfNumbers();
+
 /// The signatures of parameter indicators.signatures: of a file as named, else beside the default configuration;
 /// NO_FILE: none. A file is read once: those who use it share it. Allocates and reads: not for the real-time loop.
 /// @throws ParameterError naming file, line and key of what is wrong: damaged, of another format, with an indicator or
@@ -16,4 +37,8 @@ std::shared_ptr<const SignatureSet> loadSignatures(const std::string& name);
 
 /// What a file says (config/signatures/size_25.yaml has the format). `path`: for the messages alone. @throws as above.
 SignatureSet parseSignatures(const std::string& text, const std::string& path);
+
+/// The text of a file, which reads back as the same set but for the digits beyond the third of a change. `motions`: names
+/// for people, of each signature.
+std::string signatureText(const SignatureSet& set, const std::vector<std::string>& motions);
 }  // namespace hjt

@@ -4,19 +4,14 @@
 #include <algorithm>
 #include <utility>
 
-#include <rosbag/bag.h>
-#include <rosbag/view.h>
-
 #include "output/output_file.hpp"
 #include "output/text_table.hpp"
 #include "recordings/recorded_windows.hpp"
 
-#include "bags/bag_file.hpp"
 #include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "health/baseline_file.hpp"
 #include "health/signal_monitor.hpp"
-#include "messages/conversions.hpp"
 
 namespace hjt
 {
@@ -53,29 +48,12 @@ std::vector<SignalIndicators> readWindows(const std::string& recording, const Si
   return windows;
 }
 
-/// What was published of the windows while they were recorded; each message repeats the last window.
-std::vector<SignalIndicators> readPublishedWindows(const std::string& path, const std::string& topic)
-{
-  rosbag::Bag bag;
-  openForReading(bag, path);
-  std::vector<SignalIndicators> windows;
-  for (const rosbag::MessageInstance& instance : rosbag::View(bag, rosbag::TopicQuery(topic)))
-  {
-    const auto message = instance.instantiate<harmonic_joint_twin::Indicators>();
-    if (message && message->windows > (windows.empty() ? 0 : windows.back().windows))
-    {
-      windows.push_back(readIndicators(*message));
-    }
-  }
-  return windows;
-}
-
 /// All windows of one recording, or of a model's.
 WindowSeries readOne(const std::string& path, const SignalOptions& signals, const IndicatorsOptions& options)
 {
   if (options.windows)
   {
-    return { readPublishedWindows(path, options.joint_namespace + "/" + topics::INDICATORS), "published windows",
+    return { publishedWindows(path, options.joint_namespace + "/" + topics::INDICATORS), "published windows",
              "configuration" };
   }
   const RecordingParameters parameters = recordingParameters(signals, path);

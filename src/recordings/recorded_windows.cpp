@@ -5,9 +5,14 @@
 #include <filesystem>
 #include <tuple>
 
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
+
 #include "datasets/run_file.hpp"
 
+#include "bags/bag_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
+#include "messages/conversions.hpp"
 #include "messages/time.hpp"
 
 namespace hjt
@@ -98,6 +103,22 @@ std::optional<std::vector<SignalIndicators>> windowsOfRun(const std::string& rec
   for (std::size_t i = 0; i < windows.size(); ++i)
   {
     windows[i].windows = i + 1;
+  }
+  return windows;
+}
+
+std::vector<SignalIndicators> publishedWindows(const std::string& path, const std::string& topic)
+{
+  rosbag::Bag bag;
+  openForReading(bag, path);
+  std::vector<SignalIndicators> windows;
+  for (const rosbag::MessageInstance& instance : rosbag::View(bag, rosbag::TopicQuery(topic)))
+  {
+    const auto message = instance.instantiate<harmonic_joint_twin::Indicators>();
+    if (message && message->windows > (windows.empty() ? 0 : windows.back().windows))
+    {
+      windows.push_back(readIndicators(*message));
+    }
   }
   return windows;
 }

@@ -28,6 +28,9 @@ RecordingParameters recordingParameters(const SignalOptions& options, const std:
 std::optional<std::vector<SignalIndicators>> windowsOfRun(const std::string& recording, const SignalOptions& options,
                                                           const RecordingParameters& parameters);
 
+/// The windows that were published while a bag was recorded; each message repeats the last one.
+std::vector<SignalIndicators> publishedWindows(const std::string& path, const std::string& topic);
+
 /// How near a recording came to a verdict.
 class ClosestAssessment
 {

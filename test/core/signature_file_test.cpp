@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 
@@ -96,6 +98,19 @@ TEST(SignatureFile, SaysWhereItIsDamaged)
   EXPECT_THAT(refusal(replaced("1e-2", "nan")), says(":13: signatures: change = nan"));
   EXPECT_THAT(refusal(replaced("signatures: |\n", "signatures:\n")), testing::Not("accepted"));
   EXPECT_THAT(refusal("- 1\n"), says(": no file of signatures"));
+}
+
+TEST(SignatureFile, IsWrittenAsItWasRead)
+{
+  std::ifstream file(HJT_TEST_CONFIG_DIR "/signatures/size_25.yaml");
+  const std::string shipped{ std::istreambuf_iterator<char>(file), {} };
+  std::istringstream rows(shipped.substr(shipped.find("signatures: |") + 14));
+  std::vector<std::string> motions;
+  for (std::string cause, motion, rest; rows >> cause >> motion && std::getline(rows, rest);)
+  {
+    motions.push_back(motion);
+  }
+  EXPECT_EQ(signatureText(parseSignatures(shipped, "size_25.yaml"), motions), shipped);
 }
 
 TEST(SignatureFile, IsReadOnceAndSharedByAllWhoNameIt)

@@ -2,7 +2,8 @@
 """Numbers of the pages that the validation computes are those of its rows (docs/validation.csv).
 
 Behind such a number stands `<!-- value: ROW -->`, or `<!-- value: ROW * FACTOR -->` where the page has another unit.
-The number is the row's value, rounded to the digits shown.
+The number is the row's value, rounded to the digits shown. `rows` counts all rows, `rows.CLASS` those of a class,
+`rows.CLASS.hold` those of them that hold, `rows.fail` those that do not.
 """
 import csv
 import re
@@ -17,8 +18,16 @@ MARKED = re.compile(r"(?P<number>-?\d+(?:\.(?P<digits>\d+))?)"
 
 
 def values(root):
-    """Row to value."""
-    return {row["row"]: float(row["value"]) for row in csv.DictReader(project.text(root, VALUES).splitlines())}
+    """Row to value, and the counts of rows."""
+    rows = list(csv.DictReader(project.text(root, VALUES).splitlines()))
+    known = {row["row"]: float(row["value"]) for row in rows}
+    rows = [row for row in rows if row["holds"]]  # the others are values alone
+    known.update({"rows": len(rows), "rows.fail": sum(row["holds"] == "no" for row in rows)})
+    for name in {row["class"] for row in rows}:
+        own = [row for row in rows if row["class"] == name]
+        known[f"rows.{name.replace(' ', '_')}"] = len(own)
+        known[f"rows.{name.replace(' ', '_')}.hold"] = sum(row["holds"] == "yes" for row in own)
+    return known
 
 
 def fault(found, known):

@@ -2,56 +2,24 @@
 """Each check of this folder passes on a faultless file and speaks up on a faulty one."""
 import contextlib
 import io
-import json
 import os
-import shutil
-import subprocess
-import tempfile
 import unittest
-import unittest.mock
 
-import catkin_lint
 import citation
-import clang_tidy
 import config_files
 import doc_tables
 import doc_values
 import examples
 import launch_docs
 import layering
+import limits
 import links
 import message_comments
 import number_locale
 import project
-import python
 import spdx
 import type_names
-
-
-class Tree(unittest.TestCase):
-    """A package of a few files in a temporary folder."""
-
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.root = folder.name
-
-    def write(self, path, content):
-        full = os.path.join(self.root, path)
-        os.makedirs(os.path.dirname(full), exist_ok=True)
-        with open(full, "w", encoding="utf-8") as file:
-            file.write(content)
-        return full
-
-    def assert_fault(self, check, *words):
-        """Exactly one problem, that names all `words`."""
-        problems = check(self.root)
-        self.assertEqual(len(problems), 1, problems)
-        for word in words:
-            self.assertIn(word, problems[0])
-
-    def assert_clean(self, check):
-        self.assertEqual(check(self.root), [])
+from tree import Tree
 
 
 class NumberLocale(Tree):
@@ -63,6 +31,36 @@ class NumberLocale(Tree):
                 self.assert_fault(number_locale.check, "src/gear/one.cpp:2")
         self.write("src/gear/one.cpp", 'printf("%.0f %% friction, %s", x, y);\n')
         self.assert_clean(number_locale.check)
+
+
+class Limits(Tree):
+    LONG = "  f();\n" * (limits.FUNCTION_LINES + 1)
+
+    def test_long_functions_are_named(self):
+        for path, text, line in [
+                ("src/one.cpp", "namespace a\n{\nint f(int a,\n  int b)\n{\n%s}\n}  // namespace a\n" % self.LONG, 5),
+                ("src/one.hpp", "struct A\n{\n  void f()\n  {\n%s  }\n};\n" % self.LONG, 4),
+                ("scripts/one.py", "class A:\n    def g():\n%s" % self.LONG.replace("  f();", "        f()"), 2)]:
+            with self.subTest(path):
+                full = self.write(path, text)
+                self.assert_fault(limits.check, f"{path}:{line}:", "function of 61 lines")
+                self.write(path, text.replace(text.split("\n")[line] + "\n", "", 1))
+                self.assert_clean(limits.check)
+                os.remove(full)
+
+    def test_long_types_and_namespaces_are_not(self):
+        rows = "  int a;\n" * (limits.FUNCTION_LINES + 1)
+        self.write("src/one.hpp", f"namespace a\n{{\nclass B : public C\n{{\n{rows}}};\n}}  // namespace a\n")
+        self.assert_clean(limits.check)
+
+    def test_long_files_are_named(self):
+        for path, first in [("src/one.cpp", "\n"), ("scripts/one", "#!/usr/bin/env bash\n"), ("test/one.py", "\n")]:
+            with self.subTest(path):
+                full = self.write(path, first + "\n" * limits.FILE_LINES)
+                self.assert_fault(limits.check, f"{path}:1: 401 lines")
+                os.remove(full)
+        self.write("docs/one.md", "\n" * (limits.FILE_LINES + 1))
+        self.assert_clean(limits.check)
 
 
 class Layering(Tree):
@@ -250,11 +248,13 @@ class DocTables(Tree):
 class DocValues(Tree):
     def setUp(self):
         super().setUp()
-        self.write("docs/validation.csv", "row,value,unit,expected,holds\na.b,0.156,%,,\n")
+        self.write("docs/validation.csv", "row,value,unit,expected,holds,class\na.b,0.156,%,,no,fit\n")
 
     def test_numbers_as_the_validation_has_them(self):
         self.write("README.md",
-                   "0.16<!-- value: a.b --> and 156<!-- value: a.b * 1000 --> | 0.2<!-- value: a.b --> |\n")
+                   "0.16<!-- value: a.b --> and 156<!-- value: a.b * 1000 --> | 0.2<!-- value: a.b --> |\n"
+                   "1<!-- value: rows --> 1<!-- value: rows.fail --> 1<!-- value: rows.fit --> "
+                   "0<!-- value: rows.fit.hold -->\n")
         self.assert_clean(doc_values.check)
 
     def test_other_numbers_and_unknown_rows(self):
@@ -293,119 +293,6 @@ class TemporaryPaths(Tree):
         self.assert_clean(links.check)
         self.write("docs/a.md", "# A\njoint_twin insert --csv /tmp/validate.x/insertion.csv\n")
         self.assert_fault(links.check, "docs/a.md:2", "/tmp/")
-
-
-def skip_as(test, output):
-    """Skips a test because the check that it runs is skipped, for the reason in the check's output."""
-    test.skipTest(output.split("skipped: ")[-1].strip())
-
-
-class Format(Tree):
-    def result(self, content):
-        path = self.write("one.cpp", content)
-        os.symlink(os.path.join(project.ROOT, ".clang-format"), os.path.join(self.root, ".clang-format"))
-        command = [os.path.join(project.ROOT, "scripts", "format"), "--check", path]
-        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, universal_newlines=True,
-                              check=False)
-        if done.returncode == project.SKIPPED:
-            skip_as(self, done.stdout)
-        return done.returncode
-
-    def test_house_style(self):
-        self.assertEqual(self.result("int f()\n{\n  return 1;\n}\n"), 0)
-
-    def test_another_style(self):
-        self.assertNotEqual(self.result("int f() {\n    return 1;\n}\n"), 0)
-
-
-class ClangTidy(Tree):
-    def setUp(self):
-        super().setUp()
-        self.root = os.path.realpath(self.root)
-        self.printed = io.StringIO()
-        environment = unittest.mock.patch.dict(os.environ, XDG_CACHE_HOME=os.path.join(self.root, "cache"))
-        environment.start()
-        self.addCleanup(environment.stop)
-        shutil.copy(os.path.join(project.ROOT, ".clang-tidy"), self.root)
-
-    def problems(self, content, options=()):
-        path = self.write("src/one.cpp", content)
-        entry = {"directory": self.root, "file": path,
-                 "arguments": ["c++", "-std=c++17", *options, "-o", "one.o", "-c", path]}
-        self.write("build/compile_commands.json", json.dumps([entry]))
-        self.printed = io.StringIO()
-        try:
-            with contextlib.redirect_stdout(self.printed):
-                return clang_tidy.check(os.path.join(self.root, "build"), self.root)
-        except SystemExit:  # by project.skip
-            skip_as(self, self.printed.getvalue())
-
-    def assert_checked(self, checked, *arguments):
-        """The file is clean; `checked`: the tool had to run to find that out."""
-        self.assertEqual(self.problems(*arguments), [])
-        self.assertEqual(self.printed.getvalue(), f"src/one.cpp: {'clean' if checked else 'known to be clean'}\n")
-
-    def test_house_names(self):
-        self.assertEqual(self.problems("class RimTension\n{\n  int value_ = 0;\n\npublic:\n  int readValue() const "
-                                       "{ return value_; }\n};\nconstexpr int TEETH = 200;\n"), [])
-
-    def test_other_names(self):
-        for content in ["class rim_tension\n{\n};\n", "class A\n{\n  int value = 0;\n};\n", "int Read();\n",
-                        "constexpr int kTeeth = 200;\n"]:
-            with self.subTest(content=content):
-                self.assertIn("naming", "".join(self.problems(content)))
-
-    def test_clean_file_is_checked_once(self):
-        content = '#include "one.hpp"\nint readValue();\n'
-        self.write("src/one.hpp", "constexpr int TEETH = 200;\n")
-        self.assert_checked(True, content)
-        self.assert_checked(False, content)
-        changes = {
-            "header": lambda: self.write("src/one.hpp", "constexpr int TEETH = 160;  // NOLINT\n"),
-            "rules": lambda: self.write(".clang-tidy", project.text(self.root, ".clang-tidy") + "# another\n"),
-        }
-        for name, change in changes.items():
-            with self.subTest(changed=name):
-                change()
-                self.assert_checked(True, content)
-                self.assert_checked(False, content)
-        self.assert_checked(True, content + "// longer\n")
-        self.assertFalse(os.path.exists(os.path.join(self.root, "one.o")))  # the build's own files stay as they are
-        self.assert_checked(True, content, ["-DANOTHER=1"])
-
-    def test_finding_is_never_remembered(self):
-        for _ in range(2):
-            self.assertIn("naming", "".join(self.problems("int Read();\n")))
-        self.assertEqual(os.listdir(os.path.join(self.root, "cache", "harmonic_joint_twin", "clang_tidy")), [])
-
-    def test_precompiled_header_hides_nothing(self):
-        prefix = self.write("build/cmake_pch.hxx", "#include <vector>\n")
-        options = ["-Winvalid-pch", "-include", prefix]
-        self.assertIn("vector", "".join(self.problems("std::vector<int> teeth();\n", options)))
-        self.assert_checked(True, "#include <vector>\nstd::vector<int> teeth();\n", options)
-
-
-class Python(Tree):
-    def test_clean(self):
-        self.write("scripts/one.py", "import sys\n\nsys.exit(0)\n")
-        self.assert_clean(python.check)
-
-    def test_faults(self):
-        for content, word in [("import os\n", "F401"), ("x = 1" + " + 1" * 40 + "\n", "E501"), ("x = y\n", "F821")]:
-            with self.subTest(content=content):
-                self.write("scripts/one.py", content)
-                self.assert_fault(python.check, "scripts/one.py:1", word)
-
-
-class CatkinLint(Tree):
-    def test_fault(self):
-        self.write("package.xml", "<package format='3'><name>harmonic_joint_twin</name><version>0.1.0</version>"
-                                  "<description>d</description><maintainer email='a@b.cc'>a</maintainer>"
-                                  "<license>BSD</license></package>")
-        self.write("CMakeLists.txt", "cmake_minimum_required(VERSION 3.16)\nproject(another)\n")
-        code, note = catkin_lint.lint(self.root)
-        self.assertNotEqual(code, 0)
-        self.assertIn("error", note)
 
 
 class Citation(Tree):

@@ -6,7 +6,6 @@ import math
 import os
 import pickle
 import signal
-import subprocess
 import sys
 import threading
 import time
@@ -15,6 +14,7 @@ import unittest
 import numpy as np
 
 import harmonic_joint_twin as hjt
+from interrupted import interrupted
 
 del sys.argv[1]
 STEPS = 300
@@ -254,13 +254,7 @@ class Threads(unittest.TestCase):
                    "    steps = set(batch.counters['steps'])\n"
                    "    batch.step(steps=10)\n"
                    "    print('interrupted', len(steps), steps.pop(), set(batch.counters['steps']).pop())\n")
-        with subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True) as process:
-            self.assertEqual(process.stdout.readline(), "ready\n")
-            time.sleep(0.3)
-            sent = time.monotonic()
-            process.send_signal(signal.SIGINT)
-            words = process.stdout.read().split()
-            self.assertLess(time.monotonic() - sent, 10.0)
+        words = interrupted(self, program)
         self.assertEqual(words[:2], ["interrupted", "1"])
         self.assertGreater(int(words[2]), 0)
         self.assertEqual(int(words[3]) - int(words[2]), 10)

@@ -4,23 +4,19 @@
 #include <cstdio>
 #include <iostream>
 #include <memory>
-#include <mutex>
-#include <set>
 #include <sstream>
 #include <string>
-#include <thread>
 
 #include "apps/common/configuration.hpp"
+#include "apps/tool/plan_options.hpp"
 #include "datasets/expectation.hpp"
 #include "datasets/file_seal.hpp"
 #include "datasets/run_file.hpp"
 #include "datasets/sweep.hpp"
 #include "output/exit_code.hpp"
 #include "output/interrupt.hpp"
-#include "output/progress.hpp"
 #include "output/report.hpp"
 #include "output/run_summary.hpp"
-#include "surface/surface_cache.hpp"
 
 #include "harmonic_joint_twin/base/errors.hpp"
 
@@ -32,41 +28,13 @@ struct SweepOptions : CommonOptions
 {
   std::string plan;
   std::string out;
-  unsigned jobs{ std::max(1u, std::thread::hardware_concurrency()) };
+  unsigned jobs{};
   std::string part;
   std::uint64_t shard{};
   std::uint64_t shards{ 1 };
   bool dry_run{};
   bool list{};
 };
-
-/// Surfaces of the user's cache, each once in memory; each remark about them once.
-/// Those of drives with a wear of their own, which come but once, are not kept on the disk.
-SurfaceSource sharedSurfaces(const Plan& plan, unsigned jobs)
-{
-  struct Remarks
-  {
-    std::mutex mutex;
-    std::set<std::string> shown;
-    Progress building{ "building response surfaces" };
-  };
-  const auto remarks = std::make_shared<Remarks>();
-  const auto show = [remarks](double done)
-  {
-    const std::lock_guard<std::mutex> lock(remarks->mutex);
-    remarks->building.update(done);
-  };
-  const auto tell = [remarks](const std::string& what)
-  {
-    const std::lock_guard<std::mutex> lock(remarks->mutex);
-    if (remarks->shown.insert(what).second)
-    {
-      std::cerr << "warning: " << what << '\n';
-    }
-  };
-  return { plan.lives() != nullptr ? "" : surfaceCacheDirectory(), show, tell,
-           std::make_shared<SurfacePool>(jobs + 2) };
-}
 
 void printList(const Plan& plan, const SweepOptions& options)
 {
@@ -84,13 +52,14 @@ void printList(const Plan& plan, const SweepOptions& options)
     std::cout << directory.indexRow(record) << '\n';
   }
 }
+
 void declare(Command& command, SweepOptions& options)
 {
   command.add("plan", options.plan, "what to run and record (docs/datasets.md)").required().type("PLAN.yaml");
   command.add("--out", options.out, "directory of runs and index; runs that stand there finished are kept")
       .required()
       .type("DIR");
-  command.add("--jobs", options.jobs, "runs at the same time").range(1, 4096);
+  addJobsOption(command, options.jobs);
   command.flag("--dry-run", options.dry_run, "check every run, tell time and size to expect, run nothing");
   command.flag("--list", options.list, "print the index with every run of the plan, run nothing");
   command.flag("--json", options.json,
@@ -108,17 +77,6 @@ void declare(Command& command, SweepOptions& options)
                        std::string() :
                        "'" + text + "' must be I/N with 0 <= I < N";
           });
-}
-
-/// Under the plan's own overlays.
-Plan readPlan(const SweepOptions& options)
-{
-  SweepOptions with_overlays = options;
-  for (const std::string& overlay : Plan::overlays(options.plan))
-  {
-    with_overlays.configs.push_back(overlay);
-  }
-  return Plan(options.plan, loadParameterMap(with_overlays));
 }
 
 void tellResult(const SweepOptions& options, const Plan& plan, const SweepResult& result)
@@ -172,12 +130,12 @@ int workOff(const SweepOptions& options, const Plan& plan)
 
 int sweep(const SweepOptions& options)
 {
-  return workOff(options, readPlan(options));
+  return workOff(options, readPlan(options.plan, options));
 }
 
 int sweepLives(const SweepOptions& options)
 {
-  const Plan plan = readPlan(options);
+  const Plan plan = readPlan(options.plan, options);
   if (plan.lives() == nullptr)
   {
     throw InputError(options.plan + " has no mapping 'lives'; joint_twin sweep works it off");
