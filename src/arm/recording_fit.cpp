@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
-
 #include "base/median.hpp"
 #include "base/number_text.hpp"
 #include "gear/angle.hpp"
@@ -28,7 +26,6 @@ constexpr std::uint64_t MIN_ROWS = 100;
 constexpr double UNCHANGED = 2.0;       // no current stays the same in motion for longer [s]
 constexpr double LEAST_SQUARE = 1e-12;  // of an uncertainty: made-up data have none
 constexpr double DEGREE = PI / 180.0;
-constexpr double RIDGE = 1e-9;      // of the mean square: motion one way only leaves constant and friction alike
 constexpr double SLOW_ROWS = 0.06;  // rows further apart tell no acceleration: 20 Hz at least, with jitter [s]
 
 bool differs(const FittedFactor& factor, double from)
@@ -95,48 +92,6 @@ const char* effortKeyword(EffortUnit unit)
 {
   const auto names = choiceNames(unit);
   return std::find_if(names.begin(), names.end(), [&](const auto& name) { return name.second == unit; })->first;
-}
-
-void RecordingFit::LoadRegression::add(double step, double velocity, double acceleration, double load,
-                                       double current) noexcept
-{
-  constexpr double MEMORY = 120.0;  // of motion [s]
-  Eigen::Matrix<double, TERMS, 1> row;
-  row << 1.0, velocity > 0.0 ? 1.0 : -1.0, velocity, acceleration, load, current;
-  sums_ = (1.0 - step / MEMORY) * sums_ + step * row * row.transpose();
-}
-
-Eigen::Matrix2d RecordingFit::LoadRegression::left() const
-{
-  const Eigen::Matrix<double, OTHERS, OTHERS> others =
-      sums_.topLeftCorner<OTHERS, OTHERS>() +
-      Eigen::Matrix<double, OTHERS, OTHERS>(RIDGE * sums_.diagonal().head<OTHERS>().asDiagonal());
-  const Eigen::Matrix<double, OTHERS, 2> both = sums_.topRightCorner<OTHERS, 2>();
-  return sums_.bottomRightCorner<2, 2>() -
-         both.transpose() * Eigen::Matrix<double, OTHERS, 2>(others.ldlt().solve(both));
-}
-
-FittedFactor RecordingFit::LoadRegression::slope(double& content) const
-{
-  constexpr double CORRELATED = 0.5;  // rows nearer to each other tell the same [s]
-  constexpr double MIN_SECONDS = 3.0;
-  constexpr double MIN_CONTENT = 0.1;  // of the load that is left, rms: errors of friction and inertia leave less [A]
-  const double seconds = sums_(0, 0);
-  FittedFactor slope;
-  if (seconds < MIN_SECONDS)
-  {
-    return slope;
-  }
-  const Eigen::Matrix2d rest = left();
-  if (rest(0, 0) <= MIN_CONTENT * MIN_CONTENT * seconds)
-  {
-    return slope;
-  }
-  content = rest(0, 0);
-  slope.value = rest(0, 1) / rest(0, 0);
-  const double unexplained = std::max(0.0, rest(1, 1) - slope.value * rest(0, 1));
-  slope.uncertainty = std::sqrt(unexplained / rest(0, 0) * CORRELATED / seconds);
-  return slope;
 }
 
 RecordingFit::RecordingFit(const std::vector<Parameters>& joints)

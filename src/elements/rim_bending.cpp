@@ -145,17 +145,12 @@ HJT_VECTOR_CLONES void RimBending::addTurnTangent(const RingShape& shape, const 
   tangent.addSegments(n);
 }
 
-/// The stiffness between neighbouring segments: k times the outer product of the bend's gradient, which at tooth i is
-/// g_i at the tooth after, g_{i-1} at the tooth before and minus both at the tooth; g_i turns segment i by its far end.
-HJT_VECTOR_CLONES void RimBending::addCurvatureTangent(const RingShape& shape, RingTangent& tangent) const noexcept
+/// Each segment's gradient g of its turn by its far end; where only a half of the ring is solved, also beyond its ends.
+inline void fillGradients(const RingShape& shape, double* __restrict__ gx, double* __restrict__ gy) noexcept
 {
   const int n = shape.solved;
   const double* __restrict__ direction = shape.directions.data();
   const double* __restrict__ length = shape.lengths.data();
-  const double* __restrict__ rim = stiffness_.data();
-  const double race = race_;
-  double* __restrict__ gx = tangent.segment.xx.data();
-  double* __restrict__ gy = tangent.segment.xy.data();
 #pragma omp simd
   for (int i = 0; i < n; ++i)
   {
@@ -163,15 +158,29 @@ HJT_VECTOR_CLONES void RimBending::addCurvatureTangent(const RingShape& shape, R
     gx[i] = -direction[2 * i + 1] * inverse;
     gy[i] = direction[2 * i] * inverse;
   }
-  const int before = shape.previous(0);
-  const int after = shape.next(n - 1);
   if (shape.copies() > 1)
   {
+    const int before = shape.previous(0);
+    const int after = shape.next(n - 1);
     gx[before] = -gx[n - 1];
     gy[before] = -gy[n - 1];
     gx[after] = -gx[0];
     gy[after] = -gy[0];
   }
+}
+
+/// The stiffness between neighbouring segments: k times the outer product of the bend's gradient, which at tooth i is
+/// g_i at the tooth after, g_{i-1} at the tooth before and minus both at the tooth; g_i turns segment i by its far end.
+HJT_VECTOR_CLONES void RimBending::addCurvatureTangent(const RingShape& shape, RingTangent& tangent) const noexcept
+{
+  const int n = shape.solved;
+  const double* __restrict__ rim = stiffness_.data();
+  const double race = race_;
+  double* __restrict__ gx = tangent.segment.xx.data();
+  double* __restrict__ gy = tangent.segment.xy.data();
+  fillGradients(shape, gx, gy);
+  const int before = shape.previous(0);
+  const int after = shape.next(n - 1);
   double* __restrict__ d_xx = tangent.diagonal.xx.data();
   double* __restrict__ d_xy = tangent.diagonal.xy.data();
   double* __restrict__ d_yy = tangent.diagonal.yy.data();

@@ -171,15 +171,13 @@ void addOutputs(const Parameters& parameters, std::vector<FmuVariable>& all)
                     true });
   }
 }
-}  // namespace
-
-const std::vector<ScalarOutput>& scalarOutputs()
+/// State and readings of the drive.
+std::vector<ScalarOutput> driveOutputs()
 {
   using T = const Twin&;
   using O = const JointOutputs&;
-  using S = ScalarIndicator;
   constexpr Type F = Type::FLOAT64;
-  static const std::vector<ScalarOutput> OUTPUTS{
+  return {
     { "motor_angle", "rad", "of the wave generator, true", F, [](T, O o) { return o.motor_angle; } },
     { "motor_velocity", "rad/s", "of the wave generator, true", F, [](T, O o) { return o.motor_velocity; } },
     { "output_angle", "rad", "of the circular spline, true", F, [](T, O o) { return o.output_angle; } },
@@ -211,6 +209,17 @@ const std::vector<ScalarOutput>& scalarOutputs()
       [](T, O o) { return o.brake_engaged ? 1.0 : 0.0; } },
     { "converged", "-", "false: the ring found no equilibrium and the last good state is held", Type::BOOLEAN,
       [](T, O o) { return o.converged ? 1.0 : 0.0; } },
+  };
+}
+
+/// What health, assessment and indicators say of it.
+std::vector<ScalarOutput> healthOutputs()
+{
+  using T = const Twin&;
+  using O = const JointOutputs&;
+  using S = ScalarIndicator;
+  constexpr Type F = Type::FLOAT64;
+  return {
     { "transmission_ratio", "-", "over the last motor turn; 0: none yet", F,
       [](T t, O) { return t.health().motion.transmission_ratio.value; } },
     { "torsion", "rad", "motor angle over nominal ratio less output angle", F,
@@ -250,6 +259,18 @@ const std::vector<ScalarOutput>& scalarOutputs()
     { "indicator_efficiency", "-", "of the last window", F, indicator<S::EFFICIENCY>, true },
     { "indicator_residual_rms", "rad", "of the last window", F, indicator<S::RESIDUAL_RMS>, true },
   };
+}
+}  // namespace
+
+const std::vector<ScalarOutput>& scalarOutputs()
+{
+  static const std::vector<ScalarOutput> OUTPUTS = []
+  {
+    std::vector<ScalarOutput> outputs = driveOutputs();
+    const std::vector<ScalarOutput> health = healthOutputs();
+    outputs.insert(outputs.end(), health.begin(), health.end());
+    return outputs;
+  }();
   return OUTPUTS;
 }
 

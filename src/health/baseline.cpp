@@ -18,20 +18,10 @@ namespace hjt
 {
 namespace
 {
-constexpr double LOAD_STEP = 0.375;           // of the rated torque
-constexpr double TEMPERATURE_STEP = 10.0;     // [K]
-constexpr double ONE_WAY = 0.5;               // share of travel one way less the other that counts as one direction
-constexpr double INERTIA_ACCELERATION = 5.0;  // [rad/s^2]
-constexpr std::size_t TRIMMED = 5;            // one of so many is left out at either end
-constexpr std::size_t LEAST_WINDOWS = 3;      // of which one can be left out at either end
-constexpr double CARRIED_WINDOWS = 10.0;      // of the means that CarriedError is fitted to
-constexpr std::size_t JUMPS = 2;  // no scatter: the onset of a fault, and the newest window beside the oldest
-
-int stepOf(double value, double step) noexcept
-{
-  constexpr double FARTHEST = 1e6;  // damaged recordings hold numbers that no int does
-  return std::isfinite(value) ? static_cast<int>(std::clamp(std::floor(value / step), -FARTHEST, FARTHEST)) : 0;
-}
+constexpr std::size_t TRIMMED = 5;        // one of so many is left out at either end
+constexpr std::size_t LEAST_WINDOWS = 3;  // of which one can be left out at either end
+constexpr double CARRIED_WINDOWS = 10.0;  // of the means that CarriedError is fitted to
+constexpr std::size_t JUMPS = 2;          // no scatter: the onset of a fault, and the newest window beside the oldest
 
 /// Student's t with `freedom` as a normal deviate, and back.
 double normalScore(double t, double freedom) noexcept
@@ -118,36 +108,6 @@ double amplitudeChange(double sound, double change) noexcept
   }
   const double root = std::cbrt(std::max(1.0 + change / sound, 0.0));
   return 1.5 * sound * (root * root - 1.0);
-}
-
-double loadStep(const Parameters& parameters) noexcept
-{
-  return LOAD_STEP * parameters.life.rated_torque;
-}
-
-OperatingBin binOf(const OperatingPoint& point, double load_step) noexcept
-{
-  OperatingBin bin;
-  bin.speed = point.speed > 0.0 ? stepOf(std::log2(point.speed), 1.0) : -100;
-  bin.direction = point.direction > ONE_WAY ? 1 : point.direction < -ONE_WAY ? -1 : 0;
-  bin.load = stepOf(point.load, load_step);
-  bin.temperature = stepOf(point.temperature, TEMPERATURE_STEP);
-  return bin;
-}
-
-Place placeIn(const OperatingBin& bin, const OperatingPoint& point, double load_step) noexcept
-{
-  const auto place = [](double value, int step, double size, double farthest)
-  { return std::isfinite(value) ? std::clamp(2.0 * (value / size - step) - 1.0, -farthest, farthest) : 0.0; };
-  const double temperature = place(point.temperature, bin.temperature, TEMPERATURE_STEP, 1.0);
-  constexpr double FARTHEST = 100.0;
-  return { temperature,
-           temperature * temperature,
-           place(point.load, bin.load, load_step, 1.0),
-           place(point.load_constant, 0, load_step, FARTHEST),
-           place(point.load_sine, 0, load_step, FARTHEST),
-           place(point.load_cosine, 0, load_step, FARTHEST),
-           place(INERTIA_ACCELERATION * point.inertia, 0, load_step, FARTHEST) };
 }
 
 Baseline::Baseline(const Parameters& parameters, std::shared_ptr<const SignatureSet> signatures)

@@ -83,13 +83,19 @@ void SignalMonitor::start(const SignalSample& sample, double motor_angle) noexce
   torsion_zero_ = motor_angle / ratio_ - sample.output_angle;
 }
 
-bool SignalMonitor::update(const SignalSample& given) noexcept
+/// With the weight at the output, which no sample's load has.
+SignalSample SignalMonitor::withWeight(SignalSample sample) const noexcept
 {
-  SignalSample sample = given;
   if (output_.gravity_torque != 0.0)
   {
-    sample.load_torque += output_.gravity_torque * std::sin(given.output_angle - output_.gravity_angle);
+    sample.load_torque += output_.gravity_torque * std::sin(sample.output_angle - output_.gravity_angle);
   }
+  return sample;
+}
+
+bool SignalMonitor::update(const SignalSample& given) noexcept
+{
+  const SignalSample sample = withWeight(given);
   // One encoder is enough to know where the motor stands.
   const bool motor_known = std::isfinite(sample.motor_angle);
   const double motor_angle = motor_known ? sample.motor_angle : ratio_ * sample.output_angle;
@@ -119,8 +125,7 @@ bool SignalMonitor::update(const SignalSample& given) noexcept
   window_.both_encoders = window_.both_encoders && both;
   const double torsion = both ? motor_angle / ratio_ - sample.output_angle - torsion_zero_ : 0.0;
   const bool moving = std::abs(mean_velocity_) >= parameters_.least_speed;
-  const bool even = std::abs(velocity - mean_velocity_) <=
-                    parameters_.speed_change * std::abs(mean_velocity_) + parameters_.least_speed;
+  const bool even = judgeMotion(velocity, seconds, motor_known);
   const double output_angle = std::isfinite(sample.output_angle) ? sample.output_angle : motor_angle / ratio_;
   const bool load_known = std::isfinite(sample.load_torque);
   const double joint_torque = load_known ? sample.load_torque : ratio_ * sample.motor_torque;
@@ -145,27 +150,11 @@ bool SignalMonitor::update(const SignalSample& given) noexcept
   {
     efficiency_.update(elapsed, sample.motor_torque * velocity, sample.load_torque * velocity / ratio_);
   }
-  ringing_ = std::max(ringing_ * std::exp(-seconds / RINGING_TIME), RINGING_SHARE * std::abs(speed_.ripple()));
-  const bool calm = moving && even && (!motor_known || std::abs(speed_.ripple()) < LARGEST_RIPPLE);
-  calm_ = calm ? calm_ + seconds : 0.0;
-  waiting_count_ = calm ? waiting_count_ : 0;
   if (moving && even)
   {
     addSteady(sample, motor_angle, output_angle, travel, torsion);
   }
-  const double acceleration = speed_.acceleration();
-  window_.acceleration_square += acceleration * acceleration;
-  window_.acceleration_torque += acceleration * (ratio_ * sample.motor_torque - (load_known ? joint_torque : 0.0));
-  window_.all_samples += 1.0;
-  if (load_known)
-  {
-    window_.load.add(std::abs(joint_torque), seconds);
-    window_.load_over_angle.add(output_angle, joint_torque, seconds);
-  }
-  if (std::isfinite(sample.temperature))
-  {
-    window_.temperature.add(sample.temperature, seconds);
-  }
+  addAny(sample, output_angle, seconds);
   last_ = sample;
   last_angle_ = motor_angle;
   if (progress() < 1.0)
@@ -174,6 +163,39 @@ bool SignalMonitor::update(const SignalSample& given) noexcept
   }
   complete(sample.stamp);
   return true;
+}
+
+/// What counts in any motion: inertia, load and temperature.
+void SignalMonitor::addAny(const SignalSample& sample, double output_angle, double seconds) noexcept
+{
+  const bool load_known = std::isfinite(sample.load_torque);
+  const double acceleration = speed_.acceleration();
+  window_.acceleration_square += acceleration * acceleration;
+  window_.acceleration_torque +=
+      acceleration * (ratio_ * sample.motor_torque - (load_known ? sample.load_torque : 0.0));
+  window_.all_samples += 1.0;
+  if (load_known)
+  {
+    window_.load.add(std::abs(sample.load_torque), seconds);
+    window_.load_over_angle.add(output_angle, sample.load_torque, seconds);
+  }
+  if (std::isfinite(sample.temperature))
+  {
+    window_.temperature.add(sample.temperature, seconds);
+  }
+}
+
+/// Whether the speed is even; how calm the motion has been.
+bool SignalMonitor::judgeMotion(double velocity, double seconds, bool motor_known) noexcept
+{
+  const bool moving = std::abs(mean_velocity_) >= parameters_.least_speed;
+  const bool even = std::abs(velocity - mean_velocity_) <=
+                    parameters_.speed_change * std::abs(mean_velocity_) + parameters_.least_speed;
+  ringing_ = std::max(ringing_ * std::exp(-seconds / RINGING_TIME), RINGING_SHARE * std::abs(speed_.ripple()));
+  const bool calm = moving && even && (!motor_known || std::abs(speed_.ripple()) < LARGEST_RIPPLE);
+  calm_ = calm ? calm_ + seconds : 0.0;
+  waiting_count_ = calm ? waiting_count_ : 0;
+  return even;
 }
 
 void SignalMonitor::addSteady(const SignalSample& sample, double motor_angle, double output_angle, double travel,

@@ -92,6 +92,9 @@ private:
   };
 
   void start(const SignalSample& sample, double motor_angle) noexcept;
+  SignalSample withWeight(SignalSample sample) const noexcept;
+  void addAny(const SignalSample& sample, double output_angle, double seconds) noexcept;
+  bool judgeMotion(double velocity, double seconds, bool motor_known) noexcept;
   void addSteady(const SignalSample& sample, double motor_angle, double output_angle, double travel,
                  double torsion) noexcept;
   void addLines(const LineSample& sample, double travel, std::int64_t stamp) noexcept;

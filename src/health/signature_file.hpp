@@ -38,7 +38,7 @@ std::shared_ptr<const SignatureSet> loadSignatures(const std::string& name);
 /// What a file says (config/signatures/size_25.yaml has the format). `path`: for the messages alone. @throws as above.
 SignatureSet parseSignatures(const std::string& text, const std::string& path);
 
-/// The text of a file, which reads back as the same set but for the digits beyond the third of a change. `motions`: names
-/// for people, of each signature.
+/// The text of a file, which reads back as the same set but for the digits beyond the third of a change. `motions`:
+/// names for people, of each signature.
 std::string signatureText(const SignatureSet& set, const std::vector<std::string>& motions);
 }  // namespace hjt

@@ -223,8 +223,12 @@ void FrictionFit::solveOnce(double deviation, double correlation_rows)
   options.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
+  findHalfWidths(weight);
+}
 
-  // What was known before and what the blocks say of it.
+/// From what was known before and what the blocks say of it, each with this weight.
+void FrictionFit::findHalfWidths(double weight)
+{
   using Normal = Eigen::Matrix<double, QUANTITIES, QUANTITIES>;
   using Row = Eigen::Matrix<double, QUANTITIES, 1>;
   const Row scale = Eigen::Map<const Row>(known_.data());

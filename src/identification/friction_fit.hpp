@@ -65,6 +65,7 @@ private:
   Eigen::VectorXd residuals() const;
   void solve();
   void solveOnce(double deviation, double correlation_rows);
+  void findHalfWidths(double weight);
   double share(std::size_t quantity) const;
 
   std::vector<Block> blocks_;

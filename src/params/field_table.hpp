@@ -2,311 +2,32 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <string>
 
-#include "base/range.hpp"
-
-#include "harmonic_joint_twin/params/parameters.hpp"
+#include "params/drive_fields.hpp"
+#include "params/gear_fields.hpp"
 
 namespace hjt
 {
-/// Which response surface tables depend on a parameter.
-enum class Shapes
-{
-  SURFACE,  ///< all: it changes the equilibrium of the ring, or its friction by angle
-  FAULTS,   ///< those of a drive with faults
-  OTHERS    ///< none, or it is a friction that is added after a table is read
-};
-
-/// Meaning of a parameter, and the tables that depend on it: all unless stated otherwise.
-struct Meaning
-{
-  // NOLINTNEXTLINE(google-explicit-constructor): most rows of the table give a text alone
-  Meaning(const char* meaning, Shapes shaped = Shapes::SURFACE) : text(meaning), shapes(shaped) {}
-
-  const char* text;
-  Shapes shapes;
-};
-
-inline Meaning ofFaults(const char* text)
-{
-  return { text, Shapes::FAULTS };
-}
-
-inline Meaning ofOthers(const char* text)
-{
-  return { text, Shapes::OTHERS };
-}
-
-/// The one table of all parameters. Reading, range checks, the dump at start and the README table all walk it.
-///
-/// `visit(key, unit, value, range, meaning)` is called for numbers and arrays of numbers,
-/// `visit(key, value, meaning)` for booleans, texts and choices.
-/// `P` is `Parameters` or `const Parameters`.
 template <class P, class Visitor>
-void visitFields(P& p, Visitor&& visit)
+void visitJoint(P& p, Visitor& visit)
 {
-  constexpr double INF = std::numeric_limits<double>::max();
-
   visit("joint.name", p.joint.name, ofOthers("name of the joint in JointState messages; the motor is NAME_motor"));
   visit("joint.hardware_id", p.joint.hardware_id, ofOthers("hardware id in /diagnostics (REP-107: the serial number)"));
+}
 
-  visit("gear.teeth_flexspline", "-", p.gear.teeth_flexspline, Range{ 8, 4000 }, "teeth of the flexspline, even");
-  visit("gear.teeth_circular_spline", "-", p.gear.teeth_circular_spline, Range{ 10, 4002 },
-        "teeth of the circular spline: two more than the flexspline");
-  visit("gear.flexspline_inner_radius", "m", p.gear.flexspline_inner_radius, Range{ 1e-3, 1.0 },
-        "inner radius of the undeformed flexspline, also the mean radius of the wave generator");
-  visit("gear.wave_amplitude", "m", p.gear.wave_amplitude, Range{ 0.0, 1e-2 },
-        "w0: the wave generator's semi-axes are the inner radius plus and minus w0");
-  visit("gear.rim_thickness", "m", p.gear.rim_thickness, Range{ 1e-5, 1e-1 }, "flexspline rim under the teeth");
-  visit("gear.tooth_height_flexspline", "m", p.gear.tooth_height_flexspline, Range{ 1e-5, 1e-1 },
-        "height of a flexspline tooth");
-  visit("gear.tip_radius_circular_spline", "m", p.gear.tip_radius_circular_spline, Range{ 1e-3, 1.0 },
-        "tip radius of the circular spline's teeth");
-
-  const Range pitch_deviation{ 0.0, 1e-4 };
-  const Range seed{ 0, 99999 };
-  const Range shift{ -1e-4, 1e-4 };
-  visit("manufacture.flexspline_pitch_deviation", "m", p.manufacture.flexspline_pitch.deviation, pitch_deviation,
-        "total cumulative pitch deviation Fp of the flexspline's teeth at mid-height");
-  visit("manufacture.flexspline_pitch_seed", "-", p.manufacture.flexspline_pitch.seed, seed,
-        "which of the gears with that deviation");
-  visit("manufacture.flexspline_pitch_table", p.manufacture.flexspline_pitch.table,
-        "none, or the absolute path of a CSV file (tooth, deviation [m]) in place of deviation and seed");
-  visit("manufacture.circular_spline_pitch_deviation", "m", p.manufacture.circular_spline_pitch.deviation,
-        pitch_deviation, "total cumulative pitch deviation Fp of the circular spline's spaces");
-  visit("manufacture.circular_spline_pitch_seed", "-", p.manufacture.circular_spline_pitch.seed, seed,
-        "which of the gears with that deviation");
-  visit("manufacture.circular_spline_pitch_table", p.manufacture.circular_spline_pitch.table,
-        "none, or the absolute path of a CSV file (tooth, deviation [m]) in place of deviation and seed");
-  visit("manufacture.flexspline_eccentricity", "m", p.manufacture.flexspline_eccentricity, shift,
-        "run-out: centre of the flexspline's teeth from the axis of its bore, at rest with the housing: x, y");
-  visit("manufacture.circular_spline_eccentricity", "m", p.manufacture.circular_spline_eccentricity, shift,
-        "centre of the spaces from the output's axis, turning with the output: x, y at output angle 0");
-  visit(
-      "manufacture.circular_spline_ellipticity", "m", p.manufacture.circular_spline_ellipticity, shift,
-      "out-of-round: the radius grows by first cos 2a + second sin 2a, a the angle from space 0; bent, not stretched");
-  visit("manufacture.wave_generator_eccentricity", "m", p.manufacture.wave_generator_eccentricity, shift,
-        "centre of the ellipse from the motor's axis, turning with the motor: along the major, along the minor axis");
-  visit("manufacture.wave_generator_ellipticity", "m", p.manufacture.wave_generator_ellipticity, shift,
-        "excess of the wave generator's amplitude over gear.wave_amplitude, for which the teeth were cut");
-
-  visit("ring.mass", "kg", p.ring.mass, Range{ 1e-9, 1e3 },
-        ofOthers("mass of the toothed rim, shared by the teeth alike; only the dynamic ring knows it"));
-  visit("ring.tension_stiffness", "N/m", p.ring.tension_stiffness, Range{ 1.0, 1e13 },
-        "axial stiffness of the rim between neighbouring teeth");
-  visit("ring.tension_damping", "N.s/m", p.ring.tension_damping, Range{ 0.0, 1e6 }, "dashpot beside it");
-  visit("ring.tooth_damping", "N.s/m", p.ring.tooth_damping, Range{ 0.0, 1e6 }, "dashpot of each tooth to the housing");
-  visit("ring.bending_stiffness", "N.m/rad", p.ring.bending_stiffness, Range{ 0.0, 1e8 },
-        "bending stiffness of the rim per segment");
-  visit("ring.bending_law", p.ring.bending_law,
-        "curvature: between neighbouring segments, frame-indifferent; absolute: of each segment from rest");
-  visit("ring.loss_factor", "-", p.ring.loss_factor, Range{ 0.0, 1.0 },
-        "of rim and outer race in bending: energy lost in a cycle over 2 pi times the largest that they store; 0 = "
-        "elastic");
-
-  visit(
-      "contact.support", p.contact.support,
-      "springs: a spring at each tooth on a rigid ellipse; balls: the balls of the bearing after Hertz, spread evenly "
-      "around the ring; single_balls: each ball at its place");
-  visit("contact.stiffness", "N/m", p.contact.stiffness, Range{ 1.0, 1e12 },
-        "support springs: wave generator to flexspline, per tooth");
-  visit("contact.fit", "m", p.contact.fit, shift,
-        "mean radius of the wave generator over the flexspline's inner radius; > 0 interference, < 0 clearance");
-  visit("contact.temperature_difference", "K", p.contact.temperature_difference, Range{ -100.0, 100.0 },
-        "wave generator above the flexspline's rim, which adds its thermal growth to the fit");
-  visit("contact.damping", "N.s/m", p.contact.damping, Range{ 0.0, 1e6 }, "dashpot of the same contact");
-  visit("contact.law", p.contact.law, "normal: along the true normal of the ellipse; polar: the thesis' point");
-  visit("contact.smoothing", "m", p.contact.smoothing, Range{ 0.0, 1e-4 },
-        "support springs: C1 ramp of the contact; 0 = exact law");
-  visit("contact.friction_coefficient", "-", p.contact.friction_coefficient, Range{ 0.0, 2.0 },
-        "friction between the bearing's outer race and the flexspline");
-  visit("contact.slip_lever", "m", p.contact.slip_lever, Range{ 0.0, 1e-1 },
-        "distance between the neutral fibres of rim and outer race: lever of the slip between them");
-
-  visit("mesh.profile", p.mesh.profile, "shape of the tooth flanks (thesis section 3.2)");
-  visit("mesh.stiffness", "N/m", p.mesh.stiffness, Range{ 0.0, 1e12 },
-        "stiffness of a tooth pair along the flank normal");
-  visit("mesh.flank_angle", "rad", p.mesh.flank_angle, Range{ 0.0, 1.4 }, "angle of the flank from the tooth's axis");
-  visit("mesh.tangent_angle", "rad", p.mesh.tangent_angle, Range{ 0.0, 1.4 },
-        "double arc: angle of the common tangent of both arcs from the tooth's axis");
-  visit("mesh.tangent_length", "m", p.mesh.tangent_length, Range{ 0.0, 1e-2 },
-        "double arc: height of the common tangent, at mid-height of the tooth");
-  visit("mesh.flank_clearance", "m", p.mesh.flank_clearance, Range{ -1e-3, 1e-3 },
-        "half clearance at full engagement; negative = interference");
-  visit("mesh.engagement_depth", "m", p.mesh.engagement_depth, Range{ 1e-9, 1e-2 },
-        "depth over which a tooth's stiffness grows from none to full");
-  visit("mesh.smoothing", "m", p.mesh.smoothing, Range{ 0.0, 1e-4 }, "C1 ramp of the contact; 0 = exact law");
-  visit("mesh.friction_static", "-", p.mesh.friction_static, Range{ 0.0, 2.0 }, "flank friction at rest");
-  visit("mesh.friction_kinetic", "-", p.mesh.friction_kinetic, Range{ 0.0, 2.0 },
-        ofOthers("flank friction when sliding"));
-  visit("mesh.stribeck_velocity", "m/s", p.mesh.stribeck_velocity, Range{ 1e-9, 1e3 },
-        ofOthers("sliding speed at which static has turned into kinetic friction"));
-
-  visit("cup.torsion_stiffness", "N.m/rad", p.cup.torsion_stiffness, Range{ 1.0, 1e9 },
-        "slopes of the cup's torque over its mean rotation: below the first, between, above the second breakpoint");
-  visit("cup.torsion_breakpoints", "N.m", p.cup.torsion_breakpoints, Range{ 0.0, 1e6 },
-        "torques at which the slope changes, ascending");
-  visit("cup.wall_stiffness", "N.m/rad", p.cup.wall_stiffness, Range{ 1.0, 1e9 },
-        "part of the cup's compliance that is its wall's and diaphragm's: what cracks and buckles of the cup act on; "
-        "more than torsion_stiffness");
-  visit("cup.friction_torque", "N.m", p.cup.friction_torque, Range{ 0.0, 1e4 },
-        ofOthers("dry friction beside the cup's spring: half the height of its torsion loop"));
-  visit("cup.friction_angle", "rad", p.cup.friction_angle, Range{ 0.0, 1.0 },
-        ofOthers("twist after a reversal over which that friction builds up; 0 = at once"));
-
-  visit("bearing.lubricant_factor", "-", p.bearing.lubricant_factor, Range{ 0.0, 100.0 },
-        ofOthers("f0 of Palmgren's law"));
-  visit("bearing.load_factor", "-", p.bearing.load_factor, Range{ 0.0, 1.0 }, "f1 of Palmgren's law");
-  visit(
-      "bearing.race_preload", "N", p.bearing.race_preload, Range{ 0.0, 1e6 },
-      "sum of the ball forces beside those under the rim: the fit of the bearing's outer race, and its bending unless "
-      "race_bending_stiffness has it");
-  visit("bearing.race_bending_stiffness", "N.m/rad", p.bearing.race_bending_stiffness, Range{ 0.0, 1e8 },
-        "bending stiffness of the bearing's outer race per segment of the rim, with which it bends");
-  visit("bearing.pitch_diameter", "m", p.bearing.pitch_diameter, Range{ 1e-3, 1.0 }, "pitch diameter of the balls");
-  visit("bearing.balls", "-", p.bearing.balls, Range{ 3, 1000 }, "balls of the bearing");
-  visit("bearing.ball_diameter", "m", p.bearing.ball_diameter, Range{ 1e-4, 1.0 },
-        "diameter of a ball, below pitch_diameter");
-  visit("bearing.viscosity", "m^2/s", p.bearing.viscosity, Range{ 1e-7, 1e-1 },
-        ofOthers("kinematic viscosity that the grease acts with at viscosity_temperature"));
-  visit("bearing.oil_viscosity", "m^2/s", p.bearing.oil_viscosity, Range{ 1e-6, 1e-1 },
-        ofOthers("kinematic viscosity of the grease's base oil there: with the slope, how the grease thins"));
-  visit("bearing.viscosity_temperature", "degC", p.bearing.viscosity_temperature, Range{ -60.0, 200.0 },
-        ofOthers("temperature both viscosities are given at"));
-  visit("bearing.viscosity_slope", "-", p.bearing.viscosity_slope, Range{ 0.0, 10.0 },
-        ofOthers("slope m of the base oil in the viscosity-temperature chart (Walther, ASTM D341)"));
-  visit("bearing.constant_share", "-", p.bearing.constant_share, Range{ 0.0, 1.0 },
-        ofOthers("share of the friction by speed at viscosity_temperature that no temperature changes"));
-
-  visit("motor.rotor_inertia", "kg.m^2", p.motor.rotor_inertia, Range{ 1e-9, 10.0 }, ofOthers("motor's rotor"));
-  visit("motor.wave_generator_inertia", "kg.m^2", p.motor.wave_generator_inertia, Range{ 0.0, 10.0 },
-        ofOthers("wave generator"));
-  visit("motor.coulomb_torque", "N.m", p.motor.coulomb_torque, Range{ 0.0, 1e3 },
-        ofOthers("Coulomb friction at the motor shaft beyond bearing, outer race and flanks"));
-  visit("motor.stribeck_torque", "N.m", p.motor.stribeck_torque, Range{ 0.0, 1e3 },
-        ofOthers("by which friction at the shaft exceeds this and that of the bearing at standstill"));
-  visit("motor.stribeck_velocity", "rad/s", p.motor.stribeck_velocity, Range{ 1e-6, 1e4 },
-        ofOthers("motor speed at which 1/e of that is left"));
-  visit("motor.presliding_angle", "rad", p.motor.presliding_angle, Range{ 0.0, 1.0 },
-        ofOthers("motor's angle after a reversal over which friction at the shaft builds up; 0 = at once"));
-  visit("motor.viscous_friction", "N.m.s/rad", p.motor.viscous_friction, Range{ 0.0, 1e3 },
-        ofOthers("viscous friction, motor side"));
-  visit("motor.copper_loss", "W/(N.m)^2", p.motor.copper_loss, Range{ 0.0, 1e4 },
-        ofOthers("heat of the motor's winding over the square of its torque"));
-  visit("motor.torque_limit", "N.m", p.motor.torque_limit, Range{ 0.0, 1e4 },
-        "larger commands are clamped and counted");
-  visit("motor.speed_limit", "rad/s", p.motor.speed_limit, Range{ 1e-3, 1e5 },
-        ofOthers("the drive gives no torque that would speed the motor up beyond this"));
-  visit("motor.current_bandwidth", "Hz", p.motor.current_bandwidth, Range{ 0.0, 1e6 },
-        ofOthers("bandwidth of the current loop, first order; 0 = the torque follows the command at once"));
-  visit("motor.torque_temperature_coefficient", "1/K", p.motor.torque_temperature_coefficient, Range{ -0.01, 0.01 },
-        ofOthers("change of torque per current over the one at 25 degC, of the magnets"));
-  visit("motor.torque_ripple", "-", p.motor.torque_ripple, Range{ 0.0, 0.5 },
-        ofOthers("amplitude of the ripple six times per electrical period over the torque"));
-  visit("motor.pole_pairs", "-", p.motor.pole_pairs, Range{ 1, 1000 },
-        ofOthers("pairs of poles: electrical periods per turn"));
-  visit("motor.cogging_torque", "N.m", p.motor.cogging_torque, Range{ 0.0, 1e3 },
-        ofOthers("amplitude of the torque between magnets and slots"));
-  visit("motor.cogging_periods", "-", p.motor.cogging_periods, Range{ 1, 10000 },
-        ofOthers("periods of it per turn: least common multiple of poles and slots"));
-
-  visit("output.circular_spline_inertia", "kg.m^2", p.output.circular_spline_inertia, Range{ 1e-7, 100.0 },
-        ofOthers("circular spline and the parts that turn with it inside the joint"));
-  visit("output.load_inertia", "kg.m^2", p.output.load_inertia, Range{ 0.0, 1e4 }, ofOthers("inertia of the load"));
-  visit("output.viscous_friction", "N.m.s/rad", p.output.viscous_friction, Range{ 0.0, 1e6 },
-        ofOthers("viscous friction, joint side"));
-  visit("output.coulomb_torque", "N.m", p.output.coulomb_torque, Range{ 0.0, 1e4 },
-        ofOthers("dry friction of the output's bearing and seals, joint side"));
-  visit("output.tilting_moment", "N.m", p.output.tilting_moment, Range{ 0.0, 1e5 },
-        ofOthers("moment across its axis that the output's bearing carries"));
-  visit("output.tilting_friction", "-", p.output.tilting_friction, Range{ 0.0, 1.0 },
-        ofOthers("dry friction of that bearing per tilting moment"));
-  visit("output.gravity_torque", "N.m", p.output.gravity_torque, Range{ 0.0, 1e5 },
-        ofOthers("m g l of the load; 0 = none"));
-  visit("output.gravity_angle", "rad", p.output.gravity_angle, Range{ -6.2831853071795865, 6.2831853071795865 },
-        ofOthers("joint angle at which the load hangs straight down"));
-  visit("output.torque_limit", "N.m", p.output.torque_limit, Range{ 0.0, 1e6 },
-        ofOthers("larger torques at the joint are counted, with a warning"));
-  visit("output.load_torque_limit", "N.m", p.output.load_torque_limit, Range{ 0.0, 1e6 },
-        "larger external torques are clamped and counted");
-
-  visit("brake.holding_torque", "N.m", p.brake.holding_torque, Range{ 0.0, 1e4 },
-        ofOthers("motor side; above it the brake slips"));
-  visit("brake.play", "rad", p.brake.play, Range{ 0.0, 6.2831853071795865 },
-        ofOthers("turn of the motor in which the pin of the engaged brake finds nothing to hold"));
-  visit("brake.delay", "s", p.brake.delay, Range{ 0.0, 10.0 },
-        ofOthers("from its command to the brake's engagement or release"));
-  visit("brake.engaged_at_start", p.brake.engaged_at_start, ofOthers("state of the brake after start and reset"));
-
-  visit("thermal.model", p.thermal.model,
-        ofOthers("none: the drive has input.temperature; two_nodes: grease and housing warm up by the losses, and "
-                 "input.temperature is that of the surroundings"));
-  visit("thermal.grease_capacity", "J/K", p.thermal.grease_capacity, Range{ 1e-2, 1e6 },
-        ofOthers("heat capacity of grease, wave generator, flexspline and rotor"));
-  visit("thermal.housing_capacity", "J/K", p.thermal.housing_capacity, Range{ 1e-2, 1e6 },
-        ofOthers("heat capacity of the housing with what is fixed to it"));
-  visit("thermal.internal_conductance", "W/K", p.thermal.internal_conductance, Range{ 1e-4, 1e4 },
-        ofOthers("heat flow from grease to housing per difference of temperature"));
-  visit("thermal.ambient_conductance", "W/K", p.thermal.ambient_conductance, Range{ 0.0, 1e4 },
-        ofOthers("heat flow from housing to surroundings per difference of temperature; 0 = insulated"));
-  visit("thermal.standby_power", "W", p.thermal.standby_power, Range{ 0.0, 1e4 },
-        ofOthers("heat of electronics and released brake, into the housing"));
-  visit("thermal.grease_rise", "K", p.thermal.grease_rise, Range{ -100.0, 150.0 },
-        ofOthers("temperature of the grease above that of the surroundings at start and reset"));
-  visit("thermal.housing_rise", "K", p.thermal.housing_rise, Range{ -100.0, 150.0 },
-        ofOthers("temperature of the housing above that of the surroundings at start and reset"));
-
-  visit("solver.rate", "Hz", p.solver.rate, Range{ 100.0, 1e6 },
-        ofOthers("steps per simulated second; must divide 1e9 ns evenly"));
-  visit("solver.stepper", p.solver.stepper,
-        ofOthers("leapfrog: one ring solve a step, exact stiction; adaptive: steps of their own length on the response "
-                 "surface (solver.scene: auto), offline"));
-  visit("solver.tolerance", "rad", p.solver.tolerance, Range{ 1e-13, 1e-5 },
-        ofOthers("adaptive: error of a step, of the output's angle"));
-  visit("solver.force_tolerance", "N", p.solver.force_tolerance, Range{ 1e-9, 1.0 },
-        ofOthers("largest out-of-balance force on any tooth"));
-  visit("solver.max_iterations", "-", p.solver.max_iterations, Range{ 1, 1000 },
-        ofOthers("Newton iterations per attempt"));
-  visit("solver.max_step_cuts", "-", p.solver.max_step_cuts, Range{ 0, 30 },
-        ofOthers("halvings of a step that does not converge"));
-  visit("solver.stiction_velocity", "rad/s", p.solver.stiction_velocity, Range{ 1e-12, 1e3 },
-        ofOthers("motor speed below which friction is regularised"));
-  visit("solver.scene", p.solver.scene,
-        ofOthers("full_ring: every tooth at every step; auto: a response surface built at start, where it holds"));
-
-  visit("sensors.motor_counts_per_turn", "-", p.sensors.motor_counts_per_turn, Range{ 1, 1 << 30 },
-        ofOthers("counts of the motor encoder after quadrature"));
-  visit("sensors.output_counts_per_turn", "-", p.sensors.output_counts_per_turn, Range{ 2, 1 << 30 },
-        ofOthers("counts of the absolute output encoder"));
-  visit("sensors.velocity_window", "s", p.sensors.velocity_window, Range{ 1e-6, 10.0 },
-        ofOthers("encoder velocities are differences over this time"));
-  visit("sensors.motor_eccentricity", "rad", p.sensors.motor_eccentricity, Range{ -0.1, 0.1 },
-        ofOthers("error of the motor encoder once a turn, sine of the motor angle: amplitude"));
-  visit("sensors.motor_lines", "rad", p.sensors.motor_lines, Range{ -0.1, 0.1 },
-        ofOthers("errors of the motor encoder two and four times a turn: amplitudes"));
-  visit("sensors.motor_noise", "rad", p.sensors.motor_noise, Range{ 0, 0.1 },
-        ofOthers("noise of the motor encoder at every step, before it is resolved into counts, rms"));
-  visit("sensors.output_eccentricity", "rad", p.sensors.output_eccentricity, Range{ -0.1, 0.1 },
-        ofOthers("error of the output encoder once a turn, sine of the output angle: amplitude"));
-  visit("sensors.output_lines", "rad", p.sensors.output_lines, Range{ -0.1, 0.1 },
-        ofOthers("errors of the output encoder two and four times a turn: amplitudes"));
-  visit("sensors.output_noise", "rad", p.sensors.output_noise, Range{ 0, 0.1 },
-        ofOthers("noise of the output encoder at every step, before it is resolved into counts, rms"));
-  visit("sensors.torque_noise", "N.m", p.sensors.torque_noise, Range{ 0, 1000 },
-        ofOthers("noise of the motor torque estimated from the current, at every step, rms"));
-  visit("sensors.torque_resolution", "N.m", p.sensors.torque_resolution, Range{ 0, 1000 },
-        ofOthers("resolution of the motor torque estimated from the current; 0 = none"));
-  visit("sensors.delay", "s", p.sensors.delay, Range{ 0, 0.1 }, ofOthers("delay of all readings, in whole steps"));
-  visit("sensors.noise_seed", "-", p.sensors.noise_seed, Range{ 0, 2147483647 },
-        ofOthers("of the noise: the same seed gives the same noise at the same stamps"));
-
+template <class P, class Visitor>
+void visitHealth(P& p, Visitor& visit)
+{
   visit("health.stiffness_torque_span", "N.m", p.health.stiffness_torque_span, Range{ 1e-3, 1e5 },
         ofOthers("joint torque must have varied this much before a stiffness is estimated"));
   visit("health.averaging_time", "s", p.health.averaging_time, Range{ 1e-3, 1e4 },
         ofOthers("time constant over which efficiency and stiffness forget"));
+}
 
+template <class P, class Visitor>
+void visitIndicators(P& p, Visitor& visit)
+{
   visit("indicators.sample_rate", "Hz", p.indicators.sample_rate, Range{ 1.0, 1e6 },
         ofOthers("sample rate of the twin's own indicators; must divide solver.rate"));
   visit("indicators.window_turns", "-", p.indicators.window_turns, Range{ 2.0, 1e5 },
@@ -337,21 +58,11 @@ void visitFields(P& p, Visitor&& visit)
   visit("indicators.signatures", p.indicators.signatures,
         ofOthers("none, or the file of what faults change in the indicators of this gear: beside the default "
                  "configuration or a path"));
-  visit("stress.tooth_base", "-", p.stress.tooth_base, Range{ 0.0, 0.99 },
-        ofOthers("share of the pitch that a tooth of the flexspline takes at its base"));
-  visit("stress.wall_thickness", "m", p.stress.wall_thickness, Range{ 1e-5, 0.1 }, ofOthers("of the cup"));
-  visit("stress.cup_length", "m", p.stress.cup_length, Range{ 1e-3, 1.0 },
-        ofOthers("from the open end to the flange, teeth included; more than life.face_width"));
-  visit("stress.coning_restraint", "-", p.stress.coning_restraint, Range{ 0.0, 1.0 },
-        ofOthers("how far the bearing holds the toothed rim from coning: 0 not at all, 1 entirely"));
-  visit("stress.warping_restraint", "-", p.stress.warping_restraint, Range{ 0.0, 1.0 },
-        ofOthers("how far the flange holds the cup's end from warping: 0 not at all, 1 as if built in"));
-  visit(
-      "stress.concentration", "-", p.stress.concentration, Range{ 1.0, 10.0 },
-      ofOthers("largest stress over the nominal one in the tooth space, at the transition from the toothed rim to the "
-               "cup, and at the flange"));
-  visit("stress.notch_radius", "m", p.stress.notch_radius, Range{ 1e-6, 0.1 },
-        ofOthers("of the fillets at these places"));
+}
+
+template <class P, class Visitor>
+void visitLife(P& p, Visitor& visit)
+{
   visit("life.rated_torque", "N.m", p.life.rated_torque, Range{ 1e-3, 1e5 },
         ofOthers("rated output torque of the catalogue, at which the bearing's lives are given"));
   visit("life.repeated_peak_torque", "N.m", p.life.repeated_peak_torque, Range{ 1e-3, 1e5 },
@@ -411,10 +122,14 @@ void visitFields(P& p, Visitor&& visit)
         ofOthers("live: none, or the absolute path of the file that keeps the drive's use from one start to the next"));
   visit("life.forecast_period", "s", p.life.forecast_period, Range{ 0.1, 1e5 },
         ofOthers("live: time between two forecasts of the remaining life, and between two writes of the record"));
+}
 
+template <class P, class Visitor>
+void visitInput(P& p, Visitor& visit)
+{
   visit("input.mode", p.input.mode,
         ofOthers("commands: the twin alone; beside a robot, driven by its measured torque, motion or both (observer)"));
-  visit("input.command_timeout", "s", p.input.command_timeout, Range{ 1e-3, INF },
+  visit("input.command_timeout", "s", p.input.command_timeout, Range{ 1e-3, NO_LIMIT },
         ofOthers("a torque command older than this counts as zero"));
   visit("input.delay", "s", p.input.delay, Range{ 0.0, 10.0 },
         ofOthers("live, the twin stays this far behind the clock, so that stamped commands arrive in time"));
@@ -423,7 +138,11 @@ void visitFields(P& p, Visitor&& visit)
       ofOthers("true: the twin starts at the stamp of the first input (replay); false: at the clock's first instant"));
   visit("input.temperature", "degC", p.input.temperature, Range{ MIN_TEMPERATURE, MAX_TEMPERATURE },
         ofOthers("temperature of the drive, or of its surroundings where thermal.model is not none"));
+}
 
+template <class P, class Visitor>
+void visitTelemetry(P& p, Visitor& visit)
+{
   visit("telemetry.torque_per_current", "N.m/A", p.telemetry.torque_per_current, Range{ 1e-6, 1e6 },
         ofOthers("torque at the joint per measured motor current"));
   visit("telemetry.current_offset", "A", p.telemetry.current_offset, Range{ -1000.0, 1000.0 },
@@ -464,7 +183,11 @@ void visitFields(P& p, Visitor&& visit)
       ofOthers("load of a measured joint: model: weight and inertia below output; load_torque: weight and inertia plus "
                "the received load torque; target_moment: only the received torque; arm: of links and payload, from the "
                "motion of all joints"));
+}
 
+template <class P, class Visitor>
+void visitObserver(P& p, Visitor& visit)
+{
   visit("observer.output_angle_noise", "rad", p.observer.output_angle_noise, Range{ 1e-9, 1.0 },
         ofOthers("of the measured joint angle, rms"));
   visit("observer.motor_angle_noise", "rad", p.observer.motor_angle_noise, Range{ 1e-9, 1.0 },
@@ -476,14 +199,22 @@ void visitFields(P& p, Visitor&& visit)
         ofOthers("of the load torque, white, likewise"));
   visit("observer.disturbance_growth", "N.m/sqrt(s)", p.observer.disturbance_growth, Range{ 1e-9, 1e3 },
         ofOthers("rms change of the unmodelled torque at the motor within a second"));
+}
 
+template <class P, class Visitor>
+void visitComparison(P& p, Visitor& visit)
+{
   visit("comparison.friction_tolerance", "-", p.comparison.friction_tolerance, Range{ 0.01, 10.0 },
         ofOthers("share by which a sound joint's friction may differ from the twin's"));
   visit("comparison.compliance_tolerance", "-", p.comparison.compliance_tolerance, Range{ 0.01, 10.0 },
         ofOthers("share by which a sound joint's torsion may differ from the twin's"));
   visit("comparison.repeat_tolerance", "-", p.comparison.repeat_tolerance, Range{ 0.01, 10.0 },
         ofOthers("share within which torsion repeats and the friction of an arm's joints agrees"));
+}
 
+template <class P, class Visitor>
+void visitPublish(P& p, Visitor& visit)
+{
   visit("publish.joint_states_rate", "Hz", p.publish.joint_states_rate, Range{ 1e-3, 1e6 },
         ofOthers("must divide solver.rate"));
   visit("publish.encoders_rate", "Hz", p.publish.encoders_rate, Range{ 1e-3, 1e6 },
@@ -494,7 +225,11 @@ void visitFields(P& p, Visitor&& visit)
   visit("publish.stress_rate", "Hz", p.publish.stress_rate, Range{ 1e-3, 1e6 }, ofOthers("must divide solver.rate"));
   visit("publish.indicators_rate", "Hz", p.publish.indicators_rate, Range{ 1e-3, 1e6 },
         ofOthers("must divide solver.rate"));
+}
 
+template <class P, class Visitor>
+void visitRealtime(P& p, Visitor& visit)
+{
   visit("realtime.deadline", "s", p.realtime.deadline, Range{ 1e-6, 1e4 },
         ofOthers("live: a cycle of the loop that simulates an instant later than this after it was due has missed its "
                  "deadline"));
@@ -504,61 +239,41 @@ void visitFields(P& p, Visitor&& visit)
         ofOthers("live: true: the node's memory stays in RAM (mlockall); false: it may be paged out"));
   visit("realtime.processor", "-", p.realtime.processor, Range{ -1, 1023 },
         ofOthers("live: processor that the loop's thread is bound to, counted from 0; -1: any"));
+}
 
-  auto& scale = p.fault_scale;
-  const Range depth{ 0.0, 1e-3 };
-  const Range part{ 0.0, 1.0 };
-  const Range factor{ 1.0, 100.0 };
-  visit("fault_scale.interface_wear_depth", "m", scale.interface_wear_depth, depth,
-        ofFaults("interface_wear at severity 1: radial wear of rim and outer race together"));
-  visit("fault_scale.interface_friction_factor", "-", scale.interface_friction_factor, factor,
-        ofFaults("interface_wear at severity 1: contact.friction_coefficient times this"));
-  visit("fault_scale.cup_crack_fraction", "-", scale.cup_crack_fraction, Range{ 0.0, 0.99 },
-        ofFaults("rear_section_crack, flange_crack at severity 1: part of the circumference that is cracked"));
-  visit("fault_scale.rear_section_share", "-", scale.rear_section_share, part,
-        ofFaults("part of the compliance of the cup's wall and diaphragm in torsion that lies behind the teeth"));
-  visit("fault_scale.flange_share", "-", scale.flange_share, part,
-        ofFaults("part of that compliance that lies at the cup's flange"));
-  visit("fault_scale.cup_crack_friction_factor", "-", scale.cup_crack_friction_factor, factor,
-        ofFaults("rear_section_crack, flange_crack at severity 1: cup.friction_torque times this"));
-  visit("fault_scale.viscosity_factor", "-", scale.viscosity_factor, Range{ 0.01, 100.0 },
-        ofFaults("lubricant_degradation at severity 1: viscosity of the grease times this"));
-  visit("fault_scale.boundary_friction_factor", "-", scale.boundary_friction_factor, factor,
-        ofFaults("lubricant_degradation at severity 1: friction of flanks and of race in rim times this"));
-  visit("fault_scale.tooth_wear_depth", "m", scale.tooth_wear_depth, depth,
-        ofFaults("tooth_wear at severity 1: material off each flank, along its normal"));
-  visit("fault_scale.tooth_compliance_share", "-", scale.tooth_compliance_share, Range{ 0.01, 1.0 },
-        ofFaults("part of a tooth pair's compliance that is bending of the flexspline's tooth"));
-  visit("fault_scale.pitted_fraction", "-", scale.pitted_fraction, part,
-        ofFaults("pitting at severity 1: part of the flank's width that carries no more"));
-  visit("fault_scale.pitted_friction_factor", "-", scale.pitted_friction_factor, factor,
-        ofFaults("pitting at severity 1: friction of that tooth's flanks times this"));
-  visit("fault_scale.wave_generator_wear_depth", "m", scale.wave_generator_wear_depth, depth,
-        ofFaults("wave_generator_wear at severity 1: loss of the major semi-axis"));
-  visit("fault_scale.race_fit_stiffness", "N/m", scale.race_fit_stiffness, Range{ 0.0, 1e12 },
-        ofFaults("decrease of bearing.race_preload per decrease of the wave generator's mean radius"));
-  visit("fault_scale.race_bending_preload", "N", scale.race_bending_preload, Range{ 0.0, 1e6 },
-        ofFaults("part of bearing.race_preload that bends the race, which wear does not take away"));
-  visit("fault_scale.rim_crack_depth", "-", scale.rim_crack_depth, Range{ 0.0, 0.99 },
-        ofFaults("cracks of the rim at severity 1: depth over the rim's thickness"));
-  visit("fault_scale.rim_crack_segments", "-", scale.rim_crack_segments, Range{ 1, 100 },
-        ofFaults("flexspline_crack: segments to either side over which the crack fades out"));
-  visit("fault_scale.buckling_stiffness_loss", "-", scale.buckling_stiffness_loss, Range{ 0.0, 0.99 },
-        ofFaults("buckling at severity 1: part of the stiffness of the cup's wall that is lost"));
-  visit("fault_scale.buckling_out_of_round", "m", scale.buckling_out_of_round, depth,
-        ofFaults("buckling at severity 1: radial amplitude of the waves that the free rim would keep"));
-  visit("fault_scale.buckling_waves", "-", scale.buckling_waves, Range{ 2, 20 },
-        ofFaults("waves round the buckled rim"));
-  visit("fault_scale.ratcheting_eccentricity", "m", scale.ratcheting_eccentricity, Range{ 0.0, 1e-4 },
-        ofFaults("ratcheting at severity 1: centre of the circular spline off its axis, towards its space 0"));
-  visit("fault_scale.ratcheting_tip_loss", "m", scale.ratcheting_tip_loss, depth,
-        ofFaults("ratcheting at severity 1: height that every tooth has lost"));
-  visit("fault_scale.spall_depth", "m", scale.spall_depth, depth,
-        ofFaults("spalls in the bearing at severity 1: depth"));
-  visit("fault_scale.spall_length", "m", scale.spall_length, Range{ 1e-5, 1e-2 },
-        ofFaults("spalls in the bearing: length along the race or on the ball"));
-  visit("fault_scale.cage_deflection", "m", scale.cage_deflection, depth,
-        ofFaults("bearing_cage at severity 1: sag of the outer race at the ball that does not carry"));
+/// The one table of all parameters. Reading, range checks, the dump at start and the README table all walk it.
+///
+/// `visit(key, unit, value, range, meaning)` is called for numbers and arrays of numbers,
+/// `visit(key, value, meaning)` for booleans, texts and choices.
+/// `P` is `Parameters` or `const Parameters`.
+template <class P, class Visitor>
+void visitFields(P& p, Visitor&& visit)
+{
+  visitJoint(p, visit);
+  visitGear(p, visit);
+  visitManufacture(p, visit);
+  visitRing(p, visit);
+  visitContact(p, visit);
+  visitMesh(p, visit);
+  visitCup(p, visit);
+  visitBearing(p, visit);
+  visitMotor(p, visit);
+  visitOutput(p, visit);
+  visitBrake(p, visit);
+  visitThermal(p, visit);
+  visitSolver(p, visit);
+  visitSensors(p, visit);
+  visitHealth(p, visit);
+  visitIndicators(p, visit);
+  visitStress(p, visit);
+  visitLife(p, visit);
+  visitInput(p, visit);
+  visitTelemetry(p, visit);
+  visitObserver(p, visit);
+  visitComparison(p, visit);
+  visitPublish(p, visit);
+  visitRealtime(p, visit);
+  visitFaultScale(p, visit);
 }
 
 /// Of the values and faults that shape a response surface or its faults (FNV-1a, 64 bits).

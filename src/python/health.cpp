@@ -167,7 +167,10 @@ void bindIndicators(py::module& module)
         return units;
       },
       "Names of all signal indicators with their units: dict of str to str (docs/indicators.md).");
+}
 
+void bindAssessment(py::module& module)
+{
   auto evidence = py::class_<Evidence>(module, "Evidence", "An indicator that speaks for a level.");
   evidence
       .def_property_readonly(
@@ -209,5 +212,6 @@ void bindHealth(py::module& module)
 {
   bindReport(module);
   bindIndicators(module);
+  bindAssessment(module);
 }
 }  // namespace hjt

@@ -311,7 +311,23 @@ Fault faultOf(const py::handle& fault, const Parameters& parameters)
   return given;
 }
 
-void bindParameters(py::module& module)
+namespace
+{
+Configuration configurationOf(const py::args& overlays, const py::kwargs& options)
+{
+  std::string directory;
+  for (const auto& option : options)
+  {
+    if (py::cast<std::string>(option.first) != "config_dir")
+    {
+      throw py::type_error("Parameters() has no argument " + py::cast<std::string>(option.first));
+    }
+    directory = py::cast<std::string>(py::str(option.second));
+  }
+  return Configuration(overlays, directory);
+}
+
+void bindField(py::module& module)
 {
   auto field = py::class_<Field>(module, "Field", "A parameter: what docs/parameters.md says of it.");
   field.def_readonly("key", &Field::key, "section.name")
@@ -323,7 +339,12 @@ void bindParameters(py::module& module)
       .def_readonly("meaning", &Field::meaning, "what it is");
   addText(field);
   module.def("parameter_fields", &allFields, "All parameters, in the order of docs/parameters.md: list of Field.");
+}
+}  // namespace
 
+void bindParameters(py::module& module)
+{
+  bindField(module);
   py::class_<Configuration>(module, "Parameters",
                             "All parameters of a joint, by their keys 'section.name' (docs/parameters.md), in SI "
                             "units, temperatures in degC.\n\n"
@@ -335,21 +356,7 @@ void bindParameters(py::module& module)
                             "A value that is set is checked at once, with all the others; ParameterError names key, "
                             "value, unit and range, and "
                             "nothing has changed.")
-      .def(py::init(
-               [](const py::args& overlays, const py::kwargs& options)
-               {
-                 std::string directory;
-                 for (const auto& option : options)
-                 {
-                   if (py::cast<std::string>(option.first) != "config_dir")
-                   {
-                     throw py::type_error("Parameters() has no argument " + py::cast<std::string>(option.first));
-                   }
-                   directory = py::cast<std::string>(py::str(option.second));
-                 }
-                 return Configuration(overlays, directory);
-               }),
-           "Parameters(*overlays, config_dir='')")
+      .def(py::init(&configurationOf), "Parameters(*overlays, config_dir='')")
       .def("__getitem__", &Configuration::value, py::arg("key"), "Value of a key; a list of numbers is a tuple.")
       .def(
           "__setitem__",

@@ -273,51 +273,15 @@ private:
   Twins twins_;
   ThreadTeam team_;
 };
-}  // namespace
-
-void bindTwinBatch(py::module& module)
+/// An argument that may be left out.
+py::arg_v none(const char* name)
 {
-  const auto none = [](const char* name) { return py::arg(name) = py::none(); };
-  py::class_<TwinBatch>(
-      module, "TwinBatch",
-      "Twins that step together on all cores, without the interpreter's lock.\n\n"
-      "TwinBatch(twins, n=None, cache=None, progress=None, threads=None). twins: Parameters or a Twin, of which n "
-      "copies "
-      "are made, alike to the noise of their sensors; or several of them, each with its own parameters and faults: "
-      "Parameters make a twin, a Twin is taken as it is. All with the same solver.rate. Equal response surfaces are "
-      "shared. cache: as of Twin. progress: called with 0 ... 1 while the twins are made. threads: how many work, the "
-      "caller's among them; None: one for each processor. InputError, ParameterError.\n\n"
-      "batch[i] is the i-th Twin itself, to be reset, read, given a fault. Each has the same numbers as by itself. One "
-      "that finds no equilibrium stays where it was, with converged = False, and counts that in "
-      "counters['solver_failures']; the others go on.")
-      .def(py::init(
-               [](const py::object& twins, const std::optional<py::ssize_t>& n, const std::optional<std::string>& cache,
-                  const py::object& progress, const std::optional<int>& threads)
-               {
-                 const BatchBuilder builder(twins, n);
-                 threadCount(threads, 1);
-                 Twins built = builder.build(cache, progress);
-                 const std::size_t count = threadCount(threads, built.size());
-                 return std::make_unique<TwinBatch>(std::move(built), count);
-               }),
-           py::arg("twins"), none("n"), none("cache"), none("progress"), none("threads"))
-      .def("__len__", &TwinBatch::size, "How many twins.")
-      .def("__getitem__", &TwinBatch::at, py::arg("twin"), "The Twin of this number. IndexError.")
-      .def(
-          "__reduce__",
-          [](const TwinBatch&) -> py::object
-          {
-            throw py::type_error(
-                "a TwinBatch can be neither copied nor pickled: TwinBatch([copy.copy(twin) for twin in batch]) is "
-                "another at the same instant");
-          },
-          "TypeError: copy the twins.")
-      .def("__repr__",
-           [](const TwinBatch& self)
-           {
-             return "<TwinBatch of " + std::to_string(self.size()) + " twins on " + std::to_string(self.threads()) +
-                    (self.threads() == 1 ? " thread>" : " threads>");
-           })
+  return py::arg(name) = py::none();
+}
+
+void bindSteps(py::class_<TwinBatch>& batch)
+{
+  batch
       .def(
           "step",
           [](TwinBatch& self, const py::object& motor_torque, const py::object& load_torque, const py::object& brake,
@@ -346,11 +310,58 @@ void bindTwinBatch(py::module& module)
           "an array of shape (steps,) for all twins, (n, 1) or (n, steps); None: what was commanded before. A given "
           "torque does not time out during the run. out: an array of an earlier call, to be overwritten; None: a new "
           "one. progress: as of Twin.run.\n\n"
-          "Returns a structured array of shape (n, steps // every) with dtype STEP_DTYPE. InputError.")
+          "Returns a structured array of shape (n, steps // every) with dtype STEP_DTYPE. InputError.");
+}
+}  // namespace
+
+void bindTwinBatch(py::module& module)
+{
+  py::class_<TwinBatch> batch(
+      module, "TwinBatch",
+      "Twins that step together on all cores, without the interpreter's lock.\n\n"
+      "TwinBatch(twins, n=None, cache=None, progress=None, threads=None). twins: Parameters or a Twin, of which n "
+      "copies "
+      "are made, alike to the noise of their sensors; or several of them, each with its own parameters and faults: "
+      "Parameters make a twin, a Twin is taken as it is. All with the same solver.rate. Equal response surfaces are "
+      "shared. cache: as of Twin. progress: called with 0 ... 1 while the twins are made. threads: how many work, the "
+      "caller's among them; None: one for each processor. InputError, ParameterError.\n\n"
+      "batch[i] is the i-th Twin itself, to be reset, read, given a fault. Each has the same numbers as by itself. One "
+      "that finds no equilibrium stays where it was, with converged = False, and counts that in "
+      "counters['solver_failures']; the others go on.");
+  batch
+      .def(py::init(
+               [](const py::object& twins, const std::optional<py::ssize_t>& n, const std::optional<std::string>& cache,
+                  const py::object& progress, const std::optional<int>& threads)
+               {
+                 const BatchBuilder builder(twins, n);
+                 threadCount(threads, 1);
+                 Twins built = builder.build(cache, progress);
+                 const std::size_t count = threadCount(threads, built.size());
+                 return std::make_unique<TwinBatch>(std::move(built), count);
+               }),
+           py::arg("twins"), none("n"), none("cache"), none("progress"), none("threads"))
+      .def("__len__", &TwinBatch::size, "How many twins.")
+      .def("__getitem__", &TwinBatch::at, py::arg("twin"), "The Twin of this number. IndexError.")
+      .def(
+          "__reduce__",
+          [](const TwinBatch&) -> py::object
+          {
+            throw py::type_error(
+                "a TwinBatch can be neither copied nor pickled: TwinBatch([copy.copy(twin) for twin in batch]) is "
+                "another at the same instant");
+          },
+          "TypeError: copy the twins.")
+      .def("__repr__",
+           [](const TwinBatch& self)
+           {
+             return "<TwinBatch of " + std::to_string(self.size()) + " twins on " + std::to_string(self.threads()) +
+                    (self.threads() == 1 ? " thread>" : " threads>");
+           })
       .def_property_readonly("outputs", &TwinBatch::outputs,
                              "all outputs and readings of the present instant: array of shape (n,), dtype STEP_DTYPE")
       .def_property_readonly("counters", &TwinBatch::counters,
                              "since reset, by name: dict of str to int array of shape (n,)")
       .def_property_readonly("threads", &TwinBatch::threads, "how many work, the caller's among them [-]");
+  bindSteps(batch);
 }
 }  // namespace hjt

@@ -139,31 +139,29 @@ DriveMarkers::DriveMarkers(const Parameters& parameters, const MarkerStyle& styl
 {
 }
 
-visualization_msgs::MarkerArray DriveMarkers::draw(const harmonic_joint_twin::ContactForces& forces) const
+/// Rim, teeth and forces, and what the text says of them.
+struct DriveMarkers::Teeth
 {
-  const auto teeth = static_cast<std::size_t>(gear_.teeth_flexspline);
-  if (forces.tooth_x.size() != teeth || forces.tooth_y.size() != teeth || forces.mesh_force.size() != teeth ||
-      forces.wave_generator_force.size() != teeth || forces.rim_tension.size() != teeth)
-  {
-    throw std::invalid_argument("contact forces of " + std::to_string(forces.tooth_x.size()) +
-                                " teeth, but gear.teeth_flexspline is " + std::to_string(teeth));
-  }
+  Marker flexspline;
+  Marker pressing;
+  Marker leading;
+  Marker trailing;
+  int loaded{};
+  double largest{};           // [N]
+  double largest_pressing{};  // [N]
+};
+
+/// The ellipse, and its major axis.
+std::pair<Marker, Marker> DriveMarkers::drawWaveGenerator(const std_msgs::Header& header, double angle) const
+{
   const Stretch drawn{ fixed_radius_, style_.exaggeration };
-  std_msgs::Header header = forces.header;
-  header.frame_id = style_.frame;
   Marker wave = makeMarker(header, "wave_generator", Marker::LINE_STRIP, GREEN);
   Marker axis = makeMarker(header, "wave_generator", Marker::LINE_LIST, GREEN);
   axis.id = 1;
   wave.scale.x = axis.scale.x = LINE_WIDTH;
-  Marker flexspline = makeMarker(header, "flexspline", Marker::TRIANGLE_LIST, STEEL);
-  Marker circular = makeMarker(header, "circular_spline", Marker::TRIANGLE_LIST, DARK_STEEL);
-  Marker pressing = makeMarker(header, "wave_generator_force", Marker::TRIANGLE_LIST, GREEN);
-  Marker leading = makeMarker(header, "leading_flank_force", Marker::TRIANGLE_LIST, ORANGE);
-  Marker trailing = makeMarker(header, "trailing_flank_force", Marker::TRIANGLE_LIST, BLUE);
-
   const double major = gear_.flexspline_inner_radius + gear_.wave_amplitude;
   const double minor = gear_.flexspline_inner_radius - gear_.wave_amplitude;
-  const Point along = direction(forces.wave_generator_angle);
+  const Point along = direction(angle);
   const Point across(-along.y(), along.x());
   for (int i = 0; i <= ELLIPSE_POINTS; ++i)
   {
@@ -175,73 +173,102 @@ visualization_msgs::MarkerArray DriveMarkers::draw(const harmonic_joint_twin::Co
     addPoint(axis, drawn(side * major * along));
     addPoint(axis, 0.8 * drawn(side * major * along));
   }
+  return { std::move(wave), std::move(axis) };
+}
 
-  const double flexspline_pitch =
-      TWO_PI * (gear_.flexspline_inner_radius + gear_.toothMidHeight()) / gear_.teeth_flexspline;
-  int loaded = 0;
-  double largest = 0.0;
-  double largest_pressing = 0.0;
-  for (std::size_t i = 0; i < teeth; ++i)
-  {
-    const auto point = [&forces, teeth](std::size_t j)
-    { return Point(forces.tooth_x[j % teeth], forces.tooth_y[j % teeth]); };
-    const Point here = point(i);
-    const Point tangent = (point(i + 1) - point(i + teeth - 1)).normalized();
-    const Point outward(tangent.y(), -tangent.x());
-    const double force = std::abs(forces.mesh_force[i]);
-    const std_msgs::ColorRGBA load = shareColor(force / style_.full_force, FULL_LOAD);
-    const Point before = here - point(i + teeth - 1);
-    const Point behind = point(i + 1) - here;
-    const double turn = smallAngle(before.x() * behind.y() - before.y() * behind.x(), before.dot(behind));
-    const double stress =
-        stress_.inToothSpace(turn - TWO_PI / gear_.teeth_flexspline,
-                             0.5 * (forces.rim_tension[i] + forces.rim_tension[(i + teeth - 1) % teeth]));
-    const std_msgs::ColorRGBA stressed = shareColor(std::abs(stress) / full_stress_, stress > 0.0 ? FULL_LOAD : BLUE);
-    const Point root = here + gear_.rim_thickness * outward;
-    const Point tip = root + gear_.tooth_height_flexspline * outward;
-    const Point half_root = ROOT_SHARE * flexspline_pitch * tangent;
-    const Point half_tip = TIP_SHARE * flexspline_pitch * tangent;
-    const Point half_rim = 0.5 * flexspline_pitch * tangent;
-    addQuad(flexspline, drawn(here - half_rim), drawn(here + half_rim), drawn(root + half_rim), drawn(root - half_rim),
-            stressed);
-    addQuad(flexspline, drawn(root - half_root), drawn(root + half_root), drawn(tip + half_tip), drawn(tip - half_tip),
-            load);
+/// A tooth on its piece of the rim, with its forces.
+void DriveMarkers::drawTooth(const harmonic_joint_twin::ContactForces& forces, std::size_t i, Teeth& teeth) const
+{
+  const Stretch drawn{ fixed_radius_, style_.exaggeration };
+  const double pitch = TWO_PI * (gear_.flexspline_inner_radius + gear_.toothMidHeight()) / gear_.teeth_flexspline;
+  const std::size_t count = forces.tooth_x.size();
+  const auto point = [&forces, count](std::size_t j)
+  { return Point(forces.tooth_x[j % count], forces.tooth_y[j % count]); };
+  const Point here = point(i);
+  const Point tangent = (point(i + 1) - point(i + count - 1)).normalized();
+  const Point outward(tangent.y(), -tangent.x());
+  const double force = std::abs(forces.mesh_force[i]);
+  const std_msgs::ColorRGBA load = shareColor(force / style_.full_force, FULL_LOAD);
+  const Point before = here - point(i + count - 1);
+  const Point behind = point(i + 1) - here;
+  const double turn = smallAngle(before.x() * behind.y() - before.y() * behind.x(), before.dot(behind));
+  const double stress =
+      stress_.inToothSpace(turn - TWO_PI / gear_.teeth_flexspline,
+                           0.5 * (forces.rim_tension[i] + forces.rim_tension[(i + count - 1) % count]));
+  const std_msgs::ColorRGBA stressed = shareColor(std::abs(stress) / full_stress_, stress > 0.0 ? FULL_LOAD : BLUE);
+  const Point root = here + gear_.rim_thickness * outward;
+  const Point tip = root + gear_.tooth_height_flexspline * outward;
+  const Point half_root = ROOT_SHARE * pitch * tangent;
+  const Point half_tip = TIP_SHARE * pitch * tangent;
+  const Point half_rim = 0.5 * pitch * tangent;
+  addQuad(teeth.flexspline, drawn(here - half_rim), drawn(here + half_rim), drawn(root + half_rim),
+          drawn(root - half_rim), stressed);
+  addQuad(teeth.flexspline, drawn(root - half_root), drawn(root + half_root), drawn(tip + half_tip),
+          drawn(tip - half_tip), load);
 
-    addArrow(pressing, drawn(here), style_.arrow_length * forces.wave_generator_force[i] * outward);
-    const bool is_leading = forces.mesh_force[i] > 0.0;
-    const Point onto = -std::sin(flank_angle_) * outward + (is_leading ? -1.0 : 1.0) * std::cos(flank_angle_) * tangent;
-    addArrow(is_leading ? leading : trailing, drawn(tip), style_.arrow_length * force * onto);
+  addArrow(teeth.pressing, drawn(here), style_.arrow_length * forces.wave_generator_force[i] * outward);
+  const bool is_leading = forces.mesh_force[i] > 0.0;
+  const Point onto = -std::sin(flank_angle_) * outward + (is_leading ? -1.0 : 1.0) * std::cos(flank_angle_) * tangent;
+  addArrow(is_leading ? teeth.leading : teeth.trailing, drawn(tip), style_.arrow_length * force * onto);
 
-    loaded += force > 0.0 ? 1 : 0;
-    largest = std::max(largest, force);
-    largest_pressing = std::max(largest_pressing, forces.wave_generator_force[i]);
-  }
+  teeth.loaded += force > 0.0 ? 1 : 0;
+  teeth.largest = std::max(teeth.largest, force);
+  teeth.largest_pressing = std::max(teeth.largest_pressing, forces.wave_generator_force[i]);
+}
 
-  const double spline_tip = gear_.tip_radius_circular_spline;
-  const double spline_root = spline_tip + ROOT_CLEARANCE * gear_.tooth_height_flexspline;
-  const double spline_edge = spline_root + RING_HEIGHTS * gear_.tooth_height_flexspline;
+Marker DriveMarkers::drawCircularSpline(const std_msgs::Header& header, double output_angle) const
+{
+  const Stretch drawn{ fixed_radius_, style_.exaggeration };
+  Marker circular = makeMarker(header, "circular_spline", Marker::TRIANGLE_LIST, DARK_STEEL);
+  const double tip = gear_.tip_radius_circular_spline;
+  const double root = tip + ROOT_CLEARANCE * gear_.tooth_height_flexspline;
+  const double edge = root + RING_HEIGHTS * gear_.tooth_height_flexspline;
   const double pitch = TWO_PI / gear_.teeth_circular_spline;
   for (int i = 0; i < gear_.teeth_circular_spline; ++i)
   {
     // A tooth stands half a pitch from the space of the same number.
-    const double middle = forces.output_angle + (i + 0.5) * pitch;
+    const double middle = output_angle + (i + 0.5) * pitch;
     const auto at = [&](double radius, double pitches) { return drawn(radius * direction(middle + pitches * pitch)); };
-    addQuad(circular, at(spline_tip, -TIP_SHARE), at(spline_tip, TIP_SHARE), at(spline_root, ROOT_SHARE),
-            at(spline_root, -ROOT_SHARE), DARK_STEEL);
-    addQuad(circular, at(spline_root, -0.5), at(spline_root, 0.5), at(spline_edge, 0.5), at(spline_edge, -0.5),
-            DARK_STEEL);
+    addQuad(circular, at(tip, -TIP_SHARE), at(tip, TIP_SHARE), at(root, ROOT_SHARE), at(root, -ROOT_SHARE), DARK_STEEL);
+    addQuad(circular, at(root, -0.5), at(root, 0.5), at(edge, 0.5), at(edge, -0.5), DARK_STEEL);
   }
+  return circular;
+}
+
+visualization_msgs::MarkerArray DriveMarkers::draw(const harmonic_joint_twin::ContactForces& forces) const
+{
+  const auto count = static_cast<std::size_t>(gear_.teeth_flexspline);
+  if (forces.tooth_x.size() != count || forces.tooth_y.size() != count || forces.mesh_force.size() != count ||
+      forces.wave_generator_force.size() != count || forces.rim_tension.size() != count)
+  {
+    throw std::invalid_argument("contact forces of " + std::to_string(forces.tooth_x.size()) +
+                                " teeth, but gear.teeth_flexspline is " + std::to_string(count));
+  }
+  std_msgs::Header header = forces.header;
+  header.frame_id = style_.frame;
+  std::pair<Marker, Marker> wave = drawWaveGenerator(header, forces.wave_generator_angle);
+  Teeth teeth{ makeMarker(header, "flexspline", Marker::TRIANGLE_LIST, STEEL),
+               makeMarker(header, "wave_generator_force", Marker::TRIANGLE_LIST, GREEN),
+               makeMarker(header, "leading_flank_force", Marker::TRIANGLE_LIST, ORANGE),
+               makeMarker(header, "trailing_flank_force", Marker::TRIANGLE_LIST, BLUE) };
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    drawTooth(forces, i, teeth);
+  }
+  Marker circular = drawCircularSpline(header, forces.output_angle);
 
   Marker text = makeMarker(header, "loads", Marker::TEXT_VIEW_FACING, BLACK);
   char line[120];
-  std::snprintf(line, sizeof line, "%d teeth loaded, at most %.0f N; wave generator at most %.0f N", loaded, largest,
-                largest_pressing);
+  std::snprintf(line, sizeof line, "%d teeth loaded, at most %.0f N; wave generator at most %.0f N", teeth.loaded,
+                teeth.largest, teeth.largest_pressing);
   text.text = line;
   text.scale.z = TEXT_HEIGHT;
 
   visualization_msgs::MarkerArray array;
-  array.markers = { std::move(wave),     std::move(axis),    std::move(flexspline), std::move(circular),
-                    std::move(pressing), std::move(leading), std::move(trailing),   std::move(text) };
+  array.markers = { std::move(wave.first),       std::move(wave.second),
+                    std::move(teeth.flexspline), std::move(circular),
+                    std::move(teeth.pressing),   std::move(teeth.leading),
+                    std::move(teeth.trailing),   std::move(text) };
   // rviz takes a list of triangles without any for an error.
   for (Marker& marker : array.markers)
   {

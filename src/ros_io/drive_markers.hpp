@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <string>
+#include <utility>
 
 #include <visualization_msgs/MarkerArray.h>
 
@@ -45,6 +47,13 @@ public:
   visualization_msgs::MarkerArray draw(const harmonic_joint_twin::ContactForces& forces) const;
 
 private:
+  struct Teeth;
+
+  std::pair<visualization_msgs::Marker, visualization_msgs::Marker> drawWaveGenerator(const std_msgs::Header& header,
+                                                                                      double angle) const;
+  void drawTooth(const harmonic_joint_twin::ContactForces& forces, std::size_t i, Teeth& teeth) const;
+  visualization_msgs::Marker drawCircularSpline(const std_msgs::Header& header, double output_angle) const;
+
   GearParameters gear_;
   double flank_angle_;
   FlexsplineStress stress_;

@@ -176,9 +176,6 @@ void TrackerNode::push(Stamp stamp)
     if (taken != TelemetryClock::Row::TAKEN)
     {
       joints_[i]->start(moved);
-    }
-    if (taken != TelemetryClock::Row::TAKEN)
-    {
       angles_[i].reset();
     }
     const std::uint64_t folds = angles_[i].folds();

@@ -72,8 +72,20 @@ private:
                                                                    boost::numeric::odeint::vector_space_algebra>;
   using Controlled = boost::numeric::odeint::controlled_runge_kutta<DormandPrince, ErrorChecker>;
 
+  /// Where the step ends, and what stands from there on: 0 the motor, 1 the output, -1 neither.
+  struct Event
+  {
+    double end;
+    int stopped;
+  };
+
   bool takeStep() noexcept;
   void endAtEvent() noexcept;
+  template <class Function, class Begin>
+  void endAt(const Function& function, const Begin& begin, double whole, Event& event) noexcept;
+  void endAtStop(int i, double excess, Event& event) noexcept;
+  void endAtTurnOfTheRim(double turned, double stiffness, double by_output, Event& event) noexcept;
+  void endAtFade(Event& event) noexcept;
   void chooseModes() noexcept;
   void interpolate(double time, JointState& x) const noexcept;
   bool place(const JointState& x) noexcept;

@@ -3,7 +3,7 @@
 // namespace, and nothing of any library: the linker must not mix the kinds.
 #pragma once
 
-#include "solver/arc_elimination.hpp"
+#include "solver/arc_lanes.hpp"
 
 namespace hjt
 {
@@ -11,21 +11,6 @@ namespace arcs
 {
 namespace
 {
-/// One number for each arc; the compiler takes as many instructions as the processor's vectors need.
-typedef double Lanes __attribute__((vector_size(32), may_alias));
-
-typedef long long Choice __attribute__((vector_size(32)));
-
-inline Lanes* lanes(double* values)
-{
-  return reinterpret_cast<Lanes*>(values);
-}
-
-inline const Lanes* lanes(const double* values)
-{
-  return reinterpret_cast<const Lanes*>(values);
-}
-
 /// values[stride * tooth] of each lane's tooth.
 inline Lanes gather(const Layout& layout, const double* values, int stride = 1)
 {
@@ -41,12 +26,17 @@ inline Lanes patch(const Layout& layout, Lanes values, double value)
   return idle ? value + Lanes{} : values;
 }
 
-/// What a tooth leaves: the inverse of its block, and that times its couplings.
-struct Factors
+/// What a tooth leaves: the inverse of its block, and that times its couplings to the teeth.
+struct Weights
 {
   Lanes inverse_xx, inverse_xy, inverse_yy;
   Lanes next_xx, next_xy, next_yx, next_yy;
   Lanes second_xx, second_xy, second_yx, second_yy;
+};
+
+/// The same with those to the border.
+struct Factors : Weights
+{
   Lanes border_x[BORDER], border_y[BORDER];
 };
 static_assert(sizeof(Factors) == FACTOR_ENTRIES * sizeof(Lanes), "entries a tooth");
@@ -80,149 +70,179 @@ struct Seeds
   Lanes y[3][BORDER];
 };
 
+/// Rows of a tooth before any other is eliminated.
+struct Fresh
+{
+  Lanes xx, xy, yy;  // its block
+  Lanes next[4];     // couplings to the next tooth, and to the second
+  Lanes second[4];
+  Lanes cup_x, cup_y;  // to the cup
+};
+
+/// What the teeth eliminated so far add to the two that come next: blocks, and couplings to the border.
+struct Carried
+{
+  Lanes d_xx{}, d_xy{}, d_yy{};
+  Lanes n_xx{}, n_xy{}, n_yx{}, n_yy{};
+  Lanes e_xx{}, e_xy{}, e_yy{};
+  Lanes bx[BORDER], by[BORDER], cx[BORDER], cy[BORDER];
+};
+
+inline __attribute__((always_inline)) Fresh freshRows(const Layout& layout, const Tangent& tangent, int t)
+{
+  Fresh fresh;
+  fresh.xx = gather(layout, tangent.diagonal[0] + t);
+  fresh.xy = gather(layout, tangent.diagonal[1] + t);
+  fresh.yy = gather(layout, tangent.diagonal[2] + t);
+  for (int e = 0; e < 4; ++e)
+  {
+    fresh.next[e] = gather(layout, tangent.next[e] + t);
+    fresh.second[e] = gather(layout, tangent.second[e] + t);
+  }
+  fresh.cup_x = gather(layout, tangent.cup + 2 * t, 2);
+  fresh.cup_y = gather(layout, tangent.cup + 2 * t + 1, 2);
+  if (t == 0)
+  {
+    fresh.xx = patch(layout, fresh.xx, 1.0);
+    fresh.xy = patch(layout, fresh.xy, 0.0);
+    fresh.yy = patch(layout, fresh.yy, 1.0);
+    for (int e = 0; e < 4; ++e)
+    {
+      fresh.next[e] = patch(layout, fresh.next[e], 0.0);
+      fresh.second[e] = patch(layout, fresh.second[e], 0.0);
+    }
+    fresh.cup_x = patch(layout, fresh.cup_x, 0.0);
+    fresh.cup_y = patch(layout, fresh.cup_y, 0.0);
+  }
+  return fresh;
+}
+
+/// Inverse of a tooth's block, and that times its couplings to the teeth.
+inline __attribute__((always_inline)) void factorTooth(const Fresh& fresh, Carried& carried, Weights& out)
+{
+  const Lanes a = fresh.xx + carried.d_xx;
+  const Lanes b = fresh.xy + carried.d_xy;
+  const Lanes c = fresh.yy + carried.d_yy;
+  carried.n_xx += fresh.next[0];
+  carried.n_xy += fresh.next[1];
+  carried.n_yx += fresh.next[2];
+  carried.n_yy += fresh.next[3];
+  carried.bx[BORDER - 1] += fresh.cup_x;
+  carried.by[BORDER - 1] += fresh.cup_y;
+  const Lanes scale = 1.0 / (a * c - b * b);
+  const Lanes i_xx = c * scale;
+  const Lanes i_xy = -b * scale;
+  const Lanes i_yy = a * scale;
+  out.inverse_xx = i_xx;
+  out.inverse_xy = i_xy;
+  out.inverse_yy = i_yy;
+  out.next_xx = i_xx * carried.n_xx + i_xy * carried.n_yx;
+  out.next_xy = i_xx * carried.n_xy + i_xy * carried.n_yy;
+  out.next_yx = i_xy * carried.n_xx + i_yy * carried.n_yx;
+  out.next_yy = i_xy * carried.n_xy + i_yy * carried.n_yy;
+  out.second_xx = i_xx * fresh.second[0] + i_xy * fresh.second[2];
+  out.second_xy = i_xx * fresh.second[1] + i_xy * fresh.second[3];
+  out.second_yx = i_xy * fresh.second[0] + i_yy * fresh.second[2];
+  out.second_yy = i_xy * fresh.second[1] + i_yy * fresh.second[3];
+}
+
+/// The tooth's couplings to the border: into the sums, and on to the two teeth that come next.
+inline __attribute__((always_inline)) void factorBorder(const Weights& own, Carried& carried, Factors& out, Lanes* sum)
+{
+  for (int col = 0; col < BORDER; ++col)
+  {
+    const Lanes x = carried.bx[col];
+    const Lanes y = carried.by[col];
+    const Lanes wx = own.inverse_xx * x + own.inverse_xy * y;
+    const Lanes wy = own.inverse_xy * x + own.inverse_yy * y;
+    out.border_x[col] = wx;
+    out.border_y[col] = wy;
+    for (int row = 0; row <= col; ++row)
+    {
+      // (row, col) of the upper triangle by columns
+      *sum++ -= (row == col ? x : carried.bx[row]) * wx + (row == col ? y : carried.by[row]) * wy;
+    }
+  }
+  for (int col = 0; col < BORDER; ++col)
+  {
+    const Lanes x = carried.bx[col];
+    const Lanes y = carried.by[col];
+    carried.bx[col] = carried.cx[col] - (own.next_xx * x + own.next_yx * y);
+    carried.by[col] = carried.cy[col] - (own.next_xy * x + own.next_yy * y);
+    carried.cx[col] = -(own.second_xx * x + own.second_yx * y);
+    carried.cy[col] = -(own.second_xy * x + own.second_yy * y);
+  }
+}
+
+/// The tooth's couplings to the teeth, on to the two that come next.
+inline __attribute__((always_inline)) void carryOn(const Fresh& fresh, const Weights& out, Carried& carried)
+{
+  const Lanes n_xx = carried.n_xx;
+  const Lanes n_xy = carried.n_xy;
+  const Lanes n_yx = carried.n_yx;
+  const Lanes n_yy = carried.n_yy;
+  const Lanes* s = fresh.second;
+  carried.d_xx = carried.e_xx - (n_xx * out.next_xx + n_yx * out.next_yx);
+  carried.d_xy = carried.e_xy - (n_xx * out.next_xy + n_yx * out.next_yy);
+  carried.d_yy = carried.e_yy - (n_xy * out.next_xy + n_yy * out.next_yy);
+  carried.e_xx = -(s[0] * out.second_xx + s[2] * out.second_yx);
+  carried.e_xy = -(s[0] * out.second_xy + s[2] * out.second_yy);
+  carried.e_yy = -(s[1] * out.second_xy + s[3] * out.second_yy);
+  carried.n_xx = -(n_xx * out.second_xx + n_yx * out.second_yx);
+  carried.n_xy = -(n_xx * out.second_xy + n_yx * out.second_yy);
+  carried.n_yx = -(n_xy * out.second_xx + n_yy * out.second_yx);
+  carried.n_yy = -(n_xy * out.second_xy + n_yy * out.second_yy);
+}
+
 inline void factor(const Layout& where, const Tangent& entries, double* factors, const Sums& sums)
 {
   // Copies: what is stored through a vector's pointer might else be them.
   const Layout layout = where;
   const Tangent tangent = entries;
   const Seeds seeds(layout, tangent);
-  // What the teeth eliminated so far add to the two that come next: blocks, and couplings to the border.
-  Lanes d_xx{}, d_xy{}, d_yy{};
-  Lanes n_xx{}, n_xy{}, n_yx{}, n_yy{};
-  Lanes e_xx{}, e_xy{}, e_yy{};
-  Lanes bx[BORDER], by[BORDER], cx[BORDER], cy[BORDER];
+  Carried carried;
   Lanes before[BEFORE_ENTRIES]{};
   for (int c = 0; c < BORDER; ++c)
   {
-    bx[c] = seeds.x[0][c];
-    by[c] = seeds.y[0][c];
-    cx[c] = seeds.x[1][c];
-    cy[c] = seeds.y[1][c];
+    carried.bx[c] = seeds.x[0][c];
+    carried.by[c] = seeds.y[0][c];
+    carried.cx[c] = seeds.x[1][c];
+    carried.cy[c] = seeds.y[1][c];
   }
   Factors* out = reinterpret_cast<Factors*>(factors);
   for (int t = 0; t < layout.steps; ++t, ++out)
   {
-    Lanes a = gather(layout, tangent.diagonal[0] + t);
-    Lanes b = gather(layout, tangent.diagonal[1] + t);
-    Lanes c = gather(layout, tangent.diagonal[2] + t);
-    Lanes fresh_n[4], s[4];
-    for (int e = 0; e < 4; ++e)
-    {
-      fresh_n[e] = gather(layout, tangent.next[e] + t);
-      s[e] = gather(layout, tangent.second[e] + t);
-    }
-    Lanes cup_x = gather(layout, tangent.cup + 2 * t, 2);
-    Lanes cup_y = gather(layout, tangent.cup + 2 * t + 1, 2);
-    if (t == 0)
-    {
-      a = patch(layout, a, 1.0);
-      b = patch(layout, b, 0.0);
-      c = patch(layout, c, 1.0);
-      for (int e = 0; e < 4; ++e)
-      {
-        fresh_n[e] = patch(layout, fresh_n[e], 0.0);
-        s[e] = patch(layout, s[e], 0.0);
-      }
-      cup_x = patch(layout, cup_x, 0.0);
-      cup_y = patch(layout, cup_y, 0.0);
-    }
-    a += d_xx;
-    b += d_xy;
-    c += d_yy;
-    n_xx += fresh_n[0];
-    n_xy += fresh_n[1];
-    n_yx += fresh_n[2];
-    n_yy += fresh_n[3];
-    bx[BORDER - 1] += cup_x;
-    by[BORDER - 1] += cup_y;
-
-    const Lanes scale = 1.0 / (a * c - b * b);
-    const Lanes i_xx = c * scale;
-    const Lanes i_xy = -b * scale;
-    const Lanes i_yy = a * scale;
-    out->inverse_xx = i_xx;
-    out->inverse_xy = i_xy;
-    out->inverse_yy = i_yy;
-    const Lanes wn_xx = i_xx * n_xx + i_xy * n_yx;
-    const Lanes wn_xy = i_xx * n_xy + i_xy * n_yy;
-    const Lanes wn_yx = i_xy * n_xx + i_yy * n_yx;
-    const Lanes wn_yy = i_xy * n_xy + i_yy * n_yy;
-    const Lanes ws_xx = i_xx * s[0] + i_xy * s[2];
-    const Lanes ws_xy = i_xx * s[1] + i_xy * s[3];
-    const Lanes ws_yx = i_xy * s[0] + i_yy * s[2];
-    const Lanes ws_yy = i_xy * s[1] + i_yy * s[3];
-    out->next_xx = wn_xx;
-    out->next_xy = wn_xy;
-    out->next_yx = wn_yx;
-    out->next_yy = wn_yy;
-    out->second_xx = ws_xx;
-    out->second_xy = ws_xy;
-    out->second_yx = ws_yx;
-    out->second_yy = ws_yy;
-
-    d_xx = e_xx - (n_xx * wn_xx + n_yx * wn_yx);
-    d_xy = e_xy - (n_xx * wn_xy + n_yx * wn_yy);
-    d_yy = e_yy - (n_xy * wn_xy + n_yy * wn_yy);
-    e_xx = -(s[0] * ws_xx + s[2] * ws_yx);
-    e_xy = -(s[0] * ws_xy + s[2] * ws_yy);
-    e_yy = -(s[1] * ws_xy + s[3] * ws_yy);
-
-    Lanes* sum = before;
-    for (int col = 0; col < BORDER; ++col)
-    {
-      const Lanes x = bx[col];
-      const Lanes y = by[col];
-      const Lanes wx = i_xx * x + i_xy * y;
-      const Lanes wy = i_xy * x + i_yy * y;
-      out->border_x[col] = wx;
-      out->border_y[col] = wy;
-      for (int row = 0; row <= col; ++row)
-      {
-        // (row, col) of the upper triangle by columns
-        *sum++ -= (row == col ? x : bx[row]) * wx + (row == col ? y : by[row]) * wy;
-      }
-    }
-    for (int col = 0; col < BORDER; ++col)
-    {
-      const Lanes x = bx[col];
-      const Lanes y = by[col];
-      bx[col] = cx[col] - (wn_xx * x + wn_yx * y);
-      by[col] = cy[col] - (wn_xy * x + wn_yy * y);
-      cx[col] = -(ws_xx * x + ws_yx * y);
-      cy[col] = -(ws_xy * x + ws_yy * y);
-    }
+    const Fresh fresh = freshRows(layout, tangent, t);
+    Weights own;
+    factorTooth(fresh, carried, own);
+    static_cast<Weights&>(*out) = own;
+    factorBorder(own, carried, *out, before);
     if (t == 0)
     {
       for (int col = 0; col < BORDER; ++col)
       {
-        cx[col] += seeds.x[2][col];
-        cy[col] += seeds.y[2][col];
+        carried.cx[col] += seeds.x[2][col];
+        carried.cy[col] += seeds.y[2][col];
       }
     }
-    const Lanes m_xx = -(n_xx * ws_xx + n_yx * ws_yx);
-    const Lanes m_xy = -(n_xx * ws_xy + n_yx * ws_yy);
-    const Lanes m_yx = -(n_xy * ws_xx + n_yy * ws_yx);
-    const Lanes m_yy = -(n_xy * ws_xy + n_yy * ws_yy);
-    n_xx = m_xx;
-    n_xy = m_xy;
-    n_yx = m_yx;
-    n_yy = m_yy;
+    carryOn(fresh, own, carried);
   }
   for (int e = 0; e < BEFORE_ENTRIES; ++e)
   {
     lanes(sums.before)[e] = before[e];
   }
-  const Lanes after[AFTER_ENTRIES] = { d_xx, d_xy, d_yy, n_xx, n_xy, n_yx, n_yy, e_xx, e_xy, e_yy };
+  const Lanes after[AFTER_ENTRIES] = { carried.d_xx, carried.d_xy, carried.d_yy, carried.n_xx, carried.n_xy,
+                                       carried.n_yx, carried.n_yy, carried.e_xx, carried.e_xy, carried.e_yy };
   for (int e = 0; e < AFTER_ENTRIES; ++e)
   {
     lanes(sums.after)[e] = after[e];
   }
   for (int c = 0; c < BORDER; ++c)
   {
-    lanes(sums.between)[c] = bx[c];
-    lanes(sums.between)[BORDER + c] = by[c];
-    lanes(sums.between)[2 * BORDER + c] = cx[c];
-    lanes(sums.between)[3 * BORDER + c] = cy[c];
+    lanes(sums.between)[c] = carried.bx[c];
+    lanes(sums.between)[BORDER + c] = carried.by[c];
+    lanes(sums.between)[2 * BORDER + c] = carried.cx[c];
+    lanes(sums.between)[3 * BORDER + c] = carried.cy[c];
   }
 }
 
@@ -341,67 +361,6 @@ void backward(const Layout& where, const double* factors, const double* rows, co
           at[1] = vy[k];
         }
       }
-    }
-  }
-}
-
-inline bool factorSchur(double* matrix, SchurFactors& factors)
-{
-  constexpr int LANES = SCHUR / COUNT;  // a row
-  bool positive = true;
-#pragma GCC unroll 16
-  for (int k = 0; k < SCHUR; ++k)
-  {
-    const double* row = matrix + SCHUR * k;
-    const double pivot = row[k];
-    const double inverse = 1.0 / pivot;
-    positive = positive && pivot > 0.0 && inverse > 0.0;  // and not infinite
-    factors.inverse_pivots[k] = inverse;
-    for (int i = 0; i < SCHUR; ++i)
-    {
-      const double share = i > k ? row[i] * inverse : 0.0;
-      factors.upper[k][i] = share;
-      factors.lower[i][k] = share;
-    }
-    for (int i = k + 1; i < SCHUR; ++i)
-    {
-      const double share = factors.upper[k][i];
-#pragma GCC unroll 16
-      for (int v = i / COUNT; v < LANES; ++v)
-      {
-        lanes(matrix + SCHUR * i)[v] -= share * lanes(row)[v];
-      }
-    }
-  }
-  return positive;
-}
-
-inline void solveSchur(const SchurFactors& factors, double* b)
-{
-  constexpr int LANES = SCHUR / COUNT;
-#pragma GCC unroll 16
-  for (int k = 0; k < SCHUR; ++k)
-  {
-    const double value = b[k];
-#pragma GCC unroll 16
-    for (int v = k / COUNT; v < LANES; ++v)
-    {
-      lanes(b)[v] -= value * lanes(factors.upper[k])[v];
-    }
-  }
-#pragma GCC unroll 16
-  for (int v = 0; v < LANES; ++v)
-  {
-    lanes(b)[v] *= lanes(factors.inverse_pivots)[v];
-  }
-#pragma GCC unroll 16
-  for (int k = SCHUR - 1; k > 0; --k)
-  {
-    const double value = b[k];
-#pragma GCC unroll 16
-    for (int v = 0; v <= k / COUNT; ++v)
-    {
-      lanes(b)[v] -= value * lanes(factors.lower[k])[v];
     }
   }
 }

@@ -45,41 +45,33 @@ struct RoundPlace
   double part;
   std::array<int, 4> knots{};
 };
-}  // namespace
 
-BallDrops::Change BallDrops::at(double motor_angle, double v) const noexcept
-{
-  const int ball = bearing_.ballThatMayDrop(motor_angle);
-  const RaceDeflection::Drop drop = bearing_.drop(ball, motor_angle);
-  return drop.value != 0.0 ? ofBall(motor_angle, v, bearing_.ballPlace(ball, motor_angle), drop) : Change{};
-}
+using Energies = Eigen::Array4d;
 
-/// Of one ball at a place in the housing [rad].
-BallDrops::Change BallDrops::ofBall(double motor_angle, double v, double place,
-                                    const RaceDeflection::Drop& drop) const noexcept
+/// Energy by the numbers of derivatives, of u, w, chi, and forces: coefficients of the powers of the drop.
+struct TableEnergies
 {
-  using Energies = Eigen::Array4d;
-  const BallTable& table = *table_;
-  const RoundPlace u(motor_angle / table.pitch, table.columns);
-  const RoundPlace chi((place - motor_angle) / table.turn, table.places);
-  const double line = (std::asinh(v / table.scale) - table.lowest) / table.step;
-  const int below = std::clamp(static_cast<int>(line), 0, table.lines - 1);
+  Energies e000{ Energies::Zero() };
+  Energies e100{ Energies::Zero() };
+  Energies e010{ Energies::Zero() };
+  Energies e001{ Energies::Zero() };
+  Energies e200{ Energies::Zero() };
+  Energies e110{ Energies::Zero() };
+  Energies e101{ Energies::Zero() };
+  Energies e020{ Energies::Zero() };
+  Energies e011{ Energies::Zero() };
+  Energies e002{ Energies::Zero() };
+  Energies forces{ Energies::Zero() };
+};
+
+/// `w`: between the lines `below` and the next.
+TableEnergies energiesIn(const BallTable& table, const RoundPlace& u, double w, int below,
+                         const RoundPlace& chi) noexcept
+{
   const Spline by_u(u.part);
-  const Spline by_w(line - below);
+  const Spline by_w(w);
   const Spline by_chi(chi.part);
-
-  // Energy by the numbers of derivatives: of u, w, chi.
-  Energies e000(0.0, 0.0, 0.0, 0.0);
-  Energies e100 = e000;
-  Energies e010 = e000;
-  Energies e001 = e000;
-  Energies e200 = e000;
-  Energies e110 = e000;
-  Energies e101 = e000;
-  Energies e020 = e000;
-  Energies e011 = e000;
-  Energies e002 = e000;
-  Energies forces = e000;
+  TableEnergies e;
   for (std::size_t i = 0; i < 4; ++i)
   {
     for (std::size_t j = 0; j < 4; ++j)
@@ -102,19 +94,40 @@ BallDrops::Change BallDrops::ofBall(double motor_angle, double v, double place,
       const double here = by_w.value[i] * by_u.value[j];
       const double along = by_w.value[i] * by_u.rate[j];
       const double across = by_w.rate[i] * by_u.value[j];
-      e000 += here * value;
-      e100 += along * value;
-      e010 += across * value;
-      e001 += here * rate;
-      e200 += by_w.value[i] * by_u.second[j] * value;
-      e110 += by_w.rate[i] * by_u.rate[j] * value;
-      e101 += along * rate;
-      e020 += by_w.second[i] * by_u.value[j] * value;
-      e011 += across * rate;
-      e002 += here * second;
-      forces += here * force;
+      e.e000 += here * value;
+      e.e100 += along * value;
+      e.e010 += across * value;
+      e.e001 += here * rate;
+      e.e200 += by_w.value[i] * by_u.second[j] * value;
+      e.e110 += by_w.rate[i] * by_u.rate[j] * value;
+      e.e101 += along * rate;
+      e.e020 += by_w.second[i] * by_u.value[j] * value;
+      e.e011 += across * rate;
+      e.e002 += here * second;
+      e.forces += here * force;
     }
   }
+  return e;
+}
+}  // namespace
+
+BallDrops::Change BallDrops::at(double motor_angle, double v) const noexcept
+{
+  const int ball = bearing_.ballThatMayDrop(motor_angle);
+  const RaceDeflection::Drop drop = bearing_.drop(ball, motor_angle);
+  return drop.value != 0.0 ? ofBall(motor_angle, v, bearing_.ballPlace(ball, motor_angle), drop) : Change{};
+}
+
+/// Of one ball at a place in the housing [rad].
+BallDrops::Change BallDrops::ofBall(double motor_angle, double v, double place,
+                                    const RaceDeflection::Drop& drop) const noexcept
+{
+  const BallTable& table = *table_;
+  const RoundPlace u(motor_angle / table.pitch, table.columns);
+  const RoundPlace chi((place - motor_angle) / table.turn, table.places);
+  const double line = (std::asinh(v / table.scale) - table.lowest) / table.step;
+  const int below = std::clamp(static_cast<int>(line), 0, table.lines - 1);
+  const TableEnergies e = energiesIn(table, u, line - below, below, chi);
 
   const double x = drop.value / table.deepest;
   const Energies power(x, x * x, x * x * x, x * x * x * x);
@@ -132,14 +145,15 @@ BallDrops::Change BallDrops::ofBall(double motor_angle, double v, double place,
   const double h_uu = drop.second * table.pitch * table.pitch;
 
   SurfaceEnergy energy;
-  energy.value = times(e000, power);
-  energy.by_u = u_u * times(e100, power) + chi_u * times(e001, power) + h_u * times(e000, by_power);
-  energy.by_v = w_v * times(e010, power);
-  energy.by_uu = u_u * (u_u * times(e200, power) + 2.0 * (chi_u * times(e101, power) + h_u * times(e100, by_power))) +
-                 chi_u * (chi_u * times(e002, power) + 2.0 * h_u * times(e001, by_power)) +
-                 h_u * h_u * times(e000, by_power_twice) + h_uu * times(e000, by_power);
-  energy.by_uv = w_v * (u_u * times(e110, power) + chi_u * times(e011, power) + h_u * times(e010, by_power));
-  energy.by_vv = w_v * w_v * times(e020, power) + w_vv * times(e010, power);
-  return { energy, forces[0] * x + forces[1] * x * x, forces[2] * x + forces[3] * x * x };
+  energy.value = times(e.e000, power);
+  energy.by_u = u_u * times(e.e100, power) + chi_u * times(e.e001, power) + h_u * times(e.e000, by_power);
+  energy.by_v = w_v * times(e.e010, power);
+  energy.by_uu =
+      u_u * (u_u * times(e.e200, power) + 2.0 * (chi_u * times(e.e101, power) + h_u * times(e.e100, by_power))) +
+      chi_u * (chi_u * times(e.e002, power) + 2.0 * h_u * times(e.e001, by_power)) +
+      h_u * h_u * times(e.e000, by_power_twice) + h_uu * times(e.e000, by_power);
+  energy.by_uv = w_v * (u_u * times(e.e110, power) + chi_u * times(e.e011, power) + h_u * times(e.e010, by_power));
+  energy.by_vv = w_v * w_v * times(e.e020, power) + w_vv * times(e.e010, power);
+  return { energy, e.forces[0] * x + e.forces[1] * x * x, e.forces[2] * x + e.forces[3] * x * x };
 }
 }  // namespace hjt

@@ -8,6 +8,8 @@ namespace hjt
 {
 namespace
 {
+constexpr double STICK_RANGE = 1e3;  // in regularisation speeds: slower, the motor may really be at rest
+
 /// How far to go from `v` along `change`: all the way if the function still falls there, else to where it stops
 /// falling. Looks at slopes only: values near a minimum differ by less than their rounding. Leaves the gradient there
 /// in `slope`.
@@ -30,6 +32,18 @@ double searchLine(Gradient& gradient, const Eigen::Vector2d& v, const Eigen::Vec
     here = slope.dot(change);
   }
   return length;
+}
+
+/// Newton's step towards no slope; with the motor at rest over the output's speed alone.
+Eigen::Vector2d newtonStep(const Eigen::Matrix2d& hessian, const Eigen::Vector2d& slope, bool motor_free)
+{
+  if (!motor_free)
+  {
+    return { 0.0, -slope[1] / hessian(1, 1) };
+  }
+  const double determinant = hessian(0, 0) * hessian(1, 1) - hessian(0, 1) * hessian(1, 0);
+  return { -(hessian(1, 1) * slope[0] - hessian(0, 1) * slope[1]) / determinant,
+           -(hessian(0, 0) * slope[1] - hessian(1, 0) * slope[0]) / determinant };
 }
 
 /// Friction that acts on the motor shaft alone [N.m].
@@ -80,8 +94,7 @@ Eigen::Vector2d DryFriction::solve(const JointFriction& friction, double velocit
                                    double step) const noexcept
 {
   constexpr int MAX_ITERATIONS = 100;
-  constexpr double ENOUGH = 1e-12;     // relative change of the speeds
-  constexpr double STICK_RANGE = 1e3;  // in regularisation speeds: slower, the motor may really be at rest
+  constexpr double ENOUGH = 1e-12;  // relative change of the speeds
   Eigen::Matrix2d hessian;
   const auto gradient = [&](const Eigen::Vector2d& v)
   {
@@ -105,13 +118,7 @@ Eigen::Vector2d DryFriction::solve(const JointFriction& friction, double velocit
     Eigen::Vector2d slope = gradient(v);
     for (int i = 0; i < MAX_ITERATIONS; ++i)
     {
-      const double determinant = hessian(0, 0) * hessian(1, 1) - hessian(0, 1) * hessian(1, 0);
-      Eigen::Vector2d change(0.0, -slope[1] / hessian(1, 1));
-      if (motor_free)
-      {
-        change = { -(hessian(1, 1) * slope[0] - hessian(0, 1) * slope[1]) / determinant,
-                   -(hessian(0, 0) * slope[1] - hessian(1, 0) * slope[0]) / determinant };
-      }
+      const Eigen::Vector2d change = newtonStep(hessian, slope, motor_free);
       if (std::abs(change[0]) <= ENOUGH * (std::abs(v[0]) + width_) &&
           std::abs(change[1]) <= ENOUGH * (std::abs(v[1]) + std::abs(velocity_ratio) * width_))
       {
@@ -173,27 +180,25 @@ bool DryFriction::slide(const JointFriction& friction, double velocity_ratio, co
   std::size_t nearest = count;
   for (std::size_t j = 0; j < count; ++j)
   {
-    if (!goesOn(friction.terms[j], follow, impulses[j], v))
+    const bool stops = !goesOn(friction.terms[j], follow, impulses[j], v);
+    if (stops && nearest < count)
     {
-      if (nearest < count)
-      {
-        return false;
-      }
-      nearest = j;
+      return false;
     }
+    nearest = stops ? j : nearest;
   }
   if (nearest < count)
   {
     const FrictionTerm& term = friction.terms[nearest];
     const Eigen::Vector2d response = answer(term.slip);
-    const Eigen::Vector2d without = v + impulses[nearest] * response;
+    v += impulses[nearest] * response;                                   // without this term
     const double most = step * term.strength * term.slip.dot(response);  // of its slip, that this term can take
     double share = 0.0;                                                  // of its strength that it acts with
-    if (!solveSlip(term.slip.dot(without), most, width(term, velocity_ratio), share))
+    if (!solveSlip(term.slip.dot(v), most, width(term, velocity_ratio), share))
     {
       return false;
     }
-    v = without - step * term.strength * share * response;
+    v -= step * term.strength * share * response;
     for (std::size_t j = 0; j < count; ++j)
     {
       if (j != nearest && !goesOn(friction.terms[j], follow, impulses[j], v))
@@ -202,7 +207,6 @@ bool DryFriction::slide(const JointFriction& friction, double velocity_ratio, co
       }
     }
   }
-  constexpr double STICK_RANGE = 1e3;  // as in `solve`
   if (!(std::abs(v[0]) >= STICK_RANGE * width_))
   {
     return false;

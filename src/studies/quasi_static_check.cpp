@@ -112,6 +112,21 @@ private:
   ErrorSum output_torque_;
   ErrorSum torsion_;
 };
+RingDrive driveOf(const Parameters& parameters, const QuasiStaticSetup& setup)
+{
+  RingDrive drive;
+  drive.wave.amplitude = parameters.gear.wave_amplitude;
+  drive.wave_generator_driven = true;
+  drive.load_torque = setup.load;
+  return drive;
+}
+
+/// The equilibria of the dynamic ring's position: at the same angles, and under the same load.
+SolveStatus follow(const DrivePosition& position, double load, RingEquilibrium& same, RingEquilibrium& balanced)
+{
+  const SolveStatus status = same.moveTo(position);
+  return status.ok() ? balanceOutput(balanced, position.wave_generator_angle, load) : status;
+}
 }  // namespace
 
 QuasiStaticResult checkQuasiStatic(const Parameters& parameters, const QuasiStaticSetup& setup,
@@ -119,7 +134,6 @@ QuasiStaticResult checkQuasiStatic(const Parameters& parameters, const QuasiStat
 {
   using Clock = std::chrono::steady_clock;
   const JointModel model(parameters);
-  const double amplitude = parameters.gear.wave_amplitude;
   RingEquilibrium balanced(model.ring, staticSolver(parameters.solver));
   QuasiStaticResult result;
   if (result.status = insertUnderLoad(balanced, 0.0, setup.load); !result.status.ok())
@@ -127,11 +141,7 @@ QuasiStaticResult checkQuasiStatic(const Parameters& parameters, const QuasiStat
     return result;
   }
   RingEquilibrium same = balanced;
-  RingDrive drive;
-  drive.wave.amplitude = amplitude;
-  drive.wave_generator_driven = true;
-  drive.load_torque = setup.load;
-  DynamicRing ring(model, parameters.ring, drive);
+  DynamicRing ring(model, parameters.ring, driveOf(parameters, setup));
   ring.setSpaces(balanced.shape().space);
   const std::unique_ptr<RingStepper> stepper = makeRingStepper(setup.method, ring, parameters.solver, setup.tolerance);
   RingMotion motion(ring.coordinates());
@@ -163,13 +173,7 @@ QuasiStaticResult checkQuasiStatic(const Parameters& parameters, const QuasiStat
       continue;
     }
     ring.evaluate(motion.q, motion.v, motion.time);
-    const DrivePosition& position = ring.position();
-    result.status = same.moveTo(position);
-    if (result.status.ok())
-    {
-      result.status = balanceOutput(balanced, position.wave_generator_angle, setup.load);
-    }
-    if (!result.status.ok())
+    if (result.status = follow(ring.position(), setup.load, same, balanced); !result.status.ok())
     {
       return result;
     }
@@ -178,9 +182,8 @@ QuasiStaticResult checkQuasiStatic(const Parameters& parameters, const QuasiStat
       comparison.add(ring, motion.time, same, balanced, result);
       due += setup.compare_period;
     }
-    else
+    else  // the equilibrium finds its way over less than a turn: it must not be left behind
     {
-      // The equilibrium finds its way over less than a turn: it must not be left behind.
       due = std::min(setup.settle_time, due + half_turn_time);
     }
   }

@@ -6,21 +6,21 @@
 #include <atomic>
 #include <cmath>
 #include <functional>
-#include <iterator>
 #include <map>
 #include <vector>
 
-#include "surface/surface_ring.hpp"
+#include "surface/deviation_rings.hpp"
+#include "surface/open_pitch.hpp"
 
 namespace hjt
 {
 namespace
 {
 using Node = SurfaceNode;
-/// Nodes of one tooth pitch on one line, with both its ends.
-using Strip = std::vector<Node>;
-using Torques = Eigen::Array2d;  // on output and motor [N.m]
-
+using Line = DeviationLine;
+using Lines = std::map<double, Line>;  // by their v [rad]
+using Rings = DeviationRings;
+using Torques = Eigen::Array2d;   // on output and motor [N.m]
 constexpr double SHARE = 1e-2;  // of the largest deviation of the output torque on a line, that the table misses [-]
 constexpr double MOTOR_SHARE = 3e-2;  // likewise of the motor's, which single contacts roughen [-]
 constexpr double SMALLEST = 0.1;  // a line's largest deviation counts as at least this part of the largest of all [-]
@@ -28,58 +28,6 @@ constexpr int COARSE_LINES = 12;  // a side, before refinement; denser towards n
 constexpr int MAX_HALVINGS = 5;   // of an interval between two lines
 constexpr int MIN_COLUMNS = 4;
 constexpr int MAX_COLUMNS = 16;
-
-struct Line
-{
-  std::vector<Strip> strips;  ///< one a pitch; none where the line is not needed
-  Torques largest{ Torques::Zero() };
-  double overload{};  ///< by how much its tolerances are wider [-]
-};
-using Lines = std::map<double, Line>;  // by their v [rad]
-
-/// A ring of equal teeth and the gear's own, side by side.
-struct Rings
-{
-  Rings(const Parameters& parameters, const JointModel& equal_model, const JointModel& actual_model)
-    : equal(parameters, equal_model), actual(parameters, actual_model)
-  {
-  }
-
-  bool insert() { return equal.insert() && actual.insert(); }
-
-  /// Both to another line at the angles where they are, in pieces no longer than a `longest` way.
-  bool leadTo(double target, double longest)
-  {
-    const int pieces = std::max(1, static_cast<int>(std::ceil(std::abs(target - v) / longest)));
-    bool good = true;
-    for (int i = 1; i <= pieces && good; ++i)
-    {
-      const double between = v + (target - v) * i / pieces;
-      good = equal.moveTo(equal.motorAngle(), between) && actual.moveTo(actual.motorAngle(), between);
-    }
-    v = target;
-    return good;
-  }
-
-  /// The gear of equal teeth at these columns. Empty: no equilibrium.
-  std::vector<Node> measureEqual(int columns)
-  {
-    std::vector<Node> nodes;
-    for (int column = 0; column < columns; ++column)
-    {
-      if (!equal.moveTo(equal.pitch() * column / columns, v))
-      {
-        return {};
-      }
-      nodes.push_back(equal.measure());
-    }
-    return nodes;
-  }
-
-  SurfaceRing equal;
-  SurfaceRing actual;
-  double v{};  // where they are [rad]
-};
 
 /// Every coarse line, and every interval between two of them, is a task for itself that begins with rings from cold:
 /// the bits of a table do not depend on the number of threads.
@@ -378,14 +326,6 @@ private:
     return (squares <= static_cast<double>(columns) * toleranceOf(line).square()).all();
   }
 
-  /// A pitch whose edges are yet to be joined.
-  struct OpenPitch
-  {
-    int columns{};
-    std::vector<double> lines;
-    std::vector<Node> nodes;
-  };
-
   DeviationTable table() const
   {
     std::vector<OpenPitch> pitches(pitches_);
@@ -407,65 +347,8 @@ private:
         pitch = {};
       }
     }
-    for (std::size_t number = 0; number < pitches_; ++number)
-    {
-      join(pitches[number], pitches[next(number)]);
-    }
-    DeviationTable table;
-    table.swaps_lobes = static_cast<int>(pitches_) <= model_.ring.rest.teeth() / 2 + 1;
-    for (OpenPitch& pitch : pitches)
-    {
-      table.pitches.push_back({ pitch.columns, std::move(pitch.lines), SurfaceNodes(std::move(pitch.nodes)) });
-    }
-    return table;
-  }
-
-  /// Makes the end of a pitch and the start of the next one the same function of v: on lines that only one of them has,
-  /// what lies between those that both have.
-  static void join(OpenPitch& before, OpenPitch& after)
-  {
-    std::vector<double> common;
-    std::set_intersection(before.lines.begin(), before.lines.end(), after.lines.begin(), after.lines.end(),
-                          std::back_inserter(common));
-    if (common.empty())
-    {
-      return;
-    }
-    levelEdge(before, static_cast<std::size_t>(before.columns), common);
-    levelEdge(after, 0, common);
-  }
-
-  static void levelEdge(OpenPitch& pitch, std::size_t column, const std::vector<double>& common)
-  {
-    const std::size_t stride = static_cast<std::size_t>(pitch.columns) + 1;
-    std::size_t kept = 0;  // the last line in common
-    for (std::size_t i = 0, in_common = 0; i < pitch.lines.size(); ++i)
-    {
-      if (in_common == common.size() || pitch.lines[i] != common[in_common])
-      {
-        continue;
-      }
-      const std::array<Node, 2> low{ pitch.nodes[kept * stride + column], {} };
-      const std::array<Node, 2> high{ pitch.nodes[i * stride + column], {} };
-      const double height = pitch.lines[i] - pitch.lines[kept];
-      for (std::size_t between = kept + 1; between < i; ++between)
-      {
-        const SurfaceCell cell(low.data(), high.data(), 0.0, (pitch.lines[between] - pitch.lines[kept]) / height,
-                               static_cast<double>(pitch.columns), 1.0 / height);
-        const SurfaceEnergy energy = cell.energy();
-        Node& node = pitch.nodes[between * stride + column];
-        for (int value = SurfaceNode::BILINEAR; value < SurfaceNode::VALUES; ++value)
-        {
-          node.set(value, cell.value(value));
-        }
-        node.set(SurfaceNode::ENERGY, energy.value);
-        node.set(SurfaceNode::ENERGY_BY_U, energy.by_u);
-        node.set(SurfaceNode::ENERGY_BY_V, energy.by_v);
-        node.set(SurfaceNode::ENERGY_BY_UV, energy.by_uv);
-      }
-      kept = i;
-      ++in_common;
-    }
+    const bool swaps_lobes = static_cast<int>(pitches_) <= model_.ring.rest.teeth() / 2 + 1;
+    return tableOf(std::move(pitches), swaps_lobes);
   }
 
   void run(std::size_t count, double from, double to, const std::function<void(Rings&, std::size_t)>& task)

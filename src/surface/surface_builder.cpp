@@ -11,13 +11,14 @@
 
 #include "base/text_stream.hpp"
 #include "surface/parallel_tasks.hpp"
+#include "surface/surface_lines.hpp"
 
 namespace hjt
 {
 namespace
 {
 using Node = SurfaceNode;
-using Line = std::vector<Node>;
+using Line = SurfaceLine;
 using Lines = std::map<double, Line>;  // by their v [rad]
 
 constexpr double TORQUE_MARGIN = 2.0;  // the table reaches to this times the torque limits
@@ -37,133 +38,6 @@ Line mirrorImage(const Line& line)
   }
   return image;
 }
-
-/// A ring that measures lines of the table.
-class LineRing
-{
-public:
-  LineRing(const Parameters& parameters, const JointModel& model) : ring_(parameters, model) {}
-
-  const SurfaceRing& ring() const noexcept { return ring_; }
-  SurfaceRing& ring() noexcept { return ring_; }
-
-  /// From cold to an output angle by steps of the coarse lines, so that it stays on their branch. False: no way.
-  bool leadTo(double v, double step)
-  {
-    const int steps = static_cast<int>(std::lround(std::abs(v) / step));
-    bool good = ring_.insert();
-    for (int i = 0; i <= steps && good; ++i)
-    {
-      good = ring_.moveTo(0.0, std::copysign(i * step, v));
-    }
-    return good;
-  }
-
-  /// The nodes at one v, to and fro so that the ring never moves far. Empty: no equilibrium.
-  Line measure(double v, int columns)
-  {
-    Line line(static_cast<std::size_t>(columns) + 1);
-    const bool backwards = ring_.motorAngle() > 0.5 * ring_.pitch();
-    for (int i = 0; i < columns; ++i)
-    {
-      const int column = backwards ? columns - 1 - i : i;
-      if (!ring_.moveTo(ring_.pitch() * column / columns, v))
-      {
-        return {};
-      }
-      line[static_cast<std::size_t>(column)] = ring_.measure();
-    }
-    line.back() = line.front();
-    return line;
-  }
-
-private:
-  SurfaceRing ring_;
-};
-
-/// Whether a line half way between two is what the table over those two gives there.
-class LineCheck
-{
-public:
-  LineCheck(const SurfaceRing& ring, int columns) : ring_(ring), columns_(columns) {}
-
-  /// The torques at every column; the friction in the mean over the line. Where a tooth begins to touch, the rates of
-  /// all teeth jump and with them the friction, at another place on every line: between two lines no grid has that.
-  bool agrees(double v_below, const Line& below, double v_above, const Line& above, double v, const Line& line) const
-  {
-    const ResponseSurface surface = between(v_below, below, v_above, above);
-    double friction_misses = 0.0;  // over their tolerance [-]
-    for (int column = 0; column < columns_; ++column)
-    {
-      const double motor_angle = ring_.pitch() * column / columns_;
-      const Node& node = line[static_cast<std::size_t>(column)];
-      ResponseSurface::Place place;
-      if (!surface.locate(motor_angle, v + motor_angle / ring_.ratio(), place) || !torquesAgree(surface, place, node))
-      {
-        return false;
-      }
-      friction_misses += std::abs(ring_.frictionTorque(ResponseSurface::bilinear(place)) - ring_.frictionTorque(node)) /
-                         ring_.frictionTolerance(node);
-    }
-    return friction_misses <= columns_;
-  }
-
-  /// Whether the columns of a line give its torques half way between them. `finer`: the line on a multiple of columns.
-  bool columnsSuffice(double v, const Line& finer) const
-  {
-    const std::size_t stride = (finer.size() - 1) / static_cast<std::size_t>(columns_);
-    Line line;
-    for (std::size_t i = 0; i < finer.size(); i += stride)
-    {
-      line.push_back(finer[i]);
-    }
-    const ResponseSurface surface = between(v, line, v + 1.0, line);
-    for (std::size_t i = 0; i + 1 < finer.size(); ++i)
-    {
-      // With the same line twice the slope by v is flattened away: the part along u is what is tried here.
-      ResponseSurface::Place place;
-      const double motor_angle = ring_.pitch() * static_cast<double>(i) / static_cast<double>(finer.size() - 1);
-      if (surface.locate(motor_angle, v + motor_angle / ring_.ratio(), place))
-      {
-        const RingResponse response = surface.response(place);
-        const Node& node = finer[i];
-        const double slope = response.wave_generator_torque + response.output_torque / ring_.ratio();
-        if (std::abs(slope + node[SurfaceNode::ENERGY_BY_U] / ring_.pitch()) > ring_.motorTolerance(node) ||
-            std::abs(response.output_torque + node[SurfaceNode::ENERGY_BY_V]) > ring_.outputTolerance(node))
-        {
-          return false;
-        }
-      }
-    }
-    return true;
-  }
-
-private:
-  ResponseSurface between(double v_below, const Line& below, double v_above, const Line& above) const
-  {
-    SurfaceTable table;
-    table.pitch = ring_.pitch();
-    table.ratio = ring_.ratio();
-    table.columns = columns_;
-    table.lines = { v_below, v_above };
-    Line nodes = below;
-    nodes.insert(nodes.end(), above.begin(), above.end());
-    table.nodes = SurfaceNodes(std::move(nodes));
-    return ResponseSurface(std::move(table));
-  }
-
-  bool torquesAgree(const ResponseSurface& surface, const ResponseSurface::Place& place, const Node& node) const
-  {
-    const RingResponse response = surface.response(place);
-    const double output_torque = -node[SurfaceNode::ENERGY_BY_V];
-    const double motor_torque = -node[SurfaceNode::ENERGY_BY_U] / ring_.pitch() - output_torque / ring_.ratio();
-    return std::abs(response.output_torque - output_torque) <= ring_.outputTolerance(node) &&
-           std::abs(response.wave_generator_torque - motor_torque) <= ring_.motorTolerance(node);
-  }
-
-  const SurfaceRing& ring_;
-  int columns_;
-};
 
 /// Every coarse line, and every interval between two of them, is a task for itself that begins with a ring from cold:
 /// the bits of a table do not depend on the number of threads.

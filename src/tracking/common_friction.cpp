@@ -21,97 +21,126 @@ double medianOf(std::vector<double> values)
   const std::size_t half = values.size() / 2;
   return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
-}  // namespace
 
-namespace
+/// What factors of the joints' friction, each of its twin's, leave of the measured ratios.
+class Left
 {
-ArmFriction ofWholeArm(const std::vector<MeasuredFriction>& joints, double tolerance)
-{
-  constexpr double COLDEST = 0.0;  // [degC]
-  constexpr double WARMEST = 60.0;
-  constexpr int HALVINGS = 20;
-  constexpr double TINY = 1e-3;        // of a ratio, which may be zero
-  constexpr double MAX_MISFIT = 0.67;  // of a temperature, over that without: it makes one faulty joint fit a little
-  ArmFriction arm;
-  arm.factors.assign(joints.size(), 1.0);
-  arm.deviations.assign(joints.size(), UNWITNESSED);
-  std::vector<std::size_t> known;
-  bool is_received = false;
-  for (std::size_t i = 0; i < joints.size(); ++i)
+public:
+  Left(const std::vector<MeasuredFriction>& joints, double tolerance) : joints_(joints), tolerance_(tolerance)
   {
-    is_received = is_received || joints[i].temperature_received;
-    if (joints[i].ratio)
+    for (std::size_t i = 0; i < joints.size(); ++i)
     {
-      known.push_back(i);
+      if (joints[i].ratio)
+      {
+        known_.push_back(i);
+      }
     }
   }
-  if (known.size() < MIN_JOINTS)
+
+  std::size_t known() const { return known_.size(); }
+
+  double median(const std::vector<double>& factors) const { return medianOf(ratios(factors)); }
+
+  /// How many joints have no friction of their own then.
+  std::size_t agreeing(const std::vector<double>& factors) const
   {
-    return arm;
-  }
-  const auto left_over = [&](const std::vector<double>& factors)
-  {
-    std::vector<double> left;
-    for (const std::size_t i : known)
-    {
-      left.push_back(*joints[i].ratio / factors[i]);
-    }
-    return left;
-  };
-  const auto agreeing = [&](const std::vector<double>& factors)
-  {
-    const std::vector<double> left = left_over(factors);
+    const std::vector<double> left = ratios(factors);
     return static_cast<std::size_t>(
-        std::count_if(left.begin(), left.end(), [&](double ratio) { return std::abs(ratio - 1.0) <= tolerance; }));
-  };
-  const auto misfit = [&](const std::vector<double>& factors)
+        std::count_if(left.begin(), left.end(), [this](double ratio) { return std::abs(ratio - 1.0) <= tolerance_; }));
+  }
+
+  double misfit(const std::vector<double>& factors) const
   {
+    constexpr double TINY = 1e-3;  // of a ratio, which may be zero
     double sum = 0.0;
-    for (const double ratio : left_over(factors))
+    for (const double ratio : ratios(factors))
     {
       sum += std::abs(std::log(std::max(ratio, TINY)));
     }
     return sum;
-  };
-  const auto factors_at = [&](double temperature)
+  }
+
+  /// By which the friction of all joints is another at a temperature.
+  std::vector<double> at(double temperature) const
   {
     std::vector<double> factors;
-    for (const MeasuredFriction& joint : joints)
+    for (const MeasuredFriction& joint : joints_)
     {
       factors.push_back(joint.at(temperature) / joint.at(joint.temperature));
     }
     return factors;
-  };
+  }
 
-  const double median = medianOf(left_over(arm.factors));
-  const std::vector<double> alike(joints.size(), median);
+private:
+  std::vector<double> ratios(const std::vector<double>& factors) const
+  {
+    std::vector<double> left;
+    for (const std::size_t i : known_)
+    {
+      left.push_back(*joints_[i].ratio / factors[i]);
+    }
+    return left;
+  }
+
+  const std::vector<MeasuredFriction>& joints_;
+  const double tolerance_;
+  std::vector<std::size_t> known_;
+};
+
+/// The temperature at which the joints' median friction is the twins'; none if it is received, or beyond the range.
+std::optional<double> temperatureOf(const std::vector<MeasuredFriction>& joints, const Left& left)
+{
+  constexpr double COLDEST = 0.0;  // [degC]
+  constexpr double WARMEST = 60.0;
+  constexpr int HALVINGS = 20;
   double low = COLDEST;
   double high = WARMEST;
-  const auto is_colder = [&](double temperature) { return medianOf(left_over(factors_at(temperature))) > 1.0; };
-  const bool has_temperature = !is_received && !is_colder(low) && is_colder(high);
-  for (int i = 0; has_temperature && i < HALVINGS; ++i)  // the twins' friction falls with the temperature
+  const auto is_colder = [&](double temperature) { return left.median(left.at(temperature)) > 1.0; };
+  if (std::any_of(joints.begin(), joints.end(), [](const auto& joint) { return joint.temperature_received; }) ||
+      is_colder(low) || !is_colder(high))
+  {
+    return std::nullopt;
+  }
+  for (int i = 0; i < HALVINGS; ++i)  // the twins' friction falls with the temperature
   {
     const double middle = 0.5 * (low + high);
     (is_colder(middle) ? high : low) = middle;
   }
-  const std::vector<double> at_temperature = has_temperature ? factors_at(low) : arm.factors;
+  return low;
+}
 
-  const std::size_t most = known.size() / 2 + 1;
-  const bool is_factor = std::abs(median - 1.0) > tolerance && agreeing(alike) >= most;
+ArmFriction ofWholeArm(const std::vector<MeasuredFriction>& joints, double tolerance)
+{
+  constexpr double MAX_MISFIT = 0.67;  // of a temperature, over that without: it makes one faulty joint fit a little
+  ArmFriction arm;
+  arm.factors.assign(joints.size(), 1.0);
+  arm.deviations.assign(joints.size(), UNWITNESSED);
+  const Left left(joints, tolerance);
+  if (left.known() < MIN_JOINTS)
+  {
+    return arm;
+  }
+  const double median = left.median(arm.factors);
+  const std::vector<double> alike(joints.size(), median);
+  const std::optional<double> temperature = temperatureOf(joints, left);
+  const std::vector<double> at_temperature = temperature ? left.at(*temperature) : arm.factors;
+
+  const std::size_t most = left.known() / 2 + 1;
+  const bool is_factor = std::abs(median - 1.0) > tolerance && left.agreeing(alike) >= most;
   const std::vector<double>& otherwise = is_factor ? alike : arm.factors;
-  const std::size_t agree = agreeing(otherwise);
-  if (has_temperature && agree < known.size() && agreeing(at_temperature) >= std::max(most, agree) &&
-      misfit(at_temperature) <= MAX_MISFIT * misfit(otherwise))
+  const std::size_t agree = left.agreeing(otherwise);
+  if (temperature && agree < left.known() && left.agreeing(at_temperature) >= std::max(most, agree) &&
+      left.misfit(at_temperature) <= MAX_MISFIT * left.misfit(otherwise))
   {
     arm.factors = at_temperature;
     arm.median = median;
-    arm.temperature = low;
+    arm.temperature = temperature;
   }
   else if (is_factor)
   {
     arm.factors = alike;
     arm.median = median;
-    arm.temperature = has_temperature ? std::make_optional(low) : std::nullopt;
+    arm.temperature = temperature;
   }
   return arm;
 }

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <functional>
 #include <iostream>
 #include <numeric>
 #include <random>
@@ -23,19 +22,13 @@
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "identification/payload_fit.hpp"
 #include "statics/gear_checks.hpp"
+#include "test/core/arm_support.hpp"
 #include "test/support/allocation_count.hpp"
 
 namespace hjt
 {
 namespace
 {
-using Angles = std::array<double, 6>;
-
-ArmDescription shipped(const std::string& name)
-{
-  return readArmDescription(HJT_TEST_CONFIG_DIR "/arms/" + name + ".yaml");
-}
-
 std::vector<std::string> shippedArms()
 {
   std::vector<std::string> names;
@@ -47,23 +40,6 @@ std::vector<std::string> shippedArms()
     }
   }
   return names;
-}
-
-std::vector<JointMotion> motionOf(const Angles& position, const Angles& velocity = {}, const Angles& acceleration = {})
-{
-  std::vector<JointMotion> motion(position.size());
-  for (std::size_t i = 0; i < motion.size(); ++i)
-  {
-    motion[i] = { position[i], velocity[i], acceleration[i] };
-  }
-  return motion;
-}
-
-std::vector<double> torquesOf(ArmDynamics& dynamics, const std::vector<JointMotion>& motion)
-{
-  std::vector<double> torques(motion.size());
-  dynamics.torques(motion, torques);
-  return torques;
 }
 
 /// Potential energy of links and payload from the heights of their centres of mass [J].
@@ -91,8 +67,6 @@ double potentialEnergy(const ArmDescription& arm, const Angles& angles)
   const std::array<double, 3>& centre = arm.payload.centre;
   return energy - arm.payload.mass * KDL::dot(gravity, frame * KDL::Vector(centre[0], centre[1], centre[2]));
 }
-
-constexpr Angles BENT{ 0.1, -1.2, 0.7, -0.5, 0.9, 0.4 };
 
 TEST(ShippedArms, HaveDrivesThatGoTogether)
 {
@@ -228,233 +202,6 @@ TEST(ArmDynamics, SaysWhatTheDescriptionLacks)
   arm.tip = "hand";
   EXPECT_THAT(text(arm), testing::HasSubstr("no chain of links from 'base_link' to 'hand'"));
   EXPECT_THROW(readArmDescription("no/such/arm.yaml"), ParameterError);
-}
-
-std::vector<MotionRow> rowsOf(double time, const Angles& angles)
-{
-  std::vector<MotionRow> rows(angles.size());
-  for (std::size_t i = 0; i < rows.size(); ++i)
-  {
-    rows[i].time = time;
-    rows[i].position = angles[i];
-  }
-  return rows;
-}
-
-TEST(ArmLoad, FollowsASwingWithUnevenRowsAndAGap)
-{
-  const ArmDescription arm = shipped("ur5");
-  ArmDynamics dynamics(arm);
-  ArmLoad load(arm);
-  constexpr double RATE = 2.0;
-  const auto swing = [](double time)
-  {
-    Angles angles = BENT;
-    angles[1] += 0.5 * std::sin(RATE * time);
-    angles[2] -= 0.5 * std::sin(RATE * time);
-    return angles;
-  };
-  double worst = 0.0;
-  int samples = 0;
-  int gaps = 0;
-  const auto take = [&](bool at_end)
-  {
-    while (const ArmSample* ready = load.pop(at_end))
-    {
-      const double time = ready->joints.front().time;
-      const double speed = 0.5 * RATE * std::cos(RATE * time);
-      const double acceleration = -0.5 * RATE * RATE * std::sin(RATE * time);
-      const std::vector<double> expected =
-          torquesOf(dynamics, motionOf(swing(time), { 0.0, speed, -speed }, { 0.0, acceleration, -acceleration }));
-      const bool is_inside = (time > 0.11 && time < 1.9) || (time > 2.31 && time < 3.85);
-      worst = is_inside ? std::max(worst, std::abs(ready->torques[1] - expected[1])) : worst;
-      gaps += ready->joints.front().after_gap ? 1 : 0;
-      ++samples;
-    }
-  };
-  int pushed = 0;
-  for (int i = 0; i < 500; ++i)
-  {
-    const double time = 0.008 * i + (i % 3 == 0 ? 0.002 : 0.0);
-    if (time > 2.0 && time < 2.2)
-    {
-      continue;
-    }
-    pushed += load.push(rowsOf(time, swing(time))) ? 1 : 0;
-    take(false);
-  }
-  EXPECT_FALSE(load.push(rowsOf(3.9, swing(3.9)))) << "earlier than the row before";
-  EXPECT_FALSE(load.push(rowsOf(5.0, { std::nan("") })));
-  take(true);
-  EXPECT_EQ(samples, pushed);
-  EXPECT_EQ(gaps, 1);
-  EXPECT_LT(worst, 0.05);
-}
-
-/// Two joints swing, with or without the velocity recorded beside.
-std::vector<MotionRow> swinging(double time, double stamp, bool with_velocity)
-{
-  constexpr double RATE = 4.0;
-  Angles angles = BENT;
-  angles[1] += 0.4 * std::sin(RATE * time);
-  angles[2] -= 0.3 * std::cos(RATE * time);
-  std::vector<MotionRow> rows = rowsOf(stamp, angles);
-  for (std::size_t i = 0; with_velocity && i < rows.size(); ++i)
-  {
-    rows[i].recorded_velocity =
-        i == 1 ? 0.4 * RATE * std::cos(RATE * time) : (i == 2 ? 0.3 * RATE * std::sin(RATE * time) : 0.0);
-  }
-  return rows;
-}
-
-/// Largest error of the elbow's load where rows of 8 and 24 ms are stamped every 16 ms [N.m].
-double errorOfUnevenRows(bool with_velocity)
-{
-  ArmLoad load(shipped("ur5"));
-  ArmLoad exact(shipped("ur5"));
-  std::vector<double> stamps;
-  std::vector<double> expected;
-  double worst = 0.0;
-  const auto take = [&](ArmLoad& from, const std::function<void(const ArmSample&)>& visit)
-  {
-    while (const ArmSample* sample = from.pop())
-    {
-      visit(*sample);
-    }
-  };
-  std::size_t compared = 0;
-  for (int i = 0; i < 400; ++i)
-  {
-    const double time = 0.016 * i + (i % 2 == 1 ? -0.004 : 0.004);
-    exact.push(swinging(time, time, false));
-    load.push(swinging(time, 0.016 * i, with_velocity));
-    take(exact, [&](const ArmSample& sample) { expected.push_back(sample.torques[2]); });
-    take(load,
-         [&](const ArmSample& sample)
-         {
-           EXPECT_NEAR(sample.joints[2].time, 0.016 * static_cast<double>(compared), 1e-9) << "stamps stay";
-           stamps.push_back(sample.torques[2]);
-           ++compared;
-         });
-  }
-  for (std::size_t i = 20; i < std::min(stamps.size(), expected.size()); ++i)
-  {
-    worst = std::max(worst, std::abs(stamps[i] - expected[i]));
-  }
-  return worst;
-}
-
-TEST(ArmLoad, VelocitiesMendTheTimesOfUnevenRows)
-{
-  EXPECT_GT(errorOfUnevenRows(false), 0.5);
-  EXPECT_LT(errorOfUnevenRows(true), 0.1);
-}
-
-TEST(ArmLoad, UnevenRowsWithoutVelocitiesMakeNoVibration)
-{
-  ArmLoad load(shipped("ur5"));
-  double largest = 0.0;
-  int samples = 0;
-  for (int i = 0; i < 600; ++i)
-  {
-    load.push(swinging(0.016 * i + (i % 2 == 1 ? -0.004 : 0.004), 0.016 * i, false));
-    while (const ArmSample* sample = load.pop())
-    {
-      largest = sample->joints[2].time > 1.0 ? std::max(largest, std::abs(sample->joints[2].vibration)) : 0.0;
-      ++samples;
-    }
-  }
-  EXPECT_GT(samples, 580);
-  EXPECT_LT(largest, 3.0);
-}
-
-/// Torques of the elbow, with the velocities changed.
-std::vector<double> torquesWith(const std::function<void(std::vector<MotionRow>&)>& change)
-{
-  ArmLoad load(shipped("ur5"));
-  std::vector<double> torques;
-  for (int i = 0; i < 300; ++i)
-  {
-    std::vector<MotionRow> rows = swinging(0.008 * i, 0.008 * i, true);
-    change(rows);
-    load.push(rows);
-    while (const ArmSample* sample = load.pop())
-    {
-      torques.push_back(sample->torques[2]);
-    }
-  }
-  return torques;
-}
-
-TEST(ArmLoad, VelocitiesOfAnotherUnitOrSignMendNothing)
-{
-  const std::vector<double> sound = torquesWith([](std::vector<MotionRow>&) {});
-  const std::vector<double> degrees = torquesWith(
-      [](std::vector<MotionRow>& rows)
-      {
-        for (MotionRow& row : rows)
-        {
-          row.recorded_velocity *= 180.0 / M_PI;
-        }
-      });
-  EXPECT_EQ(sound, degrees);
-  const std::vector<double> flipped =
-      torquesWith([](std::vector<MotionRow>& rows) { rows[1].recorded_velocity *= -1.0; });
-  ASSERT_EQ(sound.size(), flipped.size());
-  for (std::size_t i = 60; i < sound.size(); ++i)  // until then the velocities may be right
-  {
-    EXPECT_NEAR(flipped[i], sound[i], 1e-6) << i;
-  }
-}
-
-TEST(ArmLoad, VibrationIsWhatFasterRatesTakeBeyondTheLoad)
-{
-  constexpr double RATE = 2.0 * M_PI * 15.0;
-  constexpr double SIZE = 2e-4;
-  ArmDynamics dynamics(shipped("ur5"));
-  ArmLoad load(shipped("ur5"));
-  Angles upward = BENT;
-  const std::vector<double> weight = torquesOf(dynamics, motionOf(upward));
-  const std::vector<double> unit = torquesOf(dynamics, motionOf(upward, {}, { 0.0, 1.0 }));
-  const double inertia = unit[1] - weight[1];
-  double in_phase = 0.0;
-  double reference = 0.0;
-  double slow = 0.0;
-  for (int i = 0; i < 500; ++i)
-  {
-    Angles angles = BENT;
-    angles[1] += SIZE * std::sin(RATE * 0.008 * i);
-    load.push(rowsOf(0.008 * i, angles));
-    while (const ArmSample* sample = load.pop())
-    {
-      const double expected = -inertia * SIZE * RATE * RATE * std::sin(RATE * sample->joints[1].time);
-      in_phase += sample->joints[1].vibration * expected;
-      reference += expected * expected;
-      slow = std::max(slow, std::abs(sample->torques[1] - weight[1]));
-    }
-  }
-  EXPECT_NEAR(in_phase / reference, 0.42, 0.02) << "of it, by the parabola over 72 ms";
-  EXPECT_LT(slow, 0.3 * inertia * SIZE * RATE * RATE);
-}
-
-TEST(ArmLoad, AllocatesNothingAfterConstruction)
-{
-  ArmLoad load(shipped("ur5"));
-  const std::vector<MotionRow> rows = rowsOf(0.0, BENT);
-  std::vector<MotionRow> row = rows;
-  const std::size_t before = allocationCount();
-  for (int i = 0; i < 1000; ++i)
-  {
-    for (MotionRow& joint : row)
-    {
-      joint.time = 0.002 * i;
-    }
-    load.push(row);
-    while (load.pop() != nullptr)
-    {
-    }
-  }
-  EXPECT_EQ(allocationCount(), before);
 }
 
 /// Samples and currents of an arm with a payload, of which the twins know nothing, with friction and gains that they

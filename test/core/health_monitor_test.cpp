@@ -2,7 +2,6 @@
 #include "health/health_monitor.hpp"
 
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <memory>
 
@@ -10,69 +9,14 @@
 
 #include "gear/angle.hpp"
 #include "model/lobe_loads.hpp"
+#include "test/core/health_monitor_support.hpp"
 #include "test/support/allocation_count.hpp"
 
 namespace hjt
 {
 namespace
 {
-constexpr std::int64_t STEP = 100000;  // [ns]
-constexpr double RATIO = 101.0;
 constexpr double MARK = TWO_PI / (16 * 200);  // spacing of the turn window's marks [rad]
-
-GearParameters gear()
-{
-  GearParameters gear;
-  gear.teeth_flexspline = 200;
-  gear.teeth_circular_spline = 202;
-  return gear;
-}
-
-HealthParameters health()
-{
-  HealthParameters health;
-  health.stiffness_torque_span = 10.0;
-  health.averaging_time = 0.5;
-  return health;
-}
-
-class Monitored : public testing::Test
-{
-protected:
-  /// Turns the motor to `end` in steps of `step`, the output given as a function of the motor angle.
-  void turnTo(double end, double step, const std::function<double(double)>& output)
-  {
-    const auto steps = static_cast<int>(std::ceil(std::abs(end - sample_.motor_angle) / step - 1e-9));
-    const double start = sample_.motor_angle;
-    for (int i = 1; i <= steps; ++i)
-    {
-      sample_.motor_angle = start + (end - start) * i / steps;
-      sample_.output_angle = output(sample_.motor_angle);
-      update();
-    }
-  }
-
-  /// Lets the sample stand for a time [s], after `change` at every step with the time since the call [s].
-  void run(double duration, const std::function<void(double, HealthSample&)>& change)
-  {
-    for (std::int64_t elapsed = 0; elapsed < std::llround(1e9 * duration); elapsed += STEP)
-    {
-      change(1e-9 * static_cast<double>(elapsed), sample_);
-      update();
-    }
-  }
-
-  void update()
-  {
-    monitor_.update(sample_);
-    sample_.stamp += STEP;
-  }
-
-  MotionIndicators indicators() const { return monitor_.indicators(); }
-
-  HealthMonitor monitor_{ health(), gear() };
-  HealthSample sample_;
-};
 
 double perfect(double motor_angle)
 {
@@ -289,118 +233,6 @@ TEST_F(TorsionalStiffness, AveragesHysteresisOut)
         sample.output_angle = -1e-3 * std::sin(20.0 * PI * time);
       });
   EXPECT_NEAR(indicators().torsional_stiffness.value, 31e3, 31e3 * 0.01);
-}
-
-using Efficiency = Monitored;
-
-void flow(double motor_power, double joint_power, HealthSample& sample)
-{
-  sample.motor_velocity = 100.0;
-  sample.output_velocity = 100.0 / RATIO;
-  sample.motor_torque = motor_power / sample.motor_velocity;
-  sample.joint_torque = joint_power / sample.output_velocity;
-}
-
-TEST_F(Efficiency, IsJointPowerOverMotorPowerWhenDriving)
-{
-  run(0.45, [](double, HealthSample& sample) { flow(50.0, 35.0, sample); });
-  EXPECT_FALSE(indicators().efficiency.valid) << "before one window";
-  run(0.1, [](double, HealthSample& sample) { flow(50.0, 35.0, sample); });
-  ASSERT_TRUE(indicators().efficiency.valid);
-  EXPECT_NEAR(indicators().efficiency.value, 0.7, 1e-12);
-}
-
-TEST_F(Efficiency, IsMotorPowerOverJointPowerWhenDrivenBack)
-{
-  run(1.0, [](double, HealthSample& sample) { flow(-20.0, -50.0, sample); });
-  ASSERT_TRUE(indicators().efficiency.valid);
-  EXPECT_NEAR(indicators().efficiency.value, 0.4, 1e-12);
-}
-
-TEST_F(Efficiency, IsTheRatioOfMeansOfAPulsatingFlow)
-{
-  run(3.0,
-      [](double time, HealthSample& sample)
-      {
-        const double pulse = 1.0 + 0.9 * std::sin(200.0 * PI * time);
-        flow(50.0 * pulse, 30.0 * (2.0 - pulse), sample);
-      });
-  ASSERT_TRUE(indicators().efficiency.valid);
-  // What is left of the pulse in an exponential mean: 0.9 / (200 pi 0.5) on both sides.
-  EXPECT_NEAR(indicators().efficiency.value, 0.6, 0.6 * 0.006);
-}
-
-TEST_F(Efficiency, IsNotGivenWhenBothSidesPutPowerIn)
-{
-  run(1.0, [](double, HealthSample& sample) { flow(20.0, -5.0, sample); });
-  EXPECT_FALSE(indicators().efficiency.valid);
-  EXPECT_EQ(indicators().efficiency.value, 0.0);
-}
-
-TEST_F(Efficiency, IsNotGivenAtStandstill)
-{
-  run(1.0, [](double, HealthSample& sample) { flow(50.0, 35.0, sample); });
-  ASSERT_TRUE(indicators().efficiency.valid);
-  run(5.0, [](double, HealthSample& sample) { flow(0.0, 0.0, sample); });
-  EXPECT_FALSE(indicators().efficiency.valid);
-}
-
-TEST_F(Efficiency, IsNotGivenWhileTheFlowTurnsBackAndForth)
-{
-  run(3.0,
-      [](double time, HealthSample& sample)
-      {
-        const double pulse = 0.5 + std::sin(200.0 * PI * time);
-        flow(50.0 * pulse, 30.0 * pulse, sample);
-      });
-  EXPECT_FALSE(indicators().efficiency.valid);
-}
-
-TEST_F(Efficiency, IsNotGivenWhenInertiaPays)
-{
-  run(1.0, [](double, HealthSample& sample) { flow(10.0, 12.0, sample); });
-  EXPECT_FALSE(indicators().efficiency.valid);
-}
-
-TEST_F(Efficiency, StartsAnewAfterReset)
-{
-  run(1.0, [](double, HealthSample& sample) { flow(50.0, 35.0, sample); });
-  monitor_.reset();
-  EXPECT_FALSE(indicators().efficiency.valid);
-  sample_.stamp = 0;  // the clock has jumped back
-  run(1.0, [](double, HealthSample& sample) { flow(50.0, 25.0, sample); });
-  EXPECT_NEAR(indicators().efficiency.value, 0.5, 1e-12);
-}
-
-TEST(LobeLoads, SharesTeethByTheirLobe)
-{
-  const int teeth = 8;
-  Eigen::VectorXd angle(teeth);
-  for (int i = 0; i < teeth; ++i)
-  {
-    angle[i] = TWO_PI * i / teeth + 0.01;
-  }
-  Eigen::VectorXd mesh(teeth);
-  mesh << 10.0, -20.0, 0.0, 0.0, 5.0, 0.0, -1.0, 0.0;
-  const Eigen::VectorXd wave_generator = Eigen::VectorXd::Constant(teeth, 4.0);
-  const LobeLoads loads = lobeLoads({ mesh, wave_generator, angle, 0.0 });
-  EXPECT_EQ(loads.teeth_loaded, 4);
-  EXPECT_DOUBLE_EQ(loads.mesh_force[0], 31.0);
-  EXPECT_DOUBLE_EQ(loads.mesh_force[1], 5.0);
-  EXPECT_DOUBLE_EQ(loads.asymmetry, 26.0 / 36.0);
-  EXPECT_DOUBLE_EQ(loads.wave_generator_force, 32.0);
-
-  // Half a turn on, the lobes have changed places; after many turns they are where they were.
-  EXPECT_DOUBLE_EQ(lobeLoads({ mesh, wave_generator, angle, PI }).mesh_force[0], 5.0);
-  EXPECT_DOUBLE_EQ(lobeLoads({ mesh, wave_generator, angle, -50 * TWO_PI }).mesh_force[0], 31.0);
-}
-
-TEST(LobeLoads, AreEvenWithoutLoad)
-{
-  const Eigen::VectorXd none = Eigen::VectorXd::Zero(10);
-  const LobeLoads loads = lobeLoads({ none, none, none, 1.0 });
-  EXPECT_EQ(loads.teeth_loaded, 0);
-  EXPECT_EQ(loads.asymmetry, 0.0);
 }
 
 TEST(AllocationCount, SeesNewAndMalloc)

@@ -55,40 +55,9 @@ public:
     }
     RecordingFit fit(parameters);
     // True loads, then what is given: those of the given angles may be wrong.
-    ArmLoad truth(arm);
+    const std::vector<std::vector<double>> torques = trueLoads(arm);
     ArmLoad load(arm);
-    std::vector<std::vector<double>> torques;
-    const auto motion = [this](double time, std::size_t i)
-    {
-      const double rate = 0.7 + 0.17 * static_cast<double>(i);
-      const double size = moves_ ? 0.6 : 0.0;
-      Given given;
-      given.time = time;
-      given.position = START[i] + size * std::sin(rate * time);
-      given.velocity = size * rate * std::cos(rate * time);
-      return given;
-    };
-    constexpr int ROWS = 5000;
     std::vector<MotionRow> rows(JOINTS);
-    const auto keep = [&](bool at_end)
-    {
-      while (const ArmSample* sample = truth.pop(at_end))
-      {
-        torques.push_back(sample->torques);
-      }
-    };
-    for (int row = 0; row < ROWS; ++row)
-    {
-      for (std::size_t i = 0; i < JOINTS; ++i)
-      {
-        const Given given = motion(0.008 * row, i);
-        rows[i].time = given.time;
-        rows[i].position = given.position;
-      }
-      truth.push(rows);
-      keep(false);
-    }
-    keep(true);
     std::mt19937 engine(3);
     std::normal_distribution<double> noise(0.0, 0.1);
     const auto take = [&](bool at_end)
@@ -122,6 +91,47 @@ public:
   }
 
 private:
+  static constexpr int ROWS = 5000;
+
+  Given motion(double time, std::size_t i) const
+  {
+    const double rate = 0.7 + 0.17 * static_cast<double>(i);
+    const double size = moves_ ? 0.6 : 0.0;
+    Given given;
+    given.time = time;
+    given.position = START[i] + size * std::sin(rate * time);
+    given.velocity = size * rate * std::cos(rate * time);
+    return given;
+  }
+
+  /// By row, of all joints [N.m].
+  std::vector<std::vector<double>> trueLoads(const ArmDescription& arm) const
+  {
+    ArmLoad load(arm);
+    std::vector<std::vector<double>> torques;
+    std::vector<MotionRow> rows(JOINTS);
+    const auto keep = [&](bool at_end)
+    {
+      while (const ArmSample* sample = load.pop(at_end))
+      {
+        torques.push_back(sample->torques);
+      }
+    };
+    for (int row = 0; row < ROWS; ++row)
+    {
+      for (std::size_t i = 0; i < JOINTS; ++i)
+      {
+        const Given given = motion(0.008 * row, i);
+        rows[i].time = given.time;
+        rows[i].position = given.position;
+      }
+      load.push(rows);
+      keep(false);
+    }
+    keep(true);
+    return torques;
+  }
+
   static constexpr std::array<double, JOINTS> START{ 0.1, -1.2, 0.7, -0.5, 0.9, 0.4 };
 
   static double currentOf(const std::string& unit, const Parameters& parameters)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The twin beside measured rows: what a stream does to it, which load it reckons with, how it judges time.
 #include <cmath>
+#include <functional>
 #include <limits>
-#include <memory>
 #include <random>
 #include <vector>
 
@@ -13,6 +13,7 @@
 
 #include "gear/angle.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
+#include "test/core/tracker_support.hpp"
 #include "tracking/joint_evidence.hpp"
 #include "tracking/tracker.hpp"
 #include "tracking/verdict_watch.hpp"
@@ -21,33 +22,7 @@ namespace hjt
 {
 namespace
 {
-using testing::Gt;
-using testing::HasSubstr;
-using testing::SizeIs;
-
-constexpr double PERIOD = 0.008;  // [s]
 constexpr double NONE = std::numeric_limits<double>::quiet_NaN();
-
-/// A swing and a current that fits it but for an offset.
-MotionRow rowAt(double time)
-{
-  MotionRow row;
-  row.time = time;
-  row.position = 0.5 * std::sin(1.3 * time);
-  row.current = 1.0 + 0.8 * std::cos(1.3 * time);
-  row.received = time + 0.003;
-  return row;
-}
-
-std::vector<Comparison> takeAll(Tracker& tracker, bool at_end = false)
-{
-  std::vector<Comparison> taken;
-  while (const std::optional<Comparison> now = tracker.pop(at_end))
-  {
-    taken.push_back(*now);
-  }
-  return taken;
-}
 
 bool isFinite(const Comparison& now)
 {
@@ -59,15 +34,25 @@ bool isFinite(const Comparison& now)
   return std::isfinite(sum);
 }
 
-Parameters parametersWith(std::vector<std::string> assignments, const std::vector<std::string>& overlays = {})
-{
-  assignments.insert(assignments.end(), { "motor.viscous_friction=0.0", "solver.rate=2000" });
-  return shippedParameters(assignments, overlays);
-}
-
 class TrackerInMode : public testing::TestWithParam<InputMode>
 {
 };
+
+/// A row of which angle or current is none, once of each kind, with loads and temperatures of the same.
+int pushDamaged(Tracker& tracker, double time, const std::function<bool()>& chooses_angle)
+{
+  const std::vector<double> bad{ NONE, std::numeric_limits<double>::infinity(), -1e300 };
+  for (const double value : bad)
+  {
+    MotionRow row = rowAt(time);
+    (chooses_angle() ? row.position : row.current) = value;
+    tracker.push(row);
+    tracker.pushLoad(value, value);
+    tracker.pushTemperature(value, value);
+    tracker.pushTemperature(row.time, value);
+  }
+  return static_cast<int>(bad.size());
+}
 
 TEST_P(TrackerInMode, StaysFiniteThroughWhateverComesAndCountsIt)
 {
@@ -85,22 +70,12 @@ TEST_P(TrackerInMode, StaysFiniteThroughWhateverComesAndCountsIt)
   int damaged = 0;
   for (int i = 0; i < 1500; ++i)
   {
-    MotionRow row = rowAt(PERIOD * i + 0.002 * even(engine));
+    const MotionRow row = rowAt(PERIOD * i + 0.002 * even(engine));
     tracker.push(row);
     tracker.push(row);  // its stamp again
-    const std::vector<double> bad{ NONE, std::numeric_limits<double>::infinity(), -1e300 };
     if (i % 50 == 7)
     {
-      for (const double value : bad)
-      {
-        row = rowAt(PERIOD * i + 0.003);
-        (even(engine) < 0.5 ? row.position : row.current) = value;
-        tracker.push(row);
-        tracker.pushLoad(value, value);
-        tracker.pushTemperature(value, value);
-        tracker.pushTemperature(row.time, value);
-        ++damaged;
-      }
+      damaged += pushDamaged(tracker, PERIOD * i + 0.003, [&] { return even(engine) < 0.5; });
     }
     if (i % 500 == 8)
     {
@@ -385,256 +360,6 @@ TEST(Tracker, TellsHowManyOfTheLastRowsDepart)
   EXPECT_LT(share_with(0.8, static_cast<int>(memory) * seconds), 0.05);
   EXPECT_NEAR(share_with(5.0, static_cast<int>(memory) * seconds), 1.0 - std::exp(-1.0), 0.02);
   EXPECT_NEAR(share_with(5.0, 2 * seconds), 1.0 - std::exp(-2.0 / memory), 0.01);
-}
-
-/// A swing at a time [s], with the current that the twin of `parameters` predicts for it and `more` [A] of it.
-class SwingingRobot
-{
-public:
-  SwingingRobot(const Parameters& parameters, double seconds) : parameters_(parameters)
-  {
-    Tracker twin(parameters_, InputMode::MOTION);
-    twin.pushLoad(0.0, 0.0);
-    for (int i = 0; i * PERIOD < seconds; ++i)
-    {
-      twin.push(rowAt(PERIOD * i));
-      takeAll(twin, false, predicted_);
-    }
-    takeAll(twin, true, predicted_);
-  }
-
-  std::size_t rows() const { return predicted_.size(); }
-  const Comparison& predicted(std::size_t row) const { return predicted_[row]; }
-
-  void push(Tracker& tracker, std::size_t row, double more) const
-  {
-    MotionRow measured = rowAt(PERIOD * static_cast<double>(row));
-    measured.current = predicted_[row].current.predicted + more;
-    tracker.push(measured);
-    hjt::takeAll(tracker);
-  }
-
-private:
-  static void takeAll(Tracker& tracker, bool at_end, std::vector<Comparison>& all)
-  {
-    const std::vector<Comparison> taken = hjt::takeAll(tracker, at_end);
-    all.insert(all.end(), taken.begin(), taken.end());
-  }
-
-  Parameters parameters_;
-  std::vector<Comparison> predicted_;
-};
-
-const std::vector<std::string> KNOWN_LOAD{ "telemetry.load=load_torque", "output.load_inertia=0.5" };
-
-TEST(Tracker, SeesWhatTouchesTheArmAndJudgesAgainAfterwards)
-{
-  const Parameters parameters = parametersWith(KNOWN_LOAD);
-  const SwingingRobot robot(parameters, 60.0);
-  Tracker tracker(parameters, InputMode::MOTION);
-  tracker.pushLoad(0.0, 0.0);
-  std::vector<double> touched;
-  for (std::size_t i = 0; i < robot.rows(); ++i)
-  {
-    const double time = PERIOD * static_cast<double>(i);
-    const bool is_pushed = time > 20.0 && time < 20.5;  // midway in a swing
-    robot.push(tracker, i, is_pushed ? 3.0 : 0.0);
-    if (tracker.evidence().isTouched())
-    {
-      touched.push_back(time);
-    }
-  }
-  ASSERT_THAT(touched, SizeIs(Gt(10)));
-  EXPECT_NEAR(touched.front(), 20.3, 0.2);
-  EXPECT_NEAR(touched.back(), 20.5 + ContactWatch::HOLD, 0.5);
-  EXPECT_NEAR(tracker.evidence().contact().last().largest, 3.0 * parameters.telemetry.torque_per_current, 5.0);
-  EXPECT_LT(tracker.outsideShare(), 0.02);
-}
-
-TEST(VerdictWatch, JudgesNothingWhileSomethingTouchesTheArmOrDoesNotFit)
-{
-  const Parameters parameters = parametersWith(KNOWN_LOAD);
-  const SwingingRobot robot(parameters, 60.0);
-  Tracker tracker(parameters, InputMode::MOTION);
-  tracker.pushLoad(0.0, 0.0);
-  VerdictWatch watch(tracker, parameters, true);
-  std::vector<Verdict> each_second;
-  const auto row_of = [](double time) { return static_cast<std::size_t>(std::lround(time / PERIOD)); };
-  for (std::size_t i = 0; i < robot.rows(); ++i)
-  {
-    robot.push(tracker, i, i > row_of(20.0) && i < row_of(20.5) ? 3.0 : 0.0);
-    if (i % row_of(1.0) == 0)
-    {
-      watch.judge();
-      each_second.push_back(watch.now());
-      if (i > row_of(19.0))
-      {
-        EXPECT_EQ(watch.now().isJudged(), !tracker.evidence().isTouched()) << PERIOD * static_cast<double>(i) << " s";
-      }
-    }
-  }
-  const Verdict& before = each_second[19];
-  EXPECT_EQ(before.level, VerdictLevel::OK);
-  EXPECT_EQ(before.reason, Reason::SOUND);
-  EXPECT_NEAR(before.friction.factor, 1.0, 0.02);
-  EXPECT_NEAR(before[Figure::FRICTION_OF_OWN], 1.0, 0.02);
-  const Verdict& touched = each_second[22];
-  EXPECT_EQ(touched.level, VerdictLevel::NOT_JUDGED);
-  EXPECT_EQ(touched.reason, Reason::CONTACT);
-  EXPECT_FALSE(std::isfinite(touched.friction.factor));
-  EXPECT_THAT(verdictText(touched), HasSubstr("touched the arm"));
-  EXPECT_EQ(each_second.back().reason, Reason::SOUND);
-
-  watch.setMisfit({ Reason::STAMPS, "the stamps are wrong" }, true);
-  EXPECT_EQ(watch.now().reason, Reason::STAMPS);
-  EXPECT_EQ(verdictText(watch.now()), "Not judged: the stamps are wrong.");
-  EXPECT_EQ(watch.confirmed().reason, Reason::SOUND);
-}
-
-TEST(Tracker, WhatStaysIsNoContact)
-{
-  const Parameters parameters = parametersWith(KNOWN_LOAD);
-  const SwingingRobot robot(parameters, 200.0);
-  Tracker tracker(parameters, InputMode::MOTION);
-  tracker.pushLoad(0.0, 0.0);
-  for (std::size_t i = 0; i < robot.rows(); ++i)
-  {
-    robot.push(tracker, i, i > robot.rows() / 5 ? 3.0 : 0.0);
-  }
-  EXPECT_FALSE(tracker.evidence().isTouched());
-  EXPECT_GT(tracker.outsideShare(), 0.5);
-}
-
-TEST(JointEvidence, TellsTheLoadsOfTheMotion)
-{
-  JointEvidence evidence(parametersWith({}), LoadOrigin::RECORDED);
-  for (int i = 0; i < 1000; ++i)
-  {
-    MotionSample sample;
-    sample.time = PERIOD * i;
-    sample.load = i % 20 == 0 ? 60.0 : i % 3 == 0 ? 12.0 : -8.0;
-    evidence.update(sample);
-  }
-  EXPECT_EQ(evidence.reach().least_load, -8.0);
-  EXPECT_EQ(evidence.reach().most_load, 60.0);
-  EXPECT_NEAR(evidence.largestLoad(), 60.0, 1.0) << "one row of twenty";
-  EXPECT_NEAR(evidence.typicalLoad(), 8.0, 1.0);
-}
-
-TEST(ArmFrictionWatch, PredictsAtTheTemperatureThatAllJointsShowUnlessTheyWereSoWhenSound)
-{
-  struct Case
-  {
-    int raised;                 // joints
-    std::vector<double> sound;  // their friction when sound
-    bool is_cold;
-  };
-  const Parameters parameters = parametersWith(KNOWN_LOAD);
-  const SwingingRobot robot(parameters, 120.0);
-  for (const Case& one : { Case{ 1, {}, false }, Case{ 3, {}, true }, Case{ 3, { 1.4, 1.4, 1.4 }, false } })
-  {
-    std::vector<std::unique_ptr<Tracker>> joints;
-    std::vector<Tracker*> watched;
-    for (int joint = 0; joint < 3; ++joint)
-    {
-      joints.push_back(std::make_unique<Tracker>(parameters, InputMode::MOTION));
-      joints.back()->pushLoad(0.0, 0.0);
-      watched.push_back(joints.back().get());
-    }
-    ArmFrictionWatch watch(watched, parameters.comparison.repeat_tolerance, one.sound);
-    for (std::size_t i = 0; i < robot.rows(); ++i)
-    {
-      const double friction = robot.predicted(i).friction_torque / parameters.telemetry.torque_per_current;
-      for (int joint = 0; joint < 3; ++joint)
-      {
-        robot.push(*joints[static_cast<std::size_t>(joint)], i, joint < one.raised ? 0.4 * friction : 0.0);
-      }
-      watch.look(PERIOD * static_cast<double>(i));
-    }
-    joints.front()->push(rowAt(PERIOD * static_cast<double>(robot.rows())));
-    const std::vector<Comparison> last = takeAll(*joints.front(), true);
-    ASSERT_THAT(last, SizeIs(Gt(0)));
-    EXPECT_FALSE(last.back().temperature_received);
-    if (!one.is_cold)
-    {
-      EXPECT_EQ(watch.found().median, 1.0);
-      EXPECT_EQ(last.back().temperature, parameters.input.temperature);
-    }
-    else
-    {
-      EXPECT_NEAR(watch.found().median, 1.4, 0.02);
-      ASSERT_TRUE(watch.found().temperature.has_value());
-      EXPECT_LT(*watch.found().temperature, parameters.input.temperature - 3.0);
-      EXPECT_EQ(last.back().temperature, *watch.found().temperature);
-    }
-  }
-}
-
-TEST(Tracker, SeesTheMeasuredJointWithTheHealthMonitor)
-{
-  Tracker tracker(parametersWith({ "indicators.window_turns=20" }), InputMode::MOTION);
-  for (int i = 0; i < 2000; ++i)
-  {
-    MotionRow row = rowAt(PERIOD * i);
-    row.position = PERIOD * i * 0.5;
-    tracker.push(row);
-    takeAll(tracker);
-  }
-  EXPECT_GT(tracker.signalIndicators().windows, 2u);
-  EXPECT_NEAR(tracker.signalIndicators().point.speed, 101.0 * 0.5, 1.0);
-}
-
-TEST(DelayEstimate, FindsALagFromUnevenRows)
-{
-  for (const double lag : { -0.05, 0.0, 0.013, 0.06 })
-  {
-    DelayEstimate estimate;
-    std::mt19937 engine(2);
-    std::uniform_real_distribution<double> even(0.0, 1.0);
-    std::normal_distribution<double> unit;
-    const auto signal = [](double time) { return std::sin(2.1 * time) + 0.4 * std::sin(7.3 * time) + 0.1 * time; };
-    for (int i = 0; i < 2000; ++i)
-    {
-      if (even(engine) < 0.05)
-      {
-        continue;
-      }
-      const double time = PERIOD * (i + 0.3 * even(engine));
-      estimate.add(time, signal(time), 3.0 * signal(time - lag) + 5.0 + 0.1 * unit(engine));
-    }
-    ASSERT_TRUE(estimate.lag().has_value()) << lag;
-    EXPECT_NEAR(*estimate.lag(), lag, 0.002);
-  }
-}
-
-TEST(DelayEstimate, TellsNothingOfSignalsThatAreUnlike)
-{
-  DelayEstimate estimate;
-  for (int i = 0; i < 2000; ++i)
-  {
-    estimate.add(PERIOD * i, std::sin(2.1 * PERIOD * i), std::sin(9.0 * PERIOD * i));
-  }
-  EXPECT_FALSE(estimate.lag().has_value());
-}
-
-TEST(StreamTiming, TellsClocksOffsetAndJitter)
-{
-  StreamTiming timing;
-  std::mt19937 engine(2);
-  std::uniform_real_distribution<double> even(0.0, 1.0);
-  for (int i = 0; i < 1000; ++i)
-  {
-    if (i % 100 != 50)
-    {
-      timing.add(0.002 * i, 0.002 * i - 3.0 + 0.004 * even(engine));
-    }
-  }
-  const StreamTimingReport report = timing.report();
-  EXPECT_NEAR(report.period, 0.002, 1e-6);
-  EXPECT_EQ(report.missing, 10u);
-  EXPECT_NEAR(report.longest_gap, 0.004, 1e-9);
-  EXPECT_NEAR(report.offset, -3.0, 1e-4);
-  EXPECT_NEAR(report.jitter, 0.0038, 3e-4);
 }
 }  // namespace
 }  // namespace hjt

@@ -125,6 +125,36 @@ static Status step(void* instance)
   return status;
 }
 
+/// A command that calls one function of the instance.
+static Status call_named(const char* command, void* instance)
+{
+  const char* name = strcmp(command, "exit") == 0      ? "fmi3ExitInitializationMode" :
+                     strcmp(command, "terminate") == 0 ? "fmi3Terminate" :
+                     strcmp(command, "reset") == 0     ? "fmi3Reset" :
+                                                         strtok(NULL, " \n");
+  Status (*call)(void*) = function(name);
+  return call(instance);
+}
+
+static Status call_with_state(const char* command, void* instance, void** state)
+{
+  if (command[0] == 'r')
+  {
+    Status (*restore)(void*, void*) = function("fmi3SetFMUState");
+    return restore(instance, *state);
+  }
+  Status (*call)(void*, void**) = function(command[0] == 'k' ? "fmi3GetFMUState" : "fmi3FreeFMUState");
+  return call(instance, state);
+}
+
+static Status enter(void* instance)
+{
+  Status (*call)(void*, bool, double, double, bool, double) = function("fmi3EnterInitializationMode");
+  const double start = number();
+  const double stop = number();
+  return call(instance, false, 0.0, start, !isnan(stop), stop);
+}
+
 int main(int argc, char** argv)
 {
   static char line[1 << 16];
@@ -157,10 +187,7 @@ int main(int argc, char** argv)
     }
     else if (strcmp(command, "enter") == 0)
     {
-      Status (*call)(void*, bool, double, double, bool, double) = function("fmi3EnterInitializationMode");
-      const double start = number();
-      const double stop = number();
-      status = call(instances[i], false, 0.0, start, !isnan(stop), stop);
+      status = enter(instances[i]);
     }
     else if (strcmp(command, "step") == 0)
     {
@@ -179,24 +206,13 @@ int main(int argc, char** argv)
       }
       status = set(instances[i], type, reference, count);
     }
-    else if (strcmp(command, "keep") == 0 || strcmp(command, "drop") == 0)
+    else if (strcmp(command, "keep") == 0 || strcmp(command, "drop") == 0 || strcmp(command, "restore") == 0)
     {
-      Status (*call)(void*, void**) = function(command[0] == 'k' ? "fmi3GetFMUState" : "fmi3FreeFMUState");
-      status = call(instances[i], &states[(int)number()]);
-    }
-    else if (strcmp(command, "restore") == 0)
-    {
-      Status (*call)(void*, void*) = function("fmi3SetFMUState");
-      status = call(instances[i], states[(int)number()]);
+      status = call_with_state(command, instances[i], &states[(int)number()]);
     }
     else
     {
-      const char* name = strcmp(command, "exit") == 0      ? "fmi3ExitInitializationMode" :
-                         strcmp(command, "terminate") == 0 ? "fmi3Terminate" :
-                         strcmp(command, "reset") == 0     ? "fmi3Reset" :
-                                                             strtok(NULL, " \n");
-      Status (*call)(void*) = function(name);
-      status = call(instances[i]);
+      status = call_named(command, instances[i]);
     }
     printf("%d\n", status);
   }

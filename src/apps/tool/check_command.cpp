@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "apps/common/motion_options.hpp"
+#include "apps/tool/next_commands.hpp"
 #include "output/exit_code.hpp"
 #include "output/interrupt.hpp"
 #include "output/json.hpp"
@@ -27,43 +28,6 @@ bool stops(const std::vector<RecordingFinding>& findings)
 {
   return std::any_of(findings.begin(), findings.end(),
                      [](const RecordingFinding& finding) { return finding.stops.has_value(); });
-}
-
-/// Commands to run next, ready to paste: with nothing that was not tried.
-std::vector<std::string> nextCommands(const ArmOptions& options, const CheckedArm& arm)
-{
-  std::string reading = optionsOf(arm.affixes);
-  if (options.time_scale != 1.0)
-  {
-    reading += " --time-scale " + roundedText(options.time_scale, 6);
-  }
-  for (const std::string& assignment : options.assignments)
-  {
-    reading += " --set " + assignment;
-  }
-  if (options.topic != DEFAULT_TOPIC)
-  {
-    reading += " --topic " + options.topic;
-  }
-  const std::string& file = options.recording;
-  if (arm.taken.empty())
-  {
-    const auto joint = std::find_if(arm.joints.begin(), arm.joints.end(),
-                                    [](const CheckedJoint& one) { return one.verdict.isJudged(); });
-    return joint == arm.joints.end() ? std::vector<std::string>() :
-                                       std::vector<std::string>{ "joint_twin compare " + file + " --joint " +
-                                                                 joint->name + reading + " --report report" };
-  }
-  const bool is_mended = !arm.tried.empty() && arm.tried.front().helps;
-  if (!arm.isUsable() && !is_mended)
-  {
-    return {};
-  }
-  const std::string with = " --arm " + arm.taken + (is_mended ? arm.tried.front().options : "") + reading;
-  return { (is_mended ? "joint_twin check " : "joint_twin identify ") + file + with +
-               (is_mended ? "" : " --out my_arm"),
-           "joint_twin compare " + file + with + " --report report",
-           "joint_twin follow " + file + with + " --out rows" };
 }
 
 std::string textOfLoad(const CheckedArm& arm)

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "params/field_meaning.hpp"
+
+/// @file Rows of the field table (params/field_table.hpp): of the gear, its stress and its faults.
+
+namespace hjt
+{
+template <class P, class Visitor>
+void visitGear(P& p, Visitor& visit)
+{
+  visit("gear.teeth_flexspline", "-", p.gear.teeth_flexspline, Range{ 8, 4000 }, "teeth of the flexspline, even");
+  visit("gear.teeth_circular_spline", "-", p.gear.teeth_circular_spline, Range{ 10, 4002 },
+        "teeth of the circular spline: two more than the flexspline");
+  visit("gear.flexspline_inner_radius", "m", p.gear.flexspline_inner_radius, Range{ 1e-3, 1.0 },
+        "inner radius of the undeformed flexspline, also the mean radius of the wave generator");
+  visit("gear.wave_amplitude", "m", p.gear.wave_amplitude, Range{ 0.0, 1e-2 },
+        "w0: the wave generator's semi-axes are the inner radius plus and minus w0");
+  visit("gear.rim_thickness", "m", p.gear.rim_thickness, Range{ 1e-5, 1e-1 }, "flexspline rim under the teeth");
+  visit("gear.tooth_height_flexspline", "m", p.gear.tooth_height_flexspline, Range{ 1e-5, 1e-1 },
+        "height of a flexspline tooth");
+  visit("gear.tip_radius_circular_spline", "m", p.gear.tip_radius_circular_spline, Range{ 1e-3, 1.0 },
+        "tip radius of the circular spline's teeth");
+}
+
+template <class P, class Visitor>
+void visitManufacture(P& p, Visitor& visit)
+{
+  const Range pitch_deviation{ 0.0, 1e-4 };
+  const Range seed{ 0, 99999 };
+  visit("manufacture.flexspline_pitch_deviation", "m", p.manufacture.flexspline_pitch.deviation, pitch_deviation,
+        "total cumulative pitch deviation Fp of the flexspline's teeth at mid-height");
+  visit("manufacture.flexspline_pitch_seed", "-", p.manufacture.flexspline_pitch.seed, seed,
+        "which of the gears with that deviation");
+  visit("manufacture.flexspline_pitch_table", p.manufacture.flexspline_pitch.table,
+        "none, or the absolute path of a CSV file (tooth, deviation [m]) in place of deviation and seed");
+  visit("manufacture.circular_spline_pitch_deviation", "m", p.manufacture.circular_spline_pitch.deviation,
+        pitch_deviation, "total cumulative pitch deviation Fp of the circular spline's spaces");
+  visit("manufacture.circular_spline_pitch_seed", "-", p.manufacture.circular_spline_pitch.seed, seed,
+        "which of the gears with that deviation");
+  visit("manufacture.circular_spline_pitch_table", p.manufacture.circular_spline_pitch.table,
+        "none, or the absolute path of a CSV file (tooth, deviation [m]) in place of deviation and seed");
+  visit("manufacture.flexspline_eccentricity", "m", p.manufacture.flexspline_eccentricity, ERROR_SHIFT,
+        "run-out: centre of the flexspline's teeth from the axis of its bore, at rest with the housing: x, y");
+  visit("manufacture.circular_spline_eccentricity", "m", p.manufacture.circular_spline_eccentricity, ERROR_SHIFT,
+        "centre of the spaces from the output's axis, turning with the output: x, y at output angle 0");
+  visit(
+      "manufacture.circular_spline_ellipticity", "m", p.manufacture.circular_spline_ellipticity, ERROR_SHIFT,
+      "out-of-round: the radius grows by first cos 2a + second sin 2a, a the angle from space 0; bent, not stretched");
+  visit("manufacture.wave_generator_eccentricity", "m", p.manufacture.wave_generator_eccentricity, ERROR_SHIFT,
+        "centre of the ellipse from the motor's axis, turning with the motor: along the major, along the minor axis");
+  visit("manufacture.wave_generator_ellipticity", "m", p.manufacture.wave_generator_ellipticity, ERROR_SHIFT,
+        "excess of the wave generator's amplitude over gear.wave_amplitude, for which the teeth were cut");
+}
+
+template <class P, class Visitor>
+void visitRing(P& p, Visitor& visit)
+{
+  visit("ring.mass", "kg", p.ring.mass, Range{ 1e-9, 1e3 },
+        ofOthers("mass of the toothed rim, shared by the teeth alike; only the dynamic ring knows it"));
+  visit("ring.tension_stiffness", "N/m", p.ring.tension_stiffness, Range{ 1.0, 1e13 },
+        "axial stiffness of the rim between neighbouring teeth");
+  visit("ring.tension_damping", "N.s/m", p.ring.tension_damping, Range{ 0.0, 1e6 }, "dashpot beside it");
+  visit("ring.tooth_damping", "N.s/m", p.ring.tooth_damping, Range{ 0.0, 1e6 }, "dashpot of each tooth to the housing");
+  visit("ring.bending_stiffness", "N.m/rad", p.ring.bending_stiffness, Range{ 0.0, 1e8 },
+        "bending stiffness of the rim per segment");
+  visit("ring.bending_law", p.ring.bending_law,
+        "curvature: between neighbouring segments, frame-indifferent; absolute: of each segment from rest");
+  visit("ring.loss_factor", "-", p.ring.loss_factor, Range{ 0.0, 1.0 },
+        "of rim and outer race in bending: energy lost in a cycle over 2 pi times the largest that they store; 0 = "
+        "elastic");
+}
+
+template <class P, class Visitor>
+void visitContact(P& p, Visitor& visit)
+{
+  visit(
+      "contact.support", p.contact.support,
+      "springs: a spring at each tooth on a rigid ellipse; balls: the balls of the bearing after Hertz, spread evenly "
+      "around the ring; single_balls: each ball at its place");
+  visit("contact.stiffness", "N/m", p.contact.stiffness, Range{ 1.0, 1e12 },
+        "support springs: wave generator to flexspline, per tooth");
+  visit("contact.fit", "m", p.contact.fit, ERROR_SHIFT,
+        "mean radius of the wave generator over the flexspline's inner radius; > 0 interference, < 0 clearance");
+  visit("contact.temperature_difference", "K", p.contact.temperature_difference, Range{ -100.0, 100.0 },
+        "wave generator above the flexspline's rim, which adds its thermal growth to the fit");
+  visit("contact.damping", "N.s/m", p.contact.damping, Range{ 0.0, 1e6 }, "dashpot of the same contact");
+  visit("contact.law", p.contact.law, "normal: along the true normal of the ellipse; polar: the thesis' point");
+  visit("contact.smoothing", "m", p.contact.smoothing, Range{ 0.0, 1e-4 },
+        "support springs: C1 ramp of the contact; 0 = exact law");
+  visit("contact.friction_coefficient", "-", p.contact.friction_coefficient, Range{ 0.0, 2.0 },
+        "friction between the bearing's outer race and the flexspline");
+  visit("contact.slip_lever", "m", p.contact.slip_lever, Range{ 0.0, 1e-1 },
+        "distance between the neutral fibres of rim and outer race: lever of the slip between them");
+}
+
+template <class P, class Visitor>
+void visitMesh(P& p, Visitor& visit)
+{
+  visit("mesh.profile", p.mesh.profile, "shape of the tooth flanks (thesis section 3.2)");
+  visit("mesh.stiffness", "N/m", p.mesh.stiffness, Range{ 0.0, 1e12 },
+        "stiffness of a tooth pair along the flank normal");
+  visit("mesh.flank_angle", "rad", p.mesh.flank_angle, Range{ 0.0, 1.4 }, "angle of the flank from the tooth's axis");
+  visit("mesh.tangent_angle", "rad", p.mesh.tangent_angle, Range{ 0.0, 1.4 },
+        "double arc: angle of the common tangent of both arcs from the tooth's axis");
+  visit("mesh.tangent_length", "m", p.mesh.tangent_length, Range{ 0.0, 1e-2 },
+        "double arc: height of the common tangent, at mid-height of the tooth");
+  visit("mesh.flank_clearance", "m", p.mesh.flank_clearance, Range{ -1e-3, 1e-3 },
+        "half clearance at full engagement; negative = interference");
+  visit("mesh.engagement_depth", "m", p.mesh.engagement_depth, Range{ 1e-9, 1e-2 },
+        "depth over which a tooth's stiffness grows from none to full");
+  visit("mesh.smoothing", "m", p.mesh.smoothing, Range{ 0.0, 1e-4 }, "C1 ramp of the contact; 0 = exact law");
+  visit("mesh.friction_static", "-", p.mesh.friction_static, Range{ 0.0, 2.0 }, "flank friction at rest");
+  visit("mesh.friction_kinetic", "-", p.mesh.friction_kinetic, Range{ 0.0, 2.0 },
+        ofOthers("flank friction when sliding"));
+  visit("mesh.stribeck_velocity", "m/s", p.mesh.stribeck_velocity, Range{ 1e-9, 1e3 },
+        ofOthers("sliding speed at which static has turned into kinetic friction"));
+}
+
+template <class P, class Visitor>
+void visitCup(P& p, Visitor& visit)
+{
+  visit("cup.torsion_stiffness", "N.m/rad", p.cup.torsion_stiffness, Range{ 1.0, 1e9 },
+        "slopes of the cup's torque over its mean rotation: below the first, between, above the second breakpoint");
+  visit("cup.torsion_breakpoints", "N.m", p.cup.torsion_breakpoints, Range{ 0.0, 1e6 },
+        "torques at which the slope changes, ascending");
+  visit("cup.wall_stiffness", "N.m/rad", p.cup.wall_stiffness, Range{ 1.0, 1e9 },
+        "part of the cup's compliance that is its wall's and diaphragm's: what cracks and buckles of the cup act on; "
+        "more than torsion_stiffness");
+  visit("cup.friction_torque", "N.m", p.cup.friction_torque, Range{ 0.0, 1e4 },
+        ofOthers("dry friction beside the cup's spring: half the height of its torsion loop"));
+  visit("cup.friction_angle", "rad", p.cup.friction_angle, Range{ 0.0, 1.0 },
+        ofOthers("twist after a reversal over which that friction builds up; 0 = at once"));
+}
+
+template <class P, class Visitor>
+void visitBearing(P& p, Visitor& visit)
+{
+  visit("bearing.lubricant_factor", "-", p.bearing.lubricant_factor, Range{ 0.0, 100.0 },
+        ofOthers("f0 of Palmgren's law"));
+  visit("bearing.load_factor", "-", p.bearing.load_factor, Range{ 0.0, 1.0 }, "f1 of Palmgren's law");
+  visit(
+      "bearing.race_preload", "N", p.bearing.race_preload, Range{ 0.0, 1e6 },
+      "sum of the ball forces beside those under the rim: the fit of the bearing's outer race, and its bending unless "
+      "race_bending_stiffness has it");
+  visit("bearing.race_bending_stiffness", "N.m/rad", p.bearing.race_bending_stiffness, Range{ 0.0, 1e8 },
+        "bending stiffness of the bearing's outer race per segment of the rim, with which it bends");
+  visit("bearing.pitch_diameter", "m", p.bearing.pitch_diameter, Range{ 1e-3, 1.0 }, "pitch diameter of the balls");
+  visit("bearing.balls", "-", p.bearing.balls, Range{ 3, 1000 }, "balls of the bearing");
+  visit("bearing.ball_diameter", "m", p.bearing.ball_diameter, Range{ 1e-4, 1.0 },
+        "diameter of a ball, below pitch_diameter");
+  visit("bearing.viscosity", "m^2/s", p.bearing.viscosity, Range{ 1e-7, 1e-1 },
+        ofOthers("kinematic viscosity that the grease acts with at viscosity_temperature"));
+  visit("bearing.oil_viscosity", "m^2/s", p.bearing.oil_viscosity, Range{ 1e-6, 1e-1 },
+        ofOthers("kinematic viscosity of the grease's base oil there: with the slope, how the grease thins"));
+  visit("bearing.viscosity_temperature", "degC", p.bearing.viscosity_temperature, Range{ -60.0, 200.0 },
+        ofOthers("temperature both viscosities are given at"));
+  visit("bearing.viscosity_slope", "-", p.bearing.viscosity_slope, Range{ 0.0, 10.0 },
+        ofOthers("slope m of the base oil in the viscosity-temperature chart (Walther, ASTM D341)"));
+  visit("bearing.constant_share", "-", p.bearing.constant_share, Range{ 0.0, 1.0 },
+        ofOthers("share of the friction by speed at viscosity_temperature that no temperature changes"));
+}
+
+template <class P, class Visitor>
+void visitStress(P& p, Visitor& visit)
+{
+  visit("stress.tooth_base", "-", p.stress.tooth_base, Range{ 0.0, 0.99 },
+        ofOthers("share of the pitch that a tooth of the flexspline takes at its base"));
+  visit("stress.wall_thickness", "m", p.stress.wall_thickness, Range{ 1e-5, 0.1 }, ofOthers("of the cup"));
+  visit("stress.cup_length", "m", p.stress.cup_length, Range{ 1e-3, 1.0 },
+        ofOthers("from the open end to the flange, teeth included; more than life.face_width"));
+  visit("stress.coning_restraint", "-", p.stress.coning_restraint, Range{ 0.0, 1.0 },
+        ofOthers("how far the bearing holds the toothed rim from coning: 0 not at all, 1 entirely"));
+  visit("stress.warping_restraint", "-", p.stress.warping_restraint, Range{ 0.0, 1.0 },
+        ofOthers("how far the flange holds the cup's end from warping: 0 not at all, 1 as if built in"));
+  visit(
+      "stress.concentration", "-", p.stress.concentration, Range{ 1.0, 10.0 },
+      ofOthers("largest stress over the nominal one in the tooth space, at the transition from the toothed rim to the "
+               "cup, and at the flange"));
+  visit("stress.notch_radius", "m", p.stress.notch_radius, Range{ 1e-6, 0.1 },
+        ofOthers("of the fillets at these places"));
+}
+
+template <class P, class Visitor>
+void visitFaultScale(P& p, Visitor& visit)
+{
+  auto& scale = p.fault_scale;
+  const Range depth{ 0.0, 1e-3 };
+  const Range part{ 0.0, 1.0 };
+  const Range factor{ 1.0, 100.0 };
+  visit("fault_scale.interface_wear_depth", "m", scale.interface_wear_depth, depth,
+        ofFaults("interface_wear at severity 1: radial wear of rim and outer race together"));
+  visit("fault_scale.interface_friction_factor", "-", scale.interface_friction_factor, factor,
+        ofFaults("interface_wear at severity 1: contact.friction_coefficient times this"));
+  visit("fault_scale.cup_crack_fraction", "-", scale.cup_crack_fraction, Range{ 0.0, 0.99 },
+        ofFaults("rear_section_crack, flange_crack at severity 1: part of the circumference that is cracked"));
+  visit("fault_scale.rear_section_share", "-", scale.rear_section_share, part,
+        ofFaults("part of the compliance of the cup's wall and diaphragm in torsion that lies behind the teeth"));
+  visit("fault_scale.flange_share", "-", scale.flange_share, part,
+        ofFaults("part of that compliance that lies at the cup's flange"));
+  visit("fault_scale.cup_crack_friction_factor", "-", scale.cup_crack_friction_factor, factor,
+        ofFaults("rear_section_crack, flange_crack at severity 1: cup.friction_torque times this"));
+  visit("fault_scale.viscosity_factor", "-", scale.viscosity_factor, Range{ 0.01, 100.0 },
+        ofFaults("lubricant_degradation at severity 1: viscosity of the grease times this"));
+  visit("fault_scale.boundary_friction_factor", "-", scale.boundary_friction_factor, factor,
+        ofFaults("lubricant_degradation at severity 1: friction of flanks and of race in rim times this"));
+  visit("fault_scale.tooth_wear_depth", "m", scale.tooth_wear_depth, depth,
+        ofFaults("tooth_wear at severity 1: material off each flank, along its normal"));
+  visit("fault_scale.tooth_compliance_share", "-", scale.tooth_compliance_share, Range{ 0.01, 1.0 },
+        ofFaults("part of a tooth pair's compliance that is bending of the flexspline's tooth"));
+  visit("fault_scale.pitted_fraction", "-", scale.pitted_fraction, part,
+        ofFaults("pitting at severity 1: part of the flank's width that carries no more"));
+  visit("fault_scale.pitted_friction_factor", "-", scale.pitted_friction_factor, factor,
+        ofFaults("pitting at severity 1: friction of that tooth's flanks times this"));
+  visit("fault_scale.wave_generator_wear_depth", "m", scale.wave_generator_wear_depth, depth,
+        ofFaults("wave_generator_wear at severity 1: loss of the major semi-axis"));
+  visit("fault_scale.race_fit_stiffness", "N/m", scale.race_fit_stiffness, Range{ 0.0, 1e12 },
+        ofFaults("decrease of bearing.race_preload per decrease of the wave generator's mean radius"));
+  visit("fault_scale.race_bending_preload", "N", scale.race_bending_preload, Range{ 0.0, 1e6 },
+        ofFaults("part of bearing.race_preload that bends the race, which wear does not take away"));
+  visit("fault_scale.rim_crack_depth", "-", scale.rim_crack_depth, Range{ 0.0, 0.99 },
+        ofFaults("cracks of the rim at severity 1: depth over the rim's thickness"));
+  visit("fault_scale.rim_crack_segments", "-", scale.rim_crack_segments, Range{ 1, 100 },
+        ofFaults("flexspline_crack: segments to either side over which the crack fades out"));
+  visit("fault_scale.buckling_stiffness_loss", "-", scale.buckling_stiffness_loss, Range{ 0.0, 0.99 },
+        ofFaults("buckling at severity 1: part of the stiffness of the cup's wall that is lost"));
+  visit("fault_scale.buckling_out_of_round", "m", scale.buckling_out_of_round, depth,
+        ofFaults("buckling at severity 1: radial amplitude of the waves that the free rim would keep"));
+  visit("fault_scale.buckling_waves", "-", scale.buckling_waves, Range{ 2, 20 },
+        ofFaults("waves round the buckled rim"));
+  visit("fault_scale.ratcheting_eccentricity", "m", scale.ratcheting_eccentricity, Range{ 0.0, 1e-4 },
+        ofFaults("ratcheting at severity 1: centre of the circular spline off its axis, towards its space 0"));
+  visit("fault_scale.ratcheting_tip_loss", "m", scale.ratcheting_tip_loss, depth,
+        ofFaults("ratcheting at severity 1: height that every tooth has lost"));
+  visit("fault_scale.spall_depth", "m", scale.spall_depth, depth,
+        ofFaults("spalls in the bearing at severity 1: depth"));
+  visit("fault_scale.spall_length", "m", scale.spall_length, Range{ 1e-5, 1e-2 },
+        ofFaults("spalls in the bearing: length along the race or on the ball"));
+  visit("fault_scale.cage_deflection", "m", scale.cage_deflection, depth,
+        ofFaults("bearing_cage at severity 1: sag of the outer race at the ball that does not carry"));
+}
+}  // namespace hjt

@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "health/signal_monitor.hpp"
+
+#include <random>
+#include <string>
+
+#include <gmock/gmock.h>
+
+#include "gear/angle.hpp"
+#include "harmonic_joint_twin/health/assessment.hpp"
+#include "harmonic_joint_twin/twin/twin.hpp"
+#include "health/angle_multiples.hpp"
+#include "health/signature_file.hpp"
+#include "sensors/absolute_encoder.hpp"
+#include "sensors/incremental_encoder.hpp"
+#include "test/core/signal_monitor_support.hpp"
+#include "test/core/test_parameters.hpp"
+#include "test/support/allocation_count.hpp"
+
+namespace hjt
+{
+namespace
+{
+class Assessed : public testing::Test
+{
+protected:
+  Assessed()
+  {
+    joint_.error = [this](double angle, double)
+    {
+      return ARCSEC * (joint_.line(Line::WAVE_GENERATOR_2, 5.0, 1.0, angle) +
+                       joint_.line(faulty_, fault_amplitude_, 2.5, angle) + noise_(random_));
+    };
+    joint_.torque = [this](double, double) { return 0.1 * drag_ + 0.001 * noise_(random_); };
+  }
+
+  const Assessment& windows(int count)
+  {
+    for (int i = 0; i < count; ++i)
+    {
+      assessor_.update(joint_.nextWindow());
+    }
+    return assessor_.assessment();
+  }
+
+  Line faulty_{ Line::WAVE_GENERATOR_2 };
+  double fault_amplitude_{};
+  double drag_{ 1.0 };
+  std::mt19937 random_{ 11 };
+  std::normal_distribution<double> noise_{ 0.0, 1.0 };
+  Synthetic joint_{ shippedParameters() };
+  Assessor assessor_{ shippedParameters() };
+};
+
+TEST_F(Assessed, HealthyJointIsLearnedAndStaysSilent)
+{
+  EXPECT_EQ(windows(LEARNING).state, AssessmentState::LEARNING);
+  EXPECT_EQ(assessor_.assessment().windows_here, LEARNING);
+  windows(4);
+  for (int i = 0; i < 30; ++i)
+  {
+    const Assessment& assessment = windows(1);
+    EXPECT_EQ(assessment.state, AssessmentState::ASSESSED);
+    EXPECT_EQ(assessment.level, HealthLevel::OK);
+    EXPECT_EQ(assessment.cause, Cause::NONE);
+  }
+}
+
+TEST_F(Assessed, FewerWindowsThanAnotherLevelTakesAreNoVerdict)
+{
+  windows(LEARNING);
+  drag_ = 3.0;
+  for (int here = 1; here < 5; ++here)
+  {
+    const Assessment& assessment = windows(1);
+    EXPECT_EQ(assessment.state, AssessmentState::TOO_FEW_WINDOWS);
+    EXPECT_EQ(assessment.level, HealthLevel::OK);
+    EXPECT_EQ(assessment.windows_here, here);
+    EXPECT_EQ(assessment.windows_needed, 5);
+    EXPECT_EQ(whyNotJudged(assessment),
+              "too few windows: a verdict needs 5 at one operating point, has " + std::to_string(here));
+  }
+  EXPECT_EQ(windows(1).state, AssessmentState::ASSESSED);
+  EXPECT_GE(assessor_.assessment().level, HealthLevel::WARN);
+  EXPECT_EQ(whyNotJudged(assessor_.assessment()), "");
+}
+
+TEST_F(Assessed, CheckUpThatIsMadeOnceIsJudgedByItsOneWindow)
+{
+  Assessor once(shippedParameters({ "indicators.evidence_windows=1" }));
+  windows(LEARNING);
+  once.setReference(assessor_.baseline().bins());
+  EXPECT_EQ(once.update(joint_.nextWindow()).state, AssessmentState::ASSESSED);
+}
+
+TEST_F(Assessed, ReferenceOfTooFewWindowsSaysHowManyItHas)
+{
+  windows(6);
+  Assessor given(shippedParameters());
+  given.setReference(assessor_.baseline().bins());
+  const Assessment& assessment = given.update(joint_.nextWindow());
+  EXPECT_EQ(assessment.state, AssessmentState::NO_REFERENCE);
+  EXPECT_EQ(whyNotJudged(assessment), "the healthy reference needs 8 windows at this operating point, has 6");
+}
+
+TEST_F(Assessed, LineOfTheOuterRaceIsToldAndGoesAwayAgain)
+{
+  windows(LEARNING);
+  faulty_ = Line::OUTER;
+  fault_amplitude_ = 2.0;
+  EXPECT_EQ(windows(4).level, HealthLevel::OK) << "three means of three windows or more";
+  const Assessment faulty = windows(1);
+  EXPECT_GE(faulty.level, HealthLevel::WARN);
+  EXPECT_EQ(faulty.cause, causeOf(FaultKind::BEARING_OUTER_RACE));
+  EXPECT_GT(faulty.confidence, 0.5);
+  ASSERT_GT(faulty.evidence_count, 0U);
+  EXPECT_STREQ(indicatorName(faulty.evidence[0].indicator), "error_outer");
+  EXPECT_NEAR(faulty.evidence[0].value / ARCSEC, 2.0, 0.3);
+  fault_amplitude_ = 0.0;
+  EXPECT_GE(windows(4).level, HealthLevel::WARN);
+  EXPECT_EQ(windows(8).level, HealthLevel::OK);
+  EXPECT_EQ(assessor_.assessment().cause, Cause::NONE);
+}
+
+TEST_F(Assessed, LineAtAQuarterTurnFromTheHealthyOneIsSeenByItsPhase)
+{
+  windows(LEARNING);
+  fault_amplitude_ = 1.5;  // at a right angle to the healthy 5 arcsec: the amplitude only grows to 5.2
+  EXPECT_GE(windows(5).level, HealthLevel::WARN);
+}
+
+TEST_F(Assessed, OneWindowOfTenIsNoVerdict)
+{
+  windows(LEARNING + 9);
+  drag_ = 3.0;
+  EXPECT_LT(windows(1).largest_score, 1.0);
+  drag_ = 1.0;
+  EXPECT_LT(windows(1).largest_score, 1.0);
+}
+
+TEST_F(Assessed, WhatASingleWindowDoesNotShowTheMeanOfTenDoes)
+{
+  windows(LEARNING);
+  faulty_ = Line::OUTER;
+  fault_amplitude_ = 0.3;
+  EXPECT_LT(windows(1).largest_score, 1.0);
+  EXPECT_GE(windows(12).level, HealthLevel::WARN);
+}
+
+TEST_F(Assessed, DragIsPutDownToTheLubricant)
+{
+  windows(LEARNING);
+  drag_ = 1.6;
+  const Assessment& assessment = windows(5);
+  EXPECT_GE(assessment.level, HealthLevel::WARN);
+  EXPECT_EQ(assessment.cause, causeOf(FaultKind::LUBRICANT_DEGRADATION));
+}
+
+TEST_F(Assessed, TheVerdictIsTheSameWhenTheCauseIsSearchedForInParts)
+{
+  Assessor in_parts(shippedParameters());
+  int searches = 0;
+  for (int i = 0; i < LEARNING + 8; ++i)
+  {
+    drag_ = i < LEARNING ? 1.0 : 1.6;
+    const SignalIndicators window = joint_.nextWindow();
+    const Assessment whole = assessor_.update(window);
+    const Assessment before = in_parts.assessment();
+    const std::uint64_t allocations = allocationCount();
+    in_parts.begin(window);
+    std::size_t parts = 0;
+    for (; in_parts.assessment().windows != whole.windows; ++parts)
+    {
+      ASSERT_EQ(in_parts.assessment().level, before.level);
+      ASSERT_EQ(in_parts.assessment().cause, before.cause);
+      in_parts.advance(100);
+    }
+    EXPECT_EQ(allocationCount(), allocations);
+    const bool is_searching = whole.level != HealthLevel::OK && whole.largest_score > 1.0;
+    EXPECT_EQ(parts, is_searching ? (in_parts.searchLength() + 99) / 100 : 0);
+    searches += is_searching ? 1 : 0;
+    const Assessment& found = in_parts.assessment();
+    EXPECT_EQ(found.level, whole.level);
+    EXPECT_EQ(found.cause, whole.cause);
+    EXPECT_EQ(found.confidence, whole.confidence);
+    EXPECT_EQ(found.severity, whole.severity);
+    EXPECT_EQ(found.severity_deviation, whole.severity_deviation);
+    EXPECT_EQ(found.evidence[0].score, whole.evidence[0].score);
+  }
+  EXPECT_GT(searches, 2);
+}
+
+TEST_F(Assessed, OtherSpeedIsNotComparedWithThisOne)
+{
+  windows(LEARNING);
+  joint_.speed = [](double) { return 30.0; };
+  drag_ = 0.5;
+  windows(1);  // the window that begins at the old speed
+  EXPECT_EQ(windows(1).state, AssessmentState::LEARNING);
+  EXPECT_EQ(assessor_.assessment().level, HealthLevel::OK);
+}
+
+/// Windows of a sound joint at any temperature: friction and stiffness go with it, the stiffness with a spread of its
+/// own.
+class AtAnyTemperature : public testing::Test
+{
+protected:
+  AtAnyTemperature()
+  {
+    for (int window = 0; window < LEARNING; ++window)
+    {
+      assess(normal_(random_), normal_(random_));
+    }
+  }
+
+  const Assessment& assess(double temperature, double stiffness)
+  {
+    SignalIndicators window;
+    window.point = { 100.0, 1.0, 30.0, 25.0 };
+    window.values[indexOf(ScalarIndicator::RUNNING_TORQUE)] = 0.15 - 0.02 * temperature + noise();
+    window.values[indexOf(ScalarIndicator::COULOMB_TORQUE)] = 0.10 - 0.01 * temperature + noise();
+    window.values[indexOf(ScalarIndicator::TORSIONAL_STIFFNESS)] = 25000.0 + 300.0 * temperature + 10.0 * stiffness;
+    const std::uint64_t before = allocationCount();
+    assessor_.update(window);
+    EXPECT_EQ(allocationCount(), before);
+    return assessor_.assessment();
+  }
+
+  /// After ten windows whose stiffness lies so many spreads off, by more and less in turn.
+  HealthLevel levelAfter(double off, double scatter)
+  {
+    for (int window = 0; window < 10; ++window)
+    {
+      assess(0.0, off + (window % 2 == 0 ? scatter : -scatter));
+    }
+    return assessor_.assessment().level;
+  }
+
+  double noise() { return 1e-4 * normal_(random_); }
+
+  Assessor assessor_{ shippedParameters({ "indicators.least_spread=0.0" }) };
+  std::mt19937 random_{ 7 };
+  std::normal_distribution<double> normal_;
+};
+
+TEST_F(AtAnyTemperature, WhatTemperatureMovesTogetherIsNoFault)
+{
+  EXPECT_LT(assess(2.0, 0.0).largest_score, 1.0);
+  EXPECT_LT(assess(-2.0, 1.0).largest_score, 1.0);
+}
+
+TEST_F(AtAnyTemperature, AMeanFarFromTheReferenceIsAFault)
+{
+  EXPECT_NE(levelAfter(1200.0, 0.0), HealthLevel::OK);
+}
+
+TEST_F(AtAnyTemperature, AMeanOfWindowsThatScatterFarMoreIsNone)
+{
+  EXPECT_EQ(levelAfter(1200.0, 3000.0), HealthLevel::OK);
+}
+
+TEST(Level, IsNotRefutedAtAnotherOperatingPoint)
+{
+  Assessor assessor(shippedParameters());
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  const auto assess = [&](int windows, double temperature, double beside)
+  {
+    for (int i = 0; i < windows; ++i)
+    {
+      SignalIndicators window;
+      window.point = { 100.0, 1.0, 30.0, temperature };
+      window.values[indexOf(ScalarIndicator::RUNNING_TORQUE)] = 0.15 + 1e-4 * normal(random) + beside;
+      assessor.update(window);
+    }
+    return assessor.assessment().level;
+  };
+  assess(LEARNING, 25.0, 0.0);
+  assess(LEARNING, 35.0, 0.0);
+  EXPECT_EQ(assess(4, 25.0, 0.01), HealthLevel::OK);
+  EXPECT_GE(assess(1, 25.0, 0.01), HealthLevel::WARN);
+  EXPECT_GE(assess(20, 35.0, 0.0), HealthLevel::WARN);
+  EXPECT_EQ(assess(12, 25.0, 0.0), HealthLevel::OK);
+}
+}  // namespace
+}  // namespace hjt

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "health/signal_monitor.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <numeric>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+
+#include "gear/angle.hpp"
+#include "harmonic_joint_twin/health/assessment.hpp"
+#include "harmonic_joint_twin/twin/twin.hpp"
+#include "health/angle_multiples.hpp"
+#include "health/signature_file.hpp"
+#include "sensors/absolute_encoder.hpp"
+#include "sensors/incremental_encoder.hpp"
+#include "test/core/signal_monitor_support.hpp"
+#include "test/core/test_parameters.hpp"
+#include "test/support/allocation_count.hpp"
+
+namespace hjt
+{
+namespace
+{
+/// A window that differs from its reference by noise, and by a signature where one is given.
+class AgainstSignatures : public testing::Test
+{
+protected:
+  const std::shared_ptr<const SignatureSet> signatures_ = shippedSignatures();
+
+  AgainstSignatures()
+  {
+    // A hundredth of the largest change in any signature.
+    for (const Signature& signature : signatures_->signatures)
+    {
+      for (std::size_t i = 0; i < SIGNATURE_SIZE; ++i)
+      {
+        spread_[i] = std::max(spread_[i], 0.01 * std::abs(signature.change[i]));
+      }
+    }
+  }
+
+  CausePosterior posterior(const std::array<double, SIGNATURE_SIZE>& change, const MotionKind& motion)
+  {
+    OperatingPoint point;
+    point.speed = motion.speed;
+    point.direction = -motion.direction;
+    WindowResidual window;
+    window.freedom = 40.0;
+    const auto put = [&](std::size_t indicator, double value, double spread)
+    {
+      window.difference[indicator] = value + spread * normal_(random_);
+      window.own[indicator] = spread * spread;
+    };
+    for (std::size_t i = 0; i < SCALAR_COUNT; ++i)
+    {
+      put(i, change[i], spread_[i]);
+      window.sound[i] = 1.0;  // shares of it are in its unit
+    }
+    for (const LineSignal signal : ALL_LINE_SIGNALS)
+    {
+      for (std::size_t line = 0; line < LINE_COUNT && hasLine(signal, line); ++line)
+      {
+        const std::size_t number = signatureNumber(signal, line);
+        if (isPhaseLocked(line))
+        {
+          const double phase = TWO_PI * phase_(random_);
+          put(cosineIndex(signal, line), change[number] * std::cos(phase), spread_[number]);
+          put(sineIndex(signal, line), change[number] * std::sin(phase), spread_[number]);
+        }
+        put(amplitudeIndex(signal, line), change[number], spread_[number]);
+      }
+    }
+    const std::uint64_t before = allocationCount();
+    search_.start();
+    search_.advance(window, point, search_.signatures());
+    const CausePosterior found = search_.posterior();
+    EXPECT_EQ(allocationCount(), before);
+    return found;
+  }
+
+  static double sum(const CausePosterior& posterior)
+  {
+    return std::accumulate(posterior.probability.begin(), posterior.probability.end(), 0.0);
+  }
+
+  /// Of its changes, in spreads: in some motions a fault changes next to nothing.
+  double strength(const Signature& signature) const
+  {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < SIGNATURE_SIZE; ++i)
+    {
+      sum = std::hypot(sum, spread_[i] > 0.0 ? signature.change[i] / spread_[i] : 0.0);
+    }
+    return sum;
+  }
+
+  CauseSearch search_{ signatures_ };
+  std::array<double, SIGNATURE_SIZE> spread_{};
+  std::mt19937 random_{ 5 };
+  std::normal_distribution<double> normal_;
+  std::uniform_real_distribution<double> phase_{ 0.0, 1.0 };
+};
+
+TEST_F(AgainstSignatures, EveryCauseIsAmongTheMostLikelyOfItsOwnSignature)
+{
+  for (const Signature& signature : signatures_->signatures)
+  {
+    if (signature.severity < 0.4 || strength(signature) < 10.0)
+    {
+      continue;
+    }
+    const CausePosterior found = posterior(signature.change, signature.motion);
+    EXPECT_NEAR(sum(found), 1.0, 1e-9);
+    const auto own = static_cast<std::size_t>(signature.cause);
+    int before = 0;
+    for (const double probability : found.probability)
+    {
+      before += probability > found.probability[own] ? 1 : 0;
+    }
+    // Single teeth, and the two cracks of the cup, change the same.
+    EXPECT_LE(before, 3) << causeName(signature.cause) << " at " << signature.severity;
+    // Of a line reasoned by kinematics alone, too few numbers speak for the severity.
+    const auto numbers =
+        std::count_if(signature.change.begin(), signature.change.end(), [](double change) { return change != 0.0; });
+    if (before == 0 && numbers > 2)
+    {
+      // One step of the table, or what the error of the signatures makes.
+      constexpr double STEP = 1.7;
+      const double deviation = 3.0 * found.severity_deviation[own];
+      EXPECT_GT(found.severity[own], std::min(signature.severity / STEP, signature.severity - deviation))
+          << causeName(signature.cause);
+      EXPECT_LT(found.severity[own], std::max(signature.severity * STEP, signature.severity + deviation))
+          << causeName(signature.cause);
+    }
+  }
+}
+
+TEST_F(AgainstSignatures, OfAMotionLikeTheWindowsCountMore)
+{
+  double alike = 0.0;
+  double other = 0.0;
+  for (const Signature& signature : signatures_->signatures)
+  {
+    if (signature.motion.speed > 0.0 && strength(signature) > 10.0)
+    {
+      const auto own = static_cast<std::size_t>(signature.cause);
+      const MotionKind far{ 3.0 * signature.motion.speed, 1.0 - signature.motion.direction };
+      alike += posterior(signature.change, signature.motion).probability[own];
+      other += posterior(signature.change, far).probability[own];
+    }
+  }
+  EXPECT_GT(alike, 1.05 * other);
+}
+
+TEST_F(AgainstSignatures, WhatMovesEverythingAtRandomIsNoneOfThem)
+{
+  std::array<double, SIGNATURE_SIZE> change{};
+  for (std::size_t i = 0; i < SIGNATURE_SIZE; ++i)
+  {
+    change[i] = (i % 2 == 0 ? 20.0 : -20.0) * spread_[i];
+  }
+  const CausePosterior found = posterior(change, ANY_MOTION);
+  EXPECT_GT(found.probability[static_cast<std::size_t>(Cause::NONE)], 0.9);
+}
+
+/// The twin held at 150 rad/s under a load that swings; its indicators of the second window of 30 turns.
+SignalIndicators twinIndicators(std::vector<std::string> edits)
+{
+  edits.insert(edits.end(), { "indicators.window_turns=30.0", "output.load_inertia=0.5" });
+  Twin twin(shippedParameters(edits));
+  twin.watchSignals(true);
+  double held_back = 0.0;  // integral part of the speed control [N.m]
+  const double step = 1e-9 * static_cast<double>(twin.stepLength());
+  while (twin.signalIndicators().windows < 2)
+  {
+    const double missing = 150.0 - twin.outputs().motor_velocity;
+    held_back += 0.2 * missing * step;
+    twin.commandMotorTorque(twin.stamp() + twin.stepLength(), 0.02 * missing + held_back);
+    twin.commandLoadTorque(twin.stamp() + twin.stepLength(),
+                           12.0 * std::sin(TWO_PI * 3.0 * 1e-9 * static_cast<double>(twin.stamp())));
+    twin.step(twin.stamp() + twin.stepLength());
+  }
+  return twin.signalIndicators();
+}
+
+TEST(TwinsIndicators, FollowPhysicalEdits)
+{
+  const SignalIndicators healthy = twinIndicators({});
+  const double stiffness = healthy[ScalarIndicator::TORSIONAL_STIFFNESS];
+  EXPECT_GT(stiffness, 20e3);
+  EXPECT_LT(stiffness, 50e3);
+  // The load swings by less than 1 mrad of torsion, the output turns by 62 mrad in a motor turn, 30 of them.
+  EXPECT_NEAR(healthy[ScalarIndicator::RATIO_DEVIATION], 0.0, 5e-4);
+
+  const SignalIndicators soft_cup = twinIndicators({ "cup.torsion_stiffness=[26.0e+3, 45.4e+3, 52.3e+3]" });
+  EXPECT_LT(soft_cup[ScalarIndicator::TORSIONAL_STIFFNESS], 0.95 * stiffness);
+
+  const SignalIndicators thick_grease = twinIndicators({ "motor.viscous_friction=1.066e-3" });
+  EXPECT_NEAR(thick_grease[ScalarIndicator::RUNNING_TORQUE] - healthy[ScalarIndicator::RUNNING_TORQUE], 0.15, 0.03);
+
+  const SignalIndicators worn_teeth = twinIndicators({ "mesh.flank_clearance=5.0e-6" });
+  EXPECT_GT(worn_teeth[ScalarIndicator::LOST_MOTION], healthy[ScalarIndicator::LOST_MOTION]);
+}
+
+TEST(OperatingBin, StepsWithTheGearsTorqueAndTakesAnyNumber)
+{
+  const Parameters parameters = shippedParameters();
+  const Parameters wrist = shippedParameters({}, { "size_14" });
+  OperatingPoint point;
+  point.speed = 100.0;
+  const auto bin_at = [&](const Parameters& gear, double share)
+  {
+    point.load = share * gear.life.rated_torque;
+    return binOf(point, loadStep(gear)).load;
+  };
+  for (const double share : { -1.3, 0.1, 0.5, 2.0 })
+  {
+    EXPECT_EQ(bin_at(parameters, share), bin_at(wrist, share)) << share;
+  }
+  EXPECT_LT(loadStep(wrist), 0.2 * loadStep(parameters));
+  for (const double huge : { 6.7e305, -6.7e305, HUGE_VAL, std::nan("") })
+  {
+    point.load = point.temperature = point.speed = huge;
+    const OperatingBin bin = binOf(point, loadStep(parameters));
+    EXPECT_LE(std::abs(bin.load), 1'000'000) << huge;
+    EXPECT_LE(std::abs(bin.temperature), 1'000'000) << huge;
+    EXPECT_LE(std::abs(bin.speed), 1100) << huge;
+  }
+}
+}  // namespace
+}  // namespace hjt

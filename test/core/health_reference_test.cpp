@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "health/signal_monitor.hpp"
+
+#include <cmath>
+#include <random>
+
+#include <gmock/gmock.h>
+
+#include "gear/angle.hpp"
+#include "harmonic_joint_twin/health/assessment.hpp"
+#include "harmonic_joint_twin/twin/twin.hpp"
+#include "health/angle_multiples.hpp"
+#include "health/signature_file.hpp"
+#include "sensors/absolute_encoder.hpp"
+#include "sensors/incremental_encoder.hpp"
+#include "test/core/signal_monitor_support.hpp"
+#include "test/core/test_parameters.hpp"
+#include "test/support/allocation_count.hpp"
+
+namespace hjt
+{
+namespace
+{
+/// Score of a window whose running torque lies `off` beside what it falls by with the temperature, learned from windows
+/// spread by `range` about 25 degC.
+double scoreAt(double temperature, double off, double range)
+{
+  Assessor assessor(shippedParameters());
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> between(-range, range);
+  const auto assess = [&](double at, double beside)
+  {
+    SignalIndicators window;
+    window.point = { 100.0, 1.0, 30.0, at };
+    window.values[indexOf(ScalarIndicator::RUNNING_TORQUE)] =
+        0.15 - 0.002 * (at - 25.0) + 1e-4 * normal(random) + beside;
+    assessor.update(window);
+  };
+  for (int window = 0; window < LEARNING; ++window)
+  {
+    assess(25.0 + between(random), 0.0);
+  }
+  assess(temperature, off);
+  return assessor.assessment().largest_score;
+}
+
+TEST(Reference, FollowsTheTemperatureWithinAClass)
+{
+  EXPECT_LT(scoreAt(28.0, 0.0, 4.0), 1.0);
+  EXPECT_GT(scoreAt(28.0, 0.002, 4.0), 1.0) << "a third of what the temperature makes";
+}
+
+TEST(Reference, OfOneTemperatureCallsNothingAFaultAtAnother)
+{
+  EXPECT_LT(scoreAt(28.0, 0.0, 0.05), 1.0);
+  EXPECT_GT(scoreAt(25.0, 0.002, 0.05), 1.0);
+}
+
+/// Running torques that rise with the payload, with 1e-4 N.m of noise; every sixth window may lack them.
+class WithPayloads : public testing::Test
+{
+protected:
+  static constexpr double RISE = 2e-4;  // [1]
+
+  double scoreAt(double temperature, double payload, double off)
+  {
+    SignalIndicators window;
+    window.windows = ++windows_;
+    window.point = { 100.0, 1.0, 30.0, temperature, 0.0, payload, 0.0, 4.0 };
+    if (!lacking_ || windows_ % 6 != 3)
+    {
+      window.values[indexOf(ScalarIndicator::RUNNING_TORQUE)] = 0.15 + RISE * payload + 1e-4 * normal_(random_) + off;
+    }
+    assessor_.update(window);
+    return assessor_.assessment().largest_score;
+  }
+
+  void learn(double temperature, double range)
+  {
+    std::uniform_real_distribution<double> between(-range, range);
+    for (int window = 0; window < LEARNING; ++window)
+    {
+      scoreAt(temperature, between(random_), 0.0);
+    }
+  }
+
+  bool lacking_{};
+
+private:
+  Assessor assessor_{ shippedParameters() };
+  std::uint64_t windows_{};
+  std::mt19937 random_{ 3 };
+  std::normal_distribution<double> normal_;
+};
+
+TEST_F(WithPayloads, ThoseLearnedAtOneTemperatureServeAtAnother)
+{
+  learn(25.0, 10.0);
+  learn(35.0, 0.5);
+  EXPECT_LT(scoreAt(35.0, 10.0, 0.0), 1.0);
+  EXPECT_GT(scoreAt(35.0, 10.0, 15.0 * RISE), 1.0);
+}
+
+TEST_F(WithPayloads, ThoseNeverLearnedCallNothingAFault)
+{
+  learn(35.0, 0.5);
+  EXPECT_LT(scoreAt(35.0, 10.0, 15.0 * RISE), 1.0);
+}
+
+TEST_F(WithPayloads, CountForAnIndicatorThatSomeWindowsLack)
+{
+  lacking_ = true;
+  learn(25.0, 10.0);
+  EXPECT_LT(scoreAt(25.0, 9.0, 0.0), 1.0);
+  EXPECT_GT(scoreAt(25.0, 9.0, 15.0 * RISE), 1.0) << "less than from one payload to another";
+}
+
+/// Variance of the mean of ten sound windows, over that of one, of a reference of `runs` stretches of ten windows whose
+/// values share `shared` of their spread.
+double varianceOfTen(double shared, int runs)
+{
+  Parameters parameters = shippedParameters({ "indicators.least_spread=0.0" });
+  parameters.indicators.baseline_windows = 10 * runs;
+  const auto own = [&](int evidence_windows)
+  {
+    std::mt19937 random(5);
+    std::normal_distribution<double> normal;
+    parameters.indicators.evidence_windows = evidence_windows;
+    Assessor assessor(parameters);
+    for (int run = 0; run <= runs; ++run)
+    {
+      const double stays = std::sqrt(shared) * normal(random);
+      for (int i = 1; i <= 10; ++i)
+      {
+        SignalIndicators window;
+        window.windows = static_cast<std::uint64_t>(i);
+        window.point = { 100.0, 1.0, 30.0, 25.0 };
+        window.values[indexOf(ScalarIndicator::RUNNING_TORQUE)] =
+            0.15 + 1e-3 * (stays + std::sqrt(1.0 - shared) * normal(random));
+        assessor.update(window);
+      }
+    }
+    return assessor.baseline().residual().own[indexOf(ScalarIndicator::RUNNING_TORQUE)];
+  };
+  return own(10) / own(1);
+}
+
+TEST(Reference, OfIndependentWindowsMakesTheMeanOfTenNearlyTenTimesAsSure)
+{
+  EXPECT_NEAR(varianceOfTen(0.0, 60), 1.0 / 8.0, 0.12);
+}
+
+TEST(Reference, OfWindowsAlikeWithinARunDoesNot)
+{
+  EXPECT_NEAR(varianceOfTen(0.8, 60), 0.8, 0.15);
+}
+
+TEST(Reference, KeepsTheSoundValueWhereAModelIsSubtracted)
+{
+  Assessor assessor(shippedParameters());
+  SignalIndicators model;
+  model.values[indexOf(ScalarIndicator::TORSIONAL_STIFFNESS)] = 25000.0;
+  for (int window = 0; window <= LEARNING; ++window)
+  {
+    SignalIndicators measured = model;
+    measured.point = { 100.0, 1.0, 30.0, 25.0 };
+    measured.values[indexOf(ScalarIndicator::TORSIONAL_STIFFNESS)] = window < LEARNING ? 24000.0 : 21600.0;
+    assessor.update(difference(measured, model), &model);
+  }
+  const WindowResidual& residual = assessor.baseline().residual();
+  EXPECT_DOUBLE_EQ(residual.sound[indexOf(ScalarIndicator::TORSIONAL_STIFFNESS)], 24000.0);
+  EXPECT_DOUBLE_EQ(residual.difference[indexOf(ScalarIndicator::TORSIONAL_STIFFNESS)], -2400.0);
+}
+
+/// A reference of a motion to and fro that is carried to one of twice the speed and three times the load.
+class CarriedReference : public testing::Test
+{
+protected:
+  CarriedReference()
+  {
+    for (int window = 0; window < LEARNING; ++window)
+    {
+      update(learned_, { 80.0, 0.0, 20.0, 25.0 + normal_(random_) }, normal_(random_));
+    }
+    carried_.setReference(learned_.baseline().bins(), true);
+  }
+
+  const Assessment& update(Assessor& assessor, const OperatingPoint& point, double stiffness_error)
+  {
+    SignalIndicators model;
+    model.values[STIFFNESS] = model_stiffness_;
+    model.values[TORQUE] = 0.1 + 0.001 * point.load;
+    SignalIndicators measured = model;
+    measured.point = point;
+    measured.values[STIFFNESS] = 30000.0 + stiffness_error;
+    measured.values[TORQUE] += 1e-4 * normal_(random_);
+    return assessor.update(difference(measured, model), &model);
+  }
+
+  const Assessment& tenWindows(Assessor& assessor, const OperatingPoint& point, double stiffness_error)
+  {
+    for (int window = 0; window < 10; ++window)
+    {
+      update(assessor, point, stiffness_error + normal_(random_));
+    }
+    return assessor.assessment();
+  }
+
+  static constexpr std::size_t STIFFNESS = indexOf(ScalarIndicator::TORSIONAL_STIFFNESS);
+  static constexpr std::size_t TORQUE = indexOf(ScalarIndicator::RUNNING_TORQUE);
+  static constexpr OperatingPoint OTHER{ 160.0, 0.0, 60.0, 25.0 };
+
+  const CarriedError error_of_others_ = shippedSignatures()->carried[STIFFNESS];
+  const double carried_error_ = std::hypot(error_of_others_.deviation, error_of_others_.share * 1000.0);
+  double model_stiffness_{ 29000.0 };  // the drive's is 30000
+  std::mt19937 random_{ 7 };
+  std::normal_distribution<double> normal_;
+  Assessor learned_{ shippedParameters() };
+  Assessor carried_{ shippedParameters() };
+};
+
+TEST_F(CarriedReference, JudgesAMotionThatHasNone)
+{
+  EXPECT_EQ(tenWindows(carried_, OTHER, 0.0).state, AssessmentState::ASSESSED);
+  EXPECT_EQ(carried_.assessment().level, HealthLevel::OK);
+  EXPECT_NEAR(carried_.baseline().residual().sound[STIFFNESS], 30000.0, 1.0);
+  EXPECT_NEAR(carried_.baseline().residual().difference[TORQUE], 0.0, 1e-4);
+  Assessor own(shippedParameters());
+  own.setReference(learned_.baseline().bins());
+  EXPECT_EQ(tenWindows(own, OTHER, 0.0).state, AssessmentState::NO_REFERENCE);
+}
+
+TEST_F(CarriedReference, IsOffByWhatOtherGearsWere)
+{
+  EXPECT_EQ(tenWindows(carried_, OTHER, 3.0 * carried_error_).level, HealthLevel::OK);
+  EXPECT_EQ(tenWindows(carried_, OTHER, -40.0 * carried_error_).level, HealthLevel::ERROR);
+  EXPECT_EQ(carried_.assessment().evidence[0].indicator, STIFFNESS);
+}
+
+TEST_F(CarriedReference, IsOfTheSameTemperatureAndOfMotionsToAndFro)
+{
+  EXPECT_EQ(tenWindows(carried_, { 160.0, 0.0, 60.0, 45.0 }, 0.0).state, AssessmentState::NO_REFERENCE);
+  EXPECT_EQ(tenWindows(carried_, { 160.0, 1.0, 60.0, 25.0 }, 0.0).state, AssessmentState::NO_REFERENCE);
+}
+
+TEST_F(CarriedReference, LeavesOutOfTheCauseWhatTheModelDidNotDetermine)
+{
+  tenWindows(carried_, OTHER, -40.0 * carried_error_);
+  model_stiffness_ = std::numeric_limits<double>::quiet_NaN();
+  const Assessment& assessment = update(carried_, OTHER, 0.0);
+  EXPECT_GT(assessment.largest_score, 1.0);
+  EXPECT_EQ(carried_.baseline().residual().own[STIFFNESS], 0.0);
+  EXPECT_TRUE(std::isfinite(assessment.confidence));
+}
+}  // namespace
+}  // namespace hjt

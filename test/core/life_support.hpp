@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "test/support/allocation_count.hpp"
+#include "test/support/temporary_folder.hpp"
+#include "test_parameters.hpp"
+
+#include "gear/angle.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "life/drive_ageing.hpp"
+#include "life/life_estimate.hpp"
+#include "life/revolution_load_analysis.hpp"
+#include "studies/life_trials.hpp"
+
+namespace hjt
+{
+constexpr int POSITIONS = 4;
+
+inline LifeParameters shippedLife()
+{
+  return shippedParameters().life;
+}
+
+inline DutyCycle ratedDuty(double temperature)
+{
+  const LifeParameters life = shippedLife();
+  DutyCycle duty;
+  duty.phases.push_back({ 10.0, life.rated_speed, life.rated_torque, temperature });
+  return duty;
+}
+
+/// The rated duty on the tooth model, measured once for all tests.
+struct RatedUse
+{
+  RatedUse()
+    : parameters(shippedParameters())
+    , duty(ratedDuty(parameters.life.grease_temperature))
+    , load_map(parameters, POSITIONS)
+    , ageing(parameters, duty, load_map)
+  {
+    load_map.cover(duty, {});
+  }
+
+  Parameters parameters;
+  DutyCycle duty;
+  RevolutionLoadMap load_map;
+  DriveAgeing ageing;
+};
+
+inline const RatedUse& ratedUse()
+{
+  static const RatedUse USE;
+  return USE;
+}
+}  // namespace hjt

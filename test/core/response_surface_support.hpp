@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "solver/response_surface.hpp"
+
+#include <cstring>
+#include <string>
+
+#include <sys/stat.h>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/source_hash.hpp"
+#include "base/text_hash.hpp"
+#include "gear/angle.hpp"
+#include "gear/ratio.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "harmonic_joint_twin/twin/twin.hpp"
+#include "model/faults/joint_faults.hpp"
+#include "model/joint_model.hpp"
+#include "params/field_table.hpp"
+#include "solver/arc_elimination.hpp"
+#include "solver/joint_dynamics.hpp"
+#include "solver/ring_equilibrium.hpp"
+#include "statics/static_solver.hpp"
+#include "surface/ball_builder.hpp"
+#include "surface/cache_folder.hpp"
+#include "surface/deviation_builder.hpp"
+#include "surface/parallel_tasks.hpp"
+#include "surface/surface_builder.hpp"
+#include "surface/surface_cache.hpp"
+#include "surface/surface_ring.hpp"
+#include "surface/surface_worker.hpp"
+#include "test/support/allocation_count.hpp"
+#include "test/support/temporary_folder.hpp"
+#include "test_parameters.hpp"
+#include "twin_runs.hpp"
+
+namespace hjt
+{
+constexpr double ARC_SECOND = PI / 180.0 / 3600.0;
+/// The rated torque of the catalogue, and what it is at the motor.
+constexpr double RATED_TORQUE = 108.0;  // N.m
+constexpr double RATED_MOTOR_TORQUE = RATED_TORQUE / 101.0;
+
+/// A folder that every test of this program shares as cache, so that the surface is built once.
+inline const std::string& cacheDirectory()
+{
+  static const TemporaryFolder FOLDER;
+  static const std::string PATH = FOLDER.path().string();
+  return PATH;
+}
+
+inline Parameters surfaceParameters()
+{
+  return shippedParameters({ "solver.scene=auto", "input.command_timeout=10.0" });
+}
+
+inline SurfaceSource cached()
+{
+  return { cacheDirectory(), {}, {} };
+}
+
+inline const ResponseSurface& surface()
+{
+  static const ResponseSurface SHIPPED(
+      obtainSurface(surfaceParameters(), JointModel(surfaceParameters()), "", cached())->table);
+  return SHIPPED;
+}
+
+inline RingResponse at(double motor_angle, double output_angle)
+{
+  ResponseSurface::Place place;
+  EXPECT_TRUE(surface().locate(motor_angle, output_angle, place));
+  return surface().response(place);
+}
+
+constexpr const char* BROKEN_TOOTH = "tooth_root_crack:1:40";
+}  // namespace hjt

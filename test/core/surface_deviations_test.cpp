@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "solver/response_surface.hpp"
+
+#include <cmath>
+#include <iterator>
+#include <optional>
+#include <random>
+#include <vector>
+
+#include <sys/stat.h>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/source_hash.hpp"
+#include "base/text_hash.hpp"
+#include "gear/angle.hpp"
+#include "gear/ratio.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "harmonic_joint_twin/twin/twin.hpp"
+#include "model/faults/joint_faults.hpp"
+#include "model/joint_model.hpp"
+#include "params/field_table.hpp"
+#include "solver/arc_elimination.hpp"
+#include "solver/joint_dynamics.hpp"
+#include "solver/ring_equilibrium.hpp"
+#include "statics/static_solver.hpp"
+#include "surface/ball_builder.hpp"
+#include "surface/cache_folder.hpp"
+#include "surface/deviation_builder.hpp"
+#include "surface/parallel_tasks.hpp"
+#include "surface/surface_builder.hpp"
+#include "surface/surface_cache.hpp"
+#include "surface/surface_ring.hpp"
+#include "surface/surface_worker.hpp"
+#include "test/core/response_surface_support.hpp"
+#include "test/support/allocation_count.hpp"
+#include "test/support/temporary_folder.hpp"
+#include "test_parameters.hpp"
+#include "twin_runs.hpp"
+
+namespace hjt
+{
+namespace
+{
+JointModel brokenModel()
+{
+  const Parameters parameters = surfaceParameters();
+  FaultList faults;
+  faults.set(parseFault(BROKEN_TOOTH, parameters), 0);
+  return JointFaults(parameters, faults).model();
+}
+
+/// One table serves for all teeth.
+TEST(SurfaceDeviations, OfOneToothAreThoseOfAnotherTurned)
+{
+  const Parameters parameters = surfaceParameters();
+  std::vector<SurfacePool::Surface> surfaces;
+  int built = 0;
+  for (const char* fault : { "tooth_root_crack:1:0", BROKEN_TOOTH, "tooth_root_crack:1:199" })
+  {
+    FaultList faults;
+    faults.set(parseFault(fault, parameters), 0);
+    surfaces.push_back(surfaceWithFaults(parameters, faults,
+                                         { cacheDirectory(), [&](double done) { built += done >= 1.0 ? 1 : 0; }, {} }));
+    ASSERT_TRUE(surfaces.back());
+    built = surfaces.size() == 1 ? 0 : built;
+  }
+  EXPECT_EQ(built, 0);
+  const ResponseSurface direct(surface().table(),
+                               obtainSurface(parameters, brokenModel(), "broken tooth 40 ", cached())->deviations);
+  EXPECT_EQ(direct.deviations().pitches.size(), 100u);  // half a turn
+  ResponseSurface::Place here;
+  ResponseSurface::Place there;
+  for (double motor = -7.0; motor < 7.0; motor += 0.0137)
+  {
+    const double output = motor / 101.0 + 1.3e-3;
+    ASSERT_TRUE(surfaces[1]->locate(motor, output, here) && direct.locate(motor, output, there));
+    // Two rings, each solved to rounding at other angles.
+    EXPECT_NEAR(surfaces[1]->response(here).output_torque, direct.response(there).output_torque, 2e-4);
+    const double force = ResponseSurface::lobeForces(there)[0];
+    EXPECT_NEAR(ResponseSurface::lobeForces(here)[0], force, 0.005 * force);
+  }
+}
+
+/// Energy and torques are continuous where the tables of two pitches meet, whatever lines they have.
+TEST(SurfaceDeviations, AreContinuousFromPitchToPitch)
+{
+  const std::optional<SurfaceTables> tables =
+      obtainSurface(surfaceParameters(), brokenModel(), "broken tooth 40 ", cached());
+  ASSERT_TRUE(tables);
+  const ResponseSurface faulty(tables->table, tables->deviations);
+  constexpr double BESIDE = 1e-12;  // rad
+  const double pitch = TWO_PI / 200;
+  for (int edge = -50; edge < 250; ++edge)
+  {
+    for (double v = -4e-3; v < 4e-3; v += 1.3e-4)
+    {
+      const double motor = edge * pitch;
+      ResponseSurface::Place place;
+      ASSERT_TRUE(faulty.locate(motor - BESIDE, v + motor / 101.0, place));
+      const RingResponse before = faulty.response(place);
+      ASSERT_TRUE(faulty.locate(motor + BESIDE, v + motor / 101.0, place));
+      const RingResponse after = faulty.response(place);
+      EXPECT_NEAR(before.energy, after.energy, 1e-9);
+      EXPECT_NEAR(before.output_torque, after.output_torque, 1e-5);
+      EXPECT_NEAR(before.wave_generator_torque, after.wave_generator_torque, 1e-6);
+    }
+  }
+}
+
+/// A place taken from a pitch with deviations to one without any has none.
+TEST(SurfaceDeviations, AreNotKeptInAPlaceThatMovesOn)
+{
+  std::optional<SurfaceTables> tables = obtainSurface(surfaceParameters(), brokenModel(), "broken tooth 40 ", cached());
+  ASSERT_TRUE(tables);
+  for (std::size_t pitch = 1; pitch < tables->deviations.pitches.size(); pitch += 2)
+  {
+    tables->deviations.pitches[pitch] = {};
+  }
+  const ResponseSurface faulty(tables->table, tables->deviations);
+  ResponseSurface::Place moving;
+  for (int pitch = 0; pitch < 100; ++pitch)
+  {
+    const double motor = (pitch + 0.37) * TWO_PI / 200;
+    ResponseSurface::Place fresh;
+    ASSERT_TRUE(faulty.locate(motor, 2e-3 + motor / 101.0, moving));
+    ASSERT_TRUE(faulty.locate(motor, 2e-3 + motor / 101.0, fresh));
+    EXPECT_EQ(faulty.response(moving).energy, faulty.response(fresh).energy) << pitch;
+  }
+}
+
+TEST(SurfaceDeviations, AreNotBuiltBeyondABoundedNumberOfPoints)
+{
+  constexpr std::size_t MOST = 20000;
+  const Parameters parameters = surfaceParameters();
+  const DeviationBuild build = buildDeviations(parameters, JointModel(parameters), brokenModel(), 100,
+                                               surface().lowest(), surface().highest(), {}, MOST);
+  EXPECT_THAT(build.failure_reason, testing::HasSubstr("more than 20000 points"));
+  EXPECT_THAT(build.failure_reason, testing::HasSubstr("gear.teeth_flexspline = 200"));
+  EXPECT_THAT(build.failure_reason, testing::HasSubstr("output.load_torque_limit = 284"));
+  EXPECT_TRUE(build.table.pitches.empty());
+}
+
+TEST(SurfaceDeviations, BitsDoNotDependOnTheNumberOfThreads)
+{
+  const Parameters parameters = surfaceParameters();
+  const auto built = [&](unsigned threads)
+  {
+    return buildDeviations(parameters, JointModel(parameters), brokenModel(), 100, -1e-5, 2e-5, {},
+                           MAX_DEVIATION_POINTS, threads)
+        .table;
+  };
+  const DeviationTable one = built(1);
+  const DeviationTable three = built(3);
+  ASSERT_EQ(one.pitches.size(), 100U);
+  ASSERT_EQ(three.pitches.size(), 100U);
+  std::size_t nodes = 0;
+  for (std::size_t i = 0; i < one.pitches.size(); ++i)
+  {
+    nodes += one.pitches[i].nodes.size();
+    EXPECT_EQ(one.pitches[i].lines, three.pitches[i].lines);
+    EXPECT_TRUE(one.pitches[i].nodes == three.pitches[i].nodes) << i;
+  }
+  EXPECT_GT(nodes, 0U);
+}
+
+TEST(SurfaceDeviations, ComeFromTheCacheAsTheyWereBuilt)
+{
+  const std::optional<SurfaceTables> built =
+      obtainSurface(surfaceParameters(), brokenModel(), "broken tooth 40 ", cached());
+  bool building = false;
+  const std::optional<SurfaceTables> kept = obtainSurface(surfaceParameters(), brokenModel(), "broken tooth 40 ",
+                                                          { cacheDirectory(), [&](double) { building = true; }, {} });
+  ASSERT_TRUE(built && kept);
+  EXPECT_FALSE(building);
+  ASSERT_EQ(built->deviations.pitches.size(), kept->deviations.pitches.size());
+  for (std::size_t i = 0; i < kept->deviations.pitches.size(); ++i)
+  {
+    EXPECT_EQ(built->deviations.pitches[i].lines, kept->deviations.pitches[i].lines);
+    EXPECT_TRUE(built->deviations.pitches[i].nodes == kept->deviations.pitches[i].nodes);
+  }
+}
+
+/// A ball that has dropped does in a gear with a broken tooth nearly what it does in one without.
+TEST(SurfaceBalls, AddUpWithABrokenTooth)
+{
+  const Parameters parameters = surfaceParameters();
+  FaultList tooth;
+  tooth.set(parseFault(BROKEN_TOOTH, parameters), 0);
+  FaultList both = tooth;
+  both.set(parseFault("bearing_cage:1:3", parameters), 0);
+  const SurfacePool::Surface with = surfaceWithFaults(parameters, both, cached());
+  const SurfacePool::Surface without = surfaceWithFaults(parameters, tooth, cached());
+  ASSERT_TRUE(with && without);
+  EXPECT_FALSE(with->deviations().pitches.empty());
+  SurfaceRing ring_without(parameters, JointFaults(parameters, tooth).model());
+  SurfaceRing ring_with(parameters, JointFaults(parameters, both).model());
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> part(0.0, 1.0);
+  for (const double load : { -60.0, 60.0 })
+  {
+    ASSERT_TRUE(ring_without.insert() && ring_with.insert());
+    double squares = 0.0;
+    double miss_squares = 0.0;
+    double motor = 0.0;
+    for (int i = 0; i < 400; ++i)
+    {
+      motor += ring_with.pitch() * part(random);
+      const double v = ring_with.twist(load) * (0.9 + 0.1 * part(random));
+      ASSERT_TRUE(ring_without.moveTo(motor, v) && ring_with.moveTo(motor, v));
+      ResponseSurface::Place place_with;
+      ResponseSurface::Place place_without;
+      ASSERT_TRUE(with->locate(motor, v + motor / 101.0, place_with));
+      ASSERT_TRUE(without->locate(motor, v + motor / 101.0, place_without));
+      const double effect =
+          ring_without.measure()[SurfaceNode::ENERGY_BY_V] - ring_with.measure()[SurfaceNode::ENERGY_BY_V];
+      const double tabled = with->response(place_with).output_torque - without->response(place_without).output_torque;
+      squares += effect * effect;
+      miss_squares += std::pow(tabled - effect, 2);
+    }
+    EXPECT_LT(std::sqrt(miss_squares / squares), 0.03) << load;
+  }
+}
+}  // namespace
+}  // namespace hjt
