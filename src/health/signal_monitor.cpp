@@ -86,10 +86,10 @@ void SignalMonitor::start(const SignalSample& sample, double motor_angle) noexce
 bool SignalMonitor::update(const SignalSample& given) noexcept
 {
   SignalSample sample = given;
-  if (output_.gravity_torque != 0.0)
-  {
-    sample.load_torque += output_.gravity_torque * std::sin(given.output_angle - output_.gravity_angle);
-  }
+  const bool weight_known = output_.gravity_torque != 0.0;
+  const double weight =
+      weight_known ? output_.gravity_torque * std::sin(given.output_angle - output_.gravity_angle) : 0.0;
+  sample.load_torque += weight;
   // One encoder is enough to know where the motor stands.
   const bool motor_known = std::isfinite(sample.motor_angle);
   const double motor_angle = motor_known ? sample.motor_angle : ratio_ * sample.output_angle;
@@ -127,11 +127,14 @@ bool SignalMonitor::update(const SignalSample& given) noexcept
   if (both)
   {
     addTurn(motor_angle, travel, torsion);
-    // The torque is known at one end of the gear, the load's or the motor's: between it and the gear is inertia.
+    // The torque is known at one end of the gear, the load's or the motor's: between it and the gear is inertia. The
+    // weight stands in for a load that nobody estimates: the motor's torque has the friction in it.
+    const bool at_output = load_known || weight_known;
+    const double torque = load_known || !weight_known ? joint_torque : weight;
     const double output_speed = (sample.output_angle - last_.output_angle) / seconds;
-    smoothed_.update({ torsion, joint_torque, motor_angle, sample.output_angle },
-                     load_known && std::isfinite(output_speed) ? output_speed : velocity / ratio_,
-                     load_known ? output_inertia_ : -motor_inertia_, seconds);
+    smoothed_.update({ torsion, torque, motor_angle, sample.output_angle },
+                     at_output && std::isfinite(output_speed) ? output_speed : velocity / ratio_,
+                     at_output ? output_inertia_ : -motor_inertia_, seconds);
     if (smoothed_.settled())
     {
       loop_.add(smoothed_.sample());
