@@ -83,14 +83,35 @@ void SignalMonitor::start(const SignalSample& sample, double motor_angle) noexce
   torsion_zero_ = motor_angle / ratio_ - sample.output_angle;
 }
 
+double SignalMonitor::weightAt(double output_angle) const noexcept
+{
+  return output_.gravity_torque != 0.0 ? output_.gravity_torque * std::sin(output_angle - output_.gravity_angle) : 0.0;
+}
+
 /// With the weight at the output, which no sample's load has.
 SignalSample SignalMonitor::withWeight(SignalSample sample) const noexcept
 {
-  if (output_.gravity_torque != 0.0)
-  {
-    sample.load_torque += output_.gravity_torque * std::sin(sample.output_angle - output_.gravity_angle);
-  }
+  sample.load_torque += weightAt(sample.output_angle);
   return sample;
+}
+
+/// The torque is known at one end of the gear, the load's or the motor's: between it and the gear is inertia. The weight
+/// stands in for a load that nobody estimates: the motor's torque has the friction in it.
+void SignalMonitor::addLoop(const SignalSample& sample, double motor_angle, double torsion, double velocity,
+                            double seconds) noexcept
+{
+  const bool load_known = std::isfinite(sample.load_torque);
+  const bool weight_known = output_.gravity_torque != 0.0;
+  const double other_torque = weight_known ? weightAt(sample.output_angle) : ratio_ * sample.motor_torque;
+  const bool at_output = load_known || weight_known;
+  const double output_speed = (sample.output_angle - last_.output_angle) / seconds;
+  smoothed_.update({ torsion, load_known ? sample.load_torque : other_torque, motor_angle, sample.output_angle },
+                   at_output && std::isfinite(output_speed) ? output_speed : velocity / ratio_,
+                   at_output ? output_inertia_ : -motor_inertia_, seconds);
+  if (smoothed_.settled())
+  {
+    loop_.add(smoothed_.sample());
+  }
 }
 
 bool SignalMonitor::update(const SignalSample& given) noexcept
@@ -128,19 +149,10 @@ bool SignalMonitor::update(const SignalSample& given) noexcept
   const bool even = judgeMotion(velocity, seconds, motor_known);
   const double output_angle = std::isfinite(sample.output_angle) ? sample.output_angle : motor_angle / ratio_;
   const bool load_known = std::isfinite(sample.load_torque);
-  const double joint_torque = load_known ? sample.load_torque : ratio_ * sample.motor_torque;
   if (both)
   {
     addTurn(motor_angle, travel, torsion);
-    // The torque is known at one end of the gear, the load's or the motor's: between it and the gear is inertia.
-    const double output_speed = (sample.output_angle - last_.output_angle) / seconds;
-    smoothed_.update({ torsion, joint_torque, motor_angle, sample.output_angle },
-                     load_known && std::isfinite(output_speed) ? output_speed : velocity / ratio_,
-                     load_known ? output_inertia_ : -motor_inertia_, seconds);
-    if (smoothed_.settled())
-    {
-      loop_.add(smoothed_.sample());
-    }
+    addLoop(sample, motor_angle, torsion, velocity, seconds);
   }
   else
   {

@@ -40,8 +40,8 @@ private:
 ///                     torque, the other with the motion [rad]
 ///        T0, T1       indicators.lost_motion_torque, indicators.stiffness_torque
 ///        c            softness about no load: clearance, worn teeth
-///        e            eccentricity of the output encoder. Where inertia twists the drive too, it differs from a load by
-///                     weight, which is as sin(phi); where nothing does, ECCENTRICITY_RIDGE keeps it at 0
+///        e            eccentricity of the output encoder [rad]. A weight twists the drive as sin(phi) too: inertia
+///                     tells them apart; where it does not, ECCENTRICITY_RIDGE keeps e at 0
 /// Lost motion  angle between the middles of the loop at T0 and -T0: 2 T0 (1 / K1 + c) [rad]
 /// Loop area    integral of T over the torsion from one maximum of T to the next, mean of the loops that closed [J]
 /// K1 needs T to span health.stiffness_torque_span within T1 on either side of no load, K2 beyond T1 on one side, lost
