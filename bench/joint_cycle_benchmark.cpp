@@ -100,11 +100,12 @@ public:
   {
     constexpr double GAIN = 0.2;  // of the speed controller [N.m.s/rad]
     const double time = 1e-9 * static_cast<double>(twin_.stamp());
-    const double error = scene_.motor_speed(time) - twin_.outputs().motor_velocity;
+    const double error = scene_.motor_speed(time) - outputs_.motor_velocity;
     const hjt::Stamp next = twin_.stamp() + twin_.stepLength();
     twin_.commandMotorTorque(next, scene_.brake ? 0.0 : reduced_load_ + GAIN * error);
     twin_.commandLoadTorque(next, scene_.load_torque);
     twin_.step(next);
+    outputs_ = twin_.outputs();
     if (watch_ == Watch::TEETH)
     {
       twin_.toothForces(forces_);
@@ -120,11 +121,13 @@ public:
   }
 
   const hjt::Twin& twin() const { return twin_; }
+  const hjt::JointOutputs& outputs() const { return outputs_; }
 
 private:
   const Scene& scene_;
   Watch watch_;
   hjt::Twin twin_;
+  hjt::JointOutputs outputs_;
   hjt::ToothForces forces_;
   hjt::EncoderReadings encoders_;
   hjt::HealthReport health_;
@@ -177,12 +180,12 @@ Result measure(const hjt::Parameters& parameters, const Scene& scene, Watch watc
     for (std::size_t i = 0; i < cycles; ++i)
     {
       run();
-      iterations += cycle.twin().outputs().iterations;
+      iterations += cycle.outputs().iterations;
     }
     const double after = readClock(clock);
     time = 1e6 * (after - before) / static_cast<double>(cycles);
     before = after;
-    result.motor_speed = std::max(result.motor_speed, std::abs(cycle.twin().outputs().motor_velocity));
+    result.motor_speed = std::max(result.motor_speed, std::abs(cycle.outputs().motor_velocity));
   }
   const double wall_time = readClock(CLOCK_MONOTONIC) - start;
   const double processor_time = readClock(CLOCK_THREAD_CPUTIME_ID) - processor_start;

@@ -108,8 +108,8 @@ def simulate(kind, *options):
 
 
 def replay(folder, duration):
-    return ["replay", folder / ("short.bag" if duration < 2.0 else "commands.bag"), "--set", "solver.scene=auto",
-            "--force", "--out", folder / "replayed.bag"]
+    return ["replay", folder / ("short.bag" if duration < 2.0 else "commands.bag"), "--force", "--out",
+            folder / "replayed.bag"]
 
 
 def follow(folder, duration):

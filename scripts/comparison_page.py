@@ -26,9 +26,10 @@ from matplotlib.ticker import MaxNLocator  # noqa: E402
 
 GREY, BLUE, RED, GREEN, ORANGE = "#7a7a7a", "#0072B2", "#D55E00", "#009E73", "#E69F00"
 DPI = 130
-STYLE = {"figure.dpi": DPI, "font.size": 9, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "grid.color": "0.9",
-         "grid.linewidth": 0.6, "axes.axisbelow": True, "axes.titlesize": 9.5, "axes.titlelocation": "left",
-         "legend.frameon": False, "legend.fontsize": 8, "lines.linewidth": 0.9, "axes.edgecolor": "0.5"}
+STYLE = {"figure.dpi": DPI, "font.size": 9, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True,
+         "grid.color": "0.9", "grid.linewidth": 0.6, "axes.axisbelow": True, "axes.titlesize": 9.5,
+         "axes.titlelocation": "left", "legend.frameon": False, "legend.fontsize": 8, "lines.linewidth": 0.9,
+         "axes.edgecolor": "0.5"}
 WIDTHS = {"wide": 8.6, "narrow": 4.1}  # [inch]
 SHOWN_INDICATORS = 12
 LOWEST_ORDER = 0.3   # below it lies what the load's error makes, not ripple

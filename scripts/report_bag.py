@@ -29,6 +29,11 @@ def shown(value, format_text, factor=1.0):
     return "not yet" if value is None else format_text.format(value * factor)
 
 
+def surface_share(health):
+    """None: the bag is older than the field."""
+    return health["on_response_surface"].mean() if "on_response_surface" in health.dtype.names else None
+
+
 def joint_rows(recording):
     encoders, states = recording["encoders"], recording["joint_states"]
     return [
@@ -52,6 +57,7 @@ def health_rows(health):
         ("wave generator bearing load, most", f"{health['wave_generator_load'].max():.0f}", "N"),
         ("energy unaccounted for, most", f"{np.abs(health['energy_residual']).max():.2g}", "J"),
         ("solver failures", f"{health['solver_failures'].max()}", "-"),
+        ("on the response surface", shown(surface_share(health), "{:.0f}", 100.0), "%"),
         ("solver", SOLVER_STATES.get(int(health["solver_state"].max()), "unknown state"), ""),
     ]
 

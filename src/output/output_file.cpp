@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <iostream>
 
-#include <fmt/format.h>
+#include <fmt/compile.h>
 
 #include "base/joined.hpp"
 #include "base/whole_file.hpp"
@@ -88,7 +88,8 @@ void CsvWriter::writeRow(const std::vector<double>& values)
     if (text.size == 0 || std::memcmp(&text.value, &values[column], sizeof(double)) != 0)
     {
       text.value = values[column];
-      text.size = static_cast<std::size_t>(fmt::format_to(text.digits.data(), "{},", text.value) - text.digits.data());
+      text.size = static_cast<std::size_t>(fmt::format_to(text.digits.data(), FMT_COMPILE("{},"), text.value) -
+                                           text.digits.data());
     }
     line_.insert(line_.end(), text.digits.data(), text.digits.data() + text.size);
   }

@@ -20,9 +20,10 @@ using Node = SurfaceNode;
 using Line = DeviationLine;
 using Lines = std::map<double, Line>;  // by their v [rad]
 using Rings = DeviationRings;
-using Torques = Eigen::Array2d;   // on output and motor [N.m]
-constexpr double SHARE = 1e-2;  // of the largest deviation of the output torque on a line, that the table misses [-]
-constexpr double MOTOR_SHARE = 3e-2;  // likewise of the motor's, which single contacts roughen [-]
+using Torques = Eigen::Array2d;  // on output and motor [N.m]
+
+constexpr double SHARE = 5e-3;  // of the largest deviation of the output torque on a line, that the table misses [-]
+constexpr double MOTOR_SHARE = 7e-3;  // likewise of the motor's, which single contacts roughen [-]
 constexpr double SMALLEST = 0.1;  // a line's largest deviation counts as at least this part of the largest of all [-]
 constexpr int COARSE_LINES = 12;  // a side, before refinement; denser towards no load
 constexpr int MAX_HALVINGS = 5;   // of an interval between two lines

@@ -13,10 +13,10 @@ namespace hjt
 /// Whether both hold the same faults with the same severities, since whenever.
 bool isSame(const FaultList& one, const FaultList& other) noexcept;
 
-/// The response surfaces of a twin that waits for them: one for each set of faults that the configured ones make as they
-/// set in one after the other. Where these are many, each table but the first and the last being a build: of a fault
-/// that grows in more steps than NODES of some of them, and for those between a sum of the nearest, cubic in the
-/// severity; of others none.
+/// The response surfaces of a twin that waits for them: one for each set of faults that the configured ones make as
+/// they set in one after the other. Where these are many, each table but the first and the last being a build: of a
+/// fault that grows in more steps than NODES tables of some of them, and for those between a sum of the nearest, cubic
+/// in the severity; of others none.
 class SurfaceStages
 {
 public:

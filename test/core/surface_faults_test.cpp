@@ -40,6 +40,7 @@
 #include "test/support/allocation_count.hpp"
 #include "test/support/temporary_folder.hpp"
 #include "test_parameters.hpp"
+#include "twin/growing_fault.hpp"
 #include "twin_runs.hpp"
 
 namespace hjt
@@ -171,6 +172,106 @@ TEST(SceneAuto, FaultsThatSetInLaterHaveTheirSurfaces)
       EXPECT_LT(std::sqrt(misses[0] / STEPS), 1e-3 * RATED_TORQUE);
       EXPECT_LT(std::sqrt(misses[1] / STEPS), 0.5 * ARC_SECOND);
     }
+  }
+}
+
+/// A fault that grows, and how far its run between tables may be from that on the full ring, root mean square.
+struct Growth
+{
+  const char* name;
+  std::string fault;
+  double torsion;       // [seconds of arc]
+  double joint_torque;  // [N.m]
+};
+
+class SurfacesOfAGrowth : public testing::TestWithParam<Growth>
+{
+};
+// A step of the staircase, of which half is what growth is resolved to: 0.3 to 5 seconds of arc at 60 N.m.
+INSTANTIATE_TEST_SUITE_P(All, SurfacesOfAGrowth,
+                         testing::Values(Growth{ "tooth", "tooth_root_crack:1:40", 0.1, 0.03 },
+                                         Growth{ "interface", "interface_wear:0.6", 0.15, 0.04 },
+                                         Growth{ "flanks", "tooth_wear:0.6", 0.5, 0.15 },
+                                         Growth{ "cup", "rear_section_crack:0.8", 0.1, 0.03 }),
+                         [](const auto& row) { return std::string(row.param.name); });
+
+TEST_P(SurfacesOfAGrowth, FollowTheFullRing)
+{
+  constexpr int STEPS = 11000;
+  const Growth& growth = GetParam();
+  std::vector<Eigen::Array2d> ring;
+  for (const char* scene : { "solver.scene=full_ring", "solver.scene=auto" })
+  {
+    Parameters parameters = shippedParameters({ "input.command_timeout=10.0", scene });
+    GrowingFault growing{ parseFault(growth.fault, parameters), 1.0 };
+    growing.fault.onset = 0.05;
+    parameters.faults = growing.steps();
+    Twin twin(parameters, cached());
+    Eigen::Array2d squares = Eigen::Array2d::Zero();
+    double through = 0.0;
+    double path = 0.0;
+    int on_ring = 0;
+    for (int i = 0; i < STEPS; ++i)
+    {
+      const Stamp next = twin.stamp() + twin.stepLength();
+      const double load = 60.0 * std::sin(TWO_PI * 6e-4 * i);
+      path += 40.0 * std::min(1.0, i / 300.0) * 1e-4;
+      const JointOutputs before = twin.outputs();
+      twin.commandLoadTorque(next, load);
+      twin.commandMotorTorque(next,
+                              0.05 * (40.0 - before.motor_velocity) + 2.0 * (path - before.motor_angle) + load / 101.0);
+      twin.step(next);
+      const JointOutputs now = twin.outputs();
+      ASSERT_TRUE(now.converged);
+      through += 1e-4 * std::abs(now.motor_torque * now.motor_velocity);
+      on_ring += twin.onSurface() ? 0 : 1;
+      const Eigen::Array2d state(now.motor_angle / 101.0 - now.output_angle, now.joint_torque);
+      if (parameters.solver.scene == SceneKind::FULL_RING)
+      {
+        ring.push_back(state);
+        continue;
+      }
+      squares += (state - ring[static_cast<std::size_t>(i)]).square();
+    }
+    EXPECT_LT(std::abs(twin.outputs().energy_residual), 2e-4 * through) << scene;
+    if (parameters.solver.scene == SceneKind::AUTO)
+    {
+      EXPECT_LT(on_ring, 0.02 * STEPS);
+      const Eigen::Array2d miss = (squares / STEPS).sqrt();
+      RecordProperty("torsion", std::to_string(miss[0] / ARC_SECOND) + " arcsec");
+      RecordProperty("joint_torque", std::to_string(miss[1]) + " N.m");
+      EXPECT_LT(miss[0], growth.torsion * ARC_SECOND);
+      EXPECT_LT(miss[1], growth.joint_torque);
+    }
+  }
+}
+
+/// A surface between others is one energy, whose weights sum up to 1.
+TEST(ResponseSurface, OfSharesIsTheirSum)
+{
+  const auto whole = std::make_shared<const ResponseSurface>(
+      obtainSurface(surfaceParameters(), JointModel(surfaceParameters()), "", cached())->table);
+  const auto broken = std::make_shared<const ResponseSurface>(
+      surface().table(), obtainSurface(surfaceParameters(), brokenModel(), "broken tooth 40 ", cached())->deviations);
+  const ResponseSurface between({ { whole, 0.75 }, { broken, 0.25 } });
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> part(-1.0, 1.0);
+  for (int i = 0; i < 500; ++i)
+  {
+    const double motor = 10.0 * part(random);
+    const double output = motor / 101.0 + 5e-3 * part(random);
+    std::array<ResponseSurface::Place, 3> places;
+    ASSERT_TRUE(between.locate(motor, output, places[0]) && whole->locate(motor, output, places[1]) &&
+                broken->locate(motor, output, places[2]));
+    const RingResponse sum = between.response(places[0]);
+    const RingResponse first = whole->response(places[1]);
+    const RingResponse second = broken->response(places[2]);
+    EXPECT_NEAR(sum.energy, 0.75 * first.energy + 0.25 * second.energy, 1e-12);
+    EXPECT_NEAR(sum.output_torque, 0.75 * first.output_torque + 0.25 * second.output_torque, 1e-9);
+    EXPECT_NEAR(ResponseSurface::value(places[0], SurfaceNode::CONTACT_FORCE),
+                0.75 * ResponseSurface::value(places[1], SurfaceNode::CONTACT_FORCE) +
+                    0.25 * ResponseSurface::value(places[2], SurfaceNode::CONTACT_FORCE),
+                1e-2);
   }
 }
 
