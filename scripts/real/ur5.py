@@ -349,7 +349,7 @@ arm answers in every joint's current.
 ![Current of the three large joints, measured and predicted](images/real_robot/current.png)
 
 """, *closed_loop.section(runner, judged, fit, JOINTS, by_name.get(SHOWN, judged[0]).name,
-                          os.path.join(images, "closed_loop.png")), """
+                          os.path.join(images, "closed_loop.png"), TRAIN), """
 ### Verdicts
 
 """ + f"""`joint_twin compare --arm ur5`, alone and with the report of {TRAIN} as `--reference` (of {TRAIN}: that of
