@@ -25,7 +25,7 @@ def main():
     for axis, title in zip(axes, ("elbow, angle [rad]", "elbow, current [A]", "tool off its set point [mm]")):
         axis.set_title(title, loc="left", fontsize=10)
         axis.grid(alpha=0.3)
-    axes[0].legend(loc="upper right", fontsize=9)
+    axes[0].legend(loc="upper left", fontsize=9)
     axes[-1].set_xlabel("time [s]")
     figure.savefig(sys.argv[3], dpi=110)
     print(f"figure: {sys.argv[3]}")

@@ -12,7 +12,7 @@ LINE_BAND = (10.0, 55.0)   # frequencies of the lines that the rows resolve [Hz]
 GAINS_FROM = "no5"         # recording on which the controller's gains are identified
 # Errors of the circular spline alone: a gear with errors on both members has no table.
 BUILT = ["--config", "as_built.yaml", "--set", "manufacture.flexspline_pitch_deviation=0.0", "--set",
-         "manufacture.wave_generator_eccentricity=[0.0, 0.0]"]
+         "manufacture.wave_generator_eccentricity=[0.0,0.0]"]
 
 
 def tracking(data, joint):

@@ -22,8 +22,8 @@ ACCURACY = 0.01            # of the travel
 TIMEOUT = 600.0            # s a run
 COUNTS = ["solver_failures", "step_cuts", "jumps", "coarse_steps", "torque_clamped", "speed_limited", "overloads"]
 START = [0.0, -1.2, 1.0, -1.3, -1.5, 0.3]
-# About those of ArmController::defaultGains of the UR5: position [1/s], speed [N.m.s/rad], integral time [s].
-SPEEDS = [301.0] * 3 + [25.2] * 3
+# Those of ArmController::defaultGains of the UR5: position [1/s], speed [N.m.s/rad], integral time [s].
+SPEEDS = [271.1] * 3 + [62.5] * 3
 GAINS = [{"position": 20.0, "speed": speed, "integral_time": 0.07, "coulomb": 0.0, "viscous": 0.0} for speed in SPEEDS]
 
 
