@@ -198,9 +198,10 @@ def arm(motion: Recording, arm: Path, *, faults: Sequence[str] = (), out: Option
         progress: Optional[Progress] = None) -> Document:
     """A whole arm in closed loop, drives, links and controller, along set points: the tool's arm (docs/arm_twin.md).
 
-    motion: CSV of set points, or columns: a structured array or a mapping of arrays with 'time' [s], shape (rows,), and
-    of shape (rows, joints) 'position' [rad] and, if known, 'velocity' [rad/s] and 'acceleration' [rad/s^2]. arm: name
-    in config/arms, or a file. faults: each JOINT:KIND:SEVERITY[:PLACE[:ONSET]]. out: CSV in a controller's columns.
+    motion: CSV of set points, program of moves (YAML), or columns: a structured array or a mapping of arrays with
+    'time' [s], shape (rows,), and of shape (rows, joints) 'position' [rad] and, if known, 'velocity' [rad/s] and
+    'acceleration' [rad/s^2]. arm: name in config/arms, or a file. faults: each JOINT:KIND:SEVERITY[:PLACE[:ONSET]].
+    out: CSV in a controller's columns.
     rate: of the rows [Hz]; None: that of the arm's states. Others as of identify.
 
     Returns a dict: 'joints' (one dict each: 'angle_error_rms', 'angle_error_max' [mrad], 'current_rms' [A]),

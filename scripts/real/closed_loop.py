@@ -9,6 +9,10 @@ LOOP_LINES = 200           # a turn of the joint
 STEADY = 0.05              # share by which the speed may vary in a stretch whose line is read
 STRETCH = 0.5              # [s]
 LINE_BAND = (10.0, 55.0)   # frequencies of the lines that the rows resolve [Hz]
+GAINS_FROM = "no5"         # recording on which the controller's gains are identified
+# Errors of the circular spline alone: a gear with errors on both members has no table.
+BUILT = ["--config", "as_built.yaml", "--set", "manufacture.flexspline_pitch_deviation=0.0", "--set",
+         "manufacture.wave_generator_eccentricity=[0.0,0.0]"]
 
 
 def tracking(data, joint):
@@ -37,11 +41,12 @@ def line_amplitude(time, speed, values):
 class ClosedLoop:
     """A run of `joint_twin arm` along the targets of a recording (ur5.Recording)."""
 
-    def __init__(self, runner, recording):
+    def __init__(self, runner, recording, identified, *more):
         self.recording = recording
-        runner.run("arm", f"{recording.name}.csv", "--arm", "ur5", "--identified", "identified_arm", "--out",
-                   f"loop_{recording.name}.csv", "--json")
-        self.data = read(runner.path(f"loop_{recording.name}.csv"))
+        out = f"loop_{identified}_{recording.name}.csv"
+        self.report = runner.run("arm", f"{recording.name}.csv", "--arm", "ur5", "--identified", identified, "--out",
+                                 out, "--json", *more)
+        self.data = read(runner.path(out))
 
     def residual(self, name, joint):
         """Recorded less simulated current, at the rows that were compared [A]."""
@@ -72,11 +77,52 @@ def draw(path, loop, joints):
     save(drawing, path)
 
 
-def section(runner, recordings, fit, joints, shown, picture):
+def line_of(data, joint, values):
+    return line_amplitude(data["timestamp"], data[f"target_qd_{joint}"], values)
+
+
+def built_section(runner, recordings, fit, joints, train):
+    """Lines of the page: drives with errors of manufacture, the controller's gains identified on one recording."""
+    runner.run("identify", f"{train}.csv", "--arm", "ur5", "--out", "built")
+    gains = runner.run("identify", f"{GAINS_FROM}.csv", "--arm", "ur5", "--controller", "--out", "built", "--json")
+    rows, ratios, stops = [], {name: [] for name in joints}, []
+    for recording in recordings:
+        loop = ClosedLoop(runner, recording, "built", *BUILT)
+        stops += [recording.name] if loop.report["protective_stop"] else []
+        cells = []
+        for number, name in enumerate(joints):
+            moving = recording.moving(name)
+            simple = rms(fit.residual(recording, name)[moving]) if moving.any() else float("nan")
+            current = rms(loop.residual(name, number)[moving]) if moving.any() else float("nan")
+            lines = [[line_of(data, number, data[f"actual_current_{number}"]),
+                      1e6 * line_of(data, number, data[f"actual_q_{number}"] - data[f"target_q_{number}"])]
+                     for data in (loop.data, recording.data)]
+            cells.append(f"{cell(tracking(loop.data, number), tracking(recording.data, number))}; "
+                         f"{cell(current, simple)}; {cell(lines[0][0], lines[1][0])}; "
+                         f"{cell(lines[0][1], lines[1][1], digits=0)}")
+            ratios[name].append(lines[0][0] / lines[1][0])
+        rows.append([recording.name, *cells])
+    known = np.concatenate([np.array(values)[~np.isnan(values)] for values in ratios.values()])
+    found = ", ".join(f"{joint['joint']} {joint['speed']:.0f} N·m·s/rad, {joint['position']:.0f} 1/s"
+                      for joint in gains["joints"] if not joint["refusal"])
+    within = np.count_nonzero((known <= 2.0) & (known >= 0.5))
+    stopped = f" Stopped by itself: {', '.join(stops)}." if stops else ""
+    return [f"""
+**With errors of manufacture and identified gains.** Circular splines of `config/as_built.yaml` (7″ at {LOOP_LINES} a
+turn; the flexsplines equal, so that each drive has a table), the controller's gains by `identify --controller` on
+{GAINS_FROM}: {found}. In each cell: tracking error, twin / recorded [mrad]; error of the current in moving rows, twin /
+simple fit [A]; line of the current, twin / recorded [A]; line of the output's angle, twin / recorded [µrad].
+
+The line of the current is within a factor of two of the recorded one in {within} of {len(known)}; median of twin over
+recorded: {float(np.median(known)):.2f}.{stopped} What bounds it: docs/arm_twin.md.
+""", *table(["recording", *joints], rows)]
+
+
+def section(runner, recordings, fit, joints, shown, picture, train):
     """Lines of the page. `fit`: of the current, on another recording, told the motion."""
     rows, tracked, currents = [], [], []
     for recording in recordings:
-        loop = ClosedLoop(runner, recording)
+        loop = ClosedLoop(runner, recording, "identified_arm")
         if recording.name == shown:
             draw(picture, loop, list(enumerate(joints))[1:4])
         cells = []
@@ -105,8 +151,8 @@ recorded [A], –: no steady motion of a frequency that the rows resolve.
 The tracking error is within 1.5 of the recorded one in {np.count_nonzero(tracked <= 1.5)} of {len(tracked)} (recording,
 joint); within a factor of two in {np.count_nonzero((tracked <= 2.0) & (tracked >= 0.5))}. The current in moving rows is
 within 0.8 of the simple fit's error in {np.count_nonzero(currents <= 0.8)} of {len(currents)}, and below it in
-{np.count_nonzero(currents < 1.0)}. What bounds the current: the drives are sound and without errors of manufacture, so
-they make no ripple; and a recording that begins or ends in motion jumps there.
-""", *table(["recording", *joints], rows), f"""
+{np.count_nonzero(currents < 1.0)}. What bounds the current: these drives are without errors of manufacture, so they
+make no ripple; and a recording that begins or ends in motion jumps there.
+""", *table(["recording", *joints], rows), *built_section(runner, recordings, fit, joints, train), f"""
 ![Tracking error of three joints in {shown}, recorded and in closed loop](images/real_robot/closed_loop.png)
 """]

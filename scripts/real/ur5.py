@@ -290,7 +290,7 @@ def section(runner, telemetry, images):
     return [*heading, *introduction(summary, recordings), *load_table(recordings),
             *current_section(all_errors, [*judged_errors, TRAIN]),
             *closed_loop.section(runner, judged, fit, JOINTS, by_name.get(SHOWN, judged[0]).name,
-                                 os.path.join(images, "closed_loop.png")), *verdicts]
+                                 os.path.join(images, "closed_loop.png"), TRAIN), *verdicts]
 
 
 def verdict_section(runner, by_name, judged):

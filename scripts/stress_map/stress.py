@@ -9,6 +9,7 @@ import sys
 import tempfile
 import time
 
+import arm
 import cells
 import judge
 import stability
@@ -140,12 +141,17 @@ def parse(arguments):
                         help="only cells whose name has this in it; needs --out to write a page")
     parser.add_argument("--out", metavar="DIR",
                         help="folder of all cells and maps (default: out/stability of the checkout)")
+    parser.add_argument("--arm", action="store_true",
+                        help="a whole arm in closed loop in place of one joint; writes its table into docs/arm_twin.md")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), metavar="N", help="cells at a time")
     return parser.parse_args(arguments)
 
 
 def main(arguments):
     options = parse(arguments)
+    if options.arm:
+        with tempfile.TemporaryDirectory(prefix="stress.") as work:
+            return arm.main(options.tool, options.docs, work, options.only, markdown_table)
     chosen = [cell for cell in cells.matrix(options.seeds) if not options.only or options.only in cell.name]
     if not chosen:
         sys.exit(f"stress: no cell has '{options.only}' in its name")

@@ -58,8 +58,13 @@ public:
     , acceleration_(move.acceleration)
     , rise_(std::min(move.speed, std::sqrt(distance * acceleration_)) / acceleration_)
     , end_(distance / (acceleration_ * rise_) + rise_)
-    , mean_(move.jerk > 0.0 ? acceleration_ / move.jerk : 0.0)
   {
+    if (move.jerk > 0.0)
+    {
+      // Where nothing lies between the two accelerations, their mean goes from the one to the other.
+      const double once = acceleration_ / move.jerk;
+      mean_ = end_ - 2.0 * rise_ >= once ? once : 2.0 * once;
+    }
   }
 
   double duration() const { return end_ + mean_; }
@@ -111,8 +116,8 @@ private:
   double distance_;
   double acceleration_;
   double rise_;
-  double end_;   // of the trapezoid
-  double mean_;  // time over which it is taken [s]
+  double end_;     // of the trapezoid
+  double mean_{};  // time over which it is taken [s]
 };
 
 void requireWithin(const ArmDescription& arm, const ArmInstant& instant)

@@ -90,6 +90,9 @@ void ArmNode::Advance::show(LoopStatus& /*status*/) noexcept
 {
   arm.wanted(wanted_);
   shown.tryWrite(wanted_);
+  const std::optional<ProtectiveStop>& stop = arm.protectiveStop();
+  stopped_joint = stop ? stop->joint : 0;
+  stop_reason = stop ? stop->reason : nullptr;
 }
 
 ArmNode::ArmNode(ros::NodeHandle& node, const ArmDescription& arm, const std::vector<Parameters>& drives)
@@ -102,6 +105,7 @@ ArmNode::ArmNode(ros::NodeHandle& node, const ArmDescription& arm, const std::ve
   , realtime_(requestRealtime(drives.front().realtime, loop_))
   , timing_publisher_(node, drives.front(), loop_)
   , reset_service_(node.advertiseService("reset", &ArmNode::reset, this))
+  , stop_timer_(node.createWallTimer(ros::WallDuration(WARNING_PERIOD), [this](const auto&) { tellOfStop(); }))
 {
   for (std::size_t i = 0; i < arm.joints.size(); ++i)
   {
@@ -115,8 +119,25 @@ ArmNode::ArmNode(ros::NodeHandle& node, const ArmDescription& arm, const std::ve
       WRENCH, [this](const auto& event) { receiveWrench(*event.getMessage()); });
 }
 
+void ArmNode::tellOfStop()
+{
+  const char* reason = advance_.stop_reason;
+  if (reason != nullptr && !told_of_stop_)
+  {
+    ROS_ERROR_STREAM("Protective stop: " << description_.joints[advance_.stopped_joint].short_name << " is " << reason
+                                         << "; the arm stands in its brakes until ~reset");
+  }
+  told_of_stop_ = reason != nullptr;
+}
+
 void ArmNode::receiveCommand(const trajectory_msgs::JointTrajectory& message)
 {
+  if (advance_.stop_reason != nullptr)
+  {
+    ROS_WARN_STREAM_THROTTLE(WARNING_PERIOD,
+                             "Refused a trajectory on ~" << topics::COMMAND << ": protective stop; ~reset ends it");
+    return;
+  }
   const Stamp now = rosNow();
   const double delay = std::max(toSeconds(stampOr(message.header.stamp, toRosTime(now)) - now), 0.0);
   std::vector<ArmSetPoint> points;

@@ -9,6 +9,7 @@
 #include <geometry_msgs/WrenchStamped.h>
 #include <ros/node_handle.h>
 #include <ros/service_server.h>
+#include <ros/wall_timer.h>
 #include <std_srvs/Trigger.h>
 #include <trajectory_msgs/JointTrajectory.h>
 
@@ -48,7 +49,9 @@ private:
     MovingArm arm;
     Handover<ArmMotion> motion;
     Handover<ArmWrench> wrench;
-    TryLockValue<std::vector<JointMotion>> shown;  ///< present set point
+    TryLockValue<std::vector<JointMotion>> shown;     ///< present set point
+    std::atomic<const char*> stop_reason{ nullptr };  ///< of a protective stop; none: it moves
+    std::atomic<std::size_t> stopped_joint{};         ///< of which joint
 
   private:
     std::vector<JointMotion> wanted_;
@@ -56,6 +59,7 @@ private:
 
   void receiveCommand(const trajectory_msgs::JointTrajectory& message);
   void receiveWrench(const geometry_msgs::WrenchStamped& message);
+  void tellOfStop();
   bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
 
   const ArmDescription description_;
@@ -70,5 +74,7 @@ private:
   ros::Subscriber command_subscriber_;
   ros::Subscriber wrench_subscriber_;
   ros::ServiceServer reset_service_;
+  bool told_of_stop_{};
+  ros::WallTimer stop_timer_;
 };
 }  // namespace hjt

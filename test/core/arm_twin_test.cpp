@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 
 #include "arm/arm_configuration.hpp"
 #include "arm/arm_motion.hpp"
+#include "arm/check_up.hpp"
 #include "arm/moving_arm.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"
@@ -312,6 +314,82 @@ TEST(MovingArm, GoesToAnotherMotionFromWhereItIs)
   ASSERT_TRUE(arm.reset(0));
   EXPECT_EQ(arm.twin().motion()[0].position, 0.3);
   expect_followed(MovingArm::SETTLING + 0.1);
+}
+
+TEST(MovingArm, StopsWhereItCannotFollow)
+{
+  MovingArm arm(rods("0 1 0", 2), { drive(), drive() },
+                ArmMotion({ { 0.0, { { 0.3, 0.0, 0.0 }, { -0.8, 0.0, 0.0 } } },
+                            { 0.1, { { 0.3, 0.0, 0.0 }, { -0.8, 0.0, 0.0 } } },
+                            { 0.101, { { 0.3, 0.0, 0.0 }, { -0.6, 0.0, 0.0 } } } }),
+                {});
+  const auto run_to = [&](double time)
+  {
+    while (arm.step(toStampLength(time)))
+    {
+    }
+  };
+  run_to(MovingArm::SETTLING + 0.1);
+  EXPECT_FALSE(arm.protectiveStop());
+  const std::size_t before = allocationCount();
+  run_to(MovingArm::SETTLING + 0.3);
+  EXPECT_EQ(allocationCount(), before);
+  ASSERT_TRUE(arm.protectiveStop());
+  EXPECT_EQ(arm.protectiveStop()->joint, 1U);
+  EXPECT_NEAR(toSeconds(arm.protectiveStop()->stamp), MovingArm::SETTLING + 0.1005, 1e-3);
+  for (std::size_t i = 0; i < 2; ++i)
+  {
+    EXPECT_TRUE(arm.twin().drive(i).outputs().brake_engaged);
+    EXPECT_EQ(arm.twin().drive(i).outputs().motor_velocity, 0.0);
+  }
+  EXPECT_NEAR(arm.twin().motion()[1].position, -0.8, 0.1);
+  ASSERT_TRUE(arm.reset(0));
+  EXPECT_FALSE(arm.protectiveStop());
+}
+
+TEST(SampleMoves, LimitedJerkKeepsTheWayAndEveryLimit)
+{
+  constexpr double PERIOD = 1e-4;
+  for (const double way : { 0.002, 0.05, 1.5 })  // acceleration not reached, reached, speed reached
+  {
+    const ArmMove move{ { way }, 1.0, 4.0, 40.0, 0.0 };
+    ArmDescription arm = rods("0 0 1", 1);
+    const std::vector<ArmInstant> instants = sampleMoves(arm, { 0.0 }, { move }, PERIOD);
+    EXPECT_EQ(instants.front().joints[0].position, 0.0);
+    EXPECT_EQ(instants.back().joints[0].position, way);
+    for (std::size_t k = 1; k < instants.size(); ++k)
+    {
+      const JointMotion& before = instants[k - 1].joints[0];
+      const JointMotion& now = instants[k].joints[0];
+      ASSERT_LE(now.velocity, move.speed * (1.0 + 1e-9));
+      ASSERT_LE(std::abs(now.acceleration), move.acceleration * (1.0 + 1e-9));
+      ASSERT_LE(std::abs(now.acceleration - before.acceleration), move.jerk * PERIOD * (1.0 + 1e-6));
+      // Trapezoidal rule: a jerk that jumps leaves half of itself times the square of the period.
+      ASSERT_NEAR(now.position - before.position, 0.5 * PERIOD * (now.velocity + before.velocity),
+                  move.jerk * PERIOD * PERIOD * PERIOD);
+      ASSERT_NEAR(now.velocity - before.velocity, 0.5 * PERIOD * (now.acceleration + before.acceleration),
+                  move.jerk * PERIOD * PERIOD);
+    }
+  }
+}
+
+TEST(GiveOwnSeeds, NoDriveIsAnotherAndPerfectOnesStayAlike)
+{
+  std::vector<Parameters> drives(6, drive());
+  giveOwnSeeds(drives);
+  EXPECT_EQ(drives[5].manufacture.circular_spline_pitch.seed, drives[0].manufacture.circular_spline_pitch.seed);
+  for (Parameters& each : drives)
+  {
+    each.manufacture.flexspline_pitch.deviation = 4e-6;
+    each.manufacture.circular_spline_pitch.deviation = 9.5e-6;
+  }
+  giveOwnSeeds(drives);
+  std::set<int> seeds;
+  for (const Parameters& each : drives)
+  {
+    seeds.insert({ each.manufacture.flexspline_pitch.seed, each.manufacture.circular_spline_pitch.seed });
+  }
+  EXPECT_EQ(seeds.size(), 12U);
 }
 
 TEST(ArmTwin, AllocatesNothingInAStep)

@@ -62,6 +62,16 @@ inline SurfaceSource cached()
   return { cacheDirectory(), {}, {} };
 }
 
+constexpr const char* BROKEN_TOOTH = "tooth_root_crack:1:40";
+
+inline JointModel brokenModel()
+{
+  const Parameters parameters = surfaceParameters();
+  FaultList faults;
+  faults.set(parseFault(BROKEN_TOOTH, parameters), 0);
+  return JointFaults(parameters, faults).model();
+}
+
 inline const ResponseSurface& surface()
 {
   static const ResponseSurface SHIPPED(
@@ -76,5 +86,4 @@ inline RingResponse at(double motor_angle, double output_angle)
   return surface().response(place);
 }
 
-constexpr const char* BROKEN_TOOTH = "tooth_root_crack:1:40";
 }  // namespace hjt

@@ -43,14 +43,6 @@ namespace hjt
 {
 namespace
 {
-JointModel brokenModel()
-{
-  const Parameters parameters = surfaceParameters();
-  FaultList faults;
-  faults.set(parseFault(BROKEN_TOOTH, parameters), 0);
-  return JointFaults(parameters, faults).model();
-}
-
 /// One table serves for all teeth.
 TEST(SurfaceDeviations, OfOneToothAreThoseOfAnotherTurned)
 {

@@ -12,6 +12,7 @@ import os
 import tool
 
 JOINTS = 6
+EXAMPLES = os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, os.pardir, "examples")
 START = [0.0, -1.2, 1.0, -1.3, -1.5, 0.3]
 
 
@@ -127,6 +128,32 @@ class ArmTwin(tool.ToolTest):
         self.write("slow/controller.yaml", "elbow: {position: -5.0, speed: 100.0, integral_time: 1.0}\n")
         self.fail_with(1, ["elbow.position = -5.0 [1/s] is out of range", "parameter elbow.coulomb is missing"], "arm",
                        "motion.csv", "--arm", "ur5", "--out", "no.csv", "--identified", "slow")
+
+    def test_identify_finds_the_gains_of_its_own_controller(self):
+        speed, position, integral_time = 150.0, 30.0, 0.07
+        os.makedirs(self.path("own"))
+        self.write("own/controller.yaml", "".join(
+            f"{name}: {{position: {position}, speed: {speed}, integral_time: {integral_time}, coulomb: 2.0, "
+            "viscous: 5.0}\n" for name in ("base", "shoulder", "elbow")))
+        for name in ("base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3"):
+            self.write(f"own/{name}.yaml", "gear:\n  teeth_flexspline: 200\n")
+        program = os.path.join(EXAMPLES, "there_and_back.yaml")
+        self.succeed_json("arm", program, "--arm", "ur5", "--out", "run.csv", "--identified", "own")
+        found = self.succeed_json("identify", "run.csv", "--arm", "ur5", "--controller", "--out", "found")
+        for joint in found["joints"][:3]:
+            self.assertEqual(joint["refusal"], "")
+            # A row each 8 ms sees 0.84 of what swings at 20 Hz.
+            self.assertAlmostEqual(joint["speed"] / speed, 1.0, delta=0.2)
+            self.assertAlmostEqual((joint["position"] + 1.0 / integral_time) / (position + 1.0 / integral_time), 1.0,
+                                   delta=0.2)
+            self.assertAlmostEqual(joint["coulomb"], 2.0, delta=0.3)
+            self.assertAlmostEqual(joint["viscous"], 5.0, delta=1.0)
+        self.assertIn("moves for less than 5 s", found["joints"][3]["refusal"])
+        for name in ("base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3"):
+            self.write(f"found/{name}.yaml", "gear:\n  teeth_flexspline: 200\n")
+        self.succeed_json("arm", program, "--arm", "ur5", "--out", "again.csv", "--identified", "found")
+        self.fail_with(1, ["no column target_qd_0"], "identify", self.write("few.csv", "timestamp,target_q_0\n0,0\n"),
+                       "--arm", "ur5", "--controller")
 
     def test_what_is_wrong_is_named(self):
         write_motion(self.path("motion.csv"), duration=0.1)

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <iostream>
 #include <string>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "output/interrupt.hpp"
 #include "output/text_table.hpp"
 #include "recordings/identify.hpp"
+#include "recordings/identify_controller.hpp"
 
 namespace hjt
 {
@@ -17,6 +19,7 @@ struct Options : Printed<IdentifyOptions>
 {
   std::vector<double> train_pair;
   std::vector<double> judge_pair;
+  bool controller{};
 };
 
 void print(const IdentifyReport& report, bool json)
@@ -46,8 +49,22 @@ std::optional<Span> spanOf(const std::vector<double>& pair)
   return pair.empty() ? std::nullopt : std::make_optional(Span{ pair[0], pair[1] });
 }
 
+int runOfController(const Options& options)
+{
+  const std::vector<IdentifiedController> joints = identifyController(options, options.out);
+  const Report report = reportOf(joints);
+  printReport(options.json, report.lines, report.tables);
+  const bool any = std::any_of(joints.begin(), joints.end(),
+                               [](const IdentifiedController& joint) { return joint.fit.refusal.empty(); });
+  return any ? EXIT_DONE : EXIT_FAILED;
+}
+
 int run(const Options& given)
 {
+  if (given.controller)
+  {
+    return runOfController(given);
+  }
   Options options = given;
   options.train = spanOf(options.train_pair);
   options.judge = spanOf(options.judge_pair);
@@ -75,6 +92,11 @@ void declare(Command& command, Options& options)
            "cuts the part to identify on into this many pieces and predicts each from the others; of an arm 5 by "
            "default")
       .range(2, 100);
+  command
+      .flag("--controller", options.controller,
+            "in place of the drives: gains of the arm's controller, from a table that holds target and actual of all "
+            "joints, into DIR/controller.yaml, which `joint_twin arm --identified DIR` takes")
+      .needs("--arm");
 }
 
 const Subcommand IDENTIFY{

@@ -1,0 +1,35 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Draws two runs of `joint_twin arm`: angle and current of the elbow, error of the tool's position."""
+import sys
+
+import matplotlib
+import numpy as np
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402  (after the choice of its backend)
+
+ELBOW = 2
+
+
+def main():
+    if len(sys.argv) != 4:
+        sys.exit(f"usage: {sys.argv[0]} SOUND.csv WORN.csv OUT.png")
+    figure, axes = plt.subplots(3, 1, figsize=(8.0, 7.0), sharex=True, constrained_layout=True)
+    for path, colour, label in zip(sys.argv[1:], ("#0072B2", "#D55E00"), ("sound", "old grease in the elbow")):
+        run = np.genfromtxt(path, delimiter=",", names=True)
+        tool = [np.column_stack([run[f"{kind}_TCP_pose_{i}"] for i in range(3)]) for kind in ("target", "actual")]
+        axes[0].plot(run["timestamp"], run[f"actual_q_{ELBOW}"], color=colour, label=label)
+        axes[1].plot(run["timestamp"], run[f"actual_current_{ELBOW}"], color=colour, lw=0.8)
+        axes[2].plot(run["timestamp"], 1e3 * np.linalg.norm(tool[1] - tool[0], axis=1), color=colour, lw=0.8)
+    for axis, title in zip(axes, ("elbow, angle [rad]", "elbow, current [A]", "tool off its set point [mm]")):
+        axis.set_title(title, loc="left", fontsize=10)
+        axis.grid(alpha=0.3)
+    axes[0].legend(loc="upper left", fontsize=9)
+    axes[-1].set_xlabel("time [s]")
+    figure.savefig(sys.argv[3], dpi=110)
+    print(f"figure: {sys.argv[3]}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A whole arm far from its usual range: `joint_twin arm` beside itself on a quarter of the step, one verdict a cell."""
+import csv
+import json
+import os
+import re
+import subprocess
+import sys
+
+import numpy as np
+import yaml
+
+import judge
+
+sys.path.append(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+import page_section  # noqa: E402  (its folder is known now)
+
+RATE = 10000.0             # of the solver, as shipped [Hz]
+FINER = 4.0                # the converged run's over it
+LEAST_TRAVEL = 0.02        # rad: a joint that hardly moves is held against this
+ACCURACY = 0.01            # of the travel
+TIMEOUT = 600.0            # s a run
+COUNTS = ["solver_failures", "step_cuts", "jumps", "coarse_steps", "torque_clamped", "speed_limited", "overloads"]
+START = [0.0, -1.2, 1.0, -1.3, -1.5, 0.3]
+# Those of ArmController::defaultGains of the UR5: position [1/s], speed [N.m.s/rad], integral time [s].
+SPEEDS = [271.1] * 3 + [62.5] * 3
+GAINS = [{"position": 20.0, "speed": speed, "integral_time": 0.07, "coulomb": 0.0, "viscous": 0.0} for speed in SPEEDS]
+
+
+def program(way=0.5, speed=1.0, acceleration=4.0, jerk=None):
+    """There and back, all joints."""
+    there = [angle + (-way if i % 2 else way) for i, angle in enumerate(START)]
+    common = {"start": START, "speed": speed, "acceleration": acceleration}
+    return {**common, **({"jerk": jerk} if jerk else {}), "moves": [{"to": there}, {"to": START}]}
+
+
+def scaled(name, factor):
+    return [{**gains, name: gains[name] * factor} for gains in GAINS]
+
+
+# Name, program, changes of the arm: wrist masses times, payload [kg], gains.
+CELLS = [
+    ("as shipped", program(jerk=40.0), {}),
+    ("no limit of the jerk, 4 rad/s2", program(), {}),
+    ("15 rad/s2, 2.5 rad/s", program(speed=2.5, acceleration=15.0), {}),
+    ("40 rad/s2: beyond the joints' torque", program(speed=2.5, acceleration=40.0), {}),
+    ("a step of 0.5 rad within 0.03 s: the arm stops in its brakes", "step", {}),
+    ("payload of 5 kg, the maker's limit", program(jerk=40.0), {"payload": 5.0}),
+    ("payload of 50 kg", program(jerk=40.0), {"payload": 50.0}),
+    ("wrists 2 and 3 of a tenth of their mass", program(jerk=40.0), {"wrists": 0.1}),
+    ("of a thousandth", program(jerk=40.0), {"wrists": 1e-3}),
+    ("gain of the position x 10", program(jerk=40.0), {"gains": scaled("position", 10.0)}),
+    ("gain of the speed x 10", program(jerk=40.0), {"gains": scaled("speed", 10.0)}),
+    ("integral time / 10", program(jerk=40.0), {"gains": scaled("integral_time", 0.1)}),
+    ("gain of the position / 10", program(jerk=40.0), {"gains": scaled("position", 0.1)}),
+    ("gain of the speed / 10", program(jerk=40.0), {"gains": scaled("speed", 0.1)}),
+]
+
+
+def write_arm(work, config, payload=0.0, wrists=1.0, gains=None):
+    """The UR5 with these changes: the path of its file."""
+    with open(os.path.join(config, "arms", "ur5.yaml"), encoding="utf-8") as file:
+        arm = yaml.safe_load(file)
+    with open(os.path.join(config, "arms", "ur5.urdf"), encoding="utf-8") as file:
+        urdf = file.read()
+    for link in ("wrist_2_link", "wrist_3_link"):
+        begin = urdf.index(f'<link name="{link}">')
+        end = urdf.index("</link>", begin)
+        lighter = re.sub(r'(mass value|i..)="([^"]*)"', lambda m: f'{m[1]}="{float(m[2]) * wrists!r}"', urdf[begin:end])
+        urdf = urdf[:begin] + lighter + urdf[end:]
+    with open(os.path.join(work, "arm.urdf"), "w", encoding="utf-8") as file:
+        file.write(urdf)
+    arm["description"] = "arm.urdf"
+    arm["payload"]["mass"] = payload
+    for joint, own in zip(arm["joints"], gains or [None] * len(arm["joints"])):
+        joint.update({"controller": own} if own else {})
+    path = os.path.join(work, "arm.yaml")
+    with open(path, "w", encoding="utf-8") as file:
+        yaml.safe_dump(arm, file)
+    return path
+
+
+def write_motion(work, motion):
+    if motion != "step":
+        path = os.path.join(work, "motion.yaml")
+        with open(path, "w", encoding="utf-8") as file:
+            yaml.safe_dump(motion, file)
+        return path
+    path = os.path.join(work, "motion.csv")
+    with open(path, "w", encoding="utf-8", newline="") as file:
+        rows = csv.writer(file)
+        rows.writerow(["timestamp"] + [f"target_q_{i}" for i in range(len(START))])
+        for time, way in ((0.0, 0.0), (0.3, 0.0), (0.33, 0.5), (1.0, 0.5)):
+            rows.writerow([time, *(angle + way for angle in START)])
+    return path
+
+
+def run(tool, work, motion, arm, rate):
+    """(exit code, document or None, actual angles over time, text on stderr)."""
+    out = os.path.join(work, "run.csv")
+    done = subprocess.run([tool, "arm", motion, "--arm", arm, "--out", out, "--force", "--json", "--set",
+                           f"solver.rate={rate!r}"], capture_output=True, text=True, timeout=TIMEOUT, check=False)
+    if not done.stdout:
+        return done.returncode, None, None, done.stderr.strip()
+    table = np.genfromtxt(out, delimiter=",", names=True)
+    angles = np.column_stack([table[f"actual_q_{i}"] for i in range(len(START))])
+    return done.returncode, json.loads(done.stdout), angles, done.stderr.strip()
+
+
+def reports(document):
+    """What the run itself says was not as it should be."""
+    found = [f"{document[count]} {count.replace('_', ' ')}" for count in COUNTS if document[count]]
+    stop = document["protective_stop"]
+    return ([f"protective stop: {stop['joint']} {stop['reason']}"] if stop else []) + found
+
+
+def judge_cell(tool, work, config, cell):
+    """(verdict, error over the travel, reason)."""
+    _, motion, changes = cell
+    arm, path = write_arm(work, config, **changes), write_motion(work, motion)
+    code, document, angles, message = run(tool, work, path, arm, RATE)
+    if code < 0 or code not in (0, 1) or (document is None and "joint_twin: " not in message):
+        return judge.CRASHED, float("nan"), message
+    if document is None:
+        return judge.REFUSED, float("nan"), message.splitlines()[-1].split(": ", 2)[-1].replace(work + os.sep, "")
+    if not np.all(np.isfinite(angles)):
+        return judge.NOT_FINITE, float("nan"), ""
+    _, _, finer, why = run(tool, work, path, arm, FINER * RATE)
+    if finer is None:
+        return judge.CRASHED, float("nan"), f"the converged run was refused: {why}"
+    travel = np.maximum(np.ptp(finer, axis=0), LEAST_TRAVEL)
+    rows = min(len(angles), len(finer))
+    error = float(np.max(np.abs(angles[:rows] - finer[:rows]) / travel))
+    found = reports(document)
+    if found:
+        return judge.DEGRADED, error, ", ".join(found)
+    return (judge.ACCURATE if error <= ACCURACY else judge.SILENT), error, ""
+
+
+def main(tool, docs, work, only, table):
+    """Judges the cells and writes them into docs/arm_twin.md, unless some are left out. Returns the exit code."""
+    config = os.path.join(os.path.dirname(docs), "config")
+    rows, good = [], True
+    for cell in CELLS:
+        if only and only not in cell[0]:
+            continue
+        try:
+            verdict, error, reason = judge_cell(tool, work, config, cell)
+        except subprocess.TimeoutExpired:
+            verdict, error, reason = judge.HUNG, float("nan"), f"more than {TIMEOUT:.0f} s"
+        good = good and verdict in judge.GOOD
+        rows.append([cell[0], verdict, "–" if np.isnan(error) else f"{100.0 * error:.2g} %", reason])
+        print(f"{verdict}: {cell[0]}: {rows[-1][2]} {reason}", flush=True)
+    if not only:
+        page_section.write(os.path.join(docs, "arm_twin.md"), "arm_stress",
+                           table(["UR5, six drives on surfaces", "verdict", "error", "what the run said"], rows))
+    return 0 if good else 1

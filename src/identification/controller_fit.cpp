@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "identification/controller_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/QR>
+
+namespace hjt
+{
+namespace
+{
+constexpr int COLUMNS = 6;
+constexpr int PIECES = 10;             // each left out in turn, for the intervals
+constexpr double QUANTILE = 2.26;      // of Student's distribution, 95 %, of so many pieces
+constexpr double LONGEST_LAG = 0.016;  // [s]
+constexpr double LAG_STEP = 0.001;     // [s]
+constexpr double SLOWEST = 1.0;        // [s]
+constexpr double AT_REST = 0.01;       // at which the sign of the speed turns smoothly [rad/s]
+constexpr double LEAST_MOTION = 5.0;   // [s]
+constexpr double LEAST_EXPLAINED = 1.0 / 3.0;
+
+using Column = Eigen::VectorXd;
+
+/// Less its mean over `width` rows about each.
+Column withoutSlow(const Column& values, Eigen::Index width)
+{
+  Column sums(values.size() + 1);
+  sums[0] = 0.0;
+  for (Eigen::Index i = 0; i < values.size(); ++i)
+  {
+    sums[i + 1] = sums[i] + values[i];
+  }
+  Column fast(values.size());
+  for (Eigen::Index i = 0; i < values.size(); ++i)
+  {
+    const Eigen::Index begin = std::max<Eigen::Index>(i - width / 2, 0);
+    const Eigen::Index end = std::min(i + width / 2 + 1, values.size());
+    fast[i] = values[i] - (sums[end] - sums[begin]) / static_cast<double>(end - begin);
+  }
+  return fast;
+}
+
+/// As they were `rows` before, on lines between the rows.
+Column delayed(const Column& values, double rows)
+{
+  Column before(values.size());
+  for (Eigen::Index i = 0; i < values.size(); ++i)
+  {
+    const double place = std::max(static_cast<double>(i) - rows, 0.0);
+    const auto whole = static_cast<Eigen::Index>(place);
+    const double share = place - static_cast<double>(whole);
+    before[i] = share > 0.0 ? values[whole] + share * (values[whole + 1] - values[whole]) : values[whole];
+  }
+  return before;
+}
+
+/// What the rows hold, in columns.
+struct Record
+{
+  Record(const std::vector<ControllerRow>& rows, double period)
+    : angle_error(rows.size()), speed_error(rows.size()), others(rows.size(), COLUMNS - 2), current(rows.size())
+  {
+    double integral = 0.0;
+    for (std::size_t k = 0; k < rows.size(); ++k)
+    {
+      const auto i = static_cast<Eigen::Index>(k);
+      integral += period * rows[k].angle_error;
+      angle_error[i] = rows[k].angle_error;
+      speed_error[i] = rows[k].speed_error;
+      others.row(i) << integral, std::tanh(rows[k].speed / AT_REST), rows[k].speed, rows[k].rigid_current;
+      current[i] = rows[k].current - rows[k].rigid_current;
+    }
+  }
+
+  Eigen::MatrixXd columns(double lag_rows, Eigen::Index width) const
+  {
+    Eigen::MatrixXd columns(current.size(), COLUMNS);
+    columns.col(0) = withoutSlow(delayed(angle_error, lag_rows), width);
+    columns.col(1) = withoutSlow(delayed(speed_error, lag_rows), width);
+    for (Eigen::Index k = 2; k < COLUMNS; ++k)
+    {
+      columns.col(k) = withoutSlow(others.col(k - 2), width);
+    }
+    return columns;
+  }
+
+  Column angle_error;
+  Column speed_error;
+  Eigen::MatrixXd others;
+  Column current;
+};
+
+/// Half widths of the first two coefficients, by leaving out each piece in turn.
+Eigen::Vector2d halfWidths(const Eigen::MatrixXd& columns, const Column& values)
+{
+  Eigen::Matrix<double, 2, PIECES> found;
+  const Eigen::Index rows = values.size();
+  for (Eigen::Index piece = 0; piece < PIECES; ++piece)
+  {
+    const Eigen::Index begin = piece * rows / PIECES;
+    const Eigen::Index end = (piece + 1) * rows / PIECES;
+    Eigen::MatrixXd rest(rows - (end - begin), COLUMNS);
+    Column of_rest(rest.rows());
+    rest << columns.topRows(begin), columns.bottomRows(rows - end);
+    of_rest << values.head(begin), values.tail(rows - end);
+    found.col(piece) = rest.colPivHouseholderQr().solve(of_rest).head<2>();
+  }
+  const Eigen::Vector2d mean = found.rowwise().mean();
+  return QUANTILE *
+         ((PIECES - 1.0) / PIECES * (found.colwise() - mean).rowwise().squaredNorm()).array().sqrt().matrix();
+}
+
+/// Friction that is fed forward: constant and by speed [A], [A.s/rad].
+Eigen::Vector2d fedForward(const std::vector<ControllerRow>& rows)
+{
+  Eigen::MatrixXd columns(rows.size(), 4);
+  Column values(rows.size());
+  for (std::size_t k = 0; k < rows.size(); ++k)
+  {
+    const auto i = static_cast<Eigen::Index>(k);
+    columns.row(i) << std::tanh(rows[k].speed / AT_REST), rows[k].speed, rows[k].rigid_current, 1.0;
+    values[i] = rows[k].target_current - rows[k].rigid_current;
+  }
+  return columns.colPivHouseholderQr().solve(values).head<2>();
+}
+}  // namespace
+
+ControllerFit fitController(const std::vector<ControllerRow>& rows, double period, double torque_per_current,
+                            const JointGains& usual)
+{
+  ControllerFit fit;
+  fit.gains = usual;
+  const auto moving =
+      std::count_if(rows.begin(), rows.end(), [](const ControllerRow& row) { return std::abs(row.speed) > AT_REST; });
+  if (static_cast<double>(moving) * period < LEAST_MOTION)
+  {
+    fit.refusal = "moves for less than 5 s";
+    return fit;
+  }
+  const Record record(rows, period);
+  const auto width = static_cast<Eigen::Index>(SLOWEST / period);
+  const Column values = withoutSlow(record.current, width);
+  double least = HUGE_VAL;
+  for (double lag = 0.0; lag <= LONGEST_LAG; lag += LAG_STEP)
+  {
+    const Eigen::MatrixXd columns = record.columns(lag / period, width);
+    const Column found = columns.colPivHouseholderQr().solve(values);
+    const double left = (values - columns * found).squaredNorm();
+    if (left < least)
+    {
+      least = left;
+      fit.lag = lag;
+      fit.angle_current = found[0];
+      fit.speed_current = found[1];
+    }
+  }
+  const Eigen::Vector2d half_widths = halfWidths(record.columns(fit.lag / period, width), values);
+  fit.angle_half_width = half_widths[0];
+  fit.speed_half_width = half_widths[1];
+  fit.explained = 1.0 - least / values.squaredNorm();
+  // Written so that NaN is refused.
+  if (!(fit.angle_half_width < fit.angle_current && fit.speed_half_width < fit.speed_current))
+  {
+    fit.refusal = "its interval holds zero";
+  }
+  else if (!(fit.explained > LEAST_EXPLAINED))
+  {
+    fit.refusal = "the errors explain less than a third of its current";
+  }
+  else
+  {
+    const double sum = fit.angle_current / fit.speed_current;
+    const double by_integral = std::min(1.0 / usual.integral_time, 0.5 * sum);
+    const Eigen::Vector2d friction = torque_per_current * fedForward(rows);
+    fit.gains = { sum - by_integral, torque_per_current * fit.speed_current, 1.0 / by_integral, friction[0],
+                  friction[1] };
+  }
+  return fit;
+}
+}  // namespace hjt

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "recordings/identify_controller.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+
+#include "arm/arm_configuration.hpp"
+#include "arm/arm_controller.hpp"
+#include "base/csv_rows.hpp"
+#include "base/median.hpp"
+#include "base/number_text.hpp"
+#include "base/whole_file.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "output/output_file.hpp"
+
+namespace hjt
+{
+namespace
+{
+constexpr std::array QUANTITIES{ "target_q_", "target_qd_", "target_current_", "target_moment_",
+                                 "actual_q_", "actual_qd_", "actual_current_" };
+
+/// Of ArmController::defaultGains, the most that the gain of the speed may be: with twice of them a wrist's loop, which
+/// has none of the filters of a real one, swings up.
+constexpr double MOST_SPEED_GAIN = 1.5;
+
+struct Recorded
+{
+  double period{};                                 // of the rows, median [s]
+  std::vector<std::vector<ControllerRow>> joints;  // the moment in place of its current
+};
+
+Recorded readController(const std::string& path, std::size_t joints)
+{
+  CsvRows rows(path);
+  const std::vector<std::string>& header = rows.header();
+  const auto column = [&](const std::string& name)
+  {
+    const auto found = std::find(header.begin(), header.end(), name);
+    if (found == header.end())
+    {
+      throw InputError(path + ": no column " + name + "; the controller's gains need target and actual of all joints");
+    }
+    return static_cast<std::size_t>(found - header.begin());
+  };
+  const std::size_t time = column("timestamp");
+  std::vector<std::array<std::size_t, QUANTITIES.size()>> columns(joints);
+  for (std::size_t i = 0; i < joints; ++i)
+  {
+    std::transform(QUANTITIES.begin(), QUANTITIES.end(), columns[i].begin(),
+                   [&](const char* name) { return column(name + std::to_string(i)); });
+  }
+  const auto number = [&](std::size_t place)
+  {
+    const std::optional<double> value = decimalNumber(rows.text(place));
+    if (!value || !std::isfinite(*value))
+    {
+      throw InputError(rows.place() + ": column '" + header[place] + "' is no finite number");
+    }
+    return *value;
+  };
+  Recorded recorded;
+  recorded.joints.resize(joints);
+  std::vector<double> steps;
+  double before = 0.0;
+  while (rows.next())
+  {
+    const double now = number(time);
+    if (!recorded.joints.front().empty())
+    {
+      steps.push_back(now - before);
+    }
+    before = now;
+    for (std::size_t i = 0; i < joints; ++i)
+    {
+      std::array<double, QUANTITIES.size()> value{};
+      std::transform(columns[i].begin(), columns[i].end(), value.begin(), number);
+      recorded.joints[i].push_back(
+          { value[0] - value[4], value[1] - value[5], value[1], value[3], value[2], value[6] });
+    }
+  }
+  recorded.period = steps.empty() ? 0.0 : upperMedian(steps.begin(), steps.end());
+  if (!(recorded.period > 0.0))
+  {
+    throw InputError(path + ": the times of its rows do not go on");
+  }
+  return recorded;
+}
+
+std::string textOf(const RecordingOptions& options, const std::vector<IdentifiedController>& joints)
+{
+  std::string text =
+      "# SPDX-License-Identifier: BSD-3-Clause\n# Gains of an arm's controller, by `joint_twin identify "
+      "--controller` from\n# " +
+      options.recording + "\n";
+  for (const IdentifiedController& joint : joints)
+  {
+    const ControllerFit& fit = joint.fit;
+    text += "\n" + joint.name + ":\n  # Speed wanted for an error of the angle [1/s]" +
+            (fit.refusal.empty() ? "" : "; as configured: " + fit.refusal) +
+            ".\n  position: " + numberText(fit.gains.position) + "\n  # Torque for an error of the speed [N.m.s/rad]" +
+            (joint.is_limited ? "; identified more, beyond what this loop bears" : "") +
+            ".\n  speed: " + numberText(fit.gains.speed) +
+            "\n  # Of the speed's control [s].\n  integral_time: " + numberText(fit.gains.integral_time) +
+            "\n  # Friction that is fed forward, constant [N.m].\n  coulomb: " + numberText(fit.gains.coulomb) +
+            "\n  # And by speed [N.m.s/rad].\n  viscous: " + numberText(fit.gains.viscous) + "\n";
+  }
+  return text;
+}
+}  // namespace
+
+std::vector<IdentifiedController> identifyController(const RecordingOptions& options, const std::string& out)
+{
+  const std::string path = out.empty() ? "" : (std::filesystem::path(out) / GAINS_FILE).string();
+  if (!path.empty())
+  {
+    std::filesystem::create_directories(out);
+    requireWritable(path, options.force, options.recording);
+  }
+  const ArmDescription arm = readArmDescription(findArm(options.arm, configDirectory(options)));
+  Recorded recorded = readController(options.recording, arm.joints.size());
+  std::vector<IdentifiedController> joints;
+  for (std::size_t i = 0; i < arm.joints.size(); ++i)
+  {
+    ParameterMap map = armJointParameters(arm.joints[i], configDirectory(options), options.identified);
+    addOverlays(options, map);
+    const Parameters drive = parseParameters(map);
+    const double gain = drive.telemetry.torque_per_current;
+    for (ControllerRow& row : recorded.joints[i])
+    {
+      row.rigid_current /= gain;
+    }
+    const JointGains usual = arm.joints[i].gains.value_or(ArmController::defaultGains(drive));
+    IdentifiedController& joint = joints.emplace_back();
+    joint.name = arm.joints[i].short_name;
+    joint.fit = fitController(recorded.joints[i], recorded.period * options.time_scale, gain, usual);
+    const double most = MOST_SPEED_GAIN * ArmController::defaultGains(drive).speed;
+    joint.is_limited = joint.fit.gains.speed > most;
+    joint.fit.gains.speed = std::min(joint.fit.gains.speed, most);
+  }
+  if (!path.empty())
+  {
+    writeTextFile(path, textOf(options, joints));
+  }
+  return joints;
+}
+
+Report reportOf(const std::vector<IdentifiedController>& joints)
+{
+  using Joint = IdentifiedController;
+  const std::vector<Column<Joint>> columns{
+    { "joint", &Joint::name, "joint" },
+    { "angle_current", [](const Joint& joint) { return joint.fit.angle_current; }, "current by angle [A/rad]" },
+    { "angle_half_width", [](const Joint& joint) { return joint.fit.angle_half_width; }, "+-" },
+    { "speed_current", [](const Joint& joint) { return joint.fit.speed_current; }, "by speed [A.s/rad]" },
+    { "speed_half_width", [](const Joint& joint) { return joint.fit.speed_half_width; }, "+-" },
+    { "lag", [](const Joint& joint) { return joint.fit.lag; }, "lag [s]" },
+    { "explained", [](const Joint& joint) { return joint.fit.explained; }, "explained" },
+    { "position", [](const Joint& joint) { return joint.fit.gains.position; } },
+    { "speed", [](const Joint& joint) { return joint.fit.gains.speed; } },
+    { "integral_time", [](const Joint& joint) { return joint.fit.gains.integral_time; } },
+    { "coulomb", [](const Joint& joint) { return joint.fit.gains.coulomb; } },
+    { "viscous", [](const Joint& joint) { return joint.fit.gains.viscous; } },
+    { "is_limited", &Joint::is_limited },
+    { "refusal", [](const Joint& joint) { return joint.fit.refusal; }, "stays as configured" }
+  };
+  return { {}, { { "joints", Table(columns, joints) } } };
+}
+}  // namespace hjt
