@@ -196,7 +196,8 @@ void noticeOfSimpleFit(const IdentifiedJoint& joint, const Watch& watch)
   const double simple = joint.left_out.gain_coulomb_viscous.moving;
   if (joint.refusal.empty() && twin > simple)
   {
-    watch.notice(joint.name + ": moving, gain, Coulomb and viscous friction fitted alike predict pieces left out better (" +
+    watch.notice(joint.name +
+                 ": moving, gain, Coulomb and viscous friction fitted alike predict pieces left out better (" +
                  roundedText(simple, 3) + " A) than what was identified (" + roundedText(twin, 3) + " A)");
   }
 }
