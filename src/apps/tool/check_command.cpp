@@ -110,7 +110,11 @@ std::string textOfEffort(const CheckedContents& contents, const CheckedArm& arm)
 {
   if (arm.joints.empty())
   {
-    return contents.usable.empty() ?
+    const bool names_them =
+        std::any_of(arm.missing.begin(), arm.missing.end(),
+                    [&](const std::string& name)
+                    { return std::find(contents.named.begin(), contents.named.end(), name) != contents.named.end(); });
+    return contents.usable.empty() || names_them ?
                "none: " +
                    (contents.named.empty() ? std::string() : "the messages name joints but their effort is empty; ") +
                    "the motors' currents have to be recorded as effort" :
