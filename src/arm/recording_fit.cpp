@@ -331,8 +331,8 @@ std::vector<RecordingFinding> RecordingFit::ofArm() const
   }
   else if (std::isfinite(found.factor.value) && std::abs(std::log(found.factor.value / MILLI)) < std::log(WIDE))
   {
-    findings.push_back({ "effort_unit", "effort looks like the motor's current in mA: divide it by 1000",
-                         Reason::EFFORT_UNIT });
+    findings.push_back(
+        { "effort_unit", "effort looks like the motor's current in mA: divide it by 1000", Reason::EFFORT_UNIT });
   }
   else if (std::isfinite(found.factor.value) && !found.is_known && differs(found.factor, 1.0))
   {

@@ -82,7 +82,7 @@ void CsvRows::readHeader()
     }
     const auto place = file_.tellg();
     const std::size_t line_number = line_number_;
-    is_header = !readLine() || (texts_.size() == header_.size() &&
+    is_header = !readLine() || (texts_.size() == header_.size() && texts_.front()[0] != '#' &&
                                 (header_.size() > 1 || decimalNumber(texts_.front()).has_value()));
     if (place != std::ifstream::pos_type(-1))  // else it was the last line
     {

@@ -137,6 +137,13 @@ void storeFriction(const FrictionFit& fit, bool load_recorded, Identification& r
       return;
     }
     IdentifiedValue& refused = result.values.back();
+    // The motion contradicts the configured one: of what can be, the least is nearest.
+    constexpr double LEAST = 1e-9;
+    if (refused.refusal.empty() && value + refused.half_width < parameter && !load_recorded)
+    {
+      refused.value = parameter = LEAST;
+      return;
+    }
     refused.value = parameter;
     refused.half_width = 0.0;
     refused.refusal = "its estimate is negative";

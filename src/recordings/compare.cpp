@@ -203,8 +203,8 @@ double residualTorque(const ArmRecording& recording, const ComparisonPass& pass)
   double squares = 0.0;
   for (std::size_t i = 0; i < pass.joints.size(); ++i)
   {
-    squares += std::pow(recording.parameters(i).telemetry.torque_per_current * pass.joints[i]->evidence().residualRms(),
-                        2);
+    squares +=
+        std::pow(recording.parameters(i).telemetry.torque_per_current * pass.joints[i]->evidence().residualRms(), 2);
   }
   return std::sqrt(squares);
 }

@@ -99,6 +99,19 @@ void noticeOf(const IdentifiedJoint& joint, bool any, const Watch& watch)
   }
 }
 
+/// Where three numbers fitted alike would do better than the twin.
+void noticeOfSimpleFit(const IdentifiedJoint& joint, const Watch& watch)
+{
+  const double twin = joint.left_out.identified.moving;
+  const double simple = joint.left_out.gain_coulomb_viscous.moving;
+  if (joint.refusal.empty() && twin > simple)
+  {
+    watch.notice(joint.name +
+                 ": moving, gain, Coulomb and viscous friction fitted alike predict pieces left out better (" +
+                 roundedText(simple, 3) + " A) than what was identified (" + roundedText(twin, 3) + " A)");
+  }
+}
+
 constexpr int ARM_FOLDS = 5;
 /// Largest error of pieces left out with ripple over that without, moving, at which the ripple of an arm's joint is
 /// kept.
@@ -227,6 +240,10 @@ Identified identify(const IdentifyOptions& options)
   }
   if (recording.isArm())
   {
+    for (const IdentifiedJoint& joint : identified.joints)
+    {
+      noticeOfSimpleFit(joint, options.watch);
+    }
     identified.payload = payloadOf(recording, samples);
     identified.any = std::any_of(identified.joints.begin(), identified.joints.end(),
                                  [](const IdentifiedJoint& joint) { return joint.refusal.empty(); });

@@ -255,9 +255,10 @@ void readJoints(const RecordingOptions& options, CheckedArm& arm)
     arm.joints.back().stated_gain = std::nan("");
   }
   fit.refuse(!arm.found.misfit.exists() && !arm.missing.empty() ?
-                 Misfit{ Reason::LOAD_UNKNOWN, "an arm's load takes the angles of all its joints, and there is no angle "
-                                               "or no effort of " +
-                                                   joined(arm.missing) } :
+                 Misfit{ Reason::LOAD_UNKNOWN,
+                         "an arm's load takes the angles of all its joints, and there is no angle "
+                         "or no effort of " +
+                             joined(arm.missing) } :
                  arm.found.misfit);
   takeFit(fit, parameters, arm);
   judging.judgeAll(arm.found.duration, arm);

@@ -31,6 +31,11 @@ public:
       last_publisher_ = publisher;
     }
     const double step = std::max(LEAST_STEP, LEAST_OF_RANGE * rangeWith(rows));
+    if (step > GROWN * counted_step_)  // what moved before was noise
+    {
+      counted_step_ = step;
+      moves_ = returns_ = 0;
+    }
     if (seen_ >= 2)
     {
       const std::vector<MotionRow>& last = last_[(seen_ - 1) % 2];
@@ -70,7 +75,8 @@ public:
 private:
   static constexpr double LEAST_STEP = 5e-3;      // more than the noise of an angle [rad]
   static constexpr double LEAST_OF_RANGE = 1e-3;  // of the joints' ranges together: angles may be in degrees
-  static constexpr double NEARER = 0.3;           // [-]
+  static constexpr double GROWN = 5.0;
+  static constexpr double NEARER = 0.3;  // [-]
   static constexpr double LEAST_SHARE = 0.05;
   static constexpr std::uint64_t LEAST_RETURNS = 20;
 
@@ -108,6 +114,7 @@ private:
   std::uint64_t jumps_{};
   std::vector<double> least_;  // of the joints
   std::vector<double> most_;
+  double counted_step_{ LEAST_STEP };  // of the first row that counts [rad]
   std::uint64_t seen_{};
   std::uint64_t moves_{};
   std::uint64_t returns_{};

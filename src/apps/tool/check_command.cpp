@@ -74,8 +74,13 @@ std::string textOfEffort(const CheckedContents& contents, const CheckedArm& arm)
 {
   if (arm.joints.empty())
   {
-    return contents.usable.empty() ?
-               "none: " + (contents.named.empty() ? std::string() : "the messages name joints but their effort is empty; ") +
+    const bool names_them =
+        std::any_of(arm.missing.begin(), arm.missing.end(),
+                    [&](const std::string& name)
+                    { return std::find(contents.named.begin(), contents.named.end(), name) != contents.named.end(); });
+    return contents.usable.empty() || names_them ?
+               "none: " +
+                   (contents.named.empty() ? std::string() : "the messages name joints but their effort is empty; ") +
                    "the motors' currents have to be recorded as effort" :
                "of none of the arm's joints; the messages name " + joined(contents.usable) +
                    ": an arm's file gives its joints these names (docs/arm.md)";
@@ -129,7 +134,7 @@ std::string textOfVelocities(const CheckedArm& arm)
       std::any_of(arm.joints.begin(), arm.joints.end(), [](const CheckedJoint& joint) { return joint.has_velocity; });
   const bool is_known = std::any_of(arm.joints.begin(), arm.joints.end(),
                                     [](const CheckedJoint& joint) { return std::isfinite(joint.time_factor.value); });
-  return !has ? "none: the stamps cannot be checked" :
+  return !has     ? "none: the stamps cannot be checked" :
          is_known ? "do not fit the angles, see the joints" :
                     "too little motion to hold them against the angles";
 }
@@ -243,12 +248,11 @@ void printArm(const ArmOptions& options, const CheckedContents& contents, const 
   }
   for (const TriedRemedy& remedy : arm.tried)
   {
-    printLine("tried", remedy.options.substr(1) + ": the load leaves " + roundedText(100.0 * remedy.after, 2) +
-                           " % of the currents" +
-                           (std::isfinite(remedy.before) ?
-                                " instead of " + roundedText(100.0 * remedy.before, 2) + " %" :
-                                "") +
-                           (remedy.helps ? "" : ": this is not what is wrong"));
+    printLine("tried",
+              remedy.options.substr(1) + ": the load leaves " + roundedText(100.0 * remedy.after, 2) +
+                  " % of the currents" +
+                  (std::isfinite(remedy.before) ? " instead of " + roundedText(100.0 * remedy.before, 2) + " %" : "") +
+                  (remedy.helps ? "" : ": this is not what is wrong"));
   }
   std::cout << std::flush;
   if (!arm.joints.empty())
