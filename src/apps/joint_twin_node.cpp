@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <ros/ros.h>
@@ -115,6 +116,38 @@ std::vector<hjt::SoundJoint> soundJointsOf(const std::string& list, const hjt::A
   return joints;
 }
 
+/// Of every drive, with the parameters of this node over its own; written to the parameter server.
+std::vector<hjt::Parameters> drivesOf(const hjt::ArmDescription& arm, const hjt::ParameterMap& overrides,
+                                      std::vector<hjt::ParameterMap> maps)
+{
+  std::vector<hjt::Parameters> parameters;
+  for (std::size_t i = 0; i < arm.joints.size(); ++i)
+  {
+    const hjt::ArmJoint& joint = arm.joints[i];
+    hjt::ParameterMap& map = maps[i];
+    for (const auto& [key, value] : overrides)
+    {
+      map[key] = value;
+    }
+    parameters.push_back(hjt::parseParameters(map));
+    ros::param::del(hjt::jointName(joint));
+    hjt::writeParameterServer(hjt::jointName(joint), map);
+    hjt::Parameters& drive = parameters.back();
+    if (drive.input.mode != parameters.front().input.mode)
+    {
+      throw hjt::ParameterError("input.mode is not the same for all joints of the arm: " + joint.short_name);
+    }
+    if (drive.telemetry.load == hjt::LoadSource::ARM)
+    {
+      hjt::takeInertiaInLoad(drive);
+    }
+    ROS_INFO_STREAM(joint.short_name << " is " << drive.joint.name << ": " << drive.gear.teeth_flexspline << " teeth, "
+                                     << drive.telemetry.torque_per_current << " N.m/A, " << drive.input.temperature
+                                     << " degC");
+  }
+  return parameters;
+}
+
 /// All joints of the arm `name`: its files, then the parameters of this node over those of every joint. What comes of
 /// it stands on the parameter server below the name of each.
 void runArm(ros::NodeHandle& node, const std::string& name, const hjt::FoundParameters& found)
@@ -143,31 +176,7 @@ void runArm(ros::NodeHandle& node, const std::string& name, const hjt::FoundPara
   {
     throw hjt::ParameterError("input.mode is to be set for an arm: telemetry, beside it, or commands, in place of it");
   }
-  std::vector<hjt::Parameters> parameters;
-  for (std::size_t i = 0; i < arm.joints.size(); ++i)
-  {
-    const hjt::ArmJoint& joint = arm.joints[i];
-    hjt::ParameterMap& map = maps[i];
-    for (const auto& [key, value] : overrides)
-    {
-      map[key] = value;
-    }
-    parameters.push_back(hjt::parseParameters(map));
-    ros::param::del(hjt::jointName(joint));
-    hjt::writeParameterServer(hjt::jointName(joint), map);
-    hjt::Parameters& drive = parameters.back();
-    if (drive.input.mode != parameters.front().input.mode)
-    {
-      throw hjt::ParameterError("input.mode is not the same for all joints of the arm: " + joint.short_name);
-    }
-    if (drive.telemetry.load == hjt::LoadSource::ARM)
-    {
-      hjt::takeInertiaInLoad(drive);
-    }
-    ROS_INFO_STREAM(joint.short_name << " is " << drive.joint.name << ": " << drive.gear.teeth_flexspline << " teeth, "
-                                     << drive.telemetry.torque_per_current << " N.m/A, " << drive.input.temperature
-                                     << " degC");
-  }
+  std::vector<hjt::Parameters> parameters = drivesOf(arm, overrides, std::move(maps));
   if (parameters.front().input.mode == hjt::InputMode::COMMANDS)
   {
     ROS_INFO_STREAM("input.mode is commands: in place of the arm, on "

@@ -3,12 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "base/median.hpp"
 #include "base/number_text.hpp"
 #include "gear/angle.hpp"
 #include "gear/ratio.hpp"
-#include "params/choices.hpp"
 #include "tracking/effort.hpp"
 
 namespace hjt
@@ -26,7 +27,6 @@ constexpr std::uint64_t MIN_ROWS = 100;
 constexpr double UNCHANGED = 2.0;       // no current stays the same in motion for longer [s]
 constexpr double LEAST_SQUARE = 1e-12;  // of an uncertainty: made-up data have none
 constexpr double DEGREE = PI / 180.0;
-constexpr double SLOW_ROWS = 0.06;  // rows further apart tell no acceleration: 20 Hz at least, with jitter [s]
 
 bool differs(const FittedFactor& factor, double from)
 {
@@ -57,42 +57,6 @@ RecordingFinding velocityFinding(const FittedFactor& own, double of_stamps)
            Reason::VELOCITY_SCALE };
 }
 }  // namespace
-
-double likelyTimeScale(double period)
-{
-  constexpr double FASTEST_ROWS = 0.5e-3;  // [s]
-  constexpr double LONG = 0.5;             // no telemetry comes so rarely [s]
-  if (period < LONG)
-  {
-    return 1.0;
-  }
-  double scale = 1e-3;
-  while (scale * period > SLOW_ROWS)
-  {
-    scale *= 1e-3;
-  }
-  return scale * period > FASTEST_ROWS ? scale : 1.0;
-}
-
-const char* effortUnitName(EffortUnit unit)
-{
-  switch (unit)
-  {
-    case EffortUnit::CURRENT:
-      break;
-    case EffortUnit::JOINT_TORQUE:
-      return "a torque at the joint in N.m";
-    case EffortUnit::MOTOR_TORQUE:
-      return "a torque of the motor in N.m";
-  }
-  return "the motor's current in A";
-}
-
-const char* effortKeyword(EffortUnit unit)
-{
-  const auto names = choiceNames(unit);
-  return std::find_if(names.begin(), names.end(), [&](const auto& name) { return name.second == unit; })->first;
-}
 
 RecordingFit::RecordingFit(const std::vector<Parameters>& joints)
 {
@@ -275,6 +239,35 @@ RecordingFit::LoadRest RecordingFit::loadRest(EffortUnit unit) const
   return { std::sqrt(sum.current / seconds), std::sqrt(sum.left / seconds) };
 }
 
+/// Rows too far apart, or stamps that angles and velocities contradict.
+std::optional<RecordingFinding> RecordingFit::ofTimes() const
+{
+  constexpr std::uint64_t FEW_ROWS = 10;
+  if (rows_ >= FEW_ROWS && 2 * slow_rows_ > rows_)
+  {
+    const double period = slow_time_ / static_cast<double>(slow_rows_);
+    return RecordingFinding{ "period",
+                             "rows come " + rounded(period) + " s apart by their stamps (" + rounded(1.0 / period) +
+                                 " Hz), more than " + rounded(SLOW_ROWS) + " s: no accelerations, no loads" +
+                                 (likelyTimeScale(period) < 1.0 ? ", or the stamps are of another unit (of a recording "
+                                                                  "`joint_twin check` tries --time-scale)" :
+                                                                  ""),
+                             Reason::ROW_RATE };
+  }
+  const FittedFactor stamps = stampFactor();
+  if (std::isfinite(stamps.value) && differs(stamps, 1.0))
+  {
+    const std::string factor = rounded(stamps.value);
+    return RecordingFinding{ "stamps",
+                             "by their stamps the angles change " + factor +
+                                 " times as fast as the velocities say: times, accelerations and loads are wrong (of a "
+                                 "recording `joint_twin check` tries --time-scale " +
+                                 factor + ")",
+                             Reason::STAMPS };
+  }
+  return std::nullopt;
+}
+
 std::vector<RecordingFinding> RecordingFit::ofArm() const
 {
   constexpr double MIN_SHARE = 0.1;  // of the moving rows: jolts at joins are fewer
@@ -286,29 +279,9 @@ std::vector<RecordingFinding> RecordingFit::ofArm() const
     findings.push_back({ "reading", refusal_.clause, refusal_.reason });
     return findings;
   }
-  constexpr std::uint64_t FEW_ROWS = 10;
-  if (rows_ >= FEW_ROWS && 2 * slow_rows_ > rows_)
+  if (std::optional<RecordingFinding> times = ofTimes())
   {
-    const double period = slow_time_ / static_cast<double>(slow_rows_);
-    findings.push_back({ "period",
-                         "rows come " + rounded(period) + " s apart by their stamps (" + rounded(1.0 / period) +
-                             " Hz), more than " + rounded(SLOW_ROWS) + " s: no accelerations, no loads" +
-                             (likelyTimeScale(period) < 1.0 ? ", or the stamps are of another unit (of a recording "
-                                                              "`joint_twin check` tries --time-scale)" :
-                                                              ""),
-                         Reason::ROW_RATE });
-    return findings;
-  }
-  const FittedFactor stamps = stampFactor();
-  if (std::isfinite(stamps.value) && differs(stamps, 1.0))
-  {
-    const std::string factor = rounded(stamps.value);
-    findings.push_back({ "stamps",
-                         "by their stamps the angles change " + factor +
-                             " times as fast as the velocities say: times, accelerations and loads are wrong (of a "
-                             "recording `joint_twin check` tries --time-scale " +
-                             factor + ")",
-                         Reason::STAMPS });
+    findings.push_back(std::move(*times));
     return findings;  // the load is wrong too
   }
   if (std::any_of(joints_.begin(), joints_.end(), is_too_fast))

@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "arm/arm_load.hpp"
+#include "arm/recording_units.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "tracking/ratio_fit.hpp"
 #include "tracking/reason.hpp"
@@ -46,15 +47,6 @@ struct EffortFit
   EffortUnit unit{};    ///< that the recording shows; as configured where it does not show another
   bool is_known{};      ///< the factor is that of a unit
 };
-
-/// By which stamps are multiplied that are in ms, us or ns, where rows so far apart [s] mean one of these; 1: they do
-/// not.
-double likelyTimeScale(double period);
-
-/// For people: "the motor's current in A".
-const char* effortUnitName(EffortUnit unit);
-/// In configuration.
-const char* effortKeyword(EffortUnit unit);
 
 /// Does a recording of an arm fit together: angles, velocities and stamps; currents and the load of the arm?
 ///
@@ -104,6 +96,7 @@ public:
   std::vector<Misfit> whyNotJudged() const;
 
 private:
+  std::optional<RecordingFinding> ofTimes() const;
   /// Regression of the current on a constant, Coulomb and viscous friction, the acceleration, which draws the current
   /// of the rotor's inertia, and the load.
   class LoadRegression

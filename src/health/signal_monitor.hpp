@@ -94,7 +94,8 @@ private:
   void start(const SignalSample& sample, double motor_angle) noexcept;
   double weightAt(double output_angle) const noexcept;
   SignalSample withWeight(SignalSample sample) const noexcept;
-  void addLoop(const SignalSample& sample, double motor_angle, double torsion, double velocity, double seconds) noexcept;
+  void addLoop(const SignalSample& sample, double motor_angle, double torsion, double velocity,
+               double seconds) noexcept;
   void addAny(const SignalSample& sample, double output_angle, double seconds) noexcept;
   bool judgeMotion(double velocity, double seconds, bool motor_known) noexcept;
   void addSteady(const SignalSample& sample, double motor_angle, double output_angle, double travel,

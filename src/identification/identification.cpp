@@ -108,6 +108,35 @@ CurrentError simpleModelError(const std::vector<MotionSample>& train, const Judg
   return sum.result();
 }
 
+/// Without inertia beside the load, all of it is in the load. Neither part can be negative.
+void storeInertia(const FrictionFit& fit, bool load_recorded, Identification& result)
+{
+  constexpr double LEAST = 1e-9;
+  Parameters& p = result.parameters;
+  const double inertia = fit.value(FrictionFit::INERTIA);
+  const char* name = load_recorded ? "motor's inertia that the load holds" : "rotor inertia";
+  const char* key = load_recorded ? "telemetry.inertia_in_load" : "motor.rotor_inertia";
+  double& parameter = load_recorded ? p.telemetry.inertia_in_load : p.motor.rotor_inertia;
+  const double value = load_recorded ? Motor(p.motor).inertia() - inertia :
+                                       inertia - p.motor.wave_generator_inertia + p.telemetry.inertia_in_load;
+  IdentifiedValue found{
+    name, key, "kg.m^2", parameter, value, fit.halfWidth(FrictionFit::INERTIA), fit.refusal(FrictionFit::INERTIA)
+  };
+  if (value < 0.0)
+  {
+    // The motion contradicts the configured one: of what can be, the least is nearest.
+    const bool contradicted = found.refusal.empty() && value + found.half_width < parameter && !load_recorded;
+    found.value = contradicted ? LEAST : parameter;
+    if (!contradicted)
+    {
+      found.half_width = 0.0;
+      found.refusal = "its estimate is negative";
+    }
+  }
+  parameter = found.value;
+  result.values.push_back(found);
+}
+
 /// What the friction's fit found, as parameters of the twin.
 void storeFriction(const FrictionFit& fit, bool load_recorded, Identification& result)
 {
@@ -126,38 +155,7 @@ void storeFriction(const FrictionFit& fit, bool load_recorded, Identification& r
   add(FrictionFit::OFFSET, "offset of the current", "telemetry.current_offset", "A", p.telemetry.current_offset,
       found(FrictionFit::OFFSET), width(FrictionFit::OFFSET));
   p.telemetry.current_offset = found(FrictionFit::OFFSET);
-  // Without inertia beside the load, all of it is in the load. Neither part can be negative.
-  const double inertia = found(FrictionFit::INERTIA);
-  const auto add_inertia = [&](const char* name, const char* key, double value, double& parameter)
-  {
-    add(FrictionFit::INERTIA, name, key, "kg.m^2", parameter, value, width(FrictionFit::INERTIA));
-    if (value >= 0.0)
-    {
-      parameter = value;
-      return;
-    }
-    IdentifiedValue& refused = result.values.back();
-    // The motion contradicts the configured one: of what can be, the least is nearest.
-    constexpr double LEAST = 1e-9;
-    if (refused.refusal.empty() && value + refused.half_width < parameter && !load_recorded)
-    {
-      refused.value = parameter = LEAST;
-      return;
-    }
-    refused.value = parameter;
-    refused.half_width = 0.0;
-    refused.refusal = "its estimate is negative";
-  };
-  if (load_recorded)
-  {
-    add_inertia("motor's inertia that the load holds", "telemetry.inertia_in_load", Motor(p.motor).inertia() - inertia,
-                p.telemetry.inertia_in_load);
-  }
-  else
-  {
-    add_inertia("rotor inertia", "motor.rotor_inertia",
-                inertia - p.motor.wave_generator_inertia + p.telemetry.inertia_in_load, p.motor.rotor_inertia);
-  }
+  storeInertia(fit, load_recorded, result);
   add(FrictionFit::PRELOAD, "Coulomb friction (bearing preload)", "bearing.race_preload", "N", p.bearing.race_preload,
       found(FrictionFit::PRELOAD), width(FrictionFit::PRELOAD));
   p.bearing.race_preload = found(FrictionFit::PRELOAD);

@@ -196,6 +196,18 @@ void readArm(const RecordingOptions& options, CheckedArm& arm)
   judging.judgeAll(arm.found.duration, arm);
 }
 
+/// Of joints that are not a whole arm.
+Misfit misfitOfParts(const CheckedArm& arm)
+{
+  if (arm.found.misfit.exists() || arm.missing.empty())
+  {
+    return arm.found.misfit;
+  }
+  return { Reason::LOAD_UNKNOWN,
+           "an arm's load takes the angles of all its joints, and there is no angle or no effort of " +
+               joined(arm.missing) };
+}
+
 /// Reads all joints at hand without an arm: the load is what one joint is configured to carry.
 void readJoints(const RecordingOptions& options, CheckedArm& arm)
 {
@@ -254,12 +266,7 @@ void readJoints(const RecordingOptions& options, CheckedArm& arm)
     addJoint(name, name, arm);
     arm.joints.back().stated_gain = std::nan("");
   }
-  fit.refuse(!arm.found.misfit.exists() && !arm.missing.empty() ?
-                 Misfit{ Reason::LOAD_UNKNOWN,
-                         "an arm's load takes the angles of all its joints, and there is no angle "
-                         "or no effort of " +
-                             joined(arm.missing) } :
-                 arm.found.misfit);
+  fit.refuse(misfitOfParts(arm));
   takeFit(fit, parameters, arm);
   judging.judgeAll(arm.found.duration, arm);
 }

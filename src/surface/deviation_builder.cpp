@@ -22,8 +22,6 @@ using Lines = std::map<double, Line>;  // by their v [rad]
 using Rings = DeviationRings;
 using Torques = Eigen::Array2d;  // on output and motor [N.m]
 
-constexpr double SHARE = 5e-3;  // of the largest deviation of the output torque on a line, that the table misses [-]
-constexpr double MOTOR_SHARE = 7e-3;  // likewise of the motor's, which single contacts roughen [-]
 constexpr double SMALLEST = 0.1;  // a line's largest deviation counts as at least this part of the largest of all [-]
 constexpr int COARSE_LINES = 12;  // a side, before refinement; denser towards no load
 constexpr int MAX_HALVINGS = 5;   // of an interval between two lines
@@ -169,10 +167,7 @@ private:
   }
 
   /// Of a line, by its own largest deviation and that of the coarse lines.
-  Torques toleranceOf(const Line& line) const
-  {
-    return line.overload * Torques(SHARE, MOTOR_SHARE) * line.largest.max(SMALLEST * largest_);
-  }
+  Torques toleranceOf(const Line& line) const { return line.overload * share_ * line.largest.max(SMALLEST * largest_); }
 
   Torques torques(const Node& deviation) const
   {
@@ -385,6 +380,7 @@ private:
   std::vector<int> columns_;    // of each pitch
   std::vector<double> coarse_;  // lines, ascending
   Lines lines_;
+  const Torques share_{ 5e-3, 7e-3 };     // of the largest deviation on a line, that the table may miss [-]
   Torques largest_{ Torques::Zero() };    // deviations of the coarse lines
   double longest_way_{};                  // between two solves, in v [rad]
   std::atomic<std::size_t> points_{ 0 };  // of all lines

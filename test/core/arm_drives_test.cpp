@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <set>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "arm/arm_configuration.hpp"
+#include "arm/arm_motion.hpp"
+#include "arm/check_up.hpp"
+#include "test_parameters.hpp"
+
+namespace hjt
+{
+namespace
+{
+/// Of every shipped arm: beyond a limit it throws.
+TEST(GentleMotion, TakesEveryJointBothWaysSlowlyAndFast)
+{
+  for (const char* name : { "ur3", "ur3e", "ur5", "ur5e", "ur10", "ur10e", "ur16e" })
+  {
+    const ArmDescription arm = readArmDescription(findArm(name, HJT_TEST_CONFIG_DIR));
+    const ArmMotion motion = gentleMotion(arm);
+    for (std::size_t i = 0; i < arm.joints.size(); ++i)
+    {
+      double slowest = 0.0;
+      double fastest = 0.0;
+      for (const ArmSetPoint& point : motion.points())
+      {
+        slowest = std::min(slowest, point.joints[i].velocity);
+        fastest = std::max(fastest, point.joints[i].velocity);
+      }
+      EXPECT_GT(fastest, 0.6) << name << ' ' << i;
+      EXPECT_LT(slowest, -0.6) << name << ' ' << i;
+      EXPECT_NEAR(motion.points().front().joints[i].position, motion.points().back().joints[i].position, 1e-12);
+    }
+  }
+}
+
+TEST(GiveOwnSeeds, NoDriveIsAnotherAndPerfectOnesStayAlike)
+{
+  std::vector<Parameters> drives(6, shippedParameters());
+  giveOwnSeeds(drives);
+  EXPECT_EQ(drives[5].manufacture.circular_spline_pitch.seed, drives[0].manufacture.circular_spline_pitch.seed);
+  for (Parameters& each : drives)
+  {
+    each.manufacture.flexspline_pitch.deviation = 4e-6;
+    each.manufacture.circular_spline_pitch.deviation = 9.5e-6;
+  }
+  giveOwnSeeds(drives);
+  std::set<int> seeds;
+  for (const Parameters& each : drives)
+  {
+    seeds.insert({ each.manufacture.flexspline_pitch.seed, each.manufacture.circular_spline_pitch.seed });
+  }
+  EXPECT_EQ(seeds.size(), 12U);
+}
+}  // namespace
+}  // namespace hjt
