@@ -95,8 +95,8 @@ SignalSample SignalMonitor::withWeight(SignalSample sample) const noexcept
   return sample;
 }
 
-/// The torque is known at one end of the gear, the load's or the motor's: between it and the gear is inertia. The weight
-/// stands in for a load that nobody estimates: the motor's torque has the friction in it.
+/// The torque is known at one end of the gear, the load's or the motor's: between it and the gear is inertia. The
+/// weight stands in for a load that nobody estimates: the motor's torque has the friction in it.
 void SignalMonitor::addLoop(const SignalSample& sample, double motor_angle, double torsion, double velocity,
                             double seconds) noexcept
 {

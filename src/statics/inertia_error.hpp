@@ -7,8 +7,8 @@
 
 namespace hjt
 {
-/// What the equilibrium of the ring leaves out: error of the flank forces, root mean square over the loaded teeth, as it
-/// is to be expected near a motor speed [rad/s] under a torque at the output [N.m]. [N]
+/// What the equilibrium of the ring leaves out: error of the flank forces, root mean square over the loaded teeth, as
+/// it is to be expected near a motor speed [rad/s] under a torque at the output [N.m]. [N]
 ///
 ///   E = a m w^2 r0 sqrt(1 + (T / (p r0^3))^4)
 /// where  m  mass of the toothed rim, r0 its inner radius, w motor speed, T torque
