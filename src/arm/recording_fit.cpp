@@ -10,6 +10,7 @@
 #include "base/number_text.hpp"
 #include "gear/angle.hpp"
 #include "gear/ratio.hpp"
+#include "params/choices.hpp"
 #include "tracking/effort.hpp"
 
 namespace hjt
