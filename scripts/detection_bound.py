@@ -35,8 +35,6 @@ TEMPERATURES = [15.0, 25.0, 35.0]            # [degC]; the middle one is that of
 GEARS = 4                                    # of other manufacture
 TOOTH = 40
 
-
-# Moves of a pick-and-place at work: to an angle about the upright arm [deg] at a speed [deg/s].
 MOTIONS = ["check_up", "work"]
 SLOW_SWEEP = ["bearing_inner_race", "bearing_outer_race", "bearing_ball", "bearing_cage"]  # on the full ring
 WHOLE = -1

@@ -14,6 +14,7 @@ RATE = 2000.0                                # of the readings [Hz]
 TRUE = ["motor_angle", "output_angle", "motor_torque", "joint_torque"]
 ACCELERATION = 300.0                         # [deg/s^2]
 DURATION = 29.2                              # [s]; the work ends at 20 s and stands
+# Moves of a pick-and-place at work: to an angle about the upright arm [deg] at a speed [deg/s].
 WORK = [(-50.0, 90.0), (35.0, 90.0), (-20.0, 60.0), (50.0, 120.0)] * 4 + [(0.0, 90.0)]
 JOINT = "joints/shoulder.yaml"
 Run = collections.namedtuple("Run", "time motor torsion motor_torque joint_torque output")

@@ -102,13 +102,13 @@ def draw_turn(axis, run, **style):
 
 
 def loop_figures(run):
-    """As the indicators have them (docs/indicators.md), of the first whole swing."""
+    """Of the first whole swing: slope within T1, width between the branches about no load."""
     shown = slice(0, int(SWING_TIME * RATE) + 1)
     twist, torque = ARCSEC * torsion(run)[shown], run["load_torque"][shown]
     straight, rising = numpy.abs(torque) < 14.0, numpy.gradient(torque) > 0.0
     slope = numpy.polyfit(torque[straight], twist[straight], 1)[0]
     offset = [numpy.mean((twist - slope * torque)[(numpy.abs(torque) < 2.7) & branch]) for branch in (rising, ~rising)]
-    return (f"K1 {1e-3 / slope:.1f} kN.m/rad, lost motion {(offset[1] - offset[0]) / ARCSEC:.1f} arcsec, "
+    return (f"K1 {1e-3 / slope:.1f} kN.m/rad, width of the loop {(offset[1] - offset[0]) / ARCSEC:.1f} arcsec, "
             f"loop {1e3 * abs(numpy.trapz(torque, twist)):.1f} mJ, twist {numpy.ptp(twist) / ARCSEC:.0f} arcsec, "
             f"friction {friction_torque(run)[shown].mean():.0f} mN.m")
 

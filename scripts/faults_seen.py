@@ -44,7 +44,7 @@ SENSORS, ROBOTS = ("UR5", "UR5e", "motor encoder"), (870, 871)
 # Sensors of a UR5 as its recordings show them: angles to 4e-6 rad, noise at rest of one count. The torque noise of
 # real_sensors.yaml, 0.01 N.m, is 0.09 A: between what rows differ by at rest, 0.01 to 0.08 A, and in motion, 0.12 to
 # 0.29 A.
-OVERLAY = {"sensors.output_bits": 20, "sensors.output_noise": 5e-6, "sensors.delay": 0.0}
+OVERLAY = {"sensors.output_counts_per_turn": 1 << 20, "sensors.output_noise": 5e-6, "sensors.delay": 0.0}
 COLUMNS = ("target_q", "target_qd", "target_qdd", "target_moment", "actual_q", "actual_qd", "actual_current")
 CUP = (33.2e3, 56.1e3, 65.2e3)   # [N.m/rad]
 

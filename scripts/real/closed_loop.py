@@ -114,7 +114,7 @@ turn; the flexsplines equal, so that each drive has a table), the controller's g
 simple fit [A]; line of the current, twin / recorded [A]; line of the output's angle, twin / recorded [µrad].
 
 The line of the current is within a factor of two of the recorded one in {within} of {len(known)}; median of twin over
-recorded: {float(np.median(known)):.2f}.{stopped} What bounds it: docs/arm_twin.md.
+recorded: {float(np.median(known)):.2f}.{stopped} What bounds it: [arm_twin.md](arm_twin.md#errors-of-manufacture).
 """, *table(["recording", *joints], rows)]
 
 

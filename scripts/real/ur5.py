@@ -374,8 +374,8 @@ The twin's error over the fit's: of the means, and of all moving rows. Wanted: 0
 What is left in moving rows beyond the means is ripple at the lines of the teeth, 200 a turn of each joint, which the
 arm answers in every joint's current.
 
-*Resting*, stiction holds the joint and the current is the controller's choice within a band: an encoder count of 9.4
-µrad is a quarter of the presliding angle and so some 0.3 A. The prediction there is a band, not a value.
+*Resting*, stiction holds the joint and the current is the controller's choice within a band: two encoder counts, 9.4
+µrad, are a quarter of the presliding angle and so some 0.3 A. The prediction there is a band, not a value.
 
 ![Current of the three large joints, measured and predicted](images/real_robot/current.png)
 
