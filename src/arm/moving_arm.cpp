@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "arm/moving_arm.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -99,8 +100,13 @@ void MovingArm::watch() noexcept
   for (std::size_t i = 0; i < twin_.joints() && stop_; ++i)
   {
     const Stamp next = twin_.stamp() + twin_.stepLength();
+    const Stamp release = motion_begin_ - toStampLength(0.5 * SETTLING);
     twin_.drive(i).commandMotorTorque(next, 0.0);
     twin_.drive(i).commandBrake(next, true);
+    if (release > next)
+    {
+      twin_.drive(i).commandBrake(release, true);  // after the release that is queued
+    }
   }
 }
 
@@ -110,11 +116,19 @@ void MovingArm::follow(ArmMotion& motion) noexcept
   motion.beginFrom(set_point_);
   std::swap(commanded_, motion);
   is_commanded_ = true;
-  command_begin_ = twin_.stamp();
+  command_begin_ = std::max(twin_.stamp(), motion_begin_);  // never while the brakes hold
 }
 
 void MovingArm::wantedAt(Stamp stamp, std::vector<JointMotion>& motion) noexcept
 {
+  if (stop_)
+  {
+    for (std::size_t i = 0; i < motion.size(); ++i)
+    {
+      motion[i] = { set_point_[i].position, 0.0, 0.0 };
+    }
+    return;
+  }
   ArmMotion& followed = is_commanded_ ? commanded_ : motion_;
   followed.at(followed.begin() + toSeconds(stamp - (is_commanded_ ? command_begin_ : motion_begin_)), motion);
 }

@@ -305,8 +305,10 @@ std::vector<RecordingFinding> RecordingFit::ofArm() const
   }
   else if (std::isfinite(found.factor.value) && std::abs(std::log(found.factor.value / MILLI)) < std::log(WIDE))
   {
-    findings.push_back(
-        { "effort_unit", "effort looks like the motor's current in mA: divide it by 1000", Reason::EFFORT_UNIT });
+    findings.push_back({ "effort_unit",
+                         std::string("effort looks a thousand times too large for ") +
+                             effortUnitName(joints_.front().effort) + ": divide it by 1000",
+                         Reason::EFFORT_UNIT });
   }
   else if (std::isfinite(found.factor.value) && !found.is_known && differs(found.factor, 1.0))
   {

@@ -7,10 +7,16 @@
 #include <iostream>
 
 #include <fmt/compile.h>
+#include <fmt/format.h>
 
 #include "base/joined.hpp"
 #include "base/whole_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
+
+// fmt 6 cannot compile a format.
+#ifndef FMT_COMPILE
+#define FMT_COMPILE(text) text
+#endif
 
 namespace hjt
 {

@@ -138,8 +138,11 @@ std::vector<IdentifiedController> identifyController(const RecordingOptions& opt
     joint.name = arm.joints[i].short_name;
     joint.fit = fitController(recorded.joints[i], recorded.period * options.time_scale, gain, usual);
     const double most = MOST_SPEED_GAIN * ArmController::defaultGains(drive).speed;
-    joint.is_limited = joint.fit.gains.speed > most;
-    joint.fit.gains.speed = std::min(joint.fit.gains.speed, most);
+    joint.is_limited = joint.fit.refusal.empty() && joint.fit.gains.speed > most;
+    if (joint.is_limited)
+    {
+      joint.fit.gains.speed = most;
+    }
   }
   if (!path.empty())
   {

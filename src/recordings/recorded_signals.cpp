@@ -4,9 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
-#include <sstream>
 #include <vector>
 
 #include <rosbag/bag.h>
@@ -17,6 +15,7 @@
 
 #include "bags/bag_file.hpp"
 #include "bags/checked_message.hpp"
+#include "base/csv_rows.hpp"
 #include "base/edit_distance.hpp"
 #include "base/joined.hpp"
 #include "base/number_table.hpp"
@@ -114,25 +113,6 @@ SignalSample sampleOf(const std::array<double, COLUMNS>& row, double torque_scal
   return sample;
 }
 
-/// Names of a table's columns. @throws InputError.
-std::vector<std::string> headerOf(const std::string& path)
-{
-  std::ifstream file(path);
-  std::string header;
-  if (!std::getline(file, header))
-  {
-    throw InputError(path + " cannot be read, or is empty");
-  }
-  std::vector<std::string> names;
-  std::istringstream cells(header);
-  for (std::string name; std::getline(cells, name, ',');)
-  {
-    const std::size_t first = name.find_first_not_of(" \t\r");
-    names.push_back(first == std::string::npos ? "" : name.substr(first, name.find_last_not_of(" \t\r") + 1 - first));
-  }
-  return names;
-}
-
 /// The motor's speed as the drive's own sensors have it: what its angle changes by over the window. Before the first
 /// window is over, that of the first window.
 std::vector<double> velocityOf(const std::vector<double>& time, const std::vector<double>& angle, double window)
@@ -150,7 +130,7 @@ std::vector<double> velocityOf(const std::vector<double>& time, const std::vecto
 
 void readTable(const std::string& path, const SignalSource& source, const Take& take)
 {
-  NumberTable<COLUMNS> table(path, columnsOf(path + ":1", headerOf(path), source), COLUMNS - MOTOR_ANGLE);
+  NumberTable<COLUMNS> table(path, columnsOf(path + ":1", CsvRows(path).header(), source), COLUMNS - MOTOR_ANGLE);
   std::array<double, COLUMNS> row{};
   row.fill(NOT_MEASURED);
   while (table.read(row) && take(sampleOf(row, source.torque_scale)))

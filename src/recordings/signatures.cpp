@@ -216,6 +216,10 @@ std::vector<Signature> SignatureRuns::rows(FaultKind kind, const Motion& motion)
 
 std::string SignatureRuns::text(const std::string& gear, const SignatureSet& basis, double rated_torque) const
 {
+  if (motions_.empty())
+  {
+    throw InputError("no run found its equilibrium: there is nothing to make signatures of");
+  }
   SignatureSet set = basis;
   std::vector<std::string> motions;  // by signature
   set.gear = gear;

@@ -91,7 +91,6 @@ void SurfaceStages::prepare(const Parameters& parameters, const FaultList& activ
   parameters_ = &parameters;
   source_ = &source;
   const bool few = list(active, std::move(later)) <= MAX_TABLES;
-  std::size_t interpolated = 0;
   std::size_t left_out = 0;
   for (std::size_t i = 0; i < stages_.size(); ++i)
   {
@@ -100,7 +99,6 @@ void SurfaceStages::prepare(const Parameters& parameters, const FaultList& activ
     if (last - i > NODES)
     {
       interpolate(i, last, growing);
-      interpolated += last - i;
       i = last - 1;  // which another growth may begin with
     }
     else if (few || i == 0 || i + 1 == stages_.size())
@@ -114,10 +112,8 @@ void SurfaceStages::prepare(const Parameters& parameters, const FaultList& activ
   }
   if (left_out > 0 && source.notice)
   {
-    source.notice(
-        "response surfaces of the first and the last faults only: the twin solves the full ring while "
-        "the others set in, more than " +
-        std::to_string(MAX_TABLES));
+    source.notice(std::to_string(left_out) + " of " + std::to_string(stages_.size()) +
+                  " sets of faults have no response surface: the twin solves the full ring while they set in");
   }
   parameters_ = nullptr;
   source_ = nullptr;

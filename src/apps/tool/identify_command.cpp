@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "apps/common/motion_options.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
 #include "output/exit_code.hpp"
 #include "output/interrupt.hpp"
 #include "output/text_table.hpp"
@@ -51,6 +52,10 @@ std::optional<Span> spanOf(const std::vector<double>& pair)
 
 int runOfController(const Options& options)
 {
+  if (!options.train_pair.empty() || !options.judge_pair.empty())
+  {
+    throw InputError("--controller takes all rows: neither --train nor --judge");
+  }
   const std::vector<IdentifiedController> joints = identifyController(options, options.out);
   const Report report = reportOf(joints);
   printReport(options.json, report.lines, report.tables);

@@ -3,16 +3,18 @@
 
 #include <algorithm>
 
-#include "recordings/comparison_files.hpp"
-
 #include "base/number_text.hpp"
+#include "recordings/comparison_files.hpp"
 
 namespace hjt
 {
 std::vector<std::string> nextCommands(const ArmOptions& options, const CheckedArm& arm)
 {
+  const bool is_mended = !arm.tried.empty() && arm.tried.front().helps;
+  // Last, and in place of what it mends.
+  const std::string remedy = is_mended ? arm.tried.front().options : "";
   std::string reading = optionsOf(arm.affixes);
-  if (options.time_scale != 1.0)
+  if (options.time_scale != 1.0 && remedy.find("--time-scale") == std::string::npos)
   {
     reading += " --time-scale " + roundedText(options.time_scale, 6);
   }
@@ -33,12 +35,11 @@ std::vector<std::string> nextCommands(const ArmOptions& options, const CheckedAr
                                        std::vector<std::string>{ "joint_twin compare " + file + " --joint " +
                                                                  joint->name + reading + " --report report" };
   }
-  const bool is_mended = !arm.tried.empty() && arm.tried.front().helps;
   if (!arm.isUsable() && !is_mended)
   {
     return {};
   }
-  const std::string with = " --arm " + arm.taken + (is_mended ? arm.tried.front().options : "") + reading;
+  const std::string with = " --arm " + arm.taken + reading + remedy;
   return { (is_mended ? "joint_twin check " : "joint_twin identify ") + file + with +
                (is_mended ? "" : " --out my_arm"),
            "joint_twin compare " + file + with + " --report report",
