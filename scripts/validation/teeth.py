@@ -5,7 +5,6 @@ from teeth_jump import jump
 from teeth_load import load_share, pressure_angle, turning
 from teeth_profiles import clearance_at_rest, profiles
 from teeth_runs import PROFILES, loaded
-from teeth_wear import wear
 
 
 def build(page):
@@ -17,4 +16,3 @@ def build(page):
     pressure_angle(page)
     interference(page, path)
     jump(page)
-    wear(page)

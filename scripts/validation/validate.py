@@ -17,6 +17,7 @@ SECTIONS = {
     "thesis": "The thesis, chapter by chapter",
     "catalogue": "Catalogue, size 25",
     "teeth": "Teeth",
+    "wear": "Wear and stiffness",
     "stress": "Stress and fatigue",
     "published": "Published finite elements",
     "manufacture": "Errors of manufacture",

@@ -48,7 +48,7 @@ class Validate(unittest.TestCase):
 
     def test_other_grease_fails_the_friction(self):
         self.fails(["bearing.viscosity=300.0e-6"],
-                   ["catalogue.no_load", "catalogue.efficiency", "drives.ur5e.base.1.5", "size14.no_load"],
+                   ["catalogue.no_load", "catalogue.efficiency", "drives.ur5e.elbow.3.2", "size14.no_load"],
                    ["catalogue", "drives", "size14"])
 
     def test_another_oil_fails_its_viscosity(self):

@@ -7,8 +7,7 @@ INTERFACE = (5, 10, 20, 30, 50, 100)  # um
 FLANK = (1, 3, 10, 13, 30, 100)  # um
 
 
-def wear(page):
-    page.heading("Wear and stiffness")
+def build(page):
     given = page.tool("parameters")
     fit, clearance = given["contact"]["fit"], given["mesh"]["flank_clearance"]
     cosine = math.cos(given["mesh"]["flank_angle"])
