@@ -91,7 +91,8 @@ def write(docs, complete, pages, titles):
                for title, meaning, _ in CLASSES]
     holding = sum(row.holds for row in rows)
     lines = [HEAD, f"**{len(rows)} rows: {holding} hold, {len(rows) - holding} do not.**", ""]
-    lines += markdown_table(["section", "rows", "hold"], counts((titles[page.section], page.rows) for page in pages if page.rows))
+    lines += markdown_table(["section", "rows", "hold"],
+                            counts((titles[page.section], page.rows) for page in pages if page.rows))
     lines += ["", "## What a row is worth", "",
               "Rows that hold are evidence of different weight; each has its class in "
               "[validation.csv](validation.csv). Only the first class compares the twin with "
