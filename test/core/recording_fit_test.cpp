@@ -221,7 +221,7 @@ TEST(RecordingFit, RowsTooFarApartAreFound)
 {
   const RecordingFit fit = Robot([](std::size_t, Given& given) { given.time *= 1000.0; }).fit();
   EXPECT_THAT(kinds(fit.ofArm()), ElementsAre("period"));
-  EXPECT_THAT(fit.whyNotJudged()[ELBOW].clause, testing::HasSubstr("in ms"));
+  EXPECT_THAT(fit.whyNotJudged()[ELBOW].clause, testing::HasSubstr("stamps are of another unit"));
 }
 
 TEST(RecordingFit, LostRowsDoNotLookLikeAnotherPeriod)

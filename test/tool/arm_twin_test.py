@@ -113,7 +113,9 @@ class ArmTwin(tool.ToolTest):
         self.assertAlmostEqual(stop["time"], 38 / 125, delta=2 / 125)
         rows = self.rows()
         self.assertLess(max(abs(row["actual_qd_2"]) for row in rows[-20:]), 1e-3)  # of the motor, over the ratio
-        self.assertGreater(rows[-1]["target_q_2"] - rows[-1]["actual_q_2"], 0.1)
+        # Its set point stays where it stopped, a little more than 0.1 rad ahead, before it came to rest.
+        self.assertEqual((rows[-1]["target_qd_2"], rows[-1]["target_q_2"]), (0.0, rows[-20]["target_q_2"]))
+        self.assertGreater(rows[-1]["target_q_2"] - rows[-1]["actual_q_2"], 0.05)
 
     def test_gains_of_the_controller_are_taken(self):
         write_motion(self.path("motion.csv"), duration=0.8)
@@ -143,7 +145,7 @@ class ArmTwin(tool.ToolTest):
         for joint in found["joints"][:3]:
             self.assertEqual(joint["refusal"], "")
             # A row each 8 ms sees 0.84 of what swings at 20 Hz.
-            self.assertAlmostEqual(joint["speed"] / speed, 1.0, delta=0.2)
+            self.assertAlmostEqual(joint["speed"] / (0.84 * speed), 1.0, delta=0.2)
             self.assertAlmostEqual((joint["position"] + 1.0 / integral_time) / (position + 1.0 / integral_time), 1.0,
                                    delta=0.2)
             self.assertAlmostEqual(joint["coulomb"], 2.0, delta=0.3)
