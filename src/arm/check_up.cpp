@@ -150,7 +150,7 @@ public:
 
   void rest(double time)
   {
-    addUntil(begin_ + time, from_, [](double) { return JointMotion{}; });
+    addUntil(begin_ + time, "it rests for " + numberText(time) + " s", from_, [](double) { return JointMotion{}; });
   }
 
   void add(const ArmMove& move)
@@ -163,7 +163,7 @@ public:
     if (distance > 0.0)
     {
       const Profile profile(distance, move);
-      addUntil(begin_ + profile.duration(), move.target,
+      addUntil(begin_ + profile.duration(), "it moves at " + roundedText(move.speed, 3) + " rad/s", move.target,
                [&, begin = begin_](double time) { return profile.at(time - begin); });
     }
     from_ = move.target;
@@ -174,13 +174,14 @@ public:
 
 private:
   template <class Share>
-  void addUntil(double end, const ArmPose& target, const Share& share)
+  void addUntil(double end, const std::string& what, const ArmPose& target, const Share& share)
   {
     const double longest = static_cast<double>(MAX_INSTANTS) * period_;
     // Written so that NaN fails.
     if (!(end < longest))
     {
-      throw ParameterError(arm_.origin + ": the motion would take more than " + roundedText(longest, 4) + " s");
+      throw ParameterError(arm_.origin + ": the motion would take more than " + roundedText(longest, 4) +
+                           " s: " + what);
     }
     for (double time = 0.0; (time = static_cast<double>(instants_.size()) * period_) < end;)
     {

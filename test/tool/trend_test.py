@@ -175,7 +175,9 @@ class TrendOfArm(arm_test.ArmTest):
         self.assertEqual({joint["joint"]: joint["level"] for joint in found["joints"]},
                          {name: "WARN" if name == "elbow" else "OK" for name in arm_test.SHORT_NAMES}, found)
         elbow = next(joint for joint in found["joints"] if joint["joint"] == "elbow")
-        self.assertAlmostEqual(elbow["change"], 1.4, delta=0.08)
+        # A grease of another temperature hides some of it, within the interval.
+        self.assertLess(elbow["change_low"], 1.4)
+        self.assertGreater(elbow["change_high"], 1.4)
         self.assertEqual([row["joints"][2]["temperature_source"] for row in found["recordings"]],
                          ["configured"] * 4 + ["received"])
         self.assertEqual(found["recordings"][4]["joints"][2]["temperature"], 20.0)
