@@ -17,7 +17,6 @@ namespace hjt
 namespace
 {
 using diagnostic_msgs::DiagnosticStatus;
-using diagnostic_updater::DiagnosticStatusWrapper;
 
 /// Between two warnings of the same kind [s].
 constexpr double WARNING_PERIOD = 5.0;

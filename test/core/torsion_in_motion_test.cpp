@@ -173,9 +173,9 @@ struct Kind
   Motion motion;
 };
 
-void PrintTo(const Kind& kind, std::ostream* stream)
+std::ostream& operator<<(std::ostream& stream, const Kind& kind)
 {
-  *stream << kind.name;
+  return stream << kind.name;
 }
 
 class TorsionIn : public testing::TestWithParam<Kind>
@@ -185,19 +185,19 @@ class TorsionIn : public testing::TestWithParam<Kind>
 /// What is wanted of the indicators: K1 within 3 %, lost motion within 15 % of what the slow motion gives.
 TEST_P(TorsionIn, IsThatOfTheSlowMotion)
 {
-  static const Torsion of_slow = measured(slow());
+  static const Torsion OF_SLOW = measured(slow());
   const Torsion found = measured(GetParam().motion);
   RecordProperty("k1_n_m_per_rad", std::to_string(found.first));
   RecordProperty("lost_motion_urad", std::to_string(1e6 * found.lost_motion));
-  EXPECT_NEAR(found.first, of_slow.first, 0.03 * of_slow.first);
-  EXPECT_NEAR(found.second, of_slow.second, 0.05 * of_slow.second);
-  EXPECT_NEAR(found.lost_motion, of_slow.lost_motion, 0.15 * of_slow.lost_motion);
-  EXPECT_GT(found.hysteresis, 0.5 * of_slow.hysteresis);
-  EXPECT_LT(found.hysteresis, 1.5 * of_slow.hysteresis);
+  EXPECT_NEAR(found.first, OF_SLOW.first, 0.03 * OF_SLOW.first);
+  EXPECT_NEAR(found.second, OF_SLOW.second, 0.05 * OF_SLOW.second);
+  EXPECT_NEAR(found.lost_motion, OF_SLOW.lost_motion, 0.15 * OF_SLOW.lost_motion);
+  EXPECT_GT(found.hysteresis, 0.5 * OF_SLOW.hysteresis);
+  EXPECT_LT(found.hysteresis, 1.5 * OF_SLOW.hysteresis);
   if (GetParam().name != "sine")
   {
     // Inertia tells the stiffness from the output encoder's eccentricity, which is a fifth of the torsion.
-    EXPECT_NEAR(measured(GetParam().motion, {}, true).first, of_slow.first, 0.05 * of_slow.first);
+    EXPECT_NEAR(measured(GetParam().motion, {}, true).first, OF_SLOW.first, 0.05 * OF_SLOW.first);
   }
 }
 

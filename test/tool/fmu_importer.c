@@ -126,7 +126,7 @@ static Status step(void* instance)
 }
 
 /// A command that calls one function of the instance.
-static Status call_named(const char* command, void* instance)
+static Status callNamed(const char* command, void* instance)
 {
   const char* name = strcmp(command, "exit") == 0      ? "fmi3ExitInitializationMode" :
                      strcmp(command, "terminate") == 0 ? "fmi3Terminate" :
@@ -136,7 +136,7 @@ static Status call_named(const char* command, void* instance)
   return call(instance);
 }
 
-static Status call_with_state(const char* command, void* instance, void** state)
+static Status callWithState(const char* command, void* instance, void** state)
 {
   if (command[0] == 'r')
   {
@@ -208,11 +208,11 @@ int main(int argc, char** argv)
     }
     else if (strcmp(command, "keep") == 0 || strcmp(command, "drop") == 0 || strcmp(command, "restore") == 0)
     {
-      status = call_with_state(command, instances[i], &states[(int)number()]);
+      status = callWithState(command, instances[i], &states[(int)number()]);
     }
     else
     {
-      status = call_named(command, instances[i]);
+      status = callNamed(command, instances[i]);
     }
     printf("%d\n", status);
   }

@@ -19,7 +19,7 @@ void addJobsOption(Command& command, unsigned& jobs)
 
 Plan readPlan(const std::string& path, const CommonOptions& options)
 {
-  ConfigurationOptions with_overlays = options;
+  ConfigurationOptions with_overlays = static_cast<const ConfigurationOptions&>(options);
   for (const std::string& overlay : Plan::overlays(path))
   {
     with_overlays.configs.push_back(overlay);
