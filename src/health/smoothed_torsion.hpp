@@ -30,7 +30,8 @@ public:
   /// `given`: as read, the torque without inertia's; `speed`: of phi [rad/s]; `seconds`: since the last sample.
   void update(const TorsionSample& given, double speed, double inertia, double seconds) noexcept
   {
-    const Values values(given.torsion, given.torque, given.motor_angle, given.output_angle, speed);
+    Values values;
+    values << given.torsion, given.torque, given.motor_angle, given.output_angle, speed;
     if (age_ < 0.0)
     {
       age_ = 0.0;
