@@ -67,7 +67,12 @@ py::dict arraysOf(const std::vector<double>& values, std::size_t joints)
     return array;
   };
   py::dict arrays;
-  arrays["timestamp"] = block(0, 1).reshape({ static_cast<py::ssize_t>(rows) });
+  py::array_t<double> times(static_cast<py::ssize_t>(rows));
+  for (std::size_t row = 0; row < rows; ++row)
+  {
+    times.mutable_data()[row] = values[row * width];
+  }
+  arrays["timestamp"] = times;
   std::size_t first = 1;
   for (const ArmRunQuantity& quantity : quantities)
   {
