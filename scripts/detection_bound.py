@@ -367,10 +367,7 @@ def main():
         error = math.sqrt((2.0 + 0.25 * measured ** 2) / CHECK_SEEDS)
         lines.append(f"| {what} | {predicted:.2f} | {measured:.2f} ± {error:.2f} "
                      f"| {100.0 * (faulty > numpy.quantile(sound, 0.95)).mean():.0f} % | {100.0 * share:.0f} % |")
-    if options.docs:
-        page_section.write(options.docs / "health.md", "bound", lines)
-    else:
-        print("\n".join(lines))
+    page_section.write_or_print(options.docs, "health.md", "bound", lines)
 
 
 if __name__ == "__main__":

@@ -366,10 +366,7 @@ def main():
         for robot, judge, own in zip(robots, judges, sound):
             judge_robot(robot, judge, own, sensors, kinds, gain, found)
     lines = table(kinds, found, len(robots))
-    if options.docs:
-        page_section.write(options.docs / "health.md", "seen", lines)
-    else:
-        print("\n".join(lines))
+    page_section.write_or_print(options.docs, "health.md", "seen", lines)
 
 
 def table(kinds, found, robots):

@@ -83,10 +83,7 @@ def main():
             lines.append(row_of(fault.words, size, fault.unit, verdicts))
     lines += ["", f"Stuck brake: at its limit of torque the motor turns {stuck():.2g} rad in 2 s: no window, not "
               "judged."]
-    if options.docs:
-        page_section.write(options.docs / "faults.md", "others", lines)
-    else:
-        print("\n".join(lines))
+    page_section.write_or_print(options.docs, "faults.md", "others", lines)
 
 
 if __name__ == "__main__":

@@ -10,3 +10,11 @@ def write(path, name, lines):
     after = rest.split(end)[1]
     with open(path, "w", encoding="utf-8") as page:
         page.write(before + "\n".join([begin, "", *lines, "", end]) + after)
+
+
+def write_or_print(docs, page, name, lines):
+    """Into `page` of the folder `docs`; without a folder, printed."""
+    if docs:
+        write(docs / page, name, lines)
+    else:
+        print("\n".join(lines))
