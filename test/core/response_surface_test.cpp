@@ -3,43 +3,22 @@
 
 #include <array>
 #include <cmath>
-#include <cstdlib>
-#include <cstring>
-#include <iterator>
 #include <limits>
 #include <random>
 #include <string>
 #include <vector>
 
-#include <sys/stat.h>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "base/source_hash.hpp"
-#include "base/text_hash.hpp"
 #include "gear/angle.hpp"
-#include "gear/ratio.hpp"
-#include "harmonic_joint_twin/base/errors.hpp"
-#include "harmonic_joint_twin/twin/twin.hpp"
-#include "model/faults/joint_faults.hpp"
 #include "model/joint_model.hpp"
-#include "params/field_table.hpp"
-#include "solver/arc_elimination.hpp"
-#include "solver/joint_dynamics.hpp"
 #include "solver/ring_equilibrium.hpp"
 #include "statics/static_solver.hpp"
-#include "surface/ball_builder.hpp"
-#include "surface/cache_folder.hpp"
-#include "surface/deviation_builder.hpp"
-#include "surface/parallel_tasks.hpp"
 #include "surface/surface_builder.hpp"
-#include "surface/surface_cache.hpp"
 #include "surface/surface_ring.hpp"
 #include "surface/surface_worker.hpp"
 #include "test/core/response_surface_support.hpp"
-#include "test/support/allocation_count.hpp"
-#include "test/support/temporary_folder.hpp"
 #include "test_parameters.hpp"
 #include "twin_runs.hpp"
 
