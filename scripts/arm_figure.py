@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Draws two runs of `joint_twin arm`: angle and current of the elbow, error of the tool's position."""
-import sys
+import argparse
 
 import matplotlib
 import numpy as np
@@ -13,10 +13,13 @@ ELBOW = 2
 
 
 def main():
-    if len(sys.argv) != 4:
-        sys.exit(f"usage: {sys.argv[0]} SOUND.csv WORN.csv OUT.png")
+    parser = argparse.ArgumentParser(description=__doc__)
+    for name in ("SOUND.csv", "WORN.csv", "OUT.png"):
+        parser.add_argument(name.split(".", maxsplit=1)[0].lower(), metavar=name)
+    options = parser.parse_args()
     figure, axes = plt.subplots(3, 1, figsize=(8.0, 7.0), sharex=True, constrained_layout=True)
-    for path, colour, label in zip(sys.argv[1:], ("#0072B2", "#D55E00"), ("sound", "old grease in the elbow")):
+    runs = ((options.sound, "#0072B2", "sound"), (options.worn, "#D55E00", "old grease in the elbow"))
+    for path, colour, label in runs:
         run = np.genfromtxt(path, delimiter=",", names=True)
         tool = [np.column_stack([run[f"{kind}_TCP_pose_{i}"] for i in range(3)]) for kind in ("target", "actual")]
         axes[0].plot(run["timestamp"], run[f"actual_q_{ELBOW}"], color=colour, label=label)
@@ -27,8 +30,8 @@ def main():
         axis.grid(alpha=0.3)
     axes[0].legend(loc="upper left", fontsize=9)
     axes[-1].set_xlabel("time [s]")
-    figure.savefig(sys.argv[3], dpi=110)
-    print(f"figure: {sys.argv[3]}")
+    figure.savefig(options.out, dpi=110)
+    print(f"figure: {options.out}")
 
 
 if __name__ == "__main__":

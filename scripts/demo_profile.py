@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Writes the demo's torque profile as a bag: start, run, load step, reverse, stop, as stamped commands."""
-import sys
+import argparse
 
 import numpy as np
 import rosbag
@@ -27,10 +27,11 @@ def message(stamp, torque):
 
 
 def main():
-    if len(sys.argv) != 2:
-        sys.exit(f"usage: {sys.argv[0]} OUT.bag")
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("out", metavar="OUT.bag")
+    options = parser.parse_args()
     times = np.arange(0.0, MOTOR_TORQUE[-1][0], 1.0 / RATE)
-    with rosbag.Bag(sys.argv[1], "w") as bag:
+    with rosbag.Bag(options.out, "w") as bag:
         for time in times:
             stamp = rospy.Time.from_sec(START_STAMP + time)
             for topic, points in (("command", MOTOR_TORQUE), ("load", LOAD_TORQUE)):

@@ -22,6 +22,22 @@ say()
   printf '\n== %s\n' "$*"
 }
 
+# Whether the arguments ask for help.
+wants_help()
+{
+  case " $* " in *" --help "* | *" -h "*) return 0 ;; esac
+  return 1
+}
+
+# The head comment of a script is its help, where no program behind it has one.
+answer_help()
+{
+  wants_help "$@" || return 0
+  echo "usage: $(basename "$0") [ARGUMENT...]"
+  awk 'NR > 2 && !/^#/ { exit } NR > 2 { sub(/^# ?/, ""); print }' "$0"
+  exit 0
+}
+
 fail()
 {
   printf '%s: %s\n' "$(basename "$0")" "$*" >&2

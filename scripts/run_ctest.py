@@ -74,6 +74,9 @@ def skipped(results, started):
 
 
 def main():
+    if sys.argv[1:] in (["-h"], ["--help"]):
+        print(__doc__)
+        return 0
     started = time.time()
     code, closing, results = run(sys.argv[1:])
     repeated = [name for name, states in results.items() if states[-1] == "Passed" and len(states) > 1]

@@ -1,0 +1,62 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""The scripts in the built checkout: each has a help that starts and writes nothing; the README's first commands,
+scripts/demo and scripts/demo --arm, end well and leave what they say.
+
+Argument: the package's build directory, everything built.
+"""
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
+BUILD = os.path.abspath(sys.argv.pop(1))
+SETUP = os.path.join(BUILD, "devel", "setup.bash")
+
+
+class Scripts(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.out = folder.name
+
+    def test_each_has_a_help(self):
+        scripts = [path for path in SCRIPTS.rglob("*") if path.is_file() and os.access(path, os.X_OK)]
+        self.assertGreater(len(scripts), 20)
+        for path in scripts:
+            done = self.run_script("bash", "-c", f"source {SETUP} >&2; {path} --help", cwd=self.out, timeout=60)
+            self.assertEqual(done.returncode, 0, f"{path.name}\n{done.stdout[-4000:]}")
+            self.assertIn("usage", done.stdout.lower(), path.name)
+            self.assertNotIn("Built target", done.stdout, path.name)
+            self.assertEqual(os.listdir(self.out), [], path.name)
+
+    @staticmethod
+    def run_script(*command, **options):
+        return subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False,
+                              env=dict(os.environ, HJT_BUILD_DIR=BUILD), **options)
+
+    def demo(self, *arguments):
+        done = self.run_script(SCRIPTS / "demo", *arguments, "--out", self.out)
+        self.assertEqual(done.returncode, 0, done.stdout[-4000:])
+        return done.stdout
+
+    def assert_left(self, *names):
+        for name in names:
+            self.assertGreater(os.path.getsize(os.path.join(self.out, name)), 10000, name)
+
+    def test_a_drive_live(self):
+        printed = self.demo()
+        for line in ["simulated", "mesh force on a tooth, most", "on the response surface", "solver failures"]:
+            self.assertIn(f"\n  {line}", printed)
+        self.assert_left("demo_twin.bag", "demo_twin.png")
+
+    def test_an_arm_sound_and_worn(self):
+        self.demo("--arm")
+        self.assert_left("arm_sound.csv", "arm_worn.csv", "arm.png")
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
