@@ -42,8 +42,8 @@ COUNTS = 2 ** 24  # of both encoders of the 101:1 drive, per turn
 DIRECTION_GAP = 0.09e-3  # rad, between the directions of motion without load
 # Why a joint's friction does not hold.
 UR10E_KNOWN = {"base": "fit and grease are the shoulder's and a UR5's; this base rubs 1.3 times as much as the "
-               "shoulder at every speed, and what of it is its output bearing's, under the arm's tilting moment, is not "
-               "known"}
+               "shoulder at every speed, and what of it is its output bearing's, under the arm's tilting moment, is "
+               "not known"}
 
 
 def build(page):
