@@ -18,7 +18,7 @@ def validate(*arguments):
     command = [sys.executable, os.path.join(CHECKOUT, "scripts", "validation", "validate.py"), "--tool", Validate.tool,
                "--docs", os.path.join(CHECKOUT, "docs"), "--telemetry", RECORDINGS, "--fast", *arguments]
     done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True,
-                          check=False)
+                          check=False, env={**os.environ, "OPENBLAS_NUM_THREADS": "1"})  # as scripts/validate
     failing = {line.split()[1].rstrip(":") for line in done.stdout.splitlines() if line.startswith("FAILS")}
     return done.returncode, failing, done.stdout
 
