@@ -16,7 +16,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "val
 # pylint: disable=wrong-import-position
 import catalogue  # noqa: E402
 import size14  # noqa: E402
-from drives import JOINTS, RATIO, UR5E_LOSS, UR5E_SPEEDS, friction_map  # noqa: E402
+from drives import JOINTS, LOW_LOAD, RATIO, UR10E, UR5E_LOSS, UR5E_SPEEDS, friction_map, moving_rows  # noqa: E402
 
 TORSION, FRICTION = 0.002, 0.005  # relative errors that weigh alike
 TEETH = 200
@@ -170,12 +170,34 @@ def ur5e(twin, _):
     calibrate_joints(twin, measured, JOINTS)
 
 
+def ur10e(twin, telemetry):
+    """Interference of wave generator and rim, without preload of the race, by the mean friction of a UR10e's shoulder
+    at low load."""
+    number_of, gain, overlays, names, _ = UR10E["shoulder"]
+    path = os.path.join(telemetry, "ur10e", names[0])
+    if not os.path.isfile(path):
+        sys.exit(f"no recording {path}")
+    speed, load, friction, _ = moving_rows(numpy.genfromtxt(path, delimiter=",", names=True), number_of, gain)
+    low = load < LOW_LOAD
+    speeds = numpy.linspace(speed[low].min(), speed[low].max(), 12)
+    arguments = [word for overlay in overlays for word in ("--config", overlay)]
+
+    def error(fit):
+        rows = twin.losses(arguments, {PRELOAD: 0.0, "contact.fit": fit[0]}, [float(RATIO * v) for v in speeds],
+                           [float(load[low].mean())])[0]
+        loss = numpy.interp(speed[low], speeds, [RATIO * (row["gear_loss"] + row["motor"]) for row in rows])
+        return [float((loss - friction[low]).mean())]
+
+    found, left = solve(error, [5e-6])
+    print(f"size_4: contact.fit: {1e6 * found[0]:.2f}e-6; mean error {left[0]:.2g} N.m of {low.sum()} rows")
+
+
 def main():
     parser = argparse.ArgumentParser(
         prog="calibrate", description="Fits cup.torsion_stiffness, bearing.race_preload and bearing.viscosity of a "
         "gear to its catalogue, or preload and viscosity of a robot's joints to their recorded friction. Prints the "
         "lines for config/ and the figures before and after.")
-    parser.add_argument("what", choices=["25", "14", "ur5", "ur5e"], help="size of the gear, or robot")
+    parser.add_argument("what", choices=["25", "14", "ur5", "ur5e", "ur10e"], help="size of the gear, or robot")
     parser.add_argument("--tool", required=True, help=argparse.SUPPRESS)
     parser.add_argument("--telemetry", required=True, help=argparse.SUPPRESS)
     parser.add_argument("--config", action="append", default=[], metavar="FILE", help="overlay for every run")
@@ -186,7 +208,7 @@ def main():
     if options.what in GEARS:
         calibrate_gear(twin, GEARS[options.what])
     else:
-        {"ur5": ur5, "ur5e": ur5e}[options.what](twin, options.telemetry)
+        {"ur5": ur5, "ur5e": ur5e, "ur10e": ur10e}[options.what](twin, options.telemetry)
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 import os
 
 import numpy as np
+from scipy.interpolate import RegularGridInterpolator
 
 from bounds import AtMost, Between, Within
 from page import BLUE, GREEN, GREY, ORANGE, number
@@ -21,20 +22,28 @@ GAIN = 10.7  # N.m at the joint per ampere of motor current, the controller's ow
 SPEED_BINS = (0.05, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 1.0, 1.3)  # rad/s at the joint
 FEWEST_ROWS = 20  # in a bin
 
-# Of a UR10e, four recordings on three days: overlays of the joint, largest load of the recordings [N.m], and what its
-# friction grows by with the load, as a share of it [%], with the spread of the four and of each.
-UR10E_LOAD_LOSS = {"elbow": (("joints/elbow.yaml",), 45.0, (5.7 - 1.5, 6.9 + 1.5)),
-                   "shoulder": (("size_32.yaml", "joints/size_4.yaml"), 133.0, (6.2 - 1.0, 6.6 + 1.0))}
-LOAD_LOSS_SPEED = 0.5  # rad/s at the joint
-# Recording, and of its joints number and gain: torque at the joint per ampere by the controller at rest [N.m/A].
-UR10E = {"ur10e_20_01_22-joint_3.csv": {"elbow": (2, 9.84)},
-         "ur10e_20_02_12-40sec_12harm.csv": {"base": (0, 11.98), "shoulder": (1, 11.98), "elbow": (2, 9.84)}}
+# Of a UR10e: number of a joint, its gain, torque at the joint per ampere by the controller at rest [N.m/A], its
+# overlays, the recordings it moves in, and what its friction grows by with the load, as a share of it [%]: four
+# recordings on three days, their spread and that of each.
+UR10E = {"elbow": (2, 9.84, ("joints/elbow.yaml",),
+                   ("ur10e_20_01_22-joint_3.csv", "ur10e_20_02_12-40sec_12harm.csv", "ur10e_20_02_19_14harm50sec.csv"),
+                   (5.7 - 1.5, 6.9 + 1.5)),
+         "base": (0, 11.98, ("size_32.yaml", "joints/size_4.yaml"), ("ur10e_20_02_12-40sec_12harm.csv",), None),
+         "shoulder": (1, 11.98, ("size_32.yaml", "joints/size_4.yaml"),
+                      ("ur10e_20_02_12-40sec_12harm.csv", "ur10e_20_02_19_14harm50sec.csv"), (6.2 - 1.0, 6.6 + 1.0))}
+PAYLOAD = 2.805  # kg at the flange of a UR10e, which its controller was not told
+MOVING = 0.05  # rad/s at the joint
+LOW_LOAD = 30.0  # N.m: hardly anything of the shoulder's friction is by load below
+GRID = (0.05, 0.1, 0.2, 0.35, 0.5, 0.8, 1.2, 1.8)  # rad/s at the joint, and loads between the least and the largest
+GRID_LOADS = 9
+OWN_LOADS, OWN_SPEEDS = (20.0, 50.0, 100.0), (0.1, 0.5, 1.0)  # N.m, rad/s at the joint
 
 COUNTS = 2 ** 24  # of both encoders of the 101:1 drive, per turn
 DIRECTION_GAP = 0.09e-3  # rad, between the directions of motion without load
 # Why a joint's friction does not hold.
-UR10E_KNOWN = {"base": "the joint's friction by speed is 1.8 times that of the catalogue's gear with an estimated "
-               "motor; in a UR5's recorded joints, which have their own overlays, it is 1.6 times"}
+UR10E_KNOWN = {"base": "fit and grease are the shoulder's and a UR5's; this base rubs 1.3 times as much as the "
+               "shoulder at every speed, and what of it is its output bearing's, under the arm's tilting moment, is "
+               "not known"}
 
 
 def build(page):
@@ -42,6 +51,8 @@ def build(page):
     ur5(page)
     ur10e(page)
     load_loss(page)
+    payload(page)
+    own_share(page)
     two_encoders(page)
 
 
@@ -88,52 +99,105 @@ gear's: seals, output bearing and motor are in it.
                 (6.4, 3.0))
 
 
+def overlay_arguments(overlays):
+    return [word for overlay in overlays for word in ("--config", overlay)]
+
+
 def ur10e(page):
     page.heading("UR10e: friction while it moves")
     page.text("""
-The same for a UR10e (shamilmamedov/dynamic_calibration), by speed at the mean load of each bin. Nothing is fitted to
-it: the elbow is that of a UR5, whose type and gear it has; base and shoulder are the family's size 32 with a motor that
-is an estimate (`config/joints/size_4.yaml`), without what seals and output bearing add.
+The same for a UR10e (shamilmamedov/dynamic_calibration), by speed at the mean load of each bin. The elbow is that of a
+UR5, whose type and gear it has; base and shoulder are the family's size 32 with the friction by speed of a UR5's joints
+(`config/joints/size_4.yaml`). One value is fitted, the interference of the wave generator (`contact.fit`), to the
+shoulder's friction at low load.
 """)
     rows = []
-    for name, joints in UR10E.items():
-        path = recording(page, "ur10e", name)
+    for joint, (number_of, gain, overlays, names, _) in UR10E.items():
+        path = recording(page, "ur10e", names[0])
         if not path:
             return
         data = np.genfromtxt(path, delimiter=",", names=True)
-        for joint, (number_of, gain) in joints.items():
-            speeds, loads, friction, scatter = friction_map(data, number_of, gain).T
-            overlays = UR10E_LOAD_LOSS["elbow" if joint == "elbow" else "shoulder"][0]
-            arguments = [word for overlay in overlays for word in ("--config", overlay)]
-            twin = np.diag(joint_loss(page, speeds, loads, *arguments))
-            # Of an elbow in a recording of the whole arm the first recording is the better one.
-            if joint not in [row[0] for row in rows]:
-                page.check(f"drives.ur10e.friction.{joint}", f"{joint}, friction over speed, rms error", "recording",
-                           AtMost(round(friction[0] / 7.0, 2)), np.sqrt(np.mean((twin - friction) ** 2)), "N·m",
-                           f"a seventh of the friction at the slowest, as for the UR5; within a bin it scatters by "
-                           f"{scatter.mean():.1f} N·m", known=UR10E_KNOWN.get(joint, ""))
-            rows.append([joint, name, *(f"{value:.1f}" for value in (friction[0], twin[0], friction[-1], twin[-1]))])
+        speeds, loads, friction, scatter = friction_map(data, number_of, gain).T
+        twin = np.diag(joint_loss(page, speeds, loads, *overlay_arguments(overlays)))
+        page.check(f"drives.ur10e.friction.{joint}", f"{joint}, friction over speed, rms error", "recording",
+                   AtMost(round(friction[0] / 7.0, 2)), np.sqrt(np.mean((twin - friction) ** 2)), "N·m",
+                   f"a seventh of the friction at the slowest, as for the UR5; within a bin it scatters by "
+                   f"{scatter.mean():.1f} N·m", known=UR10E_KNOWN.get(joint, ""))
+        rows.append([joint, names[0], *(f"{value:.1f}" for value in (friction[0], twin[0], friction[-1], twin[-1]))])
     page.table(["joint", "recording", "slowest bin [N·m]", "twin", "fastest bin [N·m]", "twin"], rows)
+
+
+def moving_rows(data, joint, gain):
+    """Of the rows in which a joint moves: speed, size of the load, friction, and the load along the motion."""
+    speed, load = data[f"actual_qd_{joint}"], data[f"target_moment_{joint}"]
+    moving = np.abs(speed) > MOVING
+    friction = (gain * data[f"actual_current_{joint}"] - load) * np.sign(speed)
+    return tuple(values[moving] for values in (np.abs(speed), np.abs(load), friction, load * np.sign(speed)))
+
+
+def at_rows(page, overlays, speed, load, *arguments):
+    """The twin's friction at these speeds and loads [N.m], between points of a grid."""
+    loads = np.linspace(0.0, load.max(), GRID_LOADS)
+    loss = joint_loss(page, GRID, loads, *overlay_arguments(overlays), *arguments)
+    return RegularGridInterpolator((loads, GRID), loss, bounds_error=False, fill_value=None)(np.c_[load, speed])
+
+
+def parts_of(friction, speed, load, along):
+    """Friction at standstill [N.m], by speed to the power of 2/3, by load, and what a wrong gain would make of it."""
+    return np.linalg.lstsq(np.c_[np.ones_like(speed), speed ** (2.0 / 3.0), load, along], friction, rcond=None)[0]
 
 
 def load_loss(page):
     page.heading("UR10e: friction that grows with the load")
-    page.text(f"""
-What the friction of a UR10e grows by with the load (recordings of shamilmamedov/dynamic_calibration; its currents by
-the controller's own ratio at rest), beside a straight line through the twin's loss at {LOAD_LOSS_SPEED:g} rad/s, over
-the loads of the recordings. Nothing is fitted to it. The twin's loss rises slowly at first and faster under load; a
-line is what the recordings can tell.
+    page.text("""
+What the friction of a UR10e grows by with the load, beside what the twin's does at the same speeds and loads, row by
+row of each recording: both are split in the same way, into friction at standstill, by speed, by load, and by load along
+the motion, which a wrong gain would make. No load share is fitted: the shoulder's interference follows from its
+friction at low load, and decides what the balls gain by the load.
 """)
-    for joint, (overlays, most, (low, high)) in UR10E_LOAD_LOSS.items():
-        loads = np.linspace(0.0, most, 10)
-        arguments = [word for overlay in overlays for word in ("--config", overlay)]
-        loss = joint_loss(page, [LOAD_LOSS_SPEED], loads, *arguments)[:, 0]
-        page.check(f"drives.ur10e.load_loss.{joint}", f"{joint}, friction by load up to {most:g} N·m, of the load",
-                   "four recordings", Between(round(low, 1), round(high, 1)), 100.0 * np.polyfit(loads, loss, 1)[0],
-                   "%", "spread of the four recordings and of each",
-                   known="" if joint == "elbow" else
-                   "the flanks' friction coefficient is assumed, 0.06; 0.05 would make 7.3 %, and 5.4 % at the elbow, "
-                   "but 70.1 % of efficiency at size 14, whose catalogue has 67 ± 3 %")
+    table = []
+    for joint, (number_of, gain, overlays, names, band) in UR10E.items():
+        for k, name in enumerate(names if band else ()):
+            path = recording(page, "ur10e", name)
+            if not path:
+                return
+            speed, load, friction, along = moving_rows(np.genfromtxt(path, delimiter=",", names=True), number_of, gain)
+            recorded = parts_of(friction, speed, load, along)
+            twin = parts_of(at_rows(page, overlays, speed, load), speed, load, along)
+            page.check(f"drives.ur10e.load_loss.{joint}.{k + 1}", f"{joint}, friction by load in {name}, of the load",
+                       "four recordings", Between(round(band[0], 1), round(band[1], 1)), 100.0 * twin[2], "%",
+                       f"spread of the four recordings and of each; this one has {100.0 * recorded[2]:.1f} %")
+            table.append([joint, name, *(f"{a:.1f} ({b:.1f})" for a, b in zip(recorded[:2], twin[:2])),
+                          f"{100.0 * recorded[2]:.1f} ({100.0 * twin[2]:.1f})"])
+    page.table(["joint", "recording", "at standstill [N·m] (twin)", "by speed [N·m at 1 rad/s] (twin)",
+                "by load [%] (twin)"], table)
+
+
+def payload(page):
+    page.heading("UR10e: a payload that nobody configured")
+    path = recording(page, "ur10e", "ur10e_20_02_19_14harm50secLoad.csv")
+    if not path:
+        return
+    found = page.tool("compare", path, "--arm", "ur10e")
+    page.check("drives.ur10e.payload", "mass at the flange, by `joint_twin compare`", "recording: weighed",
+               Within(PAYLOAD, absolute=round(found["payload_half_width"], 2)), found["payload_mass"], "kg",
+               "the interval that the tool gives itself, 95 %")
+
+
+def own_share(page):
+    page.heading("The shipped drive: friction by load")
+    page.text("""
+What a load adds to the loss of the shipped drive, of that load; below zero it is driven back. A UR10e's large joints
+have 6 ± 1 % over their own loads, drives of this kind (xMate, eRob) 5 to 13 % near the rated torque.
+""")
+    loads = [0.0, *(sign * load for load in OWN_LOADS for sign in (1.0, -1.0))]
+    loss = joint_loss(page, OWN_SPEEDS, loads)
+    shares = 100.0 * (loss[1:] - loss[0]) / np.abs(loads[1:])[:, None]
+    for load, row in zip(loads[1:], shares):
+        for speed, share in zip(OWN_SPEEDS, row):
+            page.value(f"drives.own_share.{'driven' if load > 0.0 else 'back'}.{abs(load):g}.{speed:g}", share, "%")
+    page.table(["load [N·m]", *(f"{speed:g} rad/s" for speed in OWN_SPEEDS)],
+               [[f"{load:g}", *(f"{share:.1f} %" for share in row)] for load, row in zip(loads[1:], shares)])
 
 
 def recording(page, *parts):

@@ -3,16 +3,20 @@
 import math
 
 import cup_shell
+import numpy as np
 from bounds import AtLeast, AtMost, Between, Within
+from independent_drive import IndependentDrive
+from independent_ring import PITCH, wrapped
 from teeth_runs import golden, set_all
+from thesis_data import MEASURED
+from thesis_insertion import CHAPTER_5, independent_ring
 
 RATED, REPEATED, MOMENTARY = 67.0, 157.0, 284.0  # N.m, catalogue
 LOADS = (0.0, RATED, 150.0, MOMENTARY)
 FE_BAND = (590.0, 640.0)  # MPa, thesis 3.2.2 and 4.1
 MPA = 1e-6
+GOLDEN_CUP, NOTCH = (32.5e3, 56.8e3, 65.4e3), 2.0  # N.m/rad, of config/golden.yaml
 PLACES = ("tooth space", "transition", "flange")
-# Of a separate calculation from the same shapes: rim bent between rigid teeth alone, notch factor 2 [MPa].
-INDEPENDENT = {0.0: (-405.0, 491.0), RATED: (-374.0, 629.0), 150.0: (-307.0, 804.0), MOMENTARY: (-327.0, 1061.0)}
 
 
 def loaded(page, *arguments, loads=LOADS):
@@ -47,13 +51,13 @@ Nominal is without the notch.
 def tooth_space(page, stress):
     notch = page.tool("parameters", *golden())["stress"]["concentration"][0]
     thesis = loaded(page, *golden())
-    for load, expected in INDEPENDENT.items():
+    for load, expected in independent_stress().items():
         cycle = thesis[load]["tooth space"]
         for key, value in zip(("lowest", "highest"), expected):
             page.check(f"stress.tooth_space_{key}_{load:g}",
                        f"tooth space at {load:g} N·m, at the notch: {key} of a turn",
-                       "independent calculation", Within(value, absolute=1.0), MPA * notch * cycle[key], "MPa",
-                       "rounding of the figures compared with")
+                       "independent_drive.py", Within(value, relative=1e-3), MPA * notch * cycle[key], "MPa",
+                       "the pitch along the rim as an arc, not as a chord")
     page.check("stress.finite_elements", f"tooth space at {RATED:g} N·m, at the notch: largest",
                "finite elements, thesis 3.2.2, 4.1", Between(*FE_BAND),
                MPA * stress[RATED]["tooth space"]["notch"], "MPa",
@@ -72,6 +76,23 @@ def tooth_space(page, stress):
                f"from {angles[27]:.0f} to {angles[16]:.0f} MPa; of the rim alone, a tooth's own bending is left out")
 
 
+def independent_stress():
+    """By load [N.m]: lowest and highest stress in the tooth spaces, at the notch [MPa], by the page's own program."""
+    m = MEASURED
+    drive = IndependentDrive(m.flexspline_radius, CHAPTER_5, GOLDEN_CUP).start_from(
+        independent_ring("normal", "curvature"))
+    space = PITCH * m.flexspline_radius - m.tooth_base
+    found = {}
+    for load in LOADS:
+        drive.carry(load)
+        tension, _, slope = drive.segments(*drive.points())
+        turn = wrapped(slope - np.roll(slope, 1)) - PITCH
+        normal = 0.5 * m.young_modulus * m.rim_thickness / space * turn \
+            + 0.5 * (tension + np.roll(tension, 1)) / (m.tooth_length * m.rim_thickness)
+        found[load] = [MPA * NOTCH * value for value in (normal.min(), normal.max())]
+    return found
+
+
 def cup(page, stress):
     shell = cup_shell.Cup()
     free = cup_shell.at_transition(shell)
@@ -87,12 +108,12 @@ def cup(page, stress):
                "shell of revolution", Within(1.0, relative=0.15), transition(0.0) / free, "",
                f"the shell has {MPA * free:.0f} MPa; the ring's shape is no pure second harmonic")
     page.check("stress.transition_held", "transition, no load, the rim held straight: amplitude over that of a shell",
-               "shell of revolution", Between(1.0, 1.6), transition(1.0) / held, "",
+               "shell of revolution", AtLeast(1.0), transition(1.0) / held, "",
                f"an upper bound: a rim that does not bend at all; the shell has {MPA * held:.0f} MPa with a race of "
                "9 mm")
     flange = amplitude(loaded(page, *set_all("stress.warping_restraint=1.0"), loads=(0.0,))[0.0]["flange"])
     page.check("stress.flange_built_in", "flange, no load, built in: amplitude over that of a shell",
-               "shell of revolution", Between(1.0, 1.7), flange / built_in, "",
+               "shell of revolution", AtLeast(1.0), flange / built_in, "",
                "an upper bound: the strain of warping even along the cup; the shell has "
                f"{MPA * built_in:.0f} MPa")
     given = page.tool("parameters")["stress"]

@@ -14,17 +14,18 @@ CLASSES = [
     ("independent measurement", "measured or published elsewhere, nothing fitted to it",
      r"catalogue\.(hysteresis|lost_motion|back_driving|efficiency|load_dependent_loss|oil)|teeth\.(involute_in_mesh|"
      r"trapezoid_in_mesh|double_arc_|shipped_in_mesh|pressure_angle|interference_angle|jump_)|stress\.(pressure_angle|"
-     r"endurance|cycles)|published\.|manufacture\.(as_built|series)|drives\.(torsion|ur10e)|heat\.ur|"
-     r"size14\.(hysteresis|lost_motion|efficiency)|family\.(efficiency|back_driving|hysteresis)"),
+     r"endurance|cycles)|published\.|manufacture\.(as_built|series)|drives\.(torsion|"
+     r"ur10e\.(load_loss|payload|friction\.(elbow|base)))|heat\.ur|size14\.(hysteresis|lost_motion)|"
+     r"family\.(efficiency|back_driving|hysteresis)"),
     ("fitted", "a parameter was fitted to it",
-     r"catalogue\.(torsion|no_load|starting)|drives\.|heat\.time_constant|size14\.(torsion|no_load|starting)|"
-     r"family\.torsion|stress\.finite_elements"),
+     r"catalogue\.(torsion|no_load|starting)|drives\.|heat\.time_constant|"
+     r"size14\.(torsion|no_load|starting|efficiency)|family\.torsion|stress\.finite_elements"),
     ("identity", "what holds in any model of its kind: balances, symmetries, conservation, closed forms",
      r"thesis\.(ratio_|torque_|fmeca_|backup_|inertia_|perimeter|balance|output_balance|condition_735|equilibrium_|"
-     r"\w+_law|contact_point|rotation_|symmetric_|perfect_|drift_)|teeth\.virtual_work|dynamics\.energy|"
+     r"\w+_law|contact_point|rotation_|symmetric_|drift_|mean_torque)|teeth\.virtual_work|dynamics\.energy|"
      r"manufacture\.(perfect|closure|work|reproducible|sampling|averaged_|\w+_not_the_other|beat|table_)"),
     ("independent program", "numbers of the thesis' own program, or of one that shares nothing with the twin",
-     r"thesis\.(?!locked|mean_torque)|stress\.(flange|transition|coning|warping)"),
+     r"thesis\.|stress\.(flange|transition|coning|warping|tooth_space)"),
     ("self-consistent", "one way of computing it beside another way of the same model", r""),
 ]
 

@@ -2,12 +2,15 @@
 """The torque at which the teeth jump, and what gives way."""
 import math
 
-from bounds import AtLeast
+import numpy as np
+from bounds import Between
 from page import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, ToolError
 from teeth_runs import PROFILES, TEETH, golden, loaded, row_at, set_all
 
 CATALOGUE_JUMP = 500.0  # N.m
 BALLS = 23
+BALL_LOADS = (284.0, 500.0, 650.0, 800.0, 1000.0)  # N.m
+GAUSS = math.sqrt(3.0 / 5.0)  # outer places of its three points, weights 5, 8, 5
 FEWEST_BALLS = 3  # that the tool takes
 
 
@@ -55,7 +58,8 @@ def jump(page):
     hertz = ratchet(page, *on_balls(), limit=20000)["peak"]
     hertz_force = hertz["wave_generator_force_max"] * TEETH / BALLS
     few = ratchet(page, *on_balls(f"bearing.balls={FEWEST_BALLS}"), limit=20000)["peak"]["torque"]
-    shipped = ratchet(page, limit=20000, gear=())["peak"]["torque"]
+    whole = ratchet(page, limit=20000, gear=())
+    shipped = whole["peak"]["torque"]
     needed = support_for(page, CATALOGUE_JUMP)
 
     radius = gear["flexspline_inner_radius"] + gear["rim_thickness"] + 0.5 * gear["tooth_height_flexspline"]
@@ -93,34 +97,85 @@ against those of a ball (Table 6.3), but there are {TEETH} teeth and {BALLS} bal
 on the shipped gear, which has such balls and double-arc teeth, at {shipped / 1e3:.1f} kN·m. A ball would carry
 {1e-3 * hertz_force:.0f} kN then. With
 {FEWEST_BALLS} balls, so {FEWEST_BALLS / BALLS:.2f} of the stiffness at the same depth, it is {few:.0f} N·m.
-
-So the twin does **not** predict the catalogue's figure: it holds {shipped / CATALOGUE_JUMP:.0f} times as much. The
-rest is what a plane model has not (races bending between balls and along their width, coning, which leaves the
-cup's end of the teeth at less depth, a bearing that does not survive the load) and the margin in a guaranteed figure.
 """)
+    tries = third_dimension(page, whole)
     draw_jump(page, rigid["rows"], dict(zip(supports, curves)), lobes, hertz["torque"])
-    check_jump(page, shipped, lobes[6.8e6]["peak"]["torque"], hertz["torque"], few)
+    check_jump(page, tries, lobes[6.8e6]["peak"]["torque"], hertz["torque"], few)
 
 
-def check_jump(page, shipped, lobe, hertz, few):
+def third_dimension(page, whole):
+    """What a plane model has not, of the jump of the gear as it is. Torques [N.m]: of the jump, with coning, and from
+    which on the bearing is not elastic."""
+    shipped, coned, elastic = whole["peak"]["torque"], first_slice(page, whole["rows"]), elastic_limit(page)
+    page.text(f"""
+So the twin does **not** predict the catalogue's figure: it holds {shipped / CATALOGUE_JUMP:.0f} times as much. Two
+things of the third dimension were tried.
+
+**Coning**: the wave grows from the flange on, so the cup's end of the teeth has {100.0 * slice_wave(page):.0f} % of the
+wave at their middle and less depth. In three slices along the face, each a gear of its own wave, all at the same angle,
+the one at the cup's end jumps when they carry {coned / 1e3:.1f} kN·m together: if it takes the others along, coning is
+a factor of {shipped / coned:.1f}, not fifteen.
+
+**The bearing**: from {elastic / 1e3:.2f} kN·m on the hardest ball is above its static rating (ISO 76, 5 C0/Z =
+{static_ball_load(page) / 1e3:.1f} kN: races of 4.2 GPa take a dent), {elastic / CATALOGUE_JUMP:.1f} times the
+catalogue's jump. Hertz's law ends there: what the twin says of a jump beyond is outside of its law. What gives way
+then, balls, races and the depth that is left, no source at hand has measured.
+""")
+    return shipped, coned, elastic
+
+
+def slice_wave(page, place=-1.0):
+    """Wave of a slice over that at the middle of the face, in proportion to the distance from the flange; `place` along
+    the face, -1 at the cup's end ... 1."""
+    given = page.tool("parameters")
+    width, length = given["life"]["face_width"], given["stress"]["cup_length"]
+    return 1.0 + 0.5 * width * place / (length - 0.5 * width)
+
+
+def first_slice(page, middle):
+    """Torque of three slices along the face together, by Gauss, where the one at the cup's end jumps [N.m]. `middle`:
+    rows of the gear as it is."""
+    wave = page.tool("parameters")["gear"]["wave_amplitude"]
+    ends = {sign: ratchet(page, *set_all(f"gear.wave_amplitude={slice_wave(page, sign * GAUSS) * wave:.9e}"),
+                          limit=20000, gear=()) for sign in (-1.0, 1.0)}
+    jump_angle = ends[-1.0]["peak"]["output_angle"]
+
+    def torque(rows):
+        return np.interp(-jump_angle, [-row["output_angle"] for row in rows], [row["torque"] for row in rows])
+
+    return (5.0 * ends[-1.0]["peak"]["torque"] + 8.0 * torque(middle) + 5.0 * torque(ends[1.0]["rows"])) / 18.0
+
+
+def static_ball_load(page):
+    """5 C0 / Z of ISO 76, C0 = f0 Z D^2 with f0 of its table for D / d_m = 0.10 [N]."""
+    return 5.0 * 16.4 * (1e3 * page.tool("parameters")["bearing"]["ball_diameter"]) ** 2
+
+
+def elastic_limit(page):
+    """Torque at which the hardest ball of the gear as shipped carries that [N.m]."""
+    rows = page.tool("stiffness", "--torques", ",".join(f"{load:g}" for load in BALL_LOADS), "--teeth")["rows"]
+    hardest = [max(row["teeth"]["wave_generator_force"]) * TEETH / BALLS for row in rows]
+    return float(np.interp(static_ball_load(page), hardest, BALL_LOADS))
+
+
+def check_jump(page, tries, lobe, hertz, few):
     def jump(name):
         return ratchet(page, *on_balls("mesh.profile=" + name), limit=20000)["peak"]["torque"]
 
     page.table(["profile", "jump on balls [N·m]"],
                [[label, f"{jump(name):.0f}"]
                 for name, (label, _) in PROFILES.items()])
+    shipped, coned, elastic = tries
     page.check("teeth.jump_as_shipped", "largest torque without a jump, as shipped (the search ends at 20 kN·m)",
-               "catalogue, CSF-25-100",
-               AtLeast(CATALOGUE_JUMP), shipped, "N·m", "a guaranteed figure: the gear must hold it")
-    page.check("teeth.jump_lobe", "straight flanks on springs, lobes of 6.8e6 N/m, the simple estimate (up to 2 kN·m)",
-               "catalogue, CSF-25-100",
-               AtLeast(CATALOGUE_JUMP), lobe, "N·m", "as above")
-    page.check("teeth.jump_hertz", "straight flanks on balls: jump torque", "catalogue, CSF-25-100",
-               AtLeast(CATALOGUE_JUMP),
-               hertz, "N·m", "as above; how much more it holds is the finding, not a success")
-    page.check("teeth.jump_support", f"the same with {FEWEST_BALLS} of {BALLS} balls", "catalogue, CSF-25-100",
-               AtLeast(CATALOGUE_JUMP), few, "N·m",
-               "as above: the balls are one compliance of several in series, and even an eighth of them is enough")
+               "catalogue, CSF-25-100", Between(CATALOGUE_JUMP, 3.0 * CATALOGUE_JUMP), shipped, "N·m",
+               "a guaranteed figure: the gear holds it, and a model of the jump comes within a factor of 3",
+               known=f"a plane model on Hertz's balls: coning makes it {coned / 1e3:.1f} kN·m, and from "
+               f"{elastic / 1e3:.2f} kN·m on the hardest ball is above its static rating, where that law ends")
+    page.value("teeth.jump_coned", coned, "N·m")
+    page.value("teeth.jump_static_rating", elastic, "N·m")
+    page.value("teeth.jump_lobe", lobe, "N·m")
+    page.value("teeth.jump_hertz", hertz, "N·m")
+    page.value("teeth.jump_support", few, "N·m")
 
 
 def draw_jump(page, rigid, supports, lobes, hertz):

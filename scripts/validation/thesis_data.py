@@ -8,11 +8,11 @@ import numpy as np
 
 INSERTION = ("--config", "thesis_insertion.yaml")
 GOLDEN = ("--config", "golden.yaml")
-# The set of the prototypes: the cup as Table 7.1 gives it, straight flanks.
+# The set of the table of loads: the cup as Table 7.1 gives it, straight flanks.
 OPERATION = (*GOLDEN, "--set", "cup.torsion_stiffness=[31.0e+3,50.0e+3,57.0e+3]", "--set",
              "cup.torsion_breakpoints=[14.0,48.0]", "--set", "mesh.flank_angle=0.29670597283903605", "--set",
              "mesh.engagement_depth=20.0e-6")
-LOADS = (0.0, 5.0, 14.0, 48.0, 100.0, 150.0)  # N.m, of the prototypes' table and none
+LOADS = (0.0, 5.0, 14.0, 48.0, 100.0, 150.0)  # N.m, of that table and none
 TEETH_FS, TEETH_CS, RATIO = 200, 202, 101
 PITCH = 2.0 * math.pi / TEETH_FS  # rad
 
@@ -131,7 +131,7 @@ def thesis_insertion(page):
 
 
 def locked(page, name, torques, angle=0.0):
-    """`joint_twin stiffness` with the prototypes' set: its rows and the ring of each."""
+    """`joint_twin stiffness` with that set: its rows and the ring of each."""
     path = f"{name}.csv"
     arguments = ("--angle", repr(angle)) if angle else ()
     rows = page.tool("stiffness", "--torques", ",".join(f"{torque:g}" for torque in torques), *arguments, *OPERATION,

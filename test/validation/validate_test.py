@@ -18,7 +18,7 @@ def validate(*arguments):
     command = [sys.executable, os.path.join(CHECKOUT, "scripts", "validation", "validate.py"), "--tool", Validate.tool,
                "--docs", os.path.join(CHECKOUT, "docs"), "--telemetry", RECORDINGS, "--fast", *arguments]
     done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True,
-                          check=False)
+                          check=False, env={**os.environ, "OPENBLAS_NUM_THREADS": "1"})  # as scripts/validate
     failing = {line.split()[1].rstrip(":") for line in done.stdout.splitlines() if line.startswith("FAILS")}
     return done.returncode, failing, done.stdout
 
@@ -40,7 +40,8 @@ class Validate(unittest.TestCase):
 
     def test_stiffer_contact_fails_the_insertion(self):
         self.fails(["contact.stiffness=1.1e+8"],
-                   ["thesis.force_max", "thesis.independent_operation_wave_generator_force"], ["thesis"])
+                   ["thesis.force_max", "thesis.independent_operation_wave_generator_force", "thesis.locked_angle",
+                    "thesis.locked_bearing"], ["thesis"])
 
     def test_doubled_friction_fails_the_slips(self):
         self.fails(["contact.friction_coefficient=0.14"], ["catalogue.interface_slip"], ["catalogue"])
@@ -50,6 +51,14 @@ class Validate(unittest.TestCase):
         self.fails(["bearing.viscosity=300.0e-6"],
                    ["catalogue.no_load", "catalogue.efficiency", "drives.ur5e.elbow.3.2", "size14.no_load"],
                    ["catalogue", "drives", "size14"])
+
+    def test_softer_teeth_fail_the_stress(self):
+        self.fails(["mesh.stiffness=4.0e+7"], ["stress.tooth_space_highest_150"], ["stress"])
+
+    @unittest.skipUnless(os.path.isdir(os.path.join(RECORDINGS, "ur10e")), "no recordings")
+    def test_a_preloaded_race_fails_the_loss_by_load(self):
+        self.fails(["contact.fit=3.84e-6", "bearing.race_preload=600.0"],
+                   ["drives.ur10e.load_loss.shoulder.1", "drives.ur10e.load_loss.shoulder.2"], ["drives"])
 
     def test_another_oil_fails_its_viscosity(self):
         self.fails(["bearing.viscosity_slope=3.5"], ["catalogue.oil.40", "catalogue.oil.100"], ["catalogue"])
