@@ -18,8 +18,8 @@ The complete page has a figure, the quickest solver for each error and every run
 
 **Error**: root mean square over the samples, over the standard deviation of the reference, of all angles, tooth
 positions or tooth forces. **Time**: of the processor, of one thread, median of the runs; the solvers take turns. Peers:
-SUNDIALS (CVODE, IDA, ARKODE), PETSc, RADAU5, Boost.odeint. They get the analytic sparse Jacobian with SuiteSparse's KLU
-and call the twin's own forces. Ours are `joint_twin dynamics --tolerance`: TR-BDF2, ESDIRK4 and DOP853 with adaptive
+SUNDIALS (CVODE, IDA, ARKODE), RADAU5, Boost.odeint. They get the analytic sparse Jacobian with SuiteSparse's KLU
+and call the twin's own forces. Ours are `joint_twin dynamics --tolerance`: TR-BDF2 and ESDIRK4 with adaptive
 steps.
 """
 READING = """Above 1 ours are faster. *ours only*, *peer only*: the other does not reach that error. A dash: the
