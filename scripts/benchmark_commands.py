@@ -211,8 +211,8 @@ def figure(case, seconds):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("tool", type=pathlib.Path)
-    parser.add_argument("--old", type=pathlib.Path, help="another build's tool")
+    parser.add_argument("tool", type=os.path.abspath)
+    parser.add_argument("--old", type=os.path.abspath, help="another build's tool")
     parser.add_argument("--repeats", type=int, default=3, help="of each command, of which the median counts [3]")
     parser.add_argument("--only", default="", help="cases whose name has this text")
     options = parser.parse_args()

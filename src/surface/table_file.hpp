@@ -14,8 +14,8 @@ namespace hjt
 /// file of 30 MB is read at every start.
 std::uint64_t tableChecksum(std::string_view bytes);
 
-/// A table from its file: the header, the numbers as they lie in memory, and the checksum of both. The nodes stay in the
-/// file. `header`: its length is a multiple of the size of a number. False if the file is not that of ofOwn in
+/// A table from its file: the header, the numbers as they lie in memory, and the checksum of both. The nodes stay in
+/// the file. `header`: its length is a multiple of the size of a number. False if the file is not that of ofOwn in
 /// mapped_file.hpp, begins otherwise, or is damaged.
 bool readTable(const std::string& path, const std::string& header, SurfaceTable& table);
 bool readTable(const std::string& path, const std::string& header, DeviationTable& table);
