@@ -31,7 +31,7 @@ def shown(value, format_text, factor=1.0):
 
 def surface_share(health):
     """None: the bag is older than the field."""
-    return health["on_response_surface"].mean() if "on_response_surface" in health.dtype.names else None
+    return health["on_response_surface"].mean() if "on_response_surface" in health.fields else None
 
 
 def joint_rows(recording):
