@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Processor time of whole commands of the tool, start and output included, as a Markdown table; with --old another
-build's beside it, the runs of both alternating. Tables of the gear are built before, outside the time."""
+build's beside it, the runs of both alternating. Tables of the gear are built before, outside the time, except where the
+case says so."""
 import argparse
 import csv
 import math
@@ -14,8 +15,10 @@ import tempfile
 
 import genpy
 import rosbag
+import yaml
 from sensor_msgs.msg import JointState
 
+CHECKOUT = pathlib.Path(__file__).resolve().parent.parent
 START = 1000  # of recordings [s]
 TURNING = {"solver.scene": "auto"}
 
@@ -93,11 +96,25 @@ record:
 """)
 
 
-class Case:
-    """`arguments(folder, duration)`; what it has to write is the last of them. Duration 0: the start alone."""
+def write_fault_plan(path):
+    """A check-up of 30 s of a sound drive and of every kind of fault."""
+    plan = yaml.safe_load((CHECKOUT / "plans" / "fault_grid.yaml").read_text())
+    plan["duration"] = 30.0
+    plan["set"]["input.temperature"] = 25.0
+    plan["duty"][0].update(speed={"constant": 1.0}, load={"constant": 30.0})
+    for faults in plan["classes"].values():
+        for fault in faults:
+            fault["severity"] = 0.3
+    path.write_text(yaml.safe_dump(plan))
 
-    def __init__(self, name, arguments, wanted, duration):
+
+class Case:
+    """`arguments(folder, duration)`; what it has to write is the last of them. Duration 0: the start alone. `cold`: the
+    tables are built in the time."""
+
+    def __init__(self, name, arguments, wanted, duration, cold=False):
         self.name, self.arguments, self.wanted, self.duration = name, arguments, wanted, duration
+        self.cold = cold
 
 
 def simulate(kind, *options):
@@ -124,6 +141,21 @@ def sweep(jobs):
     return arguments
 
 
+def growing(kind, most, place):
+    """A fault that grows all the time in two dozen steps."""
+    steps = 24
+    return simulate("csv", *(word for i in range(1, steps + 1) for word in
+                             ("--fault", f"{kind}:{most * i / steps:.4f}:{place}:{1.1 * i:.1f}")))
+
+
+def fault_sweep(folder, _):
+    return ["sweep", folder / "faults.yaml", "--jobs", 2, "--out", tempfile.mkdtemp(dir=folder)]
+
+
+def full_ring(*options):
+    return simulate("csv", "--set", "solver.scene=full_ring", *options)
+
+
 CASES = (
     Case("joint_twin --version", lambda folder, duration: ["--version"], "30 ms", 0.0),
     Case("joint_twin --help", lambda folder, duration: ["--help"], "30 ms", 0.0),
@@ -140,13 +172,22 @@ CASES = (
     Case("simulate to CSV, bearing_ball", simulate("csv", "--fault", "bearing_ball:0.5"), "200", 60.0),
     Case("simulate to CSV, bearing_cage", simulate("csv", "--fault", "bearing_cage:0.5"), "200", 60.0),
     Case("simulate to CSV, tooth_wear from 1 s on", simulate("csv", "--fault", "tooth_wear:0.5:-1:1.0"), "200", 60.0),
+    Case("simulate to CSV, tooth_root_crack that grows", growing("tooth_root_crack", 0.6, 40), "50", 30.0),
+    Case("simulate to CSV, flexspline_crack that grows", growing("flexspline_crack", 0.3, 40), "50", 30.0),
+    Case("simulate to CSV, rear_section_crack that grows", growing("rear_section_crack", 0.6, -1), "50", 30.0),
+    Case("simulate to CSV, full ring", full_ring(), "10", 2.0),
+    Case("simulate to CSV, as built, full ring",
+         full_ring("--config", CHECKOUT / "config" / "as_built.yaml"), "10", 2.0),
+    Case("sweep, every kind of fault, tables built", fault_sweep, "100", 510.0, cold=True),
 )
 
 
-def processor_time(command):
-    """[s]"""
+def processor_time(command, cache=None):
+    """[s]; with the tables of the gear in another folder than usual."""
+    environment = {**os.environ, "XDG_CACHE_HOME": str(cache)} if cache else None
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    subprocess.run(list(map(str, command)), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, check=True)
+    subprocess.run(list(map(str, command)), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, check=True,
+                   env=environment)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
@@ -154,12 +195,13 @@ def processor_time(command):
 def measure(case, tools, folder, repeats):
     """Median processor time of each tool [s]."""
     times = [[] for _ in tools]
-    if case.duration > 0.0:
+    if case.duration > 0.0 and not case.cold:
         for tool in tools:
             processor_time([tool, *case.arguments(folder, 1.0)])
     for _ in range(repeats if case.duration > 0.0 else 10 * repeats):
         for tool, found in zip(tools, times):
-            found.append(processor_time([tool, *case.arguments(folder, case.duration)]))
+            cache = tempfile.mkdtemp(dir=folder) if case.cold else None
+            found.append(processor_time([tool, *case.arguments(folder, case.duration)], cache))
     return [statistics.median(found) for found in times]
 
 
@@ -169,8 +211,8 @@ def figure(case, seconds):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("tool", type=pathlib.Path)
-    parser.add_argument("--old", type=pathlib.Path, help="another build's tool")
+    parser.add_argument("tool", type=os.path.abspath)
+    parser.add_argument("--old", type=os.path.abspath, help="another build's tool")
     parser.add_argument("--repeats", type=int, default=3, help="of each command, of which the median counts [3]")
     parser.add_argument("--only", default="", help="cases whose name has this text")
     options = parser.parse_args()
@@ -186,6 +228,7 @@ def main():
             write_recording(folder / f"{stem}.csv", duration)
         for stem, duration in (("short", 2.0), ("plan", 60.0)):
             write_plan(folder / f"{stem}.yaml", 2, duration)
+        write_fault_plan(folder / "faults.yaml")
         for case in CASES:
             if options.only in case.name:
                 found = [figure(case, seconds) for seconds in measure(case, tools, folder, options.repeats)]

@@ -252,7 +252,7 @@ Parameters parameters(OperatingProblem::Friction friction)
   return parameters;
 }
 
-const std::vector<double> STEPS{ 2e-3, 1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5 };
+const std::vector<double> STEPS{ 2e-3, 1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5, 1e-5, 5e-6 };
 
 /// By steps of equal length [s].
 void addSteps(const std::string& solver, const std::function<Run(double step, double limit)>& run,

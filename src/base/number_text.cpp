@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/number_text.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cfloat>
 #include <clocale>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -31,6 +35,48 @@ private:
   }
 
   locale_t before_;
+};
+
+/// A number in decimal digits, value 10^exponent. With few digits and a small exponent both are exact in a double, and
+/// so is their product or quotient but for its one rounding (Clinger 1990): the number that the C library reads.
+struct Decimal
+{
+  static constexpr int FAR = 100000;  // an exponent that is not small
+  static constexpr std::array<double, 23> POWERS{ 1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                                                  1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
+                                                  1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22 };
+
+  /// The digits there, behind those taken before. @returns what follows them.
+  const char* take(const char* text) noexcept
+  {
+    for (; *text >= '0' && *text <= '9'; ++text)
+    {
+      value = digits < DIGITS ? 10 * value + static_cast<std::uint64_t>(*text - '0') : value;
+      digits += value > 0 ? 1 : 0;
+    }
+    return text;
+  }
+
+  bool isQuick() const noexcept
+  {
+    constexpr bool ROUNDS_ONCE = FLT_EVAL_METHOD == 0;
+    return ROUNDS_ONCE && digits <= DIGITS && std::abs(exponent) < static_cast<int>(POWERS.size());
+  }
+  double quick() const noexcept
+  {
+    const double power = POWERS[static_cast<std::size_t>(std::abs(exponent))];
+    const auto whole = static_cast<double>(value);
+    const double size = exponent < 0 ? whole / power : whole * power;
+    return is_negative ? -size : size;
+  }
+
+  bool is_negative{};
+  std::uint64_t value{};
+  int digits{};  // without zeros in front
+  int exponent{};
+
+private:
+  static constexpr int DIGITS = 15;  // below 2^53
 };
 }  // namespace
 
@@ -110,32 +156,39 @@ std::optional<double> decimalNumber(const std::string& text)
 std::optional<double> decimalNumber(const char* text)
 {
   const char* next = text;
-  const auto digits = [&next]
-  {
-    const char* first = next;
-    while (*next >= '0' && *next <= '9')
-    {
-      ++next;
-    }
-    return next - first;
-  };
+  Decimal number;
+  number.is_negative = *next == '-';
   next += *next == '+' || *next == '-' ? 1 : 0;
-  auto mantissa = digits();
+  const char* const first = next;
+  next = number.take(next);
+  auto digits = next - first;
   if (*next == '.')
   {
-    ++next;
-    mantissa += digits();
+    const char* const behind_point = ++next;
+    next = number.take(next);
+    digits += next - behind_point;
+    number.exponent = static_cast<int>(std::max<std::ptrdiff_t>(behind_point - next, -Decimal::FAR));
   }
-  bool good = mantissa > 0;
+  bool good = digits > 0;
   if (good && (*next == 'e' || *next == 'E'))
   {
     ++next;
+    Decimal power;
+    power.is_negative = *next == '-';
     next += *next == '+' || *next == '-' ? 1 : 0;
-    good = digits() > 0;
+    const char* const first_of_power = next;
+    next = power.take(next);
+    good = next != first_of_power;
+    const int size = power.digits > 3 ? Decimal::FAR : static_cast<int>(power.value);
+    number.exponent += power.is_negative ? -size : size;
   }
   if (!good || *next != '\0')
   {
     return std::nullopt;
+  }
+  if (number.isQuick())
+  {
+    return number.quick();
   }
   const DecimalPoint decimal_point;
   return std::strtod(text, nullptr);  // beyond the largest number it is infinite

@@ -40,6 +40,19 @@ bool isIn(const Range& range, double value)
   return value >= range.min && value <= range.max;
 }
 
+std::vector<std::string> wordsOf(const std::string& row)
+{
+  constexpr const char* BLANKS = " \t\r";
+  std::vector<std::string> words;
+  for (std::size_t begin = row.find_first_not_of(BLANKS); begin != std::string::npos;)
+  {
+    const std::size_t end = std::min(row.find_first_of(BLANKS, begin), row.size());
+    words.push_back(row.substr(begin, end - begin));
+    begin = row.find_first_not_of(BLANKS, end);
+  }
+  return words;
+}
+
 class SignatureReader
 {
 public:
@@ -195,8 +208,7 @@ private:
     std::string row;
     for (std::size_t line = first_line; std::getline(rows, row); ++line)
     {
-      std::istringstream stream(row);
-      const std::vector<std::string> words{ std::istream_iterator<std::string>(stream), {} };
+      const std::vector<std::string> words = wordsOf(row);
       if (!words.empty())
       {
         readRow(words, line);

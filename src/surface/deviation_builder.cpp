@@ -7,8 +7,12 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <optional>
+#include <utility>
 #include <vector>
 
+#include "surface/deviation_check.hpp"
+#include "surface/deviation_mirror.hpp"
 #include "surface/deviation_rings.hpp"
 #include "surface/open_pitch.hpp"
 
@@ -20,11 +24,12 @@ using Node = SurfaceNode;
 using Line = DeviationLine;
 using Lines = std::map<double, Line>;  // by their v [rad]
 using Rings = DeviationRings;
-using Torques = Eigen::Array2d;  // on output and motor [N.m]
+using Torques = DeviationCheck::Torques;
 
 constexpr double SMALLEST = 0.1;  // a line's largest deviation counts as at least this part of the largest of all [-]
 constexpr int COARSE_LINES = 12;  // a side, before refinement; denser towards no load
 constexpr int MAX_HALVINGS = 5;   // of an interval between two lines
+constexpr double SAME_TORQUE = 1e-7;  // of the torque limit, that equal torques may differ by [-]
 constexpr int MIN_COLUMNS = 4;
 constexpr int MAX_COLUMNS = 16;
 
@@ -42,6 +47,7 @@ public:
     , max_points_(max_points)
     , threads_(threads)
     , ring_(parameters, actual)
+    , check_(ring_)
     , pitches_(static_cast<std::size_t>(repetition))
     , columns_(pitches_, 2 * MAX_COLUMNS)
   {
@@ -67,6 +73,7 @@ public:
     }
     else
     {
+      addImages();
       result.table = table();
     }
     result.solves = solves_;
@@ -132,8 +139,8 @@ private:
         strip.resize(static_cast<std::size_t>(columns) + 1);
         strip.front() = edges[pitch];
         strip.back() = edges[next(pitch)];
-        if (departs(edges[last(pitch)]) || departs(strip.front()) || departs(strip.back()) ||
-            departs(edges[next(next(pitch))]))
+        if (check_.departs(edges[last(pitch)]) || check_.departs(strip.front()) || check_.departs(strip.back()) ||
+            check_.departs(edges[next(next(pitch))]))
         {
           for (int column = columns - 1; column > 0; --column)
           {
@@ -146,7 +153,7 @@ private:
     {
       for (const Node& node : strip)
       {
-        line.largest = line.largest.max(torques(node).abs());
+        line.largest = line.largest.max(check_.torques(node).abs());
       }
     }
     line.overload = ring_.overload(equal.front());
@@ -157,7 +164,7 @@ private:
   /// The same for a line of the table, if there is room.
   bool addLine(Rings& rings, double v, const Set& wanted, Line& line)
   {
-    const std::size_t size = pointsOf(wanted);
+    const std::size_t size = pointsOf(wanted) * (mirror_ ? 2 : 1);
     if (points_.fetch_add(size) + size > max_points_)
     {
       too_many_ = true;
@@ -169,35 +176,26 @@ private:
   /// Of a line, by its own largest deviation and that of the coarse lines.
   Torques toleranceOf(const Line& line) const { return line.overload * share_ * line.largest.max(SMALLEST * largest_); }
 
-  Torques torques(const Node& deviation) const
-  {
-    return torques(deviation[SurfaceNode::ENERGY_BY_U], deviation[SurfaceNode::ENERGY_BY_V]);
-  }
-
-  Torques torques(double by_u, double by_v) const { return { -by_v, by_v / ring_.ratio() - by_u / ring_.pitch() }; }
-
-  bool departs(const Node& node) const
-  {
-    constexpr double ROUNDING = 1e-8;  // of the torque limit; the rings are solved to a tenth of that
-    const Torques torque = torques(node).abs();
-    return std::max(torque[0], torque[1] * ring_.ratio()) > ROUNDING * ring_.torqueLimit();
-  }
-
-  /// By how much what lies in a cell misses the deviation measured there.
-  Torques miss(const SurfaceCell& cell, const Node& measured) const
-  {
-    const SurfaceEnergy energy = cell.energy();
-    return torques(energy.by_u, energy.by_v) - torques(measured);
-  }
-
   /// For each pitch the fewest columns that give the deviations half way between them.
   void chooseColumns(double lowest, double highest)
   {
-    const std::array<double, 6> places{ 0.02 * lowest, 0.1 * lowest,  0.3 * lowest,
-                                        0.3 * highest, 0.1 * highest, 0.02 * highest };
-    std::array<Line, places.size()> lines;
-    run(places.size(), 0.0, 0.1,
-        [&](Rings& rings, std::size_t i) { measureLine(rings, places[i], Set(pitches_, 1), lines[i]); });
+    const std::array<double, 6> places{ 0.02 * highest, 0.1 * highest, 0.3 * highest,
+                                        0.3 * lowest,   0.1 * lowest,  0.02 * lowest };
+    std::vector<Line> lines(places.size());
+    const auto measure = [&](Rings& rings, std::size_t i)
+    { measureLine(rings, places[i], Set(pitches_, 1), lines[i]); };
+    run({ 0, 4 }, 0.0, 0.07, measure);
+    if (!failed_ && lowest == -highest)
+    {
+      const double torque = SAME_TORQUE * ring_.torqueLimit();
+      mirror_ =
+          DeviationMirror::find(lines[2], lines[3], swapsLobes(), { torque * ring_.pitch() / ring_.ratio(), torque });
+    }
+    if (mirror_)
+    {
+      lines.resize(4);
+    }
+    run({ 4, lines.size() }, 0.07, 0.1, measure);
     for (const Line& line : lines)
     {
       largest_ = largest_.max(line.largest);
@@ -212,7 +210,7 @@ private:
       for (std::size_t pitch = 0; pitch < pitches_; ++pitch)
       {
         int& columns = enough[pitch];
-        while (columns < MAX_COLUMNS && !columnsSuffice(line.strips[pitch], columns, toleranceOf(line)))
+        while (columns < MAX_COLUMNS && !check_.columnsSuffice(line.strips[pitch], columns, toleranceOf(line)))
         {
           columns *= 2;
         }
@@ -223,36 +221,24 @@ private:
     {
       columns_[pitch] = std::max({ enough[last(pitch)], enough[pitch], enough[next(pitch)] });
     }
-  }
-
-  /// Whether every so manyth node of a strip gives those between, root mean square.
-  bool columnsSuffice(const Strip& strip, int columns, const Torques& tolerance) const
-  {
-    const std::size_t stride = (strip.size() - 1) / static_cast<std::size_t>(columns);
-    Torques squares = Torques::Zero();
-    for (std::size_t first = 0; first + 1 < strip.size(); first += stride)
+    for (std::size_t pitch = 0; pitch < pitches_ && mirror_; ++pitch)
     {
-      const std::array<Node, 2> ends{ strip[first], strip[first + stride] };
-      for (std::size_t i = 1; i < stride; ++i)
-      {
-        const double part = static_cast<double>(i) / static_cast<double>(stride);
-        squares +=
-            miss({ ends.data(), ends.data(), part, 0.0, static_cast<double>(columns), 1.0 }, strip[first + i]).square();
-      }
+      int& columns = columns_[pitch];
+      columns = std::max(columns, columns_[mirror_->imageOf(pitch)]);
+      columns_[mirror_->imageOf(pitch)] = columns;
     }
-    return (squares <= static_cast<double>(columns) * (static_cast<double>(stride) - 1.0) * tolerance.square()).all();
   }
 
-  /// Coarse lines, denser towards no load.
+  /// Coarse lines, denser towards no load; one way where the other is its mirror image.
   void coverRange(double lowest, double highest)
   {
-    for (int i = -COARSE_LINES; i <= COARSE_LINES; ++i)
+    for (int i = mirror_ ? 0 : -COARSE_LINES; i <= COARSE_LINES; ++i)
     {
       const double part = static_cast<double>(i) / COARSE_LINES;
       coarse_.push_back((i < 0 ? lowest : highest) * part * part);
     }
     std::vector<Line> lines(coarse_.size());
-    run(coarse_.size(), 0.1, 0.3,
+    run({ 0, coarse_.size() }, 0.1, 0.3,
         [&](Rings& rings, std::size_t i) { addLine(rings, coarse_[i], Set(pitches_, 1), lines[i]); });
     for (std::size_t i = 0; i < coarse_.size(); ++i)
     {
@@ -264,7 +250,7 @@ private:
   void refine()
   {
     std::vector<Lines> between(coarse_.size() - 1);
-    run(between.size(), 0.3, 1.0,
+    run({ 0, between.size() }, 0.3, 1.0,
         [&](Rings& rings, std::size_t i)
         {
           refine(rings, { coarse_[i], lines_.at(coarse_[i]) }, { coarse_[i + 1], lines_.at(coarse_[i + 1]) },
@@ -274,6 +260,19 @@ private:
     {
       lines_.merge(lines);
     }
+  }
+
+  void addImages()
+  {
+    Lines images;
+    for (const auto& [v, line] : lines_)
+    {
+      if (mirror_ && v > 0.0)
+      {
+        images[-v] = mirror_->image(line);
+      }
+    }
+    lines_.merge(images);
   }
 
   struct Placed
@@ -294,8 +293,8 @@ private:
     Set coarse(pitches_, 0);
     for (std::size_t pitch = 0; pitch < pitches_ && halvings < MAX_HALVINGS; ++pitch)
     {
-      coarse[pitch] =
-          wanted[pitch] && !gives(below.line.strips[pitch], above.line.strips[pitch], above.v - below.v, line, pitch);
+      coarse[pitch] = wanted[pitch] && !check_.gives(below.line.strips[pitch], above.line.strips[pitch],
+                                                     above.v - below.v, line.strips[pitch], toleranceOf(line));
     }
     if (std::find(coarse.begin(), coarse.end(), 1) != coarse.end())
     {
@@ -305,21 +304,6 @@ private:
         refine(rings, below, { middle, line }, coarse, halvings + 1, found);
       }
     }
-  }
-
-  /// Whether two lines' strips of a pitch give that of the line half way between them, root mean square. Single kinks,
-  /// where a tooth begins to touch, no grid has.
-  bool gives(const Strip& below, const Strip& above, double height, const Line& line, std::size_t pitch) const
-  {
-    const auto columns = static_cast<std::size_t>(columns_[pitch]);
-    Torques squares = Torques::Zero();
-    for (std::size_t i = 0; i < columns; ++i)
-    {
-      squares +=
-          miss({ &below[i], &above[i], 0.0, 0.5, static_cast<double>(columns), 1.0 / height }, line.strips[pitch][i])
-              .square();
-    }
-    return (squares <= static_cast<double>(columns) * toleranceOf(line).square()).all();
   }
 
   DeviationTable table() const
@@ -338,24 +322,28 @@ private:
           pitch.nodes.insert(pitch.nodes.end(), strip.begin(), strip.end());
         }
       }
-      if (std::none_of(pitch.nodes.begin(), pitch.nodes.end(), [&](const Node& node) { return departs(node); }))
+      if (std::none_of(pitch.nodes.begin(), pitch.nodes.end(), [&](const Node& node) { return check_.departs(node); }))
       {
         pitch = {};
       }
     }
-    const bool swaps_lobes = static_cast<int>(pitches_) <= model_.ring.rest.teeth() / 2 + 1;
-    return tableOf(std::move(pitches), swaps_lobes);
+    return tableOf(std::move(pitches), swapsLobes());
   }
 
-  void run(std::size_t count, double from, double to, const std::function<void(Rings&, std::size_t)>& task)
+  bool swapsLobes() const { return static_cast<int>(pitches_) <= model_.ring.rest.teeth() / 2 + 1; }
+
+  /// Tasks of these numbers, from the first up to the second.
+  void run(std::pair<std::size_t, std::size_t> numbers, double from, double to,
+           const std::function<void(Rings&, std::size_t)>& task)
   {
+    const std::size_t count = numbers.second - numbers.first;
     const auto with_rings = [&](std::size_t i)
     {
       Rings rings(parameters_, equal_, model_);
       failed_ = failed_ || !rings.insert();
       if (!failed_)
       {
-        task(rings, i);
+        task(rings, numbers.first + i);
       }
       solves_ += rings.equal.solves() + rings.actual.solves();
     };
@@ -376,14 +364,16 @@ private:
   std::size_t max_points_;
   unsigned threads_;
   const SurfaceRing ring_;  // knows limits and tolerances, is not solved
+  const DeviationCheck check_;
   std::size_t pitches_;
   std::vector<int> columns_;    // of each pitch
   std::vector<double> coarse_;  // lines, ascending
   Lines lines_;
-  const Torques share_{ 5e-3, 7e-3 };     // of the largest deviation on a line, that the table may miss [-]
-  Torques largest_{ Torques::Zero() };    // deviations of the coarse lines
-  double longest_way_{};                  // between two solves, in v [rad]
-  std::atomic<std::size_t> points_{ 0 };  // of all lines
+  std::optional<DeviationMirror> mirror_;  // then only lines of v >= 0 are measured
+  const Torques share_{ 5e-3, 7e-3 };      // of the largest deviation on a line, that the table may miss [-]
+  Torques largest_{ Torques::Zero() };     // deviations of the coarse lines
+  double longest_way_{};                   // between two solves, in v [rad]
+  std::atomic<std::size_t> points_{ 0 };   // of all lines
   std::atomic<int> solves_{ 0 };
   std::atomic<bool> failed_{ false };
   std::atomic<bool> too_many_{ false };

@@ -231,14 +231,14 @@ bool read(const std::string& path, const std::string& header, Table& table)
   const std::string_view summed = file->bytes().substr(0, file->bytes().size() - sizeof(sum));
   std::memcpy(&sum, summed.data() + summed.size(), sizeof(sum));
   BodyReader reader(file, summed.substr(header.size()));
-  return sum == textHash(summed) && parseBody(reader, table);
+  return sum == tableChecksum(summed) && parseBody(reader, table);
 }
 
 template <class Table>
 std::string write(const std::string& path, const std::string& header, const Table& table)
 {
   std::string bytes = header + body(table);
-  const std::uint64_t sum = textHash(bytes);
+  const std::uint64_t sum = tableChecksum(bytes);
   append(bytes, &sum, 1);
   try
   {
@@ -251,6 +251,25 @@ std::string write(const std::string& path, const std::string& header, const Tabl
   return {};
 }
 }  // namespace
+
+std::uint64_t tableChecksum(std::string_view bytes)
+{
+  constexpr std::uint64_t PRIME = 1099511628211ull;
+  constexpr int TURN = 29;  // [bits] what differs in a word's highest bit alone would stay there
+  std::array<std::uint64_t, 4> rows{ 1, 2, 3, 4 };
+  std::array<std::uint64_t, 4> words{};
+  while (bytes.size() >= sizeof(words))
+  {
+    std::memcpy(words.data(), bytes.data(), sizeof(words));
+    for (std::size_t i = 0; i < rows.size(); ++i)
+    {
+      const std::uint64_t mixed = (rows[i] ^ words[i]) * PRIME;
+      rows[i] = mixed << TURN | mixed >> (64 - TURN);
+    }
+    bytes.remove_prefix(sizeof(words));
+  }
+  return textHash(bytes, textHash({ reinterpret_cast<const char*>(rows.data()), sizeof(rows) }));
+}
 
 bool readTable(const std::string& path, const std::string& header, SurfaceTable& table)
 {

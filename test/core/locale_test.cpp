@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <array>
 #include <clocale>
+#include <cmath>
+#include <cstddef>
 #include <cstdlib>
 #include <filesystem>
 #include <locale>
 #include <map>
+#include <optional>
+#include <random>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -73,6 +77,42 @@ std::map<std::string, std::string> configurationTexts()
     }
   }
   return texts;
+}
+
+/// Short numbers are read without the C library, which says what they are.
+TEST(DecimalNumber, IsThatOfTheCLibrary)
+{
+  std::mt19937_64 random(5);
+  const auto digits = [&random](std::size_t most)
+  {
+    std::string text;
+    for (std::size_t left = random() % (most + 1); left > 0; --left)
+    {
+      text += static_cast<char>('0' + random() % 10);
+    }
+    return text;
+  };
+  for (int i = 0; i < 200000; ++i)
+  {
+    std::string text = (random() % 2 == 0 ? "-" : "") + digits(12) + "." + digits(12);
+    text += random() % 2 == 0 ? "" : (random() % 2 == 0 ? "e-" : "E+") + std::to_string(random() % 40);
+    const std::optional<double> number = decimalNumber(text);
+    if (text.find_first_of("0123456789") < text.find_first_of("eE"))
+    {
+      ASSERT_TRUE(number) << text;
+      EXPECT_EQ(*number, std::strtod(text.c_str(), nullptr)) << text;
+      EXPECT_EQ(std::signbit(*number), text[0] == '-') << text;
+    }
+    else
+    {
+      EXPECT_FALSE(number) << text;
+    }
+  }
+  for (const char* text : { "0", "-0", "1e400", "1e-400", "0e999999999999", "1e-999999999999", "9007199254740993",
+                            "000000000000000000001", "123456789012345678901234567890" })
+  {
+    EXPECT_EQ(decimalNumber(text), std::strtod(text, nullptr)) << text;
+  }
 }
 
 TEST(LocaleOfTheProgram, ChangesNoNumber)

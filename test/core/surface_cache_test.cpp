@@ -22,7 +22,6 @@
 #include <gtest/gtest.h>
 
 #include "base/source_hash.hpp"
-#include "base/text_hash.hpp"
 #include "gear/angle.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/twin/twin.hpp"
@@ -34,6 +33,7 @@
 #include "surface/surface_cache.hpp"
 #include "surface/surface_ring.hpp"
 #include "surface/surface_worker.hpp"
+#include "surface/table_file.hpp"
 #include "test/core/response_surface_support.hpp"
 #include "test/support/temporary_folder.hpp"
 #include "test_parameters.hpp"
@@ -309,7 +309,7 @@ TEST(SurfaceCache, RefusesATableThatIsNoneUnderTheRightHash)
   {
     std::string bytes = good.substr(0, good.size() - sizeof(std::uint64_t));
     bytes.replace(body + place * sizeof(number), sizeof(number), bytes_of(number));
-    const std::uint64_t sum = textHash(bytes);
+    const std::uint64_t sum = tableChecksum(bytes);
     bytes.append(reinterpret_cast<const char*>(&sum), sizeof(sum));
     return isTaken([&](const std::string& path) { std::ofstream(path, std::ios::binary) << bytes; });
   };
@@ -344,7 +344,7 @@ TEST(SurfaceCache, IsOfOneKindOfProcessor)
   {
     std::string changed = bytes;
     changed.replace(place, kind.size(), other);
-    const std::uint64_t sum = textHash(changed);
+    const std::uint64_t sum = tableChecksum(changed);
     changed.append(reinterpret_cast<const char*>(&sum), sizeof(sum));
     return isTaken([&](const std::string& path) { std::ofstream(path, std::ios::binary) << changed; });
   };

@@ -101,6 +101,39 @@ TEST(SurfaceDeviations, AreNotKeptInAPlaceThatMovesOn)
   }
 }
 
+/// A broken tooth looks the same from both sides: one half is measured, and the other is what it would have been.
+TEST(SurfaceDeviations, AreMeasuredOneWayWhereTheOtherIsTheirMirrorImage)
+{
+  const Parameters parameters = surfaceParameters();
+  const auto built = [&](double highest)
+  { return buildDeviations(parameters, JointModel(parameters), brokenModel(), 100, surface().lowest(), highest, {}); };
+  const DeviationBuild mirrored = built(surface().highest());
+  const DeviationBuild measured = built(surface().highest() * (1.0 + 1e-12));
+  EXPECT_LT(mirrored.solves, 0.6 * measured.solves);
+  const ResponseSurface one(surface().table(), mirrored.table);
+  const ResponseSurface other(surface().table(), measured.table);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> part(0.0, 1.0);
+  Eigen::Array2d misses(0.0, 0.0);  // of output torque [N.m] and of a lobe's force [N], squares
+  Eigen::Array2d sizes(0.0, 0.0);   // of the fault's effect on them
+  for (int i = 0; i < 20000; ++i)
+  {
+    const double motor = 20.0 * (part(random) - 0.5);
+    const double output = motor / 101.0 - 4e-3 * part(random);
+    const auto at = [&](const ResponseSurface& which)
+    {
+      ResponseSurface::Place place;
+      EXPECT_TRUE(which.locate(motor, output, place)) << motor;
+      return Eigen::Array2d(which.response(place).output_torque, ResponseSurface::lobeForces(place)[0]);
+    };
+    misses += (at(one) - at(other)).square();
+    sizes += (at(other) - at(surface())).square();
+  }
+  // Either may miss the ring by 0.5 % of the largest effect.
+  EXPECT_LT(std::sqrt(misses[0] / sizes[0]), 5e-3);
+  EXPECT_LT(std::sqrt(misses[1] / sizes[1]), 5e-2);
+}
+
 TEST(SurfaceDeviations, AreNotBuiltBeyondABoundedNumberOfPoints)
 {
   constexpr std::size_t MOST = 20000;

@@ -5,6 +5,8 @@ import glob
 import math
 import os
 import signal
+import subprocess
+import sys
 
 import rosbag
 
@@ -40,6 +42,14 @@ class Simulate(tool.ToolTest):
         self.assertEqual(rows[-1]["time"], 0.3)
         self.assertGreater(rows[-1]["motor_angle"], 1.0)
         self.assertEqual(rows[-1]["motor_angle"], summary["motor_angle"])
+
+    def test_report_of_a_bag(self):
+        bag = self.path("run.bag")
+        self.succeed("simulate", "--torque", 0.2, "--duration", 0.2, "--out", bag)
+        report = subprocess.run([sys.executable, os.path.join(tool.CHECKOUT, "scripts", "report_bag.py"), bag],
+                                stdout=subprocess.PIPE, universal_newlines=True, check=True).stdout
+        self.assertRegex(report, r"on the response surface +0  %")
+        self.assertRegex(report, r"solver +every step converged")
 
     def test_losses_warm_the_drive_in_csv_and_bag_alike(self):
         run = ("simulate", "--duration", 0.4, "--torque", 0.5, "--set", "publish.health_rate=100.0")
