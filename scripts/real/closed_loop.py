@@ -151,8 +151,8 @@ recorded [A], –: no steady motion of a frequency that the rows resolve.
 The tracking error is within 1.5 of the recorded one in {np.count_nonzero(tracked <= 1.5)} of {len(tracked)} (recording,
 joint); within a factor of two in {np.count_nonzero((tracked <= 2.0) & (tracked >= 0.5))}. The current in moving rows is
 within 0.8 of the simple fit's error in {np.count_nonzero(currents <= 0.8)} of {len(currents)}, and below it in
-{np.count_nonzero(currents < 1.0)}. What bounds the current: these drives are without errors of manufacture, so they
-make no ripple; and a recording that begins or ends in motion jumps there.
+{np.count_nonzero(currents < 1.0)}. Two things bound the current. These drives have no errors of manufacture, so
+they make no ripple. And where a recording begins or ends in motion, the simulated arm starts or stops at once.
 """, *table(["recording", *joints], rows), *built_section(runner, recordings, fit, joints, train), f"""
 ![Tracking error of three joints in {shown}, recorded and in closed loop](images/real_robot/closed_loop.png)
 """]

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "tracking/plausible.hpp"
+#include "tracking/stream_timing.hpp"
 
 namespace hjt
 {
@@ -14,10 +15,10 @@ ArmLoad::ArmLoad(const ArmDescription& arm)
   , times_(dynamics_.joints())
   , slow_(dynamics_.joints(), MotionDifferentiator(HALF_WIDTH))
   , fast_(dynamics_.joints())
-  , waiting_(ROOM, { std::vector<MotionSample>(dynamics_.joints()), std::vector<double>(dynamics_.joints()) })
+  , waiting_(ROOM, { std::vector<MotionSample>(dynamics_.joints()), std::vector<MotionSample>(dynamics_.joints()),
+                     std::vector<double>(dynamics_.joints()) })
   , rows_(dynamics_.joints())
   , motion_(dynamics_.joints())
-  , fast_samples_(dynamics_.joints())
   , fast_torques_(dynamics_.joints())
 {
 }
@@ -34,7 +35,7 @@ void ArmLoad::reset() noexcept
 bool ArmLoad::push(const std::vector<MotionRow>& rows) noexcept
 {
   const double time = rows.front().time;
-  if (time < last_time_ - RESTART)
+  if (time < last_time_ - StreamTiming::RESTART)
   {
     reset();
   }
@@ -112,15 +113,16 @@ const ArmSample* ArmLoad::pop(bool at_end) noexcept
       pushFast();
     }
   }
-  if (first_waiting_ == end_waiting_ || !take(fast_, at_end, fast_samples_, fast_torques_))
+  ArmSample& sample = waiting_[first_waiting_ % ROOM];
+  if (first_waiting_ == end_waiting_ || !take(fast_, at_end, sample.own, fast_torques_))
   {
     return nullptr;
   }
-  ArmSample& sample = waiting_[first_waiting_++ % ROOM];
+  ++first_waiting_;
   for (std::size_t i = 0; i < motion_.size(); ++i)
   {
-    sample.joints[i].stamp_error = fast_samples_[i].stamp_error;
-    sample.joints[i].vibration = fast_torques_[i] - sample.torques[i];
+    sample.own[i].recorded_velocity = sample.joints[i].recorded_velocity;
+    sample.own[i].vibration = fast_torques_[i] - sample.torques[i];
   }
   return &sample;
 }

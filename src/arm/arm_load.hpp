@@ -14,7 +14,9 @@ namespace hjt
 /// All joints of an arm at the time of one row.
 struct ArmSample
 {
-  std::vector<MotionSample> joints;
+  std::vector<MotionSample> joints;  ///< rates within ArmLoad::HALF_WIDTH, for the load
+  /// The same with a joint's own rates, within MotionDifferentiator::HALF_WIDTH, stamp errors and vibration.
+  std::vector<MotionSample> own;
   /// Of the links and the payload at the output of each joint, the motor's own inertia not in it, > 0 resists positive
   /// motion [N.m].
   std::vector<double> torques;
@@ -33,8 +35,6 @@ class ArmLoad
 public:
   /// Wider than that of a joint's own rates: the load is that of the commanded motion, without vibration [s].
   static constexpr double HALF_WIDTH = 0.1;
-  /// Stamps that go back by more are a new stream [s].
-  static constexpr double RESTART = 1.0;
 
   /// @throws ParameterError as ArmDynamics.
   explicit ArmLoad(const ArmDescription& arm);
@@ -68,7 +68,6 @@ private:
   std::uint64_t end_waiting_{};
   std::vector<MotionRow> rows_;
   std::vector<JointMotion> motion_;
-  std::vector<MotionSample> fast_samples_;
   std::vector<double> fast_torques_;
   bool has_velocities_{};  // of the first row
   double last_time_{ -std::numeric_limits<double>::infinity() };

@@ -60,8 +60,11 @@ public:
   /// After each comparison of the tracker.
   void offer(Stamp stamp, const Comparison& comparison, const Tracker& tracker)
   {
-    fillComparison(stamp, comparison, comparison_.message());
-    comparison_.send();
+    if (comparison_.isWanted())
+    {
+      fillComparison(stamp, comparison, comparison_.message());
+      comparison_.send();
+    }
     if (report_periods_.begins(stamp))
     {
       fillIndicators(stamp, tracker.signalIndicators(), indicators_.message());

@@ -2,6 +2,7 @@
 #include "params/configuration_files.hpp"
 
 #include <cstdlib>
+#include <variant>
 
 #include <dlfcn.h>
 
@@ -79,5 +80,15 @@ std::string findConfiguration(const std::string& name, const fs::path& directory
     }
   }
   return name;
+}
+
+void findNamedFiles(const fs::path& directory, ParameterMap& map)
+{
+  const auto found = map.find("indicators.signatures");
+  std::string* name = found == map.end() ? nullptr : std::get_if<std::string>(&found->second.value);
+  if (name != nullptr && *name != NO_FILE)
+  {
+    *name = findConfiguration(*name, directory);
+  }
 }
 }  // namespace hjt

@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <string>
 
+#include "harmonic_joint_twin/params/parameter_map.hpp"
+
 namespace hjt
 {
 /// Folder of the library that this function is in.
@@ -20,4 +22,8 @@ std::filesystem::path configurationDirectory(const std::string& given);
 /// A configuration file as given, else beside the default configuration: `config/x.yaml` and `joints/x.yaml` work from
 /// anywhere.
 std::string findConfiguration(const std::string& name, const std::filesystem::path& directory);
+
+/// Where the default configuration is another than this process finds by itself: files that parameters name are looked
+/// for beside it too.
+void findNamedFiles(const std::filesystem::path& directory, ParameterMap& map);
 }  // namespace hjt

@@ -197,12 +197,12 @@ Configuration Configuration::with(const ParameterMap& map) const
 
 void Configuration::take(const ParameterMap& map)
 {
-  values_ = parseParameters(map);
-  std::string& signatures = values_.indicators.signatures;
-  if (has_own_directory_ && signatures != NO_FILE)
+  ParameterMap found = map;
+  if (has_own_directory_)
   {
-    signatures = findConfiguration(signatures, directory_);
+    findNamedFiles(directory_, found);
   }
+  values_ = parseParameters(found);
   map_ = map;
 }
 

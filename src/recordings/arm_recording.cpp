@@ -131,7 +131,7 @@ MotionFindings ArmRecording::read(const VisitRows& visit, RecordingFit& fit, dou
 
 MotionFindings ArmRecording::readSamples(const VisitSample& visit) const
 {
-  return differentiate([this](const VisitRows& rows) { return read(rows); }, visit);
+  return readSamplesBy([this](const VisitRows& rows) { return read(rows); }, visit);
 }
 
 MotionFindings ArmRecording::readSamples(const VisitSample& visit, RecordingFit& fit) const
@@ -142,51 +142,46 @@ MotionFindings ArmRecording::readSamples(const VisitSample& visit, RecordingFit&
     noticeOf(found);
     return found;
   };
-  return differentiate(read_all, visit);
+  return readSamplesBy(read_all, visit);
 }
 
-MotionFindings ArmRecording::differentiate(const Read& read, const VisitSample& visit) const
+MotionFindings ArmRecording::readSamplesBy(const Read& read, const VisitSample& visit) const
 {
-  std::vector<MotionDifferentiator> differentiators(arm_.joints.size());
-  std::vector<Load> loads;
-  for (const Parameters& parameters : parameters_)
+  if (is_arm_)
   {
-    loads.emplace_back(parameters.output);
+    return read(
+        [&](const std::vector<ArmJointRow>& rows)
+        {
+          for (std::size_t i = 0; i < rows.size(); ++i)
+          {
+            visit(i, rows[i].row);
+          }
+        });
   }
-  const auto forward = [&](std::size_t i, bool at_end)
+  MotionDifferentiator differentiator;
+  const Load load(parameters_.front().output);
+  const auto forward = [&](bool at_end)
   {
-    while (std::optional<MotionSample> sample = differentiators[i].pop(at_end))
+    while (std::optional<MotionSample> sample = differentiator.pop(at_end))
     {
-      if (!is_arm_ && !has_load_)
-      {
-        sample->load = ownTorque(loads[i], *sample);
-      }
-      visit(i, *sample);
+      sample->load = has_load_ ? sample->load : ownTorque(load, *sample);
+      visit(0, *sample);
     }
   };
   MotionFindings found = read(
       [&](const std::vector<ArmJointRow>& rows)
       {
-        for (std::size_t i = 0; i < rows.size(); ++i)
-        {
-          differentiators[i].push(rows[i].row);
-          forward(i, false);
-        }
+        differentiator.push(rows.front().row);
+        forward(false);
       });
-  for (std::size_t i = 0; i < differentiators.size(); ++i)
+  forward(true);
+  found.refused = differentiator.refused();
+  found.gaps = differentiator.gaps();
+  if (found.corrupt > 0 || found.refused > 0 || found.gaps > 0)
   {
-    forward(i, true);
-  }
-  if (!is_arm_)
-  {
-    found.refused = differentiators.front().refused();
-    found.gaps = differentiators.front().gaps();
-    if (found.corrupt > 0 || found.refused > 0 || found.gaps > 0)
-    {
-      watch_.notice(source_.path + ": " + std::to_string(found.corrupt) + " messages unreadable or impossible, " +
-                    std::to_string(found.refused) + " rows repeated or out of order, " + std::to_string(found.gaps) +
-                    " gaps over " + roundedText(MotionDifferentiator::MAX_GAP, 3) + " s");
-    }
+    watch_.notice(source_.path + ": " + std::to_string(found.corrupt) + " messages unreadable or impossible, " +
+                  std::to_string(found.refused) + " rows repeated or out of order, " + std::to_string(found.gaps) +
+                  " gaps over " + roundedText(MotionDifferentiator::MAX_GAP, 3) + " s");
   }
   return found;
 }
@@ -222,7 +217,7 @@ MotionFindings ArmRecording::readJoint(const VisitRows& visit, double end) const
   found.has_load = has_load_;
   const auto take = [&](const MotionRow& row)
   {
-    rows.front() = { row, row.load, 0.0 };
+    rows.front() = { { row }, row.load, 0.0 };
     ratio.add(row);
     visit(rows);
     return !watch_.stopped() && row.time < end;
@@ -255,7 +250,7 @@ MotionFindings ArmRecording::readArm(const VisitRows& visit, RecordingFit& fit, 
     {
       for (std::size_t i = 0; i < rows.size(); ++i)
       {
-        rows[i].row = sample->joints[i];
+        rows[i].row = sample->own[i];
         rows[i].recorded_load = sample->joints[i].load;
         rows[i].motor_part = inertias_in_load_[i] * sample->joints[i].acceleration;
         if (!uses_recorded_)

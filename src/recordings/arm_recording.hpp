@@ -16,7 +16,7 @@ namespace hjt
 /// One joint of the arm at the time of a row.
 struct ArmJointRow
 {
-  MotionRow row;           ///< its load the one chosen, at the output
+  MotionSample row;        ///< its load the one chosen, at the output; rates are those of an arm's joint only
   double recorded_load{};  ///< [N.m]
   double motor_part{};     ///< what of the motor's inertia a controller's torque holds beside the arm's load [N.m]
 };
@@ -72,7 +72,7 @@ private:
   MotionCount readRows(const std::function<bool(const std::vector<MotionRow>&)>& visit) const;
   MotionFindings readJoint(const VisitRows& visit, double end) const;
   MotionFindings readArm(const VisitRows& visit, RecordingFit& fit, double end) const;
-  MotionFindings differentiate(const Read& read, const VisitSample& visit) const;
+  MotionFindings readSamplesBy(const Read& read, const VisitSample& visit) const;
 
   Watch watch_;
   const std::vector<std::vector<MotionRow>>& rows_;  // at hand; none: a file

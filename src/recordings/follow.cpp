@@ -2,7 +2,6 @@
 #include "recordings/follow.hpp"
 
 #include <cmath>
-#include <deque>
 #include <filesystem>
 #include <memory>
 
@@ -10,6 +9,7 @@
 #include "recordings/arm_recording.hpp"
 #include "recordings/rms.hpp"
 #include "recordings/tracked_bag.hpp"
+#include "tracking/stream_timing.hpp"
 
 #include "harmonic_joint_twin/base/errors.hpp"
 
@@ -50,6 +50,7 @@ public:
   /// `bag`: gets the comparisons as those of joint `number`, if there is one.
   Follower(const ArmRecording& recording, const FollowOptions& options, TrackedBag* bag, std::size_t number)
     : options_(options)
+    , is_arm_(recording.isArm())
     , has_load_(recording.isArm() || recording.hasRecordedLoad())
     , has_arm_load_(recording.isArm() && !recording.usesRecordedLoad())
     , has_load_error_(has_arm_load_ && recording.hasRecordedLoad())
@@ -65,10 +66,6 @@ public:
 
   void add(const ArmJointRow& joint)
   {
-    if (has_arm_load_)
-    {
-      motor_parts_.push_back({ joint.row.time, joint.motor_part });
-    }
     if (has_load_error_)
     {
       load_error_.add(joint.row.load + joint.motor_part - joint.recorded_load);
@@ -77,20 +74,26 @@ public:
     {
       tracker_.pushLoad(joint.row.time, joint.row.load);
     }
+    timing_.add(joint.row.time, joint.row.received);
+    if (is_arm_)
+    {
+      take(tracker_.compare(joint.row), joint.motor_part);
+      return;
+    }
     tracker_.push(joint.row);
-    take(false);
+    takeAll(false);
   }
 
   FollowedJoint finish(const std::string& name)
   {
-    take(true);
+    takeAll(true);
     if (csv_)
     {
       csv_->close();
     }
     return { name,
              tracker_.counters(),
-             tracker_.timing(),
+             timing_.report(),
              tracker_.lag(),
              current_.value(),
              residual_.value(),
@@ -111,42 +114,36 @@ private:
     return path;
   }
 
-  void take(bool at_end)
+  void takeAll(bool at_end)
   {
-    while (std::optional<Comparison> now = tracker_.pop(at_end))
+    while (const std::optional<Comparison> now = tracker_.pop(at_end))
     {
-      if (bag_ != nullptr)
-      {
-        bag_->offer(number_, *now, tracker_);
-      }
-      // The column is always the torque of a controller, independent of the load option.
-      while (!motor_parts_.empty() && motor_parts_.front().time < now->time)
-      {
-        motor_parts_.pop_front();
-      }
-      if (!motor_parts_.empty())
-      {
-        now->load_torque += motor_parts_.front().torque;
-      }
-      current_.add(now->current.measured);
-      residual_.add(now->current.residual());
-      velocity_.add(now->velocity.residual());
-      position_.add(now->position.residual());
-      options_.take(number_, *now);
-      if (csv_)
-      {
-        csv_->write(*now);
-      }
+      take(*now, 0.0);
     }
   }
 
-  struct MotorPart
+  /// `motor_part`: what a controller's torque holds beside the arm's load [N.m].
+  void take(Comparison now, double motor_part)
   {
-    double time;
-    double torque;
-  };
+    if (bag_ != nullptr)
+    {
+      bag_->offer(number_, now, tracker_);
+    }
+    // The column is always the torque of a controller, independent of the load option.
+    now.load_torque += has_arm_load_ ? motor_part : 0.0;
+    current_.add(now.current.measured);
+    residual_.add(now.current.residual());
+    velocity_.add(now.velocity.residual());
+    position_.add(now.position.residual());
+    options_.take(number_, now);
+    if (csv_)
+    {
+      csv_->write(now);
+    }
+  }
 
   const FollowOptions& options_;
+  const bool is_arm_;
   const bool has_load_;
   const bool has_arm_load_;
   const bool has_load_error_;
@@ -154,7 +151,7 @@ private:
   std::size_t number_;  // of the joint
   Tracker tracker_;
   std::optional<TableFile<Comparison>> csv_;
-  std::deque<MotorPart> motor_parts_;  // of rows whose comparison is to come
+  StreamTiming timing_;
   Rms current_;
   Rms residual_;
   Rms velocity_;

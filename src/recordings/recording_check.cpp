@@ -102,7 +102,7 @@ class Judging
 {
 public:
   Judging(const std::vector<Parameters>& parameters, LoadOrigin load)
-    : parameters_(parameters), is_arm_(load == LoadOrigin::ARM), differentiators_(parameters.size())
+    : parameters_(parameters), is_arm_(load == LoadOrigin::ARM)
   {
     for (const Parameters& of : parameters)
     {
@@ -110,10 +110,18 @@ public:
     }
   }
 
-  void add(std::size_t joint, const MotionRow& row)
+  void add(std::size_t joint, const MotionSample& sample) { joints_[joint]->update(sample); }
+
+  /// What the differentiators of all joints have.
+  void addReady(std::vector<MotionDifferentiator>& joints, bool at_end)
   {
-    differentiators_[joint].push(row);
-    forward(joint, false);
+    for (std::size_t i = 0; i < joints.size(); ++i)
+    {
+      while (const std::optional<MotionSample> sample = joints[i].pop(at_end))
+      {
+        add(i, *sample);
+      }
+    }
   }
 
   /// Takes the misfits as the reading before left them.
@@ -122,7 +130,6 @@ public:
     std::vector<const JointEvidence*> evidences;
     for (std::size_t i = 0; i < joints_.size(); ++i)
     {
-      forward(i, true);
       evidences.push_back(joints_[i].get());
     }
     const bool has_controller = controllerIsReference(evidences);
@@ -147,17 +154,8 @@ public:
   }
 
 private:
-  void forward(std::size_t joint, bool at_end)
-  {
-    while (const std::optional<MotionSample> sample = differentiators_[joint].pop(at_end))
-    {
-      joints_[joint]->update(*sample);
-    }
-  }
-
   const std::vector<Parameters>& parameters_;
   const bool is_arm_;  // else joints by themselves
-  std::vector<MotionDifferentiator> differentiators_;
   std::vector<std::unique_ptr<JointEvidence>> joints_;
 };
 
@@ -222,6 +220,7 @@ void readJoints(const RecordingOptions& options, CheckedArm& arm)
   RecordingFit fit(parameters);
   Judging judging(parameters, LoadOrigin::CONFIGURED);
   std::vector<MotionDifferentiator> differentiators(names.size(), MotionDifferentiator(ArmLoad::HALF_WIDTH));
+  std::vector<MotionDifferentiator> own(names.size());
   std::vector<MotionSample> samples(names.size());
   const std::vector<double> unknown(names.size(), std::nan(""));
   const auto forward = [&](bool at_end)
@@ -237,9 +236,10 @@ void readJoints(const RecordingOptions& options, CheckedArm& arm)
       for (std::size_t i = 0; i < names.size(); ++i)
       {
         samples[i].load = twin.modelledLoad(samples[i]);
-        judging.add(i, samples[i]);
+        own[i].push(samples[i]);
       }
     }
+    judging.addReady(own, at_end);
   };
   static_cast<MotionCount&>(arm.found) = readArmMotion(
       motionSource(options), names,

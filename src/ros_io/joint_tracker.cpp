@@ -121,7 +121,15 @@ void JointTracker::forgetAll()
 void JointTracker::push(const MotionRow& row)
 {
   tracker_.push(row);
-  publish();
+  while (const std::optional<Comparison> comparison = tracker_.pop())
+  {
+    publish(*comparison);
+  }
+}
+
+void JointTracker::compare(const MotionSample& row)
+{
+  publish(tracker_.compare(row));
 }
 
 void JointTracker::setMisfit(const Misfit& misfit, bool settled)
@@ -215,16 +223,13 @@ void JointTracker::passTemperature(const TemperatureAt& temperature)
   }
 }
 
-void JointTracker::publish()
+void JointTracker::publish(const Comparison& comparison)
 {
-  while (const std::optional<Comparison> comparison = tracker_.pop())
-  {
-    const Stamp stamp = stream_.clock.stamp(comparison->time);
-    outputs_.offer(stamp, *comparison, tracker_);
-    life_.offer(stamp, nominalRatio(parameters_.gear) * comparison->velocity.measured, comparison->joint_torque,
-                comparison->temperature, tracker_.assessment());
-    comparison_ = *comparison;
-  }
+  const Stamp stamp = stream_.clock.stamp(comparison.time);
+  outputs_.offer(stamp, comparison, tracker_);
+  life_.offer(stamp, nominalRatio(parameters_.gear) * comparison.velocity.measured, comparison.joint_torque,
+              comparison.temperature, tracker_.assessment());
+  comparison_ = comparison;
 }
 
 bool JointTracker::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response)

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -37,12 +39,15 @@ template <class Message>
 class PublishedTopic
 {
 public:
-  PublishedTopic(ros::NodeHandle& node, const char* name, Message first)
-    : message_(std::move(first)), publisher_(node.advertise<Message>(name, QUEUE_SIZE, IS_LATCHED))
+  PublishedTopic(ros::NodeHandle& node, const char* name, Message first) : message_(std::move(first))
   {
+    const auto count = [this](int by)
+    { return [of = subscribers_, by](const ros::SingleSubscriberPublisher&) { *of += by; }; };
+    publisher_ = node.advertise<Message>(name, QUEUE_SIZE, count(1), count(-1), ros::VoidConstPtr(), IS_LATCHED);
   }
 
-  bool isWanted() const { return publisher_.getNumSubscribers() > 0; }
+  /// Counted, because to ask roscpp takes its lock and a search of all topics.
+  bool isWanted() const noexcept { return IS_LATCHED || *subscribers_ > 0; }
 
   Message& message() { return message_; }
   void send() { publisher_.publish(message_); }
@@ -54,6 +59,7 @@ private:
   static constexpr bool IS_LATCHED = std::is_same_v<Message, harmonic_joint_twin::Verdict>;
 
   Message message_;
+  std::shared_ptr<std::atomic<int>> subscribers_ = std::make_shared<std::atomic<int>>(0);
   ros::Publisher publisher_;
 };
 
@@ -78,7 +84,8 @@ public:
   void start(bool reset);
 
   void pushLoad(double time, double torque) { tracker_.pushLoad(time, torque); }
-  void push(const MotionRow& row);
+  void push(const MotionRow& row);        ///< of a single joint
+  void compare(const MotionSample& row);  ///< of an arm's
 
   /// What does not fit in its telemetry; none: nothing, or that is not yet `settled`.
   void setMisfit(const Misfit& misfit, bool settled);
@@ -130,7 +137,7 @@ private:
   void passLoad(const LoadAt& load);
   void passTemperature(const TemperatureAt& temperature);
   void forgetAll();
-  void publish();
+  void publish(const Comparison& comparison);
   bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
 
   Verdict verdictNow() const;

@@ -14,7 +14,6 @@
 #include "messages/topics.hpp"
 #include "ros_io/input_topics.hpp"
 #include "ros_io/joint_name.hpp"
-#include "tracking/plausible.hpp"
 
 namespace hjt
 {
@@ -161,9 +160,12 @@ void TrackerNode::push(Stamp stamp)
   const double time = stream_.clock.seconds(stamp);
   const bool moved = taken == TelemetryClock::Row::MOVED;
   stream_.clock_changes += moved ? 1 : 0;
-  if (moved || time < last_time_ - Tracker::RESTART)
+  if (moved)
   {
     stream_.timing.reset();
+  }
+  if (moved || time < last_time_ - StreamTiming::RESTART)
+  {
     resetFit();
   }
   if (moved && arm_load_)
@@ -189,10 +191,7 @@ void TrackerNode::push(Stamp stamp)
     ROS_WARN_STREAM_ONCE("Angles on " << stream_.topic
                                       << " are folded into one turn: their jumps by 2 pi are taken out");
   }
-  if (std::all_of(rows_.begin(), rows_.end(), isPlausible))
-  {
-    stream_.timing.add(time, rows_.front().received);
-  }
+  stream_.timing.add(time, rows_.front().received);
   if (!arm_load_)
   {
     joints_.front()->push(rows_.front());
@@ -206,9 +205,9 @@ void TrackerNode::push(Stamp stamp)
     {
       if (joints_[i]->takesArmLoad())
       {
-        joints_[i]->pushLoad(sample->joints[i].time, sample->torques[i]);
+        joints_[i]->pushLoad(sample->own[i].time, sample->torques[i]);
       }
-      joints_[i]->push(sample->joints[i]);
+      joints_[i]->compare(sample->own[i]);
     }
     lookAtFriction(sample->joints.front().time);
   }

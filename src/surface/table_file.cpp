@@ -24,7 +24,7 @@ namespace hjt
 {
 namespace
 {
-/// No table is larger; the shipped gear's has 8 MB [bytes].
+/// Upper limit of a table's file; the shipped gear's has 8 MB [bytes].
 constexpr std::size_t MAX_FILE = std::size_t{ 1 } << 30;
 
 template <class T>

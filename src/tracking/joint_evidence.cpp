@@ -70,14 +70,13 @@ void JointEvidence::reset() noexcept
   health_.reset();
 }
 
-JointEvidence::Row JointEvidence::update(const MotionSample& sample, bool fits) noexcept
+JointEvidence::Row JointEvidence::judge(const MotionSample& sample, bool fits) noexcept
 {
   if (!isPossible(sample, parameters_))
   {
     ++now_.reach.impossible;
     return Row::IMPOSSIBLE;
   }
-  predicted_ = twin_.step(sample);
   const double gain = parameters_.telemetry.torque_per_current;
   const double residual = sample.current - predicted_.current;
   const bool was_touched = isTouched();

@@ -49,9 +49,9 @@ enum class LoadOrigin
   ARM  ///< links and payload, by rigid-body dynamics
 };
 
-/// What a measured joint shows beside the twin that makes the same motion, row by row, live and offline alike: `judge`
-/// makes the verdict of it. Rows while something touches the arm, and ContactWatch::HOLD after it, count for nothing,
-/// unless the load is the configured one. Memory is fixed; after construction nothing allocates or throws.
+/// What a measured joint shows beside the twin that makes the same motion, row by row, live and offline alike:
+/// `hjt::judge` makes the verdict of it. Rows while something touches the arm, and ContactWatch::HOLD after it, count
+/// for nothing, unless the load is the configured one. Memory is fixed; after construction nothing allocates or throws.
 class JointEvidence
 {
 public:
@@ -73,7 +73,14 @@ public:
   };
 
   /// `sample`: its load holds weight and inertia too. `fits`: else the signals are not looked at.
-  Row update(const MotionSample& sample, bool fits = true) noexcept;
+  Row update(const MotionSample& sample, bool fits = true) noexcept
+  {
+    predict(sample);
+    return judge(sample, fits);
+  }
+  /// The same in two: the twin makes the motion of every row, of which those with a known load are judged.
+  const MotionPrediction& predict(const MotionSample& sample) noexcept { return predicted_ = twin_.step(sample); }
+  Row judge(const MotionSample& sample, bool fits) noexcept;
 
   /// Starts again, but keeps what the signals are held against and what touches the arm.
   void forget() noexcept;

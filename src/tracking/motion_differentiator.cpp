@@ -12,16 +12,15 @@ bool MotionDifferentiator::push(const MotionRow& row) noexcept
 {
   const bool finite =
       std::isfinite(row.time) && std::isfinite(row.position) && std::isfinite(row.current) && std::isfinite(row.load);
-  if (!finite || (end_ > 0 && row.time < at(end_ - 1).row.time + MIN_STEP))
+  const double last = end_ > 0 ? rows_[(end_ - 1) % ROOM].time : -HUGE_VAL;
+  if (!finite || row.time < last + MIN_STEP)
   {
     ++refused_;
     return false;
   }
-  if (end_ > 0 && row.time > at(end_ - 1).row.time + MAX_GAP)
-  {
-    ++segment_;
-  }
-  rows_[end_ % ROOM] = { row, segment_ };
+  segment_ += end_ > 0 && row.time > last + MAX_GAP ? 1 : 0;
+  rows_[end_ % ROOM] = row;
+  points_[end_ % ROOM] = { row.time - row.stamp_error, row.position, segment_ };
   ++end_;
   return true;
 }
@@ -32,9 +31,9 @@ std::optional<MotionSample> MotionDifferentiator::pop(bool at_end) noexcept
   {
     return std::nullopt;
   }
-  const Held& newest = at(end_ - 1);
-  const bool known = newest.segment != at(next_).segment ||
-                     (end_ > next_ + MIN_SIDE && trueTime(newest) >= trueTime(at(next_)) + half_width_);
+  const Point& newest = at(end_ - 1);
+  const bool known =
+      newest.segment != at(next_).segment || (end_ > next_ + MIN_SIDE && newest.time >= at(next_).time + half_width_);
   if (!known && !at_end)
   {
     return std::nullopt;
@@ -44,25 +43,26 @@ std::optional<MotionSample> MotionDifferentiator::pop(bool at_end) noexcept
 
 MotionSample MotionDifferentiator::fit(std::uint64_t index) const noexcept
 {
-  const Held& centre = at(index);
+  const Point& centre = at(index);
   MotionSample sample;
-  static_cast<MotionRow&>(sample) = centre.row;
+  static_cast<MotionRow&>(sample) = rows_[index % ROOM];
   sample.after_gap = index > 0 && at(index - 1).segment != centre.segment;
 
-  // Times by the half width, so that the sums are of one size.
-  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  // Sums of the powers of t, in half widths so that they are of one size, and of their products with the angle.
   int rows = 0;
-  const auto take = [&](const Held& held, std::uint64_t distance)
+  std::array<double, 4> powers{};
+  std::array<double, 3> products{};
+  const auto take = [&](const Point& point, std::uint64_t distance)
   {
-    const double t = (trueTime(held) - trueTime(centre)) / half_width_;
-    if (held.segment != centre.segment || (std::abs(t) > 1.0 && distance > MIN_SIDE))
+    const double t = (point.time - centre.time) / half_width_;
+    if (point.segment != centre.segment || (std::abs(t) > 1.0 && distance > MIN_SIDE))
     {
       return false;
     }
-    const Eigen::Vector3d powers(1.0, t, t * t);
-    normal += powers * powers.transpose();
-    right += powers * (held.row.position - centre.row.position);
+    const double square = t * t;
+    const double angle = point.position - centre.position;
+    powers = { powers[0] + t, powers[1] + square, powers[2] + t * square, powers[3] + square * square };
+    products = { products[0] + angle, products[1] + t * angle, products[2] + square * angle };
     ++rows;
     return true;
   };
@@ -74,7 +74,9 @@ MotionSample MotionDifferentiator::fit(std::uint64_t index) const noexcept
   }
   if (rows >= MIN_ROWS)
   {
-    const Eigen::Vector3d parabola = normal.ldlt().solve(right);
+    Eigen::Matrix3d normal;
+    normal << rows, powers[0], powers[1], powers[0], powers[1], powers[2], powers[1], powers[2], powers[3];
+    const Eigen::Vector3d parabola = normal.ldlt().solve(Eigen::Vector3d(products[0], products[1], products[2]));
     sample.velocity = parabola[1] / half_width_;
     sample.acceleration = 2.0 * parabola[2] / (half_width_ * half_width_);
   }

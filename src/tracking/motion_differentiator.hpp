@@ -66,21 +66,23 @@ public:
   std::uint64_t gaps() const noexcept { return segment_; }
 
 private:
-  struct Held
+  /// What a fit takes of a row.
+  struct Point
   {
-    MotionRow row;
-    std::uint64_t segment;  // number of gaps before it
+    double time{};            // true [s]
+    double position{};        // [rad]
+    std::uint64_t segment{};  // number of gaps before it
   };
   static constexpr std::size_t ROOM = 512;      // more than two windows of rows at MIN_STEP
   static constexpr int MIN_ROWS = 4;            // rows for a parabola that does not only pass through them
   static constexpr std::uint64_t MIN_SIDE = 2;  // rows to either side, however far apart
 
-  static double trueTime(const Held& held) noexcept { return held.row.time - held.row.stamp_error; }
-  const Held& at(std::uint64_t index) const noexcept { return rows_[index % ROOM]; }
+  const Point& at(std::uint64_t index) const noexcept { return points_[index % ROOM]; }
   MotionSample fit(std::uint64_t index) const noexcept;
 
   double half_width_;
-  std::array<Held, ROOM> rows_{};
+  std::array<MotionRow, ROOM> rows_{};
+  std::array<Point, ROOM> points_{};
   std::uint64_t next_{};  // next to come out
   std::uint64_t end_{};   // one past the last
   std::uint64_t segment_{};

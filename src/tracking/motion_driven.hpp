@@ -67,16 +67,20 @@ public:
       started_ = true;
     }
     presliding_.move(ratio_ * (sample.position - last_.position), sample.time - last_.time);
-    const double share = presliding_.share();
     last_ = sample;
+    return at(sample.temperatureOr(temperature_));
+  }
 
-    const double friction =
-        friction_.at(ratio_ * sample.velocity, sample.load, sample.temperatureOr(temperature_)).sum();
+  /// The prediction for the last sample, with the grease at a temperature [degC].
+  MotionPrediction at(double temperature) const noexcept
+  {
+    const double share = presliding_.share();
+    const double friction = friction_.at(ratio_ * last_.velocity, last_.load, temperature).sum();
     MotionPrediction prediction;
     prediction.friction_limit = ratio_ * friction;
     prediction.friction_torque = share * prediction.friction_limit;
-    prediction.motor_torque = (sample.load + sample.vibration) / ratio_ + inertia_ * ratio_ * sample.acceleration +
-                              share * friction + ripple_.at(sample.position, sample.velocity) / ratio_;
+    prediction.motor_torque = (last_.load + last_.vibration) / ratio_ + inertia_ * ratio_ * last_.acceleration +
+                              share * friction + ripple_.at(last_.position, last_.velocity) / ratio_;
     prediction.current = ratio_ * prediction.motor_torque / telemetry_.torque_per_current + telemetry_.current_offset;
     prediction.band = (1.0 - std::abs(share)) * prediction.friction_limit / telemetry_.torque_per_current;
     return prediction;

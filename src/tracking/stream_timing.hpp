@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 namespace hjt
 {
@@ -26,11 +27,18 @@ struct StreamTimingReport
 class StreamTiming
 {
 public:
+  /// Stamps that go back by more are a new stream: a new recording, or a clock that was set [s].
+  static constexpr double RESTART = 1.0;
+
   void reset() noexcept { *this = StreamTiming(); }
 
   void add(double time, double received) noexcept
   {
-    if (report_.rows > 0 && time <= last_)
+    if (time < last_ - RESTART)
+    {
+      reset();
+    }
+    if (time <= last_)
     {
       ++(time == last_ ? report_.repeated : report_.backward);
       return;
@@ -84,6 +92,6 @@ private:
   StreamTimingReport report_;
   std::array<double, KEPT> intervals_{};
   std::array<double, KEPT> delays_{};
-  double last_{};
+  double last_{ -std::numeric_limits<double>::infinity() };
 };
 }  // namespace hjt

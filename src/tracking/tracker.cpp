@@ -12,6 +12,7 @@
 #include "tracking/motion_driven.hpp"
 #include "tracking/observer.hpp"
 #include "tracking/plausible.hpp"
+#include "tracking/stream_timing.hpp"
 #include "tracking/torque_driven.hpp"
 
 namespace hjt
@@ -56,13 +57,14 @@ private:
 class MotionFollower : public Tracker::Follower
 {
 public:
+  /// `twin`: has made the step when its sample is followed.
   MotionFollower(const Parameters& parameters, const MotionDriven& twin) : twin_(twin), telemetry_(parameters.telemetry)
   {
   }
 
   void follow(const MotionSample& sample, double /*external*/, Comparison& now) noexcept override
   {
-    const MotionPrediction predicted = twin_.step(sample);
+    const MotionPrediction predicted = twin_.at(sample.temperature);
     now.current.predicted = predicted.current;
     now.current.band = DEVIATIONS * telemetry_.current_deviation + predicted.band;
     now.sticking = predicted.band > telemetry_.current_deviation;
@@ -75,7 +77,7 @@ public:
   }
 
 private:
-  MotionDriven twin_;
+  const MotionDriven& twin_;
   TelemetryParameters telemetry_;
 };
 
@@ -159,14 +161,12 @@ void Tracker::reset() noexcept
 /// Keeps loads and temperatures.
 void Tracker::restart() noexcept
 {
-  earlier_.refused += smoother_.refused();
-  earlier_.gaps += smoother_.gaps();
+  refused_ += smoother_.refused();
   smoother_ = MotionDifferentiator();
   restarted_ = true;
   friction_.reset();
   temperature_received_ = false;
   outside_share_ = 0.0;
-  timing_.reset();
   lag_.reset();
   evidence_.reset();
 }
@@ -195,14 +195,11 @@ std::optional<double> Tracker::loadAt(double time) const noexcept
   return load_source_ == LoadSource::MODEL ? std::nullopt : loads_.at(time);
 }
 
-void Tracker::push(const MotionRow& row) noexcept
+/// A row of that time is next.
+void Tracker::begin(double time) noexcept
 {
-  if (!isPlausible(row))
-  {
-    ++earlier_.refused;
-    return;
-  }
-  if (row.time < last_time_ - RESTART)
+  constexpr double RESTART = StreamTiming::RESTART;
+  if (time < last_time_ - RESTART)
   {
     loads_.jumpBack(last_time_ - RESTART);
     temperatures_.jumpBack(last_time_ - RESTART);
@@ -211,7 +208,16 @@ void Tracker::push(const MotionRow& row) noexcept
   }
   loads_.mark();
   temperatures_.mark();
-  timing_.add(row.time, row.received);
+}
+
+void Tracker::push(const MotionRow& row) noexcept
+{
+  if (!isPlausible(row))
+  {
+    ++refused_;
+    return;
+  }
+  begin(row.time);
   if (smoother_.push(row))
   {
     last_time_ = row.time;
@@ -221,55 +227,67 @@ void Tracker::push(const MotionRow& row) noexcept
 std::optional<Comparison> Tracker::pop(bool at_end) noexcept
 {
   std::optional<MotionSample> sample = smoother_.pop(at_end);
-  if (!sample)
-  {
-    return std::nullopt;
-  }
-  sample->after_gap = sample->after_gap || restarted_;
+  return sample ? std::make_optional(comparisonOf(*sample)) : std::nullopt;
+}
+
+Comparison Tracker::compare(MotionSample sample) noexcept
+{
+  begin(sample.time);
+  last_time_ = sample.time;
+  return comparisonOf(sample);
+}
+
+Comparison Tracker::comparisonOf(MotionSample& sample) noexcept
+{
+  counters_.gaps += sample.after_gap ? 1 : 0;
+  sample.after_gap = sample.after_gap || restarted_;
   restarted_ = false;
 
-  if (!std::isfinite(sample->temperature))
+  if (!std::isfinite(sample.temperature))
   {
-    sample->temperature = temperatures_.at(sample->time);
+    sample.temperature = temperatures_.at(sample.time);
   }
-  const double received_temperature = sample->temperature;
+  const double received_temperature = sample.temperature;
   const bool is_temperature_received = std::isfinite(received_temperature);
   temperature_received_ = temperature_received_ || is_temperature_received;
-  temperature_ = grease_.at(*sample);
-  sample->temperature = is_temperature_received ? temperature_ : estimated_temperature_.value_or(temperature_);
+  temperature_ = grease_.at(sample);
+  const double prediction_temperature =
+      is_temperature_received ? temperature_ : estimated_temperature_.value_or(temperature_);
 
-  const std::optional<double> received = loadAt(sample->time);
+  const std::optional<double> received = loadAt(sample.time);
   const bool is_all = received && holdsAll(load_source_);
   const bool is_known = received || load_source_ == LoadSource::MODEL;
   load_is_known_ = is_known;
-  sample->load = received.value_or(0.0) + (is_all ? 0.0 : ownTorque(load_, *sample));
+  sample.load = received.value_or(0.0) + (is_all ? 0.0 : ownTorque(load_, sample));
   // What of the motor's inertia a controller reckons with is not there a second time.
   const double external =
-      received.value_or(0.0) - (is_all ? telemetry_.inertia_in_load * ratio_ * ratio_ * sample->acceleration : 0.0);
+      received.value_or(0.0) - (is_all ? telemetry_.inertia_in_load * ratio_ * ratio_ * sample.acceleration : 0.0);
 
   Comparison now;
-  now.time = sample->time;
-  now.position = { sample->position, sample->position, 0.0 };
-  now.velocity = { sample->velocity, sample->velocity, 0.0 };
-  now.current = { sample->current, sample->current, 0.0 };
-  now.load_torque = sample->load;
+  now.time = sample.time;
+  now.position = { sample.position, sample.position, 0.0 };
+  now.velocity = { sample.velocity, sample.velocity, 0.0 };
+  now.current = { sample.current, sample.current, 0.0 };
+  now.load_torque = sample.load;
   now.load_provided = received.has_value();
-  now.temperature = sample->temperature;
+  now.temperature = prediction_temperature;
   now.temperature_received = is_temperature_received;
-  now.housing_temperature = grease_.housing(sample->temperature);
-  now.after_gap = sample->after_gap;
-  follower_->follow(*sample, external, now);
-  grease_.book(sample->velocity, now.friction_torque,
-               telemetry_.torque_per_current * (sample->current - telemetry_.current_offset) / ratio_);
+  now.housing_temperature = grease_.housing(prediction_temperature);
+  now.after_gap = sample.after_gap;
+  // Health is compared by the temperature beside the motor, as in `compare`; the follower by that of the grease.
+  evidence_.predict(sample);
+  sample.temperature = prediction_temperature;
+  follower_->follow(sample, external, now);
+  grease_.book(sample.velocity, now.friction_torque,
+               telemetry_.torque_per_current * (sample.current - telemetry_.current_offset) / ratio_);
   if (!is_known)
   {
     now.current.band = 0.0;  // what the load makes of the current cannot be judged
   }
   now.residual_torque = telemetry_.torque_per_current * now.current.residual();
 
-  // Health is compared by the temperature beside the motor, as in `compare`.
-  sample->temperature = received_temperature;
-  watch(*sample, now, is_known);
+  sample.temperature = received_temperature;
+  watch(sample, now, is_known);
   if (mode_ != InputMode::OBSERVER)  // whose prediction has learnt of the measured current
   {
     const Compared& judged = mode_ == InputMode::TORQUE ? now.velocity : now.current;
@@ -308,7 +326,7 @@ void Tracker::watch(const MotionSample& sample, const Comparison& now, bool load
 {
   if (load_is_known)
   {
-    evidence_.update(sample, fits_);
+    evidence_.judge(sample, fits_);
   }
   const double step =
       now.after_gap || evidence_.isTouched() ? 0.0 : std::clamp(now.time - last_compared_, 0.0, OUTSIDE_MEMORY);
@@ -323,8 +341,7 @@ void Tracker::watch(const MotionSample& sample, const Comparison& now, bool load
 TrackerCounters Tracker::counters() const noexcept
 {
   TrackerCounters counters = counters_;
-  counters.refused = earlier_.refused + smoother_.refused();
-  counters.gaps = earlier_.gaps + smoother_.gaps();
+  counters.refused = refused_ + smoother_.refused();
   counters.refused_temperatures = temperatures_.refused();
   counters.solver_failures = follower_->solverFailures();
   return counters;

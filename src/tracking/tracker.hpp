@@ -18,7 +18,6 @@
 #include "tracking/held_values.hpp"
 #include "tracking/joint_evidence.hpp"
 #include "tracking/motion_differentiator.hpp"
-#include "tracking/stream_timing.hpp"
 
 namespace hjt
 {
@@ -62,7 +61,7 @@ struct TrackerCounters
   std::uint64_t compared{};              ///< rows beside which there is a comparison
   std::uint64_t refused{};               ///< repeated, out of order, not finite or beyond what can be
   std::uint64_t gaps{};                  ///< longer than MotionDifferentiator::MAX_GAP
-  std::uint64_t restarts{};              ///< stamps went back by more than Tracker::RESTART
+  std::uint64_t restarts{};              ///< stamps went back by more than StreamTiming::RESTART
   std::uint64_t outside{};               ///< comparisons whose current lies outside its band
   std::uint64_t without_load{};          ///< comparisons without a received load, though telemetry.load expects one
   std::uint64_t refused_temperatures{};  ///< not finite or beyond what a drive can have
@@ -76,8 +75,6 @@ struct TrackerCounters
 class Tracker
 {
 public:
-  /// Stamps that go back by more are a new recording or a clock that was set [s].
-  static constexpr double RESTART = 1.0;
   static constexpr double OUTSIDE_MEMORY = 30.0;          ///< a touch of the arm is shorter [s]
   static constexpr std::size_t LOADS = HeldValues::ROOM;  ///< that are kept for rows to come
 
@@ -111,11 +108,14 @@ public:
   /// none.
   std::optional<Comparison> pop(bool at_end = false) noexcept;
 
+  /// In place of both, for a row whose rates are known, as ArmLoad makes it: later than the one before, its values
+  /// possible. Its own load is passed over too.
+  Comparison compare(MotionSample sample) noexcept;
+
   /// The last comparison had the load that is expected, or none is.
   bool isLoadKnown() const noexcept { return load_is_known_; }
 
   TrackerCounters counters() const noexcept;
-  StreamTimingReport timing() const noexcept { return timing_.report(); }
 
   /// Share of the last rows, forgotten over OUTSIDE_MEMORY, whose current lies outside its band [-].
   double outsideShare() const noexcept { return outside_share_; }
@@ -155,6 +155,8 @@ public:
 
 private:
   void restart() noexcept;
+  void begin(double time) noexcept;
+  Comparison comparisonOf(MotionSample& sample) noexcept;
   std::optional<double> loadAt(double time) const noexcept;
   void addFriction(double step, const MotionSample& sample, const Comparison& now) noexcept;
   void watch(const MotionSample& sample, const Comparison& now, bool load_is_known) noexcept;
@@ -180,9 +182,8 @@ private:
   bool temperature_received_{};  // ever
   double outside_share_{};
   double last_compared_{};  // [s]
-  StreamTiming timing_;
   DelayEstimate lag_;
   TrackerCounters counters_;
-  TrackerCounters earlier_;  // refused before the smoother, and by it before the last restart
+  std::uint64_t refused_{};  // before the smoother, and by it before the last restart
 };
 }  // namespace hjt

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "twin/configuration_options.hpp"
 
-#include <cstdlib>
-
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "params/configuration_files.hpp"
 
@@ -12,11 +10,7 @@ namespace fs = std::filesystem;
 
 fs::path configDirectory(const ConfigurationOptions& options)
 {
-  if (!options.config_dir.empty())
-  {
-    setenv("HJT_CONFIG_DIR", options.config_dir.c_str(), 1);  // files that parameters name lie there too
-  }
-  return configurationDirectory("");
+  return configurationDirectory(options.config_dir);
 }
 
 ParameterMap defaultParameterMap(const ConfigurationOptions& options)
@@ -48,6 +42,10 @@ void addOverlays(const ConfigurationOptions& options, ParameterMap& map)
   for (const auto& [key, value] : options.values)
   {
     map[key] = value;
+  }
+  if (!options.config_dir.empty())
+  {
+    findNamedFiles(configDirectory(options), map);
   }
 }
 

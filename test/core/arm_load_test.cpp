@@ -8,14 +8,9 @@
 #include <kdl/chainfksolverpos_recursive.hpp>
 #include <kdl_parser/kdl_parser.hpp>
 
-#include "arm/arm_configuration.hpp"
 #include "arm/arm_dynamics.hpp"
 #include "arm/arm_load.hpp"
 #include "base/number_table.hpp"
-#include "gear/ratio.hpp"
-#include "harmonic_joint_twin/base/errors.hpp"
-#include "identification/payload_fit.hpp"
-#include "statics/gear_checks.hpp"
 #include "test/core/arm_support.hpp"
 #include "test/support/allocation_count.hpp"
 
@@ -153,7 +148,7 @@ TEST(ArmLoad, UnevenRowsWithoutVelocitiesMakeNoVibration)
     load.push(swinging(0.016 * i + (i % 2 == 1 ? -0.004 : 0.004), 0.016 * i, false));
     while (const ArmSample* sample = load.pop())
     {
-      largest = sample->joints[2].time > 1.0 ? std::max(largest, std::abs(sample->joints[2].vibration)) : 0.0;
+      largest = sample->joints[2].time > 1.0 ? std::max(largest, std::abs(sample->own[2].vibration)) : 0.0;
       ++samples;
     }
   }
@@ -221,7 +216,7 @@ TEST(ArmLoad, VibrationIsWhatFasterRatesTakeBeyondTheLoad)
     while (const ArmSample* sample = load.pop())
     {
       const double expected = -inertia * SIZE * RATE * RATE * std::sin(RATE * sample->joints[1].time);
-      in_phase += sample->joints[1].vibration * expected;
+      in_phase += sample->own[1].vibration * expected;
       reference += expected * expected;
       slow = std::max(slow, std::abs(sample->torques[1] - weight[1]));
     }

@@ -9,12 +9,8 @@
 
 #include "test_parameters.hpp"
 
-#include "gear/angle.hpp"
-#include "gear/ratio.hpp"
-#include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/twin/twin.hpp"
 #include "identification/identification.hpp"
-#include "tracking/friction_map.hpp"
 #include "tracking/motion_driven.hpp"
 
 namespace hjt

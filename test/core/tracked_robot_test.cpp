@@ -7,13 +7,11 @@
 
 #include <gmock/gmock.h>
 
-#include "test/support/allocation_count.hpp"
 #include "test_parameters.hpp"
 
-#include "gear/angle.hpp"
-#include "harmonic_joint_twin/base/errors.hpp"
 #include "test/core/tracker_support.hpp"
 #include "tracking/joint_evidence.hpp"
+#include "tracking/stream_timing.hpp"
 #include "tracking/tracker.hpp"
 #include "tracking/verdict_watch.hpp"
 
@@ -269,6 +267,21 @@ TEST(StreamTiming, TellsClocksOffsetAndJitter)
   EXPECT_NEAR(report.longest_gap, 0.004, 1e-9);
   EXPECT_NEAR(report.offset, -3.0, 1e-4);
   EXPECT_NEAR(report.jitter, 0.0038, 3e-4);
+}
+
+TEST(StreamTiming, CountsWhatRepeatsGoesBackOrStartsAnew)
+{
+  StreamTiming timing;
+  for (const double time : { 10.0, 10.1, 10.1, 10.05, 10.2 })
+  {
+    timing.add(time, time);
+  }
+  EXPECT_EQ(timing.report().rows, 3u);
+  EXPECT_EQ(timing.report().repeated, 1u);
+  EXPECT_EQ(timing.report().backward, 1u);
+  timing.add(10.2 - 1.01 * StreamTiming::RESTART, 0.0);
+  EXPECT_EQ(timing.report().rows, 1u);
+  EXPECT_EQ(timing.report().backward, 0u);
 }
 }  // namespace
 }  // namespace hjt
