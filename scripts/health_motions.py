@@ -13,12 +13,12 @@ from health_runs import COMPARED, OTHER_MODEL, Motion, Trial, drawn, once
 
 WINDOW = 20.0                   # [s]
 SLOPE = 300.0                   # of a trapezoid [deg/s^2]
-REFERENCE, SOUND = 32, 12       # windows of each gear and motion, each on a path of its own
+REFERENCE, SOUND = 24, 10       # windows of each gear and motion, each on a path of its own
 TEMPERATURE = "{uniform: [20.5, 29.5]}"  # within one class [degC]
 SEVERITIES = (0.3, 0.6)
-# Those that a whole member has.
-KINDS = ("interface_wear", "rear_section_crack", "lubricant_degradation", "tooth_wear", "flange_crack",
-         "wave_generator_wear", "buckling", "ratcheting")
+# Those that a whole member has, less worn teeth and ratcheting, which nothing is like and whose tables take long.
+KINDS = ("interface_wear", "rear_section_crack", "lubricant_degradation", "flange_crack", "wave_generator_wear",
+         "buckling")
 STATES = [option for pair in (("--config", "joints/shoulder.yaml"), ("--config", "real_sensors.yaml"),
                               ("--set", f"indicators.window_time={WINDOW}"), ("--set", "indicators.window_turns=1e5"))
           for option in pair]

@@ -28,7 +28,7 @@ WITHIN = 0.683            # of a normal quantity, one standard deviation
 Table = collections.namedtuple("Table", "causes motions severities kinds changes sound")
 # Of the law in fault_signatures.hpp, by its letters: r m e l b.
 Errors = collections.namedtuple("Errors", "number motion length line weight")
-START = Errors(0.12, 0.5, 0.0015, 0.5, 0.2)        # of the search
+START = Errors(0.12, 0.25, 0.0015, 0.5, 0.2)        # of the search
 
 
 def amplitude_change(sound, change):

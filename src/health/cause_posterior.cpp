@@ -227,8 +227,8 @@ void CauseSearch::advance(const WindowResidual& residual, const OperatingPoint& 
     if (row < known.size())
     {
       const Signature& signature = known[row];
-      sums_[static_cast<std::size_t>(signature.cause)].add(
-          weighted, OTHER_MOTION + likeness(signature.motion, point), signature.severity);
+      sums_[static_cast<std::size_t>(signature.cause)].add(weighted, OTHER_MOTION + likeness(signature.motion, point),
+                                                           signature.severity);
     }
     else
     {

@@ -19,13 +19,13 @@ constexpr double SETTLING_TIME = 0.1;            // after it was larger or the s
 constexpr std::int64_t WAITING_TIME = 20000000;  // before that [ns]
 // After a change of speed the drive rings on, in a shoulder at 33 to 45 Hz. The filters' pulse at the change is some
 // six times as large as the ringing, and ten times or more as large as the ripple of lines.
-constexpr double RINGING_SHARE = 0.15;       // of the ripple [-]
-constexpr double RINGING_TIME = 0.45;        // in which it dies down by a factor of e [s]
-constexpr double CALM_RINGING = 0.3e-3;      // as large as the noise in one line [rad]
-constexpr double LEAST_WEIGHT = 0.04;        // of a sample whose residual counts: 1.5 mrad of it [-]
-constexpr double RESIDUAL_TRAVEL = TWO_PI;   // over which the residual's own mean forgets [rad]
-constexpr int MIN_RESIDUALS = 100;           // for moments of the fourth order
-constexpr double FRICTION_WINDOWS = 10.0;    // memory of the friction estimate
+constexpr double RINGING_SHARE = 0.15;      // of the ripple [-]
+constexpr double RINGING_TIME = 0.45;       // in which it dies down by a factor of e [s]
+constexpr double CALM_RINGING = 0.3e-3;     // as large as the noise in one line [rad]
+constexpr double LEAST_WEIGHT = 0.04;       // of a sample whose residual counts: 1.5 mrad of it [-]
+constexpr double RESIDUAL_TRAVEL = TWO_PI;  // over which the residual's own mean forgets [rad]
+constexpr int MIN_RESIDUALS = 100;          // for moments of the fourth order
+constexpr double FRICTION_WINDOWS = 10.0;   // memory of the friction estimate
 }  // namespace
 
 SignalMonitor::SignalMonitor(const Parameters& parameters)

@@ -128,7 +128,7 @@ private:
   RippleFilter speed_;      // of the speed as read: uneven stamps do not disturb it
   RippleFilter angle_;      // of the motor angle
   InertiaEstimate inertia_;
-  double calm_{};           // how long the motion has been [s]
+  double calm_{};  // how long the motion has been [s]
   std::array<Waiting, 128> waiting_;
   std::size_t first_waiting_{};
   std::size_t waiting_count_{};

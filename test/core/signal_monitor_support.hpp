@@ -112,8 +112,7 @@ inline OperatingPoint swing(double rate, double friction = 0.0, bool load_known 
     return 4.0 + 30.0 * std::sin(angle) - 20.0 * std::cos(angle);
   };
   joint.load = [&](double time) { return load_known ? load(time) : std::nan(""); };
-  joint.torque = [&](double /*angle*/, double speed)
-  {
+  joint.torque = [&](double /*angle*/, double speed) {
     return (load(now) - INERTIA * PEAK * rate * std::sin(rate * now) / RATIO) / RATIO + std::copysign(friction, speed);
   };
   return joint.nextWindow().point;
