@@ -12,6 +12,7 @@ import numpy
 
 import fault_figures
 import health_carried
+import health_motions
 import health_runs
 import health_signatures
 import page_section
@@ -333,7 +334,10 @@ def main():
     parser.add_argument("--fit", action="store_true", help="fit the signatures of the causes, and the errors of a "
                         "reference that is carried, again, and nothing else")
     parser.add_argument("--quick", action="store_true", help="one gear, one severity: tables on the "
-                        "terminal, the page stays")
+                        "terminal, the page stays; with --fit: errors alone, by one gear in the check-up and "
+                        "two in other motions")
+    parser.add_argument("--motions", action="store_true", help="two drawn gears in motions that no signature was made "
+                        "in, into the page's table of them, and nothing else; some ten minutes on two cores")
     parser.add_argument("--series", type=int, metavar="GEARS", help="sound runs of so many drawn gears, into the "
                         "page's table of them, and nothing else; four minutes each on two cores")
     parser.add_argument("--figures", action="store_true", help="draw the figures of the single faults again too")
@@ -342,12 +346,18 @@ def main():
     page = options.docs / "health.md"
     file = options.docs.parent / "config" / "signatures" / "size_25.yaml"
     if options.fit:
-        health_carried.write(bench, file)
-        health_signatures.write(bench, file, options.docs / "indicators.md")
+        if not options.quick:
+            health_carried.write(bench, file)
+        health_signatures.write(bench, file, options.docs / "indicators.md",
+                                health_runs.CALIBRATED_QUICK if options.quick else health_runs.CALIBRATED,
+                                options.quick)
         print(f"evaluate_health: wrote {file}", file=sys.stderr)
         return
     if options.quick:
         print("\n".join(report(bench, QUICK, *collect(bench, QUICK), page)))
+        return
+    if options.motions:
+        page_section.write(page, "motions", health_motions.table(bench))
         return
     if options.series:
         page_section.write(page, "series", series(bench, options.series))

@@ -21,9 +21,11 @@ ACCELERATION = 300.0      # of a motion at work [deg/s^2]
 # `payload`: with the weight and inertia of anything from none to one of some 2.5 kg at the end of a straight arm.
 # `steady`: speed of a turn under a constant load, without weight [deg/s].
 # `windows`: of a run. A run of one window begins with the motion, a longer one is of work that goes on: pauses,
-# angles and first move are drawn at random.
+# angles and first move are drawn at random. `path`: (time [s], speed of the joint [rad/s]) rows from a generator of
+# random numbers and the end, another for each run; the joint's states are recorded too.
 COMPARED = ("assessed", "too few windows")  # states of a window that was compared with the reference
-Motion = collections.namedtuple("Motion", "name tag window payload moves steady windows", defaults=[None, None, 1])
+Motion = collections.namedtuple("Motion", "name tag window payload moves steady windows path",
+                                defaults=[None, None, 1, None])
 CHECK_UP = Motion("check-up", "check_up", 29.0, False)
 
 
@@ -55,8 +57,8 @@ def at_work(motion, windows=WORK_WINDOWS):
 
 
 # `alike`: all teeth are, so that any fault has a response surface. Else every tooth is solved in faulty
-# runs.
-Gear = collections.namedtuple("Gear", "name alike settings")
+# runs. `overlay`: between the joint's and its sensors'.
+Gear = collections.namedtuple("Gear", "name alike settings overlay", defaults=[None])
 
 
 def even(name, stiffness, clearance, preload, viscosity):
@@ -78,6 +80,11 @@ QUIET = [f"  sensors.{sensor}_noise: 0.0" for sensor in ("motor", "output", "tor
 CALIBRATED_MODEL = Gear("beside calibrated", True, QUIET)
 MODEL = Gear("beside", True, [*QUIET, "  sensors.motor_eccentricity: 0.0", "  sensors.output_eccentricity: 0.0"])
 MODELS = [MODEL, CALIBRATED_MODEL]
+
+
+# Another model than that of the signatures: straight flanks, a spring under each tooth on a rigid wave generator, no
+# bent race; and friction that falls from rest on, as a UR5's elbow has it.
+OTHER_MODEL = Gear("another model", True, ["  motor.stribeck_torque: 0.03"], "golden.yaml")
 
 
 def uneven(seed):
@@ -115,6 +122,8 @@ CALIBRATED = [Trial("calibrated", LOOSE, [CHECK_UP, at_work(STACKING), turn(33)]
               Trial("calibrated", drawn(704), [CHECK_UP, at_work(turn(60))], [0.2, 0.5], 150, 33),
               Trial("calibrated", uneven(777), [CHECK_UP], [0.5], 40, 5),
               Trial("calibrated", uneven(86420), [CHECK_UP], [0.2, 0.5], 61, 21)]
+# Of a quick fit, beside the motions of health_motions: one gear in the check-up.
+CALIBRATED_QUICK = [CALIBRATED[2]._replace(motions=[CHECK_UP])]
 JUDGED = [Trial("judged", drawn(860), [CHECK_UP, at_work(LABELLING)], [0.2, 0.5], 45, 91),
           Trial("judged", drawn(861), [CHECK_UP, at_work(GRINDING)], [0.2, 0.5], 102, 92),
           Trial("judged", drawn(862), [CHECK_UP, at_work(FEEDING)], [0.2, 0.5], 163, 93),
@@ -202,15 +211,16 @@ class Bench:
         """Of the duties of a sweep."""
         if motion.steady:
             return [f"{{constant: {math.radians(motion.steady):.6f}}}"]
-        if not motion.moves:
+        if not motion.moves and not motion.path:
             return [f"{{csv: {{file: {motion.tag}.csv, column: shoulder_velocity}}}}"]
         end = motion.windows * motion.window
         speeds = []
         for path in range(paths):
-            draw = numpy.random.default_rng([seed, path]) if motion.windows > 1 else None
+            draw = numpy.random.default_rng([seed, path]) if motion.windows > 1 or motion.path else None
+            rows = motion.path(draw, end) if motion.path else speed_rows(motion.moves, end, draw)
             file = f"{name}_{path}.csv"
             (self.work / file).write_text("time,shoulder_velocity\n" + "".join(
-                f"{time:.6f},{speed:.9f}\n" for time, speed in speed_rows(motion.moves, end, draw)))
+                f"{time:.6f},{speed:.9f}\n" for time, speed in rows))
             speeds.append(f"{{csv: {{file: {file}, column: shoulder_velocity}}}}")
         return speeds
 
@@ -218,11 +228,13 @@ class Bench:
         """File of a plan of runs; `others`: settings, and no payload."""
         name = name.replace(" ", "_")
         lines = [f"name: {name}", f"seed: {seed}", f"duration: {motion.windows * motion.window + 1.3:.3f}",
-                 "overlays: [joints/shoulder.yaml, real_sensors.yaml]", "set:", f"  solver.scene: {scene}",
+                 "overlays: [joints/shoulder.yaml, " + (f"{gear.overlay}, " if gear.overlay else "")
+                 + "real_sensors.yaml]", "set:", f"  solver.scene: {scene}",
                  f"  input.temperature: {temperature}", "  indicators.window_turns: 100000.0",
                  f"  indicators.window_time: {motion.window}", "  publish.indicators_rate: 1.0",
-                 *(f"  publish.{topic}_rate: 0.001" for topic in
-                   ("joint_states", "encoders", "contact_forces", "health", "stress")), *gear.settings, *others]
+                 f"  publish.joint_states_rate: {500.0 if motion.path else 0.001}",
+                 *(f"  publish.{topic}_rate: 0.001" for topic in ("encoders", "contact_forces", "health", "stress")),
+                 *gear.settings, *others]
         if motion.payload and not others:
             lines += ["  output.gravity_torque: {uniform: [53.4, 73.4]}",
                       "  output.load_inertia: {uniform: [3.3, 5.0]}"]
@@ -260,13 +272,13 @@ class Bench:
 
     def sound(self, purpose, gear, motion, temperature, repeats, seed, others=()):
         """At work each on a path of its own."""
-        repeats, paths = (1, repeats) if motion.windows > 1 else (repeats, 1)
+        repeats, paths = (1, repeats) if motion.windows > 1 or motion.path else (repeats, 1)
         return self.sweep(f"{purpose}_{gear.name}_{motion.tag}", gear, motion, temperature, ["  healthy: []"], repeats,
                           seed, others=others, paths=paths)
 
-    def fault_classes(self, trial):
-        """Every kind at every severity, from the start on."""
-        return [line for kind in self.kinds for line in (
+    def fault_classes(self, trial, kinds=None):
+        """Every kind, or those named, at every severity, from the start on."""
+        return [line for kind in self.kinds if kinds is None or kind["kind"] in kinds for line in (
             f"  {kind['kind']}:", f"    - {{kind: {kind['kind']}, severity: {{grid: {trial.severities}}}, "
                                   f"place: {place_of(kind, trial.tooth)}, onset: 0.0}}")]
 
@@ -328,9 +340,9 @@ class Bench:
                     windows[str(bag)])
                 for bag, row in bags]
 
-    def indicators(self, bags, options=(), models=()):
+    def indicators(self, bags, options=(), models=(), source=("--windows",)):
         """Of (bag, row) pairs, less those of a model's bag for each."""
         beside = [part for model in models for part in ("--model", model)]
-        done = subprocess.run([self.tool, "indicators", "--windows", "--json", *options, *beside,
+        done = subprocess.run([self.tool, "indicators", *source, "--json", *options, *beside,
                                *(bag for bag, _ in bags)], check=True, capture_output=True, text=True)
         return json.loads(done.stdout)

@@ -8,12 +8,14 @@ import math
 import numpy
 
 import health_file
+import health_motions
 import page_section
-from health_runs import CALIBRATED, COMPARED, DRAWN, FITTED, once, split_table
+from health_runs import COMPARED, DRAWN, FITTED, once, split_table
 
 # Changes as a share of the sound value: stiffness and play go with the size of the cup. Thicker grease multiplies the
 # friction there is, which differs threefold over the temperatures; preload and wear add to it.
 SHARES = ["torsional_stiffness", "second_stiffness", "lost_motion", "hysteresis", "hysteresis_area"]
+STIFFNESSES = SHARES[:2]  # change as a compliance does: an eccentric encoder adds the same to that of every drive
 SHARES_OF_GREASE = SHARES + ["running_torque", "coulomb_torque", "viscous_friction"]
 NEIGHBOURS = ["wave_generator_2", "circular_spline_2"]
 # As in the source.
@@ -22,11 +24,11 @@ SPEED_RANGE, DIRECTION_RANGE, OTHER_MOTION = 0.2, 0.3, 1e-3
 
 WITHIN = 0.683            # of a normal quantity, one standard deviation
 
-# A row each; `kinds` of motion: speed [rad/s] and direction, magnitudes, 0 of any.
-Table = collections.namedtuple("Table", "causes motions severities kinds changes")
-# Of the law in fault_signatures.hpp, by its letters: r e l b.
-Errors = collections.namedtuple("Errors", "number length line weight")
-START = Errors(0.12, 0.0015, 0.5, 0.2)             # of the search
+# A row each; `kinds` of motion: speed [rad/s] and direction, magnitudes, 0 of any. `sound`: values by name.
+Table = collections.namedtuple("Table", "causes motions severities kinds changes sound")
+# Of the law in fault_signatures.hpp, by its letters: r m e l b.
+Errors = collections.namedtuple("Errors", "number motion length line weight")
+START = Errors(0.12, 0.25, 0.0015, 0.5, 0.2)        # of the search
 
 
 def amplitude_change(sound, change):
@@ -69,11 +71,11 @@ def kind_of(window):
 
 
 def likeness(kinds, kind):
-    """Prior of each row within its cause, not normalized."""
+    """How far the motion of each row and the window's are alike, 0 to 1."""
     speeds, directions = kinds.T
     square = (numpy.log(kind[0] / numpy.where(speeds > 0.0, speeds, kind[0])) / SPEED_RANGE) ** 2
     square += numpy.where(speeds > 0.0, (kind[1] - directions) / DIRECTION_RANGE, 0.0) ** 2
-    return OTHER_MOTION + numpy.exp(-0.5 * square)
+    return numpy.exp(-0.5 * square)
 
 
 class Hypotheses:
@@ -88,11 +90,15 @@ class Hypotheses:
         self.table = table
         self.causes = numpy.array(table.causes)
         share = {cause: [layout.names[i] in shares(cause) for i in number] for cause in set(table.causes)}
-        change = table.changes[:, number] * numpy.where([share[cause] for cause in table.causes], sound, 1.0)
+        known = numpy.array([table.sound[layout.names[i]] if layout.names[i] in STIFFNESSES else 0.0 for i in number])
+        unit = numpy.where(known > 0.0, sound ** 2 / numpy.where(known > 0.0, known, 1.0), sound)
+        change = table.changes[:, number] * numpy.where([share[cause] for cause in table.causes], unit, 1.0)
         free = [not has_phase and layout.names[i] in layout.lines for i, has_phase in zip(number, phase)]
         change = numpy.where(free, amplitude_change(sound, change), change)
         self.rows = len(table.severities)
-        self.prior = likeness(table.kinds, kind_of(window))
+        alike = likeness(table.kinds, kind_of(window))
+        self.prior = OTHER_MOTION + alike
+        self.unlike = numpy.pad(1.0 - alike, (0, len(UNKNOWN_STRENGTHS)))
         self.change = numpy.pad(change, [(0, len(UNKNOWN_STRENGTHS)), (0, 0)])
         self.severity = numpy.pad(table.severities, (0, len(UNKNOWN_STRENGTHS)))
         self.square = numpy.sum(numpy.where(phase, 0.5, 1.0) * self.change ** 2 / self.own, axis=1)
@@ -102,7 +108,8 @@ class Hypotheses:
         strength = self.square * errors.length ** 2
         strength[self.rows:] = numpy.square(UNKNOWN_STRENGTHS)
         variance = self.own * (1.0 + strength[:, None])
-        variance += numpy.where(self.phase, 0.5, errors.number ** 2) * self.change ** 2
+        of_number = errors.number ** 2 + self.unlike[:, None] * errors.motion ** 2
+        variance += numpy.where(self.phase, 0.5, of_number) * self.change ** 2
         variance += (errors.line * self.severity[:, None]) ** 2 * self.line
         weighted = self.common / variance[:, :, None]
         inner = numpy.eye(self.common.shape[1]) + numpy.swapaxes(weighted, 1, 2) @ self.common
@@ -131,10 +138,10 @@ class Hypotheses:
         return {cause: mean / total for cause, mean in means.items()}, severity, variance
 
 
-def calibration_windows(bench):
+def calibration_windows(bench, trials):
     """(kind, severity, last compared window as the tool reports it) of faulty runs of other gears."""
-    found = []
-    for trial in CALIBRATED:
+    found = health_motions.calibration_windows(bench)
+    for trial in trials:
         for motion in trial.motions:
             bags = bench.faulty(trial, motion, DRAWN)
             report = bench.indicators(bags,
@@ -194,17 +201,19 @@ def severity_error(alarms, errors):
     return numpy.quantile(shares_off, WITHIN)
 
 
-def write(bench, path, page):
-    """Errors and `carried` of the file stay until the new ones are known: the tool takes them over."""
-    bench.signatures(FITTED, path)
+def write(bench, path, page, trials, errors_alone):
+    """Errors, fitted to `trials` and to other motions, and `carried` of the file stay until the new ones are known: the
+    tool takes them over."""
+    if not errors_alone:
+        bench.signatures(FITTED, path)
     table, _ = read(path)
-    windows = calibration_windows(bench)
+    windows = calibration_windows(bench, trials)
     layout = Layout(windows[0][2]["indicators"])
     alarms = alarms_of(layout, windows, table)
     errors = fitted_errors(alarms)
     report(alarms, errors)
     health_file.replace(path, "errors", {**errors._asdict(), "severity": round(severity_error(alarms, errors), 2)})
-    write_table(layout, health_file.read(path)["sound"], table, page)
+    write_table(layout, health_file.read(path)["sound"], table, page, trials)
 
 
 def read(path):
@@ -212,11 +221,11 @@ def read(path):
     content = health_file.read(path)
     causes, motions, *numbers = zip(*((row[0], row[1], row[2:4], row[4], row[5:]) for row in content["signatures"]))
     kinds, severities, found = (numpy.array(own, float) for own in numbers)
-    return (Table(causes, motions, severities, kinds, found),
+    return (Table(causes, motions, severities, kinds, found, content["sound"]),
             Errors(*(content["errors"][name] for name in Errors._fields)))
 
 
-def write_table(layout, sound, table, page):
+def write_table(layout, sound, table, page, trials):
     """Severity 0.4, first gear in the check-up: the numbers in which the kinds differ most."""
     shown = [("torsional_stiffness", 1e-3, "K1 [kN·m/rad]"), ("second_stiffness", 1e-3, "K2 [kN·m/rad]"),
              ("lost_motion", 206265.0, "lost motion [″]"), ("hysteresis", 206265.0, "hysteresis [″]"),
@@ -225,10 +234,11 @@ def write_table(layout, sound, table, page):
              ("error_wave_generator_1", 206265.0, "order 1 [″]"), ("error_wave_generator_2", 206265.0, "order 2 [″]"),
              ("error_circular_spline_2", 206265.0, "circular spline [″]"), ("error_cage_lobes", 206265.0, "cage [″]"),
              ("error_outer", 206265.0, "outer [″]"), ("error_inner", 206265.0, "inner [″]")]
-    lines = split_table(("signatures fitted to", FITTED), ("their errors fitted to", CALIBRATED))
+    lines = split_table(("signatures fitted to", FITTED), ("their errors fitted to", trials),
+                        ("and to", health_motions.trials(health_motions.FITTED_GEARS)))
     lines += ["", "| cause | " + " | ".join(text for _, _, text in shown) + " |", "|---|" + "---|" * len(shown)]
     shown_causes = set()
-    for cause, motion, severity, _, change in zip(*table):
+    for cause, motion, severity, change in zip(table.causes, table.motions, table.severities, table.changes):
         if motion == "check_up" and severity == 0.4 and cause not in shown_causes:
             shown_causes.add(cause)
             by_name = {name: number * (sound[name] if name in shares(cause) else 1.0)

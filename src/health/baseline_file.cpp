@@ -20,7 +20,7 @@ namespace hjt
 {
 namespace
 {
-constexpr int FORMAT = 2;  // by what the indicators mean
+constexpr int FORMAT = 3;  // by what the indicators mean
 
 std::size_t indicatorNamed(const std::string& name)
 {

@@ -80,8 +80,9 @@ public:
     }
   }
 
-  /// Natural logarithm, less what is the same for all. Without a signature the strength S is `strength`.
-  double logLikelihood(const Signature* signature, double strength) const noexcept
+  /// Natural logarithm, less what is the same for all. Without a signature the strength S is `strength`. `alike`: its
+  /// motion and the window's, 0 ... 1.
+  double logLikelihood(const Signature* signature, double strength, double alike) const noexcept
   {
     std::array<double, INDICATOR_COUNT> changes{};  // by the signature
     double widening = 1.0 + strength * strength;
@@ -98,6 +99,8 @@ public:
       widening = 1.0 + set_.length_error * set_.length_error * square;
       of_lines = set_.line_error * set_.line_error * signature->severity * signature->severity;
     }
+    const double of_number =
+        set_.number_error * set_.number_error + (1.0 - alike) * set_.motion_error * set_.motion_error;
     CausesSquare inner = CausesSquare::Identity();
     Causes projected = Causes::Zero();
     double square = 0.0;
@@ -108,7 +111,7 @@ public:
       const Term& term = terms_[i];
       const double change = changes[i];
       const double mean = term.has_phase ? 0.0 : change;
-      const double share = term.has_phase ? 0.5 : set_.number_error * set_.number_error;
+      const double share = term.has_phase ? 0.5 : of_number;
       const double variance = term.own * widening + share * change * change + of_lines * term.line_square;
       const double difference = term.difference - mean;
       const Causes weighted = term.common / variance;
@@ -129,14 +132,20 @@ public:
   }
 
 private:
-  static double changeBy(const Signature& signature, const Term& term) noexcept
+  double changeBy(const Signature& signature, const Term& term) const noexcept
   {
     const double change = signature.change[term.number];
     if (term.number >= SCALAR_COUNT)
     {
       return term.has_phase || change == 0.0 ? change : amplitudeChange(term.sound, change);
     }
-    return isShare(signature.cause, static_cast<ScalarIndicator>(term.number)) ? change * term.sound : change;
+    const auto scalar = static_cast<ScalarIndicator>(term.number);
+    if (!isShare(signature.cause, scalar))
+    {
+      return change;
+    }
+    const double known = set_.sound[term.number];
+    return isStiffness(scalar) && known > 0.0 ? change * term.sound * term.sound / known : change * term.sound;
   }
 
   void add(const WindowResidual& residual, std::size_t indicator, std::size_t number,
@@ -160,16 +169,16 @@ private:
   std::size_t count_{};
 };
 
-/// Prior of a signature within its cause, not normalized.
+/// How far a signature's motion and the window's are alike, 0 ... 1.
 double likeness(const MotionKind& motion, const OperatingPoint& point) noexcept
 {
   if (!(motion.speed > 0.0 && point.speed > 0.0))
   {
-    return 1.0 + OTHER_MOTION;
+    return 1.0;
   }
   const double speed = std::log(point.speed / motion.speed) / SPEED_RANGE;
   const double direction = (std::abs(point.direction) - motion.direction) / DIRECTION_RANGE;
-  return OTHER_MOTION + std::exp(-0.5 * (speed * speed + direction * direction));
+  return std::exp(-0.5 * (speed * speed + direction * direction));
 }
 }  // namespace
 
@@ -206,8 +215,8 @@ void CauseSearch::advance(const WindowResidual& residual, const OperatingPoint& 
     for (; next_ < std::min(end, rows); ++next_)
     {
       likelihoods_[next_] = next_ < known.size() ?
-                                terms.logLikelihood(&known[next_], 0.0) :
-                                terms.logLikelihood(nullptr, UNKNOWN_STRENGTHS[next_ - known.size()]);
+                                terms.logLikelihood(&known[next_], 0.0, likeness(known[next_].motion, point)) :
+                                terms.logLikelihood(nullptr, UNKNOWN_STRENGTHS[next_ - known.size()], 1.0);
       largest_ = std::max(largest_, likelihoods_[next_]);
     }
   }
@@ -218,7 +227,7 @@ void CauseSearch::advance(const WindowResidual& residual, const OperatingPoint& 
     if (row < known.size())
     {
       const Signature& signature = known[row];
-      sums_[static_cast<std::size_t>(signature.cause)].add(weighted, likeness(signature.motion, point),
+      sums_[static_cast<std::size_t>(signature.cause)].add(weighted, OTHER_MOTION + likeness(signature.motion, point),
                                                            signature.severity);
     }
     else

@@ -5,9 +5,9 @@
 
 namespace hjt
 {
-/// Acceleration of an angle, and its ripple: what three filters in a row do not follow of it.
+/// Ripple of an angle: what three filters in a row do not follow of it.
 ///
-/// Law:   a = s^2 / (1 + s t)^2 x,   r = (s t / (1 + s t))^3 x
+/// Law:   r = (s t / (1 + s t))^3 x
 /// where  x  angle, given by its speed [rad];  t  TIME [s]
 /// A steady acceleration has no ripple; of a line at f the share (1 + 1 / (2 pi f t)^2)^-1.5 is left, 0.9 at 30 Hz.
 class RippleFilter
@@ -24,7 +24,6 @@ public:
     smooth_acceleration_ = kept * smooth_acceleration_ + (1.0 - kept) * acceleration_;
   }
 
-  double acceleration() const noexcept { return acceleration_; }                                   ///< [rad/s^2]
   double ripple() const noexcept { return TIME * TIME * (acceleration_ - smooth_acceleration_); }  ///< [rad]
 
 private:

@@ -19,14 +19,13 @@ constexpr double SETTLING_TIME = 0.1;            // after it was larger or the s
 constexpr std::int64_t WAITING_TIME = 20000000;  // before that [ns]
 // After a change of speed the drive rings on, in a shoulder at 33 to 45 Hz. The filters' pulse at the change is some
 // six times as large as the ringing, and ten times or more as large as the ripple of lines.
-constexpr double RINGING_SHARE = 0.15;       // of the ripple [-]
-constexpr double RINGING_TIME = 0.45;        // in which it dies down by a factor of e [s]
-constexpr double CALM_RINGING = 0.3e-3;      // as large as the noise in one line [rad]
-constexpr double LEAST_WEIGHT = 0.04;        // of a sample whose residual counts: 1.5 mrad of it [-]
-constexpr double RESIDUAL_TRAVEL = TWO_PI;   // over which the residual's own mean forgets [rad]
-constexpr int MIN_RESIDUALS = 100;           // for moments of the fourth order
-constexpr double FRICTION_WINDOWS = 10.0;    // memory of the friction estimate
-constexpr double LEAST_ACCELERATION = 20.0;  // rms, of the motor, for the inertia [rad/s^2]
+constexpr double RINGING_SHARE = 0.15;      // of the ripple [-]
+constexpr double RINGING_TIME = 0.45;       // in which it dies down by a factor of e [s]
+constexpr double CALM_RINGING = 0.3e-3;     // as large as the noise in one line [rad]
+constexpr double LEAST_WEIGHT = 0.04;       // of a sample whose residual counts: 1.5 mrad of it [-]
+constexpr double RESIDUAL_TRAVEL = TWO_PI;  // over which the residual's own mean forgets [rad]
+constexpr int MIN_RESIDUALS = 100;          // for moments of the fourth order
+constexpr double FRICTION_WINDOWS = 10.0;   // memory of the friction estimate
 }  // namespace
 
 SignalMonitor::SignalMonitor(const Parameters& parameters)
@@ -51,6 +50,7 @@ void SignalMonitor::reset() noexcept
   loop_.restart();
   turn_.reset();
   efficiency_.reset();
+  inertia_.reset();
   indicators_ = {};
   refused_ = 0;
   started_ = false;
@@ -166,7 +166,7 @@ bool SignalMonitor::update(const SignalSample& given) noexcept
   {
     addSteady(sample, motor_angle, output_angle, travel, torsion);
   }
-  addAny(sample, output_angle, seconds);
+  addAny(sample, velocity, output_angle, seconds);
   last_ = sample;
   last_angle_ = motor_angle;
   if (progress() < 1.0)
@@ -178,14 +178,10 @@ bool SignalMonitor::update(const SignalSample& given) noexcept
 }
 
 /// What counts in any motion: inertia, load and temperature.
-void SignalMonitor::addAny(const SignalSample& sample, double output_angle, double seconds) noexcept
+void SignalMonitor::addAny(const SignalSample& sample, double velocity, double output_angle, double seconds) noexcept
 {
   const bool load_known = std::isfinite(sample.load_torque);
-  const double acceleration = speed_.acceleration();
-  window_.acceleration_square += acceleration * acceleration;
-  window_.acceleration_torque +=
-      acceleration * (ratio_ * sample.motor_torque - (load_known ? sample.load_torque : 0.0));
-  window_.all_samples += 1.0;
+  inertia_.add(sample.motor_torque - (load_known ? sample.load_torque / ratio_ : 0.0), velocity, output_angle, seconds);
   if (load_known)
   {
     window_.load.add(std::abs(sample.load_torque), seconds);
@@ -298,9 +294,7 @@ void SignalMonitor::complete(std::int64_t stamp) noexcept
                         load[0],
                         load[1],
                         load[2],
-                        ratio_ * window_.acceleration_torque /
-                            (window_.acceleration_square +
-                             window_.all_samples * LEAST_ACCELERATION * LEAST_ACCELERATION) };
+                        ratio_ * ratio_ * inertia_.fit(window_.load.weight > 0.0) };
   set(ScalarIndicator::RATIO_DEVIATION, window_.ratio.value());
   set(ScalarIndicator::KINEMATIC_ERROR, window_.kinematic_error.value());
   set(ScalarIndicator::RUNNING_TORQUE, window_.running_torque.value());
@@ -336,6 +330,7 @@ void SignalMonitor::complete(std::int64_t stamp) noexcept
   }
   tracker_.reset();
   loop_.reset();
+  inertia_.restart();
   window_ = {};
 }
 

@@ -9,6 +9,7 @@
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "health/efficiency_estimate.hpp"
 #include "health/friction_estimate.hpp"
+#include "health/inertia_estimate.hpp"
 #include "health/load_over_angle.hpp"
 #include "health/order_tracker.hpp"
 #include "health/ripple_filter.hpp"
@@ -70,9 +71,6 @@ private:
     Mean direction;
     Mean load;
     LoadOverAngle load_over_angle;
-    double acceleration_square{};  // sums over the samples [rad^2/s^4]
-    double acceleration_torque{};  // [N.m rad/s^2]
-    double all_samples{};          // number
     Mean temperature;
     Mean running_torque;
     Mean ratio;
@@ -96,7 +94,7 @@ private:
   SignalSample withWeight(SignalSample sample) const noexcept;
   void addLoop(const SignalSample& sample, double motor_angle, double torsion, double velocity,
                double seconds) noexcept;
-  void addAny(const SignalSample& sample, double output_angle, double seconds) noexcept;
+  void addAny(const SignalSample& sample, double velocity, double output_angle, double seconds) noexcept;
   bool judgeMotion(double velocity, double seconds, bool motor_known) noexcept;
   void addSteady(const SignalSample& sample, double motor_angle, double output_angle, double travel,
                  double torsion) noexcept;
@@ -129,7 +127,8 @@ private:
   double mean_velocity_{};  // over about half a turn [rad/s]
   RippleFilter speed_;      // of the speed as read: uneven stamps do not disturb it
   RippleFilter angle_;      // of the motor angle
-  double calm_{};           // how long the motion has been [s]
+  InertiaEstimate inertia_;
+  double calm_{};  // how long the motion has been [s]
   std::array<Waiting, 128> waiting_;
   std::size_t first_waiting_{};
   std::size_t waiting_count_{};

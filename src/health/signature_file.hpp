@@ -12,7 +12,7 @@
 namespace hjt
 {
 /// Of the files that this software reads and writes.
-constexpr int SIGNATURE_FORMAT = 2;
+constexpr int SIGNATURE_FORMAT = 3;
 
 /// A number of section `errors` of a file.
 struct SignatureErrorRow
@@ -20,7 +20,8 @@ struct SignatureErrorRow
   const char* key;
   double SignatureSet::*value;
 };
-constexpr std::array<SignatureErrorRow, 5> SIGNATURE_ERRORS{ { { "number", &SignatureSet::number_error },
+constexpr std::array<SignatureErrorRow, 6> SIGNATURE_ERRORS{ { { "number", &SignatureSet::number_error },
+                                                               { "motion", &SignatureSet::motion_error },
                                                                { "length", &SignatureSet::length_error },
                                                                { "line", &SignatureSet::line_error },
                                                                { "weight", &SignatureSet::evidence_weight },

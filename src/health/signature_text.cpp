@@ -16,8 +16,8 @@ constexpr const char* HEAD = R"(# SPDX-License-Identifier: BSD-3-Clause
 # Written by `joint_twin signatures`.
 format: )";
 constexpr const char* ERRORS = R"(
-# Errors by the law of docs/indicators.md [-]: of each number of a signature and of its length on another gear in
-# another motion, share of the sound drive's lines that a fault of severity 1 changes, weight of the evidence, of the
+# Errors by the law of docs/indicators.md [-]: of each number of a signature on another gear, and in a motion of another
+# kind; of its length; share of the sound drive's lines that a fault of severity 1 changes, weight of the evidence, of the
 # severity.
 errors:
 )";

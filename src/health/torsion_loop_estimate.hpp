@@ -41,7 +41,9 @@ private:
 ///        T0, T1       indicators.lost_motion_torque, indicators.stiffness_torque
 ///        c            softness about no load: clearance, worn teeth
 ///        e            eccentricity of the output encoder [rad]. A weight twists the drive as sin(phi) too: inertia
-///                     tells them apart; where it does not, ECCENTRICITY_RIDGE keeps e at 0
+///                     tells them apart. With q the mean square of a column of e that the others leave, e comes out at
+///                     q^2 / (q^2 + ECCENTRICITY_LEFT^2) of it: all of it, or none. What is left of it is the same in
+///                     1 / K1 and 1 / K2 of all windows of a motion, so that their changes have nothing of it
 /// Lost motion  angle between the middles of the loop at T0 and -T0: 2 T0 (1 / K1 + c) [rad]
 /// Loop area    integral of T over the torsion from one maximum of T to the next, mean of the loops that closed [J]
 /// K1 needs T to span health.stiffness_torque_span within T1 on either side of no load, K2 beyond T1 on one side, lost
@@ -99,13 +101,7 @@ public:
 
   void fit() noexcept
   {
-    for (const int column : { COSINE, SINE })
-    {
-      Row row = Row::Zero();
-      row[column] = std::sqrt(ECCENTRICITY_RIDGE * regression_.rows());
-      regression_.add(row, Eigen::Matrix<double, 1, 1>(0.0));
-    }
-    if (!regression_.fit(COLUMNS))
+    if (!holdEccentricity() || !regression_.fit(COLUMNS))
     {
       return;
     }
@@ -145,9 +141,28 @@ private:
   static constexpr double MAX_ERROR = 0.1;       // of the slope, standard, as a share of it [-]
   static constexpr double MAX_INFLATION = 10.0;  // of the branch's variance: both branches at like torques [-]
   static constexpr double DIRECTION_PLAY = 0.1;  // of the motor, far above an encoder's noise [rad]
-  // Mean square of what the law leaves of the torsion of a sound drive, 15 urad rms, over that of an eccentricity, 0.44
-  // mrad (config/real_sensors.yaml) [-].
-  static constexpr double ECCENTRICITY_RIDGE = 1e-3;
+  // What the law leaves of the torsion of a sound drive, 15 urad rms, over an eccentricity, 0.44 mrad
+  // (config/real_sensors.yaml), squared, is 1.2e-3: what tells e must be more [-].
+  static constexpr double ECCENTRICITY_LEFT = 1.5e-3;
+  static constexpr double LEAST_TOLD = 1e-6;  // of q [-]
+
+  /// Ridges on e, each by what tells it. False: too few samples.
+  bool holdEccentricity() noexcept
+  {
+    if (!regression_.fit(COLUMNS))
+    {
+      return false;
+    }
+    const double rows = regression_.rows();
+    for (const int column : { COSINE, SINE })
+    {
+      const double told = regression_.mean(column, column) / regression_.inflation(column);
+      Row row = Row::Zero();
+      row[column] = ECCENTRICITY_LEFT * std::sqrt(rows / std::max(told, LEAST_TOLD));
+      regression_.add(row, Eigen::Matrix<double, 1, 1>(0.0));
+    }
+    return true;
+  }
 
   void followTorque(double torsion, double joint_torque) noexcept
   {

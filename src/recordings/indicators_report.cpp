@@ -228,6 +228,11 @@ void printSummary(const std::vector<WindowResult>& windows)
     lines.push_back({ "", "confidence", assessment.confidence });
     lines.push_back({ "", "severity", assessment.severity });
     lines.push_back({ "", "its standard deviation", assessment.severity_deviation });
+    for (std::size_t i = 0; i < assessment.alternative_count; ++i)
+    {
+      const Alternative& other = assessment.alternatives[i];
+      lines.push_back({ "", std::string("or ") + causeName(other.cause), other.confidence });
+    }
   }
   printReport(false, lines);
   if (!judged)

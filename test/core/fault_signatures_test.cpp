@@ -60,7 +60,8 @@ protected:
     for (std::size_t i = 0; i < SCALAR_COUNT; ++i)
     {
       put(i, change[i], spread_[i]);
-      window.sound[i] = 1.0;  // shares of it are in its unit
+      // Changes by the signature are then in its own unit.
+      window.sound[i] = isStiffness(static_cast<ScalarIndicator>(i)) ? std::sqrt(signatures_->sound[i]) : 1.0;
     }
     for (const LineSignal signal : ALL_LINE_SIGNALS)
     {

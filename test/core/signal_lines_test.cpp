@@ -35,6 +35,16 @@ TEST(OperatingPoint, HoldsWhatTheJointCarriesWhateverThePath)
   }
 }
 
+/// Else a fault that changes the friction would pass for another payload, which the reference's slopes follow.
+TEST(OperatingPoint, HasNoFrictionInItsInertia)
+{
+  for (const bool load_known : { true, false })
+  {
+    const double without = swing(1.2, 0.0, load_known).inertia;
+    EXPECT_NEAR(swing(1.2, 0.3, load_known).inertia, without, 0.02) << load_known;
+  }
+}
+
 TEST(LoadOverAngle, IsConstantAtOneAngle)
 {
   LoadOverAngle load;

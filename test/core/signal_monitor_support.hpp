@@ -93,8 +93,9 @@ private:
   std::int64_t stamp_{};
 };
 
-/// A joint that swings about its zero at `rate` [rad/s], a weight and an inertia on it.
-inline OperatingPoint swing(double rate)
+/// A joint that swings about its zero at `rate` [rad/s], a weight and an inertia on it; with `friction` [N.m] at its
+/// motor.
+inline OperatingPoint swing(double rate, double friction = 0.0, bool load_known = true)
 {
   constexpr double INERTIA = 3.5;
   constexpr double PEAK = 150.0;  // motor [rad/s]
@@ -105,13 +106,15 @@ inline OperatingPoint swing(double rate)
     now = time;
     return PEAK * std::cos(rate * time);
   };
-  joint.load = [&](double time)
+  const auto load = [rate](double time)
   {
     const double angle = PEAK / rate * std::sin(rate * time) / RATIO;
     return 4.0 + 30.0 * std::sin(angle) - 20.0 * std::cos(angle);
   };
-  joint.torque = [&](double /*angle*/, double /*speed*/)
-  { return (joint.load(now) - INERTIA * PEAK * rate * std::sin(rate * now) / RATIO) / RATIO; };
+  joint.load = [&](double time) { return load_known ? load(time) : std::nan(""); };
+  joint.torque = [&](double /*angle*/, double speed) {
+    return (load(now) - INERTIA * PEAK * rate * std::sin(rate * now) / RATIO) / RATIO + std::copysign(friction, speed);
+  };
   return joint.nextWindow().point;
 }
 

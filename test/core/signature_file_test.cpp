@@ -19,9 +19,9 @@ namespace hjt
 {
 namespace
 {
-constexpr const char* SMALL = R"(format: 2
+constexpr const char* SMALL = R"(format: 3
 gear: mine
-errors: {number: 0.1, length: 0.01, line: 0.5, weight: 0.2, severity: 0.3}
+errors: {number: 0.1, motion: 0.4, length: 0.01, line: 0.5, weight: 0.2, severity: 0.3}
 indicators:
   torsional_stiffness: N.m/rad
   torque_ball: N.m
@@ -57,6 +57,7 @@ TEST(SignatureFile, IsTakenNumberByNumber)
 {
   const SignatureSet set = parseSignatures(SMALL, "mine.yaml");
   EXPECT_EQ(set.gear, "mine");
+  EXPECT_EQ(set.motion_error, 0.4);
   EXPECT_EQ(set.length_error, 0.01);
   EXPECT_EQ(set.severity_error, 0.3);
   constexpr std::size_t STIFFNESS = indexOf(ScalarIndicator::TORSIONAL_STIFFNESS);
@@ -81,7 +82,7 @@ TEST(SignatureFile, SaysWhereItIsDamaged)
 {
   const auto says = [](const std::string& what)
   { return testing::StartsWith("indicators.signatures: mine.yaml" + what); };
-  EXPECT_THAT(refusal(replaced("format: 2", "format: 3")), says(":1: format: 3, expected 2"));
+  EXPECT_THAT(refusal(replaced("format: 3", "format: 2")), says(":1: format: 2, expected 3"));
   EXPECT_THAT(refusal(replaced("gear: mine\n", "")), says(": gear: missing"));
   EXPECT_THAT(refusal(replaced("weight: 0.2", "weight: -0.2")), says(":3: errors.weight: -0.2, expected 0 ... 1000"));
   EXPECT_THAT(refusal(replaced("torque_ball: N.m", "torque_bell: N.m")),

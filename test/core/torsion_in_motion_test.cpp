@@ -207,6 +207,21 @@ INSTANTIATE_TEST_SUITE_P(Motions, TorsionIn,
                                          Kind{ "via_points_again", randomPoints(quintic, 4) }, Kind{ "sine", sine() }),
                          [](const auto& kind) { return kind.param.name; });
 
+/// Weight and eccentricity go alike there, so that K1 has both. The difference of two compliances has neither.
+TEST(Torsion, OfASlowMotionSoftensByAsMuchWithAnEccentricEncoder)
+{
+  const std::vector<std::string> soft{ "cup.torsion_stiffness=[29.9e+3, 50.5e+3, 58.7e+3]" };
+  const Torsion ideal = measured(slow());
+  const Torsion ideal_soft = measured(slow(), soft);
+  const Torsion real = measured(slow(), {}, true);
+  const Torsion real_soft = measured(slow(), soft, true);
+  ASSERT_LT(real.first, 0.9 * ideal.first);
+  const double first = 1.0 / ideal_soft.first - 1.0 / ideal.first;
+  const double second = 1.0 / ideal_soft.second - 1.0 / ideal.second;
+  EXPECT_NEAR(1.0 / real_soft.first - 1.0 / real.first, first, 0.1 * first);
+  EXPECT_NEAR(1.0 / real_soft.second - 1.0 / real.second, second, 0.1 * second);
+}
+
 /// With flanks worn by 1 and 11 um.
 TEST(Torsion, OfWornTeethIsTheCataloguesLostMotion)
 {

@@ -261,10 +261,10 @@ record:
         self.write("short.csv", recording(seconds=1.0))
         self.write("no_angle.csv", "time,motor_torque\n0,1\n")
         self.write("bad.yaml",
-                   "format: 2\nload_step: 25.125\nbaseline:\n  - {speed: 1, direction: 0, load: 0, temperature: 0, "
+                   "format: 3\nload_step: 25.125\nbaseline:\n  - {speed: 1, direction: 0, load: 0, temperature: 0, "
                    "windows: 3, runs: 3, indicators: {nonsense: [3, 1.0, 0.1, 0.1]}}\n")
         self.write("other.yaml",
-                   "format: 2\nload_step: 2.925\nbaseline:\n  - {speed: 1, direction: 0, load: 0, temperature: 0, "
+                   "format: 3\nload_step: 2.925\nbaseline:\n  - {speed: 1, direction: 0, load: 0, temperature: 0, "
                    "windows: 3, indicators: {}}\n")
         self.write("before.yaml", "load_step: 25.125\nbaseline:\n  - {speed: 1}\n")
         self.fail_with(1, ["before.yaml is no baseline: it is of another version", "save it again"],
@@ -277,7 +277,7 @@ record:
                        *COLUMNS, "--baseline", "bad.yaml")
         row = "[0, 0, 0, 0, 0, 0, 0]"
         self.write("infinite.yaml",
-                   "format: 2\nload_step: 25.125\nbaseline:\n  - {speed: 1, direction: 0, load: 0, temperature: 0, "
+                   "format: 3\nload_step: 25.125\nbaseline:\n  - {speed: 1, direction: 0, load: 0, temperature: 0, "
                    f"windows: 30, runs: 3, place: {row}, leverage: [{', '.join([row] * 7)}], slopes_freedom: .nan, "
                    "indicators: {}}\n")
         self.fail_with(1, ["infinite.yaml is no baseline", "slopes_freedom must be finite"], "indicators",

@@ -104,6 +104,11 @@ constexpr bool isShare(Cause cause, ScalarIndicator indicator)
   }
 }
 
+constexpr bool isStiffness(ScalarIndicator indicator)
+{
+  return indicator == ScalarIndicator::TORSIONAL_STIFFNESS || indicator == ScalarIndicator::SECOND_STIFFNESS;
+}
+
 /// What tells one motion from another.
 struct MotionKind
 {
@@ -129,6 +134,7 @@ struct SignatureSet
 
   std::string gear;          ///< whose, for people
   double number_error{};     ///< r of CauseSearch [-]
+  double motion_error{};     ///< m [-]
   double length_error{};     ///< e [-]
   double line_error{};       ///< l [-]
   double evidence_weight{};  ///< b [-]
@@ -155,17 +161,20 @@ struct CausePosterior
 
 /// Likelihood of the window's differences d from the reference under every signature.
 ///
-/// Law:   d ~ t_v(mu, D_h + F F'),   P(h | d) ~ P(h) p(d | h)^b,   P(h) the same for every cause, within it
-///        ~ w_0 + exp(-(ln(n / n_h) / N)^2 / 2 - ((q - q_h) / Q)^2 / 2), the same as of n = n_h, q = q_h in ANY_MOTION
-///        D_h,ii = D_ii (1 + (e S)^2) + (r mu_i)^2 + (l s A_i)^2 / 2,   S^2 = sum_i mu_i^2 / D_ii
+/// Law:   d ~ t_v(mu, D_h + F F'),   P(h | d) ~ P(h) p(d | h)^b,   P(h) the same for every cause, within it ~ w_0 + a
+///        a = exp(-(ln(n / n_h) / N)^2 / 2 - ((q - q_h) / Q)^2 / 2), 1 in ANY_MOTION
+///        D_h,ii = D_ii (1 + (e S)^2) + (r^2 + m^2 (1 - a)) mu_i^2 + (l s A_i)^2 / 2,   S^2 = sum_i mu_i^2 / D_ii
 /// where  mu       change by the signature; of the two parts of a line with a phase: mean 0, variance half its square
 ///        D, F, v  WindowResidual
-///        r, e     error of a signature in proportion to each number, and to its length: other gears, motions, places
+///        r, e     error of a signature in proportion to each number, and to its length: other gears, places
+///        m, a     error of each number in a motion of another kind;  how far the motions are alike
 ///        A, s     amplitude of the line that the sound drive has there, 0 of what is no line with a phase; severity
 ///        l        share of such a line that a fault of severity 1 changes: errors of manufacture differ
 ///        b        weight of the evidence: what a signature is off by is not independent from number to number
 ///        n, q     MotionKind of the window, of the signature: where a line meets a resonance of the drive, it is the
 ///                 larger part of every signature, elsewhere of none;  N = 0.2, Q = 0.3, w_0 = 0.001
+/// Stiffness changes as a compliance does: mu = c x^2 / x_h,  c  share by the signature, x  sound value of the window's
+/// motion, x_h  of SignatureSet::sound. An eccentric encoder adds the same to the compliance of every drive.
 /// Something of no signature: mu = 0, e S = 3, 10, 30, 100. Indicators that the signatures were not fitted for count
 /// for nothing.
 ///

@@ -1,0 +1,201 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Judges drives in motions that no signature was made in, with the windows of the drive and with what a recording of
+the joint's states has: no temperature, no load."""
+import collections
+import functools
+import math
+import sys
+
+import numpy
+import sklearn.covariance
+
+from health_runs import COMPARED, OTHER_MODEL, Motion, Trial, drawn, once
+
+WINDOW = 20.0                   # [s]
+SLOPE = 300.0                   # of a trapezoid [deg/s^2]
+REFERENCE, SOUND = 24, 10       # windows of each gear and motion, each on a path of its own
+TEMPERATURE = "{uniform: [20.5, 29.5]}"  # within one class [degC]
+SEVERITIES = (0.3, 0.6)
+# Those that a whole member has, less worn teeth and ratcheting, which nothing is like and whose tables take long.
+KINDS = ("interface_wear", "rear_section_crack", "lubricant_degradation", "flange_crack", "wave_generator_wear",
+         "buckling")
+STATES = [option for pair in (("--config", "joints/shoulder.yaml"), ("--config", "real_sensors.yaml"),
+                              ("--set", f"indicators.window_time={WINDOW}"), ("--set", "indicators.window_turns=1e5"))
+          for option in pair]
+SOURCES = {"windows of the drive": ["--windows"], "joint states alone": STATES}
+
+
+def quintic(share):
+    """Speed over the mean speed of a move."""
+    return 30.0 * share ** 2 * (1.0 - share) ** 2
+
+
+def moves(profile, targets, speed, pause, end):
+    """Rows of moves to targets [deg] at a mean speed [deg/s]; `profile`: None for trapezoids."""
+    time, position, rows = 0.5, 0.0, [(0.0, 0.0), (0.5, 0.0)]
+    for target in targets:
+        way, sign = abs(target - position), math.copysign(1.0, target - position)
+        length = max(way / speed, 2.1 * math.sqrt(way / SLOPE), 0.4)
+        if time + length > end:
+            return rows
+        if profile:
+            rows += [(time + length * share, math.radians(sign * way / length * float(profile(share))))
+                     for share in numpy.linspace(0.02, 1.0, 50)]
+        else:
+            root = math.sqrt((SLOPE * length) ** 2 - 4.0 * SLOPE * way)
+            peak = 0.5 * (SLOPE * length - root)
+            rise = peak / SLOPE
+            top = math.radians(sign * peak)
+            rows += [(time + rise, top), (time + length - rise, top), (time + length, 0.0)]
+        time += length + pause
+        rows.append((time, 0.0))
+        position = target
+    return rows
+
+
+def three_places(profile, draw, end):
+    places = numpy.array([-50.0, 35.0, -20.0]) + draw.uniform(-3.0, 3.0, 3)
+    return moves(profile, numpy.tile(places, 40), 55.0, draw.uniform(0.2, 0.4), end)
+
+
+def random_points(profile, draw, end):
+    sides = numpy.tile([1.0, -1.0], 60)
+    return moves(profile, sides * draw.uniform(10.0, 55.0, 120), 45.0, 0.01, end)
+
+
+def sweep(draw, end):
+    size = draw.uniform(28.0, 32.0)
+    return moves(None, numpy.tile([size, -size], 60), 12.0, 0.2, end)
+
+
+def sine(draw, end):
+    time = numpy.arange(0.0, end, 0.02)
+    size, rate = math.radians(draw.uniform(38.0, 42.0)), 2.0 * math.pi * 0.22
+    begun, growth = 1.0 - numpy.exp(-0.5 * time ** 2), time * numpy.exp(-0.5 * time ** 2)
+    return list(zip(time, size * (begun * rate * numpy.cos(rate * time) + growth * numpy.sin(rate * time))))
+
+
+def motion(name, tag, path):
+    return Motion(name, tag, WINDOW, False, path=path)
+
+
+MOTIONS = [motion("slow sweep", "slow_sweep", sweep),
+           motion("quintic, three places", "quintic_places", functools.partial(three_places, quintic)),
+           motion("quintic, random points", "quintic_points", functools.partial(random_points, quintic)),
+           motion("trapezoids, three places", "trapezoid_places", functools.partial(three_places, None)),
+           motion("sine", "sine", sine)]
+FITTED_GEARS = [drawn(905), drawn(906)]
+JUDGED_GEARS = [drawn(930), drawn(931), OTHER_MODEL]
+
+# `kind` "healthy" of a sound one; `plain`: scores of the plain detectors.
+Judged = collections.namedtuple("Judged", "gear motion kind severity window score plain")
+
+
+def trials(gears):
+    """One of each gear and severity."""
+    first = 150 if gears is JUDGED_GEARS else 50
+    return [Trial(f"motions {severity}", gear, MOTIONS, [severity], 40, first + 10 * number + place)
+            for number, gear in enumerate(gears) for place, severity in enumerate(SEVERITIES)]
+
+
+def options_of(gear, source):
+    return source[:2] + ["--config", gear.overlay] + source[2:] if source == STATES and gear.overlay else source
+
+
+def bags_of(bench, own_trials, own):
+    """(of the reference, sound, faulty) runs of a gear in one motion."""
+    gear, seed = own_trials[0].gear, own_trials[0].seed
+    reference = bench.sound("motions_reference", gear, own, TEMPERATURE, REFERENCE, seed + 1000)
+    sound = bench.sound("motions_sound", gear, own, TEMPERATURE, SOUND, seed + 2000)
+    faulty = []
+    for trial in own_trials:
+        faulty += bench.sweep(f"{trial.name}_{gear.name}_{own.tag}", gear, own, TEMPERATURE,
+                              bench.fault_classes(trial, KINDS), 1, trial.seed)
+    return reference, sound, faulty
+
+
+def numbers_of(windows):
+    """Indicators that all windows have, by window."""
+    names = [name for name in windows[0]["indicators"]
+             if all(window["indicators"][name] is not None for window in windows)]
+    return numpy.array([[window["indicators"][name] for name in names] for window in windows])
+
+
+def plain_scores(reference, judged):
+    """(Mahalanobis distance with Ledoit and Wolf's covariance, largest deviation in spreads) of each."""
+    numbers = numbers_of(reference + judged)
+    own, others = numbers[:len(reference)], numbers[len(reference):]
+    spread = own.std(axis=0, ddof=1)
+    used = spread > 0.0
+    mean = own.mean(axis=0)
+    own, others = ((table - mean)[:, used] / spread[used] for table in (own, others))
+    fitted = sklearn.covariance.LedoitWolf(assume_centered=True).fit(own)
+    return numpy.column_stack([numpy.sqrt(fitted.mahalanobis(others)), numpy.abs(others).max(axis=1)])
+
+
+def judged(bench, own_trials, own, source):
+    """What was made of each window; the reference is of the same source."""
+    gear = own_trials[0].gear
+    source = options_of(gear, source)
+    reference, sound, faulty = bags_of(bench, own_trials, own)
+    file = bench.work / f"motions_{gear.name}_{own.tag}.yaml".replace(" ", "_")
+    learned = bench.indicators(reference, ["--set", "indicators.baseline_windows=10000", "--save-baseline", file,
+                                           "--force"], source=source)["windows"]
+    windows = bench.indicators(sound + faulty, ["--baseline", file, *once(own)], source=source)["windows"]
+    rows = {str(bag): row for bag, row in sound + faulty}
+    for window, plain in zip(windows, plain_scores(learned, windows)):
+        row = rows[window["recording"]]
+        compared = window["assessment"]["state"] in COMPARED
+        yield Judged(gear, own.name, row["fault_kind"] or "healthy", float(row["fault_severity"] or 0.0), window,
+                     window["assessment"]["largest_score"] if compared else 0.0, plain)
+
+
+def all_judged(bench, gears, source):
+    return [one for gear in gears for own in MOTIONS
+            for one in judged(bench, [trial for trial in trials(gears) if trial.gear == gear], own, source)]
+
+
+def area(faulty, sound):
+    """Under the curve: share of pairs in which the faulty one has the higher score."""
+    faulty, sound = numpy.array(faulty)[:, None], numpy.array(sound)
+    return float(numpy.mean((faulty > sound) + 0.5 * (faulty == sound)))
+
+
+def calibration_windows(bench):
+    """(kind, severity, window) as health_signatures fits its errors to."""
+    return [(one.kind, one.severity, one.window) for source in SOURCES.values()
+            for one in all_judged(bench, FITTED_GEARS, source) if one.kind != "healthy"]
+
+
+def row_of(name, own):
+    sound = [one for one in own if one.kind == "healthy"]
+    faulty = [one for one in own if one.kind != "healthy"]
+    alarms = [one for one in faulty if one.window["assessment"]["level"] != "OK"]
+    verdicts = [one.window["assessment"] for one in alarms]
+    right = [verdict["cause"] == one.kind for one, verdict in zip(alarms, verdicts)]
+    in_set = [is_right or one.kind in verdict["alternatives"] for one, verdict, is_right in
+              zip(alarms, verdicts, right)]
+    areas = [area([one.score for one in faulty], [one.score for one in sound])]
+    areas += [area([one.plain[place] for one in faulty], [one.plain[place] for one in sound]) for place in (0, 1)]
+    found = [f"{sum(one.severity == severity for one in alarms)} of "
+             f"{sum(one.severity == severity for one in faulty)}" for severity in SEVERITIES]
+    false = sum(one.window["assessment"]["level"] != "OK" for one in sound)
+    confidence = numpy.mean([verdict["confidence"] for verdict in verdicts]) if verdicts else math.nan
+    return (f"| {name} | " + " | ".join(f"{value:.2f}" for value in areas)
+            + f" | {false} of {len(sound)} | {found[0]} | {found[1]} | {sum(right)} of {len(alarms)} "
+            f"| {sum(in_set)} of {len(alarms)} | {confidence:.2f} |")
+
+
+def table(bench):
+    lines = ["| | area: score | Mahalanobis | largest deviation | false alarms | "
+             + " | ".join(f"found, {severity:g}" for severity in SEVERITIES)
+             + " | cause right, of alarms | or in the set | mean confidence |", "|" + 10 * "---|"]
+    for name, source in SOURCES.items():
+        print(f"evaluate_health: judging motions by {name}", file=sys.stderr)
+        found = all_judged(bench, JUDGED_GEARS, source)
+        drawn_ones = [one for one in found if one.gear != OTHER_MODEL]
+        for own in MOTIONS:
+            lines.append(row_of(f"{own.name}, {name}", [one for one in drawn_ones if one.motion == own.name]))
+        lines.append(row_of(f"all of them, {name}", drawn_ones))
+        lines.append(row_of(f"{OTHER_MODEL.name}, {name}", [one for one in found if one.gear == OTHER_MODEL]))
+    return lines
