@@ -48,12 +48,12 @@ def section(runner, telemetry, _images):
         return heading + ["", f"*Not run: no recordings in {os.path.join(telemetry, FOLDER)}.*", ""]
     for name, path in paths.items():
         os.symlink(os.path.abspath(path), runner.path(f"{name}.csv"))
-    runner.run("identify", f"{TRAIN}.csv", "--arm", "ur10e", "--out", "identified_ur10e")
-    recordings = {name: Recording(runner, name, "ur10e", ["arm"]) for name in paths}
+    runner.run("identify", f"{TRAIN}.csv", "--arm", "ur10e", "--out", "ur10e_arm")
+    recordings = {name: Recording(runner, name, "ur10e", ["arm"], "ur10e") for name in paths}
     fit = Fit(recordings[TRAIN])
     rows, shares, beside_told = [], [], []
     for name, recording in recordings.items():
-        loop = ClosedLoop(runner, recording, "identified_ur10e", arm="ur10e", motion=write_set_points(runner, name))
+        loop = ClosedLoop(runner, recording, "ur10e_arm", arm="ur10e", motion=write_set_points(runner, name))
         cells = []
         for number, joint in enumerate(JOINTS):
             errors = moving_errors(recording, joint, fit, loop, number)
