@@ -143,7 +143,8 @@ void compareCouplings(const Bench& bench)
       {
         largest = std::max(largest, std::abs(run.angles[i] - exact.angles[i]));
       }
-      std::cout << mass_rate << ',' << order << ',' << run.cost << ',' << run.energy_error << ',' << largest << std::endl;
+      std::cout << mass_rate << ',' << order << ',' << run.cost << ',' << run.energy_error << ',' << largest
+                << std::endl;
     }
   }
 }

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A whole arm in closed loop as an object, which is run piece by piece (docs/python.md)."""
 import os
-from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional, Sequence
+from typing import TYPE_CHECKING, Any, Dict, List, Optional, Sequence
 
 import numpy as np
 
@@ -76,5 +76,3 @@ class Arm:
 
     def __repr__(self) -> str:
         return f"Arm({', '.join(self.joints)}; time = {self.time:.6g} s)"
-
-

@@ -106,9 +106,9 @@ def bare_sentence(runner, recordings, loops):
     bare = ClosedLoop(runner, recording, "built", *BUILT, "--set", "cup.friction_torque=0.0", name="bare")
     (without, without_current), (with_it, with_current), (recorded, recorded_current) = (
         lines_of(data, 3) for data in (bare.data, loops[BARE_IN].data, recording.data))
-    return (f"Without the cup's friction (`--set cup.friction_torque=0.0`) the outputs of base, shoulder and elbow swing "
-            f"in {BARE_IN} at this line by {without} µrad (with it {with_it}, recorded {recorded}), their currents by "
-            f"{without_current} A (with it {with_current}, recorded {recorded_current}).")
+    return (f"Without the cup's friction (`--set cup.friction_torque=0.0`) the outputs of base, shoulder and elbow "
+            f"swing in {BARE_IN} at this line by {without} µrad (with it {with_it}, recorded {recorded}), their "
+            f"currents by {without_current} A (with it {with_current}, recorded {recorded_current}).")
 
 
 def built_section(runner, recordings, fit, joints, train):

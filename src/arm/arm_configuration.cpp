@@ -84,7 +84,7 @@ std::vector<std::size_t> driverOrder(const ArmDescription& arm)
 
 void giveOwnSeeds(std::vector<Parameters>& drives)
 {
-  constexpr int SEEDS = 100'000;                 // the parameter's range
+  constexpr int SEEDS = 100'000;                   // the parameter's range
   constexpr std::int64_t NOISE_SEEDS = 1LL << 31;  // likewise
   for (std::size_t i = 0; i < drives.size(); ++i)
   {

@@ -93,10 +93,10 @@ private:
   std::vector<double> bias_;       // h [N.m]
   Eigen::MatrixXd mass_;           // M + D [kg.m^2]
   Eigen::LLT<Eigen::MatrixXd> factors_;
-  Eigen::MatrixXd inverse_;      // W [1/(kg.m^2)]
+  Eigen::MatrixXd inverse_;                      // W [1/(kg.m^2)]
   std::array<double, 3> weights_;                // of the last steps' torques in the extrapolation
   std::array<Eigen::VectorXd, 3> link_torques_;  // tau of the last step and of those before [N.m]
-  Eigen::VectorXd excess_;  // tau - h, extrapolated [N.m]
+  Eigen::VectorXd excess_;                       // tau - h, extrapolated [N.m]
   double energy_at_start_{};
 };
 }  // namespace hjt

@@ -72,8 +72,11 @@ bool writeFaults(hid_t file, const std::vector<RunFault>& faults, const std::opt
 }  // namespace
 
 Hdf5RunFile::Hdf5RunFile(const Recording& recording, const RunSpec& spec, const Twin* twin, std::string path)
-  : path_(std::move(path)), temporary_(path_ + ".part"), faults_(spec.faults)
-  , joints_(spec.arm ? spec.arm->drives.size() : 1), indicators_(recording.indicators)
+  : path_(std::move(path))
+  , temporary_(path_ + ".part")
+  , faults_(spec.faults)
+  , joints_(spec.arm ? spec.arm->drives.size() : 1)
+  , indicators_(recording.indicators)
 {
   const auto lock = lockLibrary();
   const Hdf5Handle creation = withoutTimes(H5P_FILE_CREATE);
@@ -145,8 +148,8 @@ void Hdf5RunFile::makeGroup(const RecordingGroup& recorded, const RunSpec& spec,
   writeText(place.get(), "sample_rate_unit", "Hz");
   writeNumber(place.get(), "first_time", start + 1.0 / recorded.rate);
   writeText(place.get(), "first_time_unit", "s");
-  const auto add = [&](const RunColumn* column, std::size_t width, bool is_table,
-                       const std::array<const char*, 3>& text, hid_t type)
+  const auto add =
+      [&](const RunColumn* column, std::size_t width, bool is_table, const std::array<const char*, 3>& text, hid_t type)
   {
     const hsize_t extent[2] = { rows, width };
     const hsize_t chunk[2] = { group.rows_in_block, width };
@@ -239,14 +242,11 @@ void Hdf5RunFile::record(Stamp now, ArmRecorder& arm)
       {
         const auto& numbers = row[static_cast<std::size_t>(data.column - armColumns().data())];
         data.block.insert(data.block.end(), numbers.begin(), numbers.end());
+        continue;
       }
-      else if (!data.is_table)
+      for (std::size_t i = 0; i < data.width; ++i)
       {
-        data.block.push_back(time);
-      }
-      for (std::size_t i = 0; data.column == nullptr && data.is_table && i < joints_; ++i)
-      {
-        data.block.push_back(severityAt(time, i));
+        data.block.push_back(data.is_table ? severityAt(time, i) : time);
       }
     }
     finishRow(group);

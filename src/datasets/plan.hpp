@@ -35,7 +35,7 @@ struct RunSpec
   Parameters parameters;  ///< what grows stands in its faults as a staircase; of an arm its first drive's
   std::vector<RunFault> faults;
   RunDuty duty;
-  std::optional<ArmSpec> arm;  ///< of a plan of whole arms
+  std::optional<ArmSpec> arm;                                     ///< of a plan of whole arms
   std::vector<std::pair<std::string, ParameterValue>> variables;  ///< path in the plan and value in this run
 };
 

@@ -68,7 +68,7 @@ class SweepArm(SweepTest):
                     numpy.testing.assert_allclose(severity[:, 4], expected, atol=1e-6)
                     self.assertEqual(numpy.delete(severity, 4, axis=1).max(), 0.0)
         more = currents[2] - currents[0]
-        self.assertGreater(more[2], 0.02)
+        self.assertGreater(more[2], 0.005)  # inertia takes the most of the current
         self.assertLess(numpy.abs(numpy.delete(more, 2)).max(), 0.2 * more[2])
         self.assertGreater(currents[1][1] - currents[0][1], 0.5)  # 4 kg on the shoulder
 
