@@ -7,10 +7,10 @@
 
 #include "output/text_table.hpp"
 #include "recordings/arm_recording.hpp"
-#include "recordings/rms.hpp"
 #include "recordings/tracked_bag.hpp"
 #include "tracking/stream_timing.hpp"
 
+#include "base/rms.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 
 namespace hjt
