@@ -4,7 +4,6 @@ the joint's states has: no temperature, no load."""
 import collections
 import functools
 import math
-import sys
 
 import numpy
 import sklearn.covariance
@@ -75,15 +74,15 @@ def sine(draw, end):
     return list(zip(time, size * (begun * rate * numpy.cos(rate * time) + growth * numpy.sin(rate * time))))
 
 
-def motion(name, tag, path):
+def motion_of(name, tag, path):
     return Motion(name, tag, WINDOW, False, path=path)
 
 
-MOTIONS = [motion("slow sweep", "slow_sweep", sweep),
-           motion("quintic, three places", "quintic_places", functools.partial(three_places, quintic)),
-           motion("quintic, random points", "quintic_points", functools.partial(random_points, quintic)),
-           motion("trapezoids, three places", "trapezoid_places", functools.partial(three_places, None)),
-           motion("sine", "sine", sine)]
+MOTIONS = [motion_of("slow sweep", "slow_sweep", sweep),
+           motion_of("quintic, three places", "quintic_places", functools.partial(three_places, quintic)),
+           motion_of("quintic, random points", "quintic_points", functools.partial(random_points, quintic)),
+           motion_of("trapezoids, three places", "trapezoid_places", functools.partial(three_places, None)),
+           motion_of("sine", "sine", sine)]
 FITTED_GEARS = [drawn(905), drawn(906)]
 JUDGED_GEARS = [drawn(930), drawn(931), OTHER_MODEL]
 
@@ -186,16 +185,18 @@ def row_of(name, own):
             f"| {sum(in_set)} of {len(alarms)} | {confidence:.2f} |")
 
 
-def table(bench):
+def table(found):
+    """`found`: what was judged, by source."""
     lines = ["| | area: score | Mahalanobis | largest deviation | false alarms | "
              + " | ".join(f"found, {severity:g}" for severity in SEVERITIES)
              + " | cause right, of alarms | or in the set | mean confidence |", "|" + 10 * "---|"]
-    for name, source in SOURCES.items():
-        print(f"evaluate_health: judging motions by {name}", file=sys.stderr)
-        found = all_judged(bench, JUDGED_GEARS, source)
-        drawn_ones = [one for one in found if one.gear != OTHER_MODEL]
-        for own in MOTIONS:
-            lines.append(row_of(f"{own.name}, {name}", [one for one in drawn_ones if one.motion == own.name]))
-        lines.append(row_of(f"all of them, {name}", drawn_ones))
-        lines.append(row_of(f"{OTHER_MODEL.name}, {name}", [one for one in found if one.gear == OTHER_MODEL]))
+    for name, own in found.items():
+        drawn_ones = [one for one in own if one.gear != OTHER_MODEL]
+        rows = [(motion.name, [one for one in drawn_ones if one.motion == motion.name]) for motion in MOTIONS]
+        rows += [("all of them", drawn_ones), (OTHER_MODEL.name, [one for one in own if one.gear == OTHER_MODEL])]
+        lines += [row_of(f"{title}, {name}", chosen) for title, chosen in rows]
     return lines
+
+
+def judged_table(bench):
+    return table({name: all_judged(bench, JUDGED_GEARS, source) for name, source in SOURCES.items()})

@@ -357,7 +357,7 @@ def main():
         print("\n".join(report(bench, QUICK, *collect(bench, QUICK), page)))
         return
     if options.motions:
-        page_section.write(page, "motions", health_motions.table(bench))
+        page_section.write(page, "motions", health_motions.judged_table(bench))
         return
     if options.series:
         page_section.write(page, "series", series(bench, options.series))
