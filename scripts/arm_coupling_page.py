@@ -7,6 +7,7 @@ import pathlib
 import subprocess
 
 import matplotlib
+import matplotlib.ticker
 
 import page_section
 
@@ -16,7 +17,7 @@ import matplotlib.pyplot as plt  # noqa: E402  (after the choice of its backend)
 ORDERS = {0: "held", 1: "linear, as shipped", 2: "quadratic"}
 COLOURS = {0: "#D55E00", 1: "#0072B2", 2: "#009E73"}
 RATE = 10e3            # of the steps [Hz]
-SHIPPED = (1000.0, 1)  # rate of the mass matrix [Hz], order
+SHIPPED = 1            # order
 
 
 def rows_of(bench, config, what):
@@ -33,17 +34,25 @@ def draw(path, rows):
             part = [row for row in rows if row["order"] == order]
             axes.plot([1e3 * row["cost"] for row in part], [scale * row[column] for row in part], "o-",
                       color=COLOURS[order], lw=1.0, ms=4, label=label)
-        for row in rows:
-            if row["order"] == SHIPPED[1]:
-                axes.annotate(f"{row['mass_rate']:g} Hz", (1e3 * row["cost"], scale * row[column]), fontsize=7,
-                              xytext=(3, 4), textcoords="offset points")
         axes.set_yscale("log")
+        axes.margins(0.12)
+        axes.set_ylim(*((10.0, 1000.0) if column == "angle_error" else (None, None)))
         axes.set_xlabel("processor time for a second of the arm [ms]")
         axes.set_title(title, fontsize=10)
         axes.grid(alpha=0.3)
+        axes.yaxis.set_minor_formatter(matplotlib.ticker.NullFormatter())
+    for row in rows:
+        if row["order"] == SHIPPED:
+            all_axes[0].annotate(f"{row['mass_rate']:g} Hz", (1e3 * row["cost"], 1e3 * row["energy_error"]), fontsize=7,
+                                 xytext=(3, 4), textcoords="offset points")
     all_axes[0].legend(title="torques of the other drives", fontsize=8, title_fontsize=8)
     drawing.savefig(path, dpi=110)
     plt.close(drawing)
+
+
+def digits(value):
+    """Two, without an exponent."""
+    return f"{float(f'{value:.2g}'):g}"
 
 
 def table(rows):
@@ -53,7 +62,8 @@ def table(rows):
         cells = []
         for order in ORDERS:
             row = next(row for row in rows if (row["mass_rate"], row["order"]) == (rate, order))
-            cells.append(f"{1e3 * row['cost']:.0f}, {1e3 * row['energy_error']:.2g}, {1e6 * row['angle_error']:.2g}")
+            cells.append(f"{1e3 * row['cost']:.0f}, {digits(1e3 * row['energy_error'])}, "
+                         f"{digits(1e6 * row['angle_error'])}")
         lines.append(f"| {rate:g} | " + " | ".join(cells) + " |")
     return lines
 

@@ -77,5 +77,6 @@ controller does.
 Of what was not identified on, the current in moving rows is within {WANTED:g} of the simple fit's error in
 {np.count_nonzero(shares <= WANTED)} of {len(shares)} (recording, joint), and below it in
 {np.count_nonzero(shares < 1.0)}; median {float(np.median(shares)):.2f}, and {float(np.median(beside_told)):.2f} of
-`follow`'s.
+`follow`'s. The loop does not bound it:
+its error is that of `follow`. Both lack errors of manufacture, so their lines are a fraction of the recorded ones.
 """, *table(["recording", *JOINTS], rows)]
