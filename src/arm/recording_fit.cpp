@@ -2,6 +2,7 @@
 #include "arm/recording_fit.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -82,6 +83,7 @@ void RecordingFit::reset() noexcept
     joint.time.reset();
     joint.ratio.reset();
     joint.load = LoadRegression();
+    joint.lag.reset();
     joint.reach = JointReach();
     joint.moving_rows = 0;
     joint.fast_rows = 0;
@@ -127,6 +129,10 @@ void RecordingFit::update(const std::vector<MotionSample>& joints, const std::ve
     joint.unchanged =
         sample.current != joint.last_current ? 0.0 : joint.unchanged + (follows && joint_moves ? step : 0.0);
     joint.last_current = sample.current;
+    if (std::isfinite(torques[i]))
+    {
+      joint.lag.add(sample, torques[i] / joint.gain);
+    }
     if (follows && joint_moves && std::isfinite(torques[i]))
     {
       joint.load.add(step, sample.velocity, sample.acceleration, torques[i] / joint.gain, sample.current);
@@ -174,72 +180,6 @@ FittedFactor RecordingFit::stampFactor() const
   return 2 * agree > likely.size() ? middle : FittedFactor();
 }
 
-EffortFit RecordingFit::effort() const
-{
-  constexpr double WIDE = 2.0;  // a payload or another gain make no more of it
-  constexpr double MAX_UNCERTAINTY =
-      1.0 / DEVIATIONS;  // of the factor itself: beyond, the load may not be in the effort
-  EffortFit fit;
-  fit.unit = joints_.front().effort;
-  double weights = 0.0;
-  double sum = 0.0;
-  double squares = 0.0;
-  const auto units = choiceNames(EffortUnit());
-  std::vector<double> expected(units.size());
-  for (const Joint& joint : joints_)
-  {
-    // By the load, not by the uncertainty: a dead current would be the most certain one.
-    double weight = 0.0;
-    const FittedFactor slope = joint.load.slope(weight);
-    if (!std::isfinite(slope.value) || joint.reach.least_current == joint.reach.most_current)
-    {
-      continue;
-    }
-    weights += weight;
-    sum += weight * slope.value;
-    squares += weight * weight * slope.uncertainty * slope.uncertainty;
-    for (std::size_t unit = 0; unit < units.size(); ++unit)
-    {
-      // If the effort is of this unit, its current is too large by as much as the configured unit's factor.
-      expected[unit] +=
-          weight * joint.current_per_effort[static_cast<std::size_t>(joint.effort)] / joint.current_per_effort[unit];
-    }
-  }
-  if (weights == 0.0 || std::sqrt(squares) > MAX_UNCERTAINTY * sum)
-  {
-    return fit;
-  }
-  fit.factor = { sum / weights, std::sqrt(squares) / weights };
-  const auto distance = [&](EffortUnit unit)
-  { return std::abs(std::log(fit.factor.value * weights / expected[static_cast<std::size_t>(unit)])); };
-  fit.is_known = distance(fit.unit) < std::log(WIDE);
-  for (const auto& [name, unit] : units)
-  {
-    if (!fit.is_known && distance(unit) < std::log(WIDE) && distance(unit) < distance(fit.unit) - std::log(WIDE))
-    {
-      fit.unit = unit;
-      fit.is_known = true;
-    }
-  }
-  return fit;
-}
-
-RecordingFit::LoadRest RecordingFit::loadRest(EffortUnit unit) const
-{
-  LoadRest sum;
-  double seconds = 0.0;
-  for (const Joint& joint : joints_)
-  {
-    const double scale = joint.current_per_effort[static_cast<std::size_t>(unit)] /
-                         joint.current_per_effort[static_cast<std::size_t>(joint.effort)];
-    const Eigen::Matrix2d left = joint.load.left();
-    sum.current += scale * scale * left(1, 1);
-    sum.left += std::max(0.0, scale * scale * left(1, 1) - 2.0 * scale * left(0, 1) + left(0, 0));
-    seconds += joint.load.seconds();
-  }
-  return { std::sqrt(sum.current / seconds), std::sqrt(sum.left / seconds) };
-}
-
 /// Rows too far apart, or stamps that angles and velocities contradict.
 std::optional<RecordingFinding> RecordingFit::ofTimes() const
 {
@@ -269,6 +209,27 @@ std::optional<RecordingFinding> RecordingFit::ofTimes() const
   return std::nullopt;
 }
 
+/// They come earlier or later than the motion that draws them.
+std::optional<RecordingFinding> RecordingFit::ofCurrents() const
+{
+  std::vector<std::array<double, CurrentLag::LAGS>> left;
+  for (const Joint& joint : joints_)
+  {
+    left.push_back(joint.lag.left());
+  }
+  const double lag = commonLag(left);
+  if (lag == 0.0)
+  {
+    return std::nullopt;
+  }
+  return RecordingFinding{ "current_lag",
+                           "the currents come " + roundedText(std::abs(lag), 2) + " s " +
+                               (lag > 0.0 ? "later" : "earlier") +
+                               " than the motion that draws them, in most joints: friction and load are not what they "
+                               "look like",
+                           Reason::STAMPS };
+}
+
 std::vector<RecordingFinding> RecordingFit::ofArm() const
 {
   constexpr double MIN_SHARE = 0.1;  // of the moving rows: jolts at joins are fewer
@@ -291,6 +252,10 @@ std::vector<RecordingFinding> RecordingFit::ofArm() const
         { "angle_unit",
           "angles change by more than " + rounded(FASTEST) + " rad/s: they are in degrees, or the stamps are wrong",
           Reason::ANGLE_UNIT });
+  }
+  if (std::optional<RecordingFinding> currents = ofCurrents())
+  {
+    findings.push_back(std::move(*currents));
   }
   constexpr double MILLI = 1000.0;
   constexpr double WIDE = 2.0;
@@ -333,6 +298,13 @@ std::vector<RecordingFinding> RecordingFit::ofJoint(std::size_t number) const
   {
     findings.push_back({ "effort_constant", joint.last_current == 0.0 ? "effort is zero" : "effort never changes",
                          Reason::EFFORT_CONSTANT });
+  }
+  if (const double late = ownLag(joint.lag.left()); late != 0.0)
+  {
+    findings.push_back(
+        { "current_lag",
+          "current " + roundedText(std::abs(late), 2) + " s " + (late > 0.0 ? "later" : "earlier") + " than its motion",
+          Reason::STAMPS });
   }
   if (const std::string text = joint.ratio.text(); !text.empty())
   {

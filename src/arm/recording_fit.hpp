@@ -12,6 +12,7 @@
 #include "arm/arm_load.hpp"
 #include "arm/recording_units.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
+#include "tracking/current_lag.hpp"
 #include "tracking/ratio_fit.hpp"
 #include "tracking/reason.hpp"
 #include "tracking/time_fit.hpp"
@@ -21,10 +22,10 @@ namespace hjt
 /// Something in a recording of an arm that does not fit.
 struct RecordingFinding
 {
-  std::string kind;             ///< for documents: reading, period, stamps, ratio, angle_unit, effort_unit, gain,
-                                ///< effort_constant, velocity_zero, velocity_sign, velocity_unit, velocity_scale, lag,
-                                ///< no_velocity, at_rest
-  std::string text;             ///< a clause without a full stop
+  std::string kind;  ///< for documents: reading, period, stamps, ratio, angle_unit, effort_unit, gain, current_lag,
+                     ///< effort_constant, velocity_zero, velocity_sign, velocity_unit, velocity_scale, lag,
+                     ///< no_velocity, at_rest
+  std::string text;  ///< a clause without a full stop
   std::optional<Reason> stops;  ///< nothing can be judged with it
 };
 
@@ -97,6 +98,7 @@ public:
 
 private:
   std::optional<RecordingFinding> ofTimes() const;
+  std::optional<RecordingFinding> ofCurrents() const;
   /// Regression of the current on a constant, Coulomb and viscous friction, the acceleration, which draws the current
   /// of the rotor's inertia, and the load.
   class LoadRegression
@@ -125,6 +127,7 @@ private:
     TimeFit time;
     RatioFit ratio;
     LoadRegression load;
+    CurrentLag lag;
     JointReach reach;
     std::uint64_t moving_rows{};
     std::uint64_t fast_rows{};  // faster than any joint

@@ -55,7 +55,23 @@ CsvRows::CsvRows(const std::string& path) : path_(path), file_(path, std::ios::b
   {
     throw InputError(path_ + " cannot be read: " + std::strerror(errno));
   }
+  findLineEnd();
   readHeader();
+}
+
+/// A carriage return alone where one comes before anything else ends a line.
+void CsvRows::findLineEnd()
+{
+  if (file_.tellg() == std::ifstream::pos_type(-1))
+  {
+    return;  // read once
+  }
+  file_.read(line_.data(), static_cast<std::streamsize>(line_.size()));
+  const auto end = line_.cbegin() + file_.gcount();
+  const auto first = std::find_if(line_.cbegin(), end, [](char c) { return c == '\r' || c == '\n'; });
+  line_end_ = first != end && *first == '\r' && first + 1 != end && first[1] != '\n' ? '\r' : '\n';
+  file_.clear();
+  file_.seekg(0);
 }
 
 /// A line that begins with # is the header if the next one has as many columns, one if it is a number; else a comment.
@@ -143,7 +159,7 @@ bool CsvRows::readLine()
   const auto is_line_end = [](char c) { return isBlank(c) || c == '\r'; };
   do
   {
-    file_.getline(line_.data(), static_cast<std::streamsize>(line_.size()));
+    file_.getline(line_.data(), static_cast<std::streamsize>(line_.size()), line_end_);
     if (file_.bad())
     {
       throw InputError(path_ + " cannot be read: " + std::strerror(errno));

@@ -41,6 +41,7 @@ public:
   std::string place() const { return path_ + ":" + std::to_string(line_number_); }
 
 private:
+  void findLineEnd();
   void readHeader();
   bool readLine();
   void findSeparator();
@@ -52,6 +53,7 @@ private:
   std::vector<char> line_;
   std::size_t length_ = 0;  // of the line
   std::size_t line_number_ = 0;
+  char line_end_ = '\n';
   char separator_ = ',';
   bool allows_cut_off_ = false;
   bool allows_uneven_ = false;

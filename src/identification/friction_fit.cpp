@@ -8,6 +8,7 @@
 #include <ceres/normal_prior.h>
 #include <Eigen/Cholesky>
 
+#include "arm/residual_statistics.hpp"
 #include "base/number_text.hpp"
 #include "elements/motor.hpp"
 #include "gear/ratio.hpp"

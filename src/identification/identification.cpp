@@ -7,6 +7,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "arm/residual_statistics.hpp"
 #include "base/median.hpp"
 #include "elements/motor.hpp"
 #include "gear/ratio.hpp"

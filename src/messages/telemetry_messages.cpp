@@ -19,7 +19,7 @@ TelemetryStatus readTelemetry(const sensor_msgs::JointState& message, const Join
   {
     return TelemetryStatus::INCOMPLETE;
   }
-  if (!std::isfinite(message.position[joint]) || !std::isfinite(message.effort[joint]))
+  if (!std::isfinite(message.position[joint]))
   {
     return TelemetryStatus::NOT_FINITE;
   }
@@ -30,7 +30,7 @@ TelemetryStatus readTelemetry(const sensor_msgs::JointState& message, const Join
   const std::size_t motor = placeOf(message, names.motor);
   row.motor_angle =
       motor < message.position.size() ? message.position[motor] : std::numeric_limits<double>::quiet_NaN();
-  return TelemetryStatus::FOUND;
+  return std::isfinite(row.current) ? TelemetryStatus::FOUND : TelemetryStatus::WITHOUT_EFFORT;
 }
 
 void fillComparison(Stamp stamp, const Comparison& comparison, harmonic_joint_twin::Comparison& message) noexcept

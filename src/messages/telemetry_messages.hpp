@@ -17,7 +17,8 @@ enum class TelemetryStatus
   FOUND,
   UNKNOWN_JOINT,  ///< no entry for this joint
   INCOMPLETE,     ///< named, but without a position or an effort
-  NOT_FINITE      ///< one of them is NaN or Inf
+  NOT_FINITE,     ///< the position is NaN or Inf
+  WITHOUT_EFFORT  ///< a position, but the effort is NaN or Inf: the row holds all but the current
 };
 
 /// Position [rad], velocity if there is one [rad/s] and effort, as current, of the joint; where the message names its

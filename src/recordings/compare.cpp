@@ -147,16 +147,6 @@ std::string textOf(const std::vector<ComparedJoint>& lines, const ArmFriction& a
   return text;
 }
 
-std::string payloadText(const IdentifiedPayload& payload)
-{
-  const Payload found = payload.payload();
-  return "The currents look like a payload of " + fixedText(found.mass, 1) + " +- " +
-         fixedText(payload.mass_half_width, 1) + " kg at the flange in place of the configured " +
-         shortNumber(payload.configured.mass) + " kg, its centre at " + fixedText(found.centre[0], 2) + ", " +
-         fixedText(found.centre[1], 2) + ", " + fixedText(found.centre[2], 2) +
-         " m: set payload in the arm's file. The joints are judged with it. ";
-}
-
 /// Level and text of an arm by those of its joints. `misfits`: why the rows of each say nothing.
 void judgeArm(const std::vector<Misfit>& misfits, bool has_reference, ComparedRecording& compared)
 {
@@ -169,7 +159,7 @@ void judgeArm(const std::vector<Misfit>& misfits, bool has_reference, ComparedRe
   const bool same = misfits.front().exists() &&
                     std::all_of(misfits.begin(), misfits.end(),
                                 [&](const Misfit& misfit) { return misfit.clause == misfits.front().clause; });
-  compared.text = (compared.payload ? payloadText(*compared.payload) : "") +
+  compared.text = (compared.payload ? sentence(compared.payload->text()) + " The joints are judged with it. " : "") +
                   (same ? sentence(misfits.front().clause) : textOf(compared.joints, compared.friction, has_reference));
 }
 

@@ -10,7 +10,7 @@
 #include "recordings/recording_contents.hpp"
 #include "recordings/recording_options.hpp"
 
-#include "identification/payload_fit.hpp"
+#include "arm/payload_fit.hpp"
 #include "tracking/common_friction.hpp"
 #include "tracking/verdict.hpp"
 

@@ -8,8 +8,8 @@
 #include "output/report.hpp"
 #include "recordings/recording_options.hpp"
 
+#include "arm/payload_fit.hpp"
 #include "identification/cross_validation.hpp"
-#include "identification/payload_fit.hpp"
 
 namespace hjt
 {

@@ -265,7 +265,12 @@ public:
     }
     if (!start_ || joints < names_.size())
     {
-      throw InputError(seen_.text(source_.topic));
+      const bool are_short =
+          std::any_of(parts_.begin(), parts_.end(), [](const Part& part) { return part.rows->hasShortEfforts(); });
+      throw InputError(are_short ? source_.topic +
+                                       ": the messages have fewer efforts than names, so whose they are is "
+                                       "not known; all joints that a message names need one" :
+                                   seen_.text(source_.topic));
     }
     finish();
     if (count_.rows == 0)
@@ -348,6 +353,7 @@ private:
     remark(
         without_effort > 0,
         counted(without_effort, "with effort 0 left out: a second source without values, or a source that had none"));
+    remark(!layout_.silent.empty(), silentText({ layout_.silent.begin(), layout_.silent.end() }));
     remark(folds > 0, foldsText(folds));
     remark(time_.rounds() > 1, roundsText(time_.rounds()));
     remark(parts_.size() > 1, "the joints come in " + std::to_string(parts_.size()) +

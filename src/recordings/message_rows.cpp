@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
+#include "messages/joint_affixes.hpp"
 #include "messages/telemetry_messages.hpp"
+#include "recordings/recording_options.hpp"
 #include "tracking/plausible.hpp"
 
 namespace hjt
@@ -53,10 +56,55 @@ bool isVoidAfter(const std::vector<MotionRow>& before, const std::vector<MotionR
 }
 }  // namespace
 
+/// Names beyond the end of the efforts, but for those of motors.
+std::vector<std::string> beyondEfforts(const sensor_msgs::JointState& message)
+{
+  return message.effort.size() < message.name.size() ?
+             withoutMotors(
+                 { message.name.begin() + static_cast<std::ptrdiff_t>(message.effort.size()), message.name.end() }) :
+             std::vector<std::string>();
+}
+
+/// Of which joints a message has angles, and efforts that are numbers.
+struct JointsSeen
+{
+  void add(const sensor_msgs::JointState& message, const std::vector<std::string>& names)
+  {
+    for (const std::string& name : names)
+    {
+      const std::size_t place = placeOf(message, name);
+      const bool has_effort = place < message.effort.size();
+      if (has_effort && place < message.position.size() && std::isfinite(message.position[place]))
+      {
+        angles.insert(name);
+      }
+      if (has_effort && std::isfinite(message.effort[place]))
+      {
+        efforts.insert(name);
+      }
+    }
+  }
+
+  std::set<std::string> silent() const
+  {
+    std::set<std::string> silent;
+    if (!efforts.empty())
+    {
+      std::set_difference(angles.begin(), angles.end(), efforts.begin(), efforts.end(),
+                          std::inserter(silent, silent.begin()));
+    }
+    return silent;
+  }
+
+  std::set<std::string> angles;
+  std::set<std::string> efforts;
+};
+
 TopicLayout readLayout(RecordedMessages& recording, const MotionSource& source, const std::vector<std::string>& names)
 {
   TopicLayout layout;
   bool is_whole = false;
+  JointsSeen seen;
   std::set<std::vector<std::size_t>> parts;
   recording.visit(
       { source.topic }, false,
@@ -82,9 +130,11 @@ TopicLayout readLayout(RecordedMessages& recording, const MotionSource& source, 
         layout.has_efforts = layout.has_efforts || !isWithoutEffort(*message.state, names);
         is_whole = is_whole || part.size() == names.size();
         parts.insert(part);
-        return !(is_whole && layout.has_stamps && layout.has_efforts);
+        seen.add(*message.state, names);
+        return !(is_whole && layout.has_stamps && layout.has_efforts && seen.efforts.size() == names.size());
       },
       [](double) {});
+  layout.silent = seen.silent();
   // Joints that come in several parts count in the largest.
   std::vector<std::vector<std::size_t>> sorted(parts.begin(), parts.end());
   std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
@@ -173,12 +223,32 @@ bool MessageRows::agree(const StampedRows& a, const StampedRows& b) const
   return agrees;
 }
 
+/// Efforts are fewer than the names: whose they are is not known where a joint of the same arm is left without.
+bool MessageRows::tellsWhose(const sensor_msgs::JointState& message) const
+{
+  const std::vector<std::string> beyond = beyondEfforts(message);
+  const auto is_sibling = [&](const std::string& name)
+  { return !findUrJoint(joints_.front()) || findUrJoint(name).has_value(); };
+  return beyond.empty() || message.effort.empty() || joints_.size() > 1 ||
+         std::none_of(beyond.begin(), beyond.end(), is_sibling);
+}
+
 /// False: a joint lacks something, or what it gives cannot be.
 bool MessageRows::readRows(const sensor_msgs::JointState& message, std::vector<MotionRow>& rows)
 {
+  if (!tellsWhose(message))
+  {
+    has_short_efforts_ = true;
+    return false;
+  }
   for (std::size_t i = 0; i < names_.size(); ++i)
   {
-    const TelemetryStatus status = readTelemetry(message, names_[i], rows[i]);
+    TelemetryStatus status = readTelemetry(message, names_[i], rows[i]);
+    if (status == TelemetryStatus::WITHOUT_EFFORT && layout_.silent.count(joints_[i]) > 0)
+    {
+      rows[i].current = 0.0;
+      status = TelemetryStatus::FOUND;
+    }
     rows[i].current *= source_.current_per_effort;
     const std::size_t motor = placeOf(message, names_[i].motor);
     if (source_.current_per_motor_torque > 0.0 && motor < message.effort.size())

@@ -33,6 +33,8 @@ struct TopicLayout
 {
   bool has_stamps{};   ///< a message has a stamp
   bool has_efforts{};  ///< a message has an effort other than zero
+  /// Joints whose effort is never a number, while that of others is: their current counts as 0.
+  std::set<std::string> silent;
   /// Joints that come together, by their places; one list with all: a message holds all of them.
   std::vector<std::vector<std::size_t>> parts;
 };
@@ -58,6 +60,7 @@ public:
   std::uint64_t corrupt() const { return corrupt_; }
   std::uint64_t withoutTime() const { return without_time_; }
   std::uint64_t withoutEffort() const { return without_effort_; }
+  bool hasShortEfforts() const { return has_short_efforts_; }
   std::uint64_t folds() const;
   std::uint64_t refusedTemperatures() const;
   /// Of the rows as they came, true or not.
@@ -66,6 +69,7 @@ public:
 private:
   bool takeTelemetry(const sensor_msgs::JointState& message, const RecordedMessage& recorded);
   bool readRows(const sensor_msgs::JointState& message, std::vector<MotionRow>& rows);
+  bool tellsWhose(const sensor_msgs::JointState& message) const;
   bool agree(const StampedRows& a, const StampedRows& b) const;
   void readLoad(const sensor_msgs::JointState& message, Stamp stamp);
 
@@ -83,6 +87,7 @@ private:
   std::uint64_t corrupt_{};
   std::uint64_t without_time_{};
   std::uint64_t without_effort_{};
+  bool has_short_efforts_{};
   SourceWatch sources_;
 };
 }  // namespace hjt

@@ -19,6 +19,8 @@ MotionCount readTableMotion(const MotionSource& source, const std::vector<int>& 
 
 // Remarks of a reading.
 std::string foldsText(std::uint64_t folds);
+/// Of joints whose effort is never a number.
+std::string silentText(const std::vector<std::string>& joints);
 std::string roundsText(std::uint64_t rounds);
 
 /// The table has a load of that joint.

@@ -56,6 +56,10 @@ public:
     {
       return false;
     }
+    for (std::size_t i = 0; i < COUNT; ++i)
+    {
+      values_[column(CURRENT, i)] = is_silent_[i] ? 0.0 : values_[column(CURRENT, i)];
+    }
     for (std::size_t i = 0; i < column(VELOCITY, 0); ++i)
     {
       was_finite_[i] = was_finite_[i] || std::isfinite(values_[i]);
@@ -73,6 +77,9 @@ public:
     const auto is_finite = [](double value) { return std::isfinite(value); };
     return std::all_of(values_.begin(), values_.begin() + column(VELOCITY, 0), is_finite);
   }
+
+  /// From now on such a current is 0.
+  void silence(const std::array<bool, COUNT>& joints) { is_silent_ = joints; }
 
   /// Of the columns that have to hold numbers, those that never did.
   std::vector<std::string> neverFinite() const
@@ -117,22 +124,43 @@ private:
   NumberTable<COLUMNS> table_;
   std::array<double, COLUMNS> values_{};
   std::array<bool, COLUMNS> was_finite_{};
+  std::array<bool, COUNT> is_silent_{};
 };
 
-/// False of a motion that was made up without currents: its rows at zero are no failed reading.
+/// What the currents of a table are, by all of its rows.
 template <std::size_t COUNT>
-bool recordsCurrent(const std::string& path, const std::vector<int>& numbers)
+struct CurrentsSeen
 {
-  JointTable<COUNT> table(path, numbers);
-  while (table.read())
+  CurrentsSeen(const std::string& path, const std::vector<int>& numbers)
   {
-    if (!table.isWithoutCurrent())
+    if (COUNT == 1)
     {
-      return true;
+      return;
+    }
+    JointTable<COUNT> table(path, numbers);
+    is_silent.fill(true);
+    while (table.read() && !(has_any && isComplete()))
+    {
+      has_any = has_any || !table.isWithoutCurrent();
+      for (std::size_t i = 0; i < COUNT; ++i)
+      {
+        is_silent[i] = is_silent[i] && !std::isfinite(table.value(CURRENT, i));
+      }
+    }
+    if (std::all_of(is_silent.begin(), is_silent.end(), [](bool silent) { return silent; }))
+    {
+      is_silent.fill(false);  // nothing can be read without any
     }
   }
-  return false;
-}
+
+  bool isComplete() const
+  {
+    return std::none_of(is_silent.begin(), is_silent.end(), [](bool silent) { return silent; });
+  }
+
+  bool has_any{};  ///< else made up without currents, or one joint: its rows at zero are no failed reading
+  std::array<bool, COUNT> is_silent{};  ///< never a number, while that of others is
+};
 
 template <std::size_t COUNT>
 class TableMotion
@@ -150,11 +178,12 @@ public:
 
   MotionCount read(const VisitRows& visit)
   {
-    const bool zero_is_failure = COUNT > 1 && recordsCurrent<COUNT>(source_.path, numbers_);
+    const CurrentsSeen<COUNT> seen(source_.path, numbers_);
+    table_.silence(seen.is_silent);
     bool more = true;
     while (more && table_.read())
     {
-      if (!table_.isWhole() || (zero_is_failure && table_.isAllZero()))
+      if (!table_.isWhole() || (seen.has_any && table_.isAllZero()))
       {
         ++count_.corrupt;
         continue;
@@ -166,6 +195,18 @@ public:
       throw InputError(source_.path + " has no rows" + whyNone());
     }
     finish();
+    std::vector<std::string> silent;
+    for (std::size_t i = 0; i < COUNT; ++i)
+    {
+      if (seen.is_silent[i])
+      {
+        silent.push_back(NAMES[CURRENT] + std::to_string(numbers_[i]));
+      }
+    }
+    if (!silent.empty())
+    {
+      count_.remarks.push_back(silentText(silent));
+    }
     return count_;
   }
 
@@ -252,6 +293,11 @@ private:
 std::string foldsText(std::uint64_t folds)
 {
   return "angles are folded into one turn: unwrapped, " + std::to_string(folds) + " jumps of 2 pi";
+}
+
+std::string silentText(const std::vector<std::string>& joints)
+{
+  return "never a number: the effort of " + joined(joints) + ", which counts as 0: not judged, the others are";
 }
 
 std::string roundsText(std::uint64_t rounds)

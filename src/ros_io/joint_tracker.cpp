@@ -77,6 +77,16 @@ TelemetryStatus JointTracker::read(const sensor_msgs::JointState& message, Motio
   {
     case TelemetryStatus::FOUND:
       row.current *= current_per_effort_;
+      without_effort_ = 0;
+      has_effort_ = true;
+      break;
+    case TelemetryStatus::WITHOUT_EFFORT:
+      if (!has_effort_ && ++without_effort_ > SILENT)
+      {
+        row.current = 0.0;
+        return TelemetryStatus::FOUND;
+      }
+      ++refusals_.not_finite;
       break;
     case TelemetryStatus::UNKNOWN_JOINT:
       ++refusals_.unknown_joint;
@@ -335,6 +345,7 @@ DiagnosticVerdict JointTracker::judgeTelemetry() const
         { std::abs(timing.offset) > OFFSET_WARNING, { D::WARN, "Stamps are off this machine's clock" } },
         { verdict_.misfit().exists(),
           { D::OK, "Telemetry arrives; friction and faults are not judged: " + verdict_.misfit().clause } },
+        { !stream_.payload.empty(), { D::OK, "Telemetry arrives; " + stream_.payload + "; judged with it" } },
         { !tracker_.isLoadKnown(),
           { D::OK, "Telemetry arrives; the load is unknown: friction and faults are not judged" } } },
       { D::OK, "Telemetry arrives" });

@@ -77,7 +77,8 @@ public:
   /// Its load comes with `pushLoad` from the motion of the whole arm.
   bool takesArmLoad() const { return parameters_.telemetry.load == LoadSource::ARM; }
 
-  /// The row of this joint in a message; anything else is counted and logged.
+  /// The row of this joint in a message; anything else is counted and logged. A joint that has sent no effort in its
+  /// first messages is read with current 0: it is not judged, and the others are not held up.
   TelemetryStatus read(const sensor_msgs::JointState& message, MotionRow& row);
 
   /// A new zero of the stream's time; `reset`: what was before is of another clock.
@@ -97,6 +98,13 @@ public:
   void setArmFriction(double ratio) { arm_friction_ = ratio; }
 
   VerdictWatch& verdict() { return verdict_; }
+  bool isTouched() const { return tracker_.evidence().isTouched(); }
+  /// Of the whole arm, or its efforts are modelled.
+  bool isLedByHand() const
+  {
+    const Verdict& verdict = verdict_.confirmed();
+    return !verdict.fits && (verdict.reason == Reason::LESS_THAN_FAULTS || verdict.reason == Reason::NO_FRICTION);
+  }
 
   /// A message on the load's topic.
   void receiveLoad(const sensor_msgs::JointState& message, Stamp received);
@@ -156,7 +164,10 @@ private:
   const std::string name_;  // of the twin in the graph
   const JointNames names_;
   const Parameters parameters_;
-  const double current_per_effort_;  // [A], [A/(N.m)]
+  const double current_per_effort_;             // [A], [A/(N.m)]
+  static constexpr std::uint64_t SILENT = 100;  // messages
+  std::uint64_t without_effort_{};              // messages one after the other
+  bool has_effort_{};                           // of a message
   double arm_friction_{ 1.0 };
   Tracker tracker_;
   VerdictWatch verdict_;

@@ -56,6 +56,10 @@ TrackerNode::TrackerNode(ros::NodeHandle& node, const ArmDescription& arm, const
     trackers.push_back(&joint->tracker());
   }
   friction_.emplace(std::move(trackers), repeat_tolerance_, std::move(frictions));
+  if (std::all_of(joints_.begin(), joints_.end(), [](const auto& joint) { return joint->takesArmLoad(); }))
+  {
+    payload_.emplace(arm, parameters);
+  }
   subscribe(node);
 }
 
@@ -200,16 +204,50 @@ void TrackerNode::push(Stamp stamp)
   arm_load_->push(rows_);
   while (const ArmSample* sample = arm_load_->pop())
   {
-    updateFit(*sample);
-    for (std::size_t i = 0; i < joints_.size(); ++i)
+    take(*sample);
+  }
+  lookAtPayload();
+}
+
+void TrackerNode::take(const ArmSample& sample)
+{
+  updateFit(sample);
+  for (std::size_t i = 0; i < joints_.size(); ++i)
+  {
+    if (joints_[i]->takesArmLoad())
     {
-      if (joints_[i]->takesArmLoad())
-      {
-        joints_[i]->pushLoad(sample->own[i].time, sample->torques[i]);
-      }
-      joints_[i]->compare(sample->own[i]);
+      joints_[i]->pushLoad(sample.own[i].time, sample.torques[i]);
     }
-    lookAtFriction(sample->joints.front().time);
+    joints_[i]->compare(sample.own[i]);
+  }
+  lookAtFriction(sample.joints.front().time);
+  const bool is_touched =
+      std::any_of(joints_.begin(), joints_.end(), [](const auto& joint) { return joint->isTouched(); });
+  if (payload_ && !is_touched)
+  {
+    payload_->add(sample);
+  }
+}
+
+/// One that the currents show and is not configured counts from now on, as `joint_twin compare` judges a recording.
+void TrackerNode::lookAtPayload()
+{
+  const std::optional<IdentifiedPayload> found = payload_ ? payload_->look() : std::nullopt;
+  const bool fits =
+      std::all_of(joints_.begin(), joints_.end(),
+                  [](const auto& joint) { return !joint->verdict().misfit().exists() && !joint->isLedByHand(); });
+  if (!found || !fits)
+  {
+    return;
+  }
+  stream_.payload = found->text();
+  ROS_WARN_STREAM(sentence(stream_.payload) << " The joints are judged with it from now on");
+  payload_->configure(found->payload());
+  arm_load_.emplace(payload_->arm());
+  resetFit();
+  for (const auto& joint : joints_)
+  {
+    joint->start(true);
   }
 }
 
@@ -218,6 +256,10 @@ void TrackerNode::resetFit()
   if (fit_)
   {
     fit_->reset();
+    if (payload_)
+    {
+      payload_->reset();
+    }
     next_fit_ = -HUGE_VAL;
     friction_->reset();
     for (const auto& joint : joints_)

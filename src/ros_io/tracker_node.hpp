@@ -15,6 +15,7 @@
 #include <sensor_msgs/Temperature.h>
 
 #include "arm/arm_load.hpp"
+#include "arm/payload_watch.hpp"
 #include "arm/recording_fit.hpp"
 #include "ros_io/joint_tracker.hpp"
 #include "tracking/unfolded_angle.hpp"
@@ -45,8 +46,10 @@ private:
   std::string lackOf(const sensor_msgs::JointState& message) const;
   bool isWithoutEffort() const;
   void push(Stamp stamp);
+  void take(const ArmSample& sample);
   void resetFit();
   void lookAtFriction(double time);
+  void lookAtPayload();
   void updateFit(const ArmSample& sample);
   void judge(const ros::WallTime& now);
   void look();
@@ -56,6 +59,7 @@ private:
   std::vector<std::unique_ptr<JointTracker>> joints_;
   std::optional<ArmLoad> arm_load_;
   std::optional<RecordingFit> fit_;  // of an arm
+  std::optional<PayloadWatch> payload_;
   std::optional<ArmFrictionWatch> friction_;
   const double repeat_tolerance_;  // comparison.repeat_tolerance [-]
   ros::WallTime next_verdict_;

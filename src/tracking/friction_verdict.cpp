@@ -10,6 +10,7 @@
 #include "base/joined.hpp"
 #include "base/number_text.hpp"
 #include "tracking/verdict.hpp"
+#include "tracking/wrong_gain.hpp"
 
 namespace hjt
 {
@@ -318,7 +319,8 @@ std::string frictionText(const FrictionFactor& factor, const JointEvidence& evid
     text += (evidence.assessor().signatures().signatures.empty() ? std::string() :
              finding.causes.empty() ? std::string(" No fault in the list has this effect.") :
                                       " Possible faults: " + joined(finding.causes, ", ", name) + ".") +
-            " Other causes: grease at another temperature, another preload, a wrong gain.";
+            " Other causes: grease at another temperature, another preload" +
+            (GainEvidence(evidence).isExcluded() ? "." : ", or a wrong gain: the load shows too little to tell.");
   }
   if (context.own.is_unjudged)
   {

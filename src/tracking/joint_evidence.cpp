@@ -27,6 +27,7 @@ void JointEvidence::Sums::reset() noexcept
   std::fill(loads.begin(), loads.end(), std::uint64_t{ 0 });
   current_squares = predicted_squares = temperatures = alarm_time = 0.0;
   products.setZero();
+  gains.setZero();
   assessed = 0;
   worst.reset();
   too_few.reset();
@@ -136,6 +137,8 @@ void JointEvidence::addRow(const MotionSample& sample, double residual) noexcept
   {
     const double way = sample.velocity < 0.0 ? -1.0 : 1.0;
     const double measured = friction + gain * residual;
+    const Eigen::Vector4d parts(1.0, friction / gain, predicted_.current - friction / gain, residual);
+    now_.gains += parts * parts.transpose();
     now_.friction.add(sample.time, sample.velocity, way * measured, way * friction, sample.load);
     if (std::isfinite(sample.target_current))
     {
@@ -234,6 +237,32 @@ double JointEvidence::unexplainedRms() const
   const Eigen::Vector2d best = now_.products.topLeftCorner<2, 2>().ldlt().solve(with);
   const double rows = counted();
   return std::sqrt(std::max(now_.products(2, 2) - best.dot(with), 0.0) / rows);
+}
+
+FittedFactor JointEvidence::loadFactor() const
+{
+  constexpr double CORRELATED = 0.5;  // rows nearer to each other tell the same [s]
+  constexpr double LEAST = 0.1;       // of the load that friction does not explain, rms [A]
+  const double rows = now_.gains(0, 0);
+  const double period = (now_.reach.end - now_.reach.begin) / counted();
+  FittedFactor factor;
+  if (rows * period < 10.0 * CORRELATED)
+  {
+    return factor;
+  }
+  const Eigen::Matrix2d others = now_.gains.topLeftCorner<2, 2>();
+  const Eigen::Matrix2d with = now_.gains.topRightCorner<2, 2>();
+  const Eigen::Matrix2d left =
+      now_.gains.bottomRightCorner<2, 2>() - with.transpose() * Eigen::Matrix2d(others.ldlt().solve(with));
+  if (!(left(0, 0) > LEAST * LEAST * rows))
+  {
+    return factor;
+  }
+  const double slope = left(0, 1) / left(0, 0);
+  const double rest = std::max(0.0, left(1, 1) - slope * left(0, 1));
+  factor.value = 1.0 + slope;
+  factor.uncertainty = std::sqrt(rest / left(0, 0) * CORRELATED / (rows * period));
+  return factor;
 }
 
 double JointEvidence::loadQuantile(double share) const

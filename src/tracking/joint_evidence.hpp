@@ -13,6 +13,7 @@
 #include "tracking/friction_points.hpp"
 #include "tracking/motion_driven.hpp"
 #include "tracking/signal_watch.hpp"
+#include "tracking/time_fit.hpp"
 #include "tracking/torsion_points.hpp"
 
 namespace hjt
@@ -115,6 +116,9 @@ public:
   /// What of the residual is left after the best constant and the best multiple of the predicted friction: neither a
   /// constant load nor worn or cold grease counts, rms [A].
   double unexplainedRms() const;
+  /// What the motion takes beside friction, load and inertia, in the measured current: a multiple of the predicted one.
+  /// NaN: too little of it to tell.
+  FittedFactor loadFactor() const;
   double temperature() const;  ///< that the rows were judged at, mean [degC]
   /// More than half of the rows had a received temperature.
   bool isTemperatureReceived() const { return 2 * now_.reach.temperature_rows > now_.reach.rows; }
@@ -148,6 +152,8 @@ private:
     double predicted_squares{};
     double temperatures{};                                // [degC]
     Eigen::Matrix3d products{ Eigen::Matrix3d::Zero() };  // of 1, predicted friction, residual [1, A, A]
+    /// The same of 1, predicted friction, the rest of the prediction and the residual, where friction tells.
+    Eigen::Matrix4d gains{ Eigen::Matrix4d::Zero() };
     std::uint64_t assessed{};
     std::optional<JudgedWindow> worst;
     std::optional<Assessment> too_few;

@@ -25,9 +25,9 @@ enum class Reason : std::uint8_t
   COMMON_FRICTION = 12,      ///< the friction of all joints differs by more than temperature makes
   TELEMETRY_UNSETTLED = 13,  ///< it is not known yet whether angles and efforts fit
   ROW_RATE = 14,             ///< the rows come too rarely
-  STAMPS = 15,               ///< angles and velocities are of another time than the stamps
+  STAMPS = 15,               ///< angles, velocities or currents are of another time than the stamps
   ANGLE_UNIT = 16,           ///< the angles are not in rad
-  EFFORT_UNIT = 17,          ///< the effort is of another unit than configured
+  EFFORT_UNIT = 17,          ///< the effort is of another unit or gain than configured
   EFFORT_CONSTANT = 18,      ///< the effort never changes
   VELOCITY_SIGN = 19,        ///< angle and velocity are of opposite sign
   VELOCITY_SCALE = 20,       ///< the velocity is a multiple of the angle's change

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "gear/angle.hpp"
+#include "tracking/wrong_gain.hpp"
 
 namespace hjt
 {
@@ -358,6 +359,13 @@ Verdict judge(const JointEvidence& evidence, const Parameters& parameters, const
   {
     verdict.dismiss(
         { *why_not, *why_not == Reason::CONTACT ? contactText(evidence.contact().largest()) : context.misfit.clause });
+  }
+  else if (severityOf(verdict.findings.front().level) != HealthLevel::OK)
+  {
+    if (const Misfit misfit = GainEvidence(evidence).misfit(); misfit.exists())
+    {
+      verdict.dismiss(misfit);
+    }
   }
   sumUp(verdict);
   verdict.cannot_show = cannotShow(evidence, parameters, verdict);

@@ -12,10 +12,10 @@
 #include "arm/arm_configuration.hpp"
 #include "arm/arm_dynamics.hpp"
 #include "arm/arm_load.hpp"
+#include "arm/payload_fit.hpp"
 #include "base/number_table.hpp"
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
-#include "identification/payload_fit.hpp"
 #include "statics/gear_checks.hpp"
 #include "test/support/allocation_count.hpp"
 

@@ -42,7 +42,7 @@ def angles(time_s):
     return [0.6 * swing, -1.0 - 0.9 * swing, 1.1 * swing, -0.5 * swing, 0.4 * swing, 0.7 * swing]
 
 
-def run_robot(directory, angles=angles, seconds=SECONDS, raised=RAISED):
+def run_robot(directory, angles=angles, seconds=SECONDS, raised=RAISED, arm="ur5"):
     """Angles and currents of the joints, a row each PERIOD. `raised`: share of the sick joint's friction more [-]."""
     rows = [[row * PERIOD, *angles(row * PERIOD)] for row in range(round(seconds / PERIOD))]
     still = os.path.join(directory, "still.csv")
@@ -51,7 +51,8 @@ def run_robot(directory, angles=angles, seconds=SECONDS, raised=RAISED):
         file.write(",".join(["timestamp", *names]) + "\n")
         for row in rows:
             file.write(",".join(f"{value:.17g}" for value in [*row, *[0.0] * len(JOINTS)]) + "\n")
-    subprocess.run([executable("joint_twin"), "follow", still, "--arm", "ur5", "--out", directory], check=True,
+    subprocess.run([executable("joint_twin"), "follow", still, "--arm", arm, "--out", directory, "--force"],
+                   check=True,
                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     currents = []
     for joint in JOINTS:

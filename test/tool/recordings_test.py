@@ -124,8 +124,8 @@ class Recordings(tool.ToolTest):
                 found = self.check(name, "--arm", "ur5")
                 self.assertIn(part, found["findings"][0]["text"], name)
                 self.assertFalse(found["usable"])
-        whole = dict(self.columns, actual_current_4=np.full(len(times), np.nan))
-        self.fail_with(1, ["'actual_current_4'"], "check", write_csv(self.path("a.csv"), whole), "--arm", "ur5")
+        whole = dict(self.columns, actual_q_4=np.full(len(times), np.nan))
+        self.fail_with(1, ["'actual_q_4'"], "check", write_csv(self.path("a.csv"), whole), "--arm", "ur5")
 
     def test_angles_in_degrees_are_no_second_source(self):
         noise = np.random.default_rng(4)

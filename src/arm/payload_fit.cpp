@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "identification/payload_fit.hpp"
+#include "arm/payload_fit.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +10,9 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
-#include "arm/arm_dynamics.hpp"
-#include "identification/regression.hpp"
+#include "arm/residual_statistics.hpp"
+#include "arm/unit_payloads.hpp"
+#include "base/number_text.hpp"
 
 namespace hjt
 {
@@ -27,69 +28,6 @@ constexpr int NUISANCES = 4;     // of each joint: gain, Coulomb and viscous fri
 /// [A].
 constexpr std::array<double, 2> KNOWN_PAYLOAD{ 10.0, 2.0 };
 constexpr std::array<double, NUISANCES> KNOWN{ 0.05, 0.3, 0.3, 0.03 };
-
-/// Torques of an arm without payload, and of unit payloads beside.
-class UnitPayloads
-{
-public:
-  explicit UnitPayloads(ArmDescription arm)
-  {
-    arm.payload = {};
-    bare_ = std::make_unique<ArmDynamics>(arm);
-    const auto add = [&](const std::array<double, 3>& centre)
-    {
-      arm.payload = { SMALL, centre };
-      loaded_.emplace_back(arm);
-    };
-    add({});
-    for (std::size_t axis = 0; axis < 3; ++axis)
-    {
-      std::array<double, 3> centre{};
-      for (const double side : { 1.0, -1.0 })
-      {
-        centre[axis] = side;
-        add(centre);
-      }
-    }
-  }
-
-  double linksMass() const { return bare_->mass(); }  ///< [kg]
-
-  /// Of mass and moments, at each joint, by column [N.m/kg], [N.m/(kg.m)].
-  void torques(const std::vector<JointMotion>& motion, Eigen::MatrixXd& columns)
-  {
-    const auto at = [&](ArmDynamics& dynamics, std::vector<double>& torques)
-    {
-      torques.resize(motion.size());
-      dynamics.torques(motion, torques);
-    };
-    at(*bare_, first_);
-    at(loaded_[0], second_);
-    for (std::size_t i = 0; i < motion.size(); ++i)
-    {
-      columns(static_cast<Eigen::Index>(i), 0) = (second_[i] - first_[i]) / SMALL;
-    }
-    // To both sides: what of a payload's inertia is quadratic in its centre cancels out.
-    for (std::size_t axis = 0; axis < 3; ++axis)
-    {
-      at(loaded_[1 + 2 * axis], first_);
-      at(loaded_[2 + 2 * axis], second_);
-      for (std::size_t i = 0; i < motion.size(); ++i)
-      {
-        columns(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(1 + axis)) =
-            (first_[i] - second_[i]) / (2.0 * SMALL);
-      }
-    }
-  }
-
-private:
-  static constexpr double SMALL = 1e-3;  // [kg]
-
-  std::unique_ptr<ArmDynamics> bare_;
-  std::vector<ArmDynamics> loaded_;
-  std::vector<double> first_;
-  std::vector<double> second_;
-};
 
 /// Means of one joint while it moves one way.
 struct Rows
@@ -180,16 +118,25 @@ private:
     constexpr double LEAST = 0.01;  // [A]
     const double deviation = std::max(robustDeviation(errors), LEAST);
     const double weight = 1.0 / (deviation * deviation * correlationRows(errors));
+    Eigen::Matrix<double, PAYLOAD + NUISANCES, PAYLOAD + NUISANCES> products;
+    products.setZero();
+    Eigen::Matrix<double, PAYLOAD + NUISANCES, 1> sums;
+    sums.setZero();
     for (std::size_t k = 0; k < rows.residuals.size(); ++k)
     {
       const double size = std::abs(errors[static_cast<Eigen::Index>(k)]);
       const double row_weight = weight * std::min(1.0, OUTLIER * deviation / std::max(size, LEAST));
-      Eigen::VectorXd row = Eigen::VectorXd::Zero(size_);
-      row.head<PAYLOAD>() = columns(k).head<PAYLOAD>();
-      row.segment<NUISANCES>(place(joint)) = columns(k).tail<NUISANCES>();
-      information.noalias() += row_weight * row * row.transpose();
-      right += row_weight * rows.residuals[k] * row;
+      const Eigen::Matrix<double, PAYLOAD + NUISANCES, 1> row = columns(k);
+      products.noalias() += row_weight * row * row.transpose();
+      sums += row_weight * rows.residuals[k] * row;
     }
+    const Eigen::Index own = place(joint);
+    information.topLeftCorner<PAYLOAD, PAYLOAD>() += products.topLeftCorner<PAYLOAD, PAYLOAD>();
+    information.block<NUISANCES, NUISANCES>(own, own) += products.bottomRightCorner<NUISANCES, NUISANCES>();
+    information.block<PAYLOAD, NUISANCES>(0, own) += products.topRightCorner<PAYLOAD, NUISANCES>();
+    information.block<NUISANCES, PAYLOAD>(own, 0) += products.bottomLeftCorner<NUISANCES, PAYLOAD>();
+    right.head<PAYLOAD>() += sums.head<PAYLOAD>();
+    right.segment<NUISANCES>(own) += sums.tail<NUISANCES>();
   }
 
   std::vector<Rows> rows_;
@@ -212,6 +159,15 @@ Payload IdentifiedPayload::payload() const
     payload.centre[axis] = payload.mass > 0.0 ? moment[axis] / payload.mass : 0.0;
   }
   return payload;
+}
+
+std::string IdentifiedPayload::text() const
+{
+  const Payload found = payload();
+  return "the currents look like a payload of " + fixedText(found.mass, 1) + " +- " + fixedText(mass_half_width, 1) +
+         " kg at the flange in place of the configured " + roundedText(configured.mass, 3) + " kg, its centre at " +
+         fixedText(found.centre[0], 2) + ", " + fixedText(found.centre[1], 2) + ", " + fixedText(found.centre[2], 2) +
+         " m: set payload in the arm's file";
 }
 
 struct PayloadFit::Data
@@ -248,6 +204,23 @@ struct PayloadFit::Data
       rows[i].times.push_back(block.start);
     }
     block.count = 0;
+  }
+
+  /// Of the residuals as torques of all joints, what a payload leaves, rms [-].
+  double shareLeft(const Eigen::Vector4d& values) const
+  {
+    double before = 0.0;
+    double after = 0.0;
+    for (std::size_t i = 0; i < rows.size(); ++i)
+    {
+      for (std::size_t k = 0; k < rows[i].residuals.size(); ++k)
+      {
+        const double residual = gains[i] * rows[i].residuals[k];
+        before += residual * residual;
+        after += std::pow(residual - gains[i] * rows[i].columns[k].head<PAYLOAD>().dot(values), 2);
+      }
+    }
+    return before > 0.0 ? std::sqrt(after / before) : 1.0;
   }
 
   /// That 2 % of the links' masses make, as a mass at the tip, at the joint that weighs it best [kg].
@@ -335,6 +308,11 @@ void PayloadFit::add(const std::vector<MotionSample>& samples, const std::vector
   }
 }
 
+double PayloadFit::moved() const
+{
+  return data_->moved;
+}
+
 IdentifiedPayload PayloadFit::solve()
 {
   Data& data = *data_;
@@ -366,6 +344,7 @@ IdentifiedPayload PayloadFit::solve()
   found.configured = data.payload;
   found.mass = data.payload.mass + values[0];
   found.mass_half_width = std::hypot(half_widths[0], NORMAL_95 * data.ofLinks());
+  found.residual_share = data.shareLeft(values);
   constexpr double UNLOADED = 0.05;  // of the links' mass: a sound UR5 without a payload shows 0 to 0.8 kg
   found.least_claim = UNLOADED * data.unit.linksMass();
   for (std::size_t axis = 0; axis < 3; ++axis)

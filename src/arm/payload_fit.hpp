@@ -3,6 +3,7 @@
 
 #include <array>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "arm/arm_description.hpp"
@@ -19,6 +20,7 @@ struct IdentifiedPayload
   std::array<double, 3> moment{};             ///< mass times centre, in the frame of the tip [kg.m]
   std::array<double, 3> moment_half_width{};  ///< of their 95 % intervals [kg.m]
   double least_claim{};                       ///< what sound arms of this mass show without a payload, at most [kg]
+  double residual_share{ 1.0 };               ///< of the torques not predicted, that is left with it, rms [-]
 
   /// The configured mass is outside the interval, and farther off than arms without a payload show.
   bool differs() const;
@@ -26,6 +28,8 @@ struct IdentifiedPayload
   bool isCarried() const { return differs() && mass > mass_half_width; }
   /// What it is, its centre where it has a mass.
   Payload payload() const;
+  /// "The currents look like a payload of ... in place of the configured ...", a clause.
+  std::string text() const;
 };
 
 /// Mass and centre of an arm's payload from the currents of all joints while they move, by least squares.
@@ -51,6 +55,7 @@ public:
   void add(const std::vector<MotionSample>& samples, const std::vector<double>& predicted);
 
   IdentifiedPayload solve();
+  double moved() const;  ///< time in which a joint moved [s]
 
 private:
   struct Data;

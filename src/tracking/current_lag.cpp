@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tracking/current_lag.hpp"
+
+#include <limits>
+
+#include <Eigen/Cholesky>
+
+namespace hjt
+{
+double CurrentLag::leftAt(const Sums& sums)
+{
+  constexpr int OTHERS = TERMS - 1;
+  constexpr double RIDGE = 1e-9;  // of the mean square: motion one way only leaves constant and friction alike
+  if (sums(0, 0) < MIN_ROWS)
+  {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  const Eigen::Matrix<double, OTHERS, OTHERS> others =
+      sums.topLeftCorner<OTHERS, OTHERS>() +
+      Eigen::Matrix<double, OTHERS, OTHERS>(RIDGE * sums.diagonal().head<OTHERS>().asDiagonal());
+  const Eigen::Matrix<double, OTHERS, 1> with = sums.topRightCorner<OTHERS, 1>();
+  return std::max(0.0, sums(OTHERS, OTHERS) - with.dot(others.ldlt().solve(with))) / sums(0, 0);
+}
+
+namespace
+{
+constexpr double NOTEWORTHY = 0.06;  // a shorter lag changes no verdict [s]
+constexpr std::size_t MIDDLE = CurrentLag::LAGS / 2;
+}  // namespace
+
+double ownLag(const std::array<double, CurrentLag::LAGS>& left)
+{
+  constexpr double CLEARLY = 0.75;  // of what is left without a lag, rms
+  std::size_t best = MIDDLE;
+  for (std::size_t i = 1; i + 1 < CurrentLag::LAGS; ++i)
+  {
+    best = left[i] < left[best] ? i : best;
+  }
+  const double lag = CurrentLag::lagAt(best);
+  return std::abs(lag) > NOTEWORTHY && std::sqrt(left[best] / left[MIDDLE]) < CLEARLY ? lag : 0.0;
+}
+
+double commonLag(const std::vector<std::array<double, CurrentLag::LAGS>>& left)
+{
+  constexpr double CLEARLY = 0.93;  // of what is left without a lag, rms: sound recordings of a UR5 leave more
+  constexpr double AGREES = 0.96;   // of each joint that agrees
+  double best_share = CLEARLY;
+  double best_lag = 0.0;
+  for (std::size_t i = 0; i < CurrentLag::LAGS; ++i)
+  {
+    double logarithms = 0.0;
+    std::size_t known = 0;
+    std::size_t agree = 0;
+    for (const auto& joint : left)
+    {
+      if (joint[i] > 0.0 && joint[MIDDLE] > 0.0)
+      {
+        const double share = std::sqrt(joint[i] / joint[MIDDLE]);
+        logarithms += std::log(share);
+        ++known;
+        agree += share < AGREES ? 1 : 0;
+      }
+    }
+    const double share = known > 0 ? std::exp(logarithms / static_cast<double>(known)) : 1.0;
+    if (known > 1 && 2 * agree > known && share < best_share)
+    {
+      best_share = share;
+      best_lag = CurrentLag::lagAt(i);
+    }
+  }
+  return std::abs(best_lag) > NOTEWORTHY ? best_lag : 0.0;
+}
+}  // namespace hjt

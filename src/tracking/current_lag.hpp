@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "tracking/motion_differentiator.hpp"
+
+namespace hjt
+{
+/// What a constant, Coulomb and viscous friction, acceleration and load explain of a joint's current, if the current
+/// came earlier or later than the motion. Fixed memory; nothing allocates.
+///
+/// Rows count at most every 20 ms, the motion between them on lines. Of motion faster than 0.05 rad/s, the last two
+/// minutes.
+class CurrentLag
+{
+public:
+  static constexpr double LONGEST = 0.4;   ///< [s]
+  static constexpr double SPACING = 0.04;  ///< between lags tried [s]
+  static constexpr std::size_t LAGS = 21;
+
+  /// Of the current behind the motion [s].
+  static constexpr double lagAt(std::size_t i) { return SPACING * static_cast<double>(i) - LONGEST; }
+
+  void reset() noexcept { *this = CurrentLag(); }
+
+  /// A row, later than the one before. `load`: as a current [A].
+  void add(const MotionSample& sample, double load) noexcept
+  {
+    if (end_ > begin_)
+    {
+      const double step = sample.time - at(end_ - 1).time;
+      if (step >= 0.0 && step < PERIOD)
+      {
+        return;
+      }
+      begin_ = step < 0.0 || step > MotionDifferentiator::MAX_GAP ? end_ : begin_;
+    }
+    rows_[end_ % ROOM] = { sample.time, sample.velocity, sample.acceleration, load, sample.current };
+    ++end_;
+    take();
+  }
+
+  /// Mean square of what is left of the current at each lag [A^2]; NaN: too little motion.
+  std::array<double, LAGS> left() const
+  {
+    std::array<double, LAGS> left;
+    for (std::size_t i = 0; i < LAGS; ++i)
+    {
+      left[i] = leftAt(sums_[i]);
+    }
+    return left;
+  }
+
+private:
+  static constexpr double PERIOD = 0.019;    // of rows that count [s]
+  static constexpr double MOVING = 0.05;     // [rad/s]
+  static constexpr double MEMORY = 6000.0;   // rows
+  static constexpr double MIN_ROWS = 250.0;  // that count
+  static constexpr std::size_t ROOM = 64;    // rows: more than twice LONGEST at PERIOD
+  static constexpr int TERMS = 6;            // 1, sign, speed, acceleration, load, current
+  using Sums = Eigen::Matrix<double, TERMS, TERMS>;
+
+  struct Row
+  {
+    double time;
+    double velocity;
+    double acceleration;
+    double load;
+    double current;
+  };
+  const Row& at(std::uint64_t index) const noexcept { return rows_[index % ROOM]; }
+
+  /// The current in the middle of what is held, beside the motion before and after it.
+  void take() noexcept
+  {
+    const std::uint64_t oldest = std::max(begin_, end_ > ROOM ? end_ - ROOM : 0);
+    const double newest = at(end_ - 1).time;
+    std::uint64_t middle = end_ - 1;
+    while (middle > oldest && newest - at(middle).time < LONGEST)
+    {
+      --middle;
+    }
+    const Row& now = at(middle);
+    if (newest - now.time < LONGEST || now.time - at(oldest).time < LONGEST)
+    {
+      return;
+    }
+    std::uint64_t above = end_ - 1;
+    for (std::size_t i = 0; i < LAGS; ++i)  // from the latest motion on
+    {
+      const double time = now.time - lagAt(i);
+      while (above > oldest + 1 && at(above - 1).time >= time)
+      {
+        --above;
+      }
+      const Row& high = at(above);
+      const Row& low = at(above - 1);
+      const double share = (time - low.time) / (high.time - low.time);
+      const auto between = [&](double Row::*value) { return low.*value + share * (high.*value - low.*value); };
+      const double velocity = between(&Row::velocity);
+      if (std::abs(velocity) > MOVING)
+      {
+        Eigen::Matrix<double, TERMS, 1> terms;
+        terms << 1.0, std::copysign(1.0, velocity), velocity, between(&Row::acceleration), between(&Row::load),
+            now.current;
+        sums_[i] = (1.0 - 1.0 / MEMORY) * sums_[i] + terms * terms.transpose();
+      }
+    }
+  }
+
+  static double leftAt(const Sums& sums);
+
+  std::array<Row, ROOM> rows_{};
+  std::uint64_t begin_{};  // first row without a gap
+  std::uint64_t end_{};
+  std::array<Sums, LAGS> sums_{ []
+                                {
+                                  std::array<Sums, LAGS> none;
+                                  none.fill(Sums::Zero());
+                                  return none;
+                                }() };
+};
+
+/// By how much the currents of an arm come later than its motion, as most of its joints agree [s]; 0: not by enough to
+/// tell. `left`: of each joint.
+double commonLag(const std::vector<std::array<double, CurrentLag::LAGS>>& left);
+
+/// The same of one joint alone, which takes more to tell.
+double ownLag(const std::array<double, CurrentLag::LAGS>& left);
+}  // namespace hjt
