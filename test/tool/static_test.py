@@ -89,6 +89,13 @@ class CommandLine(tool.ToolTest):
         bare["HJT_CONFIG_DIR"] = os.path.join(tool.CHECKOUT, "config")
         self.assertEqual(self.run_tool("stiffness", "--torques", "5", environment=bare).returncode, 0)
 
+    def test_files_that_parameters_name_lie_beside_the_default_configuration(self):
+        folder = self.path("own")
+        shutil.copytree(os.path.join(tool.CHECKOUT, "config"), folder)
+        named = self.succeed_json("parameters", "--config-dir", folder)["indicators"]["signatures"]
+        self.assertTrue(named.startswith(folder) and os.path.exists(named), named)
+        self.assertEqual(self.succeed_json("parameters")["indicators"]["signatures"], "signatures/size_25.yaml")
+
     def test_later_overlay_wins_and_set_wins_over_all(self):
         first = self.write("first.yaml", "motor:\n  torque_limit: 1.0\n")
         second = self.write("second.yaml", "motor:\n  torque_limit: 2.0\n")
