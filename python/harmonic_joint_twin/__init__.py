@@ -3,14 +3,14 @@
 
 Parameters, Twin, static analyses and Tracker come from the extension module _hjt, which is loaded when the first of
 them is used: programs that want the messages in harmonic_joint_twin.msg alone do without it. The tool's commands on
-recordings and data sets come from _commands, whose extension module _tool is loaded when the first of them runs; what
-gives frames of pandas from _data_sets.
+recordings and data sets come from _commands, whose extension module _tool is loaded when the first of them runs; the
+whole arm as an object from _arm; what gives frames of pandas from _data_sets.
 """
 import importlib
 
 
 def _parts():
-    for name in "_hjt", "_commands", "_data_sets":
+    for name in "_hjt", "_commands", "_arm", "_data_sets":
         yield importlib.import_module("harmonic_joint_twin." + name)
 
 

@@ -201,8 +201,8 @@ def arm(motion: Recording, arm: Path, *, faults: Sequence[str] = (), out: Option
     motion: CSV of set points, program of moves (YAML), or columns: a structured array or a mapping of arrays with
     'time' [s], shape (rows,), and of shape (rows, joints) 'position' [rad] and, if known, 'velocity' [rad/s] and
     'acceleration' [rad/s^2]. arm: name in config/arms, or a file. faults: each JOINT:KIND:SEVERITY[:PLACE[:ONSET]].
-    out: CSV in a controller's columns.
-    rate: of the rows [Hz]; None: that of the arm's states. Others as of identify.
+    out: FILE.csv in a controller's columns, FILE.bag of /joint_states, or FILE.h5 as a run of a data set. rate: of the
+    rows [Hz]; None: that of the arm's states. Others as of identify.
 
     Returns a dict: 'joints' (one dict each: 'angle_error_rms', 'angle_error_max' [mrad], 'current_rms' [A]),
     'tool_error_rms', 'tool_error_max' [mm], 'energy_residual' [J], 'protective_stop' (None, or 'joint',

@@ -28,7 +28,8 @@ def load(folder: Path, group: Optional[str] = "indicators") -> Frame:
     folder: of the data set. group: of its files, 'indicators' or a name in the plan; None: the index alone.
 
     Returns a pandas.DataFrame: a row for each sample or window of the group, its columns of one number a row, and
-    beside them the run's columns of index.csv, labels among them; 'file' with its path. Without a group a row for each
+    beside them the run's columns of index.csv, labels among them; 'file' with its path. Of whole arms a column for each
+    joint, 'actual_q_0' ... from the base on, 'severity_0' ... Without a group a row for each
     run. Runs that failed are left out. InputError.
     """
     pandas = importlib.import_module("pandas")
@@ -50,6 +51,9 @@ def load(folder: Path, group: Optional[str] = "indicators") -> Frame:
             if group not in groups:
                 raise _hjt.InputError(f"{file} has no group '{group}'; it holds {', '.join(groups)}")
             columns = {name: column[:] for name, column in run[group].items() if column.ndim == 1}
+            if "fault_joint" in index:
+                columns.update({f"{name}_{i}": column[:, i] for name, column in run[group].items() if column.ndim == 2
+                                for i in range(column.shape[1])})
         parts.append(pandas.DataFrame({"file": file, **columns}))
     return pandas.concat(parts, ignore_index=True).merge(index, on="file")
 

@@ -2,20 +2,17 @@
 #include "arm/arm_configuration.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <system_error>
 #include <utility>
 
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "params/configuration_files.hpp"
-#include "twin/configuration_options.hpp"
 
 namespace hjt
 {
-namespace
-{
 namespace fs = std::filesystem;
-}  // namespace
 
 std::string findArm(const std::string& name, const fs::path& directory)
 {
@@ -53,6 +50,19 @@ ParameterMap armJointParameters(const ArmJoint& joint, const fs::path& directory
   return map;
 }
 
+std::vector<ParameterMap> armDriveMaps(const ArmDescription& arm, const ConfigurationOptions& options,
+                                       const std::string& identified)
+{
+  std::vector<ParameterMap> maps;
+  for (const ArmJoint& joint : arm.joints)
+  {
+    maps.push_back(armJointParameters(joint, configDirectory(options), identified));
+    readAssignment("solver.scene=auto", maps.back());
+    addOverlays(options, maps.back());
+  }
+  return maps;
+}
+
 void addIdentifiedGains(const std::string& identified, ArmDescription& arm)
 {
   const fs::path path = fs::path(identified) / GAINS_FILE;
@@ -63,11 +73,23 @@ void addIdentifiedGains(const std::string& identified, ArmDescription& arm)
   }
 }
 
+std::vector<std::size_t> driverOrder(const ArmDescription& arm)
+{
+  std::vector<std::size_t> order(arm.joints.size());
+  std::iota(order.begin(), order.end(), std::size_t{ 0 });
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return arm.joints[a].name < arm.joints[b].name; });
+  return order;
+}
+
 void giveOwnSeeds(std::vector<Parameters>& drives)
 {
-  constexpr int SEEDS = 100'000;  // the parameter's range
+  constexpr int SEEDS = 100'000;                   // the parameter's range
+  constexpr std::int64_t NOISE_SEEDS = 1LL << 31;  // likewise
   for (std::size_t i = 0; i < drives.size(); ++i)
   {
+    int& noise = drives[i].sensors.noise_seed;
+    noise = static_cast<int>((noise + static_cast<std::int64_t>(i)) % NOISE_SEEDS);
     ManufactureParameters& errors = drives[i].manufacture;
     for (PitchParameters* pitch : { &errors.flexspline_pitch, &errors.circular_spline_pitch })
     {

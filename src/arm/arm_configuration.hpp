@@ -7,6 +7,7 @@
 
 #include "arm/arm_description.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"
+#include "twin/configuration_options.hpp"
 
 namespace hjt
 {
@@ -19,13 +20,21 @@ std::string findArm(const std::string& name, const std::filesystem::path& direct
 ParameterMap armJointParameters(const ArmJoint& joint, const std::filesystem::path& directory,
                                 const std::string& identified);
 
+/// Those of all joints, solver.scene = auto and what the options lay over it.
+std::vector<ParameterMap> armDriveMaps(const ArmDescription& arm, const ConfigurationOptions& options,
+                                       const std::string& identified);
+
 /// Where `identified`, a directory or empty, holds the gains of the arm's controller, they are the joints'.
 /// @throws ParameterError.
 void addIdentifiedGains(const std::string& identified, ArmDescription& arm);
 constexpr const char* GAINS_FILE = "controller.yaml";
 
+/// The joints in the order of ros_control's states, which UR's driver publishes: by their names.
+std::vector<std::size_t> driverOrder(const ArmDescription& arm);
+
 /// Drives of an arm are of one series and none is the other: where teeth or spaces have seeded pitch deviations, each
-/// joint's seeds are those configured and twice its number from the base on more.
+/// joint's seeds are those configured and twice its number from the base on more; the seed of its sensors' noise is its
+/// number more.
 void giveOwnSeeds(std::vector<Parameters>& drives);
 
 /// Adds faults to those of the drives, each JOINT:KIND:SEVERITY[:PLACE[:ONSET]], JOINT a joint's name or short name.

@@ -16,6 +16,11 @@ namespace hjt
 {
 namespace
 {
+/// Of the last step's value and of those before, by order: polynomials through them at the next step.
+constexpr std::array<std::array<double, 3>, 3> EXTRAPOLATIONS{
+  { { 1.0, 0.0, 0.0 }, { 2.0, -1.0, 0.0 }, { 3.0, -3.0, 1.0 } }
+};
+
 /// Least inertia that each drive sees over many poses [kg.m^2].
 std::vector<double> leastInertia(ArmDynamics& dynamics, const std::vector<double>& spline_inertia)
 {
@@ -65,7 +70,7 @@ void requireDrive(const ArmDescription& arm, std::size_t joint, const std::vecto
 }  // namespace
 
 ArmTwin::ArmTwin(const ArmDescription& arm, std::vector<Parameters> drives, const std::vector<double>& start,
-                 const SurfaceSource& surface_source, double mass_rate)
+                 const SurfaceSource& surface_source, const ArmCoupling& coupling)
   : dynamics_(arm)
   , pose_at_start_(start)
   , zero_(start)
@@ -85,12 +90,13 @@ ArmTwin::ArmTwin(const ArmDescription& arm, std::vector<Parameters> drives, cons
     spline_inertia_.push_back(drives[i].output.circular_spline_inertia);
   }
   const double rate = drives.front().solver.rate;
-  if (!(mass_rate > 0.0 && mass_rate <= rate))
+  if (!(coupling.mass_rate > 0.0 && coupling.mass_rate <= rate))
   {
-    throw ParameterError("the mass matrix's rate of " + numberText(mass_rate) +
+    throw ParameterError("the mass matrix's rate of " + numberText(coupling.mass_rate) +
                          " Hz is not within 0 ... solver.rate = " + numberText(rate) + " Hz");
   }
-  mass_steps_ = std::llround(rate / mass_rate);
+  mass_steps_ = std::llround(rate / coupling.mass_rate);
+  weights_ = EXTRAPOLATIONS.at(static_cast<std::size_t>(coupling.order));
   const std::vector<double> least = leastInertia(dynamics_, spline_inertia_);
   drives_.reserve(joints);
   for (std::size_t i = 0; i < joints; ++i)
@@ -103,9 +109,8 @@ ArmTwin::ArmTwin(const ArmDescription& arm, std::vector<Parameters> drives, cons
   mass_.setZero(size, size);
   inverse_ = mass_;
   factors_ = Eigen::LLT<Eigen::MatrixXd>(size);
-  link_torque_.setZero(size);
-  link_torque_before_ = link_torque_;
-  excess_ = link_torque_;
+  excess_.setZero(size);
+  link_torques_.fill(excess_);
   reset(0);
 }
 
@@ -125,11 +130,11 @@ bool ArmTwin::reset(Stamp stamp) noexcept
     const auto k = static_cast<Eigen::Index>(i);
     drives_[i].coupleArm(1.0 / inverse_(k, k) - spline_inertia_[i], bias_[i]);
     good = drives_[i].reset(stamp) && good;
-    link_torque_[k] = bias_[i];
+    link_torques_[0][k] = bias_[i];
     // The arm hangs in its drives' compliance, at the angles that it starts with.
     zero_[i] = motion_[i].position - drives_[i].outputs().output_angle;
   }
-  link_torque_before_ = link_torque_;
+  link_torques_.fill(link_torques_[0]);
   energy_at_start_ = armEnergy();
   return good;
 }
@@ -183,7 +188,8 @@ bool ArmTwin::step(Stamp until) noexcept
 void ArmTwin::couple() noexcept
 {
   const auto joints = static_cast<Eigen::Index>(drives_.size());
-  excess_ = 2.0 * link_torque_ - link_torque_before_ - Eigen::Map<const Eigen::VectorXd>(bias_.data(), joints);
+  excess_ = weights_[0] * link_torques_[0] + weights_[1] * link_torques_[1] + weights_[2] * link_torques_[2] -
+            Eigen::Map<const Eigen::VectorXd>(bias_.data(), joints);
   for (Eigen::Index i = 0; i < joints; ++i)
   {
     const auto k = static_cast<std::size_t>(i);
@@ -195,12 +201,13 @@ void ArmTwin::couple() noexcept
 
 void ArmTwin::observe() noexcept
 {
-  link_torque_before_ = link_torque_;
+  link_torques_[2].swap(link_torques_[1]);
+  link_torques_[1].swap(link_torques_[0]);
   for (std::size_t i = 0; i < drives_.size(); ++i)
   {
-    link_torque_[static_cast<Eigen::Index>(i)] = drives_[i].linkTorque();
+    link_torques_[0][static_cast<Eigen::Index>(i)] = drives_[i].linkTorque();
   }
-  excess_ = link_torque_ - Eigen::Map<const Eigen::VectorXd>(bias_.data(), link_torque_.size());
+  excess_ = link_torques_[0] - Eigen::Map<const Eigen::VectorXd>(bias_.data(), excess_.size());
   for (std::size_t i = 0; i < drives_.size(); ++i)
   {
     const JointOutputs outputs = drives_[i].outputs();

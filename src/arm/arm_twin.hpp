@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -12,6 +13,13 @@
 
 namespace hjt
 {
+/// How the drives of an arm are coupled. Cost and error of each: docs/arm_twin.md.
+struct ArmCoupling
+{
+  double mass_rate{ 1000.0 };  ///< of the mass matrix, at most solver.rate [Hz]
+  int order{ 1 };              ///< of the extrapolation of the other drives' torques: 0, the last step's, 1 or 2
+};
+
 /// The drives of an arm, each a Twin, coupled by the rigid-body dynamics of its links:
 ///
 ///   (M(q) + D) a = tau - h(q, v)
@@ -25,21 +33,19 @@ namespace hjt
 ///   h_i - sum_{k != i} W_ik (tau_k - h_k) / W_ii
 ///
 /// All drives step together. h is taken at every step, at the predicted instant; tau of the other drives is
-/// extrapolated from the two steps before; M, which changes with the pose alone, is taken at `mass_rate`. The rotors
-/// belong to the drives: what their casings' mass is in the links counts there.
+/// extrapolated from the steps before; M, which changes with the pose alone, is taken less often. The rotors belong to
+/// the drives: what their casings' mass is in the links counts there.
 ///
 /// After construction nothing throws or allocates unless stated.
 class ArmTwin
 {
 public:
-  static constexpr double MASS_RATE = 1000.0;  ///< by default [Hz]
-
   /// `drives`: one for each joint of `arm`, all of one solver.rate, with solver.stepper = leapfrog and no gravity of
   /// their own; their output.load_inertia is replaced by the least that the arm shows them. `start`: angles of the
-  /// joints, where the arm stands, its brakes engaged [rad]. `mass_rate`: at most solver.rate [Hz].
+  /// joints, where the arm stands, its brakes engaged [rad].
   /// @throws ParameterError naming the joint and the key.
   ArmTwin(const ArmDescription& arm, std::vector<Parameters> drives, const std::vector<double>& start,
-          const SurfaceSource& surface_source = {}, double mass_rate = MASS_RATE);
+          const SurfaceSource& surface_source = {}, const ArmCoupling& coupling = {});
 
   std::size_t joints() const noexcept { return drives_.size(); }
   Twin& drive(std::size_t joint) noexcept { return drives_[joint]; }
@@ -87,10 +93,10 @@ private:
   std::vector<double> bias_;       // h [N.m]
   Eigen::MatrixXd mass_;           // M + D [kg.m^2]
   Eigen::LLT<Eigen::MatrixXd> factors_;
-  Eigen::MatrixXd inverse_;      // W [1/(kg.m^2)]
-  Eigen::VectorXd link_torque_;  // tau of the last step [N.m]
-  Eigen::VectorXd link_torque_before_;
-  Eigen::VectorXd excess_;  // tau - h, extrapolated [N.m]
+  Eigen::MatrixXd inverse_;                      // W [1/(kg.m^2)]
+  std::array<double, 3> weights_;                // of the last steps' torques in the extrapolation
+  std::array<Eigen::VectorXd, 3> link_torques_;  // tau of the last step and of those before [N.m]
+  Eigen::VectorXd excess_;                       // tau - h, extrapolated [N.m]
   double energy_at_start_{};
 };
 }  // namespace hjt

@@ -11,9 +11,12 @@
 #include "datasets/file_seal.hpp"
 #include "output/run_summary.hpp"
 
+#include "arm/arm_configuration.hpp"
 #include "bags/bag_file.hpp"
 #include "base/whole_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
+#include "messages/time.hpp"
+#include "messages/topics.hpp"
 
 namespace hjt
 {
@@ -38,12 +41,24 @@ void writeOrRefuse(const Action& action)
 }
 }  // namespace
 
-BagRunFile::BagRunFile(const Twin* twin, std::string path)
+BagRunFile::BagRunFile(const RunSpec& spec, const Twin* twin, std::string path)
   : path_(std::move(path)), temporary_(path_ + ".part"), last_(SIMULATION_EPOCH)
 {
+  if (spec.arm)
+  {
+    order_ = driverOrder(spec.arm->arm);
+    period_ = toStampLength(1.0 / spec.arm->arm.state_rate);
+    for (const std::size_t joint : order_)
+    {
+      states_.name.push_back(spec.arm->arm.joints[joint].name);
+    }
+    states_.position.resize(order_.size());
+    states_.velocity.resize(order_.size());
+    states_.effort.resize(order_.size());
+  }
   const std::lock_guard<std::mutex> lock(g_opening);
   bag_.emplace(temporary_);
-  if (twin != nullptr)
+  if (twin != nullptr && !spec.arm)
   {
     recorder_.emplace(*twin, DEFAULT_NAMESPACE, *bag_);
   }
@@ -61,6 +76,24 @@ void BagRunFile::record(Twin& twin, const DutyFeeder& /*feeder*/)
 {
   writeOrRefuse([&] { recorder_->record(twin); });
   last_ = twin.stamp();
+}
+
+void BagRunFile::record(Stamp now, ArmRecorder& arm)
+{
+  if (now % period_ != 0)
+  {
+    return;
+  }
+  const ArmRow& row = arm.row();
+  states_.header.stamp = toRosTime(now);
+  for (std::size_t k = 0; k < order_.size(); ++k)
+  {
+    states_.position[k] = row[ACTUAL_POSITION][order_[k]];
+    states_.velocity[k] = row[ACTUAL_VELOCITY][order_[k]];
+    states_.effort[k] = row[ACTUAL_CURRENT][order_[k]];
+  }
+  writeOrRefuse([&] { bag_->write(std::string("/") + topics::JOINT_STATES, now, states_); });
+  last_ = now;
 }
 
 void BagRunFile::finish(OrderedJson record)

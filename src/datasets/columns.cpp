@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "datasets/columns.hpp"
 
-#include <algorithm>
-
-#include "base/joined.hpp"
-
 namespace hjt
 {
-const std::vector<RunColumn>& columns()
+const std::vector<RunColumn>& driveColumns()
 {
   using I = const Instant&;
   static const std::vector<RunColumn> COLUMNS{
@@ -50,15 +46,17 @@ const std::vector<RunColumn>& columns()
   return COLUMNS;
 }
 
-std::string columnNames()
+const std::vector<RunColumn>& armColumns()
 {
-  return joined(columns(), ", ", [](const RunColumn& column) { return column.name; });
-}
-
-const RunColumn* findColumn(const std::string& name)
-{
-  const auto found =
-      std::find_if(columns().begin(), columns().end(), [&](const RunColumn& c) { return c.name == name; });
-  return found == columns().end() ? nullptr : &*found;
+  static const std::vector<RunColumn> COLUMNS = []
+  {
+    std::vector<RunColumn> columns;
+    for (const ArmQuantity& quantity : ARM_QUANTITIES)
+    {
+      columns.push_back({ quantity.name, quantity.unit, quantity.meaning, nullptr, nullptr, &quantity });
+    }
+    return columns;
+  }();
+  return COLUMNS;
 }
 }  // namespace hjt

@@ -16,23 +16,6 @@ namespace
 constexpr Range LARGE{ -1e6, 1e6 };  // any value of a waveform
 constexpr double BANDWIDTH = 8.0;    // of the speed control [Hz]
 
-/// What a key that holds a text may be in some run.
-std::vector<std::string> textsOf(const PlanNode& map, const std::string& key)
-{
-  const PlanNode& node = required(map, key);
-  if (!Variable::stands(node))
-  {
-    return { PlanValues().text(map, key) };
-  }
-  std::vector<std::string> texts;
-  const PlanNode& list = node.entries.front().second;
-  for (const auto& [number, element] : list.entries)
-  {
-    texts.push_back(PlanValues().text(list, number));
-  }
-  return texts;
-}
-
 /// Of what a key of a duty cycle gives.
 const char* unitOf(const std::string& key)
 {

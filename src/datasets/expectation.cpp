@@ -81,15 +81,18 @@ public:
     for (; looked < block.size && Clock::now() - begin < PATIENCE; ++looked)
     {
       const std::uint64_t number = block.first + looked * block.apart;
-      const Parameters parameters = plan.run(number).parameters;
-      if (parameters.solver.scene != SceneKind::AUTO || !drives_.insert(surfaceParametersHash(parameters)).second)
-      {
-        continue;
-      }
+      const RunSpec spec = plan.run(number);
       std::size_t of_run = 0;
-      for (const std::string& key : surfacesOf(parameters))
+      for (const Parameters& parameters : spec.arm ? spec.arm->drives : std::vector{ spec.parameters })
       {
-        of_run += known_.insert(key).second && !surfaceIsKept(key, directory_) ? 1 : 0;
+        if (parameters.solver.scene != SceneKind::AUTO || !drives_.insert(surfaceParametersHash(parameters)).second)
+        {
+          continue;
+        }
+        for (const std::string& key : surfacesOf(parameters))
+        {
+          of_run += known_.insert(key).second && !surfaceIsKept(key, directory_) ? 1 : 0;
+        }
       }
       if (of_run > 0 && missing.of_first_run == 0)
       {
@@ -149,7 +152,7 @@ void printExpectation(const Plan& plan, unsigned jobs, const SurfaceSource& sour
     surface_time += tried > 0.0 ? to_build * cost.surfaces / tried : 0.0;
     const auto runs = static_cast<double>(block.size);
     run_time += runs * (cost.ends + spec.duration / cost.real_time_factor);
-    bytes += runs * dataSize(plan.recording(), spec.duration, spec.parameters.gear.teeth_flexspline);
+    bytes += runs * dataSize(plan.recording(), spec);
     length += runs * spec.duration;
     std::cout << "runs " << block.first << " ... " << block.last() << ": class " << spec.fault_class << ", duty "
               << spec.duty_name << ", " << rounded(cost.real_time_factor) << " times real time\n";

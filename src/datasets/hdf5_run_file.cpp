@@ -25,6 +25,7 @@ constexpr const char* SEVERITY = "severity";
 /// A fault as it lies in memory and, without the gaps, in the file.
 struct FaultRow
 {
+  char joint[32];
   char kind[32];
   double severity;
   std::int32_t place;
@@ -32,17 +33,26 @@ struct FaultRow
   double ramp;
 };
 
-bool writeFaults(hid_t file, const std::vector<GrowingFault>& faults)
+/// `arm`: none, of one drive; the table then has no column of joints.
+bool writeFaults(hid_t file, const std::vector<RunFault>& faults, const std::optional<ArmSpec>& arm)
 {
   std::vector<FaultRow> rows(faults.size());
   for (std::size_t i = 0; i < rows.size(); ++i)
   {
     const Fault& fault = faults[i].fault;
-    rows[i] = { {}, fault.severity, fault.place, fault.onset, faults[i].ramp };
+    rows[i] = { {}, {}, fault.severity, fault.place, fault.onset, faults[i].ramp };
+    if (arm)
+    {
+      arm->arm.joints[faults[i].joint].short_name.copy(rows[i].joint, sizeof(rows[i].joint));
+    }
     std::string(describe(fault.kind).name).copy(rows[i].kind, sizeof(rows[i].kind));
   }
   const Hdf5Handle name = textType(sizeof(FaultRow::kind));
   const Hdf5Handle memory(H5Tcreate(H5T_COMPOUND, sizeof(FaultRow)), H5Tclose);
+  if (arm)
+  {
+    H5Tinsert(memory.get(), "joint", offsetof(FaultRow, joint), name.get());
+  }
   H5Tinsert(memory.get(), "kind", offsetof(FaultRow, kind), name.get());
   H5Tinsert(memory.get(), "severity", offsetof(FaultRow, severity), H5T_NATIVE_DOUBLE);
   H5Tinsert(memory.get(), "place", offsetof(FaultRow, place), H5T_NATIVE_INT32);
@@ -62,7 +72,11 @@ bool writeFaults(hid_t file, const std::vector<GrowingFault>& faults)
 }  // namespace
 
 Hdf5RunFile::Hdf5RunFile(const Recording& recording, const RunSpec& spec, const Twin* twin, std::string path)
-  : path_(std::move(path)), temporary_(path_ + ".part"), faults_(spec.faults), indicators_(recording.indicators)
+  : path_(std::move(path))
+  , temporary_(path_ + ".part")
+  , faults_(spec.faults)
+  , joints_(spec.arm ? spec.arm->drives.size() : 1)
+  , indicators_(recording.indicators)
 {
   const auto lock = lockLibrary();
   const Hdf5Handle creation = withoutTimes(H5P_FILE_CREATE);
@@ -71,11 +85,11 @@ Hdf5RunFile::Hdf5RunFile(const Recording& recording, const RunSpec& spec, const 
   {
     fail();
   }
-  if (!writeFaults(file_.get(), faults_) ||
-      !writeTextDataset(file_.get(), "parameters", describeParameters(spec.parameters)))
+  if (!writeFaults(file_.get(), faults_, spec.arm))
   {
     fail();
   }
+  writeParameters(spec);
   if (twin == nullptr)
   {
     return;
@@ -85,7 +99,7 @@ Hdf5RunFile::Hdf5RunFile(const Recording& recording, const RunSpec& spec, const 
   teeth_ = twin->makeToothForces();
   for (const RecordingGroup& group : recording.groups)
   {
-    makeGroup(group, spec, *twin, recording.start, recording.deflate);
+    makeGroup(group, spec, recording.start, recording.deflate);
   }
 }
 
@@ -102,8 +116,25 @@ void Hdf5RunFile::close() noexcept
   file_ = Hdf5Handle();
 }
 
-void Hdf5RunFile::makeGroup(const RecordingGroup& recorded, const RunSpec& spec, const Twin& twin, double start,
-                            int deflate)
+/// Of an arm a group with those of each drive under its joint's name.
+void Hdf5RunFile::writeParameters(const RunSpec& spec)
+{
+  if (!spec.arm)
+  {
+    check(writeTextDataset(file_.get(), "parameters", describeParameters(spec.parameters)) ? 0 : -1);
+    return;
+  }
+  const Hdf5Handle properties = withoutTimes(H5P_GROUP_CREATE);
+  const Hdf5Handle group(H5Gcreate2(file_.get(), "parameters", H5P_DEFAULT, properties.get(), H5P_DEFAULT), H5Gclose);
+  check(group.get());
+  for (std::size_t i = 0; i < joints_; ++i)
+  {
+    const char* name = spec.arm->arm.joints[i].short_name.c_str();
+    check(writeTextDataset(group.get(), name, describeParameters(spec.arm->drives[i])) ? 0 : -1);
+  }
+}
+
+void Hdf5RunFile::makeGroup(const RecordingGroup& recorded, const RunSpec& spec, double start, int deflate)
 {
   const auto rows = static_cast<hsize_t>(std::floor((spec.duration - start) * recorded.rate + 1e-6));
   const hsize_t chunks = std::max<hsize_t>(1, (rows + ROWS_IN_CHUNK - 1) / ROWS_IN_CHUNK);
@@ -117,14 +148,13 @@ void Hdf5RunFile::makeGroup(const RecordingGroup& recorded, const RunSpec& spec,
   writeText(place.get(), "sample_rate_unit", "Hz");
   writeNumber(place.get(), "first_time", start + 1.0 / recorded.rate);
   writeText(place.get(), "first_time_unit", "s");
-  const auto add = [&](const RunColumn* column, const std::array<const char*, 3>& text, hid_t type)
+  const auto add =
+      [&](const RunColumn* column, std::size_t width, bool is_table, const std::array<const char*, 3>& text, hid_t type)
   {
-    const bool per_tooth = column != nullptr && column->per_tooth != nullptr;
-    const std::size_t width = per_tooth ? static_cast<std::size_t>(twin.parameters().gear.teeth_flexspline) : 1;
     const hsize_t extent[2] = { rows, width };
     const hsize_t chunk[2] = { group.rows_in_block, width };
     const hsize_t most[2] = { H5S_UNLIMITED, width };
-    const int rank = per_tooth ? 2 : 1;
+    const int rank = is_table ? 2 : 1;
     const Hdf5Handle creation = withoutTimes(H5P_DATASET_CREATE);
     H5Pset_chunk(creation.get(), rank, chunk);
     if (deflate > 0)
@@ -138,17 +168,20 @@ void Hdf5RunFile::makeGroup(const RecordingGroup& recorded, const RunSpec& spec,
     check(dataset.get());
     writeText(dataset.get(), "unit", text[1]);
     writeText(dataset.get(), "meaning", text[2]);
-    group.per_tooth = group.per_tooth || per_tooth;
-    group.columns.push_back({ column, std::move(dataset), width, {} });
+    group.per_tooth = group.per_tooth || (column != nullptr && column->per_tooth != nullptr);
+    group.columns.push_back({ column, is_table, std::move(dataset), width, {} });
     group.columns.back().block.reserve(group.rows_in_block * width);
   };
   for (const RunColumn* column : recorded.columns)
   {
-    add(column, { column->name, column->unit, column->meaning }, group.float32 ? H5T_IEEE_F32LE : H5T_IEEE_F64LE);
+    const std::size_t width = column->width(spec.parameters.gear.teeth_flexspline, joints_);
+    add(column, width, column->isTable(), { column->name, column->unit, column->meaning },
+        group.float32 ? H5T_IEEE_F32LE : H5T_IEEE_F64LE);
   }
   // Behind the columns, in this order.
-  add(nullptr, { TIME, "s", "since the start of the run" }, H5T_IEEE_F64LE);
-  add(nullptr, { SEVERITY, "-", "of the run's faults, the largest at this instant; 0: sound" }, H5T_IEEE_F32LE);
+  add(nullptr, 1, false, { TIME, "s", "since the start of the run" }, H5T_IEEE_F64LE);
+  add(nullptr, joints_, spec.arm.has_value(),
+      { SEVERITY, "-", "of the drive's faults, the largest at this instant; 0: sound" }, H5T_IEEE_F32LE);
   groups_.push_back(std::move(group));
 }
 
@@ -161,7 +194,7 @@ void Hdf5RunFile::record(Twin& twin, const DutyFeeder& feeder)
   }
   for (Group& group : groups_)
   {
-    if (now <= from_ || (now - from_) % group.period != 0)
+    if (!isDue(group, now))
     {
       continue;
     }
@@ -173,7 +206,7 @@ void Hdf5RunFile::record(Twin& twin, const DutyFeeder& feeder)
     {
       if (data.column == nullptr)
       {
-        data.block.push_back(&data == &group.columns.back() ? severityAt(time) : time);
+        data.block.push_back(&data == &group.columns.back() ? severityAt(time, 0) : time);
       }
       else if (data.column->per_tooth != nullptr && !teeth_known)
       {
@@ -189,19 +222,57 @@ void Hdf5RunFile::record(Twin& twin, const DutyFeeder& feeder)
         data.block.push_back(data.column->value(instant));
       }
     }
-    if (++group.buffered == group.rows_in_block)
-    {
-      flush(group);
-    }
+    finishRow(group);
   }
 }
 
-double Hdf5RunFile::severityAt(double time) const
+void Hdf5RunFile::record(Stamp now, ArmRecorder& arm)
+{
+  for (Group& group : groups_)
+  {
+    if (!isDue(group, now))
+    {
+      continue;
+    }
+    const ArmRow& row = arm.row();
+    const double time = toSeconds(now - begin_);
+    for (ColumnData& data : group.columns)
+    {
+      if (data.column != nullptr)
+      {
+        const auto& numbers = row[static_cast<std::size_t>(data.column - armColumns().data())];
+        data.block.insert(data.block.end(), numbers.begin(), numbers.end());
+        continue;
+      }
+      for (std::size_t i = 0; i < data.width; ++i)
+      {
+        data.block.push_back(data.is_table ? severityAt(time, i) : time);
+      }
+    }
+    finishRow(group);
+  }
+}
+
+bool Hdf5RunFile::isDue(const Group& group, Stamp now) const
+{
+  return now > from_ && (now - from_) % group.period == 0;
+}
+
+void Hdf5RunFile::finishRow(Group& group)
+{
+  if (++group.buffered == group.rows_in_block)
+  {
+    flush(group);
+  }
+}
+
+/// Of a joint's drive.
+double Hdf5RunFile::severityAt(double time, std::size_t joint) const
 {
   double largest = 0.0;
-  for (const GrowingFault& growing : faults_)
+  for (const RunFault& growing : faults_)
   {
-    largest = std::max(largest, growing.severityAt(time));
+    largest = growing.joint == joint ? std::max(largest, growing.severityAt(time)) : largest;
   }
   return largest;
 }
@@ -211,7 +282,7 @@ void Hdf5RunFile::flush(Group& group)
   const auto lock = lockLibrary();
   for (ColumnData& data : group.columns)
   {
-    const int rank = data.column != nullptr && data.column->per_tooth != nullptr ? 2 : 1;
+    const int rank = data.is_table ? 2 : 1;
     const hsize_t first[2] = { group.written, 0 };
     const hsize_t count[2] = { group.buffered, data.width };
     const Hdf5Handle space(H5Dget_space(data.dataset.get()), H5Sclose);
@@ -245,7 +316,7 @@ void Hdf5RunFile::writeIndicators()
   write("window_start", "s",
         [&](W w) { return w.windows > 1 ? end_of(windows_[static_cast<std::size_t>(w.windows - 2)]) : first; });
   write("window_end", "s", end_of);
-  write("window_severity", "-", [&](W w) { return severityAt(end_of(w)); });
+  write("window_severity", "-", [&](W w) { return severityAt(end_of(w), 0); });
   write("window_turns", "-", [](W w) { return w.turns; });
   write("window_speed", "rad/s", [](W w) { return w.point.speed; });
   write("window_direction", "-", [](W w) { return w.point.direction; });

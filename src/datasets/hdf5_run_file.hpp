@@ -21,12 +21,14 @@ public:
   ~Hdf5RunFile() override;
 
   void record(Twin& twin, const DutyFeeder& feeder) override;
+  void record(Stamp now, ArmRecorder& arm) override;
   void finish(OrderedJson record) override;
 
 private:
   struct ColumnData
   {
     const RunColumn* column;  // none: time or severity
+    bool is_table;
     Hdf5Handle dataset;
     std::size_t width;  // numbers a row
     std::vector<double> block;
@@ -42,8 +44,11 @@ private:
     std::vector<ColumnData> columns{};
   };
 
-  void makeGroup(const RecordingGroup& recorded, const RunSpec& spec, const Twin& twin, double start, int deflate);
-  double severityAt(double time) const;
+  void writeParameters(const RunSpec& spec);
+  void makeGroup(const RecordingGroup& recorded, const RunSpec& spec, double start, int deflate);
+  bool isDue(const Group& group, Stamp now) const;
+  double severityAt(double time, std::size_t joint) const;
+  void finishRow(Group& group);
   void flush(Group& group);
   void writeIndicators();
   void close() noexcept;
@@ -55,7 +60,8 @@ private:
   Hdf5Handle file_;
   Stamp from_{};  // recorded are instants after this one
   Stamp begin_{};
-  std::vector<GrowingFault> faults_;
+  std::vector<RunFault> faults_;
+  std::size_t joints_;
   ToothForces teeth_;
   std::uint64_t rows_without_forces_{};
   std::vector<Group> groups_;

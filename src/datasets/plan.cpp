@@ -15,87 +15,54 @@ namespace
 using Kind = PlanNode::Kind;
 
 constexpr double MAX_RUNS = 1e9;
-constexpr const char* NOISE_SEED = "sensors.noise_seed";
 /// Where a plan has no classes: all runs are of this one.
 const PlanNode::Entry HEALTHY{ "healthy", PlanNode{ Kind::LIST, "classes.healthy", "", {}, {} } };
 /// Of the runs of a plan of lives.
 const PlanNode::Entry LIFE{ "life", PlanNode{ Kind::LIST, "lives", "", {}, {} } };
-constexpr const char* SET = "set.";  // before what is drawn for each drive
 
-/// These faults in place of any other.
-void setFaults(const std::vector<GrowingFault>& faults, const std::string& origin, ParameterMap& map)
+/// With the overlays that the plan names, which lie beside it or in the default configuration's folder.
+ConfigurationOptions withOverlays(const PlanNode& root, const std::string& directory, ConfigurationOptions options)
 {
-  eraseFaults(map);
-  int count = 0;
-  for (const GrowingFault& growing : faults)
-  {
-    for (const Fault& fault : growing.steps())
-    {
-      const std::string key = std::string(FAULTS) + "." + std::to_string(count++) + ".";
-      map[key + "kind"] = { std::string(describe(fault.kind).name), origin };
-      map[key + "severity"] = { fault.severity, origin };
-      map[key + "place"] = { static_cast<std::int64_t>(fault.place), origin };
-      map[key + "onset"] = { fault.onset, origin };
-    }
-  }
-}
-
-/// A class' list of faults.
-std::vector<GrowingFault> faultsOf(const PlanNode& list, const PlanValues& values)
-{
-  std::vector<GrowingFault> faults;
-  for (const auto& [number, node] : list.entries)
-  {
-    if (node.kind != Kind::MAP || node.entries.empty())
-    {
-      node.refuse("must be {kind: ..., severity: ..., place: ..., onset: ..., ramp: ...}");
-    }
-    allowOnly(node, { "kind", "severity", "place", "onset", "ramp" });
-    const std::optional<FaultKind> kind = faultNamed(values.text(node, "kind"));
-    if (!kind)
-    {
-      required(node, "kind").refuse("is no fault; there are " + faultNames());
-    }
-    GrowingFault growing;
-    growing.fault.kind = *kind;
-    growing.fault.severity = values.number(node, "severity", "-", { 0.0, 1.0 });
-    growing.fault.place = static_cast<int>(values.whole(node, "place", "-", { WHOLE_MEMBER, 4000 }, firstPlace(*kind)));
-    growing.fault.onset = values.number(node, "onset", "s", { 0.0, 1e9 }, 0.0);
-    growing.ramp = values.number(node, "ramp", "s", { 0.0, GrowingFault::MAX_RAMP }, 0.0);
-    faults.push_back(growing);
-  }
-  return faults;
-}
-}  // namespace
-
-std::vector<std::string> Plan::overlays(const std::string& path)
-{
-  const PlanNode root = readPlanFile(path);
-  std::vector<std::string> files;
   if (root.find("overlays") != nullptr)
   {
     const PlanNode& list = required(root, "overlays", Kind::LIST);
-    const std::filesystem::path directory = std::filesystem::path(path).parent_path();
     for (const auto& [key, node] : list.entries)
     {
       const std::string name = PlanValues().text(list, key);
-      const std::filesystem::path beside = directory / name;
-      files.push_back(std::filesystem::exists(beside) ? beside.string() : name);
+      const std::filesystem::path beside = std::filesystem::path(directory) / name;
+      options.configs.push_back(std::filesystem::exists(beside) ? beside.string() : name);
     }
   }
-  return files;
+  return options;
 }
+}  // namespace
 
-Plan::Plan(const std::string& path, ParameterMap base)
-  : directory_(std::filesystem::path(path).parent_path().string()), root_(readPlanFile(path)), base_(std::move(base))
+Plan::Plan(const std::string& path, const ConfigurationOptions& options)
+  : directory_(std::filesystem::path(path).parent_path().string()), root_(readPlanFile(path))
 {
-  allowOnly(root_, { "name", "seed", "duration", "overlays", "set", "repeats", "lives", "duty", "classes", "record" });
+  const bool of_arms = root_.find("arm") != nullptr;
+  std::vector<std::string> keys{ "name",    "seed",  "duration", "overlays", "set",
+                                 "repeats", "lives", "duty",     "classes",  "record" };
+  if (of_arms)
+  {
+    keys.insert(keys.end(), { "arm", "identified" });
+  }
+  allowOnly(root_, keys);
+  const ConfigurationOptions configuration = withOverlays(root_, directory_, options);
   const PlanValues values;
   name_ = values.text(root_, "name", std::filesystem::path(path).stem().string());
   seed_ = static_cast<std::uint32_t>(values.whole(root_, "seed", "-", { 0, 4294967295.0 }, 1));
   repeats_ = static_cast<std::uint64_t>(values.whole(root_, "repeats", "-", { 1, MAX_RUNS }, 1));
-  duties_.readTables(required(root_, "duty", Kind::LIST), directory_);
-  recording_ = readRecording(required(root_, "record", Kind::MAP));
+  if (of_arms)
+  {
+    arm_.emplace(root_, directory_, configuration);
+  }
+  else
+  {
+    base_ = loadParameterMap(configuration);
+    duties_.readTables(required(root_, "duty", Kind::LIST), directory_);
+  }
+  recording_ = readRecording(required(root_, "record", Kind::MAP), of_arms);
   root_.find("lives") != nullptr ? makeLives() : makeBlocks();
   if (runs_ == 0)
   {
@@ -174,7 +141,10 @@ void Plan::makeBlocks()
 void Plan::addBlock(const PlanNode::Entry& fault_class, const PlanNode& duty)
 {
   Block block{ &fault_class, &duty, {}, 0, repeats_ };
-  collect(required(root_, "duration"), block.variables);
+  if (!arm_ || root_.find("duration") != nullptr)
+  {
+    collect(required(root_, "duration"), block.variables);
+  }
   if (root_.find("set") != nullptr)
   {
     collect(required(root_, "set", Kind::MAP), block.variables);
@@ -227,132 +197,6 @@ void Plan::makeLives()
   runs_ = lives_->checkUps() * duties.size();
 }
 
-/// All that varies, with its value in a run; into the run too.
-PlanValues Plan::valuesOf(const Block& block, std::uint64_t number, RunSpec& spec) const
-{
-  std::uint64_t rest = lives_ ? 0 : number - block.first;
-  spec.repeat = rest % repeats_;
-  rest /= repeats_;
-  PlanValues values;
-  spec.variables.resize(block.variables.size());
-  for (std::size_t i = block.variables.size(); i-- > 0;)
-  {
-    const Variable& variable = *block.variables[i];
-    const bool of_drive = lives_ && variable.node().path.rfind(SET, 0) == 0;
-    const std::uint64_t draw = of_drive ? lives_->driveAt(number / blocks_.size()) : number;
-    const ParameterValue value = variable.value(seed_, draw, rest % variable.gridSize());
-    rest /= variable.gridSize();
-    values.set(variable.node(), value);
-    spec.variables[i] = { variable.node().path, value };
-  }
-  return values;
-}
-
-RunSpec Plan::run(std::uint64_t number) const
-{
-  const auto after = std::upper_bound(blocks_.begin(), blocks_.end(), number,
-                                      [](std::uint64_t run, const Block& block) { return run < block.first; });
-  const Block& block = lives_ ? blocks_[number % blocks_.size()] : *(after - 1);
-  RunSpec spec;
-  spec.run = number;
-  spec.fault_class = block.fault_class->first;
-  const PlanValues values = valuesOf(block, number, spec);
-  constexpr Range DURATION{ 1e-3, 1e6 };
-  spec.duration = values.number(root_, "duration", "s", DURATION);
-  if (spec.duration <= recording_.start)
-  {
-    required(root_, "duration").refuse("[s] must be more than record.start = " + numberText(recording_.start) + " [s]");
-  }
-  spec.duty_name = values.text(*block.duty, "name", "duty");
-  spec.duty = duties_.read(*block.duty, values);
-  constexpr double LEAST_EASING = 0.1;  // a shorter one jerks like a step [s]
-  spec.duty.easing = 0.5 * recording_.start >= LEAST_EASING ? 0.5 * recording_.start : 0.0;
-  ParameterMap settings = settingsOf(values, number);
-  const bool given = lives_ || root_.find("classes") != nullptr;
-  if (given)
-  {
-    const std::uint64_t check_up = number / blocks_.size();
-    spec.faults = lives_ ? lives_->faultsAt(check_up) : faultsOf(block.fault_class->second, values);
-    setFaults(spec.faults, block.fault_class->second.origin, settings);
-    const Lives::Labels labels = lives_ ? lives_->labelsAt(check_up) : Lives::Labels();
-    spec.variables.insert(spec.variables.end(), labels.begin(), labels.end());
-  }
-  spec.parameters = parametersOf(settings, given);
-  if (!given)
-  {
-    for (const Fault& fault : spec.parameters.faults)
-    {
-      spec.faults.push_back({ fault, 0.0 });
-    }
-  }
-  checkRates(spec.parameters);
-  return spec;
-}
-
-ParameterMap Plan::settingsOf(const PlanValues& values, std::uint64_t number) const
-{
-  ParameterMap map;
-  bool seeded = false;
-  if (const PlanNode* settings = root_.find("set"))
-  {
-    for (const auto& [key, node] : settings->entries)
-    {
-      map[key] = { values.value(node).value, node.origin };
-      seeded = seeded || key == NOISE_SEED;
-    }
-  }
-  if (!seeded)
-  {
-    map[NOISE_SEED] = { static_cast<std::int64_t>(drawnWord(seed_, NOISE_SEED, number) >> 1), root_.origin };
-  }
-  return map;
-}
-
-/// The settings of one run over those of the first, which set the same keys. Where something is wrong all is read, for
-/// the text of the error.
-Parameters Plan::parametersOf(const ParameterMap& settings, bool faults_given) const
-{
-  const auto first_fault = settings.lower_bound(FAULTS);
-  const bool with_faults = first_fault != settings.end() && first_fault->first.rfind(FAULTS, 0) == 0;
-  if (first_ && (faults_given || !with_faults))
-  {
-    try
-    {
-      Parameters parameters = *first_;
-      parameters.faults = faults_given ? std::vector<Fault>() : parameters.faults;
-      changeParameters(parameters, settings);
-      return parameters;
-    }
-    catch (const ParameterError&)
-    {
-    }
-  }
-  ParameterMap map = base_;
-  if (faults_given)
-  {
-    eraseFaults(map);
-  }
-  for (const auto& [key, value] : settings)
-  {
-    map[key] = value;
-  }
-  return parseParameters(map);
-}
-
-void Plan::checkRates(const Parameters& parameters) const
-{
-  for (const RecordingGroup& group : recording_.groups)
-  {
-    const double steps = parameters.solver.rate / group.rate;
-    if (std::abs(steps - std::round(steps)) > 1e-9 * steps || steps < 0.5)
-    {
-      const PlanNode& groups = *root_.find("record")->find("groups");
-      required(*groups.find(group.name), "rate")
-          .refuse("[Hz] must divide solver.rate = " + numberText(parameters.solver.rate) + " [Hz]");
-    }
-  }
-}
-
 std::vector<std::string> Plan::variableNames() const
 {
   std::vector<std::string> names;
@@ -379,6 +223,11 @@ OrderedJson Plan::snapshot() const
   for (const auto& [key, value] : base_)
   {
     base[key] = jsonOf(value);
+  }
+  if (arm_)
+  {
+    tables = arm_->motions();
+    base = arm_->configuration();
   }
   return { { "runs", runs_ }, { "plan", jsonOf(root_) }, { "tables", tables }, { "configuration", base } };
 }

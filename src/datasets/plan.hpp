@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "datasets/arm_plan.hpp"
 #include "datasets/duty_reader.hpp"
 #include "datasets/lives.hpp"
 #include "datasets/plan_node.hpp"
@@ -19,7 +20,7 @@
 #include "output/ordered_json.hpp"
 
 #include "harmonic_joint_twin/params/parameter_map.hpp"
-#include "twin/growing_fault.hpp"
+#include "twin/configuration_options.hpp"
 
 namespace hjt
 {
@@ -31,9 +32,10 @@ struct RunSpec
   std::string duty_name;
   std::uint64_t repeat{};
   double duration{};      ///< [s]
-  Parameters parameters;  ///< what grows stands in its faults as a staircase
-  std::vector<GrowingFault> faults;
+  Parameters parameters;  ///< what grows stands in its faults as a staircase; of an arm its first drive's
+  std::vector<RunFault> faults;
   RunDuty duty;
+  std::optional<ArmSpec> arm;                                     ///< of a plan of whole arms
   std::vector<std::pair<std::string, ParameterValue>> variables;  ///< path in the plan and value in this run
 };
 
@@ -41,17 +43,15 @@ struct RunSpec
 ///
 /// Runs are numbered class by class, within it duty cycle by duty cycle, within that grid by grid, the last one
 /// fastest, then the repeats. A plan of lives: life by life, check-up by check-up, duty cycle by duty cycle; what `set`
-/// draws is drawn for each drive. After construction all members may be called from any thread.
+/// draws is drawn for each drive. A plan of whole arms: duty cycles are motions, and `set` is that of all drives. After
+/// construction all members may be called from any thread.
 class Plan
 {
 public:
-  /// `base`: the configuration below the plan's own settings. @throws InputError naming file and line.
-  Plan(const std::string& path, ParameterMap base);
+  /// `options`: the configuration below the plan's own settings. @throws InputError naming file and line.
+  Plan(const std::string& path, const ConfigurationOptions& options);
   Plan(const Plan&) = delete;
   Plan& operator=(const Plan&) = delete;
-
-  /// Overlays that a plan names, to be read before the plan is made.
-  static std::vector<std::string> overlays(const std::string& path);
 
   const std::string& name() const { return name_; }
   std::uint64_t runs() const { return runs_; }
@@ -75,6 +75,8 @@ public:
   const std::vector<Block>& blocks() const { return blocks_; }
 
   const Lives* lives() const { return lives_.get(); }  ///< none: a plan of other runs
+  bool isOfArms() const { return arm_.has_value(); }
+  std::string jointName(std::size_t joint) const { return arm_ ? arm_->jointName(joint) : std::string(); }
 
   /// Paths of all that varies, in the order of the plan.
   std::vector<std::string> variableNames() const;
@@ -90,6 +92,9 @@ private:
   PlanValues valuesOf(const Block& block, std::uint64_t number, RunSpec& spec) const;
   ParameterMap settingsOf(const PlanValues& values, std::uint64_t number) const;
   Parameters parametersOf(const ParameterMap& settings, bool faults_given) const;
+  std::vector<RunFault> faultsOf(const PlanNode& list, const PlanValues& values) const;
+  void takeDrive(const Block& block, const PlanValues& values, RunSpec& spec) const;
+  void takeArm(const Block& block, const PlanValues& values, RunSpec& spec) const;
   void checkRates(const Parameters& parameters) const;
 
   std::string directory_;
@@ -102,6 +107,7 @@ private:
   Recording recording_;
   DutyReader duties_;
   std::unique_ptr<const Lives> lives_;
+  std::optional<ArmPlan> arm_;
   std::vector<std::unique_ptr<const Variable>> variables_;
   std::vector<Block> blocks_;
   std::optional<Parameters> first_;  // of the first run, if there is no error in it

@@ -9,6 +9,8 @@
 #include "datasets/plan_node.hpp"
 #include "datasets/plan_values.hpp"
 
+#include "base/joined.hpp"
+
 namespace hjt
 {
 /// Columns that are recorded at one rate.
@@ -38,8 +40,32 @@ struct Recording
   std::vector<RecordingGroup> groups;
 };
 
-/// The plan's mapping `record`. @throws InputError naming file and line.
-inline Recording readRecording(const PlanNode& record)
+/// The columns of a group, out of those `known`. @throws InputError naming file and line.
+inline std::vector<const RunColumn*> readColumns(const PlanNode& group, const std::vector<RunColumn>& known)
+{
+  std::vector<const RunColumn*> columns;
+  const PlanNode& list = required(group, "columns", PlanNode::Kind::LIST);
+  for (const auto& [key, element] : list.entries)
+  {
+    const std::string wanted = PlanValues().text(list, key);
+    const auto column =
+        std::find_if(known.begin(), known.end(), [&](const RunColumn& each) { return each.name == wanted; });
+    if (column == known.end())
+    {
+      const auto nameOf = [](const RunColumn& each) { return each.name; };
+      element.refuse("is no column; there are " + joined(known, ", ", nameOf));
+    }
+    if (std::find(columns.begin(), columns.end(), &*column) != columns.end())
+    {
+      element.refuse("stands twice");
+    }
+    columns.push_back(&*column);
+  }
+  return columns;
+}
+
+/// The plan's mapping `record`; `of_arms`: of a plan of whole arms. @throws InputError naming file and line.
+inline Recording readRecording(const PlanNode& record, bool of_arms)
 {
   const PlanValues values;
   Recording recording;
@@ -60,6 +86,11 @@ inline Recording readRecording(const PlanNode& record)
   }
   allowOnly(record, { "format", "start", "deflate", "indicators", "groups" });
   recording.indicators = values.flag(record, "indicators");
+  if (recording.indicators && of_arms)
+  {
+    required(record, "indicators").refuse("are those of one drive, not of an arm: `joint_twin indicators` makes them");
+  }
+  const std::vector<RunColumn>& known = of_arms ? armColumns() : driveColumns();
   constexpr double START = 1.0;  // [s]
   constexpr int DEFLATE = 4;
   recording.start = values.number(record, "start", "s", { 0, 1e6 }, START);
@@ -74,20 +105,7 @@ inline Recording readRecording(const PlanNode& record)
       required(node, "type").refuse("is unknown; allowed: float32, float64");
     }
     group.float32 = type == "float32";
-    const PlanNode& list = required(node, "columns", PlanNode::Kind::LIST);
-    for (const auto& [key, element] : list.entries)
-    {
-      const RunColumn* column = findColumn(values.text(list, key));
-      if (column == nullptr)
-      {
-        element.refuse("is no column; there are " + columnNames());
-      }
-      if (std::find(group.columns.begin(), group.columns.end(), column) != group.columns.end())
-      {
-        element.refuse("stands twice");
-      }
-      group.columns.push_back(column);
-    }
+    group.columns = readColumns(node, known);
     if (name == "faults" || name == "parameters" || name == "indicators" || name == "record" ||
         name.find('/') != std::string::npos || group.columns.empty())
     {

@@ -13,7 +13,7 @@ std::unique_ptr<RunFile> makeRunFile(const Recording& recording, const RunSpec& 
 {
   if (recording.format == RunFormat::BAG)
   {
-    return std::make_unique<BagRunFile>(twin, path);
+    return std::make_unique<BagRunFile>(spec, twin, path);
   }
   return makeHdf5RunFile(recording, spec, twin, path);
 }
@@ -43,15 +43,16 @@ Columns readRunColumns(const std::string& path, const std::vector<std::string>& 
   return readHdf5Columns(path, holding);
 }
 
-double dataSize(const Recording& recording, double duration, int teeth)
+double dataSize(const Recording& recording, const RunSpec& spec)
 {
+  const std::size_t joints = spec.arm ? spec.arm->drives.size() : 1;
   double bytes = 0.0;
   for (const RecordingGroup& group : recording.groups)
   {
     for (const RunColumn* column : group.columns)
     {
-      const double numbers = column->per_tooth != nullptr ? teeth : 1;
-      bytes += (duration - recording.start) * group.rate * numbers * (group.float32 ? 4.0 : 8.0);
+      const auto numbers = static_cast<double>(column->width(spec.parameters.gear.teeth_flexspline, joints));
+      bytes += (spec.duration - recording.start) * group.rate * numbers * (group.float32 ? 4.0 : 8.0);
     }
   }
   return bytes;

@@ -15,21 +15,28 @@ namespace hjt
 /// Of a run's record: rows whose forces on the teeth are NaN, as no equilibrium of the teeth was found for them.
 constexpr const char* ROWS_WITHOUT_FORCES = "rows_without_forces";
 
+/// Of an arm's record: joint, reason and time of its protective stop, or empty.
+constexpr const char* PROTECTIVE_STOP = "protective_stop";
+
 /// What one run is written to. Nothing stands under its name before `finish`.
 class RunFile
 {
 public:
   virtual ~RunFile() = default;
 
-  /// After every step. @throws InputError if the disk does not take it.
+  /// After every step of a drive. @throws InputError if the disk does not take it.
   virtual void record(Twin& twin, const DutyFeeder& feeder) = 0;
+
+  /// After every step of an arm, at `now`; before the first of its motion too. @throws InputError alike.
+  virtual void record(Stamp now, ArmRecorder& arm) = 0;
 
   /// Writes what is known only now, seals the file, brings it to the disk and gives it its name. `record`: the run's
   /// row of the index, with an open seal. @throws InputError.
   virtual void finish(OrderedJson record) = 0;
 };
 
-/// `twin`: none if the run has none; then only the record is written. @throws InputError.
+/// `twin`: at the start of what is recorded, of an arm its first drive; none if the run has none, then only the record
+/// is written. @throws InputError.
 std::unique_ptr<RunFile> makeRunFile(const Recording& recording, const RunSpec& spec, const Twin* twin,
                                      const std::string& path);
 
@@ -50,5 +57,5 @@ using Columns = std::map<std::string, std::vector<double>>;
 Columns readRunColumns(const std::string& path, const std::vector<std::string>& holding);
 
 /// Bytes of the numbers of a run.
-double dataSize(const Recording& recording, double duration, int teeth);
+double dataSize(const Recording& recording, const RunSpec& spec);
 }  // namespace hjt

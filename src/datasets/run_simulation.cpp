@@ -11,32 +11,105 @@
 #include "output/interrupt.hpp"
 #include "output/run_summary.hpp"
 
+#include "arm/arm_recorder.hpp"
 #include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 
 namespace hjt
 {
-namespace
-{
 using Json = OrderedJson;
 
-/// At the start of a run.
-void start(Twin& twin, const Recording& recording)
+class RunSimulation::Drive : public Subject
 {
-  twin.watchSignals(recording.format == RunFormat::BAG);  // a bag holds the indicators, from the start on
-  twin.reset(SIMULATION_EPOCH);
+public:
+  Drive(const RunSpec& spec, const Recording& recording, const SurfaceSource& source)
+    : recording_(recording), twin_(spec.parameters, source), feeder_(spec.duty, twin_)
+  {
+    twin_.watchSignals(recording.format == RunFormat::BAG);  // a bag holds the indicators, from the start on
+    twin_.reset(SIMULATION_EPOCH);
+  }
+
+  bool step(double time, Stamp end) override
+  {
+    feeder_.feed(twin_, time);
+    if (recording_.indicators && time > recording_.start)
+    {
+      twin_.watchSignals(true);  // a window that held the start would stand apart from all others
+    }
+    return twin_.step(end);
+  }
+  void record(RunFile& file) override { file.record(twin_, feeder_); }
+  const Twin& drive() const override { return twin_; }
+  TwinCounters counters() const override { return twin_.counters(); }
+  bool onSurface() const override { return twin_.onSurface(); }
+  void tell(OrderedJson&) const override {}
+
+private:
+  const Recording& recording_;
+  Twin twin_;
+  DutyFeeder feeder_;
+};
+
+/// Its run begins with the motion, when the drives have settled.
+class RunSimulation::Arm : public Subject
+{
+public:
+  Arm(const RunSpec& spec, const SurfaceSource& source)
+    : spec_(spec)
+    , moving_(spec.arm->arm, spec.arm->drives, ArmMotion(*spec.arm->motion), source)
+    , recorder_(spec.arm->arm, moving_)
+  {
+    moving_.reset(SIMULATION_EPOCH);
+    while (moving_.step(moving_.motionBegin()))
+    {
+    }
+  }
+
+  bool step(double, Stamp end) override { return moving_.step(end); }
+  void record(RunFile& file) override { file.record(moving_.twin().stamp(), recorder_); }
+  const Twin& drive() const override { return moving_.twin().drive(0); }
+  TwinCounters counters() const override { return countersOf(moving_.twin()); }
+  bool onSurface() const override
+  {
+    bool all = true;
+    for (std::size_t i = 0; i < moving_.twin().joints(); ++i)
+    {
+      all = all && moving_.twin().drive(i).onSurface();
+    }
+    return all;
+  }
+  void tell(OrderedJson& record) const override
+  {
+    const std::optional<ProtectiveStop>& stop = moving_.protectiveStop();
+    record[PROTECTIVE_STOP] = stop ? spec_.arm->arm.joints[stop->joint].short_name + " " + stop->reason + " at " +
+                                         numberText(toSeconds(stop->stamp - moving_.motionBegin())) + " s" :
+                                     "";
+  }
+
+private:
+  const RunSpec& spec_;
+  MovingArm moving_;
+  ArmRecorder recorder_;
+};
+
+std::unique_ptr<RunSimulation::Subject> RunSimulation::begin(const RunSpec& spec) const
+{
+  if (spec.arm)
+  {
+    return std::make_unique<Arm>(spec, surface_source_);
+  }
+  return std::make_unique<Drive>(spec, plan_.recording(), surface_source_);
 }
-}  // namespace
 
 bool RunSimulation::simulate(std::uint64_t number)
 {
   const RunSpec spec = plan_.run(number);
   Json record = recordOf(spec, directory_.runFileName(number));
   const std::string path = directory_.runFile(number);
-  std::optional<Twin> twin;
+  std::unique_ptr<Subject> subject;
   try
   {
-    twin.emplace(spec.parameters, surface_source_);
+    subject = begin(spec);
   }
   catch (const ParameterError& error)
   {
@@ -45,17 +118,17 @@ bool RunSimulation::simulate(std::uint64_t number)
     makeRunFile(plan_.recording(), spec, nullptr, path)->finish(record);
     return true;
   }
-  start(*twin, plan_.recording());
-  const auto file = makeRunFile(plan_.recording(), spec, &*twin, path);
-  if (!march(*twin, spec, *file, Clock::time_point::max()))
+  const auto file = makeRunFile(plan_.recording(), spec, &subject->drive(), path);
+  const Stamp start = subject->drive().stamp();
+  if (!march(*subject, spec, *file, Clock::time_point::max()))
   {
     return false;
   }
-  const TwinCounters& counters = twin->counters();
+  const TwinCounters counters = subject->counters();
   if (counters.solver_failures > 0)
   {
     record["status"] = "failed";
-    record["error"] = "the solver found no equilibrium at " + numberText(toSeconds(twin->stamp() - SIMULATION_EPOCH)) +
+    record["error"] = "the solver found no equilibrium at " + numberText(toSeconds(subject->drive().stamp() - start)) +
                       " s; the record ends there";
   }
   record["steps"] = counters.steps;
@@ -63,6 +136,7 @@ bool RunSimulation::simulate(std::uint64_t number)
   record["coarse_steps"] = counters.coarse_steps;
   record["torque_clamped"] = counters.torque_clamped;
   record["jumps"] = counters.jumps;
+  subject->tell(record);
   file->finish(record);
   return true;
 }
@@ -77,17 +151,17 @@ RunCost RunSimulation::sample(std::uint64_t number, double seconds)
                                .string();
   RunCost cost;
   const Clock::time_point first_begin = Clock::now();
-  const Twin first(spec.parameters, surface_source_);  // has to build its surfaces, once for all runs
+  begin(spec);  // has to build its surfaces, once for all runs
   cost.surfaces = since(first_begin);
-  const Clock::time_point begin = Clock::now();
-  Twin twin(spec.parameters, surface_source_);
-  start(twin, plan_.recording());
-  const auto file = makeRunFile(plan_.recording(), spec, &twin, path);
-  cost.ends = since(begin);
+  const Clock::time_point again = Clock::now();
+  const std::unique_ptr<Subject> subject = begin(spec);
+  const auto file = makeRunFile(plan_.recording(), spec, &subject->drive(), path);
+  cost.ends = since(again);
+  const Stamp start = subject->drive().stamp();
   const Clock::time_point marched = Clock::now();
   const auto budget = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
-  march(twin, spec, *file, marched + budget);
-  cost.real_time_factor = toSeconds(twin.stamp() - SIMULATION_EPOCH) / since(marched);
+  march(*subject, spec, *file, marched + budget);
+  cost.real_time_factor = toSeconds(subject->drive().stamp() - start) / since(marched);
   const Clock::time_point marched_to = Clock::now();
   file->finish(recordOf(spec, path));
   std::filesystem::remove(path);
@@ -96,34 +170,27 @@ RunCost RunSimulation::sample(std::uint64_t number, double seconds)
 }
 
 /// False: interrupted.
-bool RunSimulation::march(Twin& twin, const RunSpec& spec, RunFile& file, Clock::time_point until)
+bool RunSimulation::march(Subject& subject, const RunSpec& spec, RunFile& file, Clock::time_point until)
 {
   constexpr std::uint64_t STEPS_PER_LOOK = 1024;
-  const Recording& recording = plan_.recording();
-  const Stamp end = SIMULATION_EPOCH + toStampLength(spec.duration);
-  const double step = toSeconds(twin.stepLength());
+  const Stamp end = subject.drive().stamp() + toStampLength(spec.duration);
+  const double step = toSeconds(subject.drive().stepLength());
   const auto look = static_cast<std::uint64_t>(
       std::llround(std::min(1.0, STEPS_PER_LOOK * step / spec.duration) * static_cast<double>(WHOLE)));
-  DutyFeeder feeder(spec.duty, twin);
   on_surface_ = 0;
   for (std::uint64_t steps = 1;; ++steps)
   {
     const double time = static_cast<double>(steps) * step;
-    feeder.feed(twin, time);
-    if (recording.indicators && time > recording.start)
-    {
-      twin.watchSignals(true);  // a window that held the start would stand apart from all others
-    }
-    if (!twin.step(end))
+    if (!subject.step(time, end))
     {
       return true;
     }
-    on_surface_ += twin.onSurface() ? 1 : 0;
-    if (twin.counters().solver_failures > 0)
+    on_surface_ += subject.onSurface() ? 1 : 0;
+    if (subject.counters().solver_failures > 0)
     {
       return true;
     }
-    file.record(twin, feeder);
+    subject.record(file);
     if (steps % STEPS_PER_LOOK == 0)
     {
       simulated_ += look;

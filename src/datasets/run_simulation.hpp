@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <memory>
 
 #include "datasets/run_file.hpp"
 #include "datasets/sweep_directory.hpp"
@@ -43,7 +44,24 @@ public:
 private:
   using Clock = std::chrono::steady_clock;
 
-  bool march(Twin& twin, const RunSpec& spec, RunFile& file, Clock::time_point until);
+  /// What moves in a run: a drive in its duty cycle, or an arm along its set points.
+  class Subject
+  {
+  public:
+    virtual ~Subject() = default;
+    virtual bool step(double time, Stamp end) = 0;  ///< to `time` since the start of the run [s]; false: it is over
+    virtual void record(RunFile& file) = 0;
+    virtual const Twin& drive() const = 0;  ///< the first
+    virtual TwinCounters counters() const = 0;
+    virtual bool onSurface() const = 0;
+    virtual void tell(OrderedJson& record) const = 0;
+  };
+  class Drive;
+  class Arm;
+
+  /// At its start. @throws ParameterError if a drive has no equilibrium.
+  std::unique_ptr<Subject> begin(const RunSpec& spec) const;
+  bool march(Subject& subject, const RunSpec& spec, RunFile& file, Clock::time_point until);
 
   const Plan& plan_;
   const SweepDirectory& directory_;

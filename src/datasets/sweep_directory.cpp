@@ -70,6 +70,32 @@ std::string cell(const Json& value)
   return "\"" + text + "\"";
 }
 
+/// Of all drives together.
+std::uint64_t hashOf(const RunSpec& spec)
+{
+  if (!spec.arm)
+  {
+    return parametersHash(spec.parameters);
+  }
+  std::uint64_t hash = textHash("");
+  for (const Parameters& drive : spec.arm->drives)
+  {
+    hash = textHash(hexadecimal(parametersHash(drive)), hash);
+  }
+  return hash;
+}
+
+/// What a row of the index tells of each fault.
+std::vector<std::string> faultKeys(const Plan& plan)
+{
+  std::vector<std::string> keys{ "kind", "severity", "place", "onset", "ramp" };
+  if (plan.isOfArms())
+  {
+    keys.insert(keys.begin(), "joint");
+  }
+  return keys;
+}
+
 /// In what the document of a directory differs from that of a plan.
 std::string otherThan(const Json& found, const Json& wanted)
 {
@@ -196,10 +222,13 @@ std::uint64_t SweepDirectory::finishedRuns() const
 
 std::string SweepDirectory::indexHeader() const
 {
-  std::string header =
-      "run,file,file_hash,status,class,duty,repeat,duration,fault_kind,fault_severity,fault_place,fault_onset,fault_"
-      "ramp,"
-      "noise_seed,parameters_hash,version,rows_without_forces,error";
+  std::string header = "run,file,file_hash,status,class,duty,repeat,duration";
+  for (const std::string& key : faultKeys(plan_))
+  {
+    header += ",fault_" + key;
+  }
+  header += ",noise_seed,parameters_hash,version,rows_without_forces,error";
+  header += plan_.isOfArms() ? std::string(",") + PROTECTIVE_STOP : std::string();
   for (const std::string& name : plan_.variableNames())
   {
     header += "," + name;
@@ -214,15 +243,19 @@ std::string SweepDirectory::indexRow(const Json& record) const
   {
     row += "," + cell(record.value(key, Json()));
   }
-  for (const char* key : { "kind", "severity", "place", "onset", "ramp" })
+  for (const std::string& key : faultKeys(plan_))
   {
-    const auto text = [key](const Json& fault)
+    const auto text = [&key](const Json& fault)
     { return fault.at(key).is_string() ? fault.at(key).get<std::string>() : cell(fault.at(key)); };
     row += "," + joined(record.at("faults"), ";", text);
   }
   for (const char* key : { "noise_seed", "parameters_hash", "version", ROWS_WITHOUT_FORCES, "error" })
   {
     row += "," + cell(record.value(key, Json()));
+  }
+  if (plan_.isOfArms())
+  {
+    row += "," + cell(record.value(PROTECTIVE_STOP, Json()));
   }
   for (const std::string& name : plan_.variableNames())
   {
@@ -258,13 +291,20 @@ Json recordOf(const RunSpec& spec, const std::string& file)
     variables[name] = jsonOf(value);
   }
   Json faults = Json::array();
-  for (const auto& [fault, ramp] : spec.faults)
+  for (const RunFault& growing : spec.faults)
   {
-    faults.push_back({ { "kind", describe(fault.kind).name },
-                       { "severity", fault.severity },
-                       { "place", fault.place },
-                       { "onset", fault.onset },
-                       { "ramp", ramp } });
+    const Fault& fault = growing.fault;
+    Json json = Json::object();
+    if (spec.arm)
+    {
+      json["joint"] = spec.arm->arm.joints[growing.joint].short_name;
+    }
+    json.update({ { "kind", describe(fault.kind).name },
+                  { "severity", fault.severity },
+                  { "place", fault.place },
+                  { "onset", fault.onset },
+                  { "ramp", growing.ramp } });
+    faults.push_back(json);
   }
   return { { "format", FORMAT },
            { "version", softwareVersion() },
@@ -280,6 +320,6 @@ Json recordOf(const RunSpec& spec, const std::string& file)
            { "faults", faults },
            { "variables", variables },
            { "noise_seed", spec.parameters.sensors.noise_seed },
-           { "parameters_hash", hexadecimal(parametersHash(spec.parameters)) } };
+           { "parameters_hash", hexadecimal(hashOf(spec)) } };
 }
 }  // namespace hjt

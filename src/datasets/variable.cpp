@@ -9,6 +9,8 @@
 #include <boost/random/uniform_int_distribution.hpp>
 #include <boost/random/uniform_real_distribution.hpp>
 
+#include "datasets/plan_values.hpp"
+
 #include "base/number_text.hpp"
 #include "base/philox.hpp"
 #include "base/text_hash.hpp"
@@ -172,5 +174,21 @@ ParameterValue Variable::value(std::uint32_t seed, std::uint64_t run, std::size_
 std::uint32_t drawnWord(std::uint32_t seed, const std::string& name, std::uint64_t run)
 {
   return wordsOf(seed, name, run)();
+}
+
+std::vector<std::string> textsOf(const PlanNode& map, const std::string& key)
+{
+  const PlanNode& node = required(map, key);
+  if (!Variable::stands(node))
+  {
+    return { PlanValues().text(map, key) };
+  }
+  std::vector<std::string> texts;
+  const PlanNode& list = node.entries.front().second;
+  for (const auto& [number, element] : list.entries)
+  {
+    texts.push_back(PlanValues().text(list, number));
+  }
+  return texts;
 }
 }  // namespace hjt

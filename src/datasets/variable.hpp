@@ -51,6 +51,9 @@ private:
   std::vector<ParameterValue> choices_;
 };
 
+/// What a key that holds a text may be in some run. @throws InputError.
+std::vector<std::string> textsOf(const PlanNode& map, const std::string& key);
+
 /// A word of its own for each run: seeds of what is random within it.
 std::uint32_t drawnWord(std::uint32_t seed, const std::string& name, std::uint64_t run);
 }  // namespace hjt

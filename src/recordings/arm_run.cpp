@@ -2,19 +2,21 @@
 #include "recordings/arm_run.hpp"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "output/output_file.hpp"
 #include "output/run_summary.hpp"
-#include "recordings/rms.hpp"
-#include "recordings/set_points.hpp"
+#include "recordings/arm_rows.hpp"
 
 #include "arm/arm_configuration.hpp"
 #include "arm/moving_arm.hpp"
+#include "arm/set_points.hpp"
+#include "base/joined.hpp"
 #include "base/number_text.hpp"
+#include "base/rms.hpp"
 
 namespace hjt
 {
@@ -23,11 +25,8 @@ namespace
 std::vector<Parameters> drivesOf(const ArmRunOptions& options, const ArmDescription& arm)
 {
   std::vector<Parameters> drives;
-  for (const ArmJoint& joint : arm.joints)
+  for (const ParameterMap& map : armDriveMaps(arm, options, options.identified))
   {
-    ParameterMap map = armJointParameters(joint, configDirectory(options), options.identified);
-    readAssignment("solver.scene=auto", map);
-    addOverlays(options, map);
     drives.push_back(parseParameters(map));
   }
   giveOwnSeeds(drives);
@@ -35,87 +34,36 @@ std::vector<Parameters> drivesOf(const ArmRunOptions& options, const ArmDescript
   return drives;
 }
 
-/// How the steps of all drives went.
-TwinCounters countersOf(const ArmTwin& twin)
-{
-  TwinCounters sum;
-  for (std::size_t i = 0; i < twin.joints(); ++i)
-  {
-    const TwinCounters& drive = twin.drive(i).counters();
-    for (std::uint64_t TwinCounters::*count :
-         { &TwinCounters::solver_failures, &TwinCounters::step_cuts, &TwinCounters::jumps, &TwinCounters::coarse_steps,
-           &TwinCounters::torque_clamped, &TwinCounters::overloads, &TwinCounters::speed_limited })
-    {
-      sum.*count += drive.*count;
-    }
-  }
-  return sum;
-}
-
-std::vector<std::string> columnsOf(std::size_t joints)
-{
-  std::vector<std::string> columns{ "timestamp" };
-  for (const ArmRunQuantity& quantity : armRunQuantities(joints))
-  {
-    for (std::size_t i = 0; i < quantity.width; ++i)
-    {
-      columns.push_back(quantity.name + std::to_string(i));
-    }
-  }
-  return columns;
-}
-
-double distance(const std::array<double, 3>& a, const std::array<double, 3>& b)
-{
-  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
-}
-
-/// Makes the rows of a moving arm, and adds up its errors.
-class Recorder
+/// Adds up the errors of a moving arm.
+class Errors
 {
 public:
-  Recorder(const ArmDescription& arm, MovingArm& moving)
-    : arm_(moving), dynamics_(arm), target_(arm.joints.size()), joints_(arm.joints.size())
+  explicit Errors(const ArmDescription& arm) : joints_(arm.joints.size())
   {
     for (std::size_t i = 0; i < joints_.size(); ++i)
     {
       joints_[i].name = arm.joints[i].short_name;
-      Parameters drive = moving.twin().drive(i).parameters();
-      inertia_in_load_.push_back(takeInertiaInLoad(drive));
     }
   }
 
-  const std::vector<double>& row(double time)
+  void add(const ArmRow& row, const ArmTwin& twin)
   {
-    arm_.wanted(target_);
-    row_.assign(1, time);
-    std::array<std::vector<double>, 8> values;
-    for (std::size_t i = 0; i < target_.size(); ++i)
+    for (std::size_t i = 0; i < joints_.size(); ++i)
     {
-      const std::array<double, 8> numbers = numbersOf(i);
-      for (std::size_t k = 0; k < values.size(); ++k)
-      {
-        values[k].push_back(numbers[k]);
-      }
-      addErrors(i, numbers.back());
+      JointErrors& joint = joints_[i];
+      const double error = twin.motion()[i].position - row[TARGET_POSITION][i];
+      joint.angle.add(error);
+      joint.largest_angle = std::max(joint.largest_angle, std::abs(error));
+      joint.current.add(row[ACTUAL_CURRENT][i]);
     }
-    for (const std::vector<double>& value : values)
-    {
-      row_.insert(row_.end(), value.begin(), value.end());
-    }
-    const ToolPose wanted = dynamics_.toolPose(target_);
-    const ToolPose tool = arm_.twin().toolPose();
-    for (const ToolPose& pose : { wanted, tool })
-    {
-      row_.insert(row_.end(), pose.position.begin(), pose.position.end());
-    }
-    const double error = distance(tool.position, wanted.position);
+    const std::vector<double>& wanted = row[TARGET_TOOL];
+    const std::vector<double>& tool = row[ACTUAL_TOOL];
+    const double error = std::hypot(tool[0] - wanted[0], tool[1] - wanted[1], tool[2] - wanted[2]);
     tool_.add(error);
     tool_largest_ = std::max(tool_largest_, error);
-    return row_;
   }
 
-  ArmRun finish()
+  ArmRun finish() const
   {
     ArmRun run;
     run.tool_error_rms = tool_.value();
@@ -136,51 +84,65 @@ private:
     Rms current;             // [A]
   };
 
-  /// Of a joint, in the order of the columns.
-  std::array<double, 8> numbersOf(std::size_t i) const
-  {
-    const ArmController& controller = arm_.controller();
-    const double gain = arm_.twin().drive(i).parameters().telemetry.torque_per_current;
-    const JointReading read = arm_.reading(i);
-    const JointMotion& target = target_[i];
-    return { target.position,
-             target.velocity,
-             target.acceleration,
-             controller.feedForward(i) / gain,
-             controller.rigidTorques()[i] + inertia_in_load_[i] * target.acceleration,
-             read.position,
-             read.velocity,
-             read.current };
-  }
-
-  void addErrors(std::size_t i, double current)
-  {
-    JointErrors& joint = joints_[i];
-    const double error = arm_.twin().motion()[i].position - target_[i].position;
-    joint.angle.add(error);
-    joint.largest_angle = std::max(joint.largest_angle, std::abs(error));
-    joint.current.add(current);
-  }
-
-  MovingArm& arm_;
-  ArmDynamics dynamics_;
-  std::vector<JointMotion> target_;
-  std::vector<double> inertia_in_load_;
   std::vector<JointErrors> joints_;
-  std::vector<double> row_;
   Rms tool_;               // [m]
   double tool_largest_{};  // [m]
 };
-}  // namespace
 
-std::vector<ArmRunQuantity> armRunQuantities(std::size_t joints)
+/// The run for a file that has labels.
+RunSpec specOf(const ArmRunOptions& options, ArmDescription arm, std::vector<Parameters> drives,
+               const ArmMotion& motion)
 {
-  constexpr std::size_t AXES = 3;
-  return { { "target_q_", joints },       { "target_qd_", joints },      { "target_qdd_", joints },
-           { "target_current_", joints }, { "target_moment_", joints },  { "actual_q_", joints },
-           { "actual_qd_", joints },      { "actual_current_", joints }, { "target_TCP_pose_", AXES },
-           { "actual_TCP_pose_", AXES } };
+  RunSpec spec;
+  spec.fault_class = options.faults.empty() ? "healthy" : joined(options.faults, ";");
+  spec.duty_name = options.motion.empty() ? "motion" : options.motion;
+  spec.duration = motion.end() - motion.begin();
+  for (std::size_t joint = 0; joint < drives.size(); ++joint)
+  {
+    const std::vector<RunFault> more = configuredFaults(drives[joint], joint);
+    spec.faults.insert(spec.faults.end(), more.begin(), more.end());
+  }
+  spec.parameters = drives.front();
+  spec.arm = ArmSpec{ std::move(arm), std::move(drives), nullptr };
+  return spec;
 }
+
+/// Moves it to the end of its motion, recording every row.
+void move(const ArmRunOptions& options, const ArmMotion& motion, MovingArm& moving, const RunSpec& spec, Errors& errors)
+{
+  ArmTwin& twin = moving.twin();
+  ArmRecorder recorder(spec.arm->arm, moving);
+  std::optional<ArmRows> rows;
+  const Stamp end = moving.motionBegin() + toStampLength(motion.end() - motion.begin());
+  const double step = static_cast<double>(twin.stepLength());
+  const auto row_steps = std::max(std::llround(1e9 / spec.arm->arm.state_rate / step), 1LL);
+  const auto progress = options.watch.progress("moving the arm");
+  std::int64_t steps = 0;
+  while (!options.watch.stopped() && moving.step(end))
+  {
+    if (twin.stamp() >= moving.motionBegin())
+    {
+      if (!rows)
+      {
+        rows.emplace(options.out, spec, moving);
+      }
+      const double time = motion.begin() + toSeconds(twin.stamp() - moving.motionBegin());
+      const ArmRow* row = steps++ % row_steps == 0 ? &recorder.row() : nullptr;
+      if (row != nullptr)
+      {
+        errors.add(*row, twin);
+        options.take(time, *row);
+      }
+      rows->take(twin.stamp(), time, recorder, row);
+    }
+    progress(static_cast<double>(twin.stamp() - SIMULATION_EPOCH) / static_cast<double>(end - SIMULATION_EPOCH));
+  }
+  if (rows)
+  {
+    rows->close();
+  }
+}
+}  // namespace
 
 ArmRun runArm(const ArmRunOptions& options)
 try
@@ -196,43 +158,18 @@ try
                          fixedText(1e3 * change, 1) + " ms");
   }
   ArmMotion motion(std::move(points));
-  MovingArm moving(arm, drivesOf(options, arm), motion, surfaceSource(options.watch));
-  Recorder recorder(arm, moving);
-  std::optional<CsvWriter> csv;
-  if (!options.out.empty())
-  {
-    csv.emplace(options.out, columnsOf(arm.joints.size()));
-  }
+  arm.state_rate = options.rate.value_or(arm.state_rate);
+  const std::vector<Parameters> drives = drivesOf(options, arm);
+  MovingArm moving(arm, drives, motion, surfaceSource(options.watch));
+  Errors errors(arm);
   moving.reset(SIMULATION_EPOCH);
-  ArmTwin& twin = moving.twin();
-  const Stamp end = moving.motionBegin() + toStampLength(motion.end() - motion.begin());
-  const double rate = options.rate.value_or(arm.state_rate);
-  const auto row_steps = std::max(std::llround(1e9 / rate / static_cast<double>(twin.stepLength())), 1LL);
-  const auto progress = options.watch.progress("moving the arm");
   const auto started = std::chrono::steady_clock::now();
-  std::int64_t steps = 0;
-  while (!options.watch.stopped() && moving.step(end))
-  {
-    if (twin.stamp() >= moving.motionBegin() && steps++ % row_steps == 0)
-    {
-      const std::vector<double>& row = recorder.row(motion.begin() + toSeconds(twin.stamp() - moving.motionBegin()));
-      options.take(row);
-      if (csv)
-      {
-        csv->writeRow(row);
-      }
-    }
-    progress(static_cast<double>(twin.stamp() - SIMULATION_EPOCH) / static_cast<double>(end - SIMULATION_EPOCH));
-  }
-  if (csv)
-  {
-    csv->close();
-  }
-  ArmRun run = recorder.finish();
+  move(options, motion, moving, specOf(options, arm, drives, motion), errors);
+  ArmRun run = errors.finish();
   run.wall_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
-  run.duration = toSeconds(twin.stamp() - SIMULATION_EPOCH);
-  run.energy_residual = twin.energyResidual();
-  run.counters = countersOf(twin);
+  run.duration = toSeconds(moving.twin().stamp() - SIMULATION_EPOCH);
+  run.energy_residual = moving.twin().energyResidual();
+  run.counters = countersOf(moving.twin());
   if (const std::optional<ProtectiveStop>& stop = moving.protectiveStop())
   {
     run.stop = { motion.begin() + toSeconds(stop->stamp - moving.motionBegin()), arm.joints[stop->joint].short_name,

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstddef>
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "arm/arm_motion.hpp"
+#include "arm/arm_recorder.hpp"
 #include "harmonic_joint_twin/twin/twin.hpp"
 #include "output/report.hpp"
 #include "recordings/watch.hpp"
@@ -22,11 +22,11 @@ struct ArmRunOptions : ConfigurationOptions
   std::vector<ArmSetPoint> set_points;  ///< at hand; none: those of the file
   std::string arm;                      ///< name in config/arms, or a file
   std::string identified;               ///< directory of overlays, SHORT_NAME.yaml; empty: none
-  std::string out;                      ///< CSV of every row; empty: none
+  std::string out;                      ///< every row, as CSV, bag or HDF5 by its ending; empty: none
   std::optional<double> rate;           ///< of the rows [Hz]; none: that of the arm's states
   bool force{};                         ///< overwrite files
-  /// Given every row, `timestamp` and those of `armRunQuantities`.
-  std::function<void(const std::vector<double>&)> take{ [](const std::vector<double>&) {} };
+  /// Given every row and its time [s].
+  std::function<void(double, const ArmRow&)> take{ [](double, const ArmRow&) {} };
   Watch watch;
 };
 
@@ -58,16 +58,6 @@ struct ArmRun
   std::optional<ArmRunStop> stop;   ///< none: it came to its end
   TwinCounters counters;            ///< of all drives: how their steps went
 };
-
-/// Some of the columns of a controller's recording: `width` numbers from name + "0" on.
-struct ArmRunQuantity
-{
-  const char* name;  ///< "target_q_"
-  std::size_t width;
-};
-
-/// After `timestamp` [s]: angles [rad] and their rates, currents [A], moments [N.m]; position of the tool [m].
-std::vector<ArmRunQuantity> armRunQuantities(std::size_t joints);
 
 /// Moves an arm along its set points, its drives, links and controller in closed loop (docs/arm_twin.md).
 /// @throws ParameterError, InputError: unreadable, or a file that cannot be written.

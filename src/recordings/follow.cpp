@@ -8,9 +8,9 @@
 
 #include "output/text_table.hpp"
 #include "recordings/arm_recording.hpp"
-#include "recordings/rms.hpp"
 #include "recordings/tracked_bag.hpp"
 
+#include "base/rms.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 
 namespace hjt

@@ -129,6 +129,10 @@ void addKinematicLines(double rated_torque, SignatureSet& set)
 
 void checkSignaturePlan(const Plan& plan)
 {
+  if (plan.isOfArms())
+  {
+    throw InputError("plan " + plan.name() + ": signatures are of one drive, not of an arm");
+  }
   if (plan.recording().format != RunFormat::BAG)
   {
     throw InputError("plan " + plan.name() + ": signatures are made of bags: record: {format: bag}");

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 
 #include <ros/names.h>
 
+#include "arm/arm_configuration.hpp"
 #include "messages/channels.hpp"
 #include "messages/time.hpp"
 #include "messages/topics.hpp"
@@ -23,16 +23,6 @@ template <class Message>
 Channel<Message> channelOf(const char* name)
 {
   return { name, nullptr, SMALL_MESSAGE_SLOTS, nullptr, nullptr };
-}
-
-/// ros_control's, which UR's driver publishes with: by the joints' names.
-std::vector<std::size_t> driverOrder(const ArmDescription& arm)
-{
-  std::vector<std::size_t> order(arm.joints.size());
-  std::iota(order.begin(), order.end(), std::size_t{ 0 });
-  std::sort(order.begin(), order.end(),
-            [&](std::size_t a, std::size_t b) { return arm.joints[a].name < arm.joints[b].name; });
-  return order;
 }
 
 sensor_msgs::JointState makeArmStates(const ArmDescription& arm, const std::vector<std::size_t>& order)

@@ -125,7 +125,7 @@ TEST(ArmTwin, OneJointOfConstantInertiaIsATwin)
 /// Largest error of the coupling [J] while two joints of the shipped drive swing a double pendulum.
 double couplingError(double rate, double mass_rate)
 {
-  ArmTwin arm(rods("0 1 0", 2), { drive(rate), drive(rate) }, { 0.3, -0.8 }, {}, mass_rate);
+  ArmTwin arm(rods("0 1 0", 2), { drive(rate), drive(rate) }, { 0.3, -0.8 }, {}, { mass_rate, 1 });
   double largest = 0.0;
   run(arm, 0.3, [&](double) { largest = std::max(largest, std::abs(arm.energyResidual())); });
   EXPECT_GT(std::abs(arm.deliveredEnergy()), 1.0);
@@ -366,7 +366,7 @@ TEST(ArmTwin, RefusesWhatDoesNotFit)
   {
     try
     {
-      ArmTwin(rods("0 1 0", 2), std::move(drives), { 0.0, 0.0 }, {}, mass_rate);
+      ArmTwin(rods("0 1 0", 2), std::move(drives), { 0.0, 0.0 }, {}, { mass_rate, 1 });
     }
     catch (const ParameterError& error)
     {

@@ -32,7 +32,7 @@ SEES = {
     "output": ["twin"],
     "messages": ["tracking", "life"],
     "bags": ["messages"],
-    "datasets": ["bags", "output"],
+    "datasets": ["arm", "bags", "output"],
     "recordings": ["datasets", "identification"],
     "python/recordings": ["python", "recordings"],
     "ros_io": ["live", "messages", "arm"],

@@ -162,6 +162,35 @@ class Commands(Recordings):
         self.assertEqual(found["joints"], expected["joints"])
         self.assertEqual(found["tool_error_max"], expected["tool_error_max"])
 
+    def test_an_arm_as_an_object_moves_as_the_function_and_stops_by_itself(self):
+        time = 0.008 * np.arange(40)
+        phase = 8.0 * np.maximum(time - 0.016, 0.0)
+        position = np.array([0.0, -1.2, 1.0, -1.3, -1.5, 0.3]) + 0.1 * (1.0 - np.cos(phase))[:, None]
+        velocity = np.repeat(0.8 * np.sin(phase)[:, None], 6, axis=1)
+        motion = {"time": time, "position": position, "velocity": velocity, "acceleration": np.zeros((40, 6))}
+        scene = {"solver.scene": "full_ring"}
+        expected = hjt.arm(motion, "ur5", overlays=[scene])["rows"]
+        arm = hjt.Arm("ur5", position[0], overlays=[scene])
+        self.assertEqual((arm.joints[2], arm.time, arm.protective_stop), ("elbow", 0.0, None))
+        self.assertAlmostEqual(arm.move(motion), time[-1])
+        parts = [arm.run(0.104), arm.run(time[-1] - 0.104)]
+        for name, values in expected.items():
+            np.testing.assert_array_equal(np.concatenate([part[name] for part in parts]), values[1:], name)
+        arm.inject_fault("elbow:lubricant_degradation:1.0")
+        arm.set_wrench((0.0, 0.0, -1000.0))
+        arm.run(0.5)
+        self.assertIn(arm.protective_stop["reason"], ("off its set point", "faster than its limit"))
+        arm.set_wrench()
+        arm.reset()
+        self.assertIsNone(arm.protective_stop)
+        for call, said in ((lambda: arm.inject_fault("knee:pitting:1.0"), "JOINT one of base"),
+                           (lambda: arm.run(-1.0), "duration"), (lambda: arm.set_wrench((0.0, 0.0, 2000.0)), "1000"),
+                           (lambda: hjt.Arm("ur5", [0.0]), "6 finite angles"),
+                           (lambda: arm.move({"time": [0.0], "position": [[0.0]]}), "6"),
+                           (lambda: hjt.Arm("ur5", payload=-1.0), "payload")):
+            with self.assertRaisesRegex(ValueError, said):
+                call()
+
     def test_indicators_and_remaining_answer_as_the_tool_of_files_and_arrays(self):
         twin = hjt.Twin(hjt.Parameters())
         rows = twin.run(60000, motor_torque=0.4, load_torque=5.0, every=10)

@@ -68,6 +68,22 @@ class DataSets(unittest.TestCase):
         with self.assertRaisesRegex(hjt.InputError, "index.csv is not there"):
             hjt.load("nothing")
 
+    def test_an_arm_comes_with_a_column_for_each_joint(self):
+        with open("moves.yaml", "w", encoding="utf-8") as file:
+            file.write("start: [0.0, -1.2, 1.0, -1.3, -1.5, 0.3]\nspeed: 1.0\nacceleration: 8.0\n"
+                       "moves: [{to: [0.0, -1.2, 1.02, -1.3, -1.5, 0.3]}]\n")
+        with open("arm.yaml", "w", encoding="utf-8") as file:
+            file.write("arm: ur5\nduration: 0.6\nset: {solver.scene: full_ring}\nduty: [{motion: moves.yaml}]\n"
+                       "classes: {worn: [{joint: elbow, kind: interface_wear, severity: 0.5}]}\nrecord: {start: 0.5, "
+                       "groups: {states: {rate: 100.0, columns: [actual_q, actual_current]}}}\n")
+        hjt.sweep("arm.yaml", "arm")
+        states = hjt.load("arm", "states")
+        self.assertEqual(len(states), 10)
+        self.assertEqual(list(states.severity_2.round(3).unique()), [0.5])
+        self.assertEqual(states.severity_1.max(), 0.0)
+        self.assertLess((states.actual_q_2 - 1.0).abs().max(), 0.03)
+        self.assertEqual(states.fault_joint[0], "elbow")
+
     def test_a_folder_is_judged_by_a_reference(self):
         self.assertEqual(len(self.learned), SOUND)
         verdicts = hjt.assess("old", "sound_reference.yaml", check_up=True)

@@ -42,9 +42,10 @@ void declare(Command& command, Options& options)
       .existingDirectory();
   command
       .add("--out", options.out,
-           "targets and actual angles, speeds, currents in a controller's columns, and the tool's position [m]")
+           "targets and actual angles, speeds, currents in a controller's columns, and the tool's position [m]; .bag: "
+           "/joint_states as the arm's driver publishes it; .h5: as a run of `joint_twin sweep`")
       .required()
-      .type("FILE.csv");
+      .type("FILE.csv|FILE.bag|FILE.h5");
   command.add("--rate", options.rate, "of the rows [Hz]; default: that of the arm's states").positive();
   command.add("--fault", options.faults, "in a joint from its onset [s] on; may be given again")
       .type("JOINT:KIND:SEVERITY[:PLACE[:ONSET]]");

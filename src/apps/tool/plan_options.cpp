@@ -17,16 +17,6 @@ void addJobsOption(Command& command, unsigned& jobs)
   command.add("--jobs", jobs, "runs at the same time").range(1, 4096);
 }
 
-Plan readPlan(const std::string& path, const CommonOptions& options)
-{
-  ConfigurationOptions with_overlays = static_cast<const ConfigurationOptions&>(options);
-  for (const std::string& overlay : Plan::overlays(path))
-  {
-    with_overlays.configs.push_back(overlay);
-  }
-  return Plan(path, loadParameterMap(with_overlays));
-}
-
 SurfaceSource sharedSurfaces(const Plan& plan, unsigned jobs)
 {
   struct Remarks

@@ -12,9 +12,6 @@ namespace hjt
 {
 void addJobsOption(Command& command, unsigned& jobs);
 
-/// A plan over the configuration of the command line and the plan's own overlays.
-Plan readPlan(const std::string& path, const CommonOptions& options);
-
 /// Surfaces of the user's cache, each once in memory; each remark about them once.
 /// Those of drives with a wear of their own, which come but once, are not kept on the disk.
 SurfaceSource sharedSurfaces(const Plan& plan, unsigned jobs);

@@ -35,7 +35,7 @@ SweepResult workOff(const SignaturesOptions& options, const std::string& runs, S
   SweepResult sum;
   for (std::size_t i = 0; i < options.plans.size() && interruptSignal() == 0; ++i)
   {
-    const Plan plan = readPlan(options.plans[i], options);
+    const Plan plan(options.plans[i], options);
     const std::string path = runs + "/" + plan.name();
     SweepDirectory directory(plan, path);
     directory.open();
@@ -56,7 +56,7 @@ int signatures(const SignaturesOptions& options)
   requireWritable(options.out, options.force);
   for (const std::string& path : options.plans)
   {
-    checkSignaturePlan(readPlan(path, options));
+    checkSignaturePlan(Plan(path, options));
   }
   const TemporaryDirectory temporary;
   const InterruptScope interrupts;
@@ -68,7 +68,7 @@ int signatures(const SignaturesOptions& options)
               << (options.runs.empty() ? "; with --runs finished runs are kept" : "; the same command resumes") << '\n';
     return EXIT_BY_SIGNAL + interruptSignal();
   }
-  const Parameters parameters = readPlan(options.plans.front(), options).run(0).parameters;
+  const Parameters parameters = Plan(options.plans.front(), options).run(0).parameters;
   writeTextFile(options.out,
                 found.text(std::filesystem::path(options.out).stem().string(),
                            *loadSignatures(parameters.indicators.signatures), parameters.life.rated_torque));

@@ -130,12 +130,12 @@ int workOff(const SweepOptions& options, const Plan& plan)
 
 int sweep(const SweepOptions& options)
 {
-  return workOff(options, readPlan(options.plan, options));
+  return workOff(options, Plan(options.plan, options));
 }
 
 int sweepLives(const SweepOptions& options)
 {
-  const Plan plan = readPlan(options.plan, options);
+  const Plan plan(options.plan, options);
   if (plan.lives() == nullptr)
   {
     throw InputError(options.plan + " has no mapping 'lives'; joint_twin sweep works it off");

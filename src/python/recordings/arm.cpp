@@ -1,10 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
 
+#include "arm/arm_configuration.hpp"
+#include "arm/arm_recorder.hpp"
+#include "arm/set_points.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
+#include "output/run_summary.hpp"
+#include "python/in_use.hpp"
 #include "python/recordings/calls.hpp"
 #include "recordings/arm_run.hpp"
-#include "recordings/set_points.hpp"
 
 namespace hjt
 {
@@ -47,41 +56,227 @@ std::vector<ArmSetPoint> setPointsOf(const py::object& columns)
   return points;
 }
 
-/// The rows by their quantities: arrays of shape (rows,), (rows, joints) or (rows, 3).
-py::dict arraysOf(const std::vector<double>& values, std::size_t joints)
+/// Rows as arrays by their quantities, of shape (rows,), (rows, joints) or (rows, 3).
+class RowArrays
 {
-  const std::vector<ArmRunQuantity> quantities = armRunQuantities(joints);
-  std::size_t width = 1;
-  for (const ArmRunQuantity& quantity : quantities)
+public:
+  void add(double time, const ArmRow& row)
   {
-    width += quantity.width;
-  }
-  const std::size_t rows = values.size() / width;
-  const auto block = [&](std::size_t first, std::size_t columns)
-  {
-    py::array_t<double> array({ rows, columns });
-    for (std::size_t row = 0; row < rows; ++row)
+    times_.push_back(time);
+    for (std::size_t k = 0; k < row.size(); ++k)
     {
-      std::copy_n(values.data() + row * width + first, columns, array.mutable_data() + row * columns);
+      values_[k].insert(values_[k].end(), row[k].begin(), row[k].end());
     }
-    return array;
-  };
-  py::dict arrays;
-  py::array_t<double> times(static_cast<py::ssize_t>(rows));
-  for (std::size_t row = 0; row < rows; ++row)
-  {
-    times.mutable_data()[row] = values[row * width];
   }
-  arrays["timestamp"] = times;
-  std::size_t first = 1;
-  for (const ArmRunQuantity& quantity : quantities)
+
+  py::dict arrays(std::size_t joints) const
   {
-    const std::string name = quantity.name;
-    arrays[py::str(name.substr(0, name.size() - 1))] = block(first, quantity.width);
-    first += quantity.width;
+    py::dict arrays;
+    arrays["timestamp"] = Values(static_cast<py::ssize_t>(times_.size()), times_.data());
+    for (std::size_t k = 0; k < values_.size(); ++k)
+    {
+      const std::array<std::size_t, 2> shape{ times_.size(), ARM_QUANTITIES[k].width(joints) };
+      arrays[ARM_QUANTITIES[k].name] = Values(shape, values_[k].data());
+    }
+    return arrays;
   }
-  return arrays;
+
+private:
+  std::vector<double> times_;
+  ArmRow values_;
+};
+
+/// A file's name, or columns.
+std::vector<ArmSetPoint> setPointsIn(const py::object& motion, const ArmDescription& arm)
+{
+  std::vector<ArmSetPoint> points =
+      py::isinstance<py::str>(motion) ? readSetPoints(py::cast<std::string>(motion), arm) : setPointsOf(motion);
+  straightenTimes(points);
+  if (points.front().joints.size() != arm.joints.size())
+  {
+    throw InputError("motion: of " + std::to_string(points.front().joints.size()) + " joints; the arm has " +
+                     std::to_string(arm.joints.size()));
+  }
+  return points;
 }
+
+void requireRate(const std::optional<double>& rate)
+{
+  if (rate && !(*rate > 0.0 && std::isfinite(*rate)))
+  {
+    throw InputError("rate = " + std::to_string(*rate) + " [Hz] must be above 0");
+  }
+}
+
+/// An arm that is run piece by piece.
+class ArmObject
+{
+public:
+  explicit ArmObject(const py::dict& arguments)
+  {
+    const Given given(arguments);
+    ConfigurationOptions options;
+    takeConfiguration(given, options);
+    std::string arm;
+    std::string identified;
+    std::vector<std::string> faults;
+    given.take("arm", arm);
+    given.take("identified", identified);
+    given.take("faults", faults);
+    arm_ = readArmDescription(findArm(arm, configDirectory(options)));
+    given.take("payload", arm_.payload.mass);
+    if (!(arm_.payload.mass >= 0.0 && arm_.payload.mass <= MAX_PAYLOAD))
+    {
+      throw InputError("payload = " + std::to_string(arm_.payload.mass) + " [kg] is out of range, allowed: 0 ... 1000");
+    }
+    addIdentifiedGains(identified, arm_);
+    std::vector<Parameters> drives;
+    for (const ParameterMap& map : armDriveMaps(arm_, options, identified))
+    {
+      drives.push_back(parseParameters(map));
+    }
+    giveOwnSeeds(drives);
+    addArmFaults(arm_, faults, drives);
+    std::vector<double> start(arm_.joints.size());
+    given.take("start", start);
+    if (start.size() != arm_.joints.size() ||
+        !std::all_of(start.begin(), start.end(), [](double angle) { return std::isfinite(angle); }))
+    {
+      throw InputError("start: " + std::to_string(arm_.joints.size()) + " finite angles are needed [rad]");
+    }
+    ArmSetPoint point;
+    for (const double angle : start)
+    {
+      point.joints.push_back({ angle, 0.0, 0.0 });
+    }
+    PythonWatch watch(given["progress"]);
+    const Watch followed = watch.watch();
+    withoutLock([&] { moving_.emplace(arm_, drives, ArmMotion({ point }), surfaceSource(followed)); });
+    watch.finish();
+    recorder_.emplace(arm_, *moving_);
+    reset();
+  }
+
+  void reset()
+  {
+    in_use_.refuse();
+    moving_->reset(SIMULATION_EPOCH);
+    withoutLock(
+        [&]
+        {
+          while (moving_->step(moving_->motionBegin()))
+          {
+          }
+        });
+  }
+
+  double move(const py::object& motion)
+  {
+    in_use_.refuse();
+    ArmMotion next(setPointsIn(motion, arm_));
+    const double length = next.end() - next.begin();
+    moving_->follow(next);
+    return length;
+  }
+
+  py::dict run(double duration, const std::optional<double>& rate)
+  {
+    requireRate(rate);
+    if (!(duration >= 0.0 && duration <= LONGEST))
+    {
+      throw InputError("duration = " + std::to_string(duration) + " [s] is out of range, allowed: 0 ... 1000000");
+    }
+    const InUse::Hold hold = in_use_.hold();
+    const ArmTwin& twin = moving_->twin();
+    const Stamp end = twin.stamp() + toStampLength(duration);
+    const double wanted = rate.value_or(arm_.state_rate);
+    const auto row_steps = std::max(std::llround(1e9 / wanted / static_cast<double>(twin.stepLength())), 1LL);
+    InterruptCheck check;
+    RowArrays rows;
+    withoutLock(
+        [&]
+        {
+          while (moving_->step(end))
+          {
+            check();
+            if (++steps_ % row_steps == 0)
+            {
+              rows.add(time(), recorder_->row());
+            }
+          }
+        });
+    return rows.arrays(arm_.joints.size());
+  }
+
+  void injectFault(const std::string& text)
+  {
+    in_use_.refuse();
+    std::vector<Parameters> drives;
+    for (std::size_t i = 0; i < moving_->twin().joints(); ++i)
+    {
+      drives.push_back(moving_->twin().drive(i).parameters());
+      drives.back().faults.clear();
+    }
+    addArmFaults(arm_, { text }, drives);
+    for (std::size_t i = 0; i < drives.size(); ++i)
+    {
+      for (const Fault& fault : drives[i].faults)
+      {
+        moving_->twin().drive(i).injectFault(moving_->twin().stamp(), fault);
+      }
+    }
+  }
+
+  void setWrench(const std::array<double, 3>& force, const std::array<double, 3>& moment)
+  {
+    in_use_.refuse();
+    for (std::size_t k = 0; k < force.size(); ++k)
+    {
+      if (!(std::abs(force[k]) <= MAX_WRENCH && std::abs(moment[k]) <= MAX_WRENCH))
+      {
+        throw InputError("wrench: each of force [N] and moment [N.m] must be within +-1000");
+      }
+    }
+    moving_->twin().setWrench({ force, moment });
+  }
+
+  double time() const { return toSeconds(moving_->twin().stamp() - moving_->motionBegin()); }
+
+  std::vector<std::string> joints() const
+  {
+    std::vector<std::string> names;
+    for (const ArmJoint& joint : arm_.joints)
+    {
+      names.push_back(joint.short_name);
+    }
+    return names;
+  }
+
+  py::object protectiveStop() const
+  {
+    const std::optional<ProtectiveStop>& stop = moving_->protectiveStop();
+    if (!stop)
+    {
+      return py::none();
+    }
+    py::dict found;
+    found["joint"] = arm_.joints[stop->joint].short_name;
+    found["reason"] = stop->reason;
+    found["time"] = toSeconds(stop->stamp - moving_->motionBegin());
+    return std::move(found);
+  }
+
+private:
+  static constexpr double MAX_PAYLOAD = 1000.0;  // [kg]
+  static constexpr double MAX_WRENCH = 1000.0;   // as of the node's ~wrench [N], [N.m]
+  static constexpr double LONGEST = 1e6;         // [s]
+
+  ArmDescription arm_;
+  std::optional<MovingArm> moving_;
+  std::optional<ArmRecorder> recorder_;
+  std::int64_t steps_{};
+  InUse in_use_{ "Arm" };
+};
 }  // namespace
 
 Answer armIn(const py::dict& arguments)
@@ -104,18 +299,29 @@ Answer armIn(const py::dict& arguments)
   {
     options.set_points = setPointsOf(motion);
   }
-  if (options.rate && !(*options.rate > 0.0 && std::isfinite(*options.rate)))
-  {
-    throw InputError("rate = " + std::to_string(*options.rate) + " [Hz] must be above 0");
-  }
-  std::vector<double> values;
-  options.take = [&](const std::vector<double>& row) { values.insert(values.end(), row.begin(), row.end()); };
+  requireRate(options.rate);
+  RowArrays rows;
+  options.take = [&](double time, const ArmRow& row) { rows.add(time, row); };
   return call(given, options, runArm,
               [&](const ArmRun& run)
               {
                 py::object document = toPython(documentOf(reportOf(run)));
-                document["rows"] = arraysOf(values, run.joints.size());
+                document["rows"] = rows.arrays(run.joints.size());
                 return document;
               });
+}
+
+void bindArm(py::module& module)
+{
+  py::class_<ArmObject>(module, "Arm", "An arm in closed loop, run piece by piece: behind harmonic_joint_twin.Arm.")
+      .def(py::init<const py::dict&>(), py::arg("arguments"))
+      .def("move", &ArmObject::move, py::arg("motion"))
+      .def("run", &ArmObject::run, py::arg("duration"), py::arg("rate") = py::none())
+      .def("inject_fault", &ArmObject::injectFault, py::arg("fault"))
+      .def("set_wrench", &ArmObject::setWrench, py::arg("force"), py::arg("moment"))
+      .def("reset", &ArmObject::reset)
+      .def_property_readonly("time", &ArmObject::time)
+      .def_property_readonly("joints", &ArmObject::joints)
+      .def_property_readonly("protective_stop", &ArmObject::protectiveStop);
 }
 }  // namespace hjt

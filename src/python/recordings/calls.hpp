@@ -213,4 +213,5 @@ Answer call(const Given& given, Options& options, const Function& function, cons
 }
 
 Answer armIn(const py::dict& arguments);
+void bindArm(py::module& module);
 }  // namespace hjt

@@ -271,6 +271,7 @@ PYBIND11_MODULE(_recordings, module)
   module.doc() = "Functions on recordings: options by name in, a document and the notices out.";
   pybind11::module::import("harmonic_joint_twin._hjt");  // its errors and COMPARISON_DTYPE
   module.def("arm", &hjt::armIn, pybind11::arg("arguments"), "An arm in closed loop along its set points.");
+  hjt::bindArm(module);
   module.def("follow", &hjt::followIn, pybind11::arg("arguments"), "Joints beside their twins, and their rows.");
   module.def("identify", &hjt::identifyIn, pybind11::arg("arguments"), "Gain, friction, inertia and ripple.");
   module.def("compare", &hjt::compareIn, pybind11::arg("arguments"), "Verdict and page.");

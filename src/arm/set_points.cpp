@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "recordings/set_points.hpp"
+#include "arm/set_points.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A whole arm in closed loop as an object, which is run piece by piece (docs/python.md)."""
+import os
+from typing import TYPE_CHECKING, Any, Dict, List, Optional, Sequence
+
+import numpy as np
+
+from harmonic_joint_twin._commands import Overlays, Path, Progress, Recording
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["Arm"]
+
+
+class Arm:
+    """An arm's drives, links and controller in closed loop (docs/arm_twin.md), run piece by piece.
+
+    arm: name in config/arms, or a file. start: angles of all joints where it stands [rad]; None: all 0. payload: at the
+    tip [kg]; None: that of the arm's file. The controller knows it. faults: each JOINT:KIND:SEVERITY[:PLACE[:ONSET]],
+    there from the start. identified: directory of an arm's overlays. overlays, progress: as of identify.
+
+    InputError, ParameterError.
+    """
+
+    def __init__(self, arm: Path, start: Optional[Sequence[float]] = None, *, payload: Optional[float] = None,
+                 faults: Sequence[str] = (), identified: Optional[Path] = None, overlays: Overlays = (),
+                 progress: Optional[Progress] = None) -> None:
+        from harmonic_joint_twin import _recordings
+        options: Dict[str, Any] = {"arm": os.fspath(arm), "start": start, "payload": payload, "faults": list(faults),
+                                   "identified": None if identified is None else os.fspath(identified),
+                                   "progress": progress}
+        overlays = [os.fspath(each) if isinstance(each, os.PathLike) else each for each in overlays]
+        self._arm = _recordings.Arm({**{name: value for name, value in options.items() if value is not None},
+                                     "overlays": overlays})
+
+    @property
+    def joints(self) -> List[str]:
+        """Short names, from the base on."""
+        return self._arm.joints
+
+    @property
+    def time(self) -> float:
+        """Since the brakes were released and the arm held itself [s]."""
+        return self._arm.time
+
+    @property
+    def protective_stop(self) -> Optional[Dict[str, Any]]:
+        """'joint', 'reason' and 'time' [s] of the stop in which the arm stands in its brakes until reset; or None."""
+        return self._arm.protective_stop
+
+    def move(self, motion: Recording) -> float:
+        """A motion from now on, in place of the last one: as of arm(). It begins where the arm is wanted now, in place
+        of its first set point. Returns how long it takes [s]; then the arm is held at its end."""
+        return self._arm.move(os.fspath(motion) if isinstance(motion, os.PathLike) else motion)
+
+    def run(self, duration: float, *, rate: Optional[float] = None) -> Dict[str, "NDArray[np.float64]"]:
+        """Goes on for `duration` [s]. rate: of the rows [Hz]; None: that of the arm's states.
+
+        Returns the rows as arm() does; 'timestamp' is `time`. A KeyboardInterrupt leaves the arm where it is.
+        """
+        return self._arm.run(duration, rate)
+
+    def inject_fault(self, fault: str) -> None:
+        """JOINT:KIND:SEVERITY[:PLACE[:ONSET]], onset from now on; severity 0 takes it away. Until its joint has a table
+        with the fault, that runs on its full ring."""
+        self._arm.inject_fault(fault)
+
+    def set_wrench(self, force: Sequence[float] = (0.0, 0.0, 0.0), moment: Sequence[float] = (0.0, 0.0, 0.0)) -> None:
+        """On the tip from outside until the next one, in the frame of the base [N], [N.m]."""
+        self._arm.set_wrench(force, moment)
+
+    def reset(self) -> None:
+        """Back to the start; faults and the wrench stay."""
+        self._arm.reset()
+
+    def __repr__(self) -> str:
+        return f"Arm({', '.join(self.joints)}; time = {self.time:.6g} s)"

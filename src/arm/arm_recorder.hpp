@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "arm/moving_arm.hpp"
+
+namespace hjt
+{
+/// A quantity of an arm, named as in a controller's recording (RTDE).
+struct ArmQuantity
+{
+  const char* name;
+  const char* unit;
+  const char* meaning;
+  bool of_tool;  ///< x, y, z; else a number a joint
+
+  constexpr std::size_t width(std::size_t joints) const { return of_tool ? 3 : joints; }
+};
+
+inline constexpr std::array<ArmQuantity, 10> ARM_QUANTITIES{ {
+    { "target_q", "rad", "set point", false },
+    { "target_qd", "rad/s", "set point", false },
+    { "target_qdd", "rad/s^2", "set point", false },
+    { "target_current", "A", "of the torque that the controller feeds forward", false },
+    { "target_moment", "N.m", "of the rigid links along the set point", false },
+    { "actual_q", "rad", "by the encoder at the output", false },
+    { "actual_qd", "rad/s", "by the encoder at the motor, over the ratio", false },
+    { "actual_current", "A", "of the motor", false },
+    { "target_TCP_pose", "m", "position of the tool by the set point, in the frame of the base", true },
+    { "actual_TCP_pose", "m", "position of the tool, true, in the frame of the base", true },
+} };
+enum ArmQuantityIndex : std::size_t
+{
+  TARGET_POSITION,
+  TARGET_VELOCITY,
+  TARGET_ACCELERATION,
+  TARGET_CURRENT,
+  TARGET_MOMENT,
+  ACTUAL_POSITION,
+  ACTUAL_VELOCITY,
+  ACTUAL_CURRENT,
+  TARGET_TOOL,
+  ACTUAL_TOOL
+};
+
+/// The numbers of each quantity at one instant, in the order of ARM_QUANTITIES.
+using ArmRow = std::array<std::vector<double>, ARM_QUANTITIES.size()>;
+
+/// "target_q_0" ... in the order of an ArmRow.
+std::vector<std::string> armColumnNames(std::size_t joints);
+
+/// Reads what a controller would record off a moving arm.
+class ArmRecorder
+{
+public:
+  /// `arm`: stays there as long as this.
+  ArmRecorder(const ArmDescription& description, MovingArm& arm);
+
+  /// At the present instant; until the next call.
+  const ArmRow& row() noexcept;
+
+private:
+  MovingArm& arm_;
+  ArmDynamics dynamics_;
+  std::vector<JointMotion> target_;
+  std::vector<double> inertia_in_load_;  // [kg.m^2]
+  ArmRow row_;
+};
+
+/// How the steps of all drives went, which step together.
+TwinCounters countersOf(const ArmTwin& twin);
+}  // namespace hjt

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "datasets/arm_plan.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "datasets/variable.hpp"
+
+#include "arm/arm_configuration.hpp"
+#include "arm/moving_arm.hpp"
+#include "arm/set_points.hpp"
+#include "base/joined.hpp"
+#include "base/text_hash.hpp"
+
+namespace hjt
+{
+namespace
+{
+namespace fs = std::filesystem;
+
+std::string textOf(const std::string& path)
+{
+  std::ifstream file(path, std::ios::binary);
+  return { std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>() };
+}
+
+/// As it is from the plan's folder, else as it is.
+std::string beside(const std::string& directory, const std::string& name)
+{
+  const fs::path path = fs::path(directory) / name;
+  std::error_code error;
+  return fs::exists(path, error) ? path.string() : name;
+}
+}  // namespace
+
+void setFaults(const std::vector<RunFault>& faults, std::size_t joint, const std::string& origin, ParameterMap& map)
+{
+  eraseFaults(map);
+  int count = 0;
+  for (const RunFault& growing : faults)
+  {
+    for (const Fault& fault : growing.joint == joint ? growing.steps() : std::vector<Fault>())
+    {
+      const std::string key = std::string(FAULTS) + "." + std::to_string(count++) + ".";
+      map[key + "kind"] = { std::string(describe(fault.kind).name), origin };
+      map[key + "severity"] = { fault.severity, origin };
+      map[key + "place"] = { static_cast<std::int64_t>(fault.place), origin };
+      map[key + "onset"] = { fault.onset, origin };
+    }
+  }
+}
+
+std::vector<RunFault> configuredFaults(const Parameters& drive, std::size_t joint)
+{
+  std::vector<RunFault> faults;
+  for (const Fault& fault : drive.faults)
+  {
+    faults.push_back({ { fault, 0.0 }, joint });
+  }
+  return faults;
+}
+
+ArmPlan::ArmPlan(const PlanNode& root, const std::string& directory, const ConfigurationOptions& options)
+{
+  if (root.find("lives") != nullptr)
+  {
+    root.find("lives")->refuse("is not allowed in a plan of arms: a life is one drive's");
+  }
+  const PlanValues values;
+  const std::string identified = values.text(root, "identified", "");
+  const std::string folder = identified.empty() ? "" : beside(directory, identified);
+  arm_ = readArmDescription(findArm(beside(directory, values.text(root, "arm")), configDirectory(options)));
+  arm_text_ = textOf(arm_.origin);
+  addIdentifiedGains(folder, arm_);
+  drives_ = armDriveMaps(arm_, options, folder);
+  for (const auto& [number, duty] : required(root, "duty", PlanNode::Kind::LIST).entries)
+  {
+    for (const std::string& file : textsOf(duty, "motion"))
+    {
+      const std::string path = (fs::path(directory) / file).string();
+      std::vector<ArmSetPoint> points = readSetPoints(path, arm_);
+      straightenTimes(points);
+      motions_[file] = { std::make_shared<const std::vector<ArmSetPoint>>(std::move(points)),
+                         std::to_string(textHash(textOf(path))) };
+    }
+  }
+}
+
+std::size_t ArmPlan::jointOf(const PlanNode& fault, const PlanValues& values) const
+{
+  const std::string name = values.text(fault, "joint");
+  const auto joint = std::find_if(arm_.joints.begin(), arm_.joints.end(),
+                                  [&](const ArmJoint& each) { return each.short_name == name || each.name == name; });
+  if (joint == arm_.joints.end())
+  {
+    required(fault, "joint")
+        .refuse("is no joint of the arm; there are " +
+                joined(arm_.joints, ", ", [](const ArmJoint& each) { return each.short_name; }));
+  }
+  return static_cast<std::size_t>(joint - arm_.joints.begin());
+}
+
+ArmSpec ArmPlan::read(const PlanNode& duty, const PlanValues& values, const ParameterMap& settings,
+                      const std::vector<RunFault>* faults, const std::string& faults_origin) const
+{
+  allowOnly(duty, { "name", "motion", "payload" });
+  constexpr Range PAYLOAD{ 0.0, 1000.0 };  // of an arm's file too
+  ArmSpec spec{ arm_, {}, motions_.at(values.text(duty, "motion")).points };
+  spec.arm.payload.mass = values.number(duty, "payload", "kg", PAYLOAD, arm_.payload.mass);
+  for (std::size_t joint = 0; joint < drives_.size(); ++joint)
+  {
+    ParameterMap map = drives_[joint];
+    for (const auto& [key, value] : settings)
+    {
+      map[key] = value;
+    }
+    if (faults != nullptr)
+    {
+      std::vector<RunFault> shifted = *faults;
+      for (RunFault& fault : shifted)
+      {
+        // The run's time is the motion's, which begins when the drives have settled.
+        fault.fault.onset += fault.fault.onset > 0.0 || fault.ramp > 0.0 ? MovingArm::SETTLING : 0.0;
+      }
+      setFaults(shifted, joint, faults_origin, map);
+    }
+    spec.drives.push_back(parseParameters(map));
+  }
+  giveOwnSeeds(spec.drives);
+  return spec;
+}
+
+OrderedJson ArmPlan::configuration() const
+{
+  OrderedJson json = OrderedJson::object();
+  json["arm"] = arm_text_;
+  json["urdf"] = arm_.urdf;
+  for (std::size_t joint = 0; joint < drives_.size(); ++joint)
+  {
+    OrderedJson& drive = json[arm_.joints[joint].short_name] = OrderedJson::object();
+    for (const auto& [key, value] : drives_[joint])
+    {
+      drive[key] = jsonOf(value);
+    }
+    if (const auto& gains = arm_.joints[joint].gains)
+    {
+      drive["controller"] = { gains->position, gains->speed, gains->integral_time, gains->coulomb, gains->viscous };
+    }
+  }
+  return json;
+}
+
+OrderedJson ArmPlan::motions() const
+{
+  OrderedJson json = OrderedJson::object();
+  for (const auto& [file, motion] : motions_)
+  {
+    json[file] = motion.hash;
+  }
+  return json;
+}
+}  // namespace hjt

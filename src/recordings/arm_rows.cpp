@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "recordings/arm_rows.hpp"
+
+#include <filesystem>
+
+#include "datasets/sweep_directory.hpp"
+
+namespace hjt
+{
+ArmRows::ArmRows(const std::string& path, const RunSpec& spec, const MovingArm& moving) : path_(path), spec_(spec)
+{
+  const std::string ending = std::filesystem::path(path).extension().string();
+  if (ending == runFileExtension(RunFormat::BAG) || ending == runFileExtension(RunFormat::HDF5))
+  {
+    Recording recording;
+    recording.format = ending == runFileExtension(RunFormat::BAG) ? RunFormat::BAG : RunFormat::HDF5;
+    RecordingGroup group{ "states", spec.arm->arm.state_rate, false, {} };
+    for (const RunColumn& column : armColumns())
+    {
+      group.columns.push_back(&column);
+    }
+    recording.groups.push_back(group);
+    file_ = makeRunFile(recording, spec, &moving.twin().drive(0), path);
+  }
+  else if (!path.empty())
+  {
+    std::vector<std::string> columns = armColumnNames(moving.twin().joints());
+    columns.insert(columns.begin(), "timestamp");
+    csv_.emplace(path, columns);
+  }
+}
+
+void ArmRows::take(Stamp stamp, double time, ArmRecorder& recorder, const ArmRow* row)
+{
+  if (file_)
+  {
+    file_->record(stamp, recorder);
+  }
+  if (csv_ && row != nullptr)
+  {
+    values_.assign(1, time);
+    for (const std::vector<double>& numbers : *row)
+    {
+      values_.insert(values_.end(), numbers.begin(), numbers.end());
+    }
+    csv_->writeRow(values_);
+  }
+}
+
+void ArmRows::close()
+{
+  if (file_)
+  {
+    file_->finish(recordOf(spec_, path_));
+  }
+  if (csv_)
+  {
+    csv_->close();
+  }
+}
+}  // namespace hjt

@@ -1,0 +1,114 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""A fault comes while the live twin of an arm moves, and arm.launch beside it sees it; then its protective stop."""
+import os
+import sys
+import time
+import unittest
+import xmlrpc.client
+
+import rosgraph
+import rospy
+import rostest
+from geometry_msgs.msg import WrenchStamped
+from rosgraph_msgs.msg import Log
+from sensor_msgs.msg import JointState
+from std_srvs.srv import Trigger
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+
+from harmonic_joint_twin.msg import Fault, Timing
+from ros_support import PACKAGE, PATIENCE, Diagnostics, Listener, wait_until
+
+NODE, BESIDE = "/arm_twin", "/joint_twin"
+JOINTS = ("base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3")
+SICK = "elbow"
+MEASURED_OVER = 10.0  # processor time [s]
+
+
+def processor_time(node):
+    """Of all threads of a node so far [s]."""
+    uri = rosgraph.Master("/arm_fault_test").lookupNode(node)
+    pid = xmlrpc.client.ServerProxy(uri).getPid("/arm_fault_test")[2]
+    with open(f"/proc/{pid}/stat", encoding="utf-8") as file:
+        fields = file.read().rsplit(")", 1)[1].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+class ArmFault(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.states = Listener("/joint_states", JointState)
+        cls.log = Listener("/rosout", Log)
+        cls.timing = Listener(f"{NODE}/timing", Timing)
+        cls.diagnostics = {joint: Diagnostics(f"/{joint}/joint_twin") for joint in JOINTS}
+        cls.states.wait_for(10, 4.0 * PATIENCE)  # the first time it builds its tables
+
+    def friction(self):
+        """Level of that finding, by joint."""
+        return {joint: self.diagnostics[joint].values("Drive").get("Friction", "").split(".")[0] for joint in JOINTS}
+
+    def wait_for_friction(self, expected, what, patience):
+        try:
+            wait_until(lambda: self.friction() == expected, what, patience)
+        except AssertionError as error:
+            drives = {joint: self.diagnostics[joint].values("Drive") for joint in JOINTS}
+            raise AssertionError(f"{error}: {drives}") from None
+
+    def speeds(self):
+        return [abs(speed) for speed in self.states.messages()[-1].velocity]
+
+    def test_1_a_fault_that_comes_in_motion_is_seen_beside_it(self):
+        self.wait_for_friction(dict.fromkeys(JOINTS, "OK"), "six sound joints", 8.0 * PATIENCE)
+        inject = rospy.Publisher(f"/{SICK}/arm_twin/inject_fault", Fault, queue_size=1)
+        wait_until(lambda: inject.get_num_connections() == 1, "the faults' topic")
+        wait_until(lambda: min(self.speeds()) > 0.05, "all six joints in motion")
+        inject.publish(Fault(kind="lubricant_degradation", severity=1.0, place=-1))
+        injected = time.monotonic()
+        self.wait_for_friction({joint: "WARN" if joint == SICK else "OK" for joint in JOINTS}, f"the {SICK} alone",
+                               12.0 * PATIENCE)
+        print(f"seen {time.monotonic() - injected:.0f} s after it came")
+
+    def test_2_both_nodes_need_less_than_a_core(self):
+        begin = {node: processor_time(node) for node in (NODE, BESIDE)}
+        began = time.monotonic()
+        time.sleep(MEASURED_OVER)
+        span = time.monotonic() - began
+        shares = {node: (processor_time(node) - begin[node]) / span for node in begin}
+        factor = self.timing.messages()[-1].real_time_factor
+        print("processor time, of one core: " + ", ".join(f"{node} {share:.3f}" for node, share in shares.items())
+              + f"; real time factor {factor:.3f}")
+        self.assertLess(sum(shares.values()), 1.0)
+        self.assertGreater(factor, 0.99)
+
+    def test_3_a_protective_stop_stands_until_the_reset(self):
+        wrench = rospy.Publisher(f"{NODE}/wrench", WrenchStamped, queue_size=1)
+        command = rospy.Publisher(f"{NODE}/command", JointTrajectory, queue_size=1)
+        for publisher in (wrench, command):
+            wait_until(lambda each=publisher: each.get_num_connections() == 1, publisher.name)
+
+        def said(text):
+            wait_until(lambda: any(text in message.msg for message in self.log.messages()), text)
+
+        push = WrenchStamped()
+        push.wrench.force.x = push.wrench.force.z = -1000.0  # more than any joint bears
+        wrench.publish(push)
+        said("Protective stop: ")
+        wrench.publish(WrenchStamped())
+        self.states.clear()
+
+        def moved():
+            rows = self.states.wait_for(100)[-100:]
+            return max(max(angles) - min(angles) for angles in zip(*(row.position for row in rows)))
+
+        wait_until(lambda: moved() < 1e-3, "the arm at rest in its brakes")  # it swings in the compliance at first
+        last = self.states.messages()[-1]
+        point = JointTrajectoryPoint(positions=list(last.position), time_from_start=rospy.Duration(2))
+        command.publish(JointTrajectory(joint_names=last.name, points=[point]))
+        said("Refused a trajectory on ~command: protective stop; ~reset ends it")
+        self.assertTrue(rospy.ServiceProxy(f"{NODE}/reset", Trigger)().success)
+        wait_until(lambda: min(self.speeds()) > 0.05, "all six joints in motion again")
+
+
+if __name__ == "__main__":
+    rospy.init_node("arm_fault_test")
+    rostest.rosrun(PACKAGE, "arm_fault_test", ArmFault, sys.argv)
