@@ -10,6 +10,7 @@ STEADY = 0.05              # share by which the speed may vary in a stretch whos
 STRETCH = 0.5              # [s]
 LINE_BAND = (10.0, 55.0)   # frequencies of the lines that the rows resolve [Hz]
 GAINS_FROM = "no5"         # recording on which the controller's gains are identified
+BARE_IN = "no9"            # recording that is run without the cup's friction too
 # Errors of the circular spline alone: a gear with errors on both members has no table.
 BUILT = ["--config", "as_built.yaml", "--set", "manufacture.flexspline_pitch_deviation=0.0", "--set",
          "manufacture.wave_generator_eccentricity=[0.0,0.0]"]
@@ -39,13 +40,13 @@ def line_amplitude(time, speed, values):
 
 
 class ClosedLoop:
-    """A run of `joint_twin arm` along the targets of a recording (ur5.Recording)."""
+    """A run of `joint_twin arm` along the targets of a recording (ur5.Recording), or along `motion`."""
 
-    def __init__(self, runner, recording, identified, *more):
+    def __init__(self, runner, recording, identified, *more, arm="ur5", motion=None, name="loop"):
         self.recording = recording
-        out = f"loop_{identified}_{recording.name}.csv"
-        self.report = runner.run("arm", f"{recording.name}.csv", "--arm", "ur5", "--identified", identified, "--out",
-                                 out, "--json", *more)
+        out = f"{name}_{identified}_{recording.name}.csv"
+        self.report = runner.run("arm", motion or f"{recording.name}.csv", "--arm", arm, "--identified", identified,
+                                 "--out", out, "--json", *more)
         self.data = read(runner.path(out))
 
     def residual(self, name, joint):
@@ -57,6 +58,14 @@ class ClosedLoop:
 
 def cell(*values, digits=2):
     return " / ".join("–" if np.isnan(value) else f"{value:.{digits}f}" for value in values)
+
+
+def moving_errors(recording, name, fit, loop, number):
+    """Rms errors of a joint's current in moving rows: closed loop, told the motion, simple fit [A]; NaN: none moves."""
+    moving = recording.moving(name)
+    residuals = (loop.residual(name, number), recording.rows["arm", name]["current_residual"],
+                 fit.residual(recording, name))
+    return [rms(residual[moving]) if moving.any() else float("nan") for residual in residuals]
 
 
 def draw(path, loop, joints):
@@ -81,19 +90,38 @@ def line_of(data, joint, values):
     return line_amplitude(data["timestamp"], data[f"target_qd_{joint}"], values)
 
 
+def lines_of(data, joints):
+    """Lines of the large joints' currents [A] and output angles [urad], as texts."""
+    currents = [line_of(data, number, data[f"actual_current_{number}"]) for number in range(joints)]
+    angles = [1e6 * line_of(data, number, data[f"actual_q_{number}"] - data[f"target_q_{number}"])
+              for number in range(joints)]
+    return cell(*angles, digits=0), cell(*currents)
+
+
+def bare_sentence(runner, recordings, loops):
+    """What the cup's friction does to the lines."""
+    recording = next((recording for recording in recordings if recording.name == BARE_IN), None)
+    if recording is None:
+        return ""
+    bare = ClosedLoop(runner, recording, "built", *BUILT, "--set", "cup.friction_torque=0.0", name="bare")
+    (without, without_current), (with_it, with_current), (recorded, recorded_current) = (
+        lines_of(data, 3) for data in (bare.data, loops[BARE_IN].data, recording.data))
+    return (f"Without the cup's friction (`--set cup.friction_torque=0.0`) the outputs of base, shoulder and elbow "
+            f"swing in {BARE_IN} at this line by {without} µrad (with it {with_it}, recorded {recorded}), their "
+            f"currents by {without_current} A (with it {with_current}, recorded {recorded_current}).")
+
+
 def built_section(runner, recordings, fit, joints, train):
     """Lines of the page: drives with errors of manufacture, the controller's gains identified on one recording."""
     runner.run("identify", f"{train}.csv", "--arm", "ur5", "--out", "built")
     gains = runner.run("identify", f"{GAINS_FROM}.csv", "--arm", "ur5", "--controller", "--out", "built", "--json")
-    rows, ratios, stops = [], {name: [] for name in joints}, []
+    rows, ratios, stops, loops = [], {name: [] for name in joints}, [], {}
     for recording in recordings:
-        loop = ClosedLoop(runner, recording, "built", *BUILT)
+        loop = loops[recording.name] = ClosedLoop(runner, recording, "built", *BUILT)
         stops += [recording.name] if loop.report["protective_stop"] else []
         cells = []
         for number, name in enumerate(joints):
-            moving = recording.moving(name)
-            simple = rms(fit.residual(recording, name)[moving]) if moving.any() else float("nan")
-            current = rms(loop.residual(name, number)[moving]) if moving.any() else float("nan")
+            current, _, simple = moving_errors(recording, name, fit, loop, number)
             lines = [[line_of(data, number, data[f"actual_current_{number}"]),
                       1e6 * line_of(data, number, data[f"actual_q_{number}"] - data[f"target_q_{number}"])]
                      for data in (loop.data, recording.data)]
@@ -114,7 +142,8 @@ turn; the flexsplines equal, so that each drive has a table), the controller's g
 simple fit [A]; line of the current, twin / recorded [A]; line of the output's angle, twin / recorded [µrad].
 
 The line of the current is within a factor of two of the recorded one in {within} of {len(known)}; median of twin over
-recorded: {float(np.median(known)):.2f}.{stopped} What bounds it: [arm_twin.md](arm_twin.md#errors-of-manufacture).
+recorded: {float(np.median(known)):.2f}.{stopped} {bare_sentence(runner, recordings, loops)}
+What bounds it: [arm_twin.md](arm_twin.md#errors-of-manufacture).
 """, *table(["recording", *joints], rows)]
 
 
@@ -127,10 +156,7 @@ def section(runner, recordings, fit, joints, shown, picture, train):
             draw(picture, loop, list(enumerate(joints))[1:4])
         cells = []
         for number, name in enumerate(joints):
-            moving = recording.moving(name)
-            simple = rms(fit.residual(recording, name)[moving]) if moving.any() else float("nan")
-            current = rms(loop.residual(name, number)[moving]) if moving.any() else float("nan")
-            told = rms(recording.rows["arm", name]["current_residual"][moving]) if moving.any() else float("nan")
+            current, told, simple = moving_errors(recording, name, fit, loop, number)
             errors = tracking(loop.data, number), tracking(recording.data, number)
             lines = [line_amplitude(data["timestamp"], data[f"actual_qd_{number}"], data[f"actual_current_{number}"])
                      for data in (loop.data, recording.data)]

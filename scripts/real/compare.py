@@ -7,6 +7,7 @@ import sys
 import tempfile
 
 import two_encoders
+import ur10e
 import ur5
 from runs import Runner
 
@@ -20,15 +21,14 @@ def main():
     recordings = [os.path.join(ur5.FOLDER, f"{ur5.PREFIX}{ur5.TRAIN}.csv"), two_encoders.LOADED]
     if not any(os.path.isfile(os.path.join(settings.telemetry, name)) for name in recordings):
         print(f"skipped: neither {' nor '.join(recordings)} in {settings.telemetry}; name their folder as argument or "
-              f"in "
-              "$HJT_TELEMETRY_DIR")
+              "in $HJT_TELEMETRY_DIR")
         return 0
     images = os.path.join(settings.docs, "images", "real_robot")
     os.makedirs(images, exist_ok=True)
     lines = ["# Beside a real robot", "", "Written by `scripts/compare_real`; do not edit.", ""]
     with tempfile.TemporaryDirectory() as directory:
         runner = Runner(settings.tool, directory)
-        for part in (ur5, two_encoders):
+        for part in (ur5, ur10e, two_encoders):
             lines += part.section(runner, settings.telemetry, images)
         lines += ["## Runs", "", "```sh", *runner.commands, "```", ""]
     with open(os.path.join(settings.docs, "real_robot.md"), "w", encoding="utf-8") as file:

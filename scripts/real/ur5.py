@@ -37,13 +37,13 @@ def running_mean(time, values):
 class Recording:
     """A file, and its rows beside the twins that were identified on TRAIN: by load and joint."""
 
-    def __init__(self, runner, name):
+    def __init__(self, runner, name, arm="ur5", loads=LOADS, identified="identified"):
         self.name = name
         self.data = read(runner.path(f"{name}.csv"))
         self.rows = {}
-        for load in LOADS:
-            report = runner.run("follow", f"{name}.csv", "--arm", "ur5", "--load", load, "--identified",
-                                f"identified_{load}", "--out", f"{name}_{load}", "--json")
+        for load in loads:
+            report = runner.run("follow", f"{name}.csv", "--arm", arm, "--load", load, "--identified",
+                                f"{identified}_{load}", "--out", f"{name}_{load}", "--json")
             if load == "arm":
                 self.load_errors = [joint["load_difference_rms"] for joint in report["joints"]]
             for joint in JOINTS:
