@@ -2,8 +2,8 @@
 // Cost and error of a whole UR5 in its gentle motion, for scripts/arm_coupling. Prints CSV. Arguments: directory of the
 // default configuration, and
 //   coupling  mass matrix at several rates, the other drives' torques extrapolated by several orders: rate of the mass
-//             matrix [Hz], order, processor time over simulated time [-], largest error of the arm's energy [J], largest
-//             difference of an angle from the run with a quarter of the step [rad]
+//             matrix [Hz], order, processor time over simulated time [-], largest error of the arm's energy [J],
+//             largest difference of an angle from the run with a quarter of the step [rad]
 //   scenes    drives on the full ring, the others on surfaces: their number, processor time over simulated time [-]
 #include <algorithm>
 #include <array>

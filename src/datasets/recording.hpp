@@ -52,8 +52,8 @@ inline std::vector<const RunColumn*> readColumns(const PlanNode& group, const st
         std::find_if(known.begin(), known.end(), [&](const RunColumn& each) { return each.name == wanted; });
     if (column == known.end())
     {
-      const auto nameOf = [](const RunColumn& each) { return each.name; };
-      element.refuse("is no column; there are " + joined(known, ", ", nameOf));
+      const auto name_of = [](const RunColumn& each) { return each.name; };
+      element.refuse("is no column; there are " + joined(known, ", ", name_of));
     }
     if (std::find(columns.begin(), columns.end(), &*column) != columns.end())
     {
