@@ -37,7 +37,8 @@ double ownLag(const std::array<double, CurrentLag::LAGS>& left)
     best = left[i] < left[best] ? i : best;
   }
   const double lag = CurrentLag::lagAt(best);
-  return std::abs(lag) > NOTEWORTHY && std::sqrt(left[best] / left[MIDDLE]) < CLEARLY ? lag : 0.0;
+  constexpr double LONG = 0.1;  // shorter: friction at low speed looks alike [s]
+  return std::abs(lag) > LONG && std::sqrt(left[best] / left[MIDDLE]) < CLEARLY ? lag : 0.0;
 }
 
 double commonLag(const std::vector<std::array<double, CurrentLag::LAGS>>& left)

@@ -81,13 +81,12 @@ class ArmCases(unittest.TestCase):
                        self.verdicts["left", joint].messages()[-1].level == expected, f"the verdict on left {joint}")
         self.assertEqual(self.verdicts["left", SILENT].messages()[-1].reason, Verdict.EFFORT_CONSTANT)
         self.assertGreater(self.diagnostics["left", "base"].number("Input", "Jumps of angles by a turn, taken out"), 0)
-        said = {status.message for status in self.diagnostics["right", "base"].statuses("Input")}
-        payload = [text for text in said if "look like a payload of" in text]
-        self.assertEqual(len(payload), 1, said)
-        mass, half_width = (float(text) for text in payload[0].split("payload of ")[1].split(" kg")[0].split(" +- "))
+        payload = self.diagnostics["right", "base"].values("Input")["Payload that is not configured"]
+        self.assertIn("look like a payload of", payload)
+        mass, half_width = (float(text) for text in payload.split("payload of ")[1].split(" kg")[0].split(" +- "))
         self.assertLess(abs(mass - MASS), half_width + 0.05, payload)
-        self.assertFalse([text for key, other in self.diagnostics.items() if key[0] == "left"
-                          for text in (status.message for status in other.statuses("Input")) if "payload of" in text])
+        other = self.diagnostics["left", "base"].values("Input")
+        self.assertEqual(other["Payload that is not configured"], "none found")
         for side in ("left", "right"):
             self.assertFalse({Verdict.WARN, Verdict.ERROR} & set.union(*self.levels(side).values()), self.levels(side))
         for key, other in self.diagnostics.items():
