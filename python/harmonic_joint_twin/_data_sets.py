@@ -47,7 +47,7 @@ def load(folder: Path, group: Optional[str] = "indicators") -> Frame:
         if not file.endswith(".h5"):
             raise _hjt.InputError(f"{file} is no HDF5 file: a data set of bags has its index alone, group=None")
         with h5py.File(file, "r") as run:
-            groups = [name for name, item in run.items() if isinstance(item, h5py.Group)]
+            groups = [name for name, item in run.items() if isinstance(item, h5py.Group) and name != "parameters"]
             if group not in groups:
                 raise _hjt.InputError(f"{file} has no group '{group}'; it holds {', '.join(groups)}")
             columns = {name: column[:] for name, column in run[group].items() if column.ndim == 1}

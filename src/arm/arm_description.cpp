@@ -153,7 +153,7 @@ ArmDescription readArmDescription(const std::string& path)
   fields("base", arm.base, "link that stands still");
   fields("tip", arm.tip, "link that carries the payload");
   fields("gravity", "m/s^2", arm.gravity, Range{ -100.0, 100.0 }, "in the frame of the base");
-  fields("payload.mass", "kg", arm.payload.mass, Range{ 0.0, 1e4 }, "at the tip");
+  fields("payload.mass", "kg", arm.payload.mass, PAYLOAD_MASS, "at the tip");
   fields("payload.centre", "m", arm.payload.centre, Range{ -100.0, 100.0 }, "of its mass, in the frame of the tip");
   if (holds(map, "state_rate"))
   {

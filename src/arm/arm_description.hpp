@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "arm/joint_gains.hpp"
+#include "base/range.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"
 
 namespace hjt
@@ -23,6 +24,8 @@ struct ArmJoint
   std::vector<double> check_up;       ///< angles of all joints where its check-up begins; empty: none [rad]
   std::optional<JointGains> gains;    ///< of its controller; none: ArmController::defaultGains
 };
+
+inline constexpr Range PAYLOAD_MASS{ 0.0, 1e4 };  ///< [kg]
 
 /// Mass at the tip of an arm.
 struct Payload

@@ -96,6 +96,11 @@ ArmTwin::ArmTwin(const ArmDescription& arm, std::vector<Parameters> drives, cons
                          " Hz is not within 0 ... solver.rate = " + numberText(rate) + " Hz");
   }
   mass_steps_ = std::llround(rate / coupling.mass_rate);
+  if (coupling.order < 0 || static_cast<std::size_t>(coupling.order) >= EXTRAPOLATIONS.size())
+  {
+    throw ParameterError("the extrapolation's order of " + std::to_string(coupling.order) + " is not within 0 ... " +
+                         std::to_string(EXTRAPOLATIONS.size() - 1));
+  }
   weights_ = EXTRAPOLATIONS.at(static_cast<std::size_t>(coupling.order));
   const std::vector<double> least = leastInertia(dynamics_, spline_inertia_);
   drives_.reserve(joints);

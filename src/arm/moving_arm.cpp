@@ -30,11 +30,25 @@ std::vector<JointGains> gainsOf(const ArmDescription& arm, const std::vector<Par
   }
   return gains;
 }
+
+/// Faults with an onset come that long after the motion's begin.
+std::vector<Parameters> withFaultsInMotion(std::vector<Parameters> drives)
+{
+  constexpr double LATEST_ONSET = 1e9;  // that a drive takes [s]
+  for (Parameters& drive : drives)
+  {
+    for (Fault& fault : drive.faults)
+    {
+      fault.onset = fault.onset > 0.0 ? std::min(fault.onset + MovingArm::SETTLING, LATEST_ONSET) : fault.onset;
+    }
+  }
+  return drives;
+}
 }  // namespace
 
 MovingArm::MovingArm(const ArmDescription& arm, const std::vector<Parameters>& drives, ArmMotion motion,
                      const SurfaceSource& surface_source)
-  : twin_(arm, drives, anglesOf(motion.points().front()), surface_source)
+  : twin_(arm, withFaultsInMotion(drives), anglesOf(motion.points().front()), surface_source)
   , controller_(arm, twin_, gainsOf(arm, drives), CONTROL_RATE)
   , motion_(std::move(motion))
   , commanded_(motion_)

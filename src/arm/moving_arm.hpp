@@ -41,7 +41,8 @@ public:
   static constexpr double STOP_DEVIATION = 0.1;   ///< [rad]
   static constexpr double STOP_SPEED = 1.1;       ///< of ArmJoint::speed_limit [-]
 
-  /// `drives`: as ArmTwin takes them. @throws ParameterError.
+  /// `drives`: as ArmTwin takes them; the onsets of their faults count from the motion's begin, but those at 0 are
+  /// there from the reset on. @throws ParameterError.
   MovingArm(const ArmDescription& arm, const std::vector<Parameters>& drives, ArmMotion motion,
             const SurfaceSource& surface_source);
 

@@ -9,7 +9,6 @@
 #include "datasets/variable.hpp"
 
 #include "arm/arm_configuration.hpp"
-#include "arm/moving_arm.hpp"
 #include "arm/set_points.hpp"
 #include "base/joined.hpp"
 #include "base/text_hash.hpp"
@@ -26,12 +25,12 @@ std::string textOf(const std::string& path)
   return { std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>() };
 }
 
-/// As it is from the plan's folder, else as it is.
-std::string beside(const std::string& directory, const std::string& name)
+/// As it is from the plan's folder, else as it is. `folder`: of one, else of a file.
+std::string beside(const std::string& directory, const std::string& name, bool folder)
 {
   const fs::path path = fs::path(directory) / name;
   std::error_code error;
-  return fs::exists(path, error) ? path.string() : name;
+  return fs::exists(path, error) && fs::is_directory(path, error) == folder ? path.string() : name;
 }
 }  // namespace
 
@@ -70,8 +69,8 @@ ArmPlan::ArmPlan(const PlanNode& root, const std::string& directory, const Confi
   }
   const PlanValues values;
   const std::string identified = values.text(root, "identified", "");
-  const std::string folder = identified.empty() ? "" : beside(directory, identified);
-  arm_ = readArmDescription(findArm(beside(directory, values.text(root, "arm")), configDirectory(options)));
+  const std::string folder = identified.empty() ? "" : beside(directory, identified, true);
+  arm_ = readArmDescription(findArm(beside(directory, values.text(root, "arm"), false), configDirectory(options)));
   arm_text_ = textOf(arm_.origin);
   addIdentifiedGains(folder, arm_);
   drives_ = armDriveMaps(arm_, options, folder);
@@ -106,9 +105,8 @@ ArmSpec ArmPlan::read(const PlanNode& duty, const PlanValues& values, const Para
                       const std::vector<RunFault>* faults, const std::string& faults_origin) const
 {
   allowOnly(duty, { "name", "motion", "payload" });
-  constexpr Range PAYLOAD{ 0.0, 1000.0 };  // of an arm's file too
   ArmSpec spec{ arm_, {}, motions_.at(values.text(duty, "motion")).points };
-  spec.arm.payload.mass = values.number(duty, "payload", "kg", PAYLOAD, arm_.payload.mass);
+  spec.arm.payload.mass = values.number(duty, "payload", "kg", PAYLOAD_MASS, arm_.payload.mass);
   for (std::size_t joint = 0; joint < drives_.size(); ++joint)
   {
     ParameterMap map = drives_[joint];
@@ -118,13 +116,7 @@ ArmSpec ArmPlan::read(const PlanNode& duty, const PlanValues& values, const Para
     }
     if (faults != nullptr)
     {
-      std::vector<RunFault> shifted = *faults;
-      for (RunFault& fault : shifted)
-      {
-        // The run's time is the motion's, which begins when the drives have settled.
-        fault.fault.onset += fault.fault.onset > 0.0 || fault.ramp > 0.0 ? MovingArm::SETTLING : 0.0;
-      }
-      setFaults(shifted, joint, faults_origin, map);
+      setFaults(*faults, joint, faults_origin, map);
     }
     spec.drives.push_back(parseParameters(map));
   }
@@ -137,6 +129,12 @@ OrderedJson ArmPlan::configuration() const
   OrderedJson json = OrderedJson::object();
   json["arm"] = arm_text_;
   json["urdf"] = arm_.urdf;
+  // Of another arm's file, where this one is like it.
+  json["base"] = arm_.base;
+  json["tip"] = arm_.tip;
+  json["gravity"] = arm_.gravity;
+  json["payload"] = { arm_.payload.mass, arm_.payload.centre[0], arm_.payload.centre[1], arm_.payload.centre[2] };
+  json["state_rate"] = arm_.state_rate;
   for (std::size_t joint = 0; joint < drives_.size(); ++joint)
   {
     OrderedJson& drive = json[arm_.joints[joint].short_name] = OrderedJson::object();
@@ -144,6 +142,7 @@ OrderedJson ArmPlan::configuration() const
     {
       drive[key] = jsonOf(value);
     }
+    drive["limits"] = { arm_.joints[joint].speed_limit, arm_.joints[joint].torque_limit };
     if (const auto& gains = arm_.joints[joint].gains)
     {
       drive["controller"] = { gains->position, gains->speed, gains->integral_time, gains->coulomb, gains->viscous };

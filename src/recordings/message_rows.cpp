@@ -54,7 +54,6 @@ bool isVoidAfter(const std::vector<MotionRow>& before, const std::vector<MotionR
   }
   return is_void;
 }
-}  // namespace
 
 /// Names beyond the end of the efforts, but for those of motors.
 std::vector<std::string> beyondEfforts(const sensor_msgs::JointState& message)
@@ -99,6 +98,7 @@ struct JointsSeen
   std::set<std::string> angles;
   std::set<std::string> efforts;
 };
+}  // namespace
 
 TopicLayout readLayout(RecordedMessages& recording, const MotionSource& source, const std::vector<std::string>& names)
 {
