@@ -18,7 +18,8 @@ class Arm:
 
     arm: name in config/arms, or a file. start: angles of all joints where it stands [rad]; None: all 0. payload: at the
     tip [kg]; None: that of the arm's file. The controller knows it. faults: each JOINT:KIND:SEVERITY[:PLACE[:ONSET]],
-    there from the start. identified: directory of an arm's overlays. overlays, progress: as of identify.
+    there from the start, or from `time` = ONSET on. identified: directory of an arm's overlays. overlays, progress: as
+    of identify.
 
     InputError, ParameterError.
     """
@@ -49,6 +50,11 @@ class Arm:
         """'joint', 'reason' and 'time' [s] of the stop in which the arm stands in its brakes until reset; or None."""
         return self._arm.protective_stop
 
+    @property
+    def counters(self) -> Dict[str, int]:
+        """How the steps since reset went: 'solver_failures' those of no equilibrium, which are also warned of, ..."""
+        return self._arm.counters
+
     def move(self, motion: Recording) -> float:
         """A motion from now on, in place of the last one: as of arm(). It begins where the arm is wanted now, in place
         of its first set point. Returns how long it takes [s]; then the arm is held at its end."""
@@ -71,8 +77,12 @@ class Arm:
         self._arm.set_wrench(force, moment)
 
     def reset(self) -> None:
-        """Back to the start; faults and the wrench stay."""
+        """Back to the start, with the faults given at construction; the wrench stays."""
         self._arm.reset()
 
     def __repr__(self) -> str:
-        return f"Arm({', '.join(self.joints)}; time = {self.time:.6g} s)"
+        try:
+            state = f"time = {self.time:.6g} s"
+        except RuntimeError:
+            state = "being run by another thread"
+        return f"Arm({', '.join(self.joints)}; {state})"

@@ -73,4 +73,14 @@ TwinCounters countersOf(const ArmTwin& twin)
   }
   return sum;
 }
+
+bool allOnSurface(const ArmTwin& twin)
+{
+  bool all = true;
+  for (std::size_t i = 0; i < twin.joints(); ++i)
+  {
+    all = all && twin.drive(i).onSurface();
+  }
+  return all;
+}
 }  // namespace hjt

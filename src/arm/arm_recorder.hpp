@@ -73,4 +73,7 @@ private:
 
 /// How the steps of all drives went, which step together.
 TwinCounters countersOf(const ArmTwin& twin);
+
+/// Whether all drives took their last step on a response surface.
+bool allOnSurface(const ArmTwin& twin);
 }  // namespace hjt

@@ -109,6 +109,12 @@ double straightenTimes(std::vector<ArmSetPoint>& points)
   return change;
 }
 
+std::string straightenedText(double change)
+{
+  return "the set points' times do not go with their angles and speeds: moved, a step by up to " +
+         fixedText(1e3 * change, 1) + " ms";
+}
+
 void requireMotion(const std::vector<ArmSetPoint>& points, const std::string& what)
 {
   if (points.empty())

@@ -22,6 +22,9 @@ void fillRates(std::vector<ArmSetPoint>& points, bool has_velocity, bool has_acc
 /// are not the angles' rates, or the stamps go with them. Returns the largest change of a step; 0: none [s].
 double straightenTimes(std::vector<ArmSetPoint>& points);
 
+/// What a user must know of such a change, above 0 [s].
+std::string straightenedText(double change);
+
 /// @throws InputError if there is none, or the time does not go on. `what`: they are of.
 void requireMotion(const std::vector<ArmSetPoint>& points, const std::string& what);
 }  // namespace hjt

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <iterator>
 
 #include "datasets/variable.hpp"
@@ -80,7 +81,10 @@ ArmPlan::ArmPlan(const PlanNode& root, const std::string& directory, const Confi
     {
       const std::string path = (fs::path(directory) / file).string();
       std::vector<ArmSetPoint> points = readSetPoints(path, arm_);
-      straightenTimes(points);
+      if (const double change = straightenTimes(points); change > 0.0)
+      {
+        std::cerr << "warning: " << path << ": " << straightenedText(change) << '\n';
+      }
       motions_[file] = { std::make_shared<const std::vector<ArmSetPoint>>(std::move(points)),
                          std::to_string(textHash(textOf(path))) };
     }

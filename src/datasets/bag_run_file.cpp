@@ -13,6 +13,7 @@
 
 #include "arm/arm_configuration.hpp"
 #include "bags/bag_file.hpp"
+#include "base/publish_period.hpp"
 #include "base/whole_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "messages/time.hpp"
@@ -47,7 +48,8 @@ BagRunFile::BagRunFile(const RunSpec& spec, const Twin* twin, std::string path)
   if (spec.arm)
   {
     order_ = driverOrder(spec.arm->arm);
-    period_ = toStampLength(1.0 / spec.arm->arm.state_rate);
+    period_ = publishPeriod(spec.arm->arm.state_rate, spec.parameters.solver.rate);
+    begin_ = twin != nullptr ? twin->stamp() : begin_;
     for (const std::size_t joint : order_)
     {
       states_.name.push_back(spec.arm->arm.joints[joint].name);
@@ -80,7 +82,7 @@ void BagRunFile::record(Twin& twin, const DutyFeeder& /*feeder*/)
 
 void BagRunFile::record(Stamp now, ArmRecorder& arm)
 {
-  if (now % period_ != 0)
+  if ((now - begin_) % period_ != 0)
   {
     return;
   }

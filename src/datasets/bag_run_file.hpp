@@ -37,6 +37,7 @@ private:
   std::vector<std::size_t> order_;  // of an arm's joints in its states
   sensor_msgs::JointState states_;
   Stamp period_{};  // of the states [ns]
+  Stamp begin_{};   // from which they count
   Stamp last_;
 };
 }  // namespace hjt

@@ -11,6 +11,7 @@
 #include "datasets/file_seal.hpp"
 #include "datasets/hdf5_files.hpp"
 
+#include "base/publish_period.hpp"
 #include "base/whole_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 
@@ -81,11 +82,7 @@ Hdf5RunFile::Hdf5RunFile(const Recording& recording, const RunSpec& spec, const 
   const auto lock = lockLibrary();
   const Hdf5Handle creation = withoutTimes(H5P_FILE_CREATE);
   file_ = Hdf5Handle(H5Fcreate(temporary_.c_str(), H5F_ACC_TRUNC, creation.get(), H5P_DEFAULT), H5Fclose);
-  if (!file_.valid())
-  {
-    fail();
-  }
-  if (!writeFaults(file_.get(), faults_, spec.arm))
+  if (!file_.valid() || !writeFaults(file_.get(), faults_, spec.arm))
   {
     fail();
   }
@@ -138,7 +135,7 @@ void Hdf5RunFile::makeGroup(const RecordingGroup& recorded, const RunSpec& spec,
 {
   const auto rows = static_cast<hsize_t>(std::floor((spec.duration - start) * recorded.rate + 1e-6));
   const hsize_t chunks = std::max<hsize_t>(1, (rows + ROWS_IN_CHUNK - 1) / ROWS_IN_CHUNK);
-  Group group{ recorded.float32, toStampLength(1.0 / recorded.rate),
+  Group group{ recorded.float32, publishPeriod(recorded.rate, spec.parameters.solver.rate),
                std::max<hsize_t>(1, (rows + chunks - 1) / chunks) };
   const Hdf5Handle properties = withoutTimes(H5P_GROUP_CREATE);
   const Hdf5Handle place(H5Gcreate2(file_.get(), recorded.name.c_str(), H5P_DEFAULT, properties.get(), H5P_DEFAULT),

@@ -2,9 +2,13 @@
 #include "datasets/run_file.hpp"
 
 #include <filesystem>
+#include <optional>
 
 #include "datasets/bag_run_file.hpp"
 #include "datasets/hdf5_files.hpp"
+
+#include "arm/moving_arm.hpp"
+#include "base/number_text.hpp"
 
 namespace hjt
 {
@@ -16,6 +20,28 @@ std::unique_ptr<RunFile> makeRunFile(const Recording& recording, const RunSpec& 
     return std::make_unique<BagRunFile>(spec, twin, path);
   }
   return makeHdf5RunFile(recording, spec, twin, path);
+}
+
+void addOutcome(const TwinCounters& counters, std::uint64_t on_surface, double end, OrderedJson& record)
+{
+  if (counters.solver_failures > 0)
+  {
+    record["status"] = "failed";
+    record["error"] = "the solver found no equilibrium at " + numberText(end) + " s; the record ends there";
+  }
+  record["steps"] = counters.steps;
+  record["steps_on_surface"] = on_surface;
+  record["coarse_steps"] = counters.coarse_steps;
+  record["torque_clamped"] = counters.torque_clamped;
+  record["jumps"] = counters.jumps;
+}
+
+void addProtectiveStop(const ArmDescription& arm, const MovingArm& moving, OrderedJson& record)
+{
+  const std::optional<ProtectiveStop>& stop = moving.protectiveStop();
+  record[PROTECTIVE_STOP] = stop ? arm.joints[stop->joint].short_name + " " + stop->reason + " at " +
+                                       numberText(toSeconds(stop->stamp - moving.motionBegin())) + " s" :
+                                   "";
 }
 
 const char* runFileExtension(RunFormat format)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <string>
@@ -39,6 +40,13 @@ public:
 /// is written. @throws InputError.
 std::unique_ptr<RunFile> makeRunFile(const Recording& recording, const RunSpec& spec, const Twin* twin,
                                      const std::string& path);
+
+/// How the steps of a run went, into its record. `on_surface`: steps on the response surface; `end`: time of the last
+/// step [s].
+void addOutcome(const TwinCounters& counters, std::uint64_t on_surface, double end, OrderedJson& record);
+
+/// An arm's protective stop, into the record of its run.
+void addProtectiveStop(const ArmDescription& arm, const MovingArm& moving, OrderedJson& record);
 
 /// Of the format's files, with the dot.
 const char* runFileExtension(RunFormat format);

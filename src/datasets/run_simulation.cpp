@@ -6,13 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <optional>
 
 #include "output/interrupt.hpp"
 #include "output/run_summary.hpp"
 
 #include "arm/arm_recorder.hpp"
-#include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 
 namespace hjt
@@ -69,21 +67,10 @@ public:
   void record(RunFile& file) override { file.record(moving_.twin().stamp(), recorder_); }
   const Twin& drive() const override { return moving_.twin().drive(0); }
   TwinCounters counters() const override { return countersOf(moving_.twin()); }
-  bool onSurface() const override
-  {
-    bool all = true;
-    for (std::size_t i = 0; i < moving_.twin().joints(); ++i)
-    {
-      all = all && moving_.twin().drive(i).onSurface();
-    }
-    return all;
-  }
+  bool onSurface() const override { return allOnSurface(moving_.twin()); }
   void tell(OrderedJson& record) const override
   {
-    const std::optional<ProtectiveStop>& stop = moving_.protectiveStop();
-    record[PROTECTIVE_STOP] = stop ? spec_.arm->arm.joints[stop->joint].short_name + " " + stop->reason + " at " +
-                                         numberText(toSeconds(stop->stamp - moving_.motionBegin())) + " s" :
-                                     "";
+    addProtectiveStop(spec_.arm->arm, moving_, record);
   }
 
 private:
@@ -124,18 +111,7 @@ bool RunSimulation::simulate(std::uint64_t number)
   {
     return false;
   }
-  const TwinCounters counters = subject->counters();
-  if (counters.solver_failures > 0)
-  {
-    record["status"] = "failed";
-    record["error"] = "the solver found no equilibrium at " + numberText(toSeconds(subject->drive().stamp() - start)) +
-                      " s; the record ends there";
-  }
-  record["steps"] = counters.steps;
-  record["steps_on_surface"] = on_surface_;
-  record["coarse_steps"] = counters.coarse_steps;
-  record["torque_clamped"] = counters.torque_clamped;
-  record["jumps"] = counters.jumps;
+  addOutcome(subject->counters(), on_surface_, toSeconds(subject->drive().stamp() - start), record);
   subject->tell(record);
   file->finish(record);
   return true;

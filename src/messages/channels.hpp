@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <tuple>
 #include <utility>
 
+#include "base/publish_period.hpp"
 #include "messages/conversions.hpp"
 #include "messages/time.hpp"
 #include "messages/topics.hpp"
@@ -56,15 +56,9 @@ inline constexpr auto CHANNELS = std::make_tuple(
 
 constexpr std::size_t CHANNEL_COUNT = std::tuple_size_v<decltype(CHANNELS)>;
 
-/// Between two messages of a topic [ns]; both rates in Hz. A topic is due when the instant is a whole multiple of it,
-/// counted from the epoch and not from the start: the same input gives messages at the same instants however it was
-/// cut, live, replayed or offline.
-inline Stamp publishPeriod(double publish_rate, double solver_rate)
-{
-  return std::llround(solver_rate / publish_rate) * std::llround(1e9 / solver_rate);
-}
-
-/// All channels of one twin, each with a `Sink<Message>` that its messages go to.
+/// All channels of one twin, each with a `Sink<Message>` that its messages go to. A topic is due when the instant is a
+/// whole multiple of its publishPeriod, counted from the epoch and not from the start: the same input gives messages at
+/// the same instants however it was cut, live, replayed or offline.
 ///
 /// A sink is constructed from (context, channel, first message) and has `bool isWanted()` and `write(fill)`, which
 /// calls `bool fill(Message&)` with the message to be filled and drops it if that returns false.

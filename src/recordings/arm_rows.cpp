@@ -7,7 +7,8 @@
 
 namespace hjt
 {
-ArmRows::ArmRows(const std::string& path, const RunSpec& spec, const MovingArm& moving) : path_(path), spec_(spec)
+ArmRows::ArmRows(const std::string& path, const RunSpec& spec, const MovingArm& moving)
+  : moving_(moving), begin_(moving.twin().stamp()), end_(begin_), path_(path), spec_(spec)
 {
   const std::string ending = std::filesystem::path(path).extension().string();
   if (ending == runFileExtension(RunFormat::BAG) || ending == runFileExtension(RunFormat::HDF5))
@@ -32,9 +33,15 @@ ArmRows::ArmRows(const std::string& path, const RunSpec& spec, const MovingArm& 
 
 void ArmRows::take(Stamp stamp, double time, ArmRecorder& recorder, const ArmRow* row)
 {
-  if (file_)
+  if (file_ && !failed_)
   {
-    file_->record(stamp, recorder);
+    end_ = stamp;
+    on_surface_ += stamp > begin_ && allOnSurface(moving_.twin()) ? 1 : 0;
+    failed_ = countersOf(moving_.twin()).solver_failures > 0;
+    if (!failed_)  // else it ends here, as a run of a data set
+    {
+      file_->record(stamp, recorder);
+    }
   }
   if (csv_ && row != nullptr)
   {
@@ -51,7 +58,10 @@ void ArmRows::close()
 {
   if (file_)
   {
-    file_->finish(recordOf(spec_, path_));
+    OrderedJson record = recordOf(spec_, path_);
+    addOutcome(countersOf(moving_.twin()), on_surface_, toSeconds(end_ - begin_), record);
+    addProtectiveStop(spec_.arm->arm, moving_, record);
+    file_->finish(record);
   }
   if (csv_)
   {

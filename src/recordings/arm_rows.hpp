@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,7 +18,8 @@ namespace hjt
 class ArmRows
 {
 public:
-  /// `spec`: the run, ArmSpec::arm.state_rate that of the rows. `path`: empty, none. @throws InputError.
+  /// `spec`: the run, ArmSpec::arm.state_rate that of the rows, which divides solver.rate. `path`: empty, none.
+  /// `moving`: at the first row; stays there as long as this. @throws InputError.
   ArmRows(const std::string& path, const RunSpec& spec, const MovingArm& moving);
 
   /// After every step of the motion; `row`: none, no row is due. @throws InputError.
@@ -25,7 +27,15 @@ public:
 
   void close();  ///< @throws InputError
 
+  /// Whether it is a run's file: without `close` nothing is left of it.
+  bool isRun() const { return file_ != nullptr; }
+
 private:
+  const MovingArm& moving_;
+  Stamp begin_;  // of the rows
+  Stamp end_;    // of a run
+  bool failed_{};
+  std::uint64_t on_surface_{};
   std::string path_;
   RunSpec spec_;
   std::unique_ptr<RunFile> file_;

@@ -16,6 +16,7 @@
 #include "arm/set_points.hpp"
 #include "base/joined.hpp"
 #include "base/number_text.hpp"
+#include "base/publish_period.hpp"
 #include "base/rms.hpp"
 
 namespace hjt
@@ -32,6 +33,18 @@ std::vector<Parameters> drivesOf(const ArmRunOptions& options, const ArmDescript
   giveOwnSeeds(drives);
   addArmFaults(arm, options.faults, drives);
   return drives;
+}
+
+/// The rate of the rows as the arm's: the next one to that wanted that divides the solver's.
+void takeRate(const ArmRunOptions& options, double solver_rate, ArmDescription& arm)
+{
+  const double wanted = options.rate.value_or(arm.state_rate);
+  arm.state_rate = solver_rate / static_cast<double>(publishSteps(wanted, solver_rate));
+  if (std::abs(arm.state_rate / wanted - 1.0) > 1e-9)
+  {
+    options.watch.notice("rows at " + roundedText(arm.state_rate, 6) + " Hz in place of " + numberText(wanted) +
+                         " Hz, which does not divide solver.rate = " + numberText(solver_rate) + " Hz");
+  }
 }
 
 /// Adds up the errors of a moving arm.
@@ -114,8 +127,7 @@ void move(const ArmRunOptions& options, const ArmMotion& motion, MovingArm& movi
   ArmRecorder recorder(spec.arm->arm, moving);
   std::optional<ArmRows> rows;
   const Stamp end = moving.motionBegin() + toStampLength(motion.end() - motion.begin());
-  const double step = static_cast<double>(twin.stepLength());
-  const auto row_steps = std::max(std::llround(1e9 / spec.arm->arm.state_rate / step), 1LL);
+  const auto row_steps = publishSteps(spec.arm->arm.state_rate, spec.parameters.solver.rate);
   const auto progress = options.watch.progress("moving the arm");
   std::int64_t steps = 0;
   while (!options.watch.stopped() && moving.step(end))
@@ -137,6 +149,10 @@ void move(const ArmRunOptions& options, const ArmMotion& motion, MovingArm& movi
     }
     progress(static_cast<double>(twin.stamp() - SIMULATION_EPOCH) / static_cast<double>(end - SIMULATION_EPOCH));
   }
+  if (rows && rows->isRun() && options.watch.stopped())
+  {
+    throw Stopped{};  // no part of a run under a run's name
+  }
   if (rows)
   {
     rows->close();
@@ -154,12 +170,11 @@ try
       options.set_points.empty() ? readSetPoints(options.motion, arm) : options.set_points;
   if (const double change = straightenTimes(points); change > 0.0)
   {
-    options.watch.notice("the set points' times do not go with their angles and speeds: moved, a step by up to " +
-                         fixedText(1e3 * change, 1) + " ms");
+    options.watch.notice(straightenedText(change));
   }
   ArmMotion motion(std::move(points));
-  arm.state_rate = options.rate.value_or(arm.state_rate);
   const std::vector<Parameters> drives = drivesOf(options, arm);
+  takeRate(options, drives.front().solver.rate, arm);
   MovingArm moving(arm, drives, motion, surfaceSource(options.watch));
   Errors errors(arm);
   moving.reset(SIMULATION_EPOCH);

@@ -8,6 +8,7 @@
 
 #include "arm/arm_motion.hpp"
 #include "arm/arm_recorder.hpp"
+#include "base/range.hpp"
 #include "harmonic_joint_twin/twin/twin.hpp"
 #include "output/report.hpp"
 #include "recordings/watch.hpp"
@@ -15,6 +16,8 @@
 
 namespace hjt
 {
+inline constexpr Range ROW_RATE{ 1e-6, 1e6 };  ///< of an arm's rows [Hz]
+
 /// A motion for the twin of a whole arm. `faults`: JOINT:KIND:SEVERITY[:PLACE[:ONSET]].
 struct ArmRunOptions : ConfigurationOptions
 {
@@ -23,7 +26,7 @@ struct ArmRunOptions : ConfigurationOptions
   std::string arm;                      ///< name in config/arms, or a file
   std::string identified;               ///< directory of overlays, SHORT_NAME.yaml; empty: none
   std::string out;                      ///< every row, as CSV, bag or HDF5 by its ending; empty: none
-  std::optional<double> rate;           ///< of the rows [Hz]; none: that of the arm's states
+  std::optional<double> rate;           ///< of the rows, within ROW_RATE [Hz]; none: that of the arm's states
   bool force{};                         ///< overwrite files
   /// Given every row and its time [s].
   std::function<void(double, const ArmRow&)> take{ [](double, const ArmRow&) {} };

@@ -46,7 +46,8 @@ void declare(Command& command, Options& options)
            "/joint_states as the arm's driver publishes it; .h5: as a run of `joint_twin sweep`")
       .required()
       .type("FILE.csv|FILE.bag|FILE.h5");
-  command.add("--rate", options.rate, "of the rows [Hz]; default: that of the arm's states").positive();
+  command.add("--rate", options.rate, "of the rows [Hz]; default: that of the arm's states")
+      .range(ROW_RATE.min, ROW_RATE.max);
   command.add("--fault", options.faults, "in a joint from its onset [s] on; may be given again")
       .type("JOINT:KIND:SEVERITY[:PLACE[:ONSET]]");
   addCommonOptions(command, options, options.json, options.force);

@@ -2,13 +2,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "arm/arm_configuration.hpp"
 #include "arm/arm_recorder.hpp"
 #include "arm/set_points.hpp"
+#include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "output/run_summary.hpp"
 #include "python/in_use.hpp"
@@ -91,7 +94,6 @@ std::vector<ArmSetPoint> setPointsIn(const py::object& motion, const ArmDescript
 {
   std::vector<ArmSetPoint> points =
       py::isinstance<py::str>(motion) ? readSetPoints(py::cast<std::string>(motion), arm) : setPointsOf(motion);
-  straightenTimes(points);
   if (points.front().joints.size() != arm.joints.size())
   {
     throw InputError("motion: of " + std::to_string(points.front().joints.size()) + " joints; the arm has " +
@@ -102,9 +104,20 @@ std::vector<ArmSetPoint> setPointsIn(const py::object& motion, const ArmDescript
 
 void requireRate(const std::optional<double>& rate)
 {
-  if (rate && !(*rate > 0.0 && std::isfinite(*rate)))
+  if (rate && !(*rate >= ROW_RATE.min && *rate <= ROW_RATE.max))
   {
-    throw InputError("rate = " + std::to_string(*rate) + " [Hz] must be above 0");
+    throw InputError("rate = " + numberText(*rate) + " [Hz] is out of range, allowed: " + rangeText(ROW_RATE));
+  }
+}
+
+void warnPython(const std::vector<std::string>& notices)
+{
+  for (const std::string& notice : notices)
+  {
+    if (PyErr_WarnEx(PyExc_RuntimeWarning, notice.c_str(), 1) != 0)
+    {
+      throw py::error_already_set();
+    }
   }
 }
 
@@ -125,9 +138,10 @@ public:
     given.take("faults", faults);
     arm_ = readArmDescription(findArm(arm, configDirectory(options)));
     given.take("payload", arm_.payload.mass);
-    if (!(arm_.payload.mass >= 0.0 && arm_.payload.mass <= MAX_PAYLOAD))
+    if (!(arm_.payload.mass >= PAYLOAD_MASS.min && arm_.payload.mass <= PAYLOAD_MASS.max))
     {
-      throw InputError("payload = " + std::to_string(arm_.payload.mass) + " [kg] is out of range, allowed: 0 ... 1000");
+      throw InputError("payload = " + numberText(arm_.payload.mass) +
+                       " [kg] is out of range, allowed: " + rangeText(PAYLOAD_MASS));
     }
     addIdentifiedGains(identified, arm_);
     std::vector<Parameters> drives;
@@ -151,21 +165,30 @@ public:
     }
     PythonWatch watch(given["progress"]);
     const Watch followed = watch.watch();
-    withoutLock([&] { moving_.emplace(arm_, drives, ArmMotion({ point }), surfaceSource(followed)); });
-    watch.finish();
+    try
+    {
+      withoutLock([&] { moving_.emplace(arm_, drives, ArmMotion({ point }), surfaceSource(followed)); });
+    }
+    catch (const Stopped&)
+    {
+      // For what Python raised, which `finish` throws.
+    }
+    warnPython(watch.finish());
     recorder_.emplace(arm_, *moving_);
     reset();
   }
 
   void reset()
   {
-    in_use_.refuse();
+    const InUse::Hold hold = in_use_.hold();
+    InterruptCheck check;
     moving_->reset(SIMULATION_EPOCH);
     withoutLock(
         [&]
         {
           while (moving_->step(moving_->motionBegin()))
           {
+            check();
           }
         });
   }
@@ -173,7 +196,10 @@ public:
   double move(const py::object& motion)
   {
     in_use_.refuse();
-    ArmMotion next(setPointsIn(motion, arm_));
+    std::vector<ArmSetPoint> points = setPointsIn(motion, arm_);
+    const double change = straightenTimes(points);
+    warnPython(change > 0.0 ? std::vector<std::string>{ straightenedText(change) } : std::vector<std::string>());
+    ArmMotion next(std::move(points));
     const double length = next.end() - next.begin();
     moving_->follow(next);
     return length;
@@ -191,6 +217,8 @@ public:
     const Stamp end = twin.stamp() + toStampLength(duration);
     const double wanted = rate.value_or(arm_.state_rate);
     const auto row_steps = std::max(std::llround(1e9 / wanted / static_cast<double>(twin.stepLength())), 1LL);
+    const Stamp begin = moving_->motionBegin() / twin.stepLength();
+    const std::uint64_t failures = countersOf(twin).solver_failures;
     InterruptCheck check;
     RowArrays rows;
     withoutLock(
@@ -198,13 +226,17 @@ public:
         {
           while (moving_->step(end))
           {
-            check();
-            if (++steps_ % row_steps == 0)
+            if ((twin.stamp() / twin.stepLength() - begin) % row_steps == 0)
             {
-              rows.add(time(), recorder_->row());
+              rows.add(seconds(), recorder_->row());
             }
+            check();
           }
         });
+    if (const std::uint64_t more = countersOf(twin).solver_failures - failures; more > 0)
+    {
+      warnPython({ "no equilibrium found in " + std::to_string(more) + " steps, whose last good state was held" });
+    }
     return rows.arrays(arm_.joints.size());
   }
 
@@ -240,7 +272,27 @@ public:
     moving_->twin().setWrench({ force, moment });
   }
 
-  double time() const { return toSeconds(moving_->twin().stamp() - moving_->motionBegin()); }
+  double time() const
+  {
+    in_use_.refuse();
+    return seconds();
+  }
+
+  py::dict counters() const
+  {
+    in_use_.refuse();
+    const TwinCounters counters = countersOf(moving_->twin());
+    py::dict named;
+    named["steps"] = counters.steps;
+    named["solver_failures"] = counters.solver_failures;
+    named["step_cuts"] = counters.step_cuts;
+    named["jumps"] = counters.jumps;
+    named["coarse_steps"] = counters.coarse_steps;
+    named["torque_clamped"] = counters.torque_clamped;
+    named["speed_limited"] = counters.speed_limited;
+    named["overloads"] = counters.overloads;
+    return named;
+  }
 
   std::vector<std::string> joints() const
   {
@@ -254,6 +306,7 @@ public:
 
   py::object protectiveStop() const
   {
+    in_use_.refuse();
     const std::optional<ProtectiveStop>& stop = moving_->protectiveStop();
     if (!stop)
     {
@@ -267,14 +320,14 @@ public:
   }
 
 private:
-  static constexpr double MAX_PAYLOAD = 1000.0;  // [kg]
-  static constexpr double MAX_WRENCH = 1000.0;   // as of the node's ~wrench [N], [N.m]
-  static constexpr double LONGEST = 1e6;         // [s]
+  static constexpr double MAX_WRENCH = 1000.0;  // as of the node's ~wrench [N], [N.m]
+  static constexpr double LONGEST = 1e6;        // [s]
+
+  double seconds() const { return toSeconds(moving_->twin().stamp() - moving_->motionBegin()); }
 
   ArmDescription arm_;
   std::optional<MovingArm> moving_;
   std::optional<ArmRecorder> recorder_;
-  std::int64_t steps_{};
   InUse in_use_{ "Arm" };
 };
 }  // namespace
@@ -322,6 +375,7 @@ void bindArm(py::module& module)
       .def("reset", &ArmObject::reset)
       .def_property_readonly("time", &ArmObject::time)
       .def_property_readonly("joints", &ArmObject::joints)
+      .def_property_readonly("counters", &ArmObject::counters)
       .def_property_readonly("protective_stop", &ArmObject::protectiveStop);
 }
 }  // namespace hjt
