@@ -128,6 +128,19 @@ void addArmFaults(const ArmDescription& arm, const std::vector<std::string>& fau
   }
 }
 
+std::vector<Parameters> armDrives(const ArmDescription& arm, const ConfigurationOptions& options,
+                                  const std::string& identified, const std::vector<std::string>& faults)
+{
+  std::vector<Parameters> drives;
+  for (const ParameterMap& map : armDriveMaps(arm, options, identified))
+  {
+    drives.push_back(parseParameters(map));
+  }
+  giveOwnSeeds(drives);
+  addArmFaults(arm, faults, drives);
+  return drives;
+}
+
 double takeInertiaInLoad(Parameters& parameters)
 {
   const double ratio = nominalRatio(parameters.gear);

@@ -41,6 +41,10 @@ void giveOwnSeeds(std::vector<Parameters>& drives);
 /// @throws ParameterError naming the fault.
 void addArmFaults(const ArmDescription& arm, const std::vector<std::string>& faults, std::vector<Parameters>& drives);
 
+/// The drives of all joints, with seeds of their own and these faults. @throws ParameterError.
+std::vector<Parameters> armDrives(const ArmDescription& arm, const ConfigurationOptions& options,
+                                  const std::string& identified, const std::vector<std::string>& faults);
+
 /// Takes out of a checked drive, whose load is that of the links, what a controller's torque holds of the motor beside
 /// it: at the joint [kg.m^2].
 double takeInertiaInLoad(Parameters& parameters);

@@ -23,18 +23,6 @@ namespace hjt
 {
 namespace
 {
-std::vector<Parameters> drivesOf(const ArmRunOptions& options, const ArmDescription& arm)
-{
-  std::vector<Parameters> drives;
-  for (const ParameterMap& map : armDriveMaps(arm, options, options.identified))
-  {
-    drives.push_back(parseParameters(map));
-  }
-  giveOwnSeeds(drives);
-  addArmFaults(arm, options.faults, drives);
-  return drives;
-}
-
 /// The rate of the rows as the arm's: the next one to that wanted that divides the solver's.
 void takeRate(const ArmRunOptions& options, double solver_rate, ArmDescription& arm)
 {
@@ -173,7 +161,7 @@ try
     options.watch.notice(straightenedText(change));
   }
   ArmMotion motion(std::move(points));
-  const std::vector<Parameters> drives = drivesOf(options, arm);
+  const std::vector<Parameters> drives = armDrives(arm, options, options.identified, options.faults);
   takeRate(options, drives.front().solver.rate, arm);
   MovingArm moving(arm, drives, motion, surfaceSource(options.watch));
   Errors errors(arm);

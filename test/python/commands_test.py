@@ -183,8 +183,13 @@ class Commands(Recordings):
         arm.set_wrench()
         arm.reset()
         self.assertIsNone(arm.protective_stop)
+        arm.move(motion)
+        again = arm.run(time[-1])["actual_current"]  # without the injected fault
+        np.testing.assert_allclose(again, expected["actual_current"][1:], atol=1e-6)
+        self.assertEqual(arm.counters["solver_failures"], 0)
         for call, said in ((lambda: arm.inject_fault("knee:pitting:1.0"), "JOINT one of base"),
-                           (lambda: arm.run(-1.0), "duration"), (lambda: arm.set_wrench((0.0, 0.0, 2000.0)), "1000"),
+                           (lambda: arm.run(-1.0), "duration"), (lambda: arm.run(0.1, rate=1e-300), "rate = 1.0?e-300"),
+                           (lambda: arm.set_wrench((0.0, 0.0, 2000.0)), "1000"),
                            (lambda: hjt.Arm("ur5", [0.0]), "6 finite angles"),
                            (lambda: arm.move({"time": [0.0], "position": [[0.0]]}), "6"),
                            (lambda: hjt.Arm("ur5", payload=-1.0), "payload")):
@@ -232,7 +237,9 @@ class Commands(Recordings):
         with unittest.mock.patch.dict(os.environ, {"XDG_CACHE_HOME": os.path.abspath("cache")}):
             with self.assertRaises(ZeroDivisionError):
                 hjt.arm({"time": [0.0, 1.0], "position": np.zeros((2, 6))}, "ur5", progress=fail)
-        self.assertEqual(steps, ["building the response surface"])
+            with self.assertRaises(ZeroDivisionError):
+                hjt.Arm("ur5", progress=fail)
+        self.assertEqual(steps, ["building the response surface"] * 2)
 
     def test_numbers_of_the_command_line_do_not_depend_on_the_locale(self):
         from harmonic_joint_twin import _tool

@@ -104,6 +104,38 @@ class SweepArm(SweepTest):
         numpy.testing.assert_array_equal([state.position[elbow] for state in states][-len(angles):], angles[:, 2])
         numpy.testing.assert_array_equal([state.effort[elbow] for state in states][-len(angles):], current[:, 2])
 
+    def test_rows_count_from_the_motion_at_a_rate_that_divides_the_solvers(self):
+        more = ("--arm", "ur5", "--set", "solver.scene=full_ring")
+        self.succeed("arm", "nod.csv", *more, "--rate", 125, "--out", "run.csv")
+        self.succeed("arm", "nod.csv", *more, "--rate", 125, "--out", "run.bag")
+        table = numpy.genfromtxt(self.path("run.csv"), delimiter=",", names=True)
+        with rosbag.Bag(self.path("run.bag")) as bag:
+            states = [message for _, message, _ in bag.read_messages(["/joint_states"])]
+        elbow = states[0].name.index("elbow_joint")
+        numpy.testing.assert_array_equal([state.position[elbow] for state in states], table["actual_q_2"])
+        done = self.succeed("arm", "nod.csv", *more, "--rate", 300, "--out", "run.h5")
+        self.assertIn("Hz in place of 300.0 Hz, which does not divide solver.rate", done.stderr)
+        with h5py.File(self.path("run.h5"), "r") as run:
+            self.assertAlmostEqual(run["states"].attrs["sample_rate"], 300.0, delta=5.0)
+            self.assertGreater(len(run["states/actual_q"]), 110)
+            steps = numpy.diff(run["states/time"][:])
+            numpy.testing.assert_allclose(steps, 1.0 / run["states"].attrs["sample_rate"], rtol=1e-6)
+
+    def test_an_onset_counts_from_the_motion(self):
+        more = ("--arm", "ur5", "--set", "solver.scene=full_ring", "--rate", 500)
+        self.succeed("arm", "nod.csv", *more, "--out", "sound.h5")
+        self.succeed("arm", "nod.csv", *more, "--out", "late.h5", "--fault", "elbow:lubricant_degradation:1.0:-1:0.2")
+        with h5py.File(self.path("sound.h5"), "r") as sound, h5py.File(self.path("late.h5"), "r") as late:
+            time, severity = late["states/time"][:], late["states/severity"][:, 2]
+            numpy.testing.assert_array_equal(severity, numpy.where(time > 0.1999, 1.0, 0.0))
+            same = [run["states/actual_current"][:, 2][time < 0.1999] for run in (sound, late)]
+            numpy.testing.assert_array_equal(*same)
+            change = late["states/actual_current"][:] - sound["states/actual_current"][:]
+            self.assertGreater(numpy.abs(change).max(), 0.02)  # [A]
+            record = json.loads(late["record"][()])
+        self.assertEqual((record["status"], record["protective_stop"]), ("ok", ""))
+        self.assertGreater(record["steps"], 0)
+
     def test_what_is_wrong_is_refused_with_its_place(self):
         for change, said in {
                 ("joint: elbow", "joint: knee"): "is no joint of the arm; there are base, shoulder, elbow",

@@ -144,13 +144,7 @@ public:
                        " [kg] is out of range, allowed: " + rangeText(PAYLOAD_MASS));
     }
     addIdentifiedGains(identified, arm_);
-    std::vector<Parameters> drives;
-    for (const ParameterMap& map : armDriveMaps(arm_, options, identified))
-    {
-      drives.push_back(parseParameters(map));
-    }
-    giveOwnSeeds(drives);
-    addArmFaults(arm_, faults, drives);
+    const std::vector<Parameters> drives = armDrives(arm_, options, identified, faults);
     std::vector<double> start(arm_.joints.size());
     given.take("start", start);
     if (start.size() != arm_.joints.size() ||
@@ -195,7 +189,7 @@ public:
 
   double move(const py::object& motion)
   {
-    in_use_.refuse();
+    const InUse::Hold hold = in_use_.hold();  // reading and warning may let other threads in
     std::vector<ArmSetPoint> points = setPointsIn(motion, arm_);
     const double change = straightenTimes(points);
     warnPython(change > 0.0 ? std::vector<std::string>{ straightenedText(change) } : std::vector<std::string>());
