@@ -61,7 +61,8 @@ class Arm:
         return self._arm.move(os.fspath(motion) if isinstance(motion, os.PathLike) else motion)
 
     def run(self, duration: float, *, rate: Optional[float] = None) -> Dict[str, "NDArray[np.float64]"]:
-        """Goes on for `duration` [s]. rate: of the rows [Hz]; None: that of the arm's states.
+        """Goes on for `duration` [s]. rate: of the rows [Hz], the next one that divides the solver's; None: that
+        of the arm's states.
 
         Returns the rows as arm() does; 'timestamp' is `time`. A KeyboardInterrupt leaves the arm where it is.
         """

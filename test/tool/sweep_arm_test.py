@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """`joint_twin sweep` of whole arms, and the files of `joint_twin arm` that hold the same."""
 import json
+import os
+import signal
+import subprocess
+import time
 
 import h5py
 import numpy
@@ -31,10 +35,10 @@ START = numpy.array([0.0, -0.6, 1.0, -1.3, -1.5, 0.3])
 class SweepArm(SweepTest):
     def setUp(self):
         super().setUp()
-        time = 0.008 * numpy.arange(51)
-        angles = START + 0.05 * (1.0 - numpy.cos(2.0 * numpy.pi * time / 0.4))[:, None]
+        times = 0.008 * numpy.arange(51)
+        angles = START + 0.05 * (1.0 - numpy.cos(2.0 * numpy.pi * times / 0.4))[:, None]
         head = "time," + ",".join(f"target_q_{i}" for i in range(6))
-        rows = [",".join(f"{value:.17g}" for value in (at, *row)) for at, row in zip(time, angles)]
+        rows = [",".join(f"{value:.17g}" for value in (at, *row)) for at, row in zip(times, angles)]
         self.write("nod.csv", "\n".join([head, *rows, ""]))
         self.write("plan.yaml", PLAN)
 
@@ -65,8 +69,8 @@ class SweepArm(SweepTest):
                 self.assertEqual(json.loads(file["record"][()])["class"], row["class"])
                 if row["class"] == "cracked":
                     self.assertEqual([fault["joint"].decode() for fault in file["faults"]], ["wrist_2"])
-                    severity, time = states["severity"][:], states["time"][:]
-                    expected = 0.5 * numpy.clip((time - 0.1) / 0.1, 0.0, 1.0)
+                    severity, at = states["severity"][:], states["time"][:]
+                    expected = 0.5 * numpy.clip((at - 0.1) / 0.1, 0.0, 1.0)
                     numpy.testing.assert_allclose(severity[:, 4], expected, atol=1e-6)
                     self.assertEqual(numpy.delete(severity, 4, axis=1).max(), 0.0)
         more = drags[2] - drags[0]
@@ -126,15 +130,32 @@ class SweepArm(SweepTest):
         self.succeed("arm", "nod.csv", *more, "--out", "sound.h5")
         self.succeed("arm", "nod.csv", *more, "--out", "late.h5", "--fault", "elbow:lubricant_degradation:1.0:-1:0.2")
         with h5py.File(self.path("sound.h5"), "r") as sound, h5py.File(self.path("late.h5"), "r") as late:
-            time, severity = late["states/time"][:], late["states/severity"][:, 2]
-            numpy.testing.assert_array_equal(severity, numpy.where(time > 0.1999, 1.0, 0.0))
-            same = [run["states/actual_current"][:, 2][time < 0.1999] for run in (sound, late)]
+            at, severity = late["states/time"][:], late["states/severity"][:, 2]
+            numpy.testing.assert_array_equal(severity, numpy.where(at > 0.1999, 1.0, 0.0))
+            same = [run["states/actual_current"][:, 2][at < 0.1999] for run in (sound, late)]
             numpy.testing.assert_array_equal(*same)
             change = late["states/actual_current"][:] - sound["states/actual_current"][:]
             self.assertGreater(numpy.abs(change).max(), 0.02)  # [A]
             record = json.loads(late["record"][()])
         self.assertEqual((record["status"], record["protective_stop"]), ("ok", ""))
         self.assertGreater(record["steps"], 0)
+
+    def test_a_run_that_is_cut_leaves_no_file(self):
+        head = "time," + ",".join(f"target_q_{i}" for i in range(6))
+        angles = ",".join(map(str, START))
+        self.write("still.csv", f"{head}\n0.0,{angles}\n1000.0,{angles}\n")
+        process = subprocess.Popen([self.executable, "arm", "still.csv", "--arm", "ur5", "--set",
+                                    "solver.scene=full_ring", "--out", "run.h5"], cwd=self.directory,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        self.addCleanup(process.kill)
+        deadline = time.monotonic() + 60.0 * tool.SLOWER
+        while not os.path.exists(self.path("run.h5.part")):
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.01)
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=60.0 * tool.SLOWER)
+        self.assertEqual(process.returncode, 128 + signal.SIGINT)
+        self.assertEqual([name for name in os.listdir(self.directory) if name.startswith("run.h5")], [])
 
     def test_what_is_wrong_is_refused_with_its_place(self):
         for change, said in {
