@@ -68,10 +68,7 @@ public:
   const Twin& drive() const override { return moving_.twin().drive(0); }
   TwinCounters counters() const override { return countersOf(moving_.twin()); }
   bool onSurface() const override { return allOnSurface(moving_.twin()); }
-  void tell(OrderedJson& record) const override
-  {
-    addProtectiveStop(spec_.arm->arm, moving_, record);
-  }
+  void tell(OrderedJson& record) const override { addProtectiveStop(spec_.arm->arm, moving_, record); }
 
 private:
   const RunSpec& spec_;
