@@ -3,6 +3,7 @@
 #include <sstream>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include <ros/ros.h>
@@ -148,6 +149,18 @@ std::vector<hjt::Parameters> drivesOf(const hjt::ArmDescription& arm, const hjt:
   return parameters;
 }
 
+/// Whether the node is to be the arm. @throws ParameterError if it is not said.
+bool inPlaceOfArm(const hjt::ParameterMap& overrides)
+{
+  const auto mode = overrides.find("input.mode");
+  if (mode == overrides.end())
+  {
+    throw hjt::ParameterError("input.mode is to be set for an arm: telemetry, beside it, or commands, in place of it");
+  }
+  const auto* text = std::get_if<std::string>(&mode->second.value);
+  return text != nullptr && *text == "commands";
+}
+
 /// All joints of the arm `name`: its files, then the parameters of this node over those of every joint. What comes of
 /// it stands on the parameter server below the name of each.
 void runArm(ros::NodeHandle& node, const std::string& name, const hjt::FoundParameters& found)
@@ -165,17 +178,14 @@ void runArm(ros::NodeHandle& node, const std::string& name, const hjt::FoundPara
   const std::string reference = node.param<std::string>(hjt::REFERENCE, "");
   ROS_INFO_STREAM("Arm " << arm.origin << (identified.empty() ? "" : ", identified: " + identified)
                          << (reference.empty() ? "" : ", reference: " + reference));
+  const auto parametersOf = inPlaceOfArm(overrides) ? hjt::armDriveParameters : hjt::armJointParameters;
   std::vector<hjt::ParameterMap> maps;
   for (const hjt::ArmJoint& joint : arm.joints)
   {
-    maps.push_back(hjt::armJointParameters(joint, directory, identified));
+    maps.push_back(parametersOf(joint, directory, identified));
     maps.back()["joint.name"].value = affixes(joint.name);
   }
   warnOfParameters(found, node.getNamespace(), maps);
-  if (overrides.find("input.mode") == overrides.end())
-  {
-    throw hjt::ParameterError("input.mode is to be set for an arm: telemetry, beside it, or commands, in place of it");
-  }
   std::vector<hjt::Parameters> parameters = drivesOf(arm, overrides, std::move(maps));
   if (parameters.front().input.mode == hjt::InputMode::COMMANDS)
   {

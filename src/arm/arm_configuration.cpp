@@ -50,13 +50,29 @@ ParameterMap armJointParameters(const ArmJoint& joint, const fs::path& directory
   return map;
 }
 
+ParameterMap armDriveParameters(const ArmJoint& joint, const fs::path& directory, const std::string& identified)
+{
+  constexpr const char* ROTOR = "motor.rotor_inertia";
+  ParameterMap map = armJointParameters(joint, directory, identified);
+  if (!identified.empty())
+  {
+    const ParameterMap configured = armJointParameters(joint, directory, {});
+    const auto inertia_of = [](const ParameterMap& drive) { return parseParameters(drive).motor.rotor_inertia; };
+    if (inertia_of(map) < inertia_of(configured))
+    {
+      map[ROTOR] = configured.at(ROTOR);
+    }
+  }
+  return map;
+}
+
 std::vector<ParameterMap> armDriveMaps(const ArmDescription& arm, const ConfigurationOptions& options,
                                        const std::string& identified)
 {
   std::vector<ParameterMap> maps;
   for (const ArmJoint& joint : arm.joints)
   {
-    maps.push_back(armJointParameters(joint, configDirectory(options), identified));
+    maps.push_back(armDriveParameters(joint, configDirectory(options), identified));
     readAssignment("solver.scene=auto", maps.back());
     addOverlays(options, maps.back());
   }

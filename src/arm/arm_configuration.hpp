@@ -20,7 +20,12 @@ std::string findArm(const std::string& name, const std::filesystem::path& direct
 ParameterMap armJointParameters(const ArmJoint& joint, const std::filesystem::path& directory,
                                 const std::string& identified);
 
-/// Those of all joints, solver.scene = auto and what the options lay over it.
+/// The same of a drive that turns in a closed loop. A recording's currents can hold less of a rotor's inertia than the
+/// rotor has, down to nothing: an identified one that is less than the configured is not taken. @throws ParameterError.
+ParameterMap armDriveParameters(const ArmJoint& joint, const std::filesystem::path& directory,
+                                const std::string& identified);
+
+/// Those of all drives, solver.scene = auto and what the options lay over it.
 std::vector<ParameterMap> armDriveMaps(const ArmDescription& arm, const ConfigurationOptions& options,
                                        const std::string& identified);
 

@@ -125,7 +125,7 @@ std::vector<IdentifiedController> identifyController(const RecordingOptions& opt
   std::vector<IdentifiedController> joints;
   for (std::size_t i = 0; i < arm.joints.size(); ++i)
   {
-    ParameterMap map = armJointParameters(arm.joints[i], configDirectory(options), options.identified);
+    ParameterMap map = armDriveParameters(arm.joints[i], configDirectory(options), options.identified);
     addOverlays(options, map);
     const Parameters drive = parseParameters(map);
     const double gain = drive.telemetry.torque_per_current;
