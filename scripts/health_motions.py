@@ -21,6 +21,7 @@ KINDS = ("interface_wear", "rear_section_crack", "lubricant_degradation", "flang
 STATES = [option for pair in (("--config", "joints/shoulder.yaml"), ("--config", "real_sensors.yaml"),
                               ("--set", f"indicators.window_time={WINDOW}"), ("--set", "indicators.window_turns=1e5"))
           for option in pair]
+CLASSES = [0.0, 0.5, 0.7, 0.85, 0.95, 1.0]  # of the confidence
 SOURCES = {"windows of the drive": ["--windows"], "joint states alone": STATES}
 
 
@@ -198,5 +199,34 @@ def table(found):
     return lines
 
 
+def calibration_error(right, confidence):
+    """Mean distance of the share that is right from the stated confidence, by class of confidence."""
+    of = numpy.digitize(confidence, CLASSES, right=True)
+    return sum(abs(numpy.sum(right[of == one] - confidence[of == one])) for one in set(of)) / len(right)
+
+
+def causes_of(title, own):
+    """A line on the causes that alarms of both sources name, and on their severities."""
+    alarms = [one for one in own if one.kind != "healthy" and one.window["assessment"]["level"] != "OK"]
+    verdicts = [one.window["assessment"] for one in alarms]
+    right = numpy.array([verdict["cause"] == one.kind for one, verdict in zip(alarms, verdicts)])
+    in_set = sum(one.kind in (verdict["cause"], *verdict["alternatives"]) for one, verdict in zip(alarms, verdicts))
+    confidence = numpy.array([verdict["confidence"] for verdict in verdicts])
+    errors = [(verdict["severity"] - one.severity, verdict["severity_deviation"])
+              for one, verdict, is_right in zip(alarms, verdicts, right) if is_right]
+    off = math.sqrt(numpy.mean([error ** 2 for error, _ in errors])) if errors else math.nan
+    within = 100.0 * numpy.mean([abs(error) <= stated for error, stated in errors]) if errors else math.nan
+    return (f"- {title}: {sum(right)} of {len(alarms)} causes are right at a mean confidence of "
+            f"{confidence.mean():.2f}, calibration error {calibration_error(right, confidence):.2f}; the true cause is "
+            f"in the set in {in_set}. Severities with the right cause are off by {off:.2f} rms, {within:.0f} % by no "
+            "more than stated.")
+
+
 def judged_table(bench):
-    return table({name: all_judged(bench, JUDGED_GEARS, source) for name, source in SOURCES.items()})
+    found = {name: all_judged(bench, JUDGED_GEARS, source) for name, source in SOURCES.items()}
+    everything = [one for own in found.values() for one in own]
+    drawn_ones = [one for one in everything if one.gear != OTHER_MODEL]
+    return [*table(found), "",
+            causes_of("Drawn gears" if len({one.gear.name for one in drawn_ones}) > 1 else
+                      drawn_ones[0].gear.name.capitalize(), drawn_ones),
+            causes_of(OTHER_MODEL.name.capitalize(), [one for one in everything if one.gear == OTHER_MODEL])]

@@ -31,7 +31,7 @@ LEAST_WINDOWS = 3     # of them before the verdict may change
 TAIL = 0.6            # score over the threshold from which on the tail is taken
 CARRIED_BY = {health_runs.MODEL.name: "eccentricities unknown",
               health_runs.CALIBRATED_MODEL.name: "eccentricities known"}
-BINS = [0.0, 0.5, 0.7, 0.85, 0.95, 1.0]  # of the confidence
+BINS = health_motions.CLASSES
 
 
 def collect(bench, trials, model=None):
@@ -336,8 +336,9 @@ def main():
     parser.add_argument("--quick", action="store_true", help="one gear, one severity: tables on the "
                         "terminal, the page stays; with --fit: errors alone, by one gear in the check-up and "
                         "two in other motions")
-    parser.add_argument("--motions", action="store_true", help="two drawn gears in motions that no signature was made "
-                        "in, into the page's table of them, and nothing else; some ten minutes on two cores")
+    parser.add_argument("--motions", action="store_true", help="two drawn gears and another model in motions "
+                        "that no signature was made in, into the page's table of them, and nothing else; some "
+                        "ten minutes on two cores")
     parser.add_argument("--series", type=int, metavar="GEARS", help="sound runs of so many drawn gears, into the "
                         "page's table of them, and nothing else; four minutes each on two cores")
     parser.add_argument("--figures", action="store_true", help="draw the figures of the single faults again too")

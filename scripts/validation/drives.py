@@ -32,6 +32,7 @@ UR10E = {"elbow": (2, 9.84, ("joints/elbow.yaml",),
          "shoulder": (1, 11.98, ("size_32.yaml", "joints/size_4.yaml"),
                       ("ur10e_20_02_12-40sec_12harm.csv", "ur10e_20_02_19_14harm50sec.csv"), (6.2 - 1.0, 6.6 + 1.0))}
 PAYLOAD = 2.805  # kg at the flange of a UR10e, which its controller was not told
+GAINS_KNOWN = 0.1  # two standard deviations of a joint's gain, as the fit of a payload takes it
 MOVING = 0.05  # rad/s at the joint
 LOW_LOAD = 30.0  # N.m: hardly anything of the shoulder's friction is by load below
 GRID = (0.05, 0.1, 0.2, 0.35, 0.5, 0.8, 1.2, 1.8)  # rad/s at the joint, and loads between the least and the largest
@@ -180,8 +181,9 @@ def payload(page):
         return
     found = page.tool("compare", path, "--arm", "ur10e")
     page.check("drives.ur10e.payload", "mass at the flange, by `joint_twin compare`", "recording: weighed",
-               Within(PAYLOAD, absolute=round(found["payload_half_width"], 2)), found["payload_mass"], "kg",
-               "the interval that the tool gives itself, 95 %")
+               Within(PAYLOAD, absolute=min(GAINS_KNOWN * PAYLOAD, found["payload_half_width"])), found["payload_mass"],
+               "kg", f"gains are known to {50.0 * GAINS_KNOWN:g} %, one standard deviation, and scale what the payload "
+               f"takes; the tool's own 95 % interval, ± {found['payload_half_width']:.2f} kg, has to hold it too")
 
 
 def own_share(page):

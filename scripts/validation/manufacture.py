@@ -232,8 +232,8 @@ def as_built(page):
     turn, unloaded, perfect = (Turn(page, *options, gear=()), Turn(page, *options, load=0.0, gear=()),
                                Turn(page, load=0.0, gear=()))
     page.check("manufacture.perfect", "perfect gear, no load: error from peak to peak over a joint turn",
-               "catalogue: transmission accuracy 60″", AtMost(0.6), perfect.range, "″",
-               "a hundredth of a real gear's: the tooth pass alone")
+               "drives with both encoders, order 2: 2.8″ and more", AtMost(0.28), perfect.range, "″",
+               "the tooth pass alone: a tenth of the least line that is put down to errors")
     page.check("manufacture.as_built_range", "as built, no load: error from peak to peak over a joint turn",
                "catalogue: transmission accuracy", AtMost(60.0), unloaded.range, "″", "1 arcmin")
     page.check("manufacture.as_built_order_2", "as built: line of the circular spline, 200",

@@ -108,14 +108,14 @@ def cup(page, stress):
                "shell of revolution", Within(1.0, relative=0.15), transition(0.0) / free, "",
                f"the shell has {MPA * free:.0f} MPa; the ring's shape is no pure second harmonic")
     page.check("stress.transition_held", "transition, no load, the rim held straight: amplitude over that of a shell",
-               "shell of revolution", AtLeast(1.0), transition(1.0) / held, "",
+               "shell of revolution", Between(1.0, 1.6), transition(1.0) / held, "",
                f"an upper bound: a rim that does not bend at all; the shell has {MPA * held:.0f} MPa with a race of "
-               "9 mm")
+               "9 mm. A tenth of it counts: with 1.6 the transition as configured is within half of the shell's")
     flange = amplitude(loaded(page, *set_all("stress.warping_restraint=1.0"), loads=(0.0,))[0.0]["flange"])
     page.check("stress.flange_built_in", "flange, no load, built in: amplitude over that of a shell",
-               "shell of revolution", AtLeast(1.0), flange / built_in, "",
+               "shell of revolution", Between(1.0, 1.7), flange / built_in, "",
                "an upper bound: the strain of warping even along the cup; the shell has "
-               f"{MPA * built_in:.0f} MPa")
+               f"{MPA * built_in:.0f} MPa. What of it counts is known to a factor of 4 only, more than 1.7")
     given = page.tool("parameters")["stress"]
     race = (1.6e-3, *shell.race_section[1:])  # thesis, Table 3.1
     cones = cup_shell.coning_restraint(cup_shell.Cup(race_section=race))

@@ -15,7 +15,8 @@ CLASSES = [
      r"catalogue\.(hysteresis|lost_motion|back_driving|efficiency|load_dependent_loss|oil)|teeth\.(involute_in_mesh|"
      r"trapezoid_in_mesh|double_arc_|shipped_in_mesh|pressure_angle|interference_angle|jump_)|stress\.(pressure_angle|"
      r"endurance|cycles)|published\.|manufacture\.(as_built|series)|drives\.(torsion|"
-     r"ur10e\.(load_loss|payload|friction\.(elbow|base)))|heat\.ur|size14\.(hysteresis|lost_motion)|"
+     r"ur10e\.(load_loss\.(elbow|shoulder\.2)|payload|friction\.(elbow|base)))|heat\.ur|"
+     r"size14\.(hysteresis|lost_motion)|"
      r"family\.(efficiency|back_driving|hysteresis)"),
     ("fitted", "a parameter was fitted to it",
      r"catalogue\.(torsion|no_load|starting)|drives\.|heat\.time_constant|"

@@ -284,7 +284,7 @@ void PayloadFit::add(const std::vector<MotionSample>& samples, const std::vector
   {
     const MotionSample& sample = samples[i];
     Data::Open& block = data.open[i];
-    const bool is_moving = std::abs(sample.velocity) > MOVING;
+    const bool is_moving = std::abs(sample.velocity) > MOVING && std::isfinite(sample.current);
     if (sample.after_gap || !is_moving || sample.velocity * block.velocity < 0.0 || sample.time > block.start + BLOCK)
     {
       data.close(i, sample.time);

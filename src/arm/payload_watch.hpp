@@ -22,21 +22,31 @@ public:
 
   /// Rows of a sample count unless something touches the arm.
   void add(const ArmSample& sample);
+  /// Rows that do not count: those that follow come after a gap.
+  void leaveOut() noexcept { is_new_ = true; }
+  /// Whether the currents of a joint, by its number, are measured: else they do not count.
+  void setMeasured(std::size_t joint, bool is_measured) { counts_[joint] = is_measured; }
   /// Starts again.
   void reset();
 
-  /// One that is not configured, and clearly explains the currents; none: it is not time to look, or there is none.
+  /// One other than what counts now, that clearly explains the currents; none: it is not time to look, or there is
+  /// none. Where it does not differ from the arm's own, which is named as the configured one, that is carried again.
   std::optional<IdentifiedPayload> look();
 
   /// That counts from now on; starts again.
   void configure(const Payload& payload);
+  /// The arm with the payload that counts.
   const ArmDescription& arm() const { return arm_; }
+  /// The arm's own payload.
+  const Payload& given() const { return given_; }
 
 private:
   static constexpr double FIRST_LOOK = 30.0;  // of motion [s]
   static constexpr double PERIOD = 0.02;      // of the rows that count, at least [s]
 
   ArmDescription arm_;
+  Payload given_;
+  std::vector<bool> counts_;
   std::vector<double> gains_;  // [N.m/A]
   std::vector<MotionDriven> twins_;
   std::optional<PayloadFit> fit_;
@@ -44,5 +54,6 @@ private:
   std::vector<double> predicted_;  // [A]
   double last_time_{ -HUGE_VAL };  // that counted [s]
   double next_look_{ FIRST_LOOK };
+  bool is_new_{ true };  // the next row comes after a gap
 };
 }  // namespace hjt

@@ -217,6 +217,7 @@ std::optional<RecordingFinding> RecordingFit::ofCurrents() const
   {
     left.push_back(joint.lag.left());
   }
+  constexpr double LAST_BUT_ONE = CurrentLag::LONGEST - 0.5 * CurrentLag::SPACING;  // nothing longer is tried
   const double lag = commonLag(left);
   if (lag == 0.0)
   {
@@ -224,7 +225,7 @@ std::optional<RecordingFinding> RecordingFit::ofCurrents() const
   }
   return RecordingFinding{ "current_lag",
                            "the currents come " + roundedText(std::abs(lag), 2) + " s " +
-                               (lag > 0.0 ? "later" : "earlier") +
+                               (std::abs(lag) > LAST_BUT_ONE ? "or more " : "") + (lag > 0.0 ? "later" : "earlier") +
                                " than the motion that draws them, in most joints: friction and load are not what they "
                                "look like",
                            Reason::STAMPS };

@@ -81,7 +81,7 @@ TelemetryStatus JointTracker::read(const sensor_msgs::JointState& message, Motio
       has_effort_ = true;
       break;
     case TelemetryStatus::WITHOUT_EFFORT:
-      if (!has_effort_ && ++without_effort_ > SILENT)
+      if (takesArmLoad() && !has_effort_ && ++without_effort_ > SILENT)
       {
         row.current = 0.0;
         return TelemetryStatus::FOUND;
@@ -377,6 +377,11 @@ DiagnosticVerdict JointTracker::judgeHealth() const
   if (const std::optional<Misfit> misfit = verdict_.whyNotJudged())
   {
     return { DiagnosticStatus::OK, notJudged(*misfit) };
+  }
+  const Verdict& confirmed = verdict_.confirmed();
+  if (!confirmed.fits && confirmed.reason == Reason::EFFORT_UNIT)  // the signals are of the same efforts
+  {
+    return { DiagnosticStatus::OK, notJudged({ confirmed.reason, confirmed.misfit }) };
   }
   return { static_cast<std::uint8_t>(assessment.level), verdictText(assessment) };
 }

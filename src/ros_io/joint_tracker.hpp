@@ -77,8 +77,8 @@ public:
   /// Its load comes with `pushLoad` from the motion of the whole arm.
   bool takesArmLoad() const { return parameters_.telemetry.load == LoadSource::ARM; }
 
-  /// The row of this joint in a message; anything else is counted and logged. A joint that has sent no effort in its
-  /// first messages is read with current 0: it is not judged, and the others are not held up.
+  /// The row of this joint in a message; anything else is counted and logged. A joint of an arm that has sent no effort
+  /// in its first messages is read with current 0: it is not judged, and the others are not held up.
   TelemetryStatus read(const sensor_msgs::JointState& message, MotionRow& row);
 
   /// A new zero of the stream's time; `reset`: what was before is of another clock.
@@ -98,6 +98,8 @@ public:
   void setArmFriction(double ratio) { arm_friction_ = ratio; }
 
   VerdictWatch& verdict() { return verdict_; }
+  /// Its current is measured: one has come, and it changes.
+  bool hasEffort() const { return has_effort_ && verdict_.misfit().reason != Reason::EFFORT_CONSTANT; }
   bool isTouched() const { return tracker_.evidence().isTouched(); }
   /// Of the whole arm, or its efforts are modelled.
   bool isLedByHand() const

@@ -221,28 +221,52 @@ void TrackerNode::take(const ArmSample& sample)
     joints_[i]->compare(sample.own[i]);
   }
   lookAtFriction(sample.joints.front().time);
-  const bool is_touched =
-      std::any_of(joints_.begin(), joints_.end(), [](const auto& joint) { return joint->isTouched(); });
-  if (payload_ && !is_touched)
+  if (payload_)
   {
-    payload_->add(sample);
+    addToPayload(sample);
   }
 }
 
-/// One that the currents show and is not configured counts from now on, as `joint_twin compare` judges a recording.
+void TrackerNode::addToPayload(const ArmSample& sample)
+{
+  if (std::any_of(joints_.begin(), joints_.end(), [](const auto& joint) { return joint->isTouched(); }))
+  {
+    payload_->leaveOut();
+    return;
+  }
+  for (std::size_t i = 0; i < joints_.size(); ++i)
+  {
+    payload_->setMeasured(i, joints_[i]->hasEffort());
+  }
+  payload_->add(sample);
+}
+
+/// One that the currents show and is not configured counts from now on, as `joint_twin compare` judges a recording;
+/// once it is put down, the configured one again.
 void TrackerNode::lookAtPayload()
 {
-  const std::optional<IdentifiedPayload> found = payload_ ? payload_->look() : std::nullopt;
   const bool fits =
       std::all_of(joints_.begin(), joints_.end(),
-                  [](const auto& joint) { return !joint->verdict().misfit().exists() && !joint->isLedByHand(); });
-  if (!found || !fits)
+                  [](const auto& joint)
+                  { return !joint->hasEffort() || (!joint->verdict().misfit().exists() && !joint->isLedByHand()); });
+  const std::optional<IdentifiedPayload> found = payload_ && fits ? payload_->look() : std::nullopt;
+  if (!found)
   {
     return;
   }
-  stream_.payload = found->text();
-  ROS_WARN_STREAM(sentence(stream_.payload) << " The joints are judged with it from now on");
-  payload_->configure(found->payload());
+  if (found->isCarried())
+  {
+    stream_.payload = found->text();
+    ROS_WARN_STREAM(sentence(stream_.payload) << " The joints are judged with it from now on");
+    payload_->configure(found->payload());
+  }
+  else
+  {
+    stream_.payload.clear();
+    ROS_INFO_STREAM("The payload that is not configured is put down: the joints are judged with the configured one "
+                    "from now on");
+    payload_->configure(payload_->given());
+  }
   arm_load_.emplace(payload_->arm());
   resetFit();
   for (const auto& joint : joints_)

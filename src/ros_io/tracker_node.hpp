@@ -47,6 +47,7 @@ private:
   bool isWithoutEffort() const;
   void push(Stamp stamp);
   void take(const ArmSample& sample);
+  void addToPayload(const ArmSample& sample);
   void resetFit();
   void lookAtFriction(double time);
   void lookAtPayload();

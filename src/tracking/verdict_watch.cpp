@@ -28,8 +28,13 @@ void VerdictWatch::judge(double arm_friction, double arm_deviation, const Misfit
   last_row_ = reach.end;
   const bool is_new = confirmed_at_ > reach.end;  // the telemetry started again
   Verdict verdict = hjt::judge(tracker_.evidence(), parameters_, context(arm_friction, arm_deviation, of_arm));
-  const bool is_open = !verdict.isJudged() && confirmed_.isJudged() && !whyNotJudged() && !is_new;
-  const bool is_no_worse = severityOf(verdict.level) <= severityOf(confirmed_.level);
+  const bool is_in_place = confirmed_.isJudged() && !whyNotJudged() && !is_new;
+  // Found of the rows, unlike that they are too few: it takes the place of a verdict as a worse one does.
+  const bool is_other =
+      !verdict.fits && (verdict.reason == Reason::EFFORT_UNIT || verdict.reason == Reason::LESS_THAN_FAULTS ||
+                        verdict.reason == Reason::NO_FRICTION);
+  const bool is_open = is_in_place && !verdict.isJudged() && !is_other;
+  const bool is_no_worse = !(is_in_place && is_other) && severityOf(verdict.level) <= severityOf(confirmed_.level);
   if (!is_open && (is_new || is_no_worse || reach.end - confirmed_at_ >= CONFIRMED_AFTER))
   {
     confirmed_ = std::move(verdict);

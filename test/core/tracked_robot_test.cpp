@@ -123,6 +123,39 @@ TEST(VerdictWatch, JudgesNothingWhileSomethingTouchesTheArmOrDoesNotFit)
   EXPECT_EQ(watch.confirmed().reason, Reason::SOUND);
 }
 
+TEST(VerdictWatch, AHandThatLeadsTheArmReplacesAVerdict)
+{
+  const Parameters parameters = parametersWith(KNOWN_LOAD);
+  const SwingingRobot robot(parameters, 60.0);
+  Tracker tracker(parameters, InputMode::MOTION);
+  tracker.pushLoad(0.0, 0.0);
+  VerdictWatch watch(tracker, parameters, true);
+  ArmFriction arm;
+  arm.factors = { 1.0 };
+  arm.deviations = { UNWITNESSED };
+  const auto row_of = [](double time) { return static_cast<std::size_t>(std::lround(time / PERIOD)); };
+  for (std::size_t i = 0; i < robot.rows(); ++i)
+  {
+    robot.push(tracker, i, 0.0);
+    if (i == row_of(30.0))
+    {
+      EXPECT_EQ(watch.confirmed().level, VerdictLevel::OK);
+      arm.misfit = { Reason::LESS_THAN_FAULTS, "led by hand" };
+    }
+    if (i == row_of(36.0))
+    {
+      EXPECT_EQ(watch.confirmed().level, VerdictLevel::OK) << "not at once";
+    }
+    if (i % row_of(1.0) == 0)
+    {
+      watch.judge(arm, 0);
+    }
+  }
+  EXPECT_EQ(watch.confirmed().level, VerdictLevel::NOT_JUDGED);
+  EXPECT_EQ(watch.now().reason, Reason::LESS_THAN_FAULTS);
+  EXPECT_EQ(verdictText(watch.now()), "Not judged: led by hand.");
+}
+
 TEST(Tracker, WhatStaysIsNoContact)
 {
   const Parameters parameters = parametersWith(KNOWN_LOAD);
