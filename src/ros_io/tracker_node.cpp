@@ -263,8 +263,9 @@ void TrackerNode::lookAtPayload()
   else
   {
     stream_.payload.clear();
-    ROS_INFO_STREAM("The payload that is not configured is put down: the joints are judged with the configured one "
-                    "from now on");
+    ROS_INFO_STREAM(
+        "The payload that is not configured is put down: the joints are judged with the configured one "
+        "from now on");
     payload_->configure(payload_->given());
   }
   arm_load_.emplace(payload_->arm());

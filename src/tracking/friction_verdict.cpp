@@ -384,6 +384,7 @@ Finding judgeFriction(const JointEvidence& evidence, const Parameters& parameter
   if (finding.level != VerdictLevel::OK)
   {
     finding.reason = Reason::FRICTION;
+    verdict.may_be_gain = !GainEvidence(evidence).isExcluded();
     nameCauses(evidence.assessor().signatures(), value > 1.0 ? 1.0 : -1.0, finding);
   }
   verdict[figureOf(factor.reference)] = factor.value;

@@ -173,6 +173,7 @@ struct Verdict
   std::vector<Finding> findings;    ///< none: nothing was looked at
   std::vector<Evidence> evidence;   ///< of the worst window of the signals, strongest first
   std::vector<Hidden> cannot_show;  ///< by these rows
+  bool may_be_gain{};               ///< a wrong gain would show like the friction that departs
   bool fits{ true };                ///< false: telemetry or load are why nothing is judged
   std::string misfit;               ///< a clause of contact or telemetry that does not fit; empty: none
   LoadOrigin load{};

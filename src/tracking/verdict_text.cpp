@@ -296,9 +296,9 @@ std::string verdictText(const Verdict& verdict)
     const std::string title = lowerFirst(subjectTitle(finding.subject));
     if (severityOf(finding.level) != HealthLevel::OK)
     {
-      departing.push_back(title + " (" +
-                          (finding.causes.empty() ? "no fault in the list does this" : causeNames(finding, " or ")) +
-                          ")");
+      departing.push_back(
+          title + " (" + (finding.causes.empty() ? "no fault in the list does this" : causeNames(finding, " or ")) +
+          (finding.subject == FindingSubject::FRICTION && verdict.may_be_gain ? ", or a wrong gain" : "") + ")");
     }
     else
     {

@@ -129,7 +129,8 @@ TEST(SurfaceDeviations, AreMeasuredOneWayWhereTheOtherIsTheirMirrorImage)
     misses += (at(one) - at(other)).square();
     sizes += (at(other) - at(surface())).square();
   }
-  // Either may miss the ring by 0.5 % of the largest effect.
+  // Either may miss the ring's torque by 0.5 % of the largest effect, by which the table is refined. Forces are not
+  // among what refines it: a bound that a table of the other side's sign or place would exceed by far.
   EXPECT_LT(std::sqrt(misses[0] / sizes[0]), 5e-3);
   EXPECT_LT(std::sqrt(misses[1] / sizes[1]), 5e-2);
 }
