@@ -104,6 +104,10 @@ def bare_sentence(runner, recordings, loops):
     if recording is None:
         return ""
     bare = ClosedLoop(runner, recording, "built", *BUILT, "--set", "cup.friction_torque=0.0", name="bare")
+    stop = bare.report["protective_stop"]
+    if stop:
+        return (f"Without the cup's friction (`--set cup.friction_torque=0.0`) the arm stops by itself in {BARE_IN}: "
+                f"{stop['joint']}, {stop['reason']}.")
     (without, without_current), (with_it, with_current), (recorded, recorded_current) = (
         lines_of(data, 3) for data in (bare.data, loops[BARE_IN].data, recording.data))
     return (f"Without the cup's friction (`--set cup.friction_torque=0.0`) the outputs of base, shoulder and elbow "

@@ -178,11 +178,11 @@ void runArm(ros::NodeHandle& node, const std::string& name, const hjt::FoundPara
   const std::string reference = node.param<std::string>(hjt::REFERENCE, "");
   ROS_INFO_STREAM("Arm " << arm.origin << (identified.empty() ? "" : ", identified: " + identified)
                          << (reference.empty() ? "" : ", reference: " + reference));
-  const auto parametersOf = inPlaceOfArm(overrides) ? hjt::armDriveParameters : hjt::armJointParameters;
+  const auto parameters_of = inPlaceOfArm(overrides) ? hjt::armDriveParameters : hjt::armJointParameters;
   std::vector<hjt::ParameterMap> maps;
   for (const hjt::ArmJoint& joint : arm.joints)
   {
-    maps.push_back(parametersOf(joint, directory, identified));
+    maps.push_back(parameters_of(joint, directory, identified));
     maps.back()["joint.name"].value = affixes(joint.name);
   }
   warnOfParameters(found, node.getNamespace(), maps);

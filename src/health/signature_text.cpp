@@ -17,8 +17,8 @@ constexpr const char* HEAD = R"(# SPDX-License-Identifier: BSD-3-Clause
 format: )";
 constexpr const char* ERRORS = R"(
 # Errors by the law of docs/indicators.md [-]: of each number of a signature on another gear, and in a motion of another
-# kind; of its length; share of the sound drive's lines that a fault of severity 1 changes, weight of the evidence, of the
-# severity.
+# kind; of its length; share of the sound drive's lines that a fault of severity 1 changes, weight of the evidence, of
+# the severity.
 errors:
 )";
 constexpr const char* INDICATORS = R"(

@@ -116,15 +116,15 @@ TEST(ArmDrives, KeepTheRotorThatARecordingDoesNotShow)
 {
   const ArmDescription arm = readArmDescription(SHIPPED);
   const TemporaryFolder folder;
-  const auto rotorOf = [&](const char* identified)
+  const auto rotor_of = [&](const char* identified)
   {
     folder.write("wrist_3.yaml", std::string("motor: {rotor_inertia: ") + identified + "}\n");
     return parseParameters(armDriveParameters(arm.joints[5], HJT_TEST_CONFIG_DIR, folder.path())).motor.rotor_inertia;
   };
   const double configured =
       parseParameters(armJointParameters(arm.joints[5], HJT_TEST_CONFIG_DIR, "")).motor.rotor_inertia;
-  EXPECT_EQ(rotorOf("1.0e-9"), configured);
-  EXPECT_EQ(rotorOf("1.0e-3"), 1e-3) << "more than configured is taken";
+  EXPECT_EQ(rotor_of("1.0e-9"), configured);
+  EXPECT_EQ(rotor_of("1.0e-3"), 1e-3) << "more than configured is taken";
 }
 
 TEST(ArmDynamics, RefusesLinksThatNoRobotHas)

@@ -15,6 +15,7 @@ import time
 import unittest
 import urllib.parse
 
+import numpy as np
 import rosbag
 import rosgraph
 import rospy
@@ -27,7 +28,8 @@ from ur5_test import JOINTS, PERIOD, WAIT_OF_ARM, angles, run_robot
 from verdict_test import MOVING, SECONDS
 
 FASTER = 4.0  # played than stamped
-RAISED = 1.3  # current over that of the sound joint, in the base, which bears no weight
+RAISED = 1.3  # friction over that of the sound joint, in the base, which bears no weight
+MOVING_SPEED = 0.05  # [rad/s]
 DIRECTORY = os.environ.get("HJT_TELEMETRY_DIR", package_path("..", "shared", "telemetry"))
 SOUND, LATER = (os.path.join(DIRECTORY, "ur5_cb", f"ur5_cb_{name}.csv") for name in ("no7", "no6"))
 ORDER = list(JOINTS)  # of the columns too
@@ -45,9 +47,17 @@ def recorded(path):
 
 
 def raised(rows, joint="base"):
+    """More of the friction that does not depend on the speed, by a share of all friction: the mean current in the
+    direction of motion."""
     place = ORDER.index(joint)
-    for seconds, position, current in rows:
-        yield seconds, position, [RAISED * value if i == place else value for i, value in enumerate(current)]
+    rows = list(rows)
+    times, angles_of, currents = (np.array(values) for values in zip(
+        *((seconds, position[place], current[place]) for seconds, position, current in rows)))
+    speed = np.gradient(angles_of, times)
+    direction = np.where(np.abs(speed) > MOVING_SPEED, np.sign(speed), 0.0)
+    friction = np.mean((direction * currents)[direction != 0.0])
+    for (seconds, position, current), added in zip(rows, (RAISED - 1.0) * friction * direction):
+        yield seconds, position, [value + added if i == place else value for i, value in enumerate(current)]
 
 
 class Reference(unittest.TestCase):
