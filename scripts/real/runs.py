@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the sections of docs/real_robot.md share: runs of the tool, tables, figures."""
+import glob
 import json
 import os
 import subprocess
@@ -23,6 +24,19 @@ class Runner:
 
     def path(self, name):
         return os.path.join(self.directory, name)
+
+    def link(self, folder, train):
+        """Names of a robot's recordings, FOLDER_NAME.csv in its folder, which stand in the directory as NAME.csv from
+        now on. None, and says so, where `train` or any other is missing."""
+        prefix = os.path.basename(folder) + "_"
+        paths = {os.path.basename(path)[len(prefix):-len(".csv")]: path
+                 for path in sorted(glob.glob(os.path.join(folder, f"{prefix}*.csv")))}
+        if train not in paths or len(paths) < 2:
+            print(f"skipped: no {prefix}{train}.csv and others in {folder}")
+            return []
+        for name, path in paths.items():
+            os.symlink(os.path.abspath(path), self.path(f"{name}.csv"))
+        return list(paths)
 
     def run(self, *arguments, listed=True):
         """Not `listed`: of files that are made here, so the page leaves it out."""

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A UR10e in closed loop: its recordings hold no target angles, so the set points are its measured angles, smoothed."""
-import glob
 import os
 
 import numpy as np
@@ -9,7 +8,7 @@ from closed_loop import ClosedLoop, cell, line_amplitude, moving_errors
 from runs import read, table
 from ur5 import JOINTS, Fit, Recording
 
-FOLDER, PREFIX = "ur10e", "ur10e_"
+FOLDER = "ur10e"
 TRAIN = "20_02_12-40sec_12harm"  # the only recording that is identified on
 WINDOW, DEGREE = 21, 3           # rows and degree of the polynomials that smooth the angles: 0.2 s, ripple falls out
 WANTED = 0.8                     # of the simple fit's error
@@ -41,15 +40,11 @@ def write_set_points(runner, name):
 def section(runner, telemetry, _images):
     """Lines of the page."""
     heading = ["## A UR10e in closed loop"]
-    paths = {os.path.basename(path)[len(PREFIX):-len(".csv")]: path
-             for path in sorted(glob.glob(os.path.join(telemetry, FOLDER, f"{PREFIX}*.csv")))}
-    if TRAIN not in paths or len(paths) < 2:
-        print(f"skipped: no {PREFIX}{TRAIN}.csv and others in {os.path.join(telemetry, FOLDER)}")
+    names = runner.link(os.path.join(telemetry, FOLDER), TRAIN)
+    if not names:
         return heading + ["", f"*Not run: no recordings in {os.path.join(telemetry, FOLDER)}.*", ""]
-    for name, path in paths.items():
-        os.symlink(os.path.abspath(path), runner.path(f"{name}.csv"))
     runner.run("identify", f"{TRAIN}.csv", "--arm", "ur10e", "--out", "ur10e_arm")
-    recordings = {name: Recording(runner, name, "ur10e", ["arm"], "ur10e") for name in paths}
+    recordings = {name: Recording(runner, name, "ur10e", ["arm"], "ur10e") for name in names}
     fit = Fit(recordings[TRAIN])
     rows, shares, beside_told = [], [], []
     for name, recording in recordings.items():

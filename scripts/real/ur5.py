@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A whole UR5, from /joint_states alone: identified on one recording, judged on the others."""
 import concurrent.futures
-import glob
 import os
 
 import numpy as np
@@ -9,7 +8,7 @@ import numpy as np
 import closed_loop
 from runs import BLUE, GREEN, GREY, RED, figure, read, rms, save, table
 
-FOLDER, PREFIX = "ur5_cb", "ur5_cb_"
+FOLDER = "ur5_cb"
 TRAIN = "no6"          # the only recording that is identified on
 RAISED_IN = ["no2", "no5"]
 SHOWN = "no2"          # in the figure of the currents
@@ -262,16 +261,12 @@ def met(all_errors, kind, wanted):
 def section(runner, telemetry, images):
     """Lines of the page."""
     heading = ["## A UR5"]
-    paths = {os.path.basename(path)[len(PREFIX):-len(".csv")]: path
-             for path in sorted(glob.glob(os.path.join(telemetry, FOLDER, f"{PREFIX}*.csv")))}
-    if TRAIN not in paths or len(paths) < 2:
-        print(f"skipped: no {PREFIX}{TRAIN}.csv and others in {os.path.join(telemetry, FOLDER)}")
+    names = runner.link(os.path.join(telemetry, FOLDER), TRAIN)
+    if not names:
         return heading + ["", f"*Not run: no recordings in {os.path.join(telemetry, FOLDER)}.*", ""]
-    for name, path in paths.items():
-        os.symlink(os.path.abspath(path), runner.path(f"{name}.csv"))
     for load in LOADS:
         runner.run("identify", f"{TRAIN}.csv", "--arm", "ur5", "--load", load, "--out", f"identified_{load}")
-    recordings = [Recording(runner, name) for name in paths]
+    recordings = [Recording(runner, name) for name in names]
     by_name = {recording.name: recording for recording in recordings}
     judged = [recording for recording in recordings if recording.name != TRAIN]
     fit = Fit(by_name[TRAIN])
