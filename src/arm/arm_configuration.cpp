@@ -6,6 +6,7 @@
 #include <system_error>
 #include <utility>
 
+#include "base/joined.hpp"
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "params/configuration_files.hpp"
@@ -27,6 +28,18 @@ std::string findArm(const std::string& name, const fs::path& directory)
     throw ParameterError("arm " + name + ": neither a file nor an arm in " + shipped.parent_path().string());
   }
   return shipped.string();
+}
+
+std::optional<std::size_t> findJoint(const ArmDescription& arm, const std::string& name)
+{
+  const auto found = std::find_if(arm.joints.begin(), arm.joints.end(),
+                                  [&](const ArmJoint& each) { return each.short_name == name || each.name == name; });
+  return found == arm.joints.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - arm.joints.begin()));
+}
+
+std::string shortNames(const ArmDescription& arm)
+{
+  return joined(arm.joints, ", ", [](const ArmJoint& each) { return each.short_name; });
 }
 
 ParameterMap armJointParameters(const ArmJoint& joint, const fs::path& directory, const std::string& identified)
@@ -98,6 +111,16 @@ std::vector<std::size_t> driverOrder(const ArmDescription& arm)
   return order;
 }
 
+std::vector<std::string> driverNames(const ArmDescription& arm)
+{
+  std::vector<std::string> names;
+  for (const std::size_t joint : driverOrder(arm))
+  {
+    names.push_back(arm.joints[joint].name);
+  }
+  return names;
+}
+
 void giveOwnSeeds(std::vector<Parameters>& drives)
 {
   constexpr int SEEDS = 100'000;                   // the parameter's range
@@ -124,19 +147,13 @@ void addArmFaults(const ArmDescription& arm, const std::vector<std::string>& fau
   for (const std::string& fault : faults)
   {
     const std::size_t colon = fault.find(':');
-    const std::string name = fault.substr(0, colon);
-    const auto joint = std::find_if(arm.joints.begin(), arm.joints.end(),
-                                    [&](const ArmJoint& each) { return each.short_name == name || each.name == name; });
-    if (colon == std::string::npos || joint == arm.joints.end())
+    const std::optional<std::size_t> joint = findJoint(arm, fault.substr(0, colon));
+    if (colon == std::string::npos || !joint)
     {
-      std::string names;
-      for (const ArmJoint& each : arm.joints)
-      {
-        names += (names.empty() ? "" : ", ") + each.short_name;
-      }
-      throw ParameterError("fault " + fault + ": expected JOINT:KIND:SEVERITY[:PLACE[:ONSET]], JOINT one of " + names);
+      throw ParameterError("fault " + fault + ": expected JOINT:KIND:SEVERITY[:PLACE[:ONSET]], JOINT one of " +
+                           shortNames(arm));
     }
-    of_joints[static_cast<std::size_t>(joint - arm.joints.begin())].faults.push_back(fault.substr(colon + 1));
+    of_joints[*joint].faults.push_back(fault.substr(colon + 1));
   }
   for (std::size_t i = 0; i < drives.size(); ++i)
   {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,12 @@ namespace hjt
 /// `name` if that is a file, else arms/NAME.yaml in the directory of the default configuration.
 /// @throws ParameterError if there is neither.
 std::string findArm(const std::string& name, const std::filesystem::path& directory);
+
+/// The joint of this name or short name; none: the arm has none.
+std::optional<std::size_t> findJoint(const ArmDescription& arm, const std::string& name);
+
+/// Short names of the joints, for error texts.
+std::string shortNames(const ArmDescription& arm);
 
 /// The drive of a joint: default configuration, the joint's overlays and parameters, and `identified`/SHORT_NAME.yaml
 /// if that directory is given. Its load is that of the arm. @throws ParameterError.
@@ -36,6 +43,7 @@ constexpr const char* GAINS_FILE = "controller.yaml";
 
 /// The joints in the order of ros_control's states, which UR's driver publishes: by their names.
 std::vector<std::size_t> driverOrder(const ArmDescription& arm);
+std::vector<std::string> driverNames(const ArmDescription& arm);
 
 /// Drives of an arm are of one series and none is the other: where teeth or spaces have seeded pitch deviations, each
 /// joint's seeds are those configured and twice its number from the base on more; the seed of its sensors' noise is its

@@ -2,15 +2,14 @@
 #include "arm/arm_file.hpp"
 
 #include <filesystem>
-#include <fstream>
 #include <optional>
-#include <sstream>
 #include <system_error>
 #include <utility>
 #include <vector>
 
 #include <yaml-cpp/yaml.h>
 
+#include "base/whole_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 
 namespace hjt
@@ -195,13 +194,12 @@ std::string textOf(const std::string& path, const std::string& place)
   {
     throw ParameterError(place + path + " is larger than " + std::to_string(MAX_TEXT) + " bytes");
   }
-  std::ifstream file(path);
-  std::stringstream text;
-  if (!file || !(text << file.rdbuf()))
+  std::optional<std::string> text = wholeFile(path);
+  if (!text || text->empty())
   {
     throw ParameterError(place + path + " cannot be read, or is empty");
   }
-  return text.str();
+  return std::move(*text);
 }
 
 ParameterMap readArmFile(const std::string& path)

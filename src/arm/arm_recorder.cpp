@@ -2,6 +2,7 @@
 #include "arm/arm_recorder.hpp"
 
 #include "arm/arm_configuration.hpp"
+#include "twin/step_counters.hpp"
 
 namespace hjt
 {
@@ -60,17 +61,14 @@ const ArmRow& ArmRecorder::row() noexcept
 TwinCounters countersOf(const ArmTwin& twin)
 {
   TwinCounters sum;
-  sum.steps = twin.drive(0).counters().steps;
   for (std::size_t i = 0; i < twin.joints(); ++i)
   {
-    const TwinCounters& drive = twin.drive(i).counters();
-    for (std::uint64_t TwinCounters::*count :
-         { &TwinCounters::solver_failures, &TwinCounters::step_cuts, &TwinCounters::jumps, &TwinCounters::coarse_steps,
-           &TwinCounters::torque_clamped, &TwinCounters::overloads, &TwinCounters::speed_limited })
+    for (const auto& [name, count] : STEP_COUNTERS)
     {
-      sum.*count += drive.*count;
+      sum.*count += twin.drive(i).counters().*count;
     }
   }
+  sum.steps = twin.drive(0).counters().steps;
   return sum;
 }
 

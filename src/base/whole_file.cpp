@@ -10,8 +10,10 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <random>
 
+#include "base/text_stream.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 
 namespace hjt
@@ -73,6 +75,24 @@ void replaceFile(const std::string& path, const std::string& target, const std::
   }
 }
 }  // namespace
+
+std::optional<std::string> wholeFile(const std::string& path)
+{
+  const std::ifstream file(path, std::ios::binary);
+  TextStream bytes;
+  bytes << file.rdbuf();  // fails, but is not bad, where there are none
+  return file && !bytes.bad() ? std::optional(bytes.str()) : std::nullopt;
+}
+
+std::string readFile(const std::string& path)
+{
+  std::optional<std::string> bytes = wholeFile(path);
+  if (!bytes)
+  {
+    throw InputError("'" + path + "' cannot be read");
+  }
+  return std::move(*bytes);
+}
 
 void writeTextFile(const std::string& path, const std::string& text)
 {

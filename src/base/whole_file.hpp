@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <string>
 
 namespace hjt
 {
+/// The bytes of a file; none if it cannot be read.
+std::optional<std::string> wholeFile(const std::string& path);
+std::string readFile(const std::string& path);  ///< @throws InputError in place of none
+
 /// A text file, whole or not at all, brought to the disk. Links are followed; a device or pipe is written to.
 /// @throws InputError.
 void writeTextFile(const std::string& path, const std::string& text);

@@ -1,30 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "datasets/arm_plan.hpp"
 
-#include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
-#include <iterator>
 
 #include "datasets/variable.hpp"
 
 #include "arm/arm_configuration.hpp"
 #include "arm/set_points.hpp"
-#include "base/joined.hpp"
 #include "base/text_hash.hpp"
+#include "base/whole_file.hpp"
 
 namespace hjt
 {
 namespace
 {
 namespace fs = std::filesystem;
-
-std::string textOf(const std::string& path)
-{
-  std::ifstream file(path, std::ios::binary);
-  return { std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>() };
-}
 
 /// As it is from the plan's folder, else as it is. `folder`: of one, else of a file.
 std::string beside(const std::string& directory, const std::string& name, bool folder)
@@ -72,7 +63,7 @@ ArmPlan::ArmPlan(const PlanNode& root, const std::string& directory, const Confi
   const std::string identified = values.text(root, "identified", "");
   const std::string folder = identified.empty() ? "" : beside(directory, identified, true);
   arm_ = readArmDescription(findArm(beside(directory, values.text(root, "arm"), false), configDirectory(options)));
-  arm_text_ = textOf(arm_.origin);
+  arm_text_ = wholeFile(arm_.origin).value();
   addIdentifiedGains(folder, arm_);
   drives_ = armDriveMaps(arm_, options, folder);
   for (const auto& [number, duty] : required(root, "duty", PlanNode::Kind::LIST).entries)
@@ -86,23 +77,19 @@ ArmPlan::ArmPlan(const PlanNode& root, const std::string& directory, const Confi
         std::cerr << "warning: " << path << ": " << straightenedText(change) << '\n';
       }
       motions_[file] = { std::make_shared<const std::vector<ArmSetPoint>>(std::move(points)),
-                         std::to_string(textHash(textOf(path))) };
+                         std::to_string(textHash(wholeFile(path).value())) };
     }
   }
 }
 
 std::size_t ArmPlan::jointOf(const PlanNode& fault, const PlanValues& values) const
 {
-  const std::string name = values.text(fault, "joint");
-  const auto joint = std::find_if(arm_.joints.begin(), arm_.joints.end(),
-                                  [&](const ArmJoint& each) { return each.short_name == name || each.name == name; });
-  if (joint == arm_.joints.end())
+  const std::optional<std::size_t> joint = findJoint(arm_, values.text(fault, "joint"));
+  if (!joint)
   {
-    required(fault, "joint")
-        .refuse("is no joint of the arm; there are " +
-                joined(arm_.joints, ", ", [](const ArmJoint& each) { return each.short_name; }));
+    required(fault, "joint").refuse("is no joint of the arm; there are " + shortNames(arm_));
   }
-  return static_cast<std::size_t>(joint - arm_.joints.begin());
+  return *joint;
 }
 
 ArmSpec ArmPlan::read(const PlanNode& duty, const PlanValues& values, const ParameterMap& settings,

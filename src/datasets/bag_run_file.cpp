@@ -50,13 +50,7 @@ BagRunFile::BagRunFile(const RunSpec& spec, const Twin* twin, std::string path)
     order_ = driverOrder(spec.arm->arm);
     period_ = publishPeriod(spec.arm->arm.state_rate, spec.parameters.solver.rate);
     begin_ = twin != nullptr ? twin->stamp() : begin_;
-    for (const std::size_t joint : order_)
-    {
-      states_.name.push_back(spec.arm->arm.joints[joint].name);
-    }
-    states_.position.resize(order_.size());
-    states_.velocity.resize(order_.size());
-    states_.effort.resize(order_.size());
+    states_ = jointStatesOf(driverNames(spec.arm->arm));
   }
   const std::lock_guard<std::mutex> lock(g_opening);
   bag_.emplace(temporary_);

@@ -63,7 +63,7 @@ PlanNode convert(const YAML::Node& from, const std::string& file, const std::str
 }
 }  // namespace
 
-const PlanNode* PlanNode::find(const std::string& key) const
+const PlanNode* PlanNode::find(std::string_view key) const
 {
   const auto found =
       std::find_if(entries.begin(), entries.end(), [&](const Entry& entry) { return entry.first == key; });

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -29,7 +30,7 @@ struct PlanNode
   ParameterValue scalar;       ///< of a SCALAR
   std::vector<Entry> entries;  ///< of a MAP; of a LIST under "0", "1", ...
 
-  const PlanNode* find(const std::string& key) const;
+  const PlanNode* find(std::string_view key) const;
 
   /// @throws InputError that names this place.
   [[noreturn]] void refuse(const std::string& what) const;

@@ -120,17 +120,17 @@ bool PlanValues::flag(const PlanNode& map, const std::string& key) const
   return node != nullptr && contentOf<bool>(*node, value(*node), "true or false");
 }
 
-const PlanNode& required(const PlanNode& map, const std::string& key)
+const PlanNode& required(const PlanNode& map, std::string_view key)
 {
   const PlanNode* node = map.find(key);
   if (node == nullptr)
   {
-    map.refuse("lacks the key '" + key + "'");
+    map.refuse("lacks the key '" + std::string(key) + "'");
   }
   return *node;
 }
 
-const PlanNode& required(const PlanNode& map, const std::string& key, PlanNode::Kind kind)
+const PlanNode& required(const PlanNode& map, std::string_view key, PlanNode::Kind kind)
 {
   const PlanNode& node = required(map, key);
   if (node.kind != kind)

@@ -38,8 +38,8 @@ private:
 };
 
 /// @throws InputError if the key is not there.
-const PlanNode& required(const PlanNode& map, const std::string& key);
-const PlanNode& required(const PlanNode& map, const std::string& key, PlanNode::Kind kind);
+const PlanNode& required(const PlanNode& map, std::string_view key);
+const PlanNode& required(const PlanNode& map, std::string_view key, PlanNode::Kind kind);
 
 /// @throws InputError if the node is no mapping, or has a key that is not among these.
 void allowOnly(const PlanNode& map, const std::vector<std::string>& keys);

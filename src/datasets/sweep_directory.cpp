@@ -9,8 +9,6 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include "datasets/file_seal.hpp"
 #include "datasets/run_file.hpp"
@@ -160,8 +158,7 @@ void SweepDirectory::open()
                                        name + " cannot be opened: " + std::strerror(errno));
   }
   lockByte(plan_file_, PLAN_LOCK, F_OFD_SETLKW, F_WRLCK);
-  std::ifstream file(name, std::ios::binary);
-  const std::string found((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  const std::string found = wholeFile(name).value_or("");
   // Not there yet, or left half written by a process that was killed.
   if (found.size() < text.size() && text.compare(0, found.size(), found) == 0)
   {

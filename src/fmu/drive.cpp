@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <utility>
 
@@ -13,6 +11,7 @@
 #include "surface/surface_pool.hpp"
 
 #include "base/number_text.hpp"
+#include "base/whole_file.hpp"
 
 namespace hjt::fmu
 {
@@ -32,17 +31,6 @@ const std::shared_ptr<SurfacePool>& surfaces()
 {
   static const auto POOL = std::make_shared<SurfacePool>(KEPT_SURFACES);
   return POOL;
-}
-
-std::string readText(const std::string& path)
-{
-  std::ifstream file(path, std::ios::binary);
-  std::string text{ std::istreambuf_iterator<char>(file), {} };
-  if (!file)
-  {
-    throw InputError("'" + path + "' cannot be read");
-  }
-  return text;
 }
 
 Parameters readParameters(const std::string& text, const std::string& folder)
@@ -68,7 +56,7 @@ Drive::Drive(const std::string& resources, const std::string& token, void* envir
   : environment_(environment), log_(log)
 {
   const std::string folder = resources.empty() || resources.back() == '/' ? resources : resources + '/';
-  const std::string text = readText(folder + PARAMETER_FILE);
+  const std::string text = readFile(folder + PARAMETER_FILE);
   if (token != instantiationToken(text))
   {
     throw InputError("the instantiation token '" + token + "' is not that of this library and its resources, '" +

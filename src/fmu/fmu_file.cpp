@@ -2,33 +2,17 @@
 #include "fmu/fmu_file.hpp"
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
+#include "base/whole_file.hpp"
 #include "fmu/model_description.hpp"
 #include "fmu/variables.hpp"
 #include "fmu/zip.hpp"
-#include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"
 #include "params/configuration_files.hpp"
 
 namespace hjt::fmu
 {
-namespace
-{
 namespace fs = std::filesystem;
-
-std::string readBytes(const std::string& path)
-{
-  std::ifstream file(path, std::ios::binary);
-  std::string bytes{ std::istreambuf_iterator<char>(file), {} };
-  if (!file)
-  {
-    throw InputError("'" + path + "' cannot be read");
-  }
-  return bytes;
-}
-}  // namespace
 
 std::string fmuFile(Parameters parameters, const std::string& library, const std::vector<std::string>& others)
 {
@@ -46,7 +30,7 @@ std::string fmuFile(Parameters parameters, const std::string& library, const std
       const std::string path =
           fs::path(name).is_absolute() ? name : findConfiguration(name, configurationDirectory(""));
       name = carried;
-      zip.add(resources + name, readBytes(path));
+      zip.add(resources + name, readFile(path));
     }
   };
   carry(parameters.indicators.signatures, "signatures.yaml");
@@ -55,11 +39,11 @@ std::string fmuFile(Parameters parameters, const std::string& library, const std
   const std::string text = describeParameters(parameters);
   zip.add(resources + PARAMETER_FILE, text);
   zip.add("modelDescription.xml", modelDescription(parameters, instantiationToken(text)));
-  zip.add(binaries + MODEL_IDENTIFIER + ".so", readBytes(library));
+  zip.add(binaries + MODEL_IDENTIFIER + ".so", readFile(library));
   for (const std::string& other : others)
   {
     const std::string name = fs::path(other).filename();
-    zip.add(binaries + name, readBytes(other));
+    zip.add(binaries + name, readFile(other));
     // Its licence goes with it, from where Debian keeps it: /usr/share/doc/libNAME-VERSION/copyright.
     const std::string package = name.substr(0, name.find(".so"));
     std::error_code error;
@@ -68,7 +52,7 @@ std::string fmuFile(Parameters parameters, const std::string& library, const std
       const fs::path licence = entry.path() / "copyright";
       if (entry.path().filename().string().rfind(package, 0) == 0 && fs::exists(licence, error))
       {
-        zip.add("documentation/licenses/" + entry.path().filename().string() + ".txt", readBytes(licence));
+        zip.add("documentation/licenses/" + entry.path().filename().string() + ".txt", readFile(licence));
         break;
       }
     }

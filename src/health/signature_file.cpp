@@ -5,8 +5,6 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -18,6 +16,7 @@
 #include "base/edit_distance.hpp"
 #include "base/number_text.hpp"
 #include "base/range.hpp"
+#include "base/whole_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "params/configuration_files.hpp"
 
@@ -267,13 +266,12 @@ private:
 
 std::string readText(const std::string& path)
 {
-  std::ifstream file(path, std::ios::binary);
-  std::string text{ std::istreambuf_iterator<char>(file), {} };
-  if (!file)
+  std::optional<std::string> text = wholeFile(path);
+  if (!text)
   {
     throw ParameterError("indicators.signatures = '" + path + "': cannot be read; name a file, or " + NO_FILE);
   }
-  return text;
+  return std::move(*text);
 }
 }  // namespace
 

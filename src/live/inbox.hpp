@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstddef>
@@ -19,13 +18,14 @@ struct LiveInput : Input
   std::size_t joint{};  ///< whose input it is; 0 where there is one twin
 };
 
-/// Hands inputs from the callbacks to the loop. Callbacks may wait for each other; the loop never waits.
+/// Inputs from the callbacks until the loop hands them to its twin. Callbacks may wait for each other and for the loop,
+/// which never waits.
 class Inbox
 {
 public:
   static constexpr std::size_t CAPACITY = InputQueue::CAPACITY;
 
-  Inbox() : inputs_(makeBuffer()) {}
+  Inbox() { inputs_.reserve(CAPACITY); }
 
   /// From any thread. Values that are not finite are refused, those beyond the capacity dropped; both are counted.
   void push(const Input& input, std::size_t joint = 0)
@@ -44,28 +44,17 @@ public:
     inputs_.push_back({ input, joint });
   }
 
-  /// From the loop only: appends what has arrived, in order of arrival, to `inputs`, a vector made by `makeBuffer`.
-  /// Inputs without room there stay here. While a callback holds the lock, nothing is taken; the next call gets all.
-  /// Allocates nothing.
-  void take(std::vector<LiveInput>& inputs) noexcept
+  /// From the loop only: calls `use(inputs)` with those that wait, in order of arrival; what it leaves there goes on
+  /// waiting. Allocates nothing. @returns false if a callback holds the lock: nothing was done.
+  template <class Use>
+  bool use(Use&& use) noexcept
   {
     const std::unique_lock<std::mutex> lock(mutex_, std::try_to_lock);
-    if (!lock.owns_lock() || inputs_.empty())
+    if (lock.owns_lock())
     {
-      return;
+      use(inputs_);
     }
-    const auto taken =
-        inputs_.begin() + static_cast<std::ptrdiff_t>(std::min(inputs_.size(), CAPACITY - inputs.size()));
-    inputs.insert(inputs.end(), inputs_.begin(), taken);
-    inputs_.erase(inputs_.begin(), taken);
-  }
-
-  /// An empty vector with room for a whole inbox.
-  static std::vector<LiveInput> makeBuffer()
-  {
-    std::vector<LiveInput> buffer;
-    buffer.reserve(CAPACITY);
-    return buffer;
+    return lock.owns_lock();
   }
 
   std::uint64_t notFinite() const noexcept { return not_finite_; }

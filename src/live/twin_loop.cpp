@@ -79,7 +79,6 @@ TwinLoop::TwinLoop(Advanced& twin, const Parameters& parameters, Inbox& inbox, C
   , deadline_(toStampLength(parameters.realtime.deadline))
   , step_length_(toStampLength(1.0 / parameters.solver.rate))
   , wait_for_first_input_(parameters.input.wait_for_first_input)
-  , arrived_(Inbox::makeBuffer())
   , thread_([this] { run(); })
 {
 }
@@ -148,24 +147,33 @@ void TwinLoop::cycle() noexcept
     resets_done_ = resets_requested_.load();
     return;
   }
-  // The inputs first, then the clock: what came after a jump back is not mistaken for what came before it.
-  std::size_t waiting = arrived_.size();
-  inbox_.take(arrived_);
-  if (readClock(clock_()))
+  // While a callback holds the inbox the twin only goes on; the next cycle sees to the rest.
+  if (!inbox_.use([this](Inputs& inputs) { heed(inputs); }))
   {
-    forgetInputs(waiting);
-    waiting = 0;
+    status_.clock = std::max(status_.clock, clock_());
   }
-  stampInputs(waiting);
-  const Stamp limit = std::max<Stamp>(status_.clock - input_delay_, 0);
-  answerRequests(limit, waiting);
-  if (status_.state == LoopState::RUNNING || tryStart(limit))
+  if (status_.state == LoopState::RUNNING)
   {
-    handOverInputs();
-    catchUp(limit);
+    catchUp();
   }
   status_.twin_stamp = twin_.stamp();
   twin_.show(status_);
+}
+
+/// The clock after the inputs: what comes after a jump back is not mistaken for what came before it.
+void TwinLoop::heed(Inputs& inputs) noexcept
+{
+  if (readClock(clock_()))
+  {
+    forgetInputs(inputs);
+  }
+  stampInputs(inputs);
+  answerRequests(inputs);
+  if (status_.state == LoopState::RUNNING || tryStart(inputs))
+  {
+    handOver(inputs);
+  }
+  waiting_ = inputs.size();
 }
 
 /// @returns whether the clock has jumped back.
@@ -183,66 +191,67 @@ bool TwinLoop::readClock(Stamp now) noexcept
   return back;
 }
 
-void TwinLoop::answerRequests(Stamp limit, std::size_t waiting) noexcept
+void TwinLoop::answerRequests(Inputs& inputs) noexcept
 {
   const std::uint64_t requested = resets_requested_;
   if (requested != resets_done_)
   {
-    forgetInputs(waiting);
-    start(limit);
+    forgetInputs(inputs);
+    start(limit(), inputs);
     ++status_.resets;
     resets_done_ = requested;
   }
 }
 
-/// Those that had arrived before this cycle: the first `count`.
-void TwinLoop::forgetInputs(std::size_t count) noexcept
+/// Those that had arrived before this cycle.
+void TwinLoop::forgetInputs(Inputs& inputs) noexcept
 {
-  arrived_.erase(arrived_.begin(), arrived_.begin() + static_cast<std::ptrdiff_t>(std::min(count, arrived_.size())));
+  inputs.erase(inputs.begin(), inputs.begin() + static_cast<std::ptrdiff_t>(waiting_));
+  waiting_ = 0;
 }
 
-/// Those that arrived in this cycle, after the first `waiting`: a stamp of zero, from before there was a time, becomes
-/// now; one far from the clock is refused.
-void TwinLoop::stampInputs(std::size_t waiting) noexcept
+/// Those that arrived in this cycle: a stamp of zero, from before there was a time, becomes now; one far from the clock
+/// is refused.
+void TwinLoop::stampInputs(Inputs& inputs) noexcept
 {
-  const auto fresh = arrived_.begin() + static_cast<std::ptrdiff_t>(waiting);
-  for (auto input = fresh; input != arrived_.end(); ++input)
+  const auto fresh = inputs.begin() + static_cast<std::ptrdiff_t>(waiting_);
+  for (auto input = fresh; input != inputs.end(); ++input)
   {
     input->stamp = input->stamp == 0 ? status_.clock : input->stamp;
   }
   const auto kept_end =
-      std::remove_if(fresh, arrived_.end(),
+      std::remove_if(fresh, inputs.end(),
                      [this](const LiveInput& input) { return std::abs(input.stamp - status_.clock) > FAR_STAMP; });
-  status_.far_stamps += static_cast<std::uint64_t>(arrived_.end() - kept_end);
-  arrived_.erase(kept_end, arrived_.end());
+  status_.far_stamps += static_cast<std::uint64_t>(inputs.end() - kept_end);
+  inputs.erase(kept_end, inputs.end());
 }
 
-bool TwinLoop::tryStart(Stamp limit) noexcept
+bool TwinLoop::tryStart(Inputs& inputs) noexcept
 {
   if (!wait_for_first_input_)
   {
-    start(status_.clock);
+    start(status_.clock, inputs);
     return true;
   }
   // Several topics may bring the first input, in any order: the earliest stamp counts once the clock has passed it.
   status_.state = LoopState::WAITING_FOR_INPUT;
   Stamp first = std::numeric_limits<Stamp>::max();
-  for (const LiveInput& input : arrived_)
+  for (const LiveInput& input : inputs)
   {
     if (input.kind == InputKind::MOTOR_TORQUE || input.kind == InputKind::LOAD_TORQUE)
     {
       first = std::min(first, input.stamp);
     }
   }
-  if (first > limit)
+  if (first > limit())
   {
     return false;
   }
-  start(first);
+  start(first, inputs);
   return true;
 }
 
-void TwinLoop::start(Stamp stamp) noexcept
+void TwinLoop::start(Stamp stamp, Inputs& inputs) noexcept
 {
   twin_.reset(stamp);
   status_.state = LoopState::RUNNING;
@@ -254,15 +263,15 @@ void TwinLoop::start(Stamp stamp) noexcept
   start_stamp_ = stamp;
   start_time_ = steady_clock::now();
   // The twin was not there yet when these were due: they act from its first instant and are not late.
-  for (LiveInput& input : arrived_)
+  for (LiveInput& input : inputs)
   {
     input.stamp = std::max(input.stamp, stamp);
   }
 }
 
-void TwinLoop::handOverInputs() noexcept
+void TwinLoop::handOver(Inputs& inputs) noexcept
 {
-  for (const LiveInput& input : arrived_)
+  for (const LiveInput& input : inputs)
   {
     twin_.push(input);
     if (input.kind == InputKind::MOTOR_TORQUE)
@@ -271,22 +280,22 @@ void TwinLoop::handOverInputs() noexcept
       status_.command_seen = true;
     }
   }
-  arrived_.clear();
+  inputs.clear();
 }
 
-void TwinLoop::catchUp(Stamp limit) noexcept
+void TwinLoop::catchUp() noexcept
 {
   if (clock_kind_ == ClockKind::STEPPED && status_.lag < step_length_)
   {
     released_ = status_.clock;
   }
   const Stamp first = twin_.stamp() + step_length_;
-  const Stamp until = std::min(limit, twin_.stamp() + MAX_CATCH_UP);
+  const Stamp until = std::min(limit(), twin_.stamp() + MAX_CATCH_UP);
   while (twin_.step(until))
   {
     after_step_();
   }
-  status_.lag = std::max<Stamp>(limit - twin_.stamp(), 0);
+  status_.lag = std::max<Stamp>(limit() - twin_.stamp(), 0);
   status_.largest_lag = std::max(status_.largest_lag, status_.lag);
   if (twin_.stamp() >= first)
   {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
@@ -146,17 +147,21 @@ public:
   std::thread::native_handle_type thread() { return thread_.native_handle(); }
 
 private:
+  using Inputs = std::vector<LiveInput>;
+
   void run();
   std::chrono::steady_clock::duration pause(Stamp next_awaited) const noexcept;
   void cycle() noexcept;
   bool readClock(Stamp now) noexcept;
-  void answerRequests(Stamp limit, std::size_t waiting) noexcept;
-  void forgetInputs(std::size_t count) noexcept;
-  void stampInputs(std::size_t waiting) noexcept;
-  bool tryStart(Stamp limit) noexcept;
-  void start(Stamp stamp) noexcept;
-  void handOverInputs() noexcept;
-  void catchUp(Stamp limit) noexcept;
+  void heed(Inputs& inputs) noexcept;
+  void answerRequests(Inputs& inputs) noexcept;
+  void forgetInputs(Inputs& inputs) noexcept;
+  void stampInputs(Inputs& inputs) noexcept;
+  bool tryStart(Inputs& inputs) noexcept;
+  void start(Stamp stamp, Inputs& inputs) noexcept;
+  void handOver(Inputs& inputs) noexcept;
+  Stamp limit() const noexcept { return std::max<Stamp>(status_.clock - input_delay_, 0); }
+  void catchUp() noexcept;
   void judgeLateness(Stamp due) noexcept;
   void keepTimes(std::chrono::steady_clock::time_point begin, std::chrono::steady_clock::time_point end) noexcept;
 
@@ -171,9 +176,9 @@ private:
   const Stamp deadline_;     ///< for each instant, after it was due [ns]
   const Stamp step_length_;  ///< [ns]
   const bool wait_for_first_input_;
-  std::vector<LiveInput> arrived_;  ///< not yet given to the twin, which takes them once it has started
-  Stamp released_{};                ///< no instant simulated now was due before this time of the clock [ns]
-  Stamp start_stamp_{};             ///< first instant since the last start or reset [ns]
+  std::size_t waiting_{};  ///< inputs of earlier cycles that wait for the start
+  Stamp released_{};       ///< no instant simulated now was due before this time of the clock [ns]
+  Stamp start_stamp_{};    ///< first instant since the last start or reset [ns]
   std::chrono::steady_clock::time_point start_time_;
   LoopStatus status_;
   TryLockValue<LoopStatus> shown_status_;

@@ -46,14 +46,21 @@ std::size_t placeOf(const sensor_msgs::JointState& message, const std::string& n
                                        static_cast<std::size_t>(found - message.name.begin());
 }
 
+sensor_msgs::JointState jointStatesOf(std::vector<std::string> names)
+{
+  sensor_msgs::JointState message;
+  message.name = std::move(names);
+  message.position.resize(message.name.size());
+  message.velocity.resize(message.name.size());
+  message.effort.resize(message.name.size());
+  return message;
+}
+
 sensor_msgs::JointState makeJointStates(const Parameters& parameters)
 {
   const JointNames names(parameters.joint.name);
-  auto message = makeMessage<sensor_msgs::JointState>(parameters);
-  message.name = { names.motor, names.joint };
-  message.position.resize(2);
-  message.velocity.resize(2);
-  message.effort.resize(2);
+  sensor_msgs::JointState message = jointStatesOf({ names.motor, names.joint });
+  message.header.frame_id = parameters.joint.name;
   return message;
 }
 

@@ -45,6 +45,9 @@ Message makeMessage(const Parameters& parameters)
   return message;
 }
 
+/// With a position, a velocity and an effort of each.
+sensor_msgs::JointState jointStatesOf(std::vector<std::string> names);
+
 /// Order of the entries: motor, joint.
 sensor_msgs::JointState makeJointStates(const Parameters& parameters);
 

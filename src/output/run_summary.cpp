@@ -7,6 +7,8 @@
 #include "output/interrupt.hpp"
 #include "output/report.hpp"
 
+#include "twin/step_counters.hpp"
+
 namespace hjt
 {
 void warn(std::uint64_t count, const std::string& what)
@@ -39,26 +41,21 @@ int RunSummary::report(const Twin& twin, bool json) const
   const double simulated = toSeconds(twin.stamp() - begin);
   const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   warnOf(counters);
-  printReport(json, { { "output", "", output },
-                      { "simulated_time", "simulated", simulated, "s" },
-                      { "run_time", "in", took, "s" },
-                      { "steps", "", counters.steps },
-                      { "motor_angle", "motor angle", outputs.motor_angle, "rad" },
-                      { "motor_velocity", "motor velocity", outputs.motor_velocity, "rad/s" },
-                      { "output_angle", "output angle", outputs.output_angle, "rad" },
-                      { "output_velocity", "output velocity", outputs.output_velocity, "rad/s" },
-                      { "energy_residual", "energy residual", outputs.energy_residual, "J" },
-                      { "inputs_accepted", "", counters.input.accepted },
-                      { "inputs_not_finite", "", counters.input.not_finite },
-                      { "torque_clamped", "", counters.torque_clamped },
-                      { "load_clamped", "", counters.load_clamped },
-                      { "overloads", "", counters.overloads },
-                      { "speed_limited", "", counters.speed_limited },
-                      { "command_timeouts", "", counters.command_timeouts },
-                      { "step_cuts", "", counters.step_cuts },
-                      { "jumps", "", counters.jumps },
-                      { "coarse_steps", "", counters.coarse_steps },
-                      { "solver_failures", "", counters.solver_failures } });
+  std::vector<ReportLine> lines{ { "output", "", output },
+                                 { "simulated_time", "simulated", simulated, "s" },
+                                 { "run_time", "in", took, "s" },
+                                 { "motor_angle", "motor angle", outputs.motor_angle, "rad" },
+                                 { "motor_velocity", "motor velocity", outputs.motor_velocity, "rad/s" },
+                                 { "output_angle", "output angle", outputs.output_angle, "rad" },
+                                 { "output_velocity", "output velocity", outputs.output_velocity, "rad/s" },
+                                 { "energy_residual", "energy residual", outputs.energy_residual, "J" },
+                                 { "inputs_accepted", "", counters.input.accepted },
+                                 { "inputs_not_finite", "", counters.input.not_finite } };
+  for (const auto& [name, count] : STEP_COUNTERS)
+  {
+    lines.push_back({ name, "", counters.*count });
+  }
+  printReport(json, lines);
   const int code = reportWritten(output, json);
   return code == EXIT_DONE && counters.solver_failures > 0 ? EXIT_FAILED : code;
 }

@@ -8,11 +8,11 @@
 #include <initializer_list>
 #include <optional>
 #include <regex>
-#include <sstream>
 
 #include <yaml-cpp/yaml.h>
 
 #include "base/number_text.hpp"
+#include "base/whole_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"
 
@@ -217,16 +217,15 @@ void eraseFaults(ParameterMap& map)
 
 void readYamlFile(const std::string& path, ParameterMap& map)
 {
-  std::ifstream file(path);
-  std::stringstream text;
-  if (!file || !(text << file.rdbuf()))
+  const std::optional<std::string> text = wholeFile(path);
+  if (!text || text->empty())
   {
     fail(path, "cannot be read, or is empty");
   }
   std::vector<YAML::Node> documents;
   try
   {
-    documents = YAML::LoadAll(text.str());
+    documents = YAML::LoadAll(*text);
   }
   catch (const YAML::Exception& error)
   {

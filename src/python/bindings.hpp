@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "harmonic_joint_twin/solver/solve_status.hpp"
+#include "twin/step_counters.hpp"
 
 // The module as a user sees it: names, units and shapes in python/harmonic_joint_twin/_hjt.pyi.
 namespace hjt
@@ -24,6 +25,17 @@ void bindTwin(py::module& module);
 void bindTwinBatch(py::module& module);
 void bindStatics(py::module& module);
 void bindTracking(py::module& module);
+
+/// By name: dict of str to int.
+inline py::dict stepCounters(const TwinCounters& counters)
+{
+  py::dict named;
+  for (const auto& [name, count] : STEP_COUNTERS)
+  {
+    named[name] = counters.*count;
+  }
+  return named;
+}
 
 /// No equilibrium was found; in Python a RuntimeError.
 class NotConverged : public std::runtime_error

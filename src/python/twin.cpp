@@ -196,23 +196,13 @@ void bindReadings(py::class_<TwinObject>& twin)
 
 py::dict namedCounters(const TwinCounters& counters)
 {
-  py::dict named;
-  named["steps"] = counters.steps;
-  named["solver_failures"] = counters.solver_failures;
-  named["step_cuts"] = counters.step_cuts;
-  named["jumps"] = counters.jumps;
-  named["coarse_steps"] = counters.coarse_steps;
+  py::dict named = stepCounters(counters);
   named["inputs_accepted"] = counters.input.accepted;
   named["inputs_late"] = counters.input.late;
   named["inputs_overflow"] = counters.input.overflow;
   named["faults_accepted"] = counters.faults.accepted;
   named["faults_late"] = counters.faults.late;
   named["faults_no_room"] = counters.faults.no_room;
-  named["torque_clamped"] = counters.torque_clamped;
-  named["load_clamped"] = counters.load_clamped;
-  named["overloads"] = counters.overloads;
-  named["speed_limited"] = counters.speed_limited;
-  named["command_timeouts"] = counters.command_timeouts;
   return named;
 }
 

@@ -25,19 +25,6 @@ Channel<Message> channelOf(const char* name)
   return { name, nullptr, SMALL_MESSAGE_SLOTS, nullptr, nullptr };
 }
 
-sensor_msgs::JointState makeArmStates(const ArmDescription& arm, const std::vector<std::size_t>& order)
-{
-  sensor_msgs::JointState message;
-  for (const std::size_t joint : order)
-  {
-    message.name.push_back(arm.joints[joint].name);
-  }
-  message.position.resize(order.size());
-  message.velocity.resize(order.size());
-  message.effort.resize(order.size());
-  return message;
-}
-
 geometry_msgs::PoseStamped makePose(const ArmDescription& arm)
 {
   geometry_msgs::PoseStamped message;
@@ -64,7 +51,7 @@ ArmPublishers::ArmPublishers(ros::NodeHandle& node, const ArmDescription& arm, c
   , period_(publishPeriod(arm.state_rate, twin.drive(0).parameters().solver.rate))
   , dynamics_(arm)
   , wanted_(arm.joints.size())
-  , states_(&parent_, channelOf<sensor_msgs::JointState>(topics::JOINT_STATES), makeArmStates(arm, order_))
+  , states_(&parent_, channelOf<sensor_msgs::JointState>(topics::JOINT_STATES), jointStatesOf(driverNames(arm)))
   , tool_(&node, channelOf<Pose>(TOOL_POSE), makePose(arm))
   , wanted_tool_(&node, channelOf<Pose>(WANTED_TOOL_POSE), makePose(arm))
   , thread_([this] { drain(); }, [this] { return isHeard(); })

@@ -6,8 +6,6 @@
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <utility>
 
@@ -15,6 +13,7 @@
 #include "base/source_hash.hpp"
 #include "base/text_hash.hpp"
 #include "base/text_stream.hpp"
+#include "base/whole_file.hpp"
 #include "params/field_table.hpp"
 #include "params/variants.hpp"
 #include "solver/arc_elimination.hpp"
@@ -47,8 +46,7 @@ std::string header(const Parameters& parameters, const std::string& faults)
   {
     if (path != NO_FILE)
     {
-      std::ifstream file(path, std::ios::binary);
-      text.append(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+      text += wholeFile(path).value_or("");
     }
     text += '\n';
   }

@@ -12,6 +12,7 @@ import functools
 import hashlib
 import json
 import os
+import pathlib
 import re
 import shlex
 import shutil
@@ -39,6 +40,11 @@ def file_hash(path):
         return text_hash(file.read())
 
 
+@functools.lru_cache(maxsize=None)
+def changed(path):
+    return os.path.getmtime(path)
+
+
 def output(command, folder=None):
     return subprocess.run(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=False).stdout
 
@@ -63,11 +69,28 @@ def commands(build, root):
         if os.path.relpath(path, root).split(os.sep)[0] not in FOLDERS:
             continue
         arguments = entry.get("arguments") or shlex.split(entry["command"])
+        rules = [f"{arguments[arguments.index('-o') + 1]}.d"] if "-o" in arguments else []
         for index in reversed([i for i, word in enumerate(arguments) if word.endswith("cmake_pch.hxx")]):
+            rules.append(f"{arguments[index]}.gch.d")
             del arguments[index - 1:index + 1]
         arguments = [word for word in arguments if word != "-Winvalid-pch"]
-        found[path] = {"directory": entry["directory"], "file": path, "arguments": arguments}
+        found[path] = {"directory": entry["directory"], "file": path, "arguments": arguments, "rules": rules}
     return dict(sorted(found.items()))
+
+
+def files_of_rule(rule, entry):
+    """What a rule of make depends on."""
+    return [os.path.join(entry["directory"], path) for path in re.sub(r"\\\n", " ", rule.decode()).split()[1:]]
+
+
+def files_of_build(entry):
+    """By the rules that the build has left, sooner read than made; none if one is missing, or a file is newer."""
+    try:
+        rules = [os.path.join(entry["directory"], rule) for rule in entry["rules"]]
+        files = [path for rule in rules for path in files_of_rule(pathlib.Path(rule).read_bytes(), entry)]
+        return files if max(map(changed, files)) <= changed(rules[0]) else []
+    except (IndexError, OSError, ValueError):
+        return []
 
 
 def key(entry, common, root):
@@ -78,12 +101,8 @@ def key(entry, common, root):
         place = arguments.index("-o")
         del arguments[place:place + 2]
     options = [word.replace(root, "") for word in arguments]
-    rule = output(arguments + ["-M"], entry["directory"]).decode()
-    files = re.sub(r"\\\n", " ", rule).split()[1:]
-    if not files:
-        return None
-    parts = [common, *options, *(file_hash(os.path.join(entry["directory"], path)) for path in files)]
-    return text_hash("\n".join(parts).encode())
+    files = files_of_build(entry) or files_of_rule(output(arguments + ["-M"], entry["directory"]), entry)
+    return text_hash("\n".join([common, *options, *map(file_hash, files)]).encode()) if files else None
 
 
 def check(build, root=project.ROOT):
@@ -93,6 +112,7 @@ def check(build, root=project.ROOT):
         wanted = " or ".join(map(str, VERSIONS))
         project.skip(f"needs clang-tidy {wanted}, here is {' '.join(version.decode().split())}")
     file_hash.cache_clear()
+    changed.cache_clear()
     entries = commands(build, root)
     common = text_hash(version) + file_hash(os.path.join(root, ".clang-tidy"))
     cache = cache_folder()
@@ -116,7 +136,7 @@ def check(build, root=project.ROOT):
     problems = [] if entries else ["src: no compiled sources found"]
     with tempfile.TemporaryDirectory() as database, concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         with open(os.path.join(database, "compile_commands.json"), "w", encoding="utf-8") as file:
-            json.dump(list(entries.values()), file)
+            json.dump([{**entry, "rules": None} for entry in entries.values()], file)
         for path, found in zip(entries, pool.map(findings, entries)):
             state = "known to be clean" if found is None else "FAULTS" if found else "clean"
             print(f"{os.path.relpath(path, root)}: {state}", flush=True)

@@ -78,18 +78,21 @@ TEST(Inbox, DropsWhatItCannotHoldAndCounts)
   inbox.push({ 0, InputKind::LOAD_TORQUE, std::numeric_limits<double>::infinity() });
   EXPECT_EQ(inbox.overflow(), 3U);
   EXPECT_EQ(inbox.notFinite(), 1U);
-  std::vector<LiveInput> inputs = Inbox::makeBuffer();
-  inbox.take(inputs);
-  ASSERT_EQ(inputs.size(), Inbox::CAPACITY);
-  EXPECT_EQ(inputs.back().stamp, static_cast<Stamp>(Inbox::CAPACITY) - 1);
-  // What has no room there waits in the inbox.
+  EXPECT_TRUE(inbox.use(
+      [](std::vector<LiveInput>& inputs)
+      {
+        ASSERT_EQ(inputs.size(), Inbox::CAPACITY);
+        EXPECT_EQ(inputs.back().stamp, static_cast<Stamp>(Inbox::CAPACITY) - 1);
+        inputs.erase(inputs.begin() + 1, inputs.end());
+      }));
+  // What was left there goes on waiting.
   inbox.push({ 7, InputKind::BRAKE, 1.0 });
-  inbox.take(inputs);
-  ASSERT_EQ(inputs.size(), Inbox::CAPACITY);
-  inputs.erase(inputs.begin() + 1, inputs.end());
-  inbox.take(inputs);
-  ASSERT_EQ(inputs.size(), 2U);
-  EXPECT_EQ(inputs.back().stamp, 7);
+  EXPECT_TRUE(inbox.use(
+      [](const std::vector<LiveInput>& inputs)
+      {
+        ASSERT_EQ(inputs.size(), 2U);
+        EXPECT_EQ(inputs.back().stamp, 7);
+      }));
 }
 
 TEST(SlotRing, HandsOverInOrderAndRefusesWhenFull)

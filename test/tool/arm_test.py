@@ -5,9 +5,12 @@ The synthetic arm's currents are those that the twin predicts; recordings of a U
 HJT_TELEMETRY_DIR, else in shared/telemetry beside the checkout.
 """
 import csv
+import functools
 import glob
 import math
 import os
+import subprocess
+import tempfile
 import unittest
 
 import genpy
@@ -62,23 +65,28 @@ def arm_bag(path, joints, seconds=20.0, effort=0.0):
             bag.write("/joint_states", state, at + genpy.Duration(0, 2_000_000))
 
 
+@functools.lru_cache(maxsize=None)
+def predicted(executable, degrees):
+    """Columns that the twins predict for that motion at a temperature, by joint."""
+    with tempfile.TemporaryDirectory() as folder:
+        with open(os.path.join(folder, "still.csv"), "w", encoding="ascii") as file:
+            file.write(arm_csv())
+        subprocess.run([executable, "follow", "still.csv", "--arm", "ur5", "--out", "robot", "--set",
+                        f"input.temperature={degrees}"], check=True, cwd=folder, stdout=subprocess.DEVNULL)
+        return [tool.read_columns(os.path.join(folder, "robot", f"{name}.csv")) for name in SHORT_NAMES]
+
+
 class ArmTest(tool.ToolTest):
     """A test with a made-up arm."""
 
     def columns(self, path):
-        with open(self.path(path)) as file:
-            rows = list(csv.DictReader(file))
-        return {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
+        return tool.read_columns(self.path(path))
 
     def robot_with_friction(self, raised, share=0.3, path="robot.csv", degrees=25.0, is_recorded=False, start=0.0):
         """A robot that is the twin at a temperature, friction of these joints raised by a share, with some noise."""
-        self.write("still.csv", arm_csv())
-        self.succeed("follow", "still.csv", "--arm", "ur5", "--out", "robot", "--force", "--set",
-                     f"input.temperature={degrees}")
         noise = np.random.default_rng(7)
         currents = []
-        for name, gain in zip(SHORT_NAMES, GAINS):
-            columns = self.columns(f"robot/{name}.csv")
+        for name, gain, columns in zip(SHORT_NAMES, GAINS, predicted(self.executable, degrees)):
             more = share / gain * columns["friction_torque"] if name in raised else 0.0
             currents.append(columns["current_predicted"] + more + noise.normal(0.0, 0.05, len(columns["time"])))
         temperature = (lambda joint, row: f"{degrees}") if is_recorded else None

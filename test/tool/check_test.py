@@ -4,10 +4,13 @@
 Recordings of a UR5 are used where they are at hand, in HJT_TELEMETRY_DIR, else in shared/telemetry beside the checkout.
 """
 import csv
+import functools
 import glob
 import json
 import os
 import shlex
+import subprocess
+import tempfile
 import unittest
 
 import genpy
@@ -42,17 +45,23 @@ def swinging(seconds=40.0, period=0.008):
     return columns
 
 
-def sound(test, seconds=40.0, period=0.008):
-    """The same with the currents that the twins of a UR5 predict, and some noise."""
+@functools.lru_cache(maxsize=None)
+def predicted(executable, seconds, period):
+    """The currents that the twins of a UR5 predict for that motion, by joint."""
     columns = swinging(seconds, period)
-    write_csv(test.path("motion.csv"), columns)
-    test.succeed("follow", "motion.csv", "--arm", "ur5", "--out", "predicted", "--force")
+    with tempfile.TemporaryDirectory() as folder:
+        motion = write_csv(os.path.join(folder, "motion.csv"), columns)
+        subprocess.run([executable, "follow", motion, "--arm", "ur5", "--out", os.path.join(folder, "out")], check=True,
+                       stdout=subprocess.DEVNULL)
+        rows = [tool.read_columns(os.path.join(folder, "out", f"{name}.csv")) for name in NAMES]
+    return [np.interp(columns["timestamp"], own["time"], own["current_predicted"]) for own in rows]
+
+
+def sound(test, seconds=40.0, period=0.008):
+    """The same with the currents that the twins predict, and some noise."""
+    columns = swinging(seconds, period)
     noise = np.random.default_rng(7)
-    for joint, name in enumerate(NAMES):
-        with open(test.path(f"predicted/{name}.csv"), encoding="ascii") as file:
-            rows = list(csv.DictReader(file))
-        current = np.interp(columns["timestamp"], [float(row["time"]) for row in rows],
-                            [float(row["current_predicted"]) for row in rows])
+    for joint, current in enumerate(predicted(test.executable, seconds, period)):
         columns[f"actual_current_{joint}"] = current + noise.normal(0.0, 0.02, len(current))
     return columns
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the tests of the offline tool share: running it, and small recordings to feed it."""
+import csv
 import json
 import math
 import os
@@ -12,6 +13,7 @@ import time
 import unittest
 
 import genpy
+import numpy as np
 import rosbag
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
@@ -107,6 +109,13 @@ def peak_memory(process):
             return next((1024 * int(line.split()[1]) for line in status if line.startswith("VmHWM")), 0)
     except OSError:
         return 0
+
+
+def read_columns(path):
+    """The numbers of a table, by column."""
+    with open(path, encoding="ascii") as file:
+        names, *rows = csv.reader(file)
+    return dict(zip(names, np.array(rows, dtype=float).T))
 
 
 def read_bytes(path):

@@ -21,6 +21,7 @@
 #include "bags/bag_writer.hpp"
 #include "base/number_table.hpp"
 #include "gear/ratio.hpp"
+#include "messages/conversions.hpp"
 #include "messages/topics.hpp"
 
 namespace hjt
@@ -89,13 +90,12 @@ public:
     , start_(static_cast<Stamp>(std::llround(options.start_time * 1e9)))
     , prefix_(options.joint_namespace + "/")
   {
+    std::vector<std::string> names;
     for (int i = 0; i < JOINTS; ++i)
     {
-      telemetry_.name.push_back(findUrJoint(std::to_string(i))->name);
+      names.push_back(findUrJoint(std::to_string(i))->name);
     }
-    telemetry_.position.resize(JOINTS);
-    telemetry_.velocity.resize(JOINTS);
-    telemetry_.effort.resize(JOINTS);
+    telemetry_ = jointStatesOf(names);
     command_.name = { joint.name };
     command_.effort.resize(1);
     load_ = command_;

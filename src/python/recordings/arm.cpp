@@ -275,17 +275,7 @@ public:
   py::dict counters() const
   {
     in_use_.refuse();
-    const TwinCounters counters = countersOf(moving_->twin());
-    py::dict named;
-    named["steps"] = counters.steps;
-    named["solver_failures"] = counters.solver_failures;
-    named["step_cuts"] = counters.step_cuts;
-    named["jumps"] = counters.jumps;
-    named["coarse_steps"] = counters.coarse_steps;
-    named["torque_clamped"] = counters.torque_clamped;
-    named["speed_limited"] = counters.speed_limited;
-    named["overloads"] = counters.overloads;
-    return named;
+    return stepCounters(countersOf(moving_->twin()));
   }
 
   std::vector<std::string> joints() const
