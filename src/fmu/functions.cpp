@@ -131,6 +131,9 @@ extern "C"
         log(environment, Status::ERROR, ERROR_CATEGORY, error.what());
       }
     }
+    catch (...)  // nothing of C++ leaves the unit
+    {
+    }
     return nullptr;
   }
   Instance* fmi3InstantiateModelExchange()
