@@ -172,6 +172,7 @@ void runArm(ros::NodeHandle& node, const std::string& name, const hjt::FoundPara
   {
     throw hjt::ParameterError("~description: no URDF on the parameter server under " + description);
   }
+  hjt::readLinks(arm);
   const std::string identified = node.param<std::string>(hjt::IDENTIFIED, "");
   const hjt::JointAffixes affixes{ node.param<std::string>(hjt::PREFIX, ""), node.param<std::string>(hjt::SUFFIX, "") };
   const hjt::ParameterMap overrides = hjt::readParameterServer(node.getNamespace());

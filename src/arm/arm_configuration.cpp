@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "base/joined.hpp"
-#include "gear/ratio.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "params/configuration_files.hpp"
 
@@ -172,11 +171,5 @@ std::vector<Parameters> armDrives(const ArmDescription& arm, const Configuration
   giveOwnSeeds(drives);
   addArmFaults(arm, faults, drives);
   return drives;
-}
-
-double takeInertiaInLoad(Parameters& parameters)
-{
-  const double ratio = nominalRatio(parameters.gear);
-  return ratio * ratio * std::exchange(parameters.telemetry.inertia_in_load, 0.0);
 }
 }  // namespace hjt

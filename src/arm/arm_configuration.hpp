@@ -4,9 +4,11 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "arm/arm_description.hpp"
+#include "gear/ratio.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"
 #include "twin/configuration_options.hpp"
 
@@ -60,5 +62,9 @@ std::vector<Parameters> armDrives(const ArmDescription& arm, const Configuration
 
 /// Takes out of a checked drive, whose load is that of the links, what a controller's torque holds of the motor beside
 /// it: at the joint [kg.m^2].
-double takeInertiaInLoad(Parameters& parameters);
+inline double takeInertiaInLoad(Parameters& parameters)
+{
+  const double ratio = nominalRatio(parameters.gear);
+  return ratio * ratio * std::exchange(parameters.telemetry.inertia_in_load, 0.0);
+}
 }  // namespace hjt

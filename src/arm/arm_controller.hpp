@@ -24,7 +24,8 @@ public:
   /// `rate`: of the control [Hz], a divisor of solver.rate.
   ArmController(const ArmDescription& arm, const ArmTwin& twin, std::vector<JointGains> gains, double rate);
 
-  void reset() noexcept;  ///< forgets its integrals
+  void reset() noexcept;                                                               ///< forgets its integrals
+  void setPayload(const Payload& payload) noexcept { dynamics_.setPayload(payload); }  ///< that it feeds forward
 
   /// To be called before each step that is due: commands each drive towards the set point of the step's end.
   void control(ArmTwin& twin, const std::vector<JointMotion>& set_point) noexcept;

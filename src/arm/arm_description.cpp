@@ -174,6 +174,7 @@ ArmDescription readArmDescription(const std::string& path)
   fields.refuseUnknownKeys();
   throwIfAny(fields.errors());
   arm.urdf = textOf(description, map.at("description").origin + ": description: ");
+  readLinks(arm);
   return arm;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,6 +35,27 @@ struct Payload
   std::array<double, 3> centre{};  ///< in the frame of the tip [m]
 };
 
+/// How a joint moves the link that it carries.
+enum class LinkMotion : std::uint8_t
+{
+  FIXED,
+  TURNS,
+  SLIDES
+};
+
+/// A link of an arm and the joint that carries it, as numbers.
+struct ArmLink
+{
+  LinkMotion motion{};
+  std::array<double, 3> axis{};      ///< of the joint, in the frame of the link before, of length 1; fixed: none [-]
+  std::array<double, 3> origin{};    ///< of the joint, in the frame of the link before [m]
+  std::array<double, 3> position{};  ///< of the link's frame in that of the link before, at an angle of 0 [m]
+  std::array<double, 9> rotation{};  ///< likewise, by rows [-]
+  double mass{};                     ///< [kg]
+  std::array<double, 3> centre{};    ///< of its mass, in its frame [m]
+  std::array<double, 6> inertia{};   ///< about its centre: xx, yy, zz, xy, xz, yz [kg.m^2]
+};
+
 /// An arm as its YAML file describes it, and the URDF that the file names.
 struct ArmDescription
 {
@@ -45,10 +67,16 @@ struct ArmDescription
   Payload payload;
   double state_rate{ 125.0 };    ///< of the controller's states [Hz]
   std::vector<ArmJoint> joints;  ///< from the base on; at least one
+  std::vector<ArmLink> links;    ///< from the base on to the tip, as readLinks finds them
 };
 
-/// @throws ParameterError naming file, line and key: unreadable, missing, unknown, mistyped or out of range.
+/// With its links. @throws ParameterError naming file, line and key: unreadable, missing, unknown, mistyped or out of
+/// range; and as readLinks.
 ArmDescription readArmDescription(const std::string& path);
+
+/// The links of the URDF's chain from base to tip. @throws ParameterError if it cannot be read, has no such chain, other
+/// joints than the description names, or masses, inertia, places or axes that no robot has.
+void readLinks(ArmDescription& arm);
 
 /// A controller's gains, SHORT_NAME.position ... of the joints that the file names. @throws ParameterError alike.
 void readGains(const std::string& path, ArmDescription& arm);

@@ -1,18 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "arm/arm_dynamics.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <cstring>
 #include <string>
 
 #include <kdl/chain.hpp>
 #include <kdl/chaindynparam.hpp>
 #include <kdl/chainidsolver_recursive_newton_euler.hpp>
-#include <kdl/tree.hpp>
-#include <kdl_parser/kdl_parser.hpp>
 
-#include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 
 namespace hjt
@@ -24,122 +18,39 @@ KDL::Vector vectorOf(const std::array<double, 3>& values)
   return { values[0], values[1], values[2] };
 }
 
-/// Of the '>' that ends a tag, not of one in an attribute.
-std::size_t endOfTag(const std::string& xml, std::size_t at)
+KDL::Joint jointOf(const ArmLink& link)
 {
-  constexpr const char* ENDS = ">\"'";
-  at = xml.find_first_of(ENDS, at);
-  while (at != std::string::npos && xml[at] != '>')
-  {
-    const std::size_t closing = xml.find(xml[at], at + 1);
-    at = closing == std::string::npos ? closing : xml.find_first_of(ENDS, closing + 1);
-  }
-  return at;
+  return link.motion == LinkMotion::FIXED ?
+             KDL::Joint(KDL::Joint::None) :
+             KDL::Joint(vectorOf(link.origin), vectorOf(link.axis),
+                        link.motion == LinkMotion::TURNS ? KDL::Joint::RotAxis : KDL::Joint::TransAxis);
 }
 
-/// Elements within elements, at most. A parser of XML may take a time that grows with the square of it.
-std::size_t depthOf(const std::string& xml)
+KDL::RigidBodyInertia bodyOf(const Payload& payload)
 {
-  std::size_t depth = 0;
-  std::size_t deepest = 0;
-  for (std::size_t at = xml.find('<'); at != std::string::npos; at = xml.find('<', at))
-  {
-    const auto begins = [&](const char* text) { return xml.compare(at, std::strlen(text), text) == 0; };
-    const std::size_t last = begins("<!--")      ? xml.find("-->", at) :
-                             begins("<![CDATA[") ? xml.find("]]>", at) :
-                                                   endOfTag(xml, at);
-    if (begins("</"))
-    {
-      depth -= depth > 0 ? 1 : 0;
-    }
-    else if (!begins("<!") && !begins("<?") && last != std::string::npos && xml[last - 1] != '/')
-    {
-      deepest = std::max(deepest, ++depth);
-    }
-    at = std::min(last, xml.size() - 1) + 1;
-  }
-  return deepest;
+  return KDL::RigidBodyInertia(payload.mass, vectorOf(payload.centre));
 }
 
-/// @throws ParameterError where the link that a joint carries, or its place, is none that a robot can have.
-void requirePlausible(const ArmDescription& arm, const KDL::Segment& segment)
-{
-  const KDL::Joint& joint = segment.getJoint();
-  const auto require = [&](bool good, const std::string& what)
-  {
-    if (!good)
-    {
-      throw ParameterError(arm.origin + ": its URDF: joint '" + joint.getName() + "' with link '" + segment.getName() +
-                           "': " + what);
-    }
-  };
-  // All written so that NaN fails.
-  const auto require_range = [&](const char* what, double value, const char* unit, const Range& range)
-  {
-    require(value >= range.min && value <= range.max, std::string(what) + " = " + numberText(value) + " [" + unit +
-                                                          "] is out of range, allowed: " + rangeText(range) + " [" +
-                                                          unit + "]");
-  };
-  const KDL::Vector axis = joint.JointAxis();
-  require(joint.getType() == KDL::Joint::None || std::abs(KDL::dot(axis, axis) - 1.0) < 1e-6,
-          "its axis has no direction");
-  KDL::RigidBodyInertia body = segment.getInertia();  // RefPoint() is not const
-  const KDL::RotationalInertia inertia = body.RefPoint(body.getCOG()).getRotationalInertia();
-  require_range("mass", body.getMass(), "kg", Range{ 0.0, 1e4 });
-  for (int i = 0; i < 3; ++i)
-  {
-    require_range("origin", segment.pose(0.0).p(i), "m", Range{ -100.0, 100.0 });
-    require_range("centre of mass", body.getCOG()(i), "m", Range{ -100.0, 100.0 });
-    for (int k = 0; k < 3; ++k)
-    {
-      // Rounding makes a little less of none.
-      require_range("inertia", inertia.data[3 * i + k], "kg.m^2", Range{ i == k ? -1e-9 : -1e6, 1e6 });
-    }
-  }
-}
-
+/// The links, the payload last.
 KDL::Chain chainOf(const ArmDescription& arm)
 {
-  constexpr std::size_t MAX_DEPTH = 100;
-  if (depthOf(arm.urdf) > MAX_DEPTH)
-  {
-    throw ParameterError(arm.origin + ": its URDF has more than " + std::to_string(MAX_DEPTH) +
-                         " elements within each other");
-  }
-  KDL::Tree tree;
-  if (!kdl_parser::treeFromString(arm.urdf, tree))
-  {
-    throw ParameterError(arm.origin + ": its URDF cannot be read");
-  }
   KDL::Chain chain;
-  if (!tree.getChain(arm.base, arm.tip, chain))
+  for (const ArmLink& link : arm.links)
   {
-    throw ParameterError(arm.origin + ": its URDF has no chain of links from '" + arm.base + "' to '" + arm.tip + "'");
+    const std::array<double, 9>& r = link.rotation;
+    const std::array<double, 6>& i = link.inertia;
+    chain.addSegment(KDL::Segment(
+        jointOf(link),
+        KDL::Frame(KDL::Rotation(r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8]), vectorOf(link.position)),
+        KDL::RigidBodyInertia(link.mass, vectorOf(link.centre),
+                              KDL::RotationalInertia(i[0], i[1], i[2], i[3], i[4], i[5]))));
   }
-  std::size_t found = 0;
-  for (const KDL::Segment& segment : chain.segments)
+  if (chain.getNrOfJoints() != arm.joints.size())
   {
-    requirePlausible(arm, segment);
-    const KDL::Joint& joint = segment.getJoint();
-    if (joint.getType() == KDL::Joint::None)
-    {
-      continue;
-    }
-    if (found >= arm.joints.size() || joint.getName() != arm.joints[found].name)
-    {
-      throw ParameterError(arm.origin + ": joint " + std::to_string(found) + " of the URDF's chain is '" +
-                           joint.getName() + "', not '" +
-                           (found < arm.joints.size() ? arm.joints[found].name : std::string("none")) + "'");
-    }
-    ++found;
+    throw ParameterError(arm.origin + ": " + std::to_string(arm.joints.size()) + " joints, but " +
+                         std::to_string(chain.getNrOfJoints()) + " links that move");
   }
-  if (found < arm.joints.size())
-  {
-    throw ParameterError(arm.origin + ": the URDF's chain has no joint '" + arm.joints[found].name + "'");
-  }
-  const KDL::RigidBodyInertia payload(arm.payload.mass, vectorOf(arm.payload.centre));
-  chain.addSegment(
-      KDL::Segment("payload", KDL::Joint("payload_fixed", KDL::Joint::None), KDL::Frame::Identity(), payload));
+  chain.addSegment(KDL::Segment(KDL::Joint(KDL::Joint::None), KDL::Frame::Identity(), bodyOf(arm.payload)));
   return chain;
 }
 }  // namespace
@@ -159,6 +70,22 @@ struct ArmDynamics::Solver
     , forces(chain.getNrOfSegments(), KDL::Wrench::Zero())
   {
   }
+
+  /// KDL's solvers refer to the chain that they were made for.
+  Solver(const Solver& other)
+    : chain(other.chain)
+    , gravity(other.gravity)
+    , recursion(chain, gravity)
+    , parameters(chain, gravity)
+    , position(other.position)
+    , velocity(other.velocity)
+    , acceleration(other.acceleration)
+    , torque(other.torque)
+    , mass(other.mass)
+    , forces(other.forces)
+  {
+  }
+  Solver& operator=(const Solver&) = delete;
 
   void setPositions(const std::vector<JointMotion>& motion) noexcept
   {
@@ -198,6 +125,11 @@ struct ArmDynamics::Solver
 
 ArmDynamics::ArmDynamics(const ArmDescription& arm) : solver_(std::make_unique<Solver>(arm)) {}
 
+ArmDynamics::ArmDynamics(const ArmDynamics& other)
+  : solver_(std::make_unique<Solver>(*other.solver_)), wrench_(other.wrench_)
+{
+}
+
 ArmDynamics::~ArmDynamics() = default;
 ArmDynamics::ArmDynamics(ArmDynamics&&) noexcept = default;
 
@@ -214,6 +146,11 @@ double ArmDynamics::mass() const noexcept
     mass += segment.getInertia().getMass();
   }
   return mass;
+}
+
+void ArmDynamics::setPayload(const Payload& payload) noexcept
+{
+  solver_->chain.segments.back().setInertia(bodyOf(payload));
 }
 
 void ArmDynamics::torques(const std::vector<JointMotion>& motion, std::vector<double>& torques) noexcept

@@ -35,15 +35,15 @@ struct ToolPose
 };
 
 /// Rigid-body dynamics of an arm: weight, inertia, Coriolis and coupling of all links and the payload, by KDL's
-/// recursive Newton-Euler. Links alone: the motors' inertia is that of the drives. After construction nothing throws or
-/// allocates.
+/// recursive Newton-Euler. Links alone: the motors' inertia is that of the drives. After construction nothing but a copy
+/// throws or allocates.
 class ArmDynamics
 {
 public:
-  /// @throws ParameterError if the URDF cannot be read, has no chain from base to tip, has other joints than the
-  /// description names, or masses, inertia, places or axes that no robot has.
+  /// @throws ParameterError if not as many of the links move as the arm has joints.
   explicit ArmDynamics(const ArmDescription& arm);
   ~ArmDynamics();
+  ArmDynamics(const ArmDynamics& other);
   ArmDynamics(ArmDynamics&&) noexcept;
 
   std::size_t joints() const noexcept;
@@ -55,6 +55,8 @@ public:
 
   /// Force [N] and moment about the tip [N.m] on the tip from outside, in the frame of the base; counts in `torques`.
   void setWrench(const ArmWrench& wrench) noexcept { wrench_ = wrench; }
+
+  void setPayload(const Payload& payload) noexcept;  ///< in place of the description's
 
   /// Inertia of links and payload by joints, symmetric [kg.m^2]; `mass`: of the joints' size.
   void massMatrix(const std::vector<JointMotion>& motion, Eigen::MatrixXd& mass) noexcept;

@@ -10,6 +10,18 @@
 
 namespace hjt
 {
+void ArmMotion::goOn(double time, const std::vector<JointMotion>& joints) noexcept
+{
+  // What follows at once is the last one changed.
+  if (goes_on_ && time > end())
+  {
+    std::swap(points_[0], points_[1]);
+  }
+  goes_on_ = true;
+  points_[1].time = time;
+  points_[1].joints = joints;
+}
+
 void ArmMotion::at(double time, std::vector<JointMotion>& motion) noexcept
 {
   if (repeats_ && time > end())
@@ -21,7 +33,7 @@ void ArmMotion::at(double time, std::vector<JointMotion>& motion) noexcept
     const ArmSetPoint& point = time <= begin() ? points_.front() : points_.back();
     for (std::size_t i = 0; i < motion.size(); ++i)
     {
-      motion[i] = { point.joints[i].position, 0.0, 0.0 };
+      motion[i] = goes_on_ ? point.joints[i] : JointMotion{ point.joints[i].position, 0.0, 0.0 };
     }
     return;
   }

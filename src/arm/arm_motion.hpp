@@ -44,6 +44,9 @@ public:
   /// Fast for times that go forward; `motion`: of the joints' size.
   void at(double time, std::vector<JointMotion>& motion) noexcept;
 
+  /// This set point follows the last in place of the first of two; the motion need not end there at rest.
+  void goOn(double time, const std::vector<JointMotion>& joints) noexcept;
+
   /// The first set point becomes this one, of as many joints.
   void beginFrom(const std::vector<JointMotion>& joints) noexcept { points_.front().joints = joints; }
 
@@ -51,6 +54,7 @@ private:
   std::vector<ArmSetPoint> points_;
   ArmAccelerations accelerations_;
   bool repeats_;
+  bool goes_on_{};      // set points follow one by one
   std::size_t last_{};  // set point not after the time asked for last
 };
 

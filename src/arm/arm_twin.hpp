@@ -36,7 +36,8 @@ struct ArmCoupling
 /// extrapolated from the steps before; M, which changes with the pose alone, is taken less often. The rotors belong to
 /// the drives: what their casings' mass is in the links counts there.
 ///
-/// After construction nothing throws or allocates unless stated.
+/// A copy is at the same instant and goes on with the same bits. After construction nothing but a copy throws or
+/// allocates unless stated.
 class ArmTwin
 {
 public:
@@ -69,8 +70,11 @@ public:
   /// On the tip, from the next step on, in the frame of the base.
   void setWrench(const ArmWrench& wrench) noexcept { dynamics_.setWrench(wrench); }
 
+  /// At the tip, from the next step on.
+  void setPayload(const Payload& payload) noexcept { dynamics_.setPayload(payload); }
+
   /// What the drives delivered less what the arm holds, since reset [J]: the error of the coupling. Not meaningful once
-  /// a wrench was set.
+  /// a wrench or another payload was set.
   double energyResidual() noexcept;
   double deliveredEnergy() const noexcept;  ///< by all drives to the links since reset [J]
 

@@ -51,6 +51,7 @@ MovingArm::MovingArm(const ArmDescription& arm, const std::vector<Parameters>& d
   : twin_(arm, withFaultsInMotion(drives), anglesOf(motion.points().front()), surface_source)
   , controller_(arm, twin_, gainsOf(arm, drives), CONTROL_RATE)
   , motion_(std::move(motion))
+  , motion_start_(motion_.begin())
   , commanded_(motion_)
   , set_point_(drives.size())
 {
@@ -133,6 +134,12 @@ void MovingArm::follow(ArmMotion& motion) noexcept
   command_begin_ = std::max(twin_.stamp(), motion_begin_);  // never while the brakes hold
 }
 
+void MovingArm::setPayload(const Payload& payload) noexcept
+{
+  twin_.setPayload(payload);
+  controller_.setPayload(payload);
+}
+
 void MovingArm::wantedAt(Stamp stamp, std::vector<JointMotion>& motion) noexcept
 {
   if (stop_)
@@ -143,8 +150,12 @@ void MovingArm::wantedAt(Stamp stamp, std::vector<JointMotion>& motion) noexcept
     }
     return;
   }
-  ArmMotion& followed = is_commanded_ ? commanded_ : motion_;
-  followed.at(followed.begin() + toSeconds(stamp - (is_commanded_ ? command_begin_ : motion_begin_)), motion);
+  if (is_commanded_)
+  {
+    commanded_.at(commanded_.begin() + toSeconds(stamp - command_begin_), motion);
+    return;
+  }
+  motion_.at(motion_start_ + toSeconds(stamp - motion_begin_), motion);
 }
 
 JointReading MovingArm::reading(std::size_t joint) const noexcept

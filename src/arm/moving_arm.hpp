@@ -32,7 +32,7 @@ struct ProtectiveStop
 /// Where a joint is STOP_DEVIATION off its set point, or faster than STOP_SPEED of its limit, the controller stops all:
 /// the motors give no torque, the brakes engage, until the next reset. The bounds are assumed; the maker gives none.
 ///
-/// After construction nothing throws or allocates.
+/// After construction nothing but a copy throws or allocates.
 class MovingArm
 {
 public:
@@ -56,6 +56,13 @@ public:
   /// takes the place of its first.
   void follow(ArmMotion& motion) noexcept;
 
+  /// For a motion that comes point by point: goes from the last set point to this one, which is due at `time` of the
+  /// motion given at construction, later than the last. That motion has two set points, of which the first is the start.
+  void goOn(double time, const std::vector<JointMotion>& set_point) noexcept { motion_.goOn(time, set_point); }
+
+  /// At the tip, from the next step on; the controller knows of it.
+  void setPayload(const Payload& payload) noexcept;
+
   /// Present set point; `motion`: of the joints' size.
   void wanted(std::vector<JointMotion>& motion) noexcept { wantedAt(twin_.stamp(), motion); }
 
@@ -75,6 +82,7 @@ private:
   ArmTwin twin_;
   ArmController controller_;
   ArmMotion motion_;
+  double motion_start_;  // of its times [s]
   ArmMotion commanded_;
   bool is_commanded_{};
   Stamp motion_begin_{};

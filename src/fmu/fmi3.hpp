@@ -16,6 +16,9 @@ enum class Status : int
   FATAL
 };
 
+constexpr const char* ERROR_CATEGORY = "logStatusError";
+constexpr const char* WARNING_CATEGORY = "logStatusWarning";
+
 using ValueReference = std::uint32_t;
 using LogMessage = void (*)(void* environment, Status status, const char* category, const char* message);
 }  // namespace hjt::fmu

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// FMI 3.0's C functions for co-simulation; names, arguments and the order of calls are the standard's. Whatever a
-/// drive throws becomes fmi3Error and a message; nothing is printed.
+/// instance throws becomes fmi3Error and a message; nothing is printed.
 
 #include <cstdint>
 #include <exception>
@@ -10,49 +10,47 @@
 #include <type_traits>
 #include <utility>
 
-#include "fmu/drive.hpp"
 #include "fmu/fmi3.hpp"
+#include "fmu/instance.hpp"
 
 namespace hjt::fmu
 {
 namespace
 {
-constexpr const char* ERROR_CATEGORY = "logStatusError";
-
-/// What `call` does with the drive, as a status; false is a warning. A null instance is an error too.
+/// What `call` does with the instance, as a status; false is a warning. A null instance is an error too.
 template <class Call>
-Status guarded(Drive* drive, const Call& call) noexcept
+Status guarded(Instance* instance, const Call& call) noexcept
 {
-  if (drive == nullptr)
+  if (instance == nullptr)
   {
     return Status::ERROR;
   }
   try
   {
-    if constexpr (std::is_void_v<decltype(call(*drive))>)
+    if constexpr (std::is_void_v<decltype(call(*instance))>)
     {
-      call(*drive);
+      call(*instance);
       return Status::OK;
     }
     else
     {
-      return call(*drive) ? Status::OK : Status::WARNING;
+      return call(*instance) ? Status::OK : Status::WARNING;
     }
   }
   catch (const std::exception& error)
   {
-    drive->log(Status::ERROR, ERROR_CATEGORY, error.what());
+    instance->log(Status::ERROR, ERROR_CATEGORY, error.what());
   }
   catch (...)
   {
-    drive->log(Status::ERROR, ERROR_CATEGORY, "failed without a reason");
+    instance->log(Status::ERROR, ERROR_CATEGORY, "failed without a reason");
   }
   return Status::ERROR;
 }
 
-Status refuse(Drive* drive, const char* name) noexcept
+Status refuse(Instance* instance, const char* name) noexcept
 {
-  return guarded(drive, [&](Drive&) { throw CallError(std::string(name) + ": this unit has none of it"); });
+  return guarded(instance, [&](Instance&) { throw CallError(std::string(name) + ": this unit has none of it"); });
 }
 
 template <class Pointer>
@@ -64,48 +62,37 @@ void require(Pointer pointer, const char* name)
   }
 }
 
-/// The variables and values of a call.
-template <class Element>
-struct Values
+void requireArrays(const References& of, const void* values)
 {
-  const ValueReference* references;
-  std::size_t references_count;
-  Element* values;
-  std::size_t count;
-
-  void check() const
+  if (of.size > 0)
   {
-    if (references_count > 0)
-    {
-      require(references, "valueReferences");
-      require(values, "values");
-    }
+    require(of.references, "valueReferences");
+    require(values, "values");
   }
-};
+}
 
 template <class Number>
-Status getNumbers(Drive* drive, Type type, const Values<Number>& to) noexcept
+Status getNumbers(Instance* instance, Type type, const References& of, Number* values) noexcept
 {
-  return guarded(drive,
-                 [&](Drive& self)
+  return guarded(instance,
+                 [&](Instance& self)
                  {
-                   to.check();
-                   self.get(type, to.references, to.references_count, to.count,
+                   requireArrays(of, values);
+                   self.get(type, of,
                             [&](std::size_t place, double number, const std::string&)
-                            { to.values[place] = static_cast<Number>(number); });
+                            { values[place] = static_cast<Number>(number); });
                  });
 }
 
 template <class Number>
-Status setNumbers(Drive* drive, Type type, const Values<const Number>& from) noexcept
+Status setNumbers(Instance* instance, Type type, const References& of, const Number* values) noexcept
 {
-  return guarded(drive,
-                 [&](Drive& self)
+  return guarded(instance,
+                 [&](Instance& self)
                  {
-                   from.check();
-                   self.set(type, from.references, from.references_count, from.count,
-                            [&](std::size_t place, Value& value, std::size_t element)
-                            { value.numbers[element] = static_cast<double>(from.values[place]); });
+                   requireArrays(of, values);
+                   self.setNumbers(type, of,
+                                   [values](std::size_t place) { return static_cast<double>(values[place]); });
                  });
 }
 }  // namespace
@@ -117,19 +104,25 @@ extern "C"
     return "3.0";
   }
 
-  Status fmi3SetDebugLogging(Drive* drive, bool, std::size_t, const char* const*)
+  Status fmi3SetDebugLogging(Instance* instance, bool, std::size_t, const char* const*)
   {
-    return guarded(drive, [](Drive&) {});
+    return guarded(instance, [](Instance&) {});
   }
 
-  Drive* fmi3InstantiateCoSimulation(const char*, const char* token, const char* resources, bool, bool, bool, bool,
-                                     const ValueReference*, std::size_t, void* environment, LogMessage log, void*)
+  Instance* fmi3InstantiateCoSimulation(const char* name, const char* token, const char* resources, bool, bool,
+                                        bool event_mode, bool, const ValueReference*, std::size_t intermediate,
+                                        void* environment, LogMessage log, void*)
   {
     try
     {
+      require(name, "instanceName");
+      if (event_mode || intermediate > 0)
+      {
+        throw CallError("eventModeUsed and requiredIntermediateVariables: this unit has none of it");
+      }
       require(token, "instantiationToken");
       require(resources, "resourcePath");
-      return std::make_unique<Drive>(resources, token, environment, log).release();
+      return std::make_unique<Instance>(resources, token, environment, log).release();
     }
     catch (const std::exception& error)
     {
@@ -138,138 +131,138 @@ extern "C"
         log(environment, Status::ERROR, ERROR_CATEGORY, error.what());
       }
     }
+    catch (...)  // nothing of C++ leaves the unit
+    {
+    }
     return nullptr;
   }
-  Drive* fmi3InstantiateModelExchange()
+  Instance* fmi3InstantiateModelExchange()
   {
     return nullptr;
   }
-  Drive* fmi3InstantiateScheduledExecution()
+  Instance* fmi3InstantiateScheduledExecution()
   {
     return nullptr;
   }
 
-  void fmi3FreeInstance(Drive* drive)
+  void fmi3FreeInstance(Instance* instance)
   {
-    const std::unique_ptr<Drive> freed(drive);
+    const std::unique_ptr<Instance> freed(instance);
   }
 
-  Status fmi3EnterInitializationMode(Drive* drive, bool, double, double start, bool stop_defined, double stop)
+  Status fmi3EnterInitializationMode(Instance* instance, bool, double, double start, bool stop_defined, double stop)
   {
-    return guarded(drive, [&](Drive& self)
+    return guarded(instance, [&](Instance& self)
                    { self.enterInitialization(start, stop_defined ? std::optional(stop) : std::nullopt); });
   }
-  Status fmi3ExitInitializationMode(Drive* drive)
+  Status fmi3ExitInitializationMode(Instance* instance)
   {
-    return guarded(drive, [](Drive& self) { self.exitInitialization(); });
+    return guarded(instance, [](Instance& self) { self.exitInitialization(); });
   }
-  Status fmi3Terminate(Drive* drive)
+  Status fmi3Terminate(Instance* instance)
   {
-    return guarded(drive, [](Drive& self) { self.terminate(); });
+    return guarded(instance, [](Instance& self) { self.terminate(); });
   }
-  Status fmi3Reset(Drive* drive)
+  Status fmi3Reset(Instance* instance)
   {
-    return guarded(drive, [](Drive& self) { self.reset(); });
+    return guarded(instance, [](Instance& self) { self.reset(); });
   }
 
-  Status fmi3GetFloat64(Drive* drive, const ValueReference* references, std::size_t references_count, double* values,
-                        std::size_t count)
+  Status fmi3GetFloat64(Instance* instance, const ValueReference* references, std::size_t references_count,
+                        double* values, std::size_t count)
   {
-    return getNumbers<double>(drive, Type::FLOAT64, { references, references_count, values, count });
+    return getNumbers(instance, Type::FLOAT64, { references, references_count, count }, values);
   }
-  Status fmi3GetInt32(Drive* drive, const ValueReference* references, std::size_t references_count,
+  Status fmi3GetInt32(Instance* instance, const ValueReference* references, std::size_t references_count,
                       std::int32_t* values, std::size_t count)
   {
-    return getNumbers<std::int32_t>(drive, Type::INT32, { references, references_count, values, count });
+    return getNumbers(instance, Type::INT32, { references, references_count, count }, values);
   }
-  Status fmi3GetBoolean(Drive* drive, const ValueReference* references, std::size_t references_count, bool* values,
-                        std::size_t count)
+  Status fmi3GetBoolean(Instance* instance, const ValueReference* references, std::size_t references_count,
+                        bool* values, std::size_t count)
   {
-    return getNumbers<bool>(drive, Type::BOOLEAN, { references, references_count, values, count });
+    return getNumbers(instance, Type::BOOLEAN, { references, references_count, count }, values);
   }
-  Status fmi3GetString(Drive* drive, const ValueReference* references, std::size_t references_count,
+  Status fmi3GetString(Instance* instance, const ValueReference* references, std::size_t references_count,
                        const char** values, std::size_t count)
   {
-    return guarded(drive,
-                   [&](Drive& self)
+    return guarded(instance,
+                   [&](Instance& self)
                    {
-                     Values<const char*>{ references, references_count, values, count }.check();
-                     self.get(Type::STRING, references, references_count, count,
+                     const References of{ references, references_count, count };
+                     requireArrays(of, values);
+                     self.get(Type::STRING, of,
                               [&](std::size_t place, double, const std::string& text)
                               { values[place] = text.c_str(); });
                    });
   }
 
-  Status fmi3SetFloat64(Drive* drive, const ValueReference* references, std::size_t references_count,
+  Status fmi3SetFloat64(Instance* instance, const ValueReference* references, std::size_t references_count,
                         const double* values, std::size_t count)
   {
-    return setNumbers<double>(drive, Type::FLOAT64, { references, references_count, values, count });
+    return setNumbers(instance, Type::FLOAT64, { references, references_count, count }, values);
   }
-  Status fmi3SetInt32(Drive* drive, const ValueReference* references, std::size_t references_count,
+  Status fmi3SetInt32(Instance* instance, const ValueReference* references, std::size_t references_count,
                       const std::int32_t* values, std::size_t count)
   {
-    return setNumbers<std::int32_t>(drive, Type::INT32, { references, references_count, values, count });
+    return setNumbers(instance, Type::INT32, { references, references_count, count }, values);
   }
-  Status fmi3SetBoolean(Drive* drive, const ValueReference* references, std::size_t references_count,
+  Status fmi3SetBoolean(Instance* instance, const ValueReference* references, std::size_t references_count,
                         const bool* values, std::size_t count)
   {
-    return setNumbers<bool>(drive, Type::BOOLEAN, { references, references_count, values, count });
+    return setNumbers(instance, Type::BOOLEAN, { references, references_count, count }, values);
   }
-  Status fmi3SetString(Drive* drive, const ValueReference* references, std::size_t references_count,
+  Status fmi3SetString(Instance* instance, const ValueReference* references, std::size_t references_count,
                        const char* const* values, std::size_t count)
   {
-    return guarded(drive,
-                   [&](Drive& self)
+    return guarded(instance,
+                   [&](Instance& self)
                    {
-                     Values<const char* const>{ references, references_count, values, count }.check();
-                     self.set(Type::STRING, references, references_count, count,
-                              [&](std::size_t place, Value& value, std::size_t)
-                              {
-                                require(values[place], "a text");
-                                value.text = values[place];
-                              });
+                     const References of{ references, references_count, count };
+                     requireArrays(of, values);
+                     self.setTexts(of, values);
                    });
   }
 
-  Status fmi3GetFMUState(Drive* drive, Drive::State** state)
+  Status fmi3GetFMUState(Instance* instance, Instance::State** state)
   {
-    return guarded(drive,
-                   [&](Drive& self)
+    return guarded(instance,
+                   [&](Instance& self)
                    {
                      require(state, "FMUState");
-                     Drive::State copy = self.state();
+                     Instance::State copy = self.state();
                      if (*state == nullptr)
                      {
-                       *state = std::make_unique<Drive::State>().release();
+                       *state = std::make_unique<Instance::State>().release();
                      }
                      **state = std::move(copy);
                    });
   }
-  Status fmi3SetFMUState(Drive* drive, const Drive::State* state)
+  Status fmi3SetFMUState(Instance* instance, const Instance::State* state)
   {
-    return guarded(drive,
-                   [&](Drive& self)
+    return guarded(instance,
+                   [&](Instance& self)
                    {
                      require(state, "FMUState");
                      self.takeUp(*state);
                    });
   }
-  Status fmi3FreeFMUState(Drive* drive, Drive::State** state)
+  Status fmi3FreeFMUState(Instance* instance, Instance::State** state)
   {
-    return guarded(drive,
-                   [&](Drive&)
+    return guarded(instance,
+                   [&](Instance&)
                    {
                      require(state, "FMUState");
-                     const std::unique_ptr<Drive::State> freed(*state);
+                     const std::unique_ptr<Instance::State> freed(*state);
                      *state = nullptr;
                    });
   }
 
-  Status fmi3DoStep(Drive* drive, double at, double length, bool, bool* event_needed, bool* terminate,
+  Status fmi3DoStep(Instance* instance, double at, double length, bool, bool* event_needed, bool* terminate,
                     bool* early_return, double* last_time)
   {
-    return guarded(drive,
-                   [&](Drive& self)
+    return guarded(instance,
+                   [&](Instance& self)
                    {
                      for (bool* flag : { event_needed, terminate, early_return })
                      {
@@ -282,7 +275,7 @@ extern "C"
                      *last_time = self.time();
                      if (!converged)
                      {
-                       self.log(Status::WARNING, "logStatusWarning",
+                       self.log(Status::WARNING, WARNING_CATEGORY,
                                 "a step found no equilibrium: the last good state is held");
                      }
                      return converged;
@@ -290,10 +283,10 @@ extern "C"
   }
 
   // What this unit does not do; the arguments behind the instance are not looked at.
-#define HJT_REFUSED(name)        \
-  Status name(Drive* drive)      \
-  {                              \
-    return refuse(drive, #name); \
+#define HJT_REFUSED(name)           \
+  Status name(Instance* instance)   \
+  {                                 \
+    return refuse(instance, #name); \
   }
   HJT_REFUSED(fmi3EnterEventMode)
   HJT_REFUSED(fmi3EnterStepMode)

@@ -33,6 +33,10 @@ const std::array UNITS{
   UnitRow{ "A", { 0, 0, 0, 1 } },
   UnitRow{ "K", { 0, 0, 0, 0, 1 } },
   UnitRow{ "degC", { 0, 0, 0, 0, 1 }, 273.15 },
+  UnitRow{ "rad/s^2", { 0, 0, -2, 0, 0, 1 } },
+  UnitRow{ "m/s^2", { 0, 1, -2 } },
+  UnitRow{ "1/s", { 0, 0, -1 } },
+  UnitRow{ "N.m.s/rad", { 1, 2, -1, 0, 0, -1 } },
   UnitRow{ "N.m/rad", { 1, 2, -2, 0, 0, -1 } },
   UnitRow{ "N/m", { 1, 0, -2 } },
   UnitRow{ "kg.m^2", { 1, 2 } },
@@ -40,6 +44,11 @@ const std::array UNITS{
   UnitRow{ "J/K", { 1, 2, -2, 0, -1 } },
   UnitRow{ "W", { 1, 2, -3 } },
   UnitRow{ "Hz", { 0, 0, -1 } },
+  UnitRow{ "m/s", { 0, 1, -1 } },
+  UnitRow{ "m^2/s", { 0, 2, -1 } },
+  UnitRow{ "N.s/m", { 1, 0, -1 } },
+  UnitRow{ "1/K", { 0, 0, 0, 0, -1 } },
+  UnitRow{ "W/(N.m)^2", { -1, -2, 1 } },
 };
 
 std::string attribute(const char* name, const std::string& value)
@@ -118,9 +127,9 @@ std::string element(const FmuVariable& variable, std::size_t reference)
 }
 }  // namespace
 
-std::string modelDescription(const Parameters& parameters, const std::string& token)
+std::string modelDescription(const UnitDescription& unit)
 {
-  const std::vector<FmuVariable> all = variables(parameters);
+  const std::vector<FmuVariable>& all = unit.variables;
   std::set<std::string> units;
   std::string elements;
   std::string outputs;
@@ -134,21 +143,25 @@ std::string modelDescription(const Parameters& parameters, const std::string& to
     }
     if (all[i].causality == Causality::OUTPUT)
     {
-      outputs += "    <Output" + attribute("valueReference", std::to_string(i)) + "/>\n";
+      // After a step an output is what it is, whatever the inputs become.
+      outputs +=
+          "    <Output" + attribute("valueReference", std::to_string(i)) + attribute("dependencies", "") + "/>\n";
       unknowns += "    <InitialUnknown" + attribute("valueReference", std::to_string(i)) + "/>\n";
     }
   }
   return std::string("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiModelDescription fmiVersion=\"3.0\"") +
-         attribute("modelName", parameters.joint.name) + attribute("instantiationToken", token) +
-         attribute("description", "Tooth-level twin of a robot joint's harmonic drive") +
-         attribute("license", "BSD-3-Clause") + attribute("generationTool", "harmonic_joint_twin " HJT_VERSION) +
-         attribute("variableNamingConvention", "flat") + ">\n  <CoSimulation" +
-         attribute("modelIdentifier", MODEL_IDENTIFIER) + attribute("canGetAndSetFMUState", "true") +
+         attribute("modelName", unit.name) + attribute("instantiationToken", unit.token) +
+         attribute("description", unit.meaning) + attribute("license", "BSD-3-Clause") +
+         attribute("generationTool", "harmonic_joint_twin " HJT_VERSION) +
+         attribute("variableNamingConvention", "structured") + ">\n  <CoSimulation" +
+         attribute("modelIdentifier", unit.library) + attribute("canGetAndSetFMUState", "true") +
          attribute("canHandleVariableCommunicationStepSize", "true") +
-         attribute("fixedInternalStepSize", numberText(1.0 / parameters.solver.rate)) + "/>\n  <UnitDefinitions>\n" +
+         attribute("fixedInternalStepSize", numberText(1.0 / unit.rate)) + "/>\n  <UnitDefinitions>\n" +
          joined(units, "", unitDefinition) + "  </UnitDefinitions>\n" +
          "  <LogCategories>\n    <Category name=\"logStatusWarning\"/>\n    <Category name=\"logStatusError\"/>\n"
-         "  </LogCategories>\n  <DefaultExperiment startTime=\"0\" stopTime=\"1\" stepSize=\"0.001\"/>\n"
+         "  </LogCategories>\n  <DefaultExperiment startTime=\"0\" stopTime=\"1\"" +
+         attribute("stepSize", numberText(unit.step)) +
+         "/>\n"
          "  <ModelVariables>\n" +
          elements + "  </ModelVariables>\n  <ModelStructure>\n" + outputs + unknowns +
          "  </ModelStructure>\n</fmiModelDescription>\n";

@@ -8,8 +8,18 @@
 
 namespace hjt::fmu
 {
-constexpr const char* MODEL_IDENTIFIER = "harmonic_joint_twin";  ///< of the library in the unit, without its ending
+/// What stands in a unit's description.
+struct UnitDescription
+{
+  std::string name;
+  std::string meaning;
+  std::string library;  ///< in the unit, without its ending
+  std::string token;    ///< see instantiationToken
+  double rate{};        ///< of its own steps [Hz]
+  double step{};        ///< of an importer, by default [s]
+  std::vector<FmuVariable> variables;
+};
 
-/// FMI 3.0's modelDescription.xml of the drive. `token`: see instantiationToken.
-std::string modelDescription(const Parameters& parameters, const std::string& token);
+/// FMI 3.0's modelDescription.xml.
+std::string modelDescription(const UnitDescription& unit);
 }  // namespace hjt::fmu

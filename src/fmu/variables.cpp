@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"
 #include "health/indicator_table.hpp"
 #include "params/choices.hpp"
@@ -34,6 +35,9 @@ constexpr std::array LEFT_OUT{ "joint.",
                                "brake.engaged_at_start",
                                "gear.teeth_flexspline",
                                "gear.teeth_circular_spline" };
+
+/// What the arm around a drive gives, or needs as it is.
+constexpr std::array LEFT_OUT_IN_ARM{ "output.load_inertia", "output.gravity_", "solver.stepper" };
 
 double finite(double value)
 {
@@ -104,12 +108,15 @@ struct ParameterMaker
   void add(FmuVariable variable)
   {
     const auto begins = [&](const char* left_out) { return variable.name.rfind(left_out, 0) == 0; };
-    if (std::none_of(LEFT_OUT.begin(), LEFT_OUT.end(), begins))
+    const bool given = !prefix.empty() && std::any_of(LEFT_OUT_IN_ARM.begin(), LEFT_OUT_IN_ARM.end(), begins);
+    if (!given && std::none_of(LEFT_OUT.begin(), LEFT_OUT.end(), begins))
     {
+      variable.name = prefix + variable.name;
       all.push_back(std::move(variable));
     }
   }
 
+  const std::string& prefix;
   std::vector<FmuVariable>& all;
 };
 
@@ -121,18 +128,22 @@ Fault startingFault(FaultKind kind, const Parameters& parameters)
   return found != parameters.faults.end() ? *found : Fault{ kind, 0.0, firstPlace(kind) };
 }
 
-void addInputs(const Parameters& parameters, std::vector<FmuVariable>& all)
+void addInputs(const Parameters& parameters, const std::string& prefix, std::vector<FmuVariable>& all)
 {
   const double load = parameters.output.load_torque_limit;
-  const auto add = [&](const char* name, const char* unit, const char* meaning, double start, const Range& range) {
-    all.push_back({ name, unit, meaning, Causality::INPUT, Type::FLOAT64, { { start } }, range });
+  const auto add = [&](const char* name, const char* unit, const char* meaning, double start, const Range& range)
+  {
+    all.push_back({ prefix + name, unit, meaning, Causality::INPUT, Type::FLOAT64, { { start } }, range });
+    all.back().is_clamped = all.back().unit == "N.m";
   };
-  all.push_back({ "time", "s", "simulated time", Causality::INDEPENDENT, Type::FLOAT64 });
-  add("motor_torque", "N.m", "torque commanded of the motor; clamped to motor.torque_limit", 0.0, { -1e6, 1e6 });
+  add("motor_torque", "N.m",
+      prefix.empty() ? "torque commanded of the motor; clamped to motor.torque_limit" :
+                       "torque commanded of the motor where the arm has no controller; clamped to motor.torque_limit",
+      0.0, { -1e6, 1e6 });
   add("load_torque", "N.m", "external torque at the output, > 0 resists positive motion", 0.0, { -load, load });
   add("temperature", "degC", "of the drive, or with thermal.model = two_nodes of its surroundings",
       parameters.input.temperature, { MIN_TEMPERATURE, MAX_TEMPERATURE });
-  all.push_back({ "brake",
+  all.push_back({ prefix + "brake",
                   "-",
                   "engages the brake, after brake.delay",
                   Causality::INPUT,
@@ -140,7 +151,7 @@ void addInputs(const Parameters& parameters, std::vector<FmuVariable>& all)
                   { { parameters.brake.engaged_at_start ? 1.0 : 0.0 } } });
   for (const FaultDescription& kind : FAULT_DESCRIPTIONS)
   {
-    all.push_back({ std::string("fault_") + kind.name,
+    all.push_back({ prefix + "fault_" + kind.name,
                     "-",
                     std::string("severity; 1: ") + kind.severity,
                     Causality::INPUT,
@@ -152,16 +163,16 @@ void addInputs(const Parameters& parameters, std::vector<FmuVariable>& all)
   }
 }
 
-void addOutputs(const Parameters& parameters, std::vector<FmuVariable>& all)
+void addOutputs(const Parameters& parameters, const std::string& prefix, std::vector<FmuVariable>& all)
 {
   for (const ScalarOutput& output : scalarOutputs())
   {
-    all.push_back({ output.name, output.unit, output.description, Causality::OUTPUT, output.type });
+    all.push_back({ prefix + output.name, output.unit, output.description, Causality::OUTPUT, output.type });
   }
   const auto teeth = static_cast<std::size_t>(parameters.gear.teeth_flexspline);
   for (const ToothOutput& output : toothOutputs())
   {
-    all.push_back({ output.name,
+    all.push_back({ prefix + output.name,
                     "N",
                     output.description,
                     Causality::OUTPUT,
@@ -291,16 +302,27 @@ std::size_t placeReference(std::size_t kind)
   return FIRST_OUTPUT + scalarOutputs().size() + toothOutputs().size() + kind;
 }
 
-std::vector<FmuVariable> variables(const Parameters& parameters)
+FmuVariable timeVariable()
 {
-  std::vector<FmuVariable> all;
-  addInputs(parameters, all);
-  addOutputs(parameters, all);
+  return { "time", "s", "simulated time", Causality::INDEPENDENT, Type::FLOAT64 };
+}
+
+std::vector<FmuVariable> driveVariables(const Parameters& parameters)
+{
+  std::vector<FmuVariable> all{ timeVariable() };
+  addDrive(parameters, "", all);
+  return all;
+}
+
+void addDrive(const Parameters& parameters, const std::string& prefix, std::vector<FmuVariable>& all)
+{
+  addInputs(parameters, prefix, all);
+  addOutputs(parameters, prefix, all);
   for (const FaultDescription& kind : FAULT_DESCRIPTIONS)
   {
     const Range places{ static_cast<double>(firstPlace(kind.kind)),
                         static_cast<double>(lastPlace(kind.kind, parameters)) };
-    all.push_back({ std::string("fault_") + kind.name + "_place",
+    all.push_back({ prefix + "fault_" + kind.name + "_place",
                     "-",
                     placeText(kind.kind, parameters),
                     Causality::PARAMETER,
@@ -308,9 +330,8 @@ std::vector<FmuVariable> variables(const Parameters& parameters)
                     { { static_cast<double>(startingFault(kind.kind, parameters).place) } },
                     places });
   }
-  ParameterMaker maker{ all };
+  ParameterMaker maker{ prefix, all };
   visitFields(parameters, maker);
-  return all;
 }
 
 std::string instantiationToken(const std::string& text)
@@ -318,5 +339,14 @@ std::string instantiationToken(const std::string& text)
   TextStream token;
   token << "harmonic_joint_twin " << HJT_VERSION << ' ' << std::hex << textHash(text);
   return token.str();
+}
+
+void requireToken(const std::string& token, const std::string& text)
+{
+  if (token != instantiationToken(text))
+  {
+    throw InputError("the instantiation token '" + token + "' is not that of this library and its resources, '" +
+                     instantiationToken(text) + "'");
+  }
 }
 }  // namespace hjt::fmu

@@ -48,12 +48,15 @@ struct FmuVariable
   std::optional<Range> range{};
   bool is_array{};
   bool is_discrete{};  ///< of inputs of type FLOAT64
+  bool is_clamped{};   ///< of inputs: a number beyond the range is taken and clamped
 };
 
-/// The inputs, by value reference.
-enum InputReference : unsigned
+constexpr std::size_t TIME = 0;  ///< value reference in every unit
+
+/// The variables of a drive, counted from its first one on: inputs, scalar outputs, tooth outputs, places of the faults,
+/// then the parameters that shape it.
+enum DriveReference : unsigned
 {
-  TIME,
   MOTOR_TORQUE,
   LOAD_TORQUE,
   TEMPERATURE,
@@ -83,15 +86,21 @@ struct ToothOutput
 };
 const std::vector<ToothOutput>& toothOutputs();
 
-/// All variables: time, inputs, scalar outputs, tooth outputs, places of the faults, then the parameters that shape the
-/// drive. What the twin is beside a robot or publishes is left out, and what sizes or steps would change with.
-std::vector<FmuVariable> variables(const Parameters& parameters);
+FmuVariable timeVariable();
 
-/// Value reference of the place of a kind of fault.
+/// Adds those of a drive, with this prefix of their names. What the twin is beside a robot or publishes is left out,
+/// and what sizes or steps would change with; within an arm also what the arm gives.
+void addDrive(const Parameters& parameters, const std::string& prefix, std::vector<FmuVariable>& all);
+
+/// All variables of a unit that is one drive: time, then the drive.
+std::vector<FmuVariable> driveVariables(const Parameters& parameters);
+
+/// Of the place of a kind of fault, counted from the drive's first variable on.
 std::size_t placeReference(std::size_t kind);
 
-/// Of the text of PARAMETER_FILE in this version: ties description, library and that file to each other.
+/// Of the texts of the resources in this version: ties description, library and resources to each other.
 std::string instantiationToken(const std::string& text);
+void requireToken(const std::string& token, const std::string& text);  ///< @throws InputError if it is another
 
 /// Parameters that name a file, which lies with the description; their values then are file names.
 constexpr const char* FILE_PARAMETERS[]{ "indicators.signatures", "manufacture.flexspline_pitch_table",

@@ -180,11 +180,11 @@ TEST(ArmDynamics, WorkOfASwingThatReturnsIsZero)
 
 TEST(ArmDynamics, SaysWhatTheDescriptionLacks)
 {
-  const auto text = [](const ArmDescription& arm)
+  const auto text = [](ArmDescription arm)
   {
     try
     {
-      const ArmDynamics dynamics(arm);
+      readLinks(arm);
     }
     catch (const ParameterError& error)
     {

@@ -15,64 +15,13 @@
 #include "arm/moving_arm.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"
+#include "test/core/rods.hpp"
 #include "test/support/allocation_count.hpp"
 
 namespace hjt
 {
 namespace
 {
-constexpr const char* CONFIG = HJT_TEST_CONFIG_DIR;
-
-/// One joint about `axis` with a rod of 4 kg whose centre lies 0.3 m from it; a second one, of 2 kg, at its end.
-std::string urdf(const std::string& axis, int joints, const std::string& base_rpy = "0 0 0")
-{
-  std::string text =
-      "<robot name='rods'><link name='world'/><link name='base'/>"
-      "<joint name='stand' type='fixed'><parent link='world'/><child link='base'/><origin rpy='" +
-      base_rpy + "'/></joint>";
-  std::string parent = "base";
-  for (int i = 0; i < joints; ++i)
-  {
-    const std::string number = std::to_string(i);
-    text += "<joint name='joint_" + number + "' type='revolute'><parent link='" + parent + "'/><child link='rod_" +
-            number + "'/><origin xyz='" + (i == 0 ? "0 0 0" : "0.5 0 0") + "'/><axis xyz='" + axis +
-            "'/><limit effort='1' velocity='1' lower='-9' upper='9'/></joint><link name='rod_" + number +
-            "'><inertial><origin xyz='0.3 0 0'/><mass value='" + (i == 0 ? "4" : "2") +
-            "'/><inertia ixx='0.01' iyy='0.08' izz='0.08' ixy='0' ixz='0' iyz='0'/></inertial></link>";
-    parent = "rod_" + number;
-  }
-  return text + "</robot>";
-}
-
-ArmDescription rods(const std::string& axis, int joints)
-{
-  ArmDescription arm;
-  arm.origin = "rods";
-  arm.urdf = urdf(axis, joints);
-  arm.base = "world";
-  arm.tip = "rod_" + std::to_string(joints - 1);
-  arm.gravity = { 0.0, 0.0, -9.81 };
-  for (int i = 0; i < joints; ++i)
-  {
-    ArmJoint joint;
-    joint.name = "joint_" + std::to_string(i);
-    joint.short_name = joint.name;
-    arm.joints.push_back(joint);
-  }
-  return arm;
-}
-
-Parameters drive(double rate = 10e3)
-{
-  ParameterMap map;
-  readDefaultConfiguration(CONFIG, map);
-  Parameters parameters = parseParameters(map);
-  parameters.output.gravity_torque = 0.0;
-  parameters.solver.rate = rate;
-  parameters.brake.delay = 0.0;
-  return parameters;
-}
-
 /// Motor torque that comes in smoothly [N.m].
 double torqueAt(double time)
 {
@@ -193,6 +142,7 @@ TEST(ArmTwin, FrameAndGravityTurnedTogetherChangeNothing)
   {
     ArmDescription description = rods("0 1 0", 2);
     description.urdf = urdf("0 1 0", 2, rpy);
+    readLinks(description);
     description.gravity = gravity;
     ArmTwin arm(description, { drive(), drive() }, { 0.3, -0.8 });
     run(arm, 0.1);

@@ -28,7 +28,7 @@ SEES = {
     "studies": ["twin", "life"],
     "python": ["tracking"],
     "live": ["twin"],
-    "fmu": ["twin"],
+    "fmu": ["arm"],
     "output": ["twin"],
     "messages": ["tracking", "life"],
     "bags": ["messages"],

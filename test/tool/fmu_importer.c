@@ -5,9 +5,10 @@
 ///
 ///   fmu_importer LIBRARY TOKEN RESOURCES
 ///
-///   new I | free I | enter I START STOP | exit I | terminate I | reset I | step I TIME LENGTH [TIMES]
+///   new I [EVENTS] | free I | enter I START STOP | exit I | terminate I | reset I | step I TIME LENGTH [TIMES]
 ///   get I TYPE REFERENCE COUNT | set I TYPE REFERENCE COUNT VALUE ...    TYPE: Float64, Int32, Boolean, String
 ///   keep I S | restore I S | drop I S | call I NAME                       I, S: 0 ... 7; STOP: nan where there is none
+///   allocations I: how often memory was asked for in steps so far
 #include <dlfcn.h>
 #include <math.h>
 #include <stdbool.h>
@@ -27,6 +28,17 @@ enum
 };
 
 static void* library;
+static bool steps_now;
+static unsigned long allocations;
+
+void* __libc_malloc(size_t size);
+
+/// In place of the C library's, for the unit too; operator new ends here.
+void* malloc(size_t size)
+{
+  allocations += steps_now;
+  return __libc_malloc(size);
+}
 
 static void* function(const char* name)
 {
@@ -44,11 +56,11 @@ static void logMessage(void* environment, Status status, const char* category, c
   fprintf(stderr, "%s %d %s %s\n", (const char*)environment, status, category, message);
 }
 
-static void* instantiate(const char* token, const char* resources)
+static void* instantiate(const char* token, const char* resources, bool events)
 {
   void* (*make)(const char*, const char*, const char*, bool, bool, bool, bool, const Reference*, size_t, void*, Log,
                 void*) = function("fmi3InstantiateCoSimulation");
-  return make("drive", token, resources, false, true, false, false, NULL, 0, "drive", logMessage, NULL);
+  return make("drive", token, resources, false, true, events, false, NULL, 0, "drive", logMessage, NULL);
 }
 
 static Status get(void* instance, const char* type, Reference reference, size_t count)
@@ -116,7 +128,9 @@ static Status step(void* instance)
     bool terminated = true;
     bool early = true;
     double last = NAN;
+    steps_now = true;
     status = call(instance, from + i * length, length, true, &event, &terminated, &early, &last);
+    steps_now = false;
     if (status == 0 && (event || terminated || early || fabs(last - (from + (i + 1) * length)) > 1e-12))
     {
       printf("wrong results of fmi3DoStep ");
@@ -155,6 +169,42 @@ static Status enter(void* instance)
   return call(instance, false, 0.0, start, !isnan(stop), stop);
 }
 
+/// A command that answers with its status alone.
+static Status run(const char* command, char** argv, void** instance, void** states)
+{
+  if (strcmp(command, "new") == 0)
+  {
+    *instance = instantiate(argv[2], argv[3], strtok(NULL, " \n") != NULL);
+    return *instance == NULL;
+  }
+  if (strcmp(command, "free") == 0)
+  {
+    void (*call)(void*) = function("fmi3FreeInstance");
+    call(*instance);
+    *instance = NULL;
+    return 0;
+  }
+  if (strcmp(command, "enter") == 0)
+  {
+    return enter(*instance);
+  }
+  if (strcmp(command, "step") == 0)
+  {
+    return step(*instance);
+  }
+  if (strcmp(command, "set") == 0)
+  {
+    const char* type = strtok(NULL, " \n");
+    const Reference reference = (Reference)number();
+    return set(*instance, type, reference, (size_t)number());
+  }
+  if (strcmp(command, "keep") == 0 || strcmp(command, "drop") == 0 || strcmp(command, "restore") == 0)
+  {
+    return callWithState(command, *instance, &states[(int)number()]);
+  }
+  return callNamed(command, *instance);
+}
+
 int main(int argc, char** argv)
 {
   static char line[1 << 16];
@@ -173,48 +223,21 @@ int main(int argc, char** argv)
   {
     const char* command = strtok(line, " \n");
     const int i = (int)number();
-    Status status = 0;
-    if (strcmp(command, "new") == 0)
+    if (strcmp(command, "allocations") == 0)
     {
-      instances[i] = instantiate(argv[2], argv[3]);
-      status = instances[i] == NULL;
+      printf("%lu\n", allocations);
     }
-    else if (strcmp(command, "free") == 0)
-    {
-      void (*call)(void*) = function("fmi3FreeInstance");
-      call(instances[i]);
-      instances[i] = NULL;
-    }
-    else if (strcmp(command, "enter") == 0)
-    {
-      status = enter(instances[i]);
-    }
-    else if (strcmp(command, "step") == 0)
-    {
-      status = step(instances[i]);
-    }
-    else if (strcmp(command, "get") == 0 || strcmp(command, "set") == 0)
+    else if (strcmp(command, "get") == 0)
     {
       const char* type = strtok(NULL, " \n");
       const Reference reference = (Reference)number();
-      const size_t count = (size_t)number();
-      if (command[0] == 'g')
-      {
-        get(instances[i], type, reference, count);
-        printf("\n");
-        continue;
-      }
-      status = set(instances[i], type, reference, count);
-    }
-    else if (strcmp(command, "keep") == 0 || strcmp(command, "drop") == 0 || strcmp(command, "restore") == 0)
-    {
-      status = callWithState(command, instances[i], &states[(int)number()]);
+      get(instances[i], type, reference, (size_t)number());
+      printf("\n");
     }
     else
     {
-      status = callNamed(command, instances[i]);
+      printf("%d\n", run(command, argv, &instances[i], states));
     }
-    printf("%d\n", status);
   }
   return 0;
 }

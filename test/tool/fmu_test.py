@@ -1,113 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The co-simulation unit: its description, and its library as a small importer runs it. Arguments: the tool, the
-importer. The schema is looked for in HJT_FMI_SCHEMAS, else in shared/fmi beside the checkout."""
-import csv
+importer."""
 import math
 import os
+import re
 import shutil
 import subprocess
-import sys
-import xml.etree.ElementTree
-import zipfile
 
 import tool
-
-IMPORTER = sys.argv.pop(2)
-SCHEMAS = os.environ.get("HJT_FMI_SCHEMAS", os.path.join(os.path.dirname(tool.CHECKOUT), "shared", "fmi"))
-RATE = 10000.0
-OK, ERROR = 0, 3
-
-
-class Unit:
-    """A unit that has been unpacked, and one process that has loaded its library."""
-
-    def __init__(self, folder):
-        self.root = xml.etree.ElementTree.parse(os.path.join(folder, "modelDescription.xml")).getroot()
-        self.variables = {each.get("name"): each for each in self.root.find("ModelVariables")}
-        model = self.root.find("CoSimulation").get("modelIdentifier")
-        self.library = os.path.join(folder, "binaries", os.listdir(os.path.join(folder, "binaries"))[0], model + ".so")
-        self.process = subprocess.Popen(
-            [IMPORTER, self.library, self.root.get("instantiationToken"), os.path.join(folder, "resources", "")],
-            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True)
-        self.version = self.process.stdout.readline().strip()
-
-    def close(self):
-        """What the unit said to its log."""
-        _, said = self.process.communicate(timeout=60)
-        assert self.process.returncode == 0, said
-        return said
-
-    def stop(self):
-        self.process.kill()
-        self.process.wait()
-        for pipe in self.process.stdin, self.process.stdout, self.process.stderr:
-            pipe.close()
-
-    def ask(self, *words):
-        print(*words, file=self.process.stdin, flush=True)
-        return self.process.stdout.readline().split()
-
-    def call(self, *words):
-        """The status."""
-        answer = self.ask(*words)
-        assert len(answer) == 1, answer
-        return int(answer[0])
-
-    def size(self, name):
-        dimension = self.variables[name].find("Dimension")
-        return 1 if dimension is None else int(dimension.get("start"))
-
-    def get(self, name, instance=0):
-        variable = self.variables[name]
-        status, *values = self.ask("get", instance, variable.tag, variable.get("valueReference"), self.size(name))
-        assert status == "0", (name, status)
-        return values[0] if variable.tag == "String" else [float.fromhex(value) for value in values]
-
-    def set(self, name, *values, instance=0):
-        variable = self.variables[name]
-        return self.call("set", instance, variable.tag, variable.get("valueReference"), len(values), *values)
-
-    def outputs(self, instance=0):
-        return {name: self.get(name, instance) for name, variable in self.variables.items()
-                if variable.get("causality") == "output"}
-
-    def start(self, instance=0, begin=0.0, stop="nan", **values):
-        """An instance that has been initialised with these values."""
-        assert self.call("new", instance) == OK
-        for name, value in values.items():
-            assert self.set(name.replace("__", "."), *(value if isinstance(value, list) else [value]),
-                            instance=instance) == OK, name
-        assert self.call("enter", instance, begin, stop) == OK
-        assert self.call("exit", instance) == OK
-
-
-class Fmu(tool.ToolTest):
-    def unit(self, *options):
-        if tool.SLOWER != 1.0:
-            self.skipTest("a library with a sanitizer wants it in its importer too")
-        file = self.path("joint.fmu")
-        self.succeed("export", "--format", "fmu", "--out", file, "--force", *options)
-        folder = self.path("unit")
-        shutil.rmtree(folder, ignore_errors=True)
-        with zipfile.ZipFile(file) as archive:
-            self.assertIsNone(archive.testzip())
-            archive.extractall(folder)
-        unit = Unit(folder)
-        self.addCleanup(unit.stop)
-        return unit
-
-    def simulated(self, *options):
-        """Last row of a run of the tool by the names of the unit."""
-        self.succeed("simulate", "--out", self.path("run.csv"), "--force", *options)
-        with open(self.path("run.csv"), encoding="ascii") as file:
-            row = list(csv.DictReader(file))[-1]
-        names = {"motor_torque": "motor_torque_applied", "temperature": "grease_temperature", "brake": "brake_engaged"}
-        return {names.get(name, name): [float(value)] for name, value in row.items()
-                if name not in ("time", "load_torque")}
-
-    def assert_same(self, unit, row, instance=0):
-        outputs = unit.outputs(instance)
-        self.assertEqual({name: outputs[name] for name in row}, row)
+from fmu_unit import ERROR, IMPORTER, OK, RATE, SCHEMAS, Fmu
 
 
 class Description(Fmu):
@@ -115,13 +16,21 @@ class Description(Fmu):
         schema = os.path.join(SCHEMAS, "fmi3", "fmi3ModelDescription.xsd")
         if not os.path.exists(schema) or not shutil.which("xmllint"):
             self.skipTest("no xmllint, or no schema in HJT_FMI_SCHEMAS = " + SCHEMAS)
-        self.unit("--set", 'joint.name="a<b> & \\"c\\""')
-        done = subprocess.run(["xmllint", "--noout", "--schema", schema, self.path("unit/modelDescription.xml")],
-                              stderr=subprocess.PIPE, universal_newlines=True, check=False)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        for options in ["--set", 'joint.name="a<b> & \\"c\\""'], ["--arm", "ur10e"]:
+            self.unit(*options)
+            done = subprocess.run(["xmllint", "--noout", "--schema", schema, self.path("a unit/modelDescription.xml")],
+                                  stderr=subprocess.PIPE, universal_newlines=True, check=False)
+            self.assertEqual(done.returncode, 0, done.stderr)
 
     def test_says_what_the_standard_wants_beyond_the_schema(self):
+        self.check_description(self.unit("--arm", "ur5"))
         unit = self.unit()
+        self.check_description(unit)
+        limit = unit.variables["motor.torque_limit"]
+        self.assertEqual((limit.get("unit"), limit.get("min")), ("N.m", "0.0"))
+        self.assertEqual(float(limit.get("start")), self.succeed_json("parameters")["motor"]["torque_limit"])
+
+    def check_description(self, unit):
         variables = list(unit.root.find("ModelVariables"))
         self.assertEqual(len(unit.variables), len(variables))
         self.assertEqual(len({each.get("valueReference") for each in variables}), len(variables))
@@ -134,18 +43,28 @@ class Description(Fmu):
             self.assertEqual(starts, each.get("causality") in ("input", "parameter"), each.get("name"))
             continuous = each.tag == "Float64" and each.get("causality") != "parameter"
             self.assertEqual(each.get("variability") == "continuous",
-                             continuous and not each.get("name").startswith("fault_"), each.get("name"))
+                             continuous and "fault_" not in each.get("name"), each.get("name"))
         self.assertEqual([each.get("name") for each in by_causality["independent"]], ["time"])
         outputs = [each.get("valueReference") for each in by_causality["output"]]
         for part in "Output", "InitialUnknown":
             self.assertEqual([each.get("valueReference") for each in unit.root.find("ModelStructure").iter(part)],
                              outputs)
-        limit = unit.variables["motor.torque_limit"]
-        self.assertEqual((limit.get("unit"), limit.get("min")), ("N.m", "0.0"))
-        self.assertEqual(float(limit.get("start")), self.succeed_json("parameters")["motor"]["torque_limit"])
+        self.assertEqual(unit.root.get("variableNamingConvention"), "structured")
+        name = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)*$")
+        for each in variables:
+            self.assertRegex(each.get("name"), name)
+            is_number = each.tag in ("Float64", "Int32")
+            starts = [float(value) for value in each.get("start", "").split()] if is_number else []
+            self.assertIn(len(starts), (0, unit.size(each.get("name"))), each.get("name"))
+            for value in starts:
+                self.assertLessEqual(float(each.get("min", "-inf")), value, each.get("name"))
+                self.assertGreaterEqual(float(each.get("max", "inf")), value, each.get("name"))
 
     def test_shows_the_functions_of_the_standard_alone(self):
-        unit = self.unit()
+        self.check_library(self.unit("--arm", "ur5"))
+        self.check_library(self.unit())
+
+    def check_library(self, unit):
         self.assertEqual(unit.version, "3.0")
         if not shutil.which("nm"):
             self.skipTest("no nm")
@@ -154,12 +73,15 @@ class Description(Fmu):
         self.assertEqual([line for line in symbols if not line.startswith("fmi3")], [])
         needed = subprocess.run(["ldd", unit.library], stdout=subprocess.PIPE, universal_newlines=True,
                                 check=True).stdout
-        self.assertNotIn("harmonic_joint_twin_core", needed)
+        for other in "harmonic_joint_twin_core", "libkdl_parser", "libros":
+            self.assertNotIn(other, needed)
         self.assertNotIn("not found", needed)
 
     def test_wants_a_file(self):
         self.fail_with(2, ["--out"], "export", "--format", "fmu")
         self.fail_with(2, ["--out"], "export", "--format", "urdf", "--out", self.path("joint.urdf"))
+        self.fail_with(2, ["--arm"], "export", "--format", "urdf", "--arm", "ur5")
+        self.fail_with(2, ["--arm"], "export", "--format", "fmu", "--out", "a.fmu", "--identified", self.directory)
 
 
 class Run(Fmu):
@@ -231,6 +153,7 @@ class States(Fmu):
             for instance in 0, 1:
                 self.assertEqual(unit.call("step", instance, 0.01 * i, 0.01), OK)
         self.assertEqual(unit.call("step", 2, 0.0, 0.01, 20), OK)
+        self.assertEqual(unit.ask("allocations", 0), ["0"])
         self.assertEqual(unit.outputs(2), unit.outputs(0))
         self.assertNotEqual(unit.outputs(1), unit.outputs(0))
         unit.start(3, begin=-2.5, motor_torque=0.4)
@@ -298,6 +221,7 @@ class States(Fmu):
         self.assertEqual(unit.call("exit", 0), ERROR)
         self.assertEqual(unit.set("thermal.model", "none"), OK)
         self.assertEqual(unit.call("exit", 0), OK)
+        self.assertEqual(unit.call("new", 6, "events"), 1)
         for words in [("step", 0, 0.5, 0.1), ("step", 0, 0.0, 0.0), ("step", 0, 0.0, "nan"), ("step", 0, 0.0, -0.1),
                       ("exit", 0), ("enter", 0, 0.0, 1.0)]:
             self.assertEqual(unit.call(*words), ERROR, words)
@@ -312,7 +236,7 @@ class States(Fmu):
     def test_wants_its_own_token_and_resources(self):
         unit = self.unit()
         unit.close()
-        for token, resources in (("another", self.path("unit/resources")),
+        for token, resources in (("another", self.path("a unit/resources")),
                                  (unit.root.get("instantiationToken"), self.path("nowhere"))):
             done = subprocess.run([IMPORTER, unit.library, token, resources], input="new 0\n", stdout=subprocess.PIPE,
                                   stderr=subprocess.PIPE, universal_newlines=True, check=True)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <iostream>
 #include <string>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "output/exit_code.hpp"
 #include "output/output_file.hpp"
 
+#include "arm/arm_configuration.hpp"
 #include "base/number_text.hpp"
 #include "base/whole_file.hpp"
 #include "base/xml_text.hpp"
@@ -32,6 +34,8 @@ struct ExportOptions : CommonOptions
 {
   std::string format;
   std::string out;
+  std::string arm;
+  std::string identified;
 };
 
 /// What other simulators can hold of the joint; all at the joint.
@@ -165,30 +169,56 @@ std::string mjcf(const ExportedJoint& joint, const Parameters& parameters)
          "\"/>\n  </actuator>\n</mujoco>\n";
 }
 
-/// The library of yaml-cpp that this program has loaded, which another system may lack; none where it is linked in.
-std::vector<std::string> loadedYamlCpp()
+/// Those libraries, by the beginning of their names, that this program has loaded and another system may lack; none
+/// where they are linked in.
+std::vector<std::string> loadedLibraries(const std::vector<std::string>& names)
 {
-  std::vector<std::string> paths;
+  struct Search
+  {
+    const std::vector<std::string>& names;
+    std::vector<std::string> paths;
+  } search{ names, {} };
   dl_iterate_phdr(
-      [](dl_phdr_info* info, std::size_t, void* found)
+      [](dl_phdr_info* info, std::size_t, void* data)
       {
+        auto& wanted = *static_cast<Search*>(data);
         const std::string path = info->dlpi_name;
-        if (path.find("/libyaml-cpp.so") != std::string::npos)
+        if (std::any_of(wanted.names.begin(), wanted.names.end(),
+                        [&](const std::string& name) { return path.find('/' + name + ".so") != std::string::npos; }))
         {
-          static_cast<std::vector<std::string>*>(found)->push_back(path);
+          wanted.paths.push_back(path);
         }
         return 0;
       },
-      &paths);
-  return paths;
+      &search);
+  return search.paths;
+}
+
+std::string armUnit(const ExportOptions& options, const std::filesystem::path& libraries)
+{
+  ArmDescription arm = readArmDescription(findArm(options.arm, configDirectory(options)));
+  addIdentifiedGains(options.identified, arm);
+  const ConfigurationOptions without_faults = [&]
+  {
+    ConfigurationOptions configuration = options;
+    configuration.faults.clear();
+    return configuration;
+  }();
+  return fmu::armFmu(
+      std::filesystem::path(options.arm).stem(), arm,
+      armDrives(arm, without_faults, options.identified, options.faults),
+      { libraries / "harmonic_joint_twin_arm_fmu.so", loadedLibraries({ "libyaml-cpp", "liborocos-kdl" }) });
 }
 
 int exportFmu(const ExportOptions& options)
 {
-  const Parameters parameters = loadGear(options);
+  const std::filesystem::path libraries = libraryDirectory() / "harmonic_joint_twin";
   requireWritable(options.out, options.force);
-  const std::string library = libraryDirectory() / "harmonic_joint_twin/harmonic_joint_twin_fmu.so";
-  writeTextFile(options.out, fmu::fmuFile(parameters, library, loadedYamlCpp()));
+  const std::string unit = options.arm.empty() ?
+                               fmu::driveFmu(loadGear(options), { libraries / "harmonic_joint_twin_fmu.so",
+                                                                  loadedLibraries({ "libyaml-cpp" }) }) :
+                               armUnit(options, libraries);
+  writeTextFile(options.out, unit);
   return EXIT_DONE;
 }
 
@@ -198,6 +228,11 @@ int exportJoint(const ExportOptions& options)
   if (is_fmu == options.out.empty())
   {
     std::cerr << "joint_twin: " << (is_fmu ? "--format fmu needs --out" : "--out is for --format fmu") << '\n';
+    return EXIT_USAGE;
+  }
+  if (options.arm.empty() ? !options.identified.empty() : !is_fmu)
+  {
+    std::cerr << "joint_twin: " << (is_fmu ? "--identified is for --arm" : "--arm is for --format fmu") << '\n';
     return EXIT_USAGE;
   }
   if (is_fmu)
@@ -237,11 +272,17 @@ void declare(Command& command, ExportOptions& options)
       .required()
       .choice({ "urdf", "sdf", "mjcf", "fmu" });
   command.add("--out", options.out, "file of the unit").type("FILE.fmu");
+  command.add("--arm", options.arm, "the unit is this whole arm, its drives, links and controller")
+      .type("NAME|FILE.yaml");
+  command.add("--identified", options.identified, "overlays of its joints, as `joint_twin identify --arm` writes them")
+      .type("DIR")
+      .existingDirectory();
   command.flag("--force", options.force, "overwrite an existing file");
   addConfigurationOptions(command, options);
 }
 
-const Subcommand EXPORT{ Subject::JOINT, "export", "the joint for other simulators: URDF, SDF, MJCF or FMU", declare,
+const Subcommand EXPORT{ Subject::JOINT, "export",
+                         "the joint for other simulators: URDF, SDF, MJCF or FMU; an arm as FMU", declare,
                          exportJoint };
 }  // namespace
 }  // namespace hjt

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "arm/arm_description.hpp"
+#include "fmu/variables.hpp"
+
+namespace hjt::fmu
+{
+/// The variables of an arm after the time, by value reference; then its drives' (DriveReference), base first. Arrays
+/// have a value for each joint, or of x, y, z, unless stated.
+enum ArmReference : unsigned
+{
+  SET_POSITION = TIME + 1,
+  SET_VELOCITY,
+  SET_ACCELERATION,
+  WRENCH_FORCE,
+  WRENCH_MOMENT,
+  PAYLOAD_MASS,
+  PAYLOAD_CENTRE,
+  FIRST_ARM_OUTPUT,  ///< ARM_QUANTITIES from the feed-forward's current on
+  TOOL_ORIENTATION = FIRST_ARM_OUTPUT + 7,
+  TOOL_ERROR,
+  PROTECTIVE_STOP,
+  CONTROLLER,
+  GRAVITY,
+  GAIN_POSITION,
+  GAIN_SPEED,
+  GAIN_INTEGRAL_TIME,
+  GAIN_COULOMB,
+  GAIN_VISCOUS,
+  FIRST_DRIVE
+};
+
+/// Of the names of a joint's variables.
+std::string prefixOf(const ArmJoint& joint);
+
+/// All variables of a unit that is an arm. The joints have gains.
+std::vector<FmuVariable> armVariables(const ArmDescription& arm, const std::vector<Parameters>& drives);
+}  // namespace hjt::fmu

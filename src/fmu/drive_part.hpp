@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fmu/unit.hpp"
+
+namespace hjt::fmu
+{
+/// A drive's variables within a unit and what its twin was given of them.
+class DrivePart
+{
+public:
+  /// The drive whose variables begin at `first`, with this prefix. `variables`: outlive this.
+  DrivePart(const std::vector<FmuVariable>& variables, std::size_t first, const std::string& prefix);
+
+  std::size_t end() const noexcept { return end_; }  ///< value reference after its last
+
+  /// `base` with the values that were set; faults that were set are there from the start. @throws ParameterError.
+  Parameters parameters(const Parameters& base, const Values& values) const;
+
+  /// Before the first step: the twin starts with these, but for a load, and with its brake so.
+  void begin(const Values& values, bool brake_engaged);
+
+  /// What has changed of the inputs, but the motor's torque, from this instant on.
+  void giveInputs(Stamp instant, const Values& values, Twin& twin);
+  double motorTorque(const Values& values) const noexcept { return values[first_ + MOTOR_TORQUE].numbers[0]; }
+
+  void moved() noexcept { teeth_known_ = false; }  ///< the twin has gone on
+  bool read(std::size_t reference, Twin& twin, Values& values);
+
+private:
+  bool readTeeth(Twin& twin, Values& values);
+  void changeFaults(const Values& values, Parameters& parameters) const;
+
+  const std::vector<FmuVariable>* variables_;
+  std::size_t first_;
+  std::size_t end_;
+  std::size_t prefix_size_;
+  std::vector<double> given_;  // inputs that the twin has
+  bool teeth_known_{};
+  std::optional<ToothForces> forces_;
+};
+
+/// Parameters as a unit's resources hold them, in `folder`. @throws InputError, ParameterError.
+Parameters readParameters(const std::string& text, const std::string& folder);
+
+/// For the tables of all instances of the process.
+SurfaceSource unitSurfaces(const Notice& notice);
+}  // namespace hjt::fmu

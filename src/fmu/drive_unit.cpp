@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// The unit that is one drive.
+
+#include <utility>
+
+#include "base/whole_file.hpp"
+#include "fmu/drive_part.hpp"
+#include "fmu/unit.hpp"
+
+namespace hjt::fmu
+{
+namespace
+{
+class DriveSimulation : public Simulation
+{
+public:
+  DriveSimulation(Twin twin, DrivePart part) : twin_(std::move(twin)), part_(std::move(part)) {}
+
+  std::unique_ptr<Simulation> copy() const override { return std::make_unique<DriveSimulation>(twin_, part_); }
+
+  bool step(const Values& values, double end) override
+  {
+    const std::uint64_t failures = twin_.counters().solver_failures;
+    const Stamp until = stampAt(end) + twin_.stepLength() / 1000;  // sums of steps are rounded
+    Stamp instant = twin_.stamp() + twin_.stepLength();
+    if (instant <= until)
+    {
+      part_.giveInputs(instant, values, twin_);
+    }
+    for (; instant <= until; instant += twin_.stepLength())
+    {
+      twin_.commandMotorTorque(instant, part_.motorTorque(values));  // at every instant: it does not time out
+      twin_.step(until);
+    }
+    part_.moved();
+    return twin_.counters().solver_failures == failures;
+  }
+
+  bool read(std::size_t reference, Values& values) override { return part_.read(reference, twin_, values); }
+
+private:
+  Twin twin_;
+  DrivePart part_;
+};
+
+class DriveUnit : public Unit
+{
+public:
+  explicit DriveUnit(Parameters parameters) : parameters_(std::move(parameters))
+  {
+    variables_ = driveVariables(parameters_);
+  }
+
+  std::unique_ptr<Simulation> start(const Values& values, double start, const Notice& notice) const override
+  {
+    DrivePart part(variables_, TIME + 1, "");
+    const Parameters parameters = part.parameters(parameters_, values);
+    Twin twin(parameters, unitSurfaces(notice));
+    twin.reset(stampAt(start));
+    part.begin(values, parameters.brake.engaged_at_start);
+    return std::make_unique<DriveSimulation>(std::move(twin), std::move(part));
+  }
+
+private:
+  Parameters parameters_;
+};
+}  // namespace
+
+std::unique_ptr<Unit> openUnit(const std::string& resources, const std::string& token)
+{
+  const std::string text = readFile(resources + PARAMETER_FILE);
+  requireToken(token, text);
+  return std::make_unique<DriveUnit>(readParameters(text, resources));
+}
+}  // namespace hjt::fmu

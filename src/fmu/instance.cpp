@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fmu/instance.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "base/number_text.hpp"
+
+namespace hjt::fmu
+{
+namespace
+{
+constexpr double LARGEST_TIME = 1e9;    // [s]
+constexpr double SHORTEST_STEP = 1e-9;  // of the stamps [s]
+
+std::string nameAndValue(const FmuVariable& variable, std::size_t element, double value)
+{
+  return variable.name + (variable.is_array ? '[' + std::to_string(element + 1) + ']' : "") + " = " +
+         numberText(value) + " [" + variable.unit + "]";
+}
+}  // namespace
+
+Instance::State::State(const State& other)
+  : mode(other.mode)
+  , start(other.start)
+  , time(other.time)
+  , stop(other.stop)
+  , values(other.values)
+  , simulation(other.simulation ? other.simulation->copy() : nullptr)
+{
+}
+
+Instance::State& Instance::State::operator=(const State& other)
+{
+  return *this = State(other);
+}
+
+Instance::Instance(const std::string& resources, const std::string& token, void* environment, LogMessage log)
+  : environment_(environment), log_(log), unit_(openUnit((std::filesystem::absolute(resources) / "").string(), token))
+{
+  reset();
+}
+
+void Instance::log(Status status, const char* category, const std::string& message) const noexcept
+{
+  if (log_ != nullptr)
+  {
+    log_(environment_, status, category, message.c_str());
+  }
+}
+
+void Instance::requireMode(bool allowed, const char* call, const char* what) const
+{
+  constexpr const char* NAMES[]{ "Instantiated", "Initialization Mode", "Step Mode", "Terminated" };
+  if (!allowed)
+  {
+    throw CallError(std::string(call) + what + " is not allowed in state " + NAMES[static_cast<int>(state_.mode)]);
+  }
+}
+
+void Instance::enterInitialization(double start, std::optional<double> stop)
+{
+  requireMode(state_.mode == Mode::INSTANTIATED, "fmi3EnterInitializationMode");
+  if (!(std::abs(start) <= LARGEST_TIME) || (stop && !(*stop >= start)))
+  {
+    throw CallError("startTime = " + numberText(start) + " [s]" +
+                    (stop ? ", stopTime = " + numberText(*stop) + " [s]" : std::string()) +
+                    " out of range, allowed: a start within +-1e9 and a stop not before it");
+  }
+  state_.mode = Mode::INITIALIZATION;
+  state_.start = start;
+  state_.time = start;
+  state_.stop = stop;
+}
+
+void Instance::exitInitialization()
+{
+  requireMode(state_.mode == Mode::INITIALIZATION, "fmi3ExitInitializationMode");
+  start();
+  state_.mode = Mode::STEP;
+}
+
+void Instance::terminate()
+{
+  requireMode(state_.mode == Mode::STEP, "fmi3Terminate");
+  state_.mode = Mode::TERMINATED;
+}
+
+void Instance::reset()
+{
+  state_ = {};
+  for (const FmuVariable& variable : unit_->variables())
+  {
+    state_.values.push_back(variable.start);
+  }
+}
+
+const FmuVariable& Instance::variable(ValueReference reference, Type type) const
+{
+  if (reference >= unit_->variables().size())
+  {
+    throw CallError("no variable has the value reference " + std::to_string(reference));
+  }
+  const FmuVariable& found = unit_->variables()[reference];
+  if (found.type != type)
+  {
+    throw CallError(found.name + " is of another type than the function");
+  }
+  return found;
+}
+
+void Instance::requireCount(Type type, const References& of) const
+{
+  std::size_t expected = 0;
+  for (std::size_t i = 0; i < of.size; ++i)
+  {
+    variable(of.references[i], type);
+    expected += type == Type::STRING ? 1 : state_.values[of.references[i]].numbers.size();
+  }
+  if (of.values != expected)
+  {
+    throw CallError(std::to_string(of.values) + " values for variables that have " + std::to_string(expected));
+  }
+}
+
+void Instance::requireSettable(const FmuVariable& variable) const
+{
+  const bool before_start = state_.mode == Mode::INSTANTIATED || state_.mode == Mode::INITIALIZATION;
+  const bool settable = variable.causality == Causality::PARAMETER ?
+                            before_start :
+                            variable.causality == Causality::INPUT && (before_start || state_.mode == Mode::STEP);
+  requireMode(settable, "setting ", variable.name.c_str());
+}
+
+void Instance::check(const FmuVariable& variable, std::size_t element, double value)
+{
+  const bool in_range = !variable.range || (value >= variable.range->min && value <= variable.range->max);
+  if (!std::isfinite(value) || !(in_range || variable.is_clamped))
+  {
+    throw CallError(nameAndValue(variable, element, value) + " out of range, allowed: " +
+                    (variable.range && !variable.is_clamped ? rangeText(*variable.range) : "finite numbers"));
+  }
+}
+
+/// All numbers are looked at before the first is taken.
+void Instance::setNumbers(Type type, const References& of, const std::function<double(std::size_t)>& number)
+{
+  requireCount(type, of);
+  std::size_t place = 0;
+  for (std::size_t i = 0; i < of.size; ++i)
+  {
+    const FmuVariable& target = variable(of.references[i], type);
+    requireSettable(target);
+    const std::size_t elements = state_.values[of.references[i]].numbers.size();
+    for (std::size_t k = 0; k < elements; ++k)
+    {
+      check(target, k, number(place++));
+    }
+  }
+  place = 0;
+  for (std::size_t i = 0; i < of.size; ++i)
+  {
+    for (double& element : state_.values[of.references[i]].numbers)
+    {
+      element = number(place++);
+    }
+  }
+  changed();
+}
+
+void Instance::setTexts(const References& of, const char* const* texts)
+{
+  requireCount(Type::STRING, of);
+  for (std::size_t i = 0; i < of.size; ++i)
+  {
+    const FmuVariable& target = variable(of.references[i], Type::STRING);
+    requireSettable(target);
+    if (texts[i] == nullptr)
+    {
+      throw CallError(target.name + " is to be a null pointer");
+    }
+  }
+  for (std::size_t i = 0; i < of.size; ++i)
+  {
+    state_.values[of.references[i]].text = texts[i];
+  }
+  changed();
+}
+
+/// Before the start the twin is another one with other values; later inputs go to it with the next step.
+void Instance::changed()
+{
+  if (state_.mode != Mode::STEP)
+  {
+    state_.simulation.reset();
+  }
+}
+
+const Value& Instance::value(ValueReference reference)
+{
+  const FmuVariable& asked = unit_->variables()[reference];
+  if (asked.causality == Causality::INDEPENDENT)
+  {
+    state_.values[reference].numbers[0] = state_.time;
+  }
+  if (asked.causality == Causality::OUTPUT)
+  {
+    requireMode(state_.mode != Mode::INSTANTIATED, "getting ", asked.name.c_str());
+    start();
+    if (!state_.simulation->read(reference, state_.values))
+    {
+      log(Status::WARNING, WARNING_CATEGORY,
+          asked.name + ": no equilibrium of all teeth at " + numberText(state_.time) + " [s]");
+    }
+  }
+  return state_.values[reference];
+}
+
+void Instance::start()
+{
+  if (!state_.simulation)
+  {
+    state_.simulation = unit_->start(state_.values, state_.start,
+                                     [this](const std::string& what) { log(Status::WARNING, WARNING_CATEGORY, what); });
+  }
+}
+
+bool Instance::step(double at, double length)
+{
+  requireMode(state_.mode == Mode::STEP, "fmi3DoStep");
+  const double tolerance = 1e-9 * std::max(1.0, std::abs(state_.time));
+  const double end = at + length;
+  const auto asked = [&]
+  {
+    return "currentCommunicationPoint = " + numberText(at) + " [s], communicationStepSize = " + numberText(length) +
+           " [s]: ";
+  };
+  if (!(std::abs(at - state_.time) <= tolerance))
+  {
+    throw CallError(asked() + "the instance is at " + numberText(state_.time) + " [s]");
+  }
+  if (!(length >= SHORTEST_STEP) || !(end <= LARGEST_TIME))
+  {
+    throw CallError(asked() + "a step must be at least 1e-9 long and end before 1e9 [s]");
+  }
+  if (state_.stop && end > *state_.stop + tolerance)
+  {
+    throw CallError(asked() + "the stop time is " + numberText(*state_.stop) + " [s]");
+  }
+  const bool converged = state_.simulation->step(state_.values, end);
+  state_.time = end;
+  return converged;
+}
+}  // namespace hjt::fmu

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "fmu/fmi3.hpp"
+#include "fmu/unit.hpp"
+
+namespace hjt::fmu
+{
+/// A call that FMI does not allow, or one of its arguments. The instance stays as it was.
+struct CallError : std::runtime_error
+{
+  using std::runtime_error::runtime_error;
+};
+
+/// The variables that a call names, and how many values it has for them.
+struct References
+{
+  const ValueReference* references;
+  std::size_t size;
+  std::size_t values;
+};
+
+/// Where an instance of FMI is.
+enum class Mode
+{
+  INSTANTIATED,
+  INITIALIZATION,
+  STEP,
+  TERMINATED
+};
+
+/// One instance behind FMI's functions: its values by reference, its mode, what it simulates. That is made when the
+/// initialisation ends, or when an output is asked for in it. Every function throws CallError, and ParameterError where
+/// the parameters have no twin.
+class Instance
+{
+public:
+  /// `resources`: folder of the unit's. @throws InputError.
+  Instance(const std::string& resources, const std::string& token, void* environment, LogMessage log);
+
+  /// To the instance's user; errors and warnings always.
+  void log(Status status, const char* category, const std::string& message) const noexcept;
+
+  void enterInitialization(double start, std::optional<double> stop);
+  void exitInitialization();
+  void terminate();
+  void reset();
+
+  /// Of one type; an array's values in a row.
+  template <class Put>
+  void get(Type type, const References& of, const Put& put);
+  void setNumbers(Type type, const References& of, const std::function<double(std::size_t)>& number);
+  void setTexts(const References& of, const char* const* texts);
+
+  /// From `at` on by `length` [s]. @returns false if a step found no equilibrium and held the last good state.
+  bool step(double at, double length);
+  double time() const noexcept { return state_.time; }  ///< [s]
+
+  /// All that `step` depends on.
+  struct State
+  {
+    State() = default;
+    State(const State& other);
+    State& operator=(const State& other);
+    State(State&&) noexcept = default;
+    State& operator=(State&&) noexcept = default;
+    ~State() = default;
+
+    Mode mode{};
+    double start{};
+    double time{};  // [s]
+    std::optional<double> stop;
+    Values values;
+    std::unique_ptr<Simulation> simulation;
+  };
+  const State& state() const noexcept { return state_; }
+  void takeUp(const State& state) { state_ = state; }
+
+private:
+  const FmuVariable& variable(ValueReference reference, Type type) const;
+  void requireMode(bool allowed, const char* call, const char* what = "") const;
+  void requireSettable(const FmuVariable& variable) const;
+  static void check(const FmuVariable& variable, std::size_t element, double value);
+  void requireCount(Type type, const References& of) const;
+  const Value& value(ValueReference reference);
+  void start();
+  void changed();
+
+  void* environment_;
+  LogMessage log_;
+  std::unique_ptr<Unit> unit_;
+  State state_;
+};
+
+template <class Put>
+void Instance::get(Type type, const References& of, const Put& put)
+{
+  requireCount(type, of);
+  std::size_t place = 0;
+  for (std::size_t i = 0; i < of.size; ++i)
+  {
+    const Value& found = value(of.references[i]);
+    if (type == Type::STRING)
+    {
+      put(place++, 0.0, found.text);
+      continue;
+    }
+    for (const double number : found.numbers)
+    {
+      put(place++, number, found.text);
+    }
+  }
+}
+}  // namespace hjt::fmu

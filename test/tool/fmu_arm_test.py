@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The co-simulation unit that is a whole arm, as a small importer runs it. Arguments: the tool, the importer."""
+import csv
+import math
+
+import tool
+from fmu_unit import ERROR, OK, Fmu
+
+POSE = [0.0, -1.2, 1.0, -1.3, -1.5, 0.3]
+ROWS = 125.0  # [Hz]
+
+
+def set_points(time, duration=0.4, speed=0.5):
+    """Elbow and wrist 2 go there and back, the others stand still: angles, speeds, accelerations."""
+    rate = 2.0 * math.pi / duration
+    rows = [list(POSE), [0.0] * 6, [0.0] * 6]
+    for joint in 2, 4:
+        rows[0][joint] += speed / rate * (1.0 - math.cos(rate * time))
+        rows[1][joint] = speed * math.sin(rate * time)
+        rows[2][joint] = speed * rate * math.cos(rate * time)
+    return rows
+
+
+class Arm(Fmu):
+    """A unit that is a whole arm."""
+    NAMES = "target_q", "target_qd", "target_qdd"
+
+    def stand(self, unit, instance=0, rows=None, **values):
+        angles, speeds, accelerations = rows or (POSE, [0.0] * 6, [0.0] * 6)
+        unit.start(instance, target_q=angles, target_qd=speeds, target_qdd=accelerations, **values)
+
+    def follow(self, unit, first, last, instance=0):
+        """From row to row of the set points."""
+        for k in range(first, last):
+            for name, values in zip(self.NAMES, set_points((k + 1) / ROWS)):
+                self.assertEqual(unit.set(name, *values, instance=instance), OK)
+            self.assertEqual(unit.call("step", instance, k / ROWS, 1.0 / ROWS), OK)
+
+    def test_gives_the_numbers_of_the_tool(self):
+        with open(self.path("motion.csv"), "w", encoding="ascii", newline="") as file:
+            rows = csv.writer(file)
+            rows.writerow(["timestamp"] + [f"{name}_{i}" for name in self.NAMES for i in range(6)])
+            for k in range(51):
+                rows.writerow([k / ROWS] + [value for values in set_points(k / ROWS) for value in values])
+        options = ["--set", "sensors.motor_noise=1.0e-4", "--arm", "ur5"]
+        self.succeed("arm", "motion.csv", "--out", "run.csv", "--fault", "elbow:tooth_wear:0.4:20", *options)
+        with open(self.path("run.csv"), encoding="ascii") as file:
+            rows = list(csv.DictReader(file))
+        unit = self.unit(*options)
+        self.stand(unit, rows=set_points(0.0), elbow__fault_tooth_wear=0.4, elbow__fault_tooth_wear_place=20)
+        for k in 0, 1, 25, 49:
+            self.follow(unit, {0: 0, 1: 0, 25: 1, 49: 25}[k], k)
+            for name in "target_current", "actual_q", "actual_qd", "actual_current", "target_moment", \
+                        "actual_TCP_pose", "target_TCP_pose":
+                # Before its first step a recording's row has no set point's rates.
+                if k > 0 or name.startswith("actual"):
+                    expected = [float(rows[k][f"{name}_{i}"]) for i in range(unit.size(name))]
+                    self.assertEqual(unit.get(name), expected, (k, name))
+        self.assertEqual(unit.ask("allocations", 0), ["0"])
+        distance = math.dist(unit.get("actual_TCP_pose"), unit.get("target_TCP_pose"))
+        self.assertAlmostEqual(unit.get("tool_error")[0], distance, delta=1e-12)
+        self.assertEqual(unit.close(), "")
+
+    def test_states_instances_and_reset(self):
+        unit = self.unit("--arm", "ur5", "--set", "thermal.model=two_nodes")
+        for instance in 0, 1:
+            self.stand(unit, instance, rows=set_points(0.0))
+        self.follow(unit, 0, 10)
+        self.assertEqual(unit.call("keep", 0, 0), OK)
+        ends = []
+        for _ in range(2):
+            self.follow(unit, 10, 20)
+            ends.append(unit.outputs())
+            self.assertEqual(unit.call("restore", 0, 0), OK)
+        self.assertEqual(ends[0], ends[1])
+        self.follow(unit, 0, 20, instance=1)
+        self.assertEqual(unit.outputs(1), ends[0])
+        self.assertEqual(unit.call("drop", 0, 0), OK)
+        self.assertEqual(unit.call("reset", 1), OK)
+        for name, values in zip(self.NAMES, set_points(0.0)):
+            unit.set(name, *values, instance=1)
+        self.assertEqual(unit.call("enter", 1, 0.0, "nan"), OK)
+        self.assertEqual(unit.call("exit", 1), OK)
+        self.follow(unit, 0, 20, instance=1)
+        self.assertEqual(unit.outputs(1), ends[0])
+        self.assertEqual(unit.call("terminate", 1), OK)
+        self.assertEqual(unit.close(), "")
+
+    def test_inputs_act_and_steps_may_have_any_length(self):
+        unit = self.unit("--arm", "ur5")
+        self.stand(unit)
+        self.assertEqual(unit.call("step", 0, 0.0, 0.0037, 20), OK)
+        before = unit.get("actual_current")
+        self.assertLess(unit.get("tool_error")[0], 2e-4)
+        unit.set("wrench_force", 0.0, 0.0, -40.0)
+        unit.set("payload_mass", 2.0)
+        self.assertEqual(unit.call("step", 0, 0.074, 0.00015, 2000), OK)
+        self.assertAlmostEqual(unit.get("time")[0], 0.374, delta=1e-9)
+        # Both press down: the shoulder needs more of the current that it has.
+        self.assertGreater(abs(unit.get("actual_current")[1]), 1.3 * abs(before[1]))
+        stiffness = unit.get("elbow.torsional_stiffness")[0]
+        unit.set("elbow.fault_flange_crack", 0.9)
+        self.assertEqual(unit.call("step", 0, 0.374, 0.02), OK)
+        self.assertLess(unit.get("elbow.torsional_stiffness")[0], stiffness)
+        self.assertEqual(unit.get("protective_stop"), [0.0])
+        unit.set("target_q", POSE[0] + 0.5, *POSE[1:])
+        self.assertEqual(unit.call("step", 0, 0.394, 0.05), OK)
+        self.assertEqual(unit.get("protective_stop"), [1.0])
+        for values in (["nan"] + POSE[1:], [1e6] + POSE[1:], POSE[1:]):
+            self.assertEqual(unit.set("target_q", *values), ERROR)
+        self.assertEqual(unit.set("controller.on", 0), ERROR)
+        self.assertIn("target_q[1] = .nan [rad] out of range", unit.close())
+
+    def test_without_its_controller_motors_do_what_they_are_told(self):
+        unit = self.unit("--arm", "ur5")
+        held = {f"{joint}__brake": 1 for joint in ("base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3")}
+        self.stand(unit, 0, controller__on=0, **held)
+        self.stand(unit, 1, controller__on=0, **held)
+        for instance in 0, 1:
+            self.assertEqual(unit.call("step", instance, 0.0, 0.01, 10), OK)
+        self.assertLess(math.dist(unit.get("actual_q"), POSE), 2e-3)
+        unit.set("wrist_3.motor_torque", 0.1)
+        unit.set("wrist_3.brake", 0)
+        unit.set("elbow.brake", 0, instance=1)
+        for instance in 0, 1:
+            self.assertEqual(unit.call("step", instance, 0.1, 0.01, 40), OK)
+        self.assertGreater(unit.get("actual_q")[5], POSE[5] + 0.05)
+        self.assertLess(math.dist(unit.get("actual_q")[:5], POSE[:5]), 2e-3)
+        self.assertGreater(abs(unit.get("actual_q", 1)[2] - POSE[2]), 0.02)  # by its weight
+        self.assertEqual(unit.close(), "")
+
+
+if __name__ == "__main__":
+    tool.main()
