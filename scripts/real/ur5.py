@@ -295,10 +295,9 @@ def verdict_section(runner, by_name, judged):
     verdicts = Verdicts(runner)
     other = judged[0].name
     alone = {name: verdicts.start(name, f"report_{name}") for name in (TRAIN, *(r.name for r in judged))}
-    concurrent.futures.wait([alone[TRAIN], alone[other]])  # references of the rest
-    beside = {name: verdicts.start(name, f"later_{name}", "--reference",
-                                   f"report_{other if name == TRAIN else TRAIN}") for name in alone}
-    concurrent.futures.wait(alone.values())
+    concurrent.futures.wait(alone.values())  # references of the rest
+    beside = {name: verdicts.start(name, "", "--reference", f"report_{other if name == TRAIN else TRAIN}")
+              for name in alone}
     pairs = {(name, reference): verdicts.start(name, "", "--reference", f"report_{reference}", listed=False)
              for name in alone for reference in alone if name != reference}
     started = {}
@@ -306,8 +305,8 @@ def verdict_section(runner, by_name, judged):
         for what, joints in [*((joint, [joint]) for joint in JOINTS), ("all", JOINTS)]:
             if name in by_name:
                 write_raised(runner, by_name[name], joints, f"{name}_{what}.csv")
-                started[name, what] = (verdicts.start(f"{name}_{what}", f"raised_{name}_{what}", "--reference",
-                                                      f"report_{TRAIN}", listed=False), joints)
+                started[name, what] = (verdicts.start(f"{name}_{what}", "", "--reference", f"report_{TRAIN}",
+                                                      listed=False), joints)
     sound = [[name, verdict_cell(alone[name].result()), *ratio_cells(beside[name].result()),
               verdict_cell(beside[name].result())] for name in alone]
     raised = {key: (run.result(), joints) for key, (run, joints) in started.items()}
