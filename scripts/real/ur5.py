@@ -6,13 +6,14 @@ import os
 import numpy as np
 
 import closed_loop
+from pairs import is_alarm, pairs_text
 from runs import BLUE, GREEN, GREY, RED, figure, read, rms, save, table
 
 FOLDER = "ur5_cb"
 TRAIN = "no6"          # the only recording that is identified on
-RAISED_IN = ["no2", "no5"]
+RAISED_IN = ["no2", "no5", "no9"]
 SHOWN = "no2"          # in the figure of the currents
-RAISED = 0.3           # share of a joint's friction
+RAISED = 0.2           # share of a joint's friction
 JOINTS = ["base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3"]
 LARGE = JOINTS[:3]
 LOADS = ["arm", "target_moment"]
@@ -174,8 +175,9 @@ class Verdicts:
         self.runner, self.runs = runner, concurrent.futures.ThreadPoolExecutor(JOBS)
 
     def start(self, name, report, *more, listed=True):
-        return self.runs.submit(self.runner.run, "compare", f"{name}.csv", "--arm", "ur5", "--report", report, "--json",
-                                *more, listed=listed)
+        """Without a report no page is made."""
+        return self.runs.submit(self.runner.run, "compare", f"{name}.csv", "--arm", "ur5", "--json",
+                                *(["--report", report] if report else []), *more, listed=listed)
 
 
 def verdict_cell(arm):
@@ -196,7 +198,7 @@ def ratio_cells(arm, raised=()):
 
 def is_right(arm, raised):
     """The raised joint, if its friction can be seen, is named and no other; of all: temperature or gain."""
-    departing = {joint["joint"] for joint in arm["joints"] if joint["level"] in ("WARN", "ERROR")}
+    departing = {joint["joint"] for joint in arm["joints"] if is_alarm(joint)}
     seen = {joint["joint"] for joint in arm["joints"] if joint["friction_ratio"] is not None}
     return departing == (set(raised) & seen if len(raised) == 1 else set())
 
@@ -293,21 +295,24 @@ def verdict_section(runner, by_name, judged):
     verdicts = Verdicts(runner)
     other = judged[0].name
     alone = {name: verdicts.start(name, f"report_{name}") for name in (TRAIN, *(r.name for r in judged))}
-    concurrent.futures.wait([alone[TRAIN], alone[other]])  # references of the rest
-    beside = {name: verdicts.start(name, f"later_{name}", "--reference",
-                                   f"report_{other if name == TRAIN else TRAIN}") for name in alone}
+    concurrent.futures.wait(alone.values())  # references of the rest
+    beside = {name: verdicts.start(name, "", "--reference", f"report_{other if name == TRAIN else TRAIN}")
+              for name in alone}
+    pairs = {(name, reference): verdicts.start(name, "", "--reference", f"report_{reference}", listed=False)
+             for name in alone for reference in alone if name != reference}
     started = {}
     for name in RAISED_IN:
         for what, joints in [*((joint, [joint]) for joint in JOINTS), ("all", JOINTS)]:
             if name in by_name:
                 write_raised(runner, by_name[name], joints, f"{name}_{what}.csv")
-                started[name, what] = (verdicts.start(f"{name}_{what}", f"raised_{name}_{what}", "--reference",
-                                                      f"report_{TRAIN}", listed=False), joints)
+                started[name, what] = (verdicts.start(f"{name}_{what}", "", "--reference", f"report_{TRAIN}",
+                                                      listed=False), joints)
     sound = [[name, verdict_cell(alone[name].result()), *ratio_cells(beside[name].result()),
               verdict_cell(beside[name].result())] for name in alone]
     raised = {key: (run.result(), joints) for key, (run, joints) in started.items()}
-    false_alarms = sum(joint["level"] in ("WARN", "ERROR") for runs in (alone, beside) for run in runs.values()
+    false_alarms = sum(is_alarm(joint) for runs in (alone, beside) for run in runs.values()
                        for joint in run.result()["joints"])
+    of_pairs = [pairs_text([run.result() for run in pairs.values()], (LARGE, JOINTS[3:]))]
     raised_lines, right = raised_table(raised)
     sentence = (f"Sound joints called WARN or worse: {false_alarms} of {2 * len(JOINTS) * len(alone)}. Raised friction "
                 f"judged right: {right} of {len(raised)}.")
@@ -317,7 +322,7 @@ def verdict_section(runner, by_name, judged):
 """ + f"""`joint_twin compare --arm ur5`, alone and with the report of {TRAIN} as `--reference` (of {TRAIN}: that of
 {other}). The arm is sound in all of them. Numbers: friction as a multiple of the reference's, at the speeds of both; –:
 not shown.
-""", *table(["recording", "verdict alone", *JOINTS, "verdict with reference"], sound), f"""
+""", *table(["recording", "verdict alone", *JOINTS, "verdict with reference"], sound), *of_pairs, f"""
 {100.0 * RAISED:.0f} % of the identified friction of one joint, or of all, added to the recorded current. Right: the
 raised joint is named and no other; of all, none is named. A joint whose friction the recording does not show cannot be
 named.

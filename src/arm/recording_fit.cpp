@@ -43,17 +43,23 @@ std::string rounded(double value)
 /// What is wrong between angle and velocity of one joint whose factor is not that of the stamps; empty: nothing.
 RecordingFinding velocityFinding(const FittedFactor& own, double of_stamps)
 {
+  constexpr double STANDS = 0.01;
   if (std::isinf(own.value))
   {
     return { "velocity_zero", "velocity zero: taken from the angles", std::nullopt };
   }
-  if (own.value < 0.0)
+  if (own.value < -STANDS)
   {
     return { "velocity_sign", "angle and velocity of opposite sign", Reason::VELOCITY_SIGN };
   }
   if (std::abs(own.value / DEGREE - 1.0) < FACTOR_OFF)
   {
     return { "velocity_unit", "velocity in deg/s: taken from angles", std::nullopt };
+  }
+  if (own.value < STANDS)
+  {
+    return { "velocity_scale", "angle stands still while the velocity says that the joint moves",
+             Reason::VELOCITY_SCALE };
   }
   return { "velocity_scale", "angle changes " + rounded(own.value / of_stamps) + " times the velocity",
            Reason::VELOCITY_SCALE };

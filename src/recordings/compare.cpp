@@ -199,14 +199,35 @@ double residualTorque(const ArmRecording& recording, const ComparisonPass& pass)
   return std::sqrt(squares);
 }
 
-/// A payload is the reason only if every joint fits with it, and clearly better than without.
-bool explains(const ArmRecording& recording, double residual_before, const ComparisonPass& with)
+/// The same if all currents are the best multiple of what is predicted [N.m].
+double residualOfGain(const ArmRecording& recording, const ComparisonPass& pass)
+{
+  double measured = 0.0;
+  double predicted = 0.0;
+  double both = 0.0;
+  for (std::size_t i = 0; i < pass.joints.size(); ++i)
+  {
+    const JointEvidence& evidence = pass.joints[i]->evidence();
+    const double weight = std::pow(recording.parameters(i).telemetry.torque_per_current, 2);
+    const double of_measured = weight * std::pow(evidence.currentRms(), 2);
+    const double of_predicted = weight * std::pow(evidence.predictedRms(), 2);
+    measured += of_measured;
+    predicted += of_predicted;
+    both += 0.5 * (of_measured + of_predicted - weight * std::pow(evidence.residualRms(), 2));
+  }
+  return predicted > 0.0 ? std::sqrt(std::max(0.0, measured - both * both / predicted)) : std::sqrt(measured);
+}
+
+/// A payload is the reason only if every joint fits with it, and clearly better than without; where the friction of the
+/// whole arm is another with it, also clearly better than another gain.
+bool explains(const ArmRecording& recording, double residual_before, double residual_of_gain,
+              const ComparisonPass& with)
 {
   constexpr double CLEARLY = 0.9;
   const auto fits = [](const std::unique_ptr<JointComparison>& joint)
   { return !joint->friction({}).is_below_faults && joint->frictionReason() != Reason::LOAD_WRONG; };
-  return std::all_of(with.joints.begin(), with.joints.end(), fits) &&
-         residualTorque(recording, with) < CLEARLY * residual_before;
+  const double bound = with.friction.median == 1.0 ? residual_before : std::min(residual_before, residual_of_gain);
+  return std::all_of(with.joints.begin(), with.joints.end(), fits) && residualTorque(recording, with) < CLEARLY * bound;
 }
 
 /// With the payload that the currents show where that explains them.
@@ -219,10 +240,11 @@ ComparisonPass passWithPayload(const ComparisonOptions& options, ArmRecording& r
   }
   const IdentifiedPayload payload = *pass.payload;
   const double residual = residualTorque(recording, pass);
+  const double residual_of_gain = residualOfGain(recording, pass);
   recording.setPayload(payload.payload());
   pass.joints.clear();  // closes the files that the next pass opens
   pass = passThrough(options, recording);
-  if (explains(recording, residual, pass) || options.watch.stopped())
+  if (explains(recording, residual, residual_of_gain, pass) || options.watch.stopped())
   {
     compared.payload = payload;
     return pass;

@@ -65,7 +65,8 @@ CheckedContents readMessageContents(const MotionSource& source)
             contents.usable.push_back(state.name[i]);
           }
         }
-        return ++read < MESSAGES;
+        // Efforts may come later than angles.
+        return ++read < MESSAGES || contents.usable.size() < contents.named.size();
       },
       [](double) {});
   contents.named = withoutMotors(contents.named);

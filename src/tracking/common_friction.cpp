@@ -22,6 +22,38 @@ double medianOf(std::vector<double> values)
   return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
+/// What the joints of a group have in common, apart from factors of their friction.
+JointGroup groupOf(const std::vector<MeasuredFriction>& joints, const std::vector<double>& factors, double tolerance,
+                   std::size_t begin, std::size_t end)
+{
+  JointGroup group{ begin, end, 1.0, false };
+  std::vector<double> left;
+  for (std::size_t i = begin; i < end; ++i)
+  {
+    if (joints[i].ratio)
+    {
+      left.push_back(*joints[i].ratio / factors[i]);
+    }
+  }
+  if (left.size() >= MIN_JOINTS)
+  {
+    const double median = medianOf(left);
+    const auto agree = static_cast<std::size_t>(std::count_if(
+        left.begin(), left.end(), [&](double ratio) { return std::abs(ratio / median - 1.0) <= tolerance; }));
+    group.is_known = median > 0.0 && 2 * agree > left.size();
+    group.median = group.is_known ? median : 1.0;
+  }
+  return group;
+}
+
+/// From the base to the elbow, and the wrists.
+std::vector<JointGroup> groupsOf(const std::vector<MeasuredFriction>& joints, const std::vector<double>& factors,
+                                 double tolerance)
+{
+  const std::size_t half = (joints.size() + 1) / 2;
+  return { groupOf(joints, factors, tolerance, 0, half), groupOf(joints, factors, tolerance, half, joints.size()) };
+}
+
 /// What factors of the joints' friction, each of its twin's, leave of the measured ratios.
 class Left
 {
@@ -49,8 +81,16 @@ public:
         std::count_if(left.begin(), left.end(), [this](double ratio) { return std::abs(ratio - 1.0) <= tolerance_; }));
   }
 
-  double misfit(const std::vector<double>& factors) const
+  /// Apart from what groups have in common.
+  double misfit(std::vector<double> factors) const
   {
+    for (const JointGroup& group : groupsOf(joints_, factors, tolerance_))
+    {
+      for (std::size_t i = group.begin; i < group.end; ++i)
+      {
+        factors[i] *= group.median;
+      }
+    }
     constexpr double TINY = 1e-3;  // of a ratio, which may be zero
     double sum = 0.0;
     for (const double ratio : ratios(factors))
@@ -145,35 +185,22 @@ ArmFriction ofWholeArm(const std::vector<MeasuredFriction>& joints, double toler
   return arm;
 }
 
-/// What the joints of the group have in common, apart from the arm's factors, goes into these.
-void addGroup(const std::vector<MeasuredFriction>& joints, double tolerance, std::size_t begin, std::size_t end,
-              ArmFriction& arm)
+/// What the joints of a group have in common goes into the arm's factors of those that share it.
+void take(const JointGroup& group, const std::vector<MeasuredFriction>& joints, ArmFriction& arm)
 {
-  JointGroup group{ begin, end, 1.0, false };
-  std::vector<double> left;
-  for (std::size_t i = begin; i < end; ++i)
+  constexpr double CHANCE =
+      0.05;  // share that three joints may have in common by chance, as those of their type differ
+  const auto begin = joints.begin() + static_cast<std::ptrdiff_t>(group.begin);
+  const auto end = joints.begin() + static_cast<std::ptrdiff_t>(group.end);
+  const bool are_own = std::all_of(begin, end, [](const MeasuredFriction& joint) { return joint.is_to_own; });
+  const double beyond = std::max(0.0, std::abs(group.median - 1.0) - (are_own ? 0.0 : CHANCE));
+  const double common = 1.0 + std::copysign(beyond, group.median - 1.0);
+  for (std::size_t i = group.begin; i < group.end && group.is_known; ++i)
   {
-    if (joints[i].ratio)
-    {
-      left.push_back(*joints[i].ratio / arm.factors[i]);
-    }
-  }
-  if (left.size() >= MIN_JOINTS)
-  {
-    const double median = medianOf(left);
-    const auto agree = static_cast<std::size_t>(std::count_if(
-        left.begin(), left.end(), [&](double ratio) { return std::abs(ratio / median - 1.0) <= tolerance; }));
-    group.is_known = median > 0.0 && 2 * agree > left.size();
-    group.median = group.is_known ? median : 1.0;
-  }
-  constexpr double CHANCE = 0.05;  // share that three joints may have in common by chance
-  const double beyond = std::max(0.0, std::abs(group.median - 1.0) - CHANCE);
-  for (std::size_t i = begin; i < end && group.is_known; ++i)
-  {
-    arm.factors[i] *= 1.0 + std::copysign(beyond, group.median - 1.0);
+    const double left = joints[i].ratio ? *joints[i].ratio / arm.factors[i] : common;
+    arm.factors[i] *= common > 1.0 ? std::min(common, std::max(left, 1.0)) : common;
     arm.deviations[i] = 0.0;
   }
-  arm.groups.push_back(group);
 }
 }  // namespace
 
@@ -181,13 +208,21 @@ ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double t
 {
   constexpr std::ptrdiff_t MIN_BELOW_FAULTS = 2;
   ArmFriction arm = ofWholeArm(joints, tolerance);
-  const std::size_t half = (joints.size() + 1) / 2;
-  addGroup(joints, tolerance, 0, half, arm);
-  addGroup(joints, tolerance, half, joints.size(), arm);
+  arm.groups = groupsOf(joints, arm.factors, tolerance);
+  for (const JointGroup& group : arm.groups)
+  {
+    take(group, joints, arm);
+  }
   const auto number = [&](bool MeasuredFriction::*flag)
   { return std::count_if(joints.begin(), joints.end(), [&](const MeasuredFriction& joint) { return joint.*flag; }); };
-  if (number(&MeasuredFriction::is_none) >= MIN_BELOW_FAULTS &&
-      number(&MeasuredFriction::is_none) == number(&MeasuredFriction::is_below_faults))
+  if (number(&MeasuredFriction::is_against) >= MIN_BELOW_FAULTS)
+  {
+    arm.misfit = { Reason::EFFORT_NOT_CURRENT,
+                   "the efforts of several joints go against the currents that their motion takes: efforts or angles "
+                   "are of the opposite sign" };
+  }
+  else if (number(&MeasuredFriction::is_none) >= MIN_BELOW_FAULTS &&
+           number(&MeasuredFriction::is_none) == number(&MeasuredFriction::is_below_faults))
   {
     arm.misfit = { Reason::NO_FRICTION,
                    "the effort of several joints holds no friction: it is a modelled or commanded torque, not a "

@@ -27,6 +27,8 @@ struct MeasuredFriction
   std::function<double(double)> at;  ///< the twin's at a temperature [degC], in the motion that was measured [N.m]
   bool is_below_faults{};            ///< less than any fault leaves of it
   bool is_none{};                    ///< next to none at all
+  bool is_against{};                 ///< the current goes against the motion's
+  bool is_to_own{};                  ///< the expected one is the joint's own when it was sound
 };
 
 /// Joints of an arm that are built and warmed alike: from the base to the elbow, and the wrists.
@@ -42,7 +44,7 @@ struct JointGroup
 struct ArmFriction
 {
   std::vector<double> factors;        ///< of each joint, that of its group in it
-  std::vector<double> deviations;     ///< of the factors, standard deviation of the logarithm [-]
+  std::vector<double> deviations;     ///< of the factors, standard deviation of the logarithm; 0: witnessed [-]
   double median{ 1.0 };               ///< of the joints; 1: they have nothing in common
   std::optional<double> temperature;  ///< that it means by the twins' law of friction; none: not within 0 ... 60 degC
   std::vector<JointGroup> groups;
@@ -51,10 +53,12 @@ struct ArmFriction
 
 /// The joints are judged after what most of at least three agree on within `tolerance`: nothing; one factor that
 /// differs from 1 by more than that; or, where no temperature was received, one temperature. The last is taken if not
-/// all agree on one of the others, as many agree on it, and it leaves clearly less unexplained. Factor and temperature
-/// are the median joint's, so that one faulty joint changes neither. What is left then and most of the three joints of
-/// a group agree on is the group's, less 5 % that may be chance: three drives do not fail alike. Two joints or more
-/// whose friction is below what any fault leaves: something else carries the arm, and no joint is judged.
+/// all agree on one of the others, as many agree on it, and it leaves clearly less unexplained than what the groups
+/// have in common. Factor and temperature are the median joint's, so that one faulty joint changes neither. What is
+/// left then and most of the three joints of a group agree on is the group's: three drives do not fail alike. Joints
+/// held against their type differ by more, and 5 % of it may be chance. More friction of the others makes no joint's
+/// less. Two joints or more whose friction is below what any fault leaves: something else carries the arm, and no joint
+/// is judged.
 ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double tolerance);
 
 /// The joints of an arm as each other's witnesses, while they move: what their friction has in common is temperature or

@@ -57,6 +57,11 @@ FrictionMap::FrictionMap(const Parameters& parameters)
   for (std::size_t i = 0; i < rows.size(); ++i)
   {
     const LossRow& row = rows[i];
+    if (!row.status.ok() && row.load_torque > parameters.output.load_torque_limit && lines_.size() > 2)
+    {
+      lines_.resize(i / SPEEDS);
+      break;  // the motor holds more than the gear bears
+    }
     if (!row.status.ok())
     {
       throw ParameterError("the ring finds no equilibrium under a load of " + numberText(row.load_torque) +

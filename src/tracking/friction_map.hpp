@@ -30,8 +30,8 @@ class FrictionMap
 {
 public:
   /// Tables loads up to what the motor can hold, with motor.torque_limit = 0 up to output.load_torque_limit (some ten
-  /// milliseconds).
-  /// @throws ParameterError if both limits are 0 or the ring finds no equilibrium under load.
+  /// milliseconds). Beyond output.load_torque_limit the table ends where the ring finds no equilibrium.
+  /// @throws ParameterError if both limits are 0 or the ring finds no equilibrium under a smaller load.
   explicit FrictionMap(const Parameters& parameters);
 
   /// Friction at motor speed [rad/s], output load [N.m] and temperature [degC]; larger loads than tabled count as the

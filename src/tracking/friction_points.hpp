@@ -31,7 +31,8 @@ struct FrictionRatio
 {
   double value{ std::numeric_limits<double>::quiet_NaN() };  ///< NaN: no speed, or none of both
   double deviation{};                                        ///< standard deviation, by the scatter [-]
-  std::vector<FrictionPoint> points;                         ///< at the speeds of both, `twin` that of the reference
+  double of_points{};                 ///< the same by leaving out one speed after the other alone [-]
+  std::vector<FrictionPoint> points;  ///< at the speeds of both, `twin` that of the reference
 };
 
 /// Rows of friction by blocks of time: what follows each other in them says the same, so a ratio scatters as its blocks
@@ -173,19 +174,29 @@ public:
     return ratio(common(points(), reference));
   }
 
-  /// Points at the speeds of both, `twin` raised to the friction of `reference`.
+  /// Points at the speeds of both, `twin` raised to the friction of `reference`: its measured over its twin's, between
+  /// its points less than a bin away by their rows and nearness.
   static std::vector<FrictionPoint> common(const std::vector<FrictionPoint>& points,
                                            const std::vector<FrictionPoint>& reference)
   {
     std::vector<FrictionPoint> common;
     for (FrictionPoint point : points)
     {
-      const auto other =
-          std::find_if(reference.begin(), reference.end(),
-                       [&](const FrictionPoint& candidate) { return isSameSpeed(candidate.speed, point.speed); });
-      if (other != reference.end())
+      double weights = 0.0;
+      double sum = 0.0;
+      for (const FrictionPoint& other : reference)
       {
-        point.twin *= other->measured / other->twin;
+        if (std::signbit(other.speed) == std::signbit(point.speed))
+        {
+          const double nearness = std::max(0.0, 1.0 - std::abs(placeOf(other.speed) - placeOf(point.speed)));
+          const double weight = nearness * static_cast<double>(other.rows);
+          weights += weight;
+          sum += weight * other.measured / other.twin;
+        }
+      }
+      if (weights > 0.0)
+      {
+        point.twin *= sum / weights;
         common.push_back(point);
       }
     }
@@ -248,7 +259,8 @@ private:
   {
     FrictionRatio found;
     found.value = ratioOf(points);
-    found.deviation = std::max(std::abs(found.value) * blocks_.deviation(), jackknife(points));
+    found.of_points = jackknife(points);
+    found.deviation = std::max(std::abs(found.value) * blocks_.deviation(), found.of_points);
     found.points = std::move(points);
     return found;
   }
@@ -271,11 +283,6 @@ private:
   }
 
   static double placeOf(double speed) { return BINS_PER_DECADE * std::log10(std::abs(speed) / SLOWEST); }
-
-  static bool isSameSpeed(double a, double b)
-  {
-    return std::signbit(a) == std::signbit(b) && std::abs(placeOf(a) - placeOf(b)) < 1.0;
-  }
 
   struct Bin
   {

@@ -21,6 +21,10 @@ namespace
 constexpr double REPEAT_SHARE = 0.03;
 constexpr double REPEAT_TORQUE = 0.22;
 
+/// The same from its own earlier one, apart from what the joints of its group, which witness, have in common.
+constexpr double WITNESSED_SHARE = 0.025;
+constexpr double WITNESSED_TORQUE = 0.1;
+
 /// Of the load: masses of the links, 2 %, and gain, 5 %; standard deviation as a share.
 constexpr double LOAD_SHARE = 0.054;
 
@@ -64,7 +68,7 @@ using Gap = std::pair<Reason, std::string>;  // and in a sentence
 /// Why points show no factor.
 Gap whyNone(const std::vector<FrictionPoint>& points, const JointEvidence& evidence, bool is_to_own)
 {
-  const std::string common = is_to_own ? " at the speeds that the reference has too" : "";
+  const std::string common = is_to_own ? " of those that the reference has too" : "";
   if (points.empty() && evidence.reach().most_angle - evidence.reach().least_angle < LEAST_MOTION)
   {
     return { Reason::AT_REST, "The joint does not move." };
@@ -79,13 +83,15 @@ Gap whyNone(const std::vector<FrictionPoint>& points, const JointEvidence& evide
   }
   if (!(points.front().speed < 0.0 && points.back().speed > 0.0))
   {
-    return { Reason::ONE_DIRECTION,
-             "The joint moves one way only" + common + ": friction and load cannot be separated." };
+    return { Reason::ONE_DIRECTION, "The joint moves one way only at speeds" + common + " that have " +
+                                        std::to_string(FrictionPoints::MIN_ROWS) +
+                                        " rows: friction and load cannot be separated." };
   }
   if (points.size() < MIN_POINTS)
   {
-    return { Reason::ONE_SPEED,
-             "The joint moves at one speed only" + common + ": how sure its friction is cannot be told." };
+    return { Reason::ONE_SPEED, "Fewer than three speeds" + common + " have " +
+                                    std::to_string(FrictionPoints::MIN_ROWS) +
+                                    " rows: how sure the joint's friction is cannot be told." };
   }
   if (evidence.friction().blocks().count() < MIN_POINTS)
   {
@@ -139,22 +145,33 @@ double repeatDeviation(double stated, const OwnReference& own)
   return std::sqrt(of_one * (1.0 + 1.0 / count));
 }
 
+/// Of the friction over its own earlier one, by the scatter of the rows of both, as a share: by leaving out one speed of
+/// both after the other, or of the blocks of each, whichever is larger. Half of the blocks' variance counts: the rest is
+/// where the twin's friction does not rise with the speed as the joint's does, which both recordings share.
+double scatterToOwn(const FrictionRatio& ratio, const FrictionBlocks& blocks, const OwnReference& own)
+{
+  const double of_blocks = std::sqrt(0.5) * std::hypot(blocks.deviation(), own.friction_deviation);
+  return std::max(ratio.of_points / std::max(std::abs(ratio.value), NO_FRICTION), of_blocks);
+}
+
 /// Standard deviation of the logarithm, of all that the factor is uncertain by.
-double deviationOf(const FrictionRatio& ratio, const JointContext& context, FrictionReference reference)
+double deviationOf(const FrictionRatio& ratio, const FrictionBlocks& blocks, const JointContext& context,
+                   FrictionReference reference)
 {
   const bool is_to_own = !context.own.friction.empty();
+  const bool is_witnessed = is_to_own && context.arm_deviation == 0.0;
   const FrictionPoint backward = FrictionPoints::meanOf(ratio.points, -1.0);
   const FrictionPoint forward = FrictionPoints::meanOf(ratio.points, 1.0);
   const double twin = backward.twin + forward.twin;
   const double load = LOAD_SHARE * std::abs(forward.load - backward.load) / twin;
-  const double repeat =
-      repeatDeviation(std::hypot(REPEAT_SHARE, REPEAT_TORQUE / (0.5 * twin)), is_to_own ? context.own : OwnReference());
-  const double of_reference = is_to_own                                  ? context.own.friction_deviation :
-                              reference == FrictionReference::CONTROLLER ? CONTROLLER_SHARE :
-                                                                           0.0;
+  const double stated = std::hypot(is_witnessed ? WITNESSED_SHARE : REPEAT_SHARE,
+                                   (is_witnessed ? WITNESSED_TORQUE : REPEAT_TORQUE) / (0.5 * twin));
+  const double repeat = repeatDeviation(stated, is_to_own ? context.own : OwnReference());
+  const double of_controller = reference == FrictionReference::CONTROLLER ? CONTROLLER_SHARE : 0.0;
   const double size = std::max(std::abs(ratio.value), NO_FRICTION);
-  return std::sqrt(std::pow(ratio.deviation / size, 2) + repeat * repeat + std::pow(load / size, 2) +
-                   of_reference * of_reference + context.arm_deviation * context.arm_deviation);
+  const double scatter = is_to_own ? scatterToOwn(ratio, blocks, context.own) : ratio.deviation / size;
+  return std::sqrt(scatter * scatter + repeat * repeat + std::pow(load / size, 2) + of_controller * of_controller +
+                   context.arm_deviation * context.arm_deviation);
 }
 
 /// Distance of the factor from 1 over that at which its interval clears the bound; > 1 is a departure.
@@ -231,53 +248,13 @@ FrictionFactor frictionFactor(const JointEvidence& evidence, const JointContext&
     return factor;
   }
   factor.value = ratio.value;
-  factor.deviation = deviationOf(ratio, context, factor.reference);
+  factor.deviation = deviationOf(ratio, evidence.friction().blocks(), context, factor.reference);
   factor.scatter = ratio.deviation / std::max(std::abs(ratio.value), NO_FRICTION);
   constexpr double SURE = 2.0;  // standard deviations
   factor.is_below_faults = factor.value / context.arm_friction < LEAST_OF_FAULTS &&
                            factor.value + SURE * factor.deviation * std::max(factor.value, NO_FRICTION) < 1.0;
   std::tie(factor.reason, factor.why_not) = whyImpossible(factor, ratio.points, evidence.loadOrigin());
   return factor;
-}
-
-OwnReference ownReference(const std::vector<SoundFriction>& recordings)
-{
-  OwnReference own;
-  if (recordings.empty())
-  {
-    return own;
-  }
-  std::vector<FrictionPoint> all;
-  double variance = 0.0;
-  for (const SoundFriction& recording : recordings)
-  {
-    all.insert(all.end(), recording.points.begin(), recording.points.end());
-    variance += recording.deviation * recording.deviation;
-  }
-  const auto count = static_cast<double>(recordings.size());
-  own.friction = FrictionPoints::merged(all);
-  own.friction_deviation = std::sqrt(variance) / count;
-  std::vector<double> logarithms;
-  for (const SoundFriction& recording : recordings)
-  {
-    const double ratio = FrictionPoints::ratioOf(FrictionPoints::common(recording.points, own.friction));
-    if (ratio > 0.0)
-    {
-      logarithms.push_back(std::log(ratio));
-    }
-  }
-  own.recordings = std::max<std::size_t>(logarithms.size(), 1);
-  double sum = 0.0;
-  double squares = 0.0;
-  for (const double logarithm : logarithms)
-  {
-    sum += logarithm;
-    squares += logarithm * logarithm;
-  }
-  const auto known = static_cast<double>(own.recordings);
-  own.recordings_deviation =
-      own.recordings > 1 ? std::sqrt(std::max(0.0, squares - sum * sum / known) / (known - 1.0)) : 0.0;
-  return own;
 }
 
 namespace

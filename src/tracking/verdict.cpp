@@ -320,7 +320,9 @@ MeasuredFriction measuredFriction(const JointEvidence& evidence, const Parameter
            evidence.reach().temperature_rows > 0,
            [&evidence](double temperature) { return evidence.twinFrictionAt(temperature); },
            !context.misfit.exists() && factor.is_below_faults,
-           !context.misfit.exists() && factor.reason == Reason::NO_FRICTION };
+           !context.misfit.exists() && factor.reason == Reason::NO_FRICTION,
+           whyItDoesNotFit(evidence, parameters, context) == Reason::EFFORT_NOT_CURRENT && factor.value < 0.0,
+           !context.own.friction.empty() };
 }
 
 std::vector<WeightedCause> causesOf(const Verdict& verdict)

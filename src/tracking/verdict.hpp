@@ -36,8 +36,9 @@ struct JointContext
   double duration{};      ///< of the recording [s]
   /// Multiple of the reference's friction by what the joints of an arm have in common: temperature or gain, no fault.
   double arm_friction{ 1.0 };
-  Misfit misfit;                        ///< of its rows
-  double arm_deviation{ UNWITNESSED };  ///< of `arm_friction`, standard deviation of its logarithm
+  Misfit misfit;  ///< of its rows
+  /// Of `arm_friction`, standard deviation of its logarithm; 0: the joints of its group are its witnesses.
+  double arm_deviation{ UNWITNESSED };
 };
 
 /// Numbers are those of Verdict.msg; the first three those of HealthLevel.

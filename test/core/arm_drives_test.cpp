@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <set>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -9,6 +10,7 @@
 #include "arm/arm_motion.hpp"
 #include "arm/check_up.hpp"
 #include "test_parameters.hpp"
+#include "tracking/friction_map.hpp"
 
 namespace hjt
 {
@@ -33,6 +35,25 @@ TEST(GentleMotion, TakesEveryJointBothWaysSlowlyAndFast)
       EXPECT_GT(fastest, 0.6) << name << ' ' << i;
       EXPECT_LT(slowest, -0.6) << name << ' ' << i;
       EXPECT_NEAR(motion.points().front().joints[i].position, motion.points().back().joints[i].position, 1e-12);
+    }
+  }
+}
+
+/// A motor may hold more than its gear bears: those loads are left out.
+TEST(FrictionMap, IsMadeForEveryDriveOfEveryShippedArm)
+{
+  std::set<std::vector<std::string>> seen;
+  for (const char* name : { "ur3", "ur3e", "ur5", "ur5e", "ur10", "ur10e", "ur16e" })
+  {
+    for (const ArmJoint& joint : readArmDescription(findArm(name, HJT_TEST_CONFIG_DIR)).joints)
+    {
+      if (seen.insert(joint.overlays).second)
+      {
+        const Parameters parameters = parseParameters(armJointParameters(joint, HJT_TEST_CONFIG_DIR, ""));
+        const FrictionMap map(parameters);
+        const double bears = parameters.output.load_torque_limit;
+        EXPECT_GT(map.at(10.0, 0.8 * bears, 25.0).sum(), map.at(10.0, 0.0, 25.0).sum()) << name << joint.short_name;
+      }
     }
   }
 }

@@ -5,13 +5,13 @@
 #include <limits>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
 
 #include "test_parameters.hpp"
 
-#include "tracking/common_friction.hpp"
 #include "tracking/verdict.hpp"
 
 namespace hjt
@@ -19,9 +19,6 @@ namespace hjt
 namespace
 {
 using testing::Contains;
-using testing::DoubleEq;
-using testing::Each;
-using testing::ElementsAre;
 using testing::Field;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -240,13 +237,13 @@ TEST_F(FrictionVerdict, TheIntervalHoldsWhatIsUncertain)
   const FrictionFactor witnessed_factor = frictionFactor(evidence, witnessed(own));
   EXPECT_NEAR(witnessed_factor.value, 1.2, 0.01);
   EXPECT_NEAR(witnessed_factor.low() * witnessed_factor.high(), std::pow(witnessed_factor.value, 2), 1e-9);
-  // Sound drives repeat within 3 %, twice.
-  EXPECT_GT(witnessed_factor.deviation, 0.03);
+  EXPECT_GT(witnessed_factor.deviation, 0.025) << "by which sound drives repeat";
   JointContext alone;
   alone.own = own;
   const FrictionFactor unwitnessed = frictionFactor(evidence, alone);
-  EXPECT_NEAR(std::pow(unwitnessed.deviation, 2) - std::pow(witnessed_factor.deviation, 2), std::pow(UNWITNESSED, 2),
-              1e-9);
+  EXPECT_GT(std::pow(unwitnessed.deviation, 2) - std::pow(witnessed_factor.deviation, 2), std::pow(UNWITNESSED, 2));
+  EXPECT_GT(witnessed_factor.low(), 1.0 + MORE_THAN_OWN) << "a fifth more is found";
+  EXPECT_LT(unwitnessed.low(), 1.0 + MORE_THAN_OWN) << "but not without witnesses";
 
   // Rows that differ from each other more: friction that comes and goes.
   const auto uneven = [](double time) { return std::fmod(time, 20.0) < 10.0 ? 1.0 : 1.4; };
@@ -327,6 +324,23 @@ TEST_F(FrictionVerdict, WhatNoFaultMakesIsNoFault)
   EXPECT_EQ(gapOf(joint_.evidence(swing, 20.0, chance), {}), Reason::FRICTION_SCATTER);
 }
 
+TEST_F(FrictionVerdict, AReferenceBetweenItsSpeedsIsInterpolated)
+{
+  const auto points = [](std::vector<std::pair<double, double>> of)
+  {
+    std::vector<FrictionPoint> made;
+    for (const auto& [speed, measured] : of)
+    {
+      made.push_back({ speed, measured, 0.0, 10.0, 100, 0.0 });
+    }
+    return made;
+  };
+  const auto common = FrictionPoints::common(points({ { 0.5, 12.0 } }), points({ { 0.45, 11.0 }, { 0.556, 13.0 } }));
+  ASSERT_EQ(common.size(), 1U);
+  EXPECT_NEAR(common[0].twin, 12.0, 0.05) << "half way between two that are as far";
+  EXPECT_THAT(FrictionPoints::common(points({ { 0.5, 12.0 } }), points({ { 0.2, 11.0 }, { -0.5, 13.0 } })), IsEmpty());
+}
+
 TEST_F(FrictionVerdict, AReferenceThatWasNotJudgedIsNone)
 {
   JointContext context;
@@ -334,52 +348,6 @@ TEST_F(FrictionVerdict, AReferenceThatWasNotJudgedIsNone)
   const Finding finding = joint_.judged(1.3, context);
   EXPECT_EQ(finding.level, VerdictLevel::OK);
   EXPECT_THAT(joint_.verdict().friction_text, HasSubstr("The reference did not judge this joint's friction"));
-}
-
-std::vector<MeasuredFriction> jointsWith(const std::vector<double>& ratios)
-{
-  std::vector<MeasuredFriction> joints;
-  for (const double ratio : ratios)
-  {
-    joints.push_back({ ratio, 25.0, true, [](double temperature) { return 1.25 - 0.01 * temperature; }, false, false });
-  }
-  return joints;
-}
-
-TEST(CommonFriction, WhatAGroupSharesIsNoJointsFault)
-{
-  const ArmFriction arm = commonFriction(jointsWith({ 1.02, 0.98, 1.0, 1.25, 1.2, 1.22 }), 0.15);
-  EXPECT_EQ(arm.median, 1.0);
-  ASSERT_EQ(arm.groups.size(), 2U);
-  EXPECT_DOUBLE_EQ(arm.groups[0].median, 1.0);
-  EXPECT_DOUBLE_EQ(arm.groups[1].median, 1.22);
-  EXPECT_THAT(arm.factors, ElementsAre(1.0, 1.0, 1.0, DoubleEq(1.17), DoubleEq(1.17), DoubleEq(1.17)))
-      << "5 % may be chance";
-  EXPECT_THAT(arm.deviations, Each(0.0)) << "each joint has its group as witness";
-  EXPECT_THAT(arm.misfit.clause, IsEmpty());
-}
-
-TEST(CommonFriction, OneFaultyJointMovesNoGroup)
-{
-  const ArmFriction arm = commonFriction(jointsWith({ 1.0, 1.6, 1.0, 1.0, 1.0, 1.0 }), 0.15);
-  EXPECT_THAT(arm.factors, Each(1.0));
-  const ArmFriction apart = commonFriction(jointsWith({ 1.0, 1.6, 2.4, 1.0, 1.0, 1.0 }), 0.15);
-  EXPECT_FALSE(apart.groups[0].is_known) << "no two agree";
-  EXPECT_EQ(apart.deviations[1], UNWITNESSED);
-  EXPECT_EQ(apart.factors[1], 1.0);
-}
-
-TEST(CommonFriction, SeveralJointsWithoutFrictionAreNoArmByItself)
-{
-  std::vector<MeasuredFriction> joints = jointsWith({ 1.0, 1.0, 1.0, 1.0, 1.0, 1.0 });
-  joints[0].is_below_faults = true;
-  EXPECT_THAT(commonFriction(joints, 0.15).misfit.clause, IsEmpty()) << "one alone may have another gain";
-  joints[2].is_below_faults = true;
-  EXPECT_EQ(commonFriction(joints, 0.15).misfit.reason, Reason::LESS_THAN_FAULTS);
-  EXPECT_THAT(commonFriction(joints, 0.15).misfit.clause, HasSubstr("led by hand"));
-  joints[0].is_none = joints[2].is_none = true;
-  EXPECT_EQ(commonFriction(joints, 0.15).misfit.reason, Reason::NO_FRICTION);
-  EXPECT_THAT(commonFriction(joints, 0.15).misfit.clause, HasSubstr("modelled or commanded torque"));
 }
 }  // namespace
 }  // namespace hjt
