@@ -8,10 +8,8 @@ import sys
 
 import matplotlib
 import numpy
-import pandas
 
 import lives_judged
-import lives_learner
 import page_section
 
 matplotlib.use("Agg")
@@ -33,8 +31,6 @@ SHARES = [0.05, 0.1, 0.5, 0.9, 0.95]
 QUANTILES = ["q05", "q10", "q50", "q90", "q95"]
 ALPHA = 0.3
 JUDGED_SEED = 1
-LEARNER_SEED = 2
-LEARNED_EVERY = 3  # rows of the learner's lives: neighbours tell it nothing new
 LEAST_FORECASTS = 30  # of which a share is stated
 
 
@@ -68,21 +64,6 @@ def trials(options, seed, duty, *overlay):
                             str(options.lives), "--every", "1000", "--seed", str(seed), "--csv", path, "--force",
                             "--json", *overlay))
     return result, read(path)
-
-
-def learn(training, judged):
-    """Quantiles and CRPS [h] of a learner that sees of each check-up what the forecast sees, taught by other lives."""
-    training = training[::LEARNED_EVERY]
-    rows = numpy.concatenate([training, judged])
-    features = pandas.DataFrame({name: rows[name] for name in ("hours", "level", "cause", "severity")})
-    truth = pandas.DataFrame({"life.remaining": rows["remaining"],
-                              "life.split": ["train"] * len(training) + ["test"] * len(judged)})
-    known, weights = lives_learner.learn(features, truth)
-    weights = weights[len(training):]
-    quantiles = numpy.array([lives_learner.quantiles_of(known, weight) for weight in weights])
-    crps = numpy.array([lives_learner.crps_of(known, weight, true) for weight, true in
-                        zip(weights, judged["remaining"])])
-    return quantiles, crps
 
 
 def draw_stress(options, path):
@@ -307,7 +288,7 @@ def tenth_table(results):
 
 
 def horizon(rows, median):
-    """Share of the life that is left when the median comes within ALPHA of the truth for good, median of the lives [-]."""
+    """Share of a life that is left when the median comes within ALPHA of the truth for good: median of all [-]."""
     shares = []
     good = accurate(rows, median)
     for life in numpy.unique(rows["life"]):
@@ -319,22 +300,22 @@ def horizon(rows, median):
     return numpy.median(shares)
 
 
-def score_table(options, results):
-    lines = ["| drives | forecast | CRPS [h] | of the second half of lives ended by wear | median within 30 % of the truth [%] "
-             "| lives ended by wear: at half, at 80 % of the life | horizon of these | 80 % interval held [%] |",
+def score_table(results):
+    lines = ["| drives | forecast | CRPS [h] | of the second half of lives ended by wear "
+             "| median within 30 % of the truth [%] | lives ended by wear: at half, at 80 % of the life "
+             "| horizon of these | 80 % interval held [%] |",
              "|---" * 8 + "|"]
     for name, (_, rows) in results.items():
-        print(f"life: learner, {name}", file=sys.stderr)
-        training = trials(options, LEARNER_SEED, *TRIALS[name])[1]
-        quantiles, crps = learn(training, rows)
         found = [(words, rows[prefix + "crps"], *(rows[prefix + q] for q in ("q10", "q50", "q90")))
-                 for words, prefix in (("use alone", "prior_"), ("last assessment", ""), ("all readings of wear", "read_"))]
-        found.insert(1, ("learner of as many other lives", crps, *quantiles.T))
+                 for words, prefix in (("use alone", "prior_"), ("last assessment", ""),
+                                       ("all readings of wear", "read_"))]
         truth, share, worn = rows["remaining"], of_life(rows), rows["end"] <= 1
         for words, score, low, median, high in found:
             good = accurate(rows, median)
-            at = ", ".join(f"{100 * numpy.mean(good[worn & (numpy.abs(share - part) < 0.05)]):.0f}" for part in (0.5, 0.8))
-            lines.append(f"| {name} | {words} | {numpy.mean(score):.0f} | {numpy.mean(score[worn & (share > 0.5)]):.0f} "
+            at = ", ".join(f"{100 * numpy.mean(good[worn & (numpy.abs(share - part) < 0.05)]):.0f}"
+                           for part in (0.5, 0.8))
+            lines.append(f"| {name} | {words} | {numpy.mean(score):.0f} "
+                         f"| {numpy.mean(score[worn & (share > 0.5)]):.0f} "
                          f"| {100 * numpy.mean(good):.0f} | {at} | {horizon(rows[worn], median[worn]):.2f} "
                          f"| {100 * numpy.mean((truth >= low) & (truth <= high)):.0f} |")
     return lines
@@ -346,7 +327,7 @@ def main():
     parser.add_argument("--duties", type=pathlib.Path, required=True, help=argparse.SUPPRESS)
     parser.add_argument("--docs", type=pathlib.Path, required=True, help="folder that holds life.md")
     parser.add_argument("--work", type=pathlib.Path, required=True, help="folder for the rows")
-    parser.add_argument("--lives", type=int, default=200, help="simulated lives of each kind [200]")
+    parser.add_argument("--lives", type=int, default=60, help="simulated lives of each kind [60]")
     options = parser.parse_args()
     options.work.mkdir(parents=True, exist_ok=True)
 
@@ -373,7 +354,7 @@ def main():
         "![Wear, grease and bearing over the turns of the motor, three duties](images/life_ageing.png)", "",
         *trial_table(results), "",
         *tenth_table(results), "",
-        *score_table(options, results), "",
+        *score_table(results), "",
         "![Forecasts of three lives each, calibration, accuracy and coverage against the "
         "share of life gone](images/life_forecast.png)"])
     print(f"life: wrote {options.docs / 'life.md'}", file=sys.stderr)

@@ -118,7 +118,8 @@ def remaining(options, baseline, duty, recordings, hours, *more):
 def forecasts_of(options, life, duties, curves):
     """Rows for the check-ups of one life, of its end by wear and of that by lost motion."""
     baseline = options.work / f"reference_{life.drive.iloc[0]}.yaml"
-    tool(options, "indicators", life.path.iloc[0], "--save-baseline", baseline, "--force")
+    # A check-up has six windows of each kind, a reference takes eight; means alone are made use of here.
+    tool(options, "indicators", *[life.path.iloc[0]] * 2, "--save-baseline", baseline, "--force")
     lines = {name: line(life, curve, number, LIMIT) for name, (number, curve) in curves.items()}
     by_play = lost_motion_end(life)
     new = life.lost_motion.iloc[0]
@@ -186,7 +187,8 @@ def tables(rows):
             score = cause[name + "_crps"].mean() if name + "_crps" in cause else error.mean()
             cover = halves(held(cause, name), cause) if name + "_q10" in cause else ""
             lines.append(f"| {end} | {cause.drive.nunique()}, {len(cause)} | {words} "
-                         f"| {error.median():.0f}, {error.mean():.0f} | {score:.0f} | {halves(good(cause, name), cause)} | {horizon(cause, name):.2f} | {cover} |")
+                         f"| {error.median():.0f}, {error.mean():.0f} | {score:.0f} "
+                         f"| {halves(good(cause, name), cause)} | {horizon(cause, name):.2f} | {cover} |")
     return lines
 
 

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Scores the failure modes of the thesis' Table 3.7 again: how well each is detected is what docs/health.md found with three
-sets of sensors. Writes the table into docs/faults.md."""
+"""Scores the failure modes of the thesis' Table 3.7 again: how well each is detected is what docs/health.md found with
+three sets of sensors. Writes the table into docs/faults.md."""
 import csv
 import pathlib
 
@@ -53,7 +53,8 @@ def main():
     risks = [[int(mode["severity"]) * int(mode["occurrence"]) * score for score in row]
              for mode, row in zip(modes, scores)]
     ranks = list(zip(*map(places, zip(*risks))))
-    lines = ["| mode | S | O | thesis: D, RPN (rank) | " + " | ".join(SENSORS) + " |", "|---" * (4 + len(SENSORS)) + "|"]
+    lines = ["| mode | S | O | thesis: D, RPN (rank) | " + " | ".join(SENSORS) + " |",
+             "|---" * (4 + len(SENSORS)) + "|"]
     for mode, score, risk, rank in sorted(zip(modes, scores, risks, ranks), key=lambda row: row[3][0]):
         cells = [f"{d}, {number} ({place})" for d, number, place in zip(score, risk, rank)]
         lines.append(f"| {mode['mode']} | {mode['severity']} | {mode['occurrence']} | " + " | ".join(cells) + " |")

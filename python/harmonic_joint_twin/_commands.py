@@ -272,10 +272,10 @@ def remaining(recordings: Union[Recording, Sequence[Recording]], *,
               progress: Optional[Progress] = None) -> Document:
     """Use of a recorded joint, and how long a drive lasts that is used so: the tool's remaining (docs/life.md).
 
-    hours: use that the drive has behind it, all like the recordings, 1e-6 ... 1e7 [h]; None: theirs; a sequence: at each
-    recording, ascending. baseline: reference of the new drive, readings and assessments by it tell of wear. duty: duty
-    cycle (CSV) in place of the recordings' use. lost_motion_limit: that ends the drive's use too, 1e-6 ... 0.1 [rad].
-    use_record: file for the use. Others as of indicators.
+    hours: use that the drive has behind it, all like the recordings, 1e-6 ... 1e7 [h]; None: theirs; a sequence: at
+    each recording, ascending. baseline: reference of the new drive, readings and assessments by it tell of wear. duty:
+    duty cycle (CSV) in place of the recordings' use. lost_motion_limit: that ends the drive's use too, 1e-6 ... 0.1
+    [rad]. use_record: file for the use. Others as of indicators.
 
     Returns a dict: 'hours' and 'remaining_q10', 'remaining_q50', 'remaining_q90' [h], 'turns', 'nearest' limit and its
     'used' [%], 'density', 'end_probability', with a baseline 'level', 'cause', 'wear_flank', 'wear_interface',

@@ -78,8 +78,9 @@ void DriveAgeing::addFatigue(double turns, const RevolutionLoad& revolution_load
   constexpr double CYCLES_A_TURN = 2.0;
   for (std::size_t place = 0; place < STRESS_PLACES && turns > 0.0; ++place)
   {
-    fatigue[place].add(fatigue_law_, CYCLES_A_TURN * turns,
-                       fatigue_law_.enduranceShare(place, revolution_load.stress[place]) / strengthOf(variation, place));
+    fatigue[place].add(
+        fatigue_law_, CYCLES_A_TURN * turns,
+        fatigue_law_.enduranceShare(place, revolution_load.stress[place]) / strengthOf(variation, place));
   }
 }
 
@@ -185,8 +186,7 @@ DriveAgeing::Life DriveAgeing::live(const UnitVariation& variation, double hours
   const Scale scale(parameters_, variation);
   std::uint32_t filling = 0;
   UnitVariation now = inFilling(variation, filling);
-  const auto rhs = [&](const Entries& entries, Entries& rate, double)
-  { rate = scale.from(rates(now, scale.to(entries))); };
+  const auto rhs = [&](const Entries& at, Entries& rate, double) { rate = scale.from(rates(now, scale.to(at))); };
 
   DriveAge age;
   age.flaw_depth = parameters_.life.flaw_depth;

@@ -70,10 +70,10 @@ public:
     estimate.grease_used = age.grease;
 
     const NominalUse use(ageing, life, GREASE_IS_CHANGED);
-    estimate.remaining =
-        drives_.remaining(use.until(estimate.hours),
-                          use.from(estimate.hours, GREASE_CHANGES_AHEAD / ageing.rates(nominal, {}).grease, STRETCHES),
-                          assessment, use.until(reference_hours), trendsOf(read, use, parameters_.fault_scale, reference_hours));
+    estimate.remaining = drives_.remaining(
+        use.until(estimate.hours),
+        use.from(estimate.hours, GREASE_CHANGES_AHEAD / ageing.rates(nominal, {}).grease, STRETCHES), assessment,
+        use.until(reference_hours), trendsOf(read, use, parameters_.fault_scale, reference_hours));
     return estimate;
   }
 

@@ -60,8 +60,12 @@ public:
     const double extra =
         grease_rate_ > 0.0 ? 0.5 * (grease_factor_ - 1.0) * (changes + left * left) / grease_rate_ : 0.0;
     const double fresh_hours = hours + extra;
-    Usage usage{ hourly_.flank_wear * fresh_hours, hourly_.mean_flank * fresh_hours,
-                 hourly_.interface_wear * fresh_hours, hourly_.bearing_turns * hours, hourly_.fatigue, age };
+    Usage usage{ hourly_.flank_wear * fresh_hours,
+                 hourly_.mean_flank * fresh_hours,
+                 hourly_.interface_wear * fresh_hours,
+                 hourly_.bearing_turns * hours,
+                 hourly_.fatigue,
+                 age };
     for (auto& by_place : usage.fatigue)
     {
       for (double& damage : by_place)
@@ -99,7 +103,7 @@ private:
   bool grease_changes_;
   LoadFeedback flank_;
   LoadFeedback interface_;
-  double flank_limit_{};      // as the loads of the new drive would wear them [m]
+  double flank_limit_{};  // as the loads of the new drive would wear them [m]
   double interface_limit_{};
 };
 }  // namespace hjt

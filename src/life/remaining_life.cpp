@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <boost/math/special_functions/erf.hpp>
 #include <boost/random/sobol.hpp>
 
 #include "gear/angle.hpp"
@@ -16,10 +15,9 @@ namespace
 {
 using namespace assessment_errors;
 
-constexpr double FARTHEST = 30.0;       // standard deviations: the normal distribution ends where doubles do
 constexpr double SEVERITY_RANGE = 0.9;  // of the severities that signatures have: 0.1 to 1
 constexpr double LEAST_FATIGUE_SPREAD = 1e-6;
-constexpr double LEAST_SPREAD = 0.1;    // of a severity's logarithm, from one assessment to the next
+constexpr double LEAST_SPREAD = 0.1;  // of a severity's logarithm, from one assessment to the next
 
 /// Hours until the use ahead has grown by `left`, of what `of` takes from a usage.
 template <class Of>
@@ -35,35 +33,6 @@ double hoursUntil(const FutureLoad& future_load, double left, Of&& of)
   const double stretch = of(*after) - of(*before);
   const auto begin = static_cast<double>(before - future_load.usage.begin());
   return stretch > 0.0 ? future_load.step * (begin + (left - of(*before)) / stretch) : HUGE_VAL;
-}
-
-double squared(double value)
-{
-  return value * value;
-}
-
-double normalShare(double deviation) noexcept
-{
-  return 0.5 * std::erfc(-deviation / std::sqrt(2.0));
-}
-
-/// The deviation below `most` of which a share `share` of the normal distribution's part below `most` lies.
-double normalBelow(double most, double share) noexcept
-{
-  const double part = share * normalShare(std::clamp(most, -FARTHEST, FARTHEST));
-  return -std::sqrt(2.0) * boost::math::erfc_inv(2.0 * std::clamp(part, 1e-300, 1.0 - 1e-16));
-}
-
-/// Factor, log-normal about 1, of a drive that `ends_at` or more would have ended.
-double factorBelow(double ends_at, double spread, double share) noexcept
-{
-  return spread > 0.0 ? std::exp(spread * normalBelow(std::log(ends_at) / spread, share)) : 1.0;
-}
-
-/// Standard normal deviate of a share of all.
-double normalAt(double share) noexcept
-{
-  return normalBelow(FARTHEST, share);
 }
 
 /// Miner's sum of a place by a use. @param strength logarithm of the flexspline's there, over the median's
@@ -175,50 +144,6 @@ RemainingLife::Weakest RemainingLife::weakestLeft(const Usage& so_far) const noe
   return weakest;
 }
 
-void RemainingLife::Factors::given(const WearTrend& trend, double spread, double ends_at) noexcept
-{
-  constexpr double REACH = 6.5;  // standard deviations
-  is_read_ = trend.isKnown() && spread > 0.0;
-  spread_ = spread;
-  ends_at_ = ends_at;
-  if (!is_read_)
-  {
-    return;
-  }
-  const double last = std::clamp(std::log(ends_at) / spread, 1e-3 - REACH, REACH);
-  first_ = -REACH * spread;
-  step_ = (last + REACH) * spread / static_cast<double>(NODES - 1);
-  double largest = -HUGE_VAL;
-  for (std::size_t i = 0; i < NODES; ++i)
-  {
-    const double logarithm = first_ + step_ * static_cast<double>(i);
-    reached_[i] = trend.logDensity(std::exp(logarithm)) - 0.5 * squared(logarithm / spread);
-    largest = std::max(largest, reached_[i]);
-  }
-  double before = 0.0;
-  double sum = 0.0;
-  for (std::size_t i = 0; i < NODES; ++i)
-  {
-    const double here = std::exp(reached_[i] - largest);
-    sum += i == 0 ? 0.0 : before + here;
-    before = here;
-    reached_[i] = sum;
-  }
-  std::transform(reached_.begin(), reached_.end(), reached_.begin(), [sum](double value) { return value / sum; });
-}
-
-double RemainingLife::Factors::drawn(double share) const noexcept
-{
-  if (!is_read_)
-  {
-    return factorBelow(ends_at_, spread_, share);
-  }
-  const auto after = std::lower_bound(reached_.begin() + 1, reached_.end() - 1, share);
-  const double stretch = *after - *(after - 1);
-  const double part = stretch > 0.0 ? (share - *(after - 1)) / stretch : 0.5;
-  return std::exp(first_ + step_ * (static_cast<double>(after - 1 - reached_.begin()) + part));
-}
-
 RemainingLife::Drive RemainingLife::drive(const Point& point, const Usage& so_far, const Weakest& weakest,
                                           bool is_spalled, const WearTrends& trends) const noexcept
 {
@@ -286,7 +211,8 @@ double RemainingLife::likelihood(const Assessment& assessment, const Usage& so_f
   double sum = 0.0;
   const auto add = [&](const Alternative& item)
   {
-    if (wear_is_read && (item.cause == causeOf(FaultKind::TOOTH_WEAR) || item.cause == causeOf(FaultKind::INTERFACE_WEAR)))
+    if (wear_is_read &&
+        (item.cause == causeOf(FaultKind::TOOTH_WEAR) || item.cause == causeOf(FaultKind::INTERFACE_WEAR)))
     {
       return;  // the readings have said it
     }
@@ -348,8 +274,7 @@ RemainingHours RemainingLife::remaining(const Usage& so_far, const FutureLoad& f
                                         const WearTrends& trends) noexcept
 {
   flank_limit_ = future_load.flank_limit > 0.0 ? future_load.flank_limit : parameters_.flank_wear_limit;
-  interface_limit_ =
-      future_load.interface_limit > 0.0 ? future_load.interface_limit : parameters_.interface_wear_limit;
+  interface_limit_ = future_load.interface_limit > 0.0 ? future_load.interface_limit : parameters_.interface_wear_limit;
   flank_factors_.given(trends.flank, parameters_.wear_spread, flank_limit_ / so_far.flank_wear);
   interface_factors_.given(trends.interface, parameters_.wear_spread, interface_limit_ / so_far.interface_wear);
   const bool wear_is_read = trends.flank.isKnown() && trends.interface.isKnown();
@@ -370,8 +295,7 @@ RemainingHours RemainingLife::remaining(const Usage& so_far, const FutureLoad& f
     const auto first = std::min_element(hours.begin(), hours.end());
     const double weight =
         std::exp(particle.log_weight - largest) *
-        (assessment != nullptr ? likelihood(*assessment, so_far, at_reference, particle.variation, wear_is_read) :
-                                 1.0);
+        (assessment != nullptr ? likelihood(*assessment, so_far, at_reference, particle.variation, wear_is_read) : 1.0);
     result.by_cause[static_cast<std::size_t>(first - hours.begin())] += weight;
     ends_[i] = { *first, weight };
     sum += weight;

@@ -9,6 +9,7 @@
 #include "harmonic_joint_twin/health/assessment.hpp"
 #include "life/ageing_laws.hpp"
 #include "life/drive_age.hpp"
+#include "life/factor_table.hpp"
 #include "life/wear_trend.hpp"
 
 namespace hjt
@@ -37,8 +38,12 @@ struct Usage
 
   Usage operator-(const Usage& other) const noexcept
   {
-    Usage rest{ flank_wear - other.flank_wear, mean_flank - other.mean_flank, interface_wear - other.interface_wear,
-                bearing_turns - other.bearing_turns, fatigue, fillings - other.fillings };
+    Usage rest{ flank_wear - other.flank_wear,
+                mean_flank - other.mean_flank,
+                interface_wear - other.interface_wear,
+                bearing_turns - other.bearing_turns,
+                fatigue,
+                fillings - other.fillings };
     for (std::size_t i = 0; i < STRENGTHS; ++i)
     {
       for (std::size_t place = 0; place < STRESS_PLACES; ++place)
@@ -156,23 +161,6 @@ private:
     double rate_ahead;  // standard normal, of its rate of wear from now on
     double flank_end;   // depth of the flanks at its end, as the loads of the new drive would wear them [m]
   };
-  /// Factors of wear, as a table of their distribution.
-  class Factors
-  {
-  public:
-    /// Given the readings, of a drive that `ends_at` or more would have ended. `spread`: of the logarithm beforehand.
-    void given(const WearTrend& trend, double spread, double ends_at) noexcept;
-    double drawn(double share) const noexcept;
-
-  private:
-    static constexpr std::size_t NODES = 4096;
-    std::vector<double> reached_ = std::vector<double>(NODES);  // share of the distribution up to each node
-    double first_{};                                            // logarithm of the first node's factor
-    double step_{};
-    double spread_{};
-    double ends_at_{};
-    bool is_read_{};
-  };
   struct End
   {
     double hours;
@@ -193,11 +181,11 @@ private:
   FaultScaleParameters fault_scale_;
   BearingLife bearing_;
   std::vector<Point> points_;
-  double flank_limit_{};      // of the present call, as in FutureLoad [m]
-  double interface_limit_{};  // likewise
-  Factors flank_factors_;     // scratch
-  Factors interface_factors_; // scratch
-  std::vector<Drive> drives_;  // scratch
-  std::vector<End> ends_;      // scratch
+  double flank_limit_{};           // of the present call, as in FutureLoad [m]
+  double interface_limit_{};       // likewise
+  FactorTable flank_factors_;      // scratch
+  FactorTable interface_factors_;  // scratch
+  std::vector<Drive> drives_;      // scratch
+  std::vector<End> ends_;          // scratch
 };
 }  // namespace hjt

@@ -122,8 +122,8 @@ WearReading readWear(const WindowResidual& residual, const OperatingPoint& point
     }
     left += residual.difference[k] / residual.sound[k] - by_flank.at(std::max(reading.flank, 0.0));
   }
-  reading.interface = whereIs(left, FARTHEST, [&](double severity)
-                              { return by_interface[0].at(severity) + by_interface[1].at(severity); });
+  reading.interface = whereIs(
+      left, FARTHEST, [&](double severity) { return by_interface[0].at(severity) + by_interface[1].at(severity); });
   reading.is_read = std::isfinite(reading.flank) && std::isfinite(reading.interface);
   return reading;
 }

@@ -94,7 +94,7 @@ struct WearTrends
 {
   WearTrend flank;
   WearTrend interface;
-  double flank_depth{ 1.0 };        ///< of a severity of 1 [m]
+  double flank_depth{ 1.0 };          ///< of a severity of 1 [m]
   double reading_at_end{ HUGE_VAL };  ///< of the flanks, at which lost motion ends the drive's use [-]
 };
 

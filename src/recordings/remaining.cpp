@@ -162,10 +162,14 @@ Condition readRecordings(const RemainingOptions& options, Assessor& assessor, Us
     if (wear.is_read)
     {
       const bool each = options.hours.size() > 1;
-      condition.read.readings.push_back({ each ? options.hours[i] : options.hours.empty() ? use.hours() : options.hours[0], wear });
+      condition.read.readings.push_back({ each                  ? options.hours[i] :
+                                          options.hours.empty() ? use.hours() :
+                                                                  options.hours[0],
+                                          wear });
     }
     any = any || judged.isJudged() || wear.is_read;
-    why_not += judged.isJudged() || wear.is_read ? "" : (why_not.empty() ? "" : "\n  ") + judged.whyNotJudged(recording);
+    why_not +=
+        judged.isJudged() || wear.is_read ? "" : (why_not.empty() ? "" : "\n  ") + judged.whyNotJudged(recording);
   }
   if (is_assessed && !any && !options.watch.stopped())
   {
@@ -193,7 +197,8 @@ void requireRanges(const RemainingOptions& options)
   }
   if (const double limit = options.lost_motion_limit.value_or(1e-3); !(limit >= 1e-6 && limit <= 0.1))
   {
-    throw InputError("lost_motion_limit = " + numberText(limit) + " [rad] is out of range, allowed: 1e-6 ... 0.1 [rad]");
+    throw InputError("lost_motion_limit = " + numberText(limit) +
+                     " [rad] is out of range, allowed: 1e-6 ... 0.1 [rad]");
   }
 }
 }  // namespace

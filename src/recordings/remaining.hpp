@@ -17,10 +17,10 @@ struct RemainingOptions : SignalOptions
 {
   /// Use that the drive has behind it; none: that of the recordings. Or one for each recording, ascending [h]
   std::vector<double> hours;
-  std::string baseline;         ///< reference of the new drive; empty: nothing is assessed
-  std::string duty;             ///< use so far, as a duty cycle; the recordings are then assessed only
+  std::string baseline;                     ///< reference of the new drive; empty: nothing is assessed
+  std::string duty;                         ///< use so far, as a duty cycle; the recordings are then assessed only
   std::optional<double> lost_motion_limit;  ///< that ends its use too [rad]
-  std::string use_record;       ///< where to write the use as a duty cycle; empty: nowhere
+  std::string use_record;                   ///< where to write the use as a duty cycle; empty: nowhere
 };
 
 struct Remaining

@@ -96,7 +96,10 @@ class SimulatedReadings
 {
 public:
   SimulatedReadings(const FaultScaleParameters& scale, std::uint32_t seed)
-    : scale_(scale), random_(seed), flank_(drawn(FLANK_READING)), interface_(drawn(INTERFACE_READING))
+    : scale_(scale)
+    , random_(seed)
+    , flank_(drawn(FLANK_READING))
+    , interface_(drawn(INTERFACE_READING))
     , of_flank_(FLANK_IN_INTERFACE * normal_(random_))
   {
   }
@@ -160,7 +163,10 @@ public:
     const Assessment assessment = assessments_.of(age);
     read_.readings.push_back({ hours, simulated_.of(age) });
     const WearTrends trends = trendsOf(read_, use_, fault_scale_, 0.0);
-    return { hours, remaining, assessment, drives_.remaining(so_far, ahead, &assessment, {}),
+    return { hours,
+             remaining,
+             assessment,
+             drives_.remaining(so_far, ahead, &assessment, {}),
              drives_.remaining(so_far, ahead, nullptr, {}, trends),
              drives_.remaining(so_far, ahead, nullptr, {}) };
   }

@@ -37,11 +37,21 @@ TEST(WearTrend, FindsTheRateOfAStraightLineWithAnOffset)
 
 TEST(WearTrend, KnowsLessOfARateThatMayHaveChanged)
 {
-  const std::vector<WearPoint> points{ { 0.1, 0.05 }, { 0.2, 0.1 }, { 0.3, 0.3 }, { 0.4, 0.5 } };
-  const WearTrend steady(points, GOOD_READINGS, 0.0);
-  const WearTrend changing(points, GOOD_READINGS, 0.5);
-  const auto span = [](const WearTrend& trend) { return trend.logDensity(1.2) - trend.logDensity(2.4); };
-  EXPECT_GT(span(steady), span(changing));
+  constexpr ReadingErrors EXACT_GAIN{ 0.01, 0.02, 0.005, 0.02 };
+  const std::vector<WearPoint> points{ { 0.1, 0.1 }, { 0.2, 0.2 }, { 0.3, 0.3 }, { 0.4, 0.4 } };
+  const WearTrend steady(points, EXACT_GAIN, 0.0);
+  const WearTrend changing(points, EXACT_GAIN, 0.5);
+  // How much less likely a factor is that lies a third above the best one.
+  const auto sharpness = [](const WearTrend& trend)
+  {
+    double best = 0.1;
+    for (double factor = 0.1; factor < 4.0; factor += 0.01)
+    {
+      best = trend.logDensity(factor) > trend.logDensity(best) ? factor : best;
+    }
+    return trend.logDensity(best) - trend.logDensity(4.0 / 3.0 * best);
+  };
+  EXPECT_GT(sharpness(steady), 1.5 * sharpness(changing));
   EXPECT_FALSE(WearTrend().isKnown());
   EXPECT_FALSE(WearTrend({}, GOOD_READINGS, 0.0).isKnown());
   EXPECT_FALSE(WearTrend({ { 0.0, 0.0 } }, GOOD_READINGS, 0.0).isKnown()) << "no use, no rate";
