@@ -32,12 +32,12 @@ struct DriveAge
   double meanFlank() const { return 0.5 * (flank_wear[0] + flank_wear[1]); }    ///< half the play's growth [m]
 };
 
-/// Standard deviation of the logarithm of a drive's rate of wear from one filling of grease to the next [-]. Assumed: one
-/// pairing scatters by 1.3 to 2 in repeated tests, of which the half of the logarithm.
+/// Standard deviation of the logarithm of a drive's rate of wear from one filling of grease to the next [-]. Assumed:
+/// one pairing scatters by 1.3 to 2 in repeated tests, of which the half of the logarithm.
 constexpr double RATE_SCATTER = 0.25;
 
-/// Standard deviation of the logarithm of the strength that the transition to the cup has beside the tooth space [-]. Its stress
-/// goes with stress.coning_restraint, which is known to 0.05: 0.34 of the logarithm (docs/life.md).
+/// Standard deviation of the logarithm of the strength that the transition to the cup has beside the tooth space [-].
+/// Its stress goes with stress.coning_restraint, which is known to 0.05: 0.34 of the logarithm (docs/life.md).
 constexpr double TRANSITION_SCATTER = 0.3;
 
 /// Differences of one drive from the nominal one: unknown from outside.

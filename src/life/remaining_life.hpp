@@ -14,8 +14,8 @@
 
 namespace hjt
 {
-/// Fatigue strengths at which the fatigue by a use is known, evenly spaced in their logarithm; straight in the logarithms
-/// between them.
+/// Fatigue strengths at which the fatigue by a use is known, evenly spaced in their logarithm; straight in the
+/// logarithms between them.
 constexpr std::size_t STRENGTHS = 49;
 constexpr double STRENGTH_REACH = 1.5;  // of the logarithm, below and above the median
 
@@ -60,8 +60,8 @@ struct FutureLoad
 {
   double step{};             ///< [h]
   std::vector<Usage> usage;  ///< from now on, ascending, the first 0; two or more
-  /// Depths at which flanks and interface are at their end, as the loads of the new drive would wear them [m]; 0: those of
-  /// the parameters.
+  /// Depths at which flanks and interface are at their end, as the loads of the new drive would wear them [m]; 0:
+  /// those of the parameters.
   double flank_limit{};
   double interface_limit{};
 };
@@ -119,10 +119,10 @@ inline bool supersedes(const Assessment& assessment, const Assessment& before) n
 /// often the cause is in no set; q: false alarms (life/assessment_errors). The errors of the assessments of one drive
 /// are mostly those of its signatures and stay, so that the last counts alone.
 ///
-/// Of wear that was read over the use (WearTrends) a particle's factor is drawn from its distribution given the readings,
-/// and the assessment tells of spalls alone. How fast it wears from now on differs from how fast it has by a factor that
-/// is log-normal with the variance v^2 (1/n + 1/m), v: RATE_SCATTER, n, m: fillings of grease so far and ahead, one at
-/// least.
+/// Of wear that was read over the use (WearTrends) a particle's factor is drawn from its distribution given the
+/// readings, and the assessment tells of spalls alone. How fast it wears from now on differs from how fast it has by
+/// a factor that is log-normal with the variance v^2 (1/n + 1/m), v: RATE_SCATTER, n, m: fillings of grease so far
+/// and ahead, one at least.
 class RemainingLife
 {
 public:

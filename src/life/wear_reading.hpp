@@ -21,8 +21,8 @@ struct WearReading
 /// Reads the mean of the last windows, whatever the verdict.
 ///
 /// Law:   w(s_f) = d_w,   sum over K1, K2 of (k(s_f) + l_k(s_i)) / k_0 = sum of d_k / k_0
-/// where  w, k, l  change of lost motion and of a stiffness by worn teeth, of a stiffness by a worn interface: the means
-///                 of the signatures, weighted by how far their motions are alike, straight between their severities
+/// where  w, k, l  change of lost motion and of a stiffness by worn teeth, of a stiffness by a worn interface: means of
+///                 the signatures, weighted by how far their motions are alike, straight between their severities
 ///        d, k_0   differences from the reference; stiffness of the sound drive
 /// Lost motion is worn teeth's alone: no other wear moves it by a tenth as much. Of the stiffness both softenings
 /// together are taken: how they are shared by K1 and K2 depends on how far the load reaches.

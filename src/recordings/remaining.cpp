@@ -112,8 +112,8 @@ struct Condition
   ReadWear read;
 };
 
-/// Goes through the recordings: their use, unless a duty cycle says it, wear and the last assessment that counts, if there
-/// is a reference to hold them against. @throws InputError if that comes to none.
+/// Goes through the recordings: their use, unless a duty cycle says it, wear and the last assessment that counts, if
+/// there is a reference to hold them against. @throws InputError if that comes to none.
 Condition readRecordings(const RemainingOptions& options, Assessor& assessor, UsageHistory& use)
 {
   const bool is_assessed = !options.baseline.empty();

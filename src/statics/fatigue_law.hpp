@@ -10,7 +10,8 @@
 namespace hjt
 {
 /// S-N curve of the flexspline: Basquin's line down to the endurance limit at its knee, beyond that 5 % of strength a
-/// decade (Sonsino, Int. J. Fatigue 29, 2007), Goodman's mean stress, Peterson's notch sensitivity. Sources: docs/life.md.
+/// decade (Sonsino, Int. J. Fatigue 29, 2007), Goodman's mean stress, Peterson's notch sensitivity. Sources:
+/// docs/life.md.
 class FatigueLaw
 {
 public:
