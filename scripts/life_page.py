@@ -31,6 +31,7 @@ SHARES = [0.05, 0.1, 0.5, 0.9, 0.95]
 QUANTILES = ["q05", "q10", "q50", "q90", "q95"]
 ALPHA = 0.3
 JUDGED_SEED = 1
+BEYOND_KNEE = 45.0   # exponent of the S-N curve there
 LEAST_FORECASTS = 30  # of which a share is stated
 
 
@@ -97,7 +98,8 @@ def draw_fatigue(options, ages, path):
     for deviation, style, label in ((0.0, "k", "half of all flexsplines"), (-2.326, "k--", "weakest 1 %")):
         strength = numpy.exp(deviation * life["fatigue_spread"])
         cycles = numpy.append(1e12, knee * (limit / amplitudes) ** exponent)
-        axis.plot(cycles, 1e-6 * strength * numpy.append(limit, amplitudes), style, label=label)
+        beyond = limit * (1e12 / knee) ** (-1.0 / BEYOND_KNEE)
+        axis.plot(cycles, 1e-6 * strength * numpy.append(beyond, amplitudes), style, label=label)
     for row in json.loads(run(options, "fatigue", "--json"))["rows"]:
         colour = dict(zip(PLACES, ["C0", "C1", "C2"]))[row["place"]]
         amplitude = 1e-6 * row["equivalent"]
