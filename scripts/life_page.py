@@ -8,9 +8,8 @@ import sys
 
 import matplotlib
 import numpy
-import pandas
 
-import lives_learner
+import lives_judged
 import page_section
 
 matplotlib.use("Agg")
@@ -32,8 +31,7 @@ SHARES = [0.05, 0.1, 0.5, 0.9, 0.95]
 QUANTILES = ["q05", "q10", "q50", "q90", "q95"]
 ALPHA = 0.3
 JUDGED_SEED = 1
-LEARNER_SEED = 2
-LEARNED_EVERY = 3  # rows of the learner's lives: neighbours tell it nothing new
+BEYOND_KNEE = 45.0   # exponent of the S-N curve there
 LEAST_FORECASTS = 30  # of which a share is stated
 
 
@@ -69,21 +67,6 @@ def trials(options, seed, duty, *overlay):
     return result, read(path)
 
 
-def learn(training, judged):
-    """Quantiles and CRPS [h] of a learner that sees of each check-up what the forecast sees, taught by other lives."""
-    training = training[::LEARNED_EVERY]
-    rows = numpy.concatenate([training, judged])
-    features = pandas.DataFrame({name: rows[name] for name in ("hours", "level", "cause", "severity")})
-    truth = pandas.DataFrame({"life.remaining": rows["remaining"],
-                              "life.split": ["train"] * len(training) + ["test"] * len(judged)})
-    known, weights = lives_learner.learn(features, truth)
-    weights = weights[len(training):]
-    quantiles = numpy.array([lives_learner.quantiles_of(known, weight) for weight in weights])
-    crps = numpy.array([lives_learner.crps_of(known, weight, true) for weight, true in
-                        zip(weights, judged["remaining"])])
-    return quantiles, crps
-
-
 def draw_stress(options, path):
     """Nominal stress of every tooth at three places under four loads."""
     rows = json.loads(tool(options, "stiffness", "--torques", ",".join(map(str, LOADS)), "--teeth", "--json"))["rows"]
@@ -115,7 +98,8 @@ def draw_fatigue(options, ages, path):
     for deviation, style, label in ((0.0, "k", "half of all flexsplines"), (-2.326, "k--", "weakest 1 %")):
         strength = numpy.exp(deviation * life["fatigue_spread"])
         cycles = numpy.append(1e12, knee * (limit / amplitudes) ** exponent)
-        axis.plot(cycles, 1e-6 * strength * numpy.append(limit, amplitudes), style, label=label)
+        beyond = limit * (1e12 / knee) ** (-1.0 / BEYOND_KNEE)
+        axis.plot(cycles, 1e-6 * strength * numpy.append(beyond, amplitudes), style, label=label)
     for row in json.loads(run(options, "fatigue", "--json"))["rows"]:
         colour = dict(zip(PLACES, ["C0", "C1", "C2"]))[row["place"]]
         amplitude = 1e-6 * row["equivalent"]
@@ -173,8 +157,8 @@ def draw_forecasts(rows, title, axis):
     chosen = [ordered[int(share * (len(ordered) - 1))] for share in (0.25, 0.5, 0.75)]
     for life, colour in zip(chosen, ["C0", "C1", "C2"]):
         of = rows[rows["life"] == life]
-        axis.fill_between(of["hours"], of["q10"], of["q90"], color=colour, alpha=0.2, linewidth=0)
-        axis.plot(of["hours"], of["q50"], colour, linewidth=1)
+        axis.fill_between(of["hours"], of["read_q10"], of["read_q90"], color=colour, alpha=0.2, linewidth=0)
+        axis.plot(of["hours"], of["read_q50"], colour, linewidth=1)
         axis.plot(of["hours"], of["remaining"], colour, linewidth=1, linestyle="--")
     axis.set_title(title, loc="left", fontsize=10)
     axis.set_xlabel("hours of use")
@@ -195,7 +179,7 @@ def of_life(rows):
 
 def of_forecast(rows):
     """The same as the median forecast has it: what is known at the time [-]."""
-    return rows["hours"] / (rows["hours"] + rows["q50"])
+    return rows["hours"] / (rows["hours"] + rows["read_q50"])
 
 
 def accurate(rows, median):
@@ -212,9 +196,9 @@ def draw_calibration(results, path):
     axes[0, 0].legend(frameon=False)
     middle = 0.05 + 0.1 * numpy.arange(10)
     for (name, (_, rows)), colour in zip(results.items(), COLOURS):
-        observed = [numpy.mean(rows["remaining"] <= rows[quantile]) for quantile in QUANTILES]
+        observed = [numpy.mean(rows["remaining"] <= rows["read_" + quantile]) for quantile in QUANTILES]
         axes[1, 0].plot(SHARES, observed, colour + "o-", label=name)
-        for prefix, style in (("", "o-"), ("prior_", ":")):
+        for prefix, style in (("read_", "o-"), ("prior_", ":")):
             share = [100 * numpy.mean(accurate(rows, rows[prefix + "q50"])[tenth]) for tenth in
                      tenths(rows, of_life(rows))]
             axes[1, 1].plot(middle, share, colour + style)
@@ -227,7 +211,7 @@ def draw_calibration(results, path):
     axes[1, 0].set_xlabel("stated quantile [-]")
     axes[1, 0].set_ylabel("share of truths below it [-]")
     axes[1, 0].legend(frameon=False)
-    axes[1, 1].plot([], [], "ko-", label="with assessments")
+    axes[1, 1].plot([], [], "ko-", label="with readings")
     axes[1, 1].plot([], [], "k:", label="prior")
     axes[1, 1].legend(frameon=False)
     axes[1, 1].set_title(f"α–λ: median within {100 * ALPHA:.0f} % of the truth [%]", loc="left", fontsize=10)
@@ -247,7 +231,7 @@ def draw_calibration(results, path):
 
 
 def inside(rows):
-    return (rows["remaining"] >= rows["q10"]) & (rows["remaining"] <= rows["q90"])
+    return (rows["remaining"] >= rows["read_q10"]) & (rows["remaining"] <= rows["read_q90"])
 
 
 def held(rows, chosen):
@@ -305,22 +289,36 @@ def tenth_table(results):
     return lines
 
 
-def score_table(options, results):
-    lines = ["| drives | forecast | CRPS [h] | median within 30 % of the truth [%] | 80 % interval held [%] |",
-             "|---|---|---|---|---|"]
+def horizon(rows, median):
+    """Share of a life that is left when the median comes within ALPHA of the truth for good: median of all [-]."""
+    shares = []
+    good = accurate(rows, median)
+    for life in numpy.unique(rows["life"]):
+        of = rows["life"] == life
+        bad = numpy.flatnonzero(~good[of])
+        left = 1.0 - of_life(rows)[of]
+        first = bad[-1] + 1 if len(bad) else 0
+        shares.append(left[first] if first < len(left) else 0.0)
+    return numpy.median(shares)
+
+
+def score_table(results):
+    lines = ["| drives | forecast | CRPS [h] | of the second half of lives ended by wear "
+             "| median within 30 % of the truth [%] | lives ended by wear: at half, at 80 % of the life "
+             "| horizon of these | 80 % interval held [%] |",
+             "|---" * 8 + "|"]
     for name, (_, rows) in results.items():
-        print(f"life: learner, {name}", file=sys.stderr)
-        training = trials(options, LEARNER_SEED, *TRIALS[name])[1]
-        exact = trials(options, JUDGED_SEED, *TRIALS[name], "--estimate-error", "0.1")[1]
-        quantiles, crps = learn(training, rows)
-        columns = [("catalogue's prior and survival", rows, "prior_"), ("with assessments", rows, ""),
-                   ("with severities of a tenth of the error", exact, "")]
-        found = [(words, of, of[prefix + "crps"], *(of[prefix + q] for q in ("q10", "q50", "q90")))
-                 for words, of, prefix in columns]
-        found.insert(1, ("learner of as many other lives", rows, crps, *quantiles.T))
-        for words, of, score, low, median, high in found:
-            truth = of["remaining"]
-            lines.append(f"| {name} | {words} | {numpy.mean(score):.0f} | {100 * numpy.mean(accurate(of, median)):.0f} "
+        found = [(words, rows[prefix + "crps"], *(rows[prefix + q] for q in ("q10", "q50", "q90")))
+                 for words, prefix in (("use alone", "prior_"), ("last assessment", ""),
+                                       ("all readings of wear", "read_"))]
+        truth, share, worn = rows["remaining"], of_life(rows), rows["end"] <= 1
+        for words, score, low, median, high in found:
+            good = accurate(rows, median)
+            at = ", ".join(f"{100 * numpy.mean(good[worn & (numpy.abs(share - part) < 0.05)]):.0f}"
+                           for part in (0.5, 0.8))
+            lines.append(f"| {name} | {words} | {numpy.mean(score):.0f} "
+                         f"| {numpy.mean(score[worn & (share > 0.5)]):.0f} "
+                         f"| {100 * numpy.mean(good):.0f} | {at} | {horizon(rows[worn], median[worn]):.2f} "
                          f"| {100 * numpy.mean((truth >= low) & (truth <= high)):.0f} |")
     return lines
 
@@ -331,7 +329,7 @@ def main():
     parser.add_argument("--duties", type=pathlib.Path, required=True, help=argparse.SUPPRESS)
     parser.add_argument("--docs", type=pathlib.Path, required=True, help="folder that holds life.md")
     parser.add_argument("--work", type=pathlib.Path, required=True, help="folder for the rows")
-    parser.add_argument("--lives", type=int, default=200, help="simulated lives of each kind [200]")
+    parser.add_argument("--lives", type=int, default=60, help="simulated lives of each kind [60]")
     options = parser.parse_args()
     options.work.mkdir(parents=True, exist_ok=True)
 
@@ -347,6 +345,8 @@ def main():
     draw_fatigue(options, ages, options.docs / "images" / "life_fatigue.png")
     draw_ageing(ages, options.docs / "images" / "life_ageing.png")
     draw_calibration(results, options.docs / "images" / "life_forecast.png")
+    print("life: lives with signals", file=sys.stderr)
+    page_section.write(options.docs / "life.md", "read", lives_judged.tables(lives_judged.judged(options)))
     page_section.write(options.docs / "life.md", "life", [
         *age_table(ages), "",
         "`joint_twin life fatigue`, the new drive at the catalogue's torques:", "",
@@ -356,7 +356,7 @@ def main():
         "![Wear, grease and bearing over the turns of the motor, three duties](images/life_ageing.png)", "",
         *trial_table(results), "",
         *tenth_table(results), "",
-        *score_table(options, results), "",
+        *score_table(results), "",
         "![Forecasts of three lives each, calibration, accuracy and coverage against the "
         "share of life gone](images/life_forecast.png)"])
     print(f"life: wrote {options.docs / 'life.md'}", file=sys.stderr)

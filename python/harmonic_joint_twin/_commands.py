@@ -263,24 +263,30 @@ def indicators(recordings: Union[Recording, Sequence[Recording]], *, models: Seq
                  overlays)
 
 
-def remaining(recordings: Union[Recording, Sequence[Recording]], *, hours: Optional[float] = None,
+def remaining(recordings: Union[Recording, Sequence[Recording]], *,
+              hours: Union[None, float, Sequence[float]] = None,
               joint: Optional[str] = None, torque_scale: Optional[float] = None,
               columns: Optional[Mapping[str, str]] = None, baseline: Optional[Path] = None,
-              duty: Optional[Path] = None, use_record: Optional[Path] = None, force: bool = False,
-              overlays: Overlays = (), progress: Optional[Progress] = None) -> Document:
+              duty: Optional[Path] = None, lost_motion_limit: Optional[float] = None,
+              use_record: Optional[Path] = None, force: bool = False, overlays: Overlays = (),
+              progress: Optional[Progress] = None) -> Document:
     """Use of a recorded joint, and how long a drive lasts that is used so: the tool's remaining (docs/life.md).
 
-    hours: use that the drive has behind it, all like the recordings, 1e-6 ... 1e7 [h]; None: theirs. baseline:
-    reference of the new drive, the last assessment by it tells of wear. duty: duty cycle (CSV) in place of the
-    recordings' use. use_record: file for the use. Others as of indicators.
+    hours: use that the drive has behind it, all like the recordings, 1e-6 ... 1e7 [h]; None: theirs; a sequence: at
+    each recording, ascending. baseline: reference of the new drive, readings and assessments by it tell of wear. duty:
+    duty cycle (CSV) in place of the recordings' use. lost_motion_limit: that ends the drive's use too, 1e-6 ... 0.1
+    [rad]. use_record: file for the use. Others as of indicators.
 
     Returns a dict: 'hours' and 'remaining_q10', 'remaining_q50', 'remaining_q90' [h], 'turns', 'nearest' limit and its
-    'used' [%], 'density', 'end_probability', with a baseline 'level', 'cause'. InputError, ParameterError.
+    'used' [%], 'density', 'end_probability', with a baseline 'level', 'cause', 'wear_flank', 'wear_interface',
+    'lost_motion' [rad]. InputError, ParameterError.
     """
     return _call("remaining",
-                 {**_signals(recordings), "hours": hours, "joint": joint, "torque_scale": torque_scale,
-                  "columns": columns and dict(columns), "baseline": baseline, "duty": duty, "use_record": use_record,
-                  "force": force, "progress": progress}, overlays)
+                 {**_signals(recordings), "hours": [hours] if isinstance(hours, (int, float)) else hours,
+                  "joint": joint, "torque_scale": torque_scale,
+                  "columns": columns and dict(columns), "baseline": baseline, "duty": duty,
+                  "lost_motion_limit": lost_motion_limit, "use_record": use_record, "force": force,
+                  "progress": progress}, overlays)
 
 
 def checkup(arm: Path, out: Path, *, joint: Optional[str] = None, file_format: str = "csv",

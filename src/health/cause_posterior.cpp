@@ -9,6 +9,7 @@
 #include <Eigen/Dense>
 
 #include "harmonic_joint_twin/health/fault_signatures.hpp"
+#include "health/motion_likeness.hpp"
 
 namespace hjt
 {
@@ -18,9 +19,6 @@ using Causes = Eigen::Matrix<double, COMMON_CAUSES, 1>;
 using CausesSquare = Eigen::Matrix<double, COMMON_CAUSES, COMMON_CAUSES>;
 
 constexpr std::array UNKNOWN_STRENGTHS{ 3.0, 10.0, 30.0, 100.0 };  // S of what is in no table
-constexpr double SPEED_RANGE = 0.2;                                // of the logarithm, in which motions are alike
-constexpr double DIRECTION_RANGE = 0.3;                            // as well
-constexpr double OTHER_MOTION = 1e-3;                              // weight of a signature of no motion alike
 constexpr double LARGE = 1e100;  // logarithms of products are taken before they overflow
 
 /// One compared number of a window.
@@ -168,18 +166,6 @@ private:
   std::array<Term, INDICATOR_COUNT> terms_;
   std::size_t count_{};
 };
-
-/// How far a signature's motion and the window's are alike, 0 ... 1.
-double likeness(const MotionKind& motion, const OperatingPoint& point) noexcept
-{
-  if (!(motion.speed > 0.0 && point.speed > 0.0))
-  {
-    return 1.0;
-  }
-  const double speed = std::log(point.speed / motion.speed) / SPEED_RANGE;
-  const double direction = (std::abs(point.direction) - motion.direction) / DIRECTION_RANGE;
-  return std::exp(-0.5 * (speed * speed + direction * direction));
-}
 }  // namespace
 
 void CauseSearch::Sum::add(double weighted, double prior, double severity) noexcept

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "harmonic_joint_twin/params/faults.hpp"
+#include "life/wear_trend.hpp"
 
 namespace hjt
 {
@@ -37,5 +38,14 @@ constexpr double IN_SET = (26.0 + 1.0) / (29.0 + 2.0);
 
 /// Of 304 check-ups and runs at work of sound gears none ended with an alarm.
 constexpr double FALSE_ALARMS = (0.0 + 1.0) / (304.0 + 2.0);
+
+/// How WearReadings depart from the wear of flanks and interface, counted on lives with signals (seed 11,
+/// docs/life.md): gears of other preload show the first micrometre late, signatures of other motions are off by a
+/// tenth.
+constexpr ReadingErrors FLANK_READING{ 0.12, 0.025, 0.005, 0.03 };
+constexpr ReadingErrors INTERFACE_READING{ 0.2, 0.08, 0.015, 0.03 };
+/// Standard deviation of what the flanks' wear adds to the interface's reading, over the flanks' reading [-].
+constexpr double FLANK_IN_INTERFACE = 0.4;
+
 }  // namespace assessment_errors
 }  // namespace hjt

@@ -5,9 +5,11 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 
 #include <boost/random/lognormal_distribution.hpp>
+#include <boost/random/mersenne_twister.hpp>
 #include <boost/random/uniform_01.hpp>
 
 #include "life/ageing_laws.hpp"
@@ -30,7 +32,15 @@ struct DriveAge
   double meanFlank() const { return 0.5 * (flank_wear[0] + flank_wear[1]); }    ///< half the play's growth [m]
 };
 
-/// Differences of one drive from the nominal one: unknown from outside, constant over its life.
+/// Standard deviation of the logarithm of a drive's rate of wear from one filling of grease to the next [-]. Assumed:
+/// one pairing scatters by 1.3 to 2 in repeated tests, of which the half of the logarithm.
+constexpr double RATE_SCATTER = 0.25;
+
+/// Standard deviation of the logarithm of the strength that the transition to the cup has beside the tooth space [-].
+/// Its stress goes with stress.coning_restraint, which is known to 0.05: 0.34 of the logarithm (docs/life.md).
+constexpr double TRANSITION_SCATTER = 0.3;
+
+/// Differences of one drive from the nominal one: unknown from outside.
 struct UnitVariation
 {
   double flank_factor{ 1.0 };      ///< its flank wear over that of the nominal drive [-]
@@ -38,7 +48,30 @@ struct UnitVariation
   double bearing_life{};           ///< turns at rated torque until the bearing's first spall
   double spall_growth{};           ///< share of that life from the first spall to the end [-]
   double strength{ 1.0 };          ///< its flexspline's fatigue strength over the median's [-]
+  double transition{ 1.0 };        ///< strength of the transition to its cup over that of the rest [-]
+  std::uint32_t fillings{};        ///< seed of what differs from one filling of grease to the next; 0: nothing does
 };
+
+/// The same drive in its n-th filling of grease, from 0 on: the factors of wear are those of that time.
+inline UnitVariation inFilling(UnitVariation variation, std::uint32_t number)
+{
+  if (variation.fillings != 0)
+  {
+    constexpr std::uint32_t STRIDE = 0x9E3779B9u;
+    boost::random::mt19937 random(variation.fillings + STRIDE * number);
+    const double factor = boost::random::lognormal_distribution<double>(0.0, RATE_SCATTER)(random);
+    variation.flank_factor *= factor;
+    variation.interface_factor *= factor;
+  }
+  return variation;
+}
+
+/// Fatigue strength of a drive at a place, over the median's [-].
+inline double strengthOf(const UnitVariation& variation, std::size_t place)
+{
+  return place == static_cast<std::size_t>(StressPlace::TRANSITION) ? variation.strength * variation.transition :
+                                                                      variation.strength;
+}
 
 /// What ends a drive's use.
 enum class EndOfLife
@@ -82,6 +115,8 @@ UnitVariation drawVariation(const LifeParameters& parameters, const BearingLife&
   variation.bearing_life = bearing.quantile(boost::random::uniform_01<double>()(engine));
   variation.spall_growth = growth(engine);
   variation.strength = strength(engine);
+  variation.transition = boost::random::lognormal_distribution<double>(0.0, TRANSITION_SCATTER)(engine);
+  variation.fillings = static_cast<std::uint32_t>(engine());
   return variation;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <functional>
 
 #include <boost/numeric/odeint.hpp>
@@ -68,28 +69,31 @@ struct Scale
 
 UnitVariation nominalDrive(const LifeParameters& parameters)
 {
-  return { 1.0, 1.0, BearingLife(parameters).quantile(0.5), parameters.spall_growth, 1.0 };
+  return { 1.0, 1.0, BearingLife(parameters).quantile(0.5), parameters.spall_growth, 1.0, 1.0, 0 };
 }
 
-void DriveAgeing::addFatigue(double turns, const RevolutionLoad& revolution_load, double strength,
+void DriveAgeing::addFatigue(double turns, const RevolutionLoad& revolution_load, const UnitVariation& variation,
                              std::array<MinerSum, STRESS_PLACES>& fatigue) const
 {
   constexpr double CYCLES_A_TURN = 2.0;
   for (std::size_t place = 0; place < STRESS_PLACES && turns > 0.0; ++place)
   {
-    fatigue[place].add(fatigue_law_, CYCLES_A_TURN * turns,
-                       fatigue_law_.enduranceShare(place, revolution_load.stress[place]) / strength);
+    fatigue[place].add(
+        fatigue_law_, CYCLES_A_TURN * turns,
+        fatigue_law_.enduranceShare(place, revolution_load.stress[place]) / strengthOf(variation, place));
   }
 }
 
 std::array<double, STRESS_PLACES> DriveAgeing::fatigueRates(double strength) const
 {
+  UnitVariation variation;
+  variation.strength = strength;
   double time = 0.0;
   std::array<MinerSum, STRESS_PLACES> fatigue;
   for (const DutyPhase& phase : duty_.phases)
   {
     time += phase.duration;
-    addFatigue(phase.turns(), load_map_.at(phase.load_torque, 0.0, 0.0), strength, fatigue);
+    addFatigue(phase.turns(), load_map_.at(phase.load_torque, 0.0, 0.0), variation, fatigue);
   }
   std::array<double, STRESS_PLACES> rates{};
   for (std::size_t place = 0; place < STRESS_PLACES; ++place)
@@ -125,7 +129,7 @@ DriveAge DriveAgeing::rates(const UnitVariation& variation, const DriveAge& age)
     rate.grease += turns * greaseAgeing(life, phase.temperature);
     rate.flaw_depth += turns * crackGrowth(parameters_, revolution_load, age.flaw_depth);
     rate.bearing_turns += turns * bearingWear(life, phase.load_torque);
-    addFatigue(turns, revolution_load, variation.strength, fatigue);
+    addFatigue(turns, revolution_load, variation, fatigue);
   }
   rate.grease *= rate.turns > 0.0 ? greaseLoadFactor(rate.bearing_turns / rate.turns) : 1.0;
   const double per_hour = 3600.0 / time;
@@ -180,8 +184,9 @@ DriveAgeing::Life DriveAgeing::live(const UnitVariation& variation, double hours
   constexpr int BISECTIONS = 50;
   namespace odeint = boost::numeric::odeint;
   const Scale scale(parameters_, variation);
-  const auto rhs = [&](const Entries& entries, Entries& rate, double)
-  { rate = scale.from(rates(variation, scale.to(entries))); };
+  std::uint32_t filling = 0;
+  UnitVariation now = inFilling(variation, filling);
+  const auto rhs = [&](const Entries& at, Entries& rate, double) { rate = scale.from(rates(now, scale.to(at))); };
 
   DriveAge age;
   age.flaw_depth = parameters_.life.flaw_depth;
@@ -232,6 +237,7 @@ DriveAgeing::Life DriveAgeing::live(const UnitVariation& variation, double hours
       return { end, why, age };
     }
     age.grease = 0.0;
+    now = inFilling(variation, ++filling);
     stepper.initialize(scale.from(age), end, std::max(1e-6, end - begin) + 1e-3 * end);
   }
 }

@@ -48,7 +48,7 @@ public:
             const std::function<void(double, const DriveAge&)>& visit) const;
 
 private:
-  void addFatigue(double turns, const RevolutionLoad& revolution_load, double strength,
+  void addFatigue(double turns, const RevolutionLoad& revolution_load, const UnitVariation& variation,
                   std::array<MinerSum, STRESS_PLACES>& fatigue) const;
 
   Parameters parameters_;

@@ -7,6 +7,7 @@
 
 #include "life/drive_ageing.hpp"
 #include "life/nominal_use.hpp"
+#include "life/read_wear.hpp"
 #include "life/remaining_life.hpp"
 #include "life/revolution_load_map.hpp"
 #include "life/usage_history.hpp"
@@ -43,7 +44,8 @@ public:
   /// `record`: with turns in it. `assessment`: the last one that compared a window, null: none; `reference_hours`: of
   /// use when its sound reference was learned, 0: new [h]. Takes seconds where the record holds loads that were not met
   /// before. @throws ParameterError if the ring finds no equilibrium under one of its loads.
-  LifeEstimate estimate(const UsageHistory& record, const Assessment* assessment, double reference_hours)
+  LifeEstimate estimate(const UsageHistory& record, const Assessment* assessment, double reference_hours,
+                        const ReadWear& read = {})
   {
     const LifeParameters& life = parameters_.life;
     const DutyCycle duty = record.duty();
@@ -68,10 +70,10 @@ public:
     estimate.grease_used = age.grease;
 
     const NominalUse use(ageing, life, GREASE_IS_CHANGED);
-    estimate.remaining =
-        drives_.remaining(use.until(estimate.hours),
-                          use.from(estimate.hours, GREASE_CHANGES_AHEAD / ageing.rates(nominal, {}).grease, STRETCHES),
-                          assessment, use.until(reference_hours));
+    estimate.remaining = drives_.remaining(
+        use.until(estimate.hours),
+        use.from(estimate.hours, GREASE_CHANGES_AHEAD / ageing.rates(nominal, {}).grease, STRETCHES), assessment,
+        use.until(reference_hours), trendsOf(read, use, parameters_.fault_scale, reference_hours));
     return estimate;
   }
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <boost/math/special_functions/erf.hpp>
 #include <boost/random/sobol.hpp>
 
 #include "gear/angle.hpp"
@@ -16,9 +15,9 @@ namespace
 {
 using namespace assessment_errors;
 
-constexpr double FARTHEST = 30.0;       // standard deviations: the normal distribution ends where doubles do
 constexpr double SEVERITY_RANGE = 0.9;  // of the severities that signatures have: 0.1 to 1
-constexpr double LEAST_SPREAD = 0.1;    // of a severity's logarithm, from one assessment to the next
+constexpr double LEAST_FATIGUE_SPREAD = 1e-6;
+constexpr double LEAST_SPREAD = 0.1;  // of a severity's logarithm, from one assessment to the next
 
 /// Hours until the use ahead has grown by `left`, of what `of` takes from a usage.
 template <class Of>
@@ -36,47 +35,17 @@ double hoursUntil(const FutureLoad& future_load, double left, Of&& of)
   return stretch > 0.0 ? future_load.step * (begin + (left - of(*before)) / stretch) : HUGE_VAL;
 }
 
-double squared(double value)
-{
-  return value * value;
-}
-
-double normalShare(double deviation) noexcept
-{
-  return 0.5 * std::erfc(-deviation / std::sqrt(2.0));
-}
-
-/// The deviation below `most` of which a share `share` of the normal distribution's part below `most` lies.
-double normalBelow(double most, double share) noexcept
-{
-  const double part = share * normalShare(std::clamp(most, -FARTHEST, FARTHEST));
-  return -std::sqrt(2.0) * boost::math::erfc_inv(2.0 * std::clamp(part, 1e-300, 1.0 - 1e-16));
-}
-
-/// Factor, log-normal about 1, of a drive that `ends_at` or more would have ended.
-double factorBelow(double ends_at, double spread, double share) noexcept
-{
-  return spread > 0.0 ? std::exp(spread * normalBelow(std::log(ends_at) / spread, share)) : 1.0;
-}
-
-/// Miner's sum of a place by a use. @param deviation of the flexspline's strength, in standard deviations
-double fatigueBy(const Usage& usage, double deviation, std::size_t place) noexcept
+/// Miner's sum of a place by a use. @param strength logarithm of the flexspline's there, over the median's
+double fatigueBy(const Usage& usage, double strength, std::size_t place) noexcept
 {
   constexpr double LAST = STRENGTHS - 1;
-  const double at = std::clamp(0.5 * LAST * (1.0 + deviation / STRENGTH_REACH), 0.0, LAST);
+  const double at = std::clamp(0.5 * LAST * (1.0 + strength / STRENGTH_REACH), 0.0, LAST);
   const auto i = std::min(static_cast<std::size_t>(at), STRENGTHS - 2);
   const double share = at - static_cast<double>(i);
-  return (1.0 - share) * usage.fatigue[i][place] + share * usage.fatigue[i + 1][place];
-}
-
-double worstFatigue(const Usage& usage, double deviation) noexcept
-{
-  double worst = 0.0;
-  for (std::size_t place = 0; place < STRESS_PLACES; ++place)
-  {
-    worst = std::max(worst, fatigueBy(usage, deviation, place));
-  }
-  return worst;
+  const double weaker = usage.fatigue[i][place];
+  const double stronger = usage.fatigue[i + 1][place];
+  return weaker > 0.0 && stronger > 0.0 ? weaker * std::pow(stronger / weaker, share) :
+                                          (1.0 - share) * weaker + share * stronger;
 }
 
 /// Wear of a particle as the severity of a fault, and the chance that it is found.
@@ -156,31 +125,40 @@ RemainingLife::RemainingLife(const Parameters& parameters)
   }
 }
 
-/// The strength of which the use so far breaks all that are weaker, in standard deviations.
-double RemainingLife::weakestLeft(const Usage& so_far) const noexcept
+/// The strength, by place, of which the use so far breaks all that are weaker: logarithm over the median's.
+RemainingLife::Weakest RemainingLife::weakestLeft(const Usage& so_far) const noexcept
 {
-  double broken = -STRENGTH_REACH;
-  double whole = STRENGTH_REACH;
-  if (worstFatigue(so_far, broken) < 1.0)
+  Weakest weakest{};
+  for (std::size_t place = 0; place < STRESS_PLACES; ++place)
   {
-    return -FARTHEST;
+    double broken = -STRENGTH_REACH;
+    double whole = STRENGTH_REACH;
+    const bool none = fatigueBy(so_far, broken, place) < 1.0;
+    for (int i = 0; i < 40 && !none && fatigueBy(so_far, whole, place) < 1.0; ++i)
+    {
+      const double middle = 0.5 * (broken + whole);
+      (fatigueBy(so_far, middle, place) < 1.0 ? whole : broken) = middle;
+    }
+    weakest[place] = none ? -FARTHEST * FARTHEST : whole;
   }
-  for (int i = 0; i < 40 && worstFatigue(so_far, whole) < 1.0; ++i)
-  {
-    const double middle = 0.5 * (broken + whole);
-    (worstFatigue(so_far, middle) < 1.0 ? whole : broken) = middle;
-  }
-  return whole;
+  return weakest;
 }
 
-RemainingLife::Drive RemainingLife::drive(const Point& point, const Usage& so_far, double weakest,
-                                          bool is_spalled) const noexcept
+RemainingLife::Drive RemainingLife::drive(const Point& point, const Usage& so_far, const Weakest& weakest,
+                                          bool is_spalled, const WearTrends& trends) const noexcept
 {
   Drive drive;
-  const double spread = parameters_.wear_spread;
-  drive.variation.flank_factor = factorBelow(parameters_.flank_wear_limit / so_far.flank_wear, spread, point[FLANK]);
-  drive.variation.interface_factor =
-      factorBelow(parameters_.interface_wear_limit / so_far.interface_wear, spread, point[INTERFACE]);
+  drive.variation.flank_factor = flank_factors_.drawn(point[FLANK]);
+  drive.variation.interface_factor = interface_factors_.drawn(point[INTERFACE]);
+  drive.rate_ahead = normalAt(point[RATE_AHEAD]);
+  drive.flank_end = flank_limit_ / drive.variation.flank_factor;
+  if (trends.flank.isKnown() && std::isfinite(trends.reading_at_end))
+  {
+    const double by_lost_motion =
+        trends.flank_depth * trends.flank.nominalAt(trends.reading_at_end, drive.variation.flank_factor,
+                                                    normalAt(point[READING_GAIN]), normalAt(point[READING_OFFSET]));
+    drive.flank_end = std::min(drive.flank_end, std::max(by_lost_motion, so_far.flank_wear));
+  }
   drive.variation.spall_growth =
       parameters_.spall_growth * factorBelow(HUGE_VAL, parameters_.spall_spread, point[SPALL_GROWTH]);
   // -ln of Weibull's share of bearings that last: to the life that would have ended by now, and to a first spall now.
@@ -192,14 +170,32 @@ RemainingLife::Drive RemainingLife::drive(const Point& point, const Usage& so_fa
       is_spalled ? least - std::log1p(-point[BEARING_LIFE] * share_spalled) : whole - std::log1p(-point[BEARING_LIFE]);
   drive.variation.bearing_life = bearing_.scale * std::pow(drawn, 1.0 / bearing_.shape);
   drive.log_weight = is_spalled ? std::log(share_spalled / SPALLED) - least : -whole - std::log(1.0 - SPALLED);
-  drive.deviation = -normalBelow(-weakest, point[STRENGTH]);
-  drive.variation.strength = std::exp(parameters_.fatigue_spread * drive.deviation);
+  constexpr auto AT_TRANSITION = static_cast<std::size_t>(StressPlace::TRANSITION);
+  drive.strength = {};
+  drive.strength[AT_TRANSITION] = TRANSITION_SCATTER * normalAt(point[TRANSITION]);
+  const double spread = std::max(parameters_.fatigue_spread, LEAST_FATIGUE_SPREAD);
+  double weakest_left = -FARTHEST;  // standard deviations: what is weaker has broken
+  for (std::size_t place = 0; place < STRESS_PLACES; ++place)
+  {
+    weakest_left = std::max(weakest_left, (weakest[place] - drive.strength[place]) / spread);
+  }
+  weakest_left = std::min(weakest_left, FARTHEST);
+  const double deviation = -normalBelow(-weakest_left, point[STRENGTH]);
+  for (double& strength : drive.strength)
+  {
+    strength += spread * deviation;
+  }
+  drive.log_weight += std::log(std::max(normalShare(-weakest_left), 1e-300));
   return drive;
 }
 
 double RemainingLife::likelihood(const Assessment& assessment, const Usage& so_far, const Usage& at_reference,
-                                 const UnitVariation& variation) const noexcept
+                                 const UnitVariation& variation, bool wear_is_read) const noexcept
 {
+  if (wear_is_read && assessment.level == HealthLevel::OK)
+  {
+    return 1.0;
+  }
   const Wear flank(FaultKind::TOOTH_WEAR, variation.flank_factor * (so_far.mean_flank - at_reference.mean_flank) /
                                               fault_scale_.tooth_wear_depth);
   const Wear interface(FaultKind::INTERFACE_WEAR, variation.interface_factor *
@@ -215,6 +211,11 @@ double RemainingLife::likelihood(const Assessment& assessment, const Usage& so_f
   double sum = 0.0;
   const auto add = [&](const Alternative& item)
   {
+    if (wear_is_read &&
+        (item.cause == causeOf(FaultKind::TOOTH_WEAR) || item.cause == causeOf(FaultKind::INTERFACE_WEAR)))
+    {
+      return;  // the readings have said it
+    }
     if (item.cause == causeOf(FaultKind::TOOTH_WEAR))
     {
       known += item.confidence;
@@ -246,13 +247,20 @@ std::array<double, RemainingHours::CAUSES.size()> RemainingLife::hoursLeft(const
   const UnitVariation& variation = drive.variation;
   const auto until_broken = [&](std::size_t place)
   {
-    return hoursUntil(future_load, 1.0 - fatigueBy(so_far, drive.deviation, place),
-                      [&](const Usage& usage) { return fatigueBy(usage, drive.deviation, place); });
+    const double strength = drive.strength[place];
+    return hoursUntil(future_load, 1.0 - fatigueBy(so_far, strength, place),
+                      [&](const Usage& usage) { return fatigueBy(usage, strength, place); });
   };
-  return { hoursUntil(future_load, parameters_.flank_wear_limit / variation.flank_factor - so_far.flank_wear,
-                      [](const Usage& usage) { return usage.flank_wear; }),
-           hoursUntil(future_load,
-                      parameters_.interface_wear_limit / variation.interface_factor - so_far.interface_wear,
+  // Both wear faster or slower than so far: the same grease.
+  const double fillings = std::max(so_far.fillings, 1.0);
+  const auto until_worn = [&](double end, double now, auto&& of)
+  {
+    const double ahead = std::max(fillings * (end / std::max(now, 1e-300) - 1.0), 1.0);
+    const double factor = std::exp(RATE_SCATTER * std::sqrt(1.0 / fillings + 1.0 / ahead) * drive.rate_ahead);
+    return hoursUntil(future_load, (end - now) / factor, of);
+  };
+  return { until_worn(drive.flank_end, so_far.flank_wear, [](const Usage& usage) { return usage.flank_wear; }),
+           until_worn(interface_limit_ / variation.interface_factor, so_far.interface_wear,
                       [](const Usage& usage) { return usage.interface_wear; }),
            hoursUntil(future_load, variation.bearing_life * (1.0 + variation.spall_growth) - so_far.bearing_turns,
                       [](const Usage& usage) { return usage.bearing_turns; }),
@@ -262,14 +270,20 @@ std::array<double, RemainingHours::CAUSES.size()> RemainingLife::hoursLeft(const
 }
 
 RemainingHours RemainingLife::remaining(const Usage& so_far, const FutureLoad& future_load,
-                                        const Assessment* assessment, const Usage& at_reference) noexcept
+                                        const Assessment* assessment, const Usage& at_reference,
+                                        const WearTrends& trends) noexcept
 {
-  const double weakest = weakestLeft(so_far);
+  flank_limit_ = future_load.flank_limit > 0.0 ? future_load.flank_limit : parameters_.flank_wear_limit;
+  interface_limit_ = future_load.interface_limit > 0.0 ? future_load.interface_limit : parameters_.interface_wear_limit;
+  flank_factors_.given(trends.flank, parameters_.wear_spread, flank_limit_ / so_far.flank_wear);
+  interface_factors_.given(trends.interface, parameters_.wear_spread, interface_limit_ / so_far.interface_wear);
+  const bool wear_is_read = trends.flank.isKnown() && trends.interface.isKnown();
+  const Weakest weakest = weakestLeft(so_far);
   double largest = -HUGE_VAL;  // no weight is lost to the range of doubles
   for (std::size_t i = 0; i < PARTICLES; ++i)
   {
     const bool is_spalled = static_cast<double>(i) < SPALLED * static_cast<double>(PARTICLES);
-    drives_[i] = drive(points_[i], so_far, weakest, is_spalled);
+    drives_[i] = drive(points_[i], so_far, weakest, is_spalled, trends);
     largest = std::max(largest, drives_[i].log_weight);
   }
   RemainingHours result;
@@ -281,7 +295,7 @@ RemainingHours RemainingLife::remaining(const Usage& so_far, const FutureLoad& f
     const auto first = std::min_element(hours.begin(), hours.end());
     const double weight =
         std::exp(particle.log_weight - largest) *
-        (assessment != nullptr ? likelihood(*assessment, so_far, at_reference, particle.variation) : 1.0);
+        (assessment != nullptr ? likelihood(*assessment, so_far, at_reference, particle.variation, wear_is_read) : 1.0);
     result.by_cause[static_cast<std::size_t>(first - hours.begin())] += weight;
     ends_[i] = { *first, weight };
     sum += weight;

@@ -9,18 +9,20 @@
 #include "harmonic_joint_twin/health/assessment.hpp"
 #include "life/ageing_laws.hpp"
 #include "life/drive_age.hpp"
+#include "life/factor_table.hpp"
+#include "life/wear_trend.hpp"
 
 namespace hjt
 {
-/// Fatigue strengths at which the fatigue by a use is known, evenly spaced in their logarithm; linear between them.
-constexpr std::size_t STRENGTHS = 33;
-constexpr double STRENGTH_REACH = 4.0;  // standard deviations below and above the median
+/// Fatigue strengths at which the fatigue by a use is known, evenly spaced in their logarithm; straight in the
+/// logarithms between them.
+constexpr std::size_t STRENGTHS = 49;
+constexpr double STRENGTH_REACH = 1.5;  // of the logarithm, below and above the median
 
 /// Of entry i, over the median's.
-inline double strengthAt(const LifeParameters& parameters, std::size_t i)
+inline double strengthAt(std::size_t i)
 {
-  return std::exp(parameters.fatigue_spread * STRENGTH_REACH *
-                  (2.0 * static_cast<double>(i) / static_cast<double>(STRENGTHS - 1) - 1.0));
+  return std::exp(STRENGTH_REACH * (2.0 * static_cast<double>(i) / static_cast<double>(STRENGTHS - 1) - 1.0));
 }
 
 /// How much a drive has been used: what the nominal drive would have aged by it.
@@ -32,11 +34,16 @@ struct Usage
   double bearing_turns{};   ///< [turns at rated torque]
   /// Miner's sums by strength and place: fatigue does not grow in proportion to the nominal drive's.
   std::array<std::array<double, STRESS_PLACES>, STRENGTHS> fatigue{};
+  double fillings{};  ///< of grease that were used up [-]
 
   Usage operator-(const Usage& other) const noexcept
   {
-    Usage rest{ flank_wear - other.flank_wear, mean_flank - other.mean_flank, interface_wear - other.interface_wear,
-                bearing_turns - other.bearing_turns, fatigue };
+    Usage rest{ flank_wear - other.flank_wear,
+                mean_flank - other.mean_flank,
+                interface_wear - other.interface_wear,
+                bearing_turns - other.bearing_turns,
+                fatigue,
+                fillings - other.fillings };
     for (std::size_t i = 0; i < STRENGTHS; ++i)
     {
       for (std::size_t place = 0; place < STRESS_PLACES; ++place)
@@ -53,6 +60,10 @@ struct FutureLoad
 {
   double step{};             ///< [h]
   std::vector<Usage> usage;  ///< from now on, ascending, the first 0; two or more
+  /// Depths at which flanks and interface are at their end, as the loads of the new drive would wear them [m]; 0:
+  /// those of the parameters.
+  double flank_limit{};
+  double interface_limit{};
 };
 
 /// Hours of use that are left, as a distribution.
@@ -107,6 +118,11 @@ inline bool supersedes(const Assessment& assessment, const Assessment& before) n
 /// u the density of severities beforehand; D_k the chance that such wear is found (1 of a spall that is named); r: how
 /// often the cause is in no set; q: false alarms (life/assessment_errors). The errors of the assessments of one drive
 /// are mostly those of its signatures and stay, so that the last counts alone.
+///
+/// Of wear that was read over the use (WearTrends) a particle's factor is drawn from its distribution given the
+/// readings, and the assessment tells of spalls alone. How fast it wears from now on differs from how fast it has by
+/// a factor that is log-normal with the variance v^2 (1/n + 1/m), v: RATE_SCATTER, n, m: fillings of grease so far
+/// and ahead, one at least.
 class RemainingLife
 {
 public:
@@ -116,7 +132,7 @@ public:
   /// counts, null: none; `at_reference`: the use when the sound reference of that window was learned, 0: new.
   /// Allocates nothing.
   RemainingHours remaining(const Usage& so_far, const FutureLoad& future_load, const Assessment* assessment,
-                           const Usage& at_reference) noexcept;
+                           const Usage& at_reference, const WearTrends& trends = {}) noexcept;
 
 private:
   static constexpr std::size_t PARTICLES = 4096;
@@ -128,6 +144,10 @@ private:
     BEARING_LIFE,
     SPALL_GROWTH,
     STRENGTH,
+    TRANSITION,
+    RATE_AHEAD,
+    READING_GAIN,
+    READING_OFFSET,
     NATURES
   };
   using Point = std::array<double, NATURES>;  // evenly within 0 ... 1
@@ -136,8 +156,10 @@ private:
   struct Drive
   {
     UnitVariation variation;
-    double deviation;   // of the strength's logarithm, in standard deviations
-    double log_weight;  // logarithm of the chance of such a bearing, to last and to have a spall or none
+    std::array<double, STRESS_PLACES> strength;  // logarithms, over the median's
+    double log_weight;  // logarithm of the chance of such a bearing and flexspline, to last and to have a spall or none
+    double rate_ahead;  // standard normal, of its rate of wear from now on
+    double flank_end;   // depth of the flanks at its end, as the loads of the new drive would wear them [m]
   };
   struct End
   {
@@ -145,10 +167,12 @@ private:
     double weight;
   };
 
-  double weakestLeft(const Usage& so_far) const noexcept;
-  Drive drive(const Point& point, const Usage& so_far, double weakest, bool is_spalled) const noexcept;
+  using Weakest = std::array<double, STRESS_PLACES>;  // logarithms of strengths by place
+  Weakest weakestLeft(const Usage& so_far) const noexcept;
+  Drive drive(const Point& point, const Usage& so_far, const Weakest& weakest, bool is_spalled,
+              const WearTrends& trends) const noexcept;
   double likelihood(const Assessment& assessment, const Usage& so_far, const Usage& at_reference,
-                    const UnitVariation& variation) const noexcept;
+                    const UnitVariation& variation, bool wear_is_read) const noexcept;
   std::array<double, RemainingHours::CAUSES.size()> hoursLeft(const Drive& drive, const Usage& so_far,
                                                               const FutureLoad& future_load) const noexcept;
   void summarize(RemainingHours& result, double sum) noexcept;
@@ -157,7 +181,11 @@ private:
   FaultScaleParameters fault_scale_;
   BearingLife bearing_;
   std::vector<Point> points_;
-  std::vector<Drive> drives_;  // scratch
-  std::vector<End> ends_;      // scratch
+  double flank_limit_{};           // of the present call, as in FutureLoad [m]
+  double interface_limit_{};       // likewise
+  FactorTable flank_factors_;      // scratch
+  FactorTable interface_factors_;  // scratch
+  std::vector<Drive> drives_;      // scratch
+  std::vector<End> ends_;          // scratch
 };
 }  // namespace hjt

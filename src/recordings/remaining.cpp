@@ -8,6 +8,7 @@
 #include "output/output_file.hpp"
 #include "recordings/recorded_windows.hpp"
 
+#include "base/number_text.hpp"
 #include "base/whole_file.hpp"
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
@@ -104,16 +105,26 @@ Json endJson(const RemainingHours& remaining)
   return json;
 }
 
-/// Goes through the recordings: their use, unless a duty cycle says it, and the last assessment that counts, if there
-/// is a reference to hold them against. @throws InputError if that comes to none.
-Assessment readRecordings(const RemainingOptions& options, Assessor& assessor, UsageHistory& use)
+/// What the recordings say of the drive's wear.
+struct Condition
+{
+  Assessment assessment;  // the last one that counts; of none its state is WAITING
+  ReadWear read;
+};
+
+/// Goes through the recordings: their use, unless a duty cycle says it, wear and the last assessment that counts, if
+/// there is a reference to hold them against. @throws InputError if that comes to none.
+Condition readRecordings(const RemainingOptions& options, Assessor& assessor, UsageHistory& use)
 {
   const bool is_assessed = !options.baseline.empty();
-  Assessment assessment;
+  Condition condition;
+  Assessment& assessment = condition.assessment;
   bool any = false;
   std::string why_not;
-  for (const std::string& recording : options.recordings)
+  for (std::size_t i = 0; i < options.recordings.size(); ++i)
   {
+    const std::string& recording = options.recordings[i];
+    WearReading wear;
     const RecordingParameters parameters = recordingParameters(options, recording);
     ClosestAssessment judged;
     assessor.reset();
@@ -121,6 +132,8 @@ Assessment readRecordings(const RemainingOptions& options, Assessor& assessor, U
     {
       judged.take(assessor.update(window));
       assessment = supersedes(assessor.assessment(), assessment) ? assessor.assessment() : assessment;
+      const WearReading read = readWear(assessor.baseline().residual(), window.point, assessor.signatures());
+      wear = read.is_read ? read : wear;
     };
     const std::optional<std::vector<SignalIndicators>> windows =
         is_assessed ? windowsOfRun(recording, options, parameters) : std::nullopt;
@@ -146,20 +159,53 @@ Assessment readRecordings(const RemainingOptions& options, Assessor& assessor, U
     {
       readSignals(recording, options, parameters.values, take);
     }
-    any = any || judged.isJudged();
-    why_not += judged.isJudged() ? "" : (why_not.empty() ? "" : "\n  ") + judged.whyNotJudged(recording);
+    if (wear.is_read)
+    {
+      const bool each = options.hours.size() > 1;
+      condition.read.readings.push_back({ each                  ? options.hours[i] :
+                                          options.hours.empty() ? use.hours() :
+                                                                  options.hours[0],
+                                          wear });
+    }
+    any = any || judged.isJudged() || wear.is_read;
+    why_not +=
+        judged.isJudged() || wear.is_read ? "" : (why_not.empty() ? "" : "\n  ") + judged.whyNotJudged(recording);
   }
   if (is_assessed && !any && !options.watch.stopped())
   {
     throw InputError("nothing can be judged by " + options.baseline + ": " + why_not);
   }
-  return assessment;
+  return condition;
 }
 
+/// @throws InputError
+void requireRanges(const RemainingOptions& options)
+{
+  const std::vector<double>& hours = options.hours;
+  if (hours.size() > 1 && (hours.size() != options.recordings.size() || !std::is_sorted(hours.begin(), hours.end())))
+  {
+    throw InputError("--hours has " + std::to_string(hours.size()) + " values for " +
+                     std::to_string(options.recordings.size()) +
+                     " recordings: one in all, or one for each recording, ascending");
+  }
+  for (const double value : hours)
+  {
+    if (!(value >= 1e-6 && value <= 1e7))
+    {
+      throw InputError("hours = " + numberText(value) + " [h] is out of range, allowed: 1e-6 ... 1e7 [h]");
+    }
+  }
+  if (const double limit = options.lost_motion_limit.value_or(1e-3); !(limit >= 1e-6 && limit <= 0.1))
+  {
+    throw InputError("lost_motion_limit = " + numberText(limit) +
+                     " [rad] is out of range, allowed: 1e-6 ... 0.1 [rad]");
+  }
+}
 }  // namespace
 
 Remaining remaining(const RemainingOptions& options)
 {
+  requireRanges(options);
   const RecordingParameters first = recordingParameters(options, options.recordings.front());
   const Parameters& parameters = first.values;
   requireWritable(options.use_record, options.force, options.recordings.front());
@@ -169,7 +215,8 @@ Remaining remaining(const RemainingOptions& options)
   {
     assessor.setReference(readBaseline(options.baseline, parameters, false));
   }
-  const Assessment assessment = readRecordings(options, assessor, use);
+  Condition condition = readRecordings(options, assessor, use);
+  const Assessment& assessment = condition.assessment;
   if (options.watch.stopped())
   {
     return {};
@@ -179,18 +226,23 @@ Remaining remaining(const RemainingOptions& options)
   {
     throw InputError(options.recordings.front() + ": the motor does not turn");
   }
-  if (options.hours)
+  if (!options.hours.empty())
   {
-    use = lasting(use, *options.hours, parameters.life);
+    use = lasting(use, options.hours.back(), parameters.life);
   }
+  condition.read.lost_motion_limit = options.lost_motion_limit.value_or(HUGE_VAL);
   if (!options.use_record.empty())
   {
     writeTextFile(options.use_record, use.text());
   }
   Remaining found;
   found.parameters = first.origin;
-  found.estimate = LifeEstimator(parameters).estimate(use, assessed ? &assessment : nullptr, 0.0);
+  found.estimate = LifeEstimator(parameters).estimate(use, assessed ? &assessment : nullptr, 0.0, condition.read);
   found.assessment = assessed ? std::make_optional(assessment) : std::nullopt;
+  if (!condition.read.readings.empty())
+  {
+    found.wear = condition.read.readings.back().reading;
+  }
   return found;
 }
 
@@ -213,6 +265,12 @@ Report reportOf(const Remaining& found)
     lines.push_back({ "level", "assessed", levelName(found.assessment->level) });
     lines.push_back({ "largest_score", "largest score over threshold", found.assessment->largest_score });
     lines.push_back({ "cause", "cause", causeName(found.assessment->cause) });
+  }
+  if (found.wear)
+  {
+    lines.push_back({ "wear_flank", "wear read, as a severity of tooth_wear", found.wear->flank });
+    lines.push_back({ "wear_interface", "of interface_wear", found.wear->interface });
+    lines.push_back({ "lost_motion", "lost motion", found.wear->lost_motion, "rad" });
   }
   lines.push_back({ "density", "", densityJson(remaining) });
   lines.push_back({ "end_probability", "", endJson(remaining) });

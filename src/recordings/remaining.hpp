@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "output/report.hpp"
 #include "recordings/recorded_signals.hpp"
@@ -14,16 +15,19 @@ namespace hjt
 {
 struct RemainingOptions : SignalOptions
 {
-  std::optional<double> hours;  ///< use that the drive has behind it; none: that of the recordings [h]
-  std::string baseline;         ///< reference of the new drive; empty: nothing is assessed
-  std::string duty;             ///< use so far, as a duty cycle; the recordings are then assessed only
-  std::string use_record;       ///< where to write the use as a duty cycle; empty: nowhere
+  /// Use that the drive has behind it; none: that of the recordings. Or one for each recording, ascending [h]
+  std::vector<double> hours;
+  std::string baseline;                     ///< reference of the new drive; empty: nothing is assessed
+  std::string duty;                         ///< use so far, as a duty cycle; the recordings are then assessed only
+  std::optional<double> lost_motion_limit;  ///< that ends its use too [rad]
+  std::string use_record;                   ///< where to write the use as a duty cycle; empty: nowhere
 };
 
 struct Remaining
 {
   LifeEstimate estimate;
   std::optional<Assessment> assessment;  ///< the last one that counts; none: nothing was assessed
+  std::optional<WearReading> wear;       ///< the last one
   const char* parameters{};              ///< whose they are, in words
 };
 

@@ -9,8 +9,9 @@
 
 namespace hjt
 {
-/// S-N curve of the flexspline: Basquin's line down to the endurance limit, Goodman's mean stress, Peterson's notch
-/// sensitivity. Sources: docs/life.md.
+/// S-N curve of the flexspline: Basquin's line down to the endurance limit at its knee, beyond that 5 % of strength a
+/// decade (Sonsino, Int. J. Fatigue 29, 2007), Goodman's mean stress, Peterson's notch sensitivity. Sources:
+/// docs/life.md.
 class FatigueLaw
 {
 public:
@@ -48,14 +49,12 @@ public:
 
   /// Damage by one cycle of a share of the endurance limit: 1 over the cycles to failure [-].
   /// `overloaded`: the drive also bears cycles above the limit, which take those below it along (Haibach: exponent
-  /// 2 k - 1); without, these do no damage.
+  /// 2 k - 1); without, they break it beyond the knee of the curve alone.
   double damage(double share, bool overloaded) const noexcept
   {
-    if (share < 1.0 && !overloaded)
-    {
-      return 0.0;
-    }
-    return std::pow(share, share < 1.0 ? 2.0 * exponent_ - 1.0 : exponent_) / cycles_;
+    constexpr double BEYOND_KNEE = 45.0;  // 5 % a decade
+    const double below = overloaded ? 2.0 * exponent_ - 1.0 : BEYOND_KNEE;
+    return std::pow(share, share < 1.0 ? below : exponent_) / cycles_;
   }
 
 private:
@@ -66,20 +65,27 @@ private:
   std::array<double, STRESS_PLACES> notch_factor_{};
 };
 
-/// Miner's sum over loads of one place: those below the endurance limit count if any lies above it.
+/// Miner's sum over loads of one place: those below the endurance limit count for more if any lies above it.
 class MinerSum
 {
 public:
   /// `share` of the endurance limit, of the strength at hand.
   void add(const FatigueLaw& law, double cycles, double share) noexcept
   {
-    (share < 1.0 ? below_ : above_) += cycles * law.damage(share, true);
+    if (share >= 1.0)
+    {
+      above_ += cycles * law.damage(share, true);
+      return;
+    }
+    below_ += cycles * law.damage(share, true);
+    alone_ += cycles * law.damage(share, false);
   }
 
-  double sum() const noexcept { return above_ > 0.0 ? above_ + below_ : 0.0; }
+  double sum() const noexcept { return above_ > 0.0 ? above_ + below_ : alone_; }
 
 private:
-  double below_{};
+  double alone_{};  // of those below, were they all
+  double below_{};  // of those below beside some above
   double above_{};
 };
 }  // namespace hjt

@@ -11,6 +11,7 @@
 #include <boost/random/uniform_01.hpp>
 
 #include "life/assessment_errors.hpp"
+#include "life/read_wear.hpp"
 
 namespace hjt
 {
@@ -90,15 +91,66 @@ private:
   std::array<double, 3> mistaken_;  // evenly within 0 ... 1
 };
 
+/// Readings of one drive's wear with the errors of assessment_errors.
+class SimulatedReadings
+{
+public:
+  SimulatedReadings(const FaultScaleParameters& scale, std::uint32_t seed)
+    : scale_(scale)
+    , random_(seed)
+    , flank_(drawn(FLANK_READING))
+    , interface_(drawn(INTERFACE_READING))
+    , of_flank_(FLANK_IN_INTERFACE * normal_(random_))
+  {
+  }
+
+  WearReading of(const DriveAge& age)
+  {
+    WearReading reading;
+    reading.is_read = true;
+    reading.flank = read(age.meanFlank() / scale_.tooth_wear_depth, FLANK_READING, flank_);
+    reading.interface = read(age.interface_wear / scale_.interface_wear_depth, INTERFACE_READING, interface_) +
+                        of_flank_ * reading.flank;
+    return reading;
+  }
+
+private:
+  struct Stays
+  {
+    double gain;
+    double offset;
+  };
+  Stays drawn(const ReadingErrors& errors)
+  {
+    const double gain = errors.gain * normal_(random_);
+    return { gain, errors.offset * normal_(random_) };
+  }
+  double read(double severity, const ReadingErrors& errors, const Stays& stays)
+  {
+    const double shown = severity * (1.0 + stays.gain);
+    const double noise = std::hypot(errors.noise, errors.noise_share * shown);
+    return shown + stays.offset + noise * normal_(random_);
+  }
+
+  FaultScaleParameters scale_;
+  boost::random::mt19937 random_;
+  boost::random::normal_distribution<double> normal_;
+  Stays flank_;
+  Stays interface_;
+  double of_flank_;
+};
+
 /// Forecasts of one life by one who knows the use and the assessments.
 class Watch
 {
 public:
   Watch(const Parameters& parameters, const DriveAgeing& ageing, const LifeTrialOptions& options, std::uint32_t seed)
     : options_(options)
+    , fault_scale_(parameters.fault_scale)
     , use_(ageing, parameters.life, options.grease_changes)
     , drives_(parameters)
     , assessments_(parameters.fault_scale, options.estimate_error, seed)
+    , simulated_(parameters.fault_scale, seed + READINGS_SEED)
   {
   }
 
@@ -109,15 +161,26 @@ public:
     const Usage so_far = use_.until(hours);
     const FutureLoad ahead = use_.from(hours, HORIZON * (hours + options_.every), STRETCHES);
     const Assessment assessment = assessments_.of(age);
-    return { hours, remaining, assessment, drives_.remaining(so_far, ahead, &assessment, {}),
+    read_.readings.push_back({ hours, simulated_.of(age) });
+    const WearTrends trends = trendsOf(read_, use_, fault_scale_, 0.0);
+    return { hours,
+             remaining,
+             assessment,
+             drives_.remaining(so_far, ahead, &assessment, {}),
+             drives_.remaining(so_far, ahead, nullptr, {}, trends),
              drives_.remaining(so_far, ahead, nullptr, {}) };
   }
 
 private:
+  static constexpr std::uint32_t READINGS_SEED = 1'000'000;
+
   LifeTrialOptions options_;
+  FaultScaleParameters fault_scale_;
   NominalUse use_;
   RemainingLife drives_;
   SimulatedAssessments assessments_;
+  SimulatedReadings simulated_;
+  ReadWear read_;
 };
 }  // namespace
 

@@ -26,11 +26,12 @@ struct LifeForecast
   double hours{};      ///< of use when the forecast was made
   double remaining{};  ///< what came [h]
   Assessment assessment;
-  RemainingHours forecast;
-  RemainingHours prior;  ///< of who knows the use alone
+  RemainingHours forecast;  ///< by it
+  RemainingHours read;      ///< by what all check-ups so far read of wear
+  RemainingHours prior;     ///< of who knows the use alone
 
-  /// The interval from the 10 to the 90 % quantile holds what came.
-  bool held() const { return remaining >= forecast.quantile[1] && remaining <= forecast.quantile[3]; }
+  /// The interval from the 10 to the 90 % quantile of the readings' forecast holds what came.
+  bool held() const { return remaining >= read.quantile[1] && remaining <= read.quantile[3]; }
 };
 
 struct LifeTrial

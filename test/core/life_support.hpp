@@ -54,4 +54,35 @@ inline const RatedUse& ratedUse()
   static const RatedUse USE;
   return USE;
 }
+
+/// A drive whose flanks are worn by some length of a use that only wears them, and assessments of it.
+struct FlankUse
+{
+  FlankUse() : parameters(shippedParameters())
+  {
+    parameters.life.bearing_l10 *= 1e3;  // leave the bearing out
+    parameters.life.bearing_l50 *= 1e3;
+    hourly = 1e-3 * parameters.life.flank_wear_limit;
+    for (int i = 0; i < 200; ++i)
+    {
+      ahead.usage.push_back(until(i * ahead.step));
+    }
+  }
+
+  Usage until(double hours) const { return { hourly * hours, hourly * hours, 0.0, 0.0 }; }
+
+  RemainingHours after(double hours, const Assessment* assessment) const
+  {
+    return RemainingLife(parameters).remaining(until(hours), ahead, assessment, {});
+  }
+
+  Parameters parameters;
+  double hourly;
+  FutureLoad ahead{ 100.0, {} };
+};
+
+inline double width(const RemainingHours& remaining)
+{
+  return remaining.quantile[3] - remaining.quantile[1];
+}
 }  // namespace hjt

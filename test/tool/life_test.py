@@ -133,6 +133,10 @@ class Life(tool.ToolTest):
         self.succeed("indicators", new, *options, "--save-baseline", "b.yaml")
         report = self.succeed_json("remaining", new, *options, "--baseline", "b.yaml", "--duty", self.duty(), "--hours",
                                    1000.0)
+        self.fail_with(1, ["--hours has 2 values for 1 recordings"], "remaining", new, "--hours", "1,2")
+        self.fail_with(1, ["ascending"], "remaining", new, new, "--hours", "2,1")
+        self.fail_with(1, ["lost_motion_limit = 1 [rad] is out of range"], "remaining", new, *options, "--baseline",
+                       "b.yaml", "--lost-motion-limit", 1.0)
         age = self.succeed_json("life", "age", self.duty(), "--grease-changes", "--hours", 1000.0)
         self.assertAlmostEqual(report["turns"], age["turns"], delta=1e-3 * age["turns"])
         self.assertEqual(report["level"], "OK")

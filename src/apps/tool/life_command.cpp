@@ -239,19 +239,40 @@ int age(const AgeOptions& options)
 /// Every forecast of every drive that came to its end.
 void writeForecasts(const std::string& path, const std::vector<LifeTrial>& lives)
 {
-  CsvWriter csv(path, { "life", "hours", "remaining", "end", "level", "cause", "severity", "q05", "q10", "q50", "q90",
-                        "q95", "crps", "prior_q10", "prior_q50", "prior_q90", "prior_crps" });
+  CsvWriter csv(path,
+                { "life",     "hours",    "remaining", "end",       "level",     "cause",     "severity",  "q05",
+                  "q10",      "q50",      "q90",       "q95",       "crps",      "read_q05",  "read_q10",  "read_q50",
+                  "read_q90", "read_q95", "read_crps", "prior_q10", "prior_q50", "prior_q90", "prior_crps" });
   for (std::size_t i = 0; i < lives.size(); ++i)
   {
     for (const LifeForecast& forecast : lives[i].forecasts)
     {
       const auto& quantile = forecast.forecast.quantile;
+      const auto& read = forecast.read.quantile;
       const auto& prior = forecast.prior.quantile;
-      csv.writeRow({ static_cast<double>(i), forecast.hours, forecast.remaining,
-                     static_cast<double>(*lives[i].life.end), static_cast<double>(forecast.assessment.level),
-                     static_cast<double>(forecast.assessment.cause), forecast.assessment.severity, quantile[0],
-                     quantile[1], quantile[2], quantile[3], quantile[4], forecast.forecast.crps(forecast.remaining),
-                     prior[1], prior[2], prior[3], forecast.prior.crps(forecast.remaining) });
+      csv.writeRow({ static_cast<double>(i),
+                     forecast.hours,
+                     forecast.remaining,
+                     static_cast<double>(*lives[i].life.end),
+                     static_cast<double>(forecast.assessment.level),
+                     static_cast<double>(forecast.assessment.cause),
+                     forecast.assessment.severity,
+                     quantile[0],
+                     quantile[1],
+                     quantile[2],
+                     quantile[3],
+                     quantile[4],
+                     forecast.forecast.crps(forecast.remaining),
+                     read[0],
+                     read[1],
+                     read[2],
+                     read[3],
+                     read[4],
+                     forecast.read.crps(forecast.remaining),
+                     prior[1],
+                     prior[2],
+                     prior[3],
+                     forecast.prior.crps(forecast.remaining) });
     }
   }
   csv.close();

@@ -27,18 +27,22 @@ int run(const Options& given)
 void declare(Command& command, Options& options)
 {
   addSignalOptions(command, options);
-  command
-      .add("--hours", options.hours, "use that the drive has behind it, all like the recordings [h]; default: theirs")
-      .range(1e-6, 1e7);
+  command.add("--hours", options.hours,
+              "use that the drive has behind it, all like the recordings [h]; default: theirs. A list, one for each "
+              "recording, ascending, tells at what use each was made");
   command
       .add("--baseline", options.baseline,
-           "reference of the new drive, from `indicators`: the last verdict by it tells of wear")
+           "reference of the new drive, from `indicators`: verdicts and readings by it tell of wear")
       .type("FILE.yaml");
   command
       .add("--duty", options.duty,
            "use so far, as a duty cycle that `life age` reads; the recordings are then assessed only")
       .type("FILE.csv")
       .existingFile()
+      .needs("--baseline");
+  command
+      .add("--lost-motion-limit", options.lost_motion_limit,
+           "lost motion at which the drive is at its end, beside the limits of wear [rad]; 1e-6 ... 0.1")
       .needs("--baseline");
   command.add("--use-record", options.use_record, "writes the use as a duty cycle, for `life` and life.use_record")
       .type("FILE.csv");

@@ -256,11 +256,8 @@ Answer remainingIn(const py::dict& arguments)
   given.take("hours", options.hours);
   given.take("baseline", options.baseline);
   given.take("duty", options.duty);
+  given.take("lost_motion_limit", options.lost_motion_limit);
   given.take("use_record", options.use_record);
-  if (options.hours && !(*options.hours >= 1e-6 && *options.hours <= 1e7))
-  {
-    throw InputError("hours = " + std::to_string(*options.hours) + " [h] is out of range, allowed: 1e-6 ... 1e7 [h]");
-  }
   return call(given, options, remaining, [](const Remaining& found) { return toPython(documentOf(reportOf(found))); });
 }
 }  // namespace

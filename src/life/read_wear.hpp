@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "life/assessment_errors.hpp"
+#include "life/drive_age.hpp"
+#include "life/nominal_use.hpp"
+#include "life/wear_reading.hpp"
+#include "life/wear_trend.hpp"
+
+namespace hjt
+{
+/// Wear as it was read at some hours of use.
+struct DatedReading
+{
+  double hours;
+  WearReading reading;
+};
+
+/// Wear that was read over the use.
+struct ReadWear
+{
+  std::vector<DatedReading> readings;    ///< in the order of hours
+  double lost_motion_limit{ HUGE_VAL };  ///< at which the drive is at its end, as the windows have it [rad]
+};
+
+/// What readings say beside the nominal use. `reference_hours`: of use when the reference was learned [h].
+inline WearTrends trendsOf(const ReadWear& read, const NominalUse& use, const FaultScaleParameters& fault_scale,
+                           double reference_hours)
+{
+  WearTrends trends;
+  if (read.readings.empty())
+  {
+    return trends;
+  }
+  const double flank = fault_scale.tooth_wear_depth;
+  const double interface = fault_scale.interface_wear_depth;
+  const Usage at_reference = use.until(reference_hours);
+  std::vector<WearPoint> flank_points;
+  std::vector<WearPoint> interface_points;
+  for (const auto& [hours, reading] : read.readings)
+  {
+    const Usage then = use.until(hours);
+    flank_points.push_back(
+        { (then.mean_flank - at_reference.mean_flank) / flank, use.flank().of(reading.flank * flank) / flank });
+    interface_points.push_back({ (then.interface_wear - at_reference.interface_wear) / interface,
+                                 use.interface().of(reading.interface * interface) / interface });
+  }
+  trends.flank = { flank_points, assessment_errors::FLANK_READING, RATE_SCATTER };
+  ReadingErrors interface_errors = assessment_errors::INTERFACE_READING;
+  interface_errors.offset =
+      std::hypot(interface_errors.offset, assessment_errors::FLANK_IN_INTERFACE * read.readings.back().reading.flank);
+  trends.interface = { interface_points, interface_errors, RATE_SCATTER };
+  if (std::isfinite(read.lost_motion_limit))
+  {
+    const WearReading& last = read.readings.back().reading;
+    const double at_end = last.flank + (read.lost_motion_limit - last.lost_motion) / last.lost_motion_slope;
+    const Usage now = use.until(read.readings.back().hours);
+    // Nominal severities are of the mean of both flanks, the depth at the end of the worse.
+    trends.flank_depth = now.mean_flank > 0.0 ? flank * now.flank_wear / now.mean_flank : flank;
+    trends.reading_at_end = use.flank().of(at_end * flank) / flank;
+  }
+  return trends;
+}
+}  // namespace hjt

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "life/wear_reading.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "health/motion_likeness.hpp"
+
+namespace hjt
+{
+namespace
+{
+/// Change of a number by one kind of wear, over the severities of its signatures; 0 at 0, and on along the first and
+/// the last stretch.
+class Response
+{
+public:
+  /// `scale`: of the signatures' changes, to the drive at hand.
+  Response(const SignatureSet& set, const OperatingPoint& point, FaultKind kind, ScalarIndicator indicator,
+           double scale) noexcept
+  {
+    std::array<double, MAX_NODES> weights{};
+    for (const Signature& signature : set.signatures)
+    {
+      if (signature.cause != causeOf(kind) || signature.change[indexOf(indicator)] == 0.0)
+      {
+        continue;
+      }
+      std::size_t node = 1;
+      while (node < nodes_ && severity_[node] != signature.severity)
+      {
+        ++node;
+      }
+      if (node == MAX_NODES)
+      {
+        continue;
+      }
+      nodes_ = std::max(nodes_, node + 1);
+      severity_[node] = signature.severity;
+      const double weight = OTHER_MOTION * OTHER_MOTION + likeness(signature.motion, point);
+      weights[node] += weight;
+      change_[node] += weight * scale * signature.change[indexOf(indicator)];
+    }
+    for (std::size_t node = 1; node < nodes_; ++node)
+    {
+      change_[node] /= weights[node];
+    }
+  }
+
+  bool isKnown() const noexcept { return nodes_ > 2; }
+  double largest() const noexcept { return severity_[nodes_ - 1]; }
+  double lastSlope() const noexcept { return slope(nodes_ - 2); }
+
+  double at(double severity) const noexcept
+  {
+    std::size_t stretch = 0;
+    while (stretch + 2 < nodes_ && severity > severity_[stretch + 1])
+    {
+      ++stretch;
+    }
+    return change_[stretch] + slope(stretch) * (severity - severity_[stretch]);
+  }
+
+private:
+  static constexpr std::size_t MAX_NODES = 12;
+
+  double slope(std::size_t stretch) const noexcept
+  {
+    return (change_[stretch + 1] - change_[stretch]) / (severity_[stretch + 1] - severity_[stretch]);
+  }
+
+  std::size_t nodes_{ 1 };
+  std::array<double, MAX_NODES> severity_{};  // ascending, as the file has them
+  std::array<double, MAX_NODES> change_{};
+};
+
+/// Where a function that rises or falls throughout is `value`.
+template <class Of>
+double whereIs(double value, double farthest, Of&& of) noexcept
+{
+  double low = -farthest;
+  double high = farthest;
+  const bool rises = of(high) > of(low);
+  for (int i = 0; i < 50; ++i)
+  {
+    const double middle = 0.5 * (low + high);
+    ((of(middle) < value) == rises ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+}  // namespace
+
+WearReading readWear(const WindowResidual& residual, const OperatingPoint& point, const SignatureSet& set) noexcept
+{
+  constexpr double FARTHEST = 3.0;  // severity
+  constexpr std::array STIFFNESSES{ ScalarIndicator::TORSIONAL_STIFFNESS, ScalarIndicator::SECOND_STIFFNESS };
+  constexpr std::size_t PLAY = indexOf(ScalarIndicator::LOST_MOTION);
+  WearReading reading;
+  const double sound = residual.sound[PLAY];
+  const Response play(set, point, FaultKind::TOOTH_WEAR, ScalarIndicator::LOST_MOTION, sound);
+  if (!play.isKnown() || residual.own[PLAY] <= 0.0)
+  {
+    return reading;
+  }
+  reading.flank = whereIs(residual.difference[PLAY], FARTHEST, [&](double severity) { return play.at(severity); });
+  reading.lost_motion = sound + residual.difference[PLAY];
+  reading.lost_motion_slope = play.lastSlope();
+  std::array<Response, STIFFNESSES.size()> by_interface{
+    Response(set, point, FaultKind::INTERFACE_WEAR, STIFFNESSES[0], 1.0),
+    Response(set, point, FaultKind::INTERFACE_WEAR, STIFFNESSES[1], 1.0)
+  };
+  double left = 0.0;
+  for (std::size_t i = 0; i < STIFFNESSES.size(); ++i)
+  {
+    const std::size_t k = indexOf(STIFFNESSES[i]);
+    const Response by_flank(set, point, FaultKind::TOOTH_WEAR, STIFFNESSES[i], 1.0);
+    if (!by_interface[i].isKnown() || !by_flank.isKnown() || residual.own[k] <= 0.0)
+    {
+      return reading;
+    }
+    left += residual.difference[k] / residual.sound[k] - by_flank.at(std::max(reading.flank, 0.0));
+  }
+  reading.interface = whereIs(
+      left, FARTHEST, [&](double severity) { return by_interface[0].at(severity) + by_interface[1].at(severity); });
+  reading.is_read = std::isfinite(reading.flank) && std::isfinite(reading.interface);
+  return reading;
+}
+}  // namespace hjt

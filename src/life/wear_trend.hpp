@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace hjt
+{
+/// How readings of one kind of wear depart from it.
+struct ReadingErrors
+{
+  double gain;         ///< of the readings of one drive, stays: standard deviation, as a share
+  double offset;       ///< the same, as a severity
+  double noise;        ///< from reading to reading, as a severity
+  double noise_share;  ///< the same, as a share of the reading
+};
+
+/// A reading of wear beside that of the nominal drive by the same use, both as severities, both as the loads of the new
+/// drive would have worn it.
+struct WearPoint
+{
+  double nominal;
+  double reading;
+};
+
+/// What readings over a drive's use say of its rate of wear.
+///
+/// Law:   r_i = g u_i + d + n_i,   g = f (1 + b),   n_i^2 = a^2 + (c r_i)^2 + (v (r - r_i))^2
+/// where  u, r  WearPoint, of the last one without index;  f  factor of the drive's wear over the nominal drive's
+///        b, d  ReadingErrors::gain and offset, normal about 0;  a, c  noise and noise_share
+///        v     RATE_SCATTER: the rate was another once, the more so the longer ago
+/// d is integrated out; g is normal.
+class WearTrend
+{
+public:
+  WearTrend() = default;
+  WearTrend(const std::vector<WearPoint>& points, const ReadingErrors& errors, double rate_scatter)
+    : is_known_(!points.empty()), gain_(errors.gain), ones_(1.0 / (errors.offset * errors.offset))
+  {
+    double squares = 0.0;
+    double products = 0.0;
+    for (const WearPoint& point : points)
+    {
+      const double since = rate_scatter * (points.back().reading - point.reading);
+      const double share = errors.noise_share * point.reading;
+      const double weight = 1.0 / (errors.noise * errors.noise + share * share + since * since);
+      squares += weight * point.nominal * point.nominal;
+      products += weight * point.nominal * point.reading;
+      nominals_ += weight * point.nominal;
+      readings_ += weight * point.reading;
+      ones_ += weight;
+    }
+    const double precision = squares - nominals_ * nominals_ / ones_;
+    is_known_ = is_known_ && precision > 0.0;
+    growth_ = is_known_ ? (products - nominals_ * readings_ / ones_) / precision : 0.0;
+    variance_ = is_known_ ? 1.0 / precision : 0.0;
+  }
+
+  bool isKnown() const noexcept { return is_known_; }
+
+  /// Logarithm of the readings' density, were this the drive's factor, less what is the same for all.
+  double logDensity(double factor) const noexcept
+  {
+    const double variance = variance_ + gain_ * gain_ * factor * factor;
+    const double off = growth_ - factor;
+    return -0.5 * (off * off / variance + std::log(variance));
+  }
+
+  /// Severity of the nominal drive at which the readings will show `reading`, of a drive of this factor. `by_gain`,
+  /// `by_offset`: standard normal, how its readings depart.
+  double nominalAt(double reading, double factor, double by_gain, double by_offset) const noexcept
+  {
+    const double prior = gain_ * gain_ * factor * factor;
+    const double left = variance_ * prior / (variance_ + prior);
+    const double growth = (growth_ * prior + factor * variance_) / (variance_ + prior) + std::sqrt(left) * by_gain;
+    const double offset = (readings_ - nominals_ * growth) / ones_ + by_offset / std::sqrt(ones_);
+    return growth > 0.0 ? (reading - offset) / growth : HUGE_VAL;
+  }
+
+private:
+  bool is_known_{};
+  double gain_{};
+  double growth_{};
+  double variance_{};
+  double nominals_{};
+  double readings_{};
+  double ones_{};
+};
+
+/// What readings say of both kinds of wear.
+struct WearTrends
+{
+  WearTrend flank;
+  WearTrend interface;
+  double flank_depth{ 1.0 };          ///< of a severity of 1 [m]
+  double reading_at_end{ HUGE_VAL };  ///< of the flanks, at which lost motion ends the drive's use [-]
+};
+
+/// Wear changes the loads that wear: the depth that a use would have worn off under the loads of the new drive, by the
+/// depth that it did. Straight between nodes and beyond.
+class LoadFeedback
+{
+public:
+  static constexpr std::size_t NODES = 9;
+
+  /// @param farthest depth of the last node [m]  @param rate_at over that of the new drive, at a depth [-]
+  template <class RateAt>
+  LoadFeedback(double farthest, RateAt&& rate_at) : step_(farthest / static_cast<double>(NODES - 1))
+  {
+    double before = 1.0 / rate_at(0.0);
+    for (std::size_t i = 1; i < NODES; ++i)
+    {
+      const double here = 1.0 / rate_at(step_ * static_cast<double>(i));
+      fresh_[i] = fresh_[i - 1] + 0.5 * step_ * (before + here);
+      before = here;
+    }
+  }
+
+  double of(double depth) const noexcept
+  {
+    const double at = depth / step_;
+    const double stretch = std::fmin(std::fmax(std::floor(at), 0.0), static_cast<double>(NODES - 2));
+    const auto i = static_cast<std::size_t>(stretch);
+    return fresh_[i] + (at - stretch) * (fresh_[i + 1] - fresh_[i]);
+  }
+
+private:
+  double step_;
+  std::array<double, NODES> fresh_{};
+};
+}  // namespace hjt
