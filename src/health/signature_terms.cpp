@@ -144,7 +144,7 @@ void SignatureTerms::addDirection(const Signature& signature, double weight,
   for (std::size_t i = 0; i < count_; ++i)
   {
     const Term& term = terms_[i];
-    if (!term.has_phase)
+    if (term.number < SCALAR_COUNT)
     {
       changes[i] = shareOrChange(signature, term) / std::sqrt(term.own);
       square += changes[i] * changes[i];
@@ -166,7 +166,7 @@ double SignatureTerms::along(const std::array<double, INDICATOR_COUNT>& directio
   for (std::size_t i = 0; i < count_; ++i)
   {
     const Term& term = terms_[i];
-    if (!term.has_phase)
+    if (term.number < SCALAR_COUNT)
     {
       const double spread = std::sqrt(term.own);
       const Causes common = term.common / spread;

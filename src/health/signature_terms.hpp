@@ -26,8 +26,7 @@ public:
   /// motion and the window's, 0 ... 1.
   double logLikelihood(const Signature* signature, double strength, double alike) const noexcept;
 
-  /// Adds the signature's change, in own spreads, times `weight` over its length, to `direction`. Lines with a phase
-  /// are left out: their change has no sign.
+  /// Adds the signature's change, in own spreads, times `weight` over its length, to `direction`. Lines are left out.
   void addDirection(const Signature& signature, double weight,
                     std::array<double, INDICATOR_COUNT>& direction) const noexcept;
 

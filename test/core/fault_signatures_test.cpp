@@ -211,14 +211,14 @@ TEST_F(AgainstSignatures, SmallChangesThatBelongTogetherAreAPattern)
   const auto known = std::find_if(signatures_->signatures.begin(), signatures_->signatures.end(),
                                   [](const Signature& signature)
                                   {
-                                    return signature.cause == causeOf(FaultKind::BEARING_BALL) &&
+                                    return signature.cause == causeOf(FaultKind::INTERFACE_WEAR) &&
                                            signature.severity == 0.4 && signature.motion.speed > 0.0;
                                   });
   ASSERT_NE(known, signatures_->signatures.end());
   // No change is larger than three spreads: none stands out by itself.
   std::array<double, SIGNATURE_SIZE> small = known->change;
   double largest = 0.0;
-  for (std::size_t i = 0; i < SIGNATURE_SIZE; ++i)
+  for (std::size_t i = 0; i < SCALAR_COUNT; ++i)
   {
     largest = std::max(largest, spread_[i] > 0.0 ? std::abs(small[i]) / spread_[i] : 0.0);
   }
