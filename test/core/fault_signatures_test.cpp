@@ -215,16 +215,20 @@ TEST_F(AgainstSignatures, SmallChangesThatBelongTogetherAreAPattern)
                                            signature.severity == 0.4 && signature.motion.speed > 0.0;
                                   });
   ASSERT_NE(known, signatures_->signatures.end());
-  // No change is larger than three spreads: none stands out by itself.
+  // Six spreads long, none of its changes beyond five: with a chance of 1e-3 none stands out by itself.
   std::array<double, SIGNATURE_SIZE> small = known->change;
   double largest = 0.0;
+  double length = 0.0;
   for (std::size_t i = 0; i < SCALAR_COUNT; ++i)
   {
-    largest = std::max(largest, spread_[i] > 0.0 ? std::abs(small[i]) / spread_[i] : 0.0);
+    const double change = spread_[i] > 0.0 ? std::abs(small[i]) / spread_[i] : 0.0;
+    largest = std::max(largest, change);
+    length = std::hypot(length, change);
   }
+  ASSERT_LT(6.0 * largest / length, 5.0);
   for (double& change : small)
   {
-    change *= 3.0 / largest;
+    change *= 6.0 / length;
   }
   for (int i = 0; i < WINDOWS; ++i)
   {
@@ -232,10 +236,10 @@ TEST_F(AgainstSignatures, SmallChangesThatBelongTogetherAreAPattern)
     const PatternScore faulty = patterns.strongest(windowOf(small), pointOf(known->motion));
     const PatternScore sound = patterns.strongest(windowOf({}), pointOf(known->motion));
     EXPECT_EQ(allocationCount(), before);
-    found += faulty.cause == known->cause ? 1 : 0;
+    found += faulty.student > 4.0 ? 1 : 0;
     large += sound.student > 4.0 ? 1 : 0;  // 3e-5 of each of seventeen kinds, by noise
   }
-  EXPECT_GT(found, 9 * WINDOWS / 10);
+  EXPECT_GT(found, 8 * WINDOWS / 10);
   EXPECT_LE(large, 1);
 }
 
