@@ -6,6 +6,7 @@ import functools
 import math
 
 import numpy
+import scipy.stats
 import sklearn.covariance
 
 from health_runs import COMPARED, OTHER_MODEL, Motion, Trial, drawn, once
@@ -84,8 +85,9 @@ MOTIONS = [motion_of("slow sweep", "slow_sweep", sweep),
            motion_of("quintic, random points", "quintic_points", functools.partial(random_points, quintic)),
            motion_of("trapezoids, three places", "trapezoid_places", functools.partial(three_places, None)),
            motion_of("sine", "sine", sine)]
-FITTED_GEARS = [drawn(905), drawn(906)]
-JUDGED_GEARS = [drawn(930), drawn(931), OTHER_MODEL]
+FITTED_GEARS = [drawn(905), drawn(930)]
+JUDGED_GEARS = [drawn(906), drawn(931), OTHER_MODEL]
+SEEDS = {"drawn 905": 50, "drawn 906": 60, "drawn 930": 150, "drawn 931": 160, OTHER_MODEL.name: 170}  # first ones
 
 # `kind` "healthy" of a sound one; `plain`: scores of the plain detectors.
 Judged = collections.namedtuple("Judged", "gear motion kind severity window score plain")
@@ -93,9 +95,8 @@ Judged = collections.namedtuple("Judged", "gear motion kind severity window scor
 
 def trials(gears):
     """One of each gear and severity."""
-    first = 150 if gears is JUDGED_GEARS else 50
-    return [Trial(f"motions {severity}", gear, MOTIONS, [severity], 40, first + 10 * number + place)
-            for number, gear in enumerate(gears) for place, severity in enumerate(SEVERITIES)]
+    return [Trial(f"motions {severity}", gear, MOTIONS, [severity], 40, SEEDS[gear.name] + place)
+            for gear in gears for place, severity in enumerate(SEVERITIES)]
 
 
 def options_of(gear, source):
@@ -167,6 +168,26 @@ def calibration_windows(bench):
             for one in all_judged(bench, FITTED_GEARS, source) if one.kind != "healthy"]
 
 
+def share(found, of):
+    """With its interval of 95 % (Clopper and Pearson)."""
+    low = scipy.stats.beta.ppf(0.025, found, of - found + 1) if found else 0.0
+    high = scipy.stats.beta.ppf(0.975, found + 1, of - found) if found < of else 1.0
+    return f"{found} of {of} ({100.0 * low:.0f} to {100.0 * high:.0f} %)"
+
+
+def shares_of(title, own):
+    """A line on what was found of one source."""
+    alarmed = [one for one in own if one.window["assessment"]["level"] != "OK"]
+    text = ", ".join(f"at {severity:g} " + share(*(sum(one.severity == severity for one in chosen)
+                                                   for chosen in (alarmed, own))) for severity in SEVERITIES)
+    missed = [one.kind for one in own if one.window["assessment"]["level"] == "OK"]
+    kinds = ", ".join(f"`{kind}` {missed.count(kind)}" for kind in KINDS if kind in missed)
+    sound = [[one for one in chosen if one.kind == "healthy"] for chosen in (alarmed, own)]
+    not_judged = sum(one.window["assessment"]["state"] not in COMPARED for one in own)
+    return (f"- {title}: found {text}; missed {kinds or 'none'}; false alarms {share(*map(len, sound))}; "
+            f"{not_judged} windows of {len(own)} at an operating point without a reference.")
+
+
 def row_of(name, own):
     sound = [one for one in own if one.kind == "healthy"]
     faulty = [one for one in own if one.kind != "healthy"]
@@ -216,17 +237,17 @@ def causes_of(title, own):
               for one, verdict, is_right in zip(alarms, verdicts, right) if is_right]
     off = math.sqrt(numpy.mean([error ** 2 for error, _ in errors])) if errors else math.nan
     within = 100.0 * numpy.mean([abs(error) <= stated for error, stated in errors]) if errors else math.nan
-    return (f"- {title}: {sum(right)} of {len(alarms)} causes are right at a mean confidence of "
+    return (f"- {title}: {share(sum(right), len(alarms))} causes are right at a mean confidence of "
             f"{confidence.mean():.2f}, calibration error {calibration_error(right, confidence):.2f}; the true cause is "
-            f"in the set in {in_set}. Severities with the right cause are off by {off:.2f} rms, {within:.0f} % by no "
-            "more than stated.")
+            f"in the set in {share(in_set, len(alarms))}. Severities with the right cause are off by {off:.2f} rms, "
+            f"{within:.0f} % by no more than stated.")
 
 
 def judged_table(bench):
     found = {name: all_judged(bench, JUDGED_GEARS, source) for name, source in SOURCES.items()}
     everything = [one for own in found.values() for one in own]
     drawn_ones = [one for one in everything if one.gear != OTHER_MODEL]
-    return [*table(found), "",
+    return [*table(found), "", *(shares_of(f"All gears, {name}", own) for name, own in found.items()),
             causes_of("Drawn gears" if len({one.gear.name for one in drawn_ones}) > 1 else
                       drawn_ones[0].gear.name.capitalize(), drawn_ones),
             causes_of(OTHER_MODEL.name.capitalize(), [one for one in everything if one.gear == OTHER_MODEL])]

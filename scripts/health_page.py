@@ -23,7 +23,7 @@ import matplotlib.pyplot as plt  # noqa: E402  (after the choice of its backend)
 
 SURE = 0.3            # severity from which on the cause should be right
 SOUND_CHECK_UPS = 40  # of each gear
-SOUND_RUNS = 16       # at work
+SOUND_RUNS = 12       # at work
 SERIES_RUNS = 48      # of a drawn gear
 SET = 0.9             # probability that the causes of a set have together
 BLOCK = 10            # windows that a verdict at work is made of the mean of

@@ -52,7 +52,8 @@ class Layout:
         self.lines = {name for name in self.names if name.startswith(("error_", "torque_", "ripple_"))}
 
     def terms(self, window):
-        """(number, has a phase, half the square of the sound line's amplitude, residual) of each that was compared."""
+        """(number, has a phase, half the square of the sound line's amplitude or that of the sound lost motion,
+        residual) of each that was compared."""
         residual = window["residual"]
         for number, name in enumerate(self.names):
             parts = [name + "_cos", name + "_sin"] if name in self.locked else [name]
@@ -62,7 +63,8 @@ class Layout:
             amplitudes = [residual[part][0] for line in lines or [name] for part in (line + "_cos", line + "_sin")
                           if name in self.locked and residual[part] is not None]
             for part in parts:
-                yield number, name in self.locked, 0.5 * sum(value ** 2 for value in amplitudes), residual[part]
+                play = residual[part][0] ** 2 if name == "lost_motion" else 0.0
+                yield number, name in self.locked, play + 0.5 * sum(value ** 2 for value in amplitudes), residual[part]
 
 
 def kind_of(window):
@@ -216,10 +218,22 @@ def write(bench, path, page, trials, errors_alone):
     write_table(layout, health_file.read(path)["sound"], table, page, trials)
 
 
+def with_severities_between(rows):
+    """As in signature_file.cpp; of (cause, motion, kind, severity, changes)."""
+    for one, after in itertools.zip_longest(rows, rows[1:]):
+        yield one
+        if after and one[:3] == after[:3] and 0.0 < one[3] < after[3]:
+            severity = math.sqrt(one[3] * after[3])
+            share = (severity - one[3]) / (after[3] - one[3])
+            yield (*one[:3], severity, [first + share * (last - first) for first, last in zip(one[4], after[4])])
+
+
 def read(path):
-    """(table, errors) of what `write` wrote."""
+    """(table, errors) of what `write` wrote, as the tool takes it."""
     content = health_file.read(path)
-    causes, motions, *numbers = zip(*((row[0], row[1], row[2:4], row[4], row[5:]) for row in content["signatures"]))
+    rows = [(row[0], row[1], tuple(map(float, row[2:4])), float(row[4]), list(map(float, row[5:])))
+            for row in content["signatures"]]
+    causes, motions, *numbers = zip(*with_severities_between(rows))
     kinds, severities, found = (numpy.array(own, float) for own in numbers)
     return (Table(causes, motions, severities, kinds, found, content["sound"]),
             Errors(*(content["errors"][name] for name in Errors._fields)))

@@ -49,6 +49,7 @@ Assessor::Assessor(const Parameters& parameters)
   , least_windows_(std::min(parameters.indicators.evidence_windows, LEAST_WINDOWS))
   , error_factor_(parameters.indicators.error_factor)
   , baseline_(parameters, signatures_)
+  , patterns_(signatures_)
   , cause_search_(signatures_)
 {
 }
@@ -93,7 +94,7 @@ void Assessor::judge(const SignalIndicators& indicators, const SignalIndicators*
   }
   const FeatureScores scores = featureScores(deviations_);
   assessment_.shows_play = scores[static_cast<std::size_t>(Feature::LOST_MOTION)].compared;
-  updateLevel(levelOf(scores));
+  updateLevel(levelOf(scores, indicators.point));
   setState(compared);
   if (assessment_.level == HealthLevel::OK)
   {
@@ -142,17 +143,22 @@ void Assessor::setState(BaselineState compared) noexcept
   assessment_.state = compared == BaselineState::LEARNING ? AssessmentState::LEARNING : AssessmentState::NO_REFERENCE;
 }
 
-HealthLevel Assessor::levelOf(const FeatureScores& scores) noexcept
+HealthLevel Assessor::levelOf(const FeatureScores& scores, const OperatingPoint& point) noexcept
 {
+  const PatternScore pattern = patterns_.strongest(baseline_.residual(), point);
+  const Deviation along = baseline_.pattern(pattern.student);
+  const double by_pattern = along.score / baseline_.patternThreshold();
   double largest = 0.0;
-  double factor = 0.0;
+  double factor = along.threshold_factor;
   for (const FeatureScore& feature : scores)
   {
     largest = std::max(largest, std::abs(feature.score));
     factor = std::max(factor, feature.threshold_factor);
   }
-  assessment_.largest_score = largest / baseline_.threshold();
-  if (largest <= baseline_.threshold())
+  largest /= baseline_.threshold();
+  assessment_.pattern = by_pattern > largest ? pattern.cause : Cause::NONE;
+  assessment_.largest_score = std::max(largest, by_pattern);
+  if (assessment_.largest_score <= 1.0)
   {
     return HealthLevel::OK;
   }
@@ -221,7 +227,7 @@ void Assessor::explain(const CausePosterior& posterior) noexcept
   }
 }
 
-/// Those beyond the threshold.
+/// Those beyond the threshold; the strongest in any case.
 void Assessor::listEvidence(const SignalIndicators& indicators, const FeatureScores& scores) noexcept
 {
   std::array<FeatureScore, FEATURE_COUNT> sorted = scores;
@@ -230,7 +236,8 @@ void Assessor::listEvidence(const SignalIndicators& indicators, const FeatureSco
   assessment_.evidence_count = 0;
   for (const FeatureScore& feature : sorted)
   {
-    if (assessment_.evidence_count == Assessment::MAX_EVIDENCE || std::abs(feature.score) <= baseline_.threshold())
+    const bool is_beyond = std::abs(feature.score) > baseline_.threshold();
+    if (assessment_.evidence_count == Assessment::MAX_EVIDENCE || (assessment_.evidence_count > 0 && !is_beyond))
     {
       break;
     }

@@ -35,6 +35,12 @@ double studentOf(double score, double freedom) noexcept
   return std::sqrt(freedom * std::expm1(plain * plain / freedom));
 }
 
+/// That so large a share lies beyond.
+double normalQuantile(double share)
+{
+  return boost::math::quantile(boost::math::complement(boost::math::normal(), share));
+}
+
 /// What stays from one window to the next.
 struct Persistence
 {
@@ -117,8 +123,10 @@ Baseline::Baseline(const Parameters& parameters, std::shared_ptr<const Signature
   , least_spread_(parameters.indicators.least_spread)
   , load_step_(hjt::loadStep(parameters))
 {
-  const double share = parameters.indicators.false_alarm_rate / static_cast<double>(2 * INDICATOR_COUNT);
-  threshold_ = boost::math::quantile(boost::math::complement(boost::math::normal(), share));
+  const auto patterns = static_cast<double>(patternCount(*signatures_));
+  const double rate = parameters.indicators.false_alarm_rate * (patterns > 0.0 ? 0.5 : 1.0);
+  threshold_ = normalQuantile(rate / static_cast<double>(2 * INDICATOR_COUNT));
+  pattern_threshold_ = normalQuantile(rate / std::max(patterns, 1.0));
   const double count = std::hypot(TWO_PI / parameters.sensors.motor_counts_per_turn / nominalRatio(parameters.gear),
                                   TWO_PI / parameters.sensors.output_counts_per_turn);
   const std::array<double, 3> unit{ 1.0, count, count * nominalRatio(parameters.gear) / TWO_PI };  // by FloorUnit
@@ -157,13 +165,30 @@ void Baseline::reset() noexcept
   }
 }
 
-ReferenceBin* Baseline::find(const OperatingBin& bin) noexcept
+ReferenceBin* Baseline::find(const OperatingPoint& point) noexcept
 {
-  const auto found =
-      std::find_if(bins_.begin(), bins_.end(), [&bin](const ReferenceBin& known) { return known.bin == bin; });
-  if (found != bins_.end())
+  const OperatingBin bin = binOf(point, load_step_);
+  ReferenceBin* own = nullptr;
+  ReferenceBin* near = nullptr;  // with most windows
+  for (ReferenceBin& known : bins_)
   {
-    return &*found;
+    if (known.bin == bin)
+    {
+      own = &known;
+    }
+    else if (known.windows >= MIN_WINDOWS && isInReach(known.bin, point, load_step_) &&
+             (near == nullptr || known.windows > near->windows))
+    {
+      near = &known;
+    }
+  }
+  if (near != nullptr && (own == nullptr || own->windows < MIN_WINDOWS))
+  {
+    return near;
+  }
+  if (own != nullptr)
+  {
+    return own;
   }
   if (given_ || bins_.size() == recent_.size())
   {
@@ -193,8 +218,7 @@ BaselineState Baseline::update(const SignalIndicators& indicators, const SignalI
 {
   deviations = {};
   residual_ = {};
-  const OperatingBin own = binOf(indicators.point, load_step_);
-  ReferenceBin* bin = carried_ ? findCarried(own) : find(own);
+  ReferenceBin* bin = carried_ ? findCarried(binOf(indicators.point, load_step_)) : find(indicators.point);
   windows_here_ = bin != nullptr ? bin->windows : 0;
   if (bin == nullptr || (given_ && windows_here_ < MIN_WINDOWS))
   {
@@ -240,6 +264,15 @@ Deviation Baseline::deviation(double difference, double expected, double spread,
     deviation.score = normalScore(student, freedom);
     deviation.threshold_factor = std::abs(student) / studentOf(threshold_, freedom);
   }
+  return deviation;
+}
+
+Deviation Baseline::pattern(double student) const noexcept
+{
+  const double freedom = std::max(residual_.freedom, 1.0);
+  Deviation deviation;
+  deviation.score = normalScore(student, freedom);
+  deviation.threshold_factor = student / studentOf(pattern_threshold_, freedom);
   return deviation;
 }
 

@@ -11,12 +11,18 @@ namespace
 constexpr double LOAD_STEP = 0.375;           // of the rated torque
 constexpr double TEMPERATURE_STEP = 10.0;     // [K]
 constexpr double ONE_WAY = 0.5;               // share of travel one way less the other that counts as one direction
+constexpr double REACH = 0.25;                // of a step, beyond the edge of a class
 constexpr double INERTIA_ACCELERATION = 5.0;  // [rad/s^2]
 
 int stepOf(double value, double step) noexcept
 {
   constexpr double FARTHEST = 1e6;  // damaged recordings hold numbers that no int does
   return std::isfinite(value) ? static_cast<int>(std::clamp(std::floor(value / step), -FARTHEST, FARTHEST)) : 0;
+}
+
+bool isNear(double value, double step, int known) noexcept
+{
+  return std::isfinite(value) ? std::abs(value / step - known - 0.5) <= 0.5 + REACH : known == 0;
 }
 }  // namespace
 
@@ -35,15 +41,23 @@ OperatingBin binOf(const OperatingPoint& point, double load_step) noexcept
   return bin;
 }
 
+bool isInReach(const OperatingBin& bin, const OperatingPoint& point, double load_step) noexcept
+{
+  const OperatingBin own = binOf(point, load_step);
+  const bool is_speed_near = point.speed > 0.0 ? isNear(std::log2(point.speed), 1.0, bin.speed) : own.speed == bin.speed;
+  return is_speed_near && own.direction == bin.direction && isNear(point.load, load_step, bin.load) &&
+         isNear(point.temperature, TEMPERATURE_STEP, bin.temperature);
+}
+
 Place placeIn(const OperatingBin& bin, const OperatingPoint& point, double load_step) noexcept
 {
   const auto place = [](double value, int step, double size, double farthest)
   { return std::isfinite(value) ? std::clamp(2.0 * (value / size - step) - 1.0, -farthest, farthest) : 0.0; };
-  const double temperature = place(point.temperature, bin.temperature, TEMPERATURE_STEP, 1.0);
+  const double temperature = place(point.temperature, bin.temperature, TEMPERATURE_STEP, 1.0 + 2.0 * REACH);
   constexpr double FARTHEST = 100.0;
   return { temperature,
            temperature * temperature,
-           place(point.load, bin.load, load_step, 1.0),
+           place(point.load, bin.load, load_step, 1.0 + 2.0 * REACH),
            place(point.load_constant, 0, load_step, FARTHEST),
            place(point.load_sine, 0, load_step, FARTHEST),
            place(point.load_cosine, 0, load_step, FARTHEST),

@@ -273,6 +273,34 @@ std::string readText(const std::string& path)
   }
   return std::move(*text);
 }
+
+/// With a signature at the geometric mean of each two severities that follow each other, linear between them: else an
+/// estimate sticks to the severities that were run.
+SignatureSet withSeveritiesBetween(SignatureSet set)
+{
+  const std::vector<Signature> known = std::move(set.signatures);
+  set.signatures.clear();
+  set.signatures.reserve(2 * known.size());
+  for (std::size_t i = 0; i < known.size(); ++i)
+  {
+    set.signatures.push_back(known[i]);
+    const bool follows = i + 1 < known.size() && known[i + 1].cause == known[i].cause &&
+                         known[i + 1].motion.speed == known[i].motion.speed &&
+                         known[i + 1].motion.direction == known[i].motion.direction;
+    if (follows && known[i].severity > 0.0 && known[i + 1].severity > known[i].severity)
+    {
+      Signature between = known[i];
+      between.severity = std::sqrt(known[i].severity * known[i + 1].severity);
+      const double share = (between.severity - known[i].severity) / (known[i + 1].severity - known[i].severity);
+      for (std::size_t k = 0; k < SIGNATURE_SIZE; ++k)
+      {
+        between.change[k] += share * (known[i + 1].change[k] - known[i].change[k]);
+      }
+      set.signatures.push_back(between);
+    }
+  }
+  return set;
+}
 }  // namespace
 
 std::array<std::size_t, SIGNATURE_SIZE> indicatorsOfNumbers()
@@ -309,7 +337,8 @@ std::shared_ptr<const SignatureSet> loadSignatures(const std::string& name)
   std::shared_ptr<const SignatureSet>& set = known[{ path, written }];
   if (!set)
   {
-    set = std::make_shared<SignatureSet>(name == NO_FILE ? SignatureSet{} : parseSignatures(readText(path), path));
+    set = std::make_shared<SignatureSet>(name == NO_FILE ? SignatureSet{} :
+                                                           withSeveritiesBetween(parseSignatures(readText(path), path)));
   }
   return set;
 }

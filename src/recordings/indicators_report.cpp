@@ -49,6 +49,7 @@ Json toJson(const Assessment& assessment)
            { "severity_deviation", assessment.severity_deviation },
            { "alternatives", alternatives },
            { "largest_score", assessment.largest_score },
+           { "pattern", causeName(assessment.pattern) },
            { "evidence", Table(columns, evidence).rows() } };
 }
 
@@ -215,7 +216,12 @@ void printSummary(const std::vector<WindowResult>& windows)
   if (const std::optional<Strongest> strongest = strongestOf(last))
   {
     lines.push_back({ "", "largest score over threshold", assessment.largest_score });
-    lines.push_back({ "", "that of", indicatorName(strongest->indicator) });
+    if (assessment.pattern != Cause::NONE)
+    {
+      lines.push_back({ "", "that of the pattern of", causeName(assessment.pattern) });
+    }
+    lines.push_back({ "", assessment.pattern == Cause::NONE ? "that of" : "most of it in",
+                      indicatorName(strongest->indicator) });
     lines.push_back({ "", "its deviation", strongest->spreads, "spreads" });
     if (std::isfinite(strongest->percent))
     {

@@ -62,6 +62,7 @@ struct Assessment
   HealthLevel level{};
   Cause cause{};                ///< the most likely; NONE at level OK, or if no known fault explains the departure
   bool shows_play{};            ///< the last window had its lost motion compared: its load went both ways
+  Cause pattern{};              ///< whose pattern has the largest score; NONE: an indicator has
   double confidence{};          ///< probability of the cause, 0 at level OK [-]
   double severity{};            ///< of the fault, if this is the cause: mean; 0 with NONE [-]
   double severity_deviation{};  ///< standard deviation of that [-]
@@ -69,7 +70,7 @@ struct Assessment
   std::size_t alternative_count{};
   std::array<Alternative, MAX_ALTERNATIVES> alternatives;  ///< most likely first, until SET is reached
   std::size_t evidence_count{};
-  std::array<Evidence, MAX_EVIDENCE> evidence;  ///< strongest first
+  std::array<Evidence, MAX_EVIDENCE> evidence;  ///< strongest first: beyond the threshold, one at least in alarm
 };
 
 /// Why the last window has no verdict, as a clause; empty: it has one.
@@ -77,8 +78,8 @@ std::string whyNotJudged(const Assessment& assessment);
 
 /// Makes one verdict of the windows: level, most likely cause and what speaks for it. Fixed memory.
 ///
-/// It judges the mean of the last windows of an operating point (Baseline). WARN: an indicator beyond the baseline's
-/// threshold. ERROR: beyond indicators.error_factor times the threshold. The level rises
+/// It judges the mean of the last windows of an operating point (Baseline). WARN: an indicator or a cause's pattern
+/// beyond the baseline's threshold. ERROR: beyond indicators.error_factor times the threshold. The level rises
 /// after three such means in a row, each of three windows at least, that show the higher level. It falls after three
 /// that show a lower one at the operating point that last showed the level. With indicators.evidence_windows below
 /// three, that many do. Until so many means could have shown another level, OK is no verdict. While the operating point
@@ -119,7 +120,7 @@ private:
   void judge(const SignalIndicators& indicators, const SignalIndicators* model) noexcept;
   void search(std::size_t signatures) noexcept;
   void setState(BaselineState compared) noexcept;
-  HealthLevel levelOf(const FeatureScores& scores) noexcept;
+  HealthLevel levelOf(const FeatureScores& scores, const OperatingPoint& point) noexcept;
   void updateLevel(HealthLevel level) noexcept;
   void explain(const CausePosterior& posterior) noexcept;
   void listEvidence(const SignalIndicators& indicators, const FeatureScores& scores) noexcept;
@@ -131,6 +132,7 @@ private:
   Deviations deviations_;
   Assessment assessment_;  // of the last window, without its cause while that is searched for
   Assessment settled_;     // with it
+  CausePatterns patterns_;
   CauseSearch cause_search_;
   OperatingPoint point_;  // of the search
   bool is_searching_{};

@@ -40,6 +40,9 @@ struct OperatingBin
 /// `load_step`: between two classes of load [N.m].
 OperatingBin binOf(const OperatingPoint& point, double load_step) noexcept;
 
+/// Whether the point lies within the class or no more than a quarter of a step beyond its edges.
+bool isInReach(const OperatingBin& bin, const OperatingPoint& point, double load_step) noexcept;
+
 /// The gear's step between two classes of load [N.m].
 double loadStep(const Parameters& parameters) noexcept;
 
@@ -51,7 +54,7 @@ constexpr std::size_t OWN_PLACES = 2;  ///< the first ones, over which each clas
 using Place = std::array<double, PLACES>;
 using PlaceSquares = std::array<Place, PLACES>;  ///< by pairs of coordinates
 
-/// Temperature and load -1 ... 1 from one edge of the class to the other, the others in the same steps, the inertia by
+/// Temperature and load -1 ... 1 from one edge of the class to the other, beyond them to 1.5, the others in the same steps, the inertia by
 /// its torque at 5 rad/s^2; 0 of what is not measured [-].
 Place placeIn(const OperatingBin& bin, const OperatingPoint& point, double load_step) noexcept;
 
@@ -187,7 +190,9 @@ enum class BaselineState : std::uint8_t
 /// grows by the squares of CarriedError::deviation and of CarriedError::share of |m| (of a line: of all amplitudes of
 /// its signal together), both times 10/windows below ten windows, v is CarriedError::freedom at most, and F is 0.
 /// The score turns Student's t into a normal deviate (Wallace 1959), so that few windows give no more alarms than many.
-/// Threshold: normal quantile of indicators.false_alarm_rate shared by all indicators, two-sided (Bonferroni).
+/// Thresholds: normal quantiles of indicators.false_alarm_rate, one half of it shared by all indicators, two-sided, the
+/// other by the patterns of all causes, one-sided (Bonferroni); without patterns all of it by the indicators.
+/// A window at the edge of a class with too few windows for a reference is one of the class beyond that edge.
 ///
 /// Learning opens indicators.baseline_classes classes at most, whose memory the constructor takes: 0.2 MB each. A
 /// reference that is given needs 14 kB a class, and its memory takes the place of the other.
@@ -211,6 +216,8 @@ public:
                        Deviations& deviations) noexcept;
 
   double threshold() const noexcept { return threshold_; }               ///< of |score| [-]
+  Deviation pattern(double student) const noexcept;                      ///< scores that, along a pattern
+  double patternThreshold() const noexcept { return pattern_threshold_; }  ///< of such a score [-]
   const WindowResidual& residual() const noexcept { return residual_; }  ///< of the class of the last window
   const OperatingBin& bin() const noexcept { return bin_; }              ///< that class
   const std::vector<ReferenceBin>& bins() const noexcept { return bins_; }
@@ -257,7 +264,7 @@ private:
     double carried{};  // added by carrying [unit of the indicator squared]
   };
 
-  ReferenceBin* find(const OperatingBin& bin) noexcept;
+  ReferenceBin* find(const OperatingPoint& point) noexcept;
   ReferenceBin* findCarried(const OperatingBin& bin) noexcept;
   void makeRoom(std::size_t bins);
   void take(const ReferenceBin& bin, const SignalIndicators& indicators, const SignalIndicators* model,
@@ -274,7 +281,8 @@ private:
   const std::size_t evidence_windows_;
   const double least_spread_;
   const double load_step_;  // [N.m]
-  double threshold_;
+  double threshold_{};
+  double pattern_threshold_{};
   std::array<double, INDICATOR_COUNT> floor_{};  // q
   WindowResidual residual_;
   std::array<double, INDICATOR_COUNT> expected_{};  // of the last window, less what was subtracted

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "health/signature_terms.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Dense>
+
+namespace hjt
+{
+namespace
+{
+constexpr double LARGE = 1e100;  // logarithms of products are taken before they overflow
+
+/// Half the square of the amplitude that a line with a phase has in the sound drive. Orders 2 and 1.98 are told apart
+/// so little in a motion to and fro that they count as one.
+double soundSquare(const WindowResidual& residual, LineSignal signal, std::size_t line) noexcept
+{
+  constexpr std::array NEIGHBOURS{ index(Line::WAVE_GENERATOR_2), index(Line::CIRCULAR_SPLINE_2) };
+  const bool is_neighbour = line == NEIGHBOURS[0] || line == NEIGHBOURS[1];
+  double square = 0.0;
+  for (const std::size_t own : is_neighbour ? NEIGHBOURS : std::array{ line, line })
+  {
+    const double cosine = residual.sound[cosineIndex(signal, own)];
+    const double sine = residual.sound[sineIndex(signal, own)];
+    square += 0.5 * (cosine * cosine + sine * sine);
+  }
+  return is_neighbour ? square : 0.5 * square;
+}
+}  // namespace
+
+SignatureTerms::SignatureTerms(const SignatureSet& set, const WindowResidual& residual) noexcept
+  : set_(set), freedom_(residual.freedom)
+{
+  for (std::size_t i = 0; i < SCALAR_COUNT; ++i)
+  {
+    add(residual, i, i);
+  }
+  for (const LineSignal signal : ALL_LINE_SIGNALS)
+  {
+    for (std::size_t line = 0; line < LINE_COUNT && hasLine(signal, line); ++line)
+    {
+      const std::size_t number = signatureNumber(signal, line);
+      if (isPhaseLocked(line))
+      {
+        const double square = soundSquare(residual, signal, line);
+        add(residual, cosineIndex(signal, line), number, square);
+        add(residual, sineIndex(signal, line), number, square);
+      }
+      else
+      {
+        add(residual, amplitudeIndex(signal, line), number);
+      }
+    }
+  }
+}
+
+double SignatureTerms::logLikelihood(const Signature* signature, double strength, double alike) const noexcept
+{
+  std::array<double, INDICATOR_COUNT> changes{};  // by the signature
+  double widening = 1.0 + strength * strength;
+  double of_lines = 0.0;
+  if (signature != nullptr)
+  {
+    double square = 0.0;
+    for (std::size_t i = 0; i < count_; ++i)
+    {
+      const Term& term = terms_[i];
+      changes[i] = changeBy(*signature, term);
+      square += (term.has_phase ? 0.5 : 1.0) * changes[i] * changes[i] / term.own;
+    }
+    widening = 1.0 + set_.length_error * set_.length_error * square;
+    of_lines = set_.line_error * set_.line_error * signature->severity * signature->severity;
+  }
+  const double of_number =
+      set_.number_error * set_.number_error + (1.0 - alike) * set_.motion_error * set_.motion_error;
+  CausesSquare inner = CausesSquare::Identity();
+  Causes projected = Causes::Zero();
+  double square = 0.0;
+  double log_determinant = 0.0;
+  double product = 1.0;
+  for (std::size_t i = 0; i < count_; ++i)
+  {
+    const Term& term = terms_[i];
+    const double change = changes[i];
+    const double mean = term.has_phase ? 0.0 : change;
+    const double share = term.has_phase ? 0.5 : of_number;
+    const double variance = term.own * widening + share * change * change + of_lines * term.line_square;
+    const double difference = term.difference - mean;
+    const Causes weighted = term.common / variance;
+    inner.noalias() += weighted * term.common.transpose();
+    projected += weighted * difference;
+    square += difference * difference / variance;
+    product *= variance / term.own;
+    if (product > LARGE)
+    {
+      log_determinant += std::log(product);
+      product = 1.0;
+    }
+  }
+  log_determinant += std::log(product * inner.determinant());
+  square -= projected.dot(inner.inverse() * projected);
+  return -0.5 *
+         (log_determinant + (freedom_ + static_cast<double>(count_)) * std::log1p(std::max(square, 0.0) / freedom_));
+}
+
+/// Of a number that is no line's, as its signature has it.
+double SignatureTerms::shareOrChange(const Signature& signature, const Term& term) const noexcept
+{
+  const double change = signature.change[term.number];
+  const auto scalar = static_cast<ScalarIndicator>(term.number);
+  if (term.number >= SCALAR_COUNT || !isShare(signature.cause, scalar))
+  {
+    return change;
+  }
+  const double known = set_.sound[term.number];
+  return isStiffness(scalar) && known > 0.0 ? change * term.sound * term.sound / known : change * term.sound;
+}
+
+double SignatureTerms::changeBy(const Signature& signature, const Term& term) const noexcept
+{
+  const double change = shareOrChange(signature, term);
+  return term.number < SCALAR_COUNT || term.has_phase || change == 0.0 ? change : amplitudeChange(term.sound, change);
+}
+
+void SignatureTerms::addDirection(const Signature& signature, double weight,
+                                  std::array<double, INDICATOR_COUNT>& direction) const noexcept
+{
+  std::array<double, INDICATOR_COUNT> changes{};
+  double square = 0.0;
+  for (std::size_t i = 0; i < count_; ++i)
+  {
+    const Term& term = terms_[i];
+    if (term.number < SCALAR_COUNT)
+    {
+      changes[i] = shareOrChange(signature, term) / std::sqrt(term.own);
+      square += changes[i] * changes[i];
+    }
+  }
+  for (std::size_t i = 0; i < count_ && square > 0.0; ++i)
+  {
+    direction[i] += weight / std::sqrt(square) * changes[i];
+  }
+}
+
+double SignatureTerms::along(const std::array<double, INDICATOR_COUNT>& direction) const noexcept
+{
+  CausesSquare inner = CausesSquare::Identity();
+  Causes of_direction = Causes::Zero();
+  Causes of_difference = Causes::Zero();
+  double square = 0.0;
+  double product = 0.0;
+  for (std::size_t i = 0; i < count_; ++i)
+  {
+    const Term& term = terms_[i];
+    if (term.number < SCALAR_COUNT)
+    {
+      const double spread = std::sqrt(term.own);
+      const Causes common = term.common / spread;
+      inner.noalias() += common * common.transpose();
+      of_direction += common * direction[i];
+      of_difference += common * (term.difference / spread);
+      square += direction[i] * direction[i];
+      product += direction[i] * term.difference / spread;
+    }
+  }
+  const Causes left = inner.inverse() * of_direction;
+  square -= left.dot(of_direction);
+  return square > 0.0 ? (product - left.dot(of_difference)) / std::sqrt(square) : 0.0;
+}
+
+void SignatureTerms::add(const WindowResidual& residual, std::size_t indicator, std::size_t number,
+                         std::optional<double> line_square) noexcept
+{
+  if (set_.fitted[number] && residual.own[indicator] > 0.0)
+  {
+    const double sound = residual.sound[indicator];
+    const bool is_play = indicator == indexOf(ScalarIndicator::LOST_MOTION);
+    terms_[count_++] = { residual.difference[indicator],
+                         residual.own[indicator],
+                         Eigen::Map<const Causes>(residual.common[indicator].data()),
+                         number,
+                         line_square.has_value(),
+                         sound,
+                         line_square.value_or(is_play ? sound * sound : 0.0) };
+  }
+}
+}  // namespace hjt

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "harmonic_joint_twin/health/fault_signatures.hpp"
+
+namespace hjt
+{
+/// The numbers of a window that signatures speak of.
+class SignatureTerms
+{
+public:
+  SignatureTerms(const SignatureSet& set, const WindowResidual& residual) noexcept;
+
+  /// Natural logarithm, less what is the same for all. Without a signature the strength S is `strength`. `alike`: its
+  /// motion and the window's, 0 ... 1.
+  double logLikelihood(const Signature* signature, double strength, double alike) const noexcept;
+
+  /// Adds the signature's change, in own spreads, times `weight` over its length, to `direction`. Lines are left out.
+  void addDirection(const Signature& signature, double weight,
+                    std::array<double, INDICATOR_COUNT>& direction) const noexcept;
+
+  /// The difference along a direction over the spread that a sound drive has there.
+  double along(const std::array<double, INDICATOR_COUNT>& direction) const noexcept;
+
+private:
+  using Causes = Eigen::Matrix<double, COMMON_CAUSES, 1>;
+  using CausesSquare = Eigen::Matrix<double, COMMON_CAUSES, COMMON_CAUSES>;
+
+  /// One compared number of a window.
+  struct Term
+  {
+    double difference;
+    double own;
+    Causes common;
+    std::size_t number;  // of the signature
+    bool has_phase;      // one of two parts of a line
+    double sound;        // what a share is taken of
+    double line_square;  // half the square of the sound line's amplitude, that of the sound lost motion; 0 of others
+  };
+
+  double shareOrChange(const Signature& signature, const Term& term) const noexcept;
+  double changeBy(const Signature& signature, const Term& term) const noexcept;
+  void add(const WindowResidual& residual, std::size_t indicator, std::size_t number,
+           std::optional<double> line_square = {}) noexcept;
+
+  const SignatureSet& set_;
+  const double freedom_;
+  std::array<Term, INDICATOR_COUNT> terms_;
+  std::size_t count_{};
+};
+}  // namespace hjt
