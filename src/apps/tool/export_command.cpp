@@ -198,15 +198,8 @@ std::string armUnit(const ExportOptions& options, const std::filesystem::path& l
 {
   ArmDescription arm = readArmDescription(findArm(options.arm, configDirectory(options)));
   addIdentifiedGains(options.identified, arm);
-  const ConfigurationOptions without_faults = [&]
-  {
-    ConfigurationOptions configuration = options;
-    configuration.faults.clear();
-    return configuration;
-  }();
   return fmu::armFmu(
-      std::filesystem::path(options.arm).stem(), arm,
-      armDrives(arm, without_faults, options.identified, options.faults),
+      std::filesystem::path(options.arm).stem(), arm, armDrives(arm, options, options.identified, options.faults),
       { libraries / "harmonic_joint_twin_arm_fmu.so", loadedLibraries({ "libyaml-cpp", "liborocos-kdl" }) });
 }
 
