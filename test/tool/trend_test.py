@@ -98,7 +98,7 @@ class Trend(tool.ToolTest):
         rows = {os.path.basename(row["recording"]): row for row in found["recordings"]}
         self.assertEqual(sorted(rows), ["other.csv", "short.csv", "torn.bag", "w.csv", "x.csv", "y.csv", "z.csv"])
         for name, why in (("torn.bag", "cannot be read as a bag"), ("other.csv", "timestamp"),
-                          ("short.csv", "moves at one speed only")):
+                          ("short.csv", "Fewer than three speeds")):
             self.assertEqual(rows[name]["level"], "NOT JUDGED")
             self.assertIn(why, rows[name]["text"])
         self.assertEqual((rows["torn.bag"]["date"], rows["torn.bag"]["joints"]), (None, []))
