@@ -215,11 +215,11 @@ public:
   BaselineState update(const SignalIndicators& indicators, const SignalIndicators* model,
                        Deviations& deviations) noexcept;
 
-  double threshold() const noexcept { return threshold_; }               ///< of |score| [-]
-  Deviation pattern(double student) const noexcept;                      ///< scores that, along a pattern
+  double threshold() const noexcept { return threshold_; }                 ///< of |score| [-]
+  Deviation pattern(double student) const noexcept;                        ///< scores that, along a pattern
   double patternThreshold() const noexcept { return pattern_threshold_; }  ///< of such a score [-]
-  const WindowResidual& residual() const noexcept { return residual_; }  ///< of the class of the last window
-  const OperatingBin& bin() const noexcept { return bin_; }              ///< that class
+  const WindowResidual& residual() const noexcept { return residual_; }    ///< of the class of the last window
+  const OperatingBin& bin() const noexcept { return bin_; }                ///< that class
   const std::vector<ReferenceBin>& bins() const noexcept { return bins_; }
   const std::vector<LearnedSums>& sums() const noexcept
   {
