@@ -196,8 +196,8 @@ struct CausePosterior
 ///        r, e     error of a signature in proportion to each number, and to its length: other gears, places
 ///        m, a     error of each number in a motion of another kind;  how far the motions are alike
 ///        A, s     amplitude of the line that the sound drive has there, 0 of what is no line with a phase; severity
-///        l        share of such a line that a fault of severity 1 changes: errors of manufacture differ. Also of the lost
-///                 motion, without the 2: how much wear opens the teeth depends on how tight they were
+///        l        share of such a line that a fault of severity 1 changes: errors of manufacture differ. Also of
+///                 the lost motion, without the 2: how far wear opens the teeth depends on how tight they were
 ///        b        weight of the evidence: what a signature is off by is not independent from number to number
 ///        n, q     MotionKind of the window, of the signature: where a line meets a resonance of the drive, it is the
 ///                 larger part of every signature, elsewhere of none;  N = 0.2, Q = 0.3, w_0 = 0.001
