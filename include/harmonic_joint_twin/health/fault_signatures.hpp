@@ -162,7 +162,7 @@ struct PatternScore
 /// The window's differences d along the pattern of each cause: many small changes that belong together are seen before
 /// any of them is out of the ordinary by itself.
 ///
-/// Law:   t = p' C^-1 d / sqrt(p' C^-1 p),   C = D + F F',   p_i = sum_h P(h) mu_i / |mu|,   |mu|^2 = sum_i mu_i^2 / D_ii
+/// Law:   t = p' C^-1 d / sqrt(p' C^-1 p),  C = D + F F',  p_i = sum_h P(h) mu_i / |mu|,  |mu|^2 = sum_i mu_i^2 / D_ii
 /// where  h        over the signatures of the cause whose severity is nearest to 0.4
 ///        others   of CauseSearch; lines are left out: neighbouring ones share their noise, which F has little of
 class CausePatterns
