@@ -182,17 +182,10 @@ ReferenceBin* Baseline::find(const OperatingPoint& point) noexcept
       near = &known;
     }
   }
-  if (near != nullptr && (own == nullptr || own->windows < MIN_WINDOWS))
-  {
-    return near;
-  }
-  if (own != nullptr)
+  own = near != nullptr && (own == nullptr || own->windows < MIN_WINDOWS) ? near : own;
+  if (own != nullptr || given_ || bins_.size() == recent_.size())
   {
     return own;
-  }
-  if (given_ || bins_.size() == recent_.size())
-  {
-    return nullptr;
   }
   bins_.emplace_back().bin = bin;
   sums_.emplace_back();

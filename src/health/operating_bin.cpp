@@ -44,7 +44,8 @@ OperatingBin binOf(const OperatingPoint& point, double load_step) noexcept
 bool isInReach(const OperatingBin& bin, const OperatingPoint& point, double load_step) noexcept
 {
   const OperatingBin own = binOf(point, load_step);
-  const bool is_speed_near = point.speed > 0.0 ? isNear(std::log2(point.speed), 1.0, bin.speed) : own.speed == bin.speed;
+  const bool is_speed_near =
+      point.speed > 0.0 ? isNear(std::log2(point.speed), 1.0, bin.speed) : own.speed == bin.speed;
   return is_speed_near && own.direction == bin.direction && isNear(point.load, load_step, bin.load) &&
          isNear(point.temperature, TEMPERATURE_STEP, bin.temperature);
 }

@@ -337,8 +337,8 @@ std::shared_ptr<const SignatureSet> loadSignatures(const std::string& name)
   std::shared_ptr<const SignatureSet>& set = known[{ path, written }];
   if (!set)
   {
-    set = std::make_shared<SignatureSet>(name == NO_FILE ? SignatureSet{} :
-                                                           withSeveritiesBetween(parseSignatures(readText(path), path)));
+    set = std::make_shared<SignatureSet>(
+        name == NO_FILE ? SignatureSet{} : withSeveritiesBetween(parseSignatures(readText(path), path)));
   }
   return set;
 }

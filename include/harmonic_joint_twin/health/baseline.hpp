@@ -54,8 +54,8 @@ constexpr std::size_t OWN_PLACES = 2;  ///< the first ones, over which each clas
 using Place = std::array<double, PLACES>;
 using PlaceSquares = std::array<Place, PLACES>;  ///< by pairs of coordinates
 
-/// Temperature and load -1 ... 1 from one edge of the class to the other, beyond them to 1.5, the others in the same steps, the inertia by
-/// its torque at 5 rad/s^2; 0 of what is not measured [-].
+/// Temperature and load -1 ... 1 from one edge of the class to the other and to 1.5 beyond them, the others in the same
+/// steps, the inertia by its torque at 5 rad/s^2; 0 of what is not measured [-].
 Place placeIn(const OperatingBin& bin, const OperatingPoint& point, double load_step) noexcept;
 
 /// What else moves healthy indicators together from one window to another.
@@ -215,11 +215,11 @@ public:
   BaselineState update(const SignalIndicators& indicators, const SignalIndicators* model,
                        Deviations& deviations) noexcept;
 
-  double threshold() const noexcept { return threshold_; }               ///< of |score| [-]
-  Deviation pattern(double student) const noexcept;                      ///< scores that, along a pattern
+  double threshold() const noexcept { return threshold_; }                 ///< of |score| [-]
+  Deviation pattern(double student) const noexcept;                        ///< scores that, along a pattern
   double patternThreshold() const noexcept { return pattern_threshold_; }  ///< of such a score [-]
-  const WindowResidual& residual() const noexcept { return residual_; }  ///< of the class of the last window
-  const OperatingBin& bin() const noexcept { return bin_; }              ///< that class
+  const WindowResidual& residual() const noexcept { return residual_; }    ///< of the class of the last window
+  const OperatingBin& bin() const noexcept { return bin_; }                ///< that class
   const std::vector<ReferenceBin>& bins() const noexcept { return bins_; }
   const std::vector<LearnedSums>& sums() const noexcept
   {

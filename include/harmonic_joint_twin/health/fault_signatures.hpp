@@ -162,7 +162,7 @@ struct PatternScore
 /// The window's differences d along the pattern of each cause: many small changes that belong together are seen before
 /// any of them is out of the ordinary by itself.
 ///
-/// Law:   t = p' C^-1 d / sqrt(p' C^-1 p),   C = D + F F',   p_i = sum_h P(h) mu_i / |mu|,   |mu|^2 = sum_i mu_i^2 / D_ii
+/// Law:   t = p' C^-1 d / sqrt(p' C^-1 p),  C = D + F F',  p_i = sum_h P(h) mu_i / |mu|,  |mu|^2 = sum_i mu_i^2 / D_ii
 /// where  h        over the signatures of the cause whose severity is nearest to 0.4
 ///        others   of CauseSearch; lines are left out: neighbouring ones share their noise, which F has little of
 class CausePatterns
@@ -196,8 +196,8 @@ struct CausePosterior
 ///        r, e     error of a signature in proportion to each number, and to its length: other gears, places
 ///        m, a     error of each number in a motion of another kind;  how far the motions are alike
 ///        A, s     amplitude of the line that the sound drive has there, 0 of what is no line with a phase; severity
-///        l        share of such a line that a fault of severity 1 changes: errors of manufacture differ. Also of the lost
-///                 motion, without the 2: how much wear opens the teeth depends on how tight they were
+///        l        share of such a line that a fault of severity 1 changes: errors of manufacture differ. Also of
+///                 the lost motion, without the 2: how far wear opens the teeth depends on how tight they were
 ///        b        weight of the evidence: what a signature is off by is not independent from number to number
 ///        n, q     MotionKind of the window, of the signature: where a line meets a resonance of the drive, it is the
 ///                 larger part of every signature, elsewhere of none;  N = 0.2, Q = 0.3, w_0 = 0.001
