@@ -199,7 +199,7 @@ std::string armUnit(const ExportOptions& options, const std::filesystem::path& l
   ArmDescription arm = readArmDescription(findArm(options.arm, configDirectory(options)));
   addIdentifiedGains(options.identified, arm);
   return fmu::armFmu(
-      std::filesystem::path(options.arm).stem(), arm, armDrives(arm, options, options.identified, options.faults),
+      std::filesystem::path(options.arm).stem(), arm, armDrives(arm, options, options.identified, {}),
       { libraries / "harmonic_joint_twin_arm_fmu.so", loadedLibraries({ "libyaml-cpp", "liborocos-kdl" }) });
 }
 
