@@ -135,7 +135,7 @@ class Life(tool.ToolTest):
                                    1000.0)
         self.fail_with(1, ["--hours has 2 values for 1 recordings"], "remaining", new, "--hours", "1,2")
         self.fail_with(1, ["ascending"], "remaining", new, new, "--hours", "2,1")
-        self.fail_with(1, ["lost_motion_limit = 1 [rad] is out of range"], "remaining", new, *options, "--baseline",
+        self.fail_with(1, ["lost_motion_limit = 1.0 [rad] is out of range"], "remaining", new, *options, "--baseline",
                        "b.yaml", "--lost-motion-limit", 1.0)
         age = self.succeed_json("life", "age", self.duty(), "--grease-changes", "--hours", 1000.0)
         self.assertAlmostEqual(report["turns"], age["turns"], delta=1e-3 * age["turns"])
