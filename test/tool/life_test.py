@@ -50,7 +50,7 @@ class Life(tool.ToolTest):
         for row in rows:
             self.assertGreater(row["equivalent"], row["amplitude"])
             lasts = row["place"] != "tooth space" or row["torque"] < 200.0
-            self.assertEqual(row["cycles"] is None, lasts, row)
+            self.assertEqual(row["cycles"] > 1e6, lasts, row)  # beyond the knee of the S-N curve
             self.assertEqual(row["allowed"], 1e4 if row["torque"] > 200.0 else None)
         self.assertGreater(rows[6]["cycles"], rows[6]["allowed"])
         rated = self.succeed_json("life", "fatigue", "--torques", 67, "--config", "golden.yaml")["rows"]
