@@ -94,8 +94,10 @@ public:
 private:
   static constexpr double FARTHEST = 1.5;  // of the limits
 
+  static constexpr double SLOWEST = 1e-3;  // of the new drive's rate: what wears no longer has a depth too
+
   /// Of two rates; 1 of a use that does not wear.
-  static double share(double rate, double of) { return of > 0.0 ? rate / of : 1.0; }
+  static double share(double rate, double of) { return of > 0.0 ? std::max(rate / of, SLOWEST) : 1.0; }
 
   Usage hourly_;        // in fresh grease
   double grease_rate_;  // share of the grease's life by hour

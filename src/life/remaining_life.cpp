@@ -214,7 +214,9 @@ double RemainingLife::likelihood(const Assessment& assessment, const Usage& so_f
     if (wear_is_read &&
         (item.cause == causeOf(FaultKind::TOOTH_WEAR) || item.cause == causeOf(FaultKind::INTERFACE_WEAR)))
     {
-      return;  // the readings have said it
+      known += item.confidence;
+      sum += item.confidence;  // the readings have said it: the same of all drives
+      return;
     }
     if (item.cause == causeOf(FaultKind::TOOTH_WEAR))
     {

@@ -24,21 +24,13 @@ public:
     std::array<double, MAX_NODES> weights{};
     for (const Signature& signature : set.signatures)
     {
-      if (signature.cause != causeOf(kind) || signature.change[indexOf(indicator)] == 0.0)
-      {
-        continue;
-      }
-      std::size_t node = 1;
-      while (node < nodes_ && severity_[node] != signature.severity)
-      {
-        ++node;
-      }
+      const bool counts = signature.cause == causeOf(kind) && signature.severity > 0.0 &&
+                          signature.change[indexOf(indicator)] != 0.0;  // 0: not known in that motion
+      const std::size_t node = counts ? nodeOf(signature.severity, weights) : MAX_NODES;
       if (node == MAX_NODES)
       {
         continue;
       }
-      nodes_ = std::max(nodes_, node + 1);
-      severity_[node] = signature.severity;
       const double weight = OTHER_MOTION * OTHER_MOTION + likeness(signature.motion, point);
       weights[node] += weight;
       change_[node] += weight * scale * signature.change[indexOf(indicator)];
@@ -50,7 +42,6 @@ public:
   }
 
   bool isKnown() const noexcept { return nodes_ > 2; }
-  double largest() const noexcept { return severity_[nodes_ - 1]; }
   double lastSlope() const noexcept { return slope(nodes_ - 2); }
 
   double at(double severity) const noexcept
@@ -64,7 +55,36 @@ public:
   }
 
 private:
-  static constexpr std::size_t MAX_NODES = 12;
+  static constexpr std::size_t MAX_NODES = 32;
+
+  /// That of a severity, made where there is none; MAX_NODES: no room.
+  std::size_t nodeOf(double severity, std::array<double, MAX_NODES>& weights) noexcept
+  {
+    std::size_t node = 1;
+    while (node < nodes_ && severity_[node] < severity)
+    {
+      ++node;
+    }
+    if (node < nodes_ && severity_[node] == severity)
+    {
+      return node;
+    }
+    if (nodes_ == MAX_NODES)
+    {
+      return MAX_NODES;
+    }
+    for (std::size_t i = nodes_; i > node; --i)
+    {
+      severity_[i] = severity_[i - 1];
+      change_[i] = change_[i - 1];
+      weights[i] = weights[i - 1];
+    }
+    ++nodes_;
+    severity_[node] = severity;
+    change_[node] = 0.0;
+    weights[node] = 0.0;
+    return node;
+  }
 
   double slope(std::size_t stretch) const noexcept
   {
@@ -72,7 +92,7 @@ private:
   }
 
   std::size_t nodes_{ 1 };
-  std::array<double, MAX_NODES> severity_{};  // ascending, as the file has them
+  std::array<double, MAX_NODES> severity_{};  // ascending
   std::array<double, MAX_NODES> change_{};
 };
 
@@ -116,7 +136,7 @@ WearReading readWear(const WindowResidual& residual, const OperatingPoint& point
   {
     const std::size_t k = indexOf(STIFFNESSES[i]);
     const Response by_flank(set, point, FaultKind::TOOTH_WEAR, STIFFNESSES[i], 1.0);
-    if (!by_interface[i].isKnown() || !by_flank.isKnown() || residual.own[k] <= 0.0)
+    if (!by_interface[i].isKnown() || !by_flank.isKnown() || residual.own[k] <= 0.0 || residual.sound[k] <= 0.0)
     {
       return reading;
     }
@@ -124,7 +144,8 @@ WearReading readWear(const WindowResidual& residual, const OperatingPoint& point
   }
   reading.interface = whereIs(
       left, FARTHEST, [&](double severity) { return by_interface[0].at(severity) + by_interface[1].at(severity); });
-  reading.is_read = std::isfinite(reading.flank) && std::isfinite(reading.interface);
+  reading.is_read =
+      std::isfinite(reading.flank) && std::isfinite(reading.interface) && reading.lost_motion_slope > 0.0;
   return reading;
 }
 }  // namespace hjt

@@ -221,7 +221,7 @@ void printSummary(const std::vector<WindowResult>& windows)
       lines.push_back({ "", "that of the pattern of", causeName(assessment.pattern) });
     }
     lines.push_back(
-        { "", assessment.pattern == Cause::NONE ? "that of" : "most of it in", indicatorName(strongest->indicator) });
+        { "", assessment.pattern == Cause::NONE ? "that of" : "furthest off", indicatorName(strongest->indicator) });
     lines.push_back({ "", "its deviation", strongest->spreads, "spreads" });
     if (std::isfinite(strongest->percent))
     {

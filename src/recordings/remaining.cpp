@@ -230,6 +230,11 @@ Remaining remaining(const RemainingOptions& options)
   {
     use = lasting(use, options.hours.back(), parameters.life);
   }
+  if (options.lost_motion_limit && condition.read.readings.empty())
+  {
+    throw InputError("lost_motion_limit: no recording shows the lost motion beside " + options.baseline +
+                     ": the load must go both ways, in the reference too");
+  }
   condition.read.lost_motion_limit = options.lost_motion_limit.value_or(HUGE_VAL);
   if (!options.use_record.empty())
   {

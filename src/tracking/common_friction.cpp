@@ -188,8 +188,7 @@ ArmFriction ofWholeArm(const std::vector<MeasuredFriction>& joints, double toler
 /// What the joints of a group have in common goes into the arm's factors of those that share it.
 void take(const JointGroup& group, const std::vector<MeasuredFriction>& joints, ArmFriction& arm)
 {
-  constexpr double CHANCE =
-      0.05;  // share that three joints may have in common by chance, as those of their type differ
+  constexpr double CHANCE = 0.05;  // share that three joints may have in common, as those of their type differ
   const auto begin = joints.begin() + static_cast<std::ptrdiff_t>(group.begin);
   const auto end = joints.begin() + static_cast<std::ptrdiff_t>(group.end);
   const bool are_own = std::all_of(begin, end, [](const MeasuredFriction& joint) { return joint.is_to_own; });
@@ -199,7 +198,7 @@ void take(const JointGroup& group, const std::vector<MeasuredFriction>& joints, 
   {
     const double left = joints[i].ratio ? *joints[i].ratio / arm.factors[i] : common;
     arm.factors[i] *= common > 1.0 ? std::min(common, std::max(left, 1.0)) : common;
-    arm.deviations[i] = 0.0;
+    arm.deviations[i] = joints[i].is_to_own && !are_own ? CHANCE : 0.0;
   }
 }
 }  // namespace

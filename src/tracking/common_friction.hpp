@@ -56,9 +56,9 @@ struct ArmFriction
 /// all agree on one of the others, as many agree on it, and it leaves clearly less unexplained than what the groups
 /// have in common. Factor and temperature are the median joint's, so that one faulty joint changes neither. What is
 /// left then and most of the three joints of a group agree on is the group's: three drives do not fail alike. Joints
-/// held against their type differ by more, and 5 % of it may be chance. More friction of the others makes no joint's
-/// less. Two joints or more whose friction is below what any fault leaves: something else carries the arm, and no joint
-/// is judged.
+/// held against their type differ by more, and 5 % of it may be chance: of a joint that is held against its own while
+/// others are not, that is the deviation. More friction of the others makes no joint's less. Two joints or more whose
+/// friction is below what any fault leaves: something else carries the arm, and no joint is judged.
 ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double tolerance);
 
 /// The joints of an arm as each other's witnesses, while they move: what their friction has in common is temperature or

@@ -68,7 +68,8 @@ using Gap = std::pair<Reason, std::string>;  // and in a sentence
 /// Why points show no factor.
 Gap whyNone(const std::vector<FrictionPoint>& points, const JointEvidence& evidence, bool is_to_own)
 {
-  const std::string common = is_to_own ? " of those that the reference has too" : "";
+  const std::string have_rows = " have " + std::to_string(FrictionPoints::MIN_ROWS) + " rows" +
+                                (is_to_own ? " and are in the reference too" : "");
   if (points.empty() && evidence.reach().most_angle - evidence.reach().least_angle < LEAST_MOTION)
   {
     return { Reason::AT_REST, "The joint does not move." };
@@ -83,15 +84,13 @@ Gap whyNone(const std::vector<FrictionPoint>& points, const JointEvidence& evide
   }
   if (!(points.front().speed < 0.0 && points.back().speed > 0.0))
   {
-    return { Reason::ONE_DIRECTION, "The joint moves one way only at speeds" + common + " that have " +
-                                        std::to_string(FrictionPoints::MIN_ROWS) +
-                                        " rows: friction and load cannot be separated." };
+    return { Reason::ONE_DIRECTION, "The joint moves one way only at the speeds that" + have_rows +
+                                        ": friction and load cannot be separated." };
   }
   if (points.size() < MIN_POINTS)
   {
-    return { Reason::ONE_SPEED, "Fewer than three speeds" + common + " have " +
-                                    std::to_string(FrictionPoints::MIN_ROWS) +
-                                    " rows: how sure the joint's friction is cannot be told." };
+    return { Reason::ONE_SPEED,
+             "Fewer than three speeds" + have_rows + ": how sure the joint's friction is cannot be told." };
   }
   if (evidence.friction().blocks().count() < MIN_POINTS)
   {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <utility>
 #include <vector>
 
@@ -118,7 +119,7 @@ SignatureSet evenSignatures()
 
 TEST(WearReading, IsTheSeveritiesThatMakeTheDifferences)
 {
-  const SignatureSet set = evenSignatures();
+  SignatureSet set = evenSignatures();
   constexpr double PLAY = 2e-4;
   constexpr double STIFFNESS = 3e4;
   for (const auto& [flank, interface] : { std::pair{ 0.0, 0.0 }, { 0.3, 0.7 }, { 1.3, 0.05 } })
@@ -139,10 +140,45 @@ TEST(WearReading, IsTheSeveritiesThatMakeTheDifferences)
     EXPECT_NEAR(reading.interface, interface, 1e-9);
     EXPECT_NEAR(reading.lost_motion, PLAY * (1.0 + 10.0 * flank), 1e-12);
     EXPECT_NEAR(reading.lost_motion_slope, 10.0 * PLAY, 1e-12);
+    std::reverse(set.signatures.begin(), set.signatures.end());
+    EXPECT_NEAR(readWear(residual, {}, set).interface, interface, 1e-9) << "in any order";
+    EXPECT_NEAR(readWear(residual, {}, set).lost_motion_slope, 10.0 * PLAY, 1e-12);
     residual.own[indexOf(ScalarIndicator::LOST_MOTION)] = 0.0;  // the load went one way
     EXPECT_FALSE(readWear(residual, {}, set).is_read);
     EXPECT_FALSE(readWear(residual, {}, SignatureSet()).is_read);
   }
+}
+
+TEST(RemainingLife, AlarmOfWearThatWasReadIsNoEvidenceOfASpall)
+{
+  const Usage so_far{ 0.0, 0.0, 0.0, 1e9 };
+  const FutureLoad ahead{ 1000.0, { {}, { 0.0, 0.0, 0.0, 1e7 } } };
+  WearTrends trends;
+  trends.flank = { { { 0.1, 0.1 } }, GOOD_READINGS, 0.0 };
+  trends.interface = trends.flank;
+  Assessment worn;
+  worn.state = AssessmentState::ASSESSED;
+  worn.level = HealthLevel::WARN;
+  worn.cause = causeOf(FaultKind::TOOTH_WEAR);
+  worn.confidence = 0.7;
+  worn.severity = 0.5;
+  worn.severity_deviation = 0.05;
+  worn.alternative_count = 1;
+  worn.alternatives[0] = { causeOf(FaultKind::BEARING_OUTER_RACE), 0.3, 0.5, 0.05 };
+  RemainingLife drives(shippedParameters());
+  // A drive with a spall is at its end soon.
+  const auto soon = [&](const Assessment* assessment)
+  {
+    const RemainingHours remaining = drives.remaining(so_far, ahead, assessment, {}, trends);
+    double share = 0.0;
+    for (std::size_t bin = 0; RemainingHours::edge(bin) < 5e3; ++bin)
+    {
+      share += remaining.probability[bin];
+    }
+    return share;
+  };
+  EXPECT_GT(soon(&worn), soon(nullptr));
+  EXPECT_LT(soon(&worn), 2.5 * soon(nullptr)) << "0.3 of a density of about 1.2 beside 0.7";
 }
 
 TEST(UnitVariation, DiffersFromFillingToFillingAsOftenUpAsDown)
