@@ -27,4 +27,5 @@ def pairs_text(arms, groups):
 Each recording beside each other one as its reference, {len(arms)} pairs: {alarms} of {len(judged)} judged joints are
 WARN or worse. By how much their friction differs, rms, where all three joints of a group are judged:
 {"; ".join(spreads)}.
+The shares of the [interval](compare.md#interval-of-the-friction) were taken from these pairs: they test no other arm.
 """

@@ -212,6 +212,13 @@ def raised_table(verdicts):
     return table(["recording", "raised", *JOINTS, "verdict", "right"], rows), right
 
 
+def named_text(verdicts):
+    """Of joints that were raised alone and whose friction is shown."""
+    shown = [is_right(arm, raised) for arm, raised in verdicts if len(raised) == 1 and
+             any(joint["joint"] == raised[0] and joint["friction_ratio"] is not None for joint in arm["joints"])]
+    return f"Of {len(shown)} joints raised alone whose friction is shown, {sum(shown)} are named and no other."
+
+
 def draw_current(path, recording):
     drawing, all_axes = figure(3, 1, (9.0, 7.0), sharex=True)
     for axes, joint in zip(all_axes, LARGE):
@@ -315,7 +322,7 @@ def verdict_section(runner, by_name, judged):
     of_pairs = [pairs_text([run.result() for run in pairs.values()], (LARGE, JOINTS[3:]))]
     raised_lines, right = raised_table(raised)
     sentence = (f"Sound joints called WARN or worse: {false_alarms} of {2 * len(JOINTS) * len(alone)}. Raised friction "
-                f"judged right: {right} of {len(raised)}.")
+                f"judged right: {right} of {len(raised)}. {named_text(raised.values())}")
     lines = ["""
 ### Verdicts
 

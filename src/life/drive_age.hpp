@@ -33,7 +33,7 @@ struct DriveAge
 };
 
 /// Standard deviation of the logarithm of a drive's rate of wear from one filling of grease to the next [-]. Assumed:
-/// one pairing scatters by 1.3 to 2 in repeated tests, of which the half of the logarithm.
+/// repeated wear tests of one pairing differ by factors of 1.3 to 2; 0.25 is about half of the logarithm of such.
 constexpr double RATE_SCATTER = 0.25;
 
 /// Standard deviation of the logarithm of the strength that the transition to the cup has beside the tooth space [-].

@@ -144,8 +144,7 @@ WearReading readWear(const WindowResidual& residual, const OperatingPoint& point
   }
   reading.interface = whereIs(
       left, FARTHEST, [&](double severity) { return by_interface[0].at(severity) + by_interface[1].at(severity); });
-  reading.is_read =
-      std::isfinite(reading.flank) && std::isfinite(reading.interface) && reading.lost_motion_slope > 0.0;
+  reading.is_read = std::isfinite(reading.flank) && std::isfinite(reading.interface) && reading.lost_motion_slope > 0.0;
   return reading;
 }
 }  // namespace hjt
