@@ -50,7 +50,7 @@ void visitIndicators(P& p, Visitor& visit)
   visit("indicators.least_spread", "-", p.indicators.least_spread, Range{ 0.0, 1.0 },
         ofOthers("smallest spread of an indicator, as a share of its healthy mean"));
   visit("indicators.false_alarm_rate", "-", p.indicators.false_alarm_rate, Range{ 1e-12, 0.5 },
-        ofOthers("chance that the mean of healthy windows shows any indicator beyond its threshold"));
+        ofOthers("chance that the mean of healthy windows shows any indicator or pattern beyond its threshold"));
   visit("indicators.evidence_windows", "-", p.indicators.evidence_windows, Range{ 1, 100 },
         ofOthers("windows of an operating point that a verdict is made of the mean of"));
   visit("indicators.error_factor", "-", p.indicators.error_factor, Range{ 1.0, 1e3 },
