@@ -151,7 +151,8 @@ std::vector<std::string> Lives::labelNames()
            "life.interface_factor",
            "life.bearing_life",
            "life.spall_growth",
-           "life.strength" };
+           "life.strength",
+           "life.transition" };
 }
 
 Lives::Labels Lives::labelsAt(std::uint64_t check_up) const
@@ -179,7 +180,8 @@ Lives::Labels Lives::labelsAt(std::uint64_t check_up) const
                                                              nature.interface_factor,
                                                              nature.bearing_life,
                                                              nature.spall_growth,
-                                                             nature.strength };
+                                                             nature.strength,
+                                                             nature.transition };
   const std::vector<std::string> names = labelNames();
   Labels labels;
   for (std::size_t i = 0; i < names.size(); ++i)
