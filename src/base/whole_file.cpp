@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <fstream>
 #include <random>
+#include <utility>
 
 #include "base/text_stream.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
@@ -80,8 +81,9 @@ std::optional<std::string> wholeFile(const std::string& path)
 {
   const std::ifstream file(path, std::ios::binary);
   TextStream bytes;
-  bytes << file.rdbuf();  // fails, but is not bad, where there are none
-  return file && !bytes.bad() ? std::optional(bytes.str()) : std::nullopt;
+  bytes << file.rdbuf();  // fails where there are none, and where reading ends with an error
+  std::string text = bytes.str();
+  return file && (bytes || text.empty()) ? std::optional(std::move(text)) : std::nullopt;
 }
 
 std::string readFile(const std::string& path)

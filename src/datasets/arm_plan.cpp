@@ -63,7 +63,7 @@ ArmPlan::ArmPlan(const PlanNode& root, const std::string& directory, const Confi
   const std::string identified = values.text(root, "identified", "");
   const std::string folder = identified.empty() ? "" : beside(directory, identified, true);
   arm_ = readArmDescription(findArm(beside(directory, values.text(root, "arm"), false), configDirectory(options)));
-  arm_text_ = wholeFile(arm_.origin).value();
+  arm_text_ = readFile(arm_.origin);
   addIdentifiedGains(folder, arm_);
   drives_ = armDriveMaps(arm_, options, folder);
   for (const auto& [number, duty] : required(root, "duty", PlanNode::Kind::LIST).entries)
@@ -77,7 +77,7 @@ ArmPlan::ArmPlan(const PlanNode& root, const std::string& directory, const Confi
         std::cerr << "warning: " << path << ": " << straightenedText(change) << '\n';
       }
       motions_[file] = { std::make_shared<const std::vector<ArmSetPoint>>(std::move(points)),
-                         std::to_string(textHash(wholeFile(path).value())) };
+                         std::to_string(textHash(readFile(path))) };
     }
   }
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "base/number_text.hpp"
 
@@ -27,6 +28,7 @@ Instance::State::State(const State& other)
   , time(other.time)
   , stop(other.stop)
   , values(other.values)
+  , unit(other.unit)
   , simulation(other.simulation ? other.simulation->copy() : nullptr)
 {
 }
@@ -159,14 +161,16 @@ void Instance::setNumbers(Type type, const References& of, const std::function<d
     }
   }
   place = 0;
+  bool differs = false;
   for (std::size_t i = 0; i < of.size; ++i)
   {
     for (double& element : state_.values[of.references[i]].numbers)
     {
-      element = number(place++);
+      const double before = std::exchange(element, number(place++));
+      differs = differs || element != before;
     }
   }
-  changed();
+  changed(differs);
 }
 
 void Instance::setTexts(const References& of, const char* const* texts)
@@ -181,17 +185,20 @@ void Instance::setTexts(const References& of, const char* const* texts)
       throw CallError(target.name + " is to be a null pointer");
     }
   }
+  bool differs = false;
   for (std::size_t i = 0; i < of.size; ++i)
   {
-    state_.values[of.references[i]].text = texts[i];
+    std::string& text = state_.values[of.references[i]].text;
+    differs = text != texts[i] || differs;
+    text = texts[i];
   }
-  changed();
+  changed(differs);
 }
 
 /// Before the start the twin is another one with other values; later inputs go to it with the next step.
-void Instance::changed()
+void Instance::changed(bool differs)
 {
-  if (state_.mode != Mode::STEP)
+  if (differs && state_.mode != Mode::STEP)
   {
     state_.simulation.reset();
   }
@@ -221,6 +228,7 @@ void Instance::start()
 {
   if (!state_.simulation)
   {
+    state_.unit = unit_;
     state_.simulation = unit_->start(state_.values, state_.start,
                                      [this](const std::string& what) { log(Status::WARNING, WARNING_CATEGORY, what); });
   }

@@ -78,6 +78,7 @@ public:
     double time{};  // [s]
     std::optional<double> stop;
     Values values;
+    std::shared_ptr<const Unit> unit;  // that the simulation refers to; a state may outlive the instance it was of
     std::unique_ptr<Simulation> simulation;
   };
   const State& state() const noexcept { return state_; }
@@ -91,11 +92,11 @@ private:
   void requireCount(Type type, const References& of) const;
   const Value& value(ValueReference reference);
   void start();
-  void changed();
+  void changed(bool differs);
 
   void* environment_;
   LogMessage log_;
-  std::unique_ptr<Unit> unit_;
+  std::shared_ptr<const Unit> unit_;
   State state_;
 };
 

@@ -173,6 +173,10 @@ void TwinLoop::heed(Inputs& inputs) noexcept
   {
     handOver(inputs);
   }
+  else
+  {
+    thinOut(inputs);
+  }
   waiting_ = inputs.size();
 }
 
@@ -224,6 +228,27 @@ void TwinLoop::stampInputs(Inputs& inputs) noexcept
                      [this](const LiveInput& input) { return std::abs(input.stamp - status_.clock) > FAR_STAMP; });
   status_.far_stamps += static_cast<std::uint64_t>(inputs.end() - kept_end);
   inputs.erase(kept_end, inputs.end());
+}
+
+/// Of those that wait for the start and are due the last of a kind acts then. The others go: what comes again and again
+/// must not fill the inbox, which the torque that starts the twin has to get into.
+void TwinLoop::thinOut(Inputs& inputs) noexcept
+{
+  const Stamp due = limit();
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < inputs.size(); ++i)
+  {
+    const LiveInput input = inputs[i];
+    const bool overtaken = input.stamp <= due && input.kind != InputKind::FAULT &&
+                           std::any_of(inputs.begin() + static_cast<std::ptrdiff_t>(i) + 1, inputs.end(),
+                                       [&](const LiveInput& later) {
+                                         return later.kind == input.kind && later.joint == input.joint &&
+                                                later.stamp >= input.stamp && later.stamp <= due;
+                                       });
+    inputs[kept] = input;
+    kept += overtaken ? 0 : 1;
+  }
+  inputs.erase(inputs.begin() + static_cast<std::ptrdiff_t>(kept), inputs.end());
 }
 
 bool TwinLoop::tryStart(Inputs& inputs) noexcept

@@ -157,6 +157,7 @@ private:
   void answerRequests(Inputs& inputs) noexcept;
   void forgetInputs(Inputs& inputs) noexcept;
   void stampInputs(Inputs& inputs) noexcept;
+  void thinOut(Inputs& inputs) noexcept;
   bool tryStart(Inputs& inputs) noexcept;
   void start(Stamp stamp, Inputs& inputs) noexcept;
   void handOver(Inputs& inputs) noexcept;

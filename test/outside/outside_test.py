@@ -61,6 +61,9 @@ class OutsideUser(unittest.TestCase):
             output = run(os.path.join(build, "outside_user"),
                          os.path.join(prefix, "share", "harmonic_joint_twin", "config"), env=environment)
             self.assertIn("tooth forces 1", output)
+            tool = os.path.join(prefix, "lib", "harmonic_joint_twin", "joint_twin")
+            for words in ["--out", "drive.fmu"], ["--out", "arm.fmu", "--arm", "ur5"]:
+                run(tool, "export", "--format", "fmu", *words, cwd=folder, env=environment)
             self.run_examples(folder, os.path.join(prefix, "share", "harmonic_joint_twin", "config"), environment)
             python = os.path.join(prefix, "lib", "python3", "dist-packages")
             environment["PYTHONPATH"] = os.pathsep.join(

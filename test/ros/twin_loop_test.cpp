@@ -330,6 +330,27 @@ TEST_F(LoopFixture, AllocatesNothingOnceItRuns)
   EXPECT_EQ(loop_->status().counters.steps, static_cast<std::uint64_t>((SECOND - INPUT_DELAY) / STEP));
 }
 
+/// More of one kind than the inbox holds do not keep out the torque that the twin waits for; the last of them acts.
+TEST_F(LoopFixture, StartsHoweverMuchCameBeforeItsFirstTorque)
+{
+  start(true);
+  setClock(100 * SECOND);
+  for (int second = 100; second < 104; ++second)
+  {
+    for (int i = 0; i < static_cast<int>(Inbox::CAPACITY / 2); ++i)
+    {
+      inbox_.push({ second * SECOND + i, InputKind::BRAKE, i % 2 == 0 ? 0.0 : 1.0 });
+    }
+    setClock((second + 1) * SECOND);
+  }
+  EXPECT_EQ(loop_->status().state, LoopState::WAITING_FOR_INPUT);
+  inbox_.push({ 104 * SECOND, InputKind::MOTOR_TORQUE, 0.1 });
+  setClock(105 * SECOND);
+  EXPECT_EQ(inbox_.overflow(), 0U);
+  EXPECT_EQ(loop_->status().state, LoopState::RUNNING);
+  EXPECT_TRUE(loop_->status().outputs.brake_engaged);
+}
+
 /// Inputs that arrived before a reset are forgotten while the twin waits for its first torque.
 TEST_F(LoopFixture, AResetForgetsWhatWaitsForTheStart)
 {

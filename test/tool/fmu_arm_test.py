@@ -111,6 +111,19 @@ class Arm(Fmu):
         self.assertEqual(unit.set("controller.on", 0), ERROR)
         self.assertIn("target_q[1] = .nan [rad] out of range", unit.close())
 
+    def test_parameters_of_the_arm_act(self):
+        unit = self.unit("--arm", "ur5")
+        self.stand(unit, 0, rows=set_points(0.0))
+        self.stand(unit, 1, rows=set_points(0.0), gravity=[0.0, 0.0, 0.0])
+        self.stand(unit, 2, rows=set_points(0.0), controller__position=[1.0] * 6)
+        for instance in 0, 1, 2:
+            self.follow(unit, 0, 25, instance)
+        # Without weight the shoulder has friction to overcome; with a slow position control the elbow is off more.
+        self.assertLess(abs(unit.get("actual_current", 1)[1]), 0.5 * abs(unit.get("actual_current")[1]))
+        wanted = set_points(25 / ROWS)[0][2]
+        self.assertGreater(abs(wanted - unit.get("actual_q", 2)[2]), abs(wanted - unit.get("actual_q")[2]))
+        self.assertEqual(unit.close(), "")
+
     def test_without_its_controller_motors_do_what_they_are_told(self):
         unit = self.unit("--arm", "ur5")
         held = {f"{joint}__brake": 1 for joint in ("base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3")}

@@ -183,6 +183,20 @@ class States(Fmu):
         self.assertEqual(unit.call("restore", 0, 0), ERROR)
         unit.close()
 
+    def test_a_state_outlives_its_instance(self):
+        unit = self.unit()
+        for instance in 0, 1:
+            unit.start(instance, motor_torque=0.4)
+        self.assertEqual(unit.call("step", 0, 0.0, 0.05), OK)
+        self.assertEqual(unit.call("keep", 0, 0), OK)
+        expected = unit.get("output_angle")
+        unit.call("free", 0)
+        self.assertEqual(unit.call("restore", 1, 0), OK)
+        self.assertEqual(unit.call("drop", 1, 0), OK)
+        self.assertEqual(unit.get("output_angle", 1), expected)
+        self.assertEqual(unit.call("step", 1, 0.05, 0.01), OK)
+        self.assertEqual(unit.close(), "")
+
     def test_a_reset_instance_is_as_new(self):
         unit = self.unit()
         unit.start(0)

@@ -225,7 +225,8 @@ int exportJoint(const ExportOptions& options)
   }
   if (options.arm.empty() ? !options.identified.empty() : !is_fmu)
   {
-    std::cerr << "joint_twin: " << (is_fmu ? "--identified is for --arm" : "--arm is for --format fmu") << '\n';
+    const char* wrong = options.arm.empty() ? "--identified is for --arm" : "--arm is for --format fmu";
+    std::cerr << "joint_twin: " << wrong << '\n';
     return EXIT_USAGE;
   }
   if (is_fmu)
