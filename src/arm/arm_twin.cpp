@@ -113,7 +113,7 @@ ArmTwin::ArmTwin(const ArmDescription& arm, std::vector<Parameters> drives, cons
   const auto size = static_cast<Eigen::Index>(joints);
   mass_.setZero(size, size);
   inverse_ = mass_;
-  factors_ = Eigen::LLT<Eigen::MatrixXd>(size);
+  factors_.compute(Eigen::MatrixXd::Identity(size, size));
   excess_.setZero(size);
   link_torques_.fill(excess_);
   reset(0);
