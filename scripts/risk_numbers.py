@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Scores the failure modes of the thesis' Table 3.7 again: how well each is detected is what docs/health.md found with
 three sets of sensors. Writes the table into docs/faults.md."""
+import argparse
 import csv
 import pathlib
 
@@ -46,6 +47,7 @@ def places(numbers):
 
 
 def main():
+    argparse.ArgumentParser(description=__doc__).parse_args()
     seen = seen_table((PROJECT / "docs" / "health.md").read_text(encoding="utf-8"))
     with open(PROJECT / "scripts" / "validation" / "fmeca.csv", encoding="utf-8") as file:
         modes = list(csv.DictReader(file))
