@@ -97,7 +97,9 @@ class Recordings(unittest.TestCase):
                              for status in self.diagnostics[joint].statuses(task)[seen[joint][task]:]
                              if "stopped" not in status.message and "Nothing" not in status.message}
                     self.assertEqual({level for level, _ in found}, {OK}, (name, joint, task, found))
-                    self.assertEqual(any("touched the arm" in message for _, message in found),
+                    # Where rows scatter, a touch is one of several reasons that the sentence offers.
+                    self.assertEqual(any("touched the arm" in message.replace("touched the arm, or angles", "")
+                                         for _, message in found),
                                      joint in PUSHED.get(name, ()), (name, joint, task, found))
             print(f"{name}: {rows} rows, {seconds:.0f} s", flush=True)
 
