@@ -74,8 +74,8 @@ struct ArmDescription
 /// range; and as readLinks.
 ArmDescription readArmDescription(const std::string& path);
 
-/// The links of the URDF's chain from base to tip. @throws ParameterError if it cannot be read, has no such chain, other
-/// joints than the description names, or masses, inertia, places or axes that no robot has.
+/// The links of the URDF's chain from base to tip. @throws ParameterError if it cannot be read, has no such chain,
+/// other joints than the description names, or masses, inertia, places or axes that no robot has.
 void readLinks(ArmDescription& arm);
 
 /// A controller's gains, SHORT_NAME.position ... of the joints that the file names. @throws ParameterError alike.

@@ -35,8 +35,8 @@ struct ToolPose
 };
 
 /// Rigid-body dynamics of an arm: weight, inertia, Coriolis and coupling of all links and the payload, by KDL's
-/// recursive Newton-Euler. Links alone: the motors' inertia is that of the drives. After construction nothing but a copy
-/// throws or allocates.
+/// recursive Newton-Euler. Links alone: the motors' inertia is that of the drives. After construction nothing but a
+/// copy throws or allocates.
 class ArmDynamics
 {
 public:

@@ -57,7 +57,7 @@ public:
   void follow(ArmMotion& motion) noexcept;
 
   /// For a motion that comes point by point: goes from the last set point to this one, which is due at `time` of the
-  /// motion given at construction, later than the last. That motion has two set points, of which the first is the start.
+  /// motion given at construction, later than the last. That motion has two set points; the first is the start.
   void goOn(double time, const std::vector<JointMotion>& set_point) noexcept { motion_.goOn(time, set_point); }
 
   /// At the tip, from the next step on; the controller knows of it.

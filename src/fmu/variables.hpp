@@ -53,8 +53,8 @@ struct FmuVariable
 
 constexpr std::size_t TIME = 0;  ///< value reference in every unit
 
-/// The variables of a drive, counted from its first one on: inputs, scalar outputs, tooth outputs, places of the faults,
-/// then the parameters that shape it.
+/// The variables of a drive, counted from its first one on: inputs, scalar outputs, tooth outputs, places of the
+/// faults, then the parameters that shape it.
 enum DriveReference : unsigned
 {
   MOTOR_TORQUE,

@@ -144,9 +144,9 @@ double repeatDeviation(double stated, const OwnReference& own)
   return std::sqrt(of_one * (1.0 + 1.0 / count));
 }
 
-/// Of the friction over its own earlier one, by the scatter of the rows of both, as a share: by leaving out one speed of
-/// both after the other, or of the blocks of each, whichever is larger. Half of the blocks' variance counts: the rest is
-/// where the twin's friction does not rise with the speed as the joint's does, which both recordings share.
+/// Of the friction over its own earlier one, by the scatter of the rows of both, as a share: by leaving out one speed
+/// of both after the other, or of the blocks of each, whichever is larger. Half of the blocks' variance counts: the
+/// rest is where the twin's friction does not rise with the speed as the joint's does, which both recordings share.
 double scatterToOwn(const FrictionRatio& ratio, const FrictionBlocks& blocks, const OwnReference& own)
 {
   const double of_blocks = std::sqrt(0.5) * std::hypot(blocks.deviation(), own.friction_deviation);
