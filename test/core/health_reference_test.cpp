@@ -62,7 +62,7 @@ TEST(Reference, ServesAWindowAtTheEdgeOfAClassThatHasNone)
   Assessor assessor(shippedParameters());
   std::mt19937 random(3);
   std::normal_distribution<double> normal;
-  const auto stateAt = [&](double speed, double temperature)
+  const auto state_at = [&](double speed, double temperature)
   {
     SignalIndicators window;
     window.point = { speed, 1.0, 30.0, temperature };
@@ -71,13 +71,13 @@ TEST(Reference, ServesAWindowAtTheEdgeOfAClassThatHasNone)
   };
   for (int window = 0; window < LEARNING; ++window)
   {
-    stateAt(100.0, 25.0);
+    state_at(100.0, 25.0);
   }
   const double edge = 128.0;  // of the octave
-  EXPECT_EQ(stateAt(std::exp2(0.2) * edge, 25.0), AssessmentState::TOO_FEW_WINDOWS);
-  EXPECT_EQ(stateAt(100.0, 32.0), AssessmentState::TOO_FEW_WINDOWS);
-  EXPECT_EQ(stateAt(std::exp2(0.3) * edge, 25.0), AssessmentState::LEARNING);
-  EXPECT_EQ(stateAt(100.0, 33.0), AssessmentState::LEARNING);
+  EXPECT_EQ(state_at(std::exp2(0.2) * edge, 25.0), AssessmentState::TOO_FEW_WINDOWS);
+  EXPECT_EQ(state_at(100.0, 32.0), AssessmentState::TOO_FEW_WINDOWS);
+  EXPECT_EQ(state_at(std::exp2(0.3) * edge, 25.0), AssessmentState::LEARNING);
+  EXPECT_EQ(state_at(100.0, 33.0), AssessmentState::LEARNING);
 }
 
 /// Running torques that rise with the payload, with 1e-4 N.m of noise; every sixth window may lack them.
