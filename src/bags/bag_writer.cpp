@@ -266,7 +266,7 @@ void BagWriter::writeFileHeader(std::uint64_t index_position)
 
 void BagWriter::flush(const Bytes& bytes)
 {
-  if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size())
+  if (!bytes.empty() && std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size())
   {
     giveUp(std::strerror(errno));
   }
