@@ -289,19 +289,6 @@ def tenth_table(results):
     return lines
 
 
-def horizon(rows, median):
-    """Share of a life that is left when the median comes within ALPHA of the truth for good: median of all [-]."""
-    shares = []
-    good = accurate(rows, median)
-    for life in numpy.unique(rows["life"]):
-        of = rows["life"] == life
-        bad = numpy.flatnonzero(~good[of])
-        left = 1.0 - of_life(rows)[of]
-        first = bad[-1] + 1 if len(bad) else 0
-        shares.append(left[first] if first < len(left) else 0.0)
-    return numpy.median(shares)
-
-
 def score_table(results):
     lines = ["| drives | forecast | CRPS [h] | of the second half of lives ended by wear "
              "| median within 30 % of the truth [%] | lives ended by wear: at half, at 80 % of the life "
@@ -316,9 +303,10 @@ def score_table(results):
             good = accurate(rows, median)
             at = ", ".join(f"{100 * numpy.mean(good[worn & (numpy.abs(share - part) < 0.05)]):.0f}"
                            for part in (0.5, 0.8))
+            left = lives_judged.horizon(rows["life"][worn], good[worn], share[worn])
             lines.append(f"| {name} | {words} | {numpy.mean(score):.0f} "
                          f"| {numpy.mean(score[worn & (share > 0.5)]):.0f} "
-                         f"| {100 * numpy.mean(good):.0f} | {at} | {horizon(rows[worn], median[worn]):.2f} "
+                         f"| {100 * numpy.mean(good):.0f} | {at} | {left:.2f} "
                          f"| {100 * numpy.mean((truth >= low) & (truth <= high)):.0f} |")
     return lines
 

@@ -159,13 +159,17 @@ def gone(rows):
     return rows.hours / (rows.hours + rows.truth)
 
 
-def horizon(rows, name):
-    """Share of a life that is left when the median comes within ALPHA of the truth for good: median of all [-]."""
+def horizon(lives, accurate, share):
+    """Share of a life that is left when the median comes within ALPHA of the truth for good: median of all [-].
+
+    Arrays with a row for each forecast, in order of time: number of its life, whether the median is within ALPHA, share
+    of the life that is gone [-]."""
     shares = []
-    for _, life in rows.groupby("drive"):
-        bad = numpy.flatnonzero(~good(life, name))
+    for life in numpy.unique(lives):
+        good_rows, gone_rows = accurate[lives == life], share[lives == life]
+        bad = numpy.flatnonzero(~good_rows)
         first = bad[-1] + 1 if len(bad) else 0
-        shares.append(1.0 - gone(life).iloc[first] if first < len(life) else 0.0)
+        shares.append(1.0 - gone_rows[first] if first < len(gone_rows) else 0.0)
     return numpy.median(shares)
 
 
@@ -186,9 +190,10 @@ def tables(rows):
             error = (cause[name + "_q50"] - cause.truth).abs()
             score = cause[name + "_crps"].mean() if name + "_crps" in cause else error.mean()
             cover = halves(held(cause, name), cause) if name + "_q10" in cause else ""
+            left = horizon(cause.drive.to_numpy(), good(cause, name).to_numpy(), gone(cause).to_numpy())
             lines.append(f"| {end} | {cause.drive.nunique()}, {len(cause)} | {words} "
                          f"| {error.median():.0f}, {error.mean():.0f} | {score:.0f} "
-                         f"| {halves(good(cause, name), cause)} | {horizon(cause, name):.2f} | {cover} |")
+                         f"| {halves(good(cause, name), cause)} | {left:.2f} | {cover} |")
     return lines
 
 
