@@ -31,6 +31,7 @@ static void* library;
 static bool steps_now;
 static unsigned long allocations;
 
+// NOLINTBEGIN(readability-identifier-naming): the C library's names
 void* __libc_malloc(size_t size);
 
 /// In place of the C library's, for the unit too; operator new ends here.
@@ -39,6 +40,7 @@ void* malloc(size_t size)
   allocations += steps_now;
   return __libc_malloc(size);
 }
+// NOLINTEND(readability-identifier-naming)
 
 static void* function(const char* name)
 {
