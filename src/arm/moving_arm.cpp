@@ -32,14 +32,14 @@ std::vector<JointGains> gainsOf(const ArmDescription& arm, const std::vector<Par
 }
 
 /// Faults with an onset come that long after the motion's begin.
-std::vector<Parameters> withFaultsInMotion(std::vector<Parameters> drives)
+std::vector<Parameters> withFaultsInMotion(std::vector<Parameters> drives, double settling)
 {
   constexpr double LATEST_ONSET = 1e9;  // that a drive takes [s]
   for (Parameters& drive : drives)
   {
     for (Fault& fault : drive.faults)
     {
-      fault.onset = fault.onset > 0.0 ? std::min(fault.onset + MovingArm::SETTLING, LATEST_ONSET) : fault.onset;
+      fault.onset = fault.onset > 0.0 ? std::min(fault.onset + settling, LATEST_ONSET) : fault.onset;
     }
   }
   return drives;
@@ -47,8 +47,9 @@ std::vector<Parameters> withFaultsInMotion(std::vector<Parameters> drives)
 }  // namespace
 
 MovingArm::MovingArm(const ArmDescription& arm, const std::vector<Parameters>& drives, ArmMotion motion,
-                     const SurfaceSource& surface_source)
-  : twin_(arm, withFaultsInMotion(drives), anglesOf(motion.points().front()), surface_source)
+                     const SurfaceSource& surface_source, double settling)
+  : settling_(settling)
+  , twin_(arm, withFaultsInMotion(drives, settling), anglesOf(motion.points().front()), surface_source)
   , controller_(arm, twin_, gainsOf(arm, drives), CONTROL_RATE)
   , motion_(std::move(motion))
   , motion_start_(motion_.begin())
@@ -71,10 +72,10 @@ bool MovingArm::reset(Stamp stamp) noexcept
   controller_.reset();
   is_commanded_ = false;
   stop_.reset();
-  motion_begin_ = twin_.stamp() + toStampLength(SETTLING);
+  motion_begin_ = twin_.stamp() + toStampLength(settling_);
   for (std::size_t i = 0; i < twin_.joints(); ++i)
   {
-    twin_.drive(i).commandBrake(twin_.stamp() + toStampLength(0.5 * SETTLING), false);
+    twin_.drive(i).commandBrake(twin_.stamp() + toStampLength(0.5 * settling_), false);
   }
   return true;
 }
@@ -115,7 +116,7 @@ void MovingArm::watch() noexcept
   for (std::size_t i = 0; i < twin_.joints() && stop_; ++i)
   {
     const Stamp next = twin_.stamp() + twin_.stepLength();
-    const Stamp release = motion_begin_ - toStampLength(0.5 * SETTLING);
+    const Stamp release = motion_begin_ - toStampLength(0.5 * settling_);
     twin_.drive(i).commandMotorTorque(next, 0.0);
     twin_.drive(i).commandBrake(next, true);
     if (release > next)

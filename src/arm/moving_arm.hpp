@@ -26,8 +26,8 @@ struct ProtectiveStop
   const char* reason{};  ///< for people
 };
 
-/// A twin of an arm under its controller, which has it follow set points. After a reset it stands in its brakes for the
-/// first half of SETTLING, is held where it stands for the second, then begins its motion.
+/// A twin of an arm under its controller, which has it follow set points. After a reset it stands in its brakes for half
+/// of the settling, is held where it stands for the other half, then begins its motion.
 ///
 /// Where a joint is STOP_DEVIATION off its set point, or faster than STOP_SPEED of its limit, the controller stops all:
 /// the motors give no torque, the brakes engage, until the next reset. The bounds are assumed; the maker gives none.
@@ -37,14 +37,14 @@ class MovingArm
 {
 public:
   static constexpr double CONTROL_RATE = 2000.0;  ///< [Hz]
-  static constexpr double SETTLING = 0.5;         ///< [s]
+  static constexpr double SETTLING = 0.5;         ///< if no other is given [s]
   static constexpr double STOP_DEVIATION = 0.1;   ///< [rad]
   static constexpr double STOP_SPEED = 1.1;       ///< of ArmJoint::speed_limit [-]
 
   /// `drives`: as ArmTwin takes them; the onsets of their faults count from the motion's begin, but those at 0 are
-  /// there from the reset on. @throws ParameterError.
+  /// there from the reset on. settling: from 0 on [s]. @throws ParameterError.
   MovingArm(const ArmDescription& arm, const std::vector<Parameters>& drives, ArmMotion motion,
-            const SurfaceSource& surface_source);
+            const SurfaceSource& surface_source, double settling = SETTLING);
 
   /// Back to the start of the motion given at construction. False: as ArmTwin::reset.
   bool reset(Stamp stamp) noexcept;
@@ -79,6 +79,7 @@ private:
   void watch() noexcept;
   void wantedAt(Stamp stamp, std::vector<JointMotion>& motion) noexcept;
 
+  double settling_;  // [s]
   ArmTwin twin_;
   ArmController controller_;
   ArmMotion motion_;

@@ -42,7 +42,7 @@ double timeOf(Stamp stamp)
   return toSeconds(stamp - EPOCH);
 }
 
-/// The instants of an arm under its controller are SETTLING later than the importer's.
+/// The instants of an arm under its controller are MovingArm::SETTLING later than the importer's.
 class ArmSimulation : public Simulation
 {
 public:
@@ -213,7 +213,8 @@ public:
     }
     ArmSetPoint first{ timeOf(stampAt(start)), std::vector<JointMotion>(drives.size()) };
     takeSetPoint(values, first.joints);
-    MovingArm moving(arm, drives, ArmMotion({ first, first }), unitSurfaces(notice));
+    const double settling = values[CONTROLLER].numbers[0] != 0.0 ? MovingArm::SETTLING : 0.0;
+    MovingArm moving(arm, drives, ArmMotion({ first, first }), unitSurfaces(notice), settling);
     return std::make_unique<ArmSimulation>(arm_, std::move(moving), std::move(parts), values, start);
   }
 

@@ -91,6 +91,7 @@ void addLibraries(const UnitLibraries& libraries, const std::string& name, Zip& 
 std::string finish(const UnitDescription& unit, const UnitLibraries& libraries, Zip& zip)
 {
   zip.add("modelDescription.xml", modelDescription(unit));
+  zip.add("documentation/licenses/license.txt", readFile(packageDirectory() / "LICENSE"));
   addLibraries(libraries, unit.library, zip);
   return zip.bytes();
 }

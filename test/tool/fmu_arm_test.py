@@ -142,6 +142,21 @@ class Arm(Fmu):
         self.assertGreater(abs(unit.get("actual_q", 1)[2] - POSE[2]), 0.02)  # by its weight
         self.assertEqual(unit.close(), "")
 
+    def test_faults_of_the_drives_set_in_by_the_importers_time(self):
+        with open(self.path("fault.yaml"), "w", encoding="ascii") as file:
+            file.write("faults: [{kind: flange_crack, severity: 0.9, place: -1, onset: 0.05}]\n")
+        angles = []
+        for options in [], ["--config", self.path("fault.yaml")]:
+            unit = self.unit("--arm", "ur5", *options)
+            angles.append([])
+            for on in 0, 1:
+                self.stand(unit, on, controller__on=on)
+                for time in 0.0, 0.05:
+                    self.assertEqual(unit.call("step", on, time, 0.05), OK)
+                    angles[-1].append(unit.get("actual_q", on))
+            self.assertEqual(unit.close(), "")
+        self.assertEqual([sound == faulty for sound, faulty in zip(*angles)], [True, False] * 2)
+
 
 if __name__ == "__main__":
     tool.main()

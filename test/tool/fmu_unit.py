@@ -90,6 +90,7 @@ class Fmu(tool.ToolTest):
         folder = self.path("a unit")  # importers unpack into folders with blanks
         shutil.rmtree(folder, ignore_errors=True)
         with zipfile.ZipFile(file) as archive:
+            self.assertIn(b"BSD 3-Clause", archive.read("documentation/licenses/license.txt"))
             self.assertIsNone(archive.testzip())
             archive.extractall(folder)
         unit = Unit(folder)
