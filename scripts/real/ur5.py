@@ -376,8 +376,8 @@ def current_section(all_errors):
 The twin's error over a fit's, of the means over {MEAN:g} s around each moving row, and of all moving rows (faster than
 {MOVING:g} rad/s). *Load arm*: from `/joint_states` alone; *load target_moment*: identified and predicted with the
 recorded moment. *Fit*: gain, Coulomb and viscous friction with the recorded moment, least squares over all rows of
-{TRAIN}, which the twins are identified on. Wanted: {WANTED_MEANS:g} and {WANTED_MOVING:g}. The errors of all joints, moving and resting:
-[real_robot_current.csv](real_robot_current.csv) [A, rms].
+{TRAIN}, which the twins are identified on. Wanted: {WANTED_MEANS:g} and {WANTED_MOVING:g}. The errors of all joints,
+moving and resting: [real_robot_current.csv](real_robot_current.csv) [A, rms].
 """, *share_table(all_errors), """
 ![Error of means over 0.1 s](images/real_robot/means.png)
 

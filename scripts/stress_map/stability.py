@@ -96,7 +96,7 @@ def group_rows(groups):
 
 
 def write(docs, complete, judged, table):
-    """docs/stability.md and .csv; the maps are taken from the folder of the complete page. `table`: lines of a table."""
+    """docs/stability.md and .csv; maps come from the folder of the complete page. `table`: makes lines of a table."""
     groups = by_group(judged)
     count = collections.Counter(j.verdict for j in judged)
     lines = [HEAD.format(accuracy=100.0 * judge.ACCURACY, timeout=judge.TIMEOUT)]
