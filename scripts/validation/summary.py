@@ -112,6 +112,7 @@ def write(docs, complete, pages, titles):
         file = os.path.join(images, name + ".png")
         shutil.copyfile(os.path.join(complete, file), os.path.join(docs, file))
         lines += [next(line for line in captions if f"/{name}.png)" in line), ""]
+        lines += [f"*{lines[-2][2:].split('](')[0]}*", ""]
     with open(os.path.join(docs, "validation.md"), "w", encoding="utf-8") as file:
         file.write("\n".join(lines).rstrip() + "\n")
     with open(os.path.join(docs, "validation.csv"), "w", encoding="utf-8", newline="") as file:
