@@ -6,16 +6,13 @@ import csv
 import pathlib
 import subprocess
 
-import matplotlib
 import matplotlib.ticker
 
 import page_section
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402  (after the choice of its backend)
+from drawing import BLUE, GREEN, RED, plt
 
 ORDERS = {0: "held", 1: "linear, as shipped", 2: "quadratic"}
-COLOURS = {0: "#D55E00", 1: "#0072B2", 2: "#009E73"}
+COLOURS = {0: RED, 1: BLUE, 2: GREEN}
 RATE = 10e3            # of the steps [Hz]
 SHIPPED = 1            # order
 
