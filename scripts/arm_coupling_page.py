@@ -1,21 +1,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the coupling of an arm's drives costs and how far off it is, for scripts/arm_coupling: rows of
-bench/arm_coupling.cpp as a section of docs/arm_twin.md and a figure."""
+bench/arm_coupling.cpp as a section of docs/arm_twin.md, docs/arm_coupling.csv and a figure."""
 import argparse
 import csv
 import pathlib
 import subprocess
 
-import matplotlib
 import matplotlib.ticker
 
 import page_section
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402  (after the choice of its backend)
+from drawing import BLUE, GREEN, RED, plt
 
 ORDERS = {0: "held", 1: "linear, as shipped", 2: "quadratic"}
-COLOURS = {0: "#D55E00", 1: "#0072B2", 2: "#009E73"}
+COLOURS = {0: RED, 1: BLUE, 2: GREEN}
 RATE = 10e3            # of the steps [Hz]
 SHIPPED = 1            # order
 
@@ -50,22 +47,13 @@ def draw(path, rows):
     plt.close(drawing)
 
 
-def digits(value):
-    """Two, without an exponent."""
-    return f"{float(f'{value:.2g}'):g}"
-
-
-def table(rows):
-    lines = ["| mass matrix [Hz] | " + " | ".join(f"{label}: ms, mJ, µrad" for label in ORDERS.values()) + " |",
-             "|" + "---|" * (1 + len(ORDERS))]
-    for rate in sorted({row["mass_rate"] for row in rows}, reverse=True):
-        cells = []
-        for order in ORDERS:
-            row = next(row for row in rows if (row["mass_rate"], row["order"]) == (rate, order))
-            cells.append(f"{1e3 * row['cost']:.0f}, {digits(1e3 * row['energy_error'])}, "
-                         f"{digits(1e6 * row['angle_error'])}")
-        lines.append(f"| {rate:g} | " + " | ".join(cells) + " |")
-    return lines
+def write_table(path, rows):
+    with open(path, "w", encoding="utf-8", newline="") as file:
+        table = csv.writer(file, lineterminator="\n")
+        table.writerow(["mass_matrix_rate_hz", "torques", "cost_ms", "energy_error_mj", "angle_error_urad"])
+        for row in sorted(rows, key=lambda row: (-row["mass_rate"], row["order"])):
+            table.writerow([f"{row['mass_rate']:g}", ORDERS[row["order"]].split(",")[0], f"{1e3 * row['cost']:.0f}",
+                            f"{1e3 * row['energy_error']:.2g}", f"{1e6 * row['angle_error']:.2g}"])
 
 
 def speed_table(rows):
@@ -82,13 +70,12 @@ def main():
     parser.add_argument("--config", required=True)
     parser.add_argument("--docs", required=True, type=pathlib.Path)
     options = parser.parse_args()
-    page = options.docs / "arm_twin.md"
     speeds = speed_table(rows_of(options.bench, options.config, "scenes"))
-    page_section.write(page, "arm_speed", speeds)
+    page_section.write(options.docs / "arm_twin.md", "arm_speed", speeds)
     rows = rows_of(options.bench, options.config, "coupling")
     draw(options.docs / "images" / "arm_twin" / "coupling.png", rows)
-    page_section.write(page, "arm_coupling", table(rows))
-    print("\n".join([*speeds, "", *table(rows)]))
+    write_table(options.docs / "arm_coupling.csv", rows)
+    print("\n".join(speeds))
 
 
 if __name__ == "__main__":

@@ -13,13 +13,10 @@ import pathlib
 import subprocess
 import sys
 
-import matplotlib
 import numpy
 
 import page_section
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402  (after the choice of its backend)
+from drawing import plt
 
 PERIOD = 0.008                   # of the set points [s]
 MOVE, STOP, REST = 1.0, 1.0, 0.2  # [s]

@@ -3,11 +3,9 @@
 """Draws two runs of `joint_twin arm`: angle and current of the elbow, error of the tool's position."""
 import argparse
 
-import matplotlib
 import numpy as np
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402  (after the choice of its backend)
+from drawing import BLUE, RED, plt
 
 ELBOW = 2
 
@@ -18,7 +16,7 @@ def main():
         parser.add_argument(name.split(".", maxsplit=1)[0].lower(), metavar=name)
     options = parser.parse_args()
     figure, axes = plt.subplots(3, 1, figsize=(8.0, 7.0), sharex=True, constrained_layout=True)
-    runs = ((options.sound, "#0072B2", "sound"), (options.worn, "#D55E00", "old grease in the elbow"))
+    runs = ((options.sound, BLUE, "sound"), (options.worn, RED, "old grease in the elbow"))
     for path, colour, label in runs:
         run = np.genfromtxt(path, delimiter=",", names=True)
         tool = [np.column_stack([run[f"{kind}_TCP_pose_{i}"] for i in range(3)]) for kind in ("target", "actual")]

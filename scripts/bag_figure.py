@@ -1,16 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Draws a simulated joint: commands, motion, and forces of its teeth."""
-import matplotlib
+import numpy as np
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402  (the backend is chosen before pyplot is loaded)
-import numpy as np  # noqa: E402
+from drawing import BLUE, GREEN, GREY, ORANGE, RED, STYLE, plt
 
-# Okabe and Ito's colours: distinct for every eye, and in grey.
-BLUE, ORANGE, GREEN, RED, GREY = "#0072B2", "#E69F00", "#009E73", "#D55E00", "#666666"
-STYLE = {"font.size": 9, "axes.titlesize": 9.5, "axes.titleweight": "bold", "axes.titlelocation": "left",
-         "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "grid.alpha": 0.25,
-         "lines.linewidth": 1.3, "legend.frameon": False, "legend.fontsize": 8, "figure.dpi": 120}
 MOST_POINTS = 4000  # per curve; more than the picture has pixels
 MAP_COLUMNS = 400
 MAP_TEETH = 10  # to each side of the major axis
@@ -162,7 +155,7 @@ def draw_health(axes, recording):
 
 def draw(recording, title, path):
     """Writes the figure as PNG."""
-    plt.rcParams.update(STYLE)
+    plt.rcParams.update({**STYLE, "figure.dpi": 120})
     # Not by constrained_layout: that of matplotlib 3.3 leaves no room for a title above nested grids.
     figure = plt.figure(figsize=(13.5, 9.0))
     figure.suptitle(title, fontsize=13, fontweight="bold", x=0.01, y=0.985, ha="left")

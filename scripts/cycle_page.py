@@ -9,13 +9,10 @@ import statistics
 import subprocess
 import sys
 
-import matplotlib
 import yaml
 
 import page_section
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402  (after the choice of its backend)
+from drawing import plt
 
 SURFACE = "surface: "
 STEP = 100.0   # [us] at 10 kHz

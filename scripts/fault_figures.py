@@ -6,13 +6,10 @@ import subprocess
 import sys
 
 import h5py
-import matplotlib
 import numpy
 
+from drawing import plt
 from health_runs import RATIO, TOOTH, place_of
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402  (after the choice of its backend)
 
 ARCSEC = math.pi / 180.0 / 3600.0
 RATE = 1000.0

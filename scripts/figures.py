@@ -15,12 +15,10 @@ import subprocess
 import sys
 import tempfile
 
-import matplotlib
 import numpy as np
 import pandas as pd
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402  (after the choice of its backend)
+from drawing import plt
 
 CHECKOUT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 RATIO = 101

@@ -13,7 +13,6 @@ import time
 import xmlrpc.client
 from collections import namedtuple
 
-import matplotlib
 import rosgraph
 import rospy
 from sensor_msgs.msg import JointState
@@ -21,10 +20,8 @@ from std_msgs.msg import Float64
 from std_srvs.srv import Trigger
 
 import page_section
+from drawing import plt
 from harmonic_joint_twin.msg import Timing
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402  (after the choice of its backend)
 
 PACKAGE = "harmonic_joint_twin"
 NODE = "/joint_twin"

@@ -18,7 +18,7 @@ def main():
     parser.add_argument("--docs", required=True)
     parser.add_argument("--telemetry", required=True)
     settings = parser.parse_args()
-    recordings = [os.path.join(ur5.FOLDER, f"{ur5.PREFIX}{ur5.TRAIN}.csv"), two_encoders.LOADED]
+    recordings = [os.path.join(ur5.FOLDER, f"{ur5.FOLDER}_{ur5.TRAIN}.csv"), two_encoders.LOADED]
     if not any(os.path.isfile(os.path.join(settings.telemetry, name)) for name in recordings):
         print(f"skipped: neither {' nor '.join(recordings)} in {settings.telemetry}; name their folder as argument or "
               "in $HJT_TELEMETRY_DIR")
@@ -29,8 +29,10 @@ def main():
     with tempfile.TemporaryDirectory() as directory:
         runner = Runner(settings.tool, directory)
         for part in (ur5, ur10e, two_encoders):
-            lines += part.section(runner, settings.telemetry, images)
-        lines += ["## Runs", "", "```sh", *runner.commands, "```", ""]
+            lines += part.section(runner, settings.telemetry, settings.docs, images)
+    lines += ["## Runs", "", "The commands behind these figures: [real_robot_runs.txt](real_robot_runs.txt).", ""]
+    with open(os.path.join(settings.docs, "real_robot_runs.txt"), "w", encoding="utf-8") as file:
+        file.write("\n".join([*runner.commands, ""]))
     with open(os.path.join(settings.docs, "real_robot.md"), "w", encoding="utf-8") as file:
         file.write("\n".join(lines))
     return 0

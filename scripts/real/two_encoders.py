@@ -178,7 +178,7 @@ the torque is computed from current; the error without load was read off a publi
 """]
 
 
-def section(runner, telemetry, images):
+def section(runner, telemetry, _docs, images):
     """Lines of the page."""
     heading = ["## A 101:1 drive with both encoders", """
 Elbow of a NEURA LARA 8 (A. Lucious, 2024), not a UR: the only public record of this ratio with an encoder at motor and

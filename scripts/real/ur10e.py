@@ -37,7 +37,7 @@ def write_set_points(runner, name):
     return f"motion_{name}.csv"
 
 
-def section(runner, telemetry, _images):
+def section(runner, telemetry, _docs, _images):
     """Lines of the page."""
     heading = ["## A UR10e in closed loop"]
     names = runner.link(os.path.join(telemetry, FOLDER), TRAIN)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A whole UR5, from /joint_states alone: identified on one recording, judged on the others."""
 import concurrent.futures
+import csv
 import os
 
 import numpy as np
@@ -100,7 +101,7 @@ class Errors:
         self.means = over(running_mean(time, residual), moving)
 
 
-KINDS = {"all": "all rows", "moving": "moving", "resting": "resting", "means": "moving, means over 0.1 s"}
+KINDS = ["all", "moving", "resting", "means"]  # rows; means: over MEAN around each moving row
 
 
 def errors_of(recording, fit):
@@ -128,12 +129,16 @@ def load_table(recordings):
     return table(["recording", *JOINTS], rows)
 
 
-def error_table(errors):
-    def cell(joint, kind):
-        return " / ".join(number(getattr(errors[joint][name], kind)) for name in (*LOADS, "fit"))
-
-    return table(["arm / moment / fit", *KINDS.values()], [[joint] + [cell(joint, kind) for kind in KINDS]
-                                                           for joint in JOINTS])
+def write_errors(path, all_errors):
+    """A row each recording and joint: errors of the current by load, and of the fit [A]; empty where no row is."""
+    names = (*LOADS, "fit")
+    with open(path, "w", encoding="utf-8", newline="") as file:
+        rows = csv.writer(file, lineterminator="\n")
+        rows.writerow(["recording", "joint", *(f"{kind}_{name}" for kind in KINDS for name in names)])
+        for recording, errors in all_errors.items():
+            for joint in JOINTS:
+                values = [getattr(errors[joint][name], kind) for kind in KINDS for name in names]
+                rows.writerow([recording, joint, *("" if np.isnan(value) else f"{value:.3f}" for value in values)])
 
 
 def share(errors, joint, kind, load="arm"):
@@ -267,8 +272,8 @@ def met(all_errors, kind, wanted):
     return sum(value <= wanted for value in shares), len(shares), max(shares)
 
 
-def section(runner, telemetry, images):
-    """Lines of the page."""
+def section(runner, telemetry, docs, images):
+    """Lines of the page; the table beside it."""
     heading = ["## A UR5"]
     names = runner.link(os.path.join(telemetry, FOLDER), TRAIN)
     if not names:
@@ -290,9 +295,10 @@ def section(runner, telemetry, images):
     summary = [f"Of {means_of} (recording, large joint) that were not identified on, {means} have means over 0.1 s "
                f"within {WANTED_MEANS:g} of the fit's (worst {worst_means:.2f}), and {moving} of {moving_of} have "
                f"moving rows within {WANTED_MOVING:g} of it (worst {worst_moving:.2f}).", judged_right]
+    write_errors(os.path.join(docs, "real_robot_current.csv"), {**judged_errors, TRAIN: all_errors[TRAIN]})
     print("\n".join([*share_table(all_errors), *raised_lines, *summary]))
     return [*heading, *introduction(summary, recordings), *load_table(recordings),
-            *current_section(all_errors, [*judged_errors, TRAIN]),
+            *current_section(all_errors),
             *closed_loop.section(runner, judged, fit, JOINTS, by_name.get(SHOWN, judged[0]).name,
                                  os.path.join(images, "closed_loop.png"), TRAIN), *verdicts]
 
@@ -363,18 +369,15 @@ is 1 N·m or more. Angles are the measured ones.
 """]
 
 
-def current_section(all_errors, names):
-    lines = [f"""
+def current_section(all_errors):
+    return [f"""
 ### Error of the predicted current
 
-Rms [A]. *arm*: from `/joint_states` alone. *moment*: identified and predicted with the recorded `target_moment`. *fit*:
-gain, Coulomb and viscous friction with the recorded moment, least squares over all rows of {TRAIN}. Moving: faster than
-{MOVING:g} rad/s. Means: of the error over {MEAN:g} s around each moving row.
-"""]
-    for name in names:
-        lines += ["", f"**{name}**" + (" (identified on)" if name == TRAIN else ""), "", *error_table(all_errors[name])]
-    lines += ["""
-The twin's error over the fit's: of the means, and of all moving rows. Wanted: 0.5 and 0.7.
+The twin's error over a fit's, of the means over {MEAN:g} s around each moving row, and of all moving rows (faster than
+{MOVING:g} rad/s). *Load arm*: from `/joint_states` alone; *load target_moment*: identified and predicted with the
+recorded moment. *Fit*: gain, Coulomb and viscous friction with the recorded moment, least squares over all rows of
+{TRAIN}, which the twins are identified on. Wanted: {WANTED_MEANS:g} and {WANTED_MOVING:g}. The errors of all joints,
+moving and resting: [real_robot_current.csv](real_robot_current.csv) [A, rms].
 """, *share_table(all_errors), """
 ![Error of means over 0.1 s](images/real_robot/means.png)
 
@@ -387,4 +390,3 @@ arm answers in every joint's current.
 ![Current of the three large joints, measured and predicted](images/real_robot/current.png)
 
 """]
-    return lines

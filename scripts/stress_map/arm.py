@@ -137,10 +137,11 @@ def judge_cell(tool, work, config, cell):
     return (judge.ACCURATE if error <= ACCURACY else judge.SILENT), error, ""
 
 
-def main(tool, docs, work, only, table):
-    """Judges the cells and writes them into docs/arm_twin.md, unless some are left out. Returns the exit code."""
+def main(tool, docs, work, only):
+    """Judges the cells; unless some are left out, writes docs/arm_stress.csv, and how many there are of each verdict
+    into docs/arm_twin.md. Returns the exit code."""
     config = os.path.join(os.path.dirname(docs), "config")
-    rows, good = [], True
+    rows = []
     for cell in CELLS:
         if only and only not in cell[0]:
             continue
@@ -148,10 +149,15 @@ def main(tool, docs, work, only, table):
             verdict, error, reason = judge_cell(tool, work, config, cell)
         except subprocess.TimeoutExpired:
             verdict, error, reason = judge.HUNG, float("nan"), f"more than {TIMEOUT:.0f} s"
-        good = good and verdict in judge.GOOD
-        rows.append([cell[0], verdict, "–" if np.isnan(error) else f"{100.0 * error:.2g} %", reason])
+        rows.append([cell[0], verdict, "" if np.isnan(error) else f"{100.0 * error:.2g} %", reason])
         print(f"{verdict}: {cell[0]}: {rows[-1][2]} {reason}", flush=True)
+    verdicts = [row[1] for row in rows]
     if not only:
+        with open(os.path.join(docs, "arm_stress.csv"), "w", encoding="utf-8", newline="") as file:
+            table = csv.writer(file, lineterminator="\n")
+            table.writerow(["UR5, six drives on surfaces", "verdict", "error", "what the run said"])
+            table.writerows(rows)
+        counts = "; ".join(f"{verdicts.count(name)} {name}" for name in judge.VERDICTS if name in verdicts)
         page_section.write(os.path.join(docs, "arm_twin.md"), "arm_stress",
-                           table(["UR5, six drives on surfaces", "verdict", "error", "what the run said"], rows))
-    return 0 if good else 1
+                           [f"{len(rows)} runs: {counts} ([arm_stress.csv](arm_stress.csv))."])
+    return 0 if all(verdict in judge.GOOD for verdict in verdicts) else 1

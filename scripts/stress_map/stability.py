@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The short page of the stress matrix: verdicts by group of cells, where the twin is accurate, what it reports."""
 import collections
+import csv
 import math
 import os
 import shutil
@@ -95,7 +96,7 @@ def group_rows(groups):
 
 
 def write(docs, complete, judged, table):
-    """docs/stability.md; its maps are taken from the folder of the complete page. `table`: makes lines of a table."""
+    """docs/stability.md and .csv; maps come from the folder of the complete page. `table`: makes lines of a table."""
     groups = by_group(judged)
     count = collections.Counter(j.verdict for j in judged)
     lines = [HEAD.format(accuracy=100.0 * judge.ACCURACY, timeout=judge.TIMEOUT)]
@@ -109,9 +110,11 @@ def write(docs, complete, judged, table):
             lines += [f"![{name[5:].capitalize()}: the error in each square (blue: accurate; orange: degraded, "
                       f"reported; grey: refused)]({images}/{file}.png)", ""]
     lines += [MEANING.format(duration=cells.DURATION, torque=judge.LEAST_TORQUE, angle=1e3 * judge.LEAST_ANGLE)]
-    lines += ["## All groups of cells", "", "*reversal*: 12 N·m at the motor, one way and the other; else load steps.",
-              ""]
-    lines += table(["factor", "cells", *judge.GOOD, "none of these", "largest error of the accurate"],
-                   group_rows(groups))
+    lines += ["Groups of cells (one factor, two factors, edges, random), with the largest error of the accurate: "
+              "[stability.csv](stability.csv)."]
     with open(os.path.join(docs, "stability.md"), "w", encoding="utf-8") as file:
         file.write("\n".join(lines).rstrip() + "\n")
+    with open(os.path.join(docs, "stability.csv"), "w", encoding="utf-8", newline="") as file:
+        rows = csv.writer(file, lineterminator="\n")
+        rows.writerow(["factor", "cells", *judge.GOOD, "none of these", "largest error of the accurate"])
+        rows.writerows(group_rows(groups))

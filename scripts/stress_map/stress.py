@@ -142,7 +142,8 @@ def parse(arguments):
     parser.add_argument("--out", metavar="DIR",
                         help="folder of all cells and maps (default: out/stability of the checkout)")
     parser.add_argument("--arm", action="store_true",
-                        help="a whole arm in closed loop in place of one joint; writes its table into docs/arm_twin.md")
+                        help="a whole arm in closed loop in place of one joint; writes docs/arm_stress.csv and a line "
+                        "of docs/arm_twin.md")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), metavar="N", help="cells at a time")
     return parser.parse_args(arguments)
 
@@ -151,7 +152,7 @@ def main(arguments):
     options = parse(arguments)
     if options.arm:
         with tempfile.TemporaryDirectory(prefix="stress.") as work:
-            return arm.main(options.tool, options.docs, work, options.only, markdown_table)
+            return arm.main(options.tool, options.docs, work, options.only)
     chosen = [cell for cell in cells.matrix(options.seeds) if not options.only or options.only in cell.name]
     if not chosen:
         sys.exit(f"stress: no cell has '{options.only}' in its name")

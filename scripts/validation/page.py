@@ -7,19 +7,9 @@ import subprocess
 import sys
 from dataclasses import dataclass, field
 
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402  (the backend is chosen before pyplot is loaded)
-
-from bounds import number  # noqa: E402
-
-# Okabe and Ito's colours: distinct for every eye, and in grey.
-BLUE, ORANGE, GREEN, RED, PURPLE, GREY = "#0072B2", "#E69F00", "#009E73", "#D55E00", "#CC79A7", "#666666"
-STYLE = {"font.size": 9, "axes.titlesize": 9.5, "axes.titleweight": "bold", "axes.titlelocation": "left",
-         "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "grid.alpha": 0.25,
-         "lines.linewidth": 1.3, "legend.frameon": False, "legend.fontsize": 8, "figure.dpi": 110,
-         "svg.hashsalt": "harmonic_joint_twin"}
+sys.path.append(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+from bounds import number  # noqa: E402  (the folder of drawing is known now)
+from drawing import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, STYLE, plt  # noqa: E402, F401  (colours: of the sections)
 
 
 class ToolError(RuntimeError):

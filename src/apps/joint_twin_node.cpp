@@ -111,7 +111,7 @@ std::vector<hjt::SoundJoint> soundJointsOf(const std::string& list, const hjt::A
     if (joints.back().own.is_unjudged)
     {
       ROS_WARN_STREAM("The reference did not judge the friction of " << arm.joints[i].short_name
-                                                                     << ": it is no reference of it");
+                                                                     << "; the twin is taken in its place");
     }
   }
   return joints;

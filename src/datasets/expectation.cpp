@@ -171,7 +171,7 @@ void printExpectation(const Plan& plan, unsigned jobs, const SurfaceSource& sour
       { "expected time, " + std::to_string(jobs) + " jobs", shortTime(surface_time + run_time / together), "" });
   values.push_back({ "numbers of all files", bytes > 0.0 ? rounded(bytes / 1e6) : "-", "MB" });
   printValues(values);
-  std::cout << "The time is estimated from one run of each line, of which at most " << SAMPLE
-            << " s were tried, and from its first response surface.\n";
+  std::cout << "The time is estimated from one run of each class and duty cycle, tried for at most " << SAMPLE
+            << " s, and from building its first response surface.\n";
 }
 }  // namespace hjt

@@ -120,8 +120,9 @@ std::string withoutReference(const std::vector<ComparedJoint>& lines)
       names.push_back(line.name);
     }
   }
-  return names.empty() ? std::string() :
-                         "The reference did not judge the friction of " + joined(names) + ": held against the twin. ";
+  return names.empty() ?
+             std::string() :
+             "The reference did not judge the friction of " + joined(names) + "; the twin is taken in its place. ";
 }
 
 /// What the joints have in common, and each that departs or is not judged.

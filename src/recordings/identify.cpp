@@ -143,7 +143,7 @@ void identifyJoint(const IdentifyOptions& options, const Parameters& parameters,
     for (RippleLine& line : joint.found.lines)
     {
       line.torque = {};
-      line.refusal = "predicts pieces left out no better";
+      line.refusal = "pieces left out are predicted no better with it";
     }
   }
   if (is_arm && left_out.identified.all > left_out.configured.all)

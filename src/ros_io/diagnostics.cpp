@@ -35,7 +35,7 @@ std::string verdictText(const Assessment& assessment)
 {
   if (assessment.level != HealthLevel::OK && assessment.cause == Cause::NONE)
   {
-    return "The indicators depart from the reference as with no fault of the table";
+    return "The indicators depart from the reference in a way that no known fault explains";
   }
   if (assessment.level != HealthLevel::OK)
   {

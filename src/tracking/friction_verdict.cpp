@@ -285,8 +285,8 @@ std::string frictionText(const FrictionFactor& factor, const JointEvidence& evid
   std::string text = "Friction is " + factorText(factor) + " times " + referenceText(factor.reference) +
                      (context.arm_friction == 1.0 ?
                           "" :
-                          ", " + rounded(factor.value / context.arm_friction, 2) + " times what the " +
-                              rounded(context.arm_friction, 2) + " times that joints of the arm have in common make") +
+                          ", " + rounded(factor.value / context.arm_friction, 2) + " times once the " +
+                              rounded(context.arm_friction, 2) + " times that the arm's joints share are taken out") +
                      " (an interval that reaches into " + rounded(1.0 - less, 2) + " to " + rounded(1.0 + more, 2) +
                      " counts as sound).";
   if (finding.level != VerdictLevel::OK)
@@ -300,7 +300,7 @@ std::string frictionText(const FrictionFactor& factor, const JointEvidence& evid
   }
   if (context.own.is_unjudged)
   {
-    text += " The reference did not judge this joint's friction, so it is no reference of it.";
+    text += " The reference did not judge this joint's friction; the twin is taken in its place.";
   }
   const std::vector<FrictionPoint> points = evidence.friction().points();
   text += " At " + rounded(evidence.temperature(), 0) + " degC (" + temperatureSource(evidence) + ")";

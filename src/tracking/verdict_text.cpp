@@ -142,8 +142,8 @@ std::string ratioText(const Verdict& verdict, const RatioText& ratio, const Find
       std::string(ratio.what) + " is " + rounded(ratio.to_twin, digits) + " times the twin's" +
       (known ? " and " + rounded(ratio.to_own, digits) + " times this joint's own when it was sound" : "") +
       (ratio.of_arm == 1.0 ? "" :
-                             ", " + rounded(value, digits) + " times what the " + rounded(ratio.of_arm, digits) +
-                                 " times of the whole arm make") +
+                             ", " + rounded(value, digits) + " times once the " + rounded(ratio.of_arm, digits) +
+                                 " times of the whole arm are taken out") +
       " (" + sound + ").";
   if (finding.level != VerdictLevel::OK)
   {
@@ -171,8 +171,8 @@ std::string torsionText(const Verdict& verdict, const Finding& finding)
   }
   if (share > 0.01)
   {
-    text += " Of the tolerance " + rounded(share, 2) +
-            " is for the encoders' eccentricity: a recording of "
+    text += " " + rounded(share, 2) +
+            " of the tolerance is for the encoders' eccentricity; a recording of "
             "the sound joint (--reference) would narrow it.";
   }
   return text;

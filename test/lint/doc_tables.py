@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Reads the tables of the documentation and checks that of docs/parameters.md against the tool's own.
+"""Reads the tables of the documentation and checks docs/parameters.csv against the tool's own table.
 
-usage: doc_tables.py JOINT_TWIN [--write]    (--write brings docs/parameters.md up to date)
+usage: doc_tables.py JOINT_TWIN [--write]    (--write brings docs/parameters.csv up to date)
 """
+import csv
 import os
 import re
 import subprocess
@@ -10,8 +11,7 @@ import sys
 
 import project
 
-PARAMETERS = "docs/parameters.md"
-PARAMETERS_BEGIN, PARAMETERS_END = "<!-- parameters:begin -->", "<!-- parameters:end -->"
+PARAMETERS = "docs/parameters.csv"
 ROW = re.compile(r"\| *`([~/\w]+)` *\| *([\w/]+) *\|")
 
 
@@ -29,28 +29,25 @@ def names_and_types(page, title):
     return {row.group(1): row.group(2) for row in rows if row}
 
 
-def parameter_table(page):
-    if PARAMETERS_BEGIN not in page or PARAMETERS_END not in page:
-        return []
-    return page.split(PARAMETERS_BEGIN)[1].split(PARAMETERS_END)[0].strip().splitlines()
+def parameter_rows(markdown):
+    """Header and rows of the tool's table."""
+    rows = [[cell.strip().strip("`") for cell in line.strip("|").split("|")] for line in markdown]
+    return [row for row in rows if not set("".join(row)) <= set("-")]
 
 
 def check_parameters(root, table):
-    """Differences between the page's parameter table and `table`, the tool's own."""
-    shown = parameter_table(project.text(root, PARAMETERS))
-    problems = [f"{PARAMETERS}: removed or changed in the code: {line}" for line in shown if line not in table]
-    problems += [f"{PARAMETERS}: missing: {line}" for line in table if line not in shown]
+    """Differences between the file of parameters and `table`, the rows of the tool's own."""
+    shown = list(csv.reader(project.text(root, PARAMETERS).splitlines()))
+    problems = [f"{PARAMETERS}: removed or changed in the code: {', '.join(row)}" for row in shown if row not in table]
+    problems += [f"{PARAMETERS}: missing: {', '.join(row)}" for row in table if row not in shown]
     if not problems and shown != table:
         problems.append(f"{PARAMETERS}: parameters in another order than the tool's")
     return problems if table else ["the tool shows no parameters"]
 
 
 def write_parameters(root, table):
-    path = os.path.join(root, PARAMETERS)
-    before, rest = project.text(root, PARAMETERS).split(PARAMETERS_BEGIN)
-    after = rest.split(PARAMETERS_END)[1]
-    with open(path, "w", encoding="utf-8") as file:
-        file.write("\n".join([before + PARAMETERS_BEGIN, *table, PARAMETERS_END]) + after)
+    with open(os.path.join(root, PARAMETERS), "w", encoding="utf-8", newline="") as file:
+        csv.writer(file, lineterminator="\n").writerows(table)
 
 
 if __name__ == "__main__":
@@ -58,6 +55,7 @@ if __name__ == "__main__":
         sys.exit(__doc__)
     printed = subprocess.run([sys.argv[1], "parameters", "--markdown"], stdout=subprocess.PIPE, universal_newlines=True,
                              check=True).stdout.strip().splitlines()
+    rows = parameter_rows(printed)
     if len(sys.argv) == 3:
-        write_parameters(project.ROOT, printed)
-    project.run(lambda root: check_parameters(root, printed))
+        write_parameters(project.ROOT, rows)
+    project.run(lambda root: check_parameters(root, rows))

@@ -252,7 +252,7 @@ void printArm(const ArmOptions& options, const CheckedContents& contents, const 
               remedy.options.substr(1) + ": the load leaves " + roundedText(100.0 * remedy.after, 2) +
                   " % of the currents" +
                   (std::isfinite(remedy.before) ? " instead of " + roundedText(100.0 * remedy.before, 2) + " %" : "") +
-                  (remedy.helps ? "" : ": this is not what is wrong"));
+                  (remedy.helps ? "" : ": not the cause"));
   }
   std::cout << std::flush;
   if (!arm.joints.empty())

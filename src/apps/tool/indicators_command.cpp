@@ -42,7 +42,8 @@ void declare(Command& command, Options& options)
       .type("FILE.yaml");
   command
       .flag("--carry", options.carry,
-            "the reference is of another motion to and fro, a check-up: carried to this one by the models")
+            "the reference is of another motion to and fro, best a check-up; the recordings of --model carry it to "
+            "this one")
       .needs("--baseline")
       .needs("--model");
   command.add("--save-baseline", options.save_baseline, "writes the reference that was learned").type("FILE.yaml");

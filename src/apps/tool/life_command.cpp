@@ -303,15 +303,15 @@ int trials(const TrialsOptions& options)
                               { "interface_wear", "ended by interface wear", ends[1] },
                               { "root_crack", "ended by a root crack", ends[2] },
                               { "bearing", "ended by the bearing", ends[3] },
-                              { "tooth_space_fatigue", "ended by fatigue of the tooth space", ends[4] },
-                              { "transition_fatigue", "ended by fatigue of the transition", ends[5] },
-                              { "flange_fatigue", "ended by fatigue of the flange", ends[6] },
+                              { "tooth_space_fatigue", "ended by fatigue in the tooth space", ends[4] },
+                              { "transition_fatigue", "ended by fatigue where the rim meets the cup", ends[5] },
+                              { "flange_fatigue", "ended by fatigue at the flange", ends[6] },
                               { "unended", "still in use at the end", unended },
                               { "forecasts", "forecasts", all.forecasts },
                               { "coverage_80", "", all.share() },
                               { "coverage_80_from_half_life", "", later.share() },
-                              { "", "the 80 % interval held the truth", 100.0 * all.share(), "%" },
-                              { "", "from half of each life on", 100.0 * later.share(), "%" } });
+                              { "", "truth within the 80 % interval", 100.0 * all.share(), "%" },
+                              { "", "the same, in the second half of each life", 100.0 * later.share(), "%" } });
   return EXIT_DONE;
 }
 

@@ -138,13 +138,12 @@ int sweepLives(const SweepOptions& options)
   const Plan plan(options.plan, options);
   if (plan.lives() == nullptr)
   {
-    throw InputError(options.plan + " has no mapping 'lives'; joint_twin sweep works it off");
+    throw InputError(options.plan + " has no mapping 'lives'; run it with joint_twin sweep");
   }
   return workOff(options, plan);
 }
 
-const Subcommand SWEEP{ Subject::DATA_SET, "sweep", "work off a plan of many runs: a labelled data set", declare,
-                        sweep };
+const Subcommand SWEEP{ Subject::DATA_SET, "sweep", "run a plan of many runs: a labelled data set", declare, sweep };
 const Subcommand LIVES{ Subject::DATA_SET, "lives",
                         "drives from new to their end, with a check-up every so often: a data set of run to failure",
                         declare, sweepLives };
