@@ -27,8 +27,7 @@ STYLES = {
     "ours, ESDIRK4": ("#D55E00", "-", "o", 2.4), "ours, TR-BDF2": ("#D55E00", "--", "s", 2.4),
     "ours, leapfrog on the ring": ("#D55E00", "-", "o", 2.4),
     "ours, leapfrog on the table": ("#D55E00", "--", "s", 2.4),
-    "ours, adaptive on the table": ("#882255", "-", "D", 2.4),
-    "ours, adaptive on the table, angles alone": ("#882255", ":", "d", 2.4),
+    "ours, leapfrog on the table, angles alone": ("#882255", ":", "d", 2.4),
     "ours, table at the encoders' angles": ("#000000", "", "P", 1.0),
     "thesis: implicit Euler": ("#000000", "", "*", 1.0),
     "odeint RK4": ("#CC79A7", "-", "^", 1.2), "odeint dopri5": ("#CC79A7", "--", "v", 1.2),
@@ -55,9 +54,8 @@ there:
 
 
 CHOICE = """Which to choose: the full ring where every tooth is wanted at every step, or where the gear has no table;
-the table in equal steps for the live node and for inputs at every millisecond; the table in steps of its own length
-(`solver.stepper: adaptive`) offline, where inputs change seldom; the table at measured angles where there is a
-recording to follow. Tooth forces are solved for the hundred samples alone, in about 3 ms."""
+the table for the live node and for all runs offline; the table at measured angles where there is a recording to
+follow. Tooth forces are solved for the hundred samples alone, in about 3 ms."""
 
 
 QUANTITIES = {"angle": "angles", "position": "tooth positions", "force": "tooth forces"}

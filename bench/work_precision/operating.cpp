@@ -18,11 +18,9 @@
 
 #include "bench/work_precision/follow.hpp"
 #include "bench/work_precision/operating_journey.hpp"
-#include "gear/ratio.hpp"
 #include "harmonic_joint_twin/surface/surface_source.hpp"
 #include "sensors/absolute_encoder.hpp"
 #include "sensors/incremental_encoder.hpp"
-#include "solver/adaptive_stepper.hpp"
 #include "solver/leapfrog.hpp"
 #include "surface/surface_worker.hpp"
 #include "test/core/test_parameters.hpp"
@@ -58,35 +56,12 @@ Run leapfrog(const OperatingProblem& problem, Way way, double step, double limit
                 });
 }
 
-/// The twin's own, in steps of their own length.
-Run adaptive(const OperatingProblem& problem, Way way, double tolerance, double limit)
-{
-  constexpr double FREQUENCY = 475.0;  // of the joint's swing [rad/s]
-  Journey journey(problem, way);
-  AdaptiveStepper stepper(journey.dynamics, tolerance, nominalRatio(problem.parameters.gear), FREQUENCY);
-  double torque = 0.0;
-  return travel(journey, limit,
-                [&](double /*due*/, Run& run)
-                {
-                  if (journey.dynamics.inputs.motor_torque != torque)
-                  {
-                    torque = journey.dynamics.inputs.motor_torque;
-                    stepper.start(journey.x);
-                  }
-                  double left = 0.0;
-                  const bool good = stepper.advance(SAMPLE_PERIOD, journey.x, left);
-                  run.steps += stepper.steps();
-                  run.force_evaluations += 6L * stepper.steps();
-                  return good;
-                });
-}
-
 /// The table at angles as the encoders give them, at 1 kHz: no motion is computed.
 Run motionDriven(const OperatingProblem& problem, double limit)
 {
-  constexpr double FINE = 1e-11;
-  constexpr int READINGS = 10;  // to a sample
-  const Series motion = adaptive(problem, Way::TABLE_ANGLES, FINE, limit).series;
+  constexpr double FINE = 1e-5;  // step [s]
+  constexpr int READINGS = 10;   // to a sample
+  const Series motion = leapfrog(problem, Way::TABLE_ANGLES, FINE, limit).series;
   Journey journey(problem, Way::TABLE);
   const IncrementalEncoder motor(problem.parameters.sensors);
   const AbsoluteEncoder output(problem.parameters.sensors);
@@ -265,17 +240,7 @@ void addSteps(const std::string& solver, const std::function<Run(double step, do
   }
 }
 
-void addTolerances(const std::string& solver, const OperatingProblem& problem, Way way,
-                   std::vector<Contender>& contenders)
-{
-  for (const double tolerance : { 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11 })
-  {
-    contenders.push_back({ solver, "tol = " + text("%.0e rad", tolerance),
-                           [=, &problem](double limit) { return adaptive(problem, way, tolerance, limit); } });
-  }
-}
-
-/// The twin's own: the ring, its table in equal steps, and in steps of their own length.
+/// The twin's own: the ring and its table.
 std::vector<Contender> ownOperatingContenders(const OperatingProblem& problem)
 {
   std::vector<Contender> contenders;
@@ -285,8 +250,9 @@ std::vector<Contender> ownOperatingContenders(const OperatingProblem& problem)
   addSteps(
       "ours, leapfrog on the table",
       [&problem](double step, double limit) { return leapfrog(problem, Way::TABLE, step, limit); }, contenders);
-  addTolerances("ours, adaptive on the table", problem, Way::TABLE, contenders);
-  addTolerances("ours, adaptive on the table, angles alone", problem, Way::TABLE_ANGLES, contenders);
+  addSteps(
+      "ours, leapfrog on the table, angles alone",
+      [&problem](double step, double limit) { return leapfrog(problem, Way::TABLE_ANGLES, step, limit); }, contenders);
   return contenders;
 }
 }  // namespace

@@ -33,8 +33,7 @@ struct OperatingProblem
 std::vector<Contender> operatingContenders(const OperatingProblem& problem);
 std::vector<Contender> operatingReferences(const OperatingProblem& problem);
 
-/// The levels of detail: full ring, table in equal steps and in steps of its own, and the table at angles read from the
-/// encoders.
+/// The levels of detail: full ring, table, and the table at angles read from the encoders.
 std::vector<Contender> levelContenders(const OperatingProblem& problem);
 std::vector<Contender> levelReferences(const OperatingProblem& problem);
 }  // namespace hjt

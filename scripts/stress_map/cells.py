@@ -36,13 +36,6 @@ STIFFNESSES = ["all stiffness", "rim tension", "rim bending", "springs under the
 INERTIAS = ["all inertia", "motor inertia", "load inertia"]
 
 
-def text(value):
-    """As the tool reads it: a number that is not whole has a dot."""
-    if isinstance(value, tuple):
-        return "[" + ", ".join(map(text, value)) + "]"
-    return f"{value:.17e}" if isinstance(value, float) else str(value)
-
-
 def scaled(factor, by):
     """Parameters of one factor times `by`. Balls have no stiffness to multiply: springs are in their place then."""
     def times(value):

@@ -3,12 +3,13 @@
 import json
 import os
 import subprocess
+import sys
 import time
 from dataclasses import dataclass
 
 import numpy as np
 
-from cells import DURATION, STEPS, text
+from cells import DURATION, STEPS
 
 PROJECT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 ACCURATE, DEGRADED, REFUSED = "accurate", "degraded, reported", "refused with a reason"
@@ -44,35 +45,22 @@ class Judged:
     seconds: float = 0.0
 
 
-class Runner:
-    """Runs of `joint_twin trial` in the folder `work`."""
-
-    def __init__(self, tool, work):
-        self.tool = tool
-        self.work = work
-
-    def run(self, cell, step, advance=0.0):
-        """(exit code, document or None, text on stderr)."""
-        rows = ["time,motor_torque,load_torque,brake"] + [",".join(map(repr, row)) for row in cell.drive]
-        profile = os.path.join(self.work, f"{os.getpid()}.csv")
-        with open(profile, "w", encoding="utf-8") as file:
-            file.write("\n".join(rows) + "\n")
-        rate = 1e9 / round(step * 1e9)
-        least = min(rate, 1000.0)
-        changes = {"solver.rate": rate, "publish.joint_states_rate": least, "publish.encoders_rate": least,
-                   "publish.contact_forces_rate": 100.0, "publish.health_rate": 10.0, "indicators.sample_rate": least,
-                   **cell.changes}
-        line = [self.tool, "trial", "--profile", profile, "--duration", repr(DURATION), "--sample-period",
-                repr(max(step, SAMPLE_PERIOD)), "--advance", repr(advance), "--json"]
-        for key, value in changes.items():
-            line += ["--set", f"{key}={text(value)}"]
-        line += ["--set", "fault_scale.rim_crack_segments=1"]
-        for fault, teeth in [("tooth_root_crack:1", cell.missing), ("flexspline_crack:1", cell.cut)]:
-            for tooth in teeth:
-                line += ["--fault", f"{fault}:{tooth}"]
-        done = subprocess.run(line, capture_output=True, text=True, timeout=TIMEOUT, check=False)
-        document = json.loads(done.stdout) if done.stdout else None
-        return done.returncode, document, done.stderr.strip()
+def run(cell, step, advance=0.0):
+    """(exit code, document or None, text on stderr) of a run in steps of `step` [s], `run.py`."""
+    rate = 1e9 / round(step * 1e9)
+    least = min(rate, 1000.0)
+    changes = {"solver.rate": rate, "publish.joint_states_rate": least, "publish.encoders_rate": least,
+               "publish.contact_forces_rate": 100.0, "publish.health_rate": 10.0, "indicators.sample_rate": least,
+               **cell.changes, "fault_scale.rim_crack_segments": 1}
+    faults = ([f"tooth_root_crack:1:{tooth}" for tooth in cell.missing] +
+              [f"flexspline_crack:1:{tooth}" for tooth in cell.cut])
+    asked = {"changes": changes, "faults": faults, "drive": cell.drive, "duration": DURATION,
+             "sample_period": max(step, SAMPLE_PERIOD), "advance": advance}
+    program = os.path.join(os.path.dirname(os.path.abspath(__file__)), "run.py")
+    done = subprocess.run([sys.executable, program], input=json.dumps(asked), capture_output=True, text=True,
+                          timeout=TIMEOUT, check=False)
+    document = json.loads(done.stdout) if done.stdout else None
+    return done.returncode, document, done.stderr.strip()
 
 
 def converged_steps(step, phase):
@@ -97,18 +85,18 @@ def difference(document, reference):
     return worst
 
 
-def judge(runner, cell):
+def judge(cell):
     started = time.monotonic()
     try:
-        judged = _judge(runner, cell)
+        judged = _judge(cell)
     except subprocess.TimeoutExpired:
         judged = Judged(cell, HUNG, f"a run took more than {TIMEOUT:.0f} s")
     judged.seconds = time.monotonic() - started
     return judged
 
 
-def _judge(runner, cell):
-    code, document, message = runner.run(cell, cell.step)
+def _judge(cell):
+    code, document, message = run(cell, cell.step)
     if code < 0 or code not in (0, 1) or (document is None and "joint_twin: " not in message):
         return Judged(cell, CRASHED, message or f"exit code {code}")
     if document is None:
@@ -123,15 +111,15 @@ def _judge(runner, cell):
     finer, fine = converged_steps(cell.step, judged.phase * document["substeps"])
     runs = []
     for step in (finer, fine):
-        _, run, why = runner.run(cell, step, max(0.0, 0.5 * (cell.step - step)))
-        if run is None:
+        _, finer_run, why = run(cell, step, max(0.0, 0.5 * (cell.step - step)))
+        if finer_run is None:
             judged.verdict, judged.reason = CRASHED, f"the converged run was refused: {why}"
             return judged
-        runs.append(run)
+        runs.append(finer_run)
     judged.doubt = difference(runs[1], runs[0])
     judged.error = difference(document, runs[0] if finer < cell.step else runs[1])
     state = document["solver_state"]
-    if state != "ok":
+    if state != "OK":
         judged.verdict = DEGRADED
         judged.reason = ", ".join(f"{count} steps {what}" for count, what in [
             (document["solver_failures"], "failed"), (judged.cuts, "cut"), (document["jumps"], "with teeth jumping"),

@@ -12,7 +12,8 @@ import judge
 HEAD = """# Stability
 
 Written by `scripts/stress`; do not edit. Behaviour of the twin far from its usual range: one factor at a time, two at a
-time, all at once at random. Every cell is a run of `joint_twin trial`, compared with converged runs of the same cell.
+time, all at once at random. Every cell is a run of the Python module's twin, compared with
+converged runs of the same cell.
 
 ```sh
 scripts/stress                # every cell: the complete tables and maps in out/stability

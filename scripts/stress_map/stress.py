@@ -158,18 +158,16 @@ def main(arguments):
         sys.exit(f"stress: no cell has '{options.only}' in its name")
     started = time.monotonic()
     judged = []
-    with tempfile.TemporaryDirectory(prefix="stress.") as work:
-        runner = judge.Runner(options.tool, work)
-        shipped = judge.judge(runner, cells.Cell("shipped", ("parameters",)))
-        if shipped.verdict != judge.ACCURATE:
-            sys.exit(f"stress: the shipped parameters themselves are {shipped.verdict}: {shipped.reason}")
-        with concurrent.futures.ProcessPoolExecutor(max(1, options.jobs)) as pool:
-            for j in pool.map(judge.judge, [runner] * len(chosen), chosen):
-                judged.append(j)
-                if j.verdict not in judge.GOOD:
-                    say(f"{j.verdict}: {j.cell.name}: {j.reason or 'error ' + percent(j.error)}")
-                if len(judged) % 20 == 0 or len(judged) == len(chosen):
-                    say(f"[{len(judged)}/{len(chosen)}] {time.monotonic() - started:.0f} s")
+    shipped = judge.judge(cells.Cell("shipped", ("parameters",)))
+    if shipped.verdict != judge.ACCURATE:
+        sys.exit(f"stress: the shipped parameters themselves are {shipped.verdict}: {shipped.reason}")
+    with concurrent.futures.ProcessPoolExecutor(max(1, options.jobs)) as pool:
+        for j in pool.map(judge.judge, chosen):
+            judged.append(j)
+            if j.verdict not in judge.GOOD:
+                say(f"{j.verdict}: {j.cell.name}: {j.reason or 'error ' + percent(j.error)}")
+            if len(judged) % 20 == 0 or len(judged) == len(chosen):
+                say(f"[{len(judged)}/{len(chosen)}] {time.monotonic() - started:.0f} s")
     out = options.out or (None if options.only else os.path.join(os.path.dirname(options.docs), "out", "stability"))
     if out:
         os.makedirs(out, exist_ok=True)

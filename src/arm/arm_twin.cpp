@@ -60,7 +60,6 @@ void requireDrive(const ArmDescription& arm, std::size_t joint, const std::vecto
       throw ParameterError(arm.origin + ": joint " + arm.joints[joint].name + ": " + what);
     }
   };
-  require(drive.solver.stepper == StepperKind::LEAPFROG, "solver.stepper must be leapfrog within an arm");
   require(drive.solver.rate == drives.front().solver.rate, "solver.rate = " + numberText(drive.solver.rate) +
                                                                " Hz is not that of the first joint, " +
                                                                numberText(drives.front().solver.rate) + " Hz");

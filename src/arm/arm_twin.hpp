@@ -41,8 +41,8 @@ struct ArmCoupling
 class ArmTwin
 {
 public:
-  /// `drives`: one for each joint of `arm`, all of one solver.rate, with solver.stepper = leapfrog and no gravity of
-  /// their own; their output.load_inertia is replaced by the least that the arm shows them. `start`: angles of the
+  /// `drives`: one for each joint of `arm`, all of one solver.rate and with no gravity of their own;
+  /// their output.load_inertia is replaced by the least that the arm shows them. `start`: angles of the
   /// joints, where the arm stands, its brakes engaged [rad].
   /// @throws ParameterError naming the joint and the key.
   ArmTwin(const ArmDescription& arm, std::vector<Parameters> drives, const std::vector<double>& start,

@@ -37,7 +37,7 @@ constexpr std::array LEFT_OUT{ "joint.",
                                "gear.teeth_circular_spline" };
 
 /// What the arm around a drive gives, or needs as it is.
-constexpr std::array LEFT_OUT_IN_ARM{ "output.load_inertia", "output.gravity_", "solver.stepper" };
+constexpr std::array LEFT_OUT_IN_ARM{ "output.load_inertia", "output.gravity_" };
 
 double finite(double value)
 {

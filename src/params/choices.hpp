@@ -47,11 +47,6 @@ constexpr ChoiceNames<SceneKind, 2> choiceNames(SceneKind)
   return { { { "full_ring", SceneKind::FULL_RING }, { "auto", SceneKind::AUTO } } };
 }
 
-constexpr ChoiceNames<StepperKind, 2> choiceNames(StepperKind)
-{
-  return { { { "leapfrog", StepperKind::LEAPFROG }, { "adaptive", StepperKind::ADAPTIVE } } };
-}
-
 constexpr ChoiceNames<InputMode, 4> choiceNames(InputMode)
 {
   return { { { "commands", InputMode::COMMANDS },

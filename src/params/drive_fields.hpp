@@ -106,11 +106,6 @@ void visitSolver(P& p, Visitor& visit)
 {
   visit("solver.rate", "Hz", p.solver.rate, Range{ 100.0, 1e6 },
         ofOthers("steps per simulated second; must divide 1e9 ns evenly"));
-  visit("solver.stepper", p.solver.stepper,
-        ofOthers("leapfrog: one ring solve a step, exact stiction; adaptive: steps of their own length on the response "
-                 "surface (solver.scene: auto), offline"));
-  visit("solver.tolerance", "rad", p.solver.tolerance, Range{ 1e-13, 1e-5 },
-        ofOthers("adaptive: error of a step, of the output's angle"));
   visit("solver.force_tolerance", "N", p.solver.force_tolerance, Range{ 1e-9, 1.0 },
         ofOthers("largest out-of-balance force on any tooth"));
   visit("solver.max_iterations", "-", p.solver.max_iterations, Range{ 1, 1000 },

@@ -57,7 +57,7 @@ SolveStatus JointDynamics::solveAtRest() noexcept
 
 bool JointDynamics::placeOnSurface(double motor_angle, double output_angle) noexcept
 {
-  if (!meetsSurface() || !surface_->locate(motor_angle, output_angle, place_))
+  if (!(on_surface_ || surface_agrees_) || !surface_->locate(motor_angle, output_angle, place_))
   {
     return false;
   }
@@ -254,7 +254,9 @@ void JointDynamics::operator()(const JointState& x, JointState& rate, double) no
   {
     return;
   }
-  drive_torque = explicitDriveTorque(x);
+  // Of the current as part of the state, or where it follows at once.
+  drive_torque = model_->motor.currentRate() > 0.0 ? x[DRIVE_TORQUE] :
+                                                     model_->motor.limited(inputs.motor_torque, x[MOTOR_SPEED]);
   updateFriction(speeds);
   const Eigen::Vector2d drag = dry_.torque(friction_, velocityRatio(), speeds);
   rate.segment<2>(MOTOR_ANGLE) = speeds;

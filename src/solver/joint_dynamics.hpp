@@ -45,7 +45,6 @@ public:
 
   /// The same by the surface, where it is in use or agrees with the ring. False, and nothing done, elsewhere.
   bool placeOnSurface(double motor_angle, double output_angle) noexcept;
-  bool meetsSurface() const noexcept { return on_surface_ || surface_agrees_; }
 
   /// The friction that remembers has come to the present ring for good. @returns what the cup's dissipated on the way
   /// [J].
@@ -59,13 +58,6 @@ public:
 
   /// Of the drive, at the temperature of its magnets, without ripple [N.m].
   double shaftTorque() const noexcept { return drive_torque * model_->motor.torqueFactor(inputs.temperature); }
-
-  /// Of the current as part of the state, or where it follows at once [N.m].
-  double explicitDriveTorque(const JointState& x) const noexcept
-  {
-    return model_->motor.currentRate() > 0.0 ? x[joint_state::DRIVE_TORQUE] :
-                                               model_->motor.limited(inputs.motor_torque, x[joint_state::MOTOR_SPEED]);
-  }
 
   /// Torque that the drive does work with at the present angle of the motor [N.m], and its ratio to the current's
   /// torque [-].
@@ -88,11 +80,6 @@ public:
     }
     return stiffness;
   }
-
-  /// Of the rim's mean rotation by motor and output angle, while the cup's friction has a state [-].
-  const Eigen::Vector2d& cupRates() const noexcept { return cup_rates_; }
-  double cupStiffness() const noexcept { return now_.cup.stiffness; }  ///< of its elements that do not slip [N.m/rad]
-  double slippedEnergy() const noexcept { return now_.cup.slipped; }   ///< of them since the last `accept` [J]
 
   /// Brings `friction()` up to date with the present ring; `speeds` of motor and output [rad/s].
   void updateFriction(const Eigen::Vector2d& speeds) noexcept;

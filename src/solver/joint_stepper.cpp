@@ -43,10 +43,6 @@ JointStepper::JointStepper(const Parameters& parameters, const JointModel& model
   }
   substeps_ = substepsFor(fastest * step_);
   substep_ = step_ / substeps_;
-  if (parameters.solver.stepper == StepperKind::ADAPTIVE)
-  {
-    adaptive_.emplace(dynamics_, parameters.solver.tolerance, nominalRatio(parameters.gear), fastest);
-  }
 }
 
 void JointStepper::prepareDivision(const Parameters& parameters) noexcept
@@ -86,17 +82,12 @@ int JointStepper::substepsFor(double phase) const noexcept
 
 void JointStepper::useSurface(const ResponseSurface* surface) noexcept
 {
-  if (marches_)
-  {
-    leaveMarch();
-  }
   rest_steps_ = 0;
   dynamics_.useSurface(surface);
 }
 
 bool JointStepper::reset(double load_torque) noexcept
 {
-  marches_ = false;
   dynamics_.inputs = {};
   dynamics_.inputs.load_torque = load_torque;
   dynamics_.drive_torque = 0.0;
@@ -173,83 +164,24 @@ bool JointStepper::step(const JointInputs& inputs) noexcept
   }
   dynamics_.status = {};
   bool good = true;
-  double left = step_;
-  if (!(adaptive_ && march(inputs, left)))
+  for (int i = 0; good && i < substeps_; ++i)
   {
-    const double length = left == step_ ? substep_ : left / substeps_;
-    for (int i = 0; good && i < substeps_; ++i)
+    if (i == substeps_ / 2)
     {
-      if (i == substeps_ / 2)
-      {
-        dynamics_.inputs = inputs;
-      }
-      good = substep(length);
+      dynamics_.inputs = inputs;
     }
-    dynamics_.inputs = inputs;
+    good = substep();
   }
+  dynamics_.inputs = inputs;
   const bool rests = good && x_[MOTOR_SPEED] == 0.0 && std::abs(x_[OUTPUT_SPEED]) <= REST_SPEED;
   rest_steps_ = rests ? rest_steps_ + 1 : 0;
   return good;
 }
 
-/// The step by the adaptive stepper, as far as it goes. False: the last `left` [s] of it are the leapfrog's.
-bool JointStepper::march(const JointInputs& inputs, double& left) noexcept
-{
-  if (!marches_)
-  {
-    if (!dynamics_.meetsSurface() || !adaptive_->covers(dynamics_.inputs) || !adaptive_->covers(inputs) ||
-        !dynamics_.placeOnSurface(x_[MOTOR_ANGLE], x_[OUTPUT_ANGLE]))
-    {
-      return false;
-    }
-    leapfrog_.comeBack(x_);
-    marches_ = true;
-    adaptive_->start(x_);
-  }
-  const Eigen::Vector3d work = x_.segment<3>(MOTOR_WORK);
-  const bool arrived = adaptive_->advance(step_, x_, left);
-  speeds_ = x_.segment<2>(MOTOR_SPEED);
-  throughput_ += (x_.segment<3>(MOTOR_WORK) - work).lpNorm<1>();
-  if (!arrived)
-  {
-    leaveMarch();
-    return false;
-  }
-  friction_ = adaptive_->frictionTorque();
-  const double kinetic = 0.5 * speeds_.dot(dynamics_.inertia().cwiseProduct(speeds_));
-  balance_ = x_[MOTOR_WORK] - x_[LOAD_WORK] - dissipatedEnergy() - kinetic;
-  const JointInputs& last = dynamics_.inputs;
-  if (inputs.motor_torque != last.motor_torque || inputs.load_torque != last.load_torque ||
-      inputs.brake_engaged != last.brake_engaged || inputs.temperature != last.temperature)
-  {
-    dynamics_.inputs = inputs;
-    if (adaptive_->covers(inputs))
-    {
-      adaptive_->start(x_);
-    }
-    else
-    {
-      leaveMarch();
-    }
-  }
-  return true;
-}
-
-/// On as the leapfrog goes, from where the march has come to.
-void JointStepper::leaveMarch() noexcept
-{
-  marches_ = false;
-  if (dynamics_.placeOnSurface(x_[MOTOR_ANGLE], x_[OUTPUT_ANGLE]))
-  {
-    x_[DISSIPATED] += dynamics_.accept();
-    leapfrog_.goAhead(dynamics_, x_, substep_);
-  }
-}
-
-bool JointStepper::substep(double length) noexcept
+bool JointStepper::substep() noexcept
 {
   const Eigen::Vector3d work = x_.segment<3>(MOTOR_WORK);
-  leapfrog_.do_step(dynamics_, x_, 0.0, length);
+  leapfrog_.do_step(dynamics_, x_, 0.0, substep_);
   speeds_ = leapfrog_.speeds();
   friction_ = leapfrog_.frictionTorque();
   balance_ = leapfrog_.balance();
@@ -269,10 +201,6 @@ Eigen::Vector2d JointStepper::swingSquares() const noexcept
 
 double JointStepper::phaseAdvance() const noexcept
 {
-  if (marches_)
-  {
-    return 0.0;
-  }
   const RingResponse& ring = dynamics_.response();
   const Eigen::Vector2d squares = swingSquares();
   const double cross = ring.velocity_ratio * ring.output_stiffness - dynamics_.frictionStiffness()(0, 1);

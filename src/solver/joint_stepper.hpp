@@ -1,18 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <optional>
-
 #include "harmonic_joint_twin/params/parameters.hpp"
-#include "solver/adaptive_stepper.hpp"
 #include "solver/leapfrog.hpp"
 
 namespace hjt
 {
-/// Marches the joint with the configured stepper and keeps its energy ledger.
-///
-/// `adaptive` goes in steps of its own length while the ring is on the response surface, and as the leapfrog elsewhere.
-/// Inputs then act from their instant on, not from half a step before it.
+/// Marches the joint by the leapfrog, in equal steps, and keeps its energy ledger.
 class JointStepper
 {
 public:
@@ -35,10 +29,6 @@ public:
   void setModel(const JointModel& copied) noexcept  ///< see RingEquilibrium
   {
     dynamics_.setModel(copied);
-    if (adaptive_)
-    {
-      adaptive_->setDynamics(dynamics_);
-    }
   }
 
   /// Puts the joint at rest where it settles under a load [N.m]. @returns false if it does not settle.
@@ -60,7 +50,7 @@ public:
   bool updateModel() noexcept;
   double releasedEnergy() const noexcept { return released_; }  ///< by edits of the model since reset [J]
 
-  /// Within an arm: inertia of the output from the next step on [kg.m^2]; not with the adaptive stepper.
+  /// Within an arm: inertia of the output from the next step on [kg.m^2].
   void setOutputInertia(double inertia) noexcept;
 
   /// See JointDynamics.
@@ -77,19 +67,13 @@ public:
     return dynamics_.model().motor.fades(dynamics_.inputs.motor_torque, speeds_[0]);
   }
   double energyResidual() const noexcept;  ///< energy in - stored - dissipated - released since reset [J]
-  /// By all friction [J].
-  double dissipatedEnergy() const noexcept
-  {
-    return x_[joint_state::DISSIPATED] + (marches_ ? dynamics_.slippedEnergy() : 0.0);
-  }
+  double dissipatedEnergy() const noexcept { return x_[joint_state::DISSIPATED]; }  ///< by all friction [J]
   double energyThroughput() const noexcept { return throughput_; }    ///< sum of |work| of motor, load, friction [J]
-  int substeps() const noexcept { return marches_ ? 1 : substeps_; }  ///< 1 ... MAX_SUBSTEPS
-  /// Of the joint's fastest swing in one substep, motor against output on the ring's present stiffness; 0 in steps of
-  /// their own length, whose error is controlled [rad].
+  int substeps() const noexcept { return substeps_; }  ///< 1 ... MAX_SUBSTEPS
+  /// Of the joint's fastest swing in one substep, motor against output on the ring's present stiffness [rad].
   double phaseAdvance() const noexcept;
   bool isCoarse() const noexcept;  ///< the phase advance is beyond MAX_PHASE_ADVANCE
-  /// To what hangs on the output, since reset: work on load and arm, and the output's kinetic energy; of the leapfrog
-  /// [J].
+  /// To what hangs on the output, since reset: work on load and arm, and the output's kinetic energy [J].
   double deliveredEnergy() const noexcept { return leapfrog_.deliveredEnergy(); }
   double linkTorque() const noexcept { return leapfrog_.linkTorque(); }    ///< see Leapfrog
   const SolveStatus& status() const noexcept { return dynamics_.status; }  ///< of the last step
@@ -97,9 +81,7 @@ public:
 
 private:
   Eigen::Vector2d swingSquares() const noexcept;
-  bool substep(double length) noexcept;
-  bool march(const JointInputs& inputs, double& left) noexcept;
-  void leaveMarch() noexcept;
+  bool substep() noexcept;
   bool staysAtRest(const JointInputs& inputs) const noexcept;
   void prepareDivision(const Parameters& parameters) noexcept;
   double frequency(double output_inertia) const noexcept;
@@ -115,8 +97,6 @@ private:
   double motor_square_{};  // of the motor's part in the fastest swing [rad^2/s^2]
   JointDynamics dynamics_;
   Leapfrog leapfrog_;
-  std::optional<AdaptiveStepper> adaptive_;
-  bool marches_{};  // by it at present
   JointState x_{ JointState::Zero() };
   Eigen::Vector2d speeds_{ 0.0, 0.0 };
   Eigen::Vector2d friction_{ 0.0, 0.0 };

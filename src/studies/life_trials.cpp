@@ -25,18 +25,16 @@ using namespace assessment_errors;
 class SimulatedAssessments
 {
 public:
-  SimulatedAssessments(const FaultScaleParameters& scale, double estimate_error, std::uint32_t seed)
-    : scale_(scale), stated_deviation_(STATED_DEVIATION * estimate_error), random_(seed)
+  SimulatedAssessments(const FaultScaleParameters& scale, std::uint32_t seed) : scale_(scale), random_(seed)
   {
-    const double square = std::log1p(std::pow(ESTIMATE_SPREAD * estimate_error, 2.0));
+    const double square = std::log1p(ESTIMATE_SPREAD * ESTIMATE_SPREAD);
     for (std::size_t i = 0; i < KINDS.size(); ++i)
     {
       const double z = normal_(random_);
       found_from_[i] = boost::random::bernoulli_distribution<>(detectionShare(KINDS[i]))(random_) ?
                            DETECTED_SEVERITY * std::exp(DETECTED_SPREAD * z) :
                            HUGE_VAL;
-      estimate_factor_[i] =
-          std::pow(ESTIMATE_MEAN[i], estimate_error) * std::exp(std::sqrt(square) * normal_(random_) - 0.5 * square);
+      estimate_factor_[i] = ESTIMATE_MEAN[i] * std::exp(std::sqrt(square) * normal_(random_) - 0.5 * square);
       mistaken_[i] = boost::random::uniform_01<double>()(random_);
     }
   }
@@ -63,11 +61,11 @@ public:
     assessment.cause = causeOf(mistaken_[strongest] < RIGHT_CAUSE ? KINDS[strongest] : FaultKind::WAVE_GENERATOR_WEAR);
     assessment.confidence = STATED_CONFIDENCE;
     assessment.severity = estimate;
-    assessment.severity_deviation = stated_deviation_ * estimate;
+    assessment.severity_deviation = STATED_DEVIATION * estimate;
     assessment.alternative_count = mistaken_[strongest] < IN_SET ? 1 : 0;
     assessment.alternatives[0] = { causeOf(mistaken_[strongest] < RIGHT_CAUSE ? FaultKind::WAVE_GENERATOR_WEAR :
                                                                                 KINDS[strongest]),
-                                   Assessment::SET - STATED_CONFIDENCE, estimate, stated_deviation_ * estimate };
+                                   Assessment::SET - STATED_CONFIDENCE, estimate, STATED_DEVIATION * estimate };
     return assessment;
   }
 
@@ -83,7 +81,6 @@ private:
   static constexpr double STATED_CONFIDENCE = 0.85;
 
   FaultScaleParameters scale_;
-  double stated_deviation_;  // over the estimate
   boost::random::mt19937 random_;
   boost::random::normal_distribution<double> normal_;
   std::array<double, 3> found_from_;  // severity
@@ -149,7 +146,7 @@ public:
     , fault_scale_(parameters.fault_scale)
     , use_(ageing, parameters.life, options.grease_changes)
     , drives_(parameters)
-    , assessments_(parameters.fault_scale, options.estimate_error, seed)
+    , assessments_(parameters.fault_scale, seed)
     , simulated_(parameters.fault_scale, seed + READINGS_SEED)
   {
   }

@@ -15,8 +15,7 @@ struct LifeTrialOptions
 {
   int lives{ 100 };
   std::uint32_t seed{ 1 };
-  double every{ 250.0 };         ///< hours of use between two assessments
-  double estimate_error{ 1.0 };  ///< of estimated severities, over what docs/health.md found [-]
+  double every{ 250.0 };  ///< hours of use between two assessments
   bool grease_changes{};
 };
 

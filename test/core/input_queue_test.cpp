@@ -21,28 +21,15 @@ Input torque(Stamp stamp, double value)
   return { stamp, InputKind::MOTOR_TORQUE, value };
 }
 
-std::vector<double> popAll(InputQueue& queue, Stamp until = END)
+std::vector<double> popAll(InputQueue& queue)
 {
   std::vector<double> values;
   Input input;
-  while (queue.pop(until, input))
+  while (queue.pop(END, input))
   {
     values.push_back(input.value);
   }
   return values;
-}
-
-TEST(InputQueue, GivesInputsInOrderOfTime)
-{
-  const auto queue = std::make_unique<InputQueue>();
-  for (const Stamp stamp : { 30, 10, 50, 20, 40 })
-  {
-    queue->push(torque(stamp, static_cast<double>(stamp)), 0);
-  }
-  EXPECT_EQ(popAll(*queue), (std::vector<double>{ 10, 20, 30, 40, 50 }));
-  EXPECT_TRUE(queue->empty());
-  EXPECT_EQ(queue->counters().accepted, 5u);
-  EXPECT_EQ(queue->counters().late, 0u);
 }
 
 TEST(InputQueue, KeepsArrivalOrderOfEqualStampsOverManyTurnsOfItsStore)
@@ -72,42 +59,6 @@ TEST(InputQueue, KeepsArrivalOrderOfEqualStampsOverManyTurnsOfItsStore)
   }
   EXPECT_EQ(queue->counters().accepted, 30000u);
   EXPECT_EQ(queue->counters().overflow, 0u);
-}
-
-TEST(InputQueue, HoldsBackWhatIsStampedAfterTheInstant)
-{
-  const auto queue = std::make_unique<InputQueue>();
-  queue->push(torque(100, 1.0), 0);
-  queue->push({ 200, InputKind::BRAKE, 1.0 }, 0);
-  EXPECT_TRUE(popAll(*queue, 99).empty());
-  EXPECT_EQ(popAll(*queue, 100), std::vector<double>{ 1.0 });
-  Input input;
-  EXPECT_FALSE(queue->pop(199, input));
-  ASSERT_TRUE(queue->pop(200, input));
-  EXPECT_EQ(input.kind, InputKind::BRAKE);
-}
-
-TEST(InputQueue, RefusesAndCountsWhatIsNotFinite)
-{
-  const auto queue = std::make_unique<InputQueue>();
-  const double infinity = std::numeric_limits<double>::infinity();
-  for (const double value : { std::numeric_limits<double>::quiet_NaN(), infinity, -infinity })
-  {
-    queue->push(torque(1, value), 0);
-  }
-  EXPECT_TRUE(queue->empty());
-  EXPECT_EQ(queue->counters().not_finite, 3u);
-  EXPECT_EQ(queue->counters().accepted, 0u);
-}
-
-TEST(InputQueue, CountsLateInputsAndGivesThemAtOnce)
-{
-  const auto queue = std::make_unique<InputQueue>();
-  queue->push(torque(99, 1.0), 100);
-  queue->push(torque(100, 2.0), 100);
-  EXPECT_EQ(queue->counters().late, 1u);
-  EXPECT_EQ(queue->counters().accepted, 2u);
-  EXPECT_EQ(popAll(*queue, 100), (std::vector<double>{ 1.0, 2.0 }));
 }
 
 TEST(InputQueue, DropsTheOldestWhenFull)

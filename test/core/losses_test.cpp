@@ -7,9 +7,7 @@
 #include "elements/bearing_friction.hpp"
 #include "gear/angle.hpp"
 #include "gear/ratio.hpp"
-#include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/statics/loss_analysis.hpp"
-#include "harmonic_joint_twin/statics/static_analysis.hpp"
 #include "harmonic_joint_twin/statics/torsion_loop.hpp"
 #include "solver/joint_stepper.hpp"
 #include "test_parameters.hpp"
@@ -177,16 +175,5 @@ TEST(TorsionLoop, IsAsWideAsTheFrictionOverTheStiffness)
   EXPECT_NEAR(closed.lost_motion, 2.0 * 2.68 / 31e3, 0.03 * closed.lost_motion);
 }
 
-TEST(StaticAnalyses, RefuseCountsAndTorquesOutOfRange)
-{
-  const Parameters parameters = shippedParameters();
-  EXPECT_THROW(analyseTurn(parameters, 0.0, 1.0, 0, nullptr), InputError);
-  EXPECT_THROW(analyseLosses(parameters, { 1.0 }, { 0.0 }, 0, nullptr), InputError);
-  EXPECT_THROW(analyseBreakaway(parameters, 0), InputError);
-  EXPECT_THROW(analyseTorsionLoop(parameters, 60.0, 2.0, 1), InputError);
-  EXPECT_THROW(analyseTorsionLoop(parameters, 0.0, 0.0, 10), InputError);
-  EXPECT_THROW(analyseTorsionLoop(parameters, 60.0, 61.0, 10), InputError);
-  EXPECT_TRUE(analyseLosses(parameters, {}, { 0.0 }, 1, [](int) {}).empty());
-}
 }  // namespace
 }  // namespace hjt

@@ -264,8 +264,6 @@ TEST(Parameters, WrongTypesAreRefused)
   EXPECT_THAT(complaint({ "joint.name=7" }), HasSubstr("joint.name = 7 must be a text"));
   EXPECT_THAT(complaint({ "joint.name=''" }), HasSubstr("must not be empty"));
   EXPECT_THAT(complaint({ "contact.law=round" }), HasSubstr("contact.law = 'round' must be polar or normal"));
-  EXPECT_THAT(complaint({ "solver.stepper=runge_kutta4" }),
-              HasSubstr("solver.stepper = 'runge_kutta4' must be leapfrog or adaptive"));
   EXPECT_THAT(complaint({ "cup.torsion_stiffness=[1.0, 2.0]" }), HasSubstr("must be a list of 3 numbers [N.m/rad]"));
   EXPECT_THAT(complaint({ "cup.torsion_stiffness=31000" }), HasSubstr("must be a list of 3 numbers"));
   EXPECT_THAT(complaint({ "motor.torque_limit=[1.0]" }), HasSubstr("motor.torque_limit = [1.0] must be a number"));

@@ -117,7 +117,6 @@ class TwinCopy : public testing::TestWithParam<Kind>
 INSTANTIATE_TEST_SUITE_P(
     Kinds, TwinCopy,
     testing::Values(Kind{ "ring", { "solver.scene=full_ring" } }, Kind{ "surface", { "solver.scene=auto" } },
-                    Kind{ "adaptive", { "solver.scene=auto", "solver.stepper=adaptive" } },
                     // Set in before the copy and after it; the second waits in the copy.
                     Kind{ "fault", { "solver.scene=auto" }, "tooth_wear:0.5:-1:0.1" },
                     Kind{ "fault_to_come", { "solver.scene=auto" }, "tooth_wear:0.5:-1:0.2" },

@@ -230,33 +230,6 @@ TEST(TwinInputs, NotFiniteOnesAreRefusedAndCounted)
   EXPECT_TRUE(numbers(twin.outputs()) == numbers(untouched.outputs()));
 }
 
-TEST(TwinInputs, TorquesAtTheJointBeyondItsLimitAreCounted)
-{
-  for (const double load : { 60.0, 200.0 })
-  {
-    Twin twin(shippedParameters({ "brake.engaged_at_start=true" }));
-    twin.commandLoadTorque(0, load);
-    advance(twin, SECOND / 10);
-    EXPECT_EQ(twin.counters().load_clamped, 0U);
-    EXPECT_EQ(twin.counters().overloads > 0, load > twin.parameters().output.torque_limit) << load;
-  }
-}
-
-TEST(TwinInputs, TorquesBeyondTheLimitsAreClampedAndCounted)
-{
-  Twin twin(shippedParameters());
-  twin.commandMotorTorque(0, 1e9);
-  twin.commandLoadTorque(0, -1e9);
-  twin.commandMotorTorque(5 * MILLISECOND, -1e9);
-  ASSERT_TRUE(twin.step(SECOND));
-  EXPECT_EQ(twin.outputs().motor_torque, twin.parameters().motor.torque_limit);
-  EXPECT_EQ(twin.outputs().load_torque, -twin.parameters().output.load_torque_limit);
-  advance(twin, 5 * MILLISECOND);
-  EXPECT_EQ(twin.outputs().motor_torque, -twin.parameters().motor.torque_limit);
-  EXPECT_EQ(twin.counters().torque_clamped, 50U);
-  EXPECT_EQ(twin.counters().load_clamped, 50U);
-}
-
 TEST(TwinInputs, ACommandTimesOutToZeroTorqueOnce)
 {
   Twin twin(shippedParameters());

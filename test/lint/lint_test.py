@@ -78,7 +78,7 @@ class Layering(Tree):
 
     def test_all_else_is_not(self):
         for folder, header in [("params", '"gear/angle.hpp"'), ("twin", "<ros/time.h>"),
-                               ("sensors", '"health/health_monitor.hpp"'), ("ros_io", '"studies/trial.hpp"'),
+                               ("sensors", '"health/health_monitor.hpp"'), ("ros_io", '"studies/life_trials.hpp"'),
                                ("apps/common", '"apps/tool/commands.hpp"'), ("twin", '"harmonic_joint_twin/Health.h"'),
                                ("model", "<sensor_msgs/JointState.h>"), ("solver", '"newton.hpp"'),
                                ("solver", '"stray/a.hpp"'), ("twin", "<ceres/ceres.h>")]:

@@ -123,6 +123,9 @@ class Statics(unittest.TestCase):
                 (lambda: hjt.analyse_turn(self.parameters, 5.0, 1.0, 0), r"steps = 0 \[-\] is out of range"),
                 (lambda: hjt.analyse_turn(self.parameters, nan, 1.0, 1), "load = .* is not a finite number"),
                 (lambda: hjt.analyse_losses(self.parameters, [5.0], [1.0], 0), "positions = 0"),
+                (lambda: hjt.analyse_breakaway(self.parameters, 0), "positions = 0"),
+                (lambda: hjt.analyse_torsion_loop(self.parameters, 60.0, 2.0, 1), "steps = 1"),
+                (lambda: hjt.analyse_torsion_loop(self.parameters, 0.0, 0.0), "amplitude = 0"),
                 (lambda: hjt.analyse_torsion_loop(self.parameters, 1.0, 2.0), "lost_motion_torque = 2.0"),
                 (lambda: hjt.analyse_torsion_loop(self.parameters, -1.0, 2.0), "amplitude = -1.0"),
                 (lambda: hjt.analyse_torsion_loop(self.parameters, math.inf, 2.0), "amplitude = .*inf")):

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <numeric>
 #include <type_traits>
 #include <utility>
@@ -303,49 +302,6 @@ TEST(PublishPeriod, IsAWholeNumberOfSteps)
 {
   EXPECT_EQ(publishPeriod(10.0, 10'000.0), 100'000'000);
   EXPECT_EQ(publishPeriod(1000.0, 3000.0), 999'999) << "of steps of 333 333 ns, so that an instant can be a multiple";
-}
-
-/// Keeps the instants at which each channel was filled.
-template <class Message>
-class Noted
-{
-public:
-  Noted(std::map<std::string, std::vector<Stamp>>* instants, const Channel<Message>& channel, Message first)
-    : instants_((*instants)[channel.name]), message_(std::move(first))
-  {
-  }
-  bool isWanted() const { return true; }
-
-  template <class Fill>
-  void write(Fill&& fill)
-  {
-    if (fill(message_))
-    {
-      instants_.push_back(fromRosTime(message_.header.stamp));
-    }
-  }
-
-private:
-  std::vector<Stamp>& instants_;
-  Message message_;
-};
-
-TEST(Outputs, AreDueAtMultiplesOfTheirPeriodFromTheEpochOn)
-{
-  Twin twin(shippedParameters({ "publish.health_rate=100", "publish.contact_forces_rate=10" }));
-  std::map<std::string, std::vector<Stamp>> instants;
-  Outputs<Noted> outputs(&instants, twin.parameters());
-  twin.reset(1'700'000'000'015'000'000);
-  while (twin.step(1'700'000'000'045'000'000))
-  {
-    outputs.offer(twin);
-  }
-  EXPECT_EQ(instants.size(), CHANNEL_COUNT);
-  EXPECT_EQ(instants["health"],
-            (std::vector<Stamp>{ 1'700'000'000'020'000'000, 1'700'000'000'030'000'000, 1'700'000'000'040'000'000 }));
-  EXPECT_EQ(instants["joint_states"].size(), 30U);
-  EXPECT_TRUE(instants["contact_forces"].empty());
-  EXPECT_TRUE(instants["indicators"].empty()) << "the signals are not watched";
 }
 }  // namespace
 }  // namespace hjt

@@ -79,10 +79,6 @@ class Parameters(unittest.TestCase):
                 self.check_start(configuration_files("elbow", overlays))
                 self.check_clean_exit(signal.SIGINT)
 
-    def test_a_bad_table_of_pitch_errors_is_named(self):
-        self.check_refusal({"manufacture/flexspline_pitch_table": "/nowhere.csv"}, "flexspline_pitch_table",
-                           "/nowhere.csv", "cannot be read")
-
     def test_the_laws_of_the_thesis_are_for_the_offline_analysis_only(self):
         self.check_refusal({}, "contact.law", "polar", "normal",
                            files=configuration_files("elbow", ["thesis_insertion.yaml"]))
@@ -106,14 +102,22 @@ class Parameters(unittest.TestCase):
     def test_stages_left_out_are_refused(self):
         self.check_refusal({}, "mesh.stiffness", "missing", files=[package_path("config", "gear.yaml")])
 
-    def test_a_missing_parameter_is_named(self):
-        self.check_refusal({"motor/torque_limit": None}, "motor.torque_limit", "[N.m]", "0 ... 10000")
-
-    def test_a_misspelt_parameter_is_named(self):
-        self.check_refusal({"motor/torqe_limit": 1.0}, "motor.torqe_limit", "unknown")
-
-    def test_a_parameter_out_of_range_is_named_with_value_unit_and_range(self):
-        self.check_refusal({"mesh/flank_angle": 17.0}, "mesh.flank_angle", "17", "[rad]", "0 ... 1.4")
+    def test_what_is_wrong_is_named(self):
+        """Missing, misspelt, out of range, of another type, and what contradicts another parameter."""
+        for key, value, *parts in (
+                ("motor/torque_limit", None, "[N.m]", "0 ... 10000"),
+                ("motor/torqe_limit", 1.0, "unknown"),
+                ("mesh/flank_angle", 17.0, "17", "[rad]", "0 ... 1.4"),
+                ("motor/rotor_inertia", "1e-3 kg", "1e-3 kg", "[kg.m^2]"),
+                ("brake/engaged_at_start", "false", "false"),
+                ("gear/teeth_flexspline", 200.5, "200.5"),
+                ("ring/bending_law", "straight", "straight", "curvature"),
+                ("cup/torsion_breakpoints", [14.0, "high"], "not a number"),
+                ("cup/torsion_stiffness", [31.0e3, 50.0e3], "[N.m/rad]"),
+                ("manufacture/flexspline_pitch_table", "/nowhere.csv", "/nowhere.csv", "cannot be read"),
+                ("publish/encoders_rate", 3000, "3000", "[Hz]", "10000")):
+            with self.subTest(key=key, value=value):
+                self.check_refusal({key: value}, key.replace("/", "."), *parts)
 
     def test_numbers_that_yaml_reads_as_texts_are_numbers(self):
         with tempfile.NamedTemporaryFile("w", suffix=".yaml") as file:
@@ -124,24 +128,6 @@ class Parameters(unittest.TestCase):
         self.check_clean_exit(signal.SIGINT)
         self.check_output("mesh.stiffness: 5.0e+7", "motor.rotor_inertia: 0.0001",
                           "cup.torsion_breakpoints: [14.0, 48.0]")
-
-    def test_a_text_for_a_number_is_named(self):
-        self.check_refusal({"motor/rotor_inertia": "1e-3 kg"}, "motor.rotor_inertia", "1e-3 kg", "[kg.m^2]")
-
-    def test_a_text_for_a_truth_value_is_named(self):
-        self.check_refusal({"brake/engaged_at_start": "false"}, "brake.engaged_at_start", "false")
-
-    def test_a_fraction_for_a_count_is_named(self):
-        self.check_refusal({"gear/teeth_flexspline": 200.5}, "gear.teeth_flexspline", "200.5")
-
-    def test_an_unknown_choice_is_named(self):
-        self.check_refusal({"ring/bending_law": "straight"}, "ring.bending_law", "straight", "curvature")
-
-    def test_a_list_with_a_text_in_it_is_named(self):
-        self.check_refusal({"cup/torsion_breakpoints": [14.0, "high"]}, "cup.torsion_breakpoints", "not a number")
-
-    def test_a_list_of_the_wrong_length_is_named(self):
-        self.check_refusal({"cup/torsion_stiffness": [31.0e3, 50.0e3]}, "cup.torsion_stiffness", "[N.m/rad]")
 
     def warning(self, files, changes, *arguments):
         """The line about what the server had before, of a node that ends at once."""
@@ -165,9 +151,6 @@ class Parameters(unittest.TestCase):
                       self.warning([], left))
         many = configuration_files("elbow", ["size_11.yaml"])
         self.assertRegex(self.warning(many, left), "shipped: arm = 'ur5', (.* = .*, ){11}[0-9]+ more[.] ")
-
-    def test_a_publish_rate_that_does_not_divide_the_solver_rate_is_named(self):
-        self.check_refusal({"publish/encoders_rate": 3000}, "publish.encoders_rate", "3000", "[Hz]", "10000")
 
     def check_arm_refusal(self, text, expected):
         with tempfile.TemporaryDirectory() as folder:

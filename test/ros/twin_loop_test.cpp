@@ -86,18 +86,6 @@ protected:
   std::unique_ptr<TwinLoop> loop_;
 };
 
-TEST_F(LoopFixture, RestsWithoutAClockAndStartsWithItsFirstInstant)
-{
-  start(false);
-  waitForCycles(5);
-  EXPECT_EQ(loop_->status().state, LoopState::WAITING_FOR_CLOCK);
-  setClock(100 * SECOND);
-  setClock(101 * SECOND);
-  ASSERT_FALSE(instants_.empty());
-  EXPECT_EQ(instants_.front().stamp, 100 * SECOND + STEP);
-  EXPECT_EQ(instants_.back().stamp, 101 * SECOND - INPUT_DELAY);
-}
-
 TEST_F(LoopFixture, VisitsEveryInstantAfterAJumpForwardAndNoneWhileTheClockStands)
 {
   start(false);
@@ -110,6 +98,8 @@ TEST_F(LoopFixture, VisitsEveryInstantAfterAJumpForwardAndNoneWhileTheClockStand
     ASSERT_EQ(instants_[i].stamp - instants_[i - 1].stamp, STEP);
   }
   EXPECT_GT(loop_->status().largest_lag, SECOND);
+  EXPECT_GT(loop_->status().timing.lateness.count(), 0U);
+  EXPECT_EQ(loop_->status().timing.lateness.largest(), 0) << "a simulated clock may step as far as it likes";
   waitForCycles(20);
   EXPECT_EQ(instants_.size(), visited);
 }
@@ -141,18 +131,6 @@ TEST_F(LoopFixture, DoesNotStartOnABrakeOrANumberThatIsNone)
   setClock(102 * SECOND);
   EXPECT_TRUE(loop_->status().outputs.brake_engaged) << "a brake engaged before the start was forgotten";
   EXPECT_EQ(loop_->status().counters.input.late, 0U);
-}
-
-TEST_F(LoopFixture, AppliesAStampedCommandFromItsInstantOn)
-{
-  start(false);
-  setClock(100 * SECOND);
-  inbox_.push({ 100 * SECOND + 100 * MILLISECOND, InputKind::MOTOR_TORQUE, 0.25 });
-  setClock(100 * SECOND + 170 * MILLISECOND);
-  ASSERT_EQ(instants_.size(), 150U);
-  EXPECT_EQ(instants_[98].motor_torque, 0.0);
-  EXPECT_EQ(instants_[99].stamp, 100 * SECOND + 100 * MILLISECOND);
-  EXPECT_EQ(instants_[99].motor_torque, 0.25);
 }
 
 TEST_F(LoopFixture, StartsAnewWhenTheClockJumpsBackButNotOnASmallStepBack)
@@ -194,16 +172,6 @@ TEST_F(LoopFixture, AnswersAtOnceAfterItHasCaughtUp)
   waitForCycles(5000);  // at rest each takes far less than 1 ms
   ASSERT_TRUE(loop_->reset());
   EXPECT_TRUE(loop_->reset());
-}
-
-TEST_F(LoopFixture, CountsNoMissedDeadlineHoweverFarASimulatedClockSteps)
-{
-  start(false);
-  setClock(100 * SECOND);
-  setClock(103 * SECOND);
-  EXPECT_GT(loop_->status().timing.lateness.count(), 0U);
-  EXPECT_EQ(loop_->status().timing.lateness.largest(), 0);
-  EXPECT_EQ(loop_->status().timing.missed_deadlines, 0U);
 }
 
 TEST_F(LoopFixture, CountsMissedDeadlinesOfAClockThatRunsUntilAReset)

@@ -252,7 +252,9 @@ record:
         robot.write_bag(self.path("a.bag"), 120.0)
         options = ["--config", "joints/elbow.yaml", "--set", "indicators.window_turns=5.0",
                    "--set", f"telemetry.torque_per_current={robot.GAIN}"]
-        self.fail_with(1, ["no state of", "/joint_states"], "indicators", "a.bag", *options, "--joint", "base")
+        for other, topic in ((["--joint", "base"], "/joint_states"),
+                             (["--joint", "elbow", "--states-topic", "/arm/states"], "/arm/states")):
+            self.fail_with(1, ["no state of", "on " + topic], "indicators", "a.bag", *options, *other)
         windows = self.succeed_json("indicators", "a.bag", *options, "--joint", "elbow")["windows"]
         # Torque at the motor: the current's share of the gain, not the current itself.
         self.assertLess(max(abs(window["indicators"]["running_torque"]) for window in windows), 1.0)

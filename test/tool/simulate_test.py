@@ -64,10 +64,11 @@ class Simulate(tool.ToolTest):
             self.assertEqual(messages[-1].housing_temperature, rows[0.4]["housing_temperature"])
 
     def test_a_torque_at_the_joint_beyond_its_limit_is_counted(self):
-        done = self.run_tool("simulate", "--duration", 0.05, "--torque", 0, "--load", 200, "--set",
-                             "brake.engaged_at_start=true", "--out", "a.csv")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("beyond output.torque_limit", done.stderr)
+        for load, is_beyond in ((60, False), (200, True)):
+            done = self.succeed("simulate", "--duration", 0.1, "--torque", 0, "--load", load, "--set",
+                                "brake.engaged_at_start=true", "--out", f"{load}.csv")
+            self.assertEqual("beyond output.torque_limit" in done.stderr, is_beyond, done.stderr)
+            self.assertNotIn("clamped", done.stderr)
 
     def test_profile_is_held_between_its_rows(self):
         self.write("p.csv", "motor_torque,time,load_torque,brake\n0.4,0,2.5,0\n-0.2,0.1,-1.5,0\n0.3,0.2,0,1\n")
@@ -111,11 +112,13 @@ class Simulate(tool.ToolTest):
             self.assertEqual(tool.read_bytes(self.path(f"a.{kind}")), tool.read_bytes(self.path(f"b.{kind}")))
 
     def test_torque_beyond_the_limit_is_clamped_and_counted(self):
-        done = self.run_tool("simulate", "--duration", 0.02, "--torque", 50, "--load", 1000, "--out", "a.csv")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("motor.torque_limit", done.stderr)
-        self.assertIn("output.load_torque_limit", done.stderr)
-        self.assertEqual({(row["motor_torque"], row["load_torque"]) for row in self.rows("a.csv")}, {(2.87, 284.0)})
+        for sign in (1.0, -1.0):
+            done = self.succeed("simulate", "--duration", 0.02, "--torque", 1e9 * sign, "--load", -1e9 * sign, "--out",
+                                f"{sign}.csv")
+            self.assertIn("200 steps had a motor torque command beyond motor.torque_limit", done.stderr)
+            self.assertIn("200 steps had a load torque beyond output.load_torque_limit", done.stderr)
+            self.assertEqual({(row["motor_torque"], row["load_torque"]) for row in self.rows(f"{sign}.csv")},
+                             {(2.87 * sign, -284.0 * sign)})
 
     def test_bad_profiles_are_refused_with_their_place(self):
         for text, parts in [("time,motor_torque\n0,0.1\n0.1,\n", [":3: column 'motor_torque' is empty"]),

@@ -75,14 +75,6 @@ struct ThermalParameters
   double housing_rise{};
 };
 
-/// How the joint is marched: one ring solve a step, staggered; or, on the response surface, steps of their own length
-/// by an error tolerance.
-enum class StepperKind
-{
-  LEAPFROG,
-  ADAPTIVE
-};
-
 /// How the ring's equilibrium is computed: always with all teeth, or from a response surface where one holds.
 enum class SceneKind
 {
@@ -93,8 +85,6 @@ enum class SceneKind
 struct SolverParameters
 {
   double rate{};
-  StepperKind stepper{};
-  double tolerance{};
   double force_tolerance{};
   int max_iterations{};
   int max_step_cuts{};

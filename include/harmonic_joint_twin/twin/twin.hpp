@@ -140,7 +140,7 @@ public:
 
   /// The arm around the joint, from the next step on and until the next call: its inertia at the output in place of
   /// output.load_inertia [kg.m^2], >= 0, and its torque on the output beside that and the load torque, > 0 resists
-  /// positive motion [N.m]. Both finite. Only with solver.stepper = leapfrog. A reset settles under that torque.
+  /// positive motion [N.m]. Both finite. A reset settles under that torque.
   void coupleArm(double inertia, double torque) noexcept;
   double linkTorque() const noexcept;  ///< of gear and friction on load and arm, as they take it [N.m]
   /// To load and arm, since reset: work on them and the output's kinetic energy [J].

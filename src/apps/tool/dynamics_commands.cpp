@@ -127,7 +127,6 @@ void declareTransient(Command& command, TransientOptions& options)
   TransientSetup& setup = options.setup;
   declareMethod(command, options.method, setup.step, setup.tolerance);
   command.add("--duration", setup.duration, "simulated time [s]").positive();
-  command.add("--growth", setup.growth_time, "time in which the amplitude grows [s]").positive();
   command.add("--window", setup.window_start, "from here to the end the largest force is summed up [s]").positive();
   command.add("--sample", setup.sample_period, "time between two rows of the series [s]").positive();
   command.add("--csv", options.csv, "write the series").type("FILE");

@@ -349,8 +349,6 @@ void declareTrials(Command& command, TrialsOptions& options)
   command.add("--lives", trial.lives, "drives").range(1, 1000000);
   command.add("--seed", trial.seed, "of all that is drawn");
   command.add("--every", trial.every, "hours of use between two assessments").range(1e-3, 1e9);
-  command.add("--estimate-error", trial.estimate_error, "errors of estimated severities, over those of docs/health.md")
-      .range(0.0, 10.0);
 }
 
 const Subcommand TRIALS{
