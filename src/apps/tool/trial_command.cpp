@@ -77,8 +77,8 @@ int trial(const TrialOptions& options)
                 { "energy_residual_max", "energy residual, largest", result.energy_residual_max, "J" },
                 { "throughput", "work of motor and load", result.throughput, "J" },
                 { "substeps", "substeps a step", result.substeps },
-                { "phase_advance_max", "swing of the joint in a substep, largest", result.phase_advance_max, "rad" },
-                { "wave_generator_turn_max", "turn of the wave generator in a step, largest",
+                { "phase_advance_max", "swing of the joint a substep, largest", result.phase_advance_max, "rad" },
+                { "wave_generator_turn_max", "turn of the wave generator a step, largest",
                   result.wave_generator_turn_max, "rad" },
                 { "samples", "", Table(SAMPLE_COLUMNS, result.samples).columns() } });
   if (interruptSignal() != 0)
