@@ -32,7 +32,7 @@ def main():
             lines += part.section(runner, settings.telemetry, settings.docs, images)
     lines += ["## Runs", "", "The commands behind these figures: [real_robot_runs.txt](real_robot_runs.txt).", ""]
     with open(os.path.join(settings.docs, "real_robot_runs.txt"), "w", encoding="utf-8") as file:
-        file.write("\n".join([*runner.commands, ""]))
+        file.write("\n".join(["# SPDX-License-Identifier: BSD-3-Clause", *runner.commands, ""]))
     with open(os.path.join(settings.docs, "real_robot.md"), "w", encoding="utf-8") as file:
         file.write("\n".join(lines))
     return 0

@@ -33,10 +33,6 @@ class Cup:
     diaphragm: tuple = (0.0, 0.0)  # thickness, 0: none; radius of the boss
 
     @property
-    def to_middle(self):
-        return self.length - 0.5 * self.face_width
-
-    @property
     def to_teeth(self):
         return self.length - self.face_width
 

@@ -3,6 +3,8 @@
 alone: nothing of the twin is used. Statics by Newton's method on the positions of the teeth."""
 import numpy as np
 
+from thesis_forms import foot
+
 TEETH = 200
 PITCH = 2.0 * np.pi / TEETH
 REACH = 2  # a tooth's forces depend on the positions of so many teeth to either side
@@ -40,13 +42,8 @@ class IndependentRing:
             polar, normal = np.arctan2(y, x), np.arctan2(a * a * y, b * b * x)
             foot_x, foot_y = a * np.cos(polar), b * np.sin(polar)
         else:
-            angle = np.arctan2(a * y, b * x)
-            for _ in range(20):
-                cos, sin = np.cos(angle), np.sin(angle)
-                angle = angle - ((a * a - b * b) * cos * sin - a * x * sin + b * y * cos) / (
-                    (a * a - b * b) * (cos * cos - sin * sin) - a * x * cos - b * y * sin)
-            foot_x, foot_y = a * np.cos(angle), b * np.sin(angle)
-            normal = np.arctan2(a * np.sin(angle), b * np.cos(angle))
+            foot_x, foot_y = foot(a, b, x, y)
+            normal = np.arctan2(a * a * foot_y, b * b * foot_x)
         overlap = (foot_x - x) * np.cos(normal) + (foot_y - y) * np.sin(normal)  # eq. 5.22
         return self.contact * np.maximum(overlap, 0.0), normal  # eq. 5.23
 

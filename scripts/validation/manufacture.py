@@ -81,10 +81,6 @@ class Turn:
         """Of the joint, in turns."""
         return np.linspace(0.0, 1.0, len(self.error))
 
-    @property
-    def motor_orders(self):
-        return np.arange(len(self.lines)) / JOINT_TURN
-
     def low_lines(self):
         """All lines but those that the tooth pass, 200 a motor turn, folds to at this sampling."""
         folded = math.gcd(200, self.per_motor_turn) * JOINT_TURN

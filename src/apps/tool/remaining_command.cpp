@@ -28,8 +28,9 @@ void declare(Command& command, Options& options)
 {
   addSignalOptions(command, options);
   command.add("--hours", options.hours,
-              "use that the drive has behind it, all like the recordings [h]; default: theirs. A list, one for each "
-              "recording, ascending, tells at what use each was made");
+              "hours of use behind the drive, all as in the recordings [h]; default: those of the recordings. A list, "
+              "ascending: "
+              "the hours at which each recording was made");
   command
       .add("--baseline", options.baseline,
            "reference of the new drive, from `indicators`: verdicts and readings by it tell of wear")
