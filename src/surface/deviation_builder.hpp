@@ -27,7 +27,7 @@ struct DeviationBuild
 /// `highest` of v [rad].
 ///
 /// `repetition`: see SurfaceRing. The grid follows from measured errors, as that of the surface does, but against the
-/// size of the deviations: one per cent of the largest on the line. `progress`: called from this thread with 0 ... 1,
+/// size of the deviations, as far as the surface itself is right. `progress`: called from this thread with 0 ... 1,
 /// or empty. A table of more than `max_points` is given up. The bits do not depend on the number of `threads`.
 DeviationBuild buildDeviations(const Parameters& parameters, const JointModel& equal, const JointModel& actual,
                                int repetition, double lowest, double highest,
