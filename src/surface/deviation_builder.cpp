@@ -27,7 +27,8 @@ using Rings = DeviationRings;
 using Torques = DeviationCheck::Torques;
 
 constexpr double SMALLEST = 0.1;  // a line's largest deviation counts as at least this part of the largest of all [-]
-constexpr double FINEST = 0.3;    // tolerance of a deviation, of what the surface itself may miss [-]
+constexpr double FINEST = 0.3;    // of what the surface may miss, that a deviation needs not be finer than [-]
+constexpr double WIDEST = 3.0;    // of the share of a deviation that its table may miss, for the sake of that [-]
 constexpr int COARSE_LINES = 12;  // a side, before refinement; denser towards no load
 constexpr int MAX_HALVINGS = 5;   // of an interval between two lines
 constexpr double SAME_TORQUE = 1e-7;  // of the torque limit, that equal torques may differ by [-]
@@ -176,10 +177,12 @@ private:
     return measureLine(rings, v, wanted, line);
   }
 
-  /// Of a line, by its own largest deviation and that of the coarse lines; bounded by what the surface may miss anyway.
+  /// Of a line, by its own largest deviation and that of the coarse lines; wider for one that is small beside what the
+  /// surface may miss anyway.
   Torques toleranceOf(const Line& line) const
   {
-    return (line.overload * share_ * line.largest.max(SMALLEST * largest_)).max(FINEST * line.of_the_surface);
+    const Torques own = line.overload * share_ * line.largest.max(SMALLEST * largest_);
+    return own.max((FINEST * line.of_the_surface).min(WIDEST * own));
   }
 
   /// For each pitch the fewest columns that give the deviations half way between them.
