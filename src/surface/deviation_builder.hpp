@@ -12,7 +12,7 @@
 
 namespace hjt
 {
-/// No table of deviations has more: 250 MB; half the stiffness of the rim behind one tooth needs a third of it.
+/// No table of deviations has more: 250 MB; a rim with a small crack needs a sixth of it.
 constexpr std::size_t MAX_DEVIATION_POINTS = 1500000;
 
 /// SurfaceDeviations of a gear from one of equal teeth, or why there are none.
