@@ -194,6 +194,21 @@ SolveStatus RingEquilibrium::moveTo(const DrivePosition& target) noexcept
   return status;
 }
 
+SolveStatus RingEquilibrium::moveTo(const DrivePosition& target, const Eigen::VectorXd& guess) noexcept
+{
+  start_.keep(now_);
+  prediction_.forget();
+  now_.shape.points = guess;
+  now_.shape.updateGeometry();
+  now_.position = target;
+  const SolveStatus status = solvePredicted();
+  if (!status.ok())
+  {
+    restore(start_);
+  }
+  return status;
+}
+
 SolveStatus RingEquilibrium::descend(const DrivePosition& target) noexcept
 {
   start_.keep(now_);
@@ -265,6 +280,12 @@ SolveStatus RingEquilibrium::approach(const DrivePosition& target) noexcept
 SolveStatus RingEquilibrium::solve(const DrivePosition& target) noexcept
 {
   prediction_.predict(target, now_);
+  return solvePredicted();
+}
+
+/// From the present state as a guess.
+SolveStatus RingEquilibrium::solvePredicted() noexcept
+{
   const int jumps = model_->meshed() ? model_->of<ToothMesh>().pairNearest(now_.position, now_.shape) : 0;
   system_.updateForces(now_);
   if (prediction_.fromKept())

@@ -47,6 +47,9 @@ public:
   /// Solves for the equilibrium at another position, from the present one.
   SolveStatus moveTo(const DrivePosition& target) noexcept;
 
+  /// The same from a guess at the tooth points there, of a model that has not changed since the last move.
+  SolveStatus moveTo(const DrivePosition& target, const Eigen::VectorXd& guess) noexcept;
+
   /// After `moveTo` failed because the ring snaps: descends in energy to the next equilibrium; teeth that leave their
   /// spaces are paired again on the way. Slow; `iterations` counts its steps. On failure the state is unchanged.
   SolveStatus descend(const DrivePosition& target) noexcept;
@@ -93,6 +96,7 @@ private:
   void restore(const RingState& state) noexcept;
   SolveStatus approach(const DrivePosition& target) noexcept;
   SolveStatus solve(const DrivePosition& target) noexcept;
+  SolveStatus solvePredicted() noexcept;
   double measureRounding() noexcept;
 
   const RingModel* model_;

@@ -27,6 +27,8 @@ using Rings = DeviationRings;
 using Torques = DeviationCheck::Torques;
 
 constexpr double SMALLEST = 0.1;  // a line's largest deviation counts as at least this part of the largest of all [-]
+constexpr double FINEST = 0.3;    // of what the surface may miss, that a deviation needs not be finer than [-]
+constexpr double WIDEST = 3.0;    // of the share of a deviation that its table may miss, for the sake of that [-]
 constexpr int COARSE_LINES = 12;  // a side, before refinement; denser towards no load
 constexpr int MAX_HALVINGS = 5;   // of an interval between two lines
 constexpr double SAME_TORQUE = 1e-7;  // of the torque limit, that equal torques may differ by [-]
@@ -112,9 +114,10 @@ private:
     bool good = true;
     const auto deviation = [&](std::size_t pitch, double part)
     {
-      good = good && rings.actual.moveTo(ring_.pitch() * (static_cast<double>(pitch) + part), v);
-      Node node = good ? rings.actual.measure() : Node{};
-      const Node& reference = equal[static_cast<std::size_t>(std::llround(part * static_cast<double>(equal.size())))];
+      const auto column = static_cast<std::size_t>(std::llround(part * static_cast<double>(equal.size())));
+      Node node;
+      good = good && rings.measureActual(pitch, column, node);
+      const Node& reference = equal[column];
       for (int i = 0; i < SurfaceNode::VALUES; ++i)
       {
         node.set(i, node[i] - reference[i]);
@@ -157,6 +160,7 @@ private:
       }
     }
     line.overload = ring_.overload(equal.front());
+    line.of_the_surface = { ring_.outputTolerance(equal.front()), ring_.motorTolerance(equal.front()) };
     failed_ = failed_ || !good;
     return good;
   }
@@ -173,8 +177,13 @@ private:
     return measureLine(rings, v, wanted, line);
   }
 
-  /// Of a line, by its own largest deviation and that of the coarse lines.
-  Torques toleranceOf(const Line& line) const { return line.overload * share_ * line.largest.max(SMALLEST * largest_); }
+  /// Of a line, by its own largest deviation and that of the coarse lines; wider for one that is small beside what the
+  /// surface may miss anyway.
+  Torques toleranceOf(const Line& line) const
+  {
+    const Torques own = line.overload * share_ * line.largest.max(SMALLEST * largest_);
+    return own.max((FINEST * line.of_the_surface).min(WIDEST * own));
+  }
 
   /// For each pitch the fewest columns that give the deviations half way between them.
   void chooseColumns(double lowest, double highest)

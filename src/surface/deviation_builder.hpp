@@ -12,7 +12,7 @@
 
 namespace hjt
 {
-/// No table of deviations has more: 250 MB; half the stiffness of the rim behind one tooth needs a third of it.
+/// No table of deviations has more: 250 MB; a rim with a small crack needs a sixth of it.
 constexpr std::size_t MAX_DEVIATION_POINTS = 1500000;
 
 /// SurfaceDeviations of a gear from one of equal teeth, or why there are none.
@@ -27,7 +27,7 @@ struct DeviationBuild
 /// `highest` of v [rad].
 ///
 /// `repetition`: see SurfaceRing. The grid follows from measured errors, as that of the surface does, but against the
-/// size of the deviations: one per cent of the largest on the line. `progress`: called from this thread with 0 ... 1,
+/// size of the deviations, as far as the surface itself is right. `progress`: called from this thread with 0 ... 1,
 /// or empty. A table of more than `max_points` is given up. The bits do not depend on the number of `threads`.
 DeviationBuild buildDeviations(const Parameters& parameters, const JointModel& equal, const JointModel& actual,
                                int repetition, double lowest, double highest,

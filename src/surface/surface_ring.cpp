@@ -11,7 +11,6 @@
 #include "gear/ratio.hpp"
 #include "model/lobe_loads.hpp"
 #include "params/variants.hpp"
-#include "statics/static_solver.hpp"
 
 namespace hjt
 {
@@ -84,6 +83,15 @@ void groupFlanks(const std::vector<FrictionTerm>& terms, double velocity_ratio, 
   }
 }
 
+/// Torques are then right to rounding: SurfaceRing::measure adds what the forces that are left over change in them.
+SolverParameters solverOf(const Parameters& parameters)
+{
+  constexpr double TOLERANCE = 1e-4;  // N
+  SolverParameters solver = parameters.solver;
+  solver.force_tolerance = TOLERANCE;
+  return solver;
+}
+
 /// The motor of a wrist, held fast, would bring 2.6 times what breaks its gear, which no table holds within its size.
 double tabulatedTorque(const Parameters& parameters)
 {
@@ -109,7 +117,7 @@ std::string tooManyPoints(const Parameters& parameters, std::size_t most)
 SurfaceRing::SurfaceRing(const Parameters& parameters, JointModel model)
   : model_(std::move(model))
   , unit_friction_(withUnitFriction(parameters).mesh, parameters.gear.teeth_flexspline)
-  , ring_(model_.ring, staticSolver(parameters.solver))
+  , ring_(model_.ring, solverOf(parameters))
   , friction_(parameters.gear.teeth_flexspline)
   , tooth_angles_(Eigen::VectorXd::LinSpaced(parameters.gear.teeth_flexspline, 0.0,
                                              (parameters.gear.teeth_flexspline - 1) * model_.ring.rest.pitchAngle()))
@@ -136,6 +144,12 @@ bool SurfaceRing::moveTo(double motor_angle, double v)
   return ring_.reach({ motor_angle, v + motor_angle / ratio_, wave_amplitude_ }).ok();
 }
 
+bool SurfaceRing::moveTo(double motor_angle, double v, const Eigen::VectorXd& guess)
+{
+  ++solves_;
+  return ring_.moveTo({ motor_angle, v + motor_angle / ratio_, wave_amplitude_ }, guess).ok() || moveTo(motor_angle, v);
+}
+
 Node SurfaceRing::measure()
 {
   if (!model_.ring.of<WaveGeneratorContact>().hasKinks())
@@ -149,9 +163,12 @@ Node SurfaceRing::measure()
   const Eigen::Matrix2d& k = ring_.stiffness();
   const double velocity_ratio = ring_.velocityRatio();
   const RingRates rates{ ring_.shape(), ring_.byWaveGenerator(), ring_.byOutput() };
+  // The forces that are left over, times what the teeth would move by: torques as in equilibrium, to the first order.
+  const double wave_generator_torque = forces.wave_generator_torque + forces.teeth.dot(ring_.byWaveGenerator());
+  const double output_torque = forces.output_torque + forces.teeth.dot(ring_.byOutput());
   node[SurfaceNode::ENERGY] = forces.energy;
-  node[SurfaceNode::ENERGY_BY_U] = -pitch_ * (forces.wave_generator_torque + forces.output_torque / ratio_);
-  node[SurfaceNode::ENERGY_BY_V] = -forces.output_torque;
+  node[SurfaceNode::ENERGY_BY_U] = -pitch_ * (wave_generator_torque + output_torque / ratio_);
+  node[SurfaceNode::ENERGY_BY_V] = -output_torque;
   node[SurfaceNode::ENERGY_BY_UV] = pitch_ * (k(0, 1) + k(1, 1) / ratio_);
   node[SurfaceNode::VELOCITY_RATIO] = velocity_ratio;
   node[SurfaceNode::OUTPUT_STIFFNESS] = k(1, 1);

@@ -16,7 +16,7 @@ constexpr std::size_t MAX_SURFACE_POINTS = 500000;
 /// Why there is no table of more than `most` points, with the parameters that its size depends on.
 std::string tooManyPoints(const Parameters& parameters, std::size_t most);
 
-/// A ring in equilibrium, solved to rounding, that is led over the nodes of a response surface and measured there.
+/// A ring in equilibrium that is led over the nodes of a response surface and measured there.
 class SurfaceRing
 {
 public:
@@ -30,6 +30,13 @@ public:
 
   /// To v = output angle - motor angle / ratio [rad]. False: the ring found no equilibrium there.
   bool moveTo(double motor_angle, double v);
+
+  /// The same, from a guess at the tooth points there.
+  bool moveTo(double motor_angle, double v, const Eigen::VectorXd& guess);
+
+  /// Tooth points, and after `measure` their rates by the motor's angle at the same v [m], [m/rad].
+  const Eigen::VectorXd& points() const noexcept { return ring_.shape().points; }
+  Eigen::VectorXd rates() const { return ring_.byWaveGenerator() + ring_.byOutput() / ratio_; }
 
   /// All values of a node at the present place.
   SurfaceNode measure();

@@ -135,6 +135,44 @@ TEST(SurfaceDeviations, AreMeasuredOneWayWhereTheOtherIsTheirMirrorImage)
   EXPECT_LT(std::sqrt(misses[1] / sizes[1]), 5e-2);
 }
 
+/// What is small beside the surface's own tolerance is tabulated less finely, not left out.
+TEST(SurfaceDeviations, OfASmallFaultTakeNoMoreNodesThanOfALargeOne)
+{
+  const Parameters parameters = surfaceParameters();
+  int solves = 0;
+  for (const char* fault : { BROKEN_TOOTH, "pitting:0.1:40" })
+  {
+    FaultList faults;
+    faults.set(parseFault(fault, parameters), 0);
+    const JointModel model = JointFaults(parameters, faults).model();
+    const DeviationBuild build =
+        buildDeviations(parameters, JointModel(parameters), model, 100, surface().lowest(), surface().highest(), {});
+    ASSERT_TRUE(build.failure_reason.empty()) << build.failure_reason;
+    solves = solves == 0 ? build.solves : solves;
+    EXPECT_LT(build.solves, 1.5 * solves) << fault;
+    const ResponseSurface faulty(surface().table(), build.table);
+    SurfaceRing with(parameters, model);
+    SurfaceRing without(parameters, JointModel(parameters));
+    ASSERT_TRUE(with.insert() && without.insert());
+    double effect = 0.0;
+    double miss = 0.0;
+    for (double v = 0.0; v > -1.6e-3; v -= 4e-6)  // as under up to 60 N.m, over two turns of the wave generator
+    {
+      const double motor = -v * TWO_PI / 7.3e-4;
+      ASSERT_TRUE(with.moveTo(motor, v) && without.moveTo(motor, v));
+      const double deviation = without.measure()[SurfaceNode::ENERGY_BY_V] - with.measure()[SurfaceNode::ENERGY_BY_V];
+      ResponseSurface::Place there;
+      ResponseSurface::Place sound;
+      ASSERT_TRUE(faulty.locate(motor, v + motor / 101.0, there) && surface().locate(motor, v + motor / 101.0, sound));
+      effect += std::pow(deviation, 2);
+      miss += std::pow(faulty.response(there).output_torque - surface().response(sound).output_torque - deviation, 2);
+    }
+    EXPECT_GT(effect, 0.0) << fault;
+    // 1.5 % of the largest on a line, which is about three times the root mean square.
+    EXPECT_LT(std::sqrt(miss / effect), 0.045) << fault;
+  }
+}
+
 TEST(SurfaceDeviations, AreNotBuiltBeyondABoundedNumberOfPoints)
 {
   constexpr std::size_t MOST = 20000;
