@@ -58,7 +58,8 @@ struct Scale
                   entries[GREASE],
                   entries[FLAW],
                   entries[BEARING],
-                  {} };
+                  {},
+                  1.0 };
     std::copy(entries.begin() + FATIGUE, entries.end(), age.fatigue.begin());
     return age;
   }
@@ -109,7 +110,7 @@ DriveAge DriveAgeing::rates(const UnitVariation& variation, const DriveAge& age)
   const GearParameters& gear = parameters_.gear;
   const double flank_area = life.face_width * gear.tooth_height_flexspline;
   const double interface_area = life.face_width * TWO_PI * gear.flexspline_inner_radius;
-  const double grease_factor = greaseWearFactor(life, age.grease);
+  const double grease_factor = age.filling_factor * greaseWearFactor(life, age.grease);
   double time = 0.0;
   DriveAge rate;
   std::array<MinerSum, STRESS_PLACES> fatigue;
@@ -185,8 +186,14 @@ DriveAgeing::Life DriveAgeing::live(const UnitVariation& variation, double hours
   namespace odeint = boost::numeric::odeint;
   const Scale scale(parameters_, variation);
   std::uint32_t filling = 0;
-  UnitVariation now = inFilling(variation, filling);
-  const auto rhs = [&](const Entries& at, Entries& rate, double) { rate = scale.from(rates(now, scale.to(at))); };
+  double filling_factor = fillingFactor(variation, filling);
+  const auto age_of = [&](const Entries& entries)
+  {
+    DriveAge age = scale.to(entries);
+    age.filling_factor = filling_factor;
+    return age;
+  };
+  const auto rhs = [&](const Entries& at, Entries& rate, double) { rate = scale.from(rates(variation, age_of(at))); };
 
   DriveAge age;
   age.flaw_depth = parameters_.life.flaw_depth;
@@ -196,7 +203,7 @@ DriveAgeing::Life DriveAgeing::live(const UnitVariation& variation, double hours
   const auto age_at = [&](double time)
   {
     stepper.calc_state(time, entries);
-    return scale.to(entries);
+    return age_of(entries);
   };
   const auto stops = [&](double time)
   {
@@ -237,7 +244,7 @@ DriveAgeing::Life DriveAgeing::live(const UnitVariation& variation, double hours
       return { end, why, age };
     }
     age.grease = 0.0;
-    now = inFilling(variation, ++filling);
+    filling_factor = fillingFactor(variation, ++filling);
     stepper.initialize(scale.from(age), end, std::max(1e-6, end - begin) + 1e-3 * end);
   }
 }
