@@ -59,12 +59,13 @@ struct Scale
                   entries[FLAW],
                   entries[BEARING],
                   {},
-                  1.0 };
+                  filling_factor };
     std::copy(entries.begin() + FATIGUE, entries.end(), age.fatigue.begin());
     return age;
   }
 
   Entries by;
+  double filling_factor{ 1.0 };  // of DriveAge
 };
 }  // namespace
 
@@ -184,16 +185,10 @@ DriveAgeing::Life DriveAgeing::live(const UnitVariation& variation, double hours
   constexpr double TOLERANCE = 1e-8;  // of the limits
   constexpr int BISECTIONS = 50;
   namespace odeint = boost::numeric::odeint;
-  const Scale scale(parameters_, variation);
+  Scale scale(parameters_, variation);
   std::uint32_t filling = 0;
-  double filling_factor = fillingFactor(variation, filling);
-  const auto age_of = [&](const Entries& entries)
-  {
-    DriveAge age = scale.to(entries);
-    age.filling_factor = filling_factor;
-    return age;
-  };
-  const auto rhs = [&](const Entries& at, Entries& rate, double) { rate = scale.from(rates(variation, age_of(at))); };
+  scale.filling_factor = fillingFactor(variation, filling);
+  const auto rhs = [&](const Entries& at, Entries& rate, double) { rate = scale.from(rates(variation, scale.to(at))); };
 
   DriveAge age;
   age.flaw_depth = parameters_.life.flaw_depth;
@@ -203,7 +198,7 @@ DriveAgeing::Life DriveAgeing::live(const UnitVariation& variation, double hours
   const auto age_at = [&](double time)
   {
     stepper.calc_state(time, entries);
-    return age_of(entries);
+    return scale.to(entries);
   };
   const auto stops = [&](double time)
   {
@@ -244,7 +239,7 @@ DriveAgeing::Life DriveAgeing::live(const UnitVariation& variation, double hours
       return { end, why, age };
     }
     age.grease = 0.0;
-    filling_factor = fillingFactor(variation, ++filling);
+    scale.filling_factor = fillingFactor(variation, ++filling);
     stepper.initialize(scale.from(age), end, std::max(1e-6, end - begin) + 1e-3 * end);
   }
 }
