@@ -201,10 +201,10 @@ def row_of(name, own):
     found = [f"{sum(one.severity == severity for one in alarms)} of "
              f"{sum(one.severity == severity for one in faulty)}" for severity in SEVERITIES]
     false = sum(one.window["assessment"]["level"] != "OK" for one in sound)
-    confidence = numpy.mean([verdict["confidence"] for verdict in verdicts]) if verdicts else math.nan
+    confidence = f"{numpy.mean([verdict['confidence'] for verdict in verdicts]):.2f}" if verdicts else "-"
     return (f"| {name} | " + " | ".join(f"{value:.2f}" for value in areas)
             + f" | {false} of {len(sound)} | {found[0]} | {found[1]} | {sum(right)} of {len(alarms)} "
-            f"| {sum(in_set)} of {len(alarms)} | {confidence:.2f} |")
+            f"| {sum(in_set)} of {len(alarms)} | {confidence} |")
 
 
 def table(found):
