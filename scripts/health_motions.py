@@ -9,7 +9,7 @@ import numpy
 import scipy.stats
 import sklearn.covariance
 
-from health_runs import COMPARED, OTHER_MODEL, Motion, Trial, drawn, once
+from health_runs import COMPARED, OTHER_FLANKS, OTHER_MODEL, Motion, Trial, drawn, once
 
 WINDOW = 20.0                   # [s]
 SLOPE = 300.0                   # of a trapezoid [deg/s^2]
@@ -85,9 +85,9 @@ MOTIONS = [motion_of("slow sweep", "slow_sweep", sweep),
            motion_of("quintic, random points", "quintic_points", functools.partial(random_points, quintic)),
            motion_of("trapezoids, three places", "trapezoid_places", functools.partial(three_places, None)),
            motion_of("sine", "sine", sine)]
-FITTED_GEARS = [drawn(905), drawn(930)]
-JUDGED_GEARS = [drawn(906), drawn(931), OTHER_MODEL]
-SEEDS = {"drawn 905": 50, "drawn 906": 60, "drawn 930": 150, "drawn 931": 160, OTHER_MODEL.name: 170}  # first ones
+FITTED_GEARS = [drawn(905), drawn(930), OTHER_FLANKS]
+JUDGED_GEARS = [drawn(1007), OTHER_MODEL]
+SEEDS = {"drawn 905": 50, "drawn 930": 150, "drawn 1007": 250, OTHER_FLANKS.name: 270, OTHER_MODEL.name: 280}  # first
 
 # `kind` "healthy" of a sound one; `plain`: scores of the plain detectors.
 Judged = collections.namedtuple("Judged", "gear motion kind severity window score plain")
@@ -201,10 +201,10 @@ def row_of(name, own):
     found = [f"{sum(one.severity == severity for one in alarms)} of "
              f"{sum(one.severity == severity for one in faulty)}" for severity in SEVERITIES]
     false = sum(one.window["assessment"]["level"] != "OK" for one in sound)
-    confidence = numpy.mean([verdict["confidence"] for verdict in verdicts]) if verdicts else math.nan
+    confidence = f"{numpy.mean([verdict['confidence'] for verdict in verdicts]):.2f}" if verdicts else "-"
     return (f"| {name} | " + " | ".join(f"{value:.2f}" for value in areas)
             + f" | {false} of {len(sound)} | {found[0]} | {found[1]} | {sum(right)} of {len(alarms)} "
-            f"| {sum(in_set)} of {len(alarms)} | {confidence:.2f} |")
+            f"| {sum(in_set)} of {len(alarms)} | {confidence} |")
 
 
 def table(found):

@@ -4,7 +4,6 @@ import argparse
 import itertools
 import math
 import pathlib
-import re
 import sys
 
 import matplotlib
@@ -129,22 +128,20 @@ def sound_row(runs):
             f"{1000.0 * poisson_bound(found) / hours:.3g} | {max(blocks):.2f} | {expected:.2g} | {bound:.2g}")
 
 
-def sound_table(groups):
+def sound_table(groups, with_all=True):
     """Of (name, runs); the last row is of all."""
     lines = ["| | " + " | ".join(SOUND_COLUMNS) + " |", "|---|" + "---|" * len(SOUND_COLUMNS)]
-    for name, runs in [*groups, ("all", [run for _, runs in groups for run in runs])]:
+    for name, runs in [*groups, *[("all", [run for _, runs in groups for run in runs])][:with_all]]:
         lines.append(f"| {name} | {sound_row(runs)} |")
     return lines
 
 
-def check_up_table(sound):
-    lines = ["| gear | check-ups | alarms | 95 % bound of their share |", "|---|---|---|---|"]
-    own = [run for run in sound if run.motion == CHECK_UP]
-    for name in [*dict.fromkeys(run.gear.name for run in own), "all"]:
-        runs = [run for run in own if name in (run.gear.name, "all")]
-        found = sum(map(alarmed, runs))
-        lines.append(f"| {name} | {len(runs)} | {found} | {100.0 * poisson_bound(found) / len(runs):.2g} % |")
-    return lines
+def check_up_line(sound):
+    runs = [run for run in sound if run.motion == CHECK_UP]
+    found = sum(map(alarmed, runs))
+    gears = len({run.gear.name for run in runs})
+    return (f"- Check-ups of {gears} sound gears: {found} alarms in {len(runs)}, at most "
+            f"{100.0 * poisson_bound(found) / len(runs):.2g} % at 95 %.")
 
 
 def series(bench, gears):
@@ -158,49 +155,31 @@ def series(bench, gears):
     return sound_table([(f"{name}, {counts[name]} gears", runs) for name, runs in groups.items() if runs])
 
 
-def detectabilities(page):
-    """d' by kind from the table of the bound on the page: motor and output encoder, current; check-up and at work."""
-    text = page.read_text(encoding="utf-8")
-    table = text[text.index("<!-- bound:begin -->"):text.index("<!-- bound:end -->")]
-    rows = re.findall(r"^\| `(\w+)` \|(.*)\|$", table, re.MULTILINE)
-    return {kind: [cell.strip() for cell in cells.split("|")] for kind, cells in rows}
-
-
 def severities_of(faulty):
     return sorted({run.severity for run in faulty})
 
 
-def fault_table(kinds, faulty, bound):
+def kind_table(kinds, faulty):
+    """What was found of each kind, and as what."""
     severities = severities_of(faulty)
-    lines = ["| kind | " + " | ".join(f"check-up, {severity:g}" for severity in severities) + " | d′ at best, 0.2 | "
-             + " | ".join(f"at work, {severity:g}" for severity in severities) + " | d′ at best, 0.2 |",
-             "|---|" + "---|" * (2 * len(severities) + 2)]
-    names = [kind["kind"] for kind in kinds]
-    for name in [*names, "all"]:
-        cells = []  # of the check-up, then at work
-        for at_work, column in ((False, 1), (True, 4)):
-            cells += [share(alarmed(run) for run in faulty if name in (run.kind, "all") and run.severity == severity
-                            and (run.motion != CHECK_UP) == at_work) for severity in severities]
-            cells.append(bound[name][column] if name in bound else "")
-        lines.append(f"| {name if name == 'all' else f'`{name}`'} | " + " | ".join(cells) + " |")
-    return lines
-
-
-def cause_table(kinds, faulty):
-    lines = [f"| kind | cause right, of alarms, severity {SURE} on | or in the set | named instead | severity: "
-             "estimate less true, mean ± spread | its stated deviation |", "|---|---|---|---|---|---|"]
+    places = [(at_work, severity) for at_work in (False, True) for severity in severities]
+    lines = ["| kind | " + " | ".join(f"{'at work' if at_work else 'check-up'}, {severity:g}"
+                                      for at_work, severity in places)
+             + f" | cause right, of alarms, severity {SURE} on | or in the set | named instead | severity: estimate "
+             "less true, mean ± spread | its stated deviation |", "|---" * (len(places) + 6) + "|"]
     for name in [*[kind["kind"] for kind in kinds], "all"]:
-        own = [run for run in faulty if name in (run.kind, "all") and run.severity >= SURE and alarmed(run)]
-        if not own:
-            lines.append(f"| `{name}` | - | - | | | |")
-            continue
-        wrong = [last(run).cause for run in own if not right(run)]
+        own = [run for run in faulty if name in (run.kind, "all")]
+        cells = [share(alarmed(run) for run in own if run.severity == severity and (run.motion != CHECK_UP) == at_work)
+                 for at_work, severity in places]
+        sure = [run for run in own if run.severity >= SURE and alarmed(run)]
+        wrong = [last(run).cause for run in sure if not right(run)]
         instead = ", ".join(f"`{cause}` {wrong.count(cause)}" for cause in dict.fromkeys(wrong) if name != "all")
-        errors = [last(run).severity - run.severity for run in own if right(run)]
-        stated = [last(run).deviation for run in own if right(run)]
-        sizes = f"{numpy.mean(errors):+.2f} ± {numpy.std(errors):.2f} | {numpy.mean(stated):.2f}" if errors else "|"
-        lines.append(f"| {name if name == 'all' else f'`{name}`'} | {share(map(right, own))} "
-                     f"| {share(map(in_set, own))} | {instead} | {sizes} |")
+        errors = [last(run).severity - run.severity for run in sure if right(run)]
+        stated = [last(run).deviation for run in sure if right(run)]
+        sizes = ([f"{numpy.mean(errors):+.2f} ± {numpy.std(errors):.2f}", f"{numpy.mean(stated):.2f}"] if errors
+                 else ["", ""])
+        cells += [share(map(right, sure)), share(map(in_set, sure)), instead, *sizes]
+        lines.append(f"| {name if name == 'all' else f'`{name}`'} | " + " | ".join(cells) + " |")
     return lines
 
 
@@ -284,45 +263,44 @@ def by_motion(runs):
             itertools.groupby(runs, key=lambda run: (run.gear.name, run.motion.name))]
 
 
+def never_found(runs):
+    kinds = [kind for kind in dict.fromkeys(run.kind for run in runs)
+             if not any(alarmed(run) for run in runs if run.kind == kind)]
+    return ", ".join(f"`{kind}`" for kind in kinds) or "none"
+
+
 def carried_report(bench, trials, own):
     """Motions to and fro of trials without references of their own; `own`: faulty runs compared with such."""
-    columns = {"own reference": [run for run in own if run.motion.moves]}
-    lines = []
+    columns = {"own": [run for run in own if run.motion.moves]}
+    sound = {}
     for model in health_runs.MODELS:
-        sound, faulty, missing = collect(bench, trials, model)
-        columns[f"carried, {CARRIED_BY[model.name]}"] = faulty
-        lines += [f"Sound drives, {CARRIED_BY[model.name]}; {len(missing)} runs were not judged:", "",
-                  *sound_table(by_motion(sound)), ""]
-    severities = severities_of(columns["own reference"])
-    lines += ["| kind | " + " | ".join(f"{name}, {severity:g}" for severity in severities for name in columns) + " |",
-              "|---|" + "---|" * (len(columns) * len(severities))]
-    for name in [*[kind["kind"] for kind in bench.kinds], "all"]:
-        cells = [share(alarmed(run) for run in runs if name in (run.kind, "all") and run.severity == severity)
-                 for severity in severities for runs in columns.values()]
-        lines.append(f"| {name if name == 'all' else f'`{name}`'} | " + " | ".join(cells) + " |")
-    lines.append("")
+        name = f"carried, {CARRIED_BY[model.name]}"
+        sound[name], columns[name], _ = collect(bench, trials, model)
+    severities = severities_of(columns["own"])
+    lines = ["| reference | " + " | ".join(f"found, {severity:g}" for severity in severities)
+             + f" | cause right, severity {SURE} on | or in the set | calibration error | never found |",
+             "|---" * (len(severities) + 5) + "|"]
     for name, runs in columns.items():
         sure = [run for run in runs if alarmed(run) and run.severity >= SURE]
-        lines.append(f"- {name}: cause right in {share(map(right, sure))} alarms from severity {SURE} on, in the set "
-                     f"in {share(map(in_set, sure))}; calibration error of all alarms {reliability(runs)[1]:.3f}.")
-    return lines
+        cells = [share(alarmed(run) for run in runs if run.severity == severity) for severity in severities]
+        cells += [share(map(right, sure)), share(map(in_set, sure)), f"{reliability(runs)[1]:.2f}", never_found(runs)]
+        lines.append(f"| {name} | " + " | ".join(cells) + " |")
+    return [*lines, "", "Sound drives:", "", *sound_table(list(sound.items()), False)]
 
 
-def report(bench, trials, sound, faulty, missing, page):
-    bound = detectabilities(page)
+def report(bench, trials, sound, faulty, missing):
     rows, error = reliability(faulty)
     groups = by_motion([run for run in sound if run.motion != CHECK_UP])
     return [f"{len(sound)} sound and {len(faulty)} faulty runs; grease anywhere in {GREASE[0]:g} to "
             f"{GREASE[1]:g} °C. {len(missing)} more were not judged, whose operating point has "
             "fewer than eight windows of the reference.", "", *health_runs.split_table(("judged by", trials)), "",
-            "### Sound drives", "", *check_up_table(sound), "", *sound_table(groups), "",
-            "### Faults found", "", *fault_table(bench.kinds, faulty, bound), "",
-            "![Score of every run over the threshold](images/health/seen.png)", "",
-            "### Cause and severity", "", *cause_table(bench.kinds, faulty), "",
-            "![Fault against the assessed cause](images/health/confusion.png)", "",
+            *kind_table(bench.kinds, faulty), "",
             f"Calibration error {error:.3f}: stated confidence less share of right causes, mean over the alarms by "
             "class of confidence.", "",
-            "![Share of right causes against the stated confidence](images/health/reliability.png)"]
+            "![Score of every run over the threshold](images/health/seen.png)", "",
+            "![Fault against the assessed cause](images/health/confusion.png)", "",
+            "![Share of right causes against the stated confidence](images/health/reliability.png)", "",
+            "### Sound drives", "", check_up_line(sound), "", *sound_table(groups)]
 
 
 def main():
@@ -336,7 +314,7 @@ def main():
     parser.add_argument("--quick", action="store_true", help="one gear, one severity: tables on the "
                         "terminal, the page stays; with --fit: errors alone, by one gear in the check-up and "
                         "two in other motions")
-    parser.add_argument("--motions", action="store_true", help="two drawn gears and another model in motions "
+    parser.add_argument("--motions", action="store_true", help="a drawn gear and another model in motions "
                         "that no signature was made in, into the page's table of them, and nothing else; some "
                         "ten minutes on two cores")
     parser.add_argument("--series", type=int, metavar="GEARS", help="sound runs of so many drawn gears, into the "
@@ -355,7 +333,7 @@ def main():
         print(f"evaluate_health: wrote {file}", file=sys.stderr)
         return
     if options.quick:
-        print("\n".join(report(bench, QUICK, *collect(bench, QUICK), page)))
+        print("\n".join(report(bench, QUICK, *collect(bench, QUICK))))
         return
     if options.motions:
         page_section.write(page, "motions", health_motions.judged_table(bench))
@@ -370,7 +348,7 @@ def main():
     draw_scores(bench.kinds, sound, faulty, images / "seen.png")
     draw_confusion(bench.kinds, faulty, images / "confusion.png")
     draw_reliability(reliability(faulty)[0], images / "reliability.png")
-    page_section.write(page, "health", report(bench, JUDGED, sound, faulty, missing, page))
+    page_section.write(page, "health", report(bench, JUDGED, sound, faulty, missing))
     page_section.write(page, "carried", carried_report(bench, JUDGED, faulty))
     print(f"evaluate_health: wrote {page}", file=sys.stderr)
 

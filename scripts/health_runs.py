@@ -80,9 +80,15 @@ MODEL = Gear("beside", True, [*QUIET, "  sensors.motor_eccentricity: 0.0", "  se
 MODELS = [MODEL, CALIBRATED_MODEL]
 
 
-# Another model than that of the signatures: straight flanks, a spring under each tooth on a rigid wave generator, no
+# Another model than that of the signatures: involute flanks, a spring under each tooth on a rigid wave generator, no
 # bent race; and friction that falls from rest on, as a UR5's elbow has it.
-OTHER_MODEL = Gear("another model", True, ["  motor.stribeck_torque: 0.03"], "golden.yaml")
+OTHER_MODEL = Gear("another model", True, ["  mesh.profile: involute", "  motor.stribeck_torque: 0.05",
+                                           "  bearing.race_preload: 900.0", "  bearing.viscosity: 220.0e-6"],
+                   "golden.yaml")
+# One more, that the errors of signatures are fitted to: other flanks, less preload, dry friction at once.
+OTHER_FLANKS = Gear("other flanks", True, ["  mesh.profile: involute", "  cup.friction_angle: 0.0",
+                                           "  motor.stribeck_torque: 0.02", "  bearing.race_preload: 700.0",
+                                           "  bearing.viscosity: 240.0e-6"])
 
 
 def uneven(seed):

@@ -21,14 +21,15 @@ NEIGHBOURS = ["wave_generator_2", "circular_spline_2"]
 # As in the source.
 UNKNOWN_STRENGTHS = [3.0, 10.0, 30.0, 100.0]
 SPEED_RANGE, DIRECTION_RANGE, OTHER_MOTION = 0.2, 0.3, 1e-3
+MISFIT_WEIGHT, MISFIT_SEVERITY = 0.2, 0.5
 
 WITHIN = 0.683            # of a normal quantity, one standard deviation
 
 # A row each; `kinds` of motion: speed [rad/s] and direction, magnitudes, 0 of any. `sound`: values by name.
 Table = collections.namedtuple("Table", "causes motions severities kinds changes sound")
-# Of the law in fault_signatures.hpp, by its letters: r m e l b.
+# Of the law in fault_signatures.hpp, by its letters: r m e l b_0.
 Errors = collections.namedtuple("Errors", "number motion length line weight")
-START = Errors(0.12, 0.25, 0.0015, 0.5, 0.2)        # of the search
+START = Errors(0.3, 0.25, 0.0015, 0.5, 0.6)         # of the search
 
 
 def amplitude_change(sound, change):
@@ -122,11 +123,21 @@ class Hypotheses:
         return -0.5 * (logarithm + (self.freedom + len(self.phase)) *
                        numpy.log1p(numpy.maximum(square, 0.0) / self.freedom))
 
+    def misfit(self, row):
+        """Mean square of what a row leaves, in a sound drive's spreads; 1 at least."""
+        left, weighted = self.left[row], self.common / self.own[:, None]
+        projected = weighted.T @ left
+        square = numpy.sum(left ** 2 / self.own) - projected @ numpy.linalg.solve(
+            numpy.eye(self.common.shape[1]) + weighted.T @ self.common, projected)
+        return max(square / len(left), 1.0)
+
     def posterior(self, errors):
         """(probability, severity, its variance) by cause."""
         found = self.log_likelihoods(errors)
+        misfit = self.misfit(numpy.argmax(found[:self.rows]))
+        weight = errors.weight * (MISFIT_WEIGHT + (1.0 - MISFIT_WEIGHT) / misfit)
         names = list(dict.fromkeys(self.table.causes))
-        weights = numpy.exp(errors.weight * (found - found.max()))
+        weights = numpy.exp(weight * (found - found.max()))
         faults = self.prior * weights[:self.rows]
         means = {cause: numpy.sum(faults[self.causes == cause]) / numpy.sum(self.prior[self.causes == cause])
                  for cause in names}
@@ -134,7 +145,8 @@ class Hypotheses:
         for cause in names:
             own, shares_of_own = self.table.severities[self.causes == cause], faults[self.causes == cause] + 1e-300
             severity[cause] = numpy.average(own, weights=shares_of_own)
-            variance[cause] = numpy.average((own - severity[cause]) ** 2, weights=shares_of_own)
+            variance[cause] = (numpy.average((own - severity[cause]) ** 2, weights=shares_of_own)
+                               + (MISFIT_SEVERITY * (1.0 - 1.0 / misfit) * severity[cause]) ** 2)
         means["none"] = numpy.mean(weights[self.rows:])
         total = sum(means.values())
         return {cause: mean / total for cause, mean in means.items()}, severity, variance

@@ -132,26 +132,13 @@ std::vector<GrowingFault> Lives::faultsAt(std::uint64_t check_up) const
 
 std::vector<std::string> Lives::labelNames()
 {
-  return { "life.drive",
-           "life.split",
-           "life.duty",
-           "life.hours",
-           "life.remaining",
-           "life.length",
-           "life.cause",
-           "life.flank_wear",
-           "life.interface_wear",
-           "life.grease",
-           "life.flaw_depth",
-           "life.spall",
-           "life.bearing_used",
-           "life.fatigue",
-           "life.stress",
-           "life.flank_factor",
-           "life.interface_factor",
-           "life.bearing_life",
-           "life.spall_growth",
-           "life.strength",
+  return { "life.drive",        "life.split",          "life.duty",
+           "life.hours",        "life.remaining",      "life.length",
+           "life.cause",        "life.flank_wear",     "life.interface_wear",
+           "life.grease",       "life.filling_factor", "life.flaw_depth",
+           "life.spall",        "life.bearing_used",   "life.fatigue",
+           "life.stress",       "life.flank_factor",   "life.interface_factor",
+           "life.bearing_life", "life.spall_growth",   "life.strength",
            "life.transition" };
 }
 
@@ -170,6 +157,7 @@ Lives::Labels Lives::labelsAt(std::uint64_t check_up) const
                                                              now.age.worstFlank(),
                                                              now.age.interface_wear,
                                                              now.age.grease,
+                                                             now.age.filling_factor,
                                                              now.age.flaw_depth,
                                                              spallSize(nature, now.age.bearing_turns),
                                                              now.age.bearing_turns / nature.bearing_life,

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "harmonic_joint_twin/health/fault_signatures.hpp"
@@ -14,7 +13,9 @@ namespace hjt
 namespace
 {
 constexpr std::array UNKNOWN_STRENGTHS{ 3.0, 10.0, 30.0, 100.0 };  // S of what is in no table
-constexpr double PATTERN_SEVERITY = 0.4;                           // signatures about which make a pattern
+constexpr double MISFIT_WEIGHT = 0.2;     // w_1: share of the evidence's weight that is left where no signature fits
+constexpr double MISFIT_SEVERITY = 0.5;   // share of the severity there: other drives soften up to three times as much
+constexpr double PATTERN_SEVERITY = 0.4;  // signatures about which make a pattern
 }  // namespace
 
 void CauseSearch::Sum::add(double weighted, double prior, double severity) noexcept
@@ -35,7 +36,7 @@ CauseSearch::CauseSearch(std::shared_ptr<const SignatureSet> set)
 void CauseSearch::start() noexcept
 {
   next_ = 0;
-  largest_ = -std::numeric_limits<double>::infinity();
+  misfit_ = 1.0;
   sums_ = {};
 }
 
@@ -52,22 +53,32 @@ void CauseSearch::advance(const WindowResidual& residual, const OperatingPoint& 
       likelihoods_[next_] = next_ < known.size() ?
                                 terms.logLikelihood(&known[next_], 0.0, likeness(known[next_].motion, point)) :
                                 terms.logLikelihood(nullptr, UNKNOWN_STRENGTHS[next_ - known.size()], 1.0);
-      largest_ = std::max(largest_, likelihoods_[next_]);
+    }
+    if (next_ == rows)
+    {
+      const auto unknown = likelihoods_.begin() + static_cast<std::ptrdiff_t>(known.size());
+      const auto best = std::max_element(likelihoods_.begin(), unknown) - likelihoods_.begin();
+      misfit_ = known.empty() ? 1.0 : terms.misfit(known[static_cast<std::size_t>(best)]);
+      const double weight = set_->evidence_weight * (MISFIT_WEIGHT + (1.0 - MISFIT_WEIGHT) / misfit_);
+      const double largest = *std::max_element(likelihoods_.begin(), likelihoods_.end());
+      for (double& likelihood : likelihoods_)
+      {
+        likelihood = weight * (likelihood - largest);
+      }
     }
   }
   for (; next_ < end; ++next_)
   {
     const std::size_t row = next_ - rows;
-    const double weighted = set_->evidence_weight * (likelihoods_[row] - largest_);
     if (row < known.size())
     {
       const Signature& signature = known[row];
-      sums_[static_cast<std::size_t>(signature.cause)].add(weighted, OTHER_MOTION + likeness(signature.motion, point),
-                                                           signature.severity);
+      sums_[static_cast<std::size_t>(signature.cause)].add(
+          likelihoods_[row], OTHER_MOTION + likeness(signature.motion, point), signature.severity);
     }
     else
     {
-      sums_[static_cast<std::size_t>(Cause::NONE)].add(weighted, 1.0, 0.0);
+      sums_[static_cast<std::size_t>(Cause::NONE)].add(likelihoods_[row], 1.0, 0.0);
     }
   }
 }
@@ -76,6 +87,7 @@ CausePosterior CauseSearch::posterior() const noexcept
 {
   CausePosterior posterior;
   double all = 0.0;
+  const double by_misfit = MISFIT_SEVERITY * (1.0 - 1.0 / misfit_);
   for (std::size_t cause = 0; cause < CAUSE_COUNT; ++cause)
   {
     const Sum& sum = sums_[cause];
@@ -87,7 +99,7 @@ CausePosterior CauseSearch::posterior() const noexcept
       const double mean = posterior.severity[cause];
       const double square = std::max(sum.second / sum.total - mean * mean, 0.0);
       posterior.severity_deviation[cause] =
-          std::sqrt(square + set_->severity_error * set_->severity_error * mean * mean);
+          std::sqrt(square + (set_->severity_error * set_->severity_error + by_misfit * by_misfit) * mean * mean);
     }
   }
   for (double& probability : posterior.probability)

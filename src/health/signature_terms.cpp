@@ -104,6 +104,24 @@ double SignatureTerms::logLikelihood(const Signature* signature, double strength
          (log_determinant + (freedom_ + static_cast<double>(count_)) * std::log1p(std::max(square, 0.0) / freedom_));
 }
 
+double SignatureTerms::misfit(const Signature& signature) const noexcept
+{
+  CausesSquare inner = CausesSquare::Identity();
+  Causes projected = Causes::Zero();
+  double square = 0.0;
+  for (std::size_t i = 0; i < count_; ++i)
+  {
+    const Term& term = terms_[i];
+    const double left = term.difference - (term.has_phase ? 0.0 : changeBy(signature, term));
+    const Causes weighted = term.common / term.own;
+    inner.noalias() += weighted * term.common.transpose();
+    projected += weighted * left;
+    square += left * left / term.own;
+  }
+  square -= projected.dot(inner.inverse() * projected);
+  return count_ > 0 ? std::max(square / static_cast<double>(count_), 1.0) : 1.0;
+}
+
 /// Of a number that is no line's, as its signature has it.
 double SignatureTerms::shareOrChange(const Signature& signature, const Term& term) const noexcept
 {

@@ -21,6 +21,9 @@ public:
   /// motion and the window's, 0 ... 1.
   double logLikelihood(const Signature* signature, double strength, double alike) const noexcept;
 
+  /// Mean square of what the signature leaves of the differences, in a sound drive's spreads; 1 at least.
+  double misfit(const Signature& signature) const noexcept;
+
   /// Adds the signature's change, in own spreads, times `weight` over its length, to `direction`. Lines are left out.
   void addDirection(const Signature& signature, double weight,
                     std::array<double, INDICATOR_COUNT>& direction) const noexcept;

@@ -6,8 +6,8 @@
 
 namespace hjt
 {
-/// How reliable assessments of wear are: counts of docs/health.md. As they are few, a share is the mean of what they
-/// leave open: one more counts on either side (Laplace's rule of succession).
+/// How reliable assessments of wear are, counted on runs of six gears as in docs/health.md. As they are few, a share is
+/// the mean of what they leave open: one more counts on either side (Laplace's rule of succession).
 namespace assessment_errors
 {
 /// Share of drives whose wear of a kind is found at all: of the windows judged at severities 0.2 and 0.5, check-up and

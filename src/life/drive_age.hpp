@@ -27,6 +27,7 @@ struct DriveAge
   double flaw_depth{};      ///< of the deepest crack at a tooth root; 0: none [m]
   double bearing_turns{};   ///< of the wave generator's bearing, in turns at rated torque
   std::array<double, STRESS_PLACES> fatigue{};  ///< Miner's sum of the flexspline by place; 1: broken [-]
+  double filling_factor{ 1.0 };  ///< of the rates of wear in the present filling of grease, over the drive's median [-]
 
   double worstFlank() const { return std::max(flank_wear[0], flank_wear[1]); }  ///< [m]
   double meanFlank() const { return 0.5 * (flank_wear[0] + flank_wear[1]); }    ///< half the play's growth [m]
@@ -52,18 +53,16 @@ struct UnitVariation
   std::uint32_t fillings{};        ///< seed of what differs from one filling of grease to the next; 0: nothing does
 };
 
-/// The same drive in its n-th filling of grease, from 0 on: the factors of wear are those of that time.
-inline UnitVariation inFilling(UnitVariation variation, std::uint32_t number)
+/// Of the drive's rates of wear in its n-th filling of grease, from 0 on, over its median [-].
+inline double fillingFactor(const UnitVariation& variation, std::uint32_t number)
 {
-  if (variation.fillings != 0)
+  if (variation.fillings == 0)
   {
-    constexpr std::uint32_t STRIDE = 0x9E3779B9u;
-    boost::random::mt19937 random(variation.fillings + STRIDE * number);
-    const double factor = boost::random::lognormal_distribution<double>(0.0, RATE_SCATTER)(random);
-    variation.flank_factor *= factor;
-    variation.interface_factor *= factor;
+    return 1.0;
   }
-  return variation;
+  constexpr std::uint32_t STRIDE = 0x9E3779B9u;
+  boost::random::mt19937 random(variation.fillings + STRIDE * number);
+  return boost::random::lognormal_distribution<double>(0.0, RATE_SCATTER)(random);
 }
 
 /// Fatigue strength of a drive at a place, over the median's [-].

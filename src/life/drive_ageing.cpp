@@ -58,12 +58,14 @@ struct Scale
                   entries[GREASE],
                   entries[FLAW],
                   entries[BEARING],
-                  {} };
+                  {},
+                  filling_factor };
     std::copy(entries.begin() + FATIGUE, entries.end(), age.fatigue.begin());
     return age;
   }
 
   Entries by;
+  double filling_factor{ 1.0 };  // of DriveAge
 };
 }  // namespace
 
@@ -109,7 +111,7 @@ DriveAge DriveAgeing::rates(const UnitVariation& variation, const DriveAge& age)
   const GearParameters& gear = parameters_.gear;
   const double flank_area = life.face_width * gear.tooth_height_flexspline;
   const double interface_area = life.face_width * TWO_PI * gear.flexspline_inner_radius;
-  const double grease_factor = greaseWearFactor(life, age.grease);
+  const double grease_factor = age.filling_factor * greaseWearFactor(life, age.grease);
   double time = 0.0;
   DriveAge rate;
   std::array<MinerSum, STRESS_PLACES> fatigue;
@@ -183,10 +185,10 @@ DriveAgeing::Life DriveAgeing::live(const UnitVariation& variation, double hours
   constexpr double TOLERANCE = 1e-8;  // of the limits
   constexpr int BISECTIONS = 50;
   namespace odeint = boost::numeric::odeint;
-  const Scale scale(parameters_, variation);
+  Scale scale(parameters_, variation);
   std::uint32_t filling = 0;
-  UnitVariation now = inFilling(variation, filling);
-  const auto rhs = [&](const Entries& at, Entries& rate, double) { rate = scale.from(rates(now, scale.to(at))); };
+  scale.filling_factor = fillingFactor(variation, filling);
+  const auto rhs = [&](const Entries& at, Entries& rate, double) { rate = scale.from(rates(variation, scale.to(at))); };
 
   DriveAge age;
   age.flaw_depth = parameters_.life.flaw_depth;
@@ -237,7 +239,7 @@ DriveAgeing::Life DriveAgeing::live(const UnitVariation& variation, double hours
       return { end, why, age };
     }
     age.grease = 0.0;
-    now = inFilling(variation, ++filling);
+    scale.filling_factor = fillingFactor(variation, ++filling);
     stepper.initialize(scale.from(age), end, std::max(1e-6, end - begin) + 1e-3 * end);
   }
 }

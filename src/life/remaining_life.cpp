@@ -48,6 +48,23 @@ double fatigueBy(const Usage& usage, double strength, std::size_t place) noexcep
                                           (1.0 - share) * weaker + share * stronger;
 }
 
+/// Variance of the logarithm of the mean rate of wear ahead over that so far, for a scatter of 1 from filling to
+/// filling of grease: the present one counts to both. @param so_far,ahead fillings
+double changeOfRate(double so_far, double ahead) noexcept
+{
+  if (ahead <= 0.0)
+  {
+    return 0.0;
+  }
+  const auto squares = [](double fillings)  // of their lengths
+  { return std::floor(fillings) + squared(fillings - std::floor(fillings)); };
+  const double begun = so_far - std::floor(so_far);
+  const double left = std::min(1.0 - begun, ahead);
+  const double of_one = so_far > 0.0 ? 1.0 / so_far : 0.0;  // share of the use so far
+  return std::floor(so_far) * squared(of_one) + squared(left / ahead - begun * of_one) +
+         squares(ahead - left) / squared(ahead);
+}
+
 /// Wear of a particle as the severity of a fault, and the chance that it is found.
 struct Wear
 {
@@ -254,11 +271,10 @@ std::array<double, RemainingHours::CAUSES.size()> RemainingLife::hoursLeft(const
                       [&](const Usage& usage) { return fatigueBy(usage, strength, place); });
   };
   // Both wear faster or slower than so far: the same grease.
-  const double fillings = std::max(so_far.fillings, 1.0);
   const auto until_worn = [&](double end, double now, auto&& of)
   {
-    const double ahead = std::max(fillings * (end / std::max(now, 1e-300) - 1.0), 1.0);
-    const double factor = std::exp(RATE_SCATTER * std::sqrt(1.0 / fillings + 1.0 / ahead) * drive.rate_ahead);
+    const double ahead = so_far.fillings * (end / std::max(now, 1e-300) - 1.0);
+    const double factor = std::exp(RATE_SCATTER * std::sqrt(changeOfRate(so_far.fillings, ahead)) * drive.rate_ahead);
     return hoursUntil(future_load, (end - now) / factor, of);
   };
   return { until_worn(drive.flank_end, so_far.flank_wear, [](const Usage& usage) { return usage.flank_wear; }),

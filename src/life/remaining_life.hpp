@@ -121,8 +121,8 @@ inline bool supersedes(const Assessment& assessment, const Assessment& before) n
 ///
 /// Of wear that was read over the use (WearTrends) a particle's factor is drawn from its distribution given the
 /// readings, and the assessment tells of spalls alone: D_k f / u of wear is 1. How fast it wears from now on differs
-/// from how fast it has by a factor that is log-normal with the variance v^2 (1/n + 1/m), v: RATE_SCATTER, n, m:
-/// fillings of grease so far and ahead, one at least.
+/// from how fast it has by a factor that is log-normal: each filling of grease has a rate of its own (RATE_SCATTER),
+/// and the present one goes on to its end.
 class RemainingLife
 {
 public:

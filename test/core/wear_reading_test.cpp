@@ -97,6 +97,27 @@ TEST(RemainingLife, FollowsReadingsOfWearToTheLimitOfDepthAndOfLostMotion)
   EXPECT_TRUE(std::is_sorted(by_play.quantile.begin(), by_play.quantile.end()));
 }
 
+TEST(RemainingLife, KeepsTheRateOfWearToTheEndOfTheFillingOfGrease)
+{
+  FlankUse use;
+  use.parameters.life.wear_spread = 2.3;
+  const double hours = 0.5 * use.parameters.life.flank_wear_limit / use.hourly;  // half of the life
+  const double nominal = hours * use.hourly / use.parameters.fault_scale.tooth_wear_depth;
+  WearTrends trends;
+  trends.flank = { { { nominal, nominal } }, ReadingErrors{ 0.01, 0.001, 0.001, 0.01 }, 0.0 };
+  RemainingLife drives(use.parameters);
+  const auto width_after = [&](double fillings)
+  {
+    Usage so_far = use.until(hours);
+    so_far.fillings = fillings;
+    return width(drives.remaining(so_far, use.ahead, nullptr, {}, trends));
+  };
+  EXPECT_LT(width_after(0.4), 0.1 * hours) << "the readings' errors alone: 2.56 times 2 % of the whole life";
+  // One filling behind, another ahead: they differ by the scatter of both.
+  EXPECT_NEAR(width_after(1.0), 2.56 * RATE_SCATTER * std::sqrt(2.0) * hours, 0.15 * hours);
+  EXPECT_LT(width_after(9.0), 0.5 * width_after(1.0)) << "many fillings on either side";
+}
+
 /// Signatures of a gear whose lost motion, K1 and K2 wear moves evenly.
 SignatureSet evenSignatures()
 {
@@ -184,16 +205,14 @@ TEST(RemainingLife, AlarmOfWearThatWasReadIsNoEvidenceOfASpall)
 TEST(UnitVariation, DiffersFromFillingToFillingAsOftenUpAsDown)
 {
   UnitVariation variation;
-  EXPECT_EQ(inFilling(variation, 3).flank_factor, 1.0) << "the nominal drive does not";
+  EXPECT_EQ(fillingFactor(variation, 3), 1.0) << "the nominal drive does not";
   variation.fillings = 77;
   double sum = 0.0;
   double squares = 0.0;
   constexpr int COUNT = 2000;
   for (std::uint32_t i = 0; i < COUNT; ++i)
   {
-    const UnitVariation then = inFilling(variation, i);
-    EXPECT_EQ(then.flank_factor, then.interface_factor) << "the same grease";
-    const double logarithm = std::log(then.flank_factor);
+    const double logarithm = std::log(fillingFactor(variation, i));
     sum += logarithm;
     squares += logarithm * logarithm;
   }

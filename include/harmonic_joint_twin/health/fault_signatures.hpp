@@ -137,7 +137,7 @@ struct SignatureSet
   double motion_error{};     ///< m [-]
   double length_error{};     ///< e [-]
   double line_error{};       ///< l [-]
-  double evidence_weight{};  ///< b [-]
+  double evidence_weight{};  ///< b_0 [-]
   double severity_error{};   ///< of the severity by the signatures, as a share of it [-]
   std::vector<Signature> signatures;
   std::array<bool, SIGNATURE_SIZE>
@@ -191,6 +191,7 @@ struct CausePosterior
 /// Law:   d ~ t_v(mu, D_h + F F'),   P(h | d) ~ P(h) p(d | h)^b,   P(h) the same for every cause, within it ~ w_0 + a
 ///        a = exp(-(ln(n / n_h) / N)^2 / 2 - ((q - q_h) / Q)^2 / 2), 1 in ANY_MOTION
 ///        D_h,ii = D_ii (1 + (e S)^2) + (r^2 + m^2 (1 - a)) mu_i^2 + (l s A_i)^2 / 2,   S^2 = sum_i mu_i^2 / D_ii
+///        b = b_0 (w_1 + (1 - w_1) / f),   f = max(1, (d - mu)' (D + F F')^-1 (d - mu) / N) of the most likely h
 /// where  mu       change by the signature; of the two parts of a line with a phase: mean 0, variance half its square
 ///        D, F, v  WindowResidual
 ///        r, e     error of a signature in proportion to each number, and to its length: other gears, places
@@ -199,6 +200,8 @@ struct CausePosterior
 ///        l        share of such a line that a fault of severity 1 changes: errors of manufacture differ. Also of
 ///                 the lost motion, without the 2: how far wear opens the teeth depends on how tight they were
 ///        b        weight of the evidence: what a signature is off by is not independent from number to number
+///        f, N     misfit: the more even the best signature leaves, the less the evidence says, w_1 = 0.2 of it at
+///                 least, and the less is known of the severity;  numbers compared
 ///        n, q     MotionKind of the window, of the signature: where a line meets a resonance of the drive, it is the
 ///                 larger part of every signature, elsewhere of none;  N = 0.2, Q = 0.3, w_0 = 0.001
 /// Stiffness changes as a compliance does: mu = c x^2 / x_h,  c  share by the signature, x  sound value of the window's
@@ -240,8 +243,8 @@ private:
   };
 
   std::shared_ptr<const SignatureSet> set_;
-  std::vector<double> likelihoods_;  // logarithms; of the set, then of what is in none
-  double largest_{};
+  std::vector<double> likelihoods_;  // logarithms; of the set, then of what is in none; after the first pass times b
+  double misfit_{ 1.0 };             // f, after the first pass
   std::array<Sum, CAUSE_COUNT> sums_{};
   std::size_t next_{};
 };
