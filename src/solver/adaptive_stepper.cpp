@@ -213,7 +213,7 @@ void AdaptiveStepper::operator()(const JointState& x, JointState& rate, double t
   strength_.setZero();
   Eigen::Vector2d drag = -(friction.viscous * speeds);
   drag[0] += dynamics_->preslidingTorque();
-  for (const FrictionTerm& term : friction.terms)
+  for (const FrictionTerm term : friction.terms)
   {
     if (term.slip[1] == 0.0)
     {
