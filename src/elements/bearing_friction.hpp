@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 
 #include "gear/angle.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
@@ -48,8 +50,7 @@ public:
     constexpr double LOW_SPEED = 2000.0;  // mm^2/s rpm
     const double product = 1e6 * viscosity * std::abs(speed) * 60.0 / TWO_PI;
     const double diameter = 1e3 * parameters_.pitch_diameter;
-    const double root = std::cbrt(std::max(product, LOW_SPEED));
-    const double rolling = product < LOW_SPEED ? 160.0 : root * root;
+    const double rolling = product < LOW_SPEED ? 160.0 : twoThirdsPower(product);
     const double speed_part = parameters_.lubricant_factor * rolling * diameter * diameter * diameter * 1e-7;
     const double load_part = parameters_.load_factor * (load + preload_) * diameter;
     return 1e-3 * (speed_part + load_part);
@@ -72,6 +73,24 @@ public:
     const double root = std::cbrt(grease / parameters_.viscosity);
     const double friction = constant + (1.0 - constant) * root * root;  // over that of the sound grease at T_0
     return parameters_.viscosity * friction * std::sqrt(friction);
+  }
+
+  /// x^(2/3), x > 0 and finite, within 1e-14 of it: x times its reciprocal cube root, which begins with a third of the
+  /// exponent, 4 % off, and by the series of (1 - e)^(-1/3) comes to 2e-6 and to rounding.
+  static double twoThirdsPower(double x) noexcept
+  {
+    constexpr std::uint64_t ONE = 0x553ef0ff289dd796;  // what makes a third of the bits of 1 those of 1
+    std::uint64_t bits{};
+    std::memcpy(&bits, &x, sizeof(bits));
+    bits = ONE - bits / 3;
+    double root{};
+    std::memcpy(&root, &bits, sizeof(root));
+    for (int i = 0; i < 2; ++i)
+    {
+      const double e = 1.0 - x * root * root * root;
+      root += root * e * (1.0 / 3.0 + e * (2.0 / 9.0 + e * (14.0 / 81.0 + e * (35.0 / 243.0))));
+    }
+    return x * root;
   }
 
 private:

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -71,33 +70,21 @@ public:
     return state;
   }
 
-  /// After a monotone turn to `rotation` [rad].
-  State turned(const State& from, double rotation) const noexcept
+  /// After a monotone turn to `rotation` [rad]. `from`: its twist and rotation count.
+  inline __attribute__((always_inline)) State turned(const State& from, double rotation) const noexcept
   {
+    using Elements = Eigen::Array<double, ELEMENTS, 1>;
+    const double spring = stiffness() / ELEMENTS;
+    const Elements width = width_ * Eigen::Map<const Elements>(SHARES.data());
+    const Elements free = Eigen::Map<const Elements>(from.twist.data()) + (rotation - from.rotation);
+    const Elements twist = free.min(width).max(-width);
     State state;
     state.rotation = rotation;
-    const double turn = rotation - from.rotation;
-    const double spring = stiffness() / ELEMENTS;
-    double width = width_;
-    double sum = 0.0;
-    double squares = 0.0;
-    double slip = 0.0;  // times widths [rad^2]
-    double held = 0.0;
-    for (int j = 0; j < ELEMENTS; ++j)
-    {
-      const double free = from.twist[j] + turn;
-      const double twist = std::clamp(free, -width, width);
-      state.twist[j] = twist;
-      sum += twist;
-      squares += twist * twist;
-      slip += width * std::abs(free - twist);
-      held += free == twist ? 1.0 : 0.0;
-      width *= 1.0 / RATIO;
-    }
-    state.torque = spring * sum;
-    state.energy = 0.5 * spring * squares;
-    state.slipped = spring * slip;
-    state.stiffness = spring * held;
+    Eigen::Map<Elements>(state.twist.data()) = twist;
+    state.torque = spring * twist.sum();
+    state.energy = 0.5 * spring * twist.square().sum();
+    state.slipped = spring * (width * (free - twist).abs()).sum();
+    state.stiffness = spring * static_cast<double>((free == twist).count());
     return state;
   }
 
@@ -117,6 +104,10 @@ public:
 
 private:
   static constexpr double RATIO = 3.0;  // of an element's width to the next
+  // Of an element's width to the widest.
+  static constexpr std::array<double, ELEMENTS> SHARES{
+    1.0, 1.0 / 3.0, 1.0 / 9.0, 1.0 / 27.0, 1.0 / 81.0, 1.0 / 243.0
+  };
 
   double torque_;  // sum of what the elements slip at [N.m]
   double width_;   // of the widest element [rad]

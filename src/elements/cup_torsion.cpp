@@ -30,6 +30,10 @@ void CupTorsion::scaleWall(double factor) noexcept
 
 void CupTorsion::placeBreakpoints() noexcept
 {
+  for (std::size_t i = 0; i < slopes_.size(); ++i)
+  {
+    compliances_[i] = 1.0 / slopes_[i];
+  }
   rotations_[0] = torques_[0] / slopes_[0];
   rotations_[1] = rotations_[0] + (torques_[1] - torques_[0]) / slopes_[1];
 }
@@ -94,14 +98,14 @@ double CupTorsion::torque(double rotation) const noexcept
 double CupTorsion::rotationAtTorque(double torque) const noexcept
 {
   const double size = std::abs(torque);
-  double rotation = size / slopes_[0];
+  double rotation = size * compliances_[0];
   if (size > torques_[1])
   {
-    rotation = rotations_[1] + (size - torques_[1]) / slopes_[2];
+    rotation = rotations_[1] + (size - torques_[1]) * compliances_[2];
   }
   else if (size > torques_[0])
   {
-    rotation = rotations_[0] + (size - torques_[0]) / slopes_[1];
+    rotation = rotations_[0] + (size - torques_[0]) * compliances_[1];
   }
   return std::copysign(rotation, torque);
 }

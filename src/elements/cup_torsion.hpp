@@ -35,14 +35,14 @@ public:
   double meanRotation(const RingShape& shape) const noexcept;  ///< Phi [rad]
   /// Rate of the mean rotation for speeds of the ring's points, 2 N [m/s]: dPhi/dt [rad/s].
   static double meanRotationRate(const RingShape& shape, const Eigen::VectorXd& speeds) noexcept;
-  double torque(double rotation) const noexcept;          ///< C(Phi) [N.m]
-  double rotationAtTorque(double torque) const noexcept;  ///< inverse of C [rad]
-  double storedEnergy(double rotation) const noexcept;    ///< [J]
-  double stiffness(double rotation) const noexcept;       ///< dC/dPhi [N.m/rad]
-  double stiffnessAtTorque(double torque) const noexcept
+  double torque(double rotation) const noexcept;           ///< C(Phi) [N.m]
+  double rotationAtTorque(double torque) const noexcept;   ///< inverse of C [rad]
+  double storedEnergy(double rotation) const noexcept;     ///< [J]
+  double stiffness(double rotation) const noexcept;        ///< dC/dPhi [N.m/rad]
+  double complianceAtTorque(double torque) const noexcept  ///< 1 / stiffness [rad/(N.m)]
   {
     const double size = torque < 0.0 ? -torque : torque;
-    return size > torques_[1] ? slopes_[2] : size > torques_[0] ? slopes_[1] : slopes_[0];
+    return size > torques_[1] ? compliances_[2] : size > torques_[0] ? compliances_[1] : compliances_[0];
   }
 
   struct Scratch
@@ -62,6 +62,7 @@ private:
 
   double wall_compliance_;  // [rad/(N.m)]
   std::array<double, 3> slopes_;
+  std::array<double, 3> compliances_{};  // 1 / slopes_
   std::array<double, 2> torques_;
   std::array<double, 2> rotations_;  // where the slope changes [rad]
   Eigen::VectorXd rest_radial_;

@@ -58,10 +58,7 @@ void TurnWindow::update(double motor_angle, double torsion) noexcept
   {
     const double slope = (torsion - torsion_) / (place - place_);
     const std::int64_t first = std::max(newest_mark_ + 1, mark - marks_per_turn_ - 1);
-    for (std::int64_t i = first; i <= mark; ++i)
-    {
-      keep(torsion_ + slope * (static_cast<double>(i) - place_));
-    }
+    keep(static_cast<double>(first) - place_, slope, mark - first + 1);
     newest_mark_ = mark;
   }
   place_ = place;
@@ -116,11 +113,24 @@ Indicator TurnWindow::kinematicError() const noexcept
   return { true, highest - lowest };
 }
 
-void TurnWindow::keep(double torsion) noexcept
+/// So many marks more, the first at a `place` beyond the last sample, on a line from its torsion.
+void TurnWindow::keep(double place, double slope, std::int64_t marks) noexcept
 {
-  newest_ = newest_ + 1 == torsions_.size() ? 0 : newest_ + 1;
-  torsions_[newest_] = torsion;
-  count_ = std::min(count_ + 1, torsions_.size());
+  count_ = std::min<Eigen::Index>(count_ + marks, torsions_.size());
+  while (marks > 0)
+  {
+    const Eigen::Index next = newest_ + 1 == torsions_.size() ? 0 : newest_ + 1;
+    const auto run = static_cast<int>(std::min<Eigen::Index>(marks, torsions_.size() - next));
+    double* kept = torsions_.data() + next;
+#pragma omp simd
+    for (int i = 0; i < run; ++i)
+    {
+      kept[i] = torsion_ + slope * (place + i);
+    }
+    newest_ = next + run - 1;
+    place += run;
+    marks -= run;
+  }
 }
 
 double TurnWindow::torsionAt(Eigen::Index marks_back) const noexcept

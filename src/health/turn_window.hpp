@@ -41,7 +41,7 @@ public:
 
 private:
   bool full() const noexcept { return count_ == torsions_.size(); }
-  void keep(double torsion) noexcept;
+  void keep(double place, double slope, std::int64_t marks) noexcept;
   double torsionAt(Eigen::Index marks_back) const noexcept;
 
   double nominal_ratio_;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "model/joint_model.hpp"
 
+#include "gear/vector_clones.hpp"
+
 namespace hjt
 {
 JointModel::JointModel(const Parameters& parameters)
@@ -57,24 +59,15 @@ void JointModel::friction(const RingForces& forces, const RingRates& rates, doub
   damping.add(contact, rates, friction);
 }
 
-void JointModel::friction(const RingFrictionResponse& ring_response, const Eigen::Vector2d& cup_slip,
-                          const Running& running, JointFriction& friction) const noexcept
+HJT_VECTOR_CLONES void JointModel::friction(const RingFrictionResponse& ring_response, const Eigen::Vector2d& cup_slip,
+                                            const Running& running, JointFriction& friction) const noexcept
 {
   friction.terms.clear();
   addShaft(running, ring_response.contact_force, ring_response.ring_torque, friction);
   using Groups = RingFrictionResponse::Groups;
   const Groups sliding =
       ring_response.rms_slip_by_motor * running.speeds[0] + ring_response.rms_slip_by_output * running.speeds[1];
-  const Groups coefficients = mesh_friction.coefficients(sliding);
-  for (int i = 0; i < RingFrictionResponse::FLANK_GROUPS; ++i)
-  {
-    const double by_motor = ring_response.flank_by_motor[i];
-    const double by_output = ring_response.flank_by_output[i];
-    if (by_motor != 0.0 || by_output != 0.0)
-    {
-      friction.terms.push_back({ coefficients[i], { by_motor, by_output } });
-    }
-  }
+  friction.terms.add(mesh_friction.coefficients(sliding), ring_response.flank_by_motor, ring_response.flank_by_output);
   cup_friction.addTerm(cup_slip, friction);
   addOutput(friction);
   const Eigen::Vector3d& dashpots = ring_response.viscous;

@@ -3,12 +3,16 @@
 
 #include <array>
 #include <cmath>
+#include <utility>
+
+#include "gear/vector_clones.hpp"
 
 namespace hjt
 {
 namespace
 {
-constexpr double STICK_RANGE = 1e3;  // in regularisation speeds: slower, the motor may really be at rest
+constexpr double STICK_RANGE = 1e3;   // in regularisation speeds: slower, the motor may really be at rest
+constexpr double MIN_WIDTH = 1e-100;  // of a term that nothing slips: its square and the inverse stay numbers
 
 /// How far to go from `v` along `change`: all the way if the function still falls there, else to where it stops
 /// falling. Looks at slopes only: values near a minimum differ by less than their rounding. Leaves the gradient there
@@ -50,7 +54,7 @@ Eigen::Vector2d newtonStep(const Eigen::Matrix2d& hessian, const Eigen::Vector2d
 double shaftStrength(const JointFriction& friction) noexcept
 {
   double strength = 0.0;
-  for (const FrictionTerm& term : friction.terms)
+  for (const FrictionTerm term : friction.terms)
   {
     strength += term.slip[1] == 0.0 ? term.strength * std::abs(term.slip[0]) : 0.0;
   }
@@ -79,14 +83,127 @@ bool solveSlip(double free, double most, double e, double& share)
   }
   return false;
 }
+
+/// A few terms that go on as they slid. Its functions are part of `slide` for each kind of processor.
+class SlidingTerms
+{
+public:
+  /// Those that do not go on.
+  struct Stops
+  {
+    double number{};
+    double places{};  // sum of their places
+  };
+
+  /// `strength`: of all against the old slips, by motor and output. False: too many terms, or none.
+  inline __attribute__((always_inline)) bool take(const FrictionTerms& terms, const Eigen::Vector2d& old_speeds,
+                                                  double follow, double width, Eigen::Vector2d& strength)
+  {
+    constexpr double SLIDING = 3e4;  // slip over the regularisation's width, far from standing still
+    count_ = terms.packedSize();
+    if (count_ == 0 || count_ > MAX_TERMS)
+    {
+      return false;
+    }
+    const double* __restrict__ c = terms.strength();
+    const double* __restrict__ m = terms.byMotor();
+    const double* __restrict__ o = terms.byOutput();
+    const double motor = old_speeds[0];
+    const double output = old_speeds[1];
+    const double least = SLIDING * width;
+    double by_motor = 0.0;
+    double by_output = 0.0;
+#pragma omp simd reduction(+ : by_motor, by_output)
+    for (int j = 0; j < count_; ++j)
+    {
+      sense_[j] = std::copysign(1.0, m[j] * motor + o[j] * output);
+      by_motor_[j] = sense_[j] * m[j];
+      by_output_[j] = sense_[j] * o[j];
+      least_[j] = least * (std::abs(m[j]) + follow * std::abs(o[j]));
+      by_motor += c[j] * by_motor_[j];
+      by_output += c[j] * by_output_[j];
+    }
+    strength = { by_motor, by_output };
+    return true;
+  }
+
+  inline __attribute__((always_inline)) Stops stops(const Eigen::Vector2d& speeds) const
+  {
+    const double motor = speeds[0];
+    const double output = speeds[1];
+    double number = 0.0;
+    double places = 0.0;
+#pragma omp simd reduction(+ : number, places)
+    for (int j = 0; j < count_; ++j)
+    {
+      const double stopped = by_motor_[j] * motor + by_output_[j] * output < least_[j] ? 1.0 : 0.0;
+      number += stopped;
+      places += stopped * j;
+    }
+    return { number, places };
+  }
+
+  /// Counts no more. @returns the sense in which it slid.
+  double leaveOut(int place)
+  {
+    least_[static_cast<std::size_t>(place)] = -HUGE_VAL;
+    return sense_[static_cast<std::size_t>(place)];
+  }
+
+private:
+  static constexpr int MAX_TERMS = 12;
+  using Numbers = std::array<double, MAX_TERMS>;
+
+  int count_{};
+  alignas(32) Numbers sense_;
+  alignas(32) Numbers by_motor_;   // of the slips, positive as they were
+  alignas(32) Numbers by_output_;  // likewise
+  alignas(32) Numbers least_;      // slip at which a term goes on
+};
 }  // namespace
 
 /// Slip speed at which a term is half way to full friction: what it sees at the regularising motor speed, the output
 /// following or held, whichever slips more.
 double DryFriction::width(const FrictionTerm& term, double velocity_ratio) const noexcept
 {
-  constexpr double MIN_WIDTH = 1e-100;  // of a term that nothing slips: its powers up to the third stay numbers
   return width_ * (std::abs(term.slip[0]) + std::abs(velocity_ratio * term.slip[1])) + MIN_WIDTH;
+}
+
+HJT_VECTOR_CLONES DryFriction::Slopes DryFriction::slopes(const FrictionTerms& terms, double follow,
+                                                          const Eigen::Vector2d& v) const noexcept
+{
+  const int count = terms.packedSize();
+  const double* __restrict__ strength = terms.strength();
+  const double* __restrict__ by_motor = terms.byMotor();
+  const double* __restrict__ by_output = terms.byOutput();
+  const double motor = v[0];
+  const double output = v[1];
+  const double width = width_;
+  Slopes sum;
+  double first_0 = 0.0;
+  double first_1 = 0.0;
+  double second_00 = 0.0;
+  double second_01 = 0.0;
+  double second_11 = 0.0;
+#pragma omp simd reduction(+ : first_0, first_1, second_00, second_01, second_11)
+  for (int j = 0; j < count; ++j)
+  {
+    const double m = by_motor[j];
+    const double o = by_output[j];
+    const double e = width * (std::abs(m) + follow * std::abs(o)) + MIN_WIDTH;
+    const double slip = m * motor + o * output;
+    const double inverse = 1.0 / std::sqrt(slip * slip + e * e);
+    const double force = strength[j] * slip * inverse;
+    const double stiffness = strength[j] * inverse * (e * inverse) * (e * inverse);
+    first_0 += force * m;
+    first_1 += force * o;
+    second_00 += stiffness * m * m;
+    second_01 += stiffness * m * o;
+    second_11 += stiffness * o * o;
+  }
+  sum.first = { first_0, first_1 };
+  sum.second << second_00, second_01, second_01, second_11;
+  return sum;
 }
 
 Eigen::Vector2d DryFriction::solve(const JointFriction& friction, double velocity_ratio,
@@ -95,21 +212,15 @@ Eigen::Vector2d DryFriction::solve(const JointFriction& friction, double velocit
 {
   constexpr int MAX_ITERATIONS = 100;
   constexpr double ENOUGH = 1e-12;  // relative change of the speeds
+  Eigen::Matrix2d linear = 0.5 * step * friction.viscous;
+  const Eigen::Vector2d drag = linear * old_speeds - inertia_.cwiseProduct(free_speeds);
+  linear.diagonal() += inertia_;
   Eigen::Matrix2d hessian;
-  const auto gradient = [&](const Eigen::Vector2d& v)
+  const auto gradient = [&](const Eigen::Vector2d& v) -> Eigen::Vector2d
   {
-    Eigen::Vector2d sum = inertia_.cwiseProduct(v - free_speeds) + 0.5 * step * friction.viscous * (v + old_speeds);
-    hessian = 0.5 * step * friction.viscous;
-    hessian.diagonal() += inertia_;
-    for (const FrictionTerm& term : friction.terms)
-    {
-      const double e = width(term, velocity_ratio);
-      const double slip = term.slip.dot(v);
-      const double inverse = 1.0 / std::sqrt(slip * slip + e * e);
-      sum += step * term.strength * slip * inverse * term.slip;
-      hessian += step * term.strength * e * e * inverse * inverse * inverse * term.slip * term.slip.transpose();
-    }
-    return sum;
+    const Slopes dry = slopes(friction.terms, std::abs(velocity_ratio), v);
+    hessian = linear + step * dry.second;
+    return linear * v + drag + step * dry.first;
   };
 
   // Down to the minimum, or with the motor at rest to the minimum over the output's speed alone.
@@ -150,61 +261,46 @@ Eigen::Vector2d DryFriction::solve(const JointFriction& friction, double velocit
   return v;
 }
 
-bool DryFriction::slide(const JointFriction& friction, double velocity_ratio, const Eigen::Vector2d& old_speeds,
-                        const Eigen::Vector2d& free_speeds, double step, Eigen::Vector2d& speeds) const noexcept
+HJT_VECTOR_CLONES bool DryFriction::slide(const JointFriction& friction, double velocity_ratio,
+                                          const Eigen::Vector2d& old_speeds, const Eigen::Vector2d& free_momentum,
+                                          double step, Eigen::Vector2d& speeds) const noexcept
 {
-  constexpr std::size_t MAX_TERMS = 9;
-  const std::size_t count = friction.terms.size();
-  if (count == 0 || count > MAX_TERMS)
+  SlidingTerms sliding;
+  Eigen::Vector2d strength;
+  if (!sliding.take(friction.terms, old_speeds, std::abs(velocity_ratio), width_, strength))
   {
     return false;
   }
-  std::array<double, MAX_TERMS> impulses;  // of the terms, each against its slip at the old speeds
-  Eigen::Vector2d momentum = inertia_.cwiseProduct(free_speeds) - 0.5 * step * (friction.viscous * old_speeds);
-  for (std::size_t j = 0; j < count; ++j)
-  {
-    const FrictionTerm& term = friction.terms[j];
-    const double slip = term.slip[0] * old_speeds[0] + term.slip[1] * old_speeds[1];
-    impulses[j] = std::copysign(step * term.strength, slip);
-    momentum -= impulses[j] * term.slip;
-  }
-  const double a = inertia_[0] + 0.5 * step * friction.viscous(0, 0);
-  const double b = 0.5 * step * friction.viscous(0, 1);
-  const double d = inertia_[1] + 0.5 * step * friction.viscous(1, 1);
+  const Eigen::Matrix2d viscous = 0.5 * step * friction.viscous;
+  const double a = inertia_[0] + viscous(0, 0);
+  const double b = viscous(0, 1);
+  const double d = inertia_[1] + viscous(1, 1);
   const double inverse = 1.0 / (a * d - b * b);
   const auto answer = [&](const Eigen::Vector2d& to)
   { return Eigen::Vector2d(inverse * (d * to[0] - b * to[1]), inverse * (a * to[1] - b * to[0])); };
-  Eigen::Vector2d v = answer(momentum);
-  // The terms that do not go on as they slid: one of them may be the one unknown.
-  const double follow = std::abs(velocity_ratio);
-  std::size_t nearest = count;
-  for (std::size_t j = 0; j < count; ++j)
+  Eigen::Vector2d v = answer(free_momentum - viscous * old_speeds - step * strength);
+  const SlidingTerms::Stops stops = sliding.stops(v);
+  if (stops.number > 1.0)
   {
-    const bool stops = !goesOn(friction.terms[j], follow, impulses[j], v);
-    if (stops && nearest < count)
-    {
-      return false;
-    }
-    nearest = stops ? j : nearest;
+    return false;
   }
-  if (nearest < count)
+  if (stops.number > 0.0)  // it may be the one unknown
   {
-    const FrictionTerm& term = friction.terms[nearest];
+    const auto nearest = static_cast<int>(stops.places);
+    const FrictionTerm term = friction.terms[nearest];
+    const double strongest = step * term.strength;
     const Eigen::Vector2d response = answer(term.slip);
-    v += impulses[nearest] * response;                                   // without this term
-    const double most = step * term.strength * term.slip.dot(response);  // of its slip, that this term can take
-    double share = 0.0;                                                  // of its strength that it acts with
+    v += strongest * sliding.leaveOut(nearest) * response;    // without this term
+    const double most = strongest * term.slip.dot(response);  // of its slip, that this term can take
+    double share = 0.0;                                       // of its strength that it acts with
     if (!solveSlip(term.slip.dot(v), most, width(term, velocity_ratio), share))
     {
       return false;
     }
-    v -= step * term.strength * share * response;
-    for (std::size_t j = 0; j < count; ++j)
+    v -= strongest * share * response;
+    if (sliding.stops(v).number > 0.0)
     {
-      if (j != nearest && !goesOn(friction.terms[j], follow, impulses[j], v))
-      {
-        return false;
-      }
+      return false;
     }
   }
   if (!(std::abs(v[0]) >= STICK_RANGE * width_))
@@ -215,21 +311,11 @@ bool DryFriction::slide(const JointFriction& friction, double velocity_ratio, co
   return true;
 }
 
-/// Whether a term slides at these speeds in the sense of its impulse, far from standing still.
-bool DryFriction::goesOn(const FrictionTerm& term, double follow, double impulse,
-                         const Eigen::Vector2d& speeds) const noexcept
-{
-  constexpr double SLIDING = 3e4;  // slip over the regularisation's width
-  const double slip = term.slip[0] * speeds[0] + term.slip[1] * speeds[1];
-  return std::copysign(1.0, impulse) * slip >
-         SLIDING * width_ * (std::abs(term.slip[0]) + follow * std::abs(term.slip[1]));
-}
-
 Eigen::Vector2d DryFriction::torque(const JointFriction& friction, double velocity_ratio,
                                     const Eigen::Vector2d& speeds) const noexcept
 {
   Eigen::Vector2d torque = -friction.viscous * speeds;
-  for (const FrictionTerm& term : friction.terms)
+  for (const FrictionTerm term : friction.terms)
   {
     const double slip = term.slip.dot(speeds);
     torque -= term.strength * slip / std::hypot(slip, width(term, velocity_ratio)) * term.slip;

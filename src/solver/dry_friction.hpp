@@ -32,17 +32,26 @@ public:
 
   /// The same minimum where every term, or every one but one, slides as it did at the old speeds, far from standing
   /// still: linear but for one unknown. False, and nothing done, elsewhere, at rest above all. Differs from `solve` by
-  /// the tails of the regularisation, less than 1e-9 of the friction.
+  /// the tails of the regularisation, less than 1e-9 of the friction. `free_momentum`: M v_free [N.m.s].
   bool slide(const JointFriction& friction, double velocity_ratio, const Eigen::Vector2d& old_speeds,
-             const Eigen::Vector2d& free_speeds, double step, Eigen::Vector2d& speeds) const noexcept;
+             const Eigen::Vector2d& free_momentum, double step, Eigen::Vector2d& speeds) const noexcept;
 
   /// Friction torque on motor and output at given speeds, explicit [N.m].
   Eigen::Vector2d torque(const JointFriction& friction, double velocity_ratio,
                          const Eigen::Vector2d& speeds) const noexcept;
 
+  const Eigen::Vector2d& inertia() const noexcept { return inertia_; }  ///< [kg.m^2]
+
 private:
+  /// Derivatives of sum_j c_j sqrt((a_j v)^2 + e_j^2) by the speeds.
+  struct Slopes
+  {
+    Eigen::Vector2d first;
+    Eigen::Matrix2d second;
+  };
+
   double width(const FrictionTerm& term, double velocity_ratio) const noexcept;
-  bool goesOn(const FrictionTerm& term, double follow, double impulse, const Eigen::Vector2d& speeds) const noexcept;
+  Slopes slopes(const FrictionTerms& terms, double follow, const Eigen::Vector2d& v) const noexcept;
 
   Eigen::Vector2d inertia_;
   double width_;

@@ -142,7 +142,7 @@ void JointDynamics::takeSurface() noexcept
     // The rim turns with the torque that it leans on the housing with.
     const auto& cup = model_->ring.of<CupTorsion>();
     const double torque = -(response_.wave_generator_torque + response_.output_torque);
-    turnCup(cup.rotationAtTorque(torque), housing_stiffness_ / cup.stiffnessAtTorque(torque));
+    turnCup(cup.rotationAtTorque(torque), housing_stiffness_ * cup.complianceAtTorque(torque));
   }
   slideShaft();
 }
@@ -171,7 +171,18 @@ double JointDynamics::accept() noexcept
   }
   const double slipped = now_.cup.slipped;
   now_.cup.slipped = 0.0;
-  accepted_ = now_;
+  // Only what is remembered: a copy of all has to wait for what was written last.
+  accepted_.cup.twist = now_.cup.twist;
+  accepted_.cup.rotation = now_.cup.rotation;
+  if (model_->motor.preslidingAngle() > 0.0)
+  {
+    accepted_.share = now_.share;
+    accepted_.motor_angle = now_.motor_angle;
+  }
+  if (model_->brake.hasPlay())
+  {
+    accepted_.pin = now_.pin;
+  }
   return slipped;
 }
 
@@ -217,7 +228,7 @@ void JointDynamics::updateFriction(const Eigen::Vector2d& speeds) noexcept
     if (!model_->cup_friction.hasState())
     {
       const double torque = response_.wave_generator_torque + response_.output_torque;
-      cup_slip = housing_stiffness_ / model_->ring.of<CupTorsion>().stiffnessAtTorque(torque);
+      cup_slip = housing_stiffness_ * model_->ring.of<CupTorsion>().complianceAtTorque(torque);
     }
     model_->friction(ring_friction, cup_slip, running, friction_);
     return;

@@ -8,17 +8,18 @@ namespace hjt
 {
 namespace
 {
-/// Speeds after a kick that without friction would lead to `free`. On the surface the friction is in few terms, and all
-/// is done to be quick.
+/// Speeds after a kick that without friction would bring a momentum [N.m.s]. On the surface the friction is in few
+/// terms, and all is done to be quick.
 Eigen::Vector2d rub(const JointDynamics& system, const DryFriction& friction, const Eigen::Vector2d& before,
-                    const Eigen::Vector2d& free, double dt) noexcept
+                    const Eigen::Vector2d& momentum, double dt) noexcept
 {
   Eigen::Vector2d after;
-  if (system.onSurface() && friction.slide(system.friction(), system.velocityRatio(), before, free, dt, after))
+  if (system.onSurface() && friction.slide(system.friction(), system.velocityRatio(), before, momentum, dt, after))
   {
     return after;
   }
-  return friction.solve(system.friction(), system.velocityRatio(), before, free, dt);
+  return friction.solve(system.friction(), system.velocityRatio(), before, momentum.cwiseQuotient(friction.inertia()),
+                        dt);
 }
 
 /// Speeds after a kick in which the drive's torque fades with the speed, as it is at the kick's end: one solution,
@@ -38,7 +39,7 @@ Eigen::Vector2d fade(JointDynamics& system, const Eigen::Vector2d& others, doubl
     Eigen::Vector2d inertia = system.inertia();
     const Eigen::Vector2d momentum = inertia.cwiseProduct(before) + dt * (others + Eigen::Vector2d(gain * torque, 0.0));
     inertia[0] += dt * gain * slope;
-    return rub(system, system.dryFriction().withMotor(inertia[0]), before, momentum.cwiseQuotient(inertia), dt);
+    return rub(system, system.dryFriction().withMotor(inertia[0]), before, momentum, dt);
   };
   Eigen::Vector2d after = kick(kept + share * motor.faded(wanted, 0.0), share * motor.fadeSlope(wanted));
   if (std::abs(after[0]) > motor.speedLimit())
@@ -47,6 +48,29 @@ Eigen::Vector2d fade(JointDynamics& system, const Eigen::Vector2d& others, doubl
   }
   system.drive_torque = kept + share * motor.faded(wanted, after[0]);
   return after;
+}
+
+/// Speeds after a kick by `others`, as of `fade`, and a drive that holds its torque back by the speed at the end or has
+/// all of it, `full` [N.m]. Nearly always it is as it was at the start.
+Eigen::Vector2d drive(JointDynamics& system, const Eigen::Vector2d& others, double full, double kept, double share,
+                      const Eigen::Vector2d& before, double dt) noexcept
+{
+  const Motor& motor = system.model().motor;
+  const double wanted = system.inputs.motor_torque;
+  Eigen::Vector2d after;
+  if (motor.fades(wanted, before[0]))
+  {
+    after = fade(system, others, kept, share, before, dt);
+    if (motor.fades(wanted, after[0]))
+    {
+      return after;
+    }
+  }
+  system.drive_torque = full;
+  Eigen::Vector2d momentum = system.inertia().cwiseProduct(before) + dt * others;
+  momentum[0] += dt * system.driveTorque();
+  after = rub(system, system.dryFriction(), before, momentum, dt);
+  return motor.fades(wanted, after[0]) ? fade(system, others, kept, share, before, dt) : after;
 }
 }  // namespace
 
@@ -69,18 +93,15 @@ void Leapfrog::do_step(JointDynamics& system, JointState& x, double, double dt) 
   system.drive_torque = wanted + lag * (x[DRIVE_TORQUE] - wanted);
   system.updateFriction(before);
   const double presliding = system.preslidingTorque();
-  Eigen::Vector2d torque = system.torque() + Eigen::Vector2d(presliding, 0.0);
-  Eigen::Vector2d free = before + dt * torque.cwiseQuotient(inertia);
-  Eigen::Vector2d after = rub(system, system.dryFriction(), before, free, dt);
-  if (motor.fades(wanted, after[0]))
-  {
-    torque[0] -= system.driveTorque();
-    after = fade(system, torque, lag * x[DRIVE_TORQUE], 1.0 - lag, before, dt);
-    torque[0] += system.driveTorque();
-    free = before + dt * torque.cwiseQuotient(inertia);
-  }
+  const double full = system.drive_torque;
+  system.drive_torque = 0.0;
+  Eigen::Vector2d torque = system.torque();
+  torque[0] += presliding;
+  const Eigen::Vector2d after = drive(system, torque, full, lag * x[DRIVE_TORQUE], 1.0 - lag, before, dt);
+  torque[0] += system.driveTorque();
   speeds_ = 0.5 * (before + after);
-  friction_ = inertia.cwiseProduct(after - free) / dt;
+  const Eigen::Vector2d kick = inertia.cwiseProduct(after - before) / dt;
+  friction_ = kick - torque;
   friction_[0] += presliding;
   x.segment<2>(MOTOR_ANGLE) = angles;
   x.segment<2>(MOTOR_SPEED) = after;
@@ -94,7 +115,7 @@ void Leapfrog::do_step(JointDynamics& system, JointState& x, double, double dt) 
   const double kinetic = 0.25 * (before.dot(inertia.cwiseProduct(before)) + after.dot(inertia.cwiseProduct(after)));
   balance_ = x[MOTOR_WORK] - x[LOAD_WORK] - x[DISSIPATED] + 0.5 * (motor_work - load_work - dissipated) - kinetic;
   delivered_ = x[LOAD_WORK] + 0.5 * load_work + 0.25 * inertia[1] * (before[1] * before[1] + after[1] * after[1]);
-  link_torque_ = inertia[1] * (after[1] - before[1]) / dt + system.inputs.load_torque;
+  link_torque_ = kick[1] + system.inputs.load_torque;
   work_ = { motor_work, load_work, dissipated };
   x.segment<3>(MOTOR_WORK) += work_;
 }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "gear/vector_clones.hpp"
+
 namespace hjt
 {
 LineIndex::LineIndex(const std::vector<double>& lines)
@@ -33,7 +35,7 @@ LineIndex::LineIndex(const std::vector<double>& lines)
   }
 }
 
-SurfaceEnergy SurfaceCell::energy() const noexcept
+HJT_VECTOR_CLONES SurfaceEnergy SurfaceCell::energy() const noexcept
 {
   // Two cubics side by side along v: of the energy and of its slope by u. By the place within the cell.
   using Pair = Eigen::Array2d;
@@ -286,7 +288,7 @@ void ResponseSurface::stiffen(const SurfaceEnergy& change, RingResponse& respons
   }
 }
 
-void ResponseSurface::friction(const Place& place, RingFrictionResponse& friction) const noexcept
+HJT_VECTOR_CLONES void ResponseSurface::friction(const Place& place, RingFrictionResponse& friction) const noexcept
 {
   using Value = SurfaceNode::Value;
   constexpr int GROUPS = RingFrictionResponse::FLANK_GROUPS;
@@ -315,6 +317,7 @@ void ResponseSurface::friction(const Place& place, RingFrictionResponse& frictio
   friction.contact_force = x[Value::CONTACT_FORCE - Value::BILINEAR];
   friction.ring_torque = x[Value::RING_TORQUE - Value::BILINEAR];
   friction.viscous << x[VISCOUS], x[VISCOUS + 1], x[VISCOUS + 2];
+#pragma omp simd
   for (int i = 0; i < GROUPS; ++i)
   {
     friction.flank_by_motor[i] = x[FLANKS + i];

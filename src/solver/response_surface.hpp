@@ -195,7 +195,7 @@ public:
 
   /// The first COUNT of them at once.
   template <int COUNT>
-  Eigen::Array<float, COUNT, 1> values() const noexcept
+  inline __attribute__((always_inline)) Eigen::Array<float, COUNT, 1> values() const noexcept
   {
     using Values = Eigen::Array<float, COUNT, 1>;
     const auto at = [](const SurfaceNode& node) { return Eigen::Map<const Values>(node.bilinear().data()); };

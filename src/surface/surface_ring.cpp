@@ -31,7 +31,7 @@ constexpr double COLLISION_MARGIN = 1.25;  // over the gear's momentary peak tor
 /// While the drive runs, and while the motor stands and the output swings, all flanks of a group slide the same way, so
 /// their sum is exact. The coefficient of friction, which falls with the slip, is taken at the group's root mean
 /// square.
-void groupFlanks(const std::vector<FrictionTerm>& terms, double velocity_ratio, double* groups)
+void groupFlanks(const FrictionTerms& terms, double velocity_ratio, double* groups)
 {
   constexpr int SIZES = RingFrictionResponse::FLANK_GROUPS / 2;
   constexpr double LOW = 0.25;   // slip, as a share of the mean, that counts to the slowest group only
@@ -47,13 +47,13 @@ void groupFlanks(const std::vector<FrictionTerm>& terms, double velocity_ratio, 
   std::array<double, 2> second{};
   const auto running = [&](const FrictionTerm& term) { return term.slip[0] + velocity_ratio * term.slip[1]; };
   const auto sense = [&](const FrictionTerm& term) { return running(term) * term.slip[1] >= 0.0 ? 0 : 1; };
-  for (const FrictionTerm& term : terms)
+  for (const FrictionTerm term : terms)
   {
     const double slip = std::abs(running(term));
     first[sense(term)] += term.strength * slip;
     second[sense(term)] += term.strength * slip * slip;
   }
-  for (const FrictionTerm& term : terms)
+  for (const FrictionTerm term : terms)
   {
     const int half = sense(term);
     const double mean = first[half] > 0.0 ? second[half] / first[half] : 1.0;

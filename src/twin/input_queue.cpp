@@ -58,8 +58,8 @@ bool InputQueue::pop(Stamp instant, Input& input) noexcept
     return false;
   }
   input = inputs_[first_];
-  first_ = (first_ + 1) % CAPACITY;
   --size_;
+  first_ = size_ == 0 ? 0 : (first_ + 1) % CAPACITY;  // a queue that is emptied again and again stays in the cache
   return true;
 }
 }  // namespace hjt

@@ -42,7 +42,7 @@ struct RandomStep
     const Eigen::Vector2d change = v - free;
     const Eigen::Vector2d mean = v + old;
     double value = 0.5 * change.dot(inertia.cwiseProduct(change)) + 0.25 * STEP * mean.dot(friction.viscous * mean);
-    for (const FrictionTerm& term : friction.terms)
+    for (const FrictionTerm term : friction.terms)
     {
       const double width = WIDTH * (std::abs(term.slip[0]) + VELOCITY_RATIO * std::abs(term.slip[1]));
       value += STEP * term.strength * std::hypot(term.slip.dot(v), width);
@@ -50,7 +50,7 @@ struct RandomStep
     return value;
   }
 
-  double shaft() const { return friction.terms.front().strength; }  // [N.m]
+  double shaft() const { return friction.terms[0].strength; }  // [N.m]
 
   JointFriction friction;
   Eigen::Vector2d inertia;
@@ -120,7 +120,7 @@ TEST(DryFriction, SlidesAsItIsSolved)
     }
     const DryFriction dry(step.inertia, WIDTH);
     Eigen::Vector2d v(1e9, 1e9);
-    if (!dry.slide(step.friction, VELOCITY_RATIO, step.old, step.free, STEP, v))
+    if (!dry.slide(step.friction, VELOCITY_RATIO, step.old, step.inertia.cwiseProduct(step.free), STEP, v))
     {
       EXPECT_EQ(v, Eigen::Vector2d(1e9, 1e9)) << k;
       continue;
@@ -152,7 +152,7 @@ TEST(DryFriction, LeavesNoForceUnbalanced)
     const Eigen::Vector2d at_mean = -0.5 * step.friction.viscous * (v + step.old);
     const Eigen::Vector2d error = step.inertia.cwiseProduct(v - step.free) - STEP * (at_end + at_mean);
     Eigen::Vector2d scale = step.inertia.cwiseProduct(step.free.cwiseAbs() + v.cwiseAbs() + step.old.cwiseAbs());
-    for (const FrictionTerm& term : step.friction.terms)
+    for (const FrictionTerm term : step.friction.terms)
     {
       scale += STEP * term.strength * term.slip.cwiseAbs();
     }

@@ -116,13 +116,13 @@ TEST(FrictionInTheRunningJoint, BalancesMomentumInEveryStep)
     const Eigen::Vector2d law = dynamics.dryFriction().torque(dynamics.friction(), dynamics.velocityRatio(), after) +
                                 dynamics.friction().viscous * (after - leapfrog.speeds());
     double strength = dynamics.friction().viscous.col(0).lpNorm<1>() * std::abs(after[0]);
-    for (const FrictionTerm& term : dynamics.friction().terms)
+    for (const FrictionTerm term : dynamics.friction().terms)
     {
       strength += term.strength * std::abs(term.slip[0] + dynamics.velocityRatio() * term.slip[1]);
     }
     const Eigen::Vector2d off = leapfrog.frictionTorque() - law;
     // A motor at rest takes what it needs of the friction on its shaft, which is the first term.
-    const double held = after[0] == 0.0 ? dynamics.friction().terms.front().strength : 0.0;
+    const double held = after[0] == 0.0 ? dynamics.friction().terms[0].strength : 0.0;
     worst = std::max(worst, (std::abs(off[0] + dynamics.velocityRatio() * off[1]) - held) / strength);
   }
   RecordProperty("worst_relative_error", testing::PrintToString(worst));
@@ -151,7 +151,7 @@ TEST(Dissipation, IsNeverNegative)
     leapfrog.do_step(dynamics, x, 0.0, 1e-4);
     const Eigen::Vector2d after = x.segment<2>(MOTOR_SPEED);
     double allowed = 1e-15;
-    for (const FrictionTerm& term : dynamics.friction().terms)
+    for (const FrictionTerm term : dynamics.friction().terms)
     {
       const bool reversed = term.slip.dot(before) * term.slip.dot(after) <= 0.0;
       allowed += reversed ? 0.5e-4 * term.strength * std::abs(term.slip.dot(before)) : 0.0;
