@@ -266,8 +266,8 @@ void JointDynamics::operator()(const JointState& x, JointState& rate, double) no
     return;
   }
   // Of the current as part of the state, or where it follows at once.
-  drive_torque = model_->motor.currentRate() > 0.0 ? x[DRIVE_TORQUE] :
-                                                     model_->motor.limited(inputs.motor_torque, x[MOTOR_SPEED]);
+  drive_torque =
+      model_->motor.currentRate() > 0.0 ? x[DRIVE_TORQUE] : model_->motor.limited(inputs.motor_torque, x[MOTOR_SPEED]);
   updateFriction(speeds);
   const Eigen::Vector2d drag = dry_.torque(friction_, velocityRatio(), speeds);
   rate.segment<2>(MOTOR_ANGLE) = speeds;

@@ -68,8 +68,8 @@ public:
   }
   double energyResidual() const noexcept;  ///< energy in - stored - dissipated - released since reset [J]
   double dissipatedEnergy() const noexcept { return x_[joint_state::DISSIPATED]; }  ///< by all friction [J]
-  double energyThroughput() const noexcept { return throughput_; }    ///< sum of |work| of motor, load, friction [J]
-  int substeps() const noexcept { return substeps_; }  ///< 1 ... MAX_SUBSTEPS
+  double energyThroughput() const noexcept { return throughput_; }  ///< sum of |work| of motor, load, friction [J]
+  int substeps() const noexcept { return substeps_; }               ///< 1 ... MAX_SUBSTEPS
   /// Of the joint's fastest swing in one substep, motor against output on the ring's present stiffness [rad].
   double phaseAdvance() const noexcept;
   bool isCoarse() const noexcept;  ///< the phase advance is beyond MAX_PHASE_ADVANCE
