@@ -59,17 +59,18 @@ double IdentifiedMounting::tilt() const
 bool IdentifiedMounting::differs() const
 {
   constexpr double LEAST = 4.0 * DEGREE;    // errors of the links' masses tilt it too
-  constexpr double WIDEST = 15.0 * DEGREE;  // known no better it is nothing to go on with
+  constexpr double KNOWN = 3.0;             // half widths, at least: a hand on the arm tilts it too
   constexpr double SIZE = 1.35;             // a payload, or errors of gains, beside
-  return tilt() > std::max(half_width, LEAST) && half_width < WIDEST && size > 1.0 / SIZE && size < SIZE;
+  return tilt() > LEAST && tilt() > KNOWN * half_width && size > 1.0 / SIZE && size < SIZE;
 }
 
 std::string IdentifiedMounting::text() const
 {
   constexpr double LEAST = 1.0;  // of the half width that is printed [deg]
+  const auto part = [](double value) { return fixedText(std::abs(value) < 0.05 ? 0.0 : value, 1); };  // no "-0.0"
   return "another mounting than configured: gravity looks tilted by " + fixedText(tilt() / DEGREE, 0) + " +- " +
-         fixedText(std::max(half_width / DEGREE, LEAST), 0) + " deg: set gravity: [" + fixedText(gravity[0], 1) + ", " +
-         fixedText(gravity[1], 1) + ", " + fixedText(gravity[2], 1) + "] in the arm's file";
+         fixedText(std::max(half_width / DEGREE, LEAST), 0) + " deg: set gravity: [" + part(gravity[0]) + ", " +
+         part(gravity[1]) + ", " + part(gravity[2]) + "] in the arm's file";
 }
 
 bool FoundLoad::showsPayload() const

@@ -39,8 +39,9 @@ bool differs(const FittedFactor& factor, double from)
 bool isOtherLoad(const FittedFactor& factor)
 {
   constexpr double OTHER = 1.7;
+  constexpr double SURE = 2.0;  // deviations: what is refused is no alarm
   return std::abs(std::log(std::max(factor.value, 1e-3))) >
-         std::log(OTHER) + DEVIATIONS * factor.uncertainty / std::max(factor.value, 1e-3);
+         std::log(OTHER) + SURE * factor.uncertainty / std::max(factor.value, 1e-3);
 }
 
 std::string rounded(double value)
@@ -290,8 +291,8 @@ std::vector<RecordingFinding> RecordingFit::ofArm() const
                              effortUnitName(joints_.front().effort) + ": divide it by 1000",
                          Reason::EFFORT_UNIT });
   }
-  else if (std::isfinite(found.factor.value) && differs(found.factor, 1.0) &&
-           (!found.is_known || isOtherLoad(found.factor)))
+  else if (std::isfinite(found.factor.value) &&
+           (isOtherLoad(found.factor) || (!found.is_known && differs(found.factor, 1.0))))
   {
     findings.push_back({ "gain",
                          "effort changes " + rounded(found.factor.value) +
