@@ -35,6 +35,15 @@ bool differs(const FittedFactor& factor, double from)
   return std::abs(factor.value - from) > std::max(FACTOR_OFF * std::abs(from), DEVIATIONS * factor.uncertainty);
 }
 
+/// No gain of a type or payload that leaves the joints judged makes so much of it.
+bool isOtherLoad(const FittedFactor& factor)
+{
+  constexpr double OTHER = 1.7;
+  constexpr double SURE = 2.0;  // deviations: what is refused is no alarm
+  return std::abs(std::log(std::max(factor.value, 1e-3))) >
+         std::log(OTHER) + SURE * factor.uncertainty / std::max(factor.value, 1e-3);
+}
+
 std::string rounded(double value)
 {
   return roundedText(value, 3);
@@ -282,13 +291,14 @@ std::vector<RecordingFinding> RecordingFit::ofArm() const
                              effortUnitName(joints_.front().effort) + ": divide it by 1000",
                          Reason::EFFORT_UNIT });
   }
-  else if (std::isfinite(found.factor.value) && !found.is_known && differs(found.factor, 1.0))
+  else if (std::isfinite(found.factor.value) &&
+           (isOtherLoad(found.factor) || (!found.is_known && differs(found.factor, 1.0))))
   {
     findings.push_back({ "gain",
                          "effort changes " + rounded(found.factor.value) +
-                             " times as much with the load as telemetry.torque_per_current says: another arm, gain or "
-                             "payload than configured",
-                         std::nullopt });
+                             " times as much with the load as telemetry.torque_per_current says: another arm, gain, "
+                             "payload or mounting than configured",
+                         isOtherLoad(found.factor) ? std::make_optional(Reason::LOAD_WRONG) : std::nullopt });
   }
   return findings;
 }

@@ -136,13 +136,7 @@ MotionFindings ArmRecording::readSamples(const VisitSample& visit) const
 
 MotionFindings ArmRecording::readSamples(const VisitSample& visit, RecordingFit& fit) const
 {
-  const auto read_all = [&](const VisitRows& rows)
-  {
-    const MotionFindings found = read(rows, fit);
-    noticeOf(found);
-    return found;
-  };
-  return readSamplesBy(read_all, visit);
+  return readSamplesBy([&](const VisitRows& rows) { return read(rows, fit); }, visit);
 }
 
 MotionFindings ArmRecording::readSamplesBy(const Read& read, const VisitSample& visit) const

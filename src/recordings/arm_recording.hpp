@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <functional>
@@ -38,6 +39,7 @@ public:
   const std::vector<ArmJoint>& joints() const { return arm_.joints; }
   /// In place of the configured one.
   void setPayload(const Payload& payload) { arm_.payload = payload; }
+  void setGravity(const std::array<double, 3>& gravity) { arm_.gravity = gravity; }
   MotionSource source(std::size_t joint) const;        ///< of that joint alone
   std::string twinNamespace(std::size_t joint) const;  ///< of its twin's topics, those of arm.launch
   /// `telemetry.inertia_in_load` is that of the load that is chosen.
@@ -64,6 +66,7 @@ public:
   /// Calls `visit` with the samples of each joint, their rates and loads filled in; a joint without any load carries
   /// what it is configured to. @throws InputError.
   MotionFindings readSamples(const VisitSample& visit) const;
+  /// The same without notices of an arm.
   MotionFindings readSamples(const VisitSample& visit, RecordingFit& fit) const;
 
 private:

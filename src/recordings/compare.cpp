@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -12,7 +13,7 @@
 
 #include "output/temporary_directory.hpp"
 #include "output/text_table.hpp"
-#include "recordings/comparison_pass.hpp"
+#include "recordings/joint_comparison.hpp"
 #include "recordings/report_page.hpp"
 
 #include "base/joined.hpp"
@@ -44,6 +45,8 @@ std::optional<double> number(const ComparedJoint& line, Member member)
 {
   return line.friction ? std::make_optional(std::invoke(member, *line.friction)) : std::nullopt;
 }
+
+constexpr const char* ARM_FILE = "arm.json";
 
 const std::vector<Column<ComparedJoint>> ARM_COLUMNS{
   { "joint", &ComparedJoint::name, "joint" },
@@ -160,7 +163,7 @@ void judgeArm(const std::vector<Misfit>& misfits, bool has_reference, ComparedRe
   const bool same = misfits.front().exists() &&
                     std::all_of(misfits.begin(), misfits.end(),
                                 [&](const Misfit& misfit) { return misfit.clause == misfits.front().clause; });
-  compared.text = (compared.payload ? sentence(compared.payload->text()) + " The joints are judged with it. " : "") +
+  compared.text = compared.assumed.text() +
                   (same ? sentence(misfits.front().clause) : textOf(compared.joints, compared.friction, has_reference));
 }
 
@@ -171,6 +174,7 @@ Json documentOfArm(const ComparisonOptions& options, const ComparedRecording& co
   {
     temperatures += joint.temperature;
   }
+  const auto of = [](const auto& found, auto member) { return found ? Json(std::invoke(member, *found)) : Json(); };
   return { { "recording", options.recording },
            { "arm", options.arm },
            { "made_with", MADE_WITH },
@@ -182,77 +186,61 @@ Json documentOfArm(const ComparisonOptions& options, const ComparedRecording& co
            { "rows", compared.found.rows },
            { "duration", compared.found.duration },
            { "friction_ratio", compared.friction.median },
-           { "payload_mass", compared.payload ? std::make_optional(compared.payload->mass) : std::nullopt },
-           { "payload_half_width",
-             compared.payload ? std::make_optional(compared.payload->mass_half_width) : std::nullopt },
+           { "payload_mass", of(compared.assumed.payload, &IdentifiedPayload::mass) },
+           { "payload_half_width", of(compared.assumed.payload, &IdentifiedPayload::mass_half_width) },
+           { "gravity", of(compared.assumed.mounting, &IdentifiedMounting::gravity) },
+           { "gravity_tilt", of(compared.assumed.mounting, &IdentifiedMounting::tilt) },
+           { "gravity_half_width", of(compared.assumed.mounting, &IdentifiedMounting::half_width) },
            { "joints", tableOf(compared).rows() } };
 }
 
-/// Of the currents less what is predicted, as torques of all joints, rms [N.m].
-double residualTorque(const ArmRecording& recording, const ComparisonPass& pass)
+/// @throws InputError if one of the files that the page is made of cannot be written to `directory`.
+void prepareDirectory(const ComparisonOptions& options, const std::string& directory, const char* data_file)
 {
-  double squares = 0.0;
-  for (std::size_t i = 0; i < pass.joints.size(); ++i)
+  std::error_code error;
+  fs::create_directories(directory, error);
+  if (error)
   {
-    squares +=
-        std::pow(recording.parameters(i).telemetry.torque_per_current * pass.joints[i]->evidence().residualRms(), 2);
+    throw InputError(directory + " cannot be made a directory: " + error.message());
   }
-  return std::sqrt(squares);
+  for (const char* name : { data_file, REPORT_PAGE })
+  {
+    requireWritable((fs::path(directory) / name).string(), options.force, options.recording);
+  }
 }
 
-/// The same if all currents are the best multiple of what is predicted [N.m].
-double residualOfGain(const ArmRecording& recording, const ComparisonPass& pass)
+/// The directory of a joint's report, or of its reference, in that of the whole.
+std::string directoryOf(const ArmRecording& recording, const std::string& whole, std::size_t joint)
 {
-  double measured = 0.0;
-  double predicted = 0.0;
-  double both = 0.0;
-  for (std::size_t i = 0; i < pass.joints.size(); ++i)
-  {
-    const JointEvidence& evidence = pass.joints[i]->evidence();
-    const double weight = std::pow(recording.parameters(i).telemetry.torque_per_current, 2);
-    const double of_measured = weight * std::pow(evidence.currentRms(), 2);
-    const double of_predicted = weight * std::pow(evidence.predictedRms(), 2);
-    measured += of_measured;
-    predicted += of_predicted;
-    both += 0.5 * (of_measured + of_predicted - weight * std::pow(evidence.residualRms(), 2));
-  }
-  return predicted > 0.0 ? std::sqrt(std::max(0.0, measured - both * both / predicted)) : std::sqrt(measured);
+  return recording.isArm() && !whole.empty() ? (fs::path(whole) / recording.joints()[joint].short_name).string() :
+                                               whole;
 }
 
-/// A payload is the reason only if every joint fits with it, and clearly better than without; where the friction of the
-/// whole arm is another with it, also clearly better than another gain.
-bool explains(const ArmRecording& recording, double residual_before, double residual_of_gain,
-              const ComparisonPass& with)
+std::vector<std::unique_ptr<JointComparison>> prepareJoints(const ComparisonOptions& options,
+                                                            const ArmRecording& recording)
 {
-  constexpr double CLEARLY = 0.9;
-  const auto fits = [](const std::unique_ptr<JointComparison>& joint)
-  { return !joint->friction({}).is_below_faults && joint->frictionReason() != Reason::LOAD_WRONG; };
-  const double bound = with.friction.median == 1.0 ? residual_before : std::min(residual_before, residual_of_gain);
-  return std::all_of(with.joints.begin(), with.joints.end(), fits) && residualTorque(recording, with) < CLEARLY * bound;
-}
-
-/// With the payload that the currents show where that explains them.
-ComparisonPass passWithPayload(const ComparisonOptions& options, ArmRecording& recording, ComparedRecording& compared)
-{
-  ComparisonPass pass = passThrough(options, recording);
-  if (!pass.payload || !pass.payload->isCarried())
+  const LoadOrigin load = recording.usesRecordedLoad() ? LoadOrigin::RECORDED :
+                          recording.isArm()            ? LoadOrigin::ARM :
+                                                         LoadOrigin::CONFIGURED;
+  if (recording.isArm())
   {
-    return pass;
+    prepareDirectory(options, options.report, ARM_FILE);
   }
-  const IdentifiedPayload payload = *pass.payload;
-  const double residual = residualTorque(recording, pass);
-  const double residual_of_gain = residualOfGain(recording, pass);
-  recording.setPayload(payload.payload());
-  pass.joints.clear();  // closes the files that the next pass opens
-  pass = passThrough(options, recording);
-  if (explains(recording, residual, residual_of_gain, pass) || options.watch.stopped())
+  std::vector<std::unique_ptr<JointComparison>> joints;
+  for (std::size_t i = 0; i < recording.joints().size(); ++i)
   {
-    compared.payload = payload;
-    return pass;
+    const std::string directory = directoryOf(recording, options.report, i);
+    prepareDirectory(options, directory, COMPARISON_FILE);
+    std::vector<std::string> references;
+    for (const std::string& reference : options.references)
+    {
+      references.push_back(directoryOf(recording, reference, i));
+    }
+    joints.push_back(std::make_unique<JointComparison>(recording, i, load, directory,
+                                                       readSoundJoint(references, recording.parameters(i)),
+                                                       !options.identified.empty()));
   }
-  recording.setPayload(payload.configured);
-  pass.joints.clear();
-  return passThrough(options, recording);
+  return joints;
 }
 
 /// With its data in `options.report`.
@@ -261,23 +249,40 @@ ComparedRecording compareInto(const ComparisonOptions& options)
   refuseReferenceAsReport(options);
   ArmRecording recording(options);
   ComparedRecording compared;
-  ComparisonPass pass = passWithPayload(options, recording, compared);
+  std::vector<std::unique_ptr<JointComparison>> joints;
+  AssessmentSettings settings;
+  settings.make_joints = [&]
+  {
+    joints.clear();  // closes the files that the next pass opens
+    joints = prepareJoints(options, recording);
+    std::vector<AssessedJoint*> all;
+    for (const auto& joint : joints)
+    {
+      all.push_back(joint.get());
+    }
+    return all;
+  };
+  settings.beside_controller = options.beside_controller;
+  settings.watch = options.watch;
+  RecordingFit fit(recording.parameters());
+  const ArmAssessment arm = assess(recording, settings, fit);
   compared.is_arm = recording.isArm();
-  compared.found = pass.found;
-  compared.friction = pass.friction;
+  compared.found = arm.found;
+  compared.friction = arm.friction;
+  compared.assumed = arm.assumed;
   if (options.watch.stopped())
   {
     return compared;
   }
-  for (std::size_t i = 0; i < pass.joints.size(); ++i)
+  for (std::size_t i = 0; i < joints.size(); ++i)
   {
-    ComparedJoint& joint = compared.joints.emplace_back(pass.joints[i]->write(
-        pass.found, pass.friction, pass.misfits[i], recording.twinNamespace(i) + "/" + topics::JOINT_STATES));
+    ComparedJoint& joint = compared.joints.emplace_back(
+        joints[i]->write(arm.found, arm.context(i), recording.twinNamespace(i) + "/" + topics::JOINT_STATES));
     joint.name = recording.joints()[i].short_name;
   }
   if (recording.isArm())
   {
-    judgeArm(pass.misfits, !options.references.empty(), compared);
+    judgeArm(arm.misfits, !options.references.empty(), compared);
     compared.document = documentOfArm(options, compared);
     writeTextFile((fs::path(options.report) / ARM_FILE).string(), compared.document.dump() + "\n");
   }

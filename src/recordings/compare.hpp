@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "output/report.hpp"
+#include "recordings/arm_assessment.hpp"
 #include "recordings/recording_contents.hpp"
 #include "recordings/recording_options.hpp"
 
-#include "arm/payload_fit.hpp"
 #include "tracking/common_friction.hpp"
 #include "tracking/verdict.hpp"
 
@@ -48,11 +48,11 @@ struct ComparedRecording
   bool is_judged{};
   HealthLevel health{};  ///< the worst of the joints
   MotionFindings found;
-  std::optional<IdentifiedPayload> payload;  ///< that the joints are judged with in place of the configured one
-  ArmFriction friction;                      ///< what the joints have in common
-  std::vector<ComparedJoint> joints;         ///< from the base on; none: stopped
-  Json document;                             ///< the data of the page
-  std::string page;                          ///< its path; empty: none
+  AssumedLoad assumed;        ///< that the joints are judged with in place of the configured one
+  ArmFriction friction;       ///< what the joints have in common
+  std::vector<ComparedJoint> joints;  ///< from the base on; none: stopped
+  Json document;              ///< the data of the page
+  std::string page;           ///< its path; empty: none
 };
 
 /// Compares a recorded joint or arm with its twin: verdict, data and figures as a page.

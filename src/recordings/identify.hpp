@@ -8,7 +8,7 @@
 #include "output/report.hpp"
 #include "recordings/recording_options.hpp"
 
-#include "arm/payload_fit.hpp"
+#include "arm/load_fit.hpp"
 #include "identification/cross_validation.hpp"
 
 namespace hjt

@@ -25,31 +25,18 @@ const std::vector<Column<JudgedWindow>> WINDOW_COLUMNS{
 }  // namespace
 
 JointComparison::JointComparison(const ArmRecording& recording, std::size_t joint, LoadOrigin load,
-                                 const std::string& directory, const std::vector<std::string>& references,
-                                 bool is_identified)
-  : joint_(joint)
-  , parameters_(recording.parameters(joint))
+                                 const std::string& directory, SoundJoint sound, bool is_identified)
+  : AssessedJoint(recording.parameters(joint), std::move(sound.own), is_identified)
   , source_(recording.source(joint))
   , is_file_(recording.isFile())
   , directory_(directory)
-  , sound_(readSoundJoint(references, parameters_))
-  , is_identified_(is_identified)
   , windows_((fs::path(directory) / "windows.csv").string(), WINDOW_COLUMNS)
-  , comparison_(parameters_, load, sound_.baseline, [this](const JudgedWindow& window) { windows_.write(window); })
+  , comparison_(parameters(), load, std::move(sound.baseline),
+                [this](const JudgedWindow& window) { windows_.write(window); })
 {
 }
 
-MeasuredFriction JointComparison::friction(const Misfit& misfit) const
-{
-  return measuredFriction(evidence(), parameters_, { sound_.own, is_identified_, has_controller_, 0.0, 1.0, misfit });
-}
-
-Reason JointComparison::frictionReason() const
-{
-  return frictionFactor(evidence(), { sound_.own, is_identified_, has_controller_, 0.0, 1.0, {} }).reason;
-}
-
-ComparedJoint JointComparison::write(const MotionFindings& found, const ArmFriction& arm, const Misfit& misfit,
+ComparedJoint JointComparison::write(const MotionFindings& found, const JointContext& context,
                                      const std::string& twin_topic)
 {
   windows_.close();
@@ -65,15 +52,13 @@ ComparedJoint JointComparison::write(const MotionFindings& found, const ArmFrict
         readContents(source_, twin_topic, found, reach.motor_rows, reach.temperature_rows, found.has_load);
     record.twin_states = readTwinStates(source_, twin_topic, toSeconds(found.start));
   }
-  const JointContext context{ sound_.own,          is_identified_, has_controller_,       found.duration,
-                              arm.factors[joint_], misfit,         arm.deviations[joint_] };
-  record.verdict = judge(evidence(), parameters_, context);
+  record.verdict = judge(evidence(), parameters(), context);
   record.friction = frictionFactor(evidence(), context);
   record.is_friction_judged = record.verdict.findings.front().level != VerdictLevel::NOT_JUDGED;
   ComparedJoint compared;
   compared.friction = record.is_friction_judged ? std::make_optional(record.friction) : std::nullopt;
   compared.contact = reach.touched_rows > 0 ? sentence(contactText(evidence().contact().largest())) : std::string();
-  compared.document = writeComparison(directory_, comparison_, parameters_, record);
+  compared.document = writeComparison(directory_, comparison_, parameters(), record);
   compared.temperature = evidence().temperature();
   compared.temperature_source = temperatureSource(evidence());
   compared.rows = reach.rows;

@@ -11,7 +11,6 @@
 #include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "recordings/recorded_arms.hpp"
-#include "tracking/common_friction.hpp"
 #include "tracking/effort.hpp"
 #include "tracking/joint_evidence.hpp"
 #include "tracking/verdict.hpp"
@@ -97,20 +96,35 @@ void takeFit(const RecordingFit& fit, const std::vector<Parameters>& parameters,
   }
 }
 
-/// The joints beside their twins, as `joint_twin compare` puts them.
-class Judging
+/// A joint beside its twin, of which nothing is written.
+class CheckedTwin : public AssessedJoint
 {
 public:
-  Judging(const std::vector<Parameters>& parameters, LoadOrigin load)
-    : parameters_(parameters), is_arm_(load == LoadOrigin::ARM)
+  CheckedTwin(const Parameters& parameters, LoadOrigin load)
+    : AssessedJoint(parameters, OwnReference(), false), evidence_(parameters, load)
   {
+  }
+  void update(const MotionSample& sample) override { evidence_.update(sample); }
+  const JointEvidence& evidence() const override { return evidence_; }
+
+private:
+  JointEvidence evidence_;
+};
+
+/// The joints beside their twins, made anew for each reading.
+class CheckedTwins
+{
+public:
+  std::vector<AssessedJoint*> make(const std::vector<Parameters>& parameters, LoadOrigin load)
+  {
+    joints_.clear();
+    std::vector<AssessedJoint*> all;
     for (const Parameters& of : parameters)
     {
-      joints_.push_back(std::make_unique<JointEvidence>(of, load));
+      all.push_back(joints_.emplace_back(std::make_unique<CheckedTwin>(of, load)).get());
     }
+    return all;
   }
-
-  void add(std::size_t joint, const MotionSample& sample) { joints_[joint]->update(sample); }
 
   /// What the differentiators of all joints have.
   void addReady(std::vector<MotionDifferentiator>& joints, bool at_end)
@@ -119,44 +133,15 @@ public:
     {
       while (const std::optional<MotionSample> sample = joints[i].pop(at_end))
       {
-        add(i, *sample);
+        joints_[i]->update(*sample);
       }
     }
   }
 
-  /// Takes the misfits as the reading before left them.
-  void judgeAll(double duration, CheckedArm& arm)
-  {
-    std::vector<const JointEvidence*> evidences;
-    for (std::size_t i = 0; i < joints_.size(); ++i)
-    {
-      evidences.push_back(joints_[i].get());
-    }
-    const bool has_controller = controllerIsReference(evidences);
-    std::vector<MeasuredFriction> frictions;
-    const auto context = [&](std::size_t i, double factor, double deviation, const Misfit& of_arm)
-    {
-      const Misfit& own = arm.joints[i].misfit;
-      return JointContext{ OwnReference(), false,  has_controller,
-                           duration,       factor, own.exists() || !is_arm_ ? own : of_arm,
-                           deviation };
-    };
-    for (std::size_t i = 0; i < joints_.size(); ++i)
-    {
-      frictions.push_back(measuredFriction(*joints_[i], parameters_[i], context(i, 1.0, UNWITNESSED, {})));
-    }
-    const ArmFriction common = commonFriction(frictions, parameters_.front().comparison.repeat_tolerance);
-    for (std::size_t i = 0; i < joints_.size(); ++i)
-    {
-      arm.joints[i].verdict =
-          judge(*joints_[i], parameters_[i], context(i, common.factors[i], common.deviations[i], common.misfit));
-    }
-  }
+  const AssessedJoint& operator[](std::size_t joint) const { return *joints_[joint]; }
 
 private:
-  const std::vector<Parameters>& parameters_;
-  const bool is_arm_;  // else joints by themselves
-  std::vector<std::unique_ptr<JointEvidence>> joints_;
+  std::vector<std::unique_ptr<CheckedTwin>> joints_;
 };
 
 void addJoint(const std::string& name, const std::string& in_messages, CheckedArm& arm)
@@ -169,21 +154,17 @@ void addJoint(const std::string& name, const std::string& in_messages, CheckedAr
 void readArm(const RecordingOptions& options, CheckedArm& arm)
 {
   const RecordingOptions own = optionsFor(options, arm, arm.taken);
-  const ArmRecording recording(own);
-  StreamTiming timing;
+  ArmRecording recording(own);
   RecordingFit fit(recording.parameters());
-  Judging judging(recording.parameters(), LoadOrigin::ARM);
-  arm.found = recording.read(
-      [&](const std::vector<ArmJointRow>& rows)
-      {
-        timing.add(rows.front().row.time, rows.front().row.received);
-        for (std::size_t i = 0; i < rows.size(); ++i)
-        {
-          judging.add(i, rows[i].row);
-        }
-      },
-      fit);
-  arm.timing = timing.report();
+  CheckedTwins twins;
+  AssessmentSettings settings;
+  settings.make_joints = [&] { return twins.make(recording.parameters(), LoadOrigin::ARM); };
+  settings.gives_notice = false;
+  settings.watch = options.watch;
+  const ArmAssessment assessment = assess(recording, settings, fit);
+  arm.found = assessment.found;
+  arm.timing = assessment.timing;
+  arm.assumed = assessment.assumed;
   arm.joints.clear();
   for (const ArmJoint& joint : recording.joints())
   {
@@ -191,7 +172,10 @@ void readArm(const RecordingOptions& options, CheckedArm& arm)
     arm.joints.back().stated_gain = recording.statedGains()[arm.joints.size() - 1];
   }
   takeFit(fit, recording.parameters(), arm);
-  judging.judgeAll(arm.found.duration, arm);
+  for (std::size_t i = 0; i < arm.joints.size(); ++i)
+  {
+    arm.joints[i].verdict = judge(twins[i].evidence(), recording.parameters(i), assessment.context(i));
+  }
 }
 
 /// Of joints that are not a whole arm.
@@ -218,7 +202,8 @@ void readJoints(const RecordingOptions& options, CheckedArm& arm)
   const MotionDriven twin(parameters.front());
   StreamTiming timing;
   RecordingFit fit(parameters);
-  Judging judging(parameters, LoadOrigin::CONFIGURED);
+  CheckedTwins twins;
+  twins.make(parameters, LoadOrigin::CONFIGURED);
   std::vector<MotionDifferentiator> differentiators(names.size(), MotionDifferentiator(ArmLoad::HALF_WIDTH));
   std::vector<MotionDifferentiator> own(names.size());
   std::vector<MotionSample> samples(names.size());
@@ -239,7 +224,7 @@ void readJoints(const RecordingOptions& options, CheckedArm& arm)
         own[i].push(samples[i]);
       }
     }
-    judging.addReady(own, at_end);
+    twins.addReady(own, at_end);
   };
   static_cast<MotionCount&>(arm.found) = readArmMotion(
       motionSource(options), names,
@@ -268,7 +253,18 @@ void readJoints(const RecordingOptions& options, CheckedArm& arm)
   }
   fit.refuse(misfitOfParts(arm));
   takeFit(fit, parameters, arm);
-  judging.judgeAll(arm.found.duration, arm);
+  std::vector<MeasuredFriction> frictions;
+  for (std::size_t i = 0; i < arm.joints.size(); ++i)
+  {
+    frictions.push_back(twins[i].friction(arm.joints[i].misfit));
+  }
+  const ArmFriction common = commonFriction(frictions, parameters.front().comparison.repeat_tolerance);
+  for (std::size_t i = 0; i < arm.joints.size(); ++i)
+  {
+    arm.joints[i].verdict = judge(
+        twins[i].evidence(), parameters[i],
+        twins[i].context(arm.joints[i].misfit, arm.found.duration, common.factors[i], common.deviations[i]));
+  }
 }
 
 bool hasFinding(const CheckedArm& arm, const std::string& kind)

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "recordings/arm_assessment.hpp"
 #include "recordings/arm_recording.hpp"
 
 #include "tracking/stream_timing.hpp"
@@ -70,6 +71,7 @@ struct CheckedArm
   RecordingFit::LoadRest rest;
   double temperature{};
   std::vector<RecordingFinding> findings;
+  AssumedLoad assumed;  ///< that the joints are judged with in place of the configured one
   std::vector<CheckedJoint> joints;
   std::vector<TriedRemedy> tried;
 

@@ -31,6 +31,7 @@ void JointTracker::reportTelemetry(DiagnosticStatusWrapper& status) const
   status.add("Without position or effort, refused", refusals_.incomplete);
   status.add("Efforts all zero, refused", stream_.without_effort);
   status.add("Jumps of angles by a turn, taken out", stream_.folds);
+  status.add("Mounting that is not configured", stream_.mounting.empty() ? "none found" : stream_.mounting);
   status.add("Payload that is not configured", stream_.payload.empty() ? "none found" : stream_.payload);
   status.add("Not finite, refused", refusals_.not_finite);
   status.add("Too large, refused", stream_.too_large.load());

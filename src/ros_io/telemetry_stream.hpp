@@ -22,6 +22,7 @@ struct TelemetryStream
   std::uint64_t other_temperatures{};  ///< received whose frame_id is none of the joints
   std::string found_names;             ///< in the last message that lacks a joint
   std::string lack;                    ///< what the messages since the last row lack, a clause; empty: nothing
+  std::string mounting;                ///< that the currents show and is not configured, a clause; empty: none
   std::string payload;                 ///< that the currents show and is not configured, a clause; empty: none
   std::uint64_t folds{};               ///< jumps by a turn that were taken out of the angles
   std::uint64_t without_effort{};      ///< messages refused for efforts all zero

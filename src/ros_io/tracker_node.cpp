@@ -58,7 +58,7 @@ TrackerNode::TrackerNode(ros::NodeHandle& node, const ArmDescription& arm, const
   friction_.emplace(std::move(trackers), repeat_tolerance_, std::move(frictions));
   if (std::all_of(joints_.begin(), joints_.end(), [](const auto& joint) { return joint->takesArmLoad(); }))
   {
-    payload_.emplace(arm, parameters);
+    load_.emplace(arm, parameters);
   }
   subscribe(node);
 }
@@ -206,7 +206,7 @@ void TrackerNode::push(Stamp stamp)
   {
     take(*sample);
   }
-  lookAtPayload();
+  lookAtLoad();
 }
 
 void TrackerNode::take(const ArmSample& sample)
@@ -221,44 +221,66 @@ void TrackerNode::take(const ArmSample& sample)
     joints_[i]->compare(sample.own[i]);
   }
   lookAtFriction(sample.joints.front().time);
-  if (payload_)
+  if (load_)
   {
-    addToPayload(sample);
+    addToLoad(sample);
   }
 }
 
-void TrackerNode::addToPayload(const ArmSample& sample)
+void TrackerNode::addToLoad(const ArmSample& sample)
 {
-  if (std::any_of(joints_.begin(), joints_.end(), [](const auto& joint) { return joint->isTouched(); }))
-  {
-    payload_->leaveOut();
-    return;
-  }
   for (std::size_t i = 0; i < joints_.size(); ++i)
   {
-    payload_->setMeasured(i, joints_[i]->hasEffort());
+    load_->setMeasured(i, joints_[i]->hasEffort());
   }
-  payload_->add(sample);
+  load_->add(sample,
+             std::any_of(joints_.begin(), joints_.end(), [](const auto& joint) { return joint->isTouched(); }));
 }
 
-/// One that the currents show and is not configured counts from now on, as `joint_twin compare` judges a recording;
-/// once it is put down, the configured one again.
-void TrackerNode::lookAtPayload()
+/// What the currents show of the load and is not configured counts from now on, as `joint_twin compare` judges a
+/// recording.
+void TrackerNode::lookAtLoad()
 {
-  const bool fits =
-      std::all_of(joints_.begin(), joints_.end(),
-                  [](const auto& joint)
-                  { return !joint->hasEffort() || (!joint->verdict().misfit().exists() && !joint->isLedByHand()); });
-  const std::optional<IdentifiedPayload> found = payload_ && fits ? payload_->look() : std::nullopt;
+  const std::optional<FoundLoad> found = load_ ? load_->look() : std::nullopt;
   if (!found)
   {
     return;
   }
-  if (found->isCarried())
+  const std::optional<IdentifiedMounting> mounting = load_->mountingOf(*found);
+  if (!mounting)
   {
-    stream_.payload = found->text();
+    lookAtPayload(*found);
+    return;
+  }
+  stream_.mounting = mounting->differs() ? mounting->text() : std::string();
+  ROS_WARN_STREAM((mounting->differs() ? sentence(stream_.mounting) : "The arm is mounted as configured.")
+                  << " The joints are judged with it from now on");
+  load_->mount(mounting->gravity);
+  startWithLoad();
+}
+
+/// A payload explains no telemetry that does not fit, nor an arm led by hand. Once it is put down the configured one
+/// counts again.
+void TrackerNode::lookAtPayload(const FoundLoad& found)
+{
+  const bool fits =
+      std::all_of(joints_.begin(), joints_.end(),
+                  [](const auto& joint)
+                  {
+                    const Misfit& misfit = joint->verdict().misfit();
+                    return !joint->hasEffort() ||
+                           ((!misfit.exists() || misfit.reason == Reason::LOAD_WRONG) && !joint->isLedByHand());
+                  });
+  const std::optional<IdentifiedPayload> payload = fits ? load_->payloadOf(found) : std::nullopt;
+  if (!payload)
+  {
+    return;
+  }
+  if (payload->isCarried())
+  {
+    stream_.payload = payload->text();
     ROS_WARN_STREAM(sentence(stream_.payload) << " The joints are judged with it from now on");
-    payload_->configure(found->payload());
+    load_->configure(payload->payload());
   }
   else
   {
@@ -266,9 +288,14 @@ void TrackerNode::lookAtPayload()
     ROS_INFO_STREAM(
         "The payload that is not configured is put down: the joints are judged with the configured one "
         "from now on");
-    payload_->configure(payload_->given());
+    load_->configure(load_->given());
   }
-  arm_load_.emplace(payload_->arm());
+  startWithLoad();
+}
+
+void TrackerNode::startWithLoad()
+{
+  arm_load_.emplace(load_->arm());
   resetFit();
   for (const auto& joint : joints_)
   {
@@ -281,9 +308,9 @@ void TrackerNode::resetFit()
   if (fit_)
   {
     fit_->reset();
-    if (payload_)
+    if (load_)
     {
-      payload_->reset();
+      load_->reset();
     }
     next_fit_ = -HUGE_VAL;
     friction_->reset();

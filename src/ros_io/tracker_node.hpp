@@ -15,7 +15,7 @@
 #include <sensor_msgs/Temperature.h>
 
 #include "arm/arm_load.hpp"
-#include "arm/payload_watch.hpp"
+#include "arm/load_watch.hpp"
 #include "arm/recording_fit.hpp"
 #include "ros_io/joint_tracker.hpp"
 #include "tracking/unfolded_angle.hpp"
@@ -47,10 +47,12 @@ private:
   bool isWithoutEffort() const;
   void push(Stamp stamp);
   void take(const ArmSample& sample);
-  void addToPayload(const ArmSample& sample);
+  void addToLoad(const ArmSample& sample);
   void resetFit();
   void lookAtFriction(double time);
-  void lookAtPayload();
+  void lookAtLoad();
+  void lookAtPayload(const FoundLoad& found);
+  void startWithLoad();
   void updateFit(const ArmSample& sample);
   void judge(const ros::WallTime& now);
   void look();
@@ -60,7 +62,7 @@ private:
   std::vector<std::unique_ptr<JointTracker>> joints_;
   std::optional<ArmLoad> arm_load_;
   std::optional<RecordingFit> fit_;  // of an arm
-  std::optional<PayloadWatch> payload_;
+  std::optional<LoadWatch> load_;
   std::optional<ArmFrictionWatch> friction_;
   const double repeat_tolerance_;  // comparison.repeat_tolerance [-]
   ros::WallTime next_verdict_;

@@ -206,6 +206,7 @@ void take(const JointGroup& group, const std::vector<MeasuredFriction>& joints, 
 ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double tolerance)
 {
   constexpr std::ptrdiff_t MIN_BELOW_FAULTS = 2;
+  constexpr std::ptrdiff_t MIN_LOAD_WRONG = 2;
   ArmFriction arm = ofWholeArm(joints, tolerance);
   arm.groups = groupsOf(joints, arm.factors, tolerance);
   for (const JointGroup& group : arm.groups)
@@ -232,6 +233,12 @@ ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double t
     arm.misfit = { Reason::LESS_THAN_FAULTS,
                    "several joints show less friction than any fault leaves: the arm is led by hand or carried, or "
                    "gains, ratios or signs are others than configured" };
+  }
+  else if (number(&MeasuredFriction::is_load_wrong) >= MIN_LOAD_WRONG)
+  {
+    arm.misfit = { Reason::LOAD_WRONG,
+                   "the currents of several joints fit no load of this arm: another arm, payload or mounting than "
+                   "configured, joints in another order, angles with another zero or sign, or disturbed currents" };
   }
   return arm;
 }

@@ -28,6 +28,7 @@ struct MeasuredFriction
   bool is_below_faults{};            ///< less than any fault leaves of it
   bool is_none{};                    ///< next to none at all
   bool is_against{};                 ///< the current goes against the motion's
+  bool is_load_wrong{};              ///< the current fits no load of this joint
   bool is_to_own{};                  ///< the expected one is the joint's own when it was sound
 };
 
@@ -58,7 +59,8 @@ struct ArmFriction
 /// left then and most of the three joints of a group agree on is the group's: three drives do not fail alike. Joints
 /// held against their type differ by more, and 5 % of it may be chance: of a joint that is held against its own while
 /// others are not, that is the deviation. More friction of the others makes no joint's less. Two joints or more whose
-/// friction is below what any fault leaves: something else carries the arm, and no joint is judged.
+/// friction is below what any fault leaves: something else carries the arm; two or more that fit no load: it is another arm; and no
+/// joint is judged.
 ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double tolerance);
 
 /// The joints of an arm as each other's witnesses, while they move: what their friction has in common is temperature or

@@ -69,6 +69,7 @@ using Gap = std::pair<Reason, std::string>;  // and in a sentence
 Gap whyNone(const std::vector<FrictionPoint>& points, const JointEvidence& evidence, bool is_to_own)
 {
   const std::string have_rows = " have " + std::to_string(FrictionPoints::MIN_ROWS) + " rows" +
+                                (evidence.reach().touched_rows > 0 ? " apart from contact" : "") +
                                 (is_to_own ? " and are in the reference too" : "");
   if (points.empty() && evidence.reach().most_angle - evidence.reach().least_angle < LEAST_MOTION)
   {
@@ -103,6 +104,12 @@ Gap whyNone(const std::vector<FrictionPoint>& points, const JointEvidence& evide
 /// Why a factor that the points show is not that of a drive.
 Gap whyImpossible(const FrictionFactor& factor, const std::vector<FrictionPoint>& points, LoadOrigin load)
 {
+  if (factor.is_below_faults && factor.value < -LEAST_OF_FAULTS)
+  {
+    return { Reason::EFFORT_NOT_CURRENT, "Friction pushes the joint along (" + rounded(factor.value, 2) +
+                                             " times the expected one): effort or angle of this joint is of the "
+                                             "opposite sign." };
+  }
   if (factor.is_below_faults && std::abs(factor.value) < NO_FRICTION)
   {
     return { Reason::NO_FRICTION,

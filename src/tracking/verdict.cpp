@@ -321,7 +321,11 @@ MeasuredFriction measuredFriction(const JointEvidence& evidence, const Parameter
            [&evidence](double temperature) { return evidence.twinFrictionAt(temperature); },
            !context.misfit.exists() && factor.is_below_faults,
            !context.misfit.exists() && factor.reason == Reason::NO_FRICTION,
-           whyItDoesNotFit(evidence, parameters, context) == Reason::EFFORT_NOT_CURRENT && factor.value < 0.0,
+           factor.reason == Reason::EFFORT_NOT_CURRENT ||
+               (whyItDoesNotFit(evidence, parameters, context) == Reason::EFFORT_NOT_CURRENT && factor.value < 0.0),
+           !context.misfit.exists() &&
+               (whyItDoesNotFit(evidence, parameters, context) == Reason::LOAD_WRONG ||
+                factor.reason == Reason::LOAD_WRONG),
            !context.own.friction.empty() };
 }
 

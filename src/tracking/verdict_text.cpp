@@ -35,7 +35,7 @@ std::string wrongEffortText(double current, double predicted, Reason reason)
     if (current > 0.5 * predicted)
     {
       return "The recorded effort goes against the current that this motion takes: effort or angle of this joint is "
-             "of the opposite sign.";
+             "of the opposite sign, or its load is another than configured (mounting, payload).";
     }
     return "The recorded effort is " + rounded(current, 2) + " A rms where this motion takes some " +
            rounded(predicted, 2) + " A: it is not the motor's current.";
@@ -51,7 +51,7 @@ std::string reasonText(const Verdict& verdict, Reason reason)
   switch (reason)
   {
     case Reason::LOAD_WRONG:
-      return wrongLoadText(verdict);
+      return verdict.misfit.empty() ? wrongLoadText(verdict) : sentence(verdict.misfit);
     case Reason::EFFORT_NOT_CURRENT:
     case Reason::EFFORT_TOO_LARGE:
       return wrongEffortText(verdict[Figure::CURRENT], verdict[Figure::CURRENT_PREDICTED], reason);

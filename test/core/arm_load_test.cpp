@@ -10,7 +10,7 @@
 
 #include "arm/arm_dynamics.hpp"
 #include "arm/arm_load.hpp"
-#include "arm/payload_fit.hpp"
+#include "arm/load_fit.hpp"
 #include "base/number_table.hpp"
 #include "test/core/arm_support.hpp"
 #include "test/support/allocation_count.hpp"

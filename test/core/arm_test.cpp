@@ -17,7 +17,7 @@
 #include "arm/arm_configuration.hpp"
 #include "arm/arm_dynamics.hpp"
 #include "arm/arm_load.hpp"
-#include "arm/payload_fit.hpp"
+#include "arm/load_fit.hpp"
 #include "base/number_table.hpp"
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"

@@ -116,5 +116,16 @@ TEST(CommonFriction, SeveralJointsWithoutFrictionAreNoArmByItself)
   EXPECT_EQ(commonFriction(joints, 0.15).misfit.reason, Reason::NO_FRICTION);
   EXPECT_THAT(commonFriction(joints, 0.15).misfit.clause, HasSubstr("modelled or commanded torque"));
 }
+
+TEST(CommonFriction, JointsThatFitNoLoadLeaveNoneJudged)
+{
+  std::vector<MeasuredFriction> joints = jointsWith({ 1.0, 1.0, 3.4, 1.0, 1.0, 1.0 });
+  joints[0].is_load_wrong = true;
+  EXPECT_FALSE(commonFriction(joints, 0.15).misfit.exists()) << "one may be its own fault";
+  joints[1].is_load_wrong = true;
+  const Misfit misfit = commonFriction(joints, 0.15).misfit;
+  EXPECT_EQ(misfit.reason, Reason::LOAD_WRONG);
+  EXPECT_THAT(misfit.clause, testing::HasSubstr("another arm"));
+}
 }  // namespace
 }  // namespace hjt

@@ -312,7 +312,8 @@ TEST(RecordingFit, AnotherGainIsNoOtherUnit)
   expectNothing(Robot([](std::size_t, Given& given) { given.effort *= 1.6; }).fit());
   const RecordingFit fit = Robot([](std::size_t, Given& given) { given.effort *= 3.5; }).fit();
   EXPECT_THAT(kinds(fit.ofArm()), ElementsAre("gain"));
-  EXPECT_THAT(fit.whyNotJudged()[0].clause, "");
+  EXPECT_THAT(fit.whyNotJudged()[0].clause, testing::HasSubstr("another arm, gain, payload or mounting"));
+  EXPECT_EQ(fit.whyNotJudged()[0].reason, Reason::LOAD_WRONG);
 }
 
 TEST(RecordingFit, AtRestNothingIsKnown)

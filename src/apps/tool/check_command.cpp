@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <iostream>
 #include <map>
 #include <string>
@@ -246,6 +247,10 @@ void printArm(const ArmOptions& options, const CheckedContents& contents, const 
   {
     printLine(finding.stops ? "ERROR" : "NOTE", finding.text);
   }
+  if (const std::string assumed = arm.assumed.text(); !assumed.empty())
+  {
+    printLine("NOTE", assumed);
+  }
   for (const TriedRemedy& remedy : arm.tried)
   {
     printLine("tried",
@@ -307,6 +312,7 @@ const std::vector<Column<TriedRemedy>> TRIED_COLUMNS{ { "options", [](const Trie
 
 Json documentOf(const ArmOptions& options, const CheckedContents& contents, const CheckedArm& arm)
 {
+  const auto of = [](const auto& found, auto member) { return found ? Json(std::invoke(member, *found)) : Json(); };
   return Json{ { "recording", options.recording },
                { "prefix", arm.affixes.prefix },
                { "suffix", arm.affixes.suffix },
@@ -327,6 +333,11 @@ Json documentOf(const ArmOptions& options, const CheckedContents& contents, cons
                { "temperature", contents.temperature.empty() ? Json() : Json(contents.temperature) },
                { "stamp_factor", arm.stamps.value },
                { "stamp_factor_uncertainty", arm.stamps.uncertainty },
+               { "payload_mass", of(arm.assumed.payload, &IdentifiedPayload::mass) },
+               { "payload_half_width", of(arm.assumed.payload, &IdentifiedPayload::mass_half_width) },
+               { "gravity", of(arm.assumed.mounting, &IdentifiedMounting::gravity) },
+               { "gravity_tilt", of(arm.assumed.mounting, &IdentifiedMounting::tilt) },
+               { "gravity_half_width", of(arm.assumed.mounting, &IdentifiedMounting::half_width) },
                { "effort_factor", arm.effort.factor.value },
                { "effort_factor_uncertainty", arm.effort.factor.uncertainty },
                { "effort", arm.effort.is_known ? Json(effortKeyword(arm.effort.unit)) : Json() },

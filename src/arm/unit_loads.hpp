@@ -12,12 +12,20 @@
 
 namespace hjt
 {
-/// Torques of an arm without payload, and of unit payloads beside.
-class UnitPayloads
+/// Torques at an arm's joints of unit payloads, and of unit gravity.
+class UnitLoads
 {
 public:
-  explicit UnitPayloads(ArmDescription arm)
+  explicit UnitLoads(ArmDescription arm)
   {
+    const std::array<double, 3> gravity = arm.gravity;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+      arm.gravity = {};
+      arm.gravity[axis] = 1.0;
+      weights_.emplace_back(arm);
+    }
+    arm.gravity = gravity;
     arm.payload = {};
     bare_ = std::make_unique<ArmDynamics>(arm);
     const auto add = [&](const std::array<double, 3>& centre)
@@ -39,7 +47,8 @@ public:
 
   double linksMass() const { return bare_->mass(); }  ///< [kg]
 
-  /// Of mass and moments, at each joint, by column [N.m/kg], [N.m/(kg.m)].
+  /// Of mass and moments, and of gravity along each axis of the base's frame, at each joint, by column
+  /// [N.m/kg], [N.m/(kg.m)], [N.m/(m/s^2)].
   void torques(const std::vector<JointMotion>& motion, Eigen::MatrixXd& columns)
   {
     const auto at = [&](ArmDynamics& dynamics, std::vector<double>& torques)
@@ -64,6 +73,18 @@ public:
             (first_[i] - second_[i]) / (2.0 * SMALL);
       }
     }
+    rest_.resize(motion.size());
+    for (std::size_t i = 0; i < motion.size(); ++i)
+    {
+      rest_[i] = { motion[i].position, 0.0, 0.0 };
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+      first_.resize(motion.size());
+      weights_[axis].torques(rest_, first_);
+      columns.col(static_cast<Eigen::Index>(4 + axis)) =
+          Eigen::Map<const Eigen::VectorXd>(first_.data(), static_cast<Eigen::Index>(first_.size()));
+    }
   }
 
 private:
@@ -71,6 +92,8 @@ private:
 
   std::unique_ptr<ArmDynamics> bare_;
   std::vector<ArmDynamics> loaded_;
+  std::vector<ArmDynamics> weights_;  // of gravity along each axis
+  std::vector<JointMotion> rest_;
   std::vector<double> first_;
   std::vector<double> second_;
 };

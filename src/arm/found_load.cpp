@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "arm/found_load.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "base/number_text.hpp"
+#include "gear/angle.hpp"
+
+namespace hjt
+{
+namespace
+{
+constexpr double DEGREE = PI / 180.0;
+constexpr double CLEARLY = 0.9;  // of the torques not predicted otherwise
+}  // namespace
+
+bool IdentifiedPayload::differs() const
+{
+  return std::abs(mass - configured.mass) > std::max(mass_half_width, least_claim);
+}
+
+Payload IdentifiedPayload::payload() const
+{
+  Payload payload;
+  payload.mass = std::max(mass, 0.0);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+  {
+    payload.centre[axis] = payload.mass > 0.0 ? moment[axis] / payload.mass : 0.0;
+  }
+  return payload;
+}
+
+std::string IdentifiedPayload::text() const
+{
+  const Payload found = payload();
+  return "the currents look like a payload of " + fixedText(found.mass, 1) + " +- " + fixedText(mass_half_width, 1) +
+         " kg at the flange in place of the configured " + roundedText(configured.mass, 3) + " kg, its centre at " +
+         fixedText(found.centre[0], 2) + ", " + fixedText(found.centre[1], 2) + ", " + fixedText(found.centre[2], 2) +
+         " m: set payload in the arm's file";
+}
+
+double IdentifiedMounting::tilt() const
+{
+  double product = 0.0;
+  double of_configured = 0.0;
+  double of_found = 0.0;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+  {
+    product += configured[axis] * gravity[axis];
+    of_configured += configured[axis] * configured[axis];
+    of_found += gravity[axis] * gravity[axis];
+  }
+  const double size = std::sqrt(of_configured * of_found);
+  return size > 0.0 ? std::acos(std::clamp(product / size, -1.0, 1.0)) : 0.0;
+}
+
+bool IdentifiedMounting::differs() const
+{
+  constexpr double LEAST = 4.0 * DEGREE;    // errors of the links' masses tilt it too
+  constexpr double KNOWN = 3.0;             // half widths, at least: a hand on the arm tilts it too
+  constexpr double SIZE = 1.35;             // a payload, or errors of gains, beside
+  return tilt() > LEAST && tilt() > KNOWN * half_width && size > 1.0 / SIZE && size < SIZE;
+}
+
+std::string IdentifiedMounting::text() const
+{
+  constexpr double LEAST = 1.0;  // of the half width that is printed [deg]
+  const auto part = [](double value) { return fixedText(std::abs(value) < 0.05 ? 0.0 : value, 1); };  // no "-0.0"
+  return "another mounting than configured: gravity looks tilted by " + fixedText(tilt() / DEGREE, 0) + " +- " +
+         fixedText(std::max(half_width / DEGREE, LEAST), 0) + " deg: set gravity: [" + part(gravity[0]) + ", " +
+         part(gravity[1]) + ", " + part(gravity[2]) + "] in the arm's file";
+}
+
+bool FoundLoad::showsPayload() const
+{
+  return payload.isCarried() && payload.residual_share < CLEARLY * std::min(1.0, share_of_gain) &&
+         !(showsMounting() && mounting.residual_share < payload.residual_share);
+}
+
+bool FoundLoad::showsMounting() const
+{
+  return mounting.differs() && mounting.residual_share < CLEARLY * std::min(1.0, share_of_gain) &&
+         !(payload.isCarried() && payload.residual_share < CLEARLY * mounting.residual_share);
+}
+}  // namespace hjt

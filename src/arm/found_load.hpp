@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "arm/arm_description.hpp"
+
+namespace hjt
+{
+/// The payload that an arm's currents show, beside the configured one.
+struct IdentifiedPayload
+{
+  Payload configured;
+  double mass{};                              ///< [kg]
+  double mass_half_width{};                   ///< of its 95 % interval [kg]
+  std::array<double, 3> moment{};             ///< mass times centre, in the frame of the tip [kg.m]
+  std::array<double, 3> moment_half_width{};  ///< of their 95 % intervals [kg.m]
+  double least_claim{};                       ///< what sound arms of this mass show without a payload, at most [kg]
+  double residual_share{ 1.0 };               ///< of the torques not predicted, that is left with it, rms [-]
+
+  /// The configured mass is outside the interval, and farther off than arms without a payload show.
+  bool differs() const;
+  /// It differs, and is a mass at all.
+  bool isCarried() const { return differs() && mass > mass_half_width; }
+  /// What it is, its centre where it has a mass.
+  Payload payload() const;
+  /// "The currents look like a payload of ... in place of the configured ...", a clause.
+  std::string text() const;
+};
+
+/// The direction of gravity that an arm's currents show, beside the configured one: how the arm is mounted.
+struct IdentifiedMounting
+{
+  std::array<double, 3> configured{};  ///< in the frame of the base [m/s^2]
+  std::array<double, 3> gravity{};     ///< the direction found, of the configured size [m/s^2]
+  double half_width{};                 ///< of its 95 % interval [rad]
+  double size{ 1.0 };                  ///< of the gravity that fits best, over the configured [-]
+  double residual_share{ 1.0 };        ///< of the torques not predicted, that is left with it, rms [-]
+
+  double tilt() const;  ///< between the two [rad]
+  /// The configured direction is far outside the interval, farther off than arms mounted as configured show, and what is
+  /// found is gravity by its size.
+  bool differs() const;
+  /// "gravity looks tilted by ... against the configured mounting ...", a clause.
+  std::string text() const;
+};
+
+/// What the currents of an arm show of its load.
+struct FoundLoad
+{
+  IdentifiedPayload payload;
+  IdentifiedMounting mounting;
+  /// Of the torques not predicted, what is left if all currents are one multiple of what is predicted, rms [-].
+  double share_of_gain{ 1.0 };
+
+  /// Nothing that is another explains the currents as well: clearly better than the load as it counts, than one
+  /// multiple of all currents, and than the other of the two.
+  bool showsPayload() const;
+  bool showsMounting() const;
+};
+}  // namespace hjt

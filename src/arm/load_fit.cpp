@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "arm/load_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include <Eigen/Core>
+
+#include "arm/load_problem.hpp"
+#include "arm/residual_statistics.hpp"
+#include "arm/unit_loads.hpp"
+
+namespace hjt
+{
+namespace
+{
+constexpr double MOVING = 0.05;  // [rad/s]
+using Rows = LoadProblem::Rows;
+
+std::vector<Rows> untouched(const std::vector<Rows>& rows)
+{
+  std::vector<Rows> left(rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i)
+  {
+    for (std::size_t k = 0; k < rows[i].size(); ++k)
+    {
+      if (!rows[i].touched[k])
+      {
+        left[i].add(rows[i], k);
+      }
+    }
+  }
+  return left;
+}
+
+/// Of the residuals as torques of all joints, what `left(joint, row)` [A] is, rms [-].
+template <class Left>
+double shareLeft(const std::vector<Rows>& rows, const std::vector<double>& gains, const Left& left)
+{
+  double before = 0.0;
+  double after = 0.0;
+  for (std::size_t i = 0; i < rows.size(); ++i)
+  {
+    for (std::size_t k = 0; k < rows[i].size(); ++k)
+    {
+      before += std::pow(gains[i] * rows[i].residuals[k], 2);
+      after += std::pow(gains[i] * left(rows[i], k), 2);
+    }
+  }
+  return before > 0.0 ? std::sqrt(after / before) : 1.0;
+}
+
+double shareLeft(const std::vector<Rows>& rows, const std::vector<double>& gains, const LoadProblem::Shared& values)
+{
+  return shareLeft(rows, gains,
+                   [&](const Rows& of, std::size_t k)
+                   { return of.residuals[k] - of.columns[k].head<LoadProblem::SHARED>().dot(values); });
+}
+
+/// With the best common multiple of what is predicted.
+double shareOfGain(const std::vector<Rows>& rows, const std::vector<double>& gains)
+{
+  double both = 0.0;
+  double squares = 0.0;
+  for (std::size_t i = 0; i < rows.size(); ++i)
+  {
+    for (std::size_t k = 0; k < rows[i].size(); ++k)
+    {
+      both += gains[i] * gains[i] * rows[i].residuals[k] * rows[i].predicted[k];
+      squares += std::pow(gains[i] * rows[i].predicted[k], 2);
+    }
+  }
+  const double multiple = squares > 0.0 ? both / squares : 0.0;
+  return shareLeft(rows, gains,
+                   [&](const Rows& of, std::size_t k) { return of.residuals[k] - multiple * of.predicted[k]; });
+}
+}  // namespace
+
+struct LoadFit::Data
+{
+  struct Open
+  {
+    LoadProblem::Columns columns;
+    double residual{};
+    double predicted{};
+    int count{};
+    double start{};
+    double velocity{};
+    bool touched{};
+  };
+
+  Data(const ArmDescription& arm, std::vector<double> all_gains)
+    : payload(arm.payload)
+    , gravity(arm.gravity.data())
+    , gains(std::move(all_gains))
+    , unit(arm)
+    , torques(static_cast<Eigen::Index>(gains.size()), LoadProblem::SHARED)
+    , motion(gains.size())
+    , open(gains.size())
+    , rows(gains.size())
+    , loads(gains.size())
+    , weights(gains.size())
+  {
+  }
+
+  void close(std::size_t i, double time)
+  {
+    Open& block = open[i];
+    if (block.count > 0 && time > block.start + 0.5 * LoadProblem::BLOCK)
+    {
+      rows[i].columns.push_back(block.columns / block.count);
+      rows[i].residuals.push_back(block.residual / block.count);
+      rows[i].predicted.push_back(block.predicted / block.count);
+      rows[i].times.push_back(block.start);
+      rows[i].touched.push_back(block.touched);
+    }
+    block.count = 0;
+  }
+
+  /// That 2 % of the links' masses make, as a mass at the tip, at the joint that weighs it best [kg].
+  double ofLinks() const
+  {
+    constexpr double LINKS_SHARE = 0.02;
+    double heaviest = 0.0;
+    double mass = 0.0;
+    for (std::size_t i = 0; i < loads.size(); ++i)
+    {
+      if (weights[i] > heaviest)
+      {
+        heaviest = weights[i];
+        mass = LINKS_SHARE * std::sqrt(loads[i] / weights[i]);
+      }
+    }
+    return mass;
+  }
+
+  IdentifiedPayload findPayload(const std::vector<Rows>& free) const
+  {
+    const LoadProblem::Solution solution = LoadProblem(free, LoadProblem::Term::PAYLOAD).solve();
+    IdentifiedPayload found;
+    found.configured = payload;
+    found.mass = payload.mass + solution.values[0];
+    found.mass_half_width = std::hypot(solution.half_widths[0], NORMAL_95 * ofLinks());
+    found.residual_share = shareLeft(free, gains, solution.values);
+    constexpr double UNLOADED = 0.05;  // of the links' mass: a sound UR5 without a payload shows 0 to 0.8 kg
+    found.least_claim = UNLOADED * unit.linksMass();
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+      const auto at = static_cast<Eigen::Index>(1 + axis);
+      found.moment[axis] = payload.mass * payload.centre[axis] + solution.values[at];
+      found.moment_half_width[axis] = solution.half_widths[at];
+    }
+    return found;
+  }
+
+  IdentifiedMounting findMounting() const
+  {
+    const LoadProblem::Solution solution = LoadProblem(rows, LoadProblem::Term::GRAVITY).solve();
+    const Eigen::Vector3d total = gravity + solution.values.tail<LoadProblem::GRAVITY>();
+    const Eigen::Vector3d direction = total / std::max(total.norm(), 1e-6);
+    const double size = std::max(gravity.norm(), 1e-6);  // weightless as configured: nothing to turn
+    // Of the half widths, what lies across the direction.
+    const Eigen::Array3d across = (1.0 - direction.array().square()).max(0.0);
+    const Eigen::Array3d widths = solution.half_widths.tail<LoadProblem::GRAVITY>().array();
+    IdentifiedMounting found;
+    Eigen::Map<Eigen::Vector3d>(found.configured.data()) = gravity;
+    Eigen::Map<Eigen::Vector3d>(found.gravity.data()) = gravity.norm() * direction;
+    found.half_width = std::sqrt((widths.square() * across).sum()) / std::max(total.norm(), 1e-6);
+    found.size = total.norm() / size;
+    found.residual_share = shareLeft(rows, gains, solution.values);
+    return found;
+  }
+
+  Payload payload;
+  Eigen::Vector3d gravity;
+  std::vector<double> gains;
+  UnitLoads unit;
+  Eigen::MatrixXd torques;
+  std::vector<JointMotion> motion;
+  std::vector<Open> open;
+  std::vector<Rows> rows;
+  std::vector<double> loads;    // sum of squares [(N.m)^2]
+  std::vector<double> weights;  // of 1 kg at the tip, likewise
+  double moved{};               // [s]
+  double last_time{};
+};
+
+LoadFit::LoadFit(const ArmDescription& arm, std::vector<double> gains)
+  : data_(std::make_unique<Data>(arm, std::move(gains)))
+{
+}
+
+LoadFit::~LoadFit() = default;
+
+void LoadFit::add(const std::vector<MotionSample>& samples, const std::vector<double>& predicted, bool touched)
+{
+  Data& data = *data_;
+  const double step = samples.front().time - data.last_time;
+  data.last_time = samples.front().time;
+  for (std::size_t i = 0; i < samples.size(); ++i)
+  {
+    data.motion[i] = { samples[i].position, samples[i].velocity, samples[i].acceleration };
+  }
+  const bool moves = std::any_of(data.motion.begin(), data.motion.end(),
+                                 [](const JointMotion& joint) { return std::abs(joint.velocity) > MOVING; });
+  data.moved += moves && step > 0.0 && step < LoadProblem::BLOCK ? step : 0.0;
+  if (data.moved > MOST_TIME)
+  {
+    return;
+  }
+  if (moves)
+  {
+    data.unit.torques(data.motion, data.torques);
+  }
+  for (std::size_t i = 0; i < samples.size(); ++i)
+  {
+    const MotionSample& sample = samples[i];
+    Data::Open& block = data.open[i];
+    const bool is_moving = std::abs(sample.velocity) > MOVING && std::isfinite(sample.current);
+    if (sample.after_gap || !is_moving || sample.velocity * block.velocity < 0.0 || touched != block.touched ||
+        sample.time > block.start + LoadProblem::BLOCK)
+    {
+      data.close(i, sample.time);
+    }
+    if (!is_moving)
+    {
+      continue;
+    }
+    if (block.count == 0)
+    {
+      block = { LoadProblem::Columns::Zero(), 0.0, 0.0, 0, sample.time, sample.velocity, touched };
+    }
+    const auto torques = data.torques.row(static_cast<Eigen::Index>(i));
+    block.columns.head<LoadProblem::SHARED>() += torques.transpose() / data.gains[i];
+    block.columns.tail<LoadProblem::NUISANCES>() +=
+        Eigen::Vector4d(sample.load / data.gains[i], std::copysign(1.0, sample.velocity), sample.velocity, 1.0);
+    block.residual += sample.current - predicted[i];
+    block.predicted += predicted[i];
+    ++block.count;
+    if (!touched)
+    {
+      data.loads[i] += sample.load * sample.load;
+      data.weights[i] += torques[0] * torques[0];
+    }
+  }
+}
+
+double LoadFit::moved() const
+{
+  return data_->moved;
+}
+
+FoundLoad LoadFit::solve()
+{
+  Data& data = *data_;
+  for (std::size_t i = 0; i < data.rows.size(); ++i)
+  {
+    data.close(i, data.last_time);
+  }
+  const std::vector<Rows> free = untouched(data.rows);
+  return { data.findPayload(free), data.findMounting(), shareOfGain(free, data.gains) };
+}
+
+IdentifiedPayload identifyPayload(const ArmDescription& arm, const std::vector<std::vector<MotionSample>>& samples,
+                                  const std::vector<std::vector<double>>& predicted, const std::vector<double>& gains)
+{
+  LoadFit fit(arm, gains);
+  std::vector<MotionSample> at(samples.size());
+  std::vector<double> currents(samples.size());
+  for (std::size_t k = 0; k < samples.front().size(); ++k)
+  {
+    for (std::size_t i = 0; i < samples.size(); ++i)
+    {
+      at[i] = samples[i][k];
+      currents[i] = predicted[i][k];
+    }
+    fit.add(at, currents);
+  }
+  return fit.solve().payload;
+}
+}  // namespace hjt

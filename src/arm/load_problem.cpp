@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "arm/load_problem.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <Eigen/Cholesky>
+
+#include "arm/residual_statistics.hpp"
+
+namespace hjt
+{
+namespace
+{
+constexpr double OUTLIER = 3.0;  // deviations
+constexpr int PARTS = 10;        // of the time, of which one after the other is left out
+/// What each is known to before: mass [kg], moment [kg.m], gravity [m/s^2]; what does not count.
+constexpr double KNOWN_MASS = 10.0;
+constexpr double KNOWN_MOMENT = 2.0;
+constexpr double KNOWN_GRAVITY = 10.0;
+constexpr double FIXED = 1e-6;
+/// Gain [-], Coulomb friction [A], viscous [A.s/rad], offset [A].
+constexpr std::array<double, LoadProblem::NUISANCES> KNOWN{ 0.05, 0.3, 0.3, 0.03 };
+
+/// All but those of one of PARTS parts of the time.
+std::vector<LoadProblem::Rows> without(const std::vector<LoadProblem::Rows>& rows, int part, double begin, double end)
+{
+  std::vector<LoadProblem::Rows> left(rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i)
+  {
+    for (std::size_t k = 0; k < rows[i].size(); ++k)
+    {
+      if (static_cast<int>(PARTS * (rows[i].times[k] - begin) / (end - begin)) != part)
+      {
+        left[i].add(rows[i], k);
+      }
+    }
+  }
+  return left;
+}
+}  // namespace
+
+void LoadProblem::Rows::add(const Rows& from, std::size_t row)
+{
+  columns.push_back(from.columns[row]);
+  residuals.push_back(from.residuals[row]);
+  predicted.push_back(from.predicted[row]);
+  times.push_back(from.times[row]);
+  touched.push_back(from.touched[row]);
+}
+
+LoadProblem::LoadProblem(std::vector<Rows> rows, Term term) : rows_(std::move(rows))
+{
+  known_.setConstant(FIXED);
+  if (term == Term::PAYLOAD)
+  {
+    known_.head<PAYLOAD>() << KNOWN_MASS, KNOWN_MOMENT, KNOWN_MOMENT, KNOWN_MOMENT;
+  }
+  else
+  {
+    known_.tail<GRAVITY>().setConstant(KNOWN_GRAVITY);
+  }
+}
+
+LoadProblem::Solution LoadProblem::solve() const
+{
+  double begin = std::numeric_limits<double>::infinity();
+  double end = -begin;
+  for (const Rows& rows : rows_)
+  {
+    for (const double time : rows.times)
+    {
+      begin = std::min(begin, time);
+      end = std::max(end, time + BLOCK);
+    }
+  }
+  Solution solution = solveAll(rows_);
+  Shared squares = Shared::Zero();
+  for (int part = 0; part < PARTS && end > begin; ++part)
+  {
+    squares += (solveAll(without(rows_, part, begin, end)).values - solution.values).cwiseAbs2();
+  }
+  solution.half_widths = solution.half_widths.cwiseMax(NORMAL_95 * (squares * (PARTS - 1.0) / PARTS).cwiseSqrt());
+  return solution;
+}
+
+LoadProblem::Solution LoadProblem::solveAll(const std::vector<Rows>& rows) const
+{
+  const auto size = static_cast<Eigen::Index>(SHARED + NUISANCES * rows.size());
+  Eigen::VectorXd known(size);
+  known.head<SHARED>() = known_;
+  for (Eigen::Index own = SHARED; own < size; own += NUISANCES)
+  {
+    known.segment<NUISANCES>(own) = Eigen::Map<const Eigen::Vector4d>(KNOWN.data());
+  }
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(size);
+  Eigen::MatrixXd information;
+  constexpr int ROUNDS = 5;
+  for (int round = 0; round < ROUNDS; ++round)
+  {
+    information = known.cwiseAbs2().cwiseInverse().asDiagonal();
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(size);
+    for (std::size_t i = 0; i < rows.size(); ++i)
+    {
+      add(rows[i], static_cast<Eigen::Index>(SHARED + NUISANCES * i), all, information, right);
+    }
+    all = information.ldlt().solve(right);
+  }
+  const Eigen::MatrixXd variance = information.ldlt().solve(Eigen::MatrixXd::Identity(size, size));
+  return { all.head<SHARED>(), NORMAL_95 * variance.diagonal().head<SHARED>().cwiseSqrt() };
+}
+
+/// The rows of one joint, whose nuisances begin at `own`, weighed by what `all` leaves of them.
+void LoadProblem::add(const Rows& rows, Eigen::Index own, const Eigen::VectorXd& all, Eigen::MatrixXd& information,
+                      Eigen::VectorXd& right) const
+{
+  constexpr std::size_t FEWEST = 5;
+  if (rows.size() < FEWEST)
+  {
+    return;
+  }
+  Columns values;
+  values << all.head<SHARED>(), all.segment<NUISANCES>(own);
+  // An error of the gain is one of what the shared terms change too.
+  const auto columns = [&](std::size_t k)
+  {
+    Columns row = rows.columns[k];
+    row[SHARED] += row.head<SHARED>().dot(values.head<SHARED>());
+    return row;
+  };
+  Eigen::VectorXd errors(static_cast<Eigen::Index>(rows.size()));
+  for (std::size_t k = 0; k < rows.size(); ++k)
+  {
+    errors[static_cast<Eigen::Index>(k)] = rows.residuals[k] - columns(k).dot(values);
+  }
+  constexpr double LEAST = 0.01;  // [A]
+  const double deviation = std::max(robustDeviation(errors), LEAST);
+  const double weight = 1.0 / (deviation * deviation * correlationRows(errors));
+  Eigen::Matrix<double, TERMS, TERMS> products = Eigen::Matrix<double, TERMS, TERMS>::Zero();
+  Columns sums = Columns::Zero();
+  for (std::size_t k = 0; k < rows.size(); ++k)
+  {
+    const double error = std::abs(errors[static_cast<Eigen::Index>(k)]);
+    const double row_weight = weight * std::min(1.0, OUTLIER * deviation / std::max(error, LEAST));
+    const Columns row = columns(k);
+    products.noalias() += row_weight * row * row.transpose();
+    sums += row_weight * rows.residuals[k] * row;
+  }
+  information.topLeftCorner<SHARED, SHARED>() += products.topLeftCorner<SHARED, SHARED>();
+  information.block<NUISANCES, NUISANCES>(own, own) += products.bottomRightCorner<NUISANCES, NUISANCES>();
+  information.block<SHARED, NUISANCES>(0, own) += products.topRightCorner<SHARED, NUISANCES>();
+  information.block<NUISANCES, SHARED>(own, 0) += products.bottomLeftCorner<NUISANCES, SHARED>();
+  right.head<SHARED>() += sums.head<SHARED>();
+  right.segment<NUISANCES>(own) += sums.tail<NUISANCES>();
+}
+}  // namespace hjt

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace hjt
+{
+/// Least squares of the currents that an arm's twins do not predict: terms of the load that all joints share, and for
+/// each joint, as nuisances, an error of the gain, of the Coulomb and the viscous friction and an offset, each normally
+/// distributed about zero. A row counts by the deviation and the correlation of its joint's rows, outliers less.
+class LoadProblem
+{
+public:
+  static constexpr int PAYLOAD = 4;    ///< mass and its three moments
+  static constexpr int GRAVITY = 3;    ///< its change
+  static constexpr int NUISANCES = 4;  ///< of each joint
+  static constexpr int SHARED = PAYLOAD + GRAVITY;
+  static constexpr int TERMS = SHARED + NUISANCES;
+
+  static constexpr double BLOCK = 0.1;  ///< that a row is the mean of [s]
+
+  using Columns = Eigen::Matrix<double, TERMS, 1>;
+  using Shared = Eigen::Matrix<double, SHARED, 1>;
+
+  /// Means of one joint while it moves one way.
+  struct Rows
+  {
+    std::vector<Columns> columns;   ///< [A] for a term of 1
+    std::vector<double> residuals;  ///< [A]
+    std::vector<double> predicted;  ///< [A]
+    std::vector<double> times;      ///< [s]
+    std::vector<bool> touched;      ///< something touched the arm, or looked like it
+
+    std::size_t size() const { return times.size(); }
+    void add(const Rows& from, std::size_t row);
+  };
+
+  /// What may be another than it counts.
+  enum class Term
+  {
+    PAYLOAD,
+    GRAVITY
+  };
+
+  LoadProblem(std::vector<Rows> rows, Term term);
+
+  struct Solution
+  {
+    Shared values{ Shared::Zero() };
+    Shared half_widths{ Shared::Zero() };  ///< of 95 % intervals
+  };
+  /// The interval is that of the fit, or by leaving out one tenth of the time after the other where that is wider.
+  Solution solve() const;
+
+private:
+  Solution solveAll(const std::vector<Rows>& rows) const;
+  void add(const Rows& rows, Eigen::Index own, const Eigen::VectorXd& all, Eigen::MatrixXd& information,
+           Eigen::VectorXd& right) const;
+
+  std::vector<Rows> rows_;
+  Shared known_;  // to which each term is known before
+};
+}  // namespace hjt

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Payload and mounting that an arm's currents show while its rows come.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+
+#include "arm/load_watch.hpp"
+#include "gear/angle.hpp"
+#include "test/core/arm_support.hpp"
+#include "test/core/test_parameters.hpp"
+
+namespace hjt
+{
+namespace
+{
+const Payload CARRIED{ 3.0, { 0.0, 0.03, 0.08 } };
+constexpr double LONG = 40.0;  // more than the motion after which a payload is looked for [s]
+constexpr std::size_t ELBOW = 2;
+
+/// An arm in motion, its currents those of its twins with what it carries, and the watch beside it.
+struct WatchedArm
+{
+  void move(double begin, double seconds, const Payload& carried)
+  {
+    ArmDescription with = arm;
+    with.payload = carried;
+    with.gravity = mounted;
+    ArmDynamics loaded(with);
+    ArmDynamics expected(watch.arm());
+    ArmSample sample;
+    sample.joints.resize(arm.joints.size());
+    std::vector<JointMotion> motion(arm.joints.size());
+    constexpr double PERIOD = 0.025;  // [s]
+    for (int row = 0; row * PERIOD < seconds; ++row)
+    {
+      const double time = begin + PERIOD * row;
+      for (std::size_t i = 0; i < motion.size(); ++i)
+      {
+        const double rate = 0.9 + 0.13 * static_cast<double>(i);
+        motion[i] = { BENT[i] + 0.8 * std::sin(rate * time), 0.8 * rate * std::cos(rate * time),
+                      -0.8 * rate * rate * std::sin(rate * time) };
+      }
+      const std::vector<double> torques = torquesOf(loaded, motion);
+      sample.torques = torquesOf(expected, motion);
+      for (std::size_t i = 0; i < motion.size(); ++i)
+      {
+        MotionSample& joint = sample.joints[i];
+        joint = MotionSample();
+        joint.time = time;
+        joint.position = motion[i].position;
+        joint.velocity = motion[i].velocity;
+        joint.acceleration = motion[i].acceleration;
+        MotionSample own = joint;
+        own.load = torques[i];
+        own.after_gap = row == 0;
+        joint.current = i == silent ? 0.0 : factors[i] * drives[i].step(own).current;
+      }
+      watch.add(sample);
+    }
+  }
+
+  std::optional<FoundLoad> moved(const Payload& carried)
+  {
+    move(0.0, LONG, carried);
+    return watch.look();
+  }
+
+  explicit WatchedArm(const std::string& name = "ur5") : arm(shipped(name)) {}
+
+  ArmDescription arm;
+  std::array<double, 3> mounted = arm.gravity;
+  std::array<double, 6> factors{ 1.0, 1.0, 1.0, 1.0, 1.0, 1.0 };  // of the currents
+  std::vector<Parameters> parameters = std::vector<Parameters>(6, shippedParameters());
+  std::vector<MotionDriven> drives = std::vector<MotionDriven>(6, MotionDriven(parameters.front()));
+  LoadWatch watch{ arm, parameters };
+  std::size_t silent = 6;  // none
+};
+
+std::optional<IdentifiedPayload> payloadOf(WatchedArm& robot)
+{
+  const std::optional<FoundLoad> found = robot.watch.look();
+  return found ? robot.watch.payloadOf(*found) : std::nullopt;
+}
+
+TEST(LoadWatch, FindsWhatIsTakenUpAndThatItIsPutDown)
+{
+  WatchedArm robot;
+  robot.move(0.0, LONG, CARRIED);
+  const std::optional<IdentifiedPayload> found = payloadOf(robot);
+  ASSERT_TRUE(found);
+  EXPECT_TRUE(found->isCarried());
+  EXPECT_NEAR(found->mass, CARRIED.mass, 0.5);
+  robot.watch.configure(found->payload());
+
+  robot.move(LONG, LONG, CARRIED);
+  EXPECT_FALSE(payloadOf(robot)) << "it counts already";
+
+  robot.watch.configure(found->payload());
+  robot.move(2.0 * LONG, LONG, {});
+  const std::optional<IdentifiedPayload> left = payloadOf(robot);
+  ASSERT_TRUE(left);
+  EXPECT_FALSE(left->isCarried());
+  EXPECT_NEAR(left->mass, 0.0, 0.5);
+  EXPECT_EQ(left->configured.mass, 0.0);
+  robot.watch.configure(robot.watch.given());
+  EXPECT_EQ(robot.watch.arm().payload.mass, 0.0);
+}
+
+TEST(LoadWatch, StartsAgainAfterAJumpBackOfTheTime)
+{
+  WatchedArm robot;
+  robot.move(7200.0, 5.0, CARRIED);
+  robot.watch.reset();
+  robot.move(0.0, LONG, CARRIED);
+  const std::optional<IdentifiedPayload> found = payloadOf(robot);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->mass, CARRIED.mass, 0.5);
+}
+
+TEST(LoadWatch, LeavesOutAJointWithoutEfforts)
+{
+  WatchedArm robot;
+  robot.silent = ELBOW;
+  robot.watch.setMeasured(ELBOW, false);
+  robot.move(0.0, LONG, {});
+  EXPECT_FALSE(payloadOf(robot));
+
+  robot.watch.reset();
+  robot.move(LONG, LONG, CARRIED);
+  const std::optional<IdentifiedPayload> found = payloadOf(robot);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->mass, CARRIED.mass, 0.5);
+}
+
+/// A wall, a ceiling, a stand that is tilted.
+TEST(LoadWatch, FindsHowEveryShippedArmIsMounted)
+{
+  constexpr double DEGREE = PI / 180.0;
+  for (const auto& [name, tilt] : { std::pair("ur3", 90.0), std::pair("ur3e", 180.0), std::pair("ur5", 15.0),
+                                    std::pair("ur5e", 135.0), std::pair("ur10", 90.0), std::pair("ur10e", 50.0),
+                                    std::pair("ur16e", 15.0) })
+  {
+    SCOPED_TRACE(std::string(name) + ", " + std::to_string(tilt) + " deg");
+    WatchedArm robot(name);
+    const double across = 9.81 * std::sin(tilt * DEGREE);
+    robot.mounted = { 0.6 * across, -0.8 * across, -9.81 * std::cos(tilt * DEGREE) };
+    const std::optional<FoundLoad> found = robot.moved({});
+    ASSERT_TRUE(found);
+    EXPECT_TRUE(found->showsMounting());
+    EXPECT_FALSE(found->showsPayload());
+    const std::optional<IdentifiedMounting> mounting = robot.watch.mountingOf(*found);
+    ASSERT_TRUE(mounting);
+    EXPECT_TRUE(mounting->differs());
+    EXPECT_NEAR(mounting->tilt(), tilt * DEGREE, std::max(mounting->half_width, DEGREE));
+  }
+}
+
+TEST(LoadWatch, TakesNothingElseForAMountingOrAPayload)
+{
+  WatchedArm sound;
+  EXPECT_FALSE(sound.moved({})->showsMounting());
+  WatchedArm loaded;
+  const std::optional<FoundLoad> payload = loaded.moved(CARRIED);
+  EXPECT_TRUE(payload->showsPayload());
+  EXPECT_FALSE(payload->showsMounting());
+  for (const std::array<double, 6>& factors :
+       { std::array<double, 6>{ 1.3, 1.3, 1.3, 1.3, 1.3, 1.3 }, std::array<double, 6>{ 1.0, -1.0, -1.0, 1.0, 1.0, 1.0 },
+         std::array<double, 6>{ -1.0, -1.0, -1.0, -1.0, -1.0, -1.0 },
+         std::array<double, 6>{ 1.0, -1.0, 1.0, 1.0, 1.0, 1.0 } })
+  {
+    WatchedArm other;
+    other.factors = factors;
+    const std::optional<FoundLoad> found = other.moved({});
+    EXPECT_FALSE(found->showsMounting()) << found->mounting.text() << " share " << found->mounting.residual_share;
+    EXPECT_FALSE(found->showsPayload()) << found->payload.text() << " share " << found->payload.residual_share;
+  }
+}
+}  // namespace
+}  // namespace hjt
