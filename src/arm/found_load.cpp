@@ -75,13 +75,13 @@ std::string IdentifiedMounting::text() const
 
 bool FoundLoad::showsPayload() const
 {
-  return payload.isCarried() && payload.residual_share < CLEARLY * std::min(1.0, share_of_gain) &&
-         !(showsMounting() && mounting.residual_share < payload.residual_share);
+  return payload.isCarried() && payload.residual_share < CLEARLY && payload.residual_share < share_of_gain &&
+         !showsMounting();
 }
 
 bool FoundLoad::showsMounting() const
 {
   return mounting.differs() && mounting.residual_share < CLEARLY * std::min(1.0, share_of_gain) &&
-         !(payload.isCarried() && payload.residual_share < CLEARLY * mounting.residual_share);
+         !(payload.isCarried() && mounting.residual_share > CLEARLY * payload.residual_share);
 }
 }  // namespace hjt

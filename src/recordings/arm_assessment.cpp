@@ -182,7 +182,7 @@ bool takeOther(const ArmAssessment& arm, ArmRecording& recording, AssumedLoad& a
     return true;
   }
   // A payload explains no telemetry that does not fit, nor an arm led by hand.
-  if (arm.load->showsPayload() && !assumed.payload && fits(arm))
+  if (arm.load->payload.isCarried() && !assumed.payload && fits(arm))
   {
     assumed.payload = arm.load->payload;
     recording.setPayload(assumed.payload->payload());
@@ -204,6 +204,7 @@ ArmAssessment assess(ArmRecording& recording, const AssessmentSettings& settings
   constexpr double CLEARLY = 0.9;  // of the torques not predicted
   ArmAssessment arm = pass(recording, settings, settings.gives_notice, fit);
   const double before = residualTorque(arm);
+  const double share_of_gain = arm.load ? arm.load->share_of_gain : 1.0;
   AssumedLoad tried;
   AssumedLoad explained;
   const Payload payload = recording.arm().payload;
@@ -213,7 +214,9 @@ ArmAssessment assess(ArmRecording& recording, const AssessmentSettings& settings
   {
     arm = pass(recording, settings, false, fit);
     // As long as the mounting is another most rows look touched, and count for nothing.
-    is_explained = isExplained(arm) && (tried.mounting || residualTorque(arm) < CLEARLY * before);
+    // Where the friction of the whole arm is another with it, one multiple of all currents is no worse a reason.
+    is_explained = isExplained(arm) && (tried.mounting || residualTorque(arm) < CLEARLY * before) &&
+                   (arm.friction.median == 1.0 || !tried.payload || tried.payload->residual_share < share_of_gain);
     explained = is_explained ? tried : explained;
   }
   if (!is_explained)
