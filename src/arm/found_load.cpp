@@ -58,9 +58,9 @@ double IdentifiedMounting::tilt() const
 
 bool IdentifiedMounting::differs() const
 {
-  constexpr double LEAST = 4.0 * DEGREE;    // errors of the links' masses tilt it too
-  constexpr double KNOWN = 3.0;             // half widths, at least: a hand on the arm tilts it too
-  constexpr double SIZE = 1.35;             // a payload, or errors of gains, beside
+  constexpr double LEAST = 4.0 * DEGREE;  // errors of the links' masses tilt it too
+  constexpr double KNOWN = 3.0;           // half widths, at least: a hand on the arm tilts it too
+  constexpr double SIZE = 1.35;           // a payload, or errors of gains, beside
   return tilt() > LEAST && tilt() > KNOWN * half_width && size > 1.0 / SIZE && size < SIZE;
 }
 

@@ -261,9 +261,9 @@ void readJoints(const RecordingOptions& options, CheckedArm& arm)
   const ArmFriction common = commonFriction(frictions, parameters.front().comparison.repeat_tolerance);
   for (std::size_t i = 0; i < arm.joints.size(); ++i)
   {
-    arm.joints[i].verdict = judge(
-        twins[i].evidence(), parameters[i],
-        twins[i].context(arm.joints[i].misfit, arm.found.duration, common.factors[i], common.deviations[i]));
+    arm.joints[i].verdict =
+        judge(twins[i].evidence(), parameters[i],
+              twins[i].context(arm.joints[i].misfit, arm.found.duration, common.factors[i], common.deviations[i]));
   }
 }
 

@@ -233,8 +233,7 @@ void TrackerNode::addToLoad(const ArmSample& sample)
   {
     load_->setMeasured(i, joints_[i]->hasEffort());
   }
-  load_->add(sample,
-             std::any_of(joints_.begin(), joints_.end(), [](const auto& joint) { return joint->isTouched(); }));
+  load_->add(sample, std::any_of(joints_.begin(), joints_.end(), [](const auto& joint) { return joint->isTouched(); }));
 }
 
 /// What the currents show of the load and is not configured counts from now on, as `joint_twin compare` judges a
