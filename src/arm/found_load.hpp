@@ -39,8 +39,8 @@ struct IdentifiedMounting
   double residual_share{ 1.0 };        ///< of the torques not predicted, that is left with it, rms [-]
 
   double tilt() const;  ///< between the two [rad]
-  /// The configured direction is far outside the interval, farther off than arms mounted as configured show, and what is
-  /// found is gravity by its size.
+  /// The configured direction is far outside the interval, farther off than arms mounted as configured show, and what
+  /// is found is gravity by its size.
   bool differs() const;
   /// "gravity looks tilted by ... against the configured mounting ...", a clause.
   std::string text() const;

@@ -154,15 +154,14 @@ double residualTorque(const ArmAssessment& arm)
 /// Angles, stamps and efforts are in order, and no joint's friction is one that no drive has. The load may be another.
 bool fits(const ArmAssessment& arm)
 {
-  return std::none_of(arm.misfits.begin(), arm.misfits.end(), [](const Misfit& misfit)
-                      { return misfit.exists() && misfit.reason != Reason::LOAD_WRONG; });
+  return std::none_of(arm.misfits.begin(), arm.misfits.end(),
+                      [](const Misfit& misfit) { return misfit.exists() && misfit.reason != Reason::LOAD_WRONG; });
 }
 
 /// Another load is the reason only if every joint fits with it.
 bool isExplained(const ArmAssessment& with)
 {
-  return std::none_of(with.misfits.begin(), with.misfits.end(),
-                      [](const Misfit& misfit) { return misfit.exists(); }) &&
+  return std::none_of(with.misfits.begin(), with.misfits.end(), [](const Misfit& misfit) { return misfit.exists(); }) &&
          std::all_of(with.joints.begin(), with.joints.end(),
                      [](const AssessedJoint* joint)
                      { return !joint->friction({}).is_below_faults && joint->frictionReason() != Reason::LOAD_WRONG; });
@@ -182,7 +181,7 @@ bool takeOther(const ArmAssessment& arm, ArmRecording& recording, AssumedLoad& a
     return true;
   }
   // A payload explains no telemetry that does not fit, nor an arm led by hand.
-  if (arm.load->showsPayload() && !assumed.payload && fits(arm))
+  if (arm.load->payload.isCarried() && !assumed.payload && fits(arm))
   {
     assumed.payload = arm.load->payload;
     recording.setPayload(assumed.payload->payload());
@@ -204,6 +203,7 @@ ArmAssessment assess(ArmRecording& recording, const AssessmentSettings& settings
   constexpr double CLEARLY = 0.9;  // of the torques not predicted
   ArmAssessment arm = pass(recording, settings, settings.gives_notice, fit);
   const double before = residualTorque(arm);
+  const double share_of_gain = arm.load ? arm.load->share_of_gain : 1.0;
   AssumedLoad tried;
   AssumedLoad explained;
   const Payload payload = recording.arm().payload;
@@ -213,7 +213,9 @@ ArmAssessment assess(ArmRecording& recording, const AssessmentSettings& settings
   {
     arm = pass(recording, settings, false, fit);
     // As long as the mounting is another most rows look touched, and count for nothing.
-    is_explained = isExplained(arm) && (tried.mounting || residualTorque(arm) < CLEARLY * before);
+    // Where the friction of the whole arm is another with it, one multiple of all currents is no worse a reason.
+    is_explained = isExplained(arm) && (tried.mounting || residualTorque(arm) < CLEARLY * before) &&
+                   (arm.friction.median == 1.0 || !tried.payload || tried.payload->residual_share < share_of_gain);
     explained = is_explained ? tried : explained;
   }
   if (!is_explained)

@@ -190,14 +190,27 @@ Misfit misfitOfParts(const CheckedArm& arm)
                joined(arm.missing) };
 }
 
+/// With each other as witnesses.
+void judgeParts(const CheckedTwins& twins, const std::vector<Parameters>& parameters, CheckedArm& arm)
+{
+  std::vector<MeasuredFriction> frictions;
+  for (std::size_t i = 0; i < arm.joints.size(); ++i)
+  {
+    frictions.push_back(twins[i].friction(arm.joints[i].misfit));
+  }
+  const ArmFriction common = commonFriction(frictions, parameters.front().comparison.repeat_tolerance);
+  for (std::size_t i = 0; i < arm.joints.size(); ++i)
+  {
+    arm.joints[i].verdict =
+        judge(twins[i].evidence(), parameters[i],
+              twins[i].context(arm.joints[i].misfit, arm.found.duration, common.factors[i], common.deviations[i]));
+  }
+}
+
 /// Reads all joints at hand without an arm: the load is what one joint is configured to carry.
 void readJoints(const RecordingOptions& options, CheckedArm& arm)
 {
   const std::vector<std::string>& names = arm.joints_at_hand;
-  if (names.empty())
-  {
-    return;
-  }
   const std::vector<Parameters> parameters(names.size(), loadParameters(options));
   const MotionDriven twin(parameters.front());
   StreamTiming timing;
@@ -253,18 +266,7 @@ void readJoints(const RecordingOptions& options, CheckedArm& arm)
   }
   fit.refuse(misfitOfParts(arm));
   takeFit(fit, parameters, arm);
-  std::vector<MeasuredFriction> frictions;
-  for (std::size_t i = 0; i < arm.joints.size(); ++i)
-  {
-    frictions.push_back(twins[i].friction(arm.joints[i].misfit));
-  }
-  const ArmFriction common = commonFriction(frictions, parameters.front().comparison.repeat_tolerance);
-  for (std::size_t i = 0; i < arm.joints.size(); ++i)
-  {
-    arm.joints[i].verdict = judge(
-        twins[i].evidence(), parameters[i],
-        twins[i].context(arm.joints[i].misfit, arm.found.duration, common.factors[i], common.deviations[i]));
-  }
+  judgeParts(twins, parameters, arm);
 }
 
 bool hasFinding(const CheckedArm& arm, const std::string& kind)
@@ -352,11 +354,11 @@ RecordingCheck checkRecording(const RecordingOptions& options)
       arm.ranked = rankArms(options, arm);
       arm.taken = choice(arm);
     }
-    if (arm.taken.empty())
+    if (arm.taken.empty() && !arm.joints_at_hand.empty())
     {
       readJoints(options, arm);
     }
-    else
+    else if (!arm.taken.empty())
     {
       readArm(options, arm);
       tryRemedies(options, arm);

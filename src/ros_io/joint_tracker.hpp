@@ -108,6 +108,13 @@ public:
     return !verdict.fits && (verdict.reason == Reason::LESS_THAN_FAULTS || verdict.reason == Reason::NO_FRICTION);
   }
 
+  /// Nothing but its load may be another than configured; or it has no effort.
+  bool mayCarryOther() const
+  {
+    const Misfit& misfit = verdict_.misfit();
+    return !hasEffort() || ((!misfit.exists() || misfit.reason == Reason::LOAD_WRONG) && !isLedByHand());
+  }
+
   /// A message on the load's topic.
   void receiveLoad(const sensor_msgs::JointState& message, Stamp received);
 

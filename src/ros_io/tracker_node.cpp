@@ -233,8 +233,7 @@ void TrackerNode::addToLoad(const ArmSample& sample)
   {
     load_->setMeasured(i, joints_[i]->hasEffort());
   }
-  load_->add(sample,
-             std::any_of(joints_.begin(), joints_.end(), [](const auto& joint) { return joint->isTouched(); }));
+  load_->add(sample, std::any_of(joints_.begin(), joints_.end(), [](const auto& joint) { return joint->isTouched(); }));
 }
 
 /// What the currents show of the load and is not configured counts from now on, as `joint_twin compare` judges a
@@ -263,31 +262,20 @@ void TrackerNode::lookAtLoad()
 /// counts again.
 void TrackerNode::lookAtPayload(const FoundLoad& found)
 {
-  const bool fits =
-      std::all_of(joints_.begin(), joints_.end(),
-                  [](const auto& joint)
-                  {
-                    const Misfit& misfit = joint->verdict().misfit();
-                    return !joint->hasEffort() ||
-                           ((!misfit.exists() || misfit.reason == Reason::LOAD_WRONG) && !joint->isLedByHand());
-                  });
-  const std::optional<IdentifiedPayload> payload = fits ? load_->payloadOf(found) : std::nullopt;
-  if (!payload)
+  const std::optional<IdentifiedPayload> payload = load_->payloadOf(found);
+  if (!payload || !std::all_of(joints_.begin(), joints_.end(), [](const auto& of) { return of->mayCarryOther(); }))
   {
     return;
   }
+  stream_.payload = payload->isCarried() ? payload->text() : "";
   if (payload->isCarried())
   {
-    stream_.payload = payload->text();
     ROS_WARN_STREAM(sentence(stream_.payload) << " The joints are judged with it from now on");
     load_->configure(payload->payload());
   }
   else
   {
-    stream_.payload.clear();
-    ROS_INFO_STREAM(
-        "The payload that is not configured is put down: the joints are judged with the configured one "
-        "from now on");
+    ROS_INFO_STREAM("The payload that is not configured is put down: the configured one counts from now on");
     load_->configure(load_->given());
   }
   startWithLoad();

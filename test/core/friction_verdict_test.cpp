@@ -317,7 +317,7 @@ TEST_F(FrictionVerdict, WhatNoFaultMakesIsNoFault)
 {
   EXPECT_EQ(gap(swing, 60.0, 0.0), Reason::NO_FRICTION);
   EXPECT_EQ(gap(swing, 60.0, 0.3), Reason::LESS_THAN_FAULTS);
-  EXPECT_EQ(gap(swing, 60.0, -1.0), Reason::LESS_THAN_FAULTS);
+  EXPECT_EQ(gap(swing, 60.0, -1.0), Reason::EFFORT_NOT_CURRENT);
   const FrictionPoint point = joint_.evidence(swing, 60.0, 1.0).friction().points().back();
   EXPECT_EQ(gap(swing, 60.0, 1.0, {}, 1.5 * point.measured / joint_.gain()), Reason::LOAD_WRONG);
   const auto chance = [](double time) { return std::fmod(time, 20.0) < 10.0 ? 0.1 : 1.9; };

@@ -142,9 +142,9 @@ TEST(LoadWatch, LeavesOutAJointWithoutEfforts)
 TEST(LoadWatch, FindsHowEveryShippedArmIsMounted)
 {
   constexpr double DEGREE = PI / 180.0;
-  for (const auto& [name, tilt] : { std::pair("ur3", 90.0), std::pair("ur3e", 180.0), std::pair("ur5", 15.0),
-                                    std::pair("ur5e", 135.0), std::pair("ur10", 90.0), std::pair("ur10e", 50.0),
-                                    std::pair("ur16e", 15.0) })
+  for (const auto& [name, tilt] :
+       { std::pair("ur3", 90.0), std::pair("ur3e", 180.0), std::pair("ur5", 15.0), std::pair("ur5e", 135.0),
+         std::pair("ur10", 90.0), std::pair("ur10e", 50.0), std::pair("ur16e", 15.0) })
   {
     SCOPED_TRACE(std::string(name) + ", " + std::to_string(tilt) + " deg");
     WatchedArm robot(name);
