@@ -224,7 +224,7 @@ TEST(RemainingLife, IsFiniteForAnyUseAndAssessmentAndDoesNotAllocate)
 TEST(LifeTrials, IntervalsHoldTheTruthAsOftenAsTheySayAndAssessmentsImproveThem)
 {
   const RatedUse& use = ratedUse();
-  const LifeTrialOptions options{ 100, 11, 4000.0, 1.0, true };
+  const LifeTrialOptions options{ 100, 11, 4000.0, true };
   const std::vector<LifeTrial> trials = runLifeTrials(use.parameters, use.ageing, options, 1e6, [](double) {});
   const Coverage all = coverage(trials, 0.0);
   ASSERT_GT(all.forecasts, 400);
