@@ -172,7 +172,7 @@ TEST(FrictionTerms, HaveZerosBehindTheLastWhateverWasThere)
     {
       const double there = i < count ? 1.0 : 0.0;
       EXPECT_EQ(terms[i].strength, 2.0 * there) << i << " of " << count;
-      EXPECT_EQ(terms[i].slip, Eigen::Vector2d(3.0, 4.0) * there) << i << " of " << count;
+      EXPECT_EQ(terms[i].slip, Eigen::Vector2d(3.0 * there, 4.0 * there)) << i << " of " << count;
     }
   }
 }
