@@ -60,6 +60,7 @@ double shaftStrength(const JointFriction& friction) noexcept
   }
   return strength;
 }
+
 /// One slip s under regularised friction:  s + most r(s) = free,  r = s / sqrt(s^2 + e^2).  Leaves r in `share`.
 /// False: not found in a few steps.
 bool solveSlip(double free, double most, double e, double& share)

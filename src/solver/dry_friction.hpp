@@ -26,7 +26,8 @@ public:
 
   void setOutput(double inertia) noexcept { inertia_[1] = inertia; }  ///< another inertia of the output [kg.m^2]
 
-  /// `follow`: output speed over motor speed in plain running; scales the regularisation of slips at the output.
+  /// `velocity_ratio`: output speed over motor speed in plain running; scales the regularisation of slips at the
+  /// output.
   Eigen::Vector2d solve(const JointFriction& friction, double velocity_ratio, const Eigen::Vector2d& old_speeds,
                         const Eigen::Vector2d& free_speeds, double step) const noexcept;
 

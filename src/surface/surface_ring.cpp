@@ -83,7 +83,7 @@ void groupFlanks(const FrictionTerms& terms, double velocity_ratio, double* grou
   }
 }
 
-/// Torques are then right to rounding: SurfaceRing::measure adds what the forces that are left over change in them.
+/// Torques are then right to rounding: SurfaceRing::torques adds what the forces that are left over change in them.
 SolverParameters solverOf(const Parameters& parameters)
 {
   constexpr double TOLERANCE = 1e-4;  // N
@@ -163,12 +163,10 @@ Node SurfaceRing::measure()
   const Eigen::Matrix2d& k = ring_.stiffness();
   const double velocity_ratio = ring_.velocityRatio();
   const RingRates rates{ ring_.shape(), ring_.byWaveGenerator(), ring_.byOutput() };
-  // The forces that are left over, times what the teeth would move by: torques as in equilibrium, to the first order.
-  const double wave_generator_torque = forces.wave_generator_torque + forces.teeth.dot(ring_.byWaveGenerator());
-  const double output_torque = forces.output_torque + forces.teeth.dot(ring_.byOutput());
+  const Eigen::Vector2d torque = torques();
   node[SurfaceNode::ENERGY] = forces.energy;
-  node[SurfaceNode::ENERGY_BY_U] = -pitch_ * (wave_generator_torque + output_torque / ratio_);
-  node[SurfaceNode::ENERGY_BY_V] = -output_torque;
+  node[SurfaceNode::ENERGY_BY_U] = -pitch_ * (torque[0] + torque[1] / ratio_);
+  node[SurfaceNode::ENERGY_BY_V] = -torque[1];
   node[SurfaceNode::ENERGY_BY_UV] = pitch_ * (k(0, 1) + k(1, 1) / ratio_);
   node[SurfaceNode::VELOCITY_RATIO] = velocity_ratio;
   node[SurfaceNode::OUTPUT_STIFFNESS] = k(1, 1);
@@ -188,6 +186,14 @@ Node SurfaceRing::measure()
   node[SurfaceNode::LOBE_FORCE] = lobes.mesh_force[0];
   node[SurfaceNode::LOBE_FORCE + 1] = lobes.mesh_force[1];
   return SurfaceNode(node);
+}
+
+/// The forces that are left over, times what the teeth would move by: torques as in equilibrium, to the first order.
+Eigen::Vector2d SurfaceRing::torques() const
+{
+  const RingForces& forces = ring_.forces();
+  return { forces.wave_generator_torque + forces.teeth.dot(ring_.byWaveGenerator()),
+           forces.output_torque + forces.teeth.dot(ring_.byOutput()) };
 }
 
 double SurfaceRing::overload(const Node& node) const noexcept
@@ -274,27 +280,27 @@ int SurfaceRing::repetition()
   const std::array<int, 5> candidates{ 1, teeth / 2, teeth / 2 + 1, teeth, teeth + 2 };
   std::array<bool, candidates.size()> repeats;
   repeats.fill(true);
-  std::vector<Eigen::Vector2d> torques(2 * static_cast<std::size_t>(teeth) + 2);
+  std::vector<Eigen::Vector2d> sampled(2 * static_cast<std::size_t>(teeth) + 2);  // torques, at the output [N.m]
   for (const double direction : { -1.0, 1.0 })
   {
     if (!insert())
     {
       return 0;
     }
-    for (std::size_t i = 0; i < torques.size(); ++i)
+    for (std::size_t i = 0; i < sampled.size(); ++i)
     {
       if (!moveTo(static_cast<double>(i) * pitch_, direction * twist(LOAD * torque_limit_)))
       {
         return 0;
       }
-      torques[i] = { ring_.forces().output_torque, ring_.forces().wave_generator_torque * ratio_ };
+      sampled[i] = torques().cwiseProduct(Eigen::Vector2d(ratio_, 1.0));
     }
     for (std::size_t c = 0; c < candidates.size(); ++c)
     {
       const auto period = static_cast<std::size_t>(candidates[c]);
-      for (std::size_t i = period; i < torques.size() && repeats[c]; ++i)
+      for (std::size_t i = period; i < sampled.size() && repeats[c]; ++i)
       {
-        repeats[c] = (torques[i] - torques[i - period]).cwiseAbs().maxCoeff() <= SAME_TORQUE * torque_limit_;
+        repeats[c] = (sampled[i] - sampled[i - period]).cwiseAbs().maxCoeff() <= SAME_TORQUE * torque_limit_;
       }
     }
   }

@@ -118,6 +118,10 @@ TEST(DryFriction, SlidesAsItIsSolved)
     {
       step.friction.terms.push_back({ 2.0, { 0.0, 1.0 } });  // of the output
     }
+    if (k % 3 == 0)
+    {
+      step.friction.terms.push_back({ 0.1, { 0.0, 0.0 } });  // that nothing slips
+    }
     const DryFriction dry(step.inertia, WIDTH);
     Eigen::Vector2d v(1e9, 1e9);
     if (!dry.slide(step.friction, VELOCITY_RATIO, step.old, step.inertia.cwiseProduct(step.free), STEP, v))
@@ -135,6 +139,42 @@ TEST(DryFriction, SlidesAsItIsSolved)
     EXPECT_LE(error[1], 1e-8 * friction[1] + 1e-10 * step.inertia[1] * std::abs(solved[1])) << k;
   }
   EXPECT_GT(slid, 2000);
+}
+
+TEST(DryFriction, DoesNotSlideManyTerms)
+{
+  constexpr unsigned SEED = 65;
+  SCOPED_TRACE("seed " + std::to_string(SEED));
+  std::mt19937 random(SEED);
+  for (int k = 0; k < 1000; ++k)
+  {
+    const RandomStep step(random, 12);
+    Eigen::Vector2d v;
+    EXPECT_FALSE(DryFriction(step.inertia, WIDTH)
+                     .slide(step.friction, VELOCITY_RATIO, step.old, step.inertia.cwiseProduct(step.free), STEP, v));
+  }
+}
+
+TEST(FrictionTerms, HaveZerosBehindTheLastWhateverWasThere)
+{
+  FrictionTerms terms(7);
+  for (const int count : { 7, 1, 4, 5, 0 })
+  {
+    terms.clear();
+    for (int i = 0; i < count; ++i)
+    {
+      terms.push_back({ 2.0, { 3.0, 4.0 } });
+    }
+    ASSERT_EQ(terms.size(), count);
+    EXPECT_EQ(terms.packedSize() % FrictionTerms::PACK, 0);
+    EXPECT_GE(terms.packedSize(), count);
+    for (int i = 0; i < terms.packedSize(); ++i)
+    {
+      const double there = i < count ? 1.0 : 0.0;
+      EXPECT_EQ(terms[i].strength, 2.0 * there) << i << " of " << count;
+      EXPECT_EQ(terms[i].slip, Eigen::Vector2d(3.0 * there, 4.0 * there)) << i << " of " << count;
+    }
+  }
 }
 
 TEST(DryFriction, LeavesNoForceUnbalanced)
