@@ -53,9 +53,9 @@ double ArmController::motorSpeed(std::size_t joint, double angle) noexcept
   double* const ring = &angles_[instants_ * joint];
   ring[known_ % instants_] = angle;
   const std::size_t intervals = std::min(known_, instants_ - 1);
-  return intervals == 0 ? 0.0 :
-                          (angle - ring[(known_ - intervals) % instants_]) /
-                              (static_cast<double>(intervals) * toSeconds(period_));
+  return intervals == 0 ?
+             0.0 :
+             (angle - ring[(known_ - intervals) % instants_]) / (static_cast<double>(intervals) * toSeconds(period_));
 }
 
 bool ArmController::isDue(const ArmTwin& twin) const noexcept

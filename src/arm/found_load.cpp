@@ -58,9 +58,9 @@ double IdentifiedMounting::tilt() const
 
 bool IdentifiedMounting::differs() const
 {
-  constexpr double LEAST = 4.0 * DEGREE;    // errors of the links' masses tilt it too
-  constexpr double KNOWN = 3.0;             // half widths, at least: a hand on the arm tilts it too
-  constexpr double SIZE = 1.35;             // a payload, or errors of gains, beside
+  constexpr double LEAST = 4.0 * DEGREE;  // errors of the links' masses tilt it too
+  constexpr double KNOWN = 3.0;           // half widths, at least: a hand on the arm tilts it too
+  constexpr double SIZE = 1.35;           // a payload, or errors of gains, beside
   return tilt() > LEAST && tilt() > KNOWN * half_width && size > 1.0 / SIZE && size < SIZE;
 }
 
@@ -76,12 +76,11 @@ std::string IdentifiedMounting::text() const
 bool FoundLoad::showsPayload() const
 {
   return payload.isCarried() && payload.residual_share < CLEARLY * std::min(1.0, share_of_gain) &&
-         !(showsMounting() && mounting.residual_share < payload.residual_share);
+         !(mounting.differs() && mounting.residual_share < payload.residual_share);
 }
 
 bool FoundLoad::showsMounting() const
 {
-  return mounting.differs() && mounting.residual_share < CLEARLY * std::min(1.0, share_of_gain) &&
-         !(payload.isCarried() && payload.residual_share < CLEARLY * mounting.residual_share);
+  return mounting.differs() && mounting.residual_share < CLEARLY * std::min(1.0, mounting.share_otherwise);
 }
 }  // namespace hjt

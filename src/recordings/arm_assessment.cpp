@@ -154,15 +154,14 @@ double residualTorque(const ArmAssessment& arm)
 /// Angles, stamps and efforts are in order, and no joint's friction is one that no drive has. The load may be another.
 bool fits(const ArmAssessment& arm)
 {
-  return std::none_of(arm.misfits.begin(), arm.misfits.end(), [](const Misfit& misfit)
-                      { return misfit.exists() && misfit.reason != Reason::LOAD_WRONG; });
+  return std::none_of(arm.misfits.begin(), arm.misfits.end(),
+                      [](const Misfit& misfit) { return misfit.exists() && misfit.reason != Reason::LOAD_WRONG; });
 }
 
 /// Another load is the reason only if every joint fits with it.
 bool isExplained(const ArmAssessment& with)
 {
-  return std::none_of(with.misfits.begin(), with.misfits.end(),
-                      [](const Misfit& misfit) { return misfit.exists(); }) &&
+  return std::none_of(with.misfits.begin(), with.misfits.end(), [](const Misfit& misfit) { return misfit.exists(); }) &&
          std::all_of(with.joints.begin(), with.joints.end(),
                      [](const AssessedJoint* joint)
                      { return !joint->friction({}).is_below_faults && joint->frictionReason() != Reason::LOAD_WRONG; });

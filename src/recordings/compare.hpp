@@ -48,11 +48,11 @@ struct ComparedRecording
   bool is_judged{};
   HealthLevel health{};  ///< the worst of the joints
   MotionFindings found;
-  AssumedLoad assumed;        ///< that the joints are judged with in place of the configured one
-  ArmFriction friction;       ///< what the joints have in common
+  AssumedLoad assumed;                ///< that the joints are judged with in place of the configured one
+  ArmFriction friction;               ///< what the joints have in common
   std::vector<ComparedJoint> joints;  ///< from the base on; none: stopped
-  Json document;              ///< the data of the page
-  std::string page;           ///< its path; empty: none
+  Json document;                      ///< the data of the page
+  std::string page;                   ///< its path; empty: none
 };
 
 /// Compares a recorded joint or arm with its twin: verdict, data and figures as a page.

@@ -190,6 +190,26 @@ Misfit misfitOfParts(const CheckedArm& arm)
                joined(arm.missing) };
 }
 
+/// Each joint after what the friction of all has in common.
+void judgeJoints(const CheckedTwins& twins, const RecordingFit& fit, const std::vector<Parameters>& parameters,
+                 CheckedArm& arm)
+{
+  takeFit(fit, parameters, arm);
+  std::vector<MeasuredFriction> frictions;
+  for (std::size_t i = 0; i < arm.joints.size(); ++i)
+  {
+    frictions.push_back(twins[i].friction(arm.joints[i].misfit));
+  }
+  const ArmFriction common = commonFriction(frictions, parameters.front().comparison.repeat_tolerance);
+  for (std::size_t i = 0; i < arm.joints.size(); ++i)
+  {
+    CheckedJoint& joint = arm.joints[i];
+    const Misfit& misfit = joint.misfit.exists() ? joint.misfit : common.misfit;
+    joint.verdict = judge(twins[i].evidence(), parameters[i],
+                          twins[i].context(misfit, arm.found.duration, common.factors[i], common.deviations[i]));
+  }
+}
+
 /// Reads all joints at hand without an arm: the load is what one joint is configured to carry.
 void readJoints(const RecordingOptions& options, CheckedArm& arm)
 {
@@ -252,19 +272,7 @@ void readJoints(const RecordingOptions& options, CheckedArm& arm)
     arm.joints.back().stated_gain = std::nan("");
   }
   fit.refuse(misfitOfParts(arm));
-  takeFit(fit, parameters, arm);
-  std::vector<MeasuredFriction> frictions;
-  for (std::size_t i = 0; i < arm.joints.size(); ++i)
-  {
-    frictions.push_back(twins[i].friction(arm.joints[i].misfit));
-  }
-  const ArmFriction common = commonFriction(frictions, parameters.front().comparison.repeat_tolerance);
-  for (std::size_t i = 0; i < arm.joints.size(); ++i)
-  {
-    arm.joints[i].verdict = judge(
-        twins[i].evidence(), parameters[i],
-        twins[i].context(arm.joints[i].misfit, arm.found.duration, common.factors[i], common.deviations[i]));
-  }
+  judgeJoints(twins, fit, parameters, arm);
 }
 
 bool hasFinding(const CheckedArm& arm, const std::string& kind)

@@ -323,9 +323,8 @@ MeasuredFriction measuredFriction(const JointEvidence& evidence, const Parameter
            !context.misfit.exists() && factor.reason == Reason::NO_FRICTION,
            factor.reason == Reason::EFFORT_NOT_CURRENT ||
                (whyItDoesNotFit(evidence, parameters, context) == Reason::EFFORT_NOT_CURRENT && factor.value < 0.0),
-           !context.misfit.exists() &&
-               (whyItDoesNotFit(evidence, parameters, context) == Reason::LOAD_WRONG ||
-                factor.reason == Reason::LOAD_WRONG),
+           !context.misfit.exists() && (whyItDoesNotFit(evidence, parameters, context) == Reason::LOAD_WRONG ||
+                                        factor.reason == Reason::LOAD_WRONG),
            !context.own.friction.empty() };
 }
 

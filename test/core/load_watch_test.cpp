@@ -142,9 +142,9 @@ TEST(LoadWatch, LeavesOutAJointWithoutEfforts)
 TEST(LoadWatch, FindsHowEveryShippedArmIsMounted)
 {
   constexpr double DEGREE = PI / 180.0;
-  for (const auto& [name, tilt] : { std::pair("ur3", 90.0), std::pair("ur3e", 180.0), std::pair("ur5", 15.0),
-                                    std::pair("ur5e", 135.0), std::pair("ur10", 90.0), std::pair("ur10e", 50.0),
-                                    std::pair("ur16e", 15.0) })
+  for (const auto& [name, tilt] :
+       { std::pair("ur3", 90.0), std::pair("ur3e", 180.0), std::pair("ur5", 15.0), std::pair("ur5e", 135.0),
+         std::pair("ur10", 90.0), std::pair("ur10e", 50.0), std::pair("ur16e", 15.0) })
   {
     SCOPED_TRACE(std::string(name) + ", " + std::to_string(tilt) + " deg");
     WatchedArm robot(name);
@@ -180,6 +180,27 @@ TEST(LoadWatch, TakesNothingElseForAMountingOrAPayload)
     EXPECT_FALSE(found->showsMounting()) << found->mounting.text() << " share " << found->mounting.residual_share;
     EXPECT_FALSE(found->showsPayload()) << found->payload.text() << " share " << found->payload.residual_share;
   }
+  WatchedArm one;
+  one.factors[1] = 1.5;
+  EXPECT_FALSE(one.moved({})->showsMounting()) << "the gain of one joint";
+}
+
+TEST(FoundLoad, NamesNoneOfTwoThatExplainTheCurrentsAsWell)
+{
+  FoundLoad found;
+  found.mounting.configured = { 0.0, 0.0, -9.81 };
+  found.mounting.gravity = { 0.0, -9.81, 0.0 };
+  found.mounting.half_width = 0.02;
+  found.mounting.residual_share = 0.4;
+  EXPECT_TRUE(found.showsMounting());
+  found.mounting.share_otherwise = 0.42;  // by the payload
+  found.payload.mass = 3.0;
+  found.payload.mass_half_width = 0.1;
+  found.payload.residual_share = 0.42;
+  EXPECT_FALSE(found.showsMounting());
+  EXPECT_FALSE(found.showsPayload());
+  found.payload.residual_share = 0.3;
+  EXPECT_TRUE(found.showsPayload());
 }
 }  // namespace
 }  // namespace hjt

@@ -72,8 +72,8 @@ TEST(MovingArm, APointAtATimeIsTheMotionAndACopyGoesOnAlike)
 TEST(MovingArm, TheLoopHasASpeedOfItsOwn)
 {
   const ArmDescription description = rods("0 1 0", 2);
-  const ArmMotion motion({ { 0.0, { { 0.3, 0.0, 0.0 }, { -0.8, 0.0, 0.0 } } },
-                           { 0.3, { { 0.5, 0.0, 0.0 }, { -0.6, 0.0, 0.0 } } } });
+  const ArmMotion motion(
+      { { 0.0, { { 0.3, 0.0, 0.0 }, { -0.8, 0.0, 0.0 } } }, { 0.3, { { 0.5, 0.0, 0.0 }, { -0.6, 0.0, 0.0 } } } });
   Parameters slow = drive();
   slow.sensors.velocity_window = 0.05;
   MovingArm published(description, { slow, slow }, motion, {});
