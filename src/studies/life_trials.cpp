@@ -73,7 +73,8 @@ private:
   static constexpr std::array KINDS{ FaultKind::TOOTH_WEAR, FaultKind::INTERFACE_WEAR,
                                      FaultKind::LUBRICANT_DEGRADATION };
   static constexpr double OLD_GREASE = 0.3;  // severity of grease whose change is due, as in a plan of lives
-  // Estimate over truth, of the runs of assessment_errors: 0.04, 0.10, 0.04 too small at 0.5; 0.12 the spread of all kinds, of 0.45.
+  // Estimate over truth, of the runs of assessment_errors: 0.04, 0.10, 0.04 too small at 0.5; 0.12 the spread of all
+  // kinds, of 0.45.
   static constexpr std::array<double, 3> ESTIMATE_MEAN{ 0.92, 0.8, 0.92 };
   static constexpr double ESTIMATE_SPREAD = 0.27;
   static constexpr double ESTIMATE_NOISE = 0.1;     // of the logarithm, from one to the next; assumed
