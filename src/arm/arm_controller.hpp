@@ -15,8 +15,8 @@ namespace hjt
 ///   T   = T_s + k_v (v_c - v) + k_v / T_i integral (v_c - v)
 ///
 /// The speed is a difference of angles over VELOCITY_WINDOW, not that of sensors.velocity_window, which the drive
-/// publishes: what is 5 ms late drives above 50 Hz what it should damp. The integral stands while T is beyond the motor's
-/// limit, and while the brake is engaged.
+/// publishes: a speed that comes 5 ms late drives, above 50 Hz, what it should damp. The integral stands while T is
+/// beyond the motor's limit, and while the brake is engaged.
 class ArmController
 {
 public:

@@ -81,7 +81,6 @@ bool FoundLoad::showsPayload() const
 
 bool FoundLoad::showsMounting() const
 {
-  return mounting.differs() && mounting.residual_share < CLEARLY * std::min(1.0, share_of_gain) &&
-         !(payload.isCarried() && mounting.residual_share > CLEARLY * payload.residual_share);
+  return mounting.differs() && mounting.residual_share < CLEARLY * std::min(1.0, mounting.share_otherwise);
 }
 }  // namespace hjt

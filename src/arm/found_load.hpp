@@ -37,6 +37,8 @@ struct IdentifiedMounting
   double half_width{};                 ///< of its 95 % interval [rad]
   double size{ 1.0 };                  ///< of the gravity that fits best, over the configured [-]
   double residual_share{ 1.0 };        ///< of the torques not predicted, that is left with it, rms [-]
+  /// Of the same rows: left with a payload, with another gain of all joints or of one of them, whichever leaves least.
+  double share_otherwise{ 1.0 };
 
   double tilt() const;  ///< between the two [rad]
   /// The configured direction is far outside the interval, farther off than arms mounted as configured show, and what
@@ -54,9 +56,10 @@ struct FoundLoad
   /// Of the torques not predicted, what is left if all currents are one multiple of what is predicted, rms [-].
   double share_of_gain{ 1.0 };
 
-  /// Nothing that is another explains the currents as well: clearly better than the load as it counts, than one
-  /// multiple of all currents, and than the other of the two.
+  /// It explains the currents clearly better than the load as it counts and than one multiple of all currents, and
+  /// another mounting does not explain them as well.
   bool showsPayload() const;
+  /// It explains the currents clearly better than the load as it counts, and than what else may be the reason.
   bool showsMounting() const;
 };
 }  // namespace hjt

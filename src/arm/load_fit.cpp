@@ -35,9 +35,8 @@ std::vector<Rows> untouched(const std::vector<Rows>& rows)
   return left;
 }
 
-/// Of the residuals as torques of all joints, what `left(joint, row)` [A] is, rms [-].
-template <class Left>
-double shareLeft(const std::vector<Rows>& rows, const std::vector<double>& gains, const Left& left)
+/// Of the residuals as torques of all joints, what is left with `values`, rms [-].
+double shareLeft(const std::vector<Rows>& rows, const std::vector<double>& gains, const LoadProblem::Shared& values)
 {
   double before = 0.0;
   double after = 0.0;
@@ -45,36 +44,45 @@ double shareLeft(const std::vector<Rows>& rows, const std::vector<double>& gains
   {
     for (std::size_t k = 0; k < rows[i].size(); ++k)
     {
+      const double left = rows[i].residuals[k] - rows[i].columns[k].head<LoadProblem::SHARED>().dot(values);
       before += std::pow(gains[i] * rows[i].residuals[k], 2);
-      after += std::pow(gains[i] * left(rows[i], k), 2);
+      after += std::pow(gains[i] * left, 2);
     }
   }
   return before > 0.0 ? std::sqrt(after / before) : 1.0;
 }
 
-double shareLeft(const std::vector<Rows>& rows, const std::vector<double>& gains, const LoadProblem::Shared& values)
+/// With the best multiple of what is predicted.
+struct GainShares
 {
-  return shareLeft(rows, gains,
-                   [&](const Rows& of, std::size_t k)
-                   { return of.residuals[k] - of.columns[k].head<LoadProblem::SHARED>().dot(values); });
-}
+  double of_all{ 1.0 };  ///< one multiple of all joints
+  double of_one{ 1.0 };  ///< of the joint that it leaves least for
+};
 
-/// With the best common multiple of what is predicted.
-double shareOfGain(const std::vector<Rows>& rows, const std::vector<double>& gains)
+GainShares sharesOfGain(const std::vector<Rows>& rows, const std::vector<double>& gains)
 {
+  const auto taken = [](double both, double squares) { return squares > 0.0 ? both * both / squares : 0.0; };
+  double residual = 0.0;
   double both = 0.0;
   double squares = 0.0;
+  double most = 0.0;
   for (std::size_t i = 0; i < rows.size(); ++i)
   {
+    double own_both = 0.0;
+    double own_squares = 0.0;
     for (std::size_t k = 0; k < rows[i].size(); ++k)
     {
-      both += gains[i] * gains[i] * rows[i].residuals[k] * rows[i].predicted[k];
-      squares += std::pow(gains[i] * rows[i].predicted[k], 2);
+      residual += std::pow(gains[i] * rows[i].residuals[k], 2);
+      own_both += gains[i] * gains[i] * rows[i].residuals[k] * rows[i].predicted[k];
+      own_squares += std::pow(gains[i] * rows[i].predicted[k], 2);
     }
+    both += own_both;
+    squares += own_squares;
+    most = std::max(most, taken(own_both, own_squares));
   }
-  const double multiple = squares > 0.0 ? both / squares : 0.0;
-  return shareLeft(rows, gains,
-                   [&](const Rows& of, std::size_t k) { return of.residuals[k] - multiple * of.predicted[k]; });
+  const auto share = [residual](double less)
+  { return residual > 0.0 ? std::sqrt(std::max(residual - less, 0.0) / residual) : 1.0; };
+  return { share(taken(both, squares)), share(most) };
 }
 }  // namespace
 
@@ -108,7 +116,8 @@ struct LoadFit::Data
   void close(std::size_t i, double time)
   {
     Open& block = open[i];
-    if (block.count > 0 && time > block.start + 0.5 * LoadProblem::BLOCK)
+    if (block.count > 0 && time > block.start + 0.5 * LoadProblem::BLOCK && block.columns.allFinite() &&
+        std::isfinite(block.residual) && std::isfinite(block.predicted))
     {
       rows[i].columns.push_back(block.columns / block.count);
       rows[i].residuals.push_back(block.residual / block.count);
@@ -170,7 +179,21 @@ struct LoadFit::Data
     found.half_width = std::sqrt((widths.square() * across).sum()) / std::max(total.norm(), 1e-6);
     found.size = total.norm() / size;
     found.residual_share = shareLeft(rows, gains, solution.values);
+    if (found.differs())
+    {
+      found.share_otherwise = shareWithoutMounting();
+    }
     return found;
+  }
+
+  /// Of all rows, what is left with whatever else may be the reason. A payload counts where its mass is one.
+  double shareWithoutMounting() const
+  {
+    const GainShares gain = sharesOfGain(rows, gains);
+    const IdentifiedPayload other = findPayload(rows);
+    const bool is_mass = other.mass > -std::max(other.mass_half_width, other.least_claim);
+    const double least = std::min(gain.of_all, gain.of_one);
+    return other.differs() && is_mass ? std::min(least, other.residual_share) : least;
   }
 
   Payload payload;
@@ -260,7 +283,7 @@ FoundLoad LoadFit::solve()
     data.close(i, data.last_time);
   }
   const std::vector<Rows> free = untouched(data.rows);
-  return { data.findPayload(free), data.findMounting(), shareOfGain(free, data.gains) };
+  return { data.findPayload(free), data.findMounting(), sharesOfGain(free, data.gains).of_all };
 }
 
 IdentifiedPayload identifyPayload(const ArmDescription& arm, const std::vector<std::vector<MotionSample>>& samples,

@@ -14,7 +14,7 @@
 namespace hjt
 {
 /// Payload and mounting that an arm's currents show while its rows come: looked for after 30 s of motion, each time
-/// that is doubled, and after eight minutes all over again. Not in a loop: it allocates.
+/// that is doubled, and after eight minutes all over again. Not for a real-time loop: it allocates.
 class LoadWatch
 {
 public:

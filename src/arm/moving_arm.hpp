@@ -26,8 +26,8 @@ struct ProtectiveStop
   const char* reason{};  ///< for people
 };
 
-/// A twin of an arm under its controller, which has it follow set points. After a reset it stands in its brakes for half
-/// of the settling, is held where it stands for the other half, then begins its motion.
+/// A twin of an arm under its controller, which has it follow set points. After a reset it stands in its brakes for
+/// half of the settling, is held where it stands for the other half, then begins its motion.
 ///
 /// Where a joint is STOP_DEVIATION off its set point, or faster than STOP_SPEED of its limit, the controller stops all:
 /// the motors give no torque, the brakes engage, until the next reset. The bounds are assumed; the maker gives none.

@@ -119,7 +119,7 @@ double SignatureTerms::misfit(const Signature& signature) const noexcept
     square += left * left / term.own;
   }
   square -= projected.dot(inner.inverse() * projected);
-  return count_ > 0 ? std::max(square / static_cast<double>(count_), 1.0) : 1.0;
+  return count_ > 0 ? std::max(1.0, square / static_cast<double>(count_)) : 1.0;
 }
 
 /// Of a number that is no line's, as its signature has it.

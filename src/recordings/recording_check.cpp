@@ -190,9 +190,11 @@ Misfit misfitOfParts(const CheckedArm& arm)
                joined(arm.missing) };
 }
 
-/// With each other as witnesses.
-void judgeParts(const CheckedTwins& twins, const std::vector<Parameters>& parameters, CheckedArm& arm)
+/// Each joint after what the friction of all has in common.
+void judgeJoints(const CheckedTwins& twins, const RecordingFit& fit, const std::vector<Parameters>& parameters,
+                 CheckedArm& arm)
 {
+  takeFit(fit, parameters, arm);
   std::vector<MeasuredFriction> frictions;
   for (std::size_t i = 0; i < arm.joints.size(); ++i)
   {
@@ -201,9 +203,10 @@ void judgeParts(const CheckedTwins& twins, const std::vector<Parameters>& parame
   const ArmFriction common = commonFriction(frictions, parameters.front().comparison.repeat_tolerance);
   for (std::size_t i = 0; i < arm.joints.size(); ++i)
   {
-    arm.joints[i].verdict =
-        judge(twins[i].evidence(), parameters[i],
-              twins[i].context(arm.joints[i].misfit, arm.found.duration, common.factors[i], common.deviations[i]));
+    CheckedJoint& joint = arm.joints[i];
+    const Misfit& misfit = joint.misfit.exists() ? joint.misfit : common.misfit;
+    joint.verdict = judge(twins[i].evidence(), parameters[i],
+                          twins[i].context(misfit, arm.found.duration, common.factors[i], common.deviations[i]));
   }
 }
 
@@ -265,8 +268,7 @@ void readJoints(const RecordingOptions& options, CheckedArm& arm)
     arm.joints.back().stated_gain = std::nan("");
   }
   fit.refuse(misfitOfParts(arm));
-  takeFit(fit, parameters, arm);
-  judgeParts(twins, parameters, arm);
+  judgeJoints(twins, fit, parameters, arm);
 }
 
 bool hasFinding(const CheckedArm& arm, const std::string& kind)

@@ -19,9 +19,9 @@ namespace
 {
 using namespace assessment_errors;
 
-/// Assessments of one drive with the errors that docs/health.md found. A drive's errors stay, those of one estimate are
-/// small. Of several kinds that are found the one furthest beyond where it is found is the cause. Wear whose cause is
-/// mistaken is taken for that of the wave generator, which shows alike.
+/// Assessments of one drive with the errors of assessment_errors and those below. A drive's errors stay, those of one
+/// estimate are small. Of several kinds that are found the one furthest beyond where it is found is the cause. Wear
+/// whose cause is mistaken is taken for that of the wave generator, which shows alike.
 class SimulatedAssessments
 {
 public:
@@ -73,11 +73,12 @@ private:
   static constexpr std::array KINDS{ FaultKind::TOOTH_WEAR, FaultKind::INTERFACE_WEAR,
                                      FaultKind::LUBRICANT_DEGRADATION };
   static constexpr double OLD_GREASE = 0.3;  // severity of grease whose change is due, as in a plan of lives
-  // Estimate over truth, from docs/health.md: 0.04, 0.10, 0.04 too small at 0.5; 0.12 the spread of all kinds, of 0.45.
+  // Estimate over truth, of the runs of assessment_errors: 0.04, 0.10, 0.04 too small at 0.5; 0.12 the spread of all
+  // kinds, of 0.45.
   static constexpr std::array<double, 3> ESTIMATE_MEAN{ 0.92, 0.8, 0.92 };
   static constexpr double ESTIMATE_SPREAD = 0.27;
   static constexpr double ESTIMATE_NOISE = 0.1;     // of the logarithm, from one to the next; assumed
-  static constexpr double STATED_DEVIATION = 0.42;  // over the estimate, of the same table
+  static constexpr double STATED_DEVIATION = 0.42;  // over the estimate, of the same runs
   static constexpr double STATED_CONFIDENCE = 0.85;
 
   FaultScaleParameters scale_;

@@ -180,6 +180,27 @@ TEST(LoadWatch, TakesNothingElseForAMountingOrAPayload)
     EXPECT_FALSE(found->showsMounting()) << found->mounting.text() << " share " << found->mounting.residual_share;
     EXPECT_FALSE(found->showsPayload()) << found->payload.text() << " share " << found->payload.residual_share;
   }
+  WatchedArm one;
+  one.factors[1] = 1.5;
+  EXPECT_FALSE(one.moved({})->showsMounting()) << "the gain of one joint";
+}
+
+TEST(FoundLoad, NamesNoneOfTwoThatExplainTheCurrentsAsWell)
+{
+  FoundLoad found;
+  found.mounting.configured = { 0.0, 0.0, -9.81 };
+  found.mounting.gravity = { 0.0, -9.81, 0.0 };
+  found.mounting.half_width = 0.02;
+  found.mounting.residual_share = 0.4;
+  EXPECT_TRUE(found.showsMounting());
+  found.mounting.share_otherwise = 0.42;  // by the payload
+  found.payload.mass = 3.0;
+  found.payload.mass_half_width = 0.1;
+  found.payload.residual_share = 0.42;
+  EXPECT_FALSE(found.showsMounting());
+  EXPECT_FALSE(found.showsPayload());
+  found.payload.residual_share = 0.3;
+  EXPECT_TRUE(found.showsPayload());
 }
 }  // namespace
 }  // namespace hjt
