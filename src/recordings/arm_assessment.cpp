@@ -131,7 +131,7 @@ ArmAssessment pass(const ArmRecording& recording, const AssessmentSettings& sett
   arm.friction = commonFriction(frictions, recording.parameters(0).comparison.repeat_tolerance);
   for (Misfit& misfit : arm.misfits)
   {
-    misfit = misfit.exists() ? misfit : arm.friction.misfit;
+    misfit = misfitOf(misfit, arm.friction.misfit);
   }
   if (load && !settings.watch.stopped())
   {

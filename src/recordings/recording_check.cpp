@@ -204,7 +204,7 @@ void judgeJoints(const CheckedTwins& twins, const RecordingFit& fit, const std::
   for (std::size_t i = 0; i < arm.joints.size(); ++i)
   {
     CheckedJoint& joint = arm.joints[i];
-    const Misfit& misfit = joint.misfit.exists() ? joint.misfit : common.misfit;
+    const Misfit& misfit = misfitOf(joint.misfit, common.misfit);
     joint.verdict = judge(twins[i].evidence(), parameters[i],
                           twins[i].context(misfit, arm.found.duration, common.factors[i], common.deviations[i]));
   }

@@ -63,6 +63,13 @@ struct ArmFriction
 /// load is another. In both cases no joint is judged.
 ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double tolerance);
 
+/// Why a joint is not judged: its own reason, or that of all joints. Signs of efforts tell more than another load.
+inline const Misfit& misfitOf(const Misfit& joint, const Misfit& arm)
+{
+  const bool is_sign = joint.reason == Reason::LOAD_WRONG && arm.reason == Reason::EFFORT_NOT_CURRENT;
+  return !joint.exists() || (arm.exists() && is_sign) ? arm : joint;
+}
+
 /// The joints of an arm as each other's witnesses, while they move: what their friction has in common is temperature or
 /// gain. Where it means a temperature and none is received, the joints are predicted at that one. `look` allocates.
 class ArmFrictionWatch

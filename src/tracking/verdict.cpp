@@ -74,13 +74,8 @@ double agreement(const JointEvidence& evidence)
 }
 
 /// Why the recorded current says nothing about the drive: not that of its motor, or of another load; none: it fits.
-std::optional<Reason> whyItDoesNotFit(const JointEvidence& evidence, const Parameters& parameters,
-                                      const JointContext& context)
+std::optional<Reason> whyRowsDoNotFit(const JointEvidence& evidence, const Parameters& parameters)
 {
-  if (context.misfit.exists())
-  {
-    return context.misfit.reason;
-  }
   constexpr double MIN_RATIO = 0.02;  // of the predicted current, rms
   constexpr double MAX_RATIO = 4.0;
   constexpr double MAX_UNEXPLAINED = 0.5;
@@ -118,6 +113,13 @@ std::optional<Reason> whyItDoesNotFit(const JointEvidence& evidence, const Param
                  evidence.friction().blocks().count() < MIN_BLOCKS ?
              std::make_optional(Reason::CONTACT) :
              std::nullopt;
+}
+
+/// The same, with what is known of the whole recording.
+std::optional<Reason> whyItDoesNotFit(const JointEvidence& evidence, const Parameters& parameters,
+                                      const JointContext& context)
+{
+  return context.misfit.exists() ? context.misfit.reason : whyRowsDoNotFit(evidence, parameters);
 }
 
 Finding judgeTorsion(const JointEvidence& evidence, const Parameters& parameters, const OwnReference& own,
@@ -322,7 +324,7 @@ MeasuredFriction measuredFriction(const JointEvidence& evidence, const Parameter
            !context.misfit.exists() && factor.is_below_faults,
            !context.misfit.exists() && factor.reason == Reason::NO_FRICTION,
            factor.reason == Reason::EFFORT_NOT_CURRENT ||
-               (whyItDoesNotFit(evidence, parameters, context) == Reason::EFFORT_NOT_CURRENT && factor.value < 0.0),
+               (whyRowsDoNotFit(evidence, parameters) == Reason::EFFORT_NOT_CURRENT && factor.value < 0.0),
            !context.misfit.exists() && (whyItDoesNotFit(evidence, parameters, context) == Reason::LOAD_WRONG ||
                                         factor.reason == Reason::LOAD_WRONG),
            !context.own.friction.empty() };
