@@ -253,7 +253,8 @@ class Check(tool.ToolTest):
             self.assertEqual(joint["torque_per_current"], joint["torque_per_current_stated"])
         self.assertEqual((joints[5]["torque_per_current_stated"], joints[5]["torque_per_current"]), (None, GAINS[5]))
         self.assertIn("\ngains       base 11.98, ", self.run_tool("check", "arm.csv").stdout)
-        of_options = self.check("arm.csv", "--arm", "ur5", "--set", "telemetry.torque_per_current=8.5")["joints"]
+        of_options = self.check("arm.csv", "--arm", "ur5", "--set", "telemetry.torque_per_current=8.5",
+                                exit_code=1)["joints"]
         self.assertEqual({joint["torque_per_current"] for joint in of_options}, {8.5})
 
     @unittest.skipUnless("no5" in RECORDINGS, "no recording of a UR5 at rest")
