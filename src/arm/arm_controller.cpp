@@ -36,26 +36,12 @@ ArmController::ArmController(const ArmDescription& arm, const ArmTwin& twin, std
   , rigid_(twin.joints())
   , feed_forward_(twin.joints())
   , integral_(twin.joints())
-  , instants_(static_cast<std::size_t>(std::max(1L, std::lround(VELOCITY_WINDOW * rate))) + 1)
 {
-  angles_.resize(instants_ * twin.joints());
 }
 
 void ArmController::reset() noexcept
 {
   std::fill(integral_.begin(), integral_.end(), 0.0);
-  known_ = 0;
-}
-
-/// By its angle at this instant, which is kept, and the oldest at hand [rad/s].
-double ArmController::motorSpeed(std::size_t joint, double angle) noexcept
-{
-  double* const ring = &angles_[instants_ * joint];
-  ring[known_ % instants_] = angle;
-  const std::size_t intervals = std::min(known_, instants_ - 1);
-  return intervals == 0 ?
-             0.0 :
-             (angle - ring[(known_ - intervals) % instants_]) / (static_cast<double>(intervals) * toSeconds(period_));
 }
 
 bool ArmController::isDue(const ArmTwin& twin) const noexcept
@@ -77,7 +63,7 @@ void ArmController::control(ArmTwin& twin, const std::vector<JointMotion>& set_p
     feed_forward_[i] = rigid_[i] + motorInertia(drive.parameters()) * wanted.acceleration + gain.coulomb * direction +
                        gain.viscous * wanted.velocity;
     const double speed = wanted.velocity + gain.position * (wanted.position - twin.startAngle(i) - read.output_angle);
-    const double error = speed - motorSpeed(i, read.motor_angle) / ratio;
+    const double error = speed - read.motor_velocity / ratio;
     const double torque = feed_forward_[i] + gain.speed * error + integral_[i];
     const double limit = ratio * drive.parameters().motor.torque_limit;
     if (std::abs(torque) < limit && !drive.outputs().brake_engaged)
@@ -86,6 +72,5 @@ void ArmController::control(ArmTwin& twin, const std::vector<JointMotion>& set_p
     }
     drive.commandMotorTorque(twin.stamp() + twin.stepLength(), std::clamp(torque, -limit, limit) / ratio);
   }
-  ++known_;
 }
 }  // namespace hjt

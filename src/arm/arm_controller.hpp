@@ -14,21 +14,17 @@ namespace hjt
 ///   v_c = v_s + k_p (q_s - q)      q by the output's encoder, v by the motor's, over the ratio
 ///   T   = T_s + k_v (v_c - v) + k_v / T_i integral (v_c - v)
 ///
-/// The speed is a difference of angles over VELOCITY_WINDOW, not that of sensors.velocity_window, which the drive
-/// publishes: a speed that comes 5 ms late drives, above 50 Hz, what it should damp. The integral stands while T is
-/// beyond the motor's limit, and while the brake is engaged.
+/// The integral stands while T is beyond the motor's limit, and while the brake is engaged.
 class ArmController
 {
 public:
-  static constexpr double VELOCITY_WINDOW = 4e-3;  ///< of the speed that is controlled [s]
-
   /// For a drive without gains of its own: speed control of 25 Hz on the motor, position of 3 Hz, no friction.
   static JointGains defaultGains(const Parameters& drive);
 
   /// `rate`: of the control [Hz], a divisor of solver.rate.
   ArmController(const ArmDescription& arm, const ArmTwin& twin, std::vector<JointGains> gains, double rate);
 
-  void reset() noexcept;                                                               ///< forgets what was before
+  void reset() noexcept;                                                               ///< forgets its integrals
   void setPayload(const Payload& payload) noexcept { dynamics_.setPayload(payload); }  ///< that it feeds forward
 
   /// To be called before each step that is due: commands each drive towards the set point of the step's end.
@@ -41,16 +37,11 @@ public:
   double feedForward(std::size_t joint) const noexcept { return feed_forward_[joint]; }
 
 private:
-  double motorSpeed(std::size_t joint, double angle) noexcept;
-
   ArmDynamics dynamics_;
   std::vector<JointGains> gains_;
   Stamp period_;
   std::vector<double> rigid_;
   std::vector<double> feed_forward_;
   std::vector<double> integral_;  // of the torque [N.m]
-  std::vector<double> angles_;    // of the motors, at the last instants, round and round [rad]
-  std::size_t instants_;          // that fit in
-  std::size_t known_{};           // instants since the reset
 };
 }  // namespace hjt

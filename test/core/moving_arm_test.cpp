@@ -67,29 +67,5 @@ TEST(MovingArm, APointAtATimeIsTheMotionAndACopyGoesOnAlike)
   run_to(whole, points[24].time + 0.01);
   EXPECT_GT(std::abs(copy->reading(0).current - whole.reading(0).current), 0.1);
 }
-
-/// What the drive publishes is no part of the loop.
-TEST(MovingArm, TheLoopHasASpeedOfItsOwn)
-{
-  const ArmDescription description = rods("0 1 0", 2);
-  const ArmMotion motion(
-      { { 0.0, { { 0.3, 0.0, 0.0 }, { -0.8, 0.0, 0.0 } } }, { 0.3, { { 0.5, 0.0, 0.0 }, { -0.6, 0.0, 0.0 } } } });
-  Parameters slow = drive();
-  slow.sensors.velocity_window = 0.05;
-  MovingArm published(description, { slow, slow }, motion, {});
-  MovingArm usual(description, { drive(), drive() }, motion, {});
-  for (MovingArm* arm : { &published, &usual })
-  {
-    while (arm->step(arm->motionBegin() + toStampLength(0.1)))
-    {
-    }
-  }
-  EXPECT_NE(published.reading(0).velocity, usual.reading(0).velocity);
-  for (std::size_t i = 0; i < 2; ++i)
-  {
-    EXPECT_EQ(published.twin().motion()[i].position, usual.twin().motion()[i].position);
-    EXPECT_EQ(published.reading(i).current, usual.reading(i).current);
-  }
-}
 }  // namespace
 }  // namespace hjt
