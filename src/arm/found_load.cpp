@@ -13,7 +13,6 @@ namespace hjt
 namespace
 {
 constexpr double DEGREE = PI / 180.0;
-constexpr double CLEARLY = 0.9;  // of the torques not predicted otherwise
 }  // namespace
 
 bool IdentifiedPayload::differs() const

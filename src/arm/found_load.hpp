@@ -25,7 +25,7 @@ struct IdentifiedPayload
   bool isCarried() const { return differs() && mass > mass_half_width; }
   /// What it is, its centre where it has a mass.
   Payload payload() const;
-  /// "The currents look like a payload of ... in place of the configured ...", a clause.
+  /// "the currents look like a payload of ... in place of the configured ...", a clause.
   std::string text() const;
 };
 
@@ -44,13 +44,15 @@ struct IdentifiedMounting
   /// The configured direction is far outside the interval, farther off than arms mounted as configured show, and what
   /// is found is gravity by its size.
   bool differs() const;
-  /// "gravity looks tilted by ... against the configured mounting ...", a clause.
+  /// "another mounting than configured: gravity looks tilted by ...", a clause.
   std::string text() const;
 };
 
 /// What the currents of an arm show of its load.
 struct FoundLoad
 {
+  static constexpr double CLEARLY = 0.9;  ///< what is clearly better leaves less of the torques not predicted [-]
+
   IdentifiedPayload payload;
   IdentifiedMounting mounting;
   /// Of the torques not predicted, what is left if all currents are one multiple of what is predicted, rms [-].

@@ -87,10 +87,9 @@ std::optional<IdentifiedMounting> LoadWatch::mountingOf(const FoundLoad& found) 
 
 std::optional<IdentifiedPayload> LoadWatch::payloadOf(const FoundLoad& found) const
 {
-  constexpr double CLEARLY = 0.9;  // of the torques not predicted
   const IdentifiedPayload& payload = found.payload;
-  const bool is_put_down =
-      arm_.payload.mass > given_.mass && payload.differs() && payload.residual_share < CLEARLY && !payload.isCarried();
+  const bool is_put_down = arm_.payload.mass > given_.mass && payload.differs() &&
+                           payload.residual_share < FoundLoad::CLEARLY && !payload.isCarried();
   if (!found.showsPayload() && !is_put_down)
   {
     return std::nullopt;

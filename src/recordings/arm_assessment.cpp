@@ -200,7 +200,6 @@ std::string AssumedLoad::text() const
 
 ArmAssessment assess(ArmRecording& recording, const AssessmentSettings& settings, RecordingFit& fit)
 {
-  constexpr double CLEARLY = 0.9;  // of the torques not predicted
   ArmAssessment arm = pass(recording, settings, settings.gives_notice, fit);
   const double before = residualTorque(arm);
   const double share_of_gain = arm.load ? arm.load->share_of_gain : 1.0;
@@ -214,7 +213,7 @@ ArmAssessment assess(ArmRecording& recording, const AssessmentSettings& settings
     arm = pass(recording, settings, false, fit);
     // As long as the mounting is another most rows look touched, and count for nothing.
     // Where the friction of the whole arm is another with it, one multiple of all currents is no worse a reason.
-    is_explained = isExplained(arm) && (tried.mounting || residualTorque(arm) < CLEARLY * before) &&
+    is_explained = isExplained(arm) && (tried.mounting || residualTorque(arm) < FoundLoad::CLEARLY * before) &&
                    (arm.friction.median == 1.0 || !tried.payload || tried.payload->residual_share < share_of_gain);
     explained = is_explained ? tried : explained;
   }
