@@ -6,6 +6,7 @@ import signal
 import sys
 import tempfile
 import unittest
+import xmlrpc.client
 
 import rosgraph
 import rospy
@@ -46,8 +47,15 @@ class Parameters(unittest.TestCase):
         self.assertIsNone(self.node.process.poll(), self.node.output())
 
     def is_publishing(self):
+        """The process started last, not one before it of the same name that the master still lists."""
         publishers, _, _ = rosgraph.Master("/test").getSystemState()
-        return any(topic == f"{NODE}/health" and NODE in nodes for topic, nodes in publishers)
+        if not any(topic == f"{NODE}/health" and NODE in nodes for topic, nodes in publishers):
+            return False
+        try:
+            _, _, pid = xmlrpc.client.ServerProxy(rosgraph.Master("/test").lookupNode(NODE)).getPid("/test")
+        except (OSError, rosgraph.MasterException):
+            return False
+        return pid == self.node.process.pid
 
     def check_clean_exit(self, signal_number):
         code, duration = self.node.stop(signal_number)

@@ -15,7 +15,7 @@ from sensor_msgs.msg import JointState
 from std_srvs.srv import Trigger
 
 from harmonic_joint_twin.msg import Comparison, ContactForces
-from ros_support import OK, PACKAGE, Diagnostics, Listener, package_path, wait_until
+from ros_support import OK, PACKAGE, SLOWNESS, Diagnostics, Listener, package_path, wait_until
 
 JOINTS = {"elbow": "elbow_joint", "shoulder": "shoulder_lift_joint", "base": "shoulder_pan_joint",
           "wrist_1": "wrist_1_joint", "wrist_2": "wrist_2_joint", "wrist_3": "wrist_3_joint"}  # the order of the driver
@@ -25,7 +25,7 @@ RECORDINGS = sorted(glob.glob(os.path.join(DIRECTORY, "ur5_cb", "*.csv")))
 PUSHED = {"ur5_cb_no5_pushed.csv": {"base"}}  # joints at which somebody pushes the arm
 # A push on a joint at rest is not reported: other recordings with pushes are left out.
 RECORDINGS = [path for path in RECORDINGS if "pushed" not in path or os.path.basename(path) in PUSHED]
-FASTER = 3.0  # than they were recorded; the stamps are those of the recording
+FASTER = 3.0 / SLOWNESS  # than they were recorded; the stamps are those of the recording
 
 
 class Recordings(unittest.TestCase):
