@@ -19,8 +19,8 @@ import rostest
 from sensor_msgs.msg import JointState, Temperature
 
 from harmonic_joint_twin.msg import Assessment, Comparison, ContactForces, Encoders, Health, Indicators
-from ros_support import (OK, PACKAGE, STALE, WARN, Diagnostics, Listener, executable, layout_curves, listen_to_all,
-                         number_at, numbers_in, wait_until)
+from ros_support import (OK, PACKAGE, PATIENCE, STALE, WARN, Diagnostics, Listener, executable, layout_curves,
+                         listen_to_all, number_at, numbers_in, wait_until)
 
 JOINTS = {"base": "shoulder_pan_joint", "shoulder": "shoulder_lift_joint", "elbow": "elbow_joint",
           "wrist_1": "wrist_1_joint", "wrist_2": "wrist_2_joint", "wrist_3": "wrist_3_joint"}
@@ -165,7 +165,7 @@ class UR5(unittest.TestCase):
     def wait_for_rows(self, twin):
         """All rows but those whose later ones never came."""
         wait = WAIT_OF_ARM if twin[0] in ARMS else WAIT_OF_JOINT
-        return self.comparisons[twin].wait_for(self.sent["rows"] - self.sent["repeated"] - wait, patience=60.0)
+        return self.comparisons[twin].wait_for(self.sent["rows"] - self.sent["repeated"] - wait, patience=2.0 * PATIENCE)
 
     def test_each_twin_names_its_joint_and_gives_finite_numbers(self):
         for twin in TWINS:
