@@ -392,7 +392,14 @@ void bindParameters(py::module& module)
              return "<Parameters of joint '" + self.values().joint.name + "', " + std::to_string(self.keys().size()) +
                     " keys>";
            })
-      .def(py::pickle([](const Configuration& self) { return self.state(); }, &Configuration::fromState));
+      .def(py::pickle([](const Configuration& self) { return self.state(); }, &Configuration::fromState))
+      // What pickle does by itself up to its protocol 1 makes an instance of pybind11's base, which ends the process.
+      .def("__reduce__",
+           [](const py::object& self)
+           {
+             return py::make_tuple(py::module::import("copyreg").attr("__newobj__"),
+                                   py::make_tuple(self.attr("__class__")), self.attr("__getstate__")());
+           });
   bindFaults(module);
 }
 }  // namespace hjt
