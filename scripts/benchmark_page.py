@@ -70,6 +70,11 @@ def shown_error(error):
     return f"{error:.1e}" if error < 1e9 else "-"
 
 
+def rounded(value, digits):
+    """As text without an exponent."""
+    return f"{float(f'{value:.{digits}g}'):g}"
+
+
 def finished(rows):
     return [row for row in rows if not row["failure"]]
 
@@ -134,7 +139,8 @@ def choice(rows, quantity, apart):
         best = [fastest([row for row in rows if row["solver"] == solver], quantity, level) for level in levels]
         if any(best):
             lines.append([solver.replace(OURS, ""),
-                          *(f"{1.0 / row['processor_time']:.3g} ({row['setting']})" if row else "-" for row in best)])
+                          *(f"{rounded(1.0 / row['processor_time'], 3)} ({row['setting']})" if row else "-"
+                            for row in best)])
     return table(header, lines)
 
 
@@ -219,7 +225,7 @@ def table_row(cells):
 
 
 def cell(ratio):
-    return "-" if ratio is None else ratio if isinstance(ratio, str) else f"{ratio:.2g}"
+    return "-" if ratio is None else ratio if isinstance(ratio, str) else rounded(ratio, 2)
 
 
 def ratio_table(sections):

@@ -40,6 +40,6 @@ def write(docs, complete, table, levels, parts, machine):
         source, shown = (os.path.join(folder, images, name + ".png") for folder in (complete, docs))
         if os.path.abspath(source) != os.path.abspath(shown):
             shutil.copyfile(source, shown)
-    lines = [HEAD, "## Best peer against ours", "", *table, "", READING, *levels, *parts[:4], "---", "", machine]
+    lines = [HEAD, "## Best peer against ours", "", *table, READING, *levels, *parts[:4], "---", "", machine]
     with open(os.path.join(docs, "benchmark.md"), "w", encoding="utf-8") as out:
         out.write("\n".join(lines).rstrip() + "\n")

@@ -16,8 +16,8 @@ enum class Status : int
   FATAL
 };
 
-constexpr const char* ERROR_CATEGORY = "logStatusError";
-constexpr const char* WARNING_CATEGORY = "logStatusWarning";
+/// Of what is logged; the last one of errors.
+constexpr const char* LOG_CATEGORIES[]{ "logStatusWarning", "logStatusError" };
 
 using ValueReference = std::uint32_t;
 using LogMessage = void (*)(void* environment, Status status, const char* category, const char* message);

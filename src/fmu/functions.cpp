@@ -2,6 +2,7 @@
 /// FMI 3.0's C functions for co-simulation; names, arguments and the order of calls are the standard's. Whatever a
 /// instance throws becomes fmi3Error and a message; nothing is printed.
 
+#include <cfenv>
 #include <cstdint>
 #include <exception>
 #include <memory>
@@ -17,6 +18,23 @@ namespace hjt::fmu
 {
 namespace
 {
+/// The usual floating-point environment in place of the importer's, which may trap, or flush small numbers to zero.
+class UsualArithmetic
+{
+public:
+  UsualArithmetic() noexcept
+  {
+    std::fegetenv(&importers_);
+    std::fesetenv(FE_DFL_ENV);
+  }
+  ~UsualArithmetic() { std::fesetenv(&importers_); }
+  UsualArithmetic(const UsualArithmetic&) = delete;
+  UsualArithmetic& operator=(const UsualArithmetic&) = delete;
+
+private:
+  std::fenv_t importers_{};
+};
+
 /// What `call` does with the instance, as a status; false is a warning. A null instance is an error too.
 template <class Call>
 Status guarded(Instance* instance, const Call& call) noexcept
@@ -27,6 +45,7 @@ Status guarded(Instance* instance, const Call& call) noexcept
   }
   try
   {
+    const UsualArithmetic arithmetic;
     if constexpr (std::is_void_v<decltype(call(*instance))>)
     {
       call(*instance);
@@ -39,11 +58,11 @@ Status guarded(Instance* instance, const Call& call) noexcept
   }
   catch (const std::exception& error)
   {
-    instance->log(Status::ERROR, ERROR_CATEGORY, error.what());
+    instance->log(Status::ERROR, error.what());
   }
   catch (...)
   {
-    instance->log(Status::ERROR, ERROR_CATEGORY, "failed without a reason");
+    instance->log(Status::ERROR, "failed without a reason");
   }
   return Status::ERROR;
 }
@@ -78,9 +97,9 @@ Status getNumbers(Instance* instance, Type type, const References& of, Number* v
                  [&](Instance& self)
                  {
                    requireArrays(of, values);
-                   self.get(type, of,
-                            [&](std::size_t place, double number, const std::string&)
-                            { values[place] = static_cast<Number>(number); });
+                   return self.get(type, of,
+                                   [&](std::size_t place, double number, const std::string&)
+                                   { values[place] = static_cast<Number>(number); });
                  });
 }
 
@@ -104,17 +123,26 @@ extern "C"
     return "3.0";
   }
 
-  Status fmi3SetDebugLogging(Instance* instance, bool, std::size_t, const char* const*)
+  Status fmi3SetDebugLogging(Instance* instance, bool on, std::size_t count, const char* const* categories)
   {
-    return guarded(instance, [](Instance&) {});
+    return guarded(instance,
+                   [&](Instance& self)
+                   {
+                     if (count > 0)
+                     {
+                       require(categories, "categories");
+                     }
+                     self.setLogging(on, count, categories);
+                   });
   }
 
-  Instance* fmi3InstantiateCoSimulation(const char* name, const char* token, const char* resources, bool, bool,
+  Instance* fmi3InstantiateCoSimulation(const char* name, const char* token, const char* resources, bool, bool logs,
                                         bool event_mode, bool, const ValueReference*, std::size_t intermediate,
                                         void* environment, LogMessage log, void*)
   {
     try
     {
+      const UsualArithmetic arithmetic;
       require(name, "instanceName");
       if (event_mode || intermediate > 0)
       {
@@ -122,13 +150,13 @@ extern "C"
       }
       require(token, "instantiationToken");
       require(resources, "resourcePath");
-      return std::make_unique<Instance>(resources, token, environment, log).release();
+      return std::make_unique<Instance>(resources, token, logs, environment, log).release();
     }
     catch (const std::exception& error)
     {
       if (log != nullptr)
       {
-        log(environment, Status::ERROR, ERROR_CATEGORY, error.what());
+        log(environment, Status::ERROR, LOG_CATEGORIES[1], error.what());
       }
     }
     catch (...)  // nothing of C++ leaves the unit
@@ -191,9 +219,9 @@ extern "C"
                    {
                      const References of{ references, references_count, count };
                      requireArrays(of, values);
-                     self.get(Type::STRING, of,
-                              [&](std::size_t place, double, const std::string& text)
-                              { values[place] = text.c_str(); });
+                     return self.get(Type::STRING, of,
+                                     [&](std::size_t place, double, const std::string& text)
+                                     { values[place] = text.c_str(); });
                    });
   }
 
@@ -275,8 +303,7 @@ extern "C"
                      *last_time = self.time();
                      if (!converged)
                      {
-                       self.log(Status::WARNING, WARNING_CATEGORY,
-                                "a step found no equilibrium: the last good state is held");
+                       self.log(Status::WARNING, "a step found no equilibrium: the last good state is held");
                      }
                      return converged;
                    });

@@ -12,8 +12,22 @@ namespace hjt::fmu
 {
 namespace
 {
-constexpr double LARGEST_TIME = 1e9;    // [s]
-constexpr double SHORTEST_STEP = 1e-9;  // of the stamps [s]
+constexpr double LARGEST_TIME = 1e9;  // [s]
+
+/// FMI 3.0 has a path; a URI is what FMI 2.0 had, and importers of both may give.
+std::string folderOf(std::string resources)
+{
+  if (resources.rfind("file:", 0) == 0)
+  {
+    const std::size_t path = resources.rfind("file://", 0) == 0 ? resources.find('/', 7) : 5;
+    resources.erase(0, path);
+    for (std::size_t i = 0; (i = resources.find('%', i)) != std::string::npos; ++i)
+    {
+      resources.replace(i, 3, 1, static_cast<char>(std::stoi(resources.substr(i + 1, 2), nullptr, 16)));
+    }
+  }
+  return (std::filesystem::absolute(resources) / "").string();
+}
 
 std::string nameAndValue(const FmuVariable& variable, std::size_t element, double value)
 {
@@ -38,17 +52,38 @@ Instance::State& Instance::State::operator=(const State& other)
   return *this = State(other);
 }
 
-Instance::Instance(const std::string& resources, const std::string& token, void* environment, LogMessage log)
-  : environment_(environment), log_(log), unit_(openUnit((std::filesystem::absolute(resources) / "").string(), token))
+Instance::Instance(const std::string& resources, const std::string& token, bool logs, void* environment, LogMessage log)
+  : environment_(environment), log_(log), unit_(openUnit(folderOf(resources), token))
 {
+  logs_.fill(logs);
   reset();
 }
 
-void Instance::log(Status status, const char* category, const std::string& message) const noexcept
+void Instance::log(Status status, const std::string& message) const noexcept
 {
-  if (log_ != nullptr)
+  const std::size_t category = status == Status::ERROR ? 1 : 0;
+  if (log_ == nullptr || !logs_[category])
   {
-    log_(environment_, status, category, message.c_str());
+    return;
+  }
+  std::string text;  // # would begin a value reference
+  for (const char letter : message)
+  {
+    text.append(letter == '#' ? 2 : 1, letter);
+  }
+  log_(environment_, status, LOG_CATEGORIES[category], text.c_str());
+}
+
+void Instance::setLogging(bool on, std::size_t count, const char* const* categories)
+{
+  for (std::size_t i = 0; i < logs_.size(); ++i)
+  {
+    const auto is_this = [i](const char* category)
+    { return category != nullptr && std::string(category) == LOG_CATEGORIES[i]; };
+    if (count == 0 || std::any_of(categories, categories + count, is_this))
+    {
+      logs_[i] = on;
+    }
   }
 }
 
@@ -204,7 +239,8 @@ void Instance::changed(bool differs)
   }
 }
 
-const Value& Instance::value(ValueReference reference)
+/// Brings the value up to date. @returns false if it is of the last instant that had one.
+bool Instance::update(ValueReference reference)
 {
   const FmuVariable& asked = unit_->variables()[reference];
   if (asked.causality == Causality::INDEPENDENT)
@@ -217,11 +253,11 @@ const Value& Instance::value(ValueReference reference)
     start();
     if (!state_.simulation->read(reference, state_.values))
     {
-      log(Status::WARNING, WARNING_CATEGORY,
-          asked.name + ": no equilibrium of all teeth at " + numberText(state_.time) + " [s]");
+      log(Status::WARNING, asked.name + ": no equilibrium of all teeth at " + numberText(state_.time) + " [s]");
+      return false;
     }
   }
-  return state_.values[reference];
+  return true;
 }
 
 void Instance::start()
@@ -229,8 +265,8 @@ void Instance::start()
   if (!state_.simulation)
   {
     state_.unit = unit_;
-    state_.simulation = unit_->start(state_.values, state_.start,
-                                     [this](const std::string& what) { log(Status::WARNING, WARNING_CATEGORY, what); });
+    state_.simulation =
+        unit_->start(state_.values, state_.start, [this](const std::string& what) { log(Status::OK, what); });
   }
 }
 
@@ -248,9 +284,9 @@ bool Instance::step(double at, double length)
   {
     throw CallError(asked() + "the instance is at " + numberText(state_.time) + " [s]");
   }
-  if (!(length >= SHORTEST_STEP) || !(end <= LARGEST_TIME))
+  if (!(length > 0.0) || !(end <= LARGEST_TIME))
   {
-    throw CallError(asked() + "a step must be at least 1e-9 long and end before 1e9 [s]");
+    throw CallError(asked() + "a step must be longer than 0 and end before 1e9 [s]");
   }
   if (state_.stop && end > *state_.stop + tolerance)
   {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <functional>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -43,19 +45,20 @@ class Instance
 {
 public:
   /// `resources`: folder of the unit's. @throws InputError.
-  Instance(const std::string& resources, const std::string& token, void* environment, LogMessage log);
+  Instance(const std::string& resources, const std::string& token, bool logs, void* environment, LogMessage log);
 
-  /// To the instance's user; errors and warnings always.
-  void log(Status status, const char* category, const std::string& message) const noexcept;
+  /// To the instance's user, if he wants it. `status`: what the call returns, or OK where it only tells.
+  void log(Status status, const std::string& message) const noexcept;
+  void setLogging(bool on, std::size_t count, const char* const* categories);  ///< none: all of them
 
   void enterInitialization(double start, std::optional<double> stop);
   void exitInitialization();
   void terminate();
   void reset();
 
-  /// Of one type; an array's values in a row.
+  /// Of one type; an array's values in a row. @returns false if some are of the last instant that had them.
   template <class Put>
-  void get(Type type, const References& of, const Put& put);
+  bool get(Type type, const References& of, const Put& put);
   void setNumbers(Type type, const References& of, const std::function<double(std::size_t)>& number);
   void setTexts(const References& of, const char* const* texts);
 
@@ -90,10 +93,11 @@ private:
   void requireSettable(const FmuVariable& variable) const;
   static void check(const FmuVariable& variable, std::size_t element, double value);
   void requireCount(Type type, const References& of) const;
-  const Value& value(ValueReference reference);
+  bool update(ValueReference reference);
   void start();
   void changed(bool differs);
 
+  std::array<bool, std::size(LOG_CATEGORIES)> logs_;
   void* environment_;
   LogMessage log_;
   std::shared_ptr<const Unit> unit_;
@@ -101,13 +105,15 @@ private:
 };
 
 template <class Put>
-void Instance::get(Type type, const References& of, const Put& put)
+bool Instance::get(Type type, const References& of, const Put& put)
 {
   requireCount(type, of);
   std::size_t place = 0;
+  bool is_present = true;
   for (std::size_t i = 0; i < of.size; ++i)
   {
-    const Value& found = value(of.references[i]);
+    is_present = update(of.references[i]) && is_present;
+    const Value& found = state_.values[of.references[i]];
     if (type == Type::STRING)
     {
       put(place++, 0.0, found.text);
@@ -118,5 +124,6 @@ void Instance::get(Type type, const References& of, const Put& put)
       put(place++, number, found.text);
     }
   }
+  return is_present;
 }
 }  // namespace hjt::fmu

@@ -9,6 +9,7 @@
 #include "base/joined.hpp"
 #include "base/number_text.hpp"
 #include "base/xml_text.hpp"
+#include "fmu/fmi3.hpp"
 
 namespace hjt::fmu
 {
@@ -157,8 +158,9 @@ std::string modelDescription(const UnitDescription& unit)
          attribute("modelIdentifier", unit.library) + attribute("canGetAndSetFMUState", "true") +
          attribute("canHandleVariableCommunicationStepSize", "true") +
          attribute("fixedInternalStepSize", numberText(1.0 / unit.rate)) + "/>\n  <UnitDefinitions>\n" +
-         joined(units, "", unitDefinition) + "  </UnitDefinitions>\n" +
-         "  <LogCategories>\n    <Category name=\"logStatusWarning\"/>\n    <Category name=\"logStatusError\"/>\n"
+         joined(units, "", unitDefinition) + "  </UnitDefinitions>\n" + "  <LogCategories>\n" +
+         joined(LOG_CATEGORIES, "",
+                [](const char* name) { return "    <Category" + attribute("name", name) + "/>\n"; }) +
          "  </LogCategories>\n  <DefaultExperiment startTime=\"0\" stopTime=\"1\"" +
          attribute("stepSize", numberText(unit.step)) +
          "/>\n"

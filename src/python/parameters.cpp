@@ -349,13 +349,12 @@ void bindParameters(py::module& module)
                             "All parameters of a joint, by their keys 'section.name' (docs/parameters.md), in SI "
                             "units, temperatures in degC.\n\n"
                             "Parameters(*overlays, config_dir=''): the default configuration with the overlays over "
-                            "it, later wins. An overlay "
-                            "is a YAML file as for the tool's --config, e.g. 'joints/elbow.yaml', or a dict of keys "
+                            "it, later wins. An overlay is a YAML file as for the tool's --config, e.g. "
+                            "'joints/elbow.yaml', or a dict of keys "
                             "and values, as for --set. "
                             "config_dir: of another default configuration.\n\n"
                             "A value that is set is checked at once, with all the others; ParameterError names key, "
-                            "value, unit and range, and "
-                            "nothing has changed.")
+                            "value, unit and range, and nothing has changed.")
       .def(py::init(&configurationOf), "Parameters(*overlays, config_dir='')")
       .def("__getitem__", &Configuration::value, py::arg("key"), "Value of a key; a list of numbers is a tuple.")
       .def(
@@ -392,7 +391,10 @@ void bindParameters(py::module& module)
              return "<Parameters of joint '" + self.values().joint.name + "', " + std::to_string(self.keys().size()) +
                     " keys>";
            })
-      .def(py::pickle([](const Configuration& self) { return self.state(); }, &Configuration::fromState));
+      .def(py::pickle([](const Configuration& self) { return self.state(); }, &Configuration::fromState))
+      // Pickle's protocols 0 and 1 would make an instance of pybind11's base, which ends the process.
+      .def("__reduce_ex__", [](const py::object& self, int)
+           { return py::module::import("builtins").attr("object").attr("__reduce_ex__")(self, 2); });
   bindFaults(module);
 }
 }  // namespace hjt

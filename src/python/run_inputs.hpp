@@ -42,7 +42,11 @@ public:
     {
       return;
     }
-    values_ = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(given);
+    // Truth values, whole and real numbers, objects that are such; no times, no complex numbers.
+    const py::array array = py::array::ensure(given);
+    const bool is_real = array && std::string("biufO").find(array.dtype().kind()) != std::string::npos;
+    const py::handle taken = is_real ? py::handle(array) : py::handle();
+    values_ = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(taken);
     if (!values_)
     {
       throw InputError(name_ + " is neither a number nor an array of numbers");

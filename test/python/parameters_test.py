@@ -65,7 +65,8 @@ class Values(unittest.TestCase):
     def test_copies_are_independent(self):
         first = hjt.Parameters()
         inertia = first["output.load_inertia"]
-        for other in first.copy(), copy.copy(first), copy.deepcopy(first), pickle.loads(pickle.dumps(first)):
+        pickled = [pickle.loads(pickle.dumps(first, protocol)) for protocol in range(pickle.HIGHEST_PROTOCOL + 1)]
+        for other in [first.copy(), copy.copy(first), copy.deepcopy(first)] + pickled:
             self.assertEqual(dict(other), dict(first))
             other["output.load_inertia"] = inertia + 1.0
             self.assertEqual(first["output.load_inertia"], inertia)

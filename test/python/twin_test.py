@@ -130,6 +130,8 @@ class Run(unittest.TestCase):
                 ({"motor_torque": np.zeros(5), "load_torque": np.zeros(4)}, "load_torque has 4 values for 5 steps"),
                 ({"motor_torque": np.zeros((5, 2))}, r"motor_torque has 2 dimensions"),
                 ({"motor_torque": "much", "steps": 3}, "motor_torque is neither a number nor an array"),
+                ({"motor_torque": np.array([1j])}, "motor_torque is neither a number nor an array"),
+                ({"motor_torque": np.array([0], "M8[s]")}, "motor_torque is neither a number nor an array"),
                 ({"motor_torque": 0.1}, "steps is missing"),
                 ({"steps": -1}, "steps = -1"), ({"steps": 5, "every": 0}, "every = 0")):
             with self.assertRaisesRegex(hjt.InputError, words):

@@ -8,8 +8,12 @@
 ///   new I [EVENTS] | free I | enter I START STOP | exit I | terminate I | reset I | step I TIME LENGTH [TIMES]
 ///   get I TYPE REFERENCE COUNT | set I TYPE REFERENCE COUNT VALUE ...    TYPE: Float64, Int32, Boolean, String
 ///   keep I S | restore I S | drop I S | call I NAME                       I, S: 0 ... 7; STOP: nan where there is none
-///   allocations I: how often memory was asked for in steps so far
+///   allocations I: how often memory was asked for in steps so far | logging I ON CATEGORY
+///
+/// Invalid operations of floating-point numbers trap in steps and at the end of the initialisation.
+#define _GNU_SOURCE
 #include <dlfcn.h>
+#include <fenv.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -83,7 +87,9 @@ static Status get(void* instance, const char* type, Reference reference, size_t 
   for (size_t i = 0; status == 0 && i < count; ++i)
   {
     values == texts ? printf(" %s", texts[i]) :
-                      printf(" %a", values == numbers ? numbers[i] : values == wholes ? wholes[i] : truths[i]);
+                      printf(" %a", values == numbers ? numbers[i] :
+                                    values == wholes  ? wholes[i] :
+                                                        truths[i]);
   }
   return status;
 }
@@ -131,9 +137,11 @@ static Status step(void* instance)
     bool early = true;
     double last = NAN;
     steps_now = true;
+    feenableexcept(FE_INVALID | FE_DIVBYZERO);
     status = call(instance, from + i * length, length, true, &event, &terminated, &early, &last);
+    const bool traps = fedisableexcept(FE_ALL_EXCEPT) == (FE_INVALID | FE_DIVBYZERO);
     steps_now = false;
-    if (status == 0 && (event || terminated || early || fabs(last - (from + (i + 1) * length)) > 1e-12))
+    if (!traps || (status == 0 && (event || terminated || early || fabs(last - (from + (i + 1) * length)) > 1e-12)))
     {
       printf("wrong results of fmi3DoStep ");
     }
@@ -149,7 +157,10 @@ static Status callNamed(const char* command, void* instance)
                      strcmp(command, "reset") == 0     ? "fmi3Reset" :
                                                          strtok(NULL, " \n");
   Status (*call)(void*) = function(name);
-  return call(instance);
+  feenableexcept(FE_INVALID | FE_DIVBYZERO);
+  const Status status = call(instance);
+  fedisableexcept(FE_ALL_EXCEPT);
+  return status;
 }
 
 static Status callWithState(const char* command, void* instance, void** state)
@@ -193,6 +204,13 @@ static Status run(const char* command, char** argv, void** instance, void** stat
   if (strcmp(command, "step") == 0)
   {
     return step(*instance);
+  }
+  if (strcmp(command, "logging") == 0)
+  {
+    Status (*call)(void*, bool, size_t, const char* const*) = function("fmi3SetDebugLogging");
+    const bool on = number() != 0.0;
+    const char* category = strtok(NULL, " \n");
+    return call(*instance, on, 1, &category);
   }
   if (strcmp(command, "set") == 0)
   {

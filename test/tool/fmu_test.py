@@ -3,6 +3,7 @@
 importer."""
 import math
 import os
+import pathlib
 import re
 import shutil
 import subprocess
@@ -230,9 +231,12 @@ class States(Fmu):
         self.assertEqual(unit.set("temperature", 1000.0), ERROR)
         self.assertEqual(unit.set("fault_tooth_wear", 1.5), ERROR)
         self.assertEqual(unit.set("motor.torque_limit", -1.0), ERROR)
-        self.assertEqual(unit.set("thermal.model", "hot"), OK)
+        self.assertEqual(unit.set("thermal.model", "hot#1"), OK)
         self.assertEqual(unit.call("enter", 0, 0.0, "nan"), OK)
         self.assertEqual(unit.call("exit", 0), ERROR)
+        for on in 0, 1:
+            self.assertEqual(unit.call("logging", 0, on, "logStatusError"), OK)
+            self.assertEqual(unit.set("temperature", 2000.0 + on), ERROR)
         self.assertEqual(unit.set("thermal.model", "none"), OK)
         self.assertEqual(unit.call("exit", 0), OK)
         self.assertEqual(unit.call("new", 6, "events"), 1)
@@ -240,22 +244,27 @@ class States(Fmu):
                       ("exit", 0), ("enter", 0, 0.0, 1.0)]:
             self.assertEqual(unit.call(*words), ERROR, words)
         self.assertEqual(unit.set("motor.torque_limit", 1.0), ERROR)
+        self.assertEqual(unit.call("step", 0, 0.0, 1e-17), OK)  # what rounding leaves of an importer's step
         self.assertEqual(unit.call("step", 0, 0.0, 0.01), OK)
         said = unit.close()
-        for part in ("temperature = 1000.0 [degC] out of range, allowed: -40 ... 150",
-                     "thermal.model = 'hot'", "fmi3DoStep is not allowed in state Instantiated",
+        self.assertNotIn("temperature = 2000.0", said)
+        for part in ("temperature = 1000.0 [degC] out of range, allowed: -40 ... 150", "temperature = 2001.0",
+                     "thermal.model = 'hot##1'", "fmi3DoStep is not allowed in state Instantiated",
                      "setting output_angle is not allowed in state Instantiated"):
             self.assertIn(part, said)
 
     def test_wants_its_own_token_and_resources(self):
         unit = self.unit()
         unit.close()
-        for token, resources in (("another", self.path("a unit/resources")),
-                                 (unit.root.get("instantiationToken"), self.path("nowhere"))):
+        own = unit.root.get("instantiationToken")
+        uri = pathlib.Path(self.path("a unit/resources")).as_uri()
+        for token, resources, answer in (("another", self.path("a unit/resources"), "1"),
+                                         (own, self.path("nowhere"), "1"), (own, uri, "0"),
+                                         (own, uri.replace("file://", "file:"), "0")):
             done = subprocess.run([IMPORTER, unit.library, token, resources], input="new 0\n", stdout=subprocess.PIPE,
                                   stderr=subprocess.PIPE, universal_newlines=True, check=True)
-            self.assertEqual(done.stdout.split(), ["3.0", "1"])
-            self.assertIn("logStatusError", done.stderr)
+            self.assertEqual(done.stdout.split(), ["3.0", answer])
+            self.assertEqual("logStatusError" in done.stderr, answer == "1")
 
 
 if __name__ == "__main__":
