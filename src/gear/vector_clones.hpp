@@ -2,8 +2,8 @@
 #pragma once
 
 /// Before a function whose loops over the teeth vectorise: compiled for every x86-64, for FMA and for AVX-512; the
-/// processor decides when the library is loaded. Elsewhere it says nothing.
-#if defined(HJT_AVX2) && defined(__GNUC__) && !defined(__clang__)
+/// processor decides when the library is loaded, before the thread sanitizer could watch it. Elsewhere it says nothing.
+#if defined(HJT_AVX2) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_THREAD__)
 #define HJT_VECTOR_CLONES __attribute__((target_clones("avx512f", "fma", "default")))
 #else
 #define HJT_VECTOR_CLONES
