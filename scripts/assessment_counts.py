@@ -35,13 +35,15 @@ def main():
     page = (PROJECT / "docs" / "health.md").read_text(encoding="utf-8")
     page = page.split("<!-- health:begin -->")[1].split("<!-- health:end -->")[0]
     table = [cells(line) for line in page.splitlines() if line.startswith(("| kind ", "| `", "| all "))]
-    head, rows = table[0], {row[0].strip("`"): row for row in reversed(table[1:])}  # the first one named all
+    head = table[0]
+    rows = {row[0].strip("`"): row for row in reversed(table[1:])}  # the first one named all
     found = [place for place, name in enumerate(head) if name.startswith(("check-up, ", "at work, "))]
     severity = max(float(head[place].split(", ")[1]) for place in found)  # the only one that causes are judged at
     right, in_set, size, stated = (next(place for place, name in enumerate(head) if name.startswith(words))
                                    for words in ("cause right", "or in the set", "severity", "its stated"))
     check_ups = re.search(r"(\d+) alarms in (\d+), at most", page)
-    runs = [cells(line) for line in page.split(check_ups.group(0))[1].splitlines() if re.match(r"\| (?!all )[^|]+ \| \d", line)]
+    rest = page.split(check_ups.group(0))[1].splitlines()
+    runs = [cells(line) for line in rest if re.match(r"\| (?!all )[^|]+ \| \d", line)]
     lines = []
     for kind in KINDS:
         seen, of = total(rows[kind][place] for place in found)
@@ -55,8 +57,9 @@ def main():
               "SOUND_RUNS": int(check_ups.group(2)) + sum(int(row[1]) for row in runs),
               "SOUND_ALARMS": int(check_ups.group(1)) + sum(int(row[5]) for row in runs)}
     lines += [f"constexpr double {name} = {value}.0;" for name, value in values.items()]
-    lines += [f"constexpr double ESTIMATE_SPREAD = {spread / (severity + mean):.2f};  // over the estimate, of all kinds",
-              f"constexpr double STATED_DEVIATION = {float(rows['all'][stated]) / (severity + mean):.2f};  // likewise"]
+    estimate, deviation = severity + mean, float(rows["all"][stated])
+    lines += [f"constexpr double ESTIMATE_SPREAD = {spread / estimate:.2f};  // over the estimate, of all kinds",
+              f"constexpr double STATED_DEVIATION = {deviation / estimate:.2f};  // likewise"]
     (PROJECT / "src" / "life" / "assessment_counts.hpp").write_text(
         HEAD + "\n".join(lines) + "\n}  // namespace hjt::assessment_counts\n", encoding="utf-8")
 
