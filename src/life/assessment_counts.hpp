@@ -18,6 +18,6 @@ constexpr double RIGHT_CAUSES = 12.0;
 constexpr double IN_SETS = 15.0;
 constexpr double SOUND_RUNS = 144.0;
 constexpr double SOUND_ALARMS = 0.0;
-constexpr double ESTIMATE_SPREAD = 0.33;  // over the estimate, of all kinds
+constexpr double ESTIMATE_SPREAD = 0.33;   // over the estimate, of all kinds
 constexpr double STATED_DEVIATION = 0.52;  // likewise
 }  // namespace hjt::assessment_counts

@@ -76,7 +76,7 @@ private:
   static constexpr std::array<double, 3> ESTIMATE_MEAN{ assessment_counts::TOOTH_WEAR_ESTIMATE,
                                                         assessment_counts::INTERFACE_WEAR_ESTIMATE,
                                                         assessment_counts::LUBRICANT_DEGRADATION_ESTIMATE };
-  static constexpr double ESTIMATE_NOISE = 0.1;  // of the logarithm, from one to the next; assumed
+  static constexpr double ESTIMATE_NOISE = 0.1;             // of the logarithm, from one to the next; assumed
   static constexpr double STATED_CONFIDENCE = RIGHT_CAUSE;  // as calibrated ones are
 
   FaultScaleParameters scale_;

@@ -76,9 +76,8 @@ int signatures(const SignaturesOptions& options)
     return EXIT_BY_SIGNAL + interruptSignal();
   }
   const Parameters parameters = Plan(options.plans.front(), options).run(0).parameters;
-  const std::string own =
-      found.text(std::filesystem::path(options.out).stem().string(),
-                 *loadSignatures(parameters.indicators.signatures), parameters.life.rated_torque);
+  const std::string own = found.text(std::filesystem::path(options.out).stem().string(),
+                                     *loadSignatures(parameters.indicators.signatures), parameters.life.rated_torque);
   writeTextFile(options.out, kept ? withRowsOf(*kept, options.add, own) : own);
   printReport(options.json, { { "output", "", options.out },
                               { "done", "runs done", runs.done },
