@@ -58,7 +58,7 @@ def main():
               "SOUND_ALARMS": int(check_ups.group(1)) + sum(int(row[5]) for row in runs)}
     lines += [f"constexpr double {name} = {value}.0;" for name, value in values.items()]
     estimate, deviation = severity + mean, float(rows["all"][stated])
-    lines += [f"constexpr double ESTIMATE_SPREAD = {spread / estimate:.2f};  // over the estimate, of all kinds",
+    lines += [f"constexpr double ESTIMATE_SPREAD = {spread / estimate:.2f};   // over the estimate, of all kinds",
               f"constexpr double STATED_DEVIATION = {deviation / estimate:.2f};  // likewise"]
     (PROJECT / "src" / "life" / "assessment_counts.hpp").write_text(
         HEAD + "\n".join(lines) + "\n}  // namespace hjt::assessment_counts\n", encoding="utf-8")

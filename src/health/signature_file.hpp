@@ -43,7 +43,7 @@ SignatureSet parseSignatures(const std::string& text, const std::string& path);
 /// names for people, of each signature.
 std::string signatureText(const SignatureSet& set, const std::vector<std::string>& motions);
 
-/// The text of a file with the rows of runs of another one behind its own. `path`: of the former, for the messages alone.
+/// The text of a file with the rows of runs of another one behind its own. `path`: of the former, for messages alone.
 /// @throws ParameterError if one is damaged or they speak of different indicators.
 std::string withRowsOf(const std::string& text, const std::string& path, const std::string& added);
 }  // namespace hjt

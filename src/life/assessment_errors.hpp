@@ -7,8 +7,8 @@
 
 namespace hjt
 {
-/// How reliable assessments of wear are, by the runs of docs/health.md. As they are few, a share is the mean of what they
-/// leave open: one more counts on either side (Laplace's rule of succession).
+/// How reliable assessments of wear are, by the runs of docs/health.md. As they are few, a share is the mean of what
+/// they leave open: one more counts on either side (Laplace's rule of succession).
 namespace assessment_errors
 {
 constexpr double shareOf(double found, double runs) noexcept
@@ -16,8 +16,8 @@ constexpr double shareOf(double found, double runs) noexcept
   return (found + 1.0) / (runs + 2.0);
 }
 
-/// Share of drives whose wear of a kind is found at all: of the runs judged at severities 0.2 and 0.5, check-up and work
-/// together. 0: never, spalls among them [-].
+/// Share of drives whose wear of a kind is found at all: of the runs judged at severities 0.2 and 0.5, check-up and
+/// work together. 0: never, spalls among them [-].
 constexpr double detectionShare(FaultKind kind) noexcept
 {
   switch (kind)
