@@ -9,7 +9,7 @@ import numpy
 import scipy.stats
 import sklearn.covariance
 
-from health_runs import COMPARED, OTHER_FLANKS, OTHER_MODEL, Motion, Trial, drawn, once
+from health_runs import COMPARED, FURTHER_MODEL, OTHER_FLANKS, OTHER_MODEL, Motion, Trial, drawn, once
 
 WINDOW = 20.0                   # [s]
 SLOPE = 300.0                   # of a trapezoid [deg/s^2]
@@ -86,8 +86,10 @@ MOTIONS = [motion_of("slow sweep", "slow_sweep", sweep),
            motion_of("trapezoids, three places", "trapezoid_places", functools.partial(three_places, None)),
            motion_of("sine", "sine", sine)]
 FITTED_GEARS = [drawn(905), drawn(930), OTHER_FLANKS]
-JUDGED_GEARS = [drawn(1007), OTHER_MODEL]
-SEEDS = {"drawn 905": 50, "drawn 930": 150, "drawn 1007": 250, OTHER_FLANKS.name: 270, OTHER_MODEL.name: 280}  # first
+MODELS = [OTHER_MODEL, FURTHER_MODEL]
+JUDGED_GEARS = [drawn(1007), *MODELS]
+SEEDS = {"drawn 905": 50, "drawn 930": 150, "drawn 1007": 250, OTHER_FLANKS.name: 270, OTHER_MODEL.name: 280,
+         FURTHER_MODEL.name: 300}  # first
 
 # `kind` "healthy" of a sound one; `plain`: scores of the plain detectors.
 Judged = collections.namedtuple("Judged", "gear motion kind severity window score plain")
@@ -213,9 +215,10 @@ def table(found):
              + " | ".join(f"found, {severity:g}" for severity in SEVERITIES)
              + " | cause right, of alarms | or in the set | mean confidence |", "|" + 10 * "---|"]
     for name, own in found.items():
-        drawn_ones = [one for one in own if one.gear != OTHER_MODEL]
+        drawn_ones = [one for one in own if one.gear not in MODELS]
         rows = [(motion.name, [one for one in drawn_ones if one.motion == motion.name]) for motion in MOTIONS]
-        rows += [("all of them", drawn_ones), (OTHER_MODEL.name, [one for one in own if one.gear == OTHER_MODEL])]
+        rows += [("all of them", drawn_ones)]
+        rows += [(model.name, [one for one in own if one.gear == model]) for model in MODELS]
         lines += [row_of(f"{title}, {name}", chosen) for title, chosen in rows]
     return lines
 
@@ -246,8 +249,9 @@ def causes_of(title, own):
 def judged_table(bench):
     found = {name: all_judged(bench, JUDGED_GEARS, source) for name, source in SOURCES.items()}
     everything = [one for own in found.values() for one in own]
-    drawn_ones = [one for one in everything if one.gear != OTHER_MODEL]
+    drawn_ones = [one for one in everything if one.gear not in MODELS]
     return [*table(found), "", *(shares_of(f"All gears, {name}", own) for name, own in found.items()),
             causes_of("Drawn gears" if len({one.gear.name for one in drawn_ones}) > 1 else
                       drawn_ones[0].gear.name.capitalize(), drawn_ones),
-            causes_of(OTHER_MODEL.name.capitalize(), [one for one in everything if one.gear == OTHER_MODEL])]
+            *(causes_of(model.name.capitalize(), [one for one in everything if one.gear == model])
+              for model in MODELS)]

@@ -85,7 +85,17 @@ MODELS = [MODEL, CALIBRATED_MODEL]
 OTHER_MODEL = Gear("another model", True, ["  mesh.profile: involute", "  motor.stribeck_torque: 0.05",
                                            "  bearing.race_preload: 900.0", "  bearing.viscosity: 220.0e-6"],
                    "golden.yaml")
-# One more, that the errors of signatures are fitted to: other flanks, less preload, dry friction at once.
+# The same support under the shipped flanks, with stiffnesses and friction of its own.
+FURTHER_MODEL = Gear("a further model", True, ["  mesh.stiffness: 7.0e+7", "  mesh.profile: double_arc",
+                                               "  contact.stiffness: 6.0e+7", "  motor.stribeck_torque: 0.06",
+                                               "  cup.torsion_stiffness: [30.9e+3, 54.0e+3, 62.1e+3]",
+                                               "  bearing.race_preload: 850.0", "  bearing.viscosity: 260.0e-6"],
+                     "golden.yaml")
+# Of signatures: straight flanks and springs on a rigid wave generator; flanks that touch along most of the rim.
+STRAIGHT = Gear("straight flanks", True, ["  bearing.race_preload: 1000.0", "  bearing.viscosity: 190.0e-6"],
+                "golden.yaml")
+CYCLOID = Gear("cycloid flanks", True, ["  mesh.profile: cycloid", "  bearing.race_preload: 620.0"])
+# That the errors of signatures are fitted to: other flanks, less preload, dry friction at once.
 OTHER_FLANKS = Gear("other flanks", True, ["  mesh.profile: involute", "  cup.friction_angle: 0.0",
                                            "  motor.stribeck_torque: 0.02", "  bearing.race_preload: 700.0",
                                            "  bearing.viscosity: 240.0e-6"])
@@ -119,6 +129,8 @@ Trial = collections.namedtuple("Trial", "name gear motions severities tooth seed
 FITTED = [Trial("fitted", EVEN, [CHECK_UP, STACKING, turn(25), turn(40), turn(80), turn(90)], [0.15, 0.4, 1.0], 90, 2),
           Trial("fitted", drawn(700), [CHECK_UP, LOADING], [0.15, 0.4, 1.0], 25, 12),
           Trial("fitted", drawn(701), [CHECK_UP, SEAM], [0.15, 0.4, 1.0], 130, 13)]
+# Other models: of whole members alone, which look alike there.
+FITTED_MODELS = [Trial("fitted", gear, [CHECK_UP, SEAM], [0.15, 0.4, 1.0], 90, 40) for gear in (STRAIGHT, CYCLOID)]
 CALIBRATED = [Trial("calibrated", LOOSE, [CHECK_UP, at_work(STACKING), turn(33)], [0.25, 0.6], 15, 3),
               Trial("calibrated", FRESH, [CHECK_UP, LOADING, at_work(turn(84))], [0.2, 0.5], 61, 21),
               Trial("calibrated", drawn(702), [CHECK_UP, at_work(PICK_AND_PLACE)], [0.2, 0.5], 75, 31),
@@ -287,13 +299,13 @@ class Bench:
         return self.sweep(f"{trial.name}_{trial.gear.name}_{motion.tag}", trial.gear, motion, temperature,
                           self.fault_classes(trial), 1, trial.seed, "auto" if trial.gear.alike else "full_ring")
 
-    def signatures(self, trials, path):
+    def signatures(self, trials, path, kinds=None, options=()):
         """Of the trials' faults, each beside a sound run at the same temperature, without noise."""
         plans = [self.plan(f"same_{trial.gear.name}_{motion.tag}", trial.gear, motion, f"{{grid: {SAME}}}",
-                           ["  healthy: []", *self.fault_classes(trial)], 1, trial.seed, others=QUIET)
+                           ["  healthy: []", *self.fault_classes(trial, kinds)], 1, trial.seed, others=QUIET)
                  for trial in trials for motion in trial.motions]
         done = subprocess.run([self.tool, "signatures", *plans, "--out", path, "--runs", self.work, "--jobs",
-                               str(self.jobs), "--force"], check=False, stdout=subprocess.DEVNULL)
+                               str(self.jobs), "--force", *options], check=False, stdout=subprocess.DEVNULL)
         if done.returncode not in (0, 1):  # 1: without the runs that found no equilibrium
             sys.exit(f"evaluate_health: joint_twin signatures ended with {done.returncode}")
 

@@ -10,7 +10,7 @@ import numpy
 import health_file
 import health_motions
 import page_section
-from health_runs import COMPARED, DRAWN, FITTED, once, split_table
+from health_runs import COMPARED, DRAWN, FITTED, FITTED_MODELS, once, split_table
 
 # Changes as a share of the sound value: stiffness and play go with the size of the cup. Thicker grease multiplies the
 # friction there is, which differs threefold over the temperatures; preload and wear add to it.
@@ -220,6 +220,7 @@ def write(bench, path, page, trials, errors_alone):
     tool takes them over."""
     if not errors_alone:
         bench.signatures(FITTED, path)
+        bench.signatures(FITTED_MODELS, path, health_motions.KINDS, ("--add", path))
     table, _ = read(path)
     windows = calibration_windows(bench, trials)
     layout = Layout(windows[0][2]["indicators"])
@@ -260,7 +261,8 @@ def write_table(layout, sound, table, page, trials):
              ("error_wave_generator_1", 206265.0, "order 1 [″]"), ("error_wave_generator_2", 206265.0, "order 2 [″]"),
              ("error_circular_spline_2", 206265.0, "circular spline [″]"), ("error_cage_lobes", 206265.0, "cage [″]"),
              ("error_outer", 206265.0, "outer [″]"), ("error_inner", 206265.0, "inner [″]")]
-    lines = split_table(("signatures fitted to", FITTED), ("their errors fitted to", trials),
+    lines = split_table(("signatures fitted to", FITTED), ("those of whole members also to", FITTED_MODELS),
+                        ("their errors fitted to", trials),
                         ("and to", health_motions.trials(health_motions.FITTED_GEARS)))
     lines += ["", "| cause | " + " | ".join(text for _, _, text in shown) + " |", "|---|" + "---|" * len(shown)]
     shown_causes = set()

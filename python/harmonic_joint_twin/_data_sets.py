@@ -146,6 +146,7 @@ def _verdict(recording: str, windows: List[Dict[str, Any]]) -> Dict[str, Any]:
     if judged:
         row.update({name: said[name] for name in ("level", "cause", "confidence", "severity", "severity_deviation")})
         row["alternatives"] = ", ".join(said["alternatives"])
+        row["blind_to"] = ", ".join(cause for cause, from_ in (last["seen_from"] or {}).items() if from_ is None)
     return row
 
 
@@ -159,8 +160,9 @@ def assess(recordings: Recordings, reference: Path, *, check_up: bool = False, j
 
     Returns a pandas.DataFrame, a row for each recording: 'recording', 'windows', 'state' ('assessed': the others hold),
     'level' ('OK', 'WARN', 'ERROR'), 'cause', 'confidence', 'severity', 'severity_deviation', 'alternatives', 'score'
-    over threshold, and of the 'indicator' furthest off its deviation in 'spreads' and in 'percent'. Recordings that are
-    not judged are warned of. InputError, ParameterError.
+    over threshold, of the 'indicator' furthest off its deviation in 'spreads' and in 'percent', and at level OK
+    'blind_to': the faults that would not have shown at any severity. Recordings that are not judged are warned of.
+    InputError, ParameterError.
     """
     pandas = importlib.import_module("pandas")
     expanded = _expanded(recordings)
@@ -171,7 +173,7 @@ def assess(recordings: Recordings, reference: Path, *, check_up: bool = False, j
         windows[window["recording"]].append(window)
     strongest = {"indicator": None, "spreads": float("nan"), "percent": float("nan")}
     order = ["recording", "windows", "state", "level", "cause", "confidence", "severity", "severity_deviation",
-             "alternatives", "score", *strongest]
+             "alternatives", "score", *strongest, "blind_to"]
     return pandas.DataFrame([_verdict(name, several) for name, several in windows.items()], columns=order)
 
 

@@ -13,9 +13,8 @@ namespace hjt
 namespace
 {
 constexpr std::array UNKNOWN_STRENGTHS{ 3.0, 10.0, 30.0, 100.0 };  // S of what is in no table
-constexpr double MISFIT_WEIGHT = 0.2;     // w_1: share of the evidence's weight that is left where no signature fits
-constexpr double MISFIT_SEVERITY = 0.5;   // share of the severity there: other drives soften up to three times as much
-constexpr double PATTERN_SEVERITY = 0.4;  // signatures about which make a pattern
+constexpr double MISFIT_WEIGHT = 0.2;    // w_1: share of the evidence's weight that is left where no signature fits
+constexpr double MISFIT_SEVERITY = 0.5;  // share of the severity there: other drives soften up to three times as much
 }  // namespace
 
 void CauseSearch::Sum::add(double weighted, double prior, double severity) noexcept
@@ -119,22 +118,8 @@ std::size_t patternCount(const SignatureSet& set) noexcept
   return static_cast<std::size_t>(std::count(known.begin(), known.end(), true));
 }
 
-CausePatterns::CausePatterns(std::shared_ptr<const SignatureSet> set) : set_(std::move(set))
+CausePatterns::CausePatterns(std::shared_ptr<const SignatureSet> set) : set_(std::move(set)), rows_(patternRows(*set_))
 {
-  const std::vector<Signature>& known = set_->signatures;
-  const auto off = [](const Signature& signature) { return std::abs(std::log(signature.severity / PATTERN_SEVERITY)); };
-  for (std::size_t i = 0; i < known.size(); ++i)
-  {
-    std::vector<std::size_t>& own = rows_[static_cast<std::size_t>(known[i].cause)];
-    if (!own.empty() && off(known[i]) < off(known[own.front()]))
-    {
-      own.clear();
-    }
-    if (own.empty() || off(known[i]) == off(known[own.front()]))
-    {
-      own.push_back(i);
-    }
-  }
 }
 
 PatternScore CausePatterns::strongest(const WindowResidual& residual, const OperatingPoint& point) const noexcept
@@ -143,13 +128,7 @@ PatternScore CausePatterns::strongest(const WindowResidual& residual, const Oper
   PatternScore strongest;
   for (std::size_t cause = 0; cause < CAUSE_COUNT; ++cause)
   {
-    std::array<double, INDICATOR_COUNT> direction{};
-    for (const std::size_t row : rows_[cause])
-    {
-      const Signature& signature = set_->signatures[row];
-      terms.addDirection(signature, OTHER_MOTION + likeness(signature.motion, point), direction);
-    }
-    if (const double student = terms.along(direction); student > strongest.student)
+    if (const double student = terms.along(terms.direction(rows_[cause], point)); student > strongest.student)
     {
       strongest = { static_cast<Cause>(cause), student };
     }

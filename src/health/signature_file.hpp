@@ -42,4 +42,8 @@ SignatureSet parseSignatures(const std::string& text, const std::string& path);
 /// The text of a file, which reads back as the same set but for the digits beyond the third of a change. `motions`:
 /// names for people, of each signature.
 std::string signatureText(const SignatureSet& set, const std::vector<std::string>& motions);
+
+/// The text of a file with the rows of runs of another one behind its own. `path`: of the former, for messages alone.
+/// @throws ParameterError if one is damaged or they speak of different indicators.
+std::string withRowsOf(const std::string& text, const std::string& path, const std::string& added);
 }  // namespace hjt

@@ -6,6 +6,8 @@
 
 #include <Eigen/Dense>
 
+#include "health/motion_likeness.hpp"
+
 namespace hjt
 {
 namespace
@@ -28,6 +30,27 @@ double soundSquare(const WindowResidual& residual, LineSignal signal, std::size_
   return is_neighbour ? square : 0.5 * square;
 }
 }  // namespace
+
+std::array<std::vector<std::size_t>, CAUSE_COUNT> patternRows(const SignatureSet& set)
+{
+  constexpr double PATTERN_SEVERITY = 0.4;
+  std::array<std::vector<std::size_t>, CAUSE_COUNT> rows;
+  const std::vector<Signature>& known = set.signatures;
+  const auto off = [](const Signature& signature) { return std::abs(std::log(signature.severity / PATTERN_SEVERITY)); };
+  for (std::size_t i = 0; i < known.size(); ++i)
+  {
+    std::vector<std::size_t>& own = rows[static_cast<std::size_t>(known[i].cause)];
+    if (!own.empty() && off(known[i]) < off(known[own.front()]))
+    {
+      own.clear();
+    }
+    if (own.empty() || off(known[i]) == off(known[own.front()]))
+    {
+      own.push_back(i);
+    }
+  }
+  return rows;
+}
 
 SignatureTerms::SignatureTerms(const SignatureSet& set, const WindowResidual& residual) noexcept
   : set_(set), freedom_(residual.freedom)
@@ -141,8 +164,19 @@ double SignatureTerms::changeBy(const Signature& signature, const Term& term) co
   return term.number < SCALAR_COUNT || term.has_phase || change == 0.0 ? change : amplitudeChange(term.sound, change);
 }
 
-void SignatureTerms::addDirection(const Signature& signature, double weight,
-                                  std::array<double, INDICATOR_COUNT>& direction) const noexcept
+SignatureTerms::Direction SignatureTerms::direction(const std::vector<std::size_t>& rows,
+                                                    const OperatingPoint& point) const noexcept
+{
+  Direction direction{};
+  for (const std::size_t row : rows)
+  {
+    const Signature& signature = set_.signatures[row];
+    addDirection(signature, OTHER_MOTION + likeness(signature.motion, point), direction);
+  }
+  return direction;
+}
+
+void SignatureTerms::addDirection(const Signature& signature, double weight, Direction& direction) const noexcept
 {
   std::array<double, INDICATOR_COUNT> changes{};
   double square = 0.0;
@@ -161,7 +195,18 @@ void SignatureTerms::addDirection(const Signature& signature, double weight,
   }
 }
 
-double SignatureTerms::along(const std::array<double, INDICATOR_COUNT>& direction) const noexcept
+double SignatureTerms::largest(const Signature& signature) const noexcept
+{
+  double largest = 0.0;
+  for (std::size_t i = 0; i < count_; ++i)
+  {
+    const Term& term = terms_[i];
+    largest = std::max(largest, std::abs(changeBy(signature, term)) / std::sqrt(term.own + term.common.squaredNorm()));
+  }
+  return largest;
+}
+
+double SignatureTerms::along(const Direction& direction, const Signature* instead) const noexcept
 {
   CausesSquare inner = CausesSquare::Identity();
   Causes of_direction = Causes::Zero();
@@ -177,9 +222,10 @@ double SignatureTerms::along(const std::array<double, INDICATOR_COUNT>& directio
       const Causes common = term.common / spread;
       inner.noalias() += common * common.transpose();
       of_direction += common * direction[i];
-      of_difference += common * (term.difference / spread);
+      const double difference = (instead != nullptr ? shareOrChange(*instead, term) : term.difference) / spread;
+      of_difference += common * difference;
       square += direction[i] * direction[i];
-      product += direction[i] * term.difference / spread;
+      product += direction[i] * difference;
     }
   }
   const Causes left = inner.inverse() * of_direction;

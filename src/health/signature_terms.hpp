@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -11,6 +12,9 @@
 
 namespace hjt
 {
+/// Rows of the set that make each cause's pattern: those whose severity is nearest to 0.4.
+std::array<std::vector<std::size_t>, CAUSE_COUNT> patternRows(const SignatureSet& set);
+
 /// The numbers of a window that signatures speak of.
 class SignatureTerms
 {
@@ -24,12 +28,18 @@ public:
   /// Mean square of what the signature leaves of the differences, in a sound drive's spreads; 1 at least.
   double misfit(const Signature& signature) const noexcept;
 
-  /// Adds the signature's change, in own spreads, times `weight` over its length, to `direction`. Lines are left out.
-  void addDirection(const Signature& signature, double weight,
-                    std::array<double, INDICATOR_COUNT>& direction) const noexcept;
+  using Direction = std::array<double, INDICATOR_COUNT>;
 
-  /// The difference along a direction over the spread that a sound drive has there.
-  double along(const std::array<double, INDICATOR_COUNT>& direction) const noexcept;
+  /// Mean of the signatures' changes in own spreads, each over its length, by how far its motion is like the window's.
+  /// Lines are left out.
+  Direction direction(const std::vector<std::size_t>& rows, const OperatingPoint& point) const noexcept;
+
+  /// The difference along a direction over the spread that a sound drive has there; `instead`: that signature's change
+  /// in place of the difference.
+  double along(const Direction& direction, const Signature* instead = nullptr) const noexcept;
+
+  /// Of the signature's changes the largest over the spread that a sound drive has.
+  double largest(const Signature& signature) const noexcept;
 
 private:
   using Causes = Eigen::Matrix<double, COMMON_CAUSES, 1>;
@@ -47,6 +57,7 @@ private:
     double line_square;  // half the square of the sound line's amplitude, that of the sound lost motion; 0 of others
   };
 
+  void addDirection(const Signature& signature, double weight, Direction& direction) const noexcept;
   double shareOrChange(const Signature& signature, const Term& term) const noexcept;
   double changeBy(const Signature& signature, const Term& term) const noexcept;
   void add(const WindowResidual& residual, std::size_t indicator, std::size_t number,

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
+#include <sstream>
 #include <string>
 
 #include "base/number_text.hpp"
 #include "base/text_stream.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
 #include "health/signature_file.hpp"
 
 namespace hjt
 {
 namespace
 {
+constexpr const char* KINEMATICS = " kinematics ";  // motion of the rows that no run made
 constexpr const char* HEAD = R"(# SPDX-License-Identifier: BSD-3-Clause
 # What faults change in the health indicators of a gear, found in the twin's own runs
 # (docs/indicators.md, "Signatures").
@@ -111,5 +114,20 @@ std::string signatureText(const SignatureSet& set, const std::vector<std::string
     writeRow(set.signatures[i], motions[i], set, text);
   }
   return text.str();
+}
+
+std::string withRowsOf(const std::string& text, const std::string& path, const std::string& added)
+{
+  if (parseSignatures(text, path).fitted != parseSignatures(added, "those to add").fitted)
+  {
+    throw ParameterError(path + ": its indicators are not those of the signatures to add");
+  }
+  std::string all = text;
+  std::istringstream rows(added.substr(added.find(SIGNATURES) + std::string(SIGNATURES).size()));
+  for (std::string row; std::getline(rows, row);)
+  {
+    all += row.find(KINEMATICS) == std::string::npos ? row + '\n' : "";
+  }
+  return all;
 }
 }  // namespace hjt

@@ -2,26 +2,32 @@
 #pragma once
 
 #include "harmonic_joint_twin/params/faults.hpp"
+#include "life/assessment_counts.hpp"
 #include "life/wear_trend.hpp"
 
 namespace hjt
 {
-/// How reliable assessments of wear are, counted on runs of six gears as in docs/health.md. As they are few, a share is
-/// the mean of what they leave open: one more counts on either side (Laplace's rule of succession).
+/// How reliable assessments of wear are, by the runs of docs/health.md. As they are few, a share is the mean of what
+/// they leave open: one more counts on either side (Laplace's rule of succession).
 namespace assessment_errors
 {
-/// Share of drives whose wear of a kind is found at all: of the windows judged at severities 0.2 and 0.5, check-up and
+constexpr double shareOf(double found, double runs) noexcept
+{
+  return (found + 1.0) / (runs + 2.0);
+}
+
+/// Share of drives whose wear of a kind is found at all: of the runs judged at severities 0.2 and 0.5, check-up and
 /// work together. 0: never, spalls among them [-].
 constexpr double detectionShare(FaultKind kind) noexcept
 {
   switch (kind)
   {
     case FaultKind::TOOTH_WEAR:
-      return (17.0 + 1.0) / (19.0 + 2.0);
+      return shareOf(assessment_counts::TOOTH_WEAR_FOUND, assessment_counts::TOOTH_WEAR_RUNS);
     case FaultKind::INTERFACE_WEAR:
-      return (20.0 + 1.0) / (20.0 + 2.0);
+      return shareOf(assessment_counts::INTERFACE_WEAR_FOUND, assessment_counts::INTERFACE_WEAR_RUNS);
     case FaultKind::LUBRICANT_DEGRADATION:
-      return (19.0 + 1.0) / (20.0 + 2.0);
+      return shareOf(assessment_counts::LUBRICANT_DEGRADATION_FOUND, assessment_counts::LUBRICANT_DEGRADATION_RUNS);
     default:
       return 0.0;
   }
@@ -32,12 +38,12 @@ constexpr double detectionShare(FaultKind kind) noexcept
 constexpr double DETECTED_SEVERITY = 0.1;
 constexpr double DETECTED_SPREAD = 0.3;
 
-/// In 29 alarms at severity >= 0.3 by these three kinds the first cause was right in 25, one of the reported set in 26.
-constexpr double RIGHT_CAUSE = (25.0 + 1.0) / (29.0 + 2.0);
-constexpr double IN_SET = (26.0 + 1.0) / (29.0 + 2.0);
+/// Of the alarms at severity >= 0.3 by these three kinds: the first cause is right, one of the reported set.
+constexpr double RIGHT_CAUSE = shareOf(assessment_counts::RIGHT_CAUSES, assessment_counts::ALARMS);
+constexpr double IN_SET = shareOf(assessment_counts::IN_SETS, assessment_counts::ALARMS);
 
-/// Of 304 check-ups and runs at work of sound gears none ended with an alarm.
-constexpr double FALSE_ALARMS = (0.0 + 1.0) / (304.0 + 2.0);
+/// Of check-ups and runs at work of sound gears that end with an alarm.
+constexpr double FALSE_ALARMS = shareOf(assessment_counts::SOUND_ALARMS, assessment_counts::SOUND_RUNS);
 
 /// How WearReadings depart from the wear of flanks and interface, counted on lives with signals (seed 11,
 /// docs/life.md): gears of other preload show the first micrometre late, signatures of other motions are off by a

@@ -11,6 +11,7 @@
 #include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "health/baseline_file.hpp"
+#include "health/seen_from.hpp"
 #include "health/signal_monitor.hpp"
 
 namespace hjt
@@ -84,6 +85,11 @@ WindowSeries readRecording(std::size_t index, const IndicatorsOptions& options, 
   return measured;
 }
 
+bool isSound(const Assessment& assessment)
+{
+  return assessment.state == AssessmentState::ASSESSED && assessment.level == HealthLevel::OK;
+}
+
 /// Every window of every recording. `judged`: of each recording, how near it came to a verdict.
 std::vector<WindowResult> assess(const IndicatorsOptions& options, Assessor& assessor,
                                  std::vector<ClosestAssessment>& judged)
@@ -105,6 +111,10 @@ std::vector<WindowResult> assess(const IndicatorsOptions& options, Assessor& ass
       judged.back().take(assessment);
       windows.push_back({ recording, measured.origin, measured.parameters, measured.windows[i], assessor.deviations(),
                           assessor.baseline().residual(), assessment });
+    }
+    if (!measured.windows.empty() && isSound(windows.back().assessment) && !assessor.signatures().signatures.empty())
+    {
+      windows.back().seen_from = seenFrom(assessor, windows.back().indicators.point);
     }
     if (!options.baseline.empty() ? !judged.back().isJudged() : measured.windows.empty())
     {

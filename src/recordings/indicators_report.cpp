@@ -128,6 +128,21 @@ Json strongestJson(const WindowResult& window)
                             { "percent", strongest->percent } };
 }
 
+/// Severities by cause, of causes with signatures; null: at none of theirs.
+Json seenFromJson(const WindowResult& window)
+{
+  Json json;
+  for (std::size_t cause = 0; window.seen_from && cause < CAUSE_COUNT; ++cause)
+  {
+    const double severity = (*window.seen_from)[cause];
+    if (static_cast<Cause>(cause) != Cause::NONE)
+    {
+      json[causeName(static_cast<Cause>(cause))] = std::isfinite(severity) ? Json(severity) : Json();
+    }
+  }
+  return json;
+}
+
 std::vector<Column<WindowResult>> documentColumns()
 {
   using W = const WindowResult&;
@@ -143,6 +158,7 @@ std::vector<Column<WindowResult>> documentColumns()
   columns.push_back({ "freedom", [](const WindowResult& window) { return window.residual.freedom; } });
   columns.push_back({ "averaged", [](const WindowResult& window) { return window.residual.windows; } });
   columns.push_back({ "strongest", strongestJson });
+  columns.push_back({ "seen_from", seenFromJson });
   columns.push_back({ "assessment", [](const WindowResult& window) { return toJson(window.assessment); } });
   return columns;
 }
@@ -239,6 +255,13 @@ void printSummary(const std::vector<WindowResult>& windows)
       const Alternative& other = assessment.alternatives[i];
       lines.push_back({ "", std::string("or ") + causeName(other.cause), other.confidence });
     }
+  }
+  for (std::size_t cause = 1; last.seen_from && cause < CAUSE_COUNT; ++cause)
+  {
+    const double severity = (*last.seen_from)[cause];
+    const std::string name = causeName(static_cast<Cause>(cause));
+    lines.push_back(std::isfinite(severity) ? ReportLine{ "", name + " would show from", severity } :
+                                              ReportLine{ "", name, "would not show" });
   }
   printReport(false, lines);
   if (!judged)

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "harmonic_joint_twin/health/assessment.hpp"
+#include "health/seen_from.hpp"
 #include "output/report.hpp"
 
 namespace hjt
@@ -19,6 +21,7 @@ struct WindowResult
   Deviations deviations;
   WindowResidual residual;
   Assessment assessment;
+  std::optional<SeenFrom> seen_from{};  ///< of the last window of a recording, where the verdict is OK
 };
 
 /// The windows of all recordings.

@@ -27,7 +27,7 @@ class SimulatedAssessments
 public:
   SimulatedAssessments(const FaultScaleParameters& scale, std::uint32_t seed) : scale_(scale), random_(seed)
   {
-    const double square = std::log1p(ESTIMATE_SPREAD * ESTIMATE_SPREAD);
+    const double square = std::log1p(assessment_counts::ESTIMATE_SPREAD * assessment_counts::ESTIMATE_SPREAD);
     for (std::size_t i = 0; i < KINDS.size(); ++i)
     {
       const double z = normal_(random_);
@@ -61,11 +61,11 @@ public:
     assessment.cause = causeOf(mistaken_[strongest] < RIGHT_CAUSE ? KINDS[strongest] : FaultKind::WAVE_GENERATOR_WEAR);
     assessment.confidence = STATED_CONFIDENCE;
     assessment.severity = estimate;
-    assessment.severity_deviation = STATED_DEVIATION * estimate;
+    assessment.severity_deviation = assessment_counts::STATED_DEVIATION * estimate;
     assessment.alternative_count = mistaken_[strongest] < IN_SET ? 1 : 0;
     assessment.alternatives[0] = { causeOf(mistaken_[strongest] < RIGHT_CAUSE ? FaultKind::WAVE_GENERATOR_WEAR :
                                                                                 KINDS[strongest]),
-                                   Assessment::SET - STATED_CONFIDENCE, estimate, STATED_DEVIATION * estimate };
+                                   Assessment::SET - STATED_CONFIDENCE, estimate, assessment.severity_deviation };
     return assessment;
   }
 
@@ -73,13 +73,11 @@ private:
   static constexpr std::array KINDS{ FaultKind::TOOTH_WEAR, FaultKind::INTERFACE_WEAR,
                                      FaultKind::LUBRICANT_DEGRADATION };
   static constexpr double OLD_GREASE = 0.3;  // severity of grease whose change is due, as in a plan of lives
-  // Estimate over truth, of the runs of assessment_errors: 0.04, 0.10, 0.04 too small at 0.5; 0.12 the spread of all
-  // kinds, of 0.45.
-  static constexpr std::array<double, 3> ESTIMATE_MEAN{ 0.92, 0.8, 0.92 };
-  static constexpr double ESTIMATE_SPREAD = 0.27;
-  static constexpr double ESTIMATE_NOISE = 0.1;     // of the logarithm, from one to the next; assumed
-  static constexpr double STATED_DEVIATION = 0.42;  // over the estimate, of the same runs
-  static constexpr double STATED_CONFIDENCE = 0.85;
+  static constexpr std::array<double, 3> ESTIMATE_MEAN{ assessment_counts::TOOTH_WEAR_ESTIMATE,
+                                                        assessment_counts::INTERFACE_WEAR_ESTIMATE,
+                                                        assessment_counts::LUBRICANT_DEGRADATION_ESTIMATE };
+  static constexpr double ESTIMATE_NOISE = 0.1;             // of the logarithm, from one to the next; assumed
+  static constexpr double STATED_CONFIDENCE = RIGHT_CAUSE;  // as calibrated ones are
 
   FaultScaleParameters scale_;
   boost::random::mt19937 random_;

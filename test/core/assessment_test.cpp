@@ -10,6 +10,7 @@
 #include "harmonic_joint_twin/health/assessment.hpp"
 #include "harmonic_joint_twin/twin/twin.hpp"
 #include "health/angle_multiples.hpp"
+#include "health/seen_from.hpp"
 #include "health/signature_file.hpp"
 #include "sensors/absolute_encoder.hpp"
 #include "sensors/incremental_encoder.hpp"
@@ -127,6 +128,27 @@ TEST_F(Assessed, LineAtAQuarterTurnFromTheHealthyOneIsSeenByItsPhase)
   windows(LEARNING);
   fault_amplitude_ = 1.5;  // at a right angle to the healthy 5 arcsec: the amplitude only grows to 5.2
   EXPECT_GE(windows(5).level, HealthLevel::WARN);
+}
+
+TEST_F(Assessed, SoundJointTellsFromWhichSeverityOnAFaultWouldHaveShown)
+{
+  windows(LEARNING + 5);
+  const OperatingPoint point = joint_.nextWindow().point;
+  const SeenFrom fine = seenFrom(assessor_, point);
+  const auto of = [](const SeenFrom& seen, FaultKind kind) { return seen[static_cast<std::size_t>(causeOf(kind))]; };
+  EXPECT_LT(of(fine, FaultKind::TOOTH_TIP_CRACK), 1.0);
+  noise_ = std::normal_distribution<double>(0.0, 30.0);
+  Assessor coarse(shippedParameters());
+  for (int i = 0; i < LEARNING + 5; ++i)
+  {
+    coarse.update(joint_.nextWindow());
+  }
+  const SeenFrom noisy = seenFrom(coarse, point);
+  for (std::size_t cause = 1; cause < CAUSE_COUNT; ++cause)
+  {
+    EXPECT_GE(noisy[cause], fine[cause]) << causeName(static_cast<Cause>(cause));
+  }
+  EXPECT_GT(of(noisy, FaultKind::TOOTH_TIP_CRACK), of(fine, FaultKind::TOOTH_TIP_CRACK));
 }
 
 TEST_F(Assessed, OneWindowOfTenIsNoVerdict)

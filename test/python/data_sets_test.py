@@ -93,6 +93,9 @@ class DataSets(unittest.TestCase):
         self.assertTrue((verdicts.score > 1.0).all(), verdicts)
         sound = hjt.assess(hjt.load("sound", group=None).file[:3], "sound_reference.yaml", check_up=True)
         self.assertEqual(list(sound.level), ["OK"] * 3)
+        for blind in sound.blind_to:
+            self.assertIn("tooth_tip_crack", blind)
+            self.assertNotIn("lubricant_degradation", blind)
         pandas.testing.assert_frame_equal(hjt.assess(list(verdicts.recording), "sound_reference.yaml", check_up=True),
                                           verdicts)
 

@@ -97,6 +97,14 @@ class Signatures(tool.ToolTest):
         self.assertEqual((again["done"], again["present"]), (0, 8))
         self.assertEqual(self.rows("again.yaml")[1], rows)
 
+        # Behind those of a file: of runs twice, of kinematics once.
+        self.succeed("signatures", "plan.yaml", "--out", "both.yaml", "--runs", "runs", "--add", "mine.yaml")
+        both, added = self.rows("both.yaml")
+        self.assertEqual(added, {key: own * (1 if key[1] == "kinematics" else 2) for key, own in rows.items()})
+        self.assertEqual(both["errors"], content["errors"])
+        self.fail_with(1, ["none.yaml", "cannot be read"], "signatures", "plan.yaml", "--out", "x.yaml", "--add",
+                       "none.yaml")
+
     def test_torque_of_kinematic_lines_goes_with_the_gear(self):
         plan = self.changed("{grid: [20.0, 40.0]}", "20.0")
         self.succeed("signatures", plan, "--out", "small.yaml", "--config", "size_14.yaml")

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <filesystem>
 #include <iostream>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,7 @@ struct SignaturesOptions : CommonOptions
   std::vector<std::string> plans;
   std::string out;
   std::string runs;
+  std::string add;
   unsigned jobs{};
 };
 
@@ -54,6 +56,11 @@ SweepResult workOff(const SignaturesOptions& options, const std::string& runs, S
 int signatures(const SignaturesOptions& options)
 {
   requireWritable(options.out, options.force);
+  const std::optional<std::string> kept = options.add.empty() ? std::nullopt : wholeFile(options.add);
+  if (!options.add.empty() && !kept)
+  {
+    throw InputError(options.add + ": cannot be read");
+  }
   for (const std::string& path : options.plans)
   {
     checkSignaturePlan(Plan(path, options));
@@ -69,9 +76,9 @@ int signatures(const SignaturesOptions& options)
     return EXIT_BY_SIGNAL + interruptSignal();
   }
   const Parameters parameters = Plan(options.plans.front(), options).run(0).parameters;
-  writeTextFile(options.out,
-                found.text(std::filesystem::path(options.out).stem().string(),
-                           *loadSignatures(parameters.indicators.signatures), parameters.life.rated_torque));
+  const std::string own = found.text(std::filesystem::path(options.out).stem().string(),
+                                     *loadSignatures(parameters.indicators.signatures), parameters.life.rated_torque);
+  writeTextFile(options.out, kept ? withRowsOf(*kept, options.add, own) : own);
   printReport(options.json, { { "output", "", options.out },
                               { "done", "runs done", runs.done },
                               { "present", "runs that were there", runs.present },
@@ -91,6 +98,8 @@ void declare(Command& command, SignaturesOptions& options)
   command.add("--out", options.out, "for parameter indicators.signatures").required().type("FILE.yaml");
   command.add("--runs", options.runs, "directory of the runs; those that stand there finished are kept; default: none")
       .type("DIR");
+  command.add("--add", options.add, "file of signatures that stay, those of the plans behind them; default: none")
+      .type("FILE.yaml");
   addJobsOption(command, options.jobs);
   addCommonOptions(command, options);
 }

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "health/seen_from.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "health/motion_likeness.hpp"
+#include "health/signature_terms.hpp"
+
+namespace hjt
+{
+SeenFrom seenFrom(const Assessor& assessor, const OperatingPoint& point)
+{
+  const SignatureSet& set = assessor.signatures();
+  const Baseline& baseline = assessor.baseline();
+  const SignatureTerms terms(set, baseline.residual());
+  const auto rows = patternRows(set);
+  std::array<SignatureTerms::Direction, CAUSE_COUNT> directions;
+  std::transform(rows.begin(), rows.end(), directions.begin(),
+                 [&](const std::vector<std::size_t>& own) { return terms.direction(own, point); });
+
+  /// Over the signatures of one cause and severity, by how far their motion is like the window's.
+  struct Mean
+  {
+    double weight{};
+    double pattern{};  // Student's t
+    double single{};   // of the indicator furthest off
+  };
+  std::map<std::pair<std::size_t, double>, Mean> means;
+  for (const Signature& signature : set.signatures)
+  {
+    const auto cause = static_cast<std::size_t>(signature.cause);
+    const double weight = OTHER_MOTION + likeness(signature.motion, point);
+    Mean& mean = means[{ cause, signature.severity }];
+    mean.weight += weight;
+    mean.pattern += weight * terms.along(directions[cause], &signature);
+    mean.single += weight * terms.largest(signature);
+  }
+  SeenFrom least;
+  least.fill(HUGE_VAL);
+  for (const auto& [key, mean] : means)
+  {
+    const auto score = [&](double sum) { return baseline.pattern(sum / mean.weight).score; };
+    if (score(mean.pattern) > baseline.patternThreshold() || score(mean.single) > baseline.threshold())
+    {
+      least[key.first] = std::min(least[key.first], key.second);
+    }
+  }
+  return least;
+}
+}  // namespace hjt
