@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Markdown pages: relative links and images lead to files of the package, anchors to headings, `folder/name` to sources;
-no page holds a temporary path.
+"""Markdown pages: relative links and images lead to files of the package, anchors to headings, `folder/name` to
+sources; no page holds a temporary path.
 
 Addresses of the web are not tried.
 """
