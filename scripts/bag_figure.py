@@ -84,9 +84,8 @@ def wave_generator_frame(forces):
 
 def draw_tooth_map(axes, recording, figure):
     forces = recording["contact_forces"]
-    axes.set_title("Mesh force of each tooth around the lobes [N]: + leading, − trailing flank")
-    axes.set_xlabel("time [s]")
-    axes.set_ylabel("from the major\naxis [°]")
+    axes.set(title="Mesh force of each tooth around the lobes [N]: + leading, − trailing flank", xlabel="time [s]",
+             ylabel="from the major\naxis [°]")
     bins, force = wave_generator_frame(forces)
     limit = max(np.abs(force).max(), 1e-9)
     image = axes.pcolormesh(bins[0], np.degrees(bins[1]), force, cmap="RdBu_r", vmin=-limit, vmax=limit,
@@ -104,8 +103,7 @@ def draw_tooth_map(axes, recording, figure):
 def draw_ring(axes, recording):
     """All tooth forces at the instant of the largest mesh force, on the deformed flexspline."""
     forces = recording["contact_forces"]
-    axes.set_yticks([])
-    axes.set_xticks(np.radians([0, 90, 180, 270]))
+    axes.set(yticks=[], xticks=np.radians([0, 90, 180, 270]))
     axes.spines["polar"].set_visible(False)
     most = np.unravel_index(np.abs(forces["mesh_force"]).argmax(), forces["mesh_force"].shape)[0]
     x, y = forces["tooth_x"][most], forces["tooth_y"][most]
@@ -140,8 +138,7 @@ def draw_loop(axes, recording):
 
 def draw_health(axes, recording):
     health = recording["health"]
-    axes.set_title("Teeth loaded; bearing load [kN]")
-    axes.set_xlabel("time [s]")
+    axes.set(title="Teeth loaded; bearing load [kN]", xlabel="time [s]")
     axes.plot(*thin(health, "teeth_loaded"), color=BLUE, label="teeth")
     right = axes.twinx()
     right.spines["right"].set_visible(True)

@@ -94,9 +94,7 @@ def draw_course(width, data):
     residual.set_title("Measured less twin [A]")
     residual.plot(time, measured - predicted, color=RED, lw=0.7)
     limit = 1.3 * max(0.05, np.nanpercentile(np.abs(measured - predicted), 99.5))
-    residual.set_ylim(-limit, limit)
-    residual.set_xlabel("time [s]")
-    residual.set_xlim(course["time"][0], course["time"][-1])
+    residual.set(ylim=(-limit, limit), xlabel="time [s]", xlim=(course["time"][0], course["time"][-1]))
     return figure
 
 
@@ -176,9 +174,7 @@ def draw_spectrum(width, data):
         axes.axvspan(resolved, spectrum["order"][-1], color="0.93", lw=0, zorder=-1)
         if resolved < 0.75 * spectrum["order"][-1]:
             axes.text(resolved, 0.7 * top, "  too few rows a turn\n  at the highest speed", fontsize=7, color="0.35")
-    axes.set_xlim(0.0, spectrum["order"][-1])
-    axes.set_ylim(0.0, top)
-    axes.set_xlabel("order: cycles per turn of the motor")
+    axes.set(xlim=(0.0, spectrum["order"][-1]), ylim=(0.0, top), xlabel="order: cycles per turn of the motor")
     axes.legend(loc="upper right", bbox_to_anchor=(1.0, 1.14), ncol=2)
     return figure
 

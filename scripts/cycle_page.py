@@ -117,9 +117,8 @@ def draw(measured, path):
         axis.text(limit, len(single) - 0.3, f" wanted, {name}", fontsize=7, va="bottom")
     axis.axvline(STEP, color="k", linewidth=0.8)
     axis.text(STEP, len(single) - 0.3, " real time", fontsize=7, va="bottom")
-    axis.set_xscale("log")
-    axis.set_ylim(-0.7, len(single) + 0.5)
-    axis.set_xlabel("processor time of one step at 10 kHz [µs]: median (dot) to p99.9 (bar)")
+    axis.set(xscale="log", ylim=(-0.7, len(single) + 0.5),
+             xlabel="processor time of one step at 10 kHz [µs]: median (dot) to p99.9 (bar)")
     axis.grid(alpha=0.3, axis="x")
     figure.savefig(path, dpi=110)
     plt.close(figure)

@@ -123,8 +123,7 @@ def response_surface(tool):
     axes[1].set_ylabel("torsion [arcsec]")
     axes[2].plot(full.time, auto.torsion - full.torsion, linewidth=0.8, label="as shipped")
     axes[2].plot(full.time, smooth[0].torsion - smooth[1].torsion, linewidth=0.8, label="without the cup's friction")
-    axes[2].set_ylabel("surface less full ring,\ntorsion [arcsec]")
-    axes[2].set_xlabel("time [s]")
+    axes[2].set(ylabel="surface less full ring,\ntorsion [arcsec]", xlabel="time [s]")
     for axis in axes:
         axis.legend(loc="upper right")
     print(f"whole program, processor time: full ring {full_time:.2f} s, surface {auto_time:.2f} s")
@@ -152,13 +151,10 @@ def single_balls(tool):
         axes[1].plot(range(len(force)), force, "o-", ms=3, lw=0.9, color=colour, label=f"{load:g} N.m")
         print(f"{load:g} N.m: hardest ball {force.max():.0f} N, {(force > 0.0).sum()} balls carry, "
               f"{force.sum():.0f} N in all")
-    axes[0].set_xlim(0.0, 60.0)
-    axes[0].set_ylim(0.0, 1.2 * highest)
-    axes[0].set_title("error of the output [arcsec]")
-    axes[0].set_xlabel("order [per motor turn]")
+    axes[0].set(xlim=(0.0, 60.0), ylim=(0.0, 1.2 * highest), title="error of the output [arcsec]",
+                xlabel="order [per motor turn]")
     axes[1].set_ylim(bottom=0.0)
-    axes[1].set_title("force on a ball [N]")
-    axes[1].set_xlabel("ball, from the major axis on")
+    axes[1].set(title="force on a ball [N]", xlabel="ball, from the major axis on")
     for axis in axes:
         axis.legend()
     return figure

@@ -79,8 +79,7 @@ def draw(path, loop, joints):
                              - np.mean(data[f"actual_q_{number}"] - data[f"target_q_{number}"])),
                       color=colour, lw=0.8, label=label)
         most = 1.5 * np.percentile(np.abs(recorded[f"actual_q_{number}"] - recorded[f"target_q_{number}"]), 99.0)
-        axes.set_ylim(-1e3 * most, 1e3 * most)
-        axes.set_title(f"{name}: actual less target angle [mrad]")
+        axes.set(ylim=(-1e3 * most, 1e3 * most), title=f"{name}: actual less target angle [mrad]")
     all_axes[0].legend(loc="upper right", fontsize=8, ncol=2)
     all_axes[-1].set_xlabel(f"time in {loop.recording.name} [s]")
     save(drawing, path)

@@ -37,25 +37,25 @@ def slow_error(sweeps, at):
 
 
 class Torsion:
-    """Recorded, predicted from the catalogue alone, and identified on one half of the sweep, judged on the other."""
+    """Recorded, predicted from the catalogue alone, and identified on one half of the sweep, judged on the other.
+    `tool`: runs `joint_twin ARGUMENTS --json` and gives its document. `with_motor`: the motor's own friction counts."""
 
-    def __init__(self, runner, data, sweeps):
+    def __init__(self, tool, data, sweeps, with_motor=False):
         speed = data["joint_velocity_3"]
         steady = speed > STEADY
         angle = data["joint_angles_3"][steady]
         torque = data["joint_torque_current_3"][steady]
         torsion = (2.0 * np.pi / COUNTS * (data["encoder_motorinc_3"] / RATIO - data["encoder_loadinc_3"]))[steady]
-        losses = runner.run("losses", "--positions", 4, "--speeds", f"{RATIO * np.median(speed[steady]):.4g}",
-                            "--loads",
-                            f"{np.median(np.abs(torque)):.4g}", "--json")["rows"][0]
-        self.friction = RATIO * losses["gear_loss"]
+        losses = tool("losses", "--positions", 4, "--speeds", f"{RATIO * np.median(speed[steady]):.4g}", "--loads",
+                      f"{np.median(np.abs(torque)):.4g}")["rows"][0]
+        self.friction = RATIO * (losses["gear_loss"] + (losses["motor"] if with_motor else 0.0))
         self.loads = np.linspace(-160.0, 160.0, 65)
-        rows = runner.run("stiffness", "--torques", ",".join(f"{load:g}" for load in self.loads), "--json")["rows"]
+        rows = tool("stiffness", "--torques", ",".join(f"{load:g}" for load in self.loads))["rows"]
         self.twist = -np.array([row["output_angle"] for row in rows])
 
         self.torque = torque - self.friction
         self.torsion = torsion - slow_error(sweeps, angle)
-        predicted = np.interp(self.torque, self.loads, self.twist)
+        self.predicted = predicted = np.interp(self.torque, self.loads, self.twist)
         train = np.floor(np.degrees(angle) / STRIPE) % 2 == 0
         columns = np.column_stack([predicted, np.ones_like(predicted)])
         line = np.column_stack([torque, np.ones_like(predicted)])
@@ -76,10 +76,8 @@ class Torsion:
         axes.plot(self.loads, 1e3 * self.twist, color=BLUE, label="twin, predicted from the catalogue")
         axes.plot(self.loads, 1e3 * (self.scale * self.twist + self.shift), color=RED, lw=1.0,
                   label="twin, compliance identified on every second stripe")
-        axes.set_xlim(-90.0, 120.0)
-        axes.set_ylim(-3.0, 3.2)
-        axes.set_xlabel("torque at the joint less friction [N·m]")
-        axes.set_title("Torsion of a 101:1 drive with both encoders [mrad]")
+        axes.set(xlim=(-90.0, 120.0), ylim=(-3.0, 3.2), xlabel="torque at the joint less friction [N·m]",
+                 title="Torsion of a 101:1 drive with both encoders [mrad]")
         axes.legend(fontsize=8)
         save(drawing, path)
 
@@ -190,7 +188,7 @@ output.
         print("skipped: no " + ", ".join(missing))
         return heading + [f"*Not run: no {', '.join(missing)}.*", ""]
     sweeps = unloaded_error(paths[1])
-    torsion = Torsion(runner, read(paths[0]), sweeps)
+    torsion = Torsion(lambda *words: runner.run(*words, "--json"), read(paths[0]), sweeps)
     torsion.draw(os.path.join(images, "torsion.png"))
     error = TransmissionError(runner, sweeps)
     error.draw(os.path.join(images, "transmission_error.png"))

@@ -50,8 +50,7 @@ def draw_lines(figure, groups):
         for column, j in enumerate(judged):
             square(axes, column, row, j, short(j.cell.labels[0]))
     axes.set_yticks(range(len(groups)), [name for name, _ in groups])
-    axes.set_xlim(-0.5, max(len(judged) for _, judged in groups) - 0.5)
-    axes.set_ylim(len(groups) - 0.5, -0.5)
+    axes.set(xlim=(-0.5, max(len(judged) for _, judged in groups) - 0.5), ylim=(len(groups) - 0.5, -0.5))
     bare(axes)
     axes.set_xticks([])
 
@@ -64,10 +63,7 @@ def draw_map(figure, judged, across, up):
         square(axes, columns.index(j.cell.labels[0]), rows.index(j.cell.labels[1]), j, "")
     axes.set_xticks(range(len(columns)), [short(c) for c in columns])
     axes.set_yticks(range(len(rows)), [short(r) for r in rows])
-    axes.set_xlim(-0.5, len(columns) - 0.5)
-    axes.set_ylim(-0.5, len(rows) - 0.5)
-    axes.set_xlabel(across)
-    axes.set_ylabel(up)
+    axes.set(xlim=(-0.5, len(columns) - 0.5), ylim=(-0.5, len(rows) - 0.5), xlabel=across, ylabel=up)
     bare(axes)
 
 

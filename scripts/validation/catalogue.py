@@ -116,10 +116,8 @@ is set by a real drive, see *Real drives*; the catalogue gives a limit.
         angle = [point["output_angle"] / ARCMIN for point in loop["points"]]
         for axes, title in ((whole, "Torsion loop [arcmin]"), (near, "The same near no load")):
             axes.plot(torque, angle, color=BLUE)
-            axes.set_title(title)
-            axes.set_xlabel("load [N·m]")
-        near.set_xlim(-5.0, 5.0)
-        near.set_ylim(-0.8, 0.8)
+            axes.set(title=title, xlabel="load [N·m]")
+        near.set(xlim=(-5.0, 5.0), ylim=(-0.8, 0.8))
         lost = 0.04 * RATED_TORQUE
         near.axvline(-lost, color=GREY, lw=0.8, ls="--")
         near.axvline(lost, color=GREY, lw=0.8, ls="--", label="± 4 % of rated")

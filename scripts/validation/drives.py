@@ -1,12 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Recordings and tests of real drives: friction of UR5 and UR5e joints, torsion of a 101:1 drive with two encoders."""
 import os
+import sys
 
 import numpy as np
 from scipy.interpolate import RegularGridInterpolator
 
 from bounds import AtMost, Between, Within
 from page import BLUE, GREEN, GREY, ORANGE, number
+
+sys.path.append(os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "real"))
+import two_encoders  # noqa: E402  (its folder is known now)
 
 RATIO = 101
 JOINTS = ("base", "shoulder", "elbow")
@@ -39,7 +43,6 @@ GRID = (0.05, 0.1, 0.2, 0.35, 0.5, 0.8, 1.2, 1.8)  # rad/s at the joint, and loa
 GRID_LOADS = 9
 OWN_LOADS, OWN_SPEEDS = (20.0, 50.0, 100.0), (0.1, 0.5, 1.0)  # N.m, rad/s at the joint
 
-COUNTS = 2 ** 24  # of both encoders of the 101:1 drive, per turn
 DIRECTION_GAP = 0.09e-3  # rad, between the directions of motion without load
 # Why a joint's friction does not hold.
 UR10E_KNOWN = {"base": "fit and grease are the shoulder's and a UR5's; this base rubs 1.3 times as much as the "
@@ -54,7 +57,7 @@ def build(page):
     load_loss(page)
     payload(page)
     own_share(page)
-    two_encoders(page)
+    both_encoders(page)
 
 
 def joint_loss(page, speeds, loads, *arguments):
@@ -258,8 +261,7 @@ at the motor, so no torsion and no kinematic error apart from ripples of the cur
             speed, _, friction, scatter = maps[name].T
             axes.errorbar(speed, friction, yerr=scatter, fmt="o", ms=4, color=GREY, elinewidth=0.8, label="recording")
             axes.plot(speed, twins[name], color=COLOURS[name], label="twin")
-            axes.set_title(f"{name} [N·m]")
-            axes.set_xlabel("joint speed [rad/s]")
+            axes.set(title=f"{name} [N·m]", xlabel="joint speed [rad/s]")
             axes.legend(loc="lower right")
 
     page.figure("drives_ur5",
@@ -267,18 +269,7 @@ at the motor, so no torsion and no kinematic error apart from ripples of the cur
                 "and ripple.", draw)
 
 
-def unloaded_error(path, angle):
-    """Transmission error without load [rad] at joint angles [rad]: medians per 2 degrees of the published points."""
-    data = np.genfromtxt(path, delimiter=",", names=True)
-    degrees, error = data["load_angle_deg"], data["transmission_error_counts"] * 2.0 * np.pi / COUNTS
-    edges = np.arange(-150.0, 151.0, 2.0)
-    bins = np.digitize(degrees, edges)
-    known = np.unique(bins)
-    centres = [0.5 * (edges[k - 1] + edges[k]) for k in known]
-    return np.interp(np.degrees(angle), centres, [np.median(error[bins == k]) for k in known])
-
-
-def two_encoders(page):
+def both_encoders(page):
     page.heading("A 101:1 drive with encoders on both sides")
     page.text("""
 Elbow of a NEURA LARA 8 (A. Lucious, 2024), swept under gravity and payload. Torsion is motor angle over 101 less
@@ -286,34 +277,20 @@ output angle, less the same without load; torque is the motor's, at the joint. N
 the catalogue gear's, moved by the friction that the twin itself has at this speed; the mean, which the arbitrary zero
 of the encoders leaves open, is taken out. Only the part at constant speed is used.
 """)
-    loaded = recording(page, "lara8", "validate.csv")
-    unloaded = recording(page, "lara8", "unloaded_transmission_error.csv")
+    loaded, unloaded = (recording(page, path) for path in (two_encoders.LOADED, two_encoders.UNLOADED))
     if not loaded or not unloaded:
         return
-    data = np.genfromtxt(loaded, delimiter=",", names=True)
-    angle, torque = data["joint_angles_3"], data["joint_torque_current_3"]
-    turn = 2.0 * np.pi / COUNTS
-    torsion = turn * (data["encoder_motorinc_3"] / RATIO - data["encoder_loadinc_3"]) - unloaded_error(unloaded, angle)
-    speed = data["joint_velocity_3"]
-    steady = speed > 0.6  # rad/s
-    angle, torque, torsion = angle[steady], torque[steady], torsion[steady]
-    friction = joint_loss(page, [np.median(speed[steady])], [np.median(np.abs(torque))])[0, 0]
-
-    loads = np.linspace(-160.0, 160.0, 65)
-    rows = page.tool("stiffness", "--torques", ",".join(f"{load:g}" for load in loads))["rows"]
-    twist = np.array([-row["output_angle"] for row in rows])
-
-    predicted = np.interp(torque - friction, loads, twist)
-    origin = (torsion - predicted).mean()
-    residual = torsion - predicted - origin
-    slope, twin_slope = (1.0 / np.polyfit(torque, values, 1)[0] for values in (torsion, predicted))
+    found = two_encoders.Torsion(page.tool, two_encoders.read(loaded), two_encoders.unloaded_error(unloaded),
+                                 with_motor=True)
+    line = np.polyfit(found.torque, found.torsion, 1)
+    slope, twin_slope = 1.0 / line[0], 1.0 / np.polyfit(found.torque, found.predicted, 1)[0]
     page.check("drives.torsion_slope", "mean slope of torque over torsion", f"recording: {number(slope)} N·m/rad",
                Within(slope / 1e3, relative=0.20), twin_slope / 1e3, "10³ N·m/rad",
                "size 25 is inferred; links and bearings between the encoders only soften; motor torque contains "
                "friction")
     page.check("drives.torsion_residual", "rms of recording less twin", "recording", AtMost(0.35),
-               1e3 * residual.std(), "mrad", "a straight line fitted to this very recording leaves "
-               f"{1e3 * np.std(torsion - np.polyval(np.polyfit(torque, torsion, 1), torque)):.2f} mrad")
+               1e3 * np.std(found.torsion - found.predicted), "mrad", "a straight line fitted to this very recording "
+               f"leaves {1e3 * np.std(found.torsion - np.polyval(line, found.torque)):.2f} mrad")
     loop = page.tool("hysteresis", "--amplitude", 67, "--lost-motion-torque", 2.68)
     page.check("drives.direction_gap", "gap between the directions, no load", "recording without load",
                Within(1e3 * DIRECTION_GAP, relative=0.2), 1e3 * loop["hysteresis"], "mrad",
@@ -321,20 +298,5 @@ of the encoders leaves open, is taken out. Only the part at constant speed is us
     page.text("""
 *Limits of this recording:* the drive's size is inferred from its ratio and torque; the sweep is one way, 7 s
 long; the torque is computed from current. It shows no soft beginning at small load; whether the drive has none or the
-sweep hides it in its transmission error (up to 1.4 mrad), one sweep cannot decide.
+sweep hides it in its transmission error (up to 1.4 mrad), one sweep cannot decide. Figure: docs/real_robot.md.
 """)
-
-    def draw(figure):
-        left, right = figure.subplots(1, 2, gridspec_kw={"width_ratios": [2.0, 1.0]})
-        left.plot(torque - friction, 1e3 * (torsion - origin), ".", ms=2, color=GREY, label="recording")
-        left.plot(loads, 1e3 * twist, color=BLUE, label="twin, catalogue gear")
-        left.set_xlim(-90.0, 130.0)
-        left.set_ylim(-2.6, 3.4)
-        left.set_title("Torsion [mrad]")
-        left.set_xlabel("torque at the joint less friction [N·m]")
-        left.legend()
-        right.plot(np.degrees(angle), 1e3 * residual, ".", ms=2, color=BLUE)
-        right.set_title("Recording less twin [mrad]")
-        right.set_xlabel("joint angle [°]")
-
-    page.figure("drives_torsion", "Torsion of a real 101:1 drive and of the twin.", draw)

@@ -64,8 +64,7 @@ catalogue's band.
         axes = figure.subplots()
         for size, points in efficiency.items():
             axes.plot(*zip(*points), marker="o", color=COLOURS[size], label=f"size {size}")
-        axes.set_title("Efficiency at the rated torque [%], 2000 rpm, 20 °C")
-        axes.set_xlabel("ratio")
+        axes.set(title="Efficiency at the rated torque [%], 2000 rpm, 20 °C", xlabel="ratio")
         axes.legend(ncol=2)
 
     page.figure("family", "Efficiency of the family at the rated torque, against the ratio.", draw)

@@ -138,8 +138,7 @@ surroundings of one temperature does not have.
                 shown = first <= time[split - 1]
                 axes.plot(first[shown] / 60.0, degrees[shown], color=colour, label=joint)
                 axes.plot((second - pause + 3600.0) / 60.0, later, color=colour)
-            axes.set_xlabel("time [min], the pause cut out")
-            axes.set_title("Temperature beside the motor [°C]")
+            axes.set(xlabel="time [min], the pause cut out", title="Temperature beside the motor [°C]")
             axes.legend(loc="lower right")
 
     page.figure("heat_ur3", "Warm-up of a UR3: recorded (wide) and the twin, fitted to the first part.", draw)

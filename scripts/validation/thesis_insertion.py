@@ -261,8 +261,7 @@ def draw_gap(figure, ring):
     for values, colour, label in zip(largest_gap(ring), (BLUE, ORANGE), ("x − x_p", "y − y_p")):
         left.plot(1e3 * values, color=colour, label=label)
     tooth_axis(left, "[mm]")
-    left.set_title("Fig. 6.4: gap to the polar estimate")
-    left.set_ylim(-0.21, 0.17)
+    left.set(title="Fig. 6.4: gap to the polar estimate", ylim=(-0.21, 0.17))
     left.legend(ncol=2, loc="lower center")
     overlap = 1e6 * ring.overlap()
     right.fill_between(range(TEETH_FS),

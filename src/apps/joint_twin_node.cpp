@@ -155,7 +155,7 @@ bool inPlaceOfArm(const hjt::ParameterMap& overrides)
   const auto mode = overrides.find("input.mode");
   if (mode == overrides.end())
   {
-    throw hjt::ParameterError("input.mode is to be set for an arm: telemetry, beside it, or commands, in place of it");
+    throw hjt::ParameterError("input.mode of an arm is missing: telemetry runs beside a robot, commands in its place");
   }
   const auto* text = std::get_if<std::string>(&mode->second.value);
   return text != nullptr && *text == "commands";

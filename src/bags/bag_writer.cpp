@@ -14,7 +14,7 @@ namespace
 using Bytes = std::vector<std::uint8_t>;
 
 constexpr char VERSION[] = "#ROSBAG V2.0\n";
-constexpr std::size_t FILE_HEADER_SIZE = 4096;       // with its padding, that it can be written again
+constexpr std::size_t FILE_HEADER_SIZE = 4096;       // with padding: it is written again at the end
 constexpr std::size_t CHUNK_THRESHOLD = 768 * 1024;  // a chunk ends with the message that exceeds it
 
 /// Of a record.

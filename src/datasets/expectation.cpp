@@ -66,8 +66,8 @@ public:
   struct OfBlock
   {
     double count{};
-    std::uint64_t first_run;     ///< that needs one; else the block's first
-    std::size_t of_first_run{};  ///< how many it needs
+    std::uint64_t first_run;     ///< the first that needs a surface; if none does, the block's first
+    std::size_t of_first_run{};  ///< surfaces that this run needs
   };
 
   /// Every run is looked at for a few seconds; those after are like the ones before.

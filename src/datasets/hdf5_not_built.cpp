@@ -9,7 +9,7 @@ namespace
 {
 [[noreturn]] void refuse(const std::string& path)
 {
-  throw InputError(path + ": HDF5 files are not built: they need HDF5");
+  throw InputError(path + ": this build has no HDF5, which files .h5 need");
 }
 }  // namespace
 

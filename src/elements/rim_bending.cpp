@@ -19,7 +19,7 @@ RimBending::RimBending(const Parameters& parameters, const ToothRing& rest)
 {
 }
 
-/// Moments at the teeth: the angles that stiffness_[i] resists, times it. Adds the energy.
+/// Adds the bending energy and writes the moment at each tooth, its stiffness times the angle of bending, to `scratch`.
 HJT_VECTOR_CLONES void RimBending::addMoments(const RingShape& shape, Scratch& scratch, ForceSum& sum) const noexcept
 {
   const int n = shape.solved;

@@ -26,7 +26,7 @@ public:
   /// @throws ParameterError where the ring has no equilibrium.
   void cover(const DutyCycle& duty, const std::function<void(double)>& progress);
 
-  /// Under a load that is covered [N.m], at a stage of wear [m]; beyond the limits of wear that at the limits.
+  /// Under a load that is covered [N.m], at a stage of wear [m]. Wear beyond its limits counts as wear at the limits.
   RevolutionLoad at(double load_torque, double flank_wear, double interface_wear) const;
 
   /// Largest difference to the tooth model itself in the middle of all cells, over the largest value of the same

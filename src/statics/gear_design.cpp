@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <boost/math/tools/roots.hpp>
 
@@ -251,44 +252,35 @@ double GearFigures::torsion(double torque) const
 
 GearFigures gearFigures(const GearRequest& request)
 {
-  const auto rating_of = [&](const CatalogueSize& size)
+  const auto& ratings = CATALOGUE_RATINGS;
+  const auto listed = std::find_if(ratings.begin(), ratings.end(),
+                                   [&](const CatalogueRating& rating)
+                                   { return rating.size == request.size && rating.ratio == request.ratio; });
+  // From the configured size where the catalogue does not list the gear, by the ratio next to the wanted one.
+  const auto distance = [&](const CatalogueRating& rating)
+  { return std::pair(rating.size != CONFIGURED_SIZE, std::abs(rating.ratio - request.ratio)); };
+  const auto next = std::min_element(ratings.begin(), ratings.end(),
+                                     [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
+  GearFigures figures;
+  figures.scaled = listed == ratings.end();
+  const CatalogueRating& rating = figures.scaled ? *next : *listed;
+  const CatalogueSize& size = *std::find_if(CATALOGUE_SIZES.begin(), CATALOGUE_SIZES.end(),
+                                            [&](const CatalogueSize& other) { return other.size == rating.size; });
+  const double cube = std::pow(request.size / rating.size, 3);
+  const auto grown = [&](double value) { return cube * value; };
+  const auto& stiffness = rating.ratio < 80 ? size.stiffness_of_50 : size.stiffness;
+  std::transform(stiffness.begin(), stiffness.end(), figures.stiffness.begin(), grown);
+  std::transform(size.breakpoints.begin(), size.breakpoints.end(), figures.breakpoints.begin(), grown);
+  figures.rated_torque = cube * rating.rated;
+  figures.average_torque = cube * rating.average;
+  figures.repeated_peak_torque = cube * rating.repeated_peak;
+  figures.momentary_peak_torque = cube * rating.momentary_peak;
+  if (!figures.scaled && rating.ratio == CATALOGUE_RATIO)
   {
-    return std::find_if(size.ratings.begin(), size.ratings.end(),
-                        [&](const CatalogueSize::Rating& rating) { return rating.ratio == request.ratio; });
-  };
-  const auto same_size = [&](const CatalogueSize& size) { return size.size == request.size; };
-  const auto figures_of = [](const CatalogueSize& size, const CatalogueSize::Rating& rating, double cube, bool scaled)
-  {
-    GearFigures figures;
-    const auto& stiffness = rating.ratio < 80 ? size.stiffness_of_50 : size.stiffness;
-    std::transform(stiffness.begin(), stiffness.end(), figures.stiffness.begin(),
-                   [&](double slope) { return cube * slope; });
-    std::transform(size.breakpoints.begin(), size.breakpoints.end(), figures.breakpoints.begin(),
-                   [&](double torque) { return cube * torque; });
-    figures.rated_torque = cube * rating.rated;
-    figures.average_torque = cube * rating.average;
-    figures.repeated_peak_torque = cube * rating.repeated_peak;
-    figures.momentary_peak_torque = cube * rating.momentary_peak;
-    if (!scaled && rating.ratio == CATALOGUE_RATIO)
-    {
-      figures.starting_torque = size.starting_torque;
-      figures.no_load_torque = size.no_load_torque;
-    }
-    figures.scaled = scaled;
-    return figures;
-  };
-  const auto size = std::find_if(catalogue().begin(), catalogue().end(), same_size);
-  if (size != catalogue().end() && rating_of(*size) != size->ratings.end())
-  {
-    return figures_of(*size, *rating_of(*size), 1.0, false);
+    figures.starting_torque = size.starting_torque;
+    figures.no_load_torque = size.no_load_torque;
   }
-  const CatalogueSize& known = *std::find_if(catalogue().begin(), catalogue().end(),
-                                             [](const CatalogueSize& other) { return other.size == CONFIGURED_SIZE; });
-  const auto nearest = std::min_element(known.ratings.begin(), known.ratings.end(),
-                                        [&](const auto& a, const auto& b) {
-                                          return std::abs(a.ratio - request.ratio) < std::abs(b.ratio - request.ratio);
-                                        });
-  return figures_of(known, *nearest, std::pow(request.size / CONFIGURED_SIZE, 3), true);
+  return figures;
 }
 
 GearDesign designGear(const ParameterMap& configured, const GearRequest& request, const GearFigures& figures)

@@ -23,13 +23,13 @@ struct LifeTrialOptions
 struct LifeForecast
 {
   double hours{};      ///< of use when the forecast was made
-  double remaining{};  ///< what came [h]
+  double remaining{};  ///< true remaining life [h]
   Assessment assessment;
   RemainingHours forecast;  ///< by it
   RemainingHours read;      ///< by what all check-ups so far read of wear
   RemainingHours prior;     ///< of who knows the use alone
 
-  /// The interval from the 10 to the 90 % quantile of the readings' forecast holds what came.
+  /// The interval from the 10 to the 90 % quantile of the readings' forecast holds the truth.
   bool held() const { return remaining >= read.quantile[1] && remaining <= read.quantile[3]; }
 };
 

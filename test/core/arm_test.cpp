@@ -23,6 +23,7 @@
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "statics/gear_checks.hpp"
 #include "test/core/arm_support.hpp"
+#include "test/core/complaint.hpp"
 #include "test/support/allocation_count.hpp"
 
 namespace hjt
@@ -180,18 +181,7 @@ TEST(ArmDynamics, WorkOfASwingThatReturnsIsZero)
 
 TEST(ArmDynamics, SaysWhatTheDescriptionLacks)
 {
-  const auto text = [](ArmDescription arm)
-  {
-    try
-    {
-      readLinks(arm);
-    }
-    catch (const ParameterError& error)
-    {
-      return std::string(error.what());
-    }
-    return std::string("nothing");
-  };
+  const auto text = [](ArmDescription arm) { return complaintOf([&] { readLinks(arm); }); };
   ArmDescription arm = shipped("ur5");
   arm.joints[2].name = "knee_joint";
   EXPECT_THAT(text(arm), testing::HasSubstr("joint 2 of the URDF's chain is 'elbow_joint', not 'knee_joint'"));

@@ -13,8 +13,8 @@
 #include "arm/arm_motion.hpp"
 #include "arm/check_up.hpp"
 #include "arm/moving_arm.hpp"
-#include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"
+#include "test/core/complaint.hpp"
 #include "test/core/rods.hpp"
 #include "test/support/allocation_count.hpp"
 
@@ -312,17 +312,8 @@ TEST(ArmTwin, AllocatesNothingInAStep)
 
 TEST(ArmTwin, RefusesWhatDoesNotFit)
 {
-  const auto message = [](std::vector<Parameters> drives, double mass_rate = 1000.0)
-  {
-    try
-    {
-      ArmTwin(rods("0 1 0", 2), std::move(drives), { 0.0, 0.0 }, {}, { mass_rate, 1 });
-    }
-    catch (const ParameterError& error)
-    {
-      return std::string(error.what());
-    }
-    return std::string("nothing");
+  const auto message = [](std::vector<Parameters> drives, double mass_rate = 1000.0) {
+    return complaintOf([&] { ArmTwin(rods("0 1 0", 2), std::move(drives), { 0.0, 0.0 }, {}, { mass_rate, 1 }); });
   };
   EXPECT_THAT(message({ drive() }), testing::HasSubstr("has 2 joints"));
   EXPECT_THAT(message({ drive(), drive(5e3) }), testing::HasSubstr("joint_1: solver.rate = 5000.0 Hz"));

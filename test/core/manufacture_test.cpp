@@ -9,9 +9,9 @@
 #include "element_under_test.hpp"
 #include "gear/angle.hpp"
 #include "gear/manufacture_errors.hpp"
-#include "harmonic_joint_twin/base/errors.hpp"
 #include "random_ring.hpp"
 #include "solver/output_balance.hpp"
+#include "test/core/complaint.hpp"
 #include "test/support/temporary_folder.hpp"
 #include "test_parameters.hpp"
 
@@ -32,15 +32,7 @@ public:
   /// What is said about it as the table of a member with three teeth.
   std::string complaint() const
   {
-    try
-    {
-      pitchDeviations(pitch(), 3, "some.table");
-    }
-    catch (const ParameterError& error)
-    {
-      return error.what();
-    }
-    return "";
+    return complaintOf([&] { pitchDeviations(pitch(), 3, "some.table"); });
   }
 
 private:

@@ -60,17 +60,13 @@ TEST(ParameterText, WrongLineOfADescriptionIsNamed)
 {
   const auto said = [](const std::string& text)
   {
-    try
-    {
-      ParameterMap map = defaultMap();
-      readDescription(text, "a.h5", map);
-      parseParameters(map);
-    }
-    catch (const ParameterError& error)
-    {
-      return std::string(error.what());
-    }
-    return std::string();
+    return complaintOf(
+        [&]
+        {
+          ParameterMap map = defaultMap();
+          readDescription(text, "a.h5", map);
+          parseParameters(map);
+        });
   };
   EXPECT_THAT(said("gear.teeth_flexspline: 200\nsolver.rate: fast  # [Hz]\n"), HasSubstr("a.h5:2"));
   EXPECT_THAT(said("[1, 2]"), HasSubstr("a.h5: expected a line"));

@@ -9,9 +9,9 @@
 #include <gtest/gtest.h>
 
 #include "base/number_text.hpp"
-#include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"
 #include "params/field_table.hpp"
+#include "test/core/complaint.hpp"
 #include "test/support/temporary_folder.hpp"
 
 namespace hjt
@@ -34,20 +34,16 @@ inline const ParameterMap& defaultMap()
 /// What is said about the defaults with these `section.key=value` over them; empty if they are accepted.
 inline std::string complaint(const std::vector<std::string>& assignments)
 {
-  try
-  {
-    ParameterMap map = defaultMap();
-    for (const std::string& assignment : assignments)
-    {
-      readAssignment(assignment, map);
-    }
-    parseParameters(map);
-  }
-  catch (const ParameterError& error)
-  {
-    return error.what();
-  }
-  return "";
+  return complaintOf(
+      [&]
+      {
+        ParameterMap map = defaultMap();
+        for (const std::string& assignment : assignments)
+        {
+          readAssignment(assignment, map);
+        }
+        parseParameters(map);
+      });
 }
 
 /// A YAML file with this text, removed at the end of the test.
@@ -60,17 +56,13 @@ public:
 
   std::string complaint() const
   {
-    try
-    {
-      ParameterMap map = defaultMap();
-      readYamlFile(path(), map);
-      parseParameters(map);
-    }
-    catch (const ParameterError& error)
-    {
-      return error.what();
-    }
-    return "";
+    return complaintOf(
+        [&]
+        {
+          ParameterMap map = defaultMap();
+          readYamlFile(path(), map);
+          parseParameters(map);
+        });
   }
 
 private:

@@ -8,10 +8,10 @@
 
 #include <gmock/gmock.h>
 
+#include "test/core/complaint.hpp"
 #include "test/support/allocation_count.hpp"
 #include "test_parameters.hpp"
 
-#include "harmonic_joint_twin/base/errors.hpp"
 #include "test/core/tracker_support.hpp"
 #include "tracking/joint_evidence.hpp"
 #include "tracking/tracker.hpp"
@@ -321,15 +321,7 @@ TEST(Tracker, RefusesAWeightThatTheLoadHoldsAlready)
   const Parameters parameters = parametersWith({ "output.gravity_torque=20.0", "telemetry.load=target_moment" });
   for (const InputMode mode : { InputMode::TORQUE, InputMode::OBSERVER })
   {
-    try
-    {
-      Tracker tracker(parameters, mode);
-      ADD_FAILURE() << "the weight counts twice";
-    }
-    catch (const ParameterError& error)
-    {
-      EXPECT_THAT(error.what(), HasSubstr("output.gravity_torque"));
-    }
+    EXPECT_THAT(complaintOf([&] { Tracker(parameters, mode); }), HasSubstr("output.gravity_torque"));
   }
 }
 

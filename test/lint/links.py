@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Markdown pages: relative links and images lead to files of the package, anchors to headings; no page holds a
-temporary path.
+"""Markdown pages: relative links and images lead to files of the package, anchors to headings, `folder/name` to
+sources; no page holds a temporary path.
 
 Addresses of the web are not tried.
 """
@@ -13,6 +13,7 @@ import project
 MARKDOWN_TARGET = re.compile(r"\]\(([^()\s]+)\)")
 HTML_TARGET = re.compile(r"""<(?:img|a)\s[^>]*?(?:src|href)=["']([^"']+)["']""")
 CODE_SPAN = re.compile(r"`[^`]*`")
+SOURCE = re.compile(r"`(\w+/\w+)`")  # without its ending: `elements/rim_tension`
 TEMPORARY_PATH = re.compile(r"(?<![\w.])/tmp/\S*")
 
 
@@ -54,12 +55,21 @@ def fault(root, path, target):
     return None
 
 
+def is_missing(root, source):
+    """Whether `source` lies in a folder of src and is no file there."""
+    names = [os.path.join(root, top, source + ending) for top in ("src", "include/harmonic_joint_twin", "")
+             for ending in ("", ".hpp", ".cpp")]
+    return os.path.isdir(os.path.dirname(names[0])) and not any(map(os.path.exists, names))
+
+
 def check(root):
     problems = []
     paths = project.files(root, "", [".md"])
     for path in paths:
         page = project.text(root, path)
         for number, line in prose(page):
+            problems += [f"{path}:{number}: no such source: {source}" for source in SOURCE.findall(line)
+                         if is_missing(root, source)]
             line = CODE_SPAN.sub("", line)
             for target in MARKDOWN_TARGET.findall(line) + HTML_TARGET.findall(line):
                 problem = fault(root, path, target)

@@ -278,10 +278,11 @@ class Links(Tree):
 
     def test_targets_that_do_not(self):
         self.write("docs/b.md", "# Head\n")
+        self.write("src/gear/angle.hpp", "")
         for text, word in [("[b](b.md)", "b.md"), ("![a](docs/a.png)", "docs/a.png"), ("[b](docs/b.md#tail)", "#tail"),
                            ("[own](#tail)", "#tail"), ("[![a](docs/a.png)](docs/b.md)", "docs/a.png"),
                            ('<img src="a.png">', "a.png"), ("[root](/etc/hostname)", "/etc/hostname"),
-                           ("[up](../README.md)", "../README.md")]:
+                           ("[up](../README.md)", "../README.md"), ("`gear/angel`", "no such source: gear/angel")]:
             with self.subTest(text=text):
                 self.write("README.md", f"\n{text}\n")
                 self.assert_fault(links.check, "README.md:2", word)

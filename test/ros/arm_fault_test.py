@@ -1,13 +1,10 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
 """A fault comes while the live twin of an arm moves, and arm.launch beside it sees it; then its protective stop."""
-import os
 import sys
 import time
 import unittest
-import xmlrpc.client
 
-import rosgraph
 import rospy
 import rostest
 from geometry_msgs.msg import WrenchStamped
@@ -17,21 +14,12 @@ from std_srvs.srv import Trigger
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from harmonic_joint_twin.msg import Fault, Timing
-from ros_support import PACKAGE, PATIENCE, SLOWNESS, Diagnostics, Listener, wait_until
+from ros_support import PACKAGE, PATIENCE, SLOWNESS, Diagnostics, Listener, processor_time, wait_until
 
 NODE, BESIDE = "/arm_twin", "/joint_twin"
 JOINTS = ("base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3")
 SICK = "elbow"
 MEASURED_OVER = 10.0  # processor time [s]
-
-
-def processor_time(node):
-    """Of all threads of a node so far [s]."""
-    uri = rosgraph.Master("/arm_fault_test").lookupNode(node)
-    pid = xmlrpc.client.ServerProxy(uri).getPid("/arm_fault_test")[2]
-    with open(f"/proc/{pid}/stat", encoding="utf-8") as file:
-        fields = file.read().rsplit(")", 1)[1].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
 class ArmFault(unittest.TestCase):

@@ -11,6 +11,7 @@ import threading
 import time
 import unittest
 import xml.etree.ElementTree as xml
+import xmlrpc.client
 
 import roslib.message
 import roslib.packages
@@ -43,6 +44,15 @@ def wait_until(condition, what, patience=PATIENCE):
         if time.monotonic() > deadline:
             raise AssertionError(f"waited {patience} s in vain: {what}")
         time.sleep(0.01)
+
+
+def processor_time(node):
+    """Of all threads of a node so far [s]."""
+    uri = rosgraph.Master("/ros_support").lookupNode(node)
+    pid = xmlrpc.client.ServerProxy(uri).getPid("/ros_support")[2]
+    with open(f"/proc/{pid}/stat", encoding="utf-8") as file:
+        fields = file.read().rsplit(")", 1)[1].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
 class Listener:

@@ -20,7 +20,7 @@ from sensor_msgs.msg import JointState, Temperature
 
 from harmonic_joint_twin.msg import Assessment, Comparison, ContactForces, Encoders, Health, Indicators
 from ros_support import (OK, PACKAGE, PATIENCE, STALE, WARN, Diagnostics, Listener, executable, layout_curves,
-                         listen_to_all, number_at, numbers_in, wait_until)
+                         listen_to_all, number_at, numbers_in, processor_time, wait_until)
 
 JOINTS = {"base": "shoulder_pan_joint", "shoulder": "shoulder_lift_joint", "elbow": "elbow_joint",
           "wrist_1": "wrist_1_joint", "wrist_2": "wrist_2_joint", "wrist_3": "wrist_3_joint"}
@@ -83,15 +83,6 @@ def temperatures_at(row, begin):
         yield message
 
 
-def processor_time(node):
-    """Of a running node so far [s]."""
-    pid = subprocess.run(["pgrep", "-f", f"joint_twin_node .*__name:=joint_twin .*{node}"], check=True,
-                         capture_output=True, text=True).stdout.split()[0]
-    with open(f"/proc/{pid}/stat") as file:
-        fields = file.read().rsplit(")", 1)[1].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
-
-
 class UR5(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -112,9 +103,9 @@ class UR5(unittest.TestCase):
         for listener in [*cls.comparisons.values(), *cls.everything.values()]:
             listener.wait_for_connection()
         cls.bag_path = os.path.join(cls.directory, "robot.bag")
-        before = processor_time("/motion")
+        before = processor_time("/motion/joint_twin")
         cls.play(robot)
-        cls.share = (processor_time("/motion") - before) / SECONDS
+        cls.share = (processor_time("/motion/joint_twin") - before) / SECONDS
 
     @classmethod
     def tearDownClass(cls):
