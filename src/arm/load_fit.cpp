@@ -298,10 +298,14 @@ FoundLoad LoadFit::solve(const std::vector<bool>& counts)
 LoadProblem::Fit LoadFit::explained()
 {
   constexpr double OTHER_MOUNTING = 10.0;  // logarithm of how much rarer it is
+  constexpr double GRAVITY_SIZE = 0.1;     // deviation of its size: else it is none [-]
   data_->closeAll();
   const LoadProblem::Fit upright = LoadProblem(data_->rows, LoadProblem::Term::PAYLOAD).fit();
-  LoadProblem::Fit mounted = LoadProblem(data_->rows, LoadProblem::Term::BOTH).fit();
-  mounted.cost += OTHER_MOUNTING;
+  const LoadProblem both(data_->rows, LoadProblem::Term::BOTH);
+  LoadProblem::Fit mounted = both.fit();
+  const Eigen::Vector3d gravity = data_->gravity + both.solve().values.tail<LoadProblem::GRAVITY>();
+  const double size = gravity.norm() / std::max(data_->gravity.norm(), 1e-6);
+  mounted.cost += OTHER_MOUNTING + 0.5 * std::pow((size - 1.0) / GRAVITY_SIZE, 2);
   return mounted.cost < upright.cost ? mounted : upright;
 }
 

@@ -90,8 +90,7 @@ std::optional<AssumedLoad> LoadLaw::other(const FoundLoad& found, const JudgedJo
     return next;
   }
   // Less than is configured is no other payload; less than was found is that it was put down.
-  if (found.showsPayload() && (found.payload.isCarried() || counts_.payload) && !tried_payload_ &&
-      mayBeOther(joints))
+  if (found.showsPayload() && (found.payload.isCarried() || counts_.payload) && !tried_payload_ && mayBeOther(joints))
   {
     tried_payload_ = true;
     next.payload = named(found.payload, counts_.payload);

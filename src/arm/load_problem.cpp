@@ -93,9 +93,9 @@ LoadProblem::Solution LoadProblem::solve() const
 
 LoadProblem::Fit LoadProblem::fit() const
 {
-  constexpr double ROWS = 60.0;         // that count: errors of a model are not independent from row to row
-  constexpr double FLOOR = 0.02;        // of the currents: that the twin of no real arm falls below [-]
-  constexpr double LESS_MASS = 0.5;     // than configured: deviation that masses of links make [kg]
+  constexpr double ROWS = 60.0;      // that count: errors of a model are not independent from row to row
+  constexpr double FLOOR = 0.02;     // of the currents: that the twin of no real arm falls below [-]
+  constexpr double LESS_MASS = 0.5;  // than configured: deviation that masses of links make [kg]
   Eigen::MatrixXd information;
   const Eigen::VectorXd all = solveAll(rows_, information);
   double left = 0.0;

@@ -108,8 +108,7 @@ ArmAssessment pass(const ArmRecording& recording, const AssessmentSettings& sett
   {
     recording.noticeOf(arm.found);
   }
-  const std::vector<Misfit> misfits =
-      recording.isArm() ? fit.whyNotJudged() : std::vector<Misfit>{ arm.found.misfit };
+  const std::vector<Misfit> misfits = recording.isArm() ? fit.whyNotJudged() : std::vector<Misfit>{ arm.found.misfit };
   if (settings.beside_controller)
   {
     holdAgainstController(arm.joints);
@@ -138,7 +137,8 @@ void nameOther(const ArmRecording& recording, std::vector<Misfit>& misfits)
   const std::string other = betterArm(recording);
   if (!other.empty())
   {
-    const Misfit misfit{ Reason::LOAD_WRONG, "the arm may be a " + other + ": it explains the currents clearly better" };
+    const Misfit misfit{ Reason::LOAD_WRONG,
+                         "the arm may be a " + other + ": it explains the currents clearly better" };
     std::replace_if(misfits.begin(), misfits.end(), may_be_other, misfit);
   }
 }

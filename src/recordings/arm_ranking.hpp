@@ -13,7 +13,7 @@ namespace hjt
 /// How well an arm explains the currents of a recording.
 struct ArmFit
 {
-  static constexpr double CLEARLY = 20.0;    ///< by which one is likelier, logarithm
+  static constexpr double CLEARLY = 15.0;    ///< by which one is likelier, logarithm
   static constexpr double EXPLAINED = 0.35;  ///< of the currents left, at most, where an arm may be the one [-]
 
   std::string arm;

@@ -308,8 +308,7 @@ bool CheckedArm::isUsable() const
 
 std::vector<std::string> CheckedArm::alike() const
 {
-  const auto own =
-      std::find_if(ranked.begin(), ranked.end(), [this](const ArmFit& fit) { return fit.arm == taken; });
+  const auto own = std::find_if(ranked.begin(), ranked.end(), [this](const ArmFit& fit) { return fit.arm == taken; });
   std::vector<std::string> names;
   for (const ArmFit& fit : ranked)
   {

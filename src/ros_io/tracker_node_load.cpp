@@ -45,7 +45,7 @@ void TrackerNode::lookAtLoad()
   stream_.payload = assumed.payload && !load_->isTrying() ? assumed.payload->text() : "";
   if (is_other)
   {
-    ROS_INFO_STREAM((load_->isTrying()      ? "Another load than configured is tried: no WARN until it is known to fit" :
+    ROS_INFO_STREAM((load_->isTrying() ? "Another load than configured is tried: no WARN until it is known to fit" :
                      assumed.isConfigured() ? "The configured load counts again" :
                                               "The load that stood before counts again"));
     arm_load_.emplace(load_->arm());

@@ -186,7 +186,8 @@ TEST(LoadWatch, TakesNothingElseForAMountingOrAPayload)
   for (const std::array<double, 6>& factors :
        { std::array<double, 6>{ 1.3, 1.3, 1.3, 1.3, 1.3, 1.3 }, std::array<double, 6>{ 1.0, -1.0, -1.0, 1.0, 1.0, 1.0 },
          std::array<double, 6>{ -1.0, -1.0, -1.0, -1.0, -1.0, -1.0 },
-         std::array<double, 6>{ 1.0, -1.0, 1.0, 1.0, 1.0, 1.0 }, std::array<double, 6>{ 1.0, 1.5, 1.0, 1.0, 1.0, 1.0 } })
+         std::array<double, 6>{ 1.0, -1.0, 1.0, 1.0, 1.0, 1.0 },
+         std::array<double, 6>{ 1.0, 1.5, 1.0, 1.0, 1.0, 1.0 } })
   {
     JudgedJoints judged = JUDGED;
     judged.common.median = factors[0];
