@@ -37,8 +37,9 @@ struct JudgedJoints
 };
 
 /// The law by which the load is another than configured, of a recording and live alike. What the currents show is
-/// tried: a mounting; then, where nothing but the load stands against a joint, a payload, since it explains no telemetry
-/// that does not fit, nor an arm led by hand. It stands where every joint fits with it; else it is taken back.
+/// tried: a mounting; then, where nothing but the load stands against a joint, a payload, since it explains no
+/// telemetry that does not fit, nor an arm led by hand. It stands where every joint fits with it, else
+/// it is taken back.
 class LoadLaw
 {
 public:

@@ -24,9 +24,9 @@ struct ArmFit
   bool isClearlyBetter(const ArmFit& other) const { return left < EXPLAINED && cost < other.cost - CLEARLY; }
 };
 
-/// Of the arms of these names, the best first: how each explains the first two minutes with the payload and the mounting
-/// that fit it best, gains and friction within what drives of a type differ by, and the gains that the recording
-/// states. @throws InputError, ParameterError.
+/// Of the arms of these names, the best first: how each explains the first two minutes with the payload and the
+/// mounting that fit it best, gains and friction within what drives of a type differ by, and the gains that the
+/// recording states. @throws InputError, ParameterError.
 std::vector<ArmFit> rankArms(const RecordingOptions& options, const std::vector<std::string>& names);
 
 /// A shipped arm with these joints that explains the recording clearly better than its own; empty: none.
