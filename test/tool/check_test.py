@@ -146,7 +146,7 @@ class Check(tool.ToolTest):
         other = self.check("wall.csv", "--arm", "ur5", exit_code=1)
         self.assertIn("the arm may be a ur16e", other["joints"][1]["verdict"]["text"])
         done = self.run_tool("compare", "wall.csv", "--arm", "ur5", "--json", "--fail-on", "warn")
-        self.assertEqual((done.returncode, json.loads(done.stdout)["level"]), (4, "NOT_JUDGED"), done.stderr)
+        self.assertEqual((done.returncode, json.loads(done.stdout)["level"]), (4, "NOT JUDGED"), done.stderr)
 
     def test_a_sound_recording_is_usable_as_it_is(self):
         write_csv(self.path("arm.csv"), sound(self))
