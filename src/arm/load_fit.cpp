@@ -303,9 +303,13 @@ LoadProblem::Fit LoadFit::explained()
   const LoadProblem::Fit upright = LoadProblem(data_->rows, LoadProblem::Term::PAYLOAD).fit();
   const LoadProblem both(data_->rows, LoadProblem::Term::BOTH);
   LoadProblem::Fit mounted = both.fit();
-  const Eigen::Vector3d gravity = data_->gravity + both.solve().values.tail<LoadProblem::GRAVITY>();
-  const double size = gravity.norm() / std::max(data_->gravity.norm(), 1e-6);
-  mounted.cost += OTHER_MOUNTING + 0.5 * std::pow((size - 1.0) / GRAVITY_SIZE, 2);
+  mounted.cost += OTHER_MOUNTING;
+  if (mounted.cost < upright.cost)
+  {
+    const Eigen::Vector3d gravity = data_->gravity + both.solve().values.tail<LoadProblem::GRAVITY>();
+    const double size = gravity.norm() / std::max(data_->gravity.norm(), 1e-6);
+    mounted.cost += 0.5 * std::pow((size - 1.0) / GRAVITY_SIZE, 2);
+  }
   return mounted.cost < upright.cost ? mounted : upright;
 }
 
