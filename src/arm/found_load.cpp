@@ -74,7 +74,7 @@ std::string IdentifiedMounting::text() const
 
 bool FoundLoad::showsPayload() const
 {
-  return payload.isCarried() && payload.residual_share < CLEARLY && payload.residual_share < share_of_gain &&
+  return payload.differs() && payload.residual_share < CLEARLY &&
          !(mounting.differs() && mounting.residual_share < payload.residual_share);
 }
 

@@ -18,6 +18,7 @@ struct IdentifiedPayload
   std::array<double, 3> moment_half_width{};  ///< of their 95 % intervals [kg.m]
   double least_claim{};                       ///< what sound arms of this mass show without a payload, at most [kg]
   double residual_share{ 1.0 };               ///< of the torques not predicted, that is left with it, rms [-]
+  double share_of_gain{ 1.0 };                ///< likewise, if all currents are one multiple of what is predicted [-]
 
   /// The configured mass is outside the interval, and farther off than arms without a payload show.
   bool differs() const;
@@ -55,11 +56,8 @@ struct FoundLoad
 
   IdentifiedPayload payload;
   IdentifiedMounting mounting;
-  /// Of the torques not predicted, what is left if all currents are one multiple of what is predicted, rms [-].
-  double share_of_gain{ 1.0 };
 
-  /// It explains the currents clearly better than the load as it counts and than one multiple of all currents, and
-  /// another mounting does not explain them as well.
+  /// It explains the currents clearly better than the load as it counts, and another mounting does not as well.
   bool showsPayload() const;
   /// It explains the currents clearly better than the load as it counts, and than what else may be the reason.
   bool showsMounting() const;

@@ -19,14 +19,15 @@ namespace
 constexpr double MOVING = 0.05;  // [rad/s]
 using Rows = LoadProblem::Rows;
 
-std::vector<Rows> untouched(const std::vector<Rows>& rows)
+/// Of the joints that count: all, or those in which nothing touches the arm.
+std::vector<Rows> ofJoints(const std::vector<Rows>& rows, const std::vector<bool>& counts, bool with_touched)
 {
   std::vector<Rows> left(rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i)
   {
-    for (std::size_t k = 0; k < rows[i].size(); ++k)
+    for (std::size_t k = 0; counts[i] && k < rows[i].size(); ++k)
     {
-      if (!rows[i].touched[k])
+      if (with_touched || !rows[i].touched[k])
       {
         left[i].add(rows[i], k);
       }
@@ -128,15 +129,23 @@ struct LoadFit::Data
     block.count = 0;
   }
 
+  void closeAll()
+  {
+    for (std::size_t i = 0; i < rows.size(); ++i)
+    {
+      close(i, last_time);
+    }
+  }
+
   /// That 2 % of the links' masses make, as a mass at the tip, at the joint that weighs it best [kg].
-  double ofLinks() const
+  double ofLinks(const std::vector<bool>& counts) const
   {
     constexpr double LINKS_SHARE = 0.02;
     double heaviest = 0.0;
     double mass = 0.0;
     for (std::size_t i = 0; i < loads.size(); ++i)
     {
-      if (weights[i] > heaviest)
+      if (counts[i] && weights[i] > heaviest)
       {
         heaviest = weights[i];
         mass = LINKS_SHARE * std::sqrt(loads[i] / weights[i]);
@@ -145,14 +154,16 @@ struct LoadFit::Data
     return mass;
   }
 
-  IdentifiedPayload findPayload(const std::vector<Rows>& free) const
+  /// `joints`: rows of each.
+  IdentifiedPayload findPayload(const std::vector<Rows>& joints, double of_links) const
   {
-    const LoadProblem::Solution solution = LoadProblem(free, LoadProblem::Term::PAYLOAD).solve();
+    const LoadProblem::Solution solution = LoadProblem(joints, LoadProblem::Term::PAYLOAD).solve();
     IdentifiedPayload found;
     found.configured = payload;
     found.mass = payload.mass + solution.values[0];
-    found.mass_half_width = std::hypot(solution.half_widths[0], NORMAL_95 * ofLinks());
-    found.residual_share = shareLeft(free, gains, solution.values);
+    found.mass_half_width = std::hypot(solution.half_widths[0], NORMAL_95 * of_links);
+    found.residual_share = shareLeft(joints, gains, solution.values);
+    found.share_of_gain = sharesOfGain(joints, gains).of_all;
     constexpr double UNLOADED = 0.05;  // of the links' mass: a sound UR5 without a payload shows 0 to 0.8 kg
     found.least_claim = UNLOADED * unit.linksMass();
     for (std::size_t axis = 0; axis < 3; ++axis)
@@ -164,9 +175,9 @@ struct LoadFit::Data
     return found;
   }
 
-  IdentifiedMounting findMounting() const
+  IdentifiedMounting findMounting(const std::vector<Rows>& joints, double of_links) const
   {
-    const LoadProblem::Solution solution = LoadProblem(rows, LoadProblem::Term::GRAVITY).solve();
+    const LoadProblem::Solution solution = LoadProblem(joints, LoadProblem::Term::GRAVITY).solve();
     const Eigen::Vector3d total = gravity + solution.values.tail<LoadProblem::GRAVITY>();
     const Eigen::Vector3d direction = total / std::max(total.norm(), 1e-6);
     const double size = std::max(gravity.norm(), 1e-6);  // weightless as configured: nothing to turn
@@ -178,19 +189,19 @@ struct LoadFit::Data
     Eigen::Map<Eigen::Vector3d>(found.gravity.data()) = gravity.norm() * direction;
     found.half_width = std::sqrt((widths.square() * across).sum()) / std::max(total.norm(), 1e-6);
     found.size = total.norm() / size;
-    found.residual_share = shareLeft(rows, gains, solution.values);
+    found.residual_share = shareLeft(joints, gains, solution.values);
     if (found.differs())
     {
-      found.share_otherwise = shareWithoutMounting();
+      found.share_otherwise = shareWithoutMounting(joints, of_links);
     }
     return found;
   }
 
   /// Of all rows, what is left with whatever else may be the reason. A payload counts where its mass is one.
-  double shareWithoutMounting() const
+  double shareWithoutMounting(const std::vector<Rows>& joints, double of_links) const
   {
-    const GainShares gain = sharesOfGain(rows, gains);
-    const IdentifiedPayload other = findPayload(rows);
+    const GainShares gain = sharesOfGain(joints, gains);
+    const IdentifiedPayload other = findPayload(joints, of_links);
     const bool is_mass = other.mass > -std::max(other.mass_half_width, other.least_claim);
     const double least = std::min(gain.of_all, gain.of_one);
     return other.differs() && is_mass ? std::min(least, other.residual_share) : least;
@@ -275,15 +286,31 @@ double LoadFit::moved() const
   return data_->moved;
 }
 
-FoundLoad LoadFit::solve()
+FoundLoad LoadFit::solve(const std::vector<bool>& counts)
 {
   Data& data = *data_;
-  for (std::size_t i = 0; i < data.rows.size(); ++i)
+  data.closeAll();
+  const double of_links = data.ofLinks(counts);
+  return { data.findPayload(ofJoints(data.rows, counts, false), of_links),
+           data.findMounting(ofJoints(data.rows, counts, true), of_links) };
+}
+
+LoadProblem::Fit LoadFit::explained()
+{
+  constexpr double OTHER_MOUNTING = 10.0;  // logarithm of how much rarer it is
+  constexpr double GRAVITY_SIZE = 0.1;     // deviation of its size: else it is none [-]
+  data_->closeAll();
+  const LoadProblem::Fit upright = LoadProblem(data_->rows, LoadProblem::Term::PAYLOAD).fit();
+  const LoadProblem both(data_->rows, LoadProblem::Term::BOTH);
+  LoadProblem::Fit mounted = both.fit();
+  mounted.cost += OTHER_MOUNTING;
+  if (mounted.cost < upright.cost)
   {
-    data.close(i, data.last_time);
+    const Eigen::Vector3d gravity = data_->gravity + both.solve().values.tail<LoadProblem::GRAVITY>();
+    const double size = gravity.norm() / std::max(data_->gravity.norm(), 1e-6);
+    mounted.cost += 0.5 * std::pow((size - 1.0) / GRAVITY_SIZE, 2);
   }
-  const std::vector<Rows> free = untouched(data.rows);
-  return { data.findPayload(free), data.findMounting(), sharesOfGain(free, data.gains).of_all };
+  return mounted.cost < upright.cost ? mounted : upright;
 }
 
 IdentifiedPayload identifyPayload(const ArmDescription& arm, const std::vector<std::vector<MotionSample>>& samples,
@@ -301,6 +328,6 @@ IdentifiedPayload identifyPayload(const ArmDescription& arm, const std::vector<s
     }
     fit.add(at, currents);
   }
-  return fit.solve().payload;
+  return fit.solve(std::vector<bool>(samples.size(), true)).payload;
 }
 }  // namespace hjt

@@ -6,6 +6,7 @@
 
 #include "arm/arm_description.hpp"
 #include "arm/found_load.hpp"
+#include "arm/load_problem.hpp"
 #include "tracking/motion_differentiator.hpp"
 
 namespace hjt
@@ -31,7 +32,10 @@ public:
   /// Samples of one time, and the current that each joint's twin predicts [A]. `touched`: something touches the arm.
   void add(const std::vector<MotionSample>& samples, const std::vector<double>& predicted, bool touched = false);
 
-  FoundLoad solve();
+  /// `counts`: whether the current of a joint, by its number, is measured: else it is left out.
+  FoundLoad solve(const std::vector<bool>& counts);
+  /// How well the arm explains the currents with its best payload, or with the best mounting too.
+  LoadProblem::Fit explained();
   double moved() const;  ///< time in which a joint moved [s]
 
 private:

@@ -54,11 +54,11 @@ void LoadProblem::Rows::add(const Rows& from, std::size_t row)
 LoadProblem::LoadProblem(std::vector<Rows> rows, Term term) : rows_(std::move(rows))
 {
   known_.setConstant(FIXED);
-  if (term == Term::PAYLOAD)
+  if (term != Term::GRAVITY)
   {
     known_.head<PAYLOAD>() << KNOWN_MASS, KNOWN_MOMENT, KNOWN_MOMENT, KNOWN_MOMENT;
   }
-  else
+  if (term != Term::PAYLOAD)
   {
     known_.tail<GRAVITY>().setConstant(KNOWN_GRAVITY);
   }
@@ -76,17 +76,53 @@ LoadProblem::Solution LoadProblem::solve() const
       end = std::max(end, time + BLOCK);
     }
   }
-  Solution solution = solveAll(rows_);
+  Eigen::MatrixXd information;
+  Solution solution;
+  solution.values = solveAll(rows_, information).head<SHARED>();
+  const Eigen::MatrixXd variance =
+      information.ldlt().solve(Eigen::MatrixXd::Identity(information.rows(), information.cols()));
+  solution.half_widths = NORMAL_95 * variance.diagonal().head<SHARED>().cwiseSqrt();
   Shared squares = Shared::Zero();
   for (int part = 0; part < PARTS && end > begin; ++part)
   {
-    squares += (solveAll(without(rows_, part, begin, end)).values - solution.values).cwiseAbs2();
+    squares += (solveAll(without(rows_, part, begin, end), information).head<SHARED>() - solution.values).cwiseAbs2();
   }
   solution.half_widths = solution.half_widths.cwiseMax(NORMAL_95 * (squares * (PARTS - 1.0) / PARTS).cwiseSqrt());
   return solution;
 }
 
-LoadProblem::Solution LoadProblem::solveAll(const std::vector<Rows>& rows) const
+LoadProblem::Fit LoadProblem::fit() const
+{
+  constexpr double ROWS = 60.0;      // that count: errors of a model are not independent from row to row
+  constexpr double FLOOR = 0.02;     // of the currents: that the twin of no real arm falls below [-]
+  constexpr double LESS_MASS = 0.5;  // than configured: deviation that masses of links make [kg]
+  Eigen::MatrixXd information;
+  const Eigen::VectorXd all = solveAll(rows_, information);
+  double left = 0.0;
+  double squares = 0.0;
+  double cost = 0.0;
+  for (std::size_t i = 0; i < rows_.size(); ++i)
+  {
+    const Eigen::Vector4d own = all.segment<NUISANCES>(static_cast<Eigen::Index>(SHARED + NUISANCES * i));
+    cost += 0.5 * (own.array() / Eigen::Map<const Eigen::Array4d>(KNOWN.data())).square().sum();
+    Columns values;
+    values << all.head<SHARED>(), own;
+    for (std::size_t k = 0; k < rows_[i].size(); ++k)
+    {
+      const Columns& row = rows_[i].columns[k];
+      const double error =
+          rows_[i].residuals[k] - row.dot(values) - own[0] * row.head<SHARED>().dot(values.head<SHARED>());
+      left += error * error;
+      squares += std::pow(rows_[i].residuals[k] + rows_[i].predicted[k], 2);
+    }
+  }
+  Fit fit;
+  fit.left = squares > 0.0 ? std::sqrt(left / squares) : 1.0;
+  fit.cost = cost + ROWS * std::log(std::hypot(fit.left, FLOOR)) + 0.5 * std::pow(std::min(all[0], 0.0) / LESS_MASS, 2);
+  return fit;
+}
+
+Eigen::VectorXd LoadProblem::solveAll(const std::vector<Rows>& rows, Eigen::MatrixXd& information) const
 {
   const auto size = static_cast<Eigen::Index>(SHARED + NUISANCES * rows.size());
   Eigen::VectorXd known(size);
@@ -96,7 +132,6 @@ LoadProblem::Solution LoadProblem::solveAll(const std::vector<Rows>& rows) const
     known.segment<NUISANCES>(own) = Eigen::Map<const Eigen::Vector4d>(KNOWN.data());
   }
   Eigen::VectorXd all = Eigen::VectorXd::Zero(size);
-  Eigen::MatrixXd information;
   constexpr int ROUNDS = 5;
   for (int round = 0; round < ROUNDS; ++round)
   {
@@ -108,8 +143,7 @@ LoadProblem::Solution LoadProblem::solveAll(const std::vector<Rows>& rows) const
     }
     all = information.ldlt().solve(right);
   }
-  const Eigen::MatrixXd variance = information.ldlt().solve(Eigen::MatrixXd::Identity(size, size));
-  return { all.head<SHARED>(), NORMAL_95 * variance.diagonal().head<SHARED>().cwiseSqrt() };
+  return all;
 }
 
 /// The rows of one joint, whose nuisances begin at `own`, weighed by what `all` leaves of them.

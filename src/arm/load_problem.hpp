@@ -43,7 +43,8 @@ public:
   enum class Term
   {
     PAYLOAD,
-    GRAVITY
+    GRAVITY,
+    BOTH
   };
 
   LoadProblem(std::vector<Rows> rows, Term term);
@@ -56,8 +57,17 @@ public:
   /// The interval is that of the fit, or by leaving out one tenth of the time after the other where that is wider.
   Solution solve() const;
 
+  /// Of the currents, what is left with the best of all terms, and how much these take.
+  struct Fit
+  {
+    double left{ 1.0 };  ///< share, rms [-]
+    double cost{};       ///< logarithm of a likelihood, less is likelier; errors of models count for what they are [-]
+  };
+  Fit fit() const;
+
 private:
-  Solution solveAll(const std::vector<Rows>& rows) const;
+  /// All terms. `information`: the inverse of their variance.
+  Eigen::VectorXd solveAll(const std::vector<Rows>& rows, Eigen::MatrixXd& information) const;
   void add(const Rows& rows, Eigen::Index own, const Eigen::VectorXd& all, Eigen::MatrixXd& information,
            Eigen::VectorXd& right) const;
 

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "arm/load_watch.hpp"
 
-#include <limits>
-
 namespace hjt
 {
-LoadWatch::LoadWatch(const ArmDescription& arm, const std::vector<Parameters>& joints)
-  : arm_(arm), given_(arm.payload), given_gravity_(arm.gravity), counts_(joints.size(), true)
+LoadWatch::LoadWatch(const ArmDescription& arm, const std::vector<Parameters>& joints) : given_(arm), arm_(arm)
 {
   for (const Parameters& joint : joints)
   {
@@ -19,22 +16,15 @@ LoadWatch::LoadWatch(const ArmDescription& arm, const std::vector<Parameters>& j
 
 void LoadWatch::reset()
 {
+  start(isTrying() ? TRIAL : FIRST_LOOK);
+}
+
+void LoadWatch::start(double first_look)
+{
   fit_.emplace(arm_, gains_);
   last_time_ = -HUGE_VAL;
-  next_look_ = FIRST_LOOK;
+  next_look_ = first_look;
   is_new_ = true;
-}
-
-void LoadWatch::configure(const Payload& payload)
-{
-  arm_.payload = payload;
-  reset();
-}
-
-void LoadWatch::mount(const std::array<double, 3>& gravity)
-{
-  arm_.gravity = gravity;
-  reset();
 }
 
 void LoadWatch::add(const ArmSample& sample, bool touched)
@@ -45,10 +35,6 @@ void LoadWatch::add(const ArmSample& sample, bool touched)
     samples_[i].load = sample.torques[i];
     samples_[i].after_gap = samples_[i].after_gap || is_new_;
     predicted_[i] = twins_[i].step(samples_[i]).current;
-    if (!counts_[i])
-    {
-      samples_[i].current = std::numeric_limits<double>::quiet_NaN();
-    }
   }
   is_new_ = false;
   if (samples_.front().time >= last_time_ + PERIOD)
@@ -58,44 +44,21 @@ void LoadWatch::add(const ArmSample& sample, bool touched)
   }
 }
 
-std::optional<FoundLoad> LoadWatch::look()
+bool LoadWatch::look(const JudgedJoints& joints)
 {
-  if (fit_->moved() < next_look_)
+  const bool was_trying = isTrying();
+  const bool is_other = law_.take(fit_->solve(joints.measured), joints);
+  has_looked_ = true;
+  if (is_other)
   {
-    return std::nullopt;
+    arm_ = given_;
+    law_.counts().configure(arm_);
   }
-  const FoundLoad found = fit_->solve();
   next_look_ *= 2.0;
-  if (next_look_ > LoadFit::MOST_TIME)
+  if (is_other || was_trying || next_look_ > LAST_LOOK)
   {
-    reset();
+    start(isTrying() ? TRIAL : was_trying && is_other ? LAST_LOOK : FIRST_LOOK);
   }
-  return found;
-}
-
-std::optional<IdentifiedMounting> LoadWatch::mountingOf(const FoundLoad& found) const
-{
-  if (!found.showsMounting())
-  {
-    return std::nullopt;
-  }
-  IdentifiedMounting named = found.mounting;
-  named.configured = given_gravity_;
-  named.gravity = named.differs() ? named.gravity : given_gravity_;
-  return named;
-}
-
-std::optional<IdentifiedPayload> LoadWatch::payloadOf(const FoundLoad& found) const
-{
-  const IdentifiedPayload& payload = found.payload;
-  const bool is_put_down = arm_.payload.mass > given_.mass && payload.differs() &&
-                           payload.residual_share < FoundLoad::CLEARLY && !payload.isCarried();
-  if (!found.showsPayload() && !is_put_down)
-  {
-    return std::nullopt;
-  }
-  IdentifiedPayload named = payload;
-  named.configured = given_;
-  return named;
+  return is_other;
 }
 }  // namespace hjt

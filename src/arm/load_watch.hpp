@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -9,12 +8,14 @@
 
 #include "arm/arm_load.hpp"
 #include "arm/load_fit.hpp"
+#include "arm/load_law.hpp"
 #include "tracking/motion_driven.hpp"
 
 namespace hjt
 {
 /// Payload and mounting that an arm's currents show while its rows come: looked for after 30 s of motion, each time
-/// that is doubled, and after eight minutes all over again. Not for a real-time loop: it allocates.
+/// that is doubled, and after eight minutes all over again. What is found is tried for 10 s of motion (LoadLaw); once
+/// it is taken back nothing is looked for in the next eight minutes. Not for a real-time loop: it allocates.
 class LoadWatch
 {
 public:
@@ -23,36 +24,32 @@ public:
 
   /// `touched`: something touches the arm, or looks like it.
   void add(const ArmSample& sample, bool touched = false);
-  /// Whether the currents of a joint, by its number, are measured: else they do not count.
-  void setMeasured(std::size_t joint, bool is_measured) { counts_[joint] = is_measured; }
-  /// Starts again.
+  /// Starts again with the load that counts: other rows follow.
   void reset();
 
-  /// What the currents show of the load, if it is time to look.
-  std::optional<FoundLoad> look();
-  /// A payload other than what counts now, that clearly explains the currents. Where it does not differ from the arm's
-  /// own, which is named as the configured one, that is carried again.
-  std::optional<IdentifiedPayload> payloadOf(const FoundLoad& found) const;
+  /// It is time to look.
+  bool isDue() const { return fit_->moved() >= next_look_; }
+  /// `joints`: beside their twins, with the load that counts. True: another counts from now on.
+  bool look(const JudgedJoints& joints);
 
-  /// A mounting other than what counts now, beside the arm's own; the arm's own again where it does not differ.
-  std::optional<IdentifiedMounting> mountingOf(const FoundLoad& found) const;
-
-  /// That counts from now on; starts again.
-  void configure(const Payload& payload);
-  void mount(const std::array<double, 3>& gravity);  ///< likewise, gravity in the frame of the base [m/s^2]
+  const AssumedLoad& assumed() const { return law_.counts(); }
+  bool isTrying() const { return law_.isTrying(); }
+  /// It has looked, and tries nothing: the load is what it counts as.
+  bool isSettled() const { return has_looked_ && !isTrying(); }
   /// The arm with the payload and the mounting that count.
   const ArmDescription& arm() const { return arm_; }
-  /// The arm's own payload.
-  const Payload& given() const { return given_; }
 
 private:
   static constexpr double FIRST_LOOK = 30.0;  // of motion [s]
+  static constexpr double TRIAL = 10.0;       // likewise
+  static constexpr double LAST_LOOK = 480.0;  // likewise
   static constexpr double PERIOD = 0.02;      // of the rows that count, at least [s]
 
+  void start(double first_look);
+
+  const ArmDescription given_;
   ArmDescription arm_;
-  Payload given_;
-  std::array<double, 3> given_gravity_;  // [m/s^2]
-  std::vector<bool> counts_;
+  LoadLaw law_;
   std::vector<double> gains_;  // [N.m/A]
   std::vector<MotionDriven> twins_;
   std::optional<LoadFit> fit_;
@@ -60,6 +57,7 @@ private:
   std::vector<double> predicted_;  // [A]
   double last_time_{ -HUGE_VAL };  // that counted [s]
   double next_look_{ FIRST_LOOK };
+  bool has_looked_{};
   bool is_new_{ true };  // the next row comes after a gap
 };
 }  // namespace hjt

@@ -303,6 +303,12 @@ std::vector<RecordingFinding> RecordingFit::ofArm() const
   return findings;
 }
 
+bool RecordingFit::isMeasured(std::size_t joint) const
+{
+  const Joint& own = joints_[joint];
+  return own.reach.least_current != own.reach.most_current && own.unchanged <= UNCHANGED;
+}
+
 std::vector<RecordingFinding> RecordingFit::ofJoint(std::size_t number) const
 {
   const Joint& joint = joints_[number];
@@ -311,7 +317,7 @@ std::vector<RecordingFinding> RecordingFit::ofJoint(std::size_t number) const
   {
     return findings;
   }
-  if (joint.reach.least_current == joint.reach.most_current || joint.unchanged > UNCHANGED)
+  if (!isMeasured(number))
   {
     findings.push_back({ "effort_constant", joint.last_current == 0.0 ? "effort is zero" : "effort never changes",
                          Reason::EFFORT_CONSTANT });

@@ -69,6 +69,8 @@ public:
   FittedFactor stampFactor() const;
   EffortFit effort() const;
   const JointReach& reach(std::size_t joint) const { return joints_[joint].reach; }
+  /// Its current changes, as a measured one does.
+  bool isMeasured(std::size_t joint) const;
   bool hasVelocity(std::size_t joint) const { return joints_[joint].time.hasVelocity(); }
   /// Of angle and velocity of the joint.
   const TimeFit& timeFit(std::size_t joint) const { return joints_[joint].time; }

@@ -2,11 +2,11 @@
 #include "recordings/arm_assessment.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <deque>
+#include <utility>
 
 #include "arm/load_fit.hpp"
+#include "recordings/arm_ranking.hpp"
 
 namespace hjt
 {
@@ -38,7 +38,7 @@ class LoadCollector
 {
 public:
   explicit LoadCollector(const ArmRecording& recording)
-    : fit_(recording.arm(), gainsOf(recording)), waiting_(recording.joints().size())
+    : fit_(recording.arm(), recording.gains()), waiting_(recording.joints().size())
   {
   }
 
@@ -61,7 +61,7 @@ public:
     }
   }
 
-  FoundLoad solve() { return fit_.solve(); }
+  FoundLoad solve(const std::vector<bool>& counts) { return fit_.solve(counts); }
 
 private:
   struct Row
@@ -70,16 +70,6 @@ private:
     double predicted{};  // [A]
     bool is_touched{};
   };
-
-  static std::vector<double> gainsOf(const ArmRecording& recording)
-  {
-    std::vector<double> gains;
-    for (const Parameters& parameters : recording.parameters())
-    {
-      gains.push_back(parameters.telemetry.torque_per_current);
-    }
-    return gains;
-  }
 
   LoadFit fit_;
   std::vector<std::deque<Row>> waiting_;
@@ -118,7 +108,7 @@ ArmAssessment pass(const ArmRecording& recording, const AssessmentSettings& sett
   {
     recording.noticeOf(arm.found);
   }
-  arm.misfits = recording.isArm() ? fit.whyNotJudged() : std::vector<Misfit>{ arm.found.misfit };
+  const std::vector<Misfit> misfits = recording.isArm() ? fit.whyNotJudged() : std::vector<Misfit>{ arm.found.misfit };
   if (settings.beside_controller)
   {
     holdAgainstController(arm.joints);
@@ -126,104 +116,52 @@ ArmAssessment pass(const ArmRecording& recording, const AssessmentSettings& sett
   std::vector<MeasuredFriction> frictions;
   for (std::size_t i = 0; i < arm.joints.size(); ++i)
   {
-    frictions.push_back(arm.joints[i]->friction(arm.misfits[i]));
+    frictions.push_back(arm.joints[i]->friction(misfits[i]));
   }
-  arm.friction = commonFriction(frictions, recording.parameters(0).comparison.repeat_tolerance);
-  for (Misfit& misfit : arm.misfits)
-  {
-    misfit = misfitOf(misfit, arm.friction.misfit);
-  }
+  arm.judged = JudgedJoints(fit, misfits, std::move(frictions), recording.parameters(0).comparison.repeat_tolerance);
   if (load && !settings.watch.stopped())
   {
-    arm.load = load->solve();
+    arm.load = load->solve(arm.judged.measured);
   }
   return arm;
 }
-
-/// Of the currents less what is predicted, as torques of all joints, rms [N.m].
-double residualTorque(const ArmAssessment& arm)
+/// Where another arm is clearly likelier nothing is judged of the joints that this one's load may be wrong for.
+void nameOther(const ArmRecording& recording, std::vector<Misfit>& misfits)
 {
-  double squares = 0.0;
-  for (const AssessedJoint* joint : arm.joints)
+  const auto may_be_other = [](const Misfit& misfit)
+  { return !misfit.exists() || misfit.reason == Reason::LOAD_WRONG; };
+  if (std::none_of(misfits.begin(), misfits.end(), may_be_other))
   {
-    squares += std::pow(joint->parameters().telemetry.torque_per_current * joint->evidence().residualRms(), 2);
+    return;
   }
-  return std::sqrt(squares);
-}
-
-/// Angles, stamps and efforts are in order, and no joint's friction is one that no drive has. The load may be another.
-bool fits(const ArmAssessment& arm)
-{
-  return std::none_of(arm.misfits.begin(), arm.misfits.end(),
-                      [](const Misfit& misfit) { return misfit.exists() && misfit.reason != Reason::LOAD_WRONG; });
-}
-
-/// Another load is the reason only if every joint fits with it.
-bool isExplained(const ArmAssessment& with)
-{
-  return std::none_of(with.misfits.begin(), with.misfits.end(), [](const Misfit& misfit) { return misfit.exists(); }) &&
-         std::all_of(with.joints.begin(), with.joints.end(),
-                     [](const AssessedJoint* joint)
-                     { return !joint->friction({}).is_below_faults && joint->frictionReason() != Reason::LOAD_WRONG; });
-}
-
-/// The load that the pass shows in place of the one that it assumed; none: it stands.
-bool takeOther(const ArmAssessment& arm, ArmRecording& recording, AssumedLoad& assumed)
-{
-  if (!arm.load)
+  const std::string other = betterArm(recording);
+  if (!other.empty())
   {
-    return false;
+    const Misfit misfit{ Reason::LOAD_WRONG,
+                         "the arm may be a " + other + ": it explains the currents clearly better" };
+    std::replace_if(misfits.begin(), misfits.end(), may_be_other, misfit);
   }
-  if (arm.load->showsMounting() && !assumed.mounting)
-  {
-    assumed.mounting = arm.load->mounting;
-    recording.setGravity(assumed.mounting->gravity);
-    return true;
-  }
-  // A payload explains no telemetry that does not fit, nor an arm led by hand.
-  if (arm.load->payload.isCarried() && !assumed.payload && fits(arm))
-  {
-    assumed.payload = arm.load->payload;
-    recording.setPayload(assumed.payload->payload());
-    return true;
-  }
-  return false;
 }
 }  // namespace
 
-std::string AssumedLoad::text() const
-{
-  std::string text = mounting ? sentence(mounting->text()) + " " : std::string();
-  text += payload ? sentence(payload->text()) + " " : std::string();
-  return text + (mounting || payload ? "The joints are judged with it. " : "");
-}
-
 ArmAssessment assess(ArmRecording& recording, const AssessmentSettings& settings, RecordingFit& fit)
 {
+  const ArmDescription configured = recording.arm();
+  LoadLaw law;
   ArmAssessment arm = pass(recording, settings, settings.gives_notice, fit);
-  const double before = residualTorque(arm);
-  const double share_of_gain = arm.load ? arm.load->share_of_gain : 1.0;
-  AssumedLoad tried;
-  AssumedLoad explained;
-  const Payload payload = recording.arm().payload;
-  const std::array<double, 3> gravity = recording.arm().gravity;
-  bool is_explained = true;
-  while (!settings.watch.stopped() && takeOther(arm, recording, tried))
+  while (arm.load && !settings.watch.stopped() && law.take(*arm.load, arm.judged))
   {
-    arm = pass(recording, settings, false, fit);
-    // As long as the mounting is another most rows look touched, and count for nothing.
-    // Where the friction of the whole arm is another with it, one multiple of all currents is no worse a reason.
-    is_explained = isExplained(arm) && (tried.mounting || residualTorque(arm) < FoundLoad::CLEARLY * before) &&
-                   (arm.friction.median == 1.0 || !tried.payload || tried.payload->residual_share < share_of_gain);
-    explained = is_explained ? tried : explained;
-  }
-  if (!is_explained)
-  {
-    recording.setPayload(explained.payload ? explained.payload->payload() : payload);
-    recording.setGravity(explained.mounting ? explained.mounting->gravity : gravity);
+    ArmDescription other = configured;
+    law.counts().configure(other);
+    recording.setPayload(other.payload);
+    recording.setGravity(other.gravity);
     arm = pass(recording, settings, false, fit);
   }
-  arm.assumed = explained;
+  arm.assumed = law.counts();
+  if (arm.load && settings.looks_for_arm && recording.options().identified.empty() && !settings.watch.stopped())
+  {
+    nameOther(recording, arm.judged.misfits);
+  }
   return arm;
 }
 }  // namespace hjt

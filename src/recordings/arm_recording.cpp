@@ -65,7 +65,8 @@ std::string wrongStamps(const MotionCount& count)
 }  // namespace
 
 ArmRecording::ArmRecording(const RecordingOptions& options)
-  : watch_(options.watch)
+  : options_(options)
+  , watch_(options.watch)
   , rows_(options.rows)
   , joint_namespace_(options.joint_namespace)
   , affixes_(options.affixes)
@@ -97,6 +98,16 @@ ArmRecording::ArmRecording(const RecordingOptions& options)
       parameters = drive;
     }
   }
+}
+
+std::vector<double> ArmRecording::gains() const
+{
+  std::vector<double> gains;
+  for (const Parameters& parameters : parameters_)
+  {
+    gains.push_back(parameters.telemetry.torque_per_current);
+  }
+  return gains;
 }
 
 MotionSource ArmRecording::source(std::size_t joint) const

@@ -33,6 +33,7 @@ public:
   /// `options` must outlive it. @throws ParameterError, InputError: unreadable, or without the load that is chosen.
   explicit ArmRecording(const RecordingOptions& options);
 
+  const RecordingOptions& options() const { return options_; }
   bool isArm() const { return is_arm_; }
   bool isFile() const { return rows_.empty(); }
   const ArmDescription& arm() const { return arm_; }  ///< of one joint: that alone
@@ -45,6 +46,7 @@ public:
   /// `telemetry.inertia_in_load` is that of the load that is chosen.
   const Parameters& parameters(std::size_t joint) const { return parameters_[joint]; }
   const std::vector<Parameters>& parameters() const { return parameters_; }
+  std::vector<double> gains() const;  ///< of the joints, torque per current [N.m/A]
   /// Torque per current that an arm's recording states, see readStatedGains; it counts unless another was identified or
   /// set [N.m/A].
   const std::vector<double>& statedGains() const { return stated_gains_; }
@@ -77,6 +79,7 @@ private:
   MotionFindings readArm(const VisitRows& visit, RecordingFit& fit, double end) const;
   MotionFindings readSamplesBy(const Read& read, const VisitSample& visit) const;
 
+  const RecordingOptions& options_;
   Watch watch_;
   const std::vector<std::vector<MotionRow>>& rows_;  // at hand; none: a file
   std::string joint_namespace_;

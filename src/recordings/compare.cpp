@@ -268,7 +268,7 @@ ComparedRecording compareInto(const ComparisonOptions& options)
   const ArmAssessment arm = assess(recording, settings, fit);
   compared.is_arm = recording.isArm();
   compared.found = arm.found;
-  compared.friction = arm.friction;
+  compared.friction = arm.judged.common;
   compared.assumed = arm.assumed;
   if (options.watch.stopped())
   {
@@ -282,7 +282,7 @@ ComparedRecording compareInto(const ComparisonOptions& options)
   }
   if (recording.isArm())
   {
-    judgeArm(arm.misfits, !options.references.empty(), compared);
+    judgeArm(arm.judged.misfits, !options.references.empty(), compared);
     compared.document = documentOfArm(options, compared);
     writeTextFile((fs::path(options.report) / ARM_FILE).string(), compared.document.dump() + "\n");
   }

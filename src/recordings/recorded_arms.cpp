@@ -214,6 +214,19 @@ CheckedContents readCheckedContents(const MotionSource& source)
   return isCsv(source) ? readTableContents(source) : readMessageContents(source);
 }
 
+std::vector<std::string> armsLike(const ArmDescription& arm, const RecordingOptions& options)
+{
+  std::vector<std::string> names;
+  for (const fs::path& file : armFiles(options))
+  {
+    if (jointNames(readArmDescription(file.string())) == jointNames(arm))
+    {
+      names.push_back(file.stem().string());
+    }
+  }
+  return names;
+}
+
 std::vector<CheckedArm> findArms(const RecordingOptions& options, const CheckedContents& contents)
 {
   const std::vector<fs::path> files = armFiles(options);

@@ -31,47 +31,13 @@ RecordingOptions optionsFor(const RecordingOptions& options, const CheckedArm& a
   return own;
 }
 
-/// What each arm's load leaves of the currents, in every unit that the efforts can be of; all from one reading.
-std::vector<ArmFit> rankArms(const RecordingOptions& options, const CheckedArm& arm)
-{
-  constexpr double ENOUGH = 120.0;  // [s]
-  const bool unit_is_given = std::any_of(options.assignments.begin(), options.assignments.end(),
-                                         [](const auto& text) { return text.find("telemetry.effort") == 0; });
-  std::vector<ArmFit> fits;
-  for (const std::string& name : arm.fitting)
-  {
-    const RecordingOptions own = optionsFor(options, arm, name);
-    const ArmRecording recording(own);
-    RecordingFit fit(recording.parameters());
-    recording.read([](const std::vector<ArmJointRow>&) {}, fit, ENOUGH);
-    const EffortUnit configured = recording.parameters(0).telemetry.effort;
-    ArmFit best{ name, fit.loadRest(configured), configured };
-    for (const EffortUnit unit : { EffortUnit::CURRENT, EffortUnit::JOINT_TORQUE, EffortUnit::MOTOR_TORQUE })
-    {
-      const ArmFit other{ name, fit.loadRest(unit), unit };
-      constexpr double CLEARLY = 0.5;
-      best = !unit_is_given && other.rest.share() < CLEARLY * best.rest.share() ? other : best;
-    }
-    fits.push_back(best);
-  }
-  std::stable_sort(fits.begin(), fits.end(),
-                   [](const ArmFit& a, const ArmFit& b) { return a.rest.share() < b.rest.share(); });
-  return fits;
-}
-
-/// The best of the ranking where it explains the currents clearly better than the default.
+/// The best of the ranking where it is clearly better than the default.
 std::string choice(const CheckedArm& arm)
 {
-  constexpr double EXPLAINED = 0.35;
-  constexpr double CLEARLY = 0.8;
   const auto preset =
       std::find_if(arm.ranked.begin(), arm.ranked.end(), [](const ArmFit& fit) { return fit.arm == DEFAULT_ARM; });
-  if (preset == arm.ranked.end())
-  {
-    return arm.ranked.front().arm;
-  }
   const ArmFit& best = arm.ranked.front();
-  return best.rest.share() < EXPLAINED && best.rest.share() < CLEARLY * preset->rest.share() ? best.arm : preset->arm;
+  return preset == arm.ranked.end() || best.isClearlyBetter(*preset) ? best.arm : preset->arm;
 }
 
 void takeFit(const RecordingFit& fit, const std::vector<Parameters>& parameters, CheckedArm& arm)
@@ -160,6 +126,7 @@ void readArm(const RecordingOptions& options, CheckedArm& arm)
   AssessmentSettings settings;
   settings.make_joints = [&] { return twins.make(recording.parameters(), LoadOrigin::ARM); };
   settings.gives_notice = false;
+  settings.looks_for_arm = arm.ranked.empty();
   settings.watch = options.watch;
   const ArmAssessment assessment = assess(recording, settings, fit);
   arm.found = assessment.found;
@@ -339,6 +306,20 @@ bool CheckedArm::isUsable() const
   return std::any_of(joints.begin(), joints.end(), [](const CheckedJoint& joint) { return joint.verdict.isJudged(); });
 }
 
+std::vector<std::string> CheckedArm::alike() const
+{
+  const auto own = std::find_if(ranked.begin(), ranked.end(), [this](const ArmFit& fit) { return fit.arm == taken; });
+  std::vector<std::string> names;
+  for (const ArmFit& fit : ranked)
+  {
+    if (fit.arm != taken && fit.cost < own->cost + ArmFit::CLEARLY)
+    {
+      names.push_back(fit.arm);
+    }
+  }
+  return names;
+}
+
 bool RecordingCheck::isUsable() const
 {
   return std::any_of(arms.begin(), arms.end(), [](const CheckedArm& arm) { return arm.isUsable(); });
@@ -353,7 +334,7 @@ RecordingCheck checkRecording(const RecordingOptions& options)
   {
     if (arm.taken.empty() && !arm.fitting.empty())
     {
-      arm.ranked = rankArms(options, arm);
+      arm.ranked = rankArms(optionsFor(options, arm, ""), arm.fitting);
       arm.taken = choice(arm);
     }
     if (arm.taken.empty() && !arm.joints_at_hand.empty())

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "recordings/arm_assessment.hpp"
+#include "recordings/arm_ranking.hpp"
 #include "recordings/arm_recording.hpp"
 
 #include "tracking/stream_timing.hpp"
@@ -35,14 +36,6 @@ struct CheckedJoint
   std::vector<RecordingFinding> findings;
   Misfit misfit;    ///< of its rows
   Verdict verdict;  ///< as that of `joint_twin compare`
-};
-
-/// How well the load of an arm explains the currents.
-struct ArmFit
-{
-  std::string arm;
-  RecordingFit::LoadRest rest;
-  EffortUnit unit{};
 };
 
 /// A change of how the recording is read, and what came of it on this very recording.
@@ -76,6 +69,8 @@ struct CheckedArm
   std::vector<TriedRemedy> tried;
 
   bool isUsable() const;  ///< a joint is judged
+  /// Of the arms that were ranked, those that explain the currents no clearly worse than the one taken.
+  std::vector<std::string> alike() const;
 };
 
 struct RecordingCheck

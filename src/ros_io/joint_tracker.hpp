@@ -98,23 +98,7 @@ public:
   void setArmFriction(double ratio) { arm_friction_ = ratio; }
 
   VerdictWatch& verdict() { return verdict_; }
-  /// Its current is measured: one has come, and it changes.
-  bool hasEffort() const { return has_effort_ && verdict_.misfit().reason != Reason::EFFORT_CONSTANT; }
   bool isTouched() const { return tracker_.evidence().isTouched(); }
-  /// Of the whole arm, or its efforts are modelled.
-  bool isLedByHand() const
-  {
-    const Verdict& verdict = verdict_.confirmed();
-    return !verdict.fits && (verdict.reason == Reason::LESS_THAN_FAULTS || verdict.reason == Reason::NO_FRICTION);
-  }
-
-  /// Nothing but its load may be another than configured; or it has no effort.
-  bool mayCarryOther() const
-  {
-    const Misfit& misfit = verdict_.misfit();
-    return !hasEffort() || ((!misfit.exists() || misfit.reason == Reason::LOAD_WRONG) && !isLedByHand());
-  }
-
   /// A message on the load's topic.
   void receiveLoad(const sensor_msgs::JointState& message, Stamp received);
 

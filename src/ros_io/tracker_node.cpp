@@ -274,7 +274,7 @@ void TrackerNode::updateFit(const ArmSample& sample)
     return;
   }
   next_fit_ = time + FIT_PERIOD;
-  const bool settled = fit_->isSettled();
+  const bool settled = fit_->isSettled() && (!load_ || load_->isSettled());
   const std::vector<Misfit> misfits = fit_->whyNotJudged();
   for (std::size_t i = 0; i < joints_.size(); ++i)
   {

@@ -51,8 +51,7 @@ private:
   void resetFit();
   void lookAtFriction(double time);
   void lookAtLoad();
-  void lookAtPayload(const FoundLoad& found);
-  void startWithLoad();
+  JudgedJoints judgedJoints() const;
   void updateFit(const ArmSample& sample);
   void judge(const ros::WallTime& now);
   void look();

@@ -3,76 +3,61 @@
 #include "ros_io/tracker_node.hpp"
 
 #include <algorithm>
-#include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <ros/console.h>
-
-#include "tracking/verdict.hpp"
 
 namespace hjt
 {
 void TrackerNode::addToLoad(const ArmSample& sample)
 {
-  for (std::size_t i = 0; i < joints_.size(); ++i)
-  {
-    load_->setMeasured(i, joints_[i]->hasEffort());
-  }
   load_->add(sample, std::any_of(joints_.begin(), joints_.end(), [](const auto& joint) { return joint->isTouched(); }));
 }
 
-/// What the currents show of the load and is not configured counts from now on, as `joint_twin compare` judges a
-/// recording.
-void TrackerNode::lookAtLoad()
+JudgedJoints TrackerNode::judgedJoints() const
 {
-  const std::optional<FoundLoad> found = load_ ? load_->look() : std::nullopt;
-  if (!found)
-  {
-    return;
-  }
-  const std::optional<IdentifiedMounting> mounting = load_->mountingOf(*found);
-  if (!mounting)
-  {
-    lookAtPayload(*found);
-    return;
-  }
-  stream_.mounting = mounting->differs() ? mounting->text() : std::string();
-  ROS_WARN_STREAM((mounting->differs() ? sentence(stream_.mounting) : "The arm is mounted as configured.")
-                  << " The joints are judged with it from now on");
-  load_->mount(mounting->gravity);
-  startWithLoad();
-}
-
-/// A payload explains no telemetry that does not fit, nor an arm led by hand. Once it is put down the configured one
-/// counts again.
-void TrackerNode::lookAtPayload(const FoundLoad& found)
-{
-  const std::optional<IdentifiedPayload> payload = load_->payloadOf(found);
-  if (!payload || !std::all_of(joints_.begin(), joints_.end(), [](const auto& of) { return of->mayCarryOther(); }))
-  {
-    return;
-  }
-  stream_.payload = payload->isCarried() ? payload->text() : "";
-  if (payload->isCarried())
-  {
-    ROS_WARN_STREAM(sentence(stream_.payload) << " The joints are judged with it from now on");
-    load_->configure(payload->payload());
-  }
-  else
-  {
-    ROS_INFO_STREAM("The payload that is not configured is put down: the configured one counts from now on");
-    load_->configure(load_->given());
-  }
-  startWithLoad();
-}
-
-void TrackerNode::startWithLoad()
-{
-  arm_load_.emplace(load_->arm());
-  resetFit();
+  std::vector<MeasuredFriction> frictions;
   for (const auto& joint : joints_)
   {
-    joint->start(true);
+    frictions.push_back(joint->verdict().measuredFriction());
+  }
+  JudgedJoints judged(*fit_, fit_->whyNotJudged(), std::move(frictions), repeat_tolerance_);
+  if (friction_->found().temperature)
+  {
+    judged.common.median = friction_->found().median;  // the twins are predicted with it
+  }
+  return judged;
+}
+
+/// What the currents show of the load counts in place of the configured one, by the law of `joint_twin compare`.
+void TrackerNode::lookAtLoad()
+{
+  if (!load_ || !load_->isDue())
+  {
+    return;
+  }
+  const bool was_trying = load_->isTrying();
+  const bool is_other = load_->look(judgedJoints());
+  const AssumedLoad& assumed = load_->assumed();
+  stream_.mounting = assumed.mounting && !load_->isTrying() ? assumed.mounting->text() : "";
+  stream_.payload = assumed.payload && !load_->isTrying() ? assumed.payload->text() : "";
+  if (is_other)
+  {
+    ROS_INFO_STREAM((load_->isTrying() ? "Another load than configured is tried: no WARN until it is known to fit" :
+                     assumed.isConfigured() ? "The configured load counts again" :
+                                              "The load that stood before counts again"));
+    arm_load_.emplace(load_->arm());
+    resetFit();
+    for (const auto& joint : joints_)
+    {
+      joint->start(true);
+    }
+  }
+  else if (was_trying)
+  {
+    ROS_WARN_STREAM(assumed.text());
   }
 }
 }  // namespace hjt

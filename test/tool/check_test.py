@@ -46,22 +46,22 @@ def swinging(seconds=40.0, period=0.008):
 
 
 @functools.lru_cache(maxsize=None)
-def predicted(executable, seconds, period):
-    """The currents that the twins of a UR5 predict for that motion, by joint."""
+def predicted(executable, seconds, period, arm):
+    """The currents that the twins of an arm predict for that motion, by joint."""
     columns = swinging(seconds, period)
     with tempfile.TemporaryDirectory() as folder:
         motion = write_csv(os.path.join(folder, "motion.csv"), columns)
-        subprocess.run([executable, "follow", motion, "--arm", "ur5", "--out", os.path.join(folder, "out")], check=True,
+        subprocess.run([executable, "follow", motion, "--arm", arm, "--out", os.path.join(folder, "out")], check=True,
                        stdout=subprocess.DEVNULL)
         rows = [tool.read_columns(os.path.join(folder, "out", f"{name}.csv")) for name in NAMES]
     return [np.interp(columns["timestamp"], own["time"], own["current_predicted"]) for own in rows]
 
 
-def sound(test, seconds=40.0, period=0.008):
+def sound(test, seconds=40.0, period=0.008, arm="ur5"):
     """The same with the currents that the twins predict, and some noise."""
     columns = swinging(seconds, period)
     noise = np.random.default_rng(7)
-    for joint, current in enumerate(predicted(test.executable, seconds, period)):
+    for joint, current in enumerate(predicted(test.executable, seconds, period, arm)):
         columns[f"actual_current_{joint}"] = current + noise.normal(0.0, 0.02, len(current))
     return columns
 
@@ -135,6 +135,19 @@ class Check(tool.ToolTest):
             self.assertIn(done.returncode, (0, 1) if words[1] == "identify" else (0,), (command, done.stderr))
             self.assertTrue(done.returncode == 0 or "identif" in done.stdout + done.stderr, (command, done.stderr))
 
+    def test_the_arm_is_found_on_a_wall_and_no_other_is_judged(self):
+        arms = os.path.join(tool.CHECKOUT, "config", "arms")
+        wall = self.write("wall.yaml", f"like: {arms}/ur16e.yaml\ngravity: [0.0, -9.82, 0.0]\n")
+        write_csv(self.path("wall.csv"), sound(self, arm=self.path(wall)))
+        found = self.check("wall.csv")
+        self.assertEqual((found["arm"], found["arms_alike"]), ("ur16e", []))
+        self.assertAlmostEqual(found["gravity_tilt"], np.pi / 2.0, delta=0.03)
+        self.assertEqual([joint["judged"] for joint in found["joints"]], [True] * 6)
+        other = self.check("wall.csv", "--arm", "ur5", exit_code=1)
+        self.assertIn("the arm may be a ur16e", other["joints"][1]["verdict"]["text"])
+        done = self.run_tool("compare", "wall.csv", "--arm", "ur5", "--json", "--fail-on", "warn")
+        self.assertEqual((done.returncode, json.loads(done.stdout)["level"]), (4, "NOT JUDGED"), done.stderr)
+
     def test_a_sound_recording_is_usable_as_it_is(self):
         write_csv(self.path("arm.csv"), sound(self))
         found = self.check("arm.csv")
@@ -143,6 +156,7 @@ class Check(tool.ToolTest):
         self.assertEqual(found["arms"], ["ur10", "ur10e", "ur16e", "ur3", "ur3e", "ur5", "ur5e"])
         self.assertAlmostEqual(found["stamp_factor"], 1.0, delta=0.005)
         self.assertAlmostEqual(found["period"], 0.008, places=6)
+        self.assertLessEqual(set(found["arms_alike"]), {"ur5e"})
         self.assertEqual([joint["name"] for joint in found["joints"]], NAMES)
         self.assertEqual([joint["judged"] for joint in found["joints"]], [True] * 6)
         self.assertEqual(found["next"], ["joint_twin identify arm.csv --arm ur5 --out my_arm",

@@ -57,18 +57,15 @@ std::string textOfArm(const ArmOptions& options, const CheckedContents& contents
     return "not known; joints: " + joined(contents.named);
   }
   std::string text = arm.taken + names + ", of " + std::to_string(arm.fitting.size()) + " arms that fit (--arm)";
+  const auto left = [](const ArmFit& fit) { return roundedText(100.0 * fit.left, 2) + " %"; };
   const auto taken =
       std::find_if(arm.ranked.begin(), arm.ranked.end(), [&](const ArmFit& fit) { return fit.arm == arm.taken; });
   const auto other =
       std::find_if(arm.ranked.begin(), arm.ranked.end(), [&](const ArmFit& fit) { return fit.arm != arm.taken; });
-  if (taken != arm.ranked.end() && std::isfinite(taken->rest.share()))
-  {
-    text +=
-        ": its load leaves " + roundedText(100.0 * taken->rest.share(), 2) + " % of the currents" +
-        (other == arm.ranked.end() ? "" :
-                                     ", " + other->arm + "'s " + roundedText(100.0 * other->rest.share(), 2) + " %");
-  }
-  return text;
+  text += ": with the load that fits best it leaves " + left(*taken) + " of the currents";
+  text += other == arm.ranked.end() ? "" : ", " + other->arm + " " + left(*other);
+  const std::vector<std::string> alike = arm.alike();
+  return text + (alike.empty() ? "" : "; they do not tell it from " + joined(alike) + ": give yours");
 }
 
 std::string textOfEffort(const CheckedContents& contents, const CheckedArm& arm)
@@ -301,8 +298,8 @@ const std::vector<Column<CheckedJoint>> JOINT_COLUMNS{
 const std::vector<Column<ArmFit>> RANKING_COLUMNS{ { "arm", &ArmFit::arm },
                                                    { "effort",
                                                      [](const ArmFit& fit) { return effortKeyword(fit.unit); } },
-                                                   { "current", [](const ArmFit& fit) { return fit.rest.current; } },
-                                                   { "left", [](const ArmFit& fit) { return fit.rest.left; } } };
+                                                   { "left", &ArmFit::left },
+                                                   { "cost", &ArmFit::cost } };
 
 const std::vector<Column<TriedRemedy>> TRIED_COLUMNS{ { "options", [](const TriedRemedy& remedy)
                                                         { return remedy.options.substr(1); } },
@@ -326,6 +323,7 @@ Json documentOf(const ArmOptions& options, const CheckedContents& contents, cons
                { "remarks", arm.found.remarks },
                { "arms", arm.fitting },
                { "ranking", Table(RANKING_COLUMNS, arm.ranked).rows() },
+               { "arms_alike", arm.alike() },
                { "arm", arm.taken.empty() ? Json() : Json(arm.taken) },
                { "missing_joints", arm.missing },
                { "load", arm.taken.empty() ? "unknown" : "arm" },

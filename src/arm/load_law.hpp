@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "arm/found_load.hpp"
+#include "arm/recording_fit.hpp"
+#include "tracking/common_friction.hpp"
+
+namespace hjt
+{
+/// The load that counts in place of the configured one, since the currents show it.
+struct AssumedLoad
+{
+  std::optional<IdentifiedPayload> payload;
+  std::optional<IdentifiedMounting> mounting;
+
+  bool isConfigured() const { return !payload && !mounting; }
+  std::string text() const;                   ///< in sentences; empty: as configured
+  void configure(ArmDescription& arm) const;  ///< of an arm with the configured load
+};
+
+/// The joints of an arm beside their twins, with the load that counts.
+struct JudgedJoints
+{
+  JudgedJoints() = default;
+  /// `fit`: of the rows. `frictions`: measured with the misfits of `misfits`. @param tolerance as of commonFriction
+  JudgedJoints(const RecordingFit& fit, std::vector<Misfit> misfits, std::vector<MeasuredFriction> frictions,
+               double tolerance);
+
+  std::vector<Misfit> misfits;  ///< of each, or what all have in common
+  std::vector<MeasuredFriction> frictions;
+  std::vector<bool> measured;  ///< a joint whose effort is none says nothing of the load
+  ArmFriction common;
+};
+
+/// The law by which the load is another than configured, of a recording and live alike. What the currents show is
+/// tried: a mounting; then, where nothing but the load stands against a joint, a payload, since it explains no
+/// telemetry that does not fit, nor an arm led by hand. It stands where every joint fits with it, else
+/// it is taken back.
+class LoadLaw
+{
+public:
+  /// `found`: beside the load that counts, and so are `joints`. True: another counts from now on.
+  bool take(const FoundLoad& found, const JudgedJoints& joints);
+
+  const AssumedLoad& counts() const { return counts_; }
+  /// What counts does not stand yet.
+  bool isTrying() const { return is_trying_; }
+
+private:
+  bool explains(const JudgedJoints& joints) const;
+  std::optional<AssumedLoad> other(const FoundLoad& found, const JudgedJoints& joints);
+
+  AssumedLoad counts_;
+  AssumedLoad stands_;
+  bool is_trying_{};
+  bool tried_mounting_{};  // since something stood
+  bool tried_payload_{};
+};
+}  // namespace hjt
