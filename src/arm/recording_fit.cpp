@@ -34,8 +34,7 @@ constexpr double DEGREE = PI / 180.0;
 std::string lagText(double lag, double longest)
 {
   const bool is_longest = std::abs(lag) > longest - 0.5 * CurrentLag::SPACING;
-  return roundedText(std::abs(lag), 2) + " s " + (is_longest ? "or more " : "") +
-         (lag > 0.0 ? "later" : "earlier");
+  return roundedText(std::abs(lag), 2) + " s " + (is_longest ? "or more " : "") + (lag > 0.0 ? "later" : "earlier");
 }
 
 bool differs(const FittedFactor& factor, double from)
@@ -270,11 +269,10 @@ std::vector<RecordingFinding> RecordingFit::ofArm() const
   }
   if (std::any_of(joints_.begin(), joints_.end(), is_too_fast))
   {
-    findings.push_back(
-        { "angle_unit",
-          "angles change by more than " + rounded(FASTEST) +
-              " rad/s: they are in degrees (make them rad), or the stamps are wrong",
-          Reason::ANGLE_UNIT });
+    findings.push_back({ "angle_unit",
+                         "angles change by more than " + rounded(FASTEST) +
+                             " rad/s: they are in degrees (make them rad), or the stamps are wrong",
+                         Reason::ANGLE_UNIT });
   }
   if (std::optional<RecordingFinding> currents = ofCurrents())
   {
@@ -287,9 +285,8 @@ std::vector<RecordingFinding> RecordingFit::ofArm() const
   {
     findings.push_back({ "effort_unit",
                          std::string("effort looks like ") + effortUnitName(found.unit) + ", not " +
-                             effortUnitName(joints_.front().effort) +
-                             ": set telemetry.effort: " + effortKeyword(found.unit) +
-                             ", unless the arm is another than given",
+                             effortUnitName(joints_.front().effort) + ": set telemetry.effort: " +
+                             effortKeyword(found.unit) + ", unless the arm is another than given",
                          Reason::EFFORT_UNIT });
   }
   else if (std::isfinite(found.factor.value) && std::abs(std::log(found.factor.value / MILLI)) < std::log(WIDE))
@@ -326,9 +323,9 @@ std::vector<RecordingFinding> RecordingFit::ofJoint(std::size_t number) const
   }
   if (const double late = ownLag(joint.lag.left()); late != 0.0)
   {
-    findings.push_back(
-        { "current_lag", "current " + lagText(late, CurrentLag::LONGEST - CurrentLag::SPACING) + " than its motion",
-          Reason::STAMPS });
+    findings.push_back({ "current_lag",
+                         "current " + lagText(late, CurrentLag::LONGEST - CurrentLag::SPACING) + " than its motion",
+                         Reason::STAMPS });
   }
   if (const std::string text = joint.ratio.text(); !text.empty())
   {

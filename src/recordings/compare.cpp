@@ -85,8 +85,7 @@ std::string groupText(const JointGroup& group, const std::vector<ComparedJoint>&
     return {};
   }
   return "Friction of " + lines[group.begin].name + " to " + lines[group.end - 1].name + " together is " +
-         fixedText(group.median, 2) +
-         " times the expected one: another " +
+         fixedText(group.median, 2) + " times the expected one: another " +
          (std::abs(std::log(group.median)) < std::log(MOST) ? "temperature or lubricant of these" :
                                                               "arm, gain or unit than given") +
          ", not a fault of one joint. ";

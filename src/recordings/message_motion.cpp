@@ -162,7 +162,11 @@ public:
     {
       const Incomplete& joint = incomplete_[i];
       const bool named = std::find(names_.begin(), names_.end(), joints_[i]) != names_.end();
-      auto& list = !named ? missing : !joint.angle ? without_angle : !joint.effort ? without_effort : !joint.together ? apart : not_finite;
+      auto& list = !named          ? missing :
+                   !joint.angle    ? without_angle :
+                   !joint.effort   ? without_effort :
+                   !joint.together ? apart :
+                                     not_finite;
       if (!joint.finite)
       {
         list.push_back(joints_[i]);

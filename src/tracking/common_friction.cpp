@@ -236,10 +236,12 @@ ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double t
   }
   else if (number(&MeasuredFriction::is_load_wrong) + number(&MeasuredFriction::is_below_faults) >= MIN_LOAD_WRONG)
   {
-    arm.misfit = { Reason::LOAD_WRONG,
-                   "the currents of several joints fit no load of this arm: another arm, gain, payload or mounting than "
-                   "configured, a payload picked up or put down, joints in another order, angles with another zero or "
-                   "sign, or disturbed currents" };
+    arm.misfit = {
+      Reason::LOAD_WRONG,
+      "the currents of several joints fit no load of this arm: another arm, gain, payload or mounting than "
+      "configured, a payload picked up or put down, joints in another order, angles with another zero or "
+      "sign, or disturbed currents"
+    };
   }
   return arm;
 }

@@ -60,9 +60,10 @@ std::vector<std::string> nextCommands(const ArmOptions& options, const CheckedAr
   {
     const auto joint = std::find_if(arm.joints.begin(), arm.joints.end(),
                                     [](const CheckedJoint& one) { return one.verdict.isJudged(); });
-    return joint == arm.joints.end() ? std::vector<std::string>() :
-                                       std::vector<std::string>{ "joint_twin compare " + file + " --joint " +
-                                                                 shellWord(joint->name) + reading + " --report report" };
+    return joint == arm.joints.end() ?
+               std::vector<std::string>() :
+               std::vector<std::string>{ "joint_twin compare " + file + " --joint " + shellWord(joint->name) + reading +
+                                         " --report report" };
   }
   if (!arm.isUsable() && !is_mended)
   {
