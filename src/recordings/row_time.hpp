@@ -13,8 +13,8 @@ namespace hjt
 ///
 /// Stamps that jump back, of a recording played in a loop, or ahead by more than a day, from before there was a time,
 /// begin another round: it counts from BETWEEN after the one before, a gap that cuts the stream. So does a clock that
-/// was set back by less: MOST_BEHIND rows in order among themselves, all behind an earlier one. Rows that are days apart
-/// one after the other have stamps of another unit, and no rounds.
+/// was set back by less: MOST_BEHIND rows in order among themselves, all behind an earlier one. Rows that are days
+/// apart one after the other have stamps of another unit, and no rounds.
 class RowTime
 {
 public:
