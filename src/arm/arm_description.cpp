@@ -154,7 +154,7 @@ ArmDescription readArmDescription(const std::string& path)
   fields("tip", arm.tip, "link that carries the payload");
   fields("gravity", "m/s^2", arm.gravity, Range{ -100.0, 100.0 }, "in the frame of the base");
   fields("payload.mass", "kg", arm.payload.mass, PAYLOAD_MASS, "at the tip");
-  fields("payload.centre", "m", arm.payload.centre, Range{ -100.0, 100.0 }, "of its mass, in the frame of the tip");
+  fields("payload.centre", "m", arm.payload.centre, Range{ -10.0, 10.0 }, "of its mass, in the frame of the tip");
   if (holds(map, "state_rate"))
   {
     fields("state_rate", "Hz", arm.state_rate, Range{ 1.0, 1000.0 }, "of the controller's states");

@@ -30,6 +30,13 @@ constexpr double UNCHANGED = 2.0;       // no current stays the same in motion f
 constexpr double LEAST_SQUARE = 1e-12;  // of an uncertainty: made-up data have none
 constexpr double DEGREE = PI / 180.0;
 
+/// "0.2 s later": of currents behind their motion. `longest`: nothing longer is tried [s].
+std::string lagText(double lag, double longest)
+{
+  const bool is_longest = std::abs(lag) > longest - 0.5 * CurrentLag::SPACING;
+  return roundedText(std::abs(lag), 2) + " s " + (is_longest ? "or more " : "") + (lag > 0.0 ? "later" : "earlier");
+}
+
 bool differs(const FittedFactor& factor, double from)
 {
   return std::abs(factor.value - from) > std::max(FACTOR_OFF * std::abs(from), DEVIATIONS * factor.uncertainty);
@@ -232,15 +239,13 @@ std::optional<RecordingFinding> RecordingFit::ofCurrents() const
   {
     left.push_back(joint.lag.left());
   }
-  constexpr double LAST_BUT_ONE = CurrentLag::LONGEST - 0.5 * CurrentLag::SPACING;  // nothing longer is tried
   const double lag = commonLag(left);
   if (lag == 0.0)
   {
     return std::nullopt;
   }
   return RecordingFinding{ "current_lag",
-                           "the currents come " + roundedText(std::abs(lag), 2) + " s " +
-                               (std::abs(lag) > LAST_BUT_ONE ? "or more " : "") + (lag > 0.0 ? "later" : "earlier") +
+                           "the currents come " + lagText(lag, CurrentLag::LONGEST) +
                                " than the motion that draws them, in most joints: friction and load are not what they "
                                "look like",
                            Reason::STAMPS };
@@ -264,10 +269,10 @@ std::vector<RecordingFinding> RecordingFit::ofArm() const
   }
   if (std::any_of(joints_.begin(), joints_.end(), is_too_fast))
   {
-    findings.push_back(
-        { "angle_unit",
-          "angles change by more than " + rounded(FASTEST) + " rad/s: they are in degrees, or the stamps are wrong",
-          Reason::ANGLE_UNIT });
+    findings.push_back({ "angle_unit",
+                         "angles change by more than " + rounded(FASTEST) +
+                             " rad/s: they are in degrees (make them rad), or the stamps are wrong",
+                         Reason::ANGLE_UNIT });
   }
   if (std::optional<RecordingFinding> currents = ofCurrents())
   {
@@ -280,8 +285,8 @@ std::vector<RecordingFinding> RecordingFit::ofArm() const
   {
     findings.push_back({ "effort_unit",
                          std::string("effort looks like ") + effortUnitName(found.unit) + ", not " +
-                             effortUnitName(joints_.front().effort) +
-                             ": set telemetry.effort: " + effortKeyword(found.unit),
+                             effortUnitName(joints_.front().effort) + ": set telemetry.effort: " +
+                             effortKeyword(found.unit) + ", unless the arm is another than given",
                          Reason::EFFORT_UNIT });
   }
   else if (std::isfinite(found.factor.value) && std::abs(std::log(found.factor.value / MILLI)) < std::log(WIDE))
@@ -324,10 +329,9 @@ std::vector<RecordingFinding> RecordingFit::ofJoint(std::size_t number) const
   }
   if (const double late = ownLag(joint.lag.left()); late != 0.0)
   {
-    findings.push_back(
-        { "current_lag",
-          "current " + roundedText(std::abs(late), 2) + " s " + (late > 0.0 ? "later" : "earlier") + " than its motion",
-          Reason::STAMPS });
+    findings.push_back({ "current_lag",
+                         "current " + lagText(late, CurrentLag::LONGEST - CurrentLag::SPACING) + " than its motion",
+                         Reason::STAMPS });
   }
   if (const std::string text = joint.ratio.text(); !text.empty())
   {

@@ -305,7 +305,8 @@ void checkBagFile(const std::string& path)
   }
   catch (const Damage& damage)
   {
-    throw InputError(path + " cannot be read as a bag: " + damage.what + " at byte " + std::to_string(damage.position));
+    throw InputError(path + " cannot be read as a bag: " + damage.what + " at byte " + std::to_string(damage.position) +
+                     "; `rosbag reindex` may mend a copy of it, as of one that was cut off");
   }
   catch (const std::exception& error)
   {

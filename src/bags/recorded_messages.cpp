@@ -74,13 +74,14 @@ private:
   rosbag::Bag bag_;
 };
 
-/// The files of a directory of rosbag2, one after the other.
+/// The files of a directory of rosbag2, or the parts of a split bag, one after the other.
 class DirectoryMessages : public RecordedMessages
 {
 public:
   explicit DirectoryMessages(const std::string& path) : RecordedMessages(path)
   {
     std::vector<std::string> files;
+    std::vector<std::string> bags;
     std::string compressed;
     for (const fs::directory_entry& entry : fs::directory_iterator(path))
     {
@@ -89,11 +90,16 @@ public:
       {
         files.push_back(entry.path().string());
       }
+      if (ending == ".bag")
+      {
+        bags.push_back(entry.path().string());
+      }
       compressed = ending == ".zstd" ? entry.path().string() : compressed;
     }
+    files = files.empty() ? bags : files;
     if (files.empty())
     {
-      throw InputError(path + " is a directory without .db3 and .mcap files" +
+      throw InputError(path + " is a directory without .db3, .mcap and .bag files" +
                        (compressed.empty() ? "" : "; `zstd -d " + compressed + "` unpacks one"));
     }
     // NAME_2 before NAME_10

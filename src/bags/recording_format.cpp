@@ -71,6 +71,10 @@ RecordingFormat formatOfRecording(const std::string& path)
   std::array<char, 512> bytes{};
   file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   const std::string_view begin(bytes.data(), static_cast<std::size_t>(file.gcount()));
+  if (begin.empty())
+  {
+    throw InputError(path + " is empty: no byte was recorded");
+  }
   for (const Read& known : READ)
   {
     if (begin.substr(0, known.magic.size()) == known.magic)

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <set>
 
 #include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
@@ -36,6 +37,21 @@ char* trimmed(char* begin, char* end)
   *end = '\0';
   return begin;
 }
+
+/// The name of a column without a unit in brackets behind it that is the one read.
+std::string withoutUnit(const std::string& name)
+{
+  static const std::set<std::string> units{ "s", "rad", "rad/s", "A", "N.m", "Nm", "N*m", "degC", "C" };
+  const std::size_t open = name.find_last_of("[(");
+  if (open == std::string::npos || open == 0 || (name.back() != ']' && name.back() != ')') ||
+      units.count(name.substr(open + 1, name.size() - open - 2)) == 0)
+  {
+    return name;
+  }
+  const std::size_t last = name.find_last_not_of(" \t_", open - 1);
+  return last == std::string::npos ? name : name.substr(0, last + 1);
+}
+
 /// Behind the quotes that the text begins with; without any its begin.
 char* endOfQuotes(char* begin, char* end)
 {
@@ -107,6 +123,7 @@ void CsvRows::readHeader()
       line_number_ = line_number;
     }
   }
+  std::transform(header_.begin(), header_.end(), header_.begin(), withoutUnit);
 }
 
 bool CsvRows::next()

@@ -40,13 +40,25 @@ void refuseReferenceAsReport(const ComparisonOptions& options)
   }
 }
 
+/// Shipped arms are known by their names; one's own file may be of any.
+void refuseReferenceOfOtherArm(const ComparisonOptions& options)
+{
+  const auto is_name = [](const std::string& arm) { return arm.find_first_of("./") == std::string::npos; };
+  for (const std::string& reference : options.references)
+  {
+    const std::string arm = armOfReport(reference);
+    if (is_name(arm) && is_name(options.arm) && arm != options.arm)
+    {
+      throw InputError("--reference " + reference + " is of another arm: of a " + arm + ", not of a " + options.arm);
+    }
+  }
+}
+
 template <typename Member>
 std::optional<double> number(const ComparedJoint& line, Member member)
 {
   return line.friction ? std::make_optional(std::invoke(member, *line.friction)) : std::nullopt;
 }
-
-constexpr const char* ARM_FILE = "arm.json";
 
 const std::vector<Column<ComparedJoint>> ARM_COLUMNS{
   { "joint", &ComparedJoint::name, "joint" },
@@ -67,13 +79,16 @@ const std::vector<Column<ComparedJoint>> ARM_COLUMNS{
 std::string groupText(const JointGroup& group, const std::vector<ComparedJoint>& lines)
 {
   constexpr double NOTEWORTHY = 0.1;
+  constexpr double MOST = 2.5;  // that temperature or lubricant make
   if (!group.is_known || std::abs(group.median - 1.0) < NOTEWORTHY)
   {
     return {};
   }
   return "Friction of " + lines[group.begin].name + " to " + lines[group.end - 1].name + " together is " +
-         fixedText(group.median, 2) +
-         " times the expected one: another temperature or lubricant of these, not a fault of one joint. ";
+         fixedText(group.median, 2) + " times the expected one: another " +
+         (std::abs(std::log(group.median)) < std::log(MOST) ? "temperature or lubricant of these" :
+                                                              "arm, gain or unit than given") +
+         ", not a fault of one joint. ";
 }
 
 /// Every joint that departs or is not judged, and why.
@@ -224,6 +239,7 @@ std::vector<std::unique_ptr<JointComparison>> prepareJoints(const ComparisonOpti
                                                          LoadOrigin::CONFIGURED;
   if (recording.isArm())
   {
+    refuseReferenceOfOtherArm(options);
     prepareDirectory(options, options.report, ARM_FILE);
   }
   std::vector<std::unique_ptr<JointComparison>> joints;

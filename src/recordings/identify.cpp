@@ -125,6 +125,14 @@ void chooseParts(const IdentifyOptions& options, double duration, double last, I
   const Span whole{ 0.0, last + PAST_THE_END };
   joint.train = options.train.value_or(is_arm ? whole : Span{ 0.0, third });
   joint.judge = options.judge.value_or(is_arm ? whole : Span{ third, duration + PAST_THE_END });
+  for (const std::optional<Span>& part : { options.train, options.judge })
+  {
+    if (part && !(part->from < part->to))
+    {
+      throw InputError("a part from " + shortNumber(part->from) + " to " + shortNumber(part->to) +
+                       " s ends before it begins");
+    }
+  }
 }
 
 /// Fits a joint to its part; the pieces left out in turn judge an arm's. @throws InputError if it hardly moves.

@@ -144,6 +144,7 @@ public:
         Incomplete& joint = incomplete_[i];
         joint.angle = joint.angle || place < state.position.size();
         joint.effort = joint.effort || place < state.effort.size();
+        joint.together = joint.together || place < std::min(state.position.size(), state.effort.size());
         joint.finite = joint.finite || (place < std::min(state.position.size(), state.effort.size()) &&
                                         std::isfinite(state.position[place]) && std::isfinite(state.effort[place]));
       }
@@ -155,12 +156,17 @@ public:
     std::vector<std::string> missing;
     std::vector<std::string> without_angle;
     std::vector<std::string> without_effort;
+    std::vector<std::string> apart;
     std::vector<std::string> not_finite;
     for (std::size_t i = 0; i < joints_.size(); ++i)
     {
       const Incomplete& joint = incomplete_[i];
       const bool named = std::find(names_.begin(), names_.end(), joints_[i]) != names_.end();
-      auto& list = !named ? missing : !joint.angle ? without_angle : !joint.effort ? without_effort : not_finite;
+      auto& list = !named          ? missing :
+                   !joint.angle    ? without_angle :
+                   !joint.effort   ? without_effort :
+                   !joint.together ? apart :
+                                     not_finite;
       if (!joint.finite)
       {
         list.push_back(joints_[i]);
@@ -170,12 +176,14 @@ public:
     std::vector<std::string> all = missing;
     all.insert(all.end(), without_angle.begin(), without_angle.end());
     all.insert(all.end(), without_effort.begin(), without_effort.end());
+    all.insert(all.end(), apart.begin(), apart.end());
     all.insert(all.end(), not_finite.begin(), not_finite.end());
     std::vector<std::string> found = names_;
     std::sort(found.begin(), found.end());
     text += joined(all) + "; joints found: " + (found.empty() ? "none" : joined(found));
     text += without_angle.empty() ? "" : "; their position is empty";
     text += without_effort.empty() ? "" : "; their effort is empty: the motors' currents have to be recorded as effort";
+    text += apart.empty() ? "" : "; position and effort are never in the same message, where they have to be";
     text += not_finite.empty() ? "" : "; what they give is not finite (NaN)";
     for (const JointAffixes& affixes : findAffixes(joints_, names_))
     {
@@ -191,6 +199,7 @@ private:
   {
     bool angle{};
     bool effort{};
+    bool together{};  // in one message
     bool finite{};
   };
 

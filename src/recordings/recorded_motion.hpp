@@ -13,6 +13,9 @@
 
 namespace hjt
 {
+/// Number of a joint that is none of a controller's.
+constexpr int NO_COLUMNS = -1;
+
 /// Which joint of which recording.
 struct MotionSource
 {

@@ -41,6 +41,10 @@ MotionSource motionSource(const RecordingOptions& options)
     source.joint = options.affixes(known->name);
     source.csv_joint = known->number;
   }
+  else if (!options.joint.empty())
+  {
+    source.csv_joint = NO_COLUMNS;
+  }
   return source;
 }
 }  // namespace hjt

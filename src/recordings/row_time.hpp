@@ -12,7 +12,8 @@ namespace hjt
 /// Times of a recording's rows from its first row on [s].
 ///
 /// Stamps that jump back, of a recording played in a loop, or ahead by more than a day, from before there was a time,
-/// begin another round: it counts from BETWEEN after the one before, a gap that cuts the stream. Rows that are days
+/// begin another round: it counts from BETWEEN after the one before, a gap that cuts the stream. So does a clock that
+/// was set back by less: MOST_BEHIND rows in order among themselves, all behind an earlier one. Rows that are days
 /// apart one after the other have stamps of another unit, and no rounds.
 class RowTime
 {
@@ -21,6 +22,7 @@ public:
   static constexpr double AHEAD = 86400.0;  ///< [s]
   static constexpr double BETWEEN = 1.0;    ///< [s]
   static constexpr std::uint64_t MOST_AHEAD = 10;
+  static constexpr std::uint64_t MOST_BEHIND = 10;
 
   double at(Stamp stamp)
   {
@@ -31,10 +33,12 @@ public:
     }
     const double step = toSeconds(stamp - *last_);
     ahead_ += step > AHEAD ? 1 : 0;
-    if (step < -BACK || (step > AHEAD && ahead_ <= MOST_AHEAD))
+    behind_ = step > 0.0 && offset_ + toSeconds(stamp - zero_) < time_ ? behind_ + 1 : 0;
+    if (step < -BACK || (step > AHEAD && ahead_ <= MOST_AHEAD) || behind_ > MOST_BEHIND)
     {
       zero_ = stamp;
       offset_ = time_ + BETWEEN;
+      behind_ = 0;
       ++rounds_;
     }
     last_ = stamp;
@@ -57,6 +61,7 @@ private:
   double time_{};
   std::uint64_t rounds_{ 1 };
   std::uint64_t ahead_{};
+  std::uint64_t behind_{};
 };
 
 /// Do the rows come in the order of their stamps?
@@ -77,7 +82,8 @@ public:
   std::string text() const
   {
     constexpr std::uint64_t FEWEST = 10;
-    constexpr std::uint64_t MOST = 5;  // rows for one that goes back
+    constexpr std::uint64_t MOST = 5;    // rows for one that goes back
+    constexpr std::uint64_t COPIES = 9;  // of one row, at most
     if (rows_ < FEWEST)
     {
       return {};
@@ -85,6 +91,11 @@ public:
     if (same_ + 1 == rows_)
     {
       return "all rows have the same stamp: times, speeds and loads are unknown";
+    }
+    if (COPIES * same_ > (COPIES - 1) * rows_)
+    {
+      return "the stamps are rounded: " + std::to_string(same_) + " of " + std::to_string(rows_) +
+             " rows have that of the row before, so times, speeds and loads are unknown";
     }
     return MOST * back_ > rows_ ? "the rows are not in the order of their stamps: " + std::to_string(back_) + " of " +
                                       std::to_string(rows_) + " go back" :

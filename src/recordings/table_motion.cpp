@@ -314,6 +314,13 @@ MotionCount readTableMotion(const MotionSource& source, const std::vector<int>& 
     throw InputError(source.path + ": a controller's CSV recording has " + std::to_string(JOINTS) +
                      " joints, the arm has " + std::to_string(numbers.size()));
   }
+  if (numbers.front() == NO_COLUMNS)
+  {
+    throw InputError(source.path +
+                     ": the joints of a controller's CSV recording are base, shoulder, elbow, wrist_1, "
+                     "wrist_2, wrist_3, or 0 to 5, not '" +
+                     source.joint + "'");
+  }
   const MotionCount count = numbers.size() == 1 ? TableMotion<1>(source, numbers).read(visit) :
                                                   TableMotion<JOINTS>(source, numbers).read(visit);
   progress(1.0);

@@ -234,11 +234,14 @@ ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double t
                    "several joints show less friction than any fault leaves: the arm is led by hand or carried, or "
                    "gains, ratios or signs are others than configured" };
   }
-  else if (number(&MeasuredFriction::is_load_wrong) >= MIN_LOAD_WRONG)
+  else if (number(&MeasuredFriction::is_load_wrong) + number(&MeasuredFriction::is_below_faults) >= MIN_LOAD_WRONG)
   {
-    arm.misfit = { Reason::LOAD_WRONG,
-                   "the currents of several joints fit no load of this arm: another arm, payload or mounting than "
-                   "configured, joints in another order, angles with another zero or sign, or disturbed currents" };
+    arm.misfit = {
+      Reason::LOAD_WRONG,
+      "the currents of several joints fit no load of this arm: another arm, gain, payload or mounting than "
+      "configured, a payload picked up or put down, joints in another order, angles with another zero or "
+      "sign, or disturbed currents"
+    };
   }
   return arm;
 }

@@ -59,8 +59,8 @@ struct ArmFriction
 /// left then and most of the three joints of a group agree on is the group's: three drives do not fail alike. Joints
 /// held against their type differ by more, and 5 % of it may be chance: of a joint that is held against its own while
 /// others are not, that is the deviation. More friction of the others makes no joint's less. Two joints or more whose
-/// friction is below what any fault leaves: something else carries the arm. Two or more whose currents fit no load: its
-/// load is another. In both cases no joint is judged.
+/// friction is below what any fault leaves: something else carries the arm. Two or more whose currents fit no load, or
+/// one and one of the former: its load is another. In both cases no joint is judged.
 ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double tolerance);
 
 /// Why a joint is not judged: its own reason, or that of all joints. Signs of efforts tell more than another load.

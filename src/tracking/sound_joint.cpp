@@ -17,6 +17,25 @@ namespace hjt
 {
 namespace
 {
+/// JSON is YAML.
+YAML::Node readData(const std::string& directory, const char* name)
+{
+  const std::string path = directory + "/" + name;
+  if (!std::filesystem::exists(path))
+  {
+    throw InputError(directory + " holds no report of `joint_twin compare` as it is needed here: " + name +
+                     " is missing");
+  }
+  try
+  {
+    return YAML::LoadFile(path);
+  }
+  catch (const YAML::Exception& error)
+  {
+    throw InputError(path + " is no data of `joint_twin compare`: " + error.what());
+  }
+}
+
 struct Numbers
 {
   double compliance_ratio{};    // NaN: not known
@@ -24,27 +43,28 @@ struct Numbers
   double friction_deviation{};  // NaN: the friction was not judged
 };
 
-/// JSON is YAML. Null, or missing in older files: NaN.
-Numbers readNumbers(const std::string& path)
+/// Null, or missing in older files: NaN.
+Numbers readNumbers(const std::string& directory)
 {
-  try
+  const YAML::Node object = readData(directory, COMPARISON_FILE);
+  const std::string path = directory + "/" + COMPARISON_FILE;
+  if (!object.IsMap() || !object["compliance_ratio"])
   {
-    const YAML::Node object = YAML::LoadFile(path);
-    const auto number = [&](const char* name)
+    throw InputError(path + " is no data of `joint_twin compare`: it has no compliance_ratio");
+  }
+  const auto number = [&](const char* name)
+  {
+    const YAML::Node value = object[name];
+    try
     {
-      const YAML::Node value = object[name];
       return value && !value.IsNull() ? yamlNumber(value) : std::numeric_limits<double>::quiet_NaN();
-    };
-    if (!object.IsMap() || !object["compliance_ratio"])
-    {
-      throw InputError(path + " is no data of `joint_twin compare`: it has no compliance_ratio");
     }
-    return { number("compliance_ratio"), number("temperature"), number("friction_deviation") };
-  }
-  catch (const YAML::Exception& error)
-  {
-    throw InputError(path + " is no data of `joint_twin compare`: " + error.what());
-  }
+    catch (const YAML::Exception& error)
+    {
+      throw InputError(path + " is no data of `joint_twin compare`: " + name + ": " + error.what());
+    }
+  };
+  return { number("compliance_ratio"), number("temperature"), number("friction_deviation") };
 }
 
 std::vector<FrictionPoint> readFriction(const std::string& directory)
@@ -60,6 +80,16 @@ std::vector<FrictionPoint> readFriction(const std::string& directory)
 }
 }  // namespace
 
+std::string armOfReport(const std::string& directory)
+{
+  const YAML::Node report = readData(directory, ARM_FILE);
+  if (!report.IsMap() || !report["arm"] || !report["arm"].IsScalar())
+  {
+    throw InputError(directory + "/" + ARM_FILE + " is no data of `joint_twin compare`: it has no arm");
+  }
+  return report["arm"].Scalar();
+}
+
 SoundJoint readSoundJoint(const std::vector<std::string>& directories, const Parameters& parameters)
 {
   SoundJoint sound;
@@ -72,7 +102,7 @@ SoundJoint readSoundJoint(const std::vector<std::string>& directories, const Par
   double temperatures = 0.0;
   for (const std::string& directory : directories)
   {
-    const Numbers numbers = readNumbers(directory + "/" + COMPARISON_FILE);
+    const Numbers numbers = readNumbers(directory);
     compliances += numbers.compliance_ratio;
     temperatures += numbers.temperature;
     if (std::isfinite(numbers.friction_deviation))
@@ -82,7 +112,14 @@ SoundJoint readSoundJoint(const std::vector<std::string>& directories, const Par
     const std::string baseline = directory + "/" + BASELINE_FILE;
     if (sound.baseline.empty() && std::filesystem::exists(baseline))
     {
-      sound.baseline = readBaseline(baseline, parameters, false);
+      try
+      {
+        sound.baseline = readBaseline(baseline, parameters, false);
+      }
+      catch (const InputError& error)
+      {
+        throw InputError("the reference " + directory + " is of another arm or gear, or was changed: " + error.what());
+      }
     }
   }
   const auto count = static_cast<double>(directories.size());

@@ -9,7 +9,8 @@
 
 namespace hjt
 {
-// Of what `joint_twin compare` writes into the directory of a joint's report.
+// Of what `joint_twin compare` writes into the directory of an arm's or a joint's report.
+constexpr const char* ARM_FILE = "arm.json";
 constexpr const char* COMPARISON_FILE = "comparison.json";
 constexpr const char* BASELINE_FILE = "baseline.yaml";
 constexpr const char* FRICTION_FILE = "friction.csv";
@@ -20,6 +21,10 @@ struct SoundJoint
   OwnReference own;
   std::vector<ReferenceBin> baseline;  ///< none: the recordings were too short for one
 };
+
+/// As given when the report of an arm was made: a name, or a file.
+/// @throws InputError if the directory holds no report of an arm.
+std::string armOfReport(const std::string& directory);
 
 /// Of one or more recordings of the sound joint, by the directories of their reports: their friction is the mean at the
 /// speeds of all, and by how much they differ tells how the joint repeats. A recording in which its friction was not

@@ -126,6 +126,10 @@ TEST(CommonFriction, JointsThatFitNoLoadLeaveNoneJudged)
   const Misfit misfit = commonFriction(joints, 0.15).misfit;
   EXPECT_EQ(misfit.reason, Reason::LOAD_WRONG);
   EXPECT_THAT(misfit.clause, testing::HasSubstr("another arm"));
+  joints[1] = joints[2];
+  joints[1].is_below_faults = true;
+  EXPECT_EQ(commonFriction(joints, 0.15).misfit.reason, Reason::LOAD_WRONG)
+      << "nor is a joint judged beside two that show what no drive does";
 }
 }  // namespace
 }  // namespace hjt

@@ -7,6 +7,7 @@ HJT_TELEMETRY_DIR, else in shared/telemetry beside the checkout.
 import csv
 import functools
 import glob
+import json
 import math
 import os
 import subprocess
@@ -306,6 +307,15 @@ class Arm(ArmTest):
         np.testing.assert_array_equal(elbow["temperature"], np.where(np.arange(2500) < 100, 25.0, 32.0))
         np.testing.assert_array_equal(elbow["temperature_received"], np.arange(2500) >= 100)
         self.assertFalse(self.columns("bag/base.csv")["temperature_received"].any())
+
+    def test_a_reference_is_of_this_arm(self):
+        os.mkdir(self.path("other"))
+        compare = ("compare", "arm.csv", "--arm", "ur5", "--report", "report", "--reference", "other")
+        self.write("arm.csv", arm_csv())
+        self.fail_with(1, ["other", "no report", "arm.json"], *compare)
+        with open(self.path("other/arm.json"), "w", encoding="ascii") as file:
+            json.dump({"arm": "ur5e"}, file)
+        self.fail_with(1, ["other", "of a ur5e, not of a ur5"], *compare)
 
     def test_a_report_is_not_its_own_reference(self):
         self.write("arm.csv", arm_csv())

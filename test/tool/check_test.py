@@ -162,6 +162,12 @@ class Check(tool.ToolTest):
         self.assertEqual(found["next"], ["joint_twin identify arm.csv --arm ur5 --out my_arm",
                                          "joint_twin compare arm.csv --arm ur5 --report report",
                                          "joint_twin follow arm.csv --arm ur5 --out rows"])
+        os.rename(self.path("arm.csv"), self.path("my arm.csv"))
+        with open(self.path("none.yaml"), "w", encoding="ascii") as file:
+            file.write("motor: {}\n")
+        self.assertEqual(self.check("my arm.csv", "--arm", "ur5", "--config", "none.yaml")["next"][1],
+                         "joint_twin compare 'my arm.csv' --arm ur5 --config none.yaml --report report")
+        os.rename(self.path("my arm.csv"), self.path("arm.csv"))
         printed = self.lines("arm.csv", "--arm", "ur5e")
         self.assertIn("arm         ur5e", printed)
         self.assertEqual(sum(line.startswith(tuple(f"{name} " for name in NAMES)) for line in printed), 6)

@@ -111,6 +111,10 @@ class Identify(tool.ToolTest):
         rows += [f"{0.008 * row:.3f},0.5,0.1,1.0" for row in range(400)]
         self.write("a.csv", "\n".join(rows) + "\n")
         self.fail_with(1, ["the joint hardly moves"], "identify", "a.csv", "--joint", "base")
+        self.fail_with(1, ["ends before it begins"], "identify", "a.csv", "--joint", "base", "--train", 5, 1)
+        for joint in ("7", "Elbow", "left_elbow_joint"):
+            for command in (("identify",), ("compare", "--json"), ("follow",)):
+                self.fail_with(1, ["a.csv", "wrist_3", f"'{joint}'"], *command, "a.csv", "--joint", joint)
 
     def test_a_long_bag_costs_no_more_memory_and_a_small_part_of_its_time(self):
         peaks = []

@@ -53,6 +53,10 @@ class Recordings(tool.ToolTest):
         write_db3(self.path("folder/b_0.db3"), rows[:1000])
         write_db3(self.path("folder/b_1.db3"), rows[1000:])
         self.assert_as_plain(self.check("folder"))
+        os.mkdir(self.path("split"))
+        write_bag(self.path("split/b_0.bag"), rows[:1000])
+        write_bag(self.path("split/b_1.bag"), rows[1000:])
+        self.assert_as_plain(self.check("split"))
         done = self.run_tool("compare", "a.db3", "--arm", "ur5", "--report", "report")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.succeed("follow", "a.mcap", "--arm", "ur5", "--bag", "out.bag")
@@ -72,13 +76,17 @@ class Recordings(tool.ToolTest):
             self.assert_as_plain(self.check(write_mcap(self.path(packer[0] + ".mcap"), states(self.columns), packer)))
 
     def test_other_files_are_named_by_what_they_are(self):
-        for content, parts in ((b"SQLite format 3\0", ["SQLite", "rosbags-convert"]),
+        for content, parts in ((b"SQLite format 3\0", ["SQLite", "rosbags-convert"]), (b"", ["is empty"]),
                                (b"\x89MCAP0\r\n", ["MCAP", "rosbags-convert"]),
                                (b"\x89HDF\r\n\x1a\n" + bytes(100), ["HDF5"]), (b"PK\x03\x04" + bytes(30), ["zip"]),
                                (b"\x28\xb5\x2f\xfd" + bytes(30), ["zstd -d"])):
             with open(self.path("a.bag"), "wb") as file:
                 file.write(content)
             self.fail_with(1, ["a.bag", *parts], "check", "a.bag")
+        write_bag(self.path("whole.bag"), list(states(swinging(seconds=20.0))))
+        with open(self.path("whole.bag"), "rb") as whole, open(self.path("a.bag"), "wb") as file:
+            file.write(whole.read()[:-100000])
+        self.fail_with(1, ["a.bag", "rosbag reindex"], "check", "a.bag")
 
     def test_tables_as_programs_write_them(self):
         for separator in (" ", "\t", ";", "  ", ", "):
@@ -96,8 +104,10 @@ class Recordings(tool.ToolTest):
         decimal = [lines[0]] + [",".join('"' + cell.replace(".", ",") + '"' for cell in line.split(","))
                                 for line in lines[1:]]
         between_tabs = [lines[0].replace(",", "\t")] + [line.replace(",", "\t").replace(".", ",") for line in lines[1:]]
+        unit_of = {"timestamp": "s", "actual_q": "rad", "actual_qd": "rad/s", "actual_current": "A"}
+        units = [",".join(f"{name} [{unit_of[name.rstrip('_012345')]}]" for name in lines[0].split(","))] + lines[1:]
         with_comments = ["# by hand", "# ur5"] + lines[:500] + ["# a pause"] + lines[500:]
-        for changed in (decimal, between_tabs, with_comments, lines[:1] + [line + "," for line in lines[1:]]):
+        for changed in (decimal, between_tabs, units, with_comments, lines[:1] + [line + "," for line in lines[1:]]):
             with open(self.path("other.csv"), "w", encoding="ascii") as file:
                 file.write("\n".join(changed))
             self.assert_as_plain(self.check("other.csv"))
@@ -119,7 +129,8 @@ class Recordings(tool.ToolTest):
     def test_rows_whose_stamps_tell_nothing_are_named(self):
         times = self.columns["timestamp"]
         mixed = np.random.default_rng(3).permutation(times)
-        for stamps, part in ((times[::-1], "go back"), (0.0 * times, "same stamp"), (mixed, "go back")):
+        for stamps, part in ((times[::-1], "go back"), (0.0 * times, "same stamp"), (mixed, "go back"),
+                             (np.floor(10.0 * times) / 10.0, "are rounded")):
             changed = dict(self.columns, timestamp=stamps)
             write_bag(self.path("a.bag"), [(seconds, state) for seconds, (_, state) in
                                            zip(times, states(changed))])
@@ -206,6 +217,12 @@ class Recordings(tool.ToolTest):
             write_bag(self.path("a.bag"), rows)
             done = self.fail_with(1, [part], "follow", "a.bag", "--arm", "ur5")
             self.assertNotIn("joints found: none", done.stderr)
+        apart = []
+        for seconds, state in states(swinging(seconds=3.0)):
+            apart.append((seconds, JointState(state.header, state.name, state.position, [], [])))
+            apart.append((seconds, JointState(state.header, state.name, [], [], state.effort)))
+        write_bag(self.path("a.bag"), apart)
+        self.fail_with(1, ["never in the same message"], "follow", "a.bag", "--arm", "ur5")
 
     def test_an_arm_in_parts_is_put_together(self):
         rows = []
@@ -287,6 +304,12 @@ class Recordings(tool.ToolTest):
         self.assertIn("2 rounds", found["remarks"][0])
         self.assertAlmostEqual(found["duration"], 2.0 * 39.952 + 1.0, delta=0.01)
         self.assertEqual((found["rows"], found["unreadable"]), (len(looped), 0))
+        for _, state in rows[2500:]:  # a clock that was set back within the recording
+            state.header.stamp -= genpy.Duration.from_sec(0.5)
+        write_bag(self.path("set.bag"), rows)
+        found = self.check("set.bag")
+        self.assertIn("2 rounds", found["remarks"][0])
+        self.assertEqual([joint["judged"] for joint in found["joints"]], [True] * 6)
         early = []
         for seconds, state in states(dict(self.columns)):
             if seconds < 1.0:

@@ -2,12 +2,37 @@
 #include "apps/tool/next_commands.hpp"
 
 #include <algorithm>
+#include <cctype>
+#include <string_view>
 
 #include "base/number_text.hpp"
 #include "recordings/comparison_files.hpp"
 
 namespace hjt
 {
+namespace
+{
+/// As a shell takes it for one word.
+std::string shellWord(const std::string& text)
+{
+  const auto is_plain = [](char c)
+  {
+    return static_cast<unsigned char>(c) > 127 || std::isalnum(static_cast<unsigned char>(c)) != 0 ||
+           std::string_view("_./:=@%+,-").find(c) != std::string_view::npos;
+  };
+  if (!text.empty() && std::all_of(text.begin(), text.end(), is_plain))
+  {
+    return text;
+  }
+  std::string quoted = "'";
+  for (const char c : text)
+  {
+    quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  }
+  return quoted + "'";
+}
+}  // namespace
+
 std::vector<std::string> nextCommands(const ArmOptions& options, const CheckedArm& arm)
 {
   const bool is_mended = !arm.tried.empty() && arm.tried.front().helps;
@@ -18,28 +43,33 @@ std::vector<std::string> nextCommands(const ArmOptions& options, const CheckedAr
   {
     reading += " --time-scale " + roundedText(options.time_scale, 6);
   }
+  for (const std::string& config : options.configs)
+  {
+    reading += " --config " + shellWord(config);
+  }
   for (const std::string& assignment : options.assignments)
   {
-    reading += " --set " + assignment;
+    reading += " --set " + shellWord(assignment);
   }
   if (options.topic != DEFAULT_TOPIC)
   {
-    reading += " --topic " + options.topic;
+    reading += " --topic " + shellWord(options.topic);
   }
-  const std::string& file = options.recording;
+  const std::string file = shellWord(options.recording);
   if (arm.taken.empty())
   {
     const auto joint = std::find_if(arm.joints.begin(), arm.joints.end(),
                                     [](const CheckedJoint& one) { return one.verdict.isJudged(); });
-    return joint == arm.joints.end() ? std::vector<std::string>() :
-                                       std::vector<std::string>{ "joint_twin compare " + file + " --joint " +
-                                                                 joint->name + reading + " --report report" };
+    return joint == arm.joints.end() ?
+               std::vector<std::string>() :
+               std::vector<std::string>{ "joint_twin compare " + file + " --joint " + shellWord(joint->name) + reading +
+                                         " --report report" };
   }
   if (!arm.isUsable() && !is_mended)
   {
     return {};
   }
-  const std::string with = " --arm " + arm.taken + reading + remedy;
+  const std::string with = " --arm " + shellWord(arm.taken) + reading + remedy;
   return { (is_mended ? "joint_twin check " : "joint_twin identify ") + file + with +
                (is_mended ? "" : " --out my_arm"),
            "joint_twin compare " + file + with + " --report report",
