@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <utility>
 #include <vector>
@@ -40,13 +41,15 @@ SeenFrom seenFrom(const Assessor& assessor, const OperatingPoint& point)
     mean.single += weight * terms.largest(signature);
   }
   SeenFrom least;
-  least.fill(HUGE_VAL);
+  least.fill(std::numeric_limits<double>::quiet_NaN());
   for (const auto& [key, mean] : means)
   {
-    const auto score = [&](double sum) { return baseline.pattern(sum / mean.weight).score; };
-    if (score(mean.pattern) > baseline.patternThreshold() || score(mean.single) > baseline.threshold())
+    double& from = least[key.first];
+    from = std::isnan(from) ? HUGE_VAL : from;
+    if (baseline.pattern(mean.pattern / mean.weight).score > baseline.patternThreshold() ||
+        baseline.pattern(mean.single / mean.weight).score > baseline.threshold())
     {
-      least[key.first] = std::min(least[key.first], key.second);
+      from = std::min(from, key.second);
     }
   }
   return least;

@@ -10,6 +10,7 @@ namespace hjt
 using SeenFrom = std::array<double, CAUSE_COUNT>;  ///< severities by cause [-]
 
 /// Least severity at which half of the drives with each fault would be out of the ordinary in the windows that were
-/// compared last, among those of the signatures; infinite: with none. For reports: allocates.
+/// compared last, among those of the signatures; infinite: with none; NaN: the fault has no signature. For reports:
+/// allocates.
 SeenFrom seenFrom(const Assessor& assessor, const OperatingPoint& point);
 }  // namespace hjt

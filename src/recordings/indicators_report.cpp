@@ -135,7 +135,7 @@ Json seenFromJson(const WindowResult& window)
   for (std::size_t cause = 0; window.seen_from && cause < CAUSE_COUNT; ++cause)
   {
     const double severity = (*window.seen_from)[cause];
-    if (static_cast<Cause>(cause) != Cause::NONE)
+    if (!std::isnan(severity))
     {
       json[causeName(static_cast<Cause>(cause))] = std::isfinite(severity) ? Json(severity) : Json();
     }
@@ -256,12 +256,15 @@ void printSummary(const std::vector<WindowResult>& windows)
       lines.push_back({ "", std::string("or ") + causeName(other.cause), other.confidence });
     }
   }
-  for (std::size_t cause = 1; last.seen_from && cause < CAUSE_COUNT; ++cause)
+  for (std::size_t cause = 0; last.seen_from && cause < CAUSE_COUNT; ++cause)
   {
     const double severity = (*last.seen_from)[cause];
     const std::string name = causeName(static_cast<Cause>(cause));
-    lines.push_back(std::isfinite(severity) ? ReportLine{ "", name + " would show from", severity } :
-                                              ReportLine{ "", name, "would not show" });
+    if (!std::isnan(severity))
+    {
+      lines.push_back(std::isfinite(severity) ? ReportLine{ "", name + " would show from", severity } :
+                                                ReportLine{ "", name, "would not show" });
+    }
   }
   printReport(false, lines);
   if (!judged)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "health/signal_monitor.hpp"
 
+#include <cmath>
 #include <random>
 #include <string>
 
@@ -137,6 +138,7 @@ TEST_F(Assessed, SoundJointTellsFromWhichSeverityOnAFaultWouldHaveShown)
   const SeenFrom fine = seenFrom(assessor_, point);
   const auto of = [](const SeenFrom& seen, FaultKind kind) { return seen[static_cast<std::size_t>(causeOf(kind))]; };
   EXPECT_LT(of(fine, FaultKind::TOOTH_TIP_CRACK), 1.0);
+  EXPECT_TRUE(std::isnan(fine[static_cast<std::size_t>(Cause::NONE)])) << "has no signature";
   noise_ = std::normal_distribution<double>(0.0, 30.0);
   Assessor coarse(shippedParameters());
   for (int i = 0; i < LEARNING + 5; ++i)
