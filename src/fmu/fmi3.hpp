@@ -16,7 +16,7 @@ enum class Status : int
   FATAL
 };
 
-/// Of what is logged; the last one of errors.
+/// What is logged: information and warnings, errors.
 constexpr const char* LOG_CATEGORIES[]{ "logStatusWarning", "logStatusError" };
 
 using ValueReference = std::uint32_t;

@@ -154,10 +154,7 @@ extern "C"
     }
     catch (const std::exception& error)
     {
-      if (log != nullptr)
-      {
-        log(environment, Status::ERROR, LOG_CATEGORIES[1], error.what());
-      }
+      sendMessage(log, environment, Status::ERROR, error.what());  // whether logging is on or not
     }
     catch (...)  // nothing of C++ leaves the unit
     {

@@ -2,8 +2,10 @@
 #include "fmu/instance.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <string_view>
 #include <utility>
 
 #include "base/number_text.hpp"
@@ -21,12 +23,22 @@ std::string folderOf(std::string resources)
   {
     const std::size_t path = resources.rfind("file://", 0) == 0 ? resources.find('/', 7) : 5;
     resources.erase(0, path);
+    const auto is_digit = [](unsigned char c) { return std::isxdigit(c) != 0; };
     for (std::size_t i = 0; (i = resources.find('%', i)) != std::string::npos; ++i)
     {
-      resources.replace(i, 3, 1, static_cast<char>(std::stoi(resources.substr(i + 1, 2), nullptr, 16)));
+      const std::string digits = resources.substr(i + 1, 2);
+      if (digits.size() == 2 && std::all_of(digits.begin(), digits.end(), is_digit))
+      {
+        resources.replace(i, 3, 1, static_cast<char>(std::stoi(digits, nullptr, 16)));
+      }
     }
   }
   return (std::filesystem::absolute(resources) / "").string();
+}
+
+std::size_t categoryOf(Status status) noexcept
+{
+  return status == Status::ERROR ? 1 : 0;
 }
 
 std::string nameAndValue(const FmuVariable& variable, std::size_t element, double value)
@@ -35,6 +47,20 @@ std::string nameAndValue(const FmuVariable& variable, std::size_t element, doubl
          numberText(value) + " [" + variable.unit + "]";
 }
 }  // namespace
+
+void sendMessage(LogMessage log, void* environment, Status status, const char* message) noexcept
+{
+  if (log == nullptr)
+  {
+    return;
+  }
+  std::string text;
+  for (const char letter : std::string_view(message))
+  {
+    text.append(letter == '#' ? 2 : 1, letter);
+  }
+  log(environment, status, LOG_CATEGORIES[categoryOf(status)], text.c_str());
+}
 
 Instance::State::State(const State& other)
   : mode(other.mode)
@@ -61,17 +87,10 @@ Instance::Instance(const std::string& resources, const std::string& token, bool 
 
 void Instance::log(Status status, const std::string& message) const noexcept
 {
-  const std::size_t category = status == Status::ERROR ? 1 : 0;
-  if (log_ == nullptr || !logs_[category])
+  if (logs_[categoryOf(status)])
   {
-    return;
+    sendMessage(log_, environment_, status, message.c_str());
   }
-  std::string text;  // # would begin a value reference
-  for (const char letter : message)
-  {
-    text.append(letter == '#' ? 2 : 1, letter);
-  }
-  log_(environment_, status, LOG_CATEGORIES[category], text.c_str());
 }
 
 void Instance::setLogging(bool on, std::size_t count, const char* const* categories)
@@ -80,10 +99,7 @@ void Instance::setLogging(bool on, std::size_t count, const char* const* categor
   {
     const auto is_this = [i](const char* category)
     { return category != nullptr && std::string(category) == LOG_CATEGORIES[i]; };
-    if (count == 0 || std::any_of(categories, categories + count, is_this))
-    {
-      logs_[i] = on;
-    }
+    logs_[i] = on && (count == 0 || std::any_of(categories, categories + count, is_this));
   }
 }
 

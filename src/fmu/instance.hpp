@@ -29,6 +29,9 @@ struct References
   std::size_t values;
 };
 
+/// To an importer's log, if it has one. Doubles `#`, which would begin a value reference there.
+void sendMessage(LogMessage log, void* environment, Status status, const char* message) noexcept;
+
 /// Where an instance of FMI is.
 enum class Mode
 {
@@ -49,7 +52,9 @@ public:
 
   /// To the instance's user, if he wants it. `status`: what the call returns, or OK where it only tells.
   void log(Status status, const std::string& message) const noexcept;
-  void setLogging(bool on, std::size_t count, const char* const* categories);  ///< none: all of them
+
+  /// On: for these categories alone, for all if none is named. Off: for all.
+  void setLogging(bool on, std::size_t count, const char* const* categories);
 
   void enterInitialization(double start, std::optional<double> stop);
   void exitInitialization();
