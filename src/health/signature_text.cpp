@@ -122,7 +122,7 @@ std::string withRowsOf(const std::string& text, const std::string& path, const s
   {
     throw ParameterError(path + ": its indicators are not those of the signatures to add");
   }
-  std::string all = text;
+  std::string all = text + (text.back() == '\n' ? "" : "\n");
   std::istringstream rows(added.substr(added.find(SIGNATURES) + std::string(SIGNATURES).size()));
   for (std::string row; std::getline(rows, row);)
   {

@@ -71,6 +71,18 @@ TEST(SignatureFile, IsTakenNumberByNumber)
   EXPECT_EQ(causesThatMove(set, ScalarIndicator::TORSIONAL_STIFFNESS, -1.0, 0.1).size(), 0U);  // not at severity 1
 }
 
+TEST(SignatureFile, TakesRowsOfRunsBehindItsOwn)
+{
+  const SignatureSet set = parseSignatures(SMALL, "mine.yaml");
+  const std::string added = signatureText(set, { "check_up", "kinematics" });
+  const std::string whole = SMALL;
+  for (const std::string& own : { whole, whole.substr(0, whole.size() - 1) })
+  {
+    const SignatureSet both = parseSignatures(withRowsOf(own, "mine.yaml", added), "both.yaml");
+    EXPECT_EQ(both.signatures.size(), set.signatures.size() + 1);
+  }
+}
+
 TEST(SignatureFile, SaysWhereItIsDamaged)
 {
   const auto says = [](const std::string& what)
