@@ -7,6 +7,7 @@ import pathlib
 import re
 
 PROJECT = pathlib.Path(__file__).resolve().parent.parent
+PAGE, HEADER = "docs/health.md", "src/life/assessment_counts.hpp"
 KINDS = ("tooth_wear", "interface_wear", "lubricant_degradation")
 HEAD = """// SPDX-License-Identifier: BSD-3-Clause
 // Written by scripts/assessment_counts.py from docs/health.md.
@@ -30,9 +31,8 @@ def cells(line):
     return [cell.strip() for cell in line.strip().strip("|").split("|")]
 
 
-def main():
-    argparse.ArgumentParser(description=__doc__).parse_args()
-    page = (PROJECT / "docs" / "health.md").read_text(encoding="utf-8")
+def header(page):
+    """The text of the header by that of the page."""
     page = page.split("<!-- health:begin -->")[1].split("<!-- health:end -->")[0]
     table = [cells(line) for line in page.splitlines() if line.startswith(("| kind ", "| `", "| all "))]
     head = table[0]
@@ -60,8 +60,13 @@ def main():
     estimate, deviation = severity + mean, float(rows["all"][stated])
     lines += [f"constexpr double ESTIMATE_SPREAD = {spread / estimate:.2f};   // over the estimate, of all kinds",
               f"constexpr double STATED_DEVIATION = {deviation / estimate:.2f};  // likewise"]
-    (PROJECT / "src" / "life" / "assessment_counts.hpp").write_text(
-        HEAD + "\n".join(lines) + "\n}  // namespace hjt::assessment_counts\n", encoding="utf-8")
+    return HEAD + "\n".join(lines) + "\n}  // namespace hjt::assessment_counts\n"
+
+
+def main():
+    argparse.ArgumentParser(description=__doc__).parse_args()
+    text = header((PROJECT / PAGE).read_text(encoding="utf-8"))
+    (PROJECT / HEADER).write_text(text, encoding="utf-8")
 
 
 if __name__ == "__main__":

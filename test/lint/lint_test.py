@@ -12,6 +12,7 @@ import doc_values
 import examples
 import launch_docs
 import layering
+import life_counts
 import limits
 import links
 import message_comments
@@ -31,6 +32,17 @@ class NumberLocale(Tree):
                 self.assert_fault(number_locale.check, "src/gear/one.cpp:2")
         self.write("src/gear/one.cpp", 'printf("%.0f %% friction, %s", x, y);\n')
         self.assert_clean(number_locale.check)
+
+
+class LifeCounts(Tree):
+    def test_a_header_of_another_page_is_named(self):
+        page = project.text(project.ROOT, "docs/health.md")
+        header = life_counts.script.header(page)
+        self.write("docs/health.md", page)
+        self.write("src/life/assessment_counts.hpp", header)
+        self.assert_clean(life_counts.check)
+        self.write("src/life/assessment_counts.hpp", header.replace("SOUND_RUNS = 1", "SOUND_RUNS = 2"))
+        self.assert_fault(life_counts.check, "src/life/assessment_counts.hpp")
 
 
 class Limits(Tree):

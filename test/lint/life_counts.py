@@ -1,0 +1,19 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The counts that forecasts of life use are those of the table of docs/health.md."""
+import os
+import sys
+
+import project
+
+sys.path.append(os.path.join(project.ROOT, "scripts"))
+import assessment_counts as script  # noqa: E402  (its folder is known now)
+
+
+def check(root):
+    if project.text(root, script.HEADER) == script.header(project.text(root, script.PAGE)):
+        return []
+    return [f"{script.HEADER}: not what {script.PAGE} says; run scripts/assessment_counts.py"]
+
+
+if __name__ == "__main__":
+    project.run(check)
