@@ -86,8 +86,8 @@ MOTIONS = [motion_of("slow sweep", "slow_sweep", sweep),
            motion_of("trapezoids, three places", "trapezoid_places", functools.partial(three_places, None)),
            motion_of("sine", "sine", sine)]
 FITTED_GEARS = [drawn(905), drawn(930), OTHER_FLANKS]
-MODELS = [OTHER_MODEL, FURTHER_MODEL]
-JUDGED_GEARS = [drawn(1007), *MODELS]
+OTHER_MODELS = [OTHER_MODEL, FURTHER_MODEL]
+JUDGED_GEARS = [drawn(1007), *OTHER_MODELS]
 SEEDS = {"drawn 905": 50, "drawn 930": 150, "drawn 1007": 250, OTHER_FLANKS.name: 270, OTHER_MODEL.name: 280,
          FURTHER_MODEL.name: 300}  # first
 
@@ -215,10 +215,10 @@ def table(found):
              + " | ".join(f"found, {severity:g}" for severity in SEVERITIES)
              + " | cause right, of alarms | or in the set | mean confidence |", "|" + 10 * "---|"]
     for name, own in found.items():
-        drawn_ones = [one for one in own if one.gear not in MODELS]
+        drawn_ones = [one for one in own if one.gear not in OTHER_MODELS]
         rows = [(motion.name, [one for one in drawn_ones if one.motion == motion.name]) for motion in MOTIONS]
         rows += [("all of them", drawn_ones)]
-        rows += [(model.name, [one for one in own if one.gear == model]) for model in MODELS]
+        rows += [(model.name, [one for one in own if one.gear == model]) for model in OTHER_MODELS]
         lines += [row_of(f"{title}, {name}", chosen) for title, chosen in rows]
     return lines
 
@@ -249,9 +249,9 @@ def causes_of(title, own):
 def judged_table(bench):
     found = {name: all_judged(bench, JUDGED_GEARS, source) for name, source in SOURCES.items()}
     everything = [one for own in found.values() for one in own]
-    drawn_ones = [one for one in everything if one.gear not in MODELS]
+    drawn_ones = [one for one in everything if one.gear not in OTHER_MODELS]
     return [*table(found), "", *(shares_of(f"All gears, {name}", own) for name, own in found.items()),
             causes_of("Drawn gears" if len({one.gear.name for one in drawn_ones}) > 1 else
                       drawn_ones[0].gear.name.capitalize(), drawn_ones),
             *(causes_of(model.name.capitalize(), [one for one in everything if one.gear == model])
-              for model in MODELS)]
+              for model in OTHER_MODELS)]
