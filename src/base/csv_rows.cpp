@@ -41,10 +41,10 @@ char* trimmed(char* begin, char* end)
 /// The name of a column without a unit in brackets behind it that is the one read.
 std::string withoutUnit(const std::string& name)
 {
-  static const std::set<std::string> units{ "s", "rad", "rad/s", "A", "N.m", "Nm", "N*m", "degC", "C" };
+  static const std::set<std::string> UNITS{ "s", "rad", "rad/s", "A", "N.m", "Nm", "N*m", "degC", "C" };
   const std::size_t open = name.find_last_of("[(");
   if (open == std::string::npos || open == 0 || (name.back() != ']' && name.back() != ')') ||
-      units.count(name.substr(open + 1, name.size() - open - 2)) == 0)
+      UNITS.count(name.substr(open + 1, name.size() - open - 2)) == 0)
   {
     return name;
   }

@@ -146,7 +146,7 @@ class Reference(unittest.TestCase):
         with open(self.path("arm.json"), "w", encoding="ascii") as file:
             file.write("{}\n")
         launch = self.launch(self.path("arm.json"))
-        reason = self.path("base/comparison.json") + " is no data of `joint_twin compare`"
+        reason = self.path("base") + " holds no report of `joint_twin compare` as it is needed here"
         wait_until(lambda: "FATAL" in launch.log(), "the error", LAUNCH_TIMEOUT)
         self.assertIn(reason, launch.log())
 
