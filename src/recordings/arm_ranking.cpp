@@ -45,7 +45,16 @@ public:
     }
   }
 
-  LoadProblem::Fit explained() { return fit_.explained(); }
+  /// `fit`: of the same rows.
+  LoadProblem::Fit explained(const RecordingFit& fit)
+  {
+    std::vector<bool> measured;
+    for (std::size_t i = 0; i < twins_.size(); ++i)
+    {
+      measured.push_back(fit.isMeasured(i));
+    }
+    return fit_.explained(measured);
+  }
 
 private:
   LoadFit fit_;
@@ -100,7 +109,7 @@ ArmFit fitOf(const RecordingOptions& options, bool unit_is_given)
     other.assignments.push_back(std::string("telemetry.effort=") + effortKeyword(unit));
     return fitOf(other, true);
   }
-  const LoadProblem::Fit explained = trial.explained();
+  const LoadProblem::Fit explained = trial.explained(fit);
   return { options.arm, unit, explained.left, explained.cost + costOfGains(recording, options) };
 }
 }  // namespace
