@@ -142,6 +142,6 @@ std::string betterArm(const ArmRecording& recording)
   names.push_back(options.arm);
   const std::vector<ArmFit> fits = rankArms(options, names);
   const auto own = std::find_if(fits.begin(), fits.end(), [&](const ArmFit& fit) { return fit.arm == options.arm; });
-  return fits.front().isClearlyBetter(*own) ? fits.front().arm : std::string();
+  return fits.front().isBetter(*own, ArmFit::CONTRADICTED) ? fits.front().arm : std::string();
 }
 }  // namespace hjt
