@@ -295,14 +295,15 @@ FoundLoad LoadFit::solve(const std::vector<bool>& counts)
            data.findMounting(ofJoints(data.rows, counts, true), of_links) };
 }
 
-LoadProblem::Fit LoadFit::explained()
+LoadProblem::Fit LoadFit::explained(const std::vector<bool>& counts)
 {
   constexpr double OTHER_MOUNTING = 10.0;  // logarithm of how much rarer it is
   constexpr double GRAVITY_SIZE = 0.1;     // deviation of its size: else it is none [-]
   data_->closeAll();
-  const LoadProblem::Fit upright = LoadProblem(data_->rows, LoadProblem::Term::PAYLOAD).fit();
-  const LoadProblem both(data_->rows, LoadProblem::Term::BOTH);
-  LoadProblem::Fit mounted = both.fit();
+  const std::vector<Rows> joints = ofJoints(data_->rows, counts, true);
+  const LoadProblem::Fit upright = LoadProblem(joints, LoadProblem::Term::PAYLOAD).fit(data_->payload.mass);
+  const LoadProblem both(joints, LoadProblem::Term::BOTH);
+  LoadProblem::Fit mounted = both.fit(data_->payload.mass);
   mounted.cost += OTHER_MOUNTING;
   if (mounted.cost < upright.cost)
   {

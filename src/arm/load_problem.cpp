@@ -91,11 +91,11 @@ LoadProblem::Solution LoadProblem::solve() const
   return solution;
 }
 
-LoadProblem::Fit LoadProblem::fit() const
+LoadProblem::Fit LoadProblem::fit(double mass) const
 {
-  constexpr double ROWS = 60.0;      // that count: errors of a model are not independent from row to row
-  constexpr double FLOOR = 0.02;     // of the currents: that the twin of no real arm falls below [-]
-  constexpr double LESS_MASS = 0.5;  // than configured: deviation that masses of links make [kg]
+  constexpr double ROWS = 60.0;    // that count: errors of a model are not independent from row to row
+  constexpr double FLOOR = 0.02;   // of the currents: that the twin of no real arm falls below [-]
+  constexpr double NO_MASS = 0.5;  // below zero: deviation that masses of links make [kg]
   Eigen::MatrixXd information;
   const Eigen::VectorXd all = solveAll(rows_, information);
   double left = 0.0;
@@ -118,7 +118,8 @@ LoadProblem::Fit LoadProblem::fit() const
   }
   Fit fit;
   fit.left = squares > 0.0 ? std::sqrt(left / squares) : 1.0;
-  fit.cost = cost + ROWS * std::log(std::hypot(fit.left, FLOOR)) + 0.5 * std::pow(std::min(all[0], 0.0) / LESS_MASS, 2);
+  const double below_zero = std::min(mass + all[0], 0.0);
+  fit.cost = cost + ROWS * std::log(std::hypot(fit.left, FLOOR)) + 0.5 * std::pow(below_zero / NO_MASS, 2);
   return fit;
 }
 

@@ -63,7 +63,8 @@ public:
     double left{ 1.0 };  ///< share, rms [-]
     double cost{};       ///< logarithm of a likelihood, less is likelier; errors of models count for what they are [-]
   };
-  Fit fit() const;
+  /// `mass`: of the payload that counts [kg]. No change of it leaves less than none.
+  Fit fit(double mass) const;
 
 private:
   /// All terms. `information`: the inverse of their variance.

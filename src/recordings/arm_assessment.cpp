@@ -156,6 +156,10 @@ ArmAssessment assess(ArmRecording& recording, const AssessmentSettings& settings
     recording.setPayload(other.payload);
     recording.setGravity(other.gravity);
     arm = pass(recording, settings, false, fit);
+    if (!law.isTrying())
+    {
+      break;  // taken back: it would be found again
+    }
   }
   arm.assumed = law.counts();
   if (arm.load && settings.looks_for_arm && recording.options().identified.empty() && !settings.watch.stopped())

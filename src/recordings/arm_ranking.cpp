@@ -45,7 +45,16 @@ public:
     }
   }
 
-  LoadProblem::Fit explained() { return fit_.explained(); }
+  /// `fit`: of the same rows.
+  LoadProblem::Fit explained(const RecordingFit& fit)
+  {
+    std::vector<bool> measured;
+    for (std::size_t i = 0; i < twins_.size(); ++i)
+    {
+      measured.push_back(fit.isMeasured(i));
+    }
+    return fit_.explained(measured);
+  }
 
 private:
   LoadFit fit_;
@@ -100,7 +109,7 @@ ArmFit fitOf(const RecordingOptions& options, bool unit_is_given)
     other.assignments.push_back(std::string("telemetry.effort=") + effortKeyword(unit));
     return fitOf(other, true);
   }
-  const LoadProblem::Fit explained = trial.explained();
+  const LoadProblem::Fit explained = trial.explained(fit);
   return { options.arm, unit, explained.left, explained.cost + costOfGains(recording, options) };
 }
 }  // namespace
@@ -133,6 +142,6 @@ std::string betterArm(const ArmRecording& recording)
   names.push_back(options.arm);
   const std::vector<ArmFit> fits = rankArms(options, names);
   const auto own = std::find_if(fits.begin(), fits.end(), [&](const ArmFit& fit) { return fit.arm == options.arm; });
-  return fits.front().isClearlyBetter(*own) ? fits.front().arm : std::string();
+  return fits.front().isBetter(*own, ArmFit::CONTRADICTED) ? fits.front().arm : std::string();
 }
 }  // namespace hjt

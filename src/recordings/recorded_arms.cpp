@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <system_error>
 
 #include "arm/arm_configuration.hpp"
 #include "bags/recorded_messages.hpp"
@@ -87,7 +88,8 @@ std::vector<std::string> jointNames(const ArmDescription& arm)
 std::vector<fs::path> armFiles(const RecordingOptions& options)
 {
   std::vector<fs::path> files;
-  for (const fs::directory_entry& entry : fs::directory_iterator(configDirectory(options) / "arms"))
+  std::error_code error;  // a configuration of one's own may have none
+  for (const fs::directory_entry& entry : fs::directory_iterator(configDirectory(options) / "arms", error))
   {
     if (entry.path().extension() == ".yaml")
     {

@@ -37,7 +37,7 @@ std::string choice(const CheckedArm& arm)
   const auto preset =
       std::find_if(arm.ranked.begin(), arm.ranked.end(), [](const ArmFit& fit) { return fit.arm == DEFAULT_ARM; });
   const ArmFit& best = arm.ranked.front();
-  return preset == arm.ranked.end() || best.isClearlyBetter(*preset) ? best.arm : preset->arm;
+  return preset == arm.ranked.end() || best.isBetter(*preset, ArmFit::CLEARLY) ? best.arm : preset->arm;
 }
 
 void takeFit(const RecordingFit& fit, const std::vector<Parameters>& parameters, CheckedArm& arm)

@@ -171,6 +171,10 @@ void TrackerNode::push(Stamp stamp)
   if (moved || time < last_time_ - StreamTiming::RESTART)
   {
     resetFit();
+    if (load_)
+    {
+      load_->reset();
+    }
   }
   if (moved && arm_load_)
   {
@@ -232,10 +236,6 @@ void TrackerNode::resetFit()
   if (fit_)
   {
     fit_->reset();
-    if (load_)
-    {
-      load_->reset();
-    }
     next_fit_ = -HUGE_VAL;
     friction_->reset();
     for (const auto& joint : joints_)

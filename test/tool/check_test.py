@@ -148,6 +148,25 @@ class Check(tool.ToolTest):
         done = self.run_tool("compare", "wall.csv", "--arm", "ur5", "--json", "--fail-on", "warn")
         self.assertEqual((done.returncode, json.loads(done.stdout)["level"]), (4, "NOT JUDGED"), done.stderr)
 
+    def test_a_load_that_not_every_joint_fits_is_taken_back(self):
+        arms = os.path.join(tool.CHECKOUT, "config", "arms")
+        tooled = self.write("tooled.yaml", f"like: {arms}/ur5.yaml\npayload: {{mass: 3.0, centre: [0.0, 0.0, 0.08]}}\n")
+        columns = sound(self, arm=tooled)
+        write_csv(self.path("carried.csv"), columns)
+        self.assertAlmostEqual(self.check("carried.csv", "--arm", "ur5")["payload_mass"], 3.0, delta=0.3)
+        columns["actual_current_2"] = 3.0 * columns["actual_current_2"]
+        write_csv(self.path("other.csv"), columns)
+        done = self.run_tool("check", "other.csv", "--arm", "ur5", "--json")
+        self.assertIsNone(json.loads(done.stdout)["payload_mass"], done.stderr)
+
+    def test_an_arm_without_its_configured_payload_is_no_other_arm(self):
+        arms = os.path.join(tool.CHECKOUT, "config", "arms")
+        self.write("tooled.yaml", f"like: {arms}/ur5.yaml\npayload: {{mass: 6.0, centre: [0.0, 0.0, 0.08]}}\n")
+        write_csv(self.path("arm.csv"), sound(self))
+        done = self.run_tool("check", "arm.csv", "--arm", "tooled.yaml", "--json")
+        for joint in json.loads(done.stdout)["joints"]:
+            self.assertNotIn("may be a", joint["verdict"]["text"])
+
     def test_a_sound_recording_is_usable_as_it_is(self):
         write_csv(self.path("arm.csv"), sound(self))
         found = self.check("arm.csv")

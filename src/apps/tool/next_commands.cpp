@@ -43,6 +43,10 @@ std::vector<std::string> nextCommands(const ArmOptions& options, const CheckedAr
   {
     reading += " --time-scale " + roundedText(options.time_scale, 6);
   }
+  if (!options.config_dir.empty())
+  {
+    reading += " --config-dir " + shellWord(options.config_dir);
+  }
   for (const std::string& config : options.configs)
   {
     reading += " --config " + shellWord(config);
