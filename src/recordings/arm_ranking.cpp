@@ -133,13 +133,11 @@ std::vector<ArmFit> rankArms(const RecordingOptions& options, const std::vector<
 std::string betterArm(const ArmRecording& recording)
 {
   const RecordingOptions& options = recording.options();
-  std::vector<std::string> names = armsLike(recording.arm(), options);
-  names.erase(std::remove(names.begin(), names.end(), options.arm), names.end());
-  if (names.empty())
+  const std::vector<std::string> names = armsLike(recording.arm(), options);
+  if (std::find(names.begin(), names.end(), options.arm) == names.end())
   {
     return {};
   }
-  names.push_back(options.arm);
   const std::vector<ArmFit> fits = rankArms(options, names);
   const auto own = std::find_if(fits.begin(), fits.end(), [&](const ArmFit& fit) { return fit.arm == options.arm; });
   return fits.front().isBetter(*own, ArmFit::CONTRADICTED) ? fits.front().arm : std::string();

@@ -31,6 +31,7 @@ struct ArmFit
 /// recording states. @throws InputError, ParameterError.
 std::vector<ArmFit> rankArms(const RecordingOptions& options, const std::vector<std::string>& names);
 
-/// A shipped arm with these joints that explains the recording so much better that it contradicts its own; empty: none.
+/// A shipped arm with these joints that explains the recording so much better that it contradicts its own, shipped
+/// too; empty: none. A user's own file is taken at its word.
 std::string betterArm(const ArmRecording& recording);
 }  // namespace hjt

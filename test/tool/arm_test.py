@@ -217,7 +217,7 @@ class Arm(ArmTest):
 
     def test_an_arm_whose_loads_no_joint_bears_is_not_judged_and_has_a_page(self):
         like = os.path.join(tool.CHECKOUT, "config/arms/ur5.yaml")
-        self.write("heavy.yaml", f"like: {like}\npayload: {{mass: 10000.0, centre: [100.0, 100.0, 100.0]}}\n")
+        self.write("heavy.yaml", f"like: {like}\npayload: {{mass: 10000.0, centre: [10.0, 10.0, 10.0]}}\n")
         self.write("arm.csv", arm_csv(seconds=5.0))
         heavy = self.succeed_json("compare", "arm.csv", "--arm", "heavy.yaml", "--report", "heavy")
         self.assertEqual({joint["level"] for joint in heavy["joints"]}, {"NOT JUDGED"})
