@@ -156,7 +156,8 @@ class UR5(unittest.TestCase):
     def wait_for_rows(self, twin):
         """All rows but those whose later ones never came."""
         wait = WAIT_OF_ARM if twin[0] in ARMS else WAIT_OF_JOINT
-        return self.comparisons[twin].wait_for(self.sent["rows"] - self.sent["repeated"] - wait, patience=2.0 * PATIENCE)
+        rows = self.sent["rows"] - self.sent["repeated"] - wait
+        return self.comparisons[twin].wait_for(rows, patience=2.0 * PATIENCE)
 
     def test_each_twin_names_its_joint_and_gives_finite_numbers(self):
         for twin in TWINS:
