@@ -254,9 +254,13 @@ void bindInsertion(py::module& module)
 
 /// The parameters of the gear wanted, and by what rule each of its parameters follows.
 py::tuple design(const Configuration& parameters, double size, int ratio, const std::optional<double>& bore_radius,
-                 const std::optional<double>& rim_thickness, const std::optional<double>& face_width)
+                 const std::optional<double>& rim_thickness, const std::optional<double>& face_width,
+                 const std::vector<double>& stiffness, const std::vector<double>& breakpoints,
+                 const std::vector<double>& ratings, const std::optional<double>& starting_torque,
+                 const std::optional<double>& no_load_torque)
 {
-  const GearRequest request{ size, ratio, bore_radius, rim_thickness, face_width };
+  const GearRequest request{ size,      ratio,       bore_radius, rim_thickness,   face_width,
+                             stiffness, breakpoints, ratings,     starting_torque, no_load_torque };
   const GearDesign designed = withoutLock([&] { return designGear(parameters.map(), request, gearFigures(request)); });
   py::dict rules;
   for (const DesignedParameter& parameter : designed.parameters)
@@ -271,9 +275,15 @@ void bindDesign(py::module& module)
   module.def(
       "design_gear", &design, py::arg("parameters"), py::arg("size"), py::arg("ratio") = 100,
       py::arg("bore_radius") = py::none(), py::arg("rim_thickness") = py::none(), py::arg("face_width") = py::none(),
+      py::arg("stiffness") = std::vector<double>(), py::arg("breakpoints") = std::vector<double>(),
+      py::arg("ratings") = std::vector<double>(), py::arg("starting_torque") = py::none(),
+      py::arg("no_load_torque") = py::none(),
       "A whole gear of the family by size (25: that of parameters, 5 ... 100) and ratio (circular spline held, 30 ... "
       "320), as the tool's gear (docs/own_gear.md). parameters: Parameters of HFUS-25-2SH, ratio 100, or a variant. "
-      "bore_radius and rim_thickness of the flexspline, face_width of the teeth: where they are known [m].\n\n"
+      "bore_radius and rim_thickness of the flexspline, face_width of the teeth: where they are known [m]. Of a "
+      "catalogue of your own: "
+      "stiffness K1, K2, K3 [N.m/rad], breakpoints T1, T2, ratings (rated, average, repeated peak, momentary peak), "
+      "starting_torque, no_load_torque [N.m].\n\n"
       "Returns Parameters, all of the joint included, and a dict of the parameters that were derived: key to rule. "
       "ParameterError.");
   module.def(

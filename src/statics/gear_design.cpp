@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include <boost/math/tools/roots.hpp>
@@ -23,8 +24,9 @@ namespace
 constexpr double CONFIGURED_SIZE = 25.0;
 constexpr double TORSION_ERROR = 1e-4;  // of a fitted twist
 constexpr int TORSION_TRIALS = 30;
-constexpr int FITTED_BITS = 12;       // of a fitted torque's parameter
-constexpr int CATALOGUE_RATIO = 100;  // whose friction the catalogue has
+constexpr int FITTED_BITS = 12;          // of a fitted torque's parameter
+constexpr double LEAST_OF_START = 1e-3;  // least value of it tried, over where the fit starts
+constexpr int CATALOGUE_RATIO = 100;     // whose friction the catalogue has
 constexpr const char* ORIGIN = "gear";
 constexpr const char* PRELOAD = "bearing.race_preload";
 constexpr const char* VISCOSITY = "bearing.viscosity";
@@ -89,6 +91,31 @@ void requireInRange(const GearRequest& request)
   }
 }
 
+/// Given figures are those of a gear. @throws ParameterError.
+void requireFigures(const GearRequest& request)
+{
+  const auto require = [](const std::vector<double>& values, std::size_t count, bool rising, const char* what)
+  {
+    const bool positive =
+        std::all_of(values.begin(), values.end(), [](double value) { return value > 0.0 && std::isfinite(value); });
+    if (!values.empty() &&
+        (values.size() != count || !positive ||
+         (rising && std::adjacent_find(values.begin(), values.end(), std::greater_equal<>()) != values.end())))
+    {
+      throw ParameterError(std::string("gear: ") + what);
+    }
+  };
+  require(request.stiffness, 3, false, "stiffness: K1, K2, K3 > 0 are wanted [N.m/rad]");
+  require(request.breakpoints, 2, true, "breakpoints: 0 < T1 < T2 are wanted [N.m]");
+  require(request.ratings, 4, false,
+          "ratings: rated, average, repeated peak and momentary peak torque > 0 are wanted [N.m]");
+  for (const std::optional<double>& torque : { request.starting_torque, request.no_load_torque })
+  {
+    require(torque ? std::vector<double>{ *torque } : std::vector<double>{}, 1, false,
+            "starting and no-load torque > 0 are wanted [N.m]");
+  }
+}
+
 void applyRules(const Parameters& from, const GearRequest& request, Designer& designer)
 {
   const double size = request.size / CONFIGURED_SIZE;
@@ -147,10 +174,12 @@ void applyRules(const Parameters& from, const GearRequest& request, Designer& de
   designer.set("life.face_width", face_width, given(request.face_width, by_size));
 }
 
-void applyRatings(const Parameters& from, const GearFigures& figures, Designer& designer)
+void applyRatings(const Parameters& from, const GearRequest& request, const GearFigures& figures, Designer& designer)
 {
-  const char* rule = figures.scaled ? "size 25 scaled" : "catalogue";
-  designer.set("cup.torsion_breakpoints", { figures.breakpoints[0], figures.breakpoints[1] }, rule);
+  const auto rule_of = [&](const std::vector<double>& given) { return given.empty() ? figures.source : "given"; };
+  const std::string rule = rule_of(request.ratings);
+  designer.set("cup.torsion_breakpoints", { figures.breakpoints[0], figures.breakpoints[1] },
+               rule_of(request.breakpoints));
   // As much of the torsion as in the configured gear.
   designer.scale("cup.friction_torque", figures.breakpoints[0] / from.cup.torsion_breakpoints[0],
                  "in proportion to T1, at which the torsion is alike");
@@ -215,6 +244,12 @@ void fitTorque(const std::string& key, double start, double wanted, const std::s
     parameters.input.temperature = CATALOGUE_TEMPERATURE;
     return torque(parameters) - wanted;
   };
+  const double least = wanted + miss(LEAST_OF_START * start);
+  if (least > wanted)
+  {
+    throw ParameterError("gear: " + key + " cannot be fitted to " + numberText(wanted) +
+                         " N.m: the gear's other friction alone makes " + roundedText(least, 4) + " N.m");
+  }
   std::uintmax_t trials = 60;
   const auto [low, high] = boost::math::tools::bracket_and_solve_root(
       miss, start, 2.0, true, boost::math::tools::eps_tolerance<double>(FITTED_BITS), trials);
@@ -252,34 +287,42 @@ double GearFigures::torsion(double torque) const
 
 GearFigures gearFigures(const GearRequest& request)
 {
+  requireFigures(request);
   const auto& ratings = CATALOGUE_RATINGS;
-  const auto listed = std::find_if(ratings.begin(), ratings.end(),
-                                   [&](const CatalogueRating& rating)
-                                   { return rating.size == request.size && rating.ratio == request.ratio; });
-  // From the configured size where the catalogue does not list the gear, by the ratio next to the wanted one.
+  const bool size_known = std::any_of(ratings.begin(), ratings.end(),
+                                      [&](const CatalogueRating& rating) { return rating.size == request.size; });
+  const double from_size = size_known ? request.size : CONFIGURED_SIZE;
   const auto distance = [&](const CatalogueRating& rating)
-  { return std::pair(rating.size != CONFIGURED_SIZE, std::abs(rating.ratio - request.ratio)); };
-  const auto next = std::min_element(ratings.begin(), ratings.end(),
-                                     [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
-  GearFigures figures;
-  figures.scaled = listed == ratings.end();
-  const CatalogueRating& rating = figures.scaled ? *next : *listed;
+  { return std::pair(rating.size != from_size, std::abs(rating.ratio - request.ratio)); };
+  const CatalogueRating& rating = *std::min_element(
+      ratings.begin(), ratings.end(), [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
   const CatalogueSize& size = *std::find_if(CATALOGUE_SIZES.begin(), CATALOGUE_SIZES.end(),
                                             [&](const CatalogueSize& other) { return other.size == rating.size; });
+  const bool listed = size_known && rating.ratio == request.ratio;
+  GearFigures figures;
+  figures.source = listed ?
+                       "HFUS/CSF, TPI 275" :
+                       "size " + roundedText(rating.size, 4) + ", ratio " + std::to_string(rating.ratio) + " scaled";
   const double cube = std::pow(request.size / rating.size, 3);
-  const auto grown = [&](double value) { return cube * value; };
-  const auto& stiffness = rating.ratio < 80 ? size.stiffness_of_50 : size.stiffness;
-  std::transform(stiffness.begin(), stiffness.end(), figures.stiffness.begin(), grown);
-  std::transform(size.breakpoints.begin(), size.breakpoints.end(), figures.breakpoints.begin(), grown);
-  figures.rated_torque = cube * rating.rated;
-  figures.average_torque = cube * rating.average;
-  figures.repeated_peak_torque = cube * rating.repeated_peak;
-  figures.momentary_peak_torque = cube * rating.momentary_peak;
-  if (!figures.scaled && rating.ratio == CATALOGUE_RATIO)
+  const auto take = [&](const std::vector<double>& given, const auto& known, auto& into)
   {
-    figures.starting_torque = size.starting_torque;
-    figures.no_load_torque = size.no_load_torque;
-  }
+    for (std::size_t i = 0; i < into.size(); ++i)
+    {
+      into[i] = given.empty() ? cube * known[i] : given[i];
+    }
+  };
+  take(request.stiffness, rating.ratio < 80 ? size.stiffness_of_50 : size.stiffness, figures.stiffness);
+  take(request.breakpoints, size.breakpoints, figures.breakpoints);
+  std::array<double, 4> torques{};
+  take(request.ratings, std::array{ rating.rated, rating.average, rating.repeated_peak, rating.momentary_peak },
+       torques);
+  figures.rated_torque = torques[0];
+  figures.average_torque = torques[1];
+  figures.repeated_peak_torque = torques[2];
+  figures.momentary_peak_torque = torques[3];
+  const bool friction_known = listed && rating.ratio == CATALOGUE_RATIO;
+  figures.starting_torque = request.starting_torque.value_or(friction_known ? size.starting_torque : 0.0);
+  figures.no_load_torque = request.no_load_torque.value_or(friction_known ? size.no_load_torque : 0.0);
   return figures;
 }
 
@@ -289,26 +332,32 @@ GearDesign designGear(const ParameterMap& configured, const GearRequest& request
   const Parameters from = parseParameters(configured);
   Designer designer(configured);
   applyRules(from, request, designer);
-  applyRatings(from, figures, designer);
+  applyRatings(from, request, figures, designer);
   if (const std::string jam = jamOf(designer.parameters()); !jam.empty())
   {
     throw ParameterError(jam);
   }
   fitTorsion(figures, designer);
+  const bool has_friction = figures.starting_torque > 0.0 && figures.no_load_torque > 0.0;
   GearRequest known = request;
   known.ratio = CATALOGUE_RATIO;
-  if (figures.starting_torque > 0.0)
-  {
-    fitTorque(PRELOAD, designer.parameters().bearing.race_preload, figures.starting_torque,
-              "fitted to the starting torque of the catalogue", startingTorque, designer);
-    fitTorque(VISCOSITY, designer.parameters().bearing.viscosity, figures.no_load_torque,
-              "fitted to the no-load torque of the catalogue, 2000 rpm and 20 degC", noLoadTorque, designer);
-  }
-  else if (const GearFigures known_figures = gearFigures(known); known_figures.starting_torque > 0.0)
+  known.stiffness = known.breakpoints = known.ratings = {};
+  known.starting_torque = known.no_load_torque = std::nullopt;
+  if (const GearFigures known_figures = gearFigures(known); !has_friction && known_figures.starting_torque > 0.0)
   {
     const Parameters fitted = parseParameters(designGear(configured, known, known_figures).map);
     designer.set(PRELOAD, fitted.bearing.race_preload, "that of ratio 100, which has the same bearing");
     designer.set(VISCOSITY, fitted.bearing.viscosity, "that of ratio 100, which has the same bearing");
+  }
+  if (figures.starting_torque > 0.0)
+  {
+    fitTorque(PRELOAD, designer.parameters().bearing.race_preload, figures.starting_torque,
+              "fitted to the starting torque of the catalogue", startingTorque, designer);
+  }
+  if (figures.no_load_torque > 0.0)
+  {
+    fitTorque(VISCOSITY, designer.parameters().bearing.viscosity, figures.no_load_torque,
+              "fitted to the no-load torque of the catalogue, 2000 rpm and 20 degC", noLoadTorque, designer);
   }
   return designer.take();
 }

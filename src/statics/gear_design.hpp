@@ -24,6 +24,12 @@ struct GearRequest
   std::optional<double> bore_radius;    ///< of the flexspline [m]
   std::optional<double> rim_thickness;  ///< [m]
   std::optional<double> face_width;     ///< of the teeth [m]
+  // Figures of a catalogue of its own; empty: as far as known.
+  std::vector<double> stiffness;          ///< K1, K2, K3 of the whole gear [N.m/rad]
+  std::vector<double> breakpoints;        ///< T1, T2 [N.m]
+  std::vector<double> ratings;            ///< rated, average, repeated peak, momentary peak torque [N.m]
+  std::optional<double> starting_torque;  ///< at the wave generator, 20 degC [N.m]
+  std::optional<double> no_load_torque;   ///< at the wave generator, 2000 rpm, 20 degC [N.m]
 };
 
 /// What a maker's catalogue gives for a gear; 0: it gives no such figure.
@@ -37,12 +43,14 @@ struct GearFigures
   double momentary_peak_torque{};       ///< [N.m]
   double starting_torque{};             ///< at the wave generator, 20 degC [N.m]
   double no_load_torque{};              ///< at the wave generator, 2000 rpm, 20 degC [N.m]
-  bool scaled{};                        ///< size and ratio are not in the catalogue: size 25 scaled
+  std::string source;                   ///< of what was not given
 
   double torsion(double torque) const;  ///< [rad], of a torque >= 0 [N.m]
 };
 
-/// Catalogue values of the family HFUS/CSF; a size or ratio that it does not have is scaled from size 25.
+/// What the request gives; else the catalogue's values of the family HFUS/CSF. A ratio that it does not have is scaled
+/// from the next ratio of that size, a size that it does not have from size 25.
+/// @throws ParameterError if a given figure is none that a gear can have.
 GearFigures gearFigures(const GearRequest& request);
 
 /// A parameter of the gear and the rule by which it follows from the configured gear.

@@ -86,7 +86,29 @@ class Gear(tool.ToolTest):
         self.check(designed["gear.wave_amplitude"], 0.37039e-3, 1e-3, "wave_amplitude")  # docs/gear_study.md
         self.check(designed["ring.bending_stiffness"], 871.0, 2e-3, "bending_stiffness")
 
+    def test_figures_of_another_catalogue_are_met(self):
+        slopes, breakpoints = (9e3, 15e3, 18e3), (4.0, 14.0)
+        designed, figures = self.design(
+            "--size", 20, "--ratio", 100, "--stiffness", "9e3,15e3,18e3", "--breakpoints", "4,14",
+            "--ratings", "21,30,60,100", "--starting-torque", "0.05", "--no-load-torque", "0.12")
+        self.assertEqual(designed["life.rated_torque"], 21.0)
+        twist = 4.0 / slopes[0] + 10.0 / slopes[1] + 46.0 / slopes[2]
+        self.check(figures["torsion at 60 N.m"]["gear"], math.degrees(twist) * 60.0, 1e-3, "torsion")
+        self.assertEqual(designed["cup.torsion_breakpoints"], list(breakpoints))
+        for name, wanted in (("starting torque", 50.0), ("no-load torque at 2000 rpm", 120.0)):
+            self.check(figures[name]["gear"], wanted, 2e-3, name)
+
+    def test_an_unlisted_ratio_is_scaled_from_its_own_size(self):
+        report = self.succeed_json("gear", "--size", 14, "--ratio", 60, "--out", "gear.yaml")
+        self.assertEqual(report["catalogue"], "size 14, ratio 50 scaled")
+        twist = math.degrees(2.0 / 3.4e3) * 60.0
+        self.check(report["figures"][0]["catalogue"], twist, 1e-9, report["figures"][0]["name"])
+
     def test_bad_requests_are_named(self):
+        for options, reason in ((("--stiffness", "9e3,15e3"), "K1, K2, K3 > 0"), (("--breakpoints", "14,4"), "T1 < T2"),
+                                (("--starting-torque", "1e-4"), "other friction alone makes"),
+                                (("--ratings", "21,30,60,0"), "momentary peak torque > 0")):
+            self.fail_with(1, [reason], "gear", *options, "--out", "gear.yaml")
         self.fail_with(2, ["--ratio", "30 ... 320"], "gear", "--ratio", "7", "--out", "gear.yaml")
         self.fail_with(2, ["--size"], "gear", "--size", "1000", "--out", "gear.yaml")
         self.write("gear.yaml", "")

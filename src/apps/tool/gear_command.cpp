@@ -155,8 +155,11 @@ int gear(const GearOptions& options)
   write(options, design, parameters,
         "a gear of size " + shortNumber(options.request.size) + ", ratio " + std::to_string(options.request.ratio));
   printGearWarnings(parameters);
-  printReport(options.json,
-              { { "catalogue", "catalogue's figures", catalogue.scaled ? "size 25 scaled" : "HFUS/CSF, TPI 275" } },
+  const GearRequest& request = options.request;
+  const bool own = !request.stiffness.empty() || !request.breakpoints.empty() || !request.ratings.empty() ||
+                   request.starting_torque || request.no_load_torque;
+  const std::string of_own = own ? "as given, else " : "";
+  printReport(options.json, { { "catalogue", "catalogue's figures", of_own + catalogue.source } },
               { { "figures", Table(FIGURE_COLUMNS, figuresOf(parameters, catalogue)) } });
   return EXIT_DONE;
 }
@@ -176,6 +179,13 @@ void declare(Command& command, GearOptions& options)
   command.add("--bore-radius", options.request.bore_radius, "inner radius of the flexspline [m]").positive();
   command.add("--rim-thickness", options.request.rim_thickness, "of the flexspline under the teeth [m]").positive();
   command.add("--face-width", options.request.face_width, "length of the teeth [m]").positive();
+  command.add("--stiffness", options.request.stiffness, "K1,K2,K3 of your catalogue [N.m/rad]; else those known here");
+  command.add("--breakpoints", options.request.breakpoints, "T1,T2 of your catalogue [N.m]");
+  command.add("--ratings", options.request.ratings,
+              "torques of your catalogue: rated, average, repeated peak, momentary peak [N.m]");
+  command.add("--starting-torque", options.request.starting_torque, "of your catalogue, 20 degC [N.m]").positive();
+  command.add("--no-load-torque", options.request.no_load_torque, "of your catalogue, 2000 rpm, 20 degC [N.m]")
+      .positive();
   command.add("--out", options.out, "overlay to write, for --config").type("FILE").required();
   addCommonOptions(command, options);
 }
