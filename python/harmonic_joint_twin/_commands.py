@@ -2,6 +2,7 @@
 """Functions on recordings and data sets, as the tool's commands: each returns what the command prints as JSON."""
 import json
 import os
+import sys
 import tempfile
 import warnings
 from typing import TYPE_CHECKING, Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, Union
@@ -17,6 +18,7 @@ Path = Union[str, "os.PathLike[str]"]
 Value = Union[bool, int, float, str, Sequence[float]]
 Overlays = Sequence[Union[Path, Mapping[str, Value]]]
 Document = Dict[str, Any]
+NOT_JUDGED = "not judged: "  # before a recording and the reason
 Progress = Callable[[str, float], None]
 Arrays = Union[Mapping[str, "NDArray[Any]"], "NDArray[np.void]"]  # columns by their names
 Recording = Union[Path, Arrays]
@@ -47,6 +49,21 @@ def _write_overlay(values: Mapping[str, Value], path: str) -> None:
         json.dump(sections, file, default=lambda value: value.tolist())  # numpy's; JSON is YAML
 
 
+def _remark(notices: Sequence[str]) -> None:
+    """Warns at the line outside of this package, once for all recordings that are not judged for one reason."""
+    level = 1
+    while sys._getframe(level).f_globals["__name__"].startswith(__package__ or __name__):
+        level += 1
+    reasons: Dict[str, List[str]] = {}
+    for notice in notices:
+        recording, colon, reason = notice[len(NOT_JUDGED):].partition(": ")
+        is_of_one = notice.startswith(NOT_JUDGED) and colon
+        reasons.setdefault(reason if is_of_one else notice, []).append(recording if is_of_one else "")
+    for reason, [first, *others] in reasons.items():
+        more = f" and {len(others)} more" if others else ""
+        warnings.warn(f"{NOT_JUDGED}{first}{more}: {reason}" if first else reason, RuntimeWarning, stacklevel=level + 1)
+
+
 def _run(command: str, positional: Sequence[Path], options: Mapping[str, Any], overlays: Overlays = ()) -> Document:
     """Runs a command; options that are None or False are left out."""
     from harmonic_joint_twin import _tool
@@ -68,8 +85,7 @@ def _run(command: str, positional: Sequence[Path], options: Mapping[str, Any], o
         raise _hjt.InputError(words_of_tool)
     if not document:
         raise RuntimeError(words_of_tool)
-    for line in words_of_tool.splitlines():
-        warnings.warn(line, RuntimeWarning, stacklevel=3)
+    _remark(words_of_tool.splitlines())
     found = json.loads(document)
     assert isinstance(found, dict)
     return found
@@ -98,8 +114,7 @@ def _call(function: str, options: Mapping[str, Any], overlays: Overlays) -> Docu
     from harmonic_joint_twin import _recordings
     arguments = {name: _plain(value) for name, value in options.items() if value is not None}
     found, notices = getattr(_recordings, function)({**arguments, "overlays": list(map(_plain, overlays))})
-    for notice in notices:
-        warnings.warn(notice, RuntimeWarning, stacklevel=3)
+    _remark(notices)
     assert isinstance(found, dict)
     return found
 
@@ -217,15 +232,22 @@ def arm(motion: Recording, arm: Path, *, faults: Sequence[str] = (), out: Option
 
 
 def _columns(recording: Any) -> Dict[str, "NDArray[np.float64]"]:
+    if not (hasattr(recording, "keys") or getattr(getattr(recording, "dtype", None), "names", None)):
+        raise _hjt.InputError(f"recording = {recording!r:.60} must have columns by name: a structured array, a frame "
+                              "or a mapping of arrays")
     names = recording.dtype.names if isinstance(recording, np.ndarray) else list(recording)
     arrays = {str(name): np.asarray(recording[name]) for name in names}
     return {name: array.astype(np.float64) for name, array in arrays.items()
             if array.ndim == 1 and array.dtype.kind in "biuf"}
 
 
-def _signals(recordings: Union[Recording, Sequence[Recording]]) -> Dict[str, Any]:
+def _signals(recordings: Any) -> Dict[str, Any]:
     """Names of the recordings, and the columns of those at hand."""
-    several = recordings if isinstance(recordings, (list, tuple)) else [recordings]
+    is_column = getattr(recordings, "ndim", 0) == 1 and getattr(recordings.dtype, "names", None) is None
+    listed = recordings.tolist() if is_column else recordings  # of a frame, with paths
+    several = listed if isinstance(listed, (list, tuple)) else [listed]
+    if not several:
+        raise _hjt.InputError("recordings: there is none")
     names: List[str] = []
     at_hand = {}
     for place, recording in enumerate(several):

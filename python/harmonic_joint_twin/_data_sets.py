@@ -105,12 +105,9 @@ Recordings = Union[Recording, Sequence[Recording]]
 
 
 def _expanded(recordings: Any) -> Any:
-    """A folder of a data set as its files, a column of a frame as a list."""
-    if isinstance(recordings, (str, os.PathLike)) and os.path.isdir(recordings):
-        return list(load(recordings, group=None)["file"])
-    is_column = hasattr(recordings, "tolist") and getattr(recordings, "ndim", 0) == 1 and \
-        getattr(recordings.dtype, "names", None) is None
-    return recordings.tolist() if is_column else recordings
+    """A folder of a data set as its files."""
+    is_folder = isinstance(recordings, (str, os.PathLike)) and os.path.isdir(recordings)
+    return list(load(recordings, group=None)["file"]) if is_folder else recordings
 
 
 def reference(recordings: Recordings, out: Path, *, joint: Optional[str] = None, torque_scale: Optional[float] = None,

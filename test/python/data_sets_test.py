@@ -112,6 +112,22 @@ class DataSets(unittest.TestCase):
         self.assertEqual(verdict.state, "too few windows")
         self.assertIsNone(verdict.level)
 
+    def test_no_recordings_are_an_error(self):
+        for function in (hjt.indicators, hjt.remaining, lambda none: hjt.assess(none, "sound.yaml"),
+                         lambda none: hjt.reference(none, "sound.yaml")):
+            with self.assertRaisesRegex(hjt.InputError, "recordings: there is none"):
+                function([])
+
+    def test_runs_without_a_reference_are_one_warning_at_the_callers_line(self):
+        runs = hjt.load("old", group=None)
+        hjt.reference(runs.file[:2], "short.yaml")
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            hjt.assess("old", "short.yaml")
+        [warning] = caught
+        self.assertRegex(str(warning.message), f"and {WORN - 1} more: the healthy reference needs 8 windows")
+        self.assertEqual(warning.filename, __file__)
+
     def test_columns_of_any_name_are_read(self):
         samples = hjt.load("sound", "signals")
         frame = samples[samples.run == 0]
