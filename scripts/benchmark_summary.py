@@ -6,8 +6,8 @@ import shutil
 HEAD = """# Run time against error
 
 Written by `scripts/benchmark`; do not edit. Time that the twin's solvers and other programs need to reach a
-given error with the same equations of motion: the dynamic ring of [model.md](model.md) (804 states: every tooth's mass, wave generator, circular
-spline), the operating model, and the levels of detail to choose from.
+given error with the same equations of motion: the dynamic ring of [model.md](model.md) (804 states: every tooth's
+mass, wave generator, circular spline), the operating model, and the levels of detail to choose from.
 
 ```sh
 scripts/benchmark                    # ten minutes: installs the peers, measures; the complete page in out/benchmark

@@ -2,6 +2,7 @@
 #include "recordings/indicators.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "output/output_file.hpp"
@@ -124,6 +125,28 @@ std::vector<WindowResult> assess(const IndicatorsOptions& options, Assessor& ass
   return windows;
 }
 
+/// Says where a cause was sought with signatures of a gear much stiffer or softer than the reference's.
+void noticeOtherGear(const std::vector<WindowResult>& windows, const Assessor& assessor, const std::string& signatures,
+                     const Watch& watch)
+{
+  // Sizes of a series differ by 1.9 and more from one to the next, ratio, encoders and making of one by 1.25.
+  constexpr double ALIKE = 1.6;
+  constexpr std::size_t K1 = indexOf(ScalarIndicator::TORSIONAL_STIFFNESS);
+  const double theirs = assessor.signatures().sound[K1];
+  for (const WindowResult& window : windows)
+  {
+    const double own = window.residual.sound[K1];
+    if (window.assessment.state == AssessmentState::ASSESSED && window.assessment.level != HealthLevel::OK &&
+        own > 0.0 && theirs > 0.0 && std::abs(std::log(own / theirs)) > std::log(ALIKE))
+    {
+      watch.notice("the cause is sought with signatures of another gear: torsional_stiffness is " +
+                   shortNumber(std::round(theirs)) + " N.m/rad in " + signatures + ", " + shortNumber(std::round(own)) +
+                   " in the reference; joint_twin signatures makes those of yours");
+      return;
+    }
+  }
+}
+
 void refuseWrongModels(const IndicatorsOptions& options)
 {
   if (!options.models.empty() && options.models.size() != options.recordings.size())
@@ -153,6 +176,7 @@ AssessedWindows indicators(const IndicatorsOptions& options)
   std::vector<ClosestAssessment> judged;
   AssessedWindows found;
   found.windows = assess(options, assessor, judged);
+  noticeOtherGear(found.windows, assessor, parameters.indicators.signatures, options.watch);
   found.threshold = assessor.baseline().threshold();
   found.is_judged =
       std::any_of(judged.begin(), judged.end(), [](const ClosestAssessment& one) { return one.isJudged(); });

@@ -32,6 +32,7 @@ bool makeSameWindows(Parameters one, const Parameters& other)
   one.indicators.least_spread = other.indicators.least_spread;
   one.indicators.false_alarm_rate = other.indicators.false_alarm_rate;
   one.indicators.evidence_windows = other.indicators.evidence_windows;
+  one.indicators.signatures = other.indicators.signatures;
   one.indicators.error_factor = other.indicators.error_factor;
   return describeParameters(one) == describeParameters(other);
 }

@@ -27,7 +27,7 @@ set:
   solver.scene: auto
   indicators.window_time: 6.0
   indicators.window_turns: 100000.0
-  output.gravity_torque: {uniform: [10.0, 14.0]}
+  output.gravity_torque: {uniform: [30.0, 34.0]}
 duty: [{name: slow, speed: {trapezoid: {peak: 0.5, slope: 5.0, hold: 0.9}}}]
 repeats: %d
 classes: {%s}
@@ -98,6 +98,14 @@ class DataSets(unittest.TestCase):
             self.assertNotIn("lubricant_degradation", blind)
         pandas.testing.assert_frame_equal(hjt.assess(list(verdicts.recording), "sound_reference.yaml", check_up=True),
                                           verdicts)
+
+    def test_signatures_of_another_gear_are_told(self):
+        for name, told in (("size_14", True), ("size_25", False)):
+            with warnings.catch_warnings(record=True) as caught:
+                warnings.simplefilter("always")
+                hjt.assess("old", "sound_reference.yaml", check_up=True,
+                           overlays=[{"indicators.signatures": f"signatures/{name}.yaml"}])
+            self.assertEqual(["signatures of another gear" in str(one.message) for one in caught], [True] * told, name)
 
     def test_each_file_is_read_with_its_own_parameters(self):
         windows = hjt.indicators(list(hjt.load("sound", group=None).file[:2]))["windows"]
