@@ -55,6 +55,9 @@ def load(folder: Path, group: Optional[str] = "indicators") -> Frame:
                 columns.update({f"{name}_{i}": column[:, i] for name, column in run[group].items() if column.ndim == 2
                                 for i in range(column.shape[1])})
         parts.append(pandas.DataFrame({"file": file, **columns}))
+    if not any(map(len, parts)):
+        raise _hjt.InputError(f"{folder}: no run holds a row of '{group}'; is a window (indicators.window_turns, "
+                              "window_time) longer than a run less record.start, or has every run failed?")
     return pandas.concat(parts, ignore_index=True).merge(index, on="file")
 
 

@@ -99,6 +99,13 @@ class DataSets(unittest.TestCase):
         pandas.testing.assert_frame_equal(hjt.assess(list(verdicts.recording), "sound_reference.yaml", check_up=True),
                                           verdicts)
 
+    def test_a_set_without_a_whole_window_is_told(self):
+        with open("brief.yaml", "w", encoding="utf-8") as file:
+            file.write((PLAN % (1, "healthy: []")).replace("duration: 7.1", "duration: 2.0"))
+        hjt.sweep("brief.yaml", "brief")
+        with self.assertRaisesRegex(hjt.InputError, "no run holds a row of 'indicators'; is a window"):
+            hjt.load("brief")
+
     def test_signatures_of_another_gear_are_told(self):
         for name, told in (("size_14", True), ("size_25", False)):
             with warnings.catch_warnings(record=True) as caught:
