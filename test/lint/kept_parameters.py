@@ -12,6 +12,7 @@ HOLDERS = {
     "src/python/configuration.hpp": "Python's object of all parameters: any of them is read and set",
     "src/fmu/drive_unit.cpp": "a unit for co-simulation: the importer sets any parameter of each instance",
     "src/fmu/arm_unit.cpp": "the same for each drive of an arm",
+    "src/datasets/plan.hpp": "a plan of runs: the parameters of each are those of the first with changes",
     "src/recordings/arm_recording.hpp": "a recording with the parameters that its joints' twins are made of",
 }
 
