@@ -192,7 +192,7 @@ int replay(const ReplayOptions& options)
   const BagInputs found = requireInputs(bag, options, map, parameters);
   Twin twin(parameters, surfaceSource());
   twin.watchSignals(true);
-  twin.reset(found.inputs.front().stamp);
+  twin.reset(stampOf(found.inputs.front()));
   const RunSummary summary{ options.out, twin.stamp() };
   const InterruptScope interrupts;
   Replay run(bag, twin, found.inputs, options);
