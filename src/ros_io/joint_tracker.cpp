@@ -53,6 +53,7 @@ JointTracker::JointTracker(ros::NodeHandle& node, const Parameters& parameters, 
   , name_(node.getNamespace().substr(1))
   , names_(parameters.joint.name)
   , takes_arm_load_(parameters.telemetry.load == LoadSource::ARM)
+  , thermal_model_(parameters.thermal.model)
   , ratio_(nominalRatio(parameters.gear))
   , current_per_effort_(currentPerEffort(parameters))
   // Built before the first row is read, so that the same rows give the same numbers.

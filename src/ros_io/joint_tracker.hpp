@@ -157,6 +157,7 @@ private:
   const std::string name_;  // of the twin in the graph
   const JointNames names_;
   const bool takes_arm_load_;
+  const ThermalModel thermal_model_;
   const double ratio_;                          // of motor to output
   const double current_per_effort_;             // [A], [A/(N.m)]
   static constexpr std::uint64_t SILENT = 100;  // messages
