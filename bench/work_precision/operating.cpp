@@ -22,7 +22,7 @@
 #include "sensors/absolute_encoder.hpp"
 #include "sensors/incremental_encoder.hpp"
 #include "solver/leapfrog.hpp"
-#include "surface/surface_worker.hpp"
+#include "surface/faulty_surface.hpp"
 #include "test/core/test_parameters.hpp"
 
 namespace hjt

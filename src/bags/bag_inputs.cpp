@@ -23,17 +23,17 @@ constexpr double MAX_DELAY = 10.0;
 class InputReader
 {
 public:
-  InputReader(const std::string& joint_namespace, const Parameters& parameters)
-    : prefix_(joint_namespace + "/"), parameters_(parameters), names_(parameters.joint.name)
+  InputReader(const std::string& joint_namespace, const std::string& joint)
+    : prefix_(joint_namespace + "/"), names_(joint)
   {
   }
 
   /// @throws InputError.
-  void read(const rosbag::MessageInstance& message)
+  void read(const rosbag::MessageInstance& message, const Parameters& parameters)
   {
     try
     {
-      readInput(message);
+      readInput(message, parameters);
     }
     catch (const ros::Exception&)
     {
@@ -44,12 +44,12 @@ public:
   BagInputs take()
   {
     std::stable_sort(result_.inputs.begin(), result_.inputs.end(),
-                     [](const Input& a, const Input& b) { return a.stamp < b.stamp; });
+                     [](const TwinInput& a, const TwinInput& b) { return hjt::stampOf(a) < hjt::stampOf(b); });
     return std::move(result_);
   }
 
 private:
-  void readInput(const rosbag::MessageInstance& message)
+  void readInput(const rosbag::MessageInstance& message, const Parameters& parameters)
   {
     const std::string& topic = message.getTopic();
     if (topic == prefix_ + topics::COMMAND)
@@ -62,14 +62,14 @@ private:
     }
     else if (topic == prefix_ + topics::INJECT_FAULT)
     {
-      readFaultMessage(message);
+      readFaultMessage(message, parameters);
     }
     else
     {
       const bool command = topic == prefix_ + topics::MOTOR_TORQUE_COMMAND;
       const auto value = instantiate<std_msgs::Float64>(message);
-      result_.inputs.push_back(
-          { fromRosTime(message.getTime()), command ? InputKind::MOTOR_TORQUE : InputKind::LOAD_TORQUE, value->data });
+      result_.inputs.push_back(Input{ fromRosTime(message.getTime()),
+                                      command ? InputKind::MOTOR_TORQUE : InputKind::LOAD_TORQUE, value->data });
     }
   }
 
@@ -98,19 +98,19 @@ private:
     return stamp;
   }
 
-  void readFaultMessage(const rosbag::MessageInstance& instance)
+  void readFaultMessage(const rosbag::MessageInstance& instance, const Parameters& parameters)
   {
     const auto message = instantiate<harmonic_joint_twin::Fault>(instance);
     const Stamp stamp = stampOf(instance, message->header);
     std::vector<Fault> steps;
-    if (!readFault(*message, parameters_, steps).empty())
+    if (!readFault(*message, parameters, steps).empty())
     {
       ++result_.refused_faults;
       return;
     }
     for (const Fault& fault : steps)
     {
-      result_.inputs.push_back({ stamp, InputKind::FAULT, 0.0, fault });
+      result_.inputs.push_back(StampedFault{ stamp, fault });
     }
   }
 
@@ -128,7 +128,7 @@ private:
     switch (read_torque(message, names_, torque))
     {
       case EffortStatus::FOUND:
-        result_.inputs.push_back({ stamp, kind, torque });
+        result_.inputs.push_back(Input{ stamp, kind, torque });
         break;
       case EffortStatus::MISSING_EFFORT:
         ++result_.without_effort;
@@ -140,7 +140,6 @@ private:
   }
 
   std::string prefix_;
-  const Parameters& parameters_;
   JointNames names_;
   CheckedMessage checked_;
   BagInputs result_;
@@ -163,11 +162,11 @@ std::vector<std::string> outputTopics(const std::string& joint_namespace)
 
 BagInputs readBagInputs(const rosbag::Bag& bag, const std::string& joint_namespace, const Parameters& parameters)
 {
-  InputReader reader(joint_namespace, parameters);
+  InputReader reader(joint_namespace, parameters.joint.name);
   rosbag::View view(bag, rosbag::TopicQuery(inputTopics(joint_namespace)));
   for (const rosbag::MessageInstance& message : view)
   {
-    reader.read(message);
+    reader.read(message, parameters);
   }
   return reader.take();
 }

@@ -16,7 +16,7 @@ namespace hjt
 /// The torques and faults recorded in a bag.
 struct BagInputs
 {
-  std::vector<Input> inputs;           ///< by stamp; equal stamps in the order of the bag
+  std::vector<TwinInput> inputs;       ///< by stamp; equal stamps in the order of the bag
   std::uint64_t without_effort{};      ///< stamped messages that name the joint but give no effort for it
   std::uint64_t damaged{};             ///< messages whose bytes cannot be read
   std::uint64_t refused_faults{};      ///< of unknown kind, or out of range: not among the inputs

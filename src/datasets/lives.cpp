@@ -24,7 +24,9 @@ constexpr std::array SPALLED{ FaultKind::BEARING_OUTER_RACE, FaultKind::BEARING_
 }  // namespace
 
 Lives::Lives(const PlanNode& node, const Parameters& nominal, const std::string& directory, std::uint32_t seed)
-  : nominal_(nominal)
+  : fatigue_law_(nominal.life, nominal.stress)
+  , fault_scale_(nominal.fault_scale)
+  , rim_thickness_(nominal.gear.rim_thickness)
 {
   constexpr double LONGEST = 100'000.0;    // [h]
   constexpr double TEST_SHARE = 0.25;      // [-]
@@ -95,14 +97,13 @@ void Lives::readDuties(const PlanNode& files, const std::string& directory)
 
 double Lives::stressAt(const RevolutionLoadMap& load_map, const DutyCycle& duty, const DriveAge& age) const
 {
-  const FatigueLaw law(nominal_);
   double largest = 0.0;
   for (const DutyPhase& phase : duty.phases)
   {
     const RevolutionLoad load = load_map.at(phase.load_torque, age.meanFlank(), age.interface_wear);
     for (std::size_t place = 0; place < STRESS_PLACES; ++place)
     {
-      largest = std::max(largest, law.equivalentAmplitude(place, load.stress[place]));
+      largest = std::max(largest, fatigue_law_.equivalentAmplitude(place, load.stress[place]));
     }
   }
   return largest;
@@ -112,7 +113,7 @@ std::vector<GrowingFault> Lives::faultsAt(std::uint64_t check_up) const
 {
   const CheckUp& now = check_ups_[check_up];
   const Drive& drive = drives_[now.drive];
-  const FaultScaleParameters& scale = nominal_.fault_scale;
+  const FaultScaleParameters& scale = fault_scale_;
   std::vector<GrowingFault> faults;
   const auto add = [&](FaultKind kind, double severity, int place)
   {
@@ -124,8 +125,7 @@ std::vector<GrowingFault> Lives::faultsAt(std::uint64_t check_up) const
   add(FaultKind::TOOTH_WEAR, now.age.meanFlank() / scale.tooth_wear_depth, WHOLE_MEMBER);
   add(FaultKind::INTERFACE_WEAR, now.age.interface_wear / scale.interface_wear_depth, WHOLE_MEMBER);
   add(FaultKind::LUBRICANT_DEGRADATION, grease_severity_ * now.age.grease, WHOLE_MEMBER);
-  add(FaultKind::FLEXSPLINE_CRACK, now.age.flaw_depth / (nominal_.gear.rim_thickness * scale.rim_crack_depth),
-      drive.crack_place);
+  add(FaultKind::FLEXSPLINE_CRACK, now.age.flaw_depth / (rim_thickness_ * scale.rim_crack_depth), drive.crack_place);
   add(drive.spall.kind, spallSize(drive.variation, now.age.bearing_turns), drive.spall.place);
   return faults;
 }

@@ -60,7 +60,9 @@ private:
   void readDuties(const PlanNode& files, const std::string& directory);
   double stressAt(const RevolutionLoadMap& load_map, const DutyCycle& duty, const DriveAge& age) const;
 
-  Parameters nominal_;
+  FatigueLaw fatigue_law_;
+  FaultScaleParameters fault_scale_;
+  double rim_thickness_;  // [m]
   double grease_severity_{};
   std::vector<std::pair<std::string, DutyCycle>> duties_;
   std::vector<Drive> drives_;

@@ -223,7 +223,7 @@ class PreslidingFit
 {
 public:
   PreslidingFit(const Parameters& parameters, const std::vector<MotionSample>& samples)
-    : parameters_(parameters), samples_(samples)
+    : telemetry_(parameters.telemetry), ratio_(nominalRatio(parameters.gear)), samples_(samples)
   {
     // Without mobilised friction, and with all of it: what a share of 1 adds, and what is missing at 0.
     MotionDriven twin(parameters);
@@ -240,12 +240,12 @@ public:
   {
     const IdentifiedValue angle = findAngle();
     result.values.push_back(angle);
-    result.parameters.telemetry.presliding_angle = parameters_.telemetry.presliding_angle = angle.value;
+    result.parameters.telemetry.presliding_angle = telemetry_.presliding_angle = angle.value;
     const Trial trial = fitted(std::log(angle.value));
     IdentifiedValue share{ "share of the friction that lasts at rest",
                            "telemetry.lasting_share",
                            "-",
-                           parameters_.telemetry.lasting_share,
+                           telemetry_.lasting_share,
                            trial.share,
                            trial.half_width,
                            "" };
@@ -274,9 +274,8 @@ private:
   /// The best lasting share at one presliding angle: the error is linear in it.
   Trial fitted(double log_angle) const
   {
-    TelemetryParameters telemetry = parameters_.telemetry;
+    TelemetryParameters telemetry = telemetry_;
     telemetry.presliding_angle = std::exp(log_angle);
-    const double ratio = nominalRatio(parameters_.gear);
     Presliding presliding(telemetry);
     Eigen::VectorXd column(static_cast<Eigen::Index>(samples_.size()));
     Eigen::VectorXd missing(column.size());
@@ -288,7 +287,7 @@ private:
       }
       else
       {
-        presliding.move(ratio * (samples_[i].position - samples_[i - 1].position),
+        presliding.move(ratio_ * (samples_[i].position - samples_[i - 1].position),
                         samples_[i].time - samples_[i - 1].time);
       }
       const auto at = static_cast<Eigen::Index>(i);
@@ -308,7 +307,7 @@ private:
 
   IdentifiedValue findAngle() const
   {
-    const double configured = parameters_.telemetry.presliding_angle;
+    const double configured = telemetry_.presliding_angle;
     IdentifiedValue value{ "presliding angle",
                            "telemetry.presliding_angle",
                            "rad",
@@ -348,7 +347,8 @@ private:
     return value;
   }
 
-  Parameters parameters_;
+  TelemetryParameters telemetry_;
+  double ratio_;
   const std::vector<MotionSample>& samples_;
   std::vector<double> friction_;  // [A]
   std::vector<double> missing_;   // [A]

@@ -14,7 +14,7 @@ double greaseAgeing(const LifeParameters& parameters, double temperature)
   return std::exp2((temperature - parameters.grease_temperature) / parameters.grease_halving) / parameters.grease_turns;
 }
 
-double stressIntensityRange(const Parameters& parameters, const RevolutionLoad& revolution_load, double depth)
+double stressIntensityRange(const AgeingParameters& parameters, const RevolutionLoad& revolution_load, double depth)
 {
   constexpr double POISSON = 0.3;
   constexpr double DEEPEST = 0.95;  // of the rim; there the factors of the strip grow without bound
@@ -29,15 +29,15 @@ double stressIntensityRange(const Parameters& parameters, const RevolutionLoad& 
   const double by_tension = edge * (0.752 + 2.02 * x + 0.37 * std::pow(lean, 3));
   // By how much the crack lets the section turn, over what it turns without: as much less moment turns it as far.
   const double opening = std::pow(x / (1.0 - x), 2) * (5.93 + x * (-19.69 + x * (37.14 + x * (-35.84 + x * 13.12))));
-  const double bending_left =
-      1.0 / (1.0 + 2.0 * (1.0 - POISSON * POISSON) * gear.rim_thickness / toothSpace(parameters) * opening);
+  const double bending_left = 1.0 / (1.0 + 2.0 * (1.0 - POISSON * POISSON) * gear.rim_thickness /
+                                               toothSpace(gear, parameters.stress) * opening);
   const double notch = std::max(1.0, parameters.stress.concentration[TOOTH_SPACE] /
                                          std::sqrt(1.0 + NOTCH * depth / parameters.stress.notch_radius[TOOTH_SPACE]));
   return notch * std::sqrt(PI * depth) *
          (by_bending * bending_left * revolution_load.bending_range + by_tension * revolution_load.tension_range);
 }
 
-double crackGrowth(const Parameters& parameters, const RevolutionLoad& revolution_load, double depth)
+double crackGrowth(const AgeingParameters& parameters, const RevolutionLoad& revolution_load, double depth)
 {
   constexpr double CYCLES_A_TURN = 2.0;
   constexpr double PA_IN_MPA = 1e-6;

@@ -63,14 +63,24 @@ inline double greaseWearFactor(const LifeParameters& parameters, double age)
   return 1.0 + (parameters.grease_wear_factor - 1.0) * age;
 }
 
+/// The groups of a drive's parameters that the laws of ageing need.
+struct AgeingParameters
+{
+  AgeingParameters(const Parameters& of) : gear(of.gear), stress(of.stress), life(of.life) {}
+
+  GearParameters gear;
+  StressParameters stress;
+  LifeParameters life;
+};
+
 /// Range of the stress intensity at a crack across the tooth space [Pa sqrt(m)]: an edge crack in a strip (Tada). The
 /// wave generator prescribes the rim's shape, so that a deeper crack leaves less bending to the section; the tension
 /// stays. The notch raises the stress of a crack that is short against its radius (Lukas and Klesnil).
 /// `depth` of the crack, >= 0 [m].
-double stressIntensityRange(const Parameters& parameters, const RevolutionLoad& revolution_load, double depth);
+double stressIntensityRange(const AgeingParameters& parameters, const RevolutionLoad& revolution_load, double depth);
 
 /// Paris' law with a threshold: growth of a crack by one turn [m]. The rim is bent twice a turn.
-double crackGrowth(const Parameters& parameters, const RevolutionLoad& revolution_load, double depth);
+double crackGrowth(const AgeingParameters& parameters, const RevolutionLoad& revolution_load, double depth);
 
 /// Turns at the catalogue's rated torque and speed that one turn under `load_torque` [N.m] is worth to the wave
 /// generator's bearing: its life falls with the cube of the torque.

@@ -28,7 +28,7 @@ using Entries = std::array<double, ENTRIES>;
 
 struct Scale
 {
-  explicit Scale(const Parameters& parameters, const UnitVariation& variation)
+  explicit Scale(const AgeingParameters& parameters, const UnitVariation& variation)
     : by{ parameters.life.grease_turns,
           parameters.life.flank_wear_limit,
           parameters.life.flank_wear_limit,

@@ -20,8 +20,8 @@ UnitVariation nominalDrive(const LifeParameters& parameters);
 class DriveAgeing
 {
 public:
-  DriveAgeing(const Parameters& parameters, const DutyCycle& duty, const RevolutionLoadMap& load_map)
-    : parameters_(parameters), fatigue_law_(parameters), duty_(duty), load_map_(load_map)
+  DriveAgeing(const AgeingParameters& parameters, const DutyCycle& duty, const RevolutionLoadMap& load_map)
+    : parameters_(parameters), fatigue_law_(parameters.life, parameters.stress), duty_(duty), load_map_(load_map)
   {
   }
 
@@ -51,7 +51,7 @@ private:
   void addFatigue(double turns, const RevolutionLoad& revolution_load, const UnitVariation& variation,
                   std::array<MinerSum, STRESS_PLACES>& fatigue) const;
 
-  Parameters parameters_;
+  AgeingParameters parameters_;
   FatigueLaw fatigue_law_;
   DutyCycle duty_;
   const RevolutionLoadMap& load_map_;

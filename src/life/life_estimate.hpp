@@ -37,7 +37,10 @@ class LifeEstimator
 {
 public:
   explicit LifeEstimator(const Parameters& parameters)
-    : parameters_(parameters), load_map_(parameters, POSITIONS), drives_(parameters)
+    : parameters_(parameters)
+    , fault_scale_(parameters.fault_scale)
+    , load_map_(parameters, POSITIONS)
+    , drives_(parameters)
   {
   }
 
@@ -70,10 +73,10 @@ public:
     estimate.grease_used = age.grease;
 
     const NominalUse use(ageing, life, GREASE_IS_CHANGED);
-    estimate.remaining = drives_.remaining(
-        use.until(estimate.hours),
-        use.from(estimate.hours, GREASE_CHANGES_AHEAD / ageing.rates(nominal, {}).grease, STRETCHES), assessment,
-        use.until(reference_hours), trendsOf(read, use, parameters_.fault_scale, reference_hours));
+    estimate.remaining =
+        drives_.remaining(use.until(estimate.hours),
+                          use.from(estimate.hours, GREASE_CHANGES_AHEAD / ageing.rates(nominal, {}).grease, STRETCHES),
+                          assessment, use.until(reference_hours), trendsOf(read, use, fault_scale_, reference_hours));
     return estimate;
   }
 
@@ -83,7 +86,8 @@ private:
   static constexpr double GREASE_CHANGES_AHEAD = 20.0;
   static constexpr bool GREASE_IS_CHANGED = true;
 
-  Parameters parameters_;
+  AgeingParameters parameters_;
+  FaultScaleParameters fault_scale_;
   RevolutionLoadMap load_map_;
   RemainingLife drives_;
 };

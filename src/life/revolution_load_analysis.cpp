@@ -19,14 +19,14 @@ void widen(Range& range, double value)
 }
 }  // namespace
 
-RevolutionLoadAnalysis::RevolutionLoadAnalysis(const Parameters& parameters, int positions)
-  : parameters_(parameters)
-  , positions_(positions)
-  , walk_(parameters, positions)
-  , flexspline_stress_(parameters)
-  , tooth_stress_(parameters.gear.teeth_flexspline)
-  , race_creep_(parameters)
-  , running_(2 * parameters.gear.teeth_flexspline)
+RevolutionLoadAnalysis::RevolutionLoadAnalysis(const JointModel& joint, const SolverParameters& solver,
+                                               const FlexsplineStress& stress, const RaceCreep& creep, int positions)
+  : positions_(positions)
+  , walk_(joint, solver, positions)
+  , flexspline_stress_(stress)
+  , tooth_stress_(joint.ring.gear.teeth_flexspline)
+  , race_creep_(creep)
+  , running_(2 * joint.ring.gear.teeth_flexspline)
 {
   if (!walk_.status().ok())
   {
@@ -36,7 +36,7 @@ RevolutionLoadAnalysis::RevolutionLoadAnalysis(const Parameters& parameters, int
 
 RevolutionLoad RevolutionLoadAnalysis::under(double load_torque)
 {
-  const int teeth = parameters_.gear.teeth_flexspline;
+  const int teeth = walk_.model().ring.gear.teeth_flexspline;
   const double step = TWO_PI / teeth / positions_;  // of the wave generator [rad]
   RevolutionLoad revolution_load;
   constexpr double NONE = std::numeric_limits<double>::infinity();

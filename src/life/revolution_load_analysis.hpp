@@ -17,14 +17,20 @@ class RevolutionLoadAnalysis
 public:
   /// `positions`: wave generator angles per tooth pitch, >= 1. @throws ParameterError if the parameters have no
   /// equilibrium.
-  RevolutionLoadAnalysis(const Parameters& parameters, int positions);
+  RevolutionLoadAnalysis(const Parameters& parameters, int positions)
+    : RevolutionLoadAnalysis(startingJoint(parameters), parameters.solver, FlexsplineStress(parameters),
+                             RaceCreep(parameters), positions)
+  {
+  }
+  /// The same of a joint of that drive with other faults.
+  RevolutionLoadAnalysis(const JointModel& joint, const SolverParameters& solver, const FlexsplineStress& stress,
+                         const RaceCreep& creep, int positions);
 
   /// One turn of the wave generator under `load_torque` [N.m].
   /// @throws ParameterError if the ring finds no equilibrium under it.
   RevolutionLoad under(double load_torque);
 
 private:
-  Parameters parameters_;
   int positions_;
   PitchWalk walk_;
   FlexsplineStress flexspline_stress_;

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "life/revolution_load_analysis.hpp"
-
 namespace hjt
 {
 namespace
@@ -35,16 +33,24 @@ RevolutionLoad larger(const RevolutionLoad& a, const RevolutionLoad& b)
 }
 }  // namespace
 
-Parameters wornDrive(const Parameters& parameters, const DriveAge& age)
+/// Of the drive with the wear of its age.
+RevolutionLoadAnalysis RevolutionLoadMap::analysisOf(const DriveAge& age) const
 {
-  Parameters worn = parameters;
-  worn.faults.push_back({ FaultKind::TOOTH_WEAR, age.meanFlank() / worn.fault_scale.tooth_wear_depth });
-  worn.faults.push_back({ FaultKind::INTERFACE_WEAR, age.interface_wear / worn.fault_scale.interface_wear_depth });
-  return worn;
+  FaultList faults = faults_at_start_;
+  faults.set({ FaultKind::TOOTH_WEAR, age.meanFlank() / fault_scale_.tooth_wear_depth }, 0);
+  faults.set({ FaultKind::INTERFACE_WEAR, age.interface_wear / fault_scale_.interface_wear_depth }, 0);
+  JointFaults worn = joint_;
+  worn.apply(faults);
+  return { worn.model(), solver_, stress_, creep_, positions_ };
 }
 
 RevolutionLoadMap::RevolutionLoadMap(const Parameters& parameters, int positions)
-  : parameters_(parameters)
+  : joint_(parameters)
+  , faults_at_start_(faultsAtStart(parameters))
+  , fault_scale_(parameters.fault_scale)
+  , solver_(parameters.solver)
+  , stress_(parameters)
+  , creep_(parameters)
   , positions_(positions)
   , flank_step_(parameters.life.flank_wear_limit / (STAGES - 1))
   , interface_step_(parameters.life.interface_wear_limit / (STAGES - 1))
@@ -73,7 +79,7 @@ void RevolutionLoadMap::cover(const DutyCycle& duty, const std::function<void(do
       DriveAge age;
       age.flank_wear.fill(flank * flank_step_);
       age.interface_wear = interface * interface_step_;
-      RevolutionLoadAnalysis analysis(wornDrive(parameters_, age), positions_);
+      RevolutionLoadAnalysis analysis = analysisOf(age);
       for (auto& [load, stages] : added)
       {
         stages[static_cast<std::size_t>(flank)][static_cast<std::size_t>(interface)] = analysis.under(load);
@@ -108,7 +114,7 @@ double RevolutionLoadMap::largestError() const
       DriveAge age;
       age.flank_wear.fill((flank + 0.5) * flank_step_);
       age.interface_wear = (interface + 0.5) * interface_step_;
-      RevolutionLoadAnalysis analysis(wornDrive(parameters_, age), positions_);
+      RevolutionLoadAnalysis analysis = analysisOf(age);
       for (const auto& [load, stages] : nodes_)
       {
         const RevolutionLoad measured = analysis.under(load);

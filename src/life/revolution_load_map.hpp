@@ -8,12 +8,11 @@
 #include "life/ageing_laws.hpp"
 #include "life/drive_age.hpp"
 #include "life/duty_cycle.hpp"
+#include "life/revolution_load_analysis.hpp"
+#include "model/faults/joint_faults.hpp"
 
 namespace hjt
 {
-/// The drive with the wear of its age, as faults of its parameters.
-Parameters wornDrive(const Parameters& parameters, const DriveAge& age);
-
 /// The bridge between seconds and years: what turning under a load does to the drive, measured on the tooth model at
 /// some stages of wear, bilinear between them.
 class RevolutionLoadMap
@@ -37,7 +36,14 @@ private:
   static constexpr int STAGES = 4;  // of each kind of wear, the new drive and the limit included
   using Stages = std::array<std::array<RevolutionLoad, STAGES>, STAGES>;  // by flank, by interface
 
-  Parameters parameters_;
+  RevolutionLoadAnalysis analysisOf(const DriveAge& age) const;
+
+  JointFaults joint_;
+  FaultList faults_at_start_;
+  FaultScaleParameters fault_scale_;
+  SolverParameters solver_;
+  FlexsplineStress stress_;
+  RaceCreep creep_;
   int positions_;
   double flank_step_;               // [m]
   double interface_step_;           // [m]

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <mutex>
+#include <variant>
 #include <vector>
 
 #include "harmonic_joint_twin/twin/input_queue.hpp"
@@ -13,9 +14,14 @@
 namespace hjt
 {
 /// An input of a loop, which may advance several twins.
-struct LiveInput : Input
+struct LiveInput
 {
+  TwinInput input;
   std::size_t joint{};  ///< whose input it is; 0 where there is one twin
+
+  Stamp stamp() const noexcept { return stampOf(input); }
+  const Input* value() const noexcept { return std::get_if<Input>(&input); }  ///< null: it is a fault
+  bool isOf(InputKind kind) const noexcept { return value() != nullptr && value()->kind == kind; }
 };
 
 /// Inputs from the callbacks until the loop hands them to its twin. Callbacks may wait for each other and for the loop,
@@ -28,9 +34,9 @@ public:
   Inbox() { inputs_.reserve(CAPACITY); }
 
   /// From any thread. Values that are not finite are refused, those beyond the capacity dropped; both are counted.
-  void push(const Input& input, std::size_t joint = 0)
+  void push(const TwinInput& input, std::size_t joint = 0)
   {
-    if (!std::isfinite(input.value))
+    if (const auto* value = std::get_if<Input>(&input); value != nullptr && !std::isfinite(value->value))
     {
       ++not_finite_;
       return;

@@ -221,11 +221,12 @@ void TwinLoop::stampInputs(Inputs& inputs) noexcept
   const auto fresh = inputs.begin() + static_cast<std::ptrdiff_t>(waiting_);
   for (auto input = fresh; input != inputs.end(); ++input)
   {
-    input->stamp = input->stamp == 0 ? status_.clock : input->stamp;
+    Stamp& stamp = stampOf(input->input);
+    stamp = stamp == 0 ? status_.clock : stamp;
   }
   const auto kept_end =
       std::remove_if(fresh, inputs.end(),
-                     [this](const LiveInput& input) { return std::abs(input.stamp - status_.clock) > FAR_STAMP; });
+                     [this](const LiveInput& input) { return std::abs(input.stamp() - status_.clock) > FAR_STAMP; });
   status_.far_stamps += static_cast<std::uint64_t>(inputs.end() - kept_end);
   inputs.erase(kept_end, inputs.end());
 }
@@ -239,11 +240,12 @@ void TwinLoop::thinOut(Inputs& inputs) noexcept
   for (std::size_t i = 0; i < inputs.size(); ++i)
   {
     const LiveInput input = inputs[i];
-    const bool overtaken = input.stamp <= due && input.kind != InputKind::FAULT &&
+    const bool overtaken = input.stamp() <= due && input.value() != nullptr &&
                            std::any_of(inputs.begin() + static_cast<std::ptrdiff_t>(i) + 1, inputs.end(),
-                                       [&](const LiveInput& later) {
-                                         return later.kind == input.kind && later.joint == input.joint &&
-                                                later.stamp >= input.stamp && later.stamp <= due;
+                                       [&](const LiveInput& later)
+                                       {
+                                         return later.isOf(input.value()->kind) && later.joint == input.joint &&
+                                                later.stamp() >= input.stamp() && later.stamp() <= due;
                                        });
     inputs[kept] = input;
     kept += overtaken ? 0 : 1;
@@ -263,9 +265,9 @@ bool TwinLoop::tryStart(Inputs& inputs) noexcept
   Stamp first = std::numeric_limits<Stamp>::max();
   for (const LiveInput& input : inputs)
   {
-    if (input.kind == InputKind::MOTOR_TORQUE || input.kind == InputKind::LOAD_TORQUE)
+    if (input.isOf(InputKind::MOTOR_TORQUE) || input.isOf(InputKind::LOAD_TORQUE))
     {
-      first = std::min(first, input.stamp);
+      first = std::min(first, input.stamp());
     }
   }
   if (first > limit())
@@ -290,7 +292,7 @@ void TwinLoop::start(Stamp stamp, Inputs& inputs) noexcept
   // The twin was not there yet when these were due: they act from its first instant and are not late.
   for (LiveInput& input : inputs)
   {
-    input.stamp = std::max(input.stamp, stamp);
+    stampOf(input.input) = std::max(input.stamp(), stamp);
   }
 }
 
@@ -299,9 +301,9 @@ void TwinLoop::handOver(Inputs& inputs) noexcept
   for (const LiveInput& input : inputs)
   {
     twin_.push(input);
-    if (input.kind == InputKind::MOTOR_TORQUE)
+    if (input.isOf(InputKind::MOTOR_TORQUE))
     {
-      status_.last_command = status_.command_seen ? std::max(status_.last_command, input.stamp) : input.stamp;
+      status_.last_command = status_.command_seen ? std::max(status_.last_command, input.stamp()) : input.stamp();
       status_.command_seen = true;
     }
   }

@@ -99,7 +99,7 @@ public:
   explicit AdvancedTwin(Twin& twin) : twin_(twin) {}
 
   bool reset(Stamp stamp) noexcept override { return twin_.reset(stamp); }
-  void push(const LiveInput& input) noexcept override { twin_.push(input); }
+  void push(const LiveInput& input) noexcept override { twin_.push(input.input); }
   bool step(Stamp until) noexcept override { return twin_.step(until); }
   Stamp stamp() const noexcept override { return twin_.stamp(); }
   void show(LoopStatus& status) noexcept override

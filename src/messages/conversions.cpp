@@ -127,7 +127,8 @@ bool fillContactForces(Twin& twin, const SinceMessage& /*since*/, harmonic_joint
   message.header.stamp = toRosTime(outputs.stamp);
   message.wave_generator_angle = outputs.motor_angle;
   message.output_angle = outputs.output_angle;
-  message.mesh_force_error = expectedMeshForceError(twin.parameters(), outputs.motor_velocity, outputs.joint_torque);
+  message.mesh_force_error = expectedMeshForceError(twin.parameters().ring, twin.parameters().gear,
+                                                    outputs.motor_velocity, outputs.joint_torque);
   ToothForces forces;
   swapArrays(forces, message);  // the twin writes into the message's own
   const bool found = twin.toothForces(forces);
@@ -166,10 +167,9 @@ namespace
 {
 /// `source(stress)`: fills the arrays. False: they could not be filled.
 template <class Source>
-bool fillStress(Stamp stamp, const Parameters& parameters, harmonic_joint_twin::Stress& message,
-                const Source& source) noexcept
+bool fillStress(Stamp stamp, const StressParameters& parameters, const FatigueLaw& fatigue_law,
+                harmonic_joint_twin::Stress& message, const Source& source) noexcept
 {
-  const FatigueLaw fatigue_law(parameters);
   ToothStress stress;
   const auto swap_arrays = [&]
   {
@@ -192,7 +192,7 @@ bool fillStress(Stamp stamp, const Parameters& parameters, harmonic_joint_twin::
     message.shears[place] = cycle.shear;
     message.endurance_shares[place] = fatigue_law.enduranceShare(place, cycle);
     message.endurance_share = std::max(message.endurance_share, message.endurance_shares[place]);
-    const double largest = parameters.stress.concentration[place] * cycle.largest();
+    const double largest = parameters.concentration[place] * cycle.largest();
     if (largest > message.largest)
     {
       message.largest = largest;
@@ -207,14 +207,15 @@ bool fillStress(Stamp stamp, const Parameters& parameters, harmonic_joint_twin::
 
 bool fillStress(Twin& twin, const SinceMessage& /*since*/, harmonic_joint_twin::Stress& message) noexcept
 {
-  return fillStress(twin.stamp(), twin.parameters(), message,
+  const Parameters& parameters = twin.parameters();
+  return fillStress(twin.stamp(), parameters.stress, FatigueLaw(parameters.life, parameters.stress), message,
                     [&](ToothStress& stress) { return twin.toothStress(stress); });
 }
 
-void fillStress(Stamp stamp, const MeasuredGear& gear, const Parameters& parameters,
-                harmonic_joint_twin::Stress& message) noexcept
+void fillStress(Stamp stamp, const MeasuredGear& gear, const StressParameters& parameters,
+                const FatigueLaw& fatigue_law, harmonic_joint_twin::Stress& message) noexcept
 {
-  fillStress(stamp, parameters, message,
+  fillStress(stamp, parameters, fatigue_law, message,
              [&](ToothStress& stress)
              {
                gear.fill(stress);

@@ -16,6 +16,7 @@
 #include "harmonic_joint_twin/Stress.h"
 #include "harmonic_joint_twin/twin/twin.hpp"
 #include "messages/signal_span.hpp"
+#include "statics/fatigue_law.hpp"
 #include "tracking/measured_gear.hpp"
 
 namespace hjt
@@ -67,8 +68,8 @@ void fillContactForces(Stamp stamp, const MeasuredGear& gear, harmonic_joint_twi
 
 harmonic_joint_twin::Stress makeStress(const Parameters& parameters);
 bool fillStress(Twin& twin, const SinceMessage& since, harmonic_joint_twin::Stress& message) noexcept;
-void fillStress(Stamp stamp, const MeasuredGear& gear, const Parameters& parameters,
-                harmonic_joint_twin::Stress& message) noexcept;
+void fillStress(Stamp stamp, const MeasuredGear& gear, const StressParameters& parameters,
+                const FatigueLaw& fatigue_law, harmonic_joint_twin::Stress& message) noexcept;
 
 void fillSpan(const SignalSpan& span, double& least, double& mean, double& greatest) noexcept;
 /// The solver's state and the spans are those of the steps after `since`.

@@ -11,7 +11,11 @@
 namespace hjt
 {
 MeasuredDrive::MeasuredDrive(const Parameters& parameters)
-  : parameters_(parameters)
+  : dimensions_(parameters.gear)
+  , ring_(parameters.ring)
+  , stress_(parameters.stress)
+  , fatigue_law_(parameters.life, parameters.stress)
+  , telemetry_(parameters.telemetry)
   , encoders_period_(toStampLength(1.0 / parameters.publish.encoders_rate))
   , ratio_(nominalRatio(parameters.gear))
   , gear_(parameters)
@@ -21,8 +25,7 @@ MeasuredDrive::MeasuredDrive(const Parameters& parameters)
 
 double MeasuredDrive::motorTorque(const Comparison& comparison) const noexcept
 {
-  const TelemetryParameters& telemetry = parameters_.telemetry;
-  return telemetry.torque_per_current / ratio_ * (comparison.current.measured - telemetry.current_offset);
+  return telemetry_.torque_per_current / ratio_ * (comparison.current.measured - telemetry_.current_offset);
 }
 
 void MeasuredDrive::note(const Comparison& comparison, bool is_wanted) noexcept
@@ -38,7 +41,7 @@ void MeasuredDrive::note(const Comparison& comparison, bool is_wanted) noexcept
 
 double MeasuredDrive::meshForceError() const noexcept
 {
-  return expectedMeshForceError(parameters_, ratio_ * now_.velocity.measured, now_.joint_torque);
+  return expectedMeshForceError(ring_, dimensions_, ratio_ * now_.velocity.measured, now_.joint_torque);
 }
 
 bool MeasuredDrive::moveTo(const Comparison& comparison) noexcept
@@ -58,7 +61,7 @@ void MeasuredDrive::fill(Stamp stamp, harmonic_joint_twin::ContactForces& messag
 
 void MeasuredDrive::fill(Stamp stamp, harmonic_joint_twin::Stress& message) noexcept
 {
-  fillStress(stamp, gear_, parameters_, message);
+  fillStress(stamp, gear_, stress_, fatigue_law_, message);
 }
 
 void MeasuredDrive::fill(Stamp stamp, harmonic_joint_twin::Encoders& message) noexcept

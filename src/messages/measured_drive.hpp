@@ -36,7 +36,11 @@ private:
   double motorTorque(const Comparison& comparison) const noexcept;
   double meshForceError() const noexcept;  // [N]
 
-  const Parameters parameters_;
+  const GearParameters dimensions_;
+  const RingParameters ring_;
+  const StressParameters stress_;
+  const FatigueLaw fatigue_law_;
+  const TelemetryParameters telemetry_;
   const Stamp encoders_period_;  // [ns]
   const double ratio_;
   MeasuredGear gear_;

@@ -70,7 +70,7 @@ public:
     const double* value = data_ + twin_stride_ * twin_number + step_stride_ * step;
     if (kind_ == InputKind::MOTOR_TORQUE || step == 0 || *value != *(value - step_stride_))
     {
-      twin.push({ stamp, kind_, *value, {} });
+      twin.push({ stamp, kind_, *value });
     }
   }
 

@@ -322,8 +322,10 @@ void bindStiffness(py::module& module)
       "each of the torques, loads on the circular spline [N.m]. NotConverged.");
   module.def(
       "endurance_share",
-      [](const Configuration& parameters, const std::string& place, const StressCycle& cycle)
-      { return FatigueLaw(parameters.values()).enduranceShare(stressPlace(place), cycle); },
+      [](const Configuration& parameters, const std::string& place, const StressCycle& cycle) {
+        return FatigueLaw(parameters.values().life, parameters.values().stress)
+            .enduranceShare(stressPlace(place), cycle);
+      },
       py::arg("parameters"), py::arg("place"), py::arg("cycle"),
       "Share of the endurance limit that a StressCycle uses at the notch of 'tooth space', 'transition' or 'flange', "
       "by "

@@ -39,7 +39,7 @@ void push(TwinObject& self, InputKind kind, double value, const std::optional<St
   {
     throw InputError(std::string(name) + " = " + numberText(value) + " is not a finite number");
   }
-  self.twin().push({ stampOf(self.twin(), stamp), kind, value, {} });
+  self.twin().push({ stampOf(self.twin(), stamp), kind, value });
 }
 
 void injectFault(TwinObject& self, const py::object& given, const std::optional<Stamp>& stamp)

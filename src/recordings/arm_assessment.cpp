@@ -2,11 +2,10 @@
 #include "recordings/arm_assessment.hpp"
 
 #include <algorithm>
-#include <deque>
 #include <utility>
 
-#include "arm/load_fit.hpp"
 #include "recordings/arm_ranking.hpp"
+#include "recordings/load_collector.hpp"
 
 namespace hjt
 {
@@ -33,50 +32,6 @@ void holdAgainstController(const std::vector<AssessedJoint*>& joints)
   }
 }
 
-/// Of samples that come by joints: all of one time at once.
-class LoadCollector
-{
-public:
-  explicit LoadCollector(const ArmRecording& recording)
-    : fit_(recording.arm(), recording.gains()), waiting_(recording.joints().size())
-  {
-  }
-
-  void add(std::size_t joint, const MotionSample& sample, const JointEvidence& evidence)
-  {
-    waiting_[joint].push_back({ sample, evidence.predicted().current, evidence.isTouched() });
-    while (std::none_of(waiting_.begin(), waiting_.end(), [](const std::deque<Row>& rows) { return rows.empty(); }))
-    {
-      samples_.clear();
-      predicted_.clear();
-      bool is_touched = false;
-      for (std::deque<Row>& rows : waiting_)
-      {
-        samples_.push_back(rows.front().sample);
-        predicted_.push_back(rows.front().predicted);
-        is_touched = is_touched || rows.front().is_touched;
-        rows.pop_front();
-      }
-      fit_.add(samples_, predicted_, is_touched);
-    }
-  }
-
-  FoundLoad solve(const std::vector<bool>& counts) { return fit_.solve(counts); }
-
-private:
-  struct Row
-  {
-    MotionSample sample;
-    double predicted{};  // [A]
-    bool is_touched{};
-  };
-
-  LoadFit fit_;
-  std::vector<std::deque<Row>> waiting_;
-  std::vector<MotionSample> samples_;
-  std::vector<double> predicted_;
-};
-
 ArmAssessment pass(const ArmRecording& recording, const AssessmentSettings& settings, bool gives_notice,
                    RecordingFit& fit)
 {
@@ -99,7 +54,8 @@ ArmAssessment pass(const ArmRecording& recording, const AssessmentSettings& sett
         arm.joints[i]->update(sample);
         if (load)
         {
-          load->add(i, sample, arm.joints[i]->evidence());
+          const JointEvidence& evidence = arm.joints[i]->evidence();
+          load->add(i, sample, evidence.predicted().current, evidence.isTouched());
         }
       },
       fit);
@@ -121,7 +77,7 @@ ArmAssessment pass(const ArmRecording& recording, const AssessmentSettings& sett
   arm.judged = JudgedJoints(fit, misfits, std::move(frictions), recording.parameters(0).comparison.repeat_tolerance);
   if (load && !settings.watch.stopped())
   {
-    arm.load = load->solve(arm.judged.measured);
+    arm.load = load->fit().solve(arm.judged.measured);
   }
   return arm;
 }

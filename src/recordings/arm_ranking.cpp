@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "arm/arm_configuration.hpp"
-#include "arm/load_fit.hpp"
+#include "recordings/load_collector.hpp"
 #include "recordings/recorded_arms.hpp"
 #include "tracking/effort.hpp"
 #include "tracking/motion_driven.hpp"
@@ -21,28 +21,27 @@ constexpr double PERIOD = 0.02;   // of the rows that count, at least [s]
 class ArmTrial
 {
 public:
-  explicit ArmTrial(const ArmRecording& recording) : fit_(recording.arm(), recording.gains())
+  explicit ArmTrial(const ArmRecording& recording) : load_(recording)
   {
     for (const Parameters& parameters : recording.parameters())
     {
       twins_.emplace_back(parameters);
     }
-    samples_.resize(twins_.size());
-    predicted_.resize(twins_.size());
   }
 
   void add(const std::vector<ArmJointRow>& rows)
   {
+    const bool counts = rows.front().row.time >= last_time_ + PERIOD;
     for (std::size_t i = 0; i < rows.size(); ++i)
     {
-      samples_[i] = rows[i].row;
-      predicted_[i] = twins_[i].step(samples_[i]).current;
+      const MotionSample& sample = rows[i].row;
+      const double predicted = twins_[i].step(sample).current;
+      if (counts)
+      {
+        load_.add(i, sample, predicted);
+      }
     }
-    if (samples_.front().time >= last_time_ + PERIOD)
-    {
-      last_time_ = samples_.front().time;
-      fit_.add(samples_, predicted_);
-    }
+    last_time_ = counts ? rows.front().row.time : last_time_;
   }
 
   /// `fit`: of the same rows.
@@ -53,14 +52,12 @@ public:
     {
       measured.push_back(fit.isMeasured(i));
     }
-    return fit_.explained(measured);
+    return load_.fit().explained(measured);
   }
 
 private:
-  LoadFit fit_;
+  LoadCollector load_;
   std::vector<MotionDriven> twins_;
-  std::vector<MotionSample> samples_;
-  std::vector<double> predicted_;  // [A]
   double last_time_{ -HUGE_VAL };  // that counted [s]
 };
 

@@ -67,7 +67,6 @@ std::string wrongStamps(const MotionCount& count)
 ArmRecording::ArmRecording(const RecordingOptions& options)
   : options_(options)
   , watch_(options.watch)
-  , rows_(options.rows)
   , joint_namespace_(options.joint_namespace)
   , affixes_(options.affixes)
   , is_arm_(!options.arm.empty())
@@ -196,7 +195,7 @@ MotionCount ArmRecording::readRows(const std::function<bool(const std::vector<Mo
 {
   const std::function<void(double)> progress = watch_.progress("reading");
   MotionCount count;
-  for (const std::vector<MotionRow>& row : rows_)
+  for (const std::vector<MotionRow>& row : *options_.rows)
   {
     if (row.size() != arm_.joints.size())
     {
@@ -205,7 +204,7 @@ MotionCount ArmRecording::readRows(const std::function<bool(const std::vector<Mo
     }
     ++count.rows;
     count.duration = row.front().time;
-    progress(static_cast<double>(count.rows) / static_cast<double>(rows_.size()));
+    progress(static_cast<double>(count.rows) / static_cast<double>(options_.rows->size()));
     if (!visit(row))
     {
       break;

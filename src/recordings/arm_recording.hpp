@@ -30,12 +30,12 @@ public:
   using VisitRows = std::function<void(const std::vector<ArmJointRow>&)>;
   using VisitSample = std::function<void(std::size_t, const MotionSample&)>;
 
-  /// `options` must outlive it. @throws ParameterError, InputError: unreadable, or without the load that is chosen.
+  /// @throws ParameterError, InputError: unreadable, or without the load that is chosen.
   explicit ArmRecording(const RecordingOptions& options);
 
   const RecordingOptions& options() const { return options_; }
   bool isArm() const { return is_arm_; }
-  bool isFile() const { return rows_.empty(); }
+  bool isFile() const { return !options_.rows; }
   const ArmDescription& arm() const { return arm_; }  ///< of one joint: that alone
   const std::vector<ArmJoint>& joints() const { return arm_.joints; }
   /// In place of the configured one.
@@ -79,9 +79,8 @@ private:
   MotionFindings readArm(const VisitRows& visit, RecordingFit& fit, double end) const;
   MotionFindings readSamplesBy(const Read& read, const VisitSample& visit) const;
 
-  const RecordingOptions& options_;
+  const RecordingOptions options_;
   Watch watch_;
-  const std::vector<std::vector<MotionRow>>& rows_;  // at hand; none: a file
   std::string joint_namespace_;
   JointAffixes affixes_;
   bool is_arm_;

@@ -11,10 +11,7 @@ namespace hjt
 class AssessedJoint
 {
 public:
-  AssessedJoint(const Parameters& parameters, OwnReference own, bool is_identified)
-    : parameters_(parameters), own_(std::move(own)), is_identified_(is_identified)
-  {
-  }
+  AssessedJoint(OwnReference own, bool is_identified) : own_(std::move(own)), is_identified_(is_identified) {}
   virtual ~AssessedJoint() = default;
   AssessedJoint(const AssessedJoint&) = delete;
   AssessedJoint& operator=(const AssessedJoint&) = delete;
@@ -22,7 +19,6 @@ public:
   virtual void update(const MotionSample& sample) = 0;
   virtual const JointEvidence& evidence() const = 0;
 
-  const Parameters& parameters() const { return parameters_; }
   bool hasReference() const { return is_identified_ || !own_.friction.empty(); }  ///< of its friction
   /// Without a reference the friction is held against what the arm's controller expects.
   void holdAgainstController() { has_controller_ = true; }
@@ -33,15 +29,11 @@ public:
   {
     return { own_, is_identified_, has_controller_, duration, factor, misfit, deviation };
   }
-  MeasuredFriction friction(const Misfit& misfit) const
-  {
-    return measuredFriction(evidence(), parameters_, context(misfit));
-  }
+  MeasuredFriction friction(const Misfit& misfit) const { return measuredFriction(evidence(), context(misfit)); }
   /// Why it is not judged; SOUND: it is.
   Reason frictionReason() const { return frictionFactor(evidence(), context({})).reason; }
 
 private:
-  const Parameters parameters_;
   const OwnReference own_;
   const bool is_identified_;
   bool has_controller_{};

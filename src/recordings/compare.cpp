@@ -292,8 +292,8 @@ ComparedRecording compareInto(const ComparisonOptions& options)
   }
   for (std::size_t i = 0; i < joints.size(); ++i)
   {
-    ComparedJoint& joint = compared.joints.emplace_back(
-        joints[i]->write(arm.found, arm.context(i), recording.twinNamespace(i) + "/" + topics::JOINT_STATES));
+    ComparedJoint& joint = compared.joints.emplace_back(joints[i]->write(
+        recording.parameters(i), arm.found, arm.context(i), recording.twinNamespace(i) + "/" + topics::JOINT_STATES));
     joint.name = recording.joints()[i].short_name;
   }
   if (recording.isArm())

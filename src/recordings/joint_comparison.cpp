@@ -26,18 +26,18 @@ const std::vector<Column<JudgedWindow>> WINDOW_COLUMNS{
 
 JointComparison::JointComparison(const ArmRecording& recording, std::size_t joint, LoadOrigin load,
                                  const std::string& directory, SoundJoint sound, bool is_identified)
-  : AssessedJoint(recording.parameters(joint), std::move(sound.own), is_identified)
+  : AssessedJoint(std::move(sound.own), is_identified)
   , source_(recording.source(joint))
   , is_file_(recording.isFile())
   , directory_(directory)
   , windows_((fs::path(directory) / "windows.csv").string(), WINDOW_COLUMNS)
-  , comparison_(parameters(), load, std::move(sound.baseline),
+  , comparison_(recording.parameters(joint), load, std::move(sound.baseline),
                 [this](const JudgedWindow& window) { windows_.write(window); })
 {
 }
 
-ComparedJoint JointComparison::write(const MotionFindings& found, const JointContext& context,
-                                     const std::string& twin_topic)
+ComparedJoint JointComparison::write(const Parameters& parameters, const MotionFindings& found,
+                                     const JointContext& context, const std::string& twin_topic)
 {
   windows_.close();
   ComparisonRecord record;
@@ -52,13 +52,13 @@ ComparedJoint JointComparison::write(const MotionFindings& found, const JointCon
         readContents(source_, twin_topic, found, reach.motor_rows, reach.temperature_rows, found.has_load);
     record.twin_states = readTwinStates(source_, twin_topic, toSeconds(found.start));
   }
-  record.verdict = judge(evidence(), parameters(), context);
+  record.verdict = judge(evidence(), context);
   record.friction = frictionFactor(evidence(), context);
   record.is_friction_judged = record.verdict.findings.front().level != VerdictLevel::NOT_JUDGED;
   ComparedJoint compared;
   compared.friction = record.is_friction_judged ? std::make_optional(record.friction) : std::nullopt;
   compared.contact = reach.touched_rows > 0 ? sentence(contactText(evidence().contact().largest())) : std::string();
-  compared.document = writeComparison(directory_, comparison_, parameters(), record);
+  compared.document = writeComparison(directory_, comparison_, parameters, record);
   compared.temperature = evidence().temperature();
   compared.temperature_source = temperatureSource(evidence());
   compared.rows = reach.rows;

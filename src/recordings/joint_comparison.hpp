@@ -29,9 +29,11 @@ public:
   void update(const MotionSample& sample) override { comparison_.update(sample); }
   const JointEvidence& evidence() const override { return comparison_.evidence(); }
 
-  /// Judges, and writes the data of the page. `twin_topic`: of a twin that was recorded beside the robot.
+  /// Judges, and writes the data of the page. `parameters`: of this joint. `twin_topic`: of a twin that was recorded
+  /// beside the robot.
   /// @throws InputError.
-  ComparedJoint write(const MotionFindings& found, const JointContext& context, const std::string& twin_topic);
+  ComparedJoint write(const Parameters& parameters, const MotionFindings& found, const JointContext& context,
+                      const std::string& twin_topic);
 
 private:
   const MotionSource source_;

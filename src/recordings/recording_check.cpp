@@ -67,7 +67,7 @@ class CheckedTwin : public AssessedJoint
 {
 public:
   CheckedTwin(const Parameters& parameters, LoadOrigin load)
-    : AssessedJoint(parameters, OwnReference(), false), evidence_(parameters, load)
+    : AssessedJoint(OwnReference(), false), evidence_(parameters, load)
   {
   }
   void update(const MotionSample& sample) override { evidence_.update(sample); }
@@ -141,7 +141,7 @@ void readArm(const RecordingOptions& options, CheckedArm& arm)
   takeFit(fit, recording.parameters(), arm);
   for (std::size_t i = 0; i < arm.joints.size(); ++i)
   {
-    arm.joints[i].verdict = judge(twins[i].evidence(), recording.parameters(i), assessment.context(i));
+    arm.joints[i].verdict = judge(twins[i].evidence(), assessment.context(i));
   }
 }
 
@@ -172,7 +172,7 @@ void judgeJoints(const CheckedTwins& twins, const RecordingFit& fit, const std::
   {
     CheckedJoint& joint = arm.joints[i];
     const Misfit& misfit = misfitOf(joint.misfit, common.misfit);
-    joint.verdict = judge(twins[i].evidence(), parameters[i],
+    joint.verdict = judge(twins[i].evidence(),
                           twins[i].context(misfit, arm.found.duration, common.factors[i], common.deviations[i]));
   }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,8 +32,8 @@ struct RecordingOptions : ConfigurationOptions
   JointAffixes affixes;                              ///< of an arm's joints in the messages
   double time_scale{ 1.0 };                          ///< multiplies the times of the rows
   bool force{};                                      ///< overwrite files
-  /// A recording at hand: a row of each joint at each time, currents in A, times from 0 on; empty: it is a file.
-  std::vector<std::vector<MotionRow>> rows;
+  /// A recording at hand: a row of each joint at each time, currents in A, times from 0 on; null: it is a file.
+  std::shared_ptr<const std::vector<std::vector<MotionRow>>> rows;
   bool rows_have_load{};
   Watch watch;
 };

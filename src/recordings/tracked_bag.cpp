@@ -67,7 +67,7 @@ void TrackedBag::judge(const std::vector<Tracker*>& trackers, bool is_identified
 {
   for (std::size_t i = 0; i < trackers.size(); ++i)
   {
-    verdicts_.push_back(std::make_unique<VerdictWatch>(*trackers[i], joints_[i].parameters, is_identified));
+    verdicts_.push_back(std::make_unique<VerdictWatch>(*trackers[i], is_identified));
   }
 }
 

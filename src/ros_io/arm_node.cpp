@@ -76,7 +76,7 @@ bool ArmNode::Advance::reset(Stamp stamp) noexcept
 
 void ArmNode::Advance::push(const LiveInput& input) noexcept
 {
-  arm.twin().drive(input.joint).push(input);
+  arm.twin().drive(input.joint).push(input.input);
 }
 
 bool ArmNode::Advance::step(Stamp until) noexcept
@@ -110,7 +110,8 @@ ArmNode::ArmNode(ros::NodeHandle& node, const ArmDescription& arm, const std::ve
   for (std::size_t i = 0; i < arm.joints.size(); ++i)
   {
     ros::NodeHandle joint(jointName(arm.joints[i]));
-    faults_.push_back(std::make_unique<FaultSubscriber>(InputTopics{ joint, too_large_ }, drives[i], inbox_, i));
+    faults_.push_back(
+        std::make_unique<FaultSubscriber>(InputTopics{ joint, too_large_ }, advance_.arm.twin().drive(i), inbox_, i));
   }
   const InputTopics inputs{ node, too_large_ };
   command_subscriber_ = inputs.subscribe<trajectory_msgs::JointTrajectory>(

@@ -12,9 +12,8 @@
 
 namespace hjt
 {
-FaultSubscriber::FaultSubscriber(const InputTopics& inputs, const Parameters& parameters, Inbox& inbox,
-                                 std::size_t joint)
-  : parameters_(parameters)
+FaultSubscriber::FaultSubscriber(const InputTopics& inputs, const Twin& twin, Inbox& inbox, std::size_t joint)
+  : twin_(twin)
   , inbox_(inbox)
   , joint_(joint)
   , subscriber_(inputs.subscribe<harmonic_joint_twin::Fault>(
@@ -27,7 +26,7 @@ void FaultSubscriber::receive(const harmonic_joint_twin::Fault& message)
   // Faults come one by one, and each warning has a reason of its own [s].
   constexpr double WARNING_PERIOD = 1.0;
   std::vector<Fault> steps;
-  const std::string errors = readFault(message, parameters_, steps);
+  const std::string errors = readFault(message, twin_.parameters(), steps);
   if (!errors.empty())
   {
     ++refused_;
@@ -38,7 +37,7 @@ void FaultSubscriber::receive(const harmonic_joint_twin::Fault& message)
   const Stamp stamp = stampOr(message.header.stamp, ros::Time::now());
   for (const Fault& fault : steps)
   {
-    inbox_.push({ stamp, InputKind::FAULT, 0.0, fault }, joint_);
+    inbox_.push(StampedFault{ stamp, fault }, joint_);
   }
 }
 }  // namespace hjt

@@ -8,7 +8,7 @@
 #include <ros/subscriber.h>
 
 #include "harmonic_joint_twin/Fault.h"
-#include "harmonic_joint_twin/params/parameters.hpp"
+#include "harmonic_joint_twin/twin/twin.hpp"
 #include "live/inbox.hpp"
 #include "ros_io/input_topics.hpp"
 
@@ -18,15 +18,15 @@ namespace hjt
 class FaultSubscriber
 {
 public:
-  /// `joint`: whose faults they are in the inbox.
-  FaultSubscriber(const InputTopics& inputs, const Parameters& parameters, Inbox& inbox, std::size_t joint = 0);
+  /// `twin`: whose faults they are; `joint`: its number in the inbox.
+  FaultSubscriber(const InputTopics& inputs, const Twin& twin, Inbox& inbox, std::size_t joint = 0);
 
   std::uint64_t refused() const noexcept { return refused_; }  ///< since start
 
 private:
   void receive(const harmonic_joint_twin::Fault& message);
 
-  const Parameters parameters_;
+  const Twin& twin_;
   Inbox& inbox_;
   const std::size_t joint_;
   std::atomic<std::uint64_t> refused_{ 0 };

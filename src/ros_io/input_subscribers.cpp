@@ -15,8 +15,8 @@ namespace
 constexpr double WARNING_PERIOD = 5.0;
 }  // namespace
 
-InputSubscribers::InputSubscribers(ros::NodeHandle& node, const Parameters& parameters, Inbox& inbox)
-  : names_(parameters.joint.name), inbox_(inbox), faults_(InputTopics{ node, too_large_ }, parameters, inbox)
+InputSubscribers::InputSubscribers(ros::NodeHandle& node, const Twin& twin, Inbox& inbox)
+  : names_(twin.parameters().joint.name), inbox_(inbox), faults_(InputTopics{ node, too_large_ }, twin, inbox)
 {
   using sensor_msgs::JointState;
   using std_msgs::Float64;
@@ -33,7 +33,7 @@ InputSubscribers::InputSubscribers(ros::NodeHandle& node, const Parameters& para
 
 void InputSubscribers::receiveNow(InputKind kind, const ros::MessageEvent<const std_msgs::Float64>& event)
 {
-  inbox_.push({ fromRosTime(event.getReceiptTime()), kind, event.getMessage()->data });
+  inbox_.push(Input{ fromRosTime(event.getReceiptTime()), kind, event.getMessage()->data });
 }
 
 void InputSubscribers::receiveCommand(const sensor_msgs::JointState& message)
@@ -62,7 +62,7 @@ void InputSubscribers::receiveLoad(const sensor_msgs::JointState& message)
 
 void InputSubscribers::receiveStamped(InputKind kind, const ros::Time& stamp, double torque)
 {
-  inbox_.push({ stampOr(stamp, ros::Time::now()), kind, torque });
+  inbox_.push(Input{ stampOr(stamp, ros::Time::now()), kind, torque });
 }
 
 void InputSubscribers::refuse(EffortStatus status, const char* topic, const std::string& expected)

@@ -32,7 +32,7 @@ struct MessageCounters
 class InputSubscribers
 {
 public:
-  InputSubscribers(ros::NodeHandle& node, const Parameters& parameters, Inbox& inbox);
+  InputSubscribers(ros::NodeHandle& node, const Twin& twin, Inbox& inbox);
 
   MessageCounters counters() const noexcept
   {

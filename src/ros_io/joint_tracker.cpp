@@ -52,11 +52,13 @@ JointTracker::JointTracker(ros::NodeHandle& node, const Parameters& parameters, 
   , mutex_(mutex)
   , name_(node.getNamespace().substr(1))
   , names_(parameters.joint.name)
-  , parameters_(parameters)
+  , takes_arm_load_(parameters.telemetry.load == LoadSource::ARM)
+  , thermal_model_(parameters.thermal.model)
+  , ratio_(nominalRatio(parameters.gear))
   , current_per_effort_(currentPerEffort(parameters))
   // Built before the first row is read, so that the same rows give the same numbers.
   , tracker_(parameters, parameters.input.mode, nodeSurfaceSource(false))
-  , verdict_(tracker_, parameters, is_identified, sound.own)
+  , verdict_(tracker_, is_identified, sound.own)
   , outputs_(node, parameters)
   , life_(node, parameters)
   , tasks_(name_, parameters.joint.hardware_id)
@@ -237,8 +239,8 @@ void JointTracker::publish(const Comparison& comparison)
 {
   const Stamp stamp = stream_.clock.stamp(comparison.time);
   outputs_.offer(stamp, comparison, tracker_);
-  life_.offer(stamp, nominalRatio(parameters_.gear) * comparison.velocity.measured, comparison.joint_torque,
-              comparison.temperature, tracker_.assessment());
+  life_.offer(stamp, ratio_ * comparison.velocity.measured, comparison.joint_torque, comparison.temperature,
+              tracker_.assessment());
   comparison_ = comparison;
 }
 

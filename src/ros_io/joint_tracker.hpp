@@ -75,7 +75,7 @@ public:
 
   const std::string& joint() const { return names_.joint; }
   /// Its load comes with `pushLoad` from the motion of the whole arm.
-  bool takesArmLoad() const { return parameters_.telemetry.load == LoadSource::ARM; }
+  bool takesArmLoad() const { return takes_arm_load_; }
 
   /// The row of this joint in a message; anything else is counted and logged. A joint of an arm that has sent no effort
   /// in its first messages is read with current 0: it is not judged, and the others are not held up.
@@ -156,7 +156,9 @@ private:
   std::mutex& mutex_;
   const std::string name_;  // of the twin in the graph
   const JointNames names_;
-  const Parameters parameters_;
+  const bool takes_arm_load_;
+  const ThermalModel thermal_model_;
+  const double ratio_;                          // of motor to output
   const double current_per_effort_;             // [A], [A/(N.m)]
   static constexpr std::uint64_t SILENT = 100;  // messages
   std::uint64_t without_effort_{};              // messages one after the other

@@ -65,12 +65,12 @@ void JointTracker::reportComparison(DiagnosticStatusWrapper& status) const
   status.add("Residual of the velocity [rad/s]", comparison_.velocity.residual());
   status.add("Joint torque net of friction [N.m]", comparison_.joint_torque);
   status.add("Load [N.m]", comparison_.load_torque);
-  status.add("Temperature [degC]", counters.compared > 0 ? comparison_.temperature : parameters_.input.temperature);
-  status.add("Temperature is", comparison_.temperature_received ? "received" :
-                               tracker_.hasEstimate()           ? "estimated from the friction of all joints" :
-                               parameters_.thermal.model == ThermalModel::TWO_NODES ?
-                                                        "estimated from the losses of the motion" :
-                                                        "configured");
+  status.add("Temperature [degC]",
+             counters.compared > 0 ? comparison_.temperature : tracker_.evidence().parameters().input.temperature);
+  status.add("Temperature is", comparison_.temperature_received          ? "received" :
+                               tracker_.hasEstimate()                    ? "estimated from the friction of all joints" :
+                               thermal_model_ == ThermalModel::TWO_NODES ? "estimated from the losses of the motion" :
+                                                                           "configured");
   status.add("Friction that all joints have in common [-]", arm_friction_);
   status.add("Rows compared", counters.compared);
   status.add("Rows outside the band", counters.outside);

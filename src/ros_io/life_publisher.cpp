@@ -39,7 +39,8 @@ std::string unusedName(const std::string& path)
 }  // namespace
 
 LifePublisher::LifePublisher(ros::NodeHandle& node, const Parameters& parameters)
-  : parameters_(parameters)
+  : joint_(parameters.joint.name)
+  , parameters_(parameters.life)
   , path_(parameters.life.use_record == NO_FILE ? "" : parameters.life.use_record)
   , counted_{ 0, UsageHistory(parameters.life), {}, 0 }
   , stretches_(STRETCH_SLOTS, counted_)
@@ -90,7 +91,7 @@ void LifePublisher::readRecord()
   require(DutyCycle::isOne(path_), "is no record of a drive's use, or cannot be read: another file is not replaced");
   try
   {
-    record_ = UsageHistory(parameters_.life, path_);
+    record_ = UsageHistory(parameters_, path_);
     ROS_INFO_STREAM("The drive has " << record_.hours() << " h of use behind it (" << path_ << ")");
   }
   catch (const InputError& error)
@@ -141,7 +142,7 @@ void LifePublisher::offer(Stamp instant, double motor_velocity, double joint_tor
 
 void LifePublisher::run()
 {
-  const std::chrono::duration<double> period(parameters_.life.forecast_period);
+  const std::chrono::duration<double> period(parameters_.forecast_period);
   std::unique_lock<std::mutex> lock(mutex_);
   while (!wake_up_.wait_for(lock, period, [this] { return stopping_; }))
   {
@@ -179,7 +180,7 @@ void LifePublisher::publish()
     const RemainingHours& remaining = estimate.remaining;
     harmonic_joint_twin::RemainingLife message;
     message.header.stamp = toRosTime(until_);
-    message.header.frame_id = parameters_.joint.name;
+    message.header.frame_id = joint_;
     message.hours = estimate.hours;
     message.turns = estimate.turns;
     message.assessed = assessed ? toRosTime(assessment_.stamp) : ros::Time();

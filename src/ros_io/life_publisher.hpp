@@ -51,7 +51,8 @@ private:
   void publish();
   void write();
 
-  const Parameters parameters_;
+  const std::string joint_;
+  const LifeParameters parameters_;
   std::string path_;  // of the record; empty: none
   Stretch counted_;   // by the loop, not yet handed over
   Stamp counted_from_{};

@@ -32,7 +32,7 @@ TwinNode::TwinNode(ros::NodeHandle& node, const Parameters& parameters)
         },
         [this](Stamp instant) { return publishers_.finishCycle(instant); })
   , realtime_(requestRealtime(parameters.realtime, loop_))
-  , subscribers_(node, parameters, inbox_)
+  , subscribers_(node, twin_, inbox_)
   , timing_publisher_(node, parameters, loop_)
   , diagnostics_(node, parameters, loop_, realtime_, inbox_, subscribers_, publishers_)
   , reset_service_(node.advertiseService("reset", &TwinNode::reset, this))
@@ -49,7 +49,7 @@ bool TwinNode::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& r
 
 bool TwinNode::setBrake(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response)
 {
-  inbox_.push({ rosNow(), InputKind::BRAKE, request.data ? 1.0 : 0.0 });
+  inbox_.push(Input{ rosNow(), InputKind::BRAKE, request.data ? 1.0 : 0.0 });
   response.success = true;
   response.message = request.data ? "brake engages" : "brake releases";
   return true;

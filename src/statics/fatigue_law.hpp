@@ -15,17 +15,17 @@ namespace hjt
 class FatigueLaw
 {
 public:
-  explicit FatigueLaw(const Parameters& parameters)
-    : ultimate_(parameters.life.ultimate_strength)
-    , limit_(parameters.life.endurance_limit)
-    , cycles_(parameters.life.endurance_cycles)
-    , exponent_(parameters.life.fatigue_exponent)
+  FatigueLaw(const LifeParameters& life, const StressParameters& stress)
+    : ultimate_(life.ultimate_strength)
+    , limit_(life.endurance_limit)
+    , cycles_(life.endurance_cycles)
+    , exponent_(life.fatigue_exponent)
   {
     const double length = 0.0254e-3 * std::pow(2070e6 / ultimate_, 1.8);  // Peterson, steels [m]
     for (std::size_t place = 0; place < STRESS_PLACES; ++place)
     {
-      const double sensitivity = 1.0 / (1.0 + length / parameters.stress.notch_radius[place]);
-      notch_factor_[place] = 1.0 + sensitivity * (parameters.stress.concentration[place] - 1.0);
+      const double sensitivity = 1.0 / (1.0 + length / stress.notch_radius[place]);
+      notch_factor_[place] = 1.0 + sensitivity * (stress.concentration[place] - 1.0);
     }
   }
 

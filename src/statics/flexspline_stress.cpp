@@ -20,7 +20,7 @@ FlexsplineStress::FlexsplineStress(const Parameters& parameters)
   const StressParameters& stress = parameters.stress;
   const double modulus = parameters.life.elastic_modulus;
   const double wall = stress.wall_thickness;
-  const double pitch = toothSpace(parameters) / (1.0 - stress.tooth_base);
+  const double pitch = toothSpace(gear, stress) / (1.0 - stress.tooth_base);
   const double rim_radius = gear.flexspline_inner_radius + 0.5 * gear.rim_thickness;
   const double wall_radius = gear.flexspline_inner_radius + 0.5 * wall;
   const double to_middle = stress.cup_length - 0.5 * parameters.life.face_width;
@@ -32,7 +32,7 @@ FlexsplineStress::FlexsplineStress(const Parameters& parameters)
   const double cones = 0.5 * modulus * wall / (1.0 - POISSON) * by_curvature * to_teeth / to_middle;
   const double held = modulus * wall / (1.0 - POISSON * POISSON) * bulge *
                       (fading * fading * (1.0 - to_teeth / to_middle) + fading / to_middle);
-  by_turn_ = { 0.5 * modulus * gear.rim_thickness / toothSpace(parameters), cones + stress.coning_restraint * held,
+  by_turn_ = { 0.5 * modulus * gear.rim_thickness / toothSpace(gear, stress), cones + stress.coning_restraint * held,
                stress.warping_restraint * 0.5 * modulus * bulge * rim_radius / (to_middle * to_middle) };
   shear_by_torque_ = 1.0 / (TWO_PI * wall_radius * wall_radius * wall);
 }

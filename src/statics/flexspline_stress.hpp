@@ -8,9 +8,9 @@
 namespace hjt
 {
 /// Length of the rim between two teeth, in which all its bending takes place [m].
-inline double toothSpace(const Parameters& parameters) noexcept
+inline double toothSpace(const GearParameters& gear, const StressParameters& stress) noexcept
 {
-  return segmentLength(parameters.gear) * (1.0 - parameters.stress.tooth_base);
+  return segmentLength(gear) * (1.0 - stress.tooth_base);
 }
 
 /// Stress of the flexspline from the shape of its ring: what the rim's bending and tension, and the torque through the

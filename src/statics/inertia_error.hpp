@@ -15,13 +15,14 @@ namespace hjt
 ///        a, p  fitted to the dynamic ring of the shipped gear, 20 and 100 N.m, up to 317 rad/s (docs/model.md)
 ///
 /// Where the teeth meet in time with a mode of the ring it is several times larger, at most speeds smaller.
-inline double expectedMeshForceError(const Parameters& parameters, double motor_speed, double torque) noexcept
+inline double expectedMeshForceError(const RingParameters& ring, const GearParameters& gear, double motor_speed,
+                                     double torque) noexcept
 {
   constexpr double SHARE = 5.5e-3;     // a [-]
   constexpr double PRESSURE = 1.43e6;  // p [Pa]
-  const double radius = parameters.gear.flexspline_inner_radius;
+  const double radius = gear.flexspline_inner_radius;
   const double relative = torque / (PRESSURE * radius * radius * radius);
   const double square = relative * relative;
-  return SHARE * parameters.ring.mass * motor_speed * motor_speed * radius * std::sqrt(1.0 + square * square);
+  return SHARE * ring.mass * motor_speed * motor_speed * radius * std::sqrt(1.0 + square * square);
 }
 }  // namespace hjt

@@ -17,11 +17,15 @@ class PitchWalk
 public:
   /// `positions`: wave generator angles per tooth pitch, >= 1.
   PitchWalk(const Parameters& parameters, int positions)
-    : model_(startingJoint(parameters))
-    , ring_(model_.ring, staticSolver(parameters.solver))
-    , pitch_(TWO_PI / parameters.gear.teeth_flexspline)
+    : PitchWalk(startingJoint(parameters), parameters.solver, positions)
+  {
+  }
+  PitchWalk(JointModel model, const SolverParameters& solver, int positions)
+    : model_(std::move(model))
+    , ring_(model_.ring, staticSolver(solver))
+    , pitch_(TWO_PI / model_.ring.gear.teeth_flexspline)
     , positions_(positions)
-    , status_(ring_.insert({ 0.0, 0.0, parameters.gear.wave_amplitude }))
+    , status_(ring_.insert({ 0.0, 0.0, model_.ring.gear.wave_amplitude }))
   {
   }
 

@@ -40,8 +40,9 @@ constexpr int MAX_COLUMNS = 16;
 class DeviationBuilder
 {
 public:
-  DeviationBuilder(const Parameters& parameters, const JointModel& equal, const JointModel& actual, int repetition,
-                   const std::function<void(double)>& progress, std::size_t max_points, unsigned threads)
+  DeviationBuilder(const SurfaceParameters& parameters, const JointModel& equal, const JointModel& actual,
+                   int repetition, const std::function<void(double)>& progress, std::size_t max_points,
+                   unsigned threads)
     : parameters_(parameters)
     , equal_(equal)
     , model_(actual)
@@ -366,7 +367,7 @@ private:
              });
   }
 
-  const Parameters& parameters_;
+  const SurfaceParameters parameters_;
   const JointModel& equal_;
   const JointModel& model_;
   std::function<void(double)> progress_;

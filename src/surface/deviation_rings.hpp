@@ -28,7 +28,7 @@ struct DeviationLine
 /// the same angles as it did at the node before: that changes less than either shape.
 struct DeviationRings
 {
-  DeviationRings(const Parameters& parameters, const JointModel& equal_model, const JointModel& actual_model)
+  DeviationRings(const SurfaceParameters& parameters, const JointModel& equal_model, const JointModel& actual_model)
     : equal(parameters, equal_model), actual(parameters, actual_model)
   {
   }

@@ -44,8 +44,8 @@ Line mirrorImage(const Line& line)
 class SurfaceBuilder
 {
 public:
-  SurfaceBuilder(const Parameters& parameters, const JointModel& model, const std::function<void(double)>& progress,
-                 std::size_t max_points, unsigned threads)
+  SurfaceBuilder(const SurfaceParameters& parameters, const JointModel& model,
+                 const std::function<void(double)>& progress, std::size_t max_points, unsigned threads)
     : parameters_(parameters), model_(model), progress_(progress), max_points_(max_points), threads_(threads)
   {
   }
@@ -274,7 +274,7 @@ private:
              });
   }
 
-  const Parameters& parameters_;
+  const SurfaceParameters parameters_;
   const JointModel& model_;
   std::function<void(double)> progress_;
   std::size_t max_points_;

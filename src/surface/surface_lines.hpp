@@ -16,7 +16,7 @@ using SurfaceLine = std::vector<SurfaceNode>;
 class LineRing
 {
 public:
-  LineRing(const Parameters& parameters, const JointModel& model) : ring_(parameters, model) {}
+  LineRing(const SurfaceParameters& parameters, const JointModel& model) : ring_(parameters, model) {}
 
   const SurfaceRing& ring() const noexcept { return ring_; }
   SurfaceRing& ring() noexcept { return ring_; }

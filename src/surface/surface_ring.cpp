@@ -84,7 +84,7 @@ void groupFlanks(const FrictionTerms& terms, double velocity_ratio, double* grou
 }
 
 /// Torques are then right to rounding: SurfaceRing::torques adds what the forces that are left over change in them.
-SolverParameters solverOf(const Parameters& parameters)
+SolverParameters solverOf(const SurfaceParameters& parameters)
 {
   constexpr double TOLERANCE = 1e-4;  // N
   SolverParameters solver = parameters.solver;
@@ -93,15 +93,28 @@ SolverParameters solverOf(const Parameters& parameters)
 }
 
 /// The motor of a wrist, held fast, would bring 2.6 times what breaks its gear, which no table holds within its size.
-double tabulatedTorque(const Parameters& parameters)
+double tabulatedTorque(const SurfaceParameters& parameters)
 {
   const double of_motor = parameters.motor.torque_limit * nominalRatio(parameters.gear);
   return std::max(parameters.output.load_torque_limit,
-                  std::min(of_motor, COLLISION_MARGIN * parameters.life.momentary_peak_torque));
+                  std::min(of_motor, COLLISION_MARGIN * parameters.momentary_peak_torque));
 }
 }  // namespace
 
-std::string tooManyPoints(const Parameters& parameters, std::size_t most)
+SurfaceParameters::SurfaceParameters(const Parameters& of)
+  : gear(of.gear)
+  , mesh(of.mesh)
+  , unit_friction(withUnitFriction(of).mesh)
+  , cup(of.cup)
+  , motor(of.motor)
+  , output(of.output)
+  , solver(of.solver)
+  , input(of.input)
+  , momentary_peak_torque(of.life.momentary_peak_torque)
+{
+}
+
+std::string tooManyPoints(const SurfaceParameters& parameters, std::size_t most)
 {
   const auto named = [](const char* key, double value) { return std::string(key) + " = " + numberText(value); };
   return "a table as fine as its tolerances ask for would have more than " + std::to_string(most) +
@@ -114,9 +127,9 @@ std::string tooManyPoints(const Parameters& parameters, std::size_t most)
          named("output.load_torque_limit", parameters.output.load_torque_limit) + ")";
 }
 
-SurfaceRing::SurfaceRing(const Parameters& parameters, JointModel model)
+SurfaceRing::SurfaceRing(const SurfaceParameters& parameters, JointModel model)
   : model_(std::move(model))
-  , unit_friction_(withUnitFriction(parameters).mesh, parameters.gear.teeth_flexspline)
+  , unit_friction_(parameters.unit_friction, parameters.gear.teeth_flexspline)
   , ring_(model_.ring, solverOf(parameters))
   , friction_(parameters.gear.teeth_flexspline)
   , tooth_angles_(Eigen::VectorXd::LinSpaced(parameters.gear.teeth_flexspline, 0.0,

@@ -10,17 +10,33 @@
 
 namespace hjt
 {
+/// The groups of a drive's parameters that a response surface is built with, beside its model.
+struct SurfaceParameters
+{
+  SurfaceParameters(const Parameters& of);
+
+  GearParameters gear;
+  MeshParameters mesh;
+  MeshParameters unit_friction;  ///< the mesh with coefficients of 1
+  CupParameters cup;
+  MotorParameters motor;
+  OutputParameters output;
+  SolverParameters solver;
+  InputParameters input;
+  double momentary_peak_torque;  ///< [N.m]
+};
+
 /// No table of the ring has more: 85 MB; the shipped gear needs a tenth of it.
 constexpr std::size_t MAX_SURFACE_POINTS = 500000;
 
 /// Why there is no table of more than `most` points, with the parameters that its size depends on.
-std::string tooManyPoints(const Parameters& parameters, std::size_t most);
+std::string tooManyPoints(const SurfaceParameters& parameters, std::size_t most);
 
 /// A ring in equilibrium that is led over the nodes of a response surface and measured there.
 class SurfaceRing
 {
 public:
-  SurfaceRing(const Parameters& parameters, JointModel model);
+  SurfaceRing(const SurfaceParameters& parameters, JointModel model);
 
   SurfaceRing(const SurfaceRing&) = delete;  // the ring refers to the model
   SurfaceRing& operator=(const SurfaceRing&) = delete;

@@ -330,8 +330,7 @@ void nameCauses(const SignatureSet& signatures, double way, Finding& finding)
 }
 }  // namespace
 
-Finding judgeFriction(const JointEvidence& evidence, const Parameters& parameters, const JointContext& context,
-                      Verdict& verdict)
+Finding judgeFriction(const JointEvidence& evidence, const JointContext& context, Verdict& verdict)
 {
   Finding finding;
   finding.subject = FindingSubject::FRICTION;
@@ -358,11 +357,12 @@ Finding judgeFriction(const JointEvidence& evidence, const Parameters& parameter
                             "the configured ones.";
     return finding;
   }
-  const double of_kind = parameters.comparison.friction_tolerance;
+  const double of_kind = evidence.parameters().comparison.friction_tolerance;
   const bool is_to_twin = factor.reference == FrictionReference::TWIN;
   const double more = is_to_twin ? of_kind : MORE_THAN_OWN;
   const double less = is_to_twin ? of_kind : LESS_THAN_OWN;
-  finding.level = levelOf(departure(factor, context.arm_friction, more, less), 1.0, parameters.indicators.error_factor);
+  finding.level =
+      levelOf(departure(factor, context.arm_friction, more, less), 1.0, evidence.parameters().indicators.error_factor);
   const double value = factor.value / context.arm_friction;
   if (finding.level != VerdictLevel::OK)
   {

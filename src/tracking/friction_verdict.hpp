@@ -80,8 +80,7 @@ struct SoundFriction
 OwnReference ownReference(const std::vector<SoundFriction>& recordings);
 
 /// WARN where the interval clears the bound. Factor, text and figures go into the verdict.
-Finding judgeFriction(const JointEvidence& evidence, const Parameters& parameters, const JointContext& context,
-                      Verdict& verdict);
+Finding judgeFriction(const JointEvidence& evidence, const JointContext& context, Verdict& verdict);
 
 /// What to say of a load that is not the joint's.
 const char* wrongLoad(LoadOrigin load);

@@ -9,7 +9,6 @@
 #include <Eigen/Cholesky>
 
 #include "gear/ratio.hpp"
-#include "tracking/plausible.hpp"
 
 namespace hjt
 {
@@ -73,7 +72,8 @@ void JointEvidence::reset() noexcept
 
 JointEvidence::Row JointEvidence::judge(const MotionSample& sample, bool fits) noexcept
 {
-  if (!isPossible(sample, parameters_))
+  if (!(std::abs(sample.load) <= parameters_.output.load_torque_limit &&
+        std::abs(sample.current) <= parameters_.possible_current))
   {
     ++now_.reach.impossible;
     return Row::IMPOSSIBLE;

@@ -12,6 +12,7 @@
 #include "tracking/contact_watch.hpp"
 #include "tracking/friction_points.hpp"
 #include "tracking/motion_driven.hpp"
+#include "tracking/plausible.hpp"
 #include "tracking/signal_watch.hpp"
 #include "tracking/time_fit.hpp"
 #include "tracking/torsion_points.hpp"
@@ -48,6 +49,31 @@ enum class LoadOrigin
   CONFIGURED,  ///< weight and inertia of the joint's parameters
   RECORDED,
   ARM  ///< links and payload, by rigid-body dynamics
+};
+
+/// The groups of a joint's parameters that evidence and verdict rest on.
+struct EvidenceParameters
+{
+  explicit EvidenceParameters(const Parameters& of)
+    : joint(of.joint)
+    , output(of.output)
+    , sensors(of.sensors)
+    , input(of.input)
+    , telemetry(of.telemetry)
+    , comparison(of.comparison)
+    , indicators(of.indicators)
+    , possible_current(possibleCurrent(of))
+  {
+  }
+
+  JointParameters joint;
+  OutputParameters output;
+  SensorParameters sensors;
+  InputParameters input;
+  TelemetryParameters telemetry;
+  ComparisonParameters comparison;
+  IndicatorParameters indicators;
+  double possible_current;  ///< [A]
 };
 
 /// What a measured joint shows beside the twin that makes the same motion, row by row, live and offline alike:
@@ -91,6 +117,7 @@ public:
   void resetSignals() noexcept { health_.reset(); }
 
   LoadOrigin loadOrigin() const { return load_; }
+  const EvidenceParameters& parameters() const { return parameters_; }
   double ratio() const { return ratio_; }
   const MotionDriven& twin() const { return twin_; }
   const MotionPrediction& predicted() const { return predicted_; }  ///< at the row that was taken last
@@ -169,7 +196,7 @@ private:
 
   static constexpr double LOAD_STEPS = 568.0;  // of the histogram
 
-  const Parameters parameters_;
+  const EvidenceParameters parameters_;
   const LoadOrigin load_;
   const double ratio_;
   const double load_step_;  // [N.m]

@@ -27,12 +27,11 @@ inline bool isPlausible(const MotionRow& row) noexcept
          !(std::abs(row.motor_angle) > MAX_ANGLE * MAX_ANGLE);
 }
 
-/// Within what this joint's motor and gear can bear.
-inline bool isPossible(const MotionSample& sample, const Parameters& parameters) noexcept
+/// The largest that this joint's motor can take [A].
+inline double possibleCurrent(const Parameters& parameters) noexcept
 {
   constexpr double MARGIN = 3.0;  // of a current's peaks over the motor's continuous torque [-]
-  const double current =
-      MARGIN * parameters.motor.torque_limit * nominalRatio(parameters.gear) / parameters.telemetry.torque_per_current;
-  return std::abs(sample.load) <= parameters.output.load_torque_limit && std::abs(sample.current) <= current;
+  return MARGIN * parameters.motor.torque_limit * nominalRatio(parameters.gear) /
+         parameters.telemetry.torque_per_current;
 }
 }  // namespace hjt

@@ -32,14 +32,14 @@ struct Ratio
 
   bool isOwnKnown() const { return std::isfinite(to_own); }
   double value() const { return isOwnKnown() ? to_own : to_twin; }
-  double tolerance(const Parameters& parameters) const
+  double tolerance(const EvidenceParameters& parameters) const
   {
     return isOwnKnown() ? parameters.comparison.repeat_tolerance : of_kind;
   }
 };
 
 /// Against the joint's own when sound where that is known, else against the twin.
-void judgeRatio(const Ratio& ratio, const Parameters& parameters, Reason departs, Finding& finding)
+void judgeRatio(const Ratio& ratio, const EvidenceParameters& parameters, Reason departs, Finding& finding)
 {
   finding.level = levelOf(ratio.value() - 1.0, ratio.tolerance(parameters), parameters.indicators.error_factor);
   finding.reason = finding.level == VerdictLevel::OK ? Reason::SOUND : departs;
@@ -74,14 +74,14 @@ double agreement(const JointEvidence& evidence)
 }
 
 /// Why the recorded current says nothing about the drive: not that of its motor, or of another load; none: it fits.
-std::optional<Reason> whyRowsDoNotFit(const JointEvidence& evidence, const Parameters& parameters)
+std::optional<Reason> whyRowsDoNotFit(const JointEvidence& evidence)
 {
   constexpr double MIN_RATIO = 0.02;  // of the predicted current, rms
   constexpr double MAX_RATIO = 4.0;
   constexpr double MAX_UNEXPLAINED = 0.5;
   constexpr double SPREAD = 2.0;  // of the residual over the predicted current: a constant load has none
   constexpr double AGREES = 0.7;  // correlation of measured and predicted current
-  const double noticeable = 2.0 * parameters.telemetry.current_deviation;
+  const double noticeable = 2.0 * evidence.parameters().telemetry.current_deviation;
   const double measured = evidence.currentRms();
   const double predicted = evidence.predictedRms();
   if (isAtRest(evidence))
@@ -116,15 +116,14 @@ std::optional<Reason> whyRowsDoNotFit(const JointEvidence& evidence, const Param
 }
 
 /// The same, with what is known of the whole recording.
-std::optional<Reason> whyItDoesNotFit(const JointEvidence& evidence, const Parameters& parameters,
-                                      const JointContext& context)
+std::optional<Reason> whyItDoesNotFit(const JointEvidence& evidence, const JointContext& context)
 {
-  return context.misfit.exists() ? context.misfit.reason : whyRowsDoNotFit(evidence, parameters);
+  return context.misfit.exists() ? context.misfit.reason : whyRowsDoNotFit(evidence);
 }
 
-Finding judgeTorsion(const JointEvidence& evidence, const Parameters& parameters, const OwnReference& own,
-                     Verdict& verdict)
+Finding judgeTorsion(const JointEvidence& evidence, const OwnReference& own, Verdict& verdict)
 {
+  const EvidenceParameters& parameters = evidence.parameters();
   Finding finding;
   finding.subject = FindingSubject::TORSION;
   if (evidence.torsion().rows() == 0)
@@ -230,22 +229,22 @@ double highestOrder(const JointEvidence& evidence, double duration)
   return turns > 0.0 ? RESOLVED * static_cast<double>(evidence.reach().rows) / turns : 0.0;
 }
 
-std::vector<Hidden> cannotShow(const JointEvidence& evidence, const Parameters& parameters, const Verdict& verdict)
+std::vector<Hidden> cannotShow(const JointEvidence& evidence, const Verdict& verdict)
 {
   const MotionReach& reach = evidence.reach();
   const std::vector<FrictionPoint> points = evidence.friction().points();
-  const std::pair<bool, Hidden> all[] = {
-    { reach.motor_rows == 0, Hidden::TORSION },
-    { evidence.loadOrigin() == LoadOrigin::ARM, Hidden::PAYLOAD },
-    { evidence.loadOrigin() == LoadOrigin::CONFIGURED, Hidden::LOAD },
-    { !evidence.isTemperatureReceived(), Hidden::TEMPERATURE },
-    { !evidence.baselineGiven(), Hidden::EARLY_FAULT },
-    { reach.touched_rows > 0, Hidden::CONTACT },
-    { !points.empty() && !movesBothWays(points), Hidden::FRICTION_FROM_LOAD },
-    { points.size() < 3, Hidden::FRICTION_OVER_SPEED },
-    { reach.most_load - reach.least_load < MIN_LOADING * parameters.output.load_torque_limit, Hidden::LOADED },
-    { verdict[Figure::HIGHEST_ORDER] > 0.0, Hidden::HIGH_ORDERS }
-  };
+  const std::pair<bool, Hidden> all[] = { { reach.motor_rows == 0, Hidden::TORSION },
+                                          { evidence.loadOrigin() == LoadOrigin::ARM, Hidden::PAYLOAD },
+                                          { evidence.loadOrigin() == LoadOrigin::CONFIGURED, Hidden::LOAD },
+                                          { !evidence.isTemperatureReceived(), Hidden::TEMPERATURE },
+                                          { !evidence.baselineGiven(), Hidden::EARLY_FAULT },
+                                          { reach.touched_rows > 0, Hidden::CONTACT },
+                                          { !points.empty() && !movesBothWays(points), Hidden::FRICTION_FROM_LOAD },
+                                          { points.size() < 3, Hidden::FRICTION_OVER_SPEED },
+                                          { reach.most_load - reach.least_load <
+                                                MIN_LOADING * evidence.parameters().output.load_torque_limit,
+                                            Hidden::LOADED },
+                                          { verdict[Figure::HIGHEST_ORDER] > 0.0, Hidden::HIGH_ORDERS } };
   std::vector<Hidden> hidden;
   for (const auto& [is_hidden, what] : all)
   {
@@ -312,11 +311,10 @@ VerdictLevel levelOf(double deviation, double tolerance, double error_factor)
   return size > error_factor ? VerdictLevel::ERROR : size > 1.0 ? VerdictLevel::WARN : VerdictLevel::OK;
 }
 
-MeasuredFriction measuredFriction(const JointEvidence& evidence, const Parameters& parameters,
-                                  const JointContext& context)
+MeasuredFriction measuredFriction(const JointEvidence& evidence, const JointContext& context)
 {
   const FrictionFactor factor = frictionFactor(evidence, context);
-  const bool fits = !whyItDoesNotFit(evidence, parameters, context);
+  const bool fits = !whyItDoesNotFit(evidence, context);
   return { fits && factor.isJudged() ? std::make_optional(factor.value) : std::nullopt,
            evidence.temperature(),
            evidence.reach().temperature_rows > 0,
@@ -324,9 +322,9 @@ MeasuredFriction measuredFriction(const JointEvidence& evidence, const Parameter
            !context.misfit.exists() && factor.is_below_faults,
            !context.misfit.exists() && factor.reason == Reason::NO_FRICTION,
            factor.reason == Reason::EFFORT_NOT_CURRENT ||
-               (whyRowsDoNotFit(evidence, parameters) == Reason::EFFORT_NOT_CURRENT && factor.value < 0.0),
-           !context.misfit.exists() && (whyItDoesNotFit(evidence, parameters, context) == Reason::LOAD_WRONG ||
-                                        factor.reason == Reason::LOAD_WRONG),
+               (whyRowsDoNotFit(evidence) == Reason::EFFORT_NOT_CURRENT && factor.value < 0.0),
+           !context.misfit.exists() &&
+               (whyItDoesNotFit(evidence, context) == Reason::LOAD_WRONG || factor.reason == Reason::LOAD_WRONG),
            !context.own.friction.empty() };
 }
 
@@ -354,15 +352,14 @@ std::vector<WeightedCause> causesOf(const Verdict& verdict)
   return causes;
 }
 
-Verdict judge(const JointEvidence& evidence, const Parameters& parameters, const JointContext& context)
+Verdict judge(const JointEvidence& evidence, const JointContext& context)
 {
   Verdict verdict;
-  verdict.joint = parameters.joint.name;
+  verdict.joint = evidence.parameters().joint.name;
   setFigures(evidence, context, verdict);
-  verdict.findings = { judgeFriction(evidence, parameters, context, verdict),
-                       judgeTorsion(evidence, parameters, context.own, verdict),
+  verdict.findings = { judgeFriction(evidence, context, verdict), judgeTorsion(evidence, context.own, verdict),
                        judgeSignals(evidence, context, verdict) };
-  if (const std::optional<Reason> why_not = whyItDoesNotFit(evidence, parameters, context))
+  if (const std::optional<Reason> why_not = whyItDoesNotFit(evidence, context))
   {
     verdict.dismiss(
         { *why_not, *why_not == Reason::CONTACT ? contactText(evidence.contact().largest()) : context.misfit.clause });
@@ -375,7 +372,7 @@ Verdict judge(const JointEvidence& evidence, const Parameters& parameters, const
     }
   }
   sumUp(verdict);
-  verdict.cannot_show = cannotShow(evidence, parameters, verdict);
+  verdict.cannot_show = cannotShow(evidence, verdict);
   return verdict;
 }
 

@@ -210,7 +210,7 @@ std::string sentence(std::string clause);
 VerdictLevel levelOf(double deviation, double tolerance, double error_factor);
 
 /// Live and offline alike.
-Verdict judge(const JointEvidence& evidence, const Parameters& parameters, const JointContext& context);
+Verdict judge(const JointEvidence& evidence, const JointContext& context);
 
 /// Where the temperature that a joint was judged at is from, for people and documents.
 inline const char* temperatureSource(const JointEvidence& evidence)
@@ -220,6 +220,5 @@ inline const char* temperatureSource(const JointEvidence& evidence)
 
 /// What the rows show of the friction, as a multiple of the joint's own when sound, else of the twin's. The evidence
 /// must outlive it.
-MeasuredFriction measuredFriction(const JointEvidence& evidence, const Parameters& parameters,
-                                  const JointContext& context);
+MeasuredFriction measuredFriction(const JointEvidence& evidence, const JointContext& context);
 }  // namespace hjt

@@ -19,7 +19,7 @@ JointContext VerdictWatch::context(double arm_friction, double arm_deviation, co
 
 MeasuredFriction VerdictWatch::measuredFriction() const
 {
-  return hjt::measuredFriction(tracker_.evidence(), parameters_, context(1.0, UNWITNESSED, {}));
+  return hjt::measuredFriction(tracker_.evidence(), context(1.0, UNWITNESSED, {}));
 }
 
 void VerdictWatch::judge(double arm_friction, double arm_deviation, const Misfit& of_arm)
@@ -27,7 +27,7 @@ void VerdictWatch::judge(double arm_friction, double arm_deviation, const Misfit
   const MotionReach& reach = tracker_.evidence().reach();
   last_row_ = reach.end;
   const bool is_new = confirmed_at_ > reach.end;  // the telemetry started again
-  Verdict verdict = hjt::judge(tracker_.evidence(), parameters_, context(arm_friction, arm_deviation, of_arm));
+  Verdict verdict = hjt::judge(tracker_.evidence(), context(arm_friction, arm_deviation, of_arm));
   const bool is_in_place = confirmed_.isJudged() && !whyNotJudged() && !is_new;
   // Found of the rows, unlike that they are too few: it takes the place of a verdict as a worse one does.
   const bool is_other =

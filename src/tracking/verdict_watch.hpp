@@ -18,8 +18,8 @@ class VerdictWatch
 public:
   /// `tracker`: must outlive this. `is_identified`: the friction of the parameters is that of this joint. `own`: of the
   /// joint when it was sound.
-  VerdictWatch(Tracker& tracker, const Parameters& parameters, bool is_identified, OwnReference own = {})
-    : tracker_(tracker), parameters_(parameters), is_identified_(is_identified), own_(std::move(own))
+  VerdictWatch(Tracker& tracker, bool is_identified, OwnReference own = {})
+    : tracker_(tracker), is_identified_(is_identified), own_(std::move(own))
   {
   }
 
@@ -56,7 +56,6 @@ private:
   void judge(double arm_friction, double arm_deviation, const Misfit& of_arm);
 
   Tracker& tracker_;
-  const Parameters parameters_;
   const bool is_identified_;
   const OwnReference own_;
   Misfit misfit_;

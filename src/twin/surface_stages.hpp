@@ -6,7 +6,7 @@
 
 #include "harmonic_joint_twin/model/faults/fault_list.hpp"
 #include "harmonic_joint_twin/twin/fault_schedule.hpp"
-#include "surface/surface_worker.hpp"
+#include "surface/faulty_surface.hpp"
 
 namespace hjt
 {

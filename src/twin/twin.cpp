@@ -79,13 +79,20 @@ const FaultList& Twin::activeFaults() const noexcept
 
 void Twin::push(const Input& input) noexcept
 {
-  if (input.kind == InputKind::FAULT)
-  {
-    injectFault(input.stamp, input.fault);
-    return;
-  }
   impl_->queue.push(input, impl_->simulated_until);
   impl_->counters.input = impl_->queue.counters();
+}
+
+void Twin::push(const TwinInput& input) noexcept
+{
+  if (const auto* fault = std::get_if<StampedFault>(&input))
+  {
+    injectFault(fault->stamp, fault->fault);
+  }
+  else
+  {
+    push(*std::get_if<Input>(&input));
+  }
 }
 
 void Twin::coupleArm(double inertia, double torque) noexcept
@@ -153,7 +160,8 @@ HealthReport Twin::health(Stamp since) const noexcept
 {
   const JointOutputs now = outputs();
   return { impl_->monitor.indicators(), impl_->lobes(), impl_->solverState(since),
-           expectedMeshForceError(impl_->parameters, now.motor_velocity, now.joint_torque) };
+           expectedMeshForceError(impl_->parameters.ring, impl_->parameters.gear, now.motor_velocity,
+                                  now.joint_torque) };
 }
 
 void Twin::watchSignals(bool on) noexcept

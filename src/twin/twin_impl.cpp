@@ -159,8 +159,6 @@ void Twin::Impl::takeInputs() noexcept
       case InputKind::TEMPERATURE:
         temperature = std::clamp(input.value, MIN_TEMPERATURE, MAX_TEMPERATURE);
         break;
-      case InputKind::FAULT:
-        break;
     }
   }
 }

@@ -14,9 +14,9 @@
 #include "model/faults/joint_faults.hpp"
 #include "sensors/joint_sensors.hpp"
 #include "solver/joint_stepper.hpp"
-#include "surface/surface_worker.hpp"
 #include "twin/observed_ring.hpp"
 #include "twin/surface_stages.hpp"
+#include "twin/surface_worker.hpp"
 
 namespace hjt
 {

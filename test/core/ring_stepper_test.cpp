@@ -345,16 +345,16 @@ TEST(InsertionTransient, DoesNotSettleAndSwingsAlikeByTheStructuredMethod)
 TEST(ExpectedMeshForceError, IsThatOfInertiaInSimilarGears)
 {
   const Parameters gear = shippedParameters();
-  const double error = expectedMeshForceError(gear, 200.0, 80.0);
+  const double error = expectedMeshForceError(gear.ring, gear.gear, 200.0, 80.0);
   EXPECT_GT(error, 0.0);
-  EXPECT_EQ(expectedMeshForceError(gear, 0.0, 80.0), 0.0);
-  EXPECT_EQ(expectedMeshForceError(gear, -200.0, -80.0), error);
-  EXPECT_NEAR(expectedMeshForceError(gear, 300.0, 80.0), 2.25 * error, 1e-12);
+  EXPECT_EQ(expectedMeshForceError(gear.ring, gear.gear, 0.0, 80.0), 0.0);
+  EXPECT_EQ(expectedMeshForceError(gear.ring, gear.gear, -200.0, -80.0), error);
+  EXPECT_NEAR(expectedMeshForceError(gear.ring, gear.gear, 300.0, 80.0), 2.25 * error, 1e-12);
   // Half as long, of the same material: an eighth of mass and torque, twice the speed, a quarter of all forces.
   Parameters half = gear;
   half.gear.flexspline_inner_radius *= 0.5;
   half.ring.mass *= 0.125;
-  EXPECT_NEAR(expectedMeshForceError(half, 400.0, 10.0), 0.25 * error, 1e-12);
+  EXPECT_NEAR(expectedMeshForceError(half.ring, half.gear, 400.0, 10.0), 0.25 * error, 1e-12);
 }
 }  // namespace
 }  // namespace hjt

@@ -161,7 +161,7 @@ TEST(FatigueLaw, IsBasquinsLineDownToTheEnduranceLimitAndFlatterBeyond)
 {
   const Parameters parameters = shippedParameters();
   const LifeParameters& life = parameters.life;
-  const FatigueLaw law(parameters);
+  const FatigueLaw law(parameters.life, parameters.stress);
   EXPECT_DOUBLE_EQ(law.damage(1.0, false) * life.endurance_cycles, 1.0);
   EXPECT_NEAR(law.damage(0.95, false) * life.endurance_cycles, 0.1, 0.001) << "5 % of strength a decade";
   EXPECT_DOUBLE_EQ(law.damage(2.0, false), std::pow(2.0, life.fatigue_exponent) / life.endurance_cycles);
@@ -175,7 +175,7 @@ TEST(FatigueLaw, TakesNotchAndMeanStressIntoAccount)
 {
   const Parameters parameters = shippedParameters();
   const LifeParameters& life = parameters.life;
-  const FatigueLaw law(parameters);
+  const FatigueLaw law(parameters.life, parameters.stress);
   const double notch = law.notchFactor(TOOTH_SPACE);
   EXPECT_GT(notch, 1.5);
   EXPECT_LT(notch, parameters.stress.concentration[TOOTH_SPACE]);

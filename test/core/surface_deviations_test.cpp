@@ -13,9 +13,9 @@
 #include "model/faults/joint_faults.hpp"
 #include "model/joint_model.hpp"
 #include "surface/deviation_builder.hpp"
+#include "surface/faulty_surface.hpp"
 #include "surface/surface_cache.hpp"
 #include "surface/surface_ring.hpp"
-#include "surface/surface_worker.hpp"
 #include "test/core/response_surface_support.hpp"
 
 namespace hjt

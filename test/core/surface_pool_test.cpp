@@ -11,8 +11,8 @@
 
 #include <gtest/gtest.h>
 
+#include "surface/faulty_surface.hpp"
 #include "surface/parallel_tasks.hpp"
-#include "surface/surface_worker.hpp"
 #include "test/core/response_surface_support.hpp"
 
 namespace hjt

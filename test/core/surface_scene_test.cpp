@@ -13,7 +13,7 @@
 #include "model/joint_model.hpp"
 #include "solver/joint_dynamics.hpp"
 #include "statics/static_solver.hpp"
-#include "surface/surface_worker.hpp"
+#include "surface/faulty_surface.hpp"
 #include "test/core/response_surface_support.hpp"
 #include "test_parameters.hpp"
 #include "twin_runs.hpp"

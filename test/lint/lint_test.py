@@ -10,6 +10,7 @@ import config_files
 import doc_tables
 import doc_values
 import examples
+import kept_parameters
 import launch_docs
 import layering
 import life_counts
@@ -73,6 +74,33 @@ class Limits(Tree):
                 os.remove(full)
         self.write("docs/one.md", "\n" * (limits.FILE_LINES + 1))
         self.assert_clean(limits.check)
+
+
+class KeptParameters(Tree):
+    def setUp(self):
+        super().setUp()
+        for path in kept_parameters.HOLDERS:
+            self.write(path, "class A\n{\n  Parameters values_;\n};\n")
+
+    def test_members_that_hold_all_are_named(self):
+        for member in ["Parameters all_;", "const Parameters& all_;", "std::optional<Parameters> all_{};",
+                       "std::map<int, const Parameters*> all_;", "std::vector<\n      Parameters>\n      all_;"]:
+            with self.subTest(member):
+                self.write("src/one.hpp", f"class A\n{{\n  {member}  // of the drive\n}};\n")
+                self.assert_fault(kept_parameters.check, "src/one.hpp:", "all_")
+                self.write("src/twin/one.hpp", project.text(self.root, "src/one.hpp"))
+                os.remove(os.path.join(self.root, "src/one.hpp"))
+                self.assert_clean(kept_parameters.check)
+
+    def test_groups_arguments_and_plain_structs_are_not(self):
+        self.write("src/one.hpp", "struct A\n{\n  explicit A(const Parameters& of) : life_(of.life) {}\n"
+                                  "  double of(const Parameters& of) const { return a_; }\n"
+                                  "  // Parameters all_;\n  LifeParameters life_;\n  Parameters all;\n};\n")
+        self.assert_clean(kept_parameters.check)
+
+    def test_a_reason_without_its_class_is_named(self):
+        self.write("src/fmu/arm_unit.cpp", "\n")
+        self.assert_fault(kept_parameters.check, "src/fmu/arm_unit.cpp:1")
 
 
 class Layering(Tree):

@@ -124,7 +124,7 @@ TEST_F(Messages, SummariseTheStepsSinceTheLastHealth)
   const double ratio = nominalRatio(parameters_.gear);
   std::vector<double> torsions;
   std::vector<double> torques;
-  twin_.push({ twin_.stamp(), InputKind::LOAD_TORQUE, 20.0, {} });
+  twin_.push({ twin_.stamp(), InputKind::LOAD_TORQUE, 20.0 });
   const auto run = [&](Stamp length)
   {
     for (const Stamp end = twin_.stamp() + length; twin_.stamp() < end;)

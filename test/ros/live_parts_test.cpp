@@ -73,25 +73,25 @@ TEST(Inbox, DropsWhatItCannotHoldAndCounts)
   Inbox inbox;
   for (std::size_t i = 0; i < Inbox::CAPACITY + 3; ++i)
   {
-    inbox.push({ static_cast<Stamp>(i), InputKind::MOTOR_TORQUE, 0.0 });
+    inbox.push(Input{ static_cast<Stamp>(i), InputKind::MOTOR_TORQUE, 0.0 });
   }
-  inbox.push({ 0, InputKind::LOAD_TORQUE, std::numeric_limits<double>::infinity() });
+  inbox.push(Input{ 0, InputKind::LOAD_TORQUE, std::numeric_limits<double>::infinity() });
   EXPECT_EQ(inbox.overflow(), 3U);
   EXPECT_EQ(inbox.notFinite(), 1U);
   EXPECT_TRUE(inbox.use(
       [](std::vector<LiveInput>& inputs)
       {
         ASSERT_EQ(inputs.size(), Inbox::CAPACITY);
-        EXPECT_EQ(inputs.back().stamp, static_cast<Stamp>(Inbox::CAPACITY) - 1);
+        EXPECT_EQ(inputs.back().stamp(), static_cast<Stamp>(Inbox::CAPACITY) - 1);
         inputs.erase(inputs.begin() + 1, inputs.end());
       }));
   // What was left there goes on waiting.
-  inbox.push({ 7, InputKind::BRAKE, 1.0 });
+  inbox.push(Input{ 7, InputKind::BRAKE, 1.0 });
   EXPECT_TRUE(inbox.use(
       [](const std::vector<LiveInput>& inputs)
       {
         ASSERT_EQ(inputs.size(), 2U);
-        EXPECT_EQ(inputs.back().stamp, 7);
+        EXPECT_EQ(inputs.back().stamp(), 7);
       }));
 }
 

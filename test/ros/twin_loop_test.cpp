@@ -108,8 +108,8 @@ TEST_F(LoopFixture, StartsAtTheEarliestStampInWhateverOrderTheFirstInputsArrive)
 {
   start(true);
   setClock(100 * SECOND);
-  inbox_.push({ 100 * SECOND + 8 * MILLISECOND, InputKind::MOTOR_TORQUE, 0.5 });
-  inbox_.push({ 100 * SECOND + 4 * MILLISECOND, InputKind::LOAD_TORQUE, 1.0 });
+  inbox_.push(Input{ 100 * SECOND + 8 * MILLISECOND, InputKind::MOTOR_TORQUE, 0.5 });
+  inbox_.push(Input{ 100 * SECOND + 4 * MILLISECOND, InputKind::LOAD_TORQUE, 1.0 });
   setClock(100 * SECOND + 10 * MILLISECOND);
   EXPECT_EQ(loop_->status().state, LoopState::WAITING_FOR_INPUT);
   EXPECT_TRUE(instants_.empty());
@@ -122,12 +122,12 @@ TEST_F(LoopFixture, StartsAtTheEarliestStampInWhateverOrderTheFirstInputsArrive)
 TEST_F(LoopFixture, DoesNotStartOnABrakeOrANumberThatIsNone)
 {
   start(true);
-  inbox_.push({ 100 * SECOND, InputKind::BRAKE, 1.0 });
-  inbox_.push({ 100 * SECOND, InputKind::MOTOR_TORQUE, std::nan("") });
+  inbox_.push(Input{ 100 * SECOND, InputKind::BRAKE, 1.0 });
+  inbox_.push(Input{ 100 * SECOND, InputKind::MOTOR_TORQUE, std::nan("") });
   setClock(101 * SECOND);
   EXPECT_EQ(loop_->status().state, LoopState::WAITING_FOR_INPUT);
   EXPECT_EQ(inbox_.notFinite(), 1U);
-  inbox_.push({ 101 * SECOND, InputKind::MOTOR_TORQUE, 0.1 });
+  inbox_.push(Input{ 101 * SECOND, InputKind::MOTOR_TORQUE, 0.1 });
   setClock(102 * SECOND);
   EXPECT_TRUE(loop_->status().outputs.brake_engaged) << "a brake engaged before the start was forgotten";
   EXPECT_EQ(loop_->status().counters.input.late, 0U);
@@ -242,9 +242,9 @@ TEST_F(LoopFixture, RefusesInputsStampedFarFromTheClock)
   waitForCycles(2);
   for (const Stamp stamp : { Stamp{ 1 }, 100'000 * SECOND + FAR_STAMP + 60 * SECOND, LAST_ROS_STAMP })
   {
-    inbox_.push({ stamp, InputKind::MOTOR_TORQUE, 0.5 });
+    inbox_.push(Input{ stamp, InputKind::MOTOR_TORQUE, 0.5 });
   }
-  inbox_.push({ 100'001 * SECOND, InputKind::MOTOR_TORQUE, 0.25 });
+  inbox_.push(Input{ 100'001 * SECOND, InputKind::MOTOR_TORQUE, 0.25 });
   waitForCycles(2);
   setClock(100'002 * SECOND);
   waitFor([this] { return loop_->status().counters.input.accepted == 1; });
@@ -288,7 +288,7 @@ TEST_F(LoopFixture, AllocatesNothingOnceItRuns)
   setClock(101 * SECOND);
   for (int i = 0; i < 100; ++i)
   {
-    inbox_.push({ 101 * SECOND + i * MILLISECOND, InputKind::MOTOR_TORQUE, 0.5 });
+    inbox_.push(Input{ 101 * SECOND + i * MILLISECOND, InputKind::MOTOR_TORQUE, 0.5 });
   }
   const std::size_t before = allocationCount();
   clock_ = 102 * SECOND;
@@ -307,12 +307,12 @@ TEST_F(LoopFixture, StartsHoweverMuchCameBeforeItsFirstTorque)
   {
     for (int i = 0; i < static_cast<int>(Inbox::CAPACITY / 2); ++i)
     {
-      inbox_.push({ second * SECOND + i, InputKind::BRAKE, i % 2 == 0 ? 0.0 : 1.0 });
+      inbox_.push(Input{ second * SECOND + i, InputKind::BRAKE, i % 2 == 0 ? 0.0 : 1.0 });
     }
     setClock((second + 1) * SECOND);
   }
   EXPECT_EQ(loop_->status().state, LoopState::WAITING_FOR_INPUT);
-  inbox_.push({ 104 * SECOND, InputKind::MOTOR_TORQUE, 0.1 });
+  inbox_.push(Input{ 104 * SECOND, InputKind::MOTOR_TORQUE, 0.1 });
   setClock(105 * SECOND);
   EXPECT_EQ(inbox_.overflow(), 0U);
   EXPECT_EQ(loop_->status().state, LoopState::RUNNING);
@@ -324,7 +324,7 @@ TEST_F(LoopFixture, AResetForgetsWhatWaitsForTheStart)
 {
   start(true);
   setClock(100 * SECOND);
-  inbox_.push({ 100 * SECOND, InputKind::BRAKE, 1.0 });
+  inbox_.push(Input{ 100 * SECOND, InputKind::BRAKE, 1.0 });
   setClock(101 * SECOND);
   EXPECT_EQ(loop_->status().state, LoopState::WAITING_FOR_INPUT);
   ASSERT_TRUE(loop_->reset());

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <variant>
 
 #include "harmonic_joint_twin/base/stamp.hpp"
 #include "harmonic_joint_twin/params/faults.hpp"
@@ -15,10 +16,9 @@ enum class InputKind : std::uint8_t
   MOTOR_TORQUE,
   LOAD_TORQUE,
   BRAKE,
-  TEMPERATURE,
-  FAULT  ///< for Twin::injectFault: the queue takes none
+  TEMPERATURE
 };
-constexpr std::size_t INPUT_KINDS = 4;  ///< number of kinds with a value
+constexpr std::size_t INPUT_KINDS = 4;  ///< number of kinds
 
 /// One stamped input of a twin.
 struct Input
@@ -26,8 +26,29 @@ struct Input
   Stamp stamp{};     ///< acts from here on [ns]
   InputKind kind{};  ///< what `value` is
   double value{};    ///< torque [N.m], temperature [degC], or 1 for an engaged brake
-  Fault fault{};     ///< for kind FAULT
 };
+
+/// A fault that sets in at a time.
+struct StampedFault
+{
+  Stamp stamp{};  ///< its severity counts from here on [ns]
+  Fault fault{};
+};
+
+/// What comes to a twin at a time.
+using TwinInput = std::variant<Input, StampedFault>;
+
+/// When it acts [ns].
+inline Stamp& stampOf(TwinInput& input) noexcept
+{
+  auto* fault = std::get_if<StampedFault>(&input);
+  return fault != nullptr ? fault->stamp : std::get_if<Input>(&input)->stamp;
+}
+inline Stamp stampOf(const TwinInput& input) noexcept
+{
+  const auto* fault = std::get_if<StampedFault>(&input);
+  return fault != nullptr ? fault->stamp : std::get_if<Input>(&input)->stamp;
+}
 
 /// Inputs of a queue since it was cleared.
 struct InputCounters

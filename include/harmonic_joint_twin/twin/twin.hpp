@@ -136,7 +136,8 @@ public:
   void injectFault(Stamp stamp, const Fault& fault) noexcept;
   const FaultList& activeFaults() const noexcept;  ///< faults in force at the current instant
 
-  void push(const Input& input) noexcept;  ///< queues one input, by `input.kind`
+  void push(const Input& input) noexcept;      ///< queues one input, by `input.kind`
+  void push(const TwinInput& input) noexcept;  ///< the same, or `injectFault`
 
   /// The arm around the joint, from the next step on and until the next call: its inertia at the output in place of
   /// output.load_inertia [kg.m^2], >= 0, and its torque on the output beside that and the load torque, > 0 resists

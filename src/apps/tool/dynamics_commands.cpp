@@ -196,7 +196,7 @@ int dynamics(const DynamicsOptions& options)
     lines.push_back({ name + ".relative_max", "", error.max / error.size });
   }
   lines.push_back({ "expected_mesh_force_error", "mesh_force, error expected from speed and load",
-                    expectedMeshForceError(parameters, setup.speed, setup.load), "N" });
+                    expectedMeshForceError(parameters.ring, parameters.gear, setup.speed, setup.load), "N" });
   lines.insert(lines.end(), { { "force_evaluations", "", result.force_evaluations },
                               { "solve_time", "solve time", result.solve_time, "s" },
                               { "series", "", Table(DYNAMICS_COLUMNS, result.rows).columns() },

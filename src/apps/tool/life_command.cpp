@@ -125,7 +125,7 @@ const std::vector<Column<FatigueRow>> FATIGUE_COLUMNS{
 std::vector<FatigueRow> fatigueRows(const Parameters& parameters, double torque, const RevolutionLoad& revolution_load)
 {
   constexpr double WEAKEST_HUNDREDTH = -2.326;  // standard deviations
-  const FatigueLaw fatigue_law(parameters);
+  const FatigueLaw fatigue_law(parameters.life, parameters.stress);
   const double weak = std::exp(WEAKEST_HUNDREDTH * parameters.life.fatigue_spread);
   const auto lasts = [&](double share) { return 1.0 / fatigue_law.damage(share, false); };
   std::vector<FatigueRow> rows;

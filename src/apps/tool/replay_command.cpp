@@ -72,8 +72,11 @@ bool jointIsChosen(const ReplayOptions& options, const ParameterMap& map)
 bool suffices(const BagInputs& found, const ReplayOptions& options)
 {
   return std::any_of(found.inputs.begin(), found.inputs.end(),
-                     [&](const Input& input)
-                     { return options.without_command || input.kind == InputKind::MOTOR_TORQUE; });
+                     [&](const TwinInput& input)
+                     {
+                       const auto* value = std::get_if<Input>(&input);
+                       return options.without_command || (value != nullptr && value->kind == InputKind::MOTOR_TORQUE);
+                     });
 }
 
 /// @throws InputError where damage makes the recording last for years.
@@ -118,7 +121,7 @@ BagInputs requireInputs(const rosbag::Bag& bag, const ReplayOptions& options, co
 class Replay
 {
 public:
-  Replay(const rosbag::Bag& bag, Twin& twin, const std::vector<Input>& inputs, const ReplayOptions& options)
+  Replay(const rosbag::Bag& bag, Twin& twin, const std::vector<TwinInput>& inputs, const ReplayOptions& options)
     : view_(bag), twin_(twin), inputs_(inputs), writer_(options.out), recorder_(twin, options.joint_namespace, writer_)
   {
     // The last input may be stamped after the last message was recorded, but the recording ends there.
@@ -160,7 +163,7 @@ private:
   void feed()
   {
     const Stamp instant = twin_.stamp() + twin_.stepLength();
-    for (; next_ < inputs_.size() && inputs_[next_].stamp <= instant; ++next_)
+    for (; next_ < inputs_.size() && stampOf(inputs_[next_]) <= instant; ++next_)
     {
       twin_.push(inputs_[next_]);
     }
@@ -168,7 +171,7 @@ private:
 
   rosbag::View view_;
   Twin& twin_;
-  const std::vector<Input>& inputs_;
+  const std::vector<TwinInput>& inputs_;
   BagWriter writer_;
   BagRecorder recorder_;
   std::size_t next_{};
@@ -189,7 +192,7 @@ int replay(const ReplayOptions& options)
   const BagInputs found = requireInputs(bag, options, map, parameters);
   Twin twin(parameters, surfaceSource());
   twin.watchSignals(true);
-  twin.reset(found.inputs.front().stamp);
+  twin.reset(stampOf(found.inputs.front()));
   const RunSummary summary{ options.out, twin.stamp() };
   const InterruptScope interrupts;
   Replay run(bag, twin, found.inputs, options);

@@ -161,7 +161,7 @@ void writeTeeth(const std::string& path, const std::vector<StiffnessRow>& rows)
 /// The three places of a row, each with its nominal stresses and those at the notch.
 Json stressJson(const Parameters& parameters, const StiffnessRow& row)
 {
-  const FatigueLaw fatigue_law(parameters);
+  const FatigueLaw fatigue_law(parameters.life, parameters.stress);
   Json json;
   for (std::size_t place = 0; place < STRESS_PLACES; ++place)
   {

@@ -84,7 +84,7 @@ void TorqueProfile::feed(Twin& twin, Stamp begin)
   {
     const Input& input = inputs_[next_];
     motor_torque_ = input.kind == InputKind::MOTOR_TORQUE ? input.value : motor_torque_;
-    twin.push({ instant, input.kind, input.value, input.fault });
+    twin.push({ instant, input.kind, input.value });
   }
 }
 }  // namespace hjt

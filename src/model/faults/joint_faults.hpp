@@ -37,8 +37,8 @@ private:
   JointModel model_;
 };
 
-/// The joint of these parameters with the faults that it has from the start.
-inline JointModel startingJoint(const Parameters& parameters)
+/// The faults that a joint of these parameters has from the start.
+inline FaultList faultsAtStart(const Parameters& parameters)
 {
   FaultList faults;
   for (const Fault& fault : parameters.faults)
@@ -48,6 +48,12 @@ inline JointModel startingJoint(const Parameters& parameters)
       faults.set(fault, 0);
     }
   }
-  return JointFaults(parameters, faults).model();
+  return faults;
+}
+
+/// The joint with them.
+inline JointModel startingJoint(const Parameters& parameters)
+{
+  return JointFaults(parameters, faultsAtStart(parameters)).model();
 }
 }  // namespace hjt

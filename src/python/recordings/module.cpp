@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -47,8 +48,8 @@ void takeRows(const py::object& columns, RecordingOptions& options)
   {
     throw InputError("recording: columns 'time', of shape (rows,), and 'position' are needed");
   }
-  options.rows.assign(static_cast<std::size_t>(times.rows()),
-                      std::vector<MotionRow>(static_cast<std::size_t>(positions.width())));
+  std::vector<std::vector<MotionRow>> rows(static_cast<std::size_t>(times.rows()),
+                                           std::vector<MotionRow>(static_cast<std::size_t>(positions.width())));
   for (const Choice& choice : CHOICES)
   {
     const MotionColumn column(columns, choice.name);
@@ -61,17 +62,18 @@ void takeRows(const py::object& columns, RecordingOptions& options)
       throw InputError(std::string("recording: column '") + choice.name + "' is missing or not of the shape (" +
                        std::to_string(times.rows()) + ", " + std::to_string(positions.width()) + ") of the angles");
     }
-    for (std::size_t row = 0; row < options.rows.size(); ++row)
+    for (std::size_t row = 0; row < rows.size(); ++row)
     {
-      for (std::size_t joint = 0; joint < options.rows[row].size(); ++joint)
+      for (std::size_t joint = 0; joint < rows[row].size(); ++joint)
       {
-        MotionRow& motion = options.rows[row][joint];
+        MotionRow& motion = rows[row][joint];
         motion.*choice.field = column.at(row, joint);
         motion.time = times.at(row, 0) - times.at(0, 0);
         motion.received = motion.time;
       }
     }
   }
+  options.rows = std::make_shared<const std::vector<std::vector<MotionRow>>>(std::move(rows));
   options.rows_have_load = static_cast<bool>(MotionColumn(columns, "load"));
 }
 

@@ -7,19 +7,10 @@
 #include <mutex>
 #include <thread>
 
-#include "harmonic_joint_twin/model/faults/fault_list.hpp"
-#include "harmonic_joint_twin/params/parameters.hpp"
-#include "surface/surface_cache.hpp"
+#include "surface/faulty_surface.hpp"
 
 namespace hjt
 {
-/// Of the wave generator's bearing: a table over the angles of motor and output does not contain them.
-bool isOfTheBalls(const Fault& fault) noexcept;
-
-/// The response surface of the drive with these faults; if there is none, the source gets the reason.
-SurfacePool::Surface surfaceWithFaults(const Parameters& parameters, const FaultList& faults,
-                                       const SurfaceSource& source);
-
 /// Obtains response surfaces in a thread of its own, beside a twin that runs.
 class SurfaceWorker
 {
