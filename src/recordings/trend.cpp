@@ -211,7 +211,7 @@ JointTrend judgeJoint(const Trend& trend, std::size_t joint, const std::string& 
   return judged;
 }
 
-/// Each trend, the joints without one by their reason, and the latest recording where it departs.
+/// Each trend, the joints without one by their reason, and the latest recording where it departs or is all that is judged.
 std::string textOf(const Trend& trend)
 {
   std::string text;
@@ -243,7 +243,7 @@ std::string textOf(const Trend& trend)
   {
     text += "Not all recordings tell a date: their order stands for time. ";
   }
-  if (trend.latest && trend.recordings[*trend.latest].compared.health != HealthLevel::OK)
+  if (trend.latest && (!is_any || trend.recordings[*trend.latest].compared.health != HealthLevel::OK))
   {
     const DatedRecording& latest = trend.recordings[*trend.latest];
     text += "The latest, " + fs::path(latest.path).filename().string() + ": " + latest.compared.text + " ";
