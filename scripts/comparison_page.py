@@ -245,20 +245,20 @@ def draw_joint_trend(axes, trend, place):
     joint, rows = trend["joints"][place], joint_rows(trend, place)
     axes.set_title(f"{joint['joint']}: {joint['level']}")
     for level, colour in (("OK", BLUE), ("WARN", ORANGE), ("ERROR", RED), ("NOT JUDGED", GREY)):
-        part = [(time, row) for time, row in rows if row["friction"] is not None and row["level"] == level]
+        part = [(time, row) for time, row in rows if row["friction_for_trend"] is not None and row["level"] == level]
         if part:
-            value, low, high = (np.array([row[name] for _, row in part])
-                                for name in ("friction", "friction_low", "friction_high"))
-            axes.errorbar([time for time, _ in part], value, yerr=(value - low, high - value), ls="", marker="o", ms=4,
-                          color=colour, elinewidth=0.8)
-    without = [time for time, row in rows if row["friction"] is None]
+            value, at, low, high = (np.array([row[name] for _, row in part]) for name in
+                                    ("friction_for_trend", "friction", "friction_low", "friction_high"))
+            axes.errorbar([time for time, _ in part], value, yerr=(value * (1.0 - low / at), value * (high / at - 1.0)),
+                          ls="", marker="o", ms=4, color=colour, elinewidth=0.8)
+    without = [time for time, row in rows if row["friction_for_trend"] is None]
     if without:
         axes.plot(without, np.full(len(without), 0.04), ls="", marker="x", ms=4, color=GREY,
                   transform=axes.get_xaxis_transform())
-    judged = [(time, row) for time, row in rows if row["friction"] is not None]
+    judged = [(time, row) for time, row in rows if row["friction_for_trend"] is not None]
     if joint["level"] == "WARN":
         at = np.array([(time - judged[0][0]) / (judged[-1][0] - judged[0][0]) for time, _ in judged])
-        logarithms = np.log([row["friction"] for _, row in judged])
+        logarithms = np.log([row["friction_for_trend"] for _, row in judged])
         weights = np.array([np.log(row["friction_high"] / row["friction_low"]) for _, row in judged]) ** -2.0
         middle = np.average(logarithms - np.log(joint["change"]) * at, weights=weights)
         axes.plot([time for time, _ in judged], np.exp(middle + np.log(joint["change"]) * at), color=RED)

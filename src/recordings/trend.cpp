@@ -157,18 +157,45 @@ std::string changeText(const FrictionTrend& friction, const Trend& trend, const 
          std::to_string(friction.recordings) + " recordings.";
 }
 
-/// Apart from what the joints of the arm have in common. None: not judged.
-std::optional<DatedFriction> frictionOf(const DatedRecording& recording, std::size_t joint)
+/// Logarithm of a joint's friction with what the joints of the arm have in common. None: not judged.
+std::optional<double> logarithmOf(const DatedRecording& recording, std::size_t joint)
 {
   if (!recording.isRead() || !recording.compared.joints[joint].friction)
   {
     return std::nullopt;
   }
-  const ComparedJoint& compared = recording.compared.joints[joint];
-  const double factor = compared.verdict.friction.factor;
-  return factor > 0.0 ? std::make_optional(DatedFriction{ recording.time, factor, compared.friction->deviation,
-                                                          recording.compared.friction.deviations[joint] }) :
-                        std::nullopt;
+  const std::vector<double>& common = recording.compared.friction.factors;
+  const double factor = recording.compared.joints[joint].verdict.friction.factor * (common.empty() ? 1.0 : common[joint]);
+  return factor > 0.0 ? std::make_optional(std::log(factor)) : std::nullopt;
+}
+
+/// Joints [begin, end), a group, in all recordings.
+void dateFrictions(std::vector<DatedRecording>& recordings, std::size_t begin, std::size_t end)
+{
+  std::vector<std::vector<std::optional<double>>> logarithms(end - begin);
+  for (std::size_t joint = begin; joint < end; ++joint)
+  {
+    for (const DatedRecording& recording : recordings)
+    {
+      logarithms[joint - begin].push_back(logarithmOf(recording, joint));
+    }
+  }
+  const std::vector<std::optional<double>> common = commonOfRecordings(logarithms);
+  for (std::size_t k = 0; k < recordings.size(); ++k)
+  {
+    for (std::size_t joint = begin; joint < end; ++joint)
+    {
+      DatedRecording& recording = recordings[k];
+      recording.frictions.emplace_back();
+      if (const std::optional<double>& logarithm = logarithms[joint - begin][k])
+      {
+        const double in_common = common[k].value_or(0.0);
+        const double slow = common[k] ? 0.0 : recording.compared.friction.deviations[joint];
+        recording.frictions.back() = { recording.time, std::exp(*logarithm - in_common),
+                                       recording.compared.joints[joint].friction->deviation, slow, in_common };
+      }
+    }
+  }
 }
 
 JointTrend judgeJoint(const Trend& trend, std::size_t joint, const std::string& name)
@@ -177,9 +204,9 @@ JointTrend judgeJoint(const Trend& trend, std::size_t joint, const std::string& 
   std::vector<Stamp> dates;
   for (const DatedRecording& recording : trend.recordings)
   {
-    if (const std::optional<DatedFriction> friction = frictionOf(recording, joint))
+    if (recording.frictions[joint])
     {
-      frictions.push_back(*friction);
+      frictions.push_back(*recording.frictions[joint]);
       dates.push_back(recording.date.value_or(0));
     }
   }
@@ -211,7 +238,7 @@ JointTrend judgeJoint(const Trend& trend, std::size_t joint, const std::string& 
   return judged;
 }
 
-/// Each trend, the joints without one by their reason, and the latest recording where it departs.
+/// Each trend, the joints without one by their reason, and the latest recording where it departs or is all that is judged.
 std::string textOf(const Trend& trend)
 {
   std::string text;
@@ -243,7 +270,7 @@ std::string textOf(const Trend& trend)
   {
     text += "Not all recordings tell a date: their order stands for time. ";
   }
-  if (trend.latest && trend.recordings[*trend.latest].compared.health != HealthLevel::OK)
+  if (trend.latest && (!is_any || trend.recordings[*trend.latest].compared.health != HealthLevel::OK))
   {
     const DatedRecording& latest = trend.recordings[*trend.latest];
     text += "The latest, " + fs::path(latest.path).filename().string() + ": " + latest.compared.text + " ";
@@ -257,7 +284,10 @@ void judgeTrend(Trend& trend)
   const auto first = std::find_if(trend.recordings.begin(), trend.recordings.end(),
                                   [](const DatedRecording& recording) { return recording.isRead(); });
   trend.is_arm = first->compared.is_arm;
-  for (std::size_t i = 0; i < first->compared.joints.size(); ++i)
+  const std::size_t joints = first->compared.joints.size();
+  dateFrictions(trend.recordings, 0, (joints + 1) / 2);
+  dateFrictions(trend.recordings, (joints + 1) / 2, joints);
+  for (std::size_t i = 0; i < joints; ++i)
   {
     trend.joints.push_back(judgeJoint(trend, i, first->compared.joints[i].name));
     trend.health = std::max(trend.health, severityOf(trend.joints.back().level));

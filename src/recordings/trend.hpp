@@ -28,6 +28,9 @@ struct DatedRecording
   std::vector<std::string> remarks;  ///< what was said while it was read
   std::string unread;                ///< why it was not compared; empty: it was
   ComparedRecording compared;        ///< without documents; no joints: it was not
+  /// Of each joint, for its trend: friction apart from what the joints of its group have in common, which is taken
+  /// alike of all recordings; none: not known.
+  std::vector<std::optional<DatedFriction>> frictions;
 
   bool isRead() const { return !compared.joints.empty(); }
   const char* level() const { return isRead() ? compared.level.c_str() : levelName(VerdictLevel::NOT_JUDGED); }

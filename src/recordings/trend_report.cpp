@@ -94,6 +94,12 @@ std::vector<Column<DatedRecording>> fieldsOf(std::size_t i, const std::string& b
   return { { before + "friction", ofJoint(i, of_verdict(&JudgedFriction::factor)) },
            { before + "friction_low", ofJoint(i, of_verdict(&JudgedFriction::lower)) },
            { before + "friction_high", ofJoint(i, of_verdict(&JudgedFriction::upper)) },
+           { before + "friction_for_trend",
+             [i](const DatedRecording& recording)
+             {
+               return recording.isRead() && recording.frictions[i] ? std::make_optional(recording.frictions[i]->factor) :
+                                                                     std::nullopt;
+             } },
            { before + "level", ofJoint(i, [](const ComparedJoint& joint) { return levelName(joint.verdict.level); }) },
            { before + "reason", ofJoint(i, [](const ComparedJoint& joint) { return reasonName(reasonOf(joint)); }) },
            { before + "temperature", ofJoint(i, [](const ComparedJoint& joint) { return joint.temperature; }) },

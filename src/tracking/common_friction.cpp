@@ -8,19 +8,13 @@
 
 #include "tracking/tracker.hpp"
 
+#include "base/median.hpp"
+
 namespace hjt
 {
 namespace
 {
 constexpr std::size_t MIN_JOINTS = 3;  // that witness for each other
-
-/// Of at least one value.
-double medianOf(std::vector<double> values)
-{
-  std::sort(values.begin(), values.end());
-  const std::size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
-}
 
 /// What the joints of a group have in common, apart from factors of their friction.
 JointGroup groupOf(const std::vector<MeasuredFriction>& joints, const std::vector<double>& factors, double tolerance,

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A line through the friction of many recordings: what it finds, and how often it is wrong.
 #include <cmath>
+#include <cstddef>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -22,7 +24,7 @@ std::vector<DatedFriction> recordings(int count, double slope, double deviation,
   for (int i = 0; i < count; ++i)
   {
     const double time = MONTHS * i / (count - 1);
-    all.push_back({ time, std::exp(slope * time + error()), deviation, 0.0 });
+    all.push_back({ time, std::exp(slope * time + error()), deviation, 0.0, 0.0 });
   }
   return all;
 }
@@ -50,7 +52,7 @@ TEST(FrictionTrend, IsNotKnownOfTooFewRecordingsOrOfOneTime)
   EXPECT_FALSE(frictionTrend(recordings(3, 1e-4, 0.01, none)).isKnown());
   EXPECT_FALSE(frictionTrend(recordings(3, 1e-4, 0.01, none)).departs());
   EXPECT_TRUE(frictionTrend(recordings(4, 1e-4, 0.01, none)).isKnown());
-  EXPECT_FALSE(frictionTrend(std::vector<DatedFriction>(9, { 5.0, 1.0, 0.01, 0.0 })).isKnown());
+  EXPECT_FALSE(frictionTrend(std::vector<DatedFriction>(9, { 5.0, 1.0, 0.01, 0.0, 0.0 })).isKnown());
 }
 
 TEST(FrictionTrend, HasTheTruthInItsIntervalAsOftenAsItSays)
@@ -119,6 +121,53 @@ TEST(FrictionTrend, OfTheSeasonsDoesNotAverageOut)
     recording.factor = std::exp(recording.time < 0.5 * MONTHS ? -SLOW : SLOW);
   }
   EXPECT_NEAR(frictionTrend(steps).slope * MONTHS, 3.0 * SLOW, 0.003);
+}
+
+TEST(FrictionTrend, OfAJointThatAnswersTheTemperatureByLessThanTheOthersIsNone)
+{
+  const auto warming = [](double common_end)
+  {
+    std::vector<DatedFriction> all = recordings(12, 0.0, 0.03, none);
+    for (DatedFriction& recording : all)
+    {
+      recording.common = common_end * recording.time / MONTHS;
+      recording.factor = std::exp(-0.5 * recording.common);  // half of what the others do
+    }
+    return all;
+  };
+  EXPECT_FALSE(frictionTrend(warming(-0.3)).departs());
+  EXPECT_FALSE(frictionTrend(warming(0.3)).departs());
+  // Over whole seasons the answer is known, and a trend beside it is found.
+  std::vector<DatedFriction> seasons = recordings(25, std::log(1.25) / MONTHS, 0.03, none);
+  for (std::size_t i = 0; i < seasons.size(); ++i)
+  {
+    seasons[i].common = 0.1 * std::cos(0.7 * static_cast<double>(i));
+    seasons[i].factor *= std::exp(-0.5 * seasons[i].common);
+  }
+  EXPECT_TRUE(frictionTrend(seasons).departs());
+  EXPECT_NEAR(frictionTrend(seasons).change(), 1.25, 0.005);
+}
+
+TEST(FrictionTrend, WhatJointsHaveInCommonIsTheMedianOfTheirChanges)
+{
+  using Row = std::vector<std::optional<double>>;
+  const Row low{ 0.0, 0.1, 0.2, 0.3, 0.1 };
+  Row high = low;
+  Row failing = low;
+  for (std::size_t i = 0; i < low.size(); ++i)
+  {
+    *high[i] += 0.4;
+    *failing[i] += i < 3 ? 0.0 : 0.5;
+  }
+  const Row common = commonOfRecordings({ low, high, failing });
+  for (std::size_t i = 0; i < low.size(); ++i)
+  {
+    ASSERT_TRUE(common[i]);
+    EXPECT_NEAR(*common[i], *low[i] - 0.1, 1e-12);
+  }
+  high[2].reset();
+  EXPECT_FALSE(commonOfRecordings({ low, high, failing })[2]);
+  EXPECT_FALSE(commonOfRecordings({ low, low })[0]);
 }
 }  // namespace
 }  // namespace hjt
