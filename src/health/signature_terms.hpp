@@ -21,7 +21,7 @@ class SignatureTerms
 public:
   SignatureTerms(const SignatureSet& set, const WindowResidual& residual) noexcept;
 
-  /// Natural logarithm, less what is the same for all. `strength`: S of what is in no table beside the signature's change.
+  /// Natural logarithm, less what is the same for all. `strength`: S of what is in no table, beside the change.
   /// `alike`: its motion and the window's, 0 ... 1.
   double logLikelihood(const Signature& signature, double strength, double alike) const noexcept;
 
