@@ -41,7 +41,7 @@ def header(page):
     severity = max(float(head[place].split(", ")[1]) for place in found)  # the only one that causes are judged at
     right, in_set, size, stated = (next(place for place, name in enumerate(head) if name.startswith(words))
                                    for words in ("cause right", "or in the set", "severity", "its stated"))
-    check_ups = re.search(r"(\d+) alarms in (\d+), at most", page)
+    check_ups = re.search(r"(\d+) alarms? in (\d+): a rate", page)
     rest = page.split(check_ups.group(0))[1].splitlines()
     runs = [cells(line) for line in rest if re.match(r"\| (?!all )[^|]+ \| \d", line)]
     lines = []

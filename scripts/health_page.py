@@ -140,8 +140,8 @@ def check_up_line(sound):
     runs = [run for run in sound if run.motion == CHECK_UP]
     found = sum(map(alarmed, runs))
     gears = len({run.gear.name for run in runs})
-    return (f"- Check-ups of {gears} sound gears: {found} alarms in {len(runs)}, at most "
-            f"{100.0 * poisson_bound(found) / len(runs):.2g} % at 95 %.")
+    return (f"- Check-ups of {gears} sound gears: {found} alarm{'s' * (found != 1)} in {len(runs)}: a rate of at most "
+            f"{100.0 * poisson_bound(found) / len(runs):.2g} %, with 95 % confidence.")
 
 
 def series(bench, gears):

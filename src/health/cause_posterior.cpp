@@ -12,7 +12,45 @@ namespace hjt
 {
 namespace
 {
-constexpr std::array UNKNOWN_STRENGTHS{ 3.0, 10.0, 30.0, 100.0 };  // S of what is in no table
+
+/// What is in no table: anything of a strength S, and what is no wear of a gear.
+struct Unknown
+{
+  double strength;  // S
+  double drag;      // friction more at every speed alike, over the sound running torque: a brake
+  double noise;     // of the sensors more, as a share
+};
+constexpr std::array<Unknown, 12> UNKNOWNS{ { { 3.0, 0.0, 0.0 },
+                                              { 10.0, 0.0, 0.0 },
+                                              { 30.0, 0.0, 0.0 },
+                                              { 100.0, 0.0, 0.0 },
+                                              { 0.0, 0.05, 0.0 },
+                                              { 0.0, 0.15, 0.0 },
+                                              { 0.0, 0.4, 0.0 },
+                                              { 0.0, 1.0, 0.0 },
+                                              { 0.0, 0.0, 0.12 },
+                                              { 0.0, 0.0, 0.25 },
+                                              { 0.0, 0.0, 0.5 },
+                                              { 0.0, 0.0, 1.0 } } };
+
+/// Noise widens the spread of peaks from turn to turn and of every line.
+Signature signatureOf(const Unknown& unknown, const WindowResidual& residual) noexcept
+{
+  constexpr std::size_t FRICTION = indexOf(ScalarIndicator::RUNNING_TORQUE);
+  constexpr std::size_t PEAKS = indexOf(ScalarIndicator::KINEMATIC_ERROR);
+  Signature signature{ Cause::NONE, 0.0, ANY_MOTION, {} };
+  signature.change[FRICTION] = unknown.drag * residual.sound[FRICTION];
+  signature.change[indexOf(ScalarIndicator::COULOMB_TORQUE)] = signature.change[FRICTION];
+  signature.change[PEAKS] = unknown.noise * residual.sound[PEAKS];
+  return signature;
+}
+
+double strengthOf(const Unknown& unknown) noexcept
+{
+  const double noise = 1.0 + unknown.noise;
+  return std::sqrt(unknown.strength * unknown.strength + noise * noise - 1.0);
+}
+
 constexpr double MISFIT_WEIGHT = 0.2;    // w_1: share of the evidence's weight that is left where no signature fits
 constexpr double MISFIT_SEVERITY = 0.5;  // share of the severity there: other drives soften up to three times as much
 }  // namespace
@@ -27,7 +65,7 @@ void CauseSearch::Sum::add(double weighted, double prior, double severity) noexc
 }
 
 CauseSearch::CauseSearch(std::shared_ptr<const SignatureSet> set)
-  : set_(std::move(set)), likelihoods_(set_->signatures.size() + UNKNOWN_STRENGTHS.size())
+  : set_(std::move(set)), likelihoods_(set_->signatures.size() + UNKNOWNS.size())
 {
   start();
 }
@@ -49,9 +87,13 @@ void CauseSearch::advance(const WindowResidual& residual, const OperatingPoint& 
     const SignatureTerms terms(*set_, residual);
     for (; next_ < std::min(end, rows); ++next_)
     {
-      likelihoods_[next_] = next_ < known.size() ?
-                                terms.logLikelihood(&known[next_], 0.0, likeness(known[next_].motion, point)) :
-                                terms.logLikelihood(nullptr, UNKNOWN_STRENGTHS[next_ - known.size()], 1.0);
+      if (next_ < known.size())
+      {
+        likelihoods_[next_] = terms.logLikelihood(known[next_], 0.0, likeness(known[next_].motion, point));
+        continue;
+      }
+      const Unknown& unknown = UNKNOWNS[next_ - known.size()];
+      likelihoods_[next_] = terms.logLikelihood(signatureOf(unknown, residual), strengthOf(unknown), 1.0);
     }
     if (next_ == rows)
     {

@@ -78,23 +78,18 @@ SignatureTerms::SignatureTerms(const SignatureSet& set, const WindowResidual& re
   }
 }
 
-double SignatureTerms::logLikelihood(const Signature* signature, double strength, double alike) const noexcept
+double SignatureTerms::logLikelihood(const Signature& signature, double strength, double alike) const noexcept
 {
   std::array<double, INDICATOR_COUNT> changes{};  // by the signature
-  double widening = 1.0 + strength * strength;
-  double of_lines = 0.0;
-  if (signature != nullptr)
+  double length = 0.0;
+  for (std::size_t i = 0; i < count_; ++i)
   {
-    double square = 0.0;
-    for (std::size_t i = 0; i < count_; ++i)
-    {
-      const Term& term = terms_[i];
-      changes[i] = changeBy(*signature, term);
-      square += (term.has_phase ? 0.5 : 1.0) * changes[i] * changes[i] / term.own;
-    }
-    widening = 1.0 + set_.length_error * set_.length_error * square;
-    of_lines = set_.line_error * set_.line_error * signature->severity * signature->severity;
+    const Term& term = terms_[i];
+    changes[i] = changeBy(signature, term);
+    length += (term.has_phase ? 0.5 : 1.0) * changes[i] * changes[i] / term.own;
   }
+  const double widening = 1.0 + strength * strength + set_.length_error * set_.length_error * length;
+  const double of_lines = set_.line_error * set_.line_error * signature.severity * signature.severity;
   const double of_number =
       set_.number_error * set_.number_error + (1.0 - alike) * set_.motion_error * set_.motion_error;
   CausesSquare inner = CausesSquare::Identity();

@@ -21,9 +21,9 @@ class SignatureTerms
 public:
   SignatureTerms(const SignatureSet& set, const WindowResidual& residual) noexcept;
 
-  /// Natural logarithm, less what is the same for all. Without a signature the strength S is `strength`. `alike`: its
-  /// motion and the window's, 0 ... 1.
-  double logLikelihood(const Signature* signature, double strength, double alike) const noexcept;
+  /// Natural logarithm, less what is the same for all. `strength`: S of what is in no table, beside the change.
+  /// `alike`: its motion and the window's, 0 ... 1.
+  double logLikelihood(const Signature& signature, double strength, double alike) const noexcept;
 
   /// Mean square of what the signature leaves of the differences, in a sound drive's spreads; 1 at least.
   double misfit(const Signature& signature) const noexcept;

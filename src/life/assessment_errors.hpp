@@ -45,13 +45,19 @@ constexpr double IN_SET = shareOf(assessment_counts::IN_SETS, assessment_counts:
 /// Of check-ups and runs at work of sound gears that end with an alarm.
 constexpr double FALSE_ALARMS = shareOf(assessment_counts::SOUND_ALARMS, assessment_counts::SOUND_RUNS);
 
-/// How WearReadings depart from the wear of flanks and interface, counted on lives with signals (seed 11,
-/// docs/life.md): gears of other preload show the first micrometre late, signatures of other motions are off by a
-/// tenth.
-constexpr ReadingErrors FLANK_READING{ 0.12, 0.025, 0.005, 0.03 };
+/// How WearReadings depart from the wear of flanks and interface, counted on lives with signals (seeds 11 and 421 of
+/// scripts/lives_judged.py). In a motion like one of the signatures' the gain of the flanks differs by 0.06 from gear
+/// to gear.
+constexpr ReadingErrors FLANK_READING{ 0.06, 0.012, 0.005, 0.03 };
 constexpr ReadingErrors INTERFACE_READING{ 0.2, 0.08, 0.015, 0.03 };
-/// Standard deviation of what the flanks' wear adds to the interface's reading, over the flanks' reading [-].
-constexpr double FLANK_IN_INTERFACE = 0.4;
+/// Standard deviation of the gain in a motion unlike all of them, as `motion_error` of the signatures [-].
+constexpr double OTHER_MOTION_GAIN = 0.25;
+/// Wear of the flanks first takes up the preload and opens no play: mean of what readings are short by, as a severity;
+/// its standard deviation from drive to drive is FLANK_READING.offset.
+constexpr double FLANK_SHORT = 0.012;
+/// What the flanks' wear takes from the interface's reading, over the flanks' reading: mean, standard deviation [-].
+constexpr double INTERFACE_SHORT = 0.55;
+constexpr double FLANK_IN_INTERFACE = 0.2;
 
 }  // namespace assessment_errors
 }  // namespace hjt

@@ -43,12 +43,17 @@ inline WearTrends trendsOf(const ReadWear& read, const NominalUse& use, const Fa
   for (const auto& [hours, reading] : read.readings)
   {
     const Usage then = use.until(hours);
+    const double worn_flank = reading.flank + assessment_errors::FLANK_SHORT;
+    const double worn_interface = reading.interface + assessment_errors::INTERFACE_SHORT * reading.flank;
     flank_points.push_back(
-        { (then.mean_flank - at_reference.mean_flank) / flank, use.flank().of(reading.flank * flank) / flank });
+        { (then.mean_flank - at_reference.mean_flank) / flank, use.flank().of(worn_flank * flank) / flank });
     interface_points.push_back({ (then.interface_wear - at_reference.interface_wear) / interface,
-                                 use.interface().of(reading.interface * interface) / interface });
+                                 use.interface().of(worn_interface * interface) / interface });
   }
-  trends.flank = { flank_points, assessment_errors::FLANK_READING, RATE_SCATTER };
+  const double unlike = std::sqrt(1.0 - read.readings.back().reading.alike);
+  ReadingErrors flank_errors = assessment_errors::FLANK_READING;
+  flank_errors.gain = std::hypot(flank_errors.gain, assessment_errors::OTHER_MOTION_GAIN * unlike);
+  trends.flank = { flank_points, flank_errors, RATE_SCATTER };
   ReadingErrors interface_errors = assessment_errors::INTERFACE_READING;
   interface_errors.offset =
       std::hypot(interface_errors.offset, assessment_errors::FLANK_IN_INTERFACE * read.readings.back().reading.flank);
@@ -56,7 +61,8 @@ inline WearTrends trendsOf(const ReadWear& read, const NominalUse& use, const Fa
   if (std::isfinite(read.lost_motion_limit))
   {
     const WearReading& last = read.readings.back().reading;
-    const double at_end = last.flank + (read.lost_motion_limit - last.lost_motion) / last.lost_motion_slope;
+    const double at_end = last.flank + assessment_errors::FLANK_SHORT +
+                          (read.lost_motion_limit - last.lost_motion) / last.lost_motion_slope;
     const Usage now = use.until(read.readings.back().hours);
     // Nominal severities are of the mean of both flanks, the depth at the end of the worse.
     trends.flank_depth = now.mean_flank > 0.0 ? flank * now.flank_wear / now.mean_flank : flank;

@@ -31,7 +31,11 @@ public:
       {
         continue;
       }
-      const double weight = OTHER_MOTION * OTHER_MOTION + likeness(signature.motion, point);
+      OperatingPoint to_and_fro = point;  // the load goes both ways: how far the motion does changes nothing
+      to_and_fro.direction = signature.motion.direction;
+      const double alike = likeness(signature.motion, to_and_fro);
+      const double weight = OTHER_MOTION * OTHER_MOTION + alike;
+      alike_ = std::max(alike_, alike);
       weights[node] += weight;
       change_[node] += weight * scale * signature.change[indexOf(indicator)];
     }
@@ -42,6 +46,7 @@ public:
   }
 
   bool isKnown() const noexcept { return nodes_ > 2; }
+  double alike() const noexcept { return alike_; }  ///< of the motion most like the window's
   double lastSlope() const noexcept { return slope(nodes_ - 2); }
 
   double at(double severity) const noexcept
@@ -92,6 +97,7 @@ private:
   }
 
   std::size_t nodes_{ 1 };
+  double alike_{};
   std::array<double, MAX_NODES> severity_{};  // ascending
   std::array<double, MAX_NODES> change_{};
 };
@@ -125,6 +131,7 @@ WearReading readWear(const WindowResidual& residual, const OperatingPoint& point
     return reading;
   }
   reading.flank = whereIs(residual.difference[PLAY], FARTHEST, [&](double severity) { return play.at(severity); });
+  reading.alike = play.alike();
   reading.lost_motion = sound + residual.difference[PLAY];
   reading.lost_motion_slope = play.lastSlope();
   std::array<Response, STIFFNESSES.size()> by_interface{

@@ -104,9 +104,10 @@ public:
   {
     WearReading reading;
     reading.is_read = true;
-    reading.flank = read(age.meanFlank() / scale_.tooth_wear_depth, FLANK_READING, flank_);
+    reading.alike = 1.0;
+    reading.flank = read(age.meanFlank() / scale_.tooth_wear_depth, FLANK_READING, flank_) - FLANK_SHORT;
     reading.interface = read(age.interface_wear / scale_.interface_wear_depth, INTERFACE_READING, interface_) +
-                        of_flank_ * reading.flank;
+                        (of_flank_ - INTERFACE_SHORT) * reading.flank;
     return reading;
   }
 

@@ -171,13 +171,23 @@ TEST_F(Assessed, WhatASingleWindowDoesNotShowTheMeanOfTenDoes)
   EXPECT_GE(windows(12).level, HealthLevel::WARN);
 }
 
-TEST_F(Assessed, DragIsPutDownToTheLubricant)
+/// At one speed a brake that drags, which is no fault of a gear, looks the same.
+TEST_F(Assessed, DragIsPutDownToTheLubricantOrToNone)
 {
   windows(LEARNING);
   drag_ = 1.6;
   const Assessment& assessment = windows(5);
   EXPECT_GE(assessment.level, HealthLevel::WARN);
-  EXPECT_EQ(assessment.cause, causeOf(FaultKind::LUBRICANT_DEGRADATION));
+  double both = 0.0;
+  const auto add = [&](Cause cause, double confidence)
+  { both += cause == Cause::NONE || cause == causeOf(FaultKind::LUBRICANT_DEGRADATION) ? confidence : 0.0; };
+  add(assessment.cause, assessment.confidence);
+  for (std::size_t i = 0; i < assessment.alternative_count; ++i)
+  {
+    add(assessment.alternatives[i].cause, assessment.alternatives[i].confidence);
+    EXPECT_LT(assessment.alternatives[i].confidence, assessment.confidence);
+  }
+  EXPECT_GT(both, 0.9);
 }
 
 TEST_F(Assessed, TheVerdictIsTheSameWhenTheCauseIsSearchedForInParts)

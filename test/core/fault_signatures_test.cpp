@@ -271,6 +271,36 @@ TEST_F(AgainstSignatures, SmallChangesThatBelongTogetherAreAPattern)
   EXPECT_LE(large, 1);
 }
 
+/// Torque at every speed alike; peaks and lines that scatter more.
+TEST_F(AgainstSignatures, DragOfABrakeAndNoiseAreNoFaultOfAGear)
+{
+  constexpr MotionKind CHECK_UP{ 82.7, 0.02 };
+  constexpr double DRAG = 0.03;
+  constexpr double NOISE = 0.5;
+  std::array<double, SIGNATURE_SIZE> change{};
+  change[indexOf(ScalarIndicator::RUNNING_TORQUE)] = change[indexOf(ScalarIndicator::COULOMB_TORQUE)] = DRAG;
+  std::array<WindowResidual, 2> windows{ windowOf(change), windowOf({}) };
+  for (double& difference : windows[1].difference)
+  {
+    difference *= 1.0 + NOISE;
+  }
+  for (WindowResidual& window : windows)
+  {
+    for (const ScalarIndicator own : { ScalarIndicator::RUNNING_TORQUE, ScalarIndicator::KINEMATIC_ERROR })
+    {
+      window.sound[indexOf(own)] = signatures_->sound[indexOf(own)];
+    }
+  }
+  constexpr std::size_t PEAKS = indexOf(ScalarIndicator::KINEMATIC_ERROR);
+  windows[1].difference[PEAKS] = NOISE * signatures_->sound[PEAKS];
+  for (const WindowResidual& window : windows)
+  {
+    search_.start();
+    search_.advance(window, pointOf(CHECK_UP), search_.signatures());
+    EXPECT_GT(search_.posterior().probability[static_cast<std::size_t>(Cause::NONE)], 0.6);
+  }
+}
+
 TEST(TwinsIndicators, FollowPhysicalEdits)
 {
   const SignalIndicators healthy = twinIndicators({});

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -168,6 +169,40 @@ TEST(WearReading, IsTheSeveritiesThatMakeTheDifferences)
     EXPECT_FALSE(readWear(residual, {}, set).is_read);
     EXPECT_FALSE(readWear(residual, {}, SignatureSet()).is_read);
   }
+}
+
+TEST(WearReading, GoesByTheSpeedAndNotByHowFarAMotionGoesOneWay)
+{
+  SignatureSet set = evenSignatures();
+  for (Signature& signature : set.signatures)
+  {
+    signature.motion = { 80.0, 0.0 };
+  }
+  const std::size_t even = set.signatures.size();
+  for (std::size_t i = 0; i < even; ++i)
+  {
+    set.signatures.push_back(set.signatures[i]);
+    set.signatures.back().motion = { 160.0, 1.0 };
+    set.signatures.back().change[indexOf(ScalarIndicator::LOST_MOTION)] *= 0.5;
+  }
+  WindowResidual residual;
+  for (const auto& [indicator, sound, share] : { std::tuple{ ScalarIndicator::LOST_MOTION, 2e-4, 3.0 },
+                                                 { ScalarIndicator::TORSIONAL_STIFFNESS, 3e4, -0.1 },
+                                                 { ScalarIndicator::SECOND_STIFFNESS, 5e4, -0.1 } })
+  {
+    residual.sound[indexOf(indicator)] = sound;
+    residual.difference[indexOf(indicator)] = share * sound;
+    residual.own[indexOf(indicator)] = 1e-6 * sound * sound;
+  }
+  OperatingPoint one_way;
+  one_way.speed = 80.0;
+  one_way.direction = 1.0;
+  const WearReading like = readWear(residual, one_way, set);
+  EXPECT_NEAR(like.flank, 0.3, 0.002);
+  EXPECT_NEAR(like.alike, 1.0, 1e-12);
+  OperatingPoint slow;
+  slow.speed = 30.0;
+  EXPECT_LT(readWear(residual, slow, set).alike, 0.01);
 }
 
 TEST(RemainingLife, AlarmOfWearThatWasReadIsNoEvidenceOfASpall)
