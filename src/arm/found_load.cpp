@@ -20,10 +20,16 @@ bool IdentifiedPayload::differs() const
   return std::abs(mass - configured.mass) > std::max(mass_half_width, least_claim);
 }
 
+bool IdentifiedPayload::isOther() const
+{
+  const bool is_none = configured.mass > 0.0 && mass > -std::max(mass_half_width, least_claim);
+  return differs() && (isCarried() || is_none);
+}
+
 Payload IdentifiedPayload::payload() const
 {
   Payload payload;
-  payload.mass = std::max(mass, 0.0);
+  payload.mass = isCarried() ? mass : 0.0;
   for (std::size_t axis = 0; axis < 3; ++axis)
   {
     payload.centre[axis] = payload.mass > 0.0 ? moment[axis] / payload.mass : 0.0;
@@ -34,6 +40,12 @@ Payload IdentifiedPayload::payload() const
 std::string IdentifiedPayload::text() const
 {
   const Payload found = payload();
+  if (!isCarried())
+  {
+    return "the currents look like no payload, " + fixedText(std::max(mass, 0.0), 1) + " +- " +
+           fixedText(mass_half_width, 1) + " kg at the flange, in place of the configured " +
+           roundedText(configured.mass, 3) + " kg: set payload in the arm's file";
+  }
   return "the currents look like a payload of " + fixedText(found.mass, 1) + " +- " + fixedText(mass_half_width, 1) +
          " kg at the flange in place of the configured " + roundedText(configured.mass, 3) + " kg, its centre at " +
          fixedText(found.centre[0], 2) + ", " + fixedText(found.centre[1], 2) + ", " + fixedText(found.centre[2], 2) +

@@ -22,8 +22,10 @@ struct IdentifiedPayload
 
   /// The configured mass is outside the interval, and farther off than arms without a payload show.
   bool differs() const;
-  /// It differs, and is a mass at all.
-  bool isCarried() const { return differs() && mass > mass_half_width; }
+  /// It is a mass at all.
+  bool isCarried() const { return mass > mass_half_width; }
+  /// It differs, and is a mass, or none where one is configured.
+  bool isOther() const;
   /// What it is, its centre where it has a mass.
   Payload payload() const;
   /// "the currents look like a payload of ... in place of the configured ...", a clause.

@@ -89,8 +89,8 @@ std::optional<AssumedLoad> LoadLaw::other(const FoundLoad& found, const JudgedJo
     next.mounting = named(found.mounting, counts_.mounting);
     return next;
   }
-  // Less than is configured is no other payload; less than was found is that it was put down.
-  if (found.showsPayload() && (found.payload.isCarried() || counts_.payload) && !tried_payload_ && mayBeOther(joints))
+  // A mass below zero is no other payload; less than was found is that it was put down.
+  if (found.showsPayload() && (found.payload.isOther() || counts_.payload) && !tried_payload_ && mayBeOther(joints))
   {
     tried_payload_ = true;
     next.payload = named(found.payload, counts_.payload);

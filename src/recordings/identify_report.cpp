@@ -115,7 +115,7 @@ std::vector<ReportLine> linesOf(const IdentifiedPayload& found)
                                  { "payload.moment_half_width", "", list(found.moment_half_width) },
                                  { "", "payload by the currents", mass },
                                  { "", "payload configured", found.configured.mass, "kg" } };
-  if (found.isCarried())
+  if (found.differs() && found.isCarried())
   {
     std::string centre;
     for (std::size_t axis = 0; axis < 3; ++axis)

@@ -163,9 +163,13 @@ class Check(tool.ToolTest):
         arms = os.path.join(tool.CHECKOUT, "config", "arms")
         self.write("tooled.yaml", f"like: {arms}/ur5.yaml\npayload: {{mass: 6.0, centre: [0.0, 0.0, 0.08]}}\n")
         write_csv(self.path("arm.csv"), sound(self))
-        done = self.run_tool("check", "arm.csv", "--arm", "tooled.yaml", "--json")
-        for joint in json.loads(done.stdout)["joints"]:
+        found = self.check("arm.csv", "--arm", "tooled.yaml")
+        for joint in found["joints"]:
             self.assertNotIn("may be a", joint["verdict"]["text"])
+        self.assertEqual([joint["judged"] for joint in found["joints"]], [True] * 6)
+        self.assertAlmostEqual(found["payload_mass"], 0.0, delta=0.3)
+        done = self.run_tool("compare", "arm.csv", "--arm", "tooled.yaml", "--json")
+        self.assertIn("look like no payload", json.loads(done.stdout)["text"])
 
     def test_a_sound_recording_is_usable_as_it_is(self):
         write_csv(self.path("arm.csv"), sound(self))
