@@ -371,6 +371,10 @@ DiagnosticVerdict JointTracker::judgeComparison() const
 DiagnosticVerdict JointTracker::judgeHealth() const
 {
   const Assessment& assessment = tracker_.assessment();
+  if (tracker_.counters().compared == 0 && hasStopped())
+  {
+    return { DiagnosticStatus::STALE, "Nothing to assess" };
+  }
   if (hasStopped())
   {
     return { DiagnosticStatus::STALE, "The telemetry has stopped. Last: " + verdictText(assessment) };
