@@ -284,7 +284,8 @@ void JointTracker::logState()
   logged_level_ = level;
   ROS_LOG_STREAM(level == DiagnosticStatus::OK ? ros::console::levels::Info : ros::console::levels::Warn,
                  ROSCONSOLE_DEFAULT_NAME,
-                 name_ << ": " << levelName(level) << ". " << drive.text << ". " << health.text);
+                 name_ << ": " << levelName(level) << ". " << drive.text << ". "
+                       << (hasStopped() ? verdictText(tracker_.assessment()) : health.text));
 }
 
 bool JointTracker::hasStopped() const

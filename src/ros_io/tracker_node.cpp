@@ -382,7 +382,7 @@ void TrackerNode::missTelemetry()
     others.erase(own);
   }
   ROS_WARN_STREAM("No message on " << stream_.topic << " yet. "
-                                   << (is_announced ? "Its publisher sends none" :
+                                   << (is_announced   ? "Its publisher sends none" :
                                        others.empty() ? "Nobody publishes a JointState: does the driver run?" :
                                                         "A JointState is published on " +
                                                             printable(joined(others), MAX_NAMES) +

@@ -214,8 +214,9 @@ ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double t
   {
     take(group, joints, arm);
   }
-  const bool is_other = std::any_of(joints.begin(), joints.end(), [&](const MeasuredFriction& joint)
-                                    { return joint.ratio && *joint.ratio > MIN_OF_OTHER; });
+  const bool is_other =
+      std::any_of(joints.begin(), joints.end(),
+                  [&](const MeasuredFriction& joint) { return joint.ratio && *joint.ratio > MIN_OF_OTHER; });
   const auto number = [&](bool MeasuredFriction::*flag)
   { return std::count_if(joints.begin(), joints.end(), [&](const MeasuredFriction& joint) { return joint.*flag; }); };
   if (number(&MeasuredFriction::is_against) >= MIN_BELOW_FAULTS)

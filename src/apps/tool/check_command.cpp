@@ -257,10 +257,10 @@ void printArm(const ArmOptions& options, const CheckedContents& contents, const 
   }
   for (const TriedRemedy& remedy : arm.tried)
   {
-    printLine("tried",
-              remedy.options.substr(1) + ": the load leaves " + percentText(remedy.after) + " of the currents" +
-                  (std::isfinite(remedy.before) ? " instead of " + percentText(remedy.before) : "") +
-                  (remedy.helps ? "" : ": not the cause"));
+    printLine("tried", remedy.options.substr(1) + ": the load leaves " + percentText(remedy.after) +
+                           " of the currents" +
+                           (std::isfinite(remedy.before) ? " instead of " + percentText(remedy.before) : "") +
+                           (remedy.helps ? "" : ": not the cause"));
   }
   std::cout << std::flush;
   if (!arm.joints.empty())
