@@ -95,16 +95,13 @@ public:
     return never;
   }
 
-  bool isAllZero() const { return areZero(ANGLE, MOMENT); }
-  bool isWithoutCurrent() const { return areZero(CURRENT, MOMENT); }
-
-private:
-  bool areZero(Quantity first, Quantity end) const
+  bool isWithoutCurrent() const
   {
     const auto is_zero = [](double value) { return value == 0.0; };
-    return std::all_of(values_.begin() + column(first, 0), values_.begin() + column(end, 0), is_zero);
+    return std::all_of(values_.begin() + column(CURRENT, 0), values_.begin() + column(MOMENT, 0), is_zero);
   }
 
+private:
   static constexpr std::size_t column(std::size_t quantity, std::size_t joint) { return 1 + quantity * COUNT + joint; }
 
   static typename NumberTable<COLUMNS>::Names names(const std::vector<int>& numbers)
@@ -183,7 +180,7 @@ public:
     bool more = true;
     while (more && table_.read())
     {
-      if (!table_.isWhole() || (seen.has_any && table_.isAllZero()))
+      if (!table_.isWhole() || (seen.has_any && table_.isWithoutCurrent()))
       {
         ++count_.corrupt;
         continue;

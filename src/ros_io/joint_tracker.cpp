@@ -286,7 +286,8 @@ void JointTracker::logState()
   logged_level_ = level;
   ROS_LOG_STREAM(level == DiagnosticStatus::OK ? ros::console::levels::Info : ros::console::levels::Warn,
                  ROSCONSOLE_DEFAULT_NAME,
-                 name_ << ": " << levelName(level) << ". " << drive.text << ". " << health.text);
+                 name_ << ": " << levelName(level) << ". " << drive.text << ". "
+                       << (hasStopped() ? verdictText(tracker_.assessment()) : health.text));
 }
 
 bool JointTracker::hasStopped() const
@@ -373,6 +374,10 @@ DiagnosticVerdict JointTracker::judgeComparison() const
 DiagnosticVerdict JointTracker::judgeHealth() const
 {
   const Assessment& assessment = tracker_.assessment();
+  if (tracker_.counters().compared == 0 && hasStopped())
+  {
+    return { DiagnosticStatus::STALE, "Nothing to assess" };
+  }
   if (hasStopped())
   {
     return { DiagnosticStatus::STALE, "The telemetry has stopped. Last: " + verdictText(assessment) };

@@ -5,6 +5,9 @@
 #include <cmath>
 
 #include <ros/console.h>
+#include <ros/master.h>
+#include <ros/message_traits.h>
+#include <ros/this_node.h>
 
 #include "base/joined.hpp"
 #include "base/number_text.hpp"
@@ -25,8 +28,34 @@ constexpr double WARNING_PERIOD = 5.0;
 constexpr double FIT_PERIOD = 1.0;
 /// Between two verdicts [s].
 constexpr double VERDICT_PERIOD = 1.0;
+/// Wait for the first message before it is missed [s].
+constexpr double MESSAGE_PATIENCE = 10.0;
 /// Of the names in a message without a joint that are shown [bytes].
 constexpr std::size_t MAX_NAMES = 500;
+
+/// Where such messages come from instead; empty: from nowhere, or no master answers.
+std::vector<std::string> publishedJointStates()
+{
+  XmlRpc::XmlRpcValue arguments;
+  arguments[0] = ros::this_node::getName();
+  arguments[1] = "";
+  XmlRpc::XmlRpcValue response;
+  XmlRpc::XmlRpcValue published;
+  std::vector<std::string> names;
+  if (ros::master::execute("getPublishedTopics", arguments, response, published, false) &&
+      published.getType() == XmlRpc::XmlRpcValue::TypeArray)
+  {
+    for (int i = 0; i < published.size(); ++i)
+    {
+      if (std::string(published[i][1]) == ros::message_traits::datatype<sensor_msgs::JointState>())
+      {
+        names.push_back(published[i][0]);
+      }
+    }
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
 }  // namespace
 
 TrackerNode::TrackerNode(ros::NodeHandle& node, const Parameters& parameters)
@@ -75,6 +104,8 @@ void TrackerNode::subscribe(ros::NodeHandle& node)
 {
   timer_ = node.createWallTimer(ros::WallDuration(DiagnosticTasks::LOOK_PERIOD),
                                 [this](const ros::WallTimerEvent&) { look(); });
+  patience_ = node.createWallTimer(
+      ros::WallDuration(MESSAGE_PATIENCE), [this](const ros::WallTimerEvent&) { missTelemetry(); }, true);
   const InputTopics inputs{ node, stream_.too_large };
   stream_.topic = node.resolveName(topics::MEASURED);
   telemetry_subscriber_ = inputs.subscribe<sensor_msgs::JointState>(
@@ -332,5 +363,29 @@ void TrackerNode::look()
   {
     joint->look(now);
   }
+}
+
+void TrackerNode::missTelemetry()
+{
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (stream_.clock.hasStarted() || !stream_.lack.empty() || stream_.too_large > 0)
+    {
+      return;
+    }
+  }
+  std::vector<std::string> others = publishedJointStates();
+  const auto own = std::find(others.begin(), others.end(), stream_.topic);
+  const bool is_announced = own != others.end();
+  if (is_announced)
+  {
+    others.erase(own);
+  }
+  ROS_WARN_STREAM("No message on " << stream_.topic << " yet. "
+                                   << (is_announced   ? "Its publisher sends none" :
+                                       others.empty() ? "Nobody publishes a JointState: does the driver run?" :
+                                                        "A JointState is published on " +
+                                                            printable(joined(others), MAX_NAMES) +
+                                                            ": choose it by measured:="));
 }
 }  // namespace hjt

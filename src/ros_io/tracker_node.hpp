@@ -55,6 +55,7 @@ private:
   void updateFit(const ArmSample& sample);
   void judge(const ros::WallTime& now);
   void look();
+  void missTelemetry();
 
   std::mutex mutex_;  // of everything below: callbacks run in several threads
   TelemetryStream stream_;
@@ -71,6 +72,7 @@ private:
   bool has_efforts_{};  // a row had
   double last_time_{};  // [s]
   ros::WallTimer timer_;
+  ros::WallTimer patience_;  // until the first message is missed
   ros::Subscriber telemetry_subscriber_;
   ros::Subscriber load_subscriber_;
   ros::Subscriber temperature_subscriber_;

@@ -201,12 +201,16 @@ ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double t
 {
   constexpr std::ptrdiff_t MIN_BELOW_FAULTS = 2;
   constexpr std::ptrdiff_t MIN_LOAD_WRONG = 2;
+  constexpr double MIN_OF_OTHER = 2.0;  // friction of another beside one of too little: of a larger joint's
   ArmFriction arm = ofWholeArm(joints, tolerance);
   arm.groups = groupsOf(joints, arm.factors, tolerance);
   for (const JointGroup& group : arm.groups)
   {
     take(group, joints, arm);
   }
+  const bool is_other =
+      std::any_of(joints.begin(), joints.end(),
+                  [&](const MeasuredFriction& joint) { return joint.ratio && *joint.ratio > MIN_OF_OTHER; });
   const auto number = [&](bool MeasuredFriction::*flag)
   { return std::count_if(joints.begin(), joints.end(), [&](const MeasuredFriction& joint) { return joint.*flag; }); };
   if (number(&MeasuredFriction::is_against) >= MIN_BELOW_FAULTS)
@@ -236,6 +240,12 @@ ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double t
       "configured, a payload picked up or put down, joints in another order, angles with another zero or "
       "sign, or disturbed currents"
     };
+  }
+  else if (number(&MeasuredFriction::is_below_faults) > 0 && is_other)
+  {
+    arm.misfit = { Reason::LESS_THAN_FAULTS,
+                   "one joint shows less friction than any fault leaves, another more than twice the expected one: "
+                   "joints in another order, or gains, ratios or signs are others than configured" };
   }
   return arm;
 }

@@ -117,6 +117,17 @@ TEST(CommonFriction, SeveralJointsWithoutFrictionAreNoArmByItself)
   EXPECT_THAT(commonFriction(joints, 0.15).misfit.clause, HasSubstr("modelled or commanded torque"));
 }
 
+TEST(CommonFriction, TooLittleBesideFarTooMuchIsAnotherOrder)
+{
+  std::vector<MeasuredFriction> joints = jointsWith({ 1.0, 1.0, 1.0, 1.0, 1.0, 1.9 });
+  joints[0].ratio.reset();
+  joints[0].is_below_faults = true;
+  EXPECT_FALSE(commonFriction(joints, 0.15).misfit.exists()) << "a fault of its own";
+  joints[5].ratio = 3.4;
+  EXPECT_EQ(commonFriction(joints, 0.15).misfit.reason, Reason::LESS_THAN_FAULTS);
+  EXPECT_THAT(commonFriction(joints, 0.15).misfit.clause, HasSubstr("another order"));
+}
+
 TEST(CommonFriction, JointsThatFitNoLoadLeaveNoneJudged)
 {
   std::vector<MeasuredFriction> joints = jointsWith({ 1.0, 1.0, 3.4, 1.0, 1.0, 1.0 });

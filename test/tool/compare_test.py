@@ -69,7 +69,9 @@ class Compare(tool.ToolTest):
                        *OPTIONS,
                        "--topic", "/arm", "--report", "r2")
         self.fail_with(1, ["nowhere.bag"], "compare", "nowhere.bag", *OPTIONS, "--report", "r3")
-        self.fail_with(2, ["--report is required"], "compare", "a.bag", *OPTIONS)
+        before = sorted(os.listdir(self.directory))
+        self.assertNotIn("written", self.succeed("compare", "a.bag", *OPTIONS).stdout)
+        self.assertEqual(sorted(os.listdir(self.directory)), before)
 
     def test_data_are_written_where_no_page_can_be_made(self):
         robot.write_bag(self.path("a.bag"), 3.0)

@@ -31,6 +31,13 @@ bool stops(const std::vector<RecordingFinding>& findings)
                      [](const RecordingFinding& finding) { return finding.stops.has_value(); });
 }
 
+/// Of a share, without a power of ten.
+std::string percentText(double share)
+{
+  const double percent = 100.0 * share;
+  return (percent < 99.5 ? roundedText(percent, 2) : fixedText(percent, 0)) + " %";
+}
+
 std::string textOfLoad(const CheckedArm& arm)
 {
   if (!arm.missing.empty())
@@ -57,7 +64,7 @@ std::string textOfArm(const ArmOptions& options, const CheckedContents& contents
     return "not known; joints: " + joined(contents.named);
   }
   std::string text = arm.taken + names + ", of " + std::to_string(arm.fitting.size()) + " arms that fit (--arm)";
-  const auto left = [](const ArmFit& fit) { return roundedText(100.0 * fit.left, 2) + " %"; };
+  const auto left = [](const ArmFit& fit) { return percentText(fit.left); };
   const auto taken =
       std::find_if(arm.ranked.begin(), arm.ranked.end(), [&](const ArmFit& fit) { return fit.arm == arm.taken; });
   const auto other =
@@ -250,11 +257,10 @@ void printArm(const ArmOptions& options, const CheckedContents& contents, const 
   }
   for (const TriedRemedy& remedy : arm.tried)
   {
-    printLine("tried",
-              remedy.options.substr(1) + ": the load leaves " + roundedText(100.0 * remedy.after, 2) +
-                  " % of the currents" +
-                  (std::isfinite(remedy.before) ? " instead of " + roundedText(100.0 * remedy.before, 2) + " %" : "") +
-                  (remedy.helps ? "" : ": not the cause"));
+    printLine("tried", remedy.options.substr(1) + ": the load leaves " + percentText(remedy.after) +
+                           " of the currents" +
+                           (std::isfinite(remedy.before) ? " instead of " + percentText(remedy.before) : "") +
+                           (remedy.helps ? "" : ": not the cause"));
   }
   std::cout << std::flush;
   if (!arm.joints.empty())

@@ -48,11 +48,6 @@ int run(const Options& given)
 {
   Options options = given;
   options.watch = consoleWatch();
-  if (options.report.empty() && !options.json)
-  {
-    std::cerr << "--report is required: the directory of the page; --json goes without\n";
-    return EXIT_USAGE;
-  }
   const ComparedRecording compared = compare(options);
   if (interruptSignal() != 0)
   {
@@ -64,7 +59,10 @@ int run(const Options& given)
     return exitCodeOf(options.fail_on, compared.health, compared.is_judged);
   }
   compared.is_arm ? printArm(compared) : printJoint(compared);
-  std::cout << (compared.is_arm ? "\n" : "") << "written: " << compared.page << '\n';
+  if (!compared.page.empty())
+  {
+    std::cout << (compared.is_arm ? "\n" : "") << "written: " << compared.page << '\n';
+  }
   return exitCodeOf(options.fail_on, compared.health, compared.is_judged);
 }
 
@@ -73,7 +71,7 @@ void declare(Command& command, Options& options)
   addArmOptions(command, options, options.json);
   command
       .add("--report", options.report,
-           "directory of the page, its figures and data; of an arm a directory for each joint; --json goes without")
+           "directory of the page, its figures and data; of an arm a directory for each joint; without it none is made")
       .type("DIR");
   addVerdictOptions(command, options, options.fail_on);
 }
