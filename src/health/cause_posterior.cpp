@@ -12,6 +12,8 @@ namespace hjt
 {
 namespace
 {
+constexpr double MISFIT_WEIGHT = 0.2;    // w_1: share of the evidence's weight that is left where no signature fits
+constexpr double MISFIT_SEVERITY = 0.5;  // share of the severity there: other drives soften up to three times as much
 
 /// What is in no table: anything of a strength S, and what is no wear of a gear.
 struct Unknown
@@ -19,6 +21,8 @@ struct Unknown
   double strength;  // S
   double drag;      // friction more at every speed alike, over the sound running torque: a brake
   double noise;     // of the sensors more, as a share
+
+  double prior() const { return strength > 0.0 ? 1.0 : 0.1; }  // brakes and sensors fail less often than gears wear
 };
 constexpr std::array<Unknown, 12> UNKNOWNS{ { { 3.0, 0.0, 0.0 },
                                               { 10.0, 0.0, 0.0 },
@@ -50,9 +54,6 @@ double strengthOf(const Unknown& unknown) noexcept
   const double noise = 1.0 + unknown.noise;
   return std::sqrt(unknown.strength * unknown.strength + noise * noise - 1.0);
 }
-
-constexpr double MISFIT_WEIGHT = 0.2;    // w_1: share of the evidence's weight that is left where no signature fits
-constexpr double MISFIT_SEVERITY = 0.5;  // share of the severity there: other drives soften up to three times as much
 }  // namespace
 
 void CauseSearch::Sum::add(double weighted, double prior, double severity) noexcept
@@ -119,7 +120,7 @@ void CauseSearch::advance(const WindowResidual& residual, const OperatingPoint& 
     }
     else
     {
-      sums_[static_cast<std::size_t>(Cause::NONE)].add(likelihoods_[row], 1.0, 0.0);
+      sums_[static_cast<std::size_t>(Cause::NONE)].add(likelihoods_[row], UNKNOWNS[row - known.size()].prior(), 0.0);
     }
   }
 }
