@@ -95,7 +95,7 @@ public:
   Finding judged(double factor, const JointContext& context)
   {
     verdict_ = Verdict();
-    return judgeFriction(evidence(swing, 60.0, factor), parameters_, context, verdict_);
+    return judgeFriction(evidence(swing, 60.0, factor), context, verdict_);
   }
 
   /// From now on the controller expects this multiple of the twin's friction; NaN: what it expects is not recorded.
@@ -142,7 +142,7 @@ protected:
   {
     const FrictionFactor factor = frictionFactor(evidence, context);
     Verdict verdict;
-    const Finding finding = judgeFriction(evidence, joint_.parameters(), context, verdict);
+    const Finding finding = judgeFriction(evidence, context, verdict);
     EXPECT_EQ(finding.reason, factor.reason);
     EXPECT_EQ(finding.level == VerdictLevel::NOT_JUDGED, factor.reason != Reason::SOUND);
     if (!factor.isJudged())
@@ -218,7 +218,7 @@ TEST_F(FrictionVerdict, WhatTheControllerExpectsIsAReferenceWhereMostJointsAgree
   JointContext context = witnessed({});
   context.has_controller = true;
   const auto judged = [&](const JointEvidence& rows, Verdict& verdict)
-  { return judgeFriction(rows, joint_.parameters(), context, verdict).level; };
+  { return judgeFriction(rows, context, verdict).level; };
   Verdict verdict;
   EXPECT_EQ(judged(sound, verdict), VerdictLevel::OK);
   EXPECT_EQ(judged(worn, verdict), VerdictLevel::WARN);
