@@ -179,6 +179,29 @@ ArmFriction ofWholeArm(const std::vector<MeasuredFriction>& joints, double toler
   return arm;
 }
 
+/// By how much more the other joints of a group differ than sound ones do from one recording to the next: of the
+/// logarithm of their mean, standard deviation [-].
+double scatterBeside(std::size_t joint, const JointGroup& group, const std::vector<MeasuredFriction>& joints,
+                     const std::vector<double>& factors)
+{
+  constexpr double SOUND = 0.06;  // of one joint
+  double count = 0.0;
+  double sum = 0.0;
+  double squares = 0.0;
+  for (std::size_t i = group.begin; i < group.end; ++i)
+  {
+    if (i != joint && joints[i].ratio && *joints[i].ratio > 0.0)
+    {
+      const double logarithm = std::log(*joints[i].ratio / factors[i]);
+      count += 1.0;
+      sum += logarithm;
+      squares += logarithm * logarithm;
+    }
+  }
+  const double variance = count > 1.0 ? (squares - sum * sum / count) / (count - 1.0) : 0.0;
+  return count > 1.0 ? std::sqrt(std::max(0.0, variance - SOUND * SOUND) / count) : 0.0;
+}
+
 /// What the joints of a group have in common goes into the arm's factors of those that share it.
 void take(const JointGroup& group, const std::vector<MeasuredFriction>& joints, ArmFriction& arm)
 {
@@ -188,11 +211,13 @@ void take(const JointGroup& group, const std::vector<MeasuredFriction>& joints, 
   const bool are_own = std::all_of(begin, end, [](const MeasuredFriction& joint) { return joint.is_to_own; });
   const double beyond = std::max(0.0, std::abs(group.median - 1.0) - (are_own ? 0.0 : CHANCE));
   const double common = 1.0 + std::copysign(beyond, group.median - 1.0);
+  const std::vector<double> of_arm = arm.factors;
   for (std::size_t i = group.begin; i < group.end && group.is_known; ++i)
   {
-    const double left = joints[i].ratio ? *joints[i].ratio / arm.factors[i] : common;
+    const double left = joints[i].ratio ? *joints[i].ratio / of_arm[i] : common;
     arm.factors[i] *= common > 1.0 ? std::min(common, std::max(left, 1.0)) : common;
-    arm.deviations[i] = joints[i].is_to_own && !are_own ? CHANCE : 0.0;
+    arm.deviations[i] = std::hypot(joints[i].is_to_own && !are_own ? CHANCE : 0.0,
+                                   common < 1.0 ? scatterBeside(i, group, joints, of_arm) : 0.0);
   }
 }
 }  // namespace

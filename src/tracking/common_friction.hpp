@@ -58,9 +58,10 @@ struct ArmFriction
 /// have in common. Factor and temperature are the median joint's, so that one faulty joint changes neither. What is
 /// left then and most of the three joints of a group agree on is the group's: three drives do not fail alike. Joints
 /// held against their type differ by more, and 5 % of it may be chance: of a joint that is held against its own while
-/// others are not, that is the deviation. More friction of the others makes no joint's less. Two joints or more whose
-/// friction is below what any fault leaves: something else carries the arm. Two or more whose currents fit no load, or
-/// one and one of the former: its load is another. In both cases no joint is judged.
+/// others are not, that is the deviation. More friction of the others makes no joint's less; less of the others makes it
+/// more by as much as they agree on: what they scatter by, beyond what sound joints do, is a deviation too. Two joints or
+/// more whose friction is below what any fault leaves: something else carries the arm. Two or more whose currents fit no
+/// load, or one and one of the former: its load is another. In both cases no joint is judged.
 ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double tolerance);
 
 /// Why a joint is not judged: its own reason, or that of all joints. Signs of efforts tell more than another load.

@@ -62,6 +62,10 @@ TEST(CommonFriction, OfJointsBesideTheirOwnAGroupSharesAllOfIt)
   EXPECT_THAT(arm.deviations, Each(0.0));
   const ArmFriction warm = commonFriction(ownJointsWith({ 0.9, 0.92, 1.0, 1.0, 1.0, 1.0 }), 0.15);
   EXPECT_THAT(warm.factors, ElementsAre(0.92, 0.92, 0.92, 1.0, 1.0, 1.0));
+  EXPECT_THAT(warm.deviations, Each(0.0));
+  const ArmFriction scattered = commonFriction(ownJointsWith({ 1.0, 1.0, 1.0, 0.67, 0.77, 0.94 }), 0.15);
+  EXPECT_DOUBLE_EQ(scattered.factors[5], 0.77);
+  EXPECT_GT(scattered.deviations[5], 0.05) << "two that differ so much say little of the third";
   std::vector<MeasuredFriction> mixed = ownJointsWith({ 1.0, 1.0, 1.0, 1.0, 1.0, 1.0 });
   mixed[0].is_to_own = false;
   EXPECT_THAT(commonFriction(mixed, 0.15).deviations, ElementsAre(0.0, 0.05, 0.05, 0.0, 0.0, 0.0))
