@@ -60,6 +60,6 @@ FrictionTrend frictionTrend(const std::vector<DatedFriction>& recordings);
 /// What the joints of a group have in common in each recording: of the logarithms of their friction, each less the
 /// joint's own median, the median joint's. It is taken alike of all recordings, so that it makes no step from one to
 /// the other. `logarithms`: by joint and recording; none: not known. None: of fewer than MIN_WITNESSES joints.
-std::vector<std::optional<double>>
-commonOfRecordings(const std::vector<std::vector<std::optional<double>>>& logarithms);
+std::vector<std::optional<double>> commonOfRecordings(
+    const std::vector<std::vector<std::optional<double>>>& logarithms);
 }  // namespace hjt
