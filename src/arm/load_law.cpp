@@ -90,7 +90,8 @@ std::optional<AssumedLoad> LoadLaw::other(const FoundLoad& found, const JudgedJo
     return next;
   }
   // A mass below zero is no other payload; less than was found is that it was put down.
-  if (found.showsPayload() && (found.payload.isOther() || counts_.payload) && !tried_payload_ && mayBeOther(joints))
+  const bool is_put_down = counts_.payload && counts_.payload->isCarried();
+  if (found.showsPayload() && (found.payload.isOther() || is_put_down) && !tried_payload_ && mayBeOther(joints))
   {
     tried_payload_ = true;
     next.payload = named(found.payload, counts_.payload);

@@ -164,8 +164,8 @@ std::optional<double> logarithmOf(const DatedRecording& recording, std::size_t j
   {
     return std::nullopt;
   }
-  const std::vector<double>& common = recording.compared.friction.factors;
-  const double factor = recording.compared.joints[joint].verdict.friction.factor * (common.empty() ? 1.0 : common[joint]);
+  const double in_common = recording.compared.friction.factors[joint];
+  const double factor = in_common * recording.compared.joints[joint].verdict.friction.factor;
   return factor > 0.0 ? std::make_optional(std::log(factor)) : std::nullopt;
 }
 
@@ -238,7 +238,7 @@ JointTrend judgeJoint(const Trend& trend, std::size_t joint, const std::string& 
   return judged;
 }
 
-/// Each trend, the joints without one by their reason, and the latest recording where it departs or is all that is judged.
+/// Each trend, the joints without one by their reason, and the latest recording where it departs or no trend is judged.
 std::string textOf(const Trend& trend)
 {
   std::string text;
@@ -285,8 +285,8 @@ void judgeTrend(Trend& trend)
                                   [](const DatedRecording& recording) { return recording.isRead(); });
   trend.is_arm = first->compared.is_arm;
   const std::size_t joints = first->compared.joints.size();
-  dateFrictions(trend.recordings, 0, (joints + 1) / 2);
-  dateFrictions(trend.recordings, (joints + 1) / 2, joints);
+  dateFrictions(trend.recordings, 0, jointsToElbow(joints));
+  dateFrictions(trend.recordings, jointsToElbow(joints), joints);
   for (std::size_t i = 0; i < joints; ++i)
   {
     trend.joints.push_back(judgeJoint(trend, i, first->compared.joints[i].name));

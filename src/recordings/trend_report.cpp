@@ -97,8 +97,8 @@ std::vector<Column<DatedRecording>> fieldsOf(std::size_t i, const std::string& b
            { before + "friction_for_trend",
              [i](const DatedRecording& recording)
              {
-               return recording.isRead() && recording.frictions[i] ? std::make_optional(recording.frictions[i]->factor) :
-                                                                     std::nullopt;
+               const std::optional<DatedFriction>& friction = recording.frictions[i];
+               return friction ? std::make_optional(friction->factor) : std::nullopt;
              } },
            { before + "level", ofJoint(i, [](const ComparedJoint& joint) { return levelName(joint.verdict.level); }) },
            { before + "reason", ofJoint(i, [](const ComparedJoint& joint) { return reasonName(reasonOf(joint)); }) },

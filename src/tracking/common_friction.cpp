@@ -6,16 +6,13 @@
 #include <cstddef>
 #include <utility>
 
-#include "tracking/tracker.hpp"
-
 #include "base/median.hpp"
+#include "tracking/tracker.hpp"
 
 namespace hjt
 {
 namespace
 {
-constexpr std::size_t MIN_JOINTS = 3;  // that witness for each other
-
 /// What the joints of a group have in common, apart from factors of their friction.
 JointGroup groupOf(const std::vector<MeasuredFriction>& joints, const std::vector<double>& factors, double tolerance,
                    std::size_t begin, std::size_t end)
@@ -29,7 +26,7 @@ JointGroup groupOf(const std::vector<MeasuredFriction>& joints, const std::vecto
       left.push_back(*joints[i].ratio / factors[i]);
     }
   }
-  if (left.size() >= MIN_JOINTS)
+  if (left.size() >= MIN_WITNESSES)
   {
     const double median = medianOf(left);
     const auto agree = static_cast<std::size_t>(std::count_if(
@@ -44,7 +41,7 @@ JointGroup groupOf(const std::vector<MeasuredFriction>& joints, const std::vecto
 std::vector<JointGroup> groupsOf(const std::vector<MeasuredFriction>& joints, const std::vector<double>& factors,
                                  double tolerance)
 {
-  const std::size_t half = (joints.size() + 1) / 2;
+  const std::size_t half = jointsToElbow(joints.size());
   return { groupOf(joints, factors, tolerance, 0, half), groupOf(joints, factors, tolerance, half, joints.size()) };
 }
 
@@ -150,7 +147,7 @@ ArmFriction ofWholeArm(const std::vector<MeasuredFriction>& joints, double toler
   arm.factors.assign(joints.size(), 1.0);
   arm.deviations.assign(joints.size(), UNWITNESSED);
   const Left left(joints, tolerance);
-  if (left.known() < MIN_JOINTS)
+  if (left.known() < MIN_WITNESSES)
   {
     return arm;
   }
@@ -220,22 +217,31 @@ void take(const JointGroup& group, const std::vector<MeasuredFriction>& joints, 
                                    common < 1.0 ? scatterBeside(i, group, joints, of_arm) : 0.0);
   }
 }
+
+/// A joint shows what a larger one would, apart from what the whole arm has in common.
+bool hasFarMore(const std::vector<MeasuredFriction>& joints, const std::vector<double>& factors)
+{
+  constexpr double FAR_MORE = 2.0;  // times the expected friction
+  bool has_one = false;
+  for (std::size_t i = 0; i < joints.size(); ++i)
+  {
+    has_one = has_one || (joints[i].ratio && *joints[i].ratio > FAR_MORE * factors[i]);
+  }
+  return has_one;
+}
 }  // namespace
 
 ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double tolerance)
 {
   constexpr std::ptrdiff_t MIN_BELOW_FAULTS = 2;
   constexpr std::ptrdiff_t MIN_LOAD_WRONG = 2;
-  constexpr double MIN_OF_OTHER = 2.0;  // friction of another beside one of too little: of a larger joint's
   ArmFriction arm = ofWholeArm(joints, tolerance);
+  const bool is_other = hasFarMore(joints, arm.factors);
   arm.groups = groupsOf(joints, arm.factors, tolerance);
   for (const JointGroup& group : arm.groups)
   {
     take(group, joints, arm);
   }
-  const bool is_other =
-      std::any_of(joints.begin(), joints.end(),
-                  [&](const MeasuredFriction& joint) { return joint.ratio && *joint.ratio > MIN_OF_OTHER; });
   const auto number = [&](bool MeasuredFriction::*flag)
   { return std::count_if(joints.begin(), joints.end(), [&](const MeasuredFriction& joint) { return joint.*flag; }); };
   if (number(&MeasuredFriction::is_against) >= MIN_BELOW_FAULTS)
@@ -315,7 +321,7 @@ bool ArmFrictionWatch::look(double time)
   const ArmFriction found = commonFriction(joints, tolerance_);
   const bool differs = std::abs(found.median - found_.median) > CHANGE ||
                        found.temperature.has_value() != found_.temperature.has_value();
-  steady_ = differs && known >= MIN_JOINTS ? steady_ + 1 : 0;
+  steady_ = differs && known >= MIN_WITNESSES ? steady_ + 1 : 0;
   if (steady_ < LOOKS)
   {
     return false;

@@ -18,6 +18,15 @@ class Tracker;
 /// day, where no other joints tell: standard deviation of the logarithm [-].
 constexpr double UNWITNESSED = 0.06;
 
+/// Joints that witness for each other, at least.
+constexpr std::size_t MIN_WITNESSES = 3;
+
+/// How many of an arm's joints are from the base to the elbow; the others are the wrists.
+inline std::size_t jointsToElbow(std::size_t joints)
+{
+  return (joints + 1) / 2;
+}
+
 /// Friction of one joint of an arm.
 struct MeasuredFriction
 {
@@ -61,7 +70,8 @@ struct ArmFriction
 /// others are not, that is the deviation. More friction of the others makes no joint's less; less of the others makes it
 /// more by as much as they agree on: what they scatter by, beyond what sound joints do, is a deviation too. Two joints or
 /// more whose friction is below what any fault leaves: something else carries the arm. Two or more whose currents fit no
-/// load, or one and one of the former: its load is another. In both cases no joint is judged.
+/// load, or one and one of the former: its load is another. One of the former, and one with more than twice what is
+/// expected of it: they are in another order. In all these cases no joint is judged.
 ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double tolerance);
 
 /// Why a joint is not judged: its own reason, or that of all joints. Signs of efforts tell more than another load.

@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 
 #include "base/median.hpp"
+#include "tracking/common_friction.hpp"
 
 namespace hjt
 {
@@ -79,7 +80,10 @@ FrictionTrend frictionTrend(const std::vector<DatedFriction>& recordings)
     const double rest = rows(static_cast<Eigen::Index>(i), 2) - line.dot(at);
     left += std::pow(rest / recording.deviation, 2);
   }
-  const double scatter = std::max(1.0, left / static_cast<double>(trend.recordings - 2));
+  // Of the recordings, less mean and slope, and the answer as far as they and not what is known of it fit it.
+  const double of_known_answer = inverse(1, 1) / (OTHER_ANSWER * OTHER_ANSWER);
+  const double freedom = static_cast<double>(trend.recordings - 3) + of_known_answer;
+  const double scatter = std::max(1.0, left / freedom);
   const double answer = inverse(0, 1) / OTHER_ANSWER;
   trend.deviation = std::sqrt(scatter * std::max(0.0, fast) + slow * slow + answer * answer);
   return trend;
@@ -87,7 +91,6 @@ FrictionTrend frictionTrend(const std::vector<DatedFriction>& recordings)
 
 std::vector<std::optional<double>> commonOfRecordings(const std::vector<std::vector<std::optional<double>>>& logarithms)
 {
-  constexpr std::size_t MIN_JOINTS = 3;  // that witness for each other
   std::vector<std::vector<double>> known(logarithms.empty() ? 0 : logarithms.front().size());
   for (const std::vector<std::optional<double>>& joint : logarithms)
   {
@@ -110,7 +113,7 @@ std::vector<std::optional<double>> commonOfRecordings(const std::vector<std::vec
   std::vector<std::optional<double>> common;
   for (const std::vector<double>& one : known)
   {
-    common.push_back(one.size() >= MIN_JOINTS ? std::make_optional(medianOf(one)) : std::nullopt);
+    common.push_back(one.size() >= MIN_WITNESSES ? std::make_optional(medianOf(one)) : std::nullopt);
   }
   return common;
 }

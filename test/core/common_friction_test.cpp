@@ -130,6 +130,12 @@ TEST(CommonFriction, TooLittleBesideFarTooMuchIsAnotherOrder)
   joints[5].ratio = 3.4;
   EXPECT_EQ(commonFriction(joints, 0.15).misfit.reason, Reason::LESS_THAN_FAULTS);
   EXPECT_THAT(commonFriction(joints, 0.15).misfit.clause, HasSubstr("another order"));
+  for (MeasuredFriction& joint : joints)
+  {
+    joint.ratio = 2.3;
+  }
+  joints[0].ratio.reset();
+  EXPECT_FALSE(commonFriction(joints, 0.15).misfit.exists()) << "the whole arm has more";
 }
 
 TEST(CommonFriction, JointsThatFitNoLoadLeaveNoneJudged)

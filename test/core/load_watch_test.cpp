@@ -33,6 +33,13 @@ const Payload CARRIED{ 3.0, { 0.0, 0.03, 0.08 } };
 constexpr double LONG = 40.0;  // more than the motion after which a payload is looked for [s]
 constexpr std::size_t ELBOW = 2;
 
+/// That arm, configured with that payload.
+ArmDescription configured(ArmDescription arm, const Payload& payload)
+{
+  arm.payload = payload;
+  return arm;
+}
+
 /// An arm in motion, its currents those of its twins with what it carries, and the watch beside it.
 struct WatchedArm
 {
@@ -84,6 +91,7 @@ struct WatchedArm
   }
 
   explicit WatchedArm(const std::string& name = "ur5") : arm(shipped(name)) {}
+  explicit WatchedArm(const Payload& payload) : arm(configured(shipped("ur5"), payload)) {}
 
   ArmDescription arm;
   std::array<double, 3> mounted = arm.gravity;
@@ -110,6 +118,41 @@ TEST(LoadWatch, FindsWhatIsTakenUpAndThatItIsPutDown)
   EXPECT_TRUE(robot.watch.isSettled());
   EXPECT_TRUE(robot.watch.assumed().isConfigured());
   EXPECT_EQ(robot.watch.arm().payload.mass, 0.0);
+}
+
+TEST(LoadWatch, FindsThatTheConfiguredPayloadIsNotCarriedAndThatItIsTakenUp)
+{
+  WatchedArm robot(CARRIED);
+  EXPECT_TRUE(robot.moved({}));
+  EXPECT_TRUE(robot.watch.isTrying());
+  EXPECT_FALSE(robot.moved({})) << "it counts already";
+  EXPECT_TRUE(robot.watch.isSettled());
+  ASSERT_TRUE(robot.watch.assumed().payload);
+  EXPECT_THAT(robot.watch.assumed().payload->text(), testing::HasSubstr("no payload"));
+  EXPECT_EQ(robot.watch.arm().payload.mass, 0.0);
+
+  EXPECT_TRUE(robot.moved(CARRIED));
+  EXPECT_TRUE(robot.watch.assumed().isConfigured());
+  EXPECT_EQ(robot.watch.arm().payload.mass, CARRIED.mass);
+}
+
+TEST(LoadLaw, DoesNotTryAgainThatThereIsNoPayload)
+{
+  FoundLoad found;
+  found.payload.configured.mass = 5.0;
+  found.payload.mass = -0.3;
+  found.payload.mass_half_width = 0.5;
+  found.payload.least_claim = 0.9;
+  found.payload.residual_share = 0.5;
+  LoadLaw law;
+  EXPECT_TRUE(law.take(found, JUDGED));
+  found.payload.configured = {};  // beside what counts now
+  found.payload.mass = -2.0;
+  for (int look = 0; look < 3; ++look)
+  {
+    EXPECT_FALSE(law.take(found, JUDGED)) << look;
+    EXPECT_FALSE(law.isTrying());
+  }
 }
 
 TEST(LoadWatch, TakesBackWhatAJointDoesNotFitWith)

@@ -265,6 +265,16 @@ class Recordings(tool.ToolTest):
             self.assertEqual(found["unreadable"], spoilt, (joints, fields))
             self.assert_as_plain(found, rows=len(rows) - spoilt)
 
+    def test_rows_of_a_table_without_currents_are_left_out(self):
+        count = len(self.columns["timestamp"])
+        spoilt = np.arange(50, count, 61)
+        columns = {name: values.copy() for name, values in self.columns.items()}
+        for joint in range(6):
+            columns[f"actual_current_{joint}"][spoilt] = 0.0
+        found = self.check(write_csv(self.path("zeros.csv"), columns))
+        self.assertEqual(found["unreadable"], len(spoilt))
+        self.assert_as_plain(found, rows=count - len(spoilt))
+
     def test_two_sources_are_told(self):
         rows = list(states(self.columns))
         for number, shift, part in ((1, 0.3, "two sources"), (4, 0.1, "two sources")):
