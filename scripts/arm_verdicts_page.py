@@ -47,7 +47,7 @@ class Arm:
         done = subprocess.run([str(self.tool), *map(str, words)], cwd=self.work, stdout=subprocess.PIPE,
                               stderr=subprocess.PIPE, universal_newlines=True, check=False)
         if done.returncode != 0:
-            sys.exit(f"arm_verdicts: {self.name}: {' '.join(map(str, words))}: {done.stderr}")
+            sys.exit(f"arm_verdicts: {self.name}: {' '.join(map(str, words))}: exit {done.returncode} {done.stderr}")
         return done
 
     def program(self, path, moves, speeds):
