@@ -176,8 +176,8 @@ def judge(options, name):
 
 
 def table(found):
-    lines = ["| recording | reference | judged, of joints or arms | named right | missed | not judged "
-             "| another named | payload [kg] |", "|---|---|---|---|---|---|---|---|"]
+    lines = ["| recording | reference | faulty joints, or all where none is | named right | missed | not judged "
+             "| another named | payload found [kg], arms |", "|---|---|---|---|---|---|---|---|"]
     for what, reference in dict.fromkeys((case[1], case[2]) for case in found):
         cases = [case for case in found if case[1:3] == (what, reference)]
         faulty = sum(len(case[3]) for case in cases)
