@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Verdicts on simulated recordings of every shipped arm, for scripts/arm_verdicts.
+"""Judges simulated recordings of every shipped arm, sound and not, with a reference and without, and writes how many
+verdicts are right into docs/compare.md.
 
-The reference is another motion of the same drives. Sensors have noise and eccentricity; friction is drawn: of each
-drive beside its type, of each group of joints and of each joint in a recording. Friction is raised in the recorded
-current.
+The reference is another motion of the same drives. Sensors have noise and eccentricity. Friction is drawn: of each
+drive, of each group of joints and of each joint in a recording. It is raised in the recorded current.
 """
 import argparse
 import concurrent.futures
@@ -37,7 +37,8 @@ class Arm:
     """Simulated recordings of one shipped arm in `work`/`name`."""
 
     def __init__(self, options, name):
-        self.tool, self.name, self.work = options.tool, name, options.work / name
+        self.tool, self.name = options.tool.resolve(), name
+        self.work = options.work.resolve() / f"seed_{options.seed}" / name
         self.generator = numpy.random.default_rng([options.seed, ARMS.index(name)])
         self.work.mkdir(parents=True, exist_ok=True)
         self.drives = numpy.exp(OF_DRIVE * self.generator.standard_normal(len(JOINTS)))
@@ -46,7 +47,7 @@ class Arm:
         done = subprocess.run([str(self.tool), *map(str, words)], cwd=self.work, stdout=subprocess.PIPE,
                               stderr=subprocess.PIPE, universal_newlines=True, check=False)
         if done.returncode != 0:
-            sys.exit(f"arm_verdicts: {self.name}: {' '.join(map(str, words))}: {done.stderr}")
+            sys.exit(f"arm_verdicts: {self.name}: {' '.join(map(str, words))}: exit {done.returncode} {done.stderr}")
         return done
 
     def program(self, path, moves, speeds):
@@ -175,8 +176,8 @@ def judge(options, name):
 
 
 def table(found):
-    lines = ["| recording | reference | judged, of joints or arms | named right | missed | not judged "
-             "| another named | payload [kg] |", "|---|---|---|---|---|---|---|---|"]
+    lines = ["| recording | reference | faulty joints, or all where none is | named right | missed | not judged "
+             "| another named | payload found [kg], arms |", "|---|---|---|---|---|---|---|---|"]
     for what, reference in dict.fromkeys((case[1], case[2]) for case in found):
         cases = [case for case in found if case[1:3] == (what, reference)]
         faulty = sum(len(case[3]) for case in cases)
@@ -194,12 +195,13 @@ def table(found):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--tool", type=pathlib.Path, required=True, help="program joint_twin")
+    parser.add_argument("--tool", type=pathlib.Path, required=True, help=argparse.SUPPRESS)
     parser.add_argument("--docs", type=pathlib.Path, required=True, help="folder of compare.md")
     parser.add_argument("--work", type=pathlib.Path, required=True, help="folder of the runs; simulated ones are kept")
-    parser.add_argument("--seed", type=int, default=1, help="of motions and frictions; another needs another --work")
-    parser.add_argument("--arms", nargs="+", default=ARMS, help="only these; the table is printed then")
-    parser.add_argument("--jobs", type=int, default=2, help="arms at the same time")
+    parser.add_argument("--seed", type=int, default=1, help="of motions and frictions [1]")
+    parser.add_argument("--arms", nargs="+", default=ARMS, choices=ARMS,
+                        help="only these; the table is printed then [all]")
+    parser.add_argument("--jobs", type=int, default=2, help="arms at the same time [2]")
     options = parser.parse_args()
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         found = [case for cases in pool.map(lambda name: judge(options, name), options.arms) for case in cases]

@@ -51,8 +51,9 @@ def _write_overlay(values: Mapping[str, Value], path: str) -> None:
 
 def _remark(notices: Sequence[str]) -> None:
     """Warns at the line outside of this package, once for all recordings that are not judged for one reason."""
+    package = __name__.partition(".")[0] + "."
     level = 1
-    while sys._getframe(level).f_globals["__name__"].startswith(__package__ or __name__):
+    while f"{sys._getframe(level).f_globals.get('__name__')}.".startswith(package):
         level += 1
     reasons: Dict[str, List[str]] = {}
     for notice in notices:

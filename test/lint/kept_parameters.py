@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""No class keeps all of `Parameters`: its members say what it needs of them. The model and the twin do, which make
-themselves anew from them, and the classes below, whose use is to hold them."""
+"""No class keeps all of `Parameters`: its members say what it needs of them. Exceptions are the model and the twin,
+which are made anew from them, and the files below, each with its reason."""
 import re
 
 import project
 
 KEEPERS = ("src/model/", "include/harmonic_joint_twin/model/", "src/twin/", "include/harmonic_joint_twin/twin/")
 
-# Each with its reason.
 HOLDERS = {
     "src/python/configuration.hpp": "Python's object of all parameters: any of them is read and set",
     "src/fmu/drive_unit.cpp": "a unit for co-simulation: the importer sets any parameter of each instance",
