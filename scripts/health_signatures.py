@@ -19,7 +19,10 @@ STIFFNESSES = SHARES[:2]  # change as a compliance does: an eccentric encoder ad
 SHARES_OF_GREASE = SHARES + ["running_torque", "coulomb_torque", "viscous_friction"]
 NEIGHBOURS = ["wave_generator_2", "circular_spline_2"]
 # As in the source.
-UNKNOWN_STRENGTHS = [3.0, 10.0, 30.0, 100.0]
+# Strength; drag, over the running torque; noise; weight beforehand.
+UNKNOWNS = numpy.array([(3.0, 0, 0, 1), (10.0, 0, 0, 1), (30.0, 0, 0, 1), (100.0, 0, 0, 1),
+                        (0, 0.05, 0, 0.1), (0, 0.15, 0, 0.1), (0, 0.4, 0, 0.1), (0, 1.0, 0, 0.1),
+                        (0, 0, 0.12, 0.1), (0, 0, 0.25, 0.1), (0, 0, 0.5, 0.1), (0, 0, 1.0, 0.1)])
 SPEED_RANGE, DIRECTION_RANGE, OTHER_MOTION = 0.2, 0.3, 1e-3
 MISFIT_WEIGHT, MISFIT_SEVERITY = 0.2, 0.5
 
@@ -101,15 +104,19 @@ class Hypotheses:
         self.rows = len(table.severities)
         alike = likeness(table.kinds, kind_of(window))
         self.prior = OTHER_MOTION + alike
-        self.unlike = numpy.pad(1.0 - alike, (0, len(UNKNOWN_STRENGTHS)))
-        self.change = numpy.pad(change, [(0, len(UNKNOWN_STRENGTHS)), (0, 0)])
-        self.severity = numpy.pad(table.severities, (0, len(UNKNOWN_STRENGTHS)))
+        self.unlike = numpy.pad(1.0 - alike, (0, len(UNKNOWNS)))
+        sounds = {name: (window["residual"][name] or [0.0])[0] for name in ("running_torque", "kinematic_error")}
+        drag, noise = UNKNOWNS[:, 1] * sounds["running_torque"], UNKNOWNS[:, 2] * sounds["kinematic_error"]
+        unknown = {"running_torque": drag, "coulomb_torque": drag, "kinematic_error": noise}
+        none = numpy.zeros(len(UNKNOWNS))
+        self.change = numpy.vstack([change, numpy.array([unknown.get(layout.names[i], none) for i in number]).T])
+        self.severity = numpy.pad(table.severities, (0, len(UNKNOWNS)))
         self.square = numpy.sum(numpy.where(phase, 0.5, 1.0) * self.change ** 2 / self.own, axis=1)
         self.left = difference - numpy.where(phase, 0.0, self.change)
 
     def log_likelihoods(self, errors):
         strength = self.square * errors.length ** 2
-        strength[self.rows:] = numpy.square(UNKNOWN_STRENGTHS)
+        strength[self.rows:] += UNKNOWNS[:, 0] ** 2 + (1.0 + UNKNOWNS[:, 2]) ** 2 - 1.0
         variance = self.own * (1.0 + strength[:, None])
         of_number = errors.number ** 2 + self.unlike[:, None] * errors.motion ** 2
         variance += numpy.where(self.phase, 0.5, of_number) * self.change ** 2
@@ -147,7 +154,7 @@ class Hypotheses:
             severity[cause] = numpy.average(own, weights=shares_of_own)
             variance[cause] = (numpy.average((own - severity[cause]) ** 2, weights=shares_of_own)
                                + (MISFIT_SEVERITY * (1.0 - 1.0 / misfit) * severity[cause]) ** 2)
-        means["none"] = numpy.mean(weights[self.rows:])
+        means["none"] = numpy.average(weights[self.rows:], weights=UNKNOWNS[:, 3])
         total = sum(means.values())
         return {cause: mean / total for cause, mean in means.items()}, severity, variance
 
