@@ -202,7 +202,7 @@ double scatterBeside(std::size_t joint, const JointGroup& group, const std::vect
 /// What the joints of a group have in common goes into the arm's factors of those that share it.
 void take(const JointGroup& group, const std::vector<MeasuredFriction>& joints, ArmFriction& arm)
 {
-  constexpr double CHANCE = 0.05;  // share that three joints may have in common, as those of their type differ
+  constexpr double CHANCE = NO_WITNESS;  // share that three joints may have in common, as those of their type differ
   const auto begin = joints.begin() + static_cast<std::ptrdiff_t>(group.begin);
   const auto end = joints.begin() + static_cast<std::ptrdiff_t>(group.end);
   const bool are_own = std::all_of(begin, end, [](const MeasuredFriction& joint) { return joint.is_to_own; });

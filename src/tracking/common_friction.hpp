@@ -17,6 +17,8 @@ class Tracker;
 /// By which the temperature of a drive, and what else the joints of an arm have in common, changes friction from day to
 /// day, where no other joints tell: standard deviation of the logarithm [-].
 constexpr double UNWITNESSED = 0.06;
+/// Of what the joints have in common, from which on they are no witnesses: standard deviation of the logarithm [-].
+constexpr double NO_WITNESS = 0.05;
 
 /// Joints that witness for each other, at least.
 constexpr std::size_t MIN_WITNESSES = 3;
@@ -67,11 +69,11 @@ struct ArmFriction
 /// have in common. Factor and temperature are the median joint's, so that one faulty joint changes neither. What is
 /// left then and most of the three joints of a group agree on is the group's: three drives do not fail alike. Joints
 /// held against their type differ by more, and 5 % of it may be chance: of a joint that is held against its own while
-/// others are not, that is the deviation. More friction of the others makes no joint's less; less of the others makes it
-/// more by as much as they agree on: what they scatter by, beyond what sound joints do, is a deviation too. Two joints or
-/// more whose friction is below what any fault leaves: something else carries the arm. Two or more whose currents fit no
-/// load, or one and one of the former: its load is another. One of the former, and one with more than twice what is
-/// expected of it: they are in another order. In all these cases no joint is judged.
+/// others are not, that is the deviation. More friction of the others makes no joint's less; less of the others makes
+/// it more by as much as they agree on: what they scatter by, beyond what sound joints do, is a deviation too. Two
+/// joints or more whose friction is below what any fault leaves: something else carries the arm. Two or more whose
+/// currents fit no load, or one and one of the former: its load is another. One of the former, and one with more than
+/// twice what is expected of it: they are in another order. In all these cases no joint is judged.
 ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double tolerance);
 
 /// Why a joint is not judged: its own reason, or that of all joints. Signs of efforts tell more than another load.

@@ -165,7 +165,7 @@ double deviationOf(const FrictionRatio& ratio, const FrictionBlocks& blocks, con
                    FrictionReference reference)
 {
   const bool is_to_own = !context.own.friction.empty();
-  const bool is_witnessed = is_to_own && context.arm_deviation == 0.0;
+  const bool is_witnessed = is_to_own && context.arm_deviation < NO_WITNESS;
   const FrictionPoint backward = FrictionPoints::meanOf(ratio.points, -1.0);
   const FrictionPoint forward = FrictionPoints::meanOf(ratio.points, 1.0);
   const double twin = backward.twin + forward.twin;

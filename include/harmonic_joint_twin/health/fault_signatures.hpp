@@ -206,10 +206,10 @@ struct CausePosterior
 ///                 larger part of every signature, elsewhere of none;  N = 0.2, Q = 0.3, w_0 = 0.001
 /// Stiffness changes as a compliance does: mu = c x^2 / x_h,  c  share by the signature, x  sound value of the window's
 /// motion, x_h  of SignatureSet::sound. An eccentric encoder adds the same to the compliance of every drive.
-/// Something of no signature: mu = 0, e S = 3, 10, 30, 100. With a tenth of the weight each, what is no fault of a gear:
-/// a brake that drags, mu of running and Coulomb torque 0.05, 0.15, 0.4, 1 of the sound running torque, e S = 0; noise g
-/// = 0.12, 0.25, 0.5, 1 more, 1 + (e S)^2 = (1 + g)^2, mu of the kinematic error g of the sound one. Indicators that the
-/// signatures were not fitted for count for nothing.
+/// Something of no signature: mu = 0, e S = 3, 10, 30, 100. With a tenth of the weight each, what is no fault of a
+/// gear: a brake that drags, mu of running and Coulomb torque 0.05, 0.15, 0.4, 1 of the sound running torque, e S = 0;
+/// noise g = 0.12, 0.25, 0.5, 1 more, 1 + (e S)^2 = (1 + g)^2, mu of the kinematic error g of the sound one.
+/// Indicators that the signatures were not fitted for count for nothing.
 ///
 /// A search takes a pass over all signatures for their likelihoods and one for the sums over them, in as many parts as
 /// the caller likes. Only the constructor allocates.
