@@ -57,7 +57,8 @@ class Arm:
 
     def move(self, motion: Recording) -> float:
         """A motion from now on, in place of the last one: as of arm(). It begins where the arm is wanted now, in place
-        of its first set point. Returns how long it takes [s]; then the arm is held at its end."""
+        of its first set point. Returns how long it takes [s]; then the arm is held at its end, or comes to rest if that
+        is in motion."""
         return self._arm.move(os.fspath(motion) if isinstance(motion, os.PathLike) else motion)
 
     def run(self, duration: float, *, rate: Optional[float] = None) -> Dict[str, "NDArray[np.float64]"]:
@@ -77,8 +78,17 @@ class Arm:
         """On the tip from outside until the next one, in the frame of the base [N], [N.m]."""
         self._arm.set_wrench(force, moment)
 
+    def set_payload(self, mass: float, centre: Sequence[float] = (0.0, 0.0, 0.0)) -> None:
+        """At the tip until the next one, its centre in the frame of the tip [kg], [m]. The controller knows it; of one
+        that it does not know the weight is a wrench."""
+        self._arm.set_payload(mass, centre)
+
+    def set_temperature(self, temperature: float, joint: Optional[str] = None) -> None:
+        """Of the drive of a joint, or of all; with thermal.model = two_nodes that of its surroundings [degC]."""
+        self._arm.set_temperature(temperature, joint)
+
     def reset(self) -> None:
-        """Back to the start, with the faults given at construction; the wrench stays."""
+        """Back to the start, with the faults given at construction; wrench and payload stay."""
         self._arm.reset()
 
     def __repr__(self) -> str:

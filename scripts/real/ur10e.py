@@ -4,14 +4,13 @@ import os
 
 import numpy as np
 
-from closed_loop import ClosedLoop, cell, line_amplitude, moving_errors
+from closed_loop import WANTED, ClosedLoop, cell, line_amplitude, moving_errors
 from runs import read, table
 from ur5 import JOINTS, Fit, Recording
 
 FOLDER = "ur10e"
 TRAIN = "20_02_12-40sec_12harm"  # the only recording that is identified on
 WINDOW, DEGREE = 21, 3           # rows and degree of the polynomials that smooth the angles: 0.2 s, ripple falls out
-WANTED = 0.8                     # of the simple fit's error
 
 
 def smoothed(time, values):

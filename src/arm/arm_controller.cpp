@@ -37,6 +37,10 @@ ArmController::ArmController(const ArmDescription& arm, const ArmTwin& twin, std
   , feed_forward_(twin.joints())
   , integral_(twin.joints())
 {
+  for (const ArmJoint& joint : arm.joints)
+  {
+    feedback_limit_.push_back(joint.feedback_limit > 0.0 ? joint.feedback_limit : HUGE_VAL);
+  }
 }
 
 void ArmController::reset() noexcept
@@ -64,9 +68,10 @@ void ArmController::control(ArmTwin& twin, const std::vector<JointMotion>& set_p
                        gain.viscous * wanted.velocity;
     const double speed = wanted.velocity + gain.position * (wanted.position - twin.startAngle(i) - read.output_angle);
     const double error = speed - read.motor_velocity / ratio;
-    const double torque = feed_forward_[i] + gain.speed * error + integral_[i];
+    const double feedback = gain.speed * error + integral_[i];
+    const double torque = feed_forward_[i] + std::clamp(feedback, -feedback_limit_[i], feedback_limit_[i]);
     const double limit = ratio * drive.parameters().motor.torque_limit;
-    if (std::abs(torque) < limit && !drive.outputs().brake_engaged)
+    if (std::abs(feedback) < feedback_limit_[i] && std::abs(torque) < limit && !drive.outputs().brake_engaged)
     {
       integral_[i] += toSeconds(period_) * gain.speed / gain.integral_time * error;
     }

@@ -12,9 +12,10 @@ namespace hjt
 /// motor, the current's torque; rigid-body torque and friction of the set point fed forward.
 ///
 ///   v_c = v_s + k_p (q_s - q)      q by the output's encoder, v by the motor's, over the ratio
-///   T   = T_s + k_v (v_c - v) + k_v / T_i integral (v_c - v)
+///   T   = T_s + c,  c = k_v (v_c - v) + k_v / T_i integral (v_c - v)
 ///
-/// The integral stands while T is beyond the motor's limit, and while the brake is engaged.
+/// c stays within ArmJoint::feedback_limit, T within the motor's. The integral stands while one of them is beyond, and
+/// while the brake is engaged.
 class ArmController
 {
 public:
@@ -39,6 +40,7 @@ public:
 private:
   ArmDynamics dynamics_;
   std::vector<JointGains> gains_;
+  std::vector<double> feedback_limit_;  // HUGE_VAL: none [N.m]
   Stamp period_;
   std::vector<double> rigid_;
   std::vector<double> feed_forward_;

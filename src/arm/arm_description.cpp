@@ -5,6 +5,7 @@
 #include <cctype>
 
 #include "arm/arm_file.hpp"
+#include "base/number_text.hpp"
 #include "params/field_reader.hpp"
 
 namespace hjt
@@ -71,6 +72,11 @@ public:
     {
       fields_(place + ".limits.speed", "rad/s", joint.speed_limit, Range{ 1e-3, 100.0 }, "greatest speed");
       fields_(place + ".limits.torque", "N.m", joint.torque_limit, Range{ 1e-3, 1e6 }, "greatest torque at the output");
+      if (holds(map_, place + ".limits.feedback"))
+      {
+        fields_(place + ".limits.feedback", "N.m", joint.feedback_limit, Range{ 1e-3, 1e6 },
+                "greatest torque of the controller beyond what it feeds forward");
+      }
     }
     if (isMapOrNone(place + ".controller") && holds(map_, place + ".controller"))
     {
@@ -142,6 +148,24 @@ private:
 };
 }  // namespace
 
+std::string payloadErrors(const Payload& payload)
+{
+  // Written so that NaN is no number of a range.
+  const auto is_within = [](double value, const Range& range) { return value >= range.min && value <= range.max; };
+  if (!is_within(payload.mass, PAYLOAD_MASS))
+  {
+    return "mass = " + numberText(payload.mass) + " [kg] is out of range, allowed: " + rangeText(PAYLOAD_MASS);
+  }
+  for (const double coordinate : payload.centre)
+  {
+    if (!is_within(coordinate, PAYLOAD_CENTRE))
+    {
+      return "centre: " + numberText(coordinate) + " [m] is out of range, allowed: " + rangeText(PAYLOAD_CENTRE);
+    }
+  }
+  return {};
+}
+
 ArmDescription readArmDescription(const std::string& path)
 {
   ParameterMap map = readArmFile(path);
@@ -154,7 +178,7 @@ ArmDescription readArmDescription(const std::string& path)
   fields("tip", arm.tip, "link that carries the payload");
   fields("gravity", "m/s^2", arm.gravity, Range{ -100.0, 100.0 }, "in the frame of the base");
   fields("payload.mass", "kg", arm.payload.mass, PAYLOAD_MASS, "at the tip");
-  fields("payload.centre", "m", arm.payload.centre, Range{ -10.0, 10.0 }, "of its mass, in the frame of the tip");
+  fields("payload.centre", "m", arm.payload.centre, PAYLOAD_CENTRE, "of its mass, in the frame of the tip");
   if (holds(map, "state_rate"))
   {
     fields("state_rate", "Hz", arm.state_rate, Range{ 1.0, 1000.0 }, "of the controller's states");

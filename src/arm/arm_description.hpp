@@ -22,11 +22,13 @@ struct ArmJoint
   ParameterMap parameters;            ///< over the overlays
   double speed_limit{};               ///< 0: none given [rad/s]
   double torque_limit{};              ///< at the output, 0: none given [N.m]
+  double feedback_limit{};            ///< of its controller's torque beyond what is fed forward, 0: none [N.m]
   std::vector<double> check_up;       ///< angles of all joints where its check-up begins; empty: none [rad]
   std::optional<JointGains> gains;    ///< of its controller; none: ArmController::defaultGains
 };
 
-inline constexpr Range PAYLOAD_MASS{ 0.0, 1e4 };  ///< [kg]
+inline constexpr Range PAYLOAD_MASS{ 0.0, 1e4 };       ///< [kg]
+inline constexpr Range PAYLOAD_CENTRE{ -10.0, 10.0 };  ///< each of its coordinates [m]
 
 /// Mass at the tip of an arm.
 struct Payload
@@ -34,6 +36,9 @@ struct Payload
   double mass{};                   ///< [kg]
   std::array<double, 3> centre{};  ///< in the frame of the tip [m]
 };
+
+/// What is out of range of it; empty: nothing.
+std::string payloadErrors(const Payload& payload);
 
 /// How a joint moves the link that it carries.
 enum class LinkMotion : std::uint8_t

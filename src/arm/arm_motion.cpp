@@ -31,9 +31,10 @@ void ArmMotion::at(double time, std::vector<JointMotion>& motion) noexcept
   if (time <= begin() || time >= end())
   {
     const ArmSetPoint& point = time <= begin() ? points_.front() : points_.back();
+    const bool moves = goes_on_ || time == point.time;
     for (std::size_t i = 0; i < motion.size(); ++i)
     {
-      motion[i] = goes_on_ ? point.joints[i] : JointMotion{ point.joints[i].position, 0.0, 0.0 };
+      motion[i] = moves ? point.joints[i] : JointMotion{ point.joints[i].position, 0.0, 0.0 };
     }
     return;
   }
@@ -60,6 +61,60 @@ void ArmMotion::at(double time, std::vector<JointMotion>& motion) noexcept
                                  a.acceleration + s * (b.acceleration - a.acceleration) :
                                  (2.0 * c2 + 6.0 * s * c3) / (length * length);
   }
+}
+
+std::vector<ArmSetPoint> fromRest(const ArmSetPoint& point)
+{
+  constexpr double STILL = 1e-3;        // [rad/s]
+  constexpr double ACCELERATION = 2.0;  // mean, of the fastest joint [rad/s^2]
+  constexpr double SHORTEST = 0.2;      // [s]
+  constexpr std::size_t STEPS = 32;
+  double fastest = 0.0;
+  for (const JointMotion& joint : point.joints)
+  {
+    fastest = std::max(fastest, std::abs(joint.velocity));
+  }
+  if (fastest <= STILL)
+  {
+    return { point };
+  }
+  const double length = std::max(fastest / ACCELERATION, SHORTEST);
+  std::vector<ArmSetPoint> points(STEPS + 1, point);
+  for (std::size_t k = 0; k < STEPS; ++k)
+  {
+    // Speed a cubic of the time's share s, at rest without acceleration at 0, the point's own at 1.
+    const double s = static_cast<double>(k) / static_cast<double>(STEPS);
+    points[k].time = point.time - (1.0 - s) * length;
+    for (std::size_t i = 0; i < point.joints.size(); ++i)
+    {
+      const double speed = point.joints[i].velocity;
+      const double bend = length * point.joints[i].acceleration;
+      JointMotion& joint = points[k].joints[i];
+      joint.velocity = s * s * (speed * (3.0 - 2.0 * s) + bend * (s - 1.0));
+      joint.acceleration = s * (6.0 * speed * (1.0 - s) + bend * (3.0 * s - 2.0)) / length;
+      joint.position -=
+          length * (0.5 * speed - bend / 12.0 - s * s * s * (speed * (1.0 - 0.5 * s) + bend * (0.25 * s - 1.0 / 3.0)));
+    }
+  }
+  return points;
+}
+
+std::vector<ArmSetPoint> toRest(const ArmSetPoint& point)
+{
+  // As from rest, backwards in time.
+  const auto turned = [&](ArmSetPoint at)
+  {
+    at.time = 2.0 * point.time - at.time;
+    for (JointMotion& joint : at.joints)
+    {
+      joint.velocity = -joint.velocity;
+    }
+    return at;
+  };
+  std::vector<ArmSetPoint> points = fromRest(turned(point));
+  std::transform(points.begin(), points.end(), points.begin(), turned);
+  std::reverse(points.begin(), points.end());
+  return points;
 }
 
 ArmMotion gentleMotion(const ArmDescription& arm)

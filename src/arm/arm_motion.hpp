@@ -58,6 +58,10 @@ private:
   std::size_t last_{};  // set point not after the time asked for last
 };
 
+/// Set points from rest to this one, which is the last, or from it to rest; it alone where it is at rest.
+std::vector<ArmSetPoint> fromRest(const ArmSetPoint& point);
+std::vector<ArmSetPoint> toRest(const ArmSetPoint& point);
+
 /// A gentle motion of all joints that comes back to where it began, again and again: slow and fast, each joint both
 /// ways. About the pose in which the arm stands upright for its check-up. An arm without ArmJoint::check_up or limits
 /// stands still at angles of 0. @throws ParameterError if it would go beyond a limit.

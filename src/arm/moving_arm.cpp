@@ -49,7 +49,8 @@ std::vector<Parameters> withFaultsInMotion(std::vector<Parameters> drives, doubl
 MovingArm::MovingArm(const ArmDescription& arm, const std::vector<Parameters>& drives, ArmMotion motion,
                      const SurfaceSource& surface_source, double settling)
   : settling_(settling)
-  , twin_(arm, withFaultsInMotion(drives, settling), anglesOf(motion.points().front()), surface_source)
+  , lead_in_(fromRest(motion.points().front()))
+  , twin_(arm, withFaultsInMotion(drives, settling + leadIn()), anglesOf(lead_in_.points().front()), surface_source)
   , controller_(arm, twin_, gainsOf(arm, drives), CONTROL_RATE)
   , motion_(std::move(motion))
   , motion_start_(motion_.begin())
@@ -72,7 +73,7 @@ bool MovingArm::reset(Stamp stamp) noexcept
   controller_.reset();
   is_commanded_ = false;
   stop_.reset();
-  motion_begin_ = twin_.stamp() + toStampLength(settling_);
+  motion_begin_ = twin_.stamp() + toStampLength(settling_ + leadIn());
   for (std::size_t i = 0; i < twin_.joints(); ++i)
   {
     twin_.drive(i).commandBrake(twin_.stamp() + toStampLength(0.5 * settling_), false);
@@ -116,7 +117,7 @@ void MovingArm::watch() noexcept
   for (std::size_t i = 0; i < twin_.joints() && stop_; ++i)
   {
     const Stamp next = twin_.stamp() + twin_.stepLength();
-    const Stamp release = motion_begin_ - toStampLength(0.5 * settling_);
+    const Stamp release = motion_begin_ - toStampLength(0.5 * settling_ + leadIn());
     twin_.drive(i).commandMotorTorque(next, 0.0);
     twin_.drive(i).commandBrake(next, true);
     if (release > next)
@@ -156,7 +157,8 @@ void MovingArm::wantedAt(Stamp stamp, std::vector<JointMotion>& motion) noexcept
     commanded_.at(commanded_.begin() + toSeconds(stamp - command_begin_), motion);
     return;
   }
-  motion_.at(motion_start_ + toSeconds(stamp - motion_begin_), motion);
+  const double time = motion_start_ + toSeconds(stamp - motion_begin_);
+  (time < motion_start_ ? lead_in_ : motion_).at(time, motion);
 }
 
 JointReading MovingArm::reading(std::size_t joint) const noexcept

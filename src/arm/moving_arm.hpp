@@ -27,7 +27,8 @@ struct ProtectiveStop
 };
 
 /// A twin of an arm under its controller, which has it follow set points. After a reset it stands in its brakes for
-/// half of the settling, is held where it stands for the other half, then begins its motion.
+/// half of the settling, is held where it stands for the other half, then begins its motion; to one that begins in
+/// motion it comes by a lead-in.
 ///
 /// Where a joint is STOP_DEVIATION off its set point, or faster than STOP_SPEED of its limit, the controller stops all:
 /// the motors give no torque, the brakes engage, until the next reset. The bounds are assumed; the maker gives none.
@@ -76,10 +77,12 @@ public:
   const ArmController& controller() const noexcept { return controller_; }
 
 private:
+  double leadIn() const noexcept { return lead_in_.end() - lead_in_.begin(); }  // [s]
   void watch() noexcept;
   void wantedAt(Stamp stamp, std::vector<JointMotion>& motion) noexcept;
 
-  double settling_;  // [s]
+  double settling_;    // [s]
+  ArmMotion lead_in_;  // ends where the motion begins
   ArmTwin twin_;
   ArmController controller_;
   ArmMotion motion_;

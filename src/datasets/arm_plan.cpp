@@ -133,7 +133,8 @@ OrderedJson ArmPlan::configuration() const
     {
       drive[key] = jsonOf(value);
     }
-    drive["limits"] = { arm_.joints[joint].speed_limit, arm_.joints[joint].torque_limit };
+    drive["limits"] = { arm_.joints[joint].speed_limit, arm_.joints[joint].torque_limit,
+                        arm_.joints[joint].feedback_limit };
     if (const auto& gains = arm_.joints[joint].gains)
     {
       drive["controller"] = { gains->position, gains->speed, gains->integral_time, gains->coulomb, gains->viscous };

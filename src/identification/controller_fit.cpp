@@ -19,6 +19,9 @@ constexpr double SLOWEST = 1.0;        // [s]
 constexpr double AT_REST = 0.01;       // at which the sign of the speed turns smoothly [rad/s]
 constexpr double LEAST_MOTION = 5.0;   // [s]
 constexpr double LEAST_EXPLAINED = 1.0 / 3.0;
+constexpr double JUMP = 0.1;        // of the set point's speed within a row, beside those about it [rad/s]
+constexpr double AT_LIMIT = 0.95;   // of the limit
+constexpr double TRANSIENT = 0.25;  // of either, to both sides [s]
 
 using Column = Eigen::VectorXd;
 
@@ -91,6 +94,27 @@ struct Record
   Column current;
 };
 
+/// 1 for rows in which the control is linear, else 0. `limit`: of the current beside the target's, 0: none [A].
+Column linearRows(const std::vector<ControllerRow>& rows, double period, double limit)
+{
+  const auto count = static_cast<Eigen::Index>(rows.size());
+  const auto reach = static_cast<Eigen::Index>(TRANSIENT / period);
+  const auto step = [&](std::size_t k) { return rows[k].speed - rows[k - 1].speed; };
+  Column linear = Column::Ones(count);
+  for (std::size_t k = 2; k + 1 < rows.size(); ++k)
+  {
+    const bool jumps = std::abs(step(k) - 0.5 * (step(k - 1) + step(k + 1))) > JUMP;
+    const bool stands = limit > 0.0 && std::abs(rows[k].current - rows[k].target_current) > AT_LIMIT * limit;
+    if (jumps || stands)
+    {
+      const Eigen::Index begin = std::max<Eigen::Index>(static_cast<Eigen::Index>(k) - reach, 0);
+      const Eigen::Index end = std::min<Eigen::Index>(static_cast<Eigen::Index>(k) + reach + 1, count);
+      linear.segment(begin, end - begin).setZero();
+    }
+  }
+  return linear;
+}
+
 /// Half widths of the first two coefficients, by leaving out each piece in turn.
 Eigen::Vector2d halfWidths(const Eigen::MatrixXd& columns, const Column& values)
 {
@@ -127,7 +151,7 @@ Eigen::Vector2d fedForward(const std::vector<ControllerRow>& rows)
 }  // namespace
 
 ControllerFit fitController(const std::vector<ControllerRow>& rows, double period, double torque_per_current,
-                            const JointGains& usual)
+                            const JointGains& usual, double feedback_limit)
 {
   ControllerFit fit;
   fit.gains = usual;
@@ -140,11 +164,14 @@ ControllerFit fitController(const std::vector<ControllerRow>& rows, double perio
   }
   const Record record(rows, period);
   const auto width = static_cast<Eigen::Index>(SLOWEST / period);
-  const Column values = withoutSlow(record.current, width);
+  const Column linear = linearRows(rows, period, feedback_limit / torque_per_current);
+  const Column values = linear.cwiseProduct(withoutSlow(record.current, width));
+  const auto columns_at = [&](double lag) -> Eigen::MatrixXd
+  { return linear.asDiagonal() * record.columns(lag / period, width); };
   double least = HUGE_VAL;
   for (double lag = 0.0; lag <= LONGEST_LAG; lag += LAG_STEP)
   {
-    const Eigen::MatrixXd columns = record.columns(lag / period, width);
+    const Eigen::MatrixXd columns = columns_at(lag);
     const Column found = columns.colPivHouseholderQr().solve(values);
     const double left = (values - columns * found).squaredNorm();
     if (left < least)
@@ -155,7 +182,7 @@ ControllerFit fitController(const std::vector<ControllerRow>& rows, double perio
       fit.speed_current = found[1];
     }
   }
-  const Eigen::Vector2d half_widths = halfWidths(record.columns(fit.lag / period, width), values);
+  const Eigen::Vector2d half_widths = halfWidths(columns_at(fit.lag), values);
   fit.angle_half_width = half_widths[0];
   fit.speed_half_width = half_widths[1];
   fit.explained = 1.0 - least / values.squaredNorm();

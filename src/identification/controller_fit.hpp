@@ -39,7 +39,9 @@ struct ControllerFit
 /// each less its mean over a second about the row; the lag is the one that leaves least. With k_v = b K, K the torque
 /// per current, a / b = k_p + 1 / T_i of ArmController: friction, of the same slow swings, hides the integral's time,
 /// which stays that of `usual`, or 2 b / a where the sum is less than twice its inverse. Friction that is fed forward:
-/// target current less that of the rigid-body torque. `period`: of the rows [s].
+/// target current less that of the rigid-body torque. Left out is what lies within a quarter of a second of a jump of
+/// the set point's speed, or of a current that stands at the `feedback_limit` (ArmJoint): there the control is not
+/// linear, and the errors are so large that they alone would count. `period`: of the rows [s].
 ControllerFit fitController(const std::vector<ControllerRow>& rows, double period, double torque_per_current,
-                            const JointGains& usual);
+                            const JointGains& usual, double feedback_limit);
 }  // namespace hjt

@@ -136,7 +136,8 @@ std::vector<IdentifiedController> identifyController(const RecordingOptions& opt
     const JointGains usual = arm.joints[i].gains.value_or(ArmController::defaultGains(drive));
     IdentifiedController& joint = joints.emplace_back();
     joint.name = arm.joints[i].short_name;
-    joint.fit = fitController(recorded.joints[i], recorded.period * options.time_scale, gain, usual);
+    joint.fit = fitController(recorded.joints[i], recorded.period * options.time_scale, gain, usual,
+                              arm.joints[i].feedback_limit);
     const double most = MOST_SPEED_GAIN * ArmController::defaultGains(drive).speed;
     joint.is_limited = joint.fit.refusal.empty() && joint.fit.gains.speed > most;
     if (joint.is_limited)

@@ -25,6 +25,7 @@ namespace hjt
 namespace
 {
 constexpr const char* WRENCH = "wrench";
+constexpr const char* PAYLOAD = "payload";
 /// Between two warnings of the same kind [s].
 constexpr double WARNING_PERIOD = 1.0;
 
@@ -59,6 +60,7 @@ ArmNode::Advance::Advance(const ArmDescription& description, const std::vector<P
   : arm(description, drives, gentleMotion(description), armSurfaces(drives))
   , motion(gentleMotion(description))
   , wrench(ArmWrench{})
+  , payload(Payload{})
   , wanted_(drives.size())
 {
   for (std::size_t i = 0; i < drives.size(); ++i)
@@ -83,6 +85,7 @@ bool ArmNode::Advance::step(Stamp until) noexcept
 {
   motion.take([this](ArmMotion& commanded) { arm.follow(commanded); });
   wrench.take([this](const ArmWrench& acting) { arm.twin().setWrench(acting); });
+  payload.take([this](const Payload& carried) { arm.setPayload(carried); });
   return arm.step(until);
 }
 
@@ -118,6 +121,10 @@ ArmNode::ArmNode(ros::NodeHandle& node, const ArmDescription& arm, const std::ve
       topics::COMMAND, [this](const auto& event) { receiveCommand(*event.getMessage()); });
   wrench_subscriber_ = inputs.subscribe<geometry_msgs::WrenchStamped>(
       WRENCH, [this](const auto& event) { receiveWrench(*event.getMessage()); });
+  payload_subscriber_ = inputs.subscribe<geometry_msgs::Inertia>(
+      PAYLOAD, [this](const auto& event) { receivePayload(*event.getMessage()); });
+  temperature_subscriber_ = inputs.subscribe<sensor_msgs::Temperature>(
+      topics::JOINT_TEMPERATURES, [this](const auto& event) { receiveTemperature(*event.getMessage()); });
 }
 
 void ArmNode::tellOfStop()
@@ -178,6 +185,44 @@ void ArmNode::receiveWrench(const geometry_msgs::WrenchStamped& message)
     return;
   }
   advance_.wrench.give(wrench);
+}
+
+void ArmNode::receivePayload(const geometry_msgs::Inertia& message)
+{
+  const Payload payload{ message.m, valuesOf(message.com) };
+  const std::string errors = payloadErrors(payload);
+  if (!errors.empty())
+  {
+    ROS_WARN_STREAM_THROTTLE(WARNING_PERIOD, "Refused a payload on ~" << PAYLOAD << ": " << errors);
+    return;
+  }
+  advance_.payload.give(payload);
+}
+
+void ArmNode::receiveTemperature(const sensor_msgs::Temperature& message)
+{
+  const auto joint = std::find_if(description_.joints.begin(), description_.joints.end(),
+                                  [&](const ArmJoint& each) { return each.name == message.header.frame_id; });
+  std::string errors;
+  if (joint == description_.joints.end())
+  {
+    errors = "frame_id = '" + printable(message.header.frame_id) + "' is no joint of the arm";
+  }
+  // Written so that NaN fails.
+  else if (!(message.temperature >= MIN_TEMPERATURE && message.temperature <= MAX_TEMPERATURE))
+  {
+    errors = numberText(message.temperature) +
+             " [degC] is out of range, allowed: " + rangeText({ MIN_TEMPERATURE, MAX_TEMPERATURE });
+  }
+  if (!errors.empty())
+  {
+    ROS_WARN_STREAM_THROTTLE(WARNING_PERIOD,
+                             "Refused a temperature on ~" << topics::JOINT_TEMPERATURES << ": " << errors);
+    return;
+  }
+  const Stamp stamp = stampOr(message.header.stamp, ros::Time::now());
+  inbox_.push(Input{ stamp, InputKind::TEMPERATURE, message.temperature },
+              static_cast<std::size_t>(joint - description_.joints.begin()));
 }
 
 bool ArmNode::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response)

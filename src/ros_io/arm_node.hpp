@@ -6,10 +6,12 @@
 #include <memory>
 #include <vector>
 
+#include <geometry_msgs/Inertia.h>
 #include <geometry_msgs/WrenchStamped.h>
 #include <ros/node_handle.h>
 #include <ros/service_server.h>
 #include <ros/wall_timer.h>
+#include <sensor_msgs/Temperature.h>
 #include <std_srvs/Trigger.h>
 #include <trajectory_msgs/JointTrajectory.h>
 
@@ -49,6 +51,7 @@ private:
     MovingArm arm;
     Handover<ArmMotion> motion;
     Handover<ArmWrench> wrench;
+    Handover<Payload> payload;
     TryLockValue<std::vector<JointMotion>> shown;     ///< present set point
     std::atomic<const char*> stop_reason{ nullptr };  ///< of a protective stop; none: it moves
     std::atomic<std::size_t> stopped_joint{};         ///< of which joint
@@ -59,6 +62,8 @@ private:
 
   void receiveCommand(const trajectory_msgs::JointTrajectory& message);
   void receiveWrench(const geometry_msgs::WrenchStamped& message);
+  void receivePayload(const geometry_msgs::Inertia& message);
+  void receiveTemperature(const sensor_msgs::Temperature& message);
   void tellOfStop();
   bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
 
@@ -73,6 +78,8 @@ private:
   std::vector<std::unique_ptr<FaultSubscriber>> faults_;  // of each joint
   ros::Subscriber command_subscriber_;
   ros::Subscriber wrench_subscriber_;
+  ros::Subscriber payload_subscriber_;
+  ros::Subscriber temperature_subscriber_;
   ros::ServiceServer reset_service_;
   bool told_of_stop_{};
   ros::WallTimer stop_timer_;

@@ -34,10 +34,11 @@ struct Case
 constexpr Case BAD_VALUES[] = {
   { "torque: 150.0", "torque: .nan",
     "arm.yaml:29: joints.0.limits.torque = .nan [N.m] is not a finite number, allowed: 0.001 ... 1.0e+6 [N.m]" },
+  { "feedback: 42.8", "feedback: 0.0", "joints.0.limits.feedback = 0.0 [N.m] is out of range, allowed: 0.001" },
   { "torque: 150.0", "torque: -150.0", "joints.0.limits.torque = -150.0 [N.m] is out of range" },
   { "speed: 3.141592653589793", "speed: 0",
     "arm.yaml:29: joints.0.limits.speed = 0 [rad/s] is out of range, allowed: 0.001 ... 100 [rad/s]" },
-  { "{speed: 3.141592653589793, torque: 150.0}", "3", "joints.0.limits = 3 must be keys and values" },
+  { "{speed: 3.141592653589793, torque: 150.0, feedback: 42.8}", "3", "joints.0.limits = 3 must be keys and values" },
   { "mass: 0.0", "mass: .nan", "arm.yaml:15: payload.mass = .nan [kg] is not a finite number, allowed: 0 ... 10000" },
   { "mass: 0.0", "mass: -3", "payload.mass = -3 [kg] is out of range, allowed: 0 ... 10000 [kg]" },
   { "mass: 0.0", "mass: 1.0e+300", "payload.mass = 1.0e+300 [kg] is out of range" },

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "arm/moving_arm.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <vector>
@@ -66,6 +67,92 @@ TEST(MovingArm, APointAtATimeIsTheMotionAndACopyGoesOnAlike)
   run_to(*copy, points[24].time + 0.01);
   run_to(whole, points[24].time + 0.01);
   EXPECT_GT(std::abs(copy->reading(0).current - whole.reading(0).current), 0.1);
+}
+
+/// From rest to a set point in motion and on to rest: angles, speeds and accelerations are each other's rates, and
+/// neither end moves.
+TEST(MovingArm, WaysFromRestAndToRestAreSmooth)
+{
+  const ArmSetPoint point{ 3.0, { { 0.4, 1.2, -3.0 }, { -0.2, -0.5, 1.0 }, { 0.7, 0.0, 0.0 } } };
+  for (const std::vector<ArmSetPoint>& points : { fromRest(point), toRest(point) })
+  {
+    const bool begins = points.back().time == point.time;
+    const ArmSetPoint& rest = begins ? points.front() : points.back();
+    const ArmSetPoint& there = begins ? points.back() : points.front();
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+      EXPECT_EQ(there.joints[i].position, point.joints[i].position);
+      EXPECT_EQ(there.joints[i].velocity, point.joints[i].velocity);
+      EXPECT_EQ(there.joints[i].acceleration, point.joints[i].acceleration);
+      EXPECT_EQ(rest.joints[i].velocity, 0.0);
+      EXPECT_EQ(rest.joints[i].acceleration, 0.0);
+    }
+    for (std::size_t k = 1; k < points.size(); ++k)
+    {
+      const double length = points[k].time - points[k - 1].time;
+      ASSERT_GT(length, 0.0);
+      for (std::size_t i = 0; i < 3; ++i)
+      {
+        const JointMotion& a = points[k - 1].joints[i];
+        const JointMotion& b = points[k].joints[i];
+        // Simpson's rule, with the middle of a cubic, is exact.
+        const double middle = 0.5 * (a.velocity + b.velocity) + length / 8.0 * (a.acceleration - b.acceleration);
+        EXPECT_NEAR(b.position - a.position, length / 6.0 * (a.velocity + 4.0 * middle + b.velocity), 1e-12);
+        EXPECT_NEAR(b.velocity - a.velocity, 0.5 * length * (a.acceleration + b.acceleration), 2e-3);
+      }
+    }
+  }
+  EXPECT_EQ(fromRest({ 0.0, { { 0.3, 0.0, 2.0 } } }).size(), 1U);
+}
+
+/// A motion that begins at speed: the arm is there, at that speed, when it begins.
+TEST(MovingArm, ItComesToAMotionThatBeginsInMotion)
+{
+  std::vector<ArmSetPoint> points;
+  for (int k = 0; k <= 25; ++k)
+  {
+    points.push_back({ k / 125.0, { { 0.3 + k / 125.0, 1.0, 0.0 }, { -0.8, 0.0, 0.0 } } });
+  }
+  MovingArm arm(rods("0 1 0", 2), { drive(), drive() }, ArmMotion(points), {});
+  double farthest = 0.0;
+  while (arm.step(arm.motionBegin() + toStampLength(0.2)))
+  {
+    const double time = toSeconds(arm.twin().stamp() - arm.motionBegin());
+    if (time >= 0.0)
+    {
+      farthest = std::max(farthest, std::abs(arm.twin().motion()[0].position - 0.3 - time));
+    }
+  }
+  EXPECT_LT(farthest, 1e-3);
+  EXPECT_FALSE(arm.protectiveStop());
+}
+
+/// What angle and speed ask for is limited; what is fed forward is not.
+TEST(MovingArm, TheControllersFeedbackIsLimited)
+{
+  constexpr double LIMIT = 5.0;  // [N.m]
+  const std::vector<JointMotion> at{ { 0.3, 0.0, 0.0 }, { -0.8, 0.0, 0.0 } };
+  std::vector<JointMotion> away = at;
+  away[0].position += 0.05;
+  double most[2] = {};
+  for (const bool is_limited : { false, true })
+  {
+    ArmDescription description = rods("0 1 0", 2);
+    description.joints[0].feedback_limit = is_limited ? LIMIT : 0.0;
+    MovingArm arm(description, { drive(), drive() },
+                  ArmMotion({ { 0.0, at }, { 0.1, at }, { 0.101, away }, { 0.3, away } }), {});
+    const double gain = arm.twin().drive(0).parameters().telemetry.torque_per_current;
+    while (arm.step(arm.motionBegin() + toStampLength(0.3)))
+    {
+      if (arm.twin().stamp() > arm.motionBegin() + toStampLength(0.102))
+      {
+        const double feedback = gain * arm.reading(0).current - arm.controller().feedForward(0);
+        most[is_limited] = std::max(most[is_limited], std::abs(feedback));
+      }
+    }
+  }
+  EXPECT_GT(most[0], 2.0 * LIMIT);
+  EXPECT_NEAR(most[1], LIMIT, 0.02 * LIMIT);
 }
 }  // namespace
 }  // namespace hjt

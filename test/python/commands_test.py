@@ -187,7 +187,17 @@ class Commands(Recordings):
         again = arm.run(time[-1])["actual_current"]  # without the injected fault
         np.testing.assert_allclose(again, expected["actual_current"][1:], atol=1e-6)
         self.assertEqual(arm.counters["solver_failures"], 0)
-        for call, said in ((lambda: arm.inject_fault("knee:pitting:1.0"), "JOINT one of base"),
+        held = arm.run(0.4)["actual_current"][-1]  # at rest, the motion's end behind it
+        arm.set_payload(2.0, (0.0, 0.0, 0.1))
+        arm.set_temperature(60.0, "wrist_3")
+        loaded = arm.run(0.4)
+        self.assertGreater(abs(loaded["actual_current"][-1, 1] - held[1]), 0.5)  # 2 kg at some 0.5 m over 10.7 N.m/A
+        self.assertLess(np.abs(loaded["actual_qd"][-1]).max(), 0.01)
+        for call, said in ((lambda: arm.set_payload(-1.0), "mass = -1"),
+                           (lambda: arm.set_payload(1.0, (0.0, 0.0, 20.0)), "centre: 20"),
+                           (lambda: arm.set_temperature(float("nan")), "degC"),
+                           (lambda: arm.set_temperature(20.0, "knee"), "no joint 'knee'"),
+                           (lambda: arm.inject_fault("knee:pitting:1.0"), "JOINT one of base"),
                            (lambda: arm.run(-1.0), "duration"), (lambda: arm.run(0.1, rate=1e-300), "rate = 1.0?e-300"),
                            (lambda: arm.set_wrench((0.0, 0.0, 2000.0)), "1000"),
                            (lambda: hjt.Arm("ur5", [0.0]), "6 finite angles"),

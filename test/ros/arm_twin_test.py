@@ -8,9 +8,9 @@ import unittest
 
 import rospy
 import rostest
-from geometry_msgs.msg import PoseStamped, WrenchStamped
+from geometry_msgs.msg import Inertia, PoseStamped, WrenchStamped
 from rosgraph_msgs.msg import Log
-from sensor_msgs.msg import JointState
+from sensor_msgs.msg import JointState, Temperature
 from std_srvs.srv import Trigger
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
@@ -31,12 +31,14 @@ class ArmTwin(unittest.TestCase):
         cls.states = Listener("/joint_states", JointState)
         cls.command = rospy.Publisher(f"{NODE}/command", JointTrajectory, queue_size=10)
         cls.wrench = rospy.Publisher(f"{NODE}/wrench", WrenchStamped, queue_size=10)
+        cls.payload = rospy.Publisher(f"{NODE}/payload", Inertia, queue_size=10)
+        cls.temperature = rospy.Publisher("/joint_temperatures", Temperature, queue_size=10)
         cls.log = Listener("/rosout", Log)
         cls.diagnostics = {namespace + joint: Diagnostics(f"/{namespace}{joint}/joint_twin")
                            for namespace in ("", "worn/") for joint in JOINTS}
         cls.states.wait_for(10, 4.0 * PATIENCE)  # the first time it builds its tables
-        for publisher in (cls.command, cls.wrench):
-            wait_until(lambda each=publisher: each.get_num_connections() == 1, publisher.name)
+        for publisher, readers in ((cls.command, 1), (cls.wrench, 1), (cls.payload, 1), (cls.temperature, 4)):
+            wait_until(lambda each=publisher, n=readers: each.get_num_connections() == n, publisher.name)
 
     def last(self):
         message = self.states.messages()[-1]
@@ -128,6 +130,20 @@ class ArmTwin(unittest.TestCase):
         self.wrench.publish(WrenchStamped())
         # 30 N at 0.3 to 0.9 m over 10.7 N.m/A, less what friction bears.
         self.assertGreater(abs(heavier), 0.3)
+        for mass in (-1.0, 3.0):
+            self.payload.publish(Inertia(m=mass))
+        self.said("Refused a payload on ~payload: mass = -1.0 [kg] is out of range, allowed: 0 ... 10000")
+        self.assertAlmostEqual(current() - before, heavier, delta=0.3)
+        self.payload.publish(Inertia())
+
+    def test_5_a_temperature_is_that_of_the_named_drive(self):
+        health = Listener("/elbow/arm_twin/health", Health)
+        for joint, degrees in (("knee", 20.0), ("elbow_joint", 32.0)):
+            message = Temperature(temperature=degrees)
+            message.header.frame_id = joint
+            self.temperature.publish(message)
+        self.said("Refused a temperature on ~joint_temperatures: frame_id = 'knee' is no joint of the arm")
+        wait_until(lambda: health.messages() and health.messages()[-1].grease_temperature == 32.0, "the temperature")
 
     def test_6_a_fault_is_taken_live_and_raises_its_joints_current(self):
         faults = Listener("/elbow/arm_twin/faults", Faults)

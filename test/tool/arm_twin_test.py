@@ -154,8 +154,26 @@ class ArmTwin(tool.ToolTest):
         for name in ("base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3"):
             self.write(f"found/{name}.yaml", "gear:\n  teeth_flexspline: 200\n")
         self.succeed_json("arm", program, "--arm", "ur5", "--out", "again.csv", "--identified", "found")
+        self.write_jolted("run.csv", "jolted.csv")
+        self.succeed_json("arm", "jolted.csv", "--arm", "ur5", "--out", "run.csv", "--identified", "own", "--force")
+        jolted = self.succeed_json("identify", "run.csv", "--arm", "ur5", "--controller")
+        for joint, before in zip(jolted["joints"][:3], found["joints"]):
+            self.assertAlmostEqual(joint["speed"] / before["speed"], 1.0, delta=0.1)
+            self.assertAlmostEqual(joint["position"] / before["position"], 1.0, delta=0.25)
         self.fail_with(1, ["no column target_qd_0"], "identify", self.write("few.csv", "timestamp,target_q_0\n0,0\n"),
                        "--arm", "ur5", "--controller")
+
+    def write_jolted(self, run, out):
+        """The set points of a run, which stand still for 0.2 s in the midst of the fastest motion."""
+        with open(self.path(run), encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        fastest = max(range(len(rows)), key=lambda k: abs(float(rows[k]["target_qd_2"])))
+        targets = [[row[f"target_q_{i}"] for i in range(JOINTS)] for row in rows]
+        with open(self.path(out), "w", encoding="utf-8", newline="") as file:
+            table = csv.writer(file)
+            table.writerow(["timestamp"] + [f"target_q_{i}" for i in range(JOINTS)])
+            for k, angles in enumerate(targets[:fastest] + 25 * [targets[fastest]] + targets[fastest:]):
+                table.writerow([k / 125, *angles])
 
     def test_what_is_wrong_is_named(self):
         write_motion(self.path("motion.csv"), duration=0.1)

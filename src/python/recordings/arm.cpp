@@ -102,12 +102,19 @@ std::vector<ArmSetPoint> setPointsIn(const py::object& motion, const ArmDescript
   return points;
 }
 
+void requireWithin(const std::string& name, double value, const char* unit, const Range& range)
+{
+  // Written so that NaN fails.
+  if (!(value >= range.min && value <= range.max))
+  {
+    throw InputError(name + " = " + numberText(value) + " [" + unit +
+                     "] is out of range, allowed: " + rangeText(range));
+  }
+}
+
 void requireRate(const std::optional<double>& rate)
 {
-  if (rate && !(*rate >= ROW_RATE.min && *rate <= ROW_RATE.max))
-  {
-    throw InputError("rate = " + numberText(*rate) + " [Hz] is out of range, allowed: " + rangeText(ROW_RATE));
-  }
+  requireWithin("rate", rate.value_or(ROW_RATE.min), "Hz", ROW_RATE);
 }
 
 void warnPython(const std::vector<std::string>& notices)
@@ -138,11 +145,7 @@ public:
     given.take("faults", faults);
     arm_ = readArmDescription(findArm(arm, configDirectory(options)));
     given.take("payload", arm_.payload.mass);
-    if (!(arm_.payload.mass >= PAYLOAD_MASS.min && arm_.payload.mass <= PAYLOAD_MASS.max))
-    {
-      throw InputError("payload = " + numberText(arm_.payload.mass) +
-                       " [kg] is out of range, allowed: " + rangeText(PAYLOAD_MASS));
-    }
+    requirePayload(arm_.payload);
     addIdentifiedGains(identified, arm_);
     const std::vector<Parameters> drives = armDrives(arm_, options, identified, faults);
     std::vector<double> start(arm_.joints.size());
@@ -193,8 +196,10 @@ public:
     std::vector<ArmSetPoint> points = setPointsIn(motion, arm_);
     const double change = straightenTimes(points);
     warnPython(change > 0.0 ? std::vector<std::string>{ straightenedText(change) } : std::vector<std::string>());
+    const double length = points.back().time - points.front().time;
+    const std::vector<ArmSetPoint> rest = toRest(points.back());
+    points.insert(points.end(), rest.begin() + 1, rest.end());
     ArmMotion next(std::move(points));
-    const double length = next.end() - next.begin();
     moving_->follow(next);
     return length;
   }
@@ -202,10 +207,7 @@ public:
   py::dict run(double duration, const std::optional<double>& rate)
   {
     requireRate(rate);
-    if (!(duration >= 0.0 && duration <= LONGEST))
-    {
-      throw InputError("duration = " + std::to_string(duration) + " [s] is out of range, allowed: 0 ... 1000000");
-    }
+    requireWithin("duration", duration, "s", { 0.0, LONGEST });
     const InUse::Hold hold = in_use_.hold();
     const ArmTwin& twin = moving_->twin();
     const Stamp end = twin.stamp() + toStampLength(duration);
@@ -266,6 +268,29 @@ public:
     moving_->twin().setWrench({ force, moment });
   }
 
+  void setPayload(double mass, const std::array<double, 3>& centre)
+  {
+    in_use_.refuse();
+    requirePayload({ mass, centre });
+    moving_->setPayload({ mass, centre });
+  }
+
+  void setTemperature(double temperature, const std::optional<std::string>& joint)
+  {
+    in_use_.refuse();
+    requireWithin("temperature", temperature, "degC", { MIN_TEMPERATURE, MAX_TEMPERATURE });
+    const std::optional<std::size_t> only = joint ? findJoint(arm_, *joint) : std::nullopt;
+    if (joint && !only)
+    {
+      throw InputError("joint: no joint '" + *joint + "'; there are " + shortNames(arm_));
+    }
+    ArmTwin& twin = moving_->twin();
+    for (std::size_t i = only.value_or(0); i < (only ? *only + 1 : twin.joints()); ++i)
+    {
+      twin.drive(i).setTemperature(twin.stamp(), temperature);
+    }
+  }
+
   double time() const
   {
     in_use_.refuse();
@@ -306,6 +331,14 @@ public:
 private:
   static constexpr double MAX_WRENCH = 1000.0;  // as of the node's ~wrench [N], [N.m]
   static constexpr double LONGEST = 1e6;        // [s]
+
+  static void requirePayload(const Payload& payload)
+  {
+    if (const std::string errors = payloadErrors(payload); !errors.empty())
+    {
+      throw InputError("payload: " + errors);
+    }
+  }
 
   double seconds() const { return toSeconds(moving_->twin().stamp() - moving_->motionBegin()); }
 
@@ -356,6 +389,8 @@ void bindArm(py::module& module)
       .def("run", &ArmObject::run, py::arg("duration"), py::arg("rate") = py::none())
       .def("inject_fault", &ArmObject::injectFault, py::arg("fault"))
       .def("set_wrench", &ArmObject::setWrench, py::arg("force"), py::arg("moment"))
+      .def("set_payload", &ArmObject::setPayload, py::arg("mass"), py::arg("centre"))
+      .def("set_temperature", &ArmObject::setTemperature, py::arg("temperature"), py::arg("joint") = py::none())
       .def("reset", &ArmObject::reset)
       .def_property_readonly("time", &ArmObject::time)
       .def_property_readonly("joints", &ArmObject::joints)
