@@ -201,7 +201,8 @@ def judge_cell(tool, work, config, cell):
     if code < 0 or code not in (0, 1) or (document is None and "joint_twin: " not in message):
         return judge.CRASHED, float("nan"), message
     if document is None:
-        return judge.REFUSED, float("nan"), message.splitlines()[-1].split(": ", 2)[-1].replace(work + os.sep, "").strip()
+        reason = message.splitlines()[-1].split(": ", 2)[-1]
+        return judge.REFUSED, float("nan"), reason.replace(work + os.sep, "").strip()
     if not np.all(np.isfinite(angles)):
         return judge.NOT_FINITE, float("nan"), ""
     _, _, finer, why = moved(FINER * RATE)
