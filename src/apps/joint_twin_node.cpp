@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <filesystem>
 #include <sstream>
 #include <string>
@@ -149,6 +150,39 @@ std::vector<hjt::Parameters> drivesOf(const hjt::ArmDescription& arm, const hjt:
   return parameters;
 }
 
+/// Shipped arms with the joints of this one, with the parameters of this node over those of every joint; none: it is
+/// not one of them, or is taken at its word.
+hjt::ArmWatch::MakeCandidates otherArms(const hjt::ArmDescription& arm, const std::string& name,
+                                        const hjt::ParameterMap& overrides)
+{
+  const auto directory = hjt::configurationDirectory("");
+  const std::vector<std::string> names = hjt::armsLike(arm, directory);
+  if (std::find(names.begin(), names.end(), name) == names.end())
+  {
+    return {};
+  }
+  return [directory, names, overrides]
+  {
+    std::vector<hjt::ArmCandidate> candidates;
+    for (const std::string& shipped : names)
+    {
+      hjt::ArmCandidate& candidate = candidates.emplace_back();
+      candidate.name = shipped;
+      candidate.arm = hjt::readArmDescription(hjt::findArm(shipped, directory));
+      for (const hjt::ArmJoint& joint : candidate.arm.joints)
+      {
+        hjt::ParameterMap map = hjt::armJointParameters(joint, directory, {});
+        for (const auto& [key, value] : overrides)
+        {
+          map[key] = value;
+        }
+        hjt::takeInertiaInLoad(candidate.joints.emplace_back(hjt::parseParameters(map)));
+      }
+    }
+    return candidates;
+  };
+}
+
 /// Whether the node is to be the arm. @throws ParameterError if it is not said.
 bool inPlaceOfArm(const hjt::ParameterMap& overrides)
 {
@@ -199,7 +233,11 @@ void runArm(ros::NodeHandle& node, const std::string& name, const hjt::FoundPara
   }
   else
   {
-    run<hjt::TrackerNode>(node, arm, parameters, soundJointsOf(reference, arm, parameters), !identified.empty());
+    const bool is_open = identified.empty() && description.empty();
+    run<hjt::TrackerNode>(
+        node,
+        hjt::TrackerNode::Arm{ arm, parameters, soundJointsOf(reference, arm, parameters), !identified.empty(), name,
+                               is_open ? otherArms(arm, name, overrides) : hjt::ArmWatch::MakeCandidates() });
   }
 }
 }  // namespace

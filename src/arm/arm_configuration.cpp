@@ -29,6 +29,44 @@ std::string findArm(const std::string& name, const fs::path& directory)
   return shipped.string();
 }
 
+std::vector<fs::path> armFiles(const fs::path& directory)
+{
+  std::vector<fs::path> files;
+  std::error_code error;  // a configuration of one's own may have none
+  for (const fs::directory_entry& entry : fs::directory_iterator(directory / "arms", error))
+  {
+    if (entry.path().extension() == ".yaml")
+    {
+      files.push_back(entry.path());
+    }
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::vector<std::string> jointNames(const ArmDescription& arm)
+{
+  std::vector<std::string> names;
+  for (const ArmJoint& joint : arm.joints)
+  {
+    names.push_back(joint.name);
+  }
+  return names;
+}
+
+std::vector<std::string> armsLike(const ArmDescription& arm, const fs::path& directory)
+{
+  std::vector<std::string> names;
+  for (const fs::path& file : armFiles(directory))
+  {
+    if (jointNames(readArmDescription(file.string())) == jointNames(arm))
+    {
+      names.push_back(file.stem().string());
+    }
+  }
+  return names;
+}
+
 std::optional<std::size_t> findJoint(const ArmDescription& arm, const std::string& name)
 {
   const auto found = std::find_if(arm.joints.begin(), arm.joints.end(),

@@ -18,6 +18,15 @@ namespace hjt
 /// @throws ParameterError if there is neither.
 std::string findArm(const std::string& name, const std::filesystem::path& directory);
 
+/// Files of the arms there, by name.
+std::vector<std::filesystem::path> armFiles(const std::filesystem::path& directory);
+
+/// The names of the joints, from the base on.
+std::vector<std::string> jointNames(const ArmDescription& arm);
+
+/// Names of the arms there whose joints have the same names. @throws ParameterError.
+std::vector<std::string> armsLike(const ArmDescription& arm, const std::filesystem::path& directory);
+
 /// The joint of this name or short name; none: the arm has none.
 std::optional<std::size_t> findJoint(const ArmDescription& arm, const std::string& name);
 

@@ -295,14 +295,22 @@ FoundLoad LoadFit::solve(const std::vector<bool>& counts)
            data.findMounting(ofJoints(data.rows, counts, true), of_links) };
 }
 
-LoadProblem::Fit LoadFit::explained(const std::vector<bool>& counts)
+LoadProblem::Fit LoadFit::explained(const std::vector<bool>& counts, double size)
 {
   constexpr double OTHER_MOUNTING = 10.0;  // logarithm of how much rarer it is
   constexpr double GRAVITY_SIZE = 0.1;     // deviation of its size: else it is none [-]
   data_->closeAll();
-  const std::vector<Rows> joints = ofJoints(data_->rows, counts, true);
-  const LoadProblem::Fit upright = LoadProblem(joints, LoadProblem::Term::PAYLOAD).fit(data_->payload.mass);
-  const LoadProblem both(joints, LoadProblem::Term::BOTH);
+  std::vector<Rows> joints = ofJoints(data_->rows, counts, true);
+  for (Rows& rows : joints)
+  {
+    for (std::size_t k = 0; k < rows.size(); ++k)
+    {
+      rows.residuals[k] = (rows.residuals[k] + rows.predicted[k]) / size - rows.predicted[k];
+    }
+  }
+  const double friction = LoadProblem::ANY_FRICTION;  // a faulty joint is no other arm
+  const LoadProblem::Fit upright = LoadProblem(joints, LoadProblem::Term::PAYLOAD, friction).fit(data_->payload.mass);
+  const LoadProblem both(joints, LoadProblem::Term::BOTH, friction);
   LoadProblem::Fit mounted = both.fit(data_->payload.mass);
   mounted.cost += OTHER_MOUNTING;
   if (mounted.cost < upright.cost)

@@ -21,8 +21,17 @@ constexpr double KNOWN_MASS = 10.0;
 constexpr double KNOWN_MOMENT = 2.0;
 constexpr double KNOWN_GRAVITY = 10.0;
 constexpr double FIXED = 1e-6;
-/// Gain [-], Coulomb friction [A], viscous [A.s/rad], offset [A].
-constexpr std::array<double, LoadProblem::NUISANCES> KNOWN{ 0.05, 0.3, 0.3, 0.03 };
+constexpr double KNOWN_GAIN = 0.05;
+constexpr double KNOWN_OFFSET = 0.03;  // [A]
+
+/// How much rarer an arm's joints are whose gain, Coulomb and viscous friction and offset are these: a fault may add any
+/// friction (Cauchy), gains and offsets are normally distributed, logarithm.
+double rareness(const Eigen::Vector4d& own)
+{
+  const auto squared = [&](int term, double deviation) { return 0.5 * std::pow(own[term] / deviation, 2); };
+  return squared(0, KNOWN_GAIN) + std::log1p(squared(1, LoadProblem::SOUND_FRICTION)) +
+         std::log1p(squared(2, LoadProblem::SOUND_FRICTION)) + squared(3, KNOWN_OFFSET);
+}
 
 /// All but those of one of PARTS parts of the time.
 std::vector<LoadProblem::Rows> without(const std::vector<LoadProblem::Rows>& rows, int part, double begin, double end)
@@ -51,7 +60,8 @@ void LoadProblem::Rows::add(const Rows& from, std::size_t row)
   touched.push_back(from.touched[row]);
 }
 
-LoadProblem::LoadProblem(std::vector<Rows> rows, Term term) : rows_(std::move(rows))
+LoadProblem::LoadProblem(std::vector<Rows> rows, Term term, double friction)
+  : rows_(std::move(rows)), known_own_{ KNOWN_GAIN, friction, friction, KNOWN_OFFSET }
 {
   known_.setConstant(FIXED);
   if (term != Term::GRAVITY)
@@ -104,7 +114,7 @@ LoadProblem::Fit LoadProblem::fit(double mass) const
   for (std::size_t i = 0; i < rows_.size(); ++i)
   {
     const Eigen::Vector4d own = all.segment<NUISANCES>(static_cast<Eigen::Index>(SHARED + NUISANCES * i));
-    cost += 0.5 * (own.array() / Eigen::Map<const Eigen::Array4d>(KNOWN.data())).square().sum();
+    cost += rareness(own);
     Columns values;
     values << all.head<SHARED>(), own;
     for (std::size_t k = 0; k < rows_[i].size(); ++k)
@@ -130,7 +140,7 @@ Eigen::VectorXd LoadProblem::solveAll(const std::vector<Rows>& rows, Eigen::Matr
   known.head<SHARED>() = known_;
   for (Eigen::Index own = SHARED; own < size; own += NUISANCES)
   {
-    known.segment<NUISANCES>(own) = Eigen::Map<const Eigen::Vector4d>(KNOWN.data());
+    known.segment<NUISANCES>(own) = Eigen::Map<const Eigen::Vector4d>(known_own_.data());
   }
   Eigen::VectorXd all = Eigen::VectorXd::Zero(size);
   constexpr int ROUNDS = 5;

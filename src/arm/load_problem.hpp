@@ -47,7 +47,11 @@ public:
     BOTH
   };
 
-  LoadProblem(std::vector<Rows> rows, Term term);
+  static constexpr double SOUND_FRICTION = 0.3;  ///< by which that of sound joints differs, deviation [A], [A.s/rad]
+  static constexpr double ANY_FRICTION = 2.0;    ///< that of faulty ones, likewise
+
+  /// `friction`: deviation of the Coulomb and of the viscous friction from the twin's [A], [A.s/rad].
+  LoadProblem(std::vector<Rows> rows, Term term, double friction = SOUND_FRICTION);
 
   struct Solution
   {
@@ -73,6 +77,7 @@ private:
            Eigen::VectorXd& right) const;
 
   std::vector<Rows> rows_;
-  Shared known_;  // to which each term is known before
+  Shared known_;                             // to which each term is known before
+  std::array<double, NUISANCES> known_own_;  // likewise
 };
 }  // namespace hjt

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "recordings/arm_ranking.hpp"
 #include "recordings/load_collector.hpp"
+#include "recordings/recorded_ranking.hpp"
 
 namespace hjt
 {
@@ -81,21 +81,14 @@ ArmAssessment pass(const ArmRecording& recording, const AssessmentSettings& sett
   }
   return arm;
 }
-/// Where another arm is clearly likelier nothing is judged of the joints that this one's load may be wrong for.
+
+/// Where another arm is clearly likelier.
 void nameOther(const ArmRecording& recording, std::vector<Misfit>& misfits)
 {
-  const auto may_be_other = [](const Misfit& misfit)
-  { return !misfit.exists() || misfit.reason == Reason::LOAD_WRONG; };
-  if (std::none_of(misfits.begin(), misfits.end(), may_be_other))
-  {
-    return;
-  }
-  const std::string other = betterArm(recording);
+  const std::string other = mayBeOtherArm(misfits) ? betterArm(recording) : std::string();
   if (!other.empty())
   {
-    const Misfit misfit{ Reason::LOAD_WRONG,
-                         "the arm may be a " + other + ": it explains the currents clearly better" };
-    std::replace_if(misfits.begin(), misfits.end(), may_be_other, misfit);
+    nameOtherArm(other, misfits);
   }
 }
 }  // namespace

@@ -236,15 +236,30 @@ MotionFindings ArmRecording::readJoint(const VisitRows& visit, double end) const
   return found;
 }
 
-MotionFindings ArmRecording::readArm(const VisitRows& visit, RecordingFit& fit, double end) const
+MotionCount ArmRecording::readArmRows(const std::function<bool(const std::vector<MotionRow>&)>& visit) const
 {
   std::vector<std::string> names;
   for (const ArmJoint& joint : arm_.joints)
   {
     names.push_back(affixes_(joint.name));
   }
+  return isFile() ? readArmMotion(source_, names, visit, watch_.progress("reading")) : readRows(visit);
+}
+
+void ArmRecording::readEfforts(const VisitMotion& visit, double end) const
+{
+  readArmRows(
+      [&](const std::vector<MotionRow>& rows)
+      {
+        visit(rows);
+        return !watch_.stopped() && rows.front().time < end;
+      });
+}
+
+MotionFindings ArmRecording::readArm(const VisitRows& visit, RecordingFit& fit, double end) const
+{
   ArmLoad load(arm_);
-  std::vector<ArmJointRow> rows(names.size());
+  std::vector<ArmJointRow> rows(arm_.joints.size());
   std::vector<MotionRow> in_current;
   MotionFindings findings;
   findings.has_load = has_load_;
@@ -278,8 +293,7 @@ MotionFindings ArmRecording::readArm(const VisitRows& visit, RecordingFit& fit, 
     forward(false);
     return !watch_.stopped() && motion.front().time < end;
   };
-  static_cast<MotionCount&>(findings) =
-      isFile() ? readArmMotion(source_, names, take, watch_.progress("reading")) : readRows(take);
+  static_cast<MotionCount&>(findings) = readArmRows(take);
   forward(true);
   findings.velocity_ratio = fit.stampFactor().value;
   fit.refuse(findings.misfit);

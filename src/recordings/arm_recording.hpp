@@ -28,6 +28,7 @@ class ArmRecording
 {
 public:
   using VisitRows = std::function<void(const std::vector<ArmJointRow>&)>;
+  using VisitMotion = std::function<void(const std::vector<MotionRow>&)>;
   using VisitSample = std::function<void(std::size_t, const MotionSample&)>;
 
   /// @throws ParameterError, InputError: unreadable, or without the load that is chosen.
@@ -60,6 +61,9 @@ public:
   /// The same without notices, up to `end` [s]; `fit` receives all rows of an arm.
   MotionFindings read(const VisitRows& visit, RecordingFit& fit, double end = HUGE_VAL) const;
 
+  /// Rows of an arm up to `end` [s], `current` the effort as recorded. @throws InputError.
+  void readEfforts(const VisitMotion& visit, double end) const;
+
   /// Gives notice of what does not fit in an arm: why a joint cannot be judged. Wrong stamps are said of the whole.
   void noticeOf(const RecordingFit& fit) const;
   /// And of the whole recording.
@@ -75,6 +79,7 @@ private:
   using Read = std::function<MotionFindings(const VisitRows&)>;
 
   MotionCount readRows(const std::function<bool(const std::vector<MotionRow>&)>& visit) const;
+  MotionCount readArmRows(const std::function<bool(const std::vector<MotionRow>&)>& visit) const;
   MotionFindings readJoint(const VisitRows& visit, double end) const;
   MotionFindings readArm(const VisitRows& visit, RecordingFit& fit, double end) const;
   MotionFindings readSamplesBy(const Read& read, const VisitSample& visit) const;

@@ -75,31 +75,6 @@ CheckedContents readMessageContents(const MotionSource& source)
   return contents;
 }
 
-std::vector<std::string> jointNames(const ArmDescription& arm)
-{
-  std::vector<std::string> names;
-  for (const ArmJoint& joint : arm.joints)
-  {
-    names.push_back(joint.name);
-  }
-  return names;
-}
-
-std::vector<fs::path> armFiles(const RecordingOptions& options)
-{
-  std::vector<fs::path> files;
-  std::error_code error;  // a configuration of one's own may have none
-  for (const fs::directory_entry& entry : fs::directory_iterator(configDirectory(options) / "arms", error))
-  {
-    if (entry.path().extension() == ".yaml")
-    {
-      files.push_back(entry.path());
-    }
-  }
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
 /// Of the joints at hand those of an arm that is not complete; all of them if there is none.
 void takeParts(const std::vector<std::string>& names, const CheckedContents& contents, CheckedArm& arm)
 {
@@ -216,22 +191,9 @@ CheckedContents readCheckedContents(const MotionSource& source)
   return isCsv(source) ? readTableContents(source) : readMessageContents(source);
 }
 
-std::vector<std::string> armsLike(const ArmDescription& arm, const RecordingOptions& options)
-{
-  std::vector<std::string> names;
-  for (const fs::path& file : armFiles(options))
-  {
-    if (jointNames(readArmDescription(file.string())) == jointNames(arm))
-    {
-      names.push_back(file.stem().string());
-    }
-  }
-  return names;
-}
-
 std::vector<CheckedArm> findArms(const RecordingOptions& options, const CheckedContents& contents)
 {
-  const std::vector<fs::path> files = armFiles(options);
+  const std::vector<fs::path> files = armFiles(configDirectory(options));
   std::vector<CheckedArm> arms = armsOfConfiguration(files, options, contents);
   if (!options.arm.empty())
   {

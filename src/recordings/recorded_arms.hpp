@@ -15,7 +15,4 @@ CheckedContents readCheckedContents(const MotionSource& source);
 /// fits.
 /// @throws InputError, ParameterError.
 std::vector<CheckedArm> findArms(const RecordingOptions& options, const CheckedContents& contents);
-
-/// Shipped arms whose joints have the same names. @throws ParameterError.
-std::vector<std::string> armsLike(const ArmDescription& arm, const RecordingOptions& options);
 }  // namespace hjt

@@ -11,6 +11,7 @@
 #include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "recordings/recorded_arms.hpp"
+#include "recordings/recorded_ranking.hpp"
 #include "tracking/effort.hpp"
 #include "tracking/joint_evidence.hpp"
 #include "tracking/verdict.hpp"

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "arm/arm_ranking.hpp"
 #include "recordings/arm_assessment.hpp"
-#include "recordings/arm_ranking.hpp"
 #include "recordings/arm_recording.hpp"
 
 #include "tracking/stream_timing.hpp"

@@ -55,7 +55,7 @@ JointTracker::JointTracker(ros::NodeHandle& node, const Parameters& parameters, 
   , takes_arm_load_(parameters.telemetry.load == LoadSource::ARM)
   , thermal_model_(parameters.thermal.model)
   , ratio_(nominalRatio(parameters.gear))
-  , current_per_effort_(currentPerEffort(parameters))
+  , current_per_effort_(hjt::currentPerEffort(parameters))
   // Built before the first row is read, so that the same rows give the same numbers.
   , tracker_(parameters, parameters.input.mode, nodeSurfaceSource(false))
   , verdict_(tracker_, is_identified, sound.own)

@@ -74,6 +74,7 @@ public:
                TelemetryStream& stream, std::mutex& mutex);
 
   const std::string& joint() const { return names_.joint; }
+  double currentPerEffort() const { return current_per_effort_; }  ///< [A], [A/(N.m)]
   /// Its load comes with `pushLoad` from the motion of the whole arm.
   bool takesArmLoad() const { return takes_arm_load_; }
 

@@ -24,8 +24,6 @@ namespace
 {
 /// Between two warnings of the same kind [s].
 constexpr double WARNING_PERIOD = 5.0;
-/// Between two looks at what does not fit [s].
-constexpr double FIT_PERIOD = 1.0;
 /// Between two verdicts [s].
 constexpr double VERDICT_PERIOD = 1.0;
 /// Wait for the first message before it is missed [s].
@@ -65,16 +63,15 @@ TrackerNode::TrackerNode(ros::NodeHandle& node, const Parameters& parameters)
   subscribe(node);
 }
 
-TrackerNode::TrackerNode(ros::NodeHandle& node, const ArmDescription& arm, const std::vector<Parameters>& parameters,
-                         const std::vector<SoundJoint>& sound, bool is_identified)
-  : arm_load_(arm), fit_(parameters), repeat_tolerance_(parameters.front().comparison.repeat_tolerance)
+TrackerNode::TrackerNode(ros::NodeHandle& node, const Arm& arm)
+  : arm_load_(arm.description), fit_(arm.joints), repeat_tolerance_(arm.joints.front().comparison.repeat_tolerance)
 {
   for (std::size_t i = 0; i < arm.joints.size(); ++i)
   {
-    addJoint(ros::NodeHandle(jointName(arm.joints[i])), parameters[i], sound[i], is_identified);
+    addJoint(ros::NodeHandle(jointName(arm.description.joints[i])), arm.joints[i], arm.sound[i], arm.is_identified);
   }
   std::vector<double> frictions;
-  for (const SoundJoint& joint : sound)
+  for (const SoundJoint& joint : arm.sound)
   {
     const double friction = FrictionPoints::ratioOf(joint.own.friction);
     frictions.push_back(friction > 0.0 ? friction : 1.0);
@@ -87,7 +84,11 @@ TrackerNode::TrackerNode(ros::NodeHandle& node, const ArmDescription& arm, const
   friction_.emplace(std::move(trackers), repeat_tolerance_, std::move(frictions));
   if (std::all_of(joints_.begin(), joints_.end(), [](const auto& joint) { return joint->takesArmLoad(); }))
   {
-    load_.emplace(arm, parameters);
+    load_.emplace(arm.description, arm.joints);
+    if (arm.candidates)
+    {
+      arm_.emplace(arm.candidates, arm.name);
+    }
   }
   subscribe(node);
 }
@@ -201,11 +202,7 @@ void TrackerNode::push(Stamp stamp)
   }
   if (moved || time < last_time_ - StreamTiming::RESTART)
   {
-    resetFit();
-    if (load_)
-    {
-      load_->reset();
-    }
+    restart();
   }
   if (moved && arm_load_)
   {
@@ -242,6 +239,7 @@ void TrackerNode::push(Stamp stamp)
     take(*sample);
   }
   lookAtLoad();
+  watchArm();
 }
 
 void TrackerNode::take(const ArmSample& sample)
@@ -293,23 +291,6 @@ void TrackerNode::lookAtFriction(double time)
   for (std::size_t i = 0; i < joints_.size(); ++i)
   {
     joints_[i]->setArmFriction(found.temperature ? 1.0 : found.factors[i]);
-  }
-}
-
-void TrackerNode::updateFit(const ArmSample& sample)
-{
-  fit_->update(sample.joints, sample.torques);
-  const double time = sample.joints.front().time;
-  if (time < next_fit_)
-  {
-    return;
-  }
-  next_fit_ = time + FIT_PERIOD;
-  const bool settled = fit_->isSettled() && (!load_ || load_->isSettled());
-  const std::vector<Misfit> misfits = fit_->whyNotJudged();
-  for (std::size_t i = 0; i < joints_.size(); ++i)
-  {
-    joints_[i]->setMisfit(misfits[i], settled);
   }
 }
 

@@ -15,6 +15,7 @@
 #include <sensor_msgs/Temperature.h>
 
 #include "arm/arm_load.hpp"
+#include "arm/arm_watch.hpp"
 #include "arm/load_watch.hpp"
 #include "arm/recording_fit.hpp"
 #include "ros_io/joint_tracker.hpp"
@@ -30,10 +31,19 @@ public:
   /// Of one joint. @param parameters with input.mode other than commands. @throws ParameterError.
   TrackerNode(ros::NodeHandle& node, const Parameters& parameters);
 
-  /// Of an arm: parameters of each of its joints, and what is known of them when they were sound. `is_identified`:
-  /// their friction is that of this very arm. @throws ParameterError.
-  TrackerNode(ros::NodeHandle& node, const ArmDescription& arm, const std::vector<Parameters>& parameters,
-              const std::vector<SoundJoint>& sound, bool is_identified);
+  /// The arm beside the node.
+  struct Arm
+  {
+    ArmDescription description;
+    std::vector<Parameters> joints;
+    std::vector<SoundJoint> sound;        ///< what is known of each when it was sound
+    bool is_identified{};                 ///< the joints' friction is that of this very arm
+    std::string name;                     ///< of a shipped one that may be another
+    ArmWatch::MakeCandidates candidates;  ///< none: it is taken at its word
+  };
+
+  /// @throws ParameterError.
+  TrackerNode(ros::NodeHandle& node, const Arm& arm);
 
 private:
   using JointStateEvent = ros::MessageEvent<const sensor_msgs::JointState>;
@@ -48,7 +58,9 @@ private:
   void push(Stamp stamp);
   void take(const ArmSample& sample);
   void addToLoad(const ArmSample& sample);
+  void watchArm();
   void resetFit();
+  void restart();
   void lookAtFriction(double time);
   void lookAtLoad();
   JudgedJoints judgedJoints() const;
@@ -63,6 +75,8 @@ private:
   std::optional<ArmLoad> arm_load_;
   std::optional<RecordingFit> fit_;  // of an arm
   std::optional<LoadWatch> load_;
+  std::optional<ArmWatch> arm_;  // which it is
+  std::vector<MotionRow> efforts_;
   std::optional<ArmFrictionWatch> friction_;
   const double repeat_tolerance_;  // comparison.repeat_tolerance [-]
   ros::WallTime next_verdict_;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Payload and mounting that an arm's currents show.
+// Payload and mounting that an arm's currents show, and whether it is another arm.
 #include "ros_io/tracker_node.hpp"
 
 #include <algorithm>
+#include <exception>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,9 +12,78 @@
 
 namespace hjt
 {
+namespace
+{
+/// Between two looks at what does not fit [s].
+constexpr double FIT_PERIOD = 1.0;
+}  // namespace
+
+/// Other rows follow.
+void TrackerNode::restart()
+{
+  resetFit();
+  if (load_)
+  {
+    load_->reset();
+  }
+  if (arm_)
+  {
+    arm_->reset();
+  }
+}
+
+void TrackerNode::updateFit(const ArmSample& sample)
+{
+  fit_->update(sample.joints, sample.torques);
+  const double time = sample.joints.front().time;
+  if (time < next_fit_)
+  {
+    return;
+  }
+  next_fit_ = time + FIT_PERIOD;
+  const bool settled = fit_->isSettled() && (!load_ || load_->isSettled()) && (!arm_ || arm_->isSettled());
+  std::vector<Misfit> misfits = fit_->whyNotJudged();
+  if (arm_ && !arm_->other().empty())
+  {
+    nameOtherArm(arm_->other(), misfits);
+  }
+  for (std::size_t i = 0; i < joints_.size(); ++i)
+  {
+    joints_[i]->setMisfit(misfits[i], settled);
+  }
+}
+
 void TrackerNode::addToLoad(const ArmSample& sample)
 {
   load_->add(sample, std::any_of(joints_.begin(), joints_.end(), [](const auto& joint) { return joint->isTouched(); }));
+}
+
+/// By the law of `joint_twin compare`.
+void TrackerNode::watchArm()
+{
+  if (!arm_)
+  {
+    return;
+  }
+  efforts_ = rows_;
+  for (std::size_t i = 0; i < joints_.size(); ++i)
+  {
+    efforts_[i].current /= joints_[i]->currentPerEffort();
+  }
+  arm_->add(efforts_);
+  const std::string before = arm_->other();
+  try
+  {
+    if (arm_->look() && arm_->other() != before && !arm_->other().empty())
+    {
+      ROS_WARN_STREAM("The arm may be a " << arm_->other() << ": it explains the currents clearly better");
+    }
+  }
+  catch (const std::exception& error)  // files of the arms
+  {
+    ROS_WARN_STREAM("Whether the arm is another is not looked at: " << error.what());
+    arm_.reset();
+  }
 }
 
 JudgedJoints TrackerNode::judgedJoints() const

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "arm/arm_ranking.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "arm/arm_load.hpp"
+#include "arm/load_fit.hpp"
+#include "arm/recording_fit.hpp"
+#include "params/choices.hpp"
+#include "tracking/effort.hpp"
+#include "tracking/motion_driven.hpp"
+
+namespace hjt
+{
+namespace
+{
+constexpr double PERIOD = 0.02;  // of the rows that count, at least [s]
+
+std::vector<double> gainsOf(const std::vector<Parameters>& joints)
+{
+  std::vector<double> gains;
+  for (const Parameters& joint : joints)
+  {
+    gains.push_back(joint.telemetry.torque_per_current);
+  }
+  return gains;
+}
+
+/// With efforts of that unit.
+std::vector<Parameters> withUnit(std::vector<Parameters> joints, EffortUnit unit)
+{
+  for (Parameters& joint : joints)
+  {
+    joint.telemetry.effort = unit;
+  }
+  return joints;
+}
+
+/// The currents of an arm's rows beside those of its twins.
+class ArmTrial
+{
+public:
+  ArmTrial(const ArmCandidate& candidate, EffortUnit unit) : ArmTrial(candidate, withUnit(candidate.joints, unit)) {}
+
+  void push(const std::vector<MotionRow>& rows)
+  {
+    rows_ = rows;
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+    {
+      rows_[i].current *= twins_[i].currentPerEffort();
+    }
+    load_.push(rows_);
+    forward(false);
+  }
+
+  void end() { forward(true); }
+
+  ArmFit fit()
+  {
+    std::vector<bool> measured;
+    for (std::size_t i = 0; i < twins_.size(); ++i)
+    {
+      measured.push_back(fit_.isMeasured(i));
+    }
+    constexpr double OTHER_SIZE = 20.0;  // logarithm of how much rarer it is
+    constexpr double CLEAR = 0.3;        // of its logarithm: payloads and gains make less
+    const LoadProblem::Fit usual = load_fit_.explained(measured);
+    const double size = fit_.effort().factor.value;
+    if (size > 0.0 && std::abs(std::log(size)) > CLEAR)
+    {
+      const LoadProblem::Fit other = load_fit_.explained(measured, size);
+      if (other.cost + OTHER_SIZE < usual.cost)
+      {
+        return { name_, unit_, size, other.left, other.cost + OTHER_SIZE + cost_ };
+      }
+    }
+    return { name_, unit_, 1.0, usual.left, usual.cost + cost_ };
+  }
+
+  /// The unit of the efforts that leaves clearly less than the configured one.
+  EffortUnit likeliestUnit() const
+  {
+    constexpr double CLEARLY = 0.5;
+    EffortUnit best = unit_;
+    for (const EffortUnit unit : { EffortUnit::CURRENT, EffortUnit::JOINT_TORQUE, EffortUnit::MOTOR_TORQUE })
+    {
+      best = fit_.loadRest(unit).share() < CLEARLY * fit_.loadRest(best).share() ? unit : best;
+    }
+    return best;
+  }
+
+private:
+  ArmTrial(const ArmCandidate& candidate, const std::vector<Parameters>& joints)
+    : name_(candidate.name)
+    , unit_(joints.front().telemetry.effort)
+    , cost_(candidate.cost)
+    , load_(candidate.arm)
+    , fit_(joints)
+    , load_fit_(candidate.arm, gainsOf(joints))
+    , twins_(joints.begin(), joints.end())
+    , predicted_(joints.size())
+  {
+  }
+
+  void forward(bool at_end)
+  {
+    while (const ArmSample* sample = load_.pop(at_end))
+    {
+      fit_.update(sample->joints, sample->torques);
+      samples_ = sample->own;
+      for (std::size_t i = 0; i < samples_.size(); ++i)
+      {
+        samples_[i].load = sample->torques[i];
+        predicted_[i] = twins_[i].step(samples_[i]).current;
+      }
+      if (samples_.front().time >= last_time_ + PERIOD)
+      {
+        last_time_ = samples_.front().time;
+        load_fit_.add(samples_, predicted_);
+      }
+    }
+  }
+
+  std::string name_;
+  EffortUnit unit_;
+  double cost_;
+  ArmLoad load_;
+  RecordingFit fit_;
+  LoadFit load_fit_;
+  std::vector<MotionDriven> twins_;
+  std::vector<MotionRow> rows_;
+  std::vector<MotionSample> samples_;
+  std::vector<double> predicted_;  // [A]
+  double last_time_{ -HUGE_VAL };  // that counted [s]
+};
+
+using Trials = std::vector<std::unique_ptr<ArmTrial>>;
+
+void play(const PlayArmRows& rows, const Trials& trials)
+{
+  rows(
+      [&](const std::vector<MotionRow>& of_one_time)
+      {
+        for (const auto& trial : trials)
+        {
+          trial->push(of_one_time);
+        }
+      });
+  for (const auto& trial : trials)
+  {
+    trial->end();
+  }
+}
+
+bool mayBeOther(const Misfit& misfit)
+{
+  return !misfit.exists() || misfit.reason == Reason::LOAD_WRONG;
+}
+}  // namespace
+
+std::vector<ArmFit> rankArms(const std::vector<ArmCandidate>& candidates, const PlayArmRows& rows, bool unit_is_given)
+{
+  Trials trials;
+  for (const ArmCandidate& candidate : candidates)
+  {
+    trials.push_back(std::make_unique<ArmTrial>(candidate, candidate.joints.front().telemetry.effort));
+  }
+  play(rows, trials);
+  Trials others;  // of another unit than configured
+  for (std::size_t i = 0; i < candidates.size() && !unit_is_given; ++i)
+  {
+    const EffortUnit unit = trials[i]->likeliestUnit();
+    if (unit != candidates[i].joints.front().telemetry.effort)
+    {
+      trials[i].reset();
+      others.push_back(std::make_unique<ArmTrial>(candidates[i], unit));
+    }
+  }
+  if (!others.empty())
+  {
+    play(rows, others);
+  }
+  std::vector<ArmFit> fits;
+  auto other = others.begin();
+  for (const auto& trial : trials)
+  {
+    fits.push_back(trial ? trial->fit() : (*other++)->fit());
+  }
+  std::stable_sort(fits.begin(), fits.end(), [](const ArmFit& a, const ArmFit& b) { return a.cost < b.cost; });
+  return fits;
+}
+
+std::string betterArm(const std::vector<ArmFit>& ranked, const std::string& own)
+{
+  const auto given = std::find_if(ranked.begin(), ranked.end(), [&](const ArmFit& fit) { return fit.arm == own; });
+  return given != ranked.end() && ranked.front().isBetter(*given, ArmFit::CONTRADICTED) ? ranked.front().arm :
+                                                                                          std::string();
+}
+
+void nameOtherArm(const std::string& other, std::vector<Misfit>& misfits)
+{
+  const Misfit misfit{ Reason::LOAD_WRONG, "the arm may be a " + other + ": it explains the currents clearly better" };
+  std::replace_if(misfits.begin(), misfits.end(), mayBeOther, misfit);
+}
+
+bool mayBeOtherArm(const std::vector<Misfit>& misfits)
+{
+  return std::any_of(misfits.begin(), misfits.end(), mayBeOther);
+}
+}  // namespace hjt

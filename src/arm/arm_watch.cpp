@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "arm/arm_watch.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+
+namespace hjt
+{
+bool ArmWatch::moves(const std::vector<MotionRow>& rows)
+{
+  constexpr double MOVED = 0.01;  // beyond play and noise [rad]
+  constexpr double STILL = 1.0;   // [s]
+  moved_from_.resize(rows.size(), HUGE_VAL);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+  {
+    if (!(std::abs(rows[i].position - moved_from_[i]) < MOVED))
+    {
+      moved_from_[i] = rows[i].position;
+      last_moved_ = rows[i].time;
+    }
+  }
+  return rows.front().time < last_moved_ + STILL;
+}
+
+void ArmWatch::add(const std::vector<MotionRow>& rows)
+{
+  constexpr double GAP = 0.1;  // a longer step is no motion [s]
+  const double step = rows.front().time - last_time_;
+  if (step < PERIOD || !moves(rows))
+  {
+    return;
+  }
+  last_time_ = rows.front().time;
+  moved_ += step < GAP ? step : 0.0;
+  if (moved_ >= 0.0 && moved_ <= ArmFit::ENOUGH)
+  {
+    rows_.push_back(rows);
+  }
+  if (moved_ >= next_look_ && !answer_.valid())
+  {
+    ask();
+  }
+}
+
+void ArmWatch::ask()
+{
+  const bool is_last = moved_ >= ArmFit::ENOUGH;
+  std::vector<std::vector<MotionRow>> rows;
+  is_last ? rows.swap(rows_) : void(rows = rows_);
+  moved_ = is_last ? -REST : moved_;
+  next_look_ = is_last ? FIRST_LOOK : 2.0 * next_look_;
+  answer_ = std::async(std::launch::async,
+                       [this, rows = std::move(rows)]
+                       {
+                         const PlayArmRows play = [&](const VisitArmRows& visit)
+                         {
+                           for (std::size_t i = 0; i < rows.size() && !is_stopped_; ++i)
+                           {
+                             visit(rows[i]);
+                           }
+                         };
+                         return betterArm(rankArms(make_(), play, false), own_);
+                       });
+}
+
+bool ArmWatch::look()
+{
+  if (!answer_.valid() || answer_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
+  {
+    return false;
+  }
+  other_ = answer_.get();
+  is_settled_ = true;
+  return true;
+}
+
+void ArmWatch::reset()
+{
+  rows_.clear();
+  moved_from_.clear();
+  moved_ = 0.0;
+  next_look_ = FIRST_LOOK;
+  last_moved_ = last_time_ = -HUGE_VAL;
+}
+}  // namespace hjt

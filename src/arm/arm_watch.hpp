@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <atomic>
+#include <cmath>
+#include <functional>
+#include <future>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "arm/arm_ranking.hpp"
+
+namespace hjt
+{
+/// Whether an arm is another than given, by the law of `rankArms`, while its rows come: asked after 30, 60 and 120 s of
+/// motion, and after eight minutes all over again. A thread of its own works each time some seconds; rows of motion
+/// alone are kept for it.
+class ArmWatch
+{
+public:
+  /// Makes the arms to choose from, `own` among them, in that thread.
+  using MakeCandidates = std::function<std::vector<ArmCandidate>()>;
+
+  ArmWatch(MakeCandidates make, std::string own) : make_(std::move(make)), own_(std::move(own)) {}
+  ~ArmWatch() { is_stopped_ = true; }
+  ArmWatch(const ArmWatch&) = delete;
+  ArmWatch& operator=(const ArmWatch&) = delete;
+
+  /// Rows of all joints at one time, `current` the effort as it comes.
+  void add(const std::vector<MotionRow>& rows);
+  /// Other rows follow.
+  void reset();
+
+  /// True: an answer has come. @throws what the making of the arms threw.
+  bool look();
+
+  /// Clearly likelier than the one given; empty: none is known.
+  const std::string& other() const { return other_; }
+  /// It has an answer.
+  bool isSettled() const { return is_settled_; }
+
+private:
+  static constexpr double FIRST_LOOK = 30.0;  // of motion [s]
+  static constexpr double REST = 480.0;       // likewise, until the next first look
+  static constexpr double PERIOD = 0.006;     // of the rows that are kept, at least [s]
+
+  bool moves(const std::vector<MotionRow>& rows);
+  void ask();
+
+  MakeCandidates make_;
+  std::string own_;
+  std::string other_;
+  bool is_settled_{};
+  std::vector<std::vector<MotionRow>> rows_;
+  std::vector<double> moved_from_;  // angles where the joints last stood [rad]
+  double last_moved_{ -HUGE_VAL };  // [s]
+  double last_time_{ -HUGE_VAL };   // of a row that is kept [s]
+  double moved_{};                  // since the last start, but for the rest [s]
+  double next_look_{ FIRST_LOOK };
+  std::atomic<bool> is_stopped_{ false };
+  std::future<std::string> answer_;  // last: it is waited for before the rest goes
+};
+}  // namespace hjt

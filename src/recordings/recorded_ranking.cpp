@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "recordings/recorded_ranking.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "arm/arm_configuration.hpp"
+
+namespace hjt
+{
+namespace
+{
+/// Stated gains are exact, those of a type too where they are known: a few that agree tell the arm.
+double costOfGains(const ArmRecording& recording, const RecordingOptions& options)
+{
+  constexpr double KNOWN = 0.01;  // deviation of the logarithm
+  constexpr double MOST = 10.0;   // of one joint: where the type's is not known any may be
+  double cost = 0.0;
+  for (std::size_t i = 0; i < recording.joints().size(); ++i)
+  {
+    const double stated = recording.statedGains()[i];
+    if (std::isfinite(stated))
+    {
+      const double type = parseParameters(armJointParameters(recording.joints()[i], configDirectory(options), ""))
+                              .telemetry.torque_per_current;
+      cost += std::min(0.5 * std::pow(std::log(std::abs(stated) / type) / KNOWN, 2), MOST);
+    }
+  }
+  return cost;
+}
+}  // namespace
+
+std::vector<ArmFit> rankArms(const RecordingOptions& options, const std::vector<std::string>& names)
+{
+  RecordingOptions own = options;
+  own.load = LOAD_OF_ARM;
+  if (own.rows)
+  {
+    own.assignments.emplace_back("telemetry.effort=current");  // as such rows are
+  }
+  std::vector<ArmCandidate> candidates;
+  for (const std::string& name : names)
+  {
+    own.arm = name;
+    const ArmRecording recording(own);
+    candidates.push_back({ name, recording.arm(), recording.parameters(), costOfGains(recording, own) });
+  }
+  own.arm = names.front();
+  const ArmRecording recording(own);
+  const bool unit_is_given = std::any_of(own.assignments.begin(), own.assignments.end(),
+                                         [](const auto& text) { return text.find("telemetry.effort") == 0; });
+  const auto play = [&](const VisitArmRows& visit) { recording.readEfforts(visit, ArmFit::ENOUGH); };
+  return rankArms(candidates, play, unit_is_given);
+}
+
+std::string betterArm(const ArmRecording& recording)
+{
+  const RecordingOptions& options = recording.options();
+  const std::vector<std::string> names = armsLike(recording.arm(), configDirectory(options));
+  const bool is_shipped = std::find(names.begin(), names.end(), options.arm) != names.end();
+  return is_shipped ? betterArm(rankArms(options, names), options.arm) : std::string();
+}
+}  // namespace hjt
