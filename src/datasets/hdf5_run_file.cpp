@@ -327,6 +327,14 @@ void Hdf5RunFile::writeIndicators()
   {
     write(indicatorName(i), indicatorUnit(i), [i](W w) { return w.values[i]; });
   }
+  for (const LineSignal signal : ALL_LINE_SIGNALS)
+  {
+    for (std::size_t line = 0; line < LINE_COUNT && hasLine(signal, line); ++line)
+    {
+      const std::size_t i = amplitudeIndex(signal, line);
+      write(errorColumn(i).c_str(), indicatorUnit(i), [i](W w) { return w.uncertainty[i]; });
+    }
+  }
 }
 
 void Hdf5RunFile::finish(OrderedJson record)

@@ -9,6 +9,7 @@
 
 #include "datasets/plan.hpp"
 #include "datasets/run_duty.hpp"
+#include "harmonic_joint_twin/health/signal_indicators.hpp"
 #include "output/ordered_json.hpp"
 
 namespace hjt
@@ -18,6 +19,12 @@ constexpr const char* ROWS_WITHOUT_FORCES = "rows_without_forces";
 
 /// Of an arm's record: joint, reason and time of its protective stop, or empty.
 constexpr const char* PROTECTIVE_STOP = "protective_stop";
+
+/// Of the windows in a run's file, the standard error of a line and of its parts. `amplitude`: an indicator.
+inline std::string errorColumn(std::size_t amplitude)
+{
+  return std::string("window_error_") + indicatorName(amplitude);
+}
 
 /// What one run is written to. Nothing stands under its name before `finish`.
 class RunFile

@@ -241,7 +241,9 @@ double Baseline::variance(std::size_t indicator, const ReferenceBin& bin, const 
                           const Widening& widening) const noexcept
 {
   const double least = least_spread_ * bin.references[sizeOf(indicator)].mean;
-  const double square = std::max(left, average.error_square);
+  const double error_square = bin.references[indicator].error_square;
+  const double wider = error_square > 0.0 ? std::max(average.error_square / error_square, 1.0) : 1.0;
+  const double square = std::max(left * wider, average.error_square);
   return square * widening.stays + std::max(square * widening.varies, average.scatter_square / average.weight) +
          least * least + floor_[indicator] * floor_[indicator] + widening.carried;
 }

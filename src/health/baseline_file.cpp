@@ -74,20 +74,25 @@ ReferenceBin readBin(const YAML::Node& node)
     std::transform(entry.second.begin(), entry.second.end(), std::back_inserter(numbers),
                    [](const YAML::Node& number) { return yamlNumber(number); });
     const auto name = entry.first.as<std::string>();
+    const bool knows_error = numbers.size() == 5 || numbers.size() == 5 + PLACES + COMMON_CAUSES;
+    const double error = knows_error ? numbers[4] : 0.0;  // files of before have none
+    numbers.erase(numbers.begin() + (knows_error ? 4 : 0), numbers.begin() + (knows_error ? 5 : 0));
     const bool fitted = numbers.size() == 4 + PLACES + COMMON_CAUSES && node["place"];
     const bool finite =
         std::all_of(numbers.begin(), numbers.end(), [](double number) { return std::isfinite(number); });
-    if ((numbers.size() != 4 && !fitted) || !finite || numbers[0] < 1.0 || numbers[2] < 0.0 || numbers[3] < 0.0)
+    if ((numbers.size() != 4 && !fitted) || !finite || numbers[0] < 1.0 || numbers[2] < 0.0 || numbers[3] < 0.0 ||
+        !(error >= 0.0 && std::isfinite(error)))
     {
       throw InputError(name +
-                       " must be [windows >= 1, mean, spread >= 0, spread from window to window >= 0], and slopes over "
-                       "the bin's 'place' and shares of common causes or none");
+                       " must be [windows >= 1, mean, spread >= 0, spread from window to window >= 0, standard error "
+                       ">= 0], and slopes over the bin's 'place' and shares of common causes or none");
     }
     Reference& reference = bin.references[indicatorNamed(name)];
     reference.count = static_cast<int>(numbers[0]);
     reference.mean = numbers[1];
     reference.variance = numbers[2] * numbers[2];
     reference.within = numbers[3] * numbers[3];
+    reference.error_square = error * error;
     reference.fitted = fitted;
     if (fitted)
     {
@@ -159,8 +164,9 @@ void writeBaseline(const std::string& path, const Baseline& baseline, bool less_
          "K.\n"
          "# Place in it: temperature, its square, the load's mean magnitude, its part that stays over the angle, its "
          "parts over sine\n# and cosine of the angle, inertia.\n"
-         "# Each indicator: [windows, mean, spread, spread from one window to the next (0: not known), slopes over the "
-         "place, share\n# of the spread that goes with each common cause], units as in docs/indicators.md.\n"
+         "# Each indicator: [windows, mean, spread, spread from one window to the next and standard error by the fit "
+         "(0: not known),\n# slopes over the place, share of the spread that goes with each common cause], units as in "
+         "docs/indicators.md.\n"
          "format: "
       << FORMAT << "\nload_step: " << numberText(baseline.loadStep()) << "\nmodel: " << (less_model ? "true" : "false")
       << "  # whether a model's indicators were subtracted\nbaseline:\n";
@@ -187,7 +193,8 @@ void writeBaseline(const std::string& path, const Baseline& baseline, bool less_
       if (reference.count > 0)
       {
         text << "      " << indicatorName(i) << ": [" << reference.count << ", " << numberText(reference.mean) << ", "
-             << numberText(std::sqrt(reference.variance)) << ", " << numberText(std::sqrt(reference.within));
+             << numberText(std::sqrt(reference.variance)) << ", " << numberText(std::sqrt(reference.within))
+             << ", " << numberText(std::sqrt(reference.error_square));
         if (reference.fitted)
         {
           text << ", " << list(reference.slopes) << ", " << list(reference.common);

@@ -96,6 +96,7 @@ harmonic_joint_twin::Indicators makeIndicators(const Parameters& parameters)
   }
   message.values.resize(INDICATOR_COUNT);
   message.valid.resize(INDICATOR_COUNT);
+  message.errors.resize(INDICATOR_COUNT);
   return message;
 }
 
@@ -116,6 +117,7 @@ void fillIndicators(Stamp stamp, const SignalIndicators& indicators, harmonic_jo
   for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
   {
     fillOptional(indicators.values[i], message.values[i], message.valid[i]);
+    message.errors[i] = indicators.uncertainty[i];
   }
 }
 
@@ -141,6 +143,7 @@ SignalIndicators readIndicators(const harmonic_joint_twin::Indicators& message)
     if (place < count)
     {
       indicators.values[i] = optionalValue(message.values[place], message.valid[place] != 0);
+      indicators.uncertainty[i] = place < message.errors.size() ? message.errors[place] : 0.0;
     }
   }
   return indicators;

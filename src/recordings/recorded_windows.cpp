@@ -19,6 +19,8 @@ namespace hjt
 {
 namespace
 {
+constexpr const char* MD5_WITHOUT_ERRORS = "091d07ef25dd2e390a74058313d996a8";  // of Indicators.msg before it had errors
+
 bool isRun(const std::string& recording)
 {
   return std::filesystem::path(recording).extension() == ".h5";
@@ -35,6 +37,46 @@ bool makeSameWindows(Parameters one, const Parameters& other)
   one.indicators.signatures = other.indicators.signatures;
   one.indicators.error_factor = other.indicators.error_factor;
   return describeParameters(one) == describeParameters(other);
+}
+
+/// Files of before have none.
+void readErrors(const Columns& columns, std::vector<SignalIndicators>& windows)
+{
+  for (const LineSignal signal : ALL_LINE_SIGNALS)
+  {
+    for (std::size_t line = 0; line < LINE_COUNT && hasLine(signal, line); ++line)
+    {
+      const std::size_t amplitude = amplitudeIndex(signal, line);
+      const auto column = columns.find(errorColumn(amplitude));
+      const bool is_known = column != columns.end() && column->second.size() == windows.size();
+      for (std::size_t i = 0; is_known && i < windows.size(); ++i)
+      {
+        std::array<double, INDICATOR_COUNT>& errors = windows[i].uncertainty;
+        errors[amplitude] = column->second[i];
+        if (isPhaseLocked(line))
+        {
+          errors[cosineIndex(signal, line)] = errors[sineIndex(signal, line)] = column->second[i];
+        }
+      }
+    }
+  }
+}
+
+/// Of a bag; none if the bytes are another message.
+std::optional<harmonic_joint_twin::Indicators> readMessage(const rosbag::MessageInstance& instance)
+{
+  if (instance.getMD5Sum() != MD5_WITHOUT_ERRORS)
+  {
+    const auto message = instance.instantiate<harmonic_joint_twin::Indicators>();
+    return message ? std::make_optional(*message) : std::nullopt;
+  }
+  std::vector<std::uint8_t> bytes(instance.size() + sizeof(std::uint32_t));  // and an empty list
+  ros::serialization::OStream out(bytes.data(), instance.size());
+  instance.write(out);
+  ros::serialization::IStream in(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
+  harmonic_joint_twin::Indicators message;
+  ros::serialization::deserialize(in, message);
+  return message;
 }
 }  // namespace
 
@@ -101,6 +143,7 @@ std::optional<std::vector<SignalIndicators>> windowsOfRun(const std::string& rec
   {
     read(indicatorName(i), [i](W w, double value) { w.values[i] = value; });
   }
+  readErrors(columns, windows);
   for (std::size_t i = 0; i < windows.size(); ++i)
   {
     windows[i].windows = i + 1;
@@ -115,7 +158,7 @@ std::vector<SignalIndicators> publishedWindows(const std::string& path, const st
   std::vector<SignalIndicators> windows;
   for (const rosbag::MessageInstance& instance : rosbag::View(bag, rosbag::TopicQuery(topic)))
   {
-    const auto message = instance.instantiate<harmonic_joint_twin::Indicators>();
+    const auto message = readMessage(instance);
     if (message && message->windows > (windows.empty() ? 0 : windows.back().windows))
     {
       windows.push_back(readIndicators(*message));

@@ -213,6 +213,7 @@ SignalIndicators someIndicators()
   for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
   {
     indicators.values[i] = 1.0 + 0.01 * static_cast<double>(i);
+    indicators.uncertainty[i] = 0.1 * indicators.values[i];
   }
   indicators.values[indexOf(ScalarIndicator::LOST_MOTION)] = std::nan("");
   return indicators;
@@ -236,6 +237,7 @@ TEST(Indicators, GoIntoTheMessageAndBack)
     const bool given = std::isfinite(indicators.values[i]);
     EXPECT_EQ(std::isfinite(back.values[i]), given) << indicatorName(i);
     EXPECT_TRUE(!given || back.values[i] == indicators.values[i]) << indicatorName(i);
+    EXPECT_EQ(back.uncertainty[i], indicators.uncertainty[i]) << indicatorName(i);
   }
 }
 
