@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "harmonic_joint_twin/base/errors.hpp"
 #include "identification/cross_validation.hpp"
 #include "output/json.hpp"
 #include "params/configuration_files.hpp"
@@ -168,6 +169,17 @@ public:
     return std::move(notices_);
   }
 
+  /// The notices so far, each after a line's end.
+  std::string remarks() const
+  {
+    std::string text;
+    for (const std::string& notice : notices_)
+    {
+      text += "\n" + notice;
+    }
+    return text;
+  }
+
 private:
   /// Nothing of Python is called once it has raised: files are closed first.
   void look(const std::string& what, double done)
@@ -280,9 +292,21 @@ Answer call(const Given& given, Options& options, const Function& function, cons
 {
   PythonWatch watch(given["progress"]);
   options.watch = watch.watch();
-  const auto result = withoutLock([&] { return function(options); });
-  const std::vector<std::string> notices = watch.finish();
-  return { document(result), notices };
+  try
+  {
+    const auto result = withoutLock([&] { return function(options); });
+    const std::vector<std::string> notices = watch.finish();
+    return { document(result), notices };
+  }
+  catch (const ParameterError&)
+  {
+    throw;
+  }
+  catch (const InputError& error)
+  {
+    // What was remarked before it may be its reason.
+    throw InputError(error.what() + watch.remarks());
+  }
 }
 
 Answer armIn(const py::dict& arguments);
