@@ -94,7 +94,8 @@ def draw_course(width, data):
     residual.set_title("Measured less twin [A]")
     residual.plot(time, measured - predicted, color=RED, lw=0.7)
     limit = 1.3 * max(0.05, np.nanpercentile(np.abs(measured - predicted), 99.5))
-    residual.set(ylim=(-limit, limit), xlabel="time [s]", xlim=(course["time"][0], course["time"][-1]))
+    begin, end = course["time"][0], course["time"][-1]
+    residual.set(ylim=(-limit, limit), xlabel="time [s]", xlim=(begin, end if end > begin else begin + 1.0))
     return figure
 
 

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any, Dict, List, Optional, Sequence
 
 import numpy as np
 
-from harmonic_joint_twin._commands import Overlays, Path, Progress, Recording
+from harmonic_joint_twin._commands import Overlays, Path, Progress, Recording, _several
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -28,12 +28,11 @@ class Arm:
                  faults: Sequence[str] = (), identified: Optional[Path] = None, overlays: Overlays = (),
                  progress: Optional[Progress] = None) -> None:
         from harmonic_joint_twin import _recordings
-        options: Dict[str, Any] = {"arm": os.fspath(arm), "start": start, "payload": payload, "faults": list(faults),
-                                   "identified": None if identified is None else os.fspath(identified),
-                                   "progress": progress}
-        overlays = [os.fspath(each) if isinstance(each, os.PathLike) else each for each in overlays]
+        options: Dict[str, Any] = {"arm": os.fspath(arm), "start": start, "payload": payload,
+                                   "faults": _several(faults), "progress": progress,
+                                   "identified": None if identified is None else os.fspath(identified)}
         self._arm = _recordings.Arm({**{name: value for name, value in options.items() if value is not None},
-                                     "overlays": overlays})
+                                     "overlays": _several(overlays)})
 
     @property
     def joints(self) -> List[str]:

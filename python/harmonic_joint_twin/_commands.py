@@ -73,12 +73,12 @@ def _run(command: str, positional: Sequence[Path], options: Mapping[str, Any], o
         for name, value in options.items():
             if value is not None and value is not False:
                 words += ["--" + name.replace("_", "-")] + ([] if value is True else [_text(value)])
-        for place, overlay in enumerate(overlays):
+        for place, overlay in enumerate(_several(overlays)):
             if isinstance(overlay, Mapping):
                 path = os.path.join(folder, f"overlays[{place}]")
                 _write_overlay(overlay, path)
             else:
-                path = os.fspath(overlay)
+                path = str(overlay)
             words += ["--config", path]
         code, document, messages = _tool.run(words)
     words_of_tool = _own_words(messages)
@@ -110,11 +110,18 @@ def _plain(value: Any) -> Any:
     return os.fspath(value) if isinstance(value, os.PathLike) else value
 
 
+def _several(values: Any) -> List[Any]:
+    """None is an empty list, one by itself a list of one."""
+    if values is None:
+        return []
+    return list(map(_plain, [values] if isinstance(values, (str, os.PathLike, Mapping)) else values))
+
+
 def _call(function: str, options: Mapping[str, Any], overlays: Overlays) -> Document:
     """Calls a function of _recordings; options that are None are left out."""
     from harmonic_joint_twin import _recordings
     arguments = {name: _plain(value) for name, value in options.items() if value is not None}
-    found, notices = getattr(_recordings, function)({**arguments, "overlays": list(map(_plain, overlays))})
+    found, notices = getattr(_recordings, function)({**arguments, "overlays": _several(overlays)})
     _remark(notices)
     assert isinstance(found, dict)
     return found
@@ -158,11 +165,9 @@ def compare(recording: Recording, report: Path, *, joint: Optional[str] = None, 
 
     Returns the report's data as a dict: 'level', 'text', of an arm 'joints'. InputError, ParameterError.
     """
-    if isinstance(reference, (str, os.PathLike)):
-        reference = [reference]
     return _call("compare",
                  {"recording": recording, "report": report, "joint": joint, "arm": arm,
-                  "reference": reference and list(map(_plain, reference)), "load": load, "identified": identified,
+                  "reference": _several(reference), "load": load, "identified": identified,
                   "topic": topic, "time_scale": time_scale, "force": force, "progress": progress}, overlays)
 
 
@@ -179,13 +184,9 @@ def trend(recordings: Union[Path, Sequence[Path]], *, joint: Optional[str] = Non
     Returns a dict: 'level', 'text', 'joints' (one dict each: 'level', 'change', 'slope' and their intervals [-],
     'slope' in 1 / 1000 h or what 'slope_unit' says), 'recordings' (one dict each, by date). InputError, ParameterError.
     """
-    if isinstance(recordings, (str, os.PathLike)):
-        recordings = [recordings]
-    if isinstance(reference, (str, os.PathLike)):
-        reference = [reference]
     return _call("trend",
-                 {"recordings": list(map(_plain, recordings)), "joint": joint, "arm": arm,
-                  "reference": reference and list(map(_plain, reference)), "out": out, "report": report, "load": load,
+                 {"recordings": _several(recordings), "joint": joint, "arm": arm,
+                  "reference": _several(reference), "out": out, "report": report, "load": load,
                   "identified": identified, "topic": topic, "time_scale": time_scale, "force": force,
                   "progress": progress}, overlays)
 
@@ -228,21 +229,46 @@ def arm(motion: Recording, arm: Path, *, faults: Sequence[str] = (), out: Option
     'actual_TCP_pose' (position [m]), shape (rows, 3). InputError, ParameterError.
     """
     return _call("arm",
-                 {"motion": motion, "arm": arm, "faults": list(faults), "out": out, "rate": rate,
+                 {"motion": motion, "arm": arm, "faults": _several(faults), "out": out, "rate": rate,
                   "identified": identified, "force": force, "progress": progress}, overlays)
 
 
-def _columns(recording: Any) -> Dict[str, "NDArray[np.float64]"]:
+# Columns that recordings of one joint are read from, where `columns` names no other.
+SIGNALS = ("time", "motor_torque_reading", "motor_torque", "motor_angle_encoder", "output_angle_encoder",
+           "motor_velocity_encoder", "load_torque", "housing_temperature", "temperature")
+
+
+def _numbers(column: Any) -> "Optional[NDArray[np.float64]]":
+    array = np.asarray(column)
+    if array.ndim != 1 or array.dtype.kind not in "biufOSU":
+        return None
+    try:
+        return array.astype(np.float64)
+    except (TypeError, ValueError):
+        return None
+
+
+def _columns(recording: Any, what: str = "recording",
+             used: Sequence[str] = SIGNALS) -> Dict[str, "NDArray[np.float64]"]:
     if not (hasattr(recording, "keys") or getattr(getattr(recording, "dtype", None), "names", None)):
-        raise _hjt.InputError(f"recording = {recording!r:.60} must have columns by name: a structured array, a frame "
+        raise _hjt.InputError(f"{what} = {recording!r:.60} must have columns by name: a structured array, a frame "
                               "or a mapping of arrays")
     names = recording.dtype.names if isinstance(recording, np.ndarray) else list(recording)
-    arrays = {str(name): np.asarray(recording[name]) for name in names}
-    return {name: array.astype(np.float64) for name, array in arrays.items()
-            if array.ndim == 1 and array.dtype.kind in "biuf"}
+    arrays = {str(name): _numbers(recording[name]) for name in names}
+    for name, array in arrays.items():
+        if array is None and name in used:
+            raise _hjt.InputError(f"{what}: column '{name}' must be numbers of shape (rows,), not "
+                                  f"{np.asarray(recording[name])!r:.60}")
+    return {name: array for name, array in arrays.items() if array is not None}
 
 
-def _signals(recordings: Any) -> Dict[str, Any]:
+def _names(columns: Optional[Mapping[str, str]]) -> Optional[Dict[str, str]]:
+    if columns is not None and not isinstance(columns, Mapping):
+        raise _hjt.InputError(f"columns = {columns!r:.60} must be a mapping of signals to the names of their columns")
+    return dict(columns) if columns else None
+
+
+def _signals(recordings: Any, columns: Optional[Mapping[str, str]]) -> Dict[str, Any]:
     """Names of the recordings, and the columns of those at hand."""
     is_column = getattr(recordings, "ndim", 0) == 1 and getattr(recordings.dtype, "names", None) is None
     listed = recordings.tolist() if is_column else recordings  # of a frame, with paths
@@ -256,7 +282,8 @@ def _signals(recordings: Any) -> Dict[str, Any]:
             names.append(os.fspath(recording))
         else:
             names.append(f"recordings[{place}]")
-            at_hand[names[-1]] = _columns(recording)
+            used = (*SIGNALS, *(_names(columns) or {}).values())
+            at_hand[names[-1]] = _columns(recording, names[-1], used)
     return {"recordings": names, "at_hand": at_hand}
 
 
@@ -280,8 +307,8 @@ def indicators(recordings: Union[Recording, Sequence[Recording]], *, models: Seq
     'assessment' of the last. Recordings that are not judged are warned of. InputError, ParameterError.
     """
     return _call("indicators",
-                 {**_signals(recordings), "models": [os.fspath(model) for model in models], "joint": joint,
-                  "torque_scale": torque_scale, "columns": columns and dict(columns), "baseline": baseline,
+                 {**_signals(recordings, columns), "models": _several(models), "joint": joint,
+                  "torque_scale": torque_scale, "columns": _names(columns), "baseline": baseline,
                   "save_baseline": save_baseline, "out": out, "carry": carry, "force": force, "progress": progress},
                  overlays)
 
@@ -305,9 +332,9 @@ def remaining(recordings: Union[Recording, Sequence[Recording]], *,
     'lost_motion' [rad]. InputError, ParameterError.
     """
     return _call("remaining",
-                 {**_signals(recordings), "hours": [hours] if isinstance(hours, (int, float)) else hours,
+                 {**_signals(recordings, columns), "hours": hours if hours is None or np.ndim(hours) > 0 else [hours],
                   "joint": joint, "torque_scale": torque_scale,
-                  "columns": columns and dict(columns), "baseline": baseline, "duty": duty,
+                  "columns": _names(columns), "baseline": baseline, "duty": duty,
                   "lost_motion_limit": lost_motion_limit, "use_record": use_record, "force": force,
                   "progress": progress}, overlays)
 

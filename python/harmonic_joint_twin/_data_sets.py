@@ -22,6 +22,13 @@ ALL_WINDOWS = {"indicators.baseline_windows": 10000}
 DIRECTION_ROWS = 5  # over which the motor's direction is taken: a count of its noise is none
 
 
+def _opened(h5py: Any, file: str) -> Any:
+    try:
+        return h5py.File(file, "r")
+    except OSError as error:
+        raise _hjt.InputError(f"{file} cannot be read as HDF5 ({error}); the same sweep again makes it anew") from error
+
+
 def load(folder: Path, group: Optional[str] = "indicators") -> Frame:
     """A data set of sweep or lives as one frame.
 
@@ -46,7 +53,7 @@ def load(folder: Path, group: Optional[str] = "indicators") -> Frame:
     for file in index["file"]:
         if not file.endswith(".h5"):
             raise _hjt.InputError(f"{file} is no HDF5 file: a data set of bags has its index alone, group=None")
-        with h5py.File(file, "r") as run:
+        with _opened(h5py, file) as run:
             groups = [name for name, item in run.items() if isinstance(item, h5py.Group) and name != "parameters"]
             if group not in groups:
                 raise _hjt.InputError(f"{file} has no group '{group}'; it holds {', '.join(groups)}")
@@ -127,7 +134,8 @@ def reference(recordings: Recordings, out: Path, *, joint: Optional[str] = None,
     """
     pandas = importlib.import_module("pandas")
     found = _commands.indicators(_expanded(recordings), joint=joint, torque_scale=torque_scale, columns=columns,
-                                 save_baseline=out, force=force, overlays=[ALL_WINDOWS, *overlays], progress=progress)
+                                 save_baseline=out, force=force, progress=progress,
+                                 overlays=[ALL_WINDOWS, *_commands._several(overlays)])
     points = ("recording", "time", "turns", "speed", "direction", "load", "temperature")
     return pandas.DataFrame([{**{name: window[name] for name in points}, **window["indicators"]}
                              for window in found["windows"]])
@@ -167,8 +175,10 @@ def assess(recordings: Recordings, reference: Path, *, check_up: bool = False, j
     pandas = importlib.import_module("pandas")
     expanded = _expanded(recordings)
     found = _commands.indicators(expanded, baseline=reference, joint=joint, torque_scale=torque_scale, columns=columns,
-                                 overlays=[*([CHECK_UP] if check_up else []), *overlays], progress=progress)
-    windows: Dict[str, List[Dict[str, Any]]] = {name: [] for name in _commands._signals(expanded)["recordings"]}
+                                 overlays=[*([CHECK_UP] if check_up else []), *_commands._several(overlays)],
+                                 progress=progress)
+    names = _commands._signals(expanded, columns)["recordings"]
+    windows: Dict[str, List[Dict[str, Any]]] = {name: [] for name in names}
     for window in found["windows"]:
         windows[window["recording"]].append(window)
     strongest = {"indicator": None, "spreads": float("nan"), "percent": float("nan")}

@@ -195,6 +195,16 @@ bool inPlaceOfArm(const hjt::ParameterMap& overrides)
   return text != nullptr && *text == "commands";
 }
 
+/// As a driver with these affixes names its joints, and the frame of its base.
+void nameAsInMessages(const hjt::JointAffixes& affixes, hjt::ArmDescription& arm)
+{
+  for (hjt::ArmJoint& joint : arm.joints)
+  {
+    joint.name = affixes(joint.name);
+  }
+  arm.base = affixes.prefix + arm.base;
+}
+
 /// All joints of the arm `name`: its files, then the parameters of this node over those of every joint. What comes of
 /// it stands on the parameter server below the name of each.
 void runArm(ros::NodeHandle& node, const std::string& name, const hjt::FoundParameters& found)
@@ -226,6 +236,7 @@ void runArm(ros::NodeHandle& node, const std::string& name, const hjt::FoundPara
   {
     ROS_INFO_STREAM("input.mode is commands: in place of the arm, on "
                     << ros::names::resolve(hjt::topics::JOINT_STATES));
+    nameAsInMessages(affixes, arm);
     hjt::addIdentifiedGains(identified, arm);
     hjt::giveOwnSeeds(parameters);
     hjt::addArmFaults(arm, itemsOf(node.param<std::string>(hjt::FAULT, "")), parameters);

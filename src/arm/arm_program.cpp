@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "arm/arm_program.hpp"
 
-#include <algorithm>
 #include <utility>
 
 #include "arm/arm_file.hpp"
@@ -24,6 +23,17 @@ public:
   ProgramReader(const std::string& path, std::size_t joints)
     : map_(readArmFile(path)), joints_(joints), fields_(map_, path)
   {
+    const auto given = map_.lower_bound(MOVES);
+    if (count() == 0)
+    {
+      const bool is_there = holds(MOVES);
+      const bool is_value = is_there && given->first == MOVES;
+      throw ParameterError((is_there ? given->second.origin : path) + ": " + MOVES +
+                           (is_value ? " = " + valueText(given->second) :
+                            is_there ? "" :
+                                       ", which is missing,") +
+                           " must be a list of one move or more, {to: [...], speed: ..., acceleration: ...}");
+    }
     for (std::size_t i = 0; i < count(); ++i)
     {
       for (const char* key : { "speed", "acceleration", "jerk", "wait" })
@@ -49,7 +59,7 @@ public:
 
   std::vector<ArmMove> moves()
   {
-    std::vector<ArmMove> moves(std::max<std::size_t>(count(), 1));
+    std::vector<ArmMove> moves(count());
     for (std::size_t i = 0; i < moves.size(); ++i)
     {
       read(place(i), moves[i]);

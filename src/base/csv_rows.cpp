@@ -151,9 +151,18 @@ bool CsvRows::next()
     {
       throw InputError(place() + (texts_.size() < header_.size() ? ": too few columns" : ": too many columns"));
     }
+    uneven_columns_ = texts_.size();
     texts_.assign(header_.size(), "");
   }
   return true;
+}
+
+std::string CsvRows::unevenText() const
+{
+  return uneven_columns_ == 0 ? "" :
+                                "between " + std::string(separatorName()) + " the header has " +
+                                    std::to_string(header_.size()) + " columns, a row " +
+                                    std::to_string(uneven_columns_);
 }
 
 const char* CsvRows::separatorName() const

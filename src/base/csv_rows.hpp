@@ -30,6 +30,8 @@ public:
 
   /// From now on any other line with too few or too many columns is a row of empty texts.
   void allowUneven() { allows_uneven_ = true; }
+  /// How many columns the last such line and the header have, as a clause; empty: there was none.
+  std::string unevenText() const;
 
   /// "commas", "blanks".
   const char* separatorName() const;
@@ -58,6 +60,7 @@ private:
   bool allows_cut_off_ = false;
   bool allows_uneven_ = false;
   bool was_cut_off_ = false;
+  std::size_t uneven_columns_ = 0;  // of the last line that is allowed for it
   std::vector<std::string> header_;
   std::vector<const char*> texts_;
 };

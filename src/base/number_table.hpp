@@ -85,6 +85,7 @@ public:
   void allowCutOff() { rows_.allowCutOff(); }
   void allowUneven() { rows_.allowUneven(); }
   bool wasCutOff() const { return rows_.wasCutOff(); }
+  std::string unevenText() const { return rows_.unevenText(); }
 
 private:
   std::string missingText(const std::vector<std::string>& missing) const

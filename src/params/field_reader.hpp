@@ -145,6 +145,12 @@ public:
     {
       if (known_.count(key) == 0)
       {
+        const std::string kind = groupKind(key, known_);
+        if (!kind.empty())
+        {
+          mustBe(key, configured, kind);
+          continue;
+        }
         errors_.push_back(configured.origin + ": unknown parameter " + key + " = " + valueText(configured) +
                           suggestion(key, known_));
       }
@@ -173,6 +179,17 @@ private:
       }
     }
     return nearest.empty() ? "" : " (did you mean " + nearest + "?)";
+  }
+
+  /// What `key` must be, if known keys stand below it or it is the list of faults; else nothing.
+  static std::string groupKind(const std::string& key, const std::set<std::string>& known)
+  {
+    const auto below = known.lower_bound(key + '.');
+    if (below != known.end() && below->rfind(key + '.', 0) == 0)
+    {
+      return "a group of keys and values, e.g. " + *below;
+    }
+    return key == FAULTS ? "a list of {kind: ..., severity: ..., place: ..., onset: ...}" : "";
   }
 
   static std::string numberKind(const std::string& what, const char* unit, const Range& range)

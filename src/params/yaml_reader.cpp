@@ -188,9 +188,12 @@ void readDocument(const std::string& source, const YAML::Node& root, ParameterMa
       readFaults(source, entry.second, read);
       continue;
     }
-    if (!entry.second.IsMap())
+    if (!entry.second.IsMap() || section == FAULTS)
     {
-      fail(origin, "'" + section + "' must be a section with keys below it");
+      const std::string value = entry.second.IsScalar() ? " = " + entry.second.Scalar() : "";
+      fail(origin, section + value + " must be " +
+                       (section == FAULTS ? "a list of {kind: ..., severity: ..., place: ..., onset: ...}" :
+                                            "a section with keys below it"));
     }
     readSection(source, section, entry.second, read);
   }

@@ -53,7 +53,11 @@ ParameterValue parameterValue(const py::handle& value, const std::string& key)
   {
     // A numpy scalar is no Python int.
     const auto whole = py::reinterpret_steal<py::object>(PyNumber_Index(value.ptr()));
-    return whole ? ParameterValue{ py::cast<std::int64_t>(whole), ORIGIN } : throw py::error_already_set();
+    if (whole)
+    {
+      return { py::cast<std::int64_t>(whole), ORIGIN };
+    }
+    PyErr_Clear();  // an array without dimensions that holds no whole number
   }
   return { numberFrom(value, key), ORIGIN };
 }

@@ -19,6 +19,7 @@
 #include "base/edit_distance.hpp"
 #include "base/joined.hpp"
 #include "base/number_table.hpp"
+#include "base/number_text.hpp"
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "messages/conversions.hpp"
@@ -250,6 +251,11 @@ void readBag(const std::string& path, const SignalSource& source, const Take& ta
 SignalSource signalSource(const SignalOptions& options, const Parameters& parameters)
 {
   const bool robot = !options.joint.empty();
+  const double scale = options.torque_scale.value_or(1.0);
+  if (scale == 0.0 || !std::isfinite(scale))
+  {
+    throw InputError("torque_scale = " + numberText(scale) + " must be a finite number other than 0");
+  }
   const std::optional<UrJoint> known = findUrJoint(options.joint);
   SignalSource source = options.source;
   source.joint = known ? known->name : robot ? options.joint : parameters.joint.name;

@@ -71,6 +71,7 @@ public:
   bool has(Quantity quantity, std::size_t joint) const { return table_.hasColumn(column(quantity, joint)); }
   std::string place() const { return table_.place(); }
   bool wasCutOff() const { return table_.wasCutOff(); }
+  std::string unevenText() const { return table_.unevenText(); }
 
   bool isWhole() const
   {
@@ -243,6 +244,10 @@ private:
     if (count_.corrupt == 0)
     {
       return {};
+    }
+    if (const std::string uneven = table_.unevenText(); !uneven.empty())
+    {
+      return "; " + uneven;
     }
     const std::vector<std::string> never = table_.neverFinite();
     const std::string rows = "; none of " + std::to_string(count_.corrupt) + " rows holds ";

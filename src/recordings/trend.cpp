@@ -331,6 +331,10 @@ Trend trend(const TrendOptions& options)
 {
   requireFiles(options);
   const std::vector<std::string> files = filesOf(options.recordings);
+  if (files.empty())
+  {
+    throw InputError("recordings: there is none");
+  }
   const std::function<void(double)> show = options.watch.progress("recordings");
   Trend trend;
   for (const std::string& file : files)

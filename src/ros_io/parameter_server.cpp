@@ -207,6 +207,12 @@ ParameterMap readParameterServer(const std::string& parameter_namespace)
   {
     map.erase(key);
   }
+  const std::string launch = LAUNCH + std::string(".");
+  for (auto entry = map.lower_bound(launch); entry != map.end() && entry->first.rfind(launch, 0) == 0;)
+  {
+    map.emplace(entry->first.substr(launch.size()), entry->second);
+    entry = map.erase(entry);
+  }
   return map;
 }
 

@@ -20,6 +20,9 @@ constexpr const char* DESCRIPTION = "description";
 constexpr const char* PREFIX = "prefix";  ///< before the arm's names of the joints in the messages
 constexpr const char* SUFFIX = "suffix";  ///< behind them
 constexpr const char* FAULT = "fault";
+/// Section of what an arm's launch file sets, launch/input/mode: counts where nothing else says it. Of a user's file
+/// with `input: 3` roslaunch would make `input: {mode: ...}`, were it input/mode.
+constexpr const char* LAUNCH = "launch";
 
 /// Reads every other parameter below `parameter_namespace` (`section/key`) from the server; types are kept as they
 /// are. Nothing is left out, so that `parseParameters` finds unknown keys; nothing is defaulted.

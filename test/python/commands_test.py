@@ -5,6 +5,7 @@ import csv
 import inspect
 import json
 import locale
+import math
 import os
 import signal
 import subprocess
@@ -31,6 +32,7 @@ TOOL = sys.argv.pop(1)
 JOINTS = ["shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint", "wrist_1_joint", "wrist_2_joint", "wrist_3_joint"]
 ELBOW = ["joints/elbow.yaml", "recorded_load.yaml"]
 PERIOD = 0.008
+SILENT = {"time": [0.0, 1.0, 2.0], "motor_torque": [math.nan] * 3, "motor_angle_encoder": [0.0, 1.0, 2.0]}
 PLAN = """
 seed: 3
 duration: 0.3
@@ -292,6 +294,17 @@ class Errors(Recordings):
                 (lambda: hjt.follow("none.csv"), hjt.InputError, "joint"),
                 (lambda: hjt.follow("none.csv", joint="elbow", mode="backwards"), hjt.InputError, "mode = 'backwards'"),
                 (lambda: hjt.follow({"time": [0.0], "current": [0.0]}, joint="elbow"), hjt.InputError, "'position'"),
+                (lambda: hjt.follow(None, joint="elbow"), hjt.InputError, "recording = None must be the name of"),
+                (lambda: hjt.follow({"time": ["now"], "position": [0.0]}, joint="elbow"), hjt.InputError,
+                 "column 'time' must be numbers"),
+                (lambda: hjt.follow({"time": 0.0}, joint="elbow"), hjt.InputError, "'time' has 0 dimensions"),
+                (lambda: hjt.follow("a.csv", joint="elbow", time_scale="fast"), hjt.InputError,
+                 "time_scale = 'fast' must be a number"),
+                (lambda: hjt.identify("a.csv", joint="elbow", train=(1.0,)), hjt.InputError, "must be a pair of num"),
+                (lambda: hjt.indicators("a.csv", columns=["time"]), hjt.InputError, "columns = ['time'] must be a map"),
+                (lambda: hjt.indicators(SILENT, torque_scale=0.0), hjt.InputError, "torque_scale = 0"),
+                (lambda: hjt.indicators(SILENT), hjt.InputError, "3 samples without an angle, a torque"),
+                (lambda: hjt.Arm("ur5", "abc"), hjt.InputError, "start = 'abc' must be a list of numbers"),
                 (lambda: hjt.indicators("a.txt"), hjt.InputError, "'a.txt' must end in"),
                 (lambda: hjt.arm({"time": [0.0], "position": [0.0]}, "ur5"), hjt.ParameterError, "6"),
                 (lambda: hjt.arm({"time": [0.0, 0.0], "position": np.zeros((2, 6))}, "ur5"), hjt.InputError,

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Data sets and verdicts as frames. Argument: the tool."""
 import os
+import shutil
 import sys
 import tempfile
 import unittest
@@ -129,7 +130,7 @@ class DataSets(unittest.TestCase):
 
     def test_no_recordings_are_an_error(self):
         for function in (hjt.indicators, hjt.remaining, lambda none: hjt.assess(none, "sound.yaml"),
-                         lambda none: hjt.reference(none, "sound.yaml")):
+                         lambda none: hjt.reference(none, "sound.yaml"), lambda none: hjt.trend(none, arm="ur5")):
             with self.assertRaisesRegex(hjt.InputError, "recordings: there is none"):
                 function([])
 
@@ -155,6 +156,26 @@ class DataSets(unittest.TestCase):
         self.assertEqual(len(found), 1)
         with self.assertRaisesRegex(hjt.InputError, r"'motor_angel' is no signal \(did you mean motor_angle\?\)"):
             hjt.indicators(frame, columns={"motor_angel": "m"})
+
+    def test_columns_that_are_no_numbers_are_named_not_dropped(self):
+        samples = hjt.load("sound", "signals")
+        frame = samples[samples.run == 0]
+        settings = {"overlays": {"indicators.window_time": 6.0, "indicators.window_turns": 1e5}}
+        expected = hjt.indicators(frame, **settings)["windows"]
+        texts = frame.assign(motor_torque_reading=frame["motor_torque_reading"].map(repr))
+        self.assertEqual(hjt.indicators(texts, **settings)["windows"], expected)
+        for name in ("time", "motor_torque_reading", "load_torque"):
+            with self.assertRaisesRegex(hjt.InputError, rf"recordings\[0\]: column '{name}' must be numbers of shape"):
+                hjt.indicators(frame.assign(**{name: "heavy"}))
+        with self.assertRaisesRegex(hjt.InputError, "column 'm' must be numbers"):
+            hjt.indicators(frame.assign(m="x"), columns={"motor_angle": "m"})
+
+    def test_a_damaged_file_is_named(self):
+        shutil.copytree("sound", "damaged")
+        file = hjt.load("damaged", group=None)["file"][1]
+        os.truncate(file, 1000)
+        with self.assertRaisesRegex(hjt.InputError, f"{file} cannot be read as HDF5"):
+            hjt.load("damaged")
 
     def test_faults_of_brake_sensors_and_motor_grow_from_their_onset(self):
         time = np.arange(0.0, 4.0, 0.01)

@@ -188,6 +188,10 @@ class ArmTwin(tool.ToolTest):
         self.write("short.yaml", f"start: {START}\nmoves:\n  - {{to: [1.0], speed: 0.0}}\n")
         self.fail_with(1, ["moves.0.to", "moves.0.speed = 0.0 [rad/s] is out of range", "moves.0.acceleration"], "arm",
                        "short.yaml", "--arm", "ur5", "--out", "no.csv")
+        for moves, value in (("moves: []", " = []"), ("moves: 3", " = 3"), ("moves: {to: [0]}", ""), ("", "")):
+            self.write("none.yaml", f"start: {START}\n{moves}\n")
+            self.fail_with(1, [f"moves{value}", "must be a list of one move or more"], "arm", "none.yaml", "--arm",
+                           "ur5", "--out", "no.csv")
         self.write("few.csv", "timestamp,target_q_0\n0,0\n")
         self.fail_with(1, ["no column target_q_1 or shoulder_position, target_q_2 or elbow_position"], "arm", "few.csv",
                        "--arm", "ur5", "--out", "no.csv")

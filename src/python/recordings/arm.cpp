@@ -26,6 +26,7 @@ namespace
 /// @throws InputError if columns are missing or not of one shape.
 std::vector<ArmSetPoint> setPointsOf(const py::object& columns)
 {
+  requireColumns(columns, "motion");
   const MotionColumn times(columns, "time");
   const MotionColumn positions(columns, "position");
   const MotionColumn velocities(columns, "velocity");

@@ -6,11 +6,14 @@
 #include <array>
 #include <cmath>
 #include <exception>
+#include <map>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "harmonic_joint_twin/base/errors.hpp"
 #include "identification/cross_validation.hpp"
 #include "output/json.hpp"
 #include "params/configuration_files.hpp"
@@ -60,7 +63,30 @@ inline py::object toPython(const Json& json)
   return json.visit(ToPython());
 }
 
-/// A function's options by their names. What Python cannot give as the option's type is its TypeError.
+/// What an option of this type must be.
+template <class Value>
+constexpr const char* kindOf()
+{
+  return std::is_same_v<Value, bool>                               ? "True or False" :
+         std::is_integral_v<Value>                                 ? "a whole number" :
+         std::is_arithmetic_v<Value>                               ? "a number" :
+         std::is_same_v<Value, std::string>                        ? "a text" :
+         std::is_same_v<Value, std::vector<std::string>>           ? "a list of texts" :
+         std::is_same_v<Value, std::map<std::string, std::string>> ? "a mapping of texts to texts" :
+         std::is_same_v<Value, std::array<double, 2>>              ? "a pair of numbers" :
+         std::is_same_v<Value, std::vector<double>>                ? "a list of numbers" :
+                                                                     "of another type";
+}
+
+/// As Python writes it, not too long.
+inline std::string shortText(const py::handle& value)
+{
+  constexpr std::size_t LONGEST = 60;
+  const auto text = py::cast<std::string>(py::repr(value));
+  return text.size() > LONGEST ? text.substr(0, LONGEST) + "..." : text;
+}
+
+/// A function's options by their names.
 class Given
 {
 public:
@@ -71,7 +97,7 @@ public:
   {
     if (values_.contains(name))
     {
-      field = py::cast<Value>(values_[name]);
+      take(name, py::object(values_[name]), field);
     }
   }
 
@@ -88,6 +114,25 @@ public:
   }
 
 private:
+  template <class Value>
+  static void take(const char* name, const py::object& value, Value& field)
+  {
+    try
+    {
+      field = py::cast<Value>(value);
+    }
+    catch (const py::cast_error&)
+    {
+      throw InputError(std::string(name) + " = " + shortText(value) + " must be " + kindOf<Value>());
+    }
+  }
+
+  template <class Value>
+  static void take(const char* name, const py::object& value, std::optional<Value>& field)
+  {
+    take(name, value, field.emplace());
+  }
+
   py::dict values_;
 };
 
@@ -122,6 +167,17 @@ public:
       throw py::error_already_set();
     }
     return std::move(notices_);
+  }
+
+  /// The notices so far, each after a line's end.
+  std::string remarks() const
+  {
+    std::string text;
+    for (const std::string& notice : notices_)
+    {
+      text += "\n" + notice;
+    }
+    return text;
   }
 
 private:
@@ -173,6 +229,18 @@ inline void takeConfiguration(const Given& given, ConfigurationOptions& options)
 
 using Values = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
+/// @throws InputError unless `columns` has columns by name. `what`: its name in the error.
+inline void requireColumns(const py::object& columns, const std::string& what)
+{
+  const bool is_structured = py::hasattr(columns, "dtype") && !columns.attr("dtype").attr("names").is_none();
+  if (!is_structured && !py::hasattr(columns, "keys"))
+  {
+    throw InputError(what + " = " + shortText(columns) +
+                     " must be the name of a file or have columns by name: a structured array, a frame or a mapping of "
+                     "arrays");
+  }
+}
+
 /// A column of a mapping of arrays or a structured array, of shape (rows,) or, of an arm, (rows, joints); none: it is
 /// not there.
 class MotionColumn
@@ -183,8 +251,7 @@ public:
     const py::object names = py::hasattr(columns, "dtype") ? columns.attr("dtype").attr("names") : columns;
     if (names.contains(name))
     {
-      values_ = columns[name].cast<Values>();
-      data_ = values_.data();
+      read(columns[name], name);
     }
   }
 
@@ -194,6 +261,24 @@ public:
   double at(std::size_t row, std::size_t joint) const { return data_[row * static_cast<std::size_t>(width()) + joint]; }
 
 private:
+  void read(const py::object& column, const std::string& name)
+  {
+    try
+    {
+      values_ = column.cast<Values>();
+    }
+    catch (const py::error_already_set& error)
+    {
+      throw InputError("column '" + name + "' must be numbers: " + error.what());
+    }
+    if (values_.ndim() != 1 && values_.ndim() != 2)
+    {
+      throw InputError("column '" + name + "' has " + std::to_string(values_.ndim()) +
+                       " dimensions, expected: the shape (rows,) or (rows, joints)");
+    }
+    data_ = values_.data();
+  }
+
   Values values_;
   const double* data_{};
 };
@@ -207,9 +292,21 @@ Answer call(const Given& given, Options& options, const Function& function, cons
 {
   PythonWatch watch(given["progress"]);
   options.watch = watch.watch();
-  const auto result = withoutLock([&] { return function(options); });
-  const std::vector<std::string> notices = watch.finish();
-  return { document(result), notices };
+  try
+  {
+    const auto result = withoutLock([&] { return function(options); });
+    const std::vector<std::string> notices = watch.finish();
+    return { document(result), notices };
+  }
+  catch (const ParameterError&)
+  {
+    throw;
+  }
+  catch (const InputError& error)
+  {
+    // What was remarked before it may be its reason.
+    throw InputError(error.what() + watch.remarks());
+  }
 }
 
 Answer armIn(const py::dict& arguments);

@@ -42,6 +42,7 @@ void takeRows(const py::object& columns, RecordingOptions& options)
                                              { "velocity", &MotionRow::recorded_velocity, false },
                                              { "temperature", &MotionRow::temperature, false },
                                              { "motor_angle", &MotionRow::motor_angle, false } } };
+  requireColumns(columns, "recording");
   const MotionColumn times(columns, "time");
   const MotionColumn positions(columns, "position");
   if (!times || !positions || times.width() != 1 || times.rows() == 0)
