@@ -179,7 +179,7 @@ def run_told(motion, arm, rate, during):
 
 def reports(document):
     """What the run itself says was not as it should be."""
-    found = [f"{document[count]} {count.replace('_', ' ')}" for count in COUNTS if document[count]]
+    found = [f"{document[count]} {count.replace('_', ' ')}" for count in COUNTS if document.get(count)]
     stop = document["protective_stop"]
     return ([f"protective stop: {stop['joint']} {stop['reason']}"] if stop else []) + found
 
