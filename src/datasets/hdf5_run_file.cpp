@@ -309,8 +309,7 @@ void Hdf5RunFile::writeIndicators()
   using W = const SignalIndicators&;
   const auto end_of = [this](W w) { return toSeconds(w.stamp - begin_); };
   const double first = toSeconds(from_ - begin_);
-  // A window begins where the one before ends.
-  write("window_start", "s",
+  write("window_start", "s",  // where the one before ends
         [&](W w) { return w.windows > 1 ? end_of(windows_[static_cast<std::size_t>(w.windows - 2)]) : first; });
   write("window_end", "s", end_of);
   write("window_severity", "-", [&](W w) { return severityAt(end_of(w), 0); });
@@ -327,13 +326,9 @@ void Hdf5RunFile::writeIndicators()
   {
     write(indicatorName(i), indicatorUnit(i), [i](W w) { return w.values[i]; });
   }
-  for (const LineSignal signal : ALL_LINE_SIGNALS)
+  for (const std::size_t i : lineAmplitudes())
   {
-    for (std::size_t line = 0; line < LINE_COUNT && hasLine(signal, line); ++line)
-    {
-      const std::size_t i = amplitudeIndex(signal, line);
-      write(errorColumn(i).c_str(), indicatorUnit(i), [i](W w) { return w.uncertainty[i]; });
-    }
+    write(errorColumn(i).c_str(), indicatorUnit(i), [i](W w) { return w.uncertainty[i]; });
   }
 }
 

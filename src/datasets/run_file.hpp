@@ -9,7 +9,6 @@
 
 #include "datasets/plan.hpp"
 #include "datasets/run_duty.hpp"
-#include "harmonic_joint_twin/health/signal_indicators.hpp"
 #include "output/ordered_json.hpp"
 
 namespace hjt
@@ -21,10 +20,10 @@ constexpr const char* ROWS_WITHOUT_FORCES = "rows_without_forces";
 constexpr const char* PROTECTIVE_STOP = "protective_stop";
 
 /// Of the windows in a run's file, the standard error of a line and of its parts. `amplitude`: an indicator.
-inline std::string errorColumn(std::size_t amplitude)
-{
-  return std::string("window_error_") + indicatorName(amplitude);
-}
+std::string errorColumn(std::size_t amplitude);
+
+/// Indicators; the parts of a line have the standard error of its amplitude.
+std::vector<std::size_t> lineAmplitudes();
 
 /// What one run is written to. Nothing stands under its name before `finish`.
 class RunFile

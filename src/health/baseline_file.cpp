@@ -193,8 +193,8 @@ void writeBaseline(const std::string& path, const Baseline& baseline, bool less_
       if (reference.count > 0)
       {
         text << "      " << indicatorName(i) << ": [" << reference.count << ", " << numberText(reference.mean) << ", "
-             << numberText(std::sqrt(reference.variance)) << ", " << numberText(std::sqrt(reference.within))
-             << ", " << numberText(std::sqrt(reference.error_square));
+             << numberText(std::sqrt(reference.variance)) << ", " << numberText(std::sqrt(reference.within)) << ", "
+             << numberText(std::sqrt(reference.error_square));
         if (reference.fitted)
         {
           text << ", " << list(reference.slopes) << ", " << list(reference.common);

@@ -19,7 +19,7 @@ namespace hjt
 {
 namespace
 {
-constexpr const char* MD5_WITHOUT_ERRORS = "091d07ef25dd2e390a74058313d996a8";  // of Indicators.msg before it had errors
+constexpr const char* MD5_WITHOUT_ERRORS = "091d07ef25dd2e390a74058313d996a8";  // of Indicators.msg without errors
 
 bool isRun(const std::string& recording)
 {

@@ -3,6 +3,7 @@
 import json
 import math
 import pathlib
+import re
 import sys
 
 import h5py
@@ -141,6 +142,12 @@ record:
             self.assertEqual([window["indicators"][name] for window in found],
                              [None if math.isnan(value) else value for value in windows[name]])
         self.assertEqual([window["load"] for window in found], list(windows["window_load"]))
+        self.assertTrue((windows["window_error_ripple_outer"] > 0.0).all(), windows["window_error_ripple_outer"])
+        self.succeed("indicators", run, "--save-baseline", "errors.yaml")
+        learned = pathlib.Path(self.path("errors.yaml")).read_text(encoding="utf-8")
+        squares = [float(count) * float(error) ** 2 for count, error in re.findall(
+            r" ripple_outer: \[(\d+), [^,]+, [^,]+, [^,]+, ([^,\]]+)", learned)]
+        self.assertAlmostEqual(sum(squares), sum(windows["window_error_ripple_outer"] ** 2), delta=1e-15)
         _, *origin = read("--set", "indicators.evidence_windows=1")
         self.assertEqual(origin, ["windows of the run", "run, under those of the command line"])
         # The motor's speed was not recorded: it is that of the drive's sensors all the same.

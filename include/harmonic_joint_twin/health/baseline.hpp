@@ -65,12 +65,12 @@ constexpr std::size_t COMMON_CAUSES = 3;
 struct Reference
 {
   int count{};
-  double mean{};      // unit of the indicator; from fitReference on at the mean place of the class
-  double variance{};  // about the mean, from fitReference on about what the place makes of it
-  double within{};    // half the mean square of what successive windows differ by; 0: not known
+  double mean{};          // unit of the indicator; from fitReference on at the mean place of the class
+  double variance{};      // about the mean, from fitReference on about what the place makes of it
+  double within{};        // half the mean square of what successive windows differ by; 0: not known
   double error_square{};  // of the windows' standard errors by the fit, mean; 0: not known
-  bool fitted{};      // has slopes and shares of common causes
-  Place slopes{};     // over the place, unit of the indicator
+  bool fitted{};          // has slopes and shares of common causes
+  Place slopes{};         // over the place, unit of the indicator
   /// Shares of the spread that go with each common cause, of unit variance [-]
   std::array<double, COMMON_CAUSES> common{};
 };
@@ -185,8 +185,8 @@ enum class BaselineState : std::uint8_t
 ///                 windows differ by, over s^2 (von Neumann 1941), plus its standard error; 1 if none followed another
 ///        e        share of the windows that count as independent, (1 - r') / (1 + r'), at least one in every stretch;
 ///                 r' as r, less the error; 1 if none followed another
-///        u, u_0   standard error of the fit, rms, of the windows averaged and of the healthy ones: what a line is off by
-///                 differs between windows as u does, though it is not as large as white noise would make it
+///        u, u_0   standard error of the fit, rms, of the windows averaged and of the healthy ones: what a line is off
+///                 by differs between windows as u does, though it is not as large as white noise would make it
 ///        f  indicators.least_spread;  q  a tenth of what one encoder count makes; 0.3 for kurtosis, 0.5 for crest
 /// A carried reference is one of another motion, for windows from which a model is subtracted. They are compared with
 /// the class of motion to and fro at their temperature that has most windows. b is over temperature alone, the variance
