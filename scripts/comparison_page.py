@@ -100,7 +100,7 @@ def draw_course(width, data):
 
 
 def draw_factor(axes, points, record):
-    """Band of the factor's interval about the mean of the measured friction, each way."""
+    """Band of the factor's interval about the mean of the measured friction, each way; both hold what joints share."""
     factor = record["friction_factor"]
     if factor is None:
         return

@@ -17,8 +17,9 @@ def pairs_text(arms, groups):
     for group in groups:
         together, left = [], []
         for arm in arms:
-            own = [joint["friction_ratio"] for joint in arm["joints"] if joint["joint"] in group]
-            if None not in own:
+            joints = [joint for joint in arm["joints"] if joint["joint"] in group]
+            if all(joint["friction_ratio"] is not None for joint in joints):
+                own = [joint["friction_ratio"] * joint["friction_shared"] for joint in joints]
                 together += list(np.log(own))
                 left += list(np.log(own) - np.median(np.log(own)))
         spreads.append(f"{group[0]} to {group[-1]}: {100.0 * rms(np.array(together)):.1f} %, apart from the median of "

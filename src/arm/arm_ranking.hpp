@@ -45,8 +45,8 @@ using VisitArmRows = std::function<void(const std::vector<MotionRow>&)>;
 using PlayArmRows = std::function<void(const VisitArmRows&)>;
 
 /// The best first: how each explains the rows with the payload and the mounting that fit it best, gains within what
-/// those of a type differ by, any friction, and, where that is much likelier, all currents of another size. Where `unit_is_given` efforts are of the configured unit. @throws
-/// ParameterError.
+/// those of a type differ by, any friction, and, where that is much likelier, all currents of another size. Where
+/// `unit_is_given` efforts are of the configured unit. @throws ParameterError.
 std::vector<ArmFit> rankArms(const std::vector<ArmCandidate>& candidates, const PlayArmRows& play, bool unit_is_given);
 
 /// The one that explains the rows so much better that it contradicts `own`; empty: none.

@@ -24,8 +24,8 @@ constexpr double FIXED = 1e-6;
 constexpr double KNOWN_GAIN = 0.05;
 constexpr double KNOWN_OFFSET = 0.03;  // [A]
 
-/// How much rarer an arm's joints are whose gain, Coulomb and viscous friction and offset are these: a fault may add any
-/// friction (Cauchy), gains and offsets are normally distributed, logarithm.
+/// How much rarer an arm's joints are whose gain, Coulomb and viscous friction and offset are these, logarithm: a fault
+/// may add any friction (Cauchy), gains and offsets are normally distributed.
 double rareness(const Eigen::Vector4d& own)
 {
   const auto squared = [&](int term, double deviation) { return 0.5 * std::pow(own[term] / deviation, 2); };

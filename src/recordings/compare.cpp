@@ -54,21 +54,30 @@ void refuseReferenceOfOtherArm(const ComparisonOptions& options)
   }
 }
 
-template <typename Member>
-std::optional<double> number(const ComparedJoint& line, Member member)
+/// None: the friction is not judged.
+std::optional<double> number(const ComparedJoint& line, double value)
 {
-  return line.friction ? std::make_optional(std::invoke(member, *line.friction)) : std::nullopt;
+  return line.friction ? std::make_optional(value) : std::nullopt;
+}
+
+std::string soundText(const ComparedJoint& line)
+{
+  return line.friction ? fixedText(line.verdict[Figure::FRICTION_LOWEST], 2) + " to " +
+                             fixedText(line.verdict[Figure::FRICTION_HIGHEST], 2) :
+                         "-";
 }
 
 const std::vector<Column<ComparedJoint>> ARM_COLUMNS{
   { "joint", &ComparedJoint::name, "joint" },
   { "level", [](const ComparedJoint& line) { return levelName(line.verdict.level); }, "verdict" },
   { "verdict", [](const ComparedJoint& line) { return verdictFields(line.verdict); } },
-  { "friction_ratio", [](const ComparedJoint& line) { return number(line, &FrictionFactor::value); } },
-  { "friction_low", [](const ComparedJoint& line) { return number(line, &FrictionFactor::low); } },
-  { "friction_high", [](const ComparedJoint& line) { return number(line, &FrictionFactor::high); } },
-  { "friction", [](const ComparedJoint& line) { return line.friction ? factorText(*line.friction) : "-"; },
+  { "friction_ratio", [](const ComparedJoint& line) { return number(line, line.verdict.friction.factor); } },
+  { "friction_low", [](const ComparedJoint& line) { return number(line, line.verdict.friction.lower); } },
+  { "friction_high", [](const ComparedJoint& line) { return number(line, line.verdict.friction.upper); } },
+  { "friction", [](const ComparedJoint& line) { return line.friction ? factorText(line.verdict.friction) : "-"; },
     "friction [95 %]" },
+  { "friction_sound", soundText, "sound" },
+  { "friction_shared", [](const ComparedJoint& line) { return number(line, line.verdict[Figure::FRICTION_OF_ARM]); } },
   { "temperature", &ComparedJoint::temperature, "at [degC]" },
   { "temperature_source", [](const ComparedJoint& line) { return line.temperature_source; }, "which is" },
   { "current_rms", &ComparedJoint::current_rms, "current, rms [A]" },
@@ -143,6 +152,28 @@ std::string withoutReference(const std::vector<ComparedJoint>& lines)
              "The reference did not judge the friction of " + joined(names) + "; the twin is taken in its place. ";
 }
 
+/// What of their friction is taken out before it is judged.
+std::string sharedText(const std::vector<ComparedJoint>& lines)
+{
+  std::vector<std::pair<std::string, std::vector<std::string>>> shares;  // factor, joints
+  for (const ComparedJoint& line : lines)
+  {
+    constexpr double NOTEWORTHY = 0.02;
+    const double of_arm = line.verdict[Figure::FRICTION_OF_ARM];
+    if (line.friction && std::abs(of_arm - 1.0) >= NOTEWORTHY)
+    {
+      const std::string share = fixedText(of_arm, 2);
+      const auto same = std::find_if(shares.begin(), shares.end(), [&](const auto& one) { return one.first == share; });
+      (same == shares.end() ? shares.emplace_back(share, std::vector<std::string>()) : *same)
+          .second.push_back(line.name);
+    }
+  }
+  const auto one = [](const auto& share) { return share.first + " (" + joined(share.second) + ")"; };
+  return shares.empty() ? std::string() :
+                          "The joints are judged apart from what they share: " + joined(shares, ", ", one) +
+                              " times the reference's friction. ";
+}
+
 /// What the joints have in common, and each that departs or is not judged.
 std::string textOf(const std::vector<ComparedJoint>& lines, const ArmFriction& arm, bool has_reference)
 {
@@ -161,6 +192,7 @@ std::string textOf(const std::vector<ComparedJoint>& lines, const ArmFriction& a
   {
     text += groupText(group, lines);
   }
+  text += sharedText(lines);
   text += departuresOf(lines) + (has_reference ? withoutReference(lines) : "");
   text.pop_back();
   return text;

@@ -232,14 +232,17 @@ double frictionDeviation(const ComparisonRecord& record)
   return record.is_friction_judged ? record.friction.scatter : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Null: not judged.
+/// As it is judged, apart from what the joints of an arm share; null: it is not.
 Json factorJson(const ComparisonRecord& record)
 {
-  const FrictionFactor& factor = record.friction;
-  return record.is_friction_judged ? Json{ { "value", factor.value },
-                                           { "low", factor.low() },
-                                           { "high", factor.high() },
-                                           { "reference", referenceName(factor.reference) } } :
+  const JudgedFriction& friction = record.verdict.friction;
+  return record.is_friction_judged ? Json{ { "value", friction.factor },
+                                           { "low", friction.lower },
+                                           { "high", friction.upper },
+                                           { "lowest_sound", record.verdict[Figure::FRICTION_LOWEST] },
+                                           { "highest_sound", record.verdict[Figure::FRICTION_HIGHEST] },
+                                           { "shared", record.verdict[Figure::FRICTION_OF_ARM] },
+                                           { "reference", referenceName(record.friction.reference) } } :
                                      Json(std::optional<double>());
 }
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <deque>
 #include <map>
 #include <memory>
@@ -331,6 +332,7 @@ private:
     std::uint64_t without_time = 0;
     std::uint64_t without_effort = 0;
     std::uint64_t folds = 0;
+    std::map<std::string, std::uint64_t> missing;
     for (std::size_t i = 0; i < parts_.size(); ++i)
     {
       const MessageRows& rows = *parts_[i].rows;
@@ -338,6 +340,7 @@ private:
       without_time += rows.withoutTime();
       without_effort += rows.withoutEffort();
       folds += rows.folds();
+      missing.insert(rows.missing().begin(), rows.missing().end());
       count_.refused_temperatures += rows.refusedTemperatures();
       if (!count_.misfit.exists())
       {
@@ -363,6 +366,8 @@ private:
         without_effort > 0,
         counted(without_effort, "with effort 0 left out: a second source without values, or a source that had none"));
     remark(!layout_.silent.empty(), silentText({ layout_.silent.begin(), layout_.silent.end() }));
+    const std::string lacking = missingText(missing, count_);
+    remark(!lacking.empty(), lacking);
     remark(folds > 0, foldsText(folds));
     remark(time_.rounds() > 1, roundsText(time_.rounds()));
     remark(parts_.size() > 1, "the joints come in " + std::to_string(parts_.size()) +

@@ -255,6 +255,10 @@ bool MessageRows::readRows(const sensor_msgs::JointState& message, std::vector<M
     {
       rows[i].current = source_.current_per_motor_torque * message.effort[motor];
     }
+    if (status == TelemetryStatus::WITHOUT_EFFORT || status == TelemetryStatus::NOT_FINITE)
+    {
+      ++missing_[joints_[i]];
+    }
     if (status != TelemetryStatus::FOUND || !isPlausibleEffort(rows[i].current))
     {
       return false;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -60,6 +62,8 @@ public:
   std::uint64_t corrupt() const { return corrupt_; }
   std::uint64_t withoutTime() const { return without_time_; }
   std::uint64_t withoutEffort() const { return without_effort_; }
+  /// Messages in which angle or effort of a joint is no number, by joint.
+  const std::map<std::string, std::uint64_t>& missing() const { return missing_; }
   bool hasShortEfforts() const { return has_short_efforts_; }
   std::uint64_t folds() const;
   std::uint64_t refusedTemperatures() const;
@@ -87,6 +91,7 @@ private:
   std::uint64_t corrupt_{};
   std::uint64_t without_time_{};
   std::uint64_t without_effort_{};
+  std::map<std::string, std::uint64_t> missing_;
   bool has_short_efforts_{};
   SourceWatch sources_;
 };

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
 #include "recordings/recorded_motion.hpp"
 
 namespace hjt
@@ -21,6 +26,8 @@ MotionCount readTableMotion(const MotionSource& source, const std::vector<int>& 
 std::string foldsText(std::uint64_t folds);
 /// Of joints whose effort is never a number.
 std::string silentText(const std::vector<std::string>& joints);
+/// Of values that are no number in more than a few rows; empty: none. `missing`: in how many, by name.
+std::string missingText(const std::map<std::string, std::uint64_t>& missing, const MotionCount& count);
 std::string roundsText(std::uint64_t rounds);
 
 /// The table has a load of that joint.

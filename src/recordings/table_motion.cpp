@@ -2,6 +2,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <map>
+#include <string>
 
 #include "base/joined.hpp"
 #include "base/number_table.hpp"
@@ -96,6 +99,15 @@ public:
     return never;
   }
 
+  /// Of the columns that have to hold numbers, those of the row at hand that do not.
+  void addMissing(std::map<std::string, std::uint64_t>& missing) const
+  {
+    for (std::size_t i = 0; i < column(VELOCITY, 0); ++i)
+    {
+      missing[names_[i]] += std::isfinite(values_[i]) ? 0 : 1;
+    }
+  }
+
   bool isWithoutCurrent() const
   {
     const auto is_zero = [](double value) { return value == 0.0; };
@@ -184,6 +196,7 @@ public:
       if (!table_.isWhole() || (seen.has_any && table_.isWithoutCurrent()))
       {
         ++count_.corrupt;
+        table_.addMissing(missing_);
         continue;
       }
       more = take(visit);
@@ -268,6 +281,10 @@ private:
     {
       count_.remarks.push_back("the last line is cut off and left out (" + table_.place() + ")");
     }
+    if (const std::string text = missingText(missing_, count_); !text.empty())
+    {
+      count_.remarks.push_back(text);
+    }
     if (folds > 0)
     {
       count_.remarks.push_back(foldsText(folds));
@@ -285,6 +302,7 @@ private:
   std::vector<UnfoldedAngle> angles_;
   std::vector<MotionRow> rows_;
   std::vector<TemperatureRecord> temperatures_;
+  std::map<std::string, std::uint64_t> missing_;  // rows without a number, by column
   RowTime times_;
   RowOrder order_;
   double first_{};
@@ -295,6 +313,23 @@ private:
 std::string foldsText(std::uint64_t folds)
 {
   return "angles are folded into one turn: unwrapped, " + std::to_string(folds) + " jumps of 2 pi";
+}
+
+std::string missingText(const std::map<std::string, std::uint64_t>& missing, const MotionCount& count)
+{
+  constexpr double NOTEWORTHY = 0.02;  // of all rows
+  const auto all = static_cast<double>(count.rows + count.corrupt);
+  std::vector<std::string> names;
+  for (const auto& [name, rows] : missing)
+  {
+    if (static_cast<double>(rows) > NOTEWORTHY * all)
+    {
+      names.push_back(name + " (" + std::to_string(rows) + ")");
+    }
+  }
+  return names.empty() ? std::string() :
+                         std::to_string(count.corrupt) + " of " + std::to_string(count.rows + count.corrupt) +
+                             " rows are left out: no number in " + joined(names);
 }
 
 std::string silentText(const std::vector<std::string>& joints)

@@ -26,7 +26,8 @@ struct Contact
 /// and payload.
 ///
 /// The mean residual over MEAN must differ from the usual one of that direction by more than half of the friction, 5 %
-/// of the load and 2 % of the largest load together, for LASTING. Fixed memory; nothing allocates or throws.
+/// of the load and 2 % of the largest load together, for LASTING, longer by what rates of rows that come rarely smear a
+/// jolt over. Fixed memory; nothing allocates or throws.
 class ContactWatch
 {
 public:
@@ -57,6 +58,8 @@ public:
       moved_ = beyond_ = mean_ = 0.0;
       return;
     }
+    constexpr double ROWS = 4.0;  // that rates take in at least
+    const double smeared = std::max(0.0, ROWS * step - 2.0 * MotionDifferentiator::HALF_WIDTH);
     Usual& usual = usual_[way > 0 ? 1 : 0];
     const double bound =
         OF_FRICTION * std::abs(friction_torque) + OF_LOAD * std::abs(sample.load) + OF_LARGEST * largest_load_;
@@ -67,8 +70,8 @@ public:
     const bool is_known = usual.time > KNOWN;
     usual.torque += std::min(1.0, step / std::min(MEMORY, usual.time)) *
                     (is_known ? std::clamp(difference, -bound, bound) : difference);
-    beyond_ = std::abs(mean_) > bound && moved_ > SETTLED && is_known ? beyond_ + step : 0.0;
-    if (beyond_ > LASTING)
+    beyond_ = std::abs(mean_) > bound && moved_ > SETTLED + smeared && is_known ? beyond_ + step : 0.0;
+    if (beyond_ > LASTING + smeared)
     {
       if (!isRecent())
       {

@@ -191,7 +191,12 @@ double departure(const FrictionFactor& factor, double arm_friction, double more,
 
 std::string factorText(const FrictionFactor& factor)
 {
-  return rounded(factor.value, 2) + " [" + rounded(factor.low(), 2) + ", " + rounded(factor.high(), 2) + "]";
+  return factorText(JudgedFriction{ factor.value, factor.low(), factor.high(), true });
+}
+
+std::string factorText(const JudgedFriction& friction)
+{
+  return rounded(friction.factor, 2) + " [" + rounded(friction.lower, 2) + ", " + rounded(friction.upper, 2) + "]";
 }
 
 const char* wrongLoad(LoadOrigin load)
@@ -289,13 +294,14 @@ Figure figureOf(FrictionReference reference)
 std::string frictionText(const FrictionFactor& factor, const JointEvidence& evidence, const JointContext& context,
                          const Finding& finding, double less, double more)
 {
-  std::string text = "Friction is " + factorText(factor) + " times " + referenceText(factor.reference) +
-                     (context.arm_friction == 1.0 ?
-                          "" :
-                          ", " + rounded(factor.value / context.arm_friction, 2) + " times once the " +
-                              rounded(context.arm_friction, 2) + " times that the arm's joints share are taken out") +
-                     " (an interval that reaches into " + rounded(1.0 - less, 2) + " to " + rounded(1.0 + more, 2) +
-                     " counts as sound).";
+  const double shared = context.arm_friction;
+  std::string text =
+      "Friction is " +
+      factorText(JudgedFriction{ factor.value / shared, factor.low() / shared, factor.high() / shared, true }) +
+      " times " + referenceText(factor.reference) +
+      (shared == 1.0 ? "" : ", apart from the " + rounded(shared, 2) + " times that the arm's joints share") +
+      " (an interval that reaches into " + rounded(1.0 - less, 2) + " to " + rounded(1.0 + more, 2) +
+      " counts as sound).";
   if (finding.level != VerdictLevel::OK)
   {
     const auto name = [](const WeightedCause& cause) { return causeName(cause.cause); };

@@ -15,6 +15,7 @@ namespace hjt
 struct JointContext;
 struct Finding;
 struct Verdict;
+struct JudgedFriction;
 struct OwnReference;
 
 constexpr double LEAST_MOTION = 0.02;  ///< a joint whose angles differ by less does not move [rad]
@@ -61,6 +62,7 @@ private:
 
 /// "1.18 [1.05, 1.32]"
 std::string factorText(const FrictionFactor& factor);
+std::string factorText(const JudgedFriction& friction);
 
 /// Whether the friction of the joints of an arm can be held against what its controller expects: most of them agree
 /// with it, and so it is that of sound joints.

@@ -364,9 +364,13 @@ Verdict judge(const JointEvidence& evidence, const JointContext& context)
     verdict.dismiss(
         { *why_not, *why_not == Reason::CONTACT ? contactText(evidence.contact().largest()) : context.misfit.clause });
   }
-  else if (severityOf(verdict.findings.front().level) != HealthLevel::OK)
+  else if (verdict.findings.front().level != VerdictLevel::NOT_JUDGED)
   {
-    if (const Misfit misfit = GainEvidence(evidence).misfit(); misfit.exists())
+    // Of a reference the gain may be wrong alike.
+    const bool departs = severityOf(verdict.findings.front().level) != HealthLevel::OK;
+    const bool is_to_own = context.is_identified || !context.own.friction.empty();
+    const Misfit misfit = departs || !is_to_own ? GainEvidence(evidence).misfit() : Misfit();
+    if (misfit.exists())
     {
       verdict.dismiss(misfit);
     }

@@ -27,7 +27,7 @@ struct GainEvidence
   /// Both depart alike; none: they do not, or it cannot be told.
   Misfit misfit() const
   {
-    constexpr double NOTEWORTHY = 0.25;  // gains of one type differ by less
+    constexpr double NOTEWORTHY = 0.2;  // gains of one type differ by less
     if (!(load.value > 0.0 && isAlike()) ||
         std::abs(load.value - 1.0) < std::max(NOTEWORTHY, DEVIATIONS * load.uncertainty))
     {
