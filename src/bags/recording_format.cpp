@@ -99,4 +99,12 @@ RecordingFormat formatOfRecording(const std::string& path)
   }
   return RecordingFormat::TABLE;
 }
+
+void requireTable(const std::string& path, const std::string& wanted)
+{
+  if (std::filesystem::is_regular_file(path) && formatOfRecording(path) != RecordingFormat::TABLE)
+  {
+    throw InputError(path + " holds messages, which have no targets: " + wanted);
+  }
+}
 }  // namespace hjt

@@ -19,6 +19,9 @@ enum class RecordingFormat
 /// what converts it.
 RecordingFormat formatOfRecording(const std::string& path);
 
+/// @throws InputError if it is a file of messages, which hold no targets: `wanted` is read of a table.
+void requireTable(const std::string& path, const std::string& wanted);
+
 /// The sentence to end an error of a ROS 2 file with: how to make a bag of it.
 std::string conversionOf(const std::string& path);
 }  // namespace hjt

@@ -159,10 +159,10 @@ bool CsvRows::next()
 
 std::string CsvRows::unevenText() const
 {
-  return uneven_columns_ == 0 ? "" :
-                                "between " + std::string(separatorName()) + " the header has " +
-                                    std::to_string(header_.size()) + " columns, a row " +
-                                    std::to_string(uneven_columns_);
+  return uneven_columns_ == 0 ?
+             "" :
+             "between " + std::string(separatorName()) + " the header has " + std::to_string(header_.size()) +
+                 " columns, a row " + std::to_string(uneven_columns_);
 }
 
 const char* CsvRows::separatorName() const

@@ -14,6 +14,7 @@
 #include "arm/arm_configuration.hpp"
 #include "arm/moving_arm.hpp"
 #include "arm/set_points.hpp"
+#include "bags/recording_format.hpp"
 #include "base/joined.hpp"
 #include "base/number_text.hpp"
 #include "base/publish_period.hpp"
@@ -154,6 +155,10 @@ try
   requireWritable(options.out, options.force, options.motion);
   ArmDescription arm = readArmDescription(findArm(options.arm, configDirectory(options)));
   addIdentifiedGains(options.identified, arm);
+  if (options.set_points.empty())
+  {
+    requireTable(options.motion, "set points are a table, or a program of moves");
+  }
   std::vector<ArmSetPoint> points =
       options.set_points.empty() ? readSetPoints(options.motion, arm) : options.set_points;
   if (const double change = straightenTimes(points); change > 0.0)

@@ -9,6 +9,7 @@
 
 #include "arm/arm_configuration.hpp"
 #include "arm/arm_controller.hpp"
+#include "bags/recording_format.hpp"
 #include "base/csv_rows.hpp"
 #include "base/median.hpp"
 #include "base/number_text.hpp"
@@ -35,6 +36,7 @@ struct Recorded
 
 Recorded readController(const std::string& path, std::size_t joints)
 {
+  requireTable(path, "the controller's gains need a table with target and actual of all joints");
   CsvRows rows(path);
   const std::vector<std::string>& header = rows.header();
   const auto column = [&](const std::string& name)

@@ -185,6 +185,10 @@ class Recordings(tool.ToolTest):
         with open(self.path("b.csv"), "w", encoding="ascii") as file:
             file.write("0.0,1.0,1.0\n0.1,1.0,1.0\n")
         self.fail_with(1, ["first line holds numbers", "header"], "check", "b.csv")
+        with open(self.path("c.csv"), "w", encoding="ascii") as file:
+            file.write(",".join(["timestamp"] + [f"actual_{what}_{i}" for what in ("q", "current") for i in range(6)]))
+            file.write("\n" + ",".join(["0.5"] * 15) + "\n")
+        self.fail_with(1, ["c.csv has no rows; between commas the header has 13 columns, a row 15"], "check", "c.csv")
 
     def test_arms_are_found_by_the_pattern_of_their_names(self):
         rows = []

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <iostream>
+
 #include "apps/common/motion_options.hpp"
 #include "output/exit_code.hpp"
 #include "output/interrupt.hpp"
@@ -18,6 +20,7 @@ int run(const Options& given)
   const ArmRun found = runArm(options);
   if (found.joints.empty())
   {
+    std::cerr << "joint_twin: interrupted; " << options.out << " is not written\n";
     return EXIT_BY_SIGNAL + interruptSignal();
   }
   Report report = reportOf(found);
