@@ -248,7 +248,8 @@ void runArm(ros::NodeHandle& node, const std::string& name, const hjt::FoundPara
     run<hjt::TrackerNode>(
         node,
         hjt::TrackerNode::Arm{ arm, parameters, soundJointsOf(reference, arm, parameters), !identified.empty(), name,
-                               is_open ? otherArms(arm, name, overrides) : hjt::ArmWatch::MakeCandidates() });
+                               is_open ? otherArms(arm, name, overrides) : hjt::ArmWatch::MakeCandidates(),
+                               overrides.count("telemetry.effort") > 0 });
   }
 }
 }  // namespace

@@ -60,7 +60,7 @@ void ArmWatch::ask()
                              visit(rows[i]);
                            }
                          };
-                         return betterArm(rankArms(make_(), play, false), own_);
+                         return betterArm(rankArms(make_(), play, unit_is_given_), own_);
                        });
 }
 
@@ -72,6 +72,10 @@ bool ArmWatch::look()
   }
   other_ = answer_.get();
   is_settled_ = true;
+  if (!other_.empty())
+  {
+    moved_ = std::max(moved_, 0.0);  // one that was wrong, as of an arm led by hand, does not last
+  }
   return true;
 }
 

@@ -14,15 +14,19 @@
 namespace hjt
 {
 /// Whether an arm is another than given, by the law of `rankArms`, while its rows come: asked after 30, 60 and 120 s of
-/// motion, and after eight minutes all over again. A thread of its own works each time some seconds; rows of motion
-/// alone are kept for it.
+/// motion, and after eight minutes all over again, at once where it may be another. A thread of its own works each time
+/// some seconds; rows of motion alone are kept for it.
 class ArmWatch
 {
 public:
   /// Makes the arms to choose from, `own` among them, in that thread.
   using MakeCandidates = std::function<std::vector<ArmCandidate>()>;
 
-  ArmWatch(MakeCandidates make, std::string own) : make_(std::move(make)), own_(std::move(own)) {}
+  /// `unit_is_given`: efforts are of the configured unit.
+  ArmWatch(MakeCandidates make, std::string own, bool unit_is_given = false)
+    : make_(std::move(make)), own_(std::move(own)), unit_is_given_(unit_is_given)
+  {
+  }
   ~ArmWatch() { is_stopped_ = true; }
   ArmWatch(const ArmWatch&) = delete;
   ArmWatch& operator=(const ArmWatch&) = delete;
@@ -50,6 +54,7 @@ private:
 
   MakeCandidates make_;
   std::string own_;
+  bool unit_is_given_;
   std::string other_;
   bool is_settled_{};
   std::vector<std::vector<MotionRow>> rows_;

@@ -316,8 +316,8 @@ LoadProblem::Fit LoadFit::explained(const std::vector<bool>& counts, double size
   if (mounted.cost < upright.cost)
   {
     const Eigen::Vector3d gravity = data_->gravity + both.solve().values.tail<LoadProblem::GRAVITY>();
-    const double size = gravity.norm() / std::max(data_->gravity.norm(), 1e-6);
-    mounted.cost += 0.5 * std::pow((size - 1.0) / GRAVITY_SIZE, 2);
+    const double of_gravity = gravity.norm() / std::max(data_->gravity.norm(), 1e-6);
+    mounted.cost += 0.5 * std::pow((of_gravity - 1.0) / GRAVITY_SIZE, 2);
   }
   return mounted.cost < upright.cost ? mounted : upright;
 }

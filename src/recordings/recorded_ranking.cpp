@@ -39,10 +39,16 @@ std::vector<ArmFit> rankArms(const RecordingOptions& options, const std::vector<
     own.assignments.emplace_back("telemetry.effort=current");  // as such rows are
   }
   std::vector<ArmCandidate> candidates;
+  std::vector<std::string> others;  // whose joints have other names: they are of other rows
   for (const std::string& name : names)
   {
     own.arm = name;
     const ArmRecording recording(own);
+    if (!candidates.empty() && jointNames(recording.arm()) != jointNames(candidates.front().arm))
+    {
+      others.push_back(name);
+      continue;
+    }
     candidates.push_back({ name, recording.arm(), recording.parameters(), costOfGains(recording, own) });
   }
   own.arm = names.front();
@@ -50,7 +56,14 @@ std::vector<ArmFit> rankArms(const RecordingOptions& options, const std::vector<
   const bool unit_is_given = std::any_of(own.assignments.begin(), own.assignments.end(),
                                          [](const auto& text) { return text.find("telemetry.effort") == 0; });
   const auto play = [&](const VisitArmRows& visit) { recording.readEfforts(visit, ArmFit::ENOUGH); };
-  return rankArms(candidates, play, unit_is_given);
+  std::vector<ArmFit> fits = rankArms(candidates, play, unit_is_given);
+  if (!others.empty())
+  {
+    const std::vector<ArmFit> more = rankArms(options, others);
+    fits.insert(fits.end(), more.begin(), more.end());
+    std::stable_sort(fits.begin(), fits.end(), [](const ArmFit& a, const ArmFit& b) { return a.cost < b.cost; });
+  }
+  return fits;
 }
 
 std::string betterArm(const ArmRecording& recording)

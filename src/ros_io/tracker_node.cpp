@@ -87,7 +87,7 @@ TrackerNode::TrackerNode(ros::NodeHandle& node, const Arm& arm)
     load_.emplace(arm.description, arm.joints);
     if (arm.candidates)
     {
-      arm_.emplace(arm.candidates, arm.name);
+      arm_.emplace(arm.candidates, arm.name, arm.unit_is_given);
     }
   }
   subscribe(node);

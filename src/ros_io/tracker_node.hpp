@@ -40,6 +40,7 @@ public:
     bool is_identified{};                 ///< the joints' friction is that of this very arm
     std::string name;                     ///< of a shipped one that may be another
     ArmWatch::MakeCandidates candidates;  ///< none: it is taken at its word
+    bool unit_is_given{};                 ///< of the efforts: it is no open question
   };
 
   /// @throws ParameterError.

@@ -70,16 +70,18 @@ void TrackerNode::watchArm()
   {
     efforts_[i].current /= joints_[i]->currentPerEffort();
   }
-  arm_->add(efforts_);
   const std::string before = arm_->other();
   try
   {
-    if (arm_->look() && arm_->other() != before && !arm_->other().empty())
+    arm_->add(efforts_);
+    if (arm_->look() && arm_->other() != before)
     {
-      ROS_WARN_STREAM("The arm may be a " << arm_->other() << ": it explains the currents clearly better");
+      ROS_WARN_STREAM((arm_->other().empty() ? "No other arm explains the currents clearly better any more" :
+                                               "The arm may be a " + arm_->other() +
+                                                   ": it explains the currents clearly better"));
     }
   }
-  catch (const std::exception& error)  // files of the arms
+  catch (const std::exception& error)  // files of the arms, or no thread
   {
     ROS_WARN_STREAM("Whether the arm is another is not looked at: " << error.what());
     arm_.reset();

@@ -369,7 +369,8 @@ Verdict judge(const JointEvidence& evidence, const JointContext& context)
     // Of a reference the gain may be wrong alike.
     const bool departs = severityOf(verdict.findings.front().level) != HealthLevel::OK;
     const bool is_to_own = context.is_identified || !context.own.friction.empty();
-    const Misfit misfit = departs || !is_to_own ? GainEvidence(evidence).misfit() : Misfit();
+    const GainEvidence gain(evidence);
+    const Misfit misfit = departs || (!is_to_own && gain.isOfFriction()) ? gain.misfit() : Misfit();
     if (misfit.exists())
     {
       verdict.dismiss(misfit);

@@ -24,6 +24,9 @@ struct GainEvidence
     return load.value > 0.0 && !isAlike() && std::abs(load.value - friction) > DEVIATIONS * load.uncertainty;
   }
 
+  /// The friction is nearer to what the load says than to the twin's; else another load is as likely.
+  bool isOfFriction() const { return std::abs(std::log(load.value / friction)) < std::abs(std::log(friction)); }
+
   /// Both depart alike; none: they do not, or it cannot be told.
   Misfit misfit() const
   {

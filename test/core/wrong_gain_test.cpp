@@ -80,6 +80,18 @@ TEST(GainEvidence, ACurrentThatDepartsAsAWholeIsAGain)
   EXPECT_FALSE(shown(1.1, 1.1).misfit().exists()) << "gains of one type differ by as much";
 }
 
+TEST(GainEvidence, AnotherLoadIsNotOfTheFriction)
+{
+  EXPECT_TRUE(shown(1.4, 1.4).isOfFriction());
+  EXPECT_TRUE(shown(0.6, 0.6).isOfFriction());
+  GainEvidence evidence = shown(1.0, 1.0);
+  evidence.load.value = 1.21;
+  evidence.friction = 1.0;
+  EXPECT_FALSE(evidence.isOfFriction());
+  evidence.friction = 1.15;
+  EXPECT_TRUE(evidence.isOfFriction());
+}
+
 TEST(GainEvidence, WithoutALoadNothingIsTold)
 {
   const GainEvidence evidence = shown(2.0, 2.0, 0.1);
