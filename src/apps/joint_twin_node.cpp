@@ -246,10 +246,9 @@ void runArm(ros::NodeHandle& node, const std::string& name, const hjt::FoundPara
   {
     const bool is_open = identified.empty() && description.empty();
     run<hjt::TrackerNode>(
-        node,
-        hjt::TrackerNode::Arm{ arm, parameters, soundJointsOf(reference, arm, parameters), !identified.empty(), name,
-                               is_open ? otherArms(arm, name, overrides) : hjt::ArmWatch::MakeCandidates(),
-                               overrides.count("telemetry.effort") > 0 });
+        node, hjt::TrackerNode::Arm{ arm, parameters, soundJointsOf(reference, arm, parameters), !identified.empty(),
+                                     name, is_open ? otherArms(arm, name, overrides) : hjt::ArmWatch::MakeCandidates(),
+                                     overrides.count("telemetry.effort") > 0 });
   }
 }
 }  // namespace

@@ -152,15 +152,15 @@ std::string withoutReference(const std::vector<ComparedJoint>& lines)
              "The reference did not judge the friction of " + joined(names) + "; the twin is taken in its place. ";
 }
 
-/// What of their friction is taken out before it is judged.
-std::string sharedText(const std::vector<ComparedJoint>& lines)
+/// What of their friction is taken out before it is judged, where it is not what the whole arm has, which is said.
+std::string sharedText(const std::vector<ComparedJoint>& lines, double of_whole_arm)
 {
   std::vector<std::pair<std::string, std::vector<std::string>>> shares;  // factor, joints
   for (const ComparedJoint& line : lines)
   {
     constexpr double NOTEWORTHY = 0.02;
     const double of_arm = line.verdict[Figure::FRICTION_OF_ARM];
-    if (line.friction && std::abs(of_arm - 1.0) >= NOTEWORTHY)
+    if (line.friction && std::abs(of_arm - 1.0) >= NOTEWORTHY && std::abs(of_arm - of_whole_arm) >= NOTEWORTHY)
     {
       const std::string share = fixedText(of_arm, 2);
       const auto same = std::find_if(shares.begin(), shares.end(), [&](const auto& one) { return one.first == share; });
@@ -192,7 +192,7 @@ std::string textOf(const std::vector<ComparedJoint>& lines, const ArmFriction& a
   {
     text += groupText(group, lines);
   }
-  text += sharedText(lines);
+  text += sharedText(lines, arm.median);
   text += departuresOf(lines) + (has_reference ? withoutReference(lines) : "");
   text.pop_back();
   return text;

@@ -258,11 +258,12 @@ private:
     {
       return {};
     }
-    if (const std::string uneven = table_.unevenText(); !uneven.empty())
+    const std::vector<std::string> never = table_.neverFinite();
+    const std::string uneven = table_.unevenText();
+    if (never.size() > 2 * COUNT && !uneven.empty())  // time, angles and currents
     {
       return "; " + uneven;
     }
-    const std::vector<std::string> never = table_.neverFinite();
     const std::string rows = "; none of " + std::to_string(count_.corrupt) + " rows holds ";
     return never.empty() ? rows + "finite numbers in all columns of time, angle and current" :
                            rows + "a finite number in " + joined(never) +
@@ -324,12 +325,12 @@ std::string missingText(const std::map<std::string, std::uint64_t>& missing, con
   {
     if (static_cast<double>(rows) > NOTEWORTHY * all)
     {
-      names.push_back(name + " (" + std::to_string(rows) + ")");
+      names.push_back(name + " in " + std::to_string(rows));
     }
   }
   return names.empty() ? std::string() :
-                         std::to_string(count.corrupt) + " of " + std::to_string(count.rows + count.corrupt) +
-                             " rows are left out: no number in " + joined(names);
+                         "rows without a number are left out: " + joined(names) + " of " +
+                             std::to_string(count.rows + count.corrupt) + " rows";
 }
 
 std::string silentText(const std::vector<std::string>& joints)
