@@ -189,6 +189,9 @@ class Recordings(tool.ToolTest):
             file.write(",".join(["timestamp"] + [f"actual_{what}_{i}" for what in ("q", "current") for i in range(6)]))
             file.write("\n" + ",".join(["0.5"] * 15) + "\n")
         self.fail_with(1, ["c.csv has no rows; between commas the header has 13 columns, a row 15"], "check", "c.csv")
+        with open(self.path("c.csv"), "a", encoding="ascii") as file:
+            file.write(3 * (",".join(["0.5"] * 6 + ["none"] + ["0.5"] * 6) + "\n"))
+        self.fail_with(1, ["none of 4 rows holds a finite number in 'actual_q_5'"], "check", "c.csv")
 
     def test_arms_are_found_by_the_pattern_of_their_names(self):
         rows = []
