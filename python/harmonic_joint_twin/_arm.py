@@ -87,7 +87,8 @@ class Arm:
         self._arm.set_temperature(temperature, joint)
 
     def reset(self) -> None:
-        """Back to the start, with the faults given at construction; wrench and payload stay."""
+        """Back to the start, with the faults given at construction and the configured temperatures; wrench and payload
+        stay."""
         self._arm.reset()
 
     def __repr__(self) -> str:

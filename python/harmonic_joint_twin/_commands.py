@@ -223,10 +223,11 @@ def arm(motion: Recording, arm: Path, *, faults: Sequence[str] = (), out: Option
 
     Returns a dict: 'joints' (one dict each: 'angle_error_rms', 'angle_error_max' [mrad], 'current_rms' [A]),
     'tool_error_rms', 'tool_error_max' [mm], 'energy_residual' [J], 'protective_stop' (None, or 'joint',
-    'reason', 'time' [s]), 'solver_failures' and other counts of steps, and as its 'rows' a dict of
-    arrays as RTDE names them: 'timestamp' [s], shape (rows,), 'target_q', 'target_qd', 'target_qdd', 'target_current'
-    [A], 'target_moment' [N.m], 'actual_q', 'actual_qd', 'actual_current', shape (rows, joints), 'target_TCP_pose',
-    'actual_TCP_pose' (position [m]), shape (rows, 3). InputError, ParameterError.
+    'reason', 'time' [s]), 'feedback_limited' (controls of a joint at the limit of its feedback), 'solver_failures' and
+    other counts of steps, and as its 'rows' a dict of arrays as RTDE names them: 'timestamp' [s], shape (rows,),
+    'target_q', 'target_qd', 'target_qdd', 'target_current' [A], 'target_moment' [N.m], 'actual_q', 'actual_qd',
+    'actual_current', shape (rows, joints), 'target_TCP_pose', 'actual_TCP_pose' (position [m]), shape (rows, 3).
+    InputError, ParameterError.
     """
     return _call("arm",
                  {"motion": motion, "arm": arm, "faults": _several(faults), "out": out, "rate": rate,

@@ -46,6 +46,7 @@ ArmController::ArmController(const ArmDescription& arm, const ArmTwin& twin, std
 void ArmController::reset() noexcept
 {
   std::fill(integral_.begin(), integral_.end(), 0.0);
+  limited_ = 0;
 }
 
 bool ArmController::isDue(const ArmTwin& twin) const noexcept
@@ -71,7 +72,10 @@ void ArmController::control(ArmTwin& twin, const std::vector<JointMotion>& set_p
     const double feedback = gain.speed * error + integral_[i];
     const double torque = feed_forward_[i] + std::clamp(feedback, -feedback_limit_[i], feedback_limit_[i]);
     const double limit = ratio * drive.parameters().motor.torque_limit;
-    if (std::abs(feedback) < feedback_limit_[i] && std::abs(torque) < limit && !drive.outputs().brake_engaged)
+    const bool is_limited = std::abs(feedback) >= feedback_limit_[i];
+    const bool is_braked = drive.outputs().brake_engaged;
+    limited_ += is_limited && !is_braked ? 1 : 0;
+    if (!is_limited && std::abs(torque) < limit && !is_braked)
     {
       integral_[i] += toSeconds(period_) * gain.speed / gain.integral_time * error;
     }

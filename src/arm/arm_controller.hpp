@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "arm/arm_twin.hpp"
@@ -25,7 +26,7 @@ public:
   /// `rate`: of the control [Hz], a divisor of solver.rate.
   ArmController(const ArmDescription& arm, const ArmTwin& twin, std::vector<JointGains> gains, double rate);
 
-  void reset() noexcept;                                                               ///< forgets its integrals
+  void reset() noexcept;                                                               ///< forgets integrals and count
   void setPayload(const Payload& payload) noexcept { dynamics_.setPayload(payload); }  ///< that it feeds forward
 
   /// To be called before each step that is due: commands each drive towards the set point of the step's end.
@@ -35,6 +36,8 @@ public:
 
   /// Torque fed forward for the last set point: rigid-body, and with friction [N.m].
   const std::vector<double>& rigidTorques() const noexcept { return rigid_; }
+  /// How often a joint's feedback was at its limit while its brake was off, since reset [-].
+  std::uint64_t limitedControls() const noexcept { return limited_; }
   double feedForward(std::size_t joint) const noexcept { return feed_forward_[joint]; }
 
 private:
@@ -45,5 +48,6 @@ private:
   std::vector<double> rigid_;
   std::vector<double> feed_forward_;
   std::vector<double> integral_;  // of the torque [N.m]
+  std::uint64_t limited_{};  // controls of a joint [-]
 };
 }  // namespace hjt

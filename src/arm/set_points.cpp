@@ -46,6 +46,17 @@ double stepByMotion(const ArmSetPoint& from, const ArmSetPoint& to, double least
   }
   return squares > least_speed * least_speed ? way / squares : std::numeric_limits<double>::quiet_NaN();
 }
+
+/// Of a motion's first or last set point, whose speeds are those in the middle of the row beside it: a joint that the
+/// row, of that length [s], is long enough to start or stop in is at rest there.
+void restAtEnd(double length, ArmSetPoint& point)
+{
+  constexpr double ACCELERATION = 10.0;  // [rad/s^2]
+  for (JointMotion& joint : point.joints)
+  {
+    joint.velocity = std::abs(joint.velocity) <= ACCELERATION * length ? 0.0 : joint.velocity;
+  }
+}
 }  // namespace
 
 void fillRates(std::vector<ArmSetPoint>& points, bool has_velocity, bool has_acceleration)
@@ -67,6 +78,12 @@ void fillRates(std::vector<ArmSetPoint>& points, bool has_velocity, bool has_acc
       {
         points[k].joints[i].*rate = slope(k, i, of);
       }
+    }
+    if (missing && rate == &JointMotion::velocity && points.size() > 1)
+    {
+      const std::size_t last = points.size() - 1;
+      restAtEnd(points[1].time - points[0].time, points[0]);
+      restAtEnd(points[last].time - points[last - 1].time, points[last]);
     }
   }
 }

@@ -14,7 +14,8 @@ namespace hjt
 /// (readArmProgram), FILE.yaml. @throws InputError, ParameterError.
 std::vector<ArmSetPoint> readSetPoints(const std::string& path, const ArmDescription& arm);
 
-/// Rates that are not given, by differences of the angles.
+/// Rates that are not given, by differences of the angles. At either end a joint is at rest, unless its speed is more
+/// than 10 rad/s^2 make in the row beside it: there the motion is a piece of a longer one.
 void fillRates(std::vector<ArmSetPoint>& points, bool has_velocity, bool has_acceleration);
 
 /// Times of set points whose stamps jitter against their angles and speeds, as where rows were stamped after they were

@@ -42,7 +42,7 @@ double timeOf(Stamp stamp)
   return toSeconds(stamp - EPOCH);
 }
 
-/// The instants of an arm under its controller are MovingArm::SETTLING later than the importer's.
+/// The instants of an arm under its controller are later than the importer's by MovingArm::SETTLING and the lead-in.
 class ArmSimulation : public Simulation
 {
 public:
@@ -213,7 +213,12 @@ public:
     }
     ArmSetPoint first{ timeOf(stampAt(start)), std::vector<JointMotion>(drives.size()) };
     takeSetPoint(values, first.joints);
-    const double settling = values[CONTROLLER].numbers[0] != 0.0 ? MovingArm::SETTLING : 0.0;
+    const bool controlled = values[CONTROLLER].numbers[0] != 0.0;
+    for (JointMotion& joint : first.joints)
+    {
+      joint.velocity = controlled ? joint.velocity : 0.0;  // without its controller the arm stands there
+    }
+    const double settling = controlled ? MovingArm::SETTLING : 0.0;
     MovingArm moving(arm, drives, ArmMotion({ first, first }), unitSurfaces(notice), settling);
     return std::make_unique<ArmSimulation>(arm_, std::move(moving), std::move(parts), values, start);
   }

@@ -215,8 +215,11 @@ void learnWindow(ReferenceBin& bin, LearnedSums& learned, const SignalIndicators
     bin.references[i].count = sums.by_indicator[i].count;
     bin.references[i].mean = sums.means[i];
     bin.references[i].variance = sums.by_indicator[i].square / std::max(count - 1.0, 1.0);
-    const double error = indicators.uncertainty[i];
-    bin.references[i].error_square += (error * error - bin.references[i].error_square) / count;
+    if (const double error = indicators.uncertainty[i]; error > 0.0)
+    {
+      double& square = bin.references[i].error_square;
+      square += (error * error - square) / (square > 0.0 ? count : 1.0);
+    }
     if (follows && std::isfinite(steps.last[i]))
     {
       add(indicators.values[i] - steps.last[i], moved, 1.0, steps.by_indicator[i]);

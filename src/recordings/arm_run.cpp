@@ -178,6 +178,7 @@ try
   run.duration = toSeconds(moving.twin().stamp() - SIMULATION_EPOCH);
   run.energy_residual = moving.twin().energyResidual();
   run.counters = countersOf(moving.twin());
+  run.feedback_limited = moving.controller().limitedControls();
   if (const std::optional<ProtectiveStop>& stop = moving.protectiveStop())
   {
     run.stop = { motion.begin() + toSeconds(stop->stamp - moving.motionBegin()), arm.joints[stop->joint].short_name,
@@ -211,6 +212,7 @@ Report reportOf(const ArmRun& run)
              { "tool_error_rms", "tool position error, rms [mm]", 1e3 * run.tool_error_rms },
              { "tool_error_max", "largest [mm]", 1e3 * run.tool_error_max },
              { "energy_residual", "error of the arm's energy [J]", run.energy_residual },
+             { "feedback_limited", "", run.feedback_limited },
              { "solver_failures", "", run.counters.solver_failures },
              { "step_cuts", "", run.counters.step_cuts },
              { "jumps", "", run.counters.jumps },

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -52,14 +53,15 @@ struct ArmRunStop
 
 struct ArmRun
 {
-  double duration{};                ///< simulated, with the start in the brakes [s]
-  double wall_time{};               ///< without building tables [s]
-  double tool_error_rms{};          ///< of its position [m]
-  double tool_error_max{};          ///< [m]
-  double energy_residual{};         ///< of the coupling [J]
-  std::vector<ArmRunJoint> joints;  ///< from the base on; none: stopped before the first step
-  std::optional<ArmRunStop> stop;   ///< none: it came to its end
-  TwinCounters counters;            ///< of all drives: how their steps went
+  double duration{};                 ///< simulated, with the start in the brakes [s]
+  double wall_time{};                ///< without building tables [s]
+  double tool_error_rms{};           ///< of its position [m]
+  double tool_error_max{};           ///< [m]
+  double energy_residual{};          ///< of the coupling [J]
+  std::vector<ArmRunJoint> joints;   ///< from the base on; none: stopped before the first step
+  std::optional<ArmRunStop> stop;    ///< none: it came to its end
+  std::uint64_t feedback_limited{};  ///< controls of a joint whose feedback was at its limit [-]
+  TwinCounters counters;             ///< of all drives: how their steps went
 };
 
 /// Moves an arm along its set points, its drives, links and controller in closed loop (docs/arm_twin.md).

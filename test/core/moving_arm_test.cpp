@@ -8,6 +8,7 @@
 
 #include <gmock/gmock.h>
 
+#include "arm/set_points.hpp"
 #include "test/core/rods.hpp"
 
 namespace hjt
@@ -127,6 +128,30 @@ TEST(MovingArm, ItComesToAMotionThatBeginsInMotion)
   EXPECT_FALSE(arm.protectiveStop());
 }
 
+/// Set points of angles alone: to and fro they begin and end at rest, a piece of a longer motion at its speed.
+TEST(MovingArm, AMotionOfAnglesAloneEndsAtRestWhereItCanStop)
+{
+  const auto points_of = [](double (*angle)(double), double period)
+  {
+    std::vector<ArmSetPoint> points;
+    for (int k = 0; k <= 100; ++k)
+    {
+      points.push_back({ k * period, { { angle(k * period), 0.0, 0.0 } } });
+    }
+    fillRates(points, false, false);
+    return points;
+  };
+  const std::vector<ArmSetPoint> wave = points_of([](double time) { return 0.2 * std::cos(M_PI * time / 0.8); }, 0.008);
+  for (const ArmSetPoint& end : { wave.front(), wave.back() })
+  {
+    EXPECT_EQ(end.joints[0].velocity, 0.0);
+    EXPECT_EQ(toRest(end).size(), 1U) << "it is held at its end";
+  }
+  const std::vector<ArmSetPoint> piece = points_of([](double time) { return 0.5 * time; }, 0.008);
+  EXPECT_NEAR(piece.front().joints[0].velocity, 0.5, 1e-9);
+  EXPECT_NEAR(piece.back().joints[0].velocity, 0.5, 1e-9);
+}
+
 /// What angle and speed ask for is limited; what is fed forward is not.
 TEST(MovingArm, TheControllersFeedbackIsLimited)
 {
@@ -150,6 +175,7 @@ TEST(MovingArm, TheControllersFeedbackIsLimited)
         most[is_limited] = std::max(most[is_limited], std::abs(feedback));
       }
     }
+    EXPECT_EQ(arm.controller().limitedControls() > 0, is_limited);
   }
   EXPECT_GT(most[0], 2.0 * LIMIT);
   EXPECT_NEAR(most[1], LIMIT, 0.02 * LIMIT);

@@ -27,6 +27,7 @@ int run(const Options& given)
   report.lines.insert(report.lines.begin(), { "output", "", options.out });
   printReport(options.json, report.lines, report.tables);
   warnOf(found.counters);
+  warn(found.feedback_limited, "times a joint's controller was at its limit (limits: feedback of the arm's file)");
   warn(found.stop ? 1 : 0, "protective stop: the arm stands in its brakes from there on");
   return reportWritten(options.out, options.json);
 }

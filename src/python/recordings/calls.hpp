@@ -81,9 +81,10 @@ constexpr const char* kindOf()
 /// As Python writes it, not too long.
 inline std::string shortText(const py::handle& value)
 {
-  constexpr std::size_t LONGEST = 60;
-  const auto text = py::cast<std::string>(py::repr(value));
-  return text.size() > LONGEST ? text.substr(0, LONGEST) + "..." : text;
+  constexpr py::ssize_t LONGEST = 60;  // characters, which may be of several bytes
+  const py::object text = py::repr(value);
+  const py::object begin = text[py::slice(0, LONGEST, 1)];
+  return py::cast<std::string>(begin) + (begin.equal(text) ? "" : "...");
 }
 
 /// A function's options by their names.
