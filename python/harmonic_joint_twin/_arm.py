@@ -51,7 +51,8 @@ class Arm:
 
     @property
     def counters(self) -> Dict[str, int]:
-        """How the steps since reset went: 'solver_failures' those of no equilibrium, which are also warned of, ..."""
+        """How the steps since reset went: 'solver_failures' those of no equilibrium, which are also warned of;
+        'feedback_limited' controls of a joint at the limit of its feedback, ..."""
         return self._arm.counters
 
     def move(self, motion: Recording) -> float:

@@ -48,6 +48,6 @@ private:
   std::vector<double> rigid_;
   std::vector<double> feed_forward_;
   std::vector<double> integral_;  // of the torque [N.m]
-  std::uint64_t limited_{};  // controls of a joint [-]
+  std::uint64_t limited_{};       // controls of a joint [-]
 };
 }  // namespace hjt

@@ -186,8 +186,7 @@ class Commands(Recordings):
         arm.reset()
         self.assertIsNone(arm.protective_stop)
         arm.move(motion)
-        again = arm.run(time[-1])["actual_current"]  # without the injected fault
-        np.testing.assert_allclose(again, expected["actual_current"][1:], atol=1e-6)
+        np.testing.assert_allclose(arm.run(time[-1])["actual_current"], expected["actual_current"][1:], atol=1e-6)
         self.assertEqual(arm.counters["solver_failures"], 0)
         held = arm.run(0.4)["actual_current"][-1]  # at rest, the motion's end behind it
         arm.set_payload(2.0, (0.0, 0.0, 0.1))
@@ -195,6 +194,8 @@ class Commands(Recordings):
         loaded = arm.run(0.4)
         self.assertGreater(abs(loaded["actual_current"][-1, 1] - held[1]), 0.5)  # 2 kg at some 0.5 m over 10.7 N.m/A
         self.assertLess(np.abs(loaded["actual_qd"][-1]).max(), 0.01)
+        arm.move({"time": [0.0, 0.5], "position": [loaded["target_q"][-1], loaded["target_q"][-1] + 0.05]})
+        np.testing.assert_allclose(arm.run(0.6)["target_q"][-1], loaded["target_q"][-1] + 0.05, atol=1e-9)
         for call, said in ((lambda: arm.set_payload(-1.0), "mass = -1"),
                            (lambda: arm.set_payload(1.0, (0.0, 0.0, 20.0)), "centre: 20"),
                            (lambda: arm.set_temperature(float("nan")), "degC"),

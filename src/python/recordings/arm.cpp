@@ -103,16 +103,6 @@ std::vector<ArmSetPoint> setPointsIn(const py::object& motion, const ArmDescript
   return points;
 }
 
-void requireWithin(const std::string& name, double value, const char* unit, const Range& range)
-{
-  // Written so that NaN fails.
-  if (!(value >= range.min && value <= range.max))
-  {
-    throw InputError(name + " = " + numberText(value) + " [" + unit +
-                     "] is out of range, allowed: " + rangeText(range));
-  }
-}
-
 void requireRate(const std::optional<double>& rate)
 {
   requireWithin("rate", rate.value_or(ROW_RATE.min), "Hz", ROW_RATE);
@@ -301,7 +291,9 @@ public:
   py::dict counters() const
   {
     in_use_.refuse();
-    return stepCounters(countersOf(moving_->twin()));
+    py::dict found = stepCounters(countersOf(moving_->twin()));
+    found["feedback_limited"] = moving_->controller().limitedControls();
+    return found;
   }
 
   std::vector<std::string> joints() const
