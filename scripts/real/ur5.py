@@ -333,8 +333,8 @@ def verdict_section(runner, by_name, judged):
 ### Verdicts
 
 """ + f"""`joint_twin compare --arm ur5`, alone and with the report of {TRAIN} as `--reference` (of {TRAIN}: that of
-{other}). The arm is sound in all of them. Numbers: friction as a multiple of the reference's, at the speeds of both; –:
-not shown.
+{other}). The arm is sound in all of them. Numbers: friction as a multiple of the reference's, at the speeds of both,
+apart from what joints share; –: not shown.
 """, *table(["recording", "verdict alone", *JOINTS, "verdict with reference"], sound), *of_pairs, f"""
 {100.0 * RAISED:.0f} % of the identified friction of one joint, or of all, added to the recorded current. Right: the
 raised joint is named and no other; of all, none is named. A joint whose friction the recording does not show cannot be
