@@ -5,7 +5,7 @@ import os
 import sys
 import tempfile
 import warnings
-from typing import TYPE_CHECKING, Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, Union
+from typing import TYPE_CHECKING, Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, Union, cast
 
 import numpy as np
 
@@ -333,9 +333,9 @@ def remaining(recordings: Union[Recording, Sequence[Recording]], *,
     'lost_motion' [rad]. InputError, ParameterError.
     """
     return _call("remaining",
-                 {**_signals(recordings, columns), "hours": hours if hours is None or np.ndim(hours) > 0 else [hours],
-                  "joint": joint, "torque_scale": torque_scale,
-                  "columns": _names(columns), "baseline": baseline, "duty": duty,
+                 {**_signals(recordings, columns),
+                  "hours": hours if hours is None or np.ndim(hours) > 0 else [cast(float, hours)], "joint": joint,
+                  "torque_scale": torque_scale, "columns": _names(columns), "baseline": baseline, "duty": duty,
                   "lost_motion_limit": lost_motion_limit, "use_record": use_record, "force": force,
                   "progress": progress}, overlays)
 
