@@ -241,9 +241,9 @@ double Baseline::variance(std::size_t indicator, const ReferenceBin& bin, const 
                           const Widening& widening) const noexcept
 {
   const double least = least_spread_ * bin.references[sizeOf(indicator)].mean;
-  const double error_square = bin.references[indicator].error_square;
-  const double wider = error_square > 0.0 ? std::max(average.error_square / error_square, 1.0) : 1.0;
-  const double square = std::max(left * wider, average.error_square);
+  const double usual = bin.references[indicator].error_square;
+  const double wider = left * (usual > 0.0 ? std::max(average.relative_square / usual, 1.0) : 1.0);
+  const double square = std::max(wider, average.error_square);
   return square * widening.stays + std::max(square * widening.varies, average.scatter_square / average.weight) +
          least * least + floor_[indicator] * floor_[indicator] + widening.carried;
 }
@@ -282,6 +282,7 @@ void Baseline::take(const ReferenceBin& bin, const SignalIndicators& indicators,
   }
   window.leverage = place.dot(mapped(bin.leverage) * place);
   window.error = indicators.uncertainty;
+  window.relative = relativeErrors(indicators);
   for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
   {
     const Reference& reference = bin.references[i];
@@ -316,11 +317,11 @@ Baseline::Average Baseline::average(std::size_t first, std::size_t count, std::s
     {
       if (found > 0)
       {
-        const double step = difference - differences[found - 1];
-        steps[found - 1] = 0.5 * step * step;
+        steps[found - 1] = 0.5 * std::pow(difference - differences[found - 1], 2);
       }
       differences[found++] = difference;
       average.error_square += compared_[i].error[indicator] * compared_[i].error[indicator];
+      average.relative_square += compared_[i].relative[indicator] * compared_[i].relative[indicator];
     }
   }
   if (2 * found < count || found < std::min(count, LEAST_WINDOWS))
@@ -333,6 +334,7 @@ Baseline::Average Baseline::average(std::size_t first, std::size_t count, std::s
                                      differences.begin() + static_cast<std::ptrdiff_t>(found - left_out), 0.0);
   average.difference = sum / static_cast<double>(found - 2 * left_out);
   average.error_square /= static_cast<double>(found);
+  average.relative_square /= static_cast<double>(found);
   if (found > JUMPS + 1)
   {
     const std::size_t used = found - 1 - JUMPS;

@@ -159,17 +159,18 @@ void writeBaseline(const std::string& path, const Baseline& baseline, bool less_
     }
     return text;
   };
-  text
-      << "# Healthy indicators by operating point: octave of motor speed, direction, steps of load_step [N.m] and 10 "
-         "K.\n"
-         "# Place in it: temperature, its square, the load's mean magnitude, its part that stays over the angle, its "
-         "parts over sine\n# and cosine of the angle, inertia.\n"
-         "# Each indicator: [windows, mean, spread, spread from one window to the next and standard error by the fit "
-         "(0: not known),\n# slopes over the place, share of the spread that goes with each common cause], units as in "
-         "docs/indicators.md.\n"
-         "format: "
-      << FORMAT << "\nload_step: " << numberText(baseline.loadStep()) << "\nmodel: " << (less_model ? "true" : "false")
-      << "  # whether a model's indicators were subtracted\nbaseline:\n";
+  text << "# Healthy indicators by operating point: octave of motor speed, direction, steps of load_step [N.m] and 10 "
+          "K.\n"
+          "# Place in it: temperature, its square, the load's mean magnitude, its part that stays over the angle, its "
+          "parts over sine\n# and cosine of the angle, inertia.\n"
+          "# Each indicator: [windows, mean, spread, spread from one window to the next and standard error of a line "
+          "over "
+          "the least\n# one of its signal (0: not known), slopes over the place, share of the spread that goes with "
+          "each common cause],\n# units as in "
+          "docs/indicators.md.\n"
+          "format: "
+       << FORMAT << "\nload_step: " << numberText(baseline.loadStep()) << "\nmodel: " << (less_model ? "true" : "false")
+       << "  # whether a model's indicators were subtracted\nbaseline:\n";
   FitRoom room;
   for (std::size_t b = 0; b < baseline.bins().size(); ++b)
   {

@@ -186,6 +186,27 @@ void fitCommonCauses(ReferenceBin& bin, const ReferenceSums& sums, FitRoom& room
 }
 }  // namespace
 
+std::array<double, INDICATOR_COUNT> relativeErrors(const SignalIndicators& indicators) noexcept
+{
+  std::array<double, LINE_SIGNALS> least{};  // 0: none
+  for (std::size_t signal = 0; signal < LINE_SIGNALS; ++signal)
+  {
+    for (std::size_t line = 0; line < FIRST_LOADED; ++line)
+    {
+      const double error = indicators.uncertainty[amplitudeIndex(static_cast<LineSignal>(signal), line)];
+      least[signal] = error > 0.0 && !(least[signal] > 0.0 && least[signal] < error) ? error : least[signal];
+    }
+  }
+  constexpr auto RIPPLE = static_cast<std::size_t>(LineSignal::MOTOR_RIPPLE);
+  std::array<double, INDICATOR_COUNT> relative{};
+  for (std::size_t i = SCALAR_COUNT; i < INDICATOR_COUNT; ++i)
+  {
+    const std::size_t signal = i < LOADED_BLOCK ? (i - SCALAR_COUNT) / LINE_BLOCK : RIPPLE;
+    relative[i] = least[signal] > 0.0 ? indicators.uncertainty[i] / least[signal] : 0.0;
+  }
+  return relative;
+}
+
 void learnWindow(ReferenceBin& bin, LearnedSums& learned, const SignalIndicators& indicators,
                  const Place& here) noexcept
 {
@@ -199,6 +220,7 @@ void learnWindow(ReferenceBin& bin, LearnedSums& learned, const SignalIndicators
   mapped(bin.mean_place) += place / bin.windows;
   mapped(sums.places).noalias() += weight * place * place.transpose();
   const PlaceVector moved = mapped(here) - mapped(steps.last_place);
+  const std::array<double, INDICATOR_COUNT> errors = relativeErrors(indicators);
   std::array<double, INDICATOR_COUNT> before{};  // differences from the means so far
   for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
   {
@@ -215,7 +237,7 @@ void learnWindow(ReferenceBin& bin, LearnedSums& learned, const SignalIndicators
     bin.references[i].count = sums.by_indicator[i].count;
     bin.references[i].mean = sums.means[i];
     bin.references[i].variance = sums.by_indicator[i].square / std::max(count - 1.0, 1.0);
-    if (const double error = indicators.uncertainty[i]; error > 0.0)
+    if (const double error = errors[i]; error > 0.0)
     {
       double& square = bin.references[i].error_square;
       square += (error * error - square) / (square > 0.0 ? count : 1.0);

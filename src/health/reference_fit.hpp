@@ -31,6 +31,10 @@ inline Eigen::Map<PlaceVector> mapped(Place& place) noexcept
   return Eigen::Map<PlaceVector>(place.data());
 }
 
+/// Standard error of each line over the least one of its signal's lines in the same window: what the motion makes of
+/// it, whatever the noise [-]. 0: not known.
+std::array<double, INDICATOR_COUNT> relativeErrors(const SignalIndicators& indicators) noexcept;
+
 /// Takes a window up into the sums of its class; `here`: its place there. Does not allocate.
 void learnWindow(ReferenceBin& bin, LearnedSums& sums, const SignalIndicators& indicators, const Place& here) noexcept;
 

@@ -179,8 +179,9 @@ TEST(Reference, OfWindowsAlikeWithinARunDoesNot)
   EXPECT_NEAR(varianceOfTen(0.8, 60), 0.8, 0.15);
 }
 
-/// Spread of a line in a window of the standard error `error`, where that of the healthy ones is `usual`.
-double spreadWith(double error, double usual)
+/// Spread of a line in a window of the standard error `error`, where that of the healthy ones is `usual`; another line
+/// has 1e-4 in the healthy ones and `other` in that window.
+double spreadWith(double error, double usual, double other = 1e-4)
 {
   constexpr std::size_t LINE = cosineIndex(LineSignal::MOTOR_RIPPLE, FIRST_LOADED);
   Assessor assessor(shippedParameters({ "indicators.least_spread=0.0", "indicators.evidence_windows=1" }));
@@ -192,17 +193,19 @@ double spreadWith(double error, double usual)
   {
     window.values[LINE] = 1e-3 * normal(random);
     window.uncertainty[LINE] = i < LEARNING ? usual : error;
+    window.uncertainty[amplitudeIndex(LineSignal::MOTOR_RIPPLE, 0)] = i < LEARNING ? 1e-4 : other;
     assessor.update(window);
   }
   return std::sqrt(assessor.baseline().residual().own[LINE]);
 }
 
-TEST(Reference, OfALineIsAsUncertainAsTheWindowsOwnFit)
+TEST(Reference, OfALineIsAsUncertainAsTheWindowsMotionMakesIt)
 {
   const double usual = spreadWith(1e-4, 1e-4);
   EXPECT_NEAR(usual, 1e-3, 3e-4);
   EXPECT_NEAR(spreadWith(3e-4, 1e-4), 3.0 * usual, 1e-6) << "the spread grows with the error, small as that is";
   EXPECT_NEAR(spreadWith(1e-5, 1e-4), usual, 1e-6) << "a better fit makes no finer judgement";
+  EXPECT_NEAR(spreadWith(3e-4, 1e-4, 3e-4), usual, 1e-6) << "noise of all lines is no reason to see less";
   EXPECT_GT(spreadWith(1e-2, 1e-2), 0.9e-2) << "white noise alone would make as much";
 }
 

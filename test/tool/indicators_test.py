@@ -145,9 +145,9 @@ record:
         self.assertTrue((windows["window_error_ripple_outer"] > 0.0).all(), windows["window_error_ripple_outer"])
         self.succeed("indicators", run, "--save-baseline", "errors.yaml")
         learned = pathlib.Path(self.path("errors.yaml")).read_text(encoding="utf-8")
-        squares = [float(count) * float(error) ** 2 for count, error in re.findall(
-            r" ripple_outer: \[(\d+), [^,]+, [^,]+, [^,]+, ([^,\]]+)", learned)]
-        self.assertAlmostEqual(sum(squares), sum(windows["window_error_ripple_outer"] ** 2), delta=1e-15)
+        relative = [float(error) for error in
+                    re.findall(r" ripple_outer: \[\d+, [^,]+, [^,]+, [^,]+, ([^,\]]+)", learned)]
+        self.assertTrue(relative and min(relative) >= 1.0, relative)
         _, *origin = read("--set", "indicators.evidence_windows=1")
         self.assertEqual(origin, ["windows of the run", "run, under those of the command line"])
         # The motor's speed was not recorded: it is that of the drive's sensors all the same.

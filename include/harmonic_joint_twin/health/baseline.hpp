@@ -68,7 +68,7 @@ struct Reference
   double mean{};          // unit of the indicator; from fitReference on at the mean place of the class
   double variance{};      // about the mean, from fitReference on about what the place makes of it
   double within{};        // half the mean square of what successive windows differ by; 0: not known
-  double error_square{};  // of the windows' standard errors by the fit, mean; 0: not known
+  double error_square{};  // of the windows' relativeErrors, mean; 0: not known [-]
   bool fitted{};          // has slopes and shares of common causes
   Place slopes{};         // over the place, unit of the indicator
   /// Shares of the spread that go with each common cause, of unit variance [-]
@@ -172,7 +172,7 @@ enum class BaselineState : std::uint8_t
 /// more, is left out at either end.
 ///
 /// Law:   t = mean(x - m - b (z - z_0)) / sqrt(p (r + h) + max(p (1 - r), w^2) / k + (f m)^2 + q^2)
-///        p = max(s^2 max(u^2 / u_0^2, 1), u^2)
+///        p = max(s^2 max(c^2 / c_0^2, 1), u^2)
 ///        score = sign(t) sqrt(v log(1 + t^2 / v)) (8 v + 1) / (8 v + 3),  v = e n - 1 - d, at least 1
 /// where  m, s, n  mean, standard deviation and number of the healthy windows
 ///        z, z_0   place of the window in its class, mean of the healthy ones;  b, s  slopes over it and what they
@@ -185,8 +185,8 @@ enum class BaselineState : std::uint8_t
 ///                 windows differ by, over s^2 (von Neumann 1941), plus its standard error; 1 if none followed another
 ///        e        share of the windows that count as independent, (1 - r') / (1 + r'), at least one in every stretch;
 ///                 r' as r, less the error; 1 if none followed another
-///        u, u_0   standard error of the fit, rms, of the windows averaged and of the healthy ones: what a line is off
-///                 by differs between windows as u does, though it is not as large as white noise would make it
+///        u        standard error of the fit, rms;  c, c_0  of it what the motion makes (relativeErrors), rms, of the
+///                 windows averaged and of the healthy ones: what a line is off by differs between windows as c does
 ///        f  indicators.least_spread;  q  a tenth of what one encoder count makes; 0.3 for kurtosis, 0.5 for crest
 /// A carried reference is one of another motion, for windows from which a model is subtracted. They are compared with
 /// the class of motion to and fro at their temperature that has most windows. b is over temperature alone, the variance
@@ -240,6 +240,7 @@ private:
   {
     std::array<double, INDICATOR_COUNT> difference{};  // NaN: not compared
     std::array<double, INDICATOR_COUNT> error{};       // by the fit
+    std::array<double, INDICATOR_COUNT> relative{};    // relativeErrors
     double leverage{};                                 // (z - z_0)' L (z - z_0)
   };
 
@@ -255,8 +256,9 @@ private:
   {
     double difference{};
     double error_square{};
-    double scatter_square{};  // w^2
-    double weight{};          // k
+    double relative_square{};  // c^2
+    double scatter_square{};   // w^2
+    double weight{};           // k
   };
 
   /// Of the reference's variance: what stays from window to window, and what is left of the rest in a mean.
