@@ -241,7 +241,7 @@ double Baseline::variance(std::size_t indicator, const ReferenceBin& bin, const 
                           const Widening& widening) const noexcept
 {
   const double least = least_spread_ * bin.references[sizeOf(indicator)].mean;
-  const double usual = bin.references[indicator].error_square;
+  const double usual = bin.references[indicator].relative_square;
   const double wider = left * (usual > 0.0 ? std::max(average.relative_square / usual, 1.0) : 1.0);
   const double square = std::max(wider, average.error_square);
   return square * widening.stays + std::max(square * widening.varies, average.scatter_square / average.weight) +

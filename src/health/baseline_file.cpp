@@ -92,7 +92,7 @@ ReferenceBin readBin(const YAML::Node& node)
     reference.mean = numbers[1];
     reference.variance = numbers[2] * numbers[2];
     reference.within = numbers[3] * numbers[3];
-    reference.error_square = error * error;
+    reference.relative_square = error * error;
     reference.fitted = fitted;
     if (fitted)
     {
@@ -163,11 +163,9 @@ void writeBaseline(const std::string& path, const Baseline& baseline, bool less_
           "K.\n"
           "# Place in it: temperature, its square, the load's mean magnitude, its part that stays over the angle, its "
           "parts over sine\n# and cosine of the angle, inertia.\n"
-          "# Each indicator: [windows, mean, spread, spread from one window to the next and standard error of a line "
-          "over "
+          "# Each indicator: [windows, mean, spread, spread from one window to the next, standard error of a line over "
           "the least\n# one of its signal (0: not known), slopes over the place, share of the spread that goes with "
-          "each common cause],\n# units as in "
-          "docs/indicators.md.\n"
+          "each common cause],\n# units as in docs/indicators.md.\n"
           "format: "
        << FORMAT << "\nload_step: " << numberText(baseline.loadStep()) << "\nmodel: " << (less_model ? "true" : "false")
        << "  # whether a model's indicators were subtracted\nbaseline:\n";
@@ -195,7 +193,7 @@ void writeBaseline(const std::string& path, const Baseline& baseline, bool less_
       {
         text << "      " << indicatorName(i) << ": [" << reference.count << ", " << numberText(reference.mean) << ", "
              << numberText(std::sqrt(reference.variance)) << ", " << numberText(std::sqrt(reference.within)) << ", "
-             << numberText(std::sqrt(reference.error_square));
+             << numberText(std::sqrt(reference.relative_square));
         if (reference.fitted)
         {
           text << ", " << list(reference.slopes) << ", " << list(reference.common);

@@ -239,7 +239,7 @@ void learnWindow(ReferenceBin& bin, LearnedSums& learned, const SignalIndicators
     bin.references[i].variance = sums.by_indicator[i].square / std::max(count - 1.0, 1.0);
     if (const double error = errors[i]; error > 0.0)
     {
-      double& square = bin.references[i].error_square;
+      double& square = bin.references[i].relative_square;
       square += (error * error - square) / (square > 0.0 ? count : 1.0);
     }
     if (follows && std::isfinite(steps.last[i]))

@@ -65,12 +65,12 @@ constexpr std::size_t COMMON_CAUSES = 3;
 struct Reference
 {
   int count{};
-  double mean{};          // unit of the indicator; from fitReference on at the mean place of the class
-  double variance{};      // about the mean, from fitReference on about what the place makes of it
-  double within{};        // half the mean square of what successive windows differ by; 0: not known
-  double error_square{};  // of the windows' relativeErrors, mean; 0: not known [-]
-  bool fitted{};          // has slopes and shares of common causes
-  Place slopes{};         // over the place, unit of the indicator
+  double mean{};             // unit of the indicator; from fitReference on at the mean place of the class
+  double variance{};         // about the mean, from fitReference on about what the place makes of it
+  double within{};           // half the mean square of what successive windows differ by; 0: not known
+  double relative_square{};  // of the windows' relativeErrors, mean; 0: not known [-]
+  bool fitted{};             // has slopes and shares of common causes
+  Place slopes{};            // over the place, unit of the indicator
   /// Shares of the spread that go with each common cause, of unit variance [-]
   std::array<double, COMMON_CAUSES> common{};
 };
