@@ -29,8 +29,8 @@ ArmCandidate candidate(const std::string& name)
 
 const std::vector<ArmCandidate>& candidates()
 {
-  static const std::vector<ArmCandidate> made{ candidate("ur3"), candidate("ur5"), candidate("ur10") };
-  return made;
+  static const std::vector<ArmCandidate> CANDIDATES{ candidate("ur3"), candidate("ur5"), candidate("ur10") };
+  return CANDIDATES;
 }
 
 /// Rows of a UR5 in motion, whose shoulder has `friction` more [A], currents times `size`.
