@@ -84,6 +84,13 @@ std::string IdentifiedMounting::text() const
          part(gravity[1]) + ", " + part(gravity[2]) + "] in the arm's file";
 }
 
+std::string LoadPart::text() const
+{
+  return (std::isinf(begin) ? "" : "from " + fixedText(begin, 0) + " s") +
+         (std::isinf(begin) || std::isinf(end) ? "" : " ") +
+         (std::isinf(end) ? " on" : "to " + fixedText(end, 0) + " s");
+}
+
 bool FoundLoad::showsPayload() const
 {
   return payload.differs() && payload.residual_share < CLEARLY &&

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <string>
 
 #include "arm/arm_description.hpp"
@@ -51,6 +52,18 @@ struct IdentifiedMounting
   std::string text() const;
 };
 
+/// A part of the time in which the payload stays what it is.
+struct LoadPart
+{
+  double begin{ -HUGE_VAL };  ///< [s]
+  double end{ HUGE_VAL };     ///< [s]
+
+  bool isAll() const { return std::isinf(begin) && std::isinf(end); }
+  bool holds(double time) const { return time >= begin && time < end; }
+  /// "from 12 s to 34 s"
+  std::string text() const;
+};
+
 /// What the currents of an arm show of its load.
 struct FoundLoad
 {
@@ -58,6 +71,7 @@ struct FoundLoad
 
   IdentifiedPayload payload;
   IdentifiedMounting mounting;
+  LoadPart part{};  ///< that they are of: another payload is carried before or after
 
   /// It explains the currents clearly better than the load as it counts, and another mounting does not as well.
   bool showsPayload() const;

@@ -2,8 +2,10 @@
 #include "arm/load_fit.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include <Eigen/Core>
@@ -19,15 +21,16 @@ namespace
 constexpr double MOVING = 0.05;  // [rad/s]
 using Rows = LoadProblem::Rows;
 
-/// Of the joints that count: all, or those in which nothing touches the arm.
-std::vector<Rows> ofJoints(const std::vector<Rows>& rows, const std::vector<bool>& counts, bool with_touched)
+/// Of the joints that count in that part of the time: all, or those in which nothing touches the arm.
+std::vector<Rows> ofJoints(const std::vector<Rows>& rows, const std::vector<bool>& counts, bool with_touched,
+                           const LoadPart& part = {})
 {
   std::vector<Rows> left(rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i)
   {
     for (std::size_t k = 0; counts[i] && k < rows[i].size(); ++k)
     {
-      if (with_touched || !rows[i].touched[k])
+      if ((with_touched || !rows[i].touched[k]) && part.holds(rows[i].times[k]))
       {
         left[i].add(rows[i], k);
       }
@@ -36,21 +39,26 @@ std::vector<Rows> ofJoints(const std::vector<Rows>& rows, const std::vector<bool
   return left;
 }
 
-/// Of the residuals as torques of all joints, what is left with `values`, rms [-].
-double shareLeft(const std::vector<Rows>& rows, const std::vector<double>& gains, const LoadProblem::Shared& values)
+/// Of the residuals as torques of all joints, what is left with `values`, sum of squares [(N.m)^2].
+double squaresLeft(const std::vector<Rows>& rows, const std::vector<double>& gains, const LoadProblem::Shared& values)
 {
-  double before = 0.0;
-  double after = 0.0;
+  double squares = 0.0;
   for (std::size_t i = 0; i < rows.size(); ++i)
   {
     for (std::size_t k = 0; k < rows[i].size(); ++k)
     {
       const double left = rows[i].residuals[k] - rows[i].columns[k].head<LoadProblem::SHARED>().dot(values);
-      before += std::pow(gains[i] * rows[i].residuals[k], 2);
-      after += std::pow(gains[i] * left, 2);
+      squares += std::pow(gains[i] * left, 2);
     }
   }
-  return before > 0.0 ? std::sqrt(after / before) : 1.0;
+  return squares;
+}
+
+/// The same of all, rms [-].
+double shareLeft(const std::vector<Rows>& rows, const std::vector<double>& gains, const LoadProblem::Shared& values)
+{
+  const double all = squaresLeft(rows, gains, LoadProblem::Shared::Zero());
+  return all > 0.0 ? std::sqrt(squaresLeft(rows, gains, values) / all) : 1.0;
 }
 
 /// With the best multiple of what is predicted.
@@ -175,6 +183,53 @@ struct LoadFit::Data
     return found;
   }
 
+  /// Parts of that part in which the payload stays what it is, in their order.
+  std::vector<LoadPart> parts(const std::vector<bool>& counts, const LoadPart& of, double of_links) const
+  {
+    const std::vector<Rows> joints = ofJoints(rows, counts, true, of);  // another payload looks like contact
+    const std::optional<double> change = LoadProblem(joints, LoadProblem::Term::PAYLOAD).likelyChange();
+    if (!change)
+    {
+      return { of };
+    }
+    const std::array<LoadPart, 2> sides{ LoadPart{ of.begin, *change }, LoadPart{ *change, of.end } };
+    std::array<IdentifiedPayload, 2> found;
+    double squares = 0.0;
+    for (std::size_t side = 0; side < sides.size(); ++side)
+    {
+      const std::vector<Rows> its = ofJoints(rows, counts, true, sides[side]);
+      found[side] = findPayload(its, of_links);
+      squares += std::pow(found[side].residual_share, 2) * squaresLeft(its, gains, LoadProblem::Shared::Zero());
+    }
+    found[1].configured.mass = found[0].mass;
+    found[1].mass_half_width = std::hypot(found[0].mass_half_width, found[1].mass_half_width);
+    const double together = squaresLeft(joints, gains, LoadProblem(joints, LoadProblem::Term::PAYLOAD).solve().values);
+    if (!found[1].differs() || squares > std::pow(FoundLoad::CLEARLY, 2) * together)
+    {
+      return { of };
+    }
+    std::vector<LoadPart> all = parts(counts, sides[0], of_links);
+    const std::vector<LoadPart> later = parts(counts, sides[1], of_links);
+    all.insert(all.end(), later.begin(), later.end());
+    return all;
+  }
+
+  /// With the most rows.
+  LoadPart longest(const std::vector<bool>& counts, const std::vector<LoadPart>& all) const
+  {
+    const auto size = [&](const LoadPart& part)
+    {
+      std::size_t sum = 0;
+      for (const Rows& its : ofJoints(rows, counts, true, part))
+      {
+        sum += its.size();
+      }
+      return sum;
+    };
+    return *std::max_element(all.begin(), all.end(),
+                             [&](const LoadPart& a, const LoadPart& b) { return size(a) < size(b); });
+  }
+
   IdentifiedMounting findMounting(const std::vector<Rows>& joints, double of_links) const
   {
     const LoadProblem::Solution solution = LoadProblem(joints, LoadProblem::Term::GRAVITY).solve();
@@ -286,13 +341,15 @@ double LoadFit::moved() const
   return data_->moved;
 }
 
-FoundLoad LoadFit::solve(const std::vector<bool>& counts)
+FoundLoad LoadFit::solve(const std::vector<bool>& counts, Part which)
 {
   Data& data = *data_;
   data.closeAll();
   const double of_links = data.ofLinks(counts);
-  return { data.findPayload(ofJoints(data.rows, counts, false), of_links),
-           data.findMounting(ofJoints(data.rows, counts, true), of_links) };
+  const std::vector<LoadPart> parts = data.parts(counts, {}, of_links);
+  const LoadPart part = which == Part::LAST ? parts.back() : data.longest(counts, parts);
+  return { data.findPayload(ofJoints(data.rows, counts, !part.isAll(), part), of_links),
+           data.findMounting(ofJoints(data.rows, counts, true, part), of_links), part };
 }
 
 LoadProblem::Fit LoadFit::explained(const std::vector<bool>& counts, double size)
@@ -337,6 +394,6 @@ IdentifiedPayload identifyPayload(const ArmDescription& arm, const std::vector<s
     }
     fit.add(at, currents);
   }
-  return fit.solve(std::vector<bool>(samples.size(), true)).payload;
+  return fit.solve(std::vector<bool>(samples.size(), true), LoadFit::Part::LONGEST).payload;
 }
 }  // namespace hjt

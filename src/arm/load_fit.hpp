@@ -17,7 +17,10 @@ namespace hjt
 /// with x mass and moments of a payload, or the change of gravity, Y_i the torque of their units at joint i (rigid-body
 /// dynamics), and for each joint nuisances (LoadProblem). Each row of the fit is the mean over 0.1 s of one joint that
 /// moves one way. The interval of the mass holds the fit's and 2 % of the links' own masses. The payload is of rows in
-/// which nothing touches the arm; the mounting of all, since another one looks like contact.
+/// which nothing touches the arm, where it does not change; the mounting of all, since another one looks like contact.
+///
+/// A payload that is picked up or put down: where two parts of the time, each with terms of its own, show masses whose
+/// difference is one that would be named, and leave clearly less, the time is parted there, and each part likewise.
 class LoadFit
 {
 public:
@@ -32,8 +35,14 @@ public:
   /// Samples of one time, and the current that each joint's twin predicts [A]. `touched`: something touches the arm.
   void add(const std::vector<MotionSample>& samples, const std::vector<double>& predicted, bool touched = false);
 
+  /// Of the time, where the payload changes in it.
+  enum class Part
+  {
+    LONGEST,
+    LAST
+  };
   /// `counts`: whether the current of a joint, by its number, is measured: else it is left out.
-  FoundLoad solve(const std::vector<bool>& counts);
+  FoundLoad solve(const std::vector<bool>& counts, Part part);
   /// How well the arm explains the currents of the joints that count, with its best payload, or the best mounting too.
   /// @param size of all currents, as a multiple of what they are taken for [-]
   LoadProblem::Fit explained(const std::vector<bool>& counts, double size = 1.0);

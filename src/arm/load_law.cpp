@@ -37,7 +37,8 @@ std::string AssumedLoad::text() const
 {
   std::string text = mounting ? sentence(mounting->text()) + " " : std::string();
   text += payload ? sentence(payload->text()) + " " : std::string();
-  return text + (isConfigured() ? "" : "The joints are judged with it. ");
+  text += isConfigured() ? "" : "The joints are judged with it. ";
+  return text + (part.isAll() ? "" : "The payload changes: the joints are judged by the rows " + part.text() + ". ");
 }
 
 void AssumedLoad::configure(ArmDescription& arm) const
@@ -91,10 +92,12 @@ std::optional<AssumedLoad> LoadLaw::other(const FoundLoad& found, const JudgedJo
   }
   // A mass below zero is no other payload; less than was found is that it was put down.
   const bool is_put_down = counts_.payload && counts_.payload->isCarried();
-  if (found.showsPayload() && (found.payload.isOther() || is_put_down) && !tried_payload_ && mayBeOther(joints))
+  const bool is_other = found.showsPayload() && (found.payload.isOther() || is_put_down);
+  if ((is_other || !found.part.isAll()) && !tried_payload_ && mayBeOther(joints))
   {
     tried_payload_ = true;
-    next.payload = named(found.payload, counts_.payload);
+    next.part = found.part;
+    next.payload = is_other ? named(found.payload, counts_.payload) : counts_.payload;
     return next;
   }
   return std::nullopt;

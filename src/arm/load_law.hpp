@@ -16,9 +16,10 @@ struct AssumedLoad
 {
   std::optional<IdentifiedPayload> payload;
   std::optional<IdentifiedMounting> mounting;
+  LoadPart part{};  ///< of the rows that are judged: the payload changes
 
   bool isConfigured() const { return !payload && !mounting; }
-  std::string text() const;                   ///< in sentences; empty: as configured
+  std::string text() const;                   ///< in sentences; empty: as configured, all the time
   void configure(ArmDescription& arm) const;  ///< of an arm with the configured load
 };
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <utility>
 
 #include <Eigen/Cholesky>
@@ -15,6 +16,7 @@ namespace hjt
 namespace
 {
 constexpr double OUTLIER = 3.0;  // deviations
+constexpr double LEAST = 0.01;   // deviation [A]
 constexpr int PARTS = 10;        // of the time, of which one after the other is left out
 /// What each is known to before: mass [kg], moment [kg.m], gravity [m/s^2]; what does not count.
 constexpr double KNOWN_MASS = 10.0;
@@ -113,16 +115,11 @@ LoadProblem::Fit LoadProblem::fit(double mass) const
   double cost = 0.0;
   for (std::size_t i = 0; i < rows_.size(); ++i)
   {
-    const Eigen::Vector4d own = all.segment<NUISANCES>(static_cast<Eigen::Index>(SHARED + NUISANCES * i));
-    cost += rareness(own);
-    Columns values;
-    values << all.head<SHARED>(), own;
+    const auto own = static_cast<Eigen::Index>(SHARED + NUISANCES * i);
+    cost += rareness(all.segment<NUISANCES>(own));
+    left += errorsOf(rows_[i], own, all).squaredNorm();
     for (std::size_t k = 0; k < rows_[i].size(); ++k)
     {
-      const Columns& row = rows_[i].columns[k];
-      const double error =
-          rows_[i].residuals[k] - row.dot(values) - own[0] * row.head<SHARED>().dot(values.head<SHARED>());
-      left += error * error;
       squares += std::pow(rows_[i].residuals[k] + rows_[i].predicted[k], 2);
     }
   }
@@ -131,6 +128,67 @@ LoadProblem::Fit LoadProblem::fit(double mass) const
   const double below_zero = std::min(mass + all[0], 0.0);
   fit.cost = cost + ROWS * std::log(std::hypot(fit.left, FLOOR)) + 0.5 * std::pow(below_zero / NO_MASS, 2);
   return fit;
+}
+
+std::optional<double> LoadProblem::likelyChange() const
+{
+  struct Piece
+  {
+    Eigen::Matrix4d products{ Eigen::Matrix4d::Zero() };
+    Eigen::Vector4d sums{ Eigen::Vector4d::Zero() };
+  };
+  std::map<int, Piece> pieces;  // by the second of motion that they are of
+  Piece rest;
+  Eigen::MatrixXd information;
+  const Eigen::VectorXd all = solveAll(rows_, information);
+  for (std::size_t i = 0; i < rows_.size(); ++i)
+  {
+    const Eigen::VectorXd errors = errorsOf(rows_[i], static_cast<Eigen::Index>(SHARED + NUISANCES * i), all);
+    const double weight = 1.0 / std::pow(std::max(errors.size() > 0 ? robustDeviation(errors) : 0.0, LEAST), 2);
+    for (std::size_t k = 0; k < rows_[i].size(); ++k)
+    {
+      const Eigen::Vector4d column = rows_[i].columns[k].head<PAYLOAD>();
+      for (Piece* piece : { &pieces[static_cast<int>(std::floor(rows_[i].times[k]))], &rest })
+      {
+        piece->products += weight * column * column.transpose();
+        piece->sums += weight * errors[static_cast<Eigen::Index>(k)] * column;
+      }
+    }
+  }
+  const Eigen::Matrix4d known = known_.head<PAYLOAD>().cwiseAbs2().cwiseInverse().asDiagonal();
+  const auto taken = [&](const Piece& of)
+  { return of.sums.dot(Eigen::Matrix4d(of.products + known).ldlt().solve(of.sums)); };
+  Piece before;
+  double most = 0.0;
+  std::optional<double> change;
+  int count = 0;
+  for (const auto& [second, piece] : pieces)
+  {
+    const double both = taken(before) + taken(rest);
+    if (count >= LEAST_MOTION && count + LEAST_MOTION <= static_cast<int>(pieces.size()) && both > most)
+    {
+      most = both;
+      change = second;
+    }
+    before.products += piece.products;
+    before.sums += piece.sums;
+    rest.products -= piece.products;
+    rest.sums -= piece.sums;
+    ++count;
+  }
+  return change;
+}
+
+Eigen::VectorXd LoadProblem::errorsOf(const Rows& rows, Eigen::Index own, const Eigen::VectorXd& all)
+{
+  Columns values;
+  values << all.head<SHARED>() * (1.0 + all[own]), all.segment<NUISANCES>(own);  // a gain's error is of both
+  Eigen::VectorXd errors(static_cast<Eigen::Index>(rows.size()));
+  for (std::size_t k = 0; k < rows.size(); ++k)
+  {
+    errors[static_cast<Eigen::Index>(k)] = rows.residuals[k] - rows.columns[k].dot(values);
+  }
+  return errors;
 }
 
 Eigen::VectorXd LoadProblem::solveAll(const std::vector<Rows>& rows, Eigen::MatrixXd& information) const
@@ -166,21 +224,7 @@ void LoadProblem::add(const Rows& rows, Eigen::Index own, const Eigen::VectorXd&
   {
     return;
   }
-  Columns values;
-  values << all.head<SHARED>(), all.segment<NUISANCES>(own);
-  // An error of the gain is one of what the shared terms change too.
-  const auto columns = [&](std::size_t k)
-  {
-    Columns row = rows.columns[k];
-    row[SHARED] += row.head<SHARED>().dot(values.head<SHARED>());
-    return row;
-  };
-  Eigen::VectorXd errors(static_cast<Eigen::Index>(rows.size()));
-  for (std::size_t k = 0; k < rows.size(); ++k)
-  {
-    errors[static_cast<Eigen::Index>(k)] = rows.residuals[k] - columns(k).dot(values);
-  }
-  constexpr double LEAST = 0.01;  // [A]
+  const Eigen::VectorXd errors = errorsOf(rows, own, all);
   const double deviation = std::max(robustDeviation(errors), LEAST);
   const double weight = 1.0 / (deviation * deviation * correlationRows(errors));
   Eigen::Matrix<double, TERMS, TERMS> products = Eigen::Matrix<double, TERMS, TERMS>::Zero();
@@ -189,7 +233,8 @@ void LoadProblem::add(const Rows& rows, Eigen::Index own, const Eigen::VectorXd&
   {
     const double error = std::abs(errors[static_cast<Eigen::Index>(k)]);
     const double row_weight = weight * std::min(1.0, OUTLIER * deviation / std::max(error, LEAST));
-    const Columns row = columns(k);
+    Columns row = rows.columns[k];
+    row[SHARED] += row.head<SHARED>().dot(all.head<SHARED>());  // an error of the gain is one of what these change too
     products.noalias() += row_weight * row * row.transpose();
     sums += row_weight * rows.residuals[k] * row;
   }

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -70,7 +71,14 @@ public:
   /// `mass`: of the payload that counts [kg]. No change of it leaves less than none.
   Fit fit(double mass) const;
 
+  /// When the payload most likely became another one [s]: the best of all times with LEAST_MOTION before and after, by
+  /// what a payload of its own on either side takes of the squares that one payload leaves. None: too little motion.
+  std::optional<double> likelyChange() const;
+  static constexpr int LEAST_MOTION = 10;  ///< on either side of a change [s]
+
 private:
+  /// What is left of a joint's rows, whose nuisances begin at `own` [A].
+  static Eigen::VectorXd errorsOf(const Rows& rows, Eigen::Index own, const Eigen::VectorXd& all);
   /// All terms. `information`: the inverse of their variance.
   Eigen::VectorXd solveAll(const std::vector<Rows>& rows, Eigen::MatrixXd& information) const;
   void add(const Rows& rows, Eigen::Index own, const Eigen::VectorXd& all, Eigen::MatrixXd& information,

@@ -47,14 +47,14 @@ void LoadWatch::add(const ArmSample& sample, bool touched)
 bool LoadWatch::look(const JudgedJoints& joints)
 {
   const bool was_trying = isTrying();
-  const bool is_other = law_.take(fit_->solve(joints.measured), joints);
+  const bool is_other = law_.take(fit_->solve(joints.measured, LoadFit::Part::LAST), joints);
   has_looked_ = true;
   if (is_other)
   {
     arm_ = given_;
     law_.counts().configure(arm_);
   }
-  next_look_ *= 2.0;
+  next_look_ += FIRST_LOOK;
   if (is_other || was_trying || next_look_ > LAST_LOOK)
   {
     start(isTrying() ? TRIAL : was_trying && is_other ? LAST_LOOK : FIRST_LOOK);

@@ -13,9 +13,10 @@
 
 namespace hjt
 {
-/// Payload and mounting that an arm's currents show while its rows come: looked for after 30 s of motion, each time
-/// that is doubled, and after eight minutes all over again. What is found is tried for 10 s of motion (LoadLaw); once
-/// it is taken back nothing is looked for in the next eight minutes. Not for a real-time loop: it allocates.
+/// Payload and mounting that an arm's currents show while its rows come: looked for every 30 s of motion, after eight
+/// minutes all over again, and where the payload changes in that time in the rows since then. What is found is tried
+/// for 10 s of motion (LoadLaw); once it is taken back nothing is looked for in the next eight minutes. Not for a
+/// real-time loop: it allocates.
 class LoadWatch
 {
 public:

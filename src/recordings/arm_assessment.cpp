@@ -32,8 +32,9 @@ void holdAgainstController(const std::vector<AssessedJoint*>& joints)
   }
 }
 
-ArmAssessment pass(const ArmRecording& recording, const AssessmentSettings& settings, bool gives_notice,
-                   RecordingFit& fit)
+/// `part`: of the time, whose rows count.
+ArmAssessment pass(const ArmRecording& recording, const AssessmentSettings& settings, const LoadPart& part,
+                   bool gives_notice, RecordingFit& fit)
 {
   ArmAssessment arm;
   arm.joints = settings.make_joints();
@@ -50,6 +51,10 @@ ArmAssessment pass(const ArmRecording& recording, const AssessmentSettings& sett
         if (i == 0)
         {
           timing.add(sample.time, sample.received);
+        }
+        if (!part.holds(sample.time))
+        {
+          return;
         }
         arm.joints[i]->update(sample);
         if (load)
@@ -77,7 +82,7 @@ ArmAssessment pass(const ArmRecording& recording, const AssessmentSettings& sett
   arm.judged = JudgedJoints(fit, misfits, std::move(frictions), recording.parameters(0).comparison.repeat_tolerance);
   if (load && !settings.watch.stopped())
   {
-    arm.load = load->fit().solve(arm.judged.measured);
+    arm.load = load->fit().solve(arm.judged.measured, LoadFit::Part::LONGEST);
   }
   return arm;
 }
@@ -97,14 +102,14 @@ ArmAssessment assess(ArmRecording& recording, const AssessmentSettings& settings
 {
   const ArmDescription configured = recording.arm();
   LoadLaw law;
-  ArmAssessment arm = pass(recording, settings, settings.gives_notice, fit);
+  ArmAssessment arm = pass(recording, settings, {}, settings.gives_notice, fit);
   while (arm.load && !settings.watch.stopped() && law.take(*arm.load, arm.judged))
   {
     ArmDescription other = configured;
     law.counts().configure(other);
     recording.setPayload(other.payload);
     recording.setGravity(other.gravity);
-    arm = pass(recording, settings, false, fit);
+    arm = pass(recording, settings, law.counts().part, false, fit);
     if (!law.isTrying())
     {
       break;  // taken back: it would be found again

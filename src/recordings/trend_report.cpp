@@ -3,27 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <filesystem>
 #include <type_traits>
 
+#include "base/date_text.hpp"
 #include "base/number_text.hpp"
 
 namespace hjt
 {
 namespace
 {
-/// Of a date in UTC, by `format` of strftime.
-std::string dateAs(Stamp date, const char* format)
-{
-  constexpr Stamp SECOND = 1'000'000'000;
-  const auto seconds = static_cast<std::time_t>(date / SECOND);
-  std::tm parts{};
-  gmtime_r(&seconds, &parts);
-  std::array<char, 32> text{};
-  return { text.data(), std::strftime(text.data(), text.size(), format, &parts) };
-}
-
 std::optional<std::string> dateOf(const DatedRecording& recording)
 {
   return recording.date ? std::make_optional(isoDate(*recording.date)) : std::nullopt;
@@ -144,12 +133,12 @@ struct CellText
 
 std::string dateText(Stamp date)
 {
-  return dateAs(date, "%Y-%m-%d %H:%M");
+  return dateText(date, "%Y-%m-%d %H:%M");
 }
 
 std::string isoDate(Stamp date)
 {
-  return dateAs(date, "%Y-%m-%dT%H:%M:%SZ");
+  return dateText(date, "%Y-%m-%dT%H:%M:%SZ");
 }
 
 double trendUnit(const Trend& trend)

@@ -65,6 +65,7 @@ private:
   void lookAtFriction(double time);
   void lookAtLoad();
   JudgedJoints judgedJoints() const;
+  std::string sinceText(const LoadPart& part) const;
   void updateFit(const ArmSample& sample);
   void judge(const ros::WallTime& now);
   void look();

@@ -3,12 +3,16 @@
 #include "ros_io/tracker_node.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <ros/console.h>
+
+#include "base/date_text.hpp"
+#include "tracking/verdict.hpp"
 
 namespace hjt
 {
@@ -88,6 +92,12 @@ void TrackerNode::watchArm()
   }
 }
 
+/// When the payload became another; empty: it is the one of all rows.
+std::string TrackerNode::sinceText(const LoadPart& part) const
+{
+  return std::isinf(part.begin) ? "" : "; since " + dateText(stream_.clock.stamp(part.begin), "%H:%M:%S") + " UTC";
+}
+
 JudgedJoints TrackerNode::judgedJoints() const
 {
   std::vector<MeasuredFriction> frictions;
@@ -113,8 +123,11 @@ void TrackerNode::lookAtLoad()
   const bool was_trying = load_->isTrying();
   const bool is_other = load_->look(judgedJoints());
   const AssumedLoad& assumed = load_->assumed();
-  stream_.mounting = assumed.mounting && !load_->isTrying() ? assumed.mounting->text() : "";
-  stream_.payload = assumed.payload && !load_->isTrying() ? assumed.payload->text() : "";
+  if (is_other || was_trying)
+  {
+    stream_.mounting = assumed.mounting && !load_->isTrying() ? assumed.mounting->text() : "";
+    stream_.payload = assumed.payload && !load_->isTrying() ? assumed.payload->text() + sinceText(assumed.part) : "";
+  }
   if (is_other)
   {
     ROS_INFO_STREAM((load_->isTrying() ? "Another load than configured is tried: no WARN until it is known to fit" :
@@ -129,7 +142,9 @@ void TrackerNode::lookAtLoad()
   }
   else if (was_trying)
   {
-    ROS_WARN_STREAM(assumed.text());
+    ROS_WARN_STREAM((stream_.mounting.empty() ? "" : sentence(stream_.mounting) + " ")
+                    << (stream_.payload.empty() ? "" : sentence(stream_.payload) + " ")
+                    << "The joints are judged with it");
   }
 }
 }  // namespace hjt

@@ -76,17 +76,24 @@ struct WatchedArm
         MotionSample own = joint;
         own.load = torques[i];
         own.after_gap = row == 0;
-        joint.current = i == silent ? 0.0 : factors[i] * drives[i].step(own).current;
+        const MotionPrediction current = drives[i].step(own);
+        const double more = (friction - 1.0) * current.friction_torque / parameters[i].telemetry.torque_per_current;
+        joint.current = i == silent ? 0.0 : factors[i] * (current.current + more);
       }
       watch.add(sample);
     }
   }
 
-  /// Whether another load counts after that motion. `joints`: what is found of them.
-  bool moved(const Payload& carried, const JudgedJoints& joints = JUDGED)
+  void carry(const Payload& carried, double seconds)
   {
-    move(end, LONG, carried);
-    end += LONG;
+    move(end, seconds, carried);
+    end += seconds;
+  }
+
+  /// Whether another load counts after that motion. `joints`: what is found of them.
+  bool moved(const Payload& carried, const JudgedJoints& joints = JUDGED, double seconds = LONG)
+  {
+    carry(carried, seconds);
     return watch.isDue() && watch.look(joints);
   }
 
@@ -99,6 +106,7 @@ struct WatchedArm
   std::vector<Parameters> parameters = std::vector<Parameters>(6, shippedParameters());
   std::vector<MotionDriven> drives = std::vector<MotionDriven>(6, MotionDriven(parameters.front()));
   LoadWatch watch{ arm, parameters };
+  double friction = 1.0;   // times the twins'
   std::size_t silent = 6;  // none
   double end{};            // of the motion [s]
 };
@@ -118,6 +126,41 @@ TEST(LoadWatch, FindsWhatIsTakenUpAndThatItIsPutDown)
   EXPECT_TRUE(robot.watch.isSettled());
   EXPECT_TRUE(robot.watch.assumed().isConfigured());
   EXPECT_EQ(robot.watch.arm().payload.mass, 0.0);
+}
+
+/// Rows of before are in the fit, and it lies between two looks.
+TEST(LoadWatch, FindsWhatIsTakenUpOrPutDownWhileItMoves)
+{
+  WatchedArm robot;
+  EXPECT_FALSE(robot.moved({}));
+  const double taken_up = robot.end;
+  EXPECT_FALSE(robot.moved(CARRIED, JUDGED, 15.0)) << "it is not looked for yet";
+  EXPECT_TRUE(robot.moved(CARRIED, JUDGED, 6.0));
+  EXPECT_FALSE(robot.moved(CARRIED)) << "it counts already";
+  ASSERT_TRUE(robot.watch.assumed().payload);
+  const IdentifiedPayload& payload = *robot.watch.assumed().payload;
+  EXPECT_NEAR(payload.mass, CARRIED.mass, payload.mass_half_width);
+  EXPECT_LT(payload.mass_half_width, 0.5);
+  EXPECT_NEAR(robot.watch.assumed().part.begin, taken_up, 1.5);
+
+  robot.carry(CARRIED, 20.0);
+  EXPECT_TRUE(robot.moved({}, JUDGED, 15.0));
+  EXPECT_TRUE(robot.watch.isSettled());
+  EXPECT_TRUE(robot.watch.assumed().isConfigured());
+  EXPECT_EQ(robot.watch.arm().payload.mass, 0.0);
+}
+
+/// One that grows worn, or warm, carries nothing.
+TEST(LoadWatch, TakesNoOtherFrictionForAPayloadThatIsTakenUp)
+{
+  for (const double factor : { 0.7, 1.4 })
+  {
+    WatchedArm robot;
+    EXPECT_FALSE(robot.moved({}));
+    robot.friction = factor;
+    EXPECT_FALSE(robot.moved({})) << factor;
+    EXPECT_TRUE(robot.watch.assumed().part.isAll());
+  }
 }
 
 TEST(LoadWatch, FindsThatTheConfiguredPayloadIsNotCarriedAndThatItIsTakenUp)

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Two arms and a gripper on one topic, their names with prefixes. The angles of the left one are folded into one turn,
-and one of its joints has no effort; the right one carries a payload that nobody configured."""
+and one of its joints has no effort; the right one picks up a payload that nobody configured."""
 import math
 import os
 import shutil
@@ -18,7 +18,8 @@ from harmonic_joint_twin.msg import Comparison, Verdict
 from ros_support import OK, PACKAGE, Diagnostics, Listener, package_path, wait_until
 from ur5_test import JOINTS, PERIOD, WAIT_OF_ARM, angles, run_robot
 
-SECONDS = 45.0  # longer than the motion after which a payload is looked for
+SECONDS = 80.0  # longer than the motion after which a payload is looked for and tried
+PICKED = 35.0   # after a first look without a payload [s]
 FASTER = 2.0    # played than stamped
 SILENT = "wrist_2"
 MASS = 3.0      # of the payload [kg]
@@ -54,9 +55,11 @@ class ArmCases(unittest.TestCase):
             file.write(f"like: {package_path('config', 'arms', 'ur5.yaml')}\n"
                        f"payload: {{mass: {MASS}, centre: [0.0, 0.03, 0.08]}}\n")
         left = run_robot(self.directory, turned, SECONDS, 0.0)
-        right = run_robot(self.directory, angles, SECONDS, 0.0, loaded)
+        rows = round(PICKED / PERIOD)
+        right = (run_robot(self.directory, angles, SECONDS, 0.0)[:rows] +
+                 run_robot(self.directory, angles, SECONDS, 0.0, loaded)[rows:])
         silent = list(JOINTS).index(SILENT)
-        begin = rospy.Time.now()
+        begin = self.begin = rospy.Time.now()
         for row, ((left_angles, left_currents), (right_angles, right_currents)) in enumerate(zip(left, right)):
             time.sleep(max(0.0, (begin - rospy.Time.now()).to_sec() + PERIOD * row / FASTER))
             left_currents[silent] = float("nan")
@@ -85,6 +88,10 @@ class ArmCases(unittest.TestCase):
         self.assertIn("look like a payload of", payload)
         mass, half_width = (float(text) for text in payload.split("payload of ")[1].split(" kg")[0].split(" +- "))
         self.assertLess(abs(mass - MASS), half_width + 0.05, payload)
+        since = sum(int(part) * unit for part, unit in
+                    zip(payload.split("; since ")[1].split(" UTC")[0].split(":"), (3600, 60, 1)))
+        picked = self.begin.to_sec() + PICKED
+        self.assertLess(abs((since - picked + 43200.0) % 86400.0 - 43200.0), 3.0, payload)
         other = self.diagnostics["left", "base"].values("Input")
         self.assertEqual(other["Payload that is not configured"], "none found")
         for side in ("left", "right"):

@@ -159,6 +159,21 @@ class Check(tool.ToolTest):
         done = self.run_tool("check", "other.csv", "--arm", "ur5", "--json")
         self.assertIsNone(json.loads(done.stdout)["payload_mass"], done.stderr)
 
+    def test_a_payload_that_is_taken_up_or_put_down_parts_the_recording(self):
+        arms = os.path.join(tool.CHECKOUT, "config", "arms")
+        tooled = self.write("tooled.yaml", f"like: {arms}/ur5.yaml\npayload: {{mass: 3.0, centre: [0.0, 0.0, 0.08]}}\n")
+        empty, loaded = sound(self, seconds=60.0), sound(self, seconds=60.0, arm=tooled)
+        for changed, mass, part in ((25.0, 3.0, "from 25 s on"), (40.0, None, "to 40 s")):
+            columns = {name: np.where(empty["timestamp"] < changed, column, loaded[name])
+                       for name, column in empty.items()}
+            write_csv(self.path("changes.csv"), columns)
+            found = json.loads(self.run_tool("compare", "changes.csv", "--arm", "ur5", "--json").stdout)
+            self.assertIn(f"The payload changes: the joints are judged by the rows {part}.", found["text"])
+            self.assertEqual({joint["level"] for joint in found["joints"]}, {"OK"}, found["text"])
+            self.assertEqual(found["payload_mass"] is None, mass is None)
+            if mass:
+                self.assertAlmostEqual(found["payload_mass"], mass, delta=found["payload_half_width"])
+
     def test_an_arm_without_its_configured_payload_is_no_other_arm(self):
         arms = os.path.join(tool.CHECKOUT, "config", "arms")
         self.write("tooled.yaml", f"like: {arms}/ur5.yaml\npayload: {{mass: 6.0, centre: [0.0, 0.0, 0.08]}}\n")
