@@ -22,11 +22,17 @@ ALL_WINDOWS = {"indicators.baseline_windows": 10000}
 DIRECTION_ROWS = 5  # over which the motor's direction is taken: a count of its noise is none
 
 
-def _opened(h5py: Any, file: str) -> Any:
-    try:
-        return h5py.File(file, "r")
-    except OSError as error:
-        raise _hjt.InputError(f"{file} cannot be read as HDF5 ({error}); the same sweep again makes it anew") from error
+def _group(file: str, group: str, is_arm: bool) -> Dict[str, "NDArray[Any]"]:
+    h5py = importlib.import_module("h5py")
+    with h5py.File(file, "r") as run:
+        groups = [name for name, item in run.items() if isinstance(item, h5py.Group) and name != "parameters"]
+        if group not in groups:
+            raise _hjt.InputError(f"{file} has no group '{group}'; it holds {', '.join(groups)}")
+        columns = {name: column[:] for name, column in run[group].items() if column.ndim == 1}
+        if is_arm:
+            columns.update({f"{name}_{i}": column[:, i] for name, column in run[group].items() if column.ndim == 2
+                            for i in range(column.shape[1])})
+        return columns
 
 
 def load(folder: Path, group: Optional[str] = "indicators") -> Frame:
@@ -37,7 +43,7 @@ def load(folder: Path, group: Optional[str] = "indicators") -> Frame:
     Returns a pandas.DataFrame: a row for each sample or window of the group, its columns of one number a row, and
     beside them the run's columns of index.csv, labels among them; 'file' with its path. Of whole arms a column for each
     joint, 'actual_q_0' ... from the base on, 'severity_0' ... Without a group a row for each
-    run. Runs that failed are left out. InputError.
+    run. Runs that failed are left out, files that cannot be read too, with a warning. InputError.
     """
     pandas = importlib.import_module("pandas")
     path = os.path.join(os.fspath(folder), "index.csv")
@@ -48,20 +54,17 @@ def load(folder: Path, group: Optional[str] = "indicators") -> Frame:
     index["file"] = [os.path.join(os.fspath(folder), file) for file in index["file"]]
     if group is None:
         return index
-    h5py = importlib.import_module("h5py")
-    parts = []
+    parts, unread = [], []
     for file in index["file"]:
         if not file.endswith(".h5"):
             raise _hjt.InputError(f"{file} is no HDF5 file: a data set of bags has its index alone, group=None")
-        with _opened(h5py, file) as run:
-            groups = [name for name, item in run.items() if isinstance(item, h5py.Group) and name != "parameters"]
-            if group not in groups:
-                raise _hjt.InputError(f"{file} has no group '{group}'; it holds {', '.join(groups)}")
-            columns = {name: column[:] for name, column in run[group].items() if column.ndim == 1}
-            if "fault_joint" in index:
-                columns.update({f"{name}_{i}": column[:, i] for name, column in run[group].items() if column.ndim == 2
-                                for i in range(column.shape[1])})
-        parts.append(pandas.DataFrame({"file": file, **columns}))
+        try:
+            parts.append(pandas.DataFrame({"file": file, **_group(file, group, "fault_joint" in index)}))
+        except OSError as error:
+            unread.append(f"not read: {file}: {error}; the same sweep again makes it anew")
+    if unread and not parts:
+        raise _hjt.InputError(unread[0])
+    _commands._remark(unread)
     if not any(map(len, parts)):
         raise _hjt.InputError(f"{folder}: no run holds a row of '{group}'; is a window (indicators.window_turns, "
                               "window_time) longer than a run less record.start, or has every run failed?")
@@ -141,9 +144,10 @@ def reference(recordings: Recordings, out: Path, *, joint: Optional[str] = None,
                              for window in found["windows"]])
 
 
-def _verdict(recording: str, windows: List[Dict[str, Any]]) -> Dict[str, Any]:
+def _verdict(recording: str, windows: List[Dict[str, Any]], is_read: bool) -> Dict[str, Any]:
     """That of the last window that has one, else of the last."""
-    row: Dict[str, Any] = {"recording": recording, "windows": len(windows), "state": "no whole window", "level": None}
+    row: Dict[str, Any] = {"recording": recording, "windows": len(windows),
+                           "state": "no whole window" if is_read else "not read", "level": None}
     if not windows:
         return row
     judged = [window for window in windows if window["assessment"]["state"] == "assessed"]
@@ -169,8 +173,8 @@ def assess(recordings: Recordings, reference: Path, *, check_up: bool = False, j
     Returns a pandas.DataFrame, a row for each recording: 'recording', 'windows', 'state' ('assessed': the others hold),
     'level' ('OK', 'WARN', 'ERROR'), 'cause', 'confidence', 'severity', 'severity_deviation', 'alternatives', 'score'
     over threshold, of the 'indicator' furthest off its deviation in 'spreads' and in 'percent', and at level OK
-    'blind_to': the faults that would not have shown at any severity. Recordings that are not judged are warned of.
-    InputError, ParameterError.
+    'blind_to': the faults that would not have shown at any severity. Recordings that are not judged, or not read, are
+    warned of. InputError, ParameterError.
     """
     pandas = importlib.import_module("pandas")
     expanded = _expanded(recordings)
@@ -184,7 +188,9 @@ def assess(recordings: Recordings, reference: Path, *, check_up: bool = False, j
     strongest = {"indicator": None, "spreads": float("nan"), "percent": float("nan")}
     order = ["recording", "windows", "state", "level", "cause", "confidence", "severity", "severity_deviation",
              "alternatives", "score", *strongest, "blind_to"]
-    return pandas.DataFrame([_verdict(name, several) for name, several in windows.items()], columns=order)
+    unread = [each["recording"] for each in found["unread"]]
+    return pandas.DataFrame([_verdict(name, several, name not in unread) for name, several in windows.items()],
+                            columns=order)
 
 
 def write_cmapss(folder: Path, out: Path, *, duty: Optional[str] = None, seed: int = 1) -> Document:

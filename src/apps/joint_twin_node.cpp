@@ -127,10 +127,7 @@ std::vector<hjt::Parameters> drivesOf(const hjt::ArmDescription& arm, const hjt:
   {
     const hjt::ArmJoint& joint = arm.joints[i];
     hjt::ParameterMap& map = maps[i];
-    for (const auto& [key, value] : overrides)
-    {
-      map[key] = value;
-    }
+    hjt::putOver(overrides, map);
     parameters.push_back(hjt::parseParameters(map));
     ros::param::del(hjt::jointName(joint));
     hjt::writeParameterServer(hjt::jointName(joint), map);
@@ -172,10 +169,7 @@ hjt::ArmWatch::MakeCandidates otherArms(const hjt::ArmDescription& arm, const st
       for (const hjt::ArmJoint& joint : candidate.arm.joints)
       {
         hjt::ParameterMap map = hjt::armJointParameters(joint, directory, {});
-        for (const auto& [key, value] : overrides)
-        {
-          map[key] = value;
-        }
+        hjt::putOver(overrides, map);
         hjt::takeInertiaInLoad(candidate.joints.emplace_back(hjt::parseParameters(map)));
       }
     }

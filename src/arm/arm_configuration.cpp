@@ -87,10 +87,7 @@ ParameterMap armJointParameters(const ArmJoint& joint, const fs::path& directory
   {
     readYamlFile(findConfiguration(overlay, directory), map);
   }
-  for (const auto& [key, value] : joint.parameters)
-  {
-    map[key] = value;
-  }
+  putOver(joint.parameters, map);
   map["joint.name"].value = joint.name;
   map["telemetry.load"].value = std::string("arm");
   if (!identified.empty())

@@ -188,7 +188,7 @@ std::vector<ArmFit> rankArms(const std::vector<ArmCandidate>& candidates, const 
   {
     fits.push_back(trial ? trial->fit() : (*other++)->fit());
   }
-  std::stable_sort(fits.begin(), fits.end(), [](const ArmFit& a, const ArmFit& b) { return a.cost < b.cost; });
+  std::stable_sort(fits.begin(), fits.end());
   return fits;
 }
 
@@ -199,10 +199,14 @@ std::string betterArm(const std::vector<ArmFit>& ranked, const std::string& own)
                                                                                           std::string();
 }
 
+std::string otherArmText(const std::string& other)
+{
+  return "the arm may be a " + other + ": it explains the currents clearly better";
+}
+
 void nameOtherArm(const std::string& other, std::vector<Misfit>& misfits)
 {
-  const Misfit misfit{ Reason::LOAD_WRONG, "the arm may be a " + other + ": it explains the currents clearly better" };
-  std::replace_if(misfits.begin(), misfits.end(), mayBeOther, misfit);
+  std::replace_if(misfits.begin(), misfits.end(), mayBeOther, Misfit{ Reason::LOAD_WRONG, otherArmText(other) });
 }
 
 bool mayBeOtherArm(const std::vector<Misfit>& misfits)

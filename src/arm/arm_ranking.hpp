@@ -26,6 +26,7 @@ struct ArmFit
   double left{};       ///< of the currents of the moving joints, with the best payload and mounting, share, rms [-]
   double cost{};       ///< logarithm of a likelihood: less is likelier [-]
 
+  bool operator<(const ArmFit& other) const { return cost < other.cost; }
   /// `by`: logarithm by which it is likelier at least.
   bool isBetter(const ArmFit& other, double by) const { return left < EXPLAINED && cost < other.cost - by; }
 };
@@ -52,6 +53,8 @@ std::vector<ArmFit> rankArms(const std::vector<ArmCandidate>& candidates, const 
 /// The one that explains the rows so much better that it contradicts `own`; empty: none.
 std::string betterArm(const std::vector<ArmFit>& ranked, const std::string& own);
 
+/// "the arm may be a ur5e: ..."
+std::string otherArmText(const std::string& other);
 /// Nothing is judged of a joint that the load may be wrong for, where the arm may be the `other`.
 void nameOtherArm(const std::string& other, std::vector<Misfit>& misfits);
 /// There is such a joint.

@@ -25,14 +25,17 @@ bool ArmWatch::moves(const std::vector<MotionRow>& rows)
 
 void ArmWatch::add(const std::vector<MotionRow>& rows)
 {
-  constexpr double GAP = 0.1;  // a longer step is no motion [s]
   const double step = rows.front().time - last_time_;
   if (step < PERIOD || !moves(rows))
   {
     return;
   }
   last_time_ = rows.front().time;
-  moved_ += step < GAP ? step : 0.0;
+  if (step > MotionDifferentiator::MAX_GAP)
+  {
+    return;  // no motion is seen over a gap
+  }
+  moved_ += step;
   if (moved_ >= 0.0 && moved_ <= ArmFit::ENOUGH)
   {
     rows_.push_back(rows);

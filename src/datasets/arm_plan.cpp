@@ -10,6 +10,7 @@
 #include "arm/set_points.hpp"
 #include "base/text_hash.hpp"
 #include "base/whole_file.hpp"
+#include "params/configuration_files.hpp"
 
 namespace hjt
 {
@@ -101,10 +102,7 @@ ArmSpec ArmPlan::read(const PlanNode& duty, const PlanValues& values, const Para
   for (std::size_t joint = 0; joint < drives_.size(); ++joint)
   {
     ParameterMap map = drives_[joint];
-    for (const auto& [key, value] : settings)
-    {
-      map[key] = value;
-    }
+    putOver(settings, map);
     if (faults != nullptr)
     {
       setFaults(*faults, joint, faults_origin, map);

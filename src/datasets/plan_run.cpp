@@ -7,6 +7,7 @@
 
 #include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
+#include "params/configuration_files.hpp"
 
 namespace hjt
 {
@@ -190,10 +191,7 @@ Parameters Plan::parametersOf(const ParameterMap& settings, bool faults_given) c
   {
     eraseFaults(map);
   }
-  for (const auto& [key, value] : settings)
-  {
-    map[key] = value;
-  }
+  putOver(settings, map);
   return parseParameters(map);
 }
 

@@ -82,6 +82,14 @@ std::string findConfiguration(const std::string& name, const fs::path& directory
   return name;
 }
 
+void putOver(const ParameterMap& values, ParameterMap& map)
+{
+  for (const auto& [key, value] : values)
+  {
+    map[key] = value;
+  }
+}
+
 void findNamedFiles(const fs::path& directory, ParameterMap& map)
 {
   const auto found = map.find("indicators.signatures");

@@ -23,6 +23,9 @@ std::filesystem::path configurationDirectory(const std::string& given);
 /// anywhere.
 std::string findConfiguration(const std::string& name, const std::filesystem::path& directory);
 
+/// Puts the values over those of `map`.
+void putOver(const ParameterMap& values, ParameterMap& map);
+
 /// Where the default configuration is another than this process finds by itself: files that parameters name are looked
 /// for beside it too.
 void findNamedFiles(const std::filesystem::path& directory, ParameterMap& map);

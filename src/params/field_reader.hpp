@@ -21,6 +21,9 @@
 
 namespace hjt
 {
+/// What each of FAULTS must be.
+constexpr const char* FAULT_FORM = "{kind: ..., severity: ..., place: ..., onset: ...}";
+
 /// Fills one field after the other from the map; collects what is wrong, so that the user sees all of it at once.
 class FieldReader
 {
@@ -145,14 +148,10 @@ public:
     {
       if (known_.count(key) == 0)
       {
-        const std::string kind = groupKind(key, known_);
-        if (!kind.empty())
-        {
-          mustBe(key, configured, kind);
-          continue;
-        }
-        errors_.push_back(configured.origin + ": unknown parameter " + key + " = " + valueText(configured) +
-                          suggestion(key, known_));
+        const std::string kind = groupKind(key);
+        kind.empty() ? errors_.push_back(configured.origin + ": unknown parameter " + key + " = " +
+                                         valueText(configured) + suggestion(key, known_)) :
+                       mustBe(key, configured, kind);
       }
     }
   }
@@ -182,14 +181,14 @@ private:
   }
 
   /// What `key` must be, if known keys stand below it or it is the list of faults; else nothing.
-  static std::string groupKind(const std::string& key, const std::set<std::string>& known)
+  std::string groupKind(const std::string& key) const
   {
-    const auto below = known.lower_bound(key + '.');
-    if (below != known.end() && below->rfind(key + '.', 0) == 0)
+    const auto below = known_.lower_bound(key + '.');
+    if (below != known_.end() && below->rfind(key + '.', 0) == 0)
     {
-      return "a group of keys and values, e.g. " + *below;
+      return "keys and values, e.g. " + *below;
     }
-    return key == FAULTS ? "a list of {kind: ..., severity: ..., place: ..., onset: ...}" : "";
+    return key == FAULTS ? std::string("a list of ") + FAULT_FORM : "";
   }
 
   static std::string numberKind(const std::string& what, const char* unit, const Range& range)

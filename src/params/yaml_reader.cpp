@@ -15,6 +15,7 @@
 #include "base/whole_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"
+#include "params/field_reader.hpp"
 
 namespace hjt
 {
@@ -165,7 +166,7 @@ void readFaults(const std::string& source, const YAML::Node& list, ParameterMap&
     const std::string name = faultKey(number++);
     if (!fault.IsMap())
     {
-      fail(originOf(source, fault), name + " must be {kind: ..., severity: ..., place: ..., onset: ...}");
+      fail(originOf(source, fault), name + " must be " + FAULT_FORM);
     }
     readSection(source, name, fault, read);
   }
@@ -192,8 +193,7 @@ void readDocument(const std::string& source, const YAML::Node& root, ParameterMa
     {
       const std::string value = entry.second.IsScalar() ? " = " + entry.second.Scalar() : "";
       fail(origin, section + value + " must be " +
-                       (section == FAULTS ? "a list of {kind: ..., severity: ..., place: ..., onset: ...}" :
-                                            "a section with keys below it"));
+                       (section == FAULTS ? std::string("a list of ") + FAULT_FORM : "keys and values"));
     }
     readSection(source, section, entry.second, read);
   }

@@ -91,38 +91,65 @@ bool isSound(const Assessment& assessment)
   return assessment.state == AssessmentState::ASSESSED && assessment.level == HealthLevel::OK;
 }
 
-/// Every window of every recording. `judged`: of each recording, how near it came to a verdict.
-std::vector<WindowResult> assess(const IndicatorsOptions& options, Assessor& assessor,
-                                 std::vector<ClosestAssessment>& judged)
+/// Names the recordings that cannot be read. @throws InputError if none can.
+void throwIfNoneIsRead(const AssessedWindows& found, const IndicatorsOptions& options)
 {
-  std::vector<WindowResult> windows;
+  const std::size_t recordings = options.recordings.size();
+  if (found.unread.size() == recordings)
+  {
+    const std::string& why = found.unread.front().why;
+    throw InputError(recordings == 1 ? why :
+                                       "none of " + std::to_string(recordings) + " recordings can be read: " + why);
+  }
+  for (const UnreadRecording& recording : found.unread)
+  {
+    options.watch.notice("not read: " + recording.why);
+  }
+}
+
+/// Every window of the recordings that can be read. @throws InputError if none can.
+AssessedWindows assess(const IndicatorsOptions& options, Assessor& assessor)
+{
+  AssessedWindows found;
   for (std::size_t index = 0; index < options.recordings.size(); ++index)
   {
     const std::string& recording = options.recordings[index];
+    std::vector<SignalIndicators> model;
+    WindowSeries measured;
+    try
+    {
+      measured = readRecording(index, options, model);
+    }
+    catch (const InputError& error)
+    {
+      found.unread.push_back({ recording, error.what() });
+      continue;
+    }
     if (!options.baseline.empty())
     {
       assessor.reset();  // each is judged for itself
     }
-    std::vector<SignalIndicators> model;
-    const WindowSeries measured = readRecording(index, options, model);
-    judged.emplace_back();
+    ClosestAssessment judged;
     for (std::size_t i = 0; i < measured.windows.size(); ++i)
     {
       const Assessment assessment = assessor.update(measured.windows[i], model.empty() ? nullptr : &model[i]);
-      judged.back().take(assessment);
-      windows.push_back({ recording, measured.origin, measured.parameters, measured.windows[i], assessor.deviations(),
-                          assessor.baseline().residual(), assessment });
+      judged.take(assessment);
+      found.windows.push_back({ recording, measured.origin, measured.parameters, measured.windows[i],
+                                assessor.deviations(), assessor.baseline().residual(), assessment });
     }
-    if (!measured.windows.empty() && isSound(windows.back().assessment) && !assessor.signatures().signatures.empty())
+    if (!measured.windows.empty() && isSound(found.windows.back().assessment) &&
+        !assessor.signatures().signatures.empty())
     {
-      windows.back().seen_from = seenFrom(assessor, windows.back().indicators.point);
+      found.windows.back().seen_from = seenFrom(assessor, found.windows.back().indicators.point);
     }
-    if (!options.baseline.empty() ? !judged.back().isJudged() : measured.windows.empty())
+    found.is_judged = found.is_judged || judged.isJudged();
+    if (!options.baseline.empty() ? !judged.isJudged() : measured.windows.empty())
     {
-      options.watch.notice("not judged: " + judged.back().whyNotJudged(recording));
+      options.watch.notice("not judged: " + judged.whyNotJudged(recording));
     }
   }
-  return windows;
+  throwIfNoneIsRead(found, options);
+  return found;
 }
 
 /// Says where a cause was sought with signatures of a gear much stiffer or softer than the reference's.
@@ -157,11 +184,29 @@ void refuseWrongModels(const IndicatorsOptions& options)
   }
 }
 
+/// Those of the first recording that can be read.
+Parameters parametersOf(const IndicatorsOptions& options)
+{
+  for (auto recording = options.recordings.begin();; ++recording)
+  {
+    try
+    {
+      return recordingParameters(options, *recording).values;
+    }
+    catch (const InputError&)
+    {
+      if (*recording == options.recordings.back())
+      {
+        throw;
+      }
+    }
+  }
+}
 }  // namespace
 
 AssessedWindows indicators(const IndicatorsOptions& options)
 {
-  const Parameters parameters = recordingParameters(options, options.recordings.front()).values;
+  const Parameters parameters = parametersOf(options);
   for (const std::string& file : { options.out, options.save_baseline })
   {
     requireWritable(file, options.force, options.recordings.front());
@@ -173,18 +218,15 @@ AssessedWindows indicators(const IndicatorsOptions& options)
   {
     assessor.setReference(readBaseline(options.baseline, parameters, less_model), options.carry);
   }
-  std::vector<ClosestAssessment> judged;
-  AssessedWindows found;
-  found.windows = assess(options, assessor, judged);
+  AssessedWindows found = assess(options, assessor);
   noticeOtherGear(found.windows, assessor, parameters.indicators.signatures, options.watch);
   found.threshold = assessor.baseline().threshold();
-  found.is_judged =
-      std::any_of(judged.begin(), judged.end(), [](const ClosestAssessment& one) { return one.isJudged(); });
   if (found.windows.empty() && !options.watch.stopped())
   {
-    throw InputError(options.recordings.front() + " is too short for one window (indicators.window_turns = " +
-                     shortNumber(parameters.indicators.window_turns) + " motor turns, indicators.window_time = " +
-                     shortNumber(parameters.indicators.window_time) + " s)");
+    throw InputError(
+        (options.recordings.size() == 1 ? options.recordings.front() : "each recording") +
+        " is too short for one window (indicators.window_turns = " + shortNumber(parameters.indicators.window_turns) +
+        " motor turns, indicators.window_time = " + shortNumber(parameters.indicators.window_time) + " s)");
   }
   writeWindows(options.out, found.windows);
   if (!options.save_baseline.empty())

@@ -20,7 +20,7 @@ struct IndicatorsOptions : SignalOptions
 };
 
 /// Health indicators of recordings and their assessment, from encoders and torque or current; writes the files that are
-/// asked for.
-/// @throws ParameterError, InputError: unreadable, too short for a window, or not one model for each.
+/// asked for. A recording that cannot be read is named and left out.
+/// @throws ParameterError, InputError: none can be read, too short for a window, or not one model for each.
 AssessedWindows indicators(const IndicatorsOptions& options);
 }  // namespace hjt

@@ -210,9 +210,12 @@ void writeWindows(const std::string& path, const std::vector<WindowResult>& wind
 
 Report reportOf(const AssessedWindows& found)
 {
+  static const std::vector<Column<UnreadRecording>> UNREAD{ { "recording", &UnreadRecording::recording },
+                                                            { "why", &UnreadRecording::why } };
   return { { { "threshold", "", found.threshold },
              { "windows", "", Table(documentColumns(), found.windows).rows() },
-             { "assessment", "", toJson(found.windows.back().assessment) } },
+             { "assessment", "", toJson(found.windows.back().assessment) },
+             { "unread", "", Table(UNREAD, found.unread).rows() } },
            {} };
 }
 

@@ -24,12 +24,19 @@ struct WindowResult
   std::optional<SeenFrom> seen_from{};  ///< of the last window of a recording, where the verdict is OK
 };
 
+struct UnreadRecording
+{
+  std::string recording;
+  std::string why;
+};
+
 /// The windows of all recordings.
 struct AssessedWindows
 {
-  std::vector<WindowResult> windows;  ///< none: stopped before the first
-  double threshold{};                 ///< of the scores
-  bool is_judged{};                   ///< at least one of them
+  std::vector<WindowResult> windows;    ///< none: stopped before the first
+  double threshold{};                   ///< of the scores
+  bool is_judged{};                     ///< at least one of them
+  std::vector<UnreadRecording> unread;  ///< the recordings that have none
 };
 
 /// A CSV file with a row per window; no path: none.

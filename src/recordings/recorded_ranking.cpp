@@ -53,15 +53,15 @@ std::vector<ArmFit> rankArms(const RecordingOptions& options, const std::vector<
   }
   own.arm = names.front();
   const ArmRecording recording(own);
-  const bool unit_is_given = std::any_of(own.assignments.begin(), own.assignments.end(),
-                                         [](const auto& text) { return text.find("telemetry.effort") == 0; });
+  ParameterMap given;
+  addOverlays(own, given);
   const auto play = [&](const VisitArmRows& visit) { recording.readEfforts(visit, ArmFit::ENOUGH); };
-  std::vector<ArmFit> fits = rankArms(candidates, play, unit_is_given);
+  std::vector<ArmFit> fits = rankArms(candidates, play, given.count("telemetry.effort") > 0);
   if (!others.empty())
   {
     const std::vector<ArmFit> more = rankArms(options, others);
     fits.insert(fits.end(), more.begin(), more.end());
-    std::stable_sort(fits.begin(), fits.end(), [](const ArmFit& a, const ArmFit& b) { return a.cost < b.cost; });
+    std::stable_sort(fits.begin(), fits.end());
   }
   return fits;
 }

@@ -24,6 +24,7 @@
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "messages/conversions.hpp"
 #include "messages/time.hpp"
+#include "recordings/seconds_check.hpp"
 
 namespace hjt
 {
@@ -298,14 +299,21 @@ void readSignals(const std::string& recording, const SignalOptions& options, con
                  const Take& take)
 {
   const SignalSource source = signalSource(options, parameters);
-  if (const auto found = options.at_hand.find(recording); found != options.at_hand.end())
+  SecondsCheck seconds;
+  const Take check = [&](const SignalSample& sample)
   {
-    readColumns(recording, found->second, source, take);
-    return;
-  }
+    seconds.add(sample);
+    return take(sample);
+  };
   const std::string extension = std::filesystem::path(recording).extension().string();
   const auto read = extension == ".bag" ? readBag : extension == ".h5" ? readRun : readTable;
-  read(recording, source, take);
+  const auto at_hand = options.at_hand.find(recording);
+  at_hand != options.at_hand.end() ? readColumns(recording, at_hand->second, source, check) :
+                                     read(recording, source, check);
+  if (const std::string doubt = seconds.doubt(); !doubt.empty())
+  {
+    throw InputError(recording + ": " + doubt + ": its times must be in seconds");
+  }
 }
 
 std::string wrongSignalFile(const std::string& path)

@@ -80,9 +80,8 @@ void TrackerNode::watchArm()
     arm_->add(efforts_);
     if (arm_->look() && arm_->other() != before)
     {
-      ROS_WARN_STREAM((arm_->other().empty() ?
-                           "No other arm explains the currents clearly better any more" :
-                           "The arm may be a " + arm_->other() + ": it explains the currents clearly better"));
+      ROS_WARN_STREAM((arm_->other().empty() ? "No other arm explains the currents clearly better any more" :
+                                               "Not judged: " + otherArmText(arm_->other())));
     }
   }
   catch (const std::exception& error)  // files of the arms, or no thread

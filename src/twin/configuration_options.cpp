@@ -39,10 +39,7 @@ void addOverlays(const ConfigurationOptions& options, ParameterMap& map)
   {
     eraseFaults(map);
   }
-  for (const auto& [key, value] : options.values)
-  {
-    map[key] = value;
-  }
+  putOver(options.values, map);
   if (!options.config_dir.empty())
   {
     findNamedFiles(configDirectory(options), map);

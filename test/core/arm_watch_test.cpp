@@ -134,6 +134,25 @@ TEST(ArmWatch, AnswersAfterHalfAMinuteOfMotion)
   EXPECT_EQ(watch.other(), "ur5");
 }
 
+TEST(ArmWatch, KeepsNoRowsInWhichNoMotionIsSeen)
+{
+  ArmWatch watch(candidates, "ur10");
+  std::vector<MotionRow> row(6);
+  const auto add = [&]
+  {
+    row.front().time += 0.2;  // [s]
+    row.front().position += 0.1;
+    watch.add(row);
+  };
+  add();
+  const std::size_t before = allocationCount();
+  for (int k = 0; k < 1000; ++k)
+  {
+    add();
+  }
+  EXPECT_EQ(allocationCount(), before);
+}
+
 TEST(NameOtherArm, LeavesReasonsThatAreNotOfTheLoad)
 {
   std::vector<Misfit> misfits{ {}, { Reason::LOAD_WRONG, "the load" }, { Reason::STAMPS, "the stamps" } };

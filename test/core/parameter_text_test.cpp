@@ -19,7 +19,7 @@ TEST(YamlFiles, BrokenFilesAreRefusedWithPlace)
 {
   EXPECT_THAT(YamlFile("gear:\n  a: [1, 2\n").complaint(), HasSubstr(".yaml:"));
   EXPECT_THAT(YamlFile("").complaint(), HasSubstr("empty"));
-  EXPECT_THAT(YamlFile("gear: 5\n").complaint(), HasSubstr(":1: gear = 5 must be a section"));
+  EXPECT_THAT(YamlFile("gear: 5\n").complaint(), HasSubstr(":1: gear = 5 must be keys and values"));
   EXPECT_THAT(YamlFile("faults: {kind: pitting}\n").complaint(), HasSubstr(":1: faults must be a list of {kind:"));
   EXPECT_THAT(YamlFile("- 1\n").complaint(), HasSubstr("expected `section: {key: value}`"));
   EXPECT_THAT(YamlFile("gear:\n  wave_amplitude:\n").complaint(), HasSubstr(":2: gear.wave_amplitude has no value"));

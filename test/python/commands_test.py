@@ -32,7 +32,7 @@ TOOL = sys.argv.pop(1)
 JOINTS = ["shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint", "wrist_1_joint", "wrist_2_joint", "wrist_3_joint"]
 ELBOW = ["joints/elbow.yaml", "recorded_load.yaml"]
 PERIOD = 0.008
-SILENT = {"time": [0.0, 1.0, 2.0], "motor_torque": [math.nan] * 3, "motor_angle_encoder": [0.0, 1.0, 2.0]}
+SILENT = {"time": [0.0, 0.1, 0.2], "motor_torque": [math.nan] * 3, "motor_angle_encoder": [0.0, 1.0, 2.0]}
 PLAN = """
 seed: 3
 duration: 0.3

@@ -170,12 +170,34 @@ class DataSets(unittest.TestCase):
         with self.assertRaisesRegex(hjt.InputError, "column 'm' must be numbers"):
             hjt.indicators(frame.assign(m="x"), columns={"motor_angle": "m"})
 
-    def test_a_damaged_file_is_named(self):
+    def test_a_damaged_file_is_named_and_the_others_are_read(self):
         shutil.copytree("sound", "damaged")
-        file = hjt.load("damaged", group=None)["file"][1]
-        os.truncate(file, 1000)
-        with self.assertRaisesRegex(hjt.InputError, f"{file} cannot be read as HDF5"):
-            hjt.load("damaged")
+        files = hjt.load("damaged", group=None)["file"]
+        os.truncate(files[0], 1000)
+        with self.assertWarnsRegex(RuntimeWarning, f"not read: {files[0]}"):
+            windows = hjt.load("damaged")
+        self.assertEqual(list(windows.file), list(files[1:]))
+        with self.assertWarnsRegex(RuntimeWarning, f"not read: {files[0]}"):
+            verdicts = hjt.assess("damaged", "sound_reference.yaml", check_up=True)
+        self.assertEqual(list(verdicts.recording), list(files))
+        self.assertEqual(list(verdicts.state), ["not read"] + (SOUND - 1) * ["assessed"])
+        with self.assertWarnsRegex(RuntimeWarning, f"not read: {files[0]}"):
+            learned = hjt.reference("damaged", "others.yaml")
+        self.assertEqual(list(learned.recording), list(files[1:]))
+        for file in files[1:]:
+            os.truncate(file, 1000)
+        for function in (hjt.load, lambda folder: hjt.assess(folder, "sound_reference.yaml")):
+            with self.assertRaisesRegex(hjt.InputError, files[0]):
+                function("damaged")
+
+    def test_times_that_are_not_in_seconds_are_named(self):
+        samples = hjt.load("sound", "signals")
+        frame = samples[samples.run == 0]
+        frame = frame.assign(motor_velocity_encoder=np.gradient(frame.motor_angle_encoder, frame.time))
+        for factor, text in ((1e3, "most samples come 0.5 s apart or more"), (200.0, "the motor turns 200.* as far")):
+            for function in (hjt.indicators, hjt.remaining):
+                with self.assertRaisesRegex(hjt.InputError, rf"recordings\[0\]: .*{text}.*: its times must be in sec"):
+                    function(frame.assign(time=factor * frame.time))
 
     def test_faults_of_brake_sensors_and_motor_grow_from_their_onset(self):
         time = np.arange(0.0, 4.0, 0.01)

@@ -123,7 +123,7 @@ class Parameters(unittest.TestCase):
                 ("cup/torsion_breakpoints", [14.0, "high"], "not a number"),
                 ("cup/torsion_stiffness", [31.0e3, 50.0e3], "[N.m/rad]"),
                 ("manufacture/flexspline_pitch_table", "/nowhere.csv", "/nowhere.csv", "cannot be read"),
-                ("solver", 3, "= 3 must be a group of keys and values"),
+                ("solver", 3, "= 3 must be keys and values, e.g. solver."),
                 ("faults", 3, "= 3 must be a list of {kind:"),
                 ("publish/encoders_rate", 3000, "3000", "[Hz]", "10000")):
             with self.subTest(key=key, value=value):

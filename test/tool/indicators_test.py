@@ -101,6 +101,19 @@ class Indicators(tool.ToolTest):
         self.assertEqual(once["windows"][0]["assessment"]["state"], "assessed")
         self.assertNotEqual(once["assessment"]["level"], "OK")
 
+    def test_a_recording_that_cannot_be_read_is_named_and_the_others_are_read(self):
+        self.write("a.csv", recording(seconds=7.0))
+        self.write("b.csv", "t\n0\n")
+        self.write("c.h5", "")
+        done = self.run_tool("indicators", "c.h5", "a.csv", "b.csv", *COLUMNS, *SMALL_WINDOWS, "--json")
+        self.assertEqual(done.returncode, 1, done.stderr)
+        for text in ("not read: c.h5", "not read: b.csv:1: --motor-torque amps: no such column"):
+            self.assertIn(text, done.stderr)
+        report = json.loads(done.stdout)
+        self.assertEqual({window["recording"] for window in report["windows"]}, {"a.csv"})
+        self.assertEqual([each["recording"] for each in report["unread"]], ["c.h5", "b.csv"])
+        self.fail_with(1, ["none of 2 recordings can be read: c.h5"], "indicators", "c.h5", "c.h5")
+
     def test_a_column_that_is_not_there_is_refused(self):
         self.write("a.csv", recording(seconds=3.0))
         for option in ("--time", "--motor-torque", "--motor-angle", "--output-angle", "--motor-velocity",

@@ -24,7 +24,7 @@ int run(const Options& given)
   {
     return EXIT_BY_SIGNAL + interruptSignal();
   }
-  return options.baseline.empty() || found.is_judged ? EXIT_DONE : EXIT_FAILED;
+  return found.unread.empty() && (options.baseline.empty() || found.is_judged) ? EXIT_DONE : EXIT_FAILED;
 }
 
 void declare(Command& command, Options& options)
