@@ -14,6 +14,7 @@
 #include "base/publish_period.hpp"
 #include "base/whole_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
+#include "health/indicator_table.hpp"
 
 namespace hjt
 {
@@ -250,11 +251,6 @@ void Hdf5RunFile::record(Stamp now, ArmRecorder& arm)
   }
 }
 
-bool Hdf5RunFile::isDue(const Group& group, Stamp now) const
-{
-  return now > from_ && (now - from_) % group.period == 0;
-}
-
 void Hdf5RunFile::finishRow(Group& group)
 {
   if (++group.buffered == group.rows_in_block)
@@ -326,9 +322,12 @@ void Hdf5RunFile::writeIndicators()
   {
     write(indicatorName(i), indicatorUnit(i), [i](W w) { return w.values[i]; });
   }
-  for (const std::size_t i : lineAmplitudes())
+  for (std::size_t i = SCALAR_COUNT; i < INDICATOR_COUNT; ++i)
   {
-    write(errorColumn(i).c_str(), indicatorUnit(i), [i](W w) { return w.uncertainty[i]; });
+    if (amplitudeOf(i) == i)
+    {
+      write(errorColumn(i).c_str(), indicatorUnit(i), [i](W w) { return w.uncertainty[i]; });
+    }
   }
 }
 

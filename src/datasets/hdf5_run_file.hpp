@@ -46,7 +46,7 @@ private:
 
   void writeParameters(const RunSpec& spec);
   void makeGroup(const RecordingGroup& recorded, const RunSpec& spec, double start, int deflate);
-  bool isDue(const Group& group, Stamp now) const;
+  bool isDue(const Group& group, Stamp now) const { return now > from_ && (now - from_) % group.period == 0; }
   double severityAt(double time, std::size_t joint) const;
   void finishRow(Group& group);
   void flush(Group& group);

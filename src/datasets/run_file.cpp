@@ -9,7 +9,7 @@
 
 #include "arm/moving_arm.hpp"
 #include "base/number_text.hpp"
-#include "harmonic_joint_twin/health/signal_indicators.hpp"
+#include "health/indicator_table.hpp"
 
 namespace hjt
 {
@@ -70,22 +70,9 @@ Columns readRunColumns(const std::string& path, const std::vector<std::string>& 
   return readHdf5Columns(path, holding);
 }
 
-std::string errorColumn(std::size_t amplitude)
+std::string errorColumn(std::size_t indicator)
 {
-  return std::string("window_error_") + indicatorName(amplitude);
-}
-
-std::vector<std::size_t> lineAmplitudes()
-{
-  std::vector<std::size_t> amplitudes;
-  for (const LineSignal signal : ALL_LINE_SIGNALS)
-  {
-    for (std::size_t line = 0; line < LINE_COUNT && hasLine(signal, line); ++line)
-    {
-      amplitudes.push_back(amplitudeIndex(signal, line));
-    }
-  }
-  return amplitudes;
+  return std::string("window_error_") + indicatorName(amplitudeOf(indicator));
 }
 
 double dataSize(const Recording& recording, const RunSpec& spec)

@@ -19,11 +19,8 @@ constexpr const char* ROWS_WITHOUT_FORCES = "rows_without_forces";
 /// Of an arm's record: joint, reason and time of its protective stop, or empty.
 constexpr const char* PROTECTIVE_STOP = "protective_stop";
 
-/// Of the windows in a run's file, the standard error of a line and of its parts. `amplitude`: an indicator.
-std::string errorColumn(std::size_t amplitude);
-
-/// Indicators; the parts of a line have the standard error of its amplitude.
-std::vector<std::size_t> lineAmplitudes();
+/// Of the windows in a run's file, the standard error of a line; its parts have that of its amplitude.
+std::string errorColumn(std::size_t indicator);
 
 /// What one run is written to. Nothing stands under its name before `finish`.
 class RunFile

@@ -62,21 +62,6 @@ Persistence persistenceOf(const ReferenceBin& bin, const Reference& reference) n
   return { std::clamp(found + error, error, 1.0), std::max((1.0 - least) / (1.0 + least), std::min(runs, 1.0)) };
 }
 
-/// For the parts of a line the floor is a share of its amplitude: the part itself may be near zero.
-std::size_t sizeOf(std::size_t indicator) noexcept
-{
-  for (const LineSignal signal : ALL_LINE_SIGNALS)
-  {
-    if (indicator >= cosineIndex(signal, 0) && indicator <= sineIndex(signal, FIRST_LOCKED - 1))
-    {
-      return amplitudeIndex(signal, (indicator - cosineIndex(signal, 0)) / 2);
-    }
-  }
-  constexpr std::size_t PARTS = cosineIndex(LineSignal::MOTOR_RIPPLE, FIRST_LOADED);
-  return indicator < PARTS ? indicator :
-                             amplitudeIndex(LineSignal::MOTOR_RIPPLE, FIRST_LOADED) + (indicator - PARTS) / 2;
-}
-
 /// What the drive differs from the model by: of a line the root of the sum of squares over the lines of its signal
 /// whose phase stays, for resonances make any of them large in one motion and small in another.
 double sizeOffModel(const ReferenceBin& bin, std::size_t indicator) noexcept
@@ -85,12 +70,10 @@ double sizeOffModel(const ReferenceBin& bin, std::size_t indicator) noexcept
   {
     return std::abs(bin.references[indicator].mean);
   }
-  const LineSignal signal =
-      indicator < LOADED_BLOCK ? ALL_LINE_SIGNALS[(indicator - SCALAR_COUNT) / LINE_BLOCK] : LineSignal::MOTOR_RIPPLE;
   double square = 0.0;
   for (std::size_t line = 0; line < FIRST_LOCKED; ++line)
   {
-    const double amplitude = bin.references[amplitudeIndex(signal, line)].mean;
+    const double amplitude = bin.references[amplitudeIndex(signalOf(indicator), line)].mean;
     square += amplitude * amplitude;
   }
   return std::sqrt(square);
@@ -240,7 +223,8 @@ BaselineState Baseline::update(const SignalIndicators& indicators, const SignalI
 double Baseline::variance(std::size_t indicator, const ReferenceBin& bin, const Average& average, double left,
                           const Widening& widening) const noexcept
 {
-  const double least = least_spread_ * bin.references[sizeOf(indicator)].mean;
+  // Of a part of a line a share of its amplitude: the part itself may be near zero.
+  const double least = least_spread_ * bin.references[amplitudeOf(indicator)].mean;
   const double usual = bin.references[indicator].relative_square;
   const double wider = left * (usual > 0.0 ? std::max(average.relative_square / usual, 1.0) : 1.0);
   const double square = std::max(wider, average.error_square);

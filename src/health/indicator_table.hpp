@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 #include "base/table_order.hpp"
 #include "harmonic_joint_twin/health/fault_signatures.hpp"
@@ -51,6 +52,22 @@ inline constexpr std::array<ScalarRow, SCALAR_COUNT> SCALARS{ {
     { ScalarIndicator::RESIDUAL_CREST, "residual_crest", "-", Feature::IMPULSES, 0.5, FloorUnit::INDICATOR },
 } };
 static_assert(isInOrder(SCALARS, &ScalarRow::indicator), "a row for each ScalarIndicator, in its order");
+
+/// Of a line, or of one of its parts.
+constexpr LineSignal signalOf(std::size_t indicator)
+{
+  return indicator < LOADED_BLOCK ? ALL_LINE_SIGNALS[(indicator - SCALAR_COUNT) / LINE_BLOCK] :
+                                    LineSignal::MOTOR_RIPPLE;
+}
+
+/// Of a part of a line the line's amplitude, else the indicator itself.
+constexpr std::size_t amplitudeOf(std::size_t indicator)
+{
+  const bool loaded = indicator >= LOADED_BLOCK;
+  const std::size_t lines = loaded ? LOADED_COUNT : FIRST_LOADED;
+  const std::size_t place = loaded ? indicator - LOADED_BLOCK : (indicator - SCALAR_COUNT) % LINE_BLOCK;
+  return indicator < SCALAR_COUNT || place < lines ? indicator : indicator - place + (place - lines) / 2;
+}
 
 struct LineRow
 {

@@ -6,6 +6,8 @@
 
 #include <Eigen/Dense>
 
+#include "health/indicator_table.hpp"
+
 namespace hjt
 {
 namespace
@@ -188,21 +190,17 @@ void fitCommonCauses(ReferenceBin& bin, const ReferenceSums& sums, FitRoom& room
 
 std::array<double, INDICATOR_COUNT> relativeErrors(const SignalIndicators& indicators) noexcept
 {
-  std::array<double, LINE_SIGNALS> least{};  // 0: none
-  for (std::size_t signal = 0; signal < LINE_SIGNALS; ++signal)
+  std::array<double, LINE_SIGNALS> least{};
+  least.fill(HUGE_VAL);
+  for (std::size_t i = SCALAR_COUNT; i < LOADED_BLOCK; ++i)
   {
-    for (std::size_t line = 0; line < FIRST_LOADED; ++line)
-    {
-      const double error = indicators.uncertainty[amplitudeIndex(static_cast<LineSignal>(signal), line)];
-      least[signal] = error > 0.0 && !(least[signal] > 0.0 && least[signal] < error) ? error : least[signal];
-    }
+    double& of_signal = least[static_cast<std::size_t>(signalOf(i))];
+    of_signal = indicators.uncertainty[i] > 0.0 ? std::min(of_signal, indicators.uncertainty[i]) : of_signal;
   }
-  constexpr auto RIPPLE = static_cast<std::size_t>(LineSignal::MOTOR_RIPPLE);
   std::array<double, INDICATOR_COUNT> relative{};
   for (std::size_t i = SCALAR_COUNT; i < INDICATOR_COUNT; ++i)
   {
-    const std::size_t signal = i < LOADED_BLOCK ? (i - SCALAR_COUNT) / LINE_BLOCK : RIPPLE;
-    relative[i] = least[signal] > 0.0 ? indicators.uncertainty[i] / least[signal] : 0.0;
+    relative[i] = indicators.uncertainty[i] / least[static_cast<std::size_t>(signalOf(i))];
   }
   return relative;
 }

@@ -39,29 +39,6 @@ bool makeSameWindows(Parameters one, const Parameters& other)
   return describeParameters(one) == describeParameters(other);
 }
 
-/// Files of before have none.
-void readErrors(const Columns& columns, std::vector<SignalIndicators>& windows)
-{
-  for (const LineSignal signal : ALL_LINE_SIGNALS)
-  {
-    for (std::size_t line = 0; line < LINE_COUNT && hasLine(signal, line); ++line)
-    {
-      const std::size_t amplitude = amplitudeIndex(signal, line);
-      const auto column = columns.find(errorColumn(amplitude));
-      const bool is_known = column != columns.end() && column->second.size() == windows.size();
-      for (std::size_t i = 0; is_known && i < windows.size(); ++i)
-      {
-        std::array<double, INDICATOR_COUNT>& errors = windows[i].uncertainty;
-        errors[amplitude] = column->second[i];
-        if (isPhaseLocked(line))
-        {
-          errors[cosineIndex(signal, line)] = errors[sineIndex(signal, line)] = column->second[i];
-        }
-      }
-    }
-  }
-}
-
 /// Of a bag; none if the bytes are another message.
 std::optional<harmonic_joint_twin::Indicators> readMessage(const rosbag::MessageInstance& instance)
 {
@@ -143,7 +120,13 @@ std::optional<std::vector<SignalIndicators>> windowsOfRun(const std::string& rec
   {
     read(indicatorName(i), [i](W w, double value) { w.values[i] = value; });
   }
-  readErrors(columns, windows);
+  for (std::size_t i = SCALAR_COUNT; i < INDICATOR_COUNT; ++i)
+  {
+    if (columns.count(errorColumn(i)) > 0)  // files of before have none
+    {
+      read(errorColumn(i).c_str(), [i](W w, double value) { w.uncertainty[i] = value; });
+    }
+  }
   for (std::size_t i = 0; i < windows.size(); ++i)
   {
     windows[i].windows = i + 1;
