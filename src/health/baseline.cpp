@@ -226,8 +226,7 @@ double Baseline::variance(std::size_t indicator, const ReferenceBin& bin, const 
   // Of a part of a line a share of its amplitude: the part itself may be near zero.
   const double least = least_spread_ * bin.references[amplitudeOf(indicator)].mean;
   const double usual = bin.references[indicator].relative_square;
-  const double wider = left * (usual > 0.0 ? std::max(average.relative_square / usual, 1.0) : 1.0);
-  const double square = std::max(wider, average.error_square);
+  const double square = left * (usual > 0.0 ? std::max(average.relative_square / usual, 1.0) : 1.0);
   return square * widening.stays + std::max(square * widening.varies, average.scatter_square / average.weight) +
          least * least + floor_[indicator] * floor_[indicator] + widening.carried;
 }
@@ -265,7 +264,6 @@ void Baseline::take(const ReferenceBin& bin, const SignalIndicators& indicators,
     place.tail<PLACES - OWN_PLACES>().setZero();  // load and payload are the model's to follow
   }
   window.leverage = place.dot(mapped(bin.leverage) * place);
-  window.error = indicators.uncertainty;
   window.relative = relativeErrors(indicators);
   for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
   {
@@ -304,7 +302,6 @@ Baseline::Average Baseline::average(std::size_t first, std::size_t count, std::s
         steps[found - 1] = 0.5 * std::pow(difference - differences[found - 1], 2);
       }
       differences[found++] = difference;
-      average.error_square += compared_[i].error[indicator] * compared_[i].error[indicator];
       average.relative_square += compared_[i].relative[indicator] * compared_[i].relative[indicator];
     }
   }
@@ -317,7 +314,6 @@ Baseline::Average Baseline::average(std::size_t first, std::size_t count, std::s
   const double sum = std::accumulate(differences.begin() + static_cast<std::ptrdiff_t>(left_out),
                                      differences.begin() + static_cast<std::ptrdiff_t>(found - left_out), 0.0);
   average.difference = sum / static_cast<double>(found - 2 * left_out);
-  average.error_square /= static_cast<double>(found);
   average.relative_square /= static_cast<double>(found);
   if (found > JUMPS + 1)
   {
@@ -342,6 +338,7 @@ void Baseline::compare(const ReferenceBin& bin, std::size_t first, std::size_t c
     leverage += compared_[i].leverage / static_cast<double>(count);
   }
   residual_.windows = static_cast<int>(count);
+  const std::array<double, INDICATOR_COUNT> alike = varianceOfAlike(bin);
   for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
   {
     const bool sound_known = std::isfinite(residual_.sound[i]);  // else the model did not determine it in this window
@@ -361,11 +358,13 @@ void Baseline::compare(const ReferenceBin& bin, std::size_t first, std::size_t c
     const Widening widening{ persistence.stays + h, (1.0 - persistence.stays) / average.weight,
                              carried_ ? carriedVariance(bin, signatures_->carried[i], i, static_cast<double>(count)) :
                                         0.0 };
+    const double prior = alike[i] > 0.0 && !carried_ ? ALIKE_FREEDOM : 0.0;
+    const double usual = (freedom * reference.variance + prior * alike[i]) / (freedom + prior);
     freedoms += freedom;
     compared += 1.0;
     residual_.difference[i] = average.difference;
-    deviations[i] = deviation(average.difference, expected_[i],
-                              std::sqrt(variance(i, bin, average, reference.variance, widening)), freedom);
+    deviations[i] = deviation(average.difference, expected_[i], std::sqrt(variance(i, bin, average, usual, widening)),
+                              freedom + prior);
     if (!sound_known)
     {
       continue;
@@ -375,9 +374,8 @@ void Baseline::compare(const ReferenceBin& bin, std::size_t first, std::size_t c
     const double left =
         std::max(1.0 - common.squaredNorm(), LEAST_LEFT) * (n - 1.0 - fitted) / (n - 1.0 - fitted - found);
     causes = std::max(causes, found);
-    residual_.own[i] = variance(i, bin, average, left * reference.variance, widening);
-    Eigen::Map<Causes>(residual_.common[i].data()) =
-        std::sqrt(reference.variance * (widening.stays + widening.varies)) * common;
+    residual_.own[i] = variance(i, bin, average, left * usual, widening);
+    Eigen::Map<Causes>(residual_.common[i].data()) = std::sqrt(usual * (widening.stays + widening.varies)) * common;
   }
   residual_.freedom = compared > 0.0 ? std::max(freedoms / compared - causes, 1.0) : 0.0;
 }

@@ -16,6 +16,7 @@ constexpr int MIN_FITTED = 16;  // windows before slopes and correlations mean a
 constexpr int MIN_STEPS = 8;    // pairs of windows before what they differ by means anything
 // Of a place, rms: nearer ones count as one, 0.025 K and a quarter of a percent of the class of load [-].
 constexpr double PLACE_ERROR = 0.005;
+constexpr int MIN_ALIKE = 4;    // lines before what they have in common means anything
 constexpr int ITERATIONS = 30;  // for a principal component: its line is narrow enough long before it is exact
 
 /// Adds the products of differences.
@@ -125,6 +126,25 @@ void fitSlopes(ReferenceBin& bin, const LearnedSums& learned, const std::vector<
                          0.0;
 }
 
+constexpr std::size_t KINDS_OF_LINE = 2 * LINE_SIGNALS + 1;
+
+/// Lines are alike by signal: amplitudes whose phase is free, parts of those whose phase stays; and those in proportion
+/// to the load. KINDS_OF_LINE: none is like it.
+std::size_t kindOfLine(std::size_t indicator) noexcept
+{
+  if (indicator < SCALAR_COUNT || (indicator >= LOADED_BLOCK && indicator < LOADED_BLOCK + LOADED_COUNT))
+  {
+    return KINDS_OF_LINE;
+  }
+  if (indicator >= LOADED_BLOCK)
+  {
+    return 2 * LINE_SIGNALS;
+  }
+  const std::size_t signal = (indicator - SCALAR_COUNT) / LINE_BLOCK;
+  const bool is_part = (indicator - SCALAR_COUNT) % LINE_BLOCK >= FIRST_LOADED;
+  return isFreeAmplitude(indicator) ? signal : is_part ? LINE_SIGNALS + signal : KINDS_OF_LINE;
+}
+
 /// Of the indicators that every window determined.
 void fitCommonCauses(ReferenceBin& bin, const ReferenceSums& sums, FitRoom& room) noexcept
 {
@@ -187,6 +207,33 @@ void fitCommonCauses(ReferenceBin& bin, const ReferenceSums& sums, FitRoom& room
   }
 }
 }  // namespace
+
+std::array<double, INDICATOR_COUNT> varianceOfAlike(const ReferenceBin& bin) noexcept
+{
+  std::array<double, KINDS_OF_LINE + 1> sums{};
+  std::array<int, KINDS_OF_LINE + 1> counts{};
+  for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
+  {
+    const Reference& reference = bin.references[i];
+    const double freedom = reference.count - 1.0 - (reference.fitted ? bin.slopes_freedom : 0.0);
+    if (freedom >= 1.0 && reference.variance > 0.0 && reference.relative_square > 0.0)
+    {
+      sums[kindOfLine(i)] +=
+          std::log(reference.variance / reference.relative_square) + (1.0 + 1.0 / (3.0 * freedom)) / freedom;
+      ++counts[kindOfLine(i)];
+    }
+  }
+  std::array<double, INDICATOR_COUNT> variance{};
+  for (std::size_t i = SCALAR_COUNT; i < INDICATOR_COUNT; ++i)
+  {
+    const std::size_t kind = kindOfLine(i);
+    if (kind != KINDS_OF_LINE && counts[kind] >= MIN_ALIKE)
+    {
+      variance[i] = bin.references[i].relative_square * std::exp(sums[kind] / counts[kind]);
+    }
+  }
+  return variance;
+}
 
 std::array<double, INDICATOR_COUNT> relativeErrors(const SignalIndicators& indicators) noexcept
 {

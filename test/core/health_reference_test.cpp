@@ -10,6 +10,7 @@
 #include "harmonic_joint_twin/health/assessment.hpp"
 #include "harmonic_joint_twin/twin/twin.hpp"
 #include "health/angle_multiples.hpp"
+#include "health/reference_fit.hpp"
 #include "health/signature_file.hpp"
 #include "sensors/absolute_encoder.hpp"
 #include "sensors/incremental_encoder.hpp"
@@ -206,7 +207,39 @@ TEST(Reference, OfALineIsAsUncertainAsTheWindowsMotionMakesIt)
   EXPECT_NEAR(spreadWith(3e-4, 1e-4), 3.0 * usual, 1e-6) << "the spread grows with the error, small as that is";
   EXPECT_NEAR(spreadWith(1e-5, 1e-4), usual, 1e-6) << "a better fit makes no finer judgement";
   EXPECT_NEAR(spreadWith(3e-4, 1e-4, 3e-4), usual, 1e-6) << "noise of all lines is no reason to see less";
-  EXPECT_GT(spreadWith(1e-2, 1e-2), 0.9e-2) << "white noise alone would make as much";
+}
+
+/// Spread of the first of `lines` parts of the ripple in proportion to the load in a reference of eight windows, in which
+/// that one scatters by 1e-4 and the others by 1e-3, with like errors by the fit.
+double spreadBeside(int lines)
+{
+  constexpr std::size_t LINE = cosineIndex(LineSignal::MOTOR_RIPPLE, FIRST_LOADED);
+  Assessor assessor(shippedParameters(
+      { "indicators.least_spread=0.0", "indicators.evidence_windows=1", "indicators.baseline_windows=8" }));
+  SignalIndicators window;
+  window.point = { 100.0, 0.0, 30.0, 25.0 };
+  window.uncertainty[amplitudeIndex(LineSignal::MOTOR_RIPPLE, 0)] = 1e-4;
+  for (int i = 0; i <= 8; ++i)
+  {
+    for (std::size_t line = LINE; line < LINE + static_cast<std::size_t>(lines); ++line)
+    {
+      window.values[line] = (i % 2 == 0 ? -1.0 : 1.0) * (line == LINE ? 1e-4 : 1e-3);
+      window.uncertainty[line] = 1e-4;
+    }
+    assessor.update(window);
+  }
+  return std::sqrt(assessor.baseline().residual().own[LINE]);
+}
+
+TEST(Reference, OfFewWindowsTakesALineForNoMuchCalmerThanLinesLikeIt)
+{
+  const double alone = spreadBeside(1);
+  const double beside = spreadBeside(12);
+  const double freedom = 7.0;
+  const double chance = std::log(1e-6 / 1e-8) * 11.0 / 12.0 + 1.0 / freedom + 1.0 / (3.0 * freedom * freedom);
+  EXPECT_NEAR(beside / alone, std::sqrt((freedom + ALIKE_FREEDOM * std::exp(chance)) / (freedom + ALIKE_FREEDOM)), 0.01)
+      << "three degrees of freedom of the geometric mean of all twelve";
+  EXPECT_NEAR(spreadBeside(3), alone, 1e-12) << "three lines say nothing of a fourth";
 }
 
 TEST(Reference, KeepsTheSoundValueWhereAModelIsSubtracted)

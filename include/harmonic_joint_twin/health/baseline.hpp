@@ -172,8 +172,9 @@ enum class BaselineState : std::uint8_t
 /// more, is left out at either end.
 ///
 /// Law:   t = mean(x - m - b (z - z_0)) / sqrt(p (r + h) + max(p (1 - r), w^2) / k + (f m)^2 + q^2)
-///        p = max(s^2 max(c^2 / c_0^2, 1), u^2)
-///        score = sign(t) sqrt(v log(1 + t^2 / v)) (8 v + 1) / (8 v + 3),  v = e n - 1 - d, at least 1
+///        p = (v s^2 + v_0 s_0^2) / (v + v_0) max(c^2 / c_0^2, 1)
+///        score = sign(t) sqrt(v' log(1 + t^2 / v')) (8 v' + 1) / (8 v' + 3),  v' = v + v_0
+///        v = e n - 1 - d, at least 1
 /// where  m, s, n  mean, standard deviation and number of the healthy windows
 ///        z, z_0   place of the window in its class, mean of the healthy ones;  b, s  slopes over it and what they
 ///                 leave, by least squares;  L, d  covariance of the slopes where s = 1, degrees of freedom they take
@@ -185,8 +186,9 @@ enum class BaselineState : std::uint8_t
 ///                 windows differ by, over s^2 (von Neumann 1941), plus its standard error; 1 if none followed another
 ///        e        share of the windows that count as independent, (1 - r') / (1 + r'), at least one in every stretch;
 ///                 r' as r, less the error; 1 if none followed another
-///        u        standard error of the fit, rms;  c, c_0  of it what the motion makes (relativeErrors), rms, of the
-///                 windows averaged and of the healthy ones: what a line is off by differs between windows as c does
+///        s_0, v_0 spread by lines like it (varianceOfAlike) and ALIKE_FREEDOM; of what is no line, or carried, v_0 = 0
+///        c, c_0   what the motion makes of the fit's standard error (relativeErrors), rms, of the windows averaged and
+///                 of the healthy ones: what a line is off by differs between windows as c does
 ///        f  indicators.least_spread;  q  a tenth of what one encoder count makes; 0.3 for kurtosis, 0.5 for crest
 /// A carried reference is one of another motion, for windows from which a model is subtracted. They are compared with
 /// the class of motion to and fro at their temperature that has most windows. b is over temperature alone, the variance
@@ -239,7 +241,6 @@ private:
   struct Compared
   {
     std::array<double, INDICATOR_COUNT> difference{};  // NaN: not compared
-    std::array<double, INDICATOR_COUNT> error{};       // by the fit
     std::array<double, INDICATOR_COUNT> relative{};    // relativeErrors
     double leverage{};                                 // (z - z_0)' L (z - z_0)
   };
@@ -255,7 +256,6 @@ private:
   struct Average
   {
     double difference{};
-    double error_square{};
     double relative_square{};  // c^2
     double scatter_square{};   // w^2
     double weight{};           // k
