@@ -91,9 +91,9 @@ def moving_errors(recording, name, fit, loop, number):
 def slow_and_fast(recording, name, residual):
     """Rms below and above SLOW of a residual in moving rows [A]."""
     moving = recording.moving(name)
-    lines = np.fft.rfft(np.where(moving, residual, 0.0))
-    slow = np.fft.rfftfreq(len(residual), recording.period()) < SLOW
-    powers = 2.0 * np.abs(lines) ** 2 / len(residual) / np.count_nonzero(moving)
+    lines = np.fft.fft(np.where(moving, residual, 0.0))
+    slow = np.abs(np.fft.fftfreq(len(residual), recording.period())) < SLOW
+    powers = np.abs(lines) ** 2 / len(residual) / np.count_nonzero(moving)
     return np.sqrt([np.sum(powers[slow]), np.sum(powers[~slow])])
 
 

@@ -22,7 +22,8 @@ FINER = 4.0                # the converged run's over it
 LEAST_TRAVEL = 0.02        # rad: a joint that hardly moves is held against this
 ACCURACY = 0.01            # of the travel
 TIMEOUT = 600.0            # s a run
-COUNTS = ["solver_failures", "step_cuts", "jumps", "coarse_steps", "torque_clamped", "speed_limited", "overloads"]
+COUNTS = ["solver_failures", "step_cuts", "jumps", "coarse_steps", "torque_clamped", "speed_limited", "overloads",
+          "feedback_limited"]
 START = [0.0, -1.2, 1.0, -1.3, -1.5, 0.3]
 # Those of ArmController::defaultGains of the UR5: position [1/s], speed [N.m.s/rad], integral time [s].
 SPEEDS = [271.1] * 3 + [62.5] * 3

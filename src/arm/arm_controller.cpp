@@ -17,6 +17,12 @@ double motorInertia(const Parameters& drive)
   const double ratio = nominalRatio(drive.gear);
   return ratio * ratio * (drive.motor.rotor_inertia + drive.motor.wave_generator_inertia);
 }
+
+/// By the motor's encoder [rad/s].
+double jointSpeed(const EncoderReadings& read, const Twin& drive)
+{
+  return read.motor_velocity / nominalRatio(drive.parameters().gear);
+}
 }  // namespace
 
 JointGains ArmController::defaultGains(const Parameters& drive)
@@ -36,6 +42,7 @@ ArmController::ArmController(const ArmDescription& arm, const ArmTwin& twin, std
   , rigid_(twin.joints())
   , feed_forward_(twin.joints())
   , integral_(twin.joints())
+  , speed_(twin.joints())
 {
   for (const ArmJoint& joint : arm.joints)
   {
@@ -46,6 +53,7 @@ ArmController::ArmController(const ArmDescription& arm, const ArmTwin& twin, std
 void ArmController::reset() noexcept
 {
   std::fill(integral_.begin(), integral_.end(), 0.0);
+  controlled_ = NEVER;
   limited_ = 0;
 }
 
@@ -54,9 +62,16 @@ bool ArmController::isDue(const ArmTwin& twin) const noexcept
   return (twin.stamp() + twin.stepLength()) % period_ == 0;
 }
 
+double ArmController::speed(const ArmTwin& twin, std::size_t joint) const noexcept
+{
+  const Twin& drive = twin.drive(joint);
+  return twin.stamp() < controlled_ + period_ ? speed_[joint] : jointSpeed(drive.encoders(), drive);
+}
+
 void ArmController::control(ArmTwin& twin, const std::vector<JointMotion>& set_point) noexcept
 {
   dynamics_.torques(set_point, rigid_);
+  controlled_ = twin.stamp() + twin.stepLength();
   for (std::size_t i = 0; i < twin.joints(); ++i)
   {
     Twin& drive = twin.drive(i);
@@ -68,7 +83,8 @@ void ArmController::control(ArmTwin& twin, const std::vector<JointMotion>& set_p
     feed_forward_[i] = rigid_[i] + motorInertia(drive.parameters()) * wanted.acceleration + gain.coulomb * direction +
                        gain.viscous * wanted.velocity;
     const double speed = wanted.velocity + gain.position * (wanted.position - twin.startAngle(i) - read.output_angle);
-    const double error = speed - read.motor_velocity / ratio;
+    speed_[i] = jointSpeed(read, drive);
+    const double error = speed - speed_[i];
     const double feedback = gain.speed * error + integral_[i];
     const double torque = feed_forward_[i] + std::clamp(feedback, -feedback_limit_[i], feedback_limit_[i]);
     const double limit = ratio * drive.parameters().motor.torque_limit;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "arm/arm_twin.hpp"
@@ -39,8 +40,12 @@ public:
   /// How often a joint's feedback was at its limit while its brake was off, since reset [-].
   std::uint64_t limitedControls() const noexcept { return limited_; }
   double feedForward(std::size_t joint) const noexcept { return feed_forward_[joint]; }
+  /// Of a joint by the motor's encoder: while it controls what the last control had, else the present [rad/s].
+  double speed(const ArmTwin& twin, std::size_t joint) const noexcept;
 
 private:
+  static constexpr Stamp NEVER = std::numeric_limits<Stamp>::min() / 2;
+
   ArmDynamics dynamics_;
   std::vector<JointGains> gains_;
   std::vector<double> feedback_limit_;  // HUGE_VAL: none [N.m]
@@ -48,6 +53,8 @@ private:
   std::vector<double> rigid_;
   std::vector<double> feed_forward_;
   std::vector<double> integral_;  // of the torque [N.m]
+  std::vector<double> speed_;     // of the joints at the last control [rad/s]
+  Stamp controlled_{ NEVER };     // the last one
   std::uint64_t limited_{};       // controls of a joint [-]
 };
 }  // namespace hjt

@@ -166,7 +166,7 @@ JointReading MovingArm::reading(std::size_t joint) const noexcept
   const Twin& drive = twin_.drive(joint);
   const double ratio = nominalRatio(drive.parameters().gear);
   const EncoderReadings read = drive.encoders();
-  return { twin_.startAngle(joint) + read.output_angle, read.motor_velocity / ratio,
+  return { twin_.startAngle(joint) + read.output_angle, controller_.speed(twin_, joint),
            ratio * drive.motorTorqueReading() / drive.parameters().telemetry.torque_per_current };
 }
 }  // namespace hjt

@@ -147,9 +147,11 @@ void ArmNode::receiveCommand(const trajectory_msgs::JointTrajectory& message)
     return;
   }
   const Stamp now = rosNow();
-  const double delay = std::max(toSeconds(stampOr(message.header.stamp, toRosTime(now)) - now), 0.0);
+  const Stamp ahead = std::max<Stamp>(stampOr(message.header.stamp, toRosTime(now)) - now, 0);
   std::vector<ArmSetPoint> points;
-  const std::string errors = readTrajectory(message, description_, advance_.shown.read(), delay, points);
+  const std::string errors = ahead > FAR_STAMP ?
+                                 "its stamp is more than a day ahead of the clock" :
+                                 readTrajectory(message, description_, advance_.shown.read(), toSeconds(ahead), points);
   if (!errors.empty())
   {
     ROS_WARN_STREAM_THROTTLE(WARNING_PERIOD, "Refused a trajectory on ~" << topics::COMMAND << ": " << errors);
@@ -203,21 +205,19 @@ void ArmNode::receiveTemperature(const sensor_msgs::Temperature& message)
 {
   const auto joint = std::find_if(description_.joints.begin(), description_.joints.end(),
                                   [&](const ArmJoint& each) { return each.name == message.header.frame_id; });
-  std::string errors;
   if (joint == description_.joints.end())
   {
-    errors = "frame_id = '" + printable(message.header.frame_id) + "' is no joint of the arm";
+    ROS_INFO_STREAM_ONCE("Left alone on ~" << topics::JOINT_TEMPERATURES << ": frame_id = '"
+                                           << printable(message.header.frame_id) << "' is no joint of this arm");
+    return;
   }
   // Written so that NaN fails.
-  else if (!(message.temperature >= MIN_TEMPERATURE && message.temperature <= MAX_TEMPERATURE))
+  if (!(message.temperature >= MIN_TEMPERATURE && message.temperature <= MAX_TEMPERATURE))
   {
-    errors = numberText(message.temperature) +
-             " [degC] is out of range, allowed: " + rangeText({ MIN_TEMPERATURE, MAX_TEMPERATURE });
-  }
-  if (!errors.empty())
-  {
-    ROS_WARN_STREAM_THROTTLE(WARNING_PERIOD,
-                             "Refused a temperature on ~" << topics::JOINT_TEMPERATURES << ": " << errors);
+    ROS_WARN_STREAM_THROTTLE(
+        WARNING_PERIOD, "Refused a temperature on ~"
+                            << topics::JOINT_TEMPERATURES << ": " << numberText(message.temperature)
+                            << " [degC] is out of range, allowed: " << rangeText({ MIN_TEMPERATURE, MAX_TEMPERATURE }));
     return;
   }
   const Stamp stamp = stampOr(message.header.stamp, ros::Time::now());

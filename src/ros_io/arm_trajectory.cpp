@@ -20,17 +20,19 @@ constexpr double SAME_PLACE = 0.01;       // that a point at time 0 may be from 
 constexpr std::size_t MAX_NAMES = 300;    // of the names in a message that are shown [bytes]
 constexpr double SPEED_TOLERANCE = 1e-6;  // [-]
 
-/// Place of each joint of the arm in the message. @returns the name of one that it lacks, or nothing.
+/// Place of each joint of the arm in the message. @returns what is wrong with its names, or nothing.
 std::string placesOf(const JointTrajectory& message, const ArmDescription& arm, std::vector<std::size_t>& places)
 {
   for (const ArmJoint& joint : arm.joints)
   {
-    const auto found = std::find(message.joint_names.begin(), message.joint_names.end(), joint.name);
-    if (found == message.joint_names.end())
+    const std::vector<std::string>& names = message.joint_names;
+    const auto found = std::find(names.begin(), names.end(), joint.name);
+    if (std::count(found, names.end(), joint.name) != 1)
     {
-      return joint.name;
+      return (found == names.end() ? "it lacks " : "it names more than once ") + joint.name + "; it names " +
+             printable(joined(names, ", "), MAX_NAMES);
     }
-    places.push_back(static_cast<std::size_t>(found - message.joint_names.begin()));
+    places.push_back(static_cast<std::size_t>(found - names.begin()));
   }
   return {};
 }
@@ -112,10 +114,9 @@ std::string readTrajectory(const JointTrajectory& message, const ArmDescription&
                            const std::vector<JointMotion>& present, double delay, std::vector<ArmSetPoint>& points)
 {
   std::vector<std::size_t> places;
-  const std::string missing = placesOf(message, arm, places);
-  if (!missing.empty())
+  if (std::string errors = placesOf(message, arm, places); !errors.empty())
   {
-    return "it lacks " + missing + "; it names " + printable(joined(message.joint_names, ", "), MAX_NAMES);
+    return errors;
   }
   if (message.points.empty())
   {

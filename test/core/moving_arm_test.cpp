@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 
 #include "arm/set_points.hpp"
+#include "gear/ratio.hpp"
 #include "test/core/rods.hpp"
 
 namespace hjt
@@ -179,6 +180,33 @@ TEST(MovingArm, TheControllersFeedbackIsLimited)
   }
   EXPECT_GT(most[0], 2.0 * LIMIT);
   EXPECT_NEAR(most[1], LIMIT, 0.02 * LIMIT);
+}
+
+/// The speed that it shows is the one that the last control had; where none controls, that of the instant.
+TEST(MovingArm, TheSpeedIsThatOfTheControl)
+{
+  const std::vector<JointMotion> from{ { 0.3, 0.0, 0.0 }, { -0.8, 0.0, 0.0 } };
+  std::vector<JointMotion> to = from;
+  to[0].position += 0.1;
+  MovingArm arm(rods("0 1 0", 2), { drive(), drive() }, ArmMotion({ { 0.0, from }, { 0.2, to } }), {});
+  const auto speed = [&]
+  {
+    const Twin& twin = arm.twin().drive(0);
+    return twin.encoders().motor_velocity / nominalRatio(twin.parameters().gear);
+  };
+  double before = 0.0;
+  while (arm.step(arm.motionBegin() + toStampLength(0.1)))
+  {
+    before = arm.controller().isDue(arm.twin()) ? speed() : before;  // what the control of the next step reads
+  }
+  EXPECT_GT(before, 0.1);
+  EXPECT_EQ(arm.reading(0).velocity, before);
+  EXPECT_NE(speed(), before);
+  for (int k = 0; k < 50; ++k)
+  {
+    arm.twin().step(MAX_STAMP);
+  }
+  EXPECT_EQ(arm.reading(0).velocity, speed());
 }
 }  // namespace
 }  // namespace hjt

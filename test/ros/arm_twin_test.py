@@ -44,9 +44,10 @@ class ArmTwin(unittest.TestCase):
         message = self.states.messages()[-1]
         return dict(zip(message.name, message.position))
 
-    def send(self, *points, names=NAMES):
+    def send(self, *points, names=NAMES, stamp=rospy.Time()):
         """Angles by joint, times [s]."""
         message = JointTrajectory(joint_names=names)
+        message.header.stamp = stamp
         for angles, at in points:
             message.points.append(JointTrajectoryPoint(positions=[angles[name] for name in names],
                                                        time_from_start=rospy.Duration.from_sec(at)))
@@ -101,6 +102,12 @@ class ArmTwin(unittest.TestCase):
         self.send((START, 2.0), names=NAMES[1:])
         self.said("Refused a trajectory on ~command: it lacks elbow_joint; it names shoulder_lift_joint")
         time.sleep(1.1)  # one warning a second
+        self.send((START, 2.0), names=NAMES + NAMES[:1])
+        self.said("Refused a trajectory on ~command: it names more than once elbow_joint; it names elbow_joint,")
+        time.sleep(1.1)
+        self.send((START, 2.0), stamp=rospy.Time.now() + rospy.Duration(90000))
+        self.said("Refused a trajectory on ~command: its stamp is more than a day ahead of the clock")
+        time.sleep(1.1)
         self.send((dict(START, elbow_joint=9.0), 0.5))
         self.said("elbow_joint would reach")
         time.sleep(1.1)
@@ -139,11 +146,13 @@ class ArmTwin(unittest.TestCase):
 
     def test_5_a_temperature_is_that_of_the_named_drive(self):
         health = Listener("/elbow/arm_twin/health", Health)
-        for joint, degrees in (("knee", 20.0), ("elbow_joint", 32.0)):
+        # The topic is shared with the other arm, whose joints have other names.
+        for joint, degrees in (("left_elbow_joint", 20.0), ("elbow_joint", 200.0), ("elbow_joint", 32.0)):
             message = Temperature(temperature=degrees)
             message.header.frame_id = joint
             self.temperature.publish(message)
-        self.said("Refused a temperature on ~joint_temperatures: frame_id = 'knee' is no joint of the arm")
+        self.said("Left alone on ~joint_temperatures: frame_id = 'left_elbow_joint' is no joint of this arm")
+        self.said("Refused a temperature on ~joint_temperatures: 200.0 [degC] is out of range")
         wait_until(lambda: health.messages() and health.messages()[-1].grease_temperature == 32.0, "the temperature")
 
     def test_6_a_fault_is_taken_live_and_raises_its_joints_current(self):
