@@ -137,7 +137,7 @@ std::optional<double> LoadProblem::likelyChange() const
     Eigen::Matrix4d products{ Eigen::Matrix4d::Zero() };
     Eigen::Vector4d sums{ Eigen::Vector4d::Zero() };
   };
-  std::map<int, Piece> pieces;  // by the second of motion that they are of
+  std::map<double, Piece> pieces;  // by the second of motion that they are of
   Piece rest;
   Eigen::MatrixXd information;
   const Eigen::VectorXd all = solveAll(rows_, information);
@@ -148,7 +148,7 @@ std::optional<double> LoadProblem::likelyChange() const
     for (std::size_t k = 0; k < rows_[i].size(); ++k)
     {
       const Eigen::Vector4d column = rows_[i].columns[k].head<PAYLOAD>();
-      for (Piece* piece : { &pieces[static_cast<int>(std::floor(rows_[i].times[k]))], &rest })
+      for (Piece* piece : { &pieces[std::floor(rows_[i].times[k])], &rest })
       {
         piece->products += weight * column * column.transpose();
         piece->sums += weight * errors[static_cast<Eigen::Index>(k)] * column;
