@@ -103,6 +103,12 @@ LoadProblem::Solution LoadProblem::solve() const
   return solution;
 }
 
+LoadProblem::Shared LoadProblem::values() const
+{
+  Eigen::MatrixXd information;
+  return solveAll(rows_, information).head<SHARED>();
+}
+
 LoadProblem::Fit LoadProblem::fit(double mass) const
 {
   constexpr double ROWS = 60.0;    // that count: errors of a model are not independent from row to row
