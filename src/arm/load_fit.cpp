@@ -193,18 +193,19 @@ struct LoadFit::Data
       return { of };
     }
     const std::array<LoadPart, 2> sides{ LoadPart{ of.begin, *change }, LoadPart{ *change, of.end } };
-    std::array<IdentifiedPayload, 2> found;
-    double squares = 0.0;
-    for (std::size_t side = 0; side < sides.size(); ++side)
+    const std::array<std::vector<Rows>, 2> its{ ofJoints(rows, counts, true, sides[0]),
+                                                ofJoints(rows, counts, true, sides[1]) };
+    const auto left = [&](const std::vector<Rows>& some)
+    { return squaresLeft(some, gains, LoadProblem(some, LoadProblem::Term::PAYLOAD).values()); };
+    if (left(its[0]) + left(its[1]) > std::pow(FoundLoad::CLEARLY, 2) * left(joints))
     {
-      const std::vector<Rows> its = ofJoints(rows, counts, true, sides[side]);
-      found[side] = findPayload(its, of_links);
-      squares += std::pow(found[side].residual_share, 2) * squaresLeft(its, gains, LoadProblem::Shared::Zero());
+      return { of };
     }
-    found[1].configured.mass = found[0].mass;
-    found[1].mass_half_width = std::hypot(found[0].mass_half_width, found[1].mass_half_width);
-    const double together = squaresLeft(joints, gains, LoadProblem(joints, LoadProblem::Term::PAYLOAD).solve().values);
-    if (!found[1].differs() || squares > std::pow(FoundLoad::CLEARLY, 2) * together)
+    const IdentifiedPayload before = findPayload(its[0], of_links);
+    IdentifiedPayload after = findPayload(its[1], of_links);
+    after.configured.mass = before.mass;
+    after.mass_half_width = std::hypot(before.mass_half_width, after.mass_half_width);
+    if (!after.differs())
     {
       return { of };
     }

@@ -103,6 +103,12 @@ LoadProblem::Solution LoadProblem::solve() const
   return solution;
 }
 
+LoadProblem::Shared LoadProblem::values() const
+{
+  Eigen::MatrixXd information;
+  return solveAll(rows_, information).head<SHARED>();
+}
+
 LoadProblem::Fit LoadProblem::fit(double mass) const
 {
   constexpr double ROWS = 60.0;    // that count: errors of a model are not independent from row to row
@@ -137,7 +143,7 @@ std::optional<double> LoadProblem::likelyChange() const
     Eigen::Matrix4d products{ Eigen::Matrix4d::Zero() };
     Eigen::Vector4d sums{ Eigen::Vector4d::Zero() };
   };
-  std::map<int, Piece> pieces;  // by the second of motion that they are of
+  std::map<double, Piece> pieces;  // by the second of motion that they are of
   Piece rest;
   Eigen::MatrixXd information;
   const Eigen::VectorXd all = solveAll(rows_, information);
@@ -148,7 +154,7 @@ std::optional<double> LoadProblem::likelyChange() const
     for (std::size_t k = 0; k < rows_[i].size(); ++k)
     {
       const Eigen::Vector4d column = rows_[i].columns[k].head<PAYLOAD>();
-      for (Piece* piece : { &pieces[static_cast<int>(std::floor(rows_[i].times[k]))], &rest })
+      for (Piece* piece : { &pieces[std::floor(rows_[i].times[k])], &rest })
       {
         piece->products += weight * column * column.transpose();
         piece->sums += weight * errors[static_cast<Eigen::Index>(k)] * column;

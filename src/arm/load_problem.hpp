@@ -61,6 +61,7 @@ public:
   };
   /// The interval is that of the fit, or by leaving out one tenth of the time after the other where that is wider.
   Solution solve() const;
+  Shared values() const;  ///< without their intervals: a twelfth of the time
 
   /// Of the currents, what is left with the best of all terms, and how much these take.
   struct Fit

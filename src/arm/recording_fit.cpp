@@ -82,7 +82,7 @@ RecordingFinding velocityFinding(const FittedFactor& own, double of_stamps)
 }
 }  // namespace
 
-RecordingFit::RecordingFit(const std::vector<Parameters>& joints)
+RecordingFit::RecordingFit(const std::vector<Parameters>& joints, const LoadPart& part) : part_(part)
 {
   for (const Parameters& parameters : joints)
   {
@@ -120,6 +120,10 @@ void RecordingFit::reset() noexcept
 
 void RecordingFit::update(const std::vector<MotionSample>& joints, const std::vector<double>& torques) noexcept
 {
+  if (!part_.holds(joints.front().time))
+  {
+    return;
+  }
   const double step = joints.front().time - last_time_;
   last_time_ = joints.front().time;
   bool moves = false;

@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "arm/arm_load.hpp"
+#include "arm/found_load.hpp"
 #include "arm/recording_units.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "tracking/current_lag.hpp"
@@ -59,7 +60,8 @@ public:
   static constexpr double PATIENCE = 30.0;  ///< [s]
 
   /// @param joints of the arm; the currents in the samples follow from their efforts as these are configured.
-  explicit RecordingFit(const std::vector<Parameters>& joints);
+  /// @param part of the time, whose rows count
+  explicit RecordingFit(const std::vector<Parameters>& joints, const LoadPart& part = {});
 
   void reset() noexcept;
   /// `torques`: NaN where the load is not known.
@@ -139,6 +141,7 @@ private:
 
   std::vector<FittedFactor> timeFactors() const;
 
+  LoadPart part_;
   Misfit refusal_;
   std::vector<Joint> joints_;
   double last_time_{ std::numeric_limits<double>::quiet_NaN() };

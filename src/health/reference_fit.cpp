@@ -247,7 +247,8 @@ std::array<double, INDICATOR_COUNT> relativeErrors(const SignalIndicators& indic
   std::array<double, INDICATOR_COUNT> relative{};
   for (std::size_t i = SCALAR_COUNT; i < INDICATOR_COUNT; ++i)
   {
-    relative[i] = indicators.uncertainty[i] / least[static_cast<std::size_t>(signalOf(i))];
+    const double error = indicators.uncertainty[i];  // of a foreign file NaN too
+    relative[i] = error > 0.0 ? error / least[static_cast<std::size_t>(signalOf(i))] : 0.0;
   }
   return relative;
 }

@@ -41,7 +41,8 @@ constexpr double ALIKE_FREEDOM = 3.0;
 /// where  s, v  spread and degrees of freedom of a line;  c_0  its relativeErrors, rms;  alike: of one signal the
 ///        amplitudes of lines whose phase is free, or the parts of those whose phase stays, or those of the ripple in
 ///        proportion to the load
-/// Source: Smyth, Stat. Appl. Genet. Mol. Biol. 3 (2004), article 3, eq. for the prior of log s^2.
+/// Source: Smyth, Stat. Appl. Genet. Mol. Biol. 3 (2004), article 3, for log s^2 and the variance that follows. His
+///         s_0^2 is 0.69 of this one, a geometric mean, with ALIKE_FREEDOM: 2 exp(psi(v_0 / 2)) / v_0.
 std::array<double, INDICATOR_COUNT> varianceOfAlike(const ReferenceBin& bin) noexcept;
 
 /// Standard error of each line over the least one of its signal's lines in the same window: what the motion makes of

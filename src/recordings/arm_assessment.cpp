@@ -43,7 +43,7 @@ ArmAssessment pass(const ArmRecording& recording, const AssessmentSettings& sett
   {
     load.emplace(recording);
   }
-  fit = RecordingFit(recording.parameters());
+  fit = RecordingFit(recording.parameters(), part);
   StreamTiming timing;
   arm.found = recording.readSamples(
       [&](std::size_t i, const MotionSample& sample)

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "output/output_file.hpp"
@@ -195,7 +196,7 @@ Parameters parametersOf(const IndicatorsOptions& options)
     }
     catch (const InputError&)
     {
-      if (*recording == options.recordings.back())
+      if (std::next(recording) == options.recordings.end())
       {
         throw;
       }

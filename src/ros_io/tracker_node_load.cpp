@@ -129,7 +129,8 @@ void TrackerNode::lookAtLoad()
   }
   if (is_other)
   {
-    ROS_INFO_STREAM((load_->isTrying() ? "Another load than configured is tried: no WARN until it is known to fit" :
+    ROS_INFO_STREAM((load_->isTrying()     ? "Another load than configured is tried: no WARN until it is known to fit" :
+                     !assumed.part.isAll() ? "The payload changed: the joints start again" :
                      assumed.isConfigured() ? "The configured load counts again" :
                                               "The load that stood before counts again"));
     arm_load_.emplace(load_->arm());
