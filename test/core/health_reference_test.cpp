@@ -209,8 +209,8 @@ TEST(Reference, OfALineIsAsUncertainAsTheWindowsMotionMakesIt)
   EXPECT_NEAR(spreadWith(3e-4, 1e-4, 3e-4), usual, 1e-6) << "noise of all lines is no reason to see less";
 }
 
-/// Spread of the first of `lines` parts of the ripple in proportion to the load in a reference of eight windows, in which
-/// that one scatters by 1e-4 and the others by 1e-3, with like errors by the fit.
+/// Spread of the first of `lines` parts of the ripple in proportion to the load in a reference of eight windows, in
+/// which that one scatters by 1e-4 and the others by 1e-3, with like errors by the fit.
 double spreadBeside(int lines)
 {
   constexpr std::size_t LINE = cosineIndex(LineSignal::MOTOR_RIPPLE, FIRST_LOADED);
