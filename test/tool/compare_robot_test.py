@@ -63,7 +63,7 @@ class HiddenFault(tool.ToolTest):
         report = self.compare(spall, "r1", *windows, "--reference", "r0")
         # A line that shows alone, in a motion like no signature's, is not put down to a cause with certainty.
         self.assertLessEqual(set(self.causes(report, "Signals by windows")), {"bearing_outer_race"})
-        self.assertEqual(report["verdict"]["level"], "WARN")
+        self.assertEqual(report["verdict"]["level"], "ERROR")
         signals = next(found for found in report["verdict"]["findings"] if found["title"] == "Signals by windows")
         self.assertRegex(signals["text"], "Strongest: (error|ripple|torque)_outer")
 
