@@ -149,9 +149,13 @@ public:
       if (known_.count(key) == 0)
       {
         const std::string kind = groupKind(key);
-        kind.empty() ? errors_.push_back(configured.origin + ": unknown parameter " + key + " = " +
-                                         valueText(configured) + suggestion(key, known_)) :
-                       mustBe(key, configured, kind);
+        if (!kind.empty())
+        {
+          mustBe(key, configured, kind);
+          continue;
+        }
+        errors_.push_back(configured.origin + ": unknown parameter " + key + " = " + valueText(configured) +
+                          suggestion(key, known_));
       }
     }
   }
