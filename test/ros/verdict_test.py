@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
 """The verdict of the node beside a robot is that of joint_twin compare on the same messages: the made-up UR5 of
-ur5_test, whose elbow has more friction, for seven swings and the rest after them."""
+ur5_test, whose elbow has more friction, for twelve swings and the rest after them."""
 import json
 import math
 import os
@@ -22,7 +22,8 @@ from harmonic_joint_twin.msg import Comparison
 from harmonic_joint_twin.msg import Verdict as VerdictMessage
 from ur5_test import JOINTS, PERIOD, SICK, WAIT_OF_ARM, angles, run_robot
 
-MOVING = 9 * 2.0 * math.pi / 1.6  # until the end of a swing, and longer than RecordingFit::PATIENCE [s]
+# Until the end of a swing, and longer than RecordingFit::PATIENCE by what the ranking of arms takes [s].
+MOVING = 12 * 2.0 * math.pi / 1.6
 SECONDS = MOVING + 1.0
 FASTER = 4.0  # played than stamped
 FINDINGS = ("Friction", "Torsion", "Signals by windows")
