@@ -9,7 +9,8 @@ import numpy
 import scipy.stats
 import sklearn.covariance
 
-from health_runs import COMPARED, FURTHER_MODEL, OTHER_FLANKS, OTHER_MODEL, Motion, Trial, drawn, once
+from health_runs import (COMPARED, FURTHER_MODEL, MODEL, OTHER_FLANKS, OTHER_MODEL, Motion, Trial, as_measured, drawn,
+                         once)
 
 WINDOW = 20.0                   # [s]
 SLOPE = 300.0                   # of a trapezoid [deg/s^2]
@@ -23,7 +24,10 @@ STATES = [option for pair in (("--config", "joints/shoulder.yaml"), ("--config",
                               ("--set", f"indicators.window_time={WINDOW}"), ("--set", "indicators.window_turns=1e5"))
           for option in pair]
 CLASSES = [0.0, 0.5, 0.7, 0.85, 0.95, 1.0]  # of the confidence
-SOURCES = {"windows of the drive": ["--windows"], "joint states alone": STATES}
+# `twin`: its indicators on the same path are subtracted.
+Source = collections.namedtuple("Source", "options twin", defaults=[False])
+SOURCES = {"windows of the drive": Source(["--windows"]), "the twin beside": Source(["--windows"], True),
+           "joint states alone": Source(STATES)}
 
 
 def quintic(share):
@@ -87,9 +91,9 @@ MOTIONS = [motion_of("slow sweep", "slow_sweep", sweep),
            motion_of("sine", "sine", sine)]
 FITTED_GEARS = [drawn(905), drawn(930), OTHER_FLANKS]
 OTHER_MODELS = [OTHER_MODEL, FURTHER_MODEL]
-JUDGED_GEARS = [drawn(1007), *OTHER_MODELS]
+JUDGED_GEARS = [drawn(1007), as_measured(1011), as_measured(1012), *OTHER_MODELS]
 SEEDS = {"drawn 905": 50, "drawn 930": 150, "drawn 1007": 250, OTHER_FLANKS.name: 270, OTHER_MODEL.name: 280,
-         FURTHER_MODEL.name: 300}  # first
+         FURTHER_MODEL.name: 300, "as measured 1011": 310, "as measured 1012": 320}  # first
 
 # `kind` "healthy" of a sound one; `plain`: scores of the plain detectors.
 Judged = collections.namedtuple("Judged", "gear motion kind severity window score plain")
@@ -102,19 +106,24 @@ def trials(gears):
 
 
 def options_of(gear, source):
-    return source[:2] + ["--config", gear.overlay] + source[2:] if source == STATES and gear.overlay else source
+    options = source.options
+    return options[:2] + ["--config", gear.overlay] + options[2:] if options == STATES and gear.overlay else options
 
 
-def bags_of(bench, own_trials, own):
-    """(of the reference, sound, faulty) runs of a gear in one motion."""
+def bags_of(bench, own_trials, own, twin):
+    """Runs of a gear in one motion, each part with the twin's beside them: the reference, the sound ones, the faulty
+    ones of each trial."""
     gear, seed = own_trials[0].gear, own_trials[0].seed
-    reference = bench.sound("motions_reference", gear, own, TEMPERATURE, REFERENCE, seed + 1000)
-    sound = bench.sound("motions_sound", gear, own, TEMPERATURE, SOUND, seed + 2000)
-    faulty = []
+
+    def with_twin(bags, own_seed, repeats=1, paths=1):
+        return bags, bench.beside(MODEL, bags, own, TEMPERATURE, own_seed, repeats, paths) if twin else []
+
+    yield with_twin(bench.sound("motions_reference", gear, own, TEMPERATURE, REFERENCE, seed + 1000), seed + 1000,
+                    paths=REFERENCE)
+    yield with_twin(bench.sound("motions_sound", gear, own, TEMPERATURE, SOUND, seed + 2000), seed + 2000, paths=SOUND)
     for trial in own_trials:
-        faulty += bench.sweep(f"{trial.name}_{gear.name}_{own.tag}", gear, own, TEMPERATURE,
-                              bench.fault_classes(trial, KINDS), 1, trial.seed)
-    return reference, sound, faulty
+        yield with_twin(bench.sweep(f"{trial.name}_{gear.name}_{own.tag}", gear, own, TEMPERATURE,
+                                    bench.fault_classes(trial, KINDS), 1, trial.seed), trial.seed, len(KINDS))
 
 
 def numbers_of(windows):
@@ -139,13 +148,14 @@ def plain_scores(reference, judged):
 def judged(bench, own_trials, own, source):
     """What was made of each window; the reference is of the same source."""
     gear = own_trials[0].gear
-    source = options_of(gear, source)
-    reference, sound, faulty = bags_of(bench, own_trials, own)
+    (reference, models), *parts = bags_of(bench, own_trials, own, source.twin)
+    options = options_of(gear, source)
     file = bench.work / f"motions_{gear.name}_{own.tag}.yaml".replace(" ", "_")
     learned = bench.indicators(reference, ["--set", "indicators.baseline_windows=10000", "--save-baseline", file,
-                                           "--force"], source=source)["windows"]
-    windows = bench.indicators(sound + faulty, ["--baseline", file, *once(own)], source=source)["windows"]
-    rows = {str(bag): row for bag, row in sound + faulty}
+                                           "--force"], models, options)["windows"]
+    bags, models = (sum(own_parts, []) for own_parts in zip(*parts))
+    windows = bench.indicators(bags, ["--baseline", file, *once(own)], models, options)["windows"]
+    rows = {str(bag): row for bag, row in bags}
     for window, plain in zip(windows, plain_scores(learned, windows)):
         row = rows[window["recording"]]
         compared = window["assessment"]["state"] in COMPARED

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Evaluates the assessment on sound and faulty joints with real sensors, and writes docs/health.md."""
 import argparse
+import collections
 import itertools
 import math
 import pathlib
@@ -31,6 +32,7 @@ TAIL = 0.6            # score over the threshold from which on the tail is taken
 CARRIED_BY = {health_runs.MODEL.name: "eccentricities unknown",
               health_runs.CALIBRATED_MODEL.name: "eccentricities known"}
 BINS = health_motions.CLASSES
+SLIPS = (0.0, 0.01, 0.02)  # of the bearing's cage
 
 
 def collect(bench, trials, model=None):
@@ -288,6 +290,31 @@ def carried_report(bench, trials, own):
     return [*lines, "", "Sound drives:", "", *sound_table(list(sound.items()), False)]
 
 
+def slip_table(bench, trials):
+    """Faults of the bearing, whose balls are not where its lines are sought; a sound one is the same with slip."""
+    kinds = [kind["kind"] for kind in bench.kinds if kind["kind"].startswith("bearing_")]
+    runs = collections.defaultdict(list)
+    for trial, motion, slip in itertools.product(trials, (CHECK_UP, None), SLIPS):
+        motion = motion or next(own for own in trial.motions if own != CHECK_UP)
+        gear = trial.gear._replace(name=f"{trial.gear.name} slip {slip:g}",
+                                   settings=[*trial.gear.settings, f"  bearing.cage_slip: {slip}"])
+        bags = bench.sweep(f"{trial.name}_{gear.name}_{motion.tag}", gear, motion, DRAWN,
+                           bench.fault_classes(trial, kinds), 1, trial.seed)
+        runs[slip] += bench.judge(bags, trial.gear, motion)
+    columns = list(itertools.product((True, False), severities_of(runs[SLIPS[0]])))
+    lines = ["| slip | " + " | ".join(f"{'check-up' if check_up else 'at work'}, {severity:g}"
+                                      for check_up, severity in columns)
+             + " | cause right, of alarms | or in the set |", "|---" * (len(columns) + 3) + "|"]
+    for slip, own in runs.items():
+        own = [run for run in own if run.windows]
+        found = [run for run in own if alarmed(run)]
+        cells = [share(alarmed(run) for run in own if (run.motion == CHECK_UP, run.severity) == column)
+                 for column in columns]
+        lines.append(f"| {100.0 * slip:g} % | " + " | ".join(cells)
+                     + f" | {share(map(right, found))} | {share(map(in_set, found))} |")
+    return lines
+
+
 def report(bench, trials, sound, faulty, missing):
     rows, error = reliability(faulty)
     groups = by_motion([run for run in sound if run.motion != CHECK_UP])
@@ -349,6 +376,7 @@ def main():
     draw_confusion(bench.kinds, faulty, images / "confusion.png")
     draw_reliability(reliability(faulty)[0], images / "reliability.png")
     page_section.write(page, "health", report(bench, JUDGED, sound, faulty, missing))
+    page_section.write(page, "slip", slip_table(bench, [trial for trial in JUDGED if trial.gear.alike]))
     page_section.write(page, "carried", carried_report(bench, JUDGED, faulty))
     print(f"evaluate_health: wrote {page}", file=sys.stderr)
 

@@ -113,6 +113,14 @@ def drawn(number):
     return even(f"drawn {number}", draw(0.93, 1.07), draw(-1.4e-6, -0.7e-6), draw(450.0, 590.0), draw(300e-6, 380e-6))
 
 
+def as_measured(number):
+    """Preload and grease from the spread of those fitted to six joints of a UR5 and a UR5e (config/joints)."""
+    draw = numpy.random.default_rng(number).uniform
+    gear = even(f"as measured {number}", draw(0.93, 1.07), draw(-1.4e-6, -0.7e-6),
+                round(math.exp(draw(math.log(284.0), math.log(997.0)))), draw(280e-6, 340e-6))
+    return gear._replace(settings=[*gear.settings, f"  motor.stribeck_torque: {draw(0.0, 0.05):.3f}"])
+
+
 def of_series(number):
     """A drawn gear with errors of the circular spline."""
     gear, draw = drawn(number), numpy.random.default_rng(5000 + number).uniform

@@ -31,8 +31,8 @@ RaceDeflection::RaceDeflection(const BearingParameters& bearing)
   : balls_(bearing.balls)
   , ball_diameter_(bearing.ball_diameter)
   , pitch_diameter_(bearing.pitch_diameter)
-  , cage_rate_(0.5 * (1.0 - ball_diameter_ / pitch_diameter_))
-  , spin_rate_(0.5 * (pitch_diameter_ / ball_diameter_ - ball_diameter_ / pitch_diameter_))
+  , cage_rate_((1.0 - bearing.cage_slip) * 0.5 * (1.0 - ball_diameter_ / pitch_diameter_))
+  , spin_rate_((1.0 - bearing.cage_slip) * 0.5 * (pitch_diameter_ / ball_diameter_ - ball_diameter_ / pitch_diameter_))
 {
 }
 

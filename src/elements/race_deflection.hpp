@@ -12,14 +12,15 @@ namespace hjt
 {
 /// By how much the outer race of the wave generator's bearing sags under the rim because balls do not carry.
 ///
-/// Ball k:   psi_k = 2 pi k / Z + (1 - d/D)/2 theta        its place in the housing, the outer race standing [rad]
-///           phi_k = k GOLDEN - (D/d - d/D)/2 theta        its own turn against the cage; 0 where a spot on it meets
-///                                                         the outer race, pi where it meets the inner race [rad]
+/// Ball k:   psi_k = 2 pi k / Z + (1 - s) (1 - d/D)/2 theta     its place in the housing, the outer race standing [rad]
+///           phi_k = k GOLDEN - (1 - s) (D/d - d/D)/2 theta     its own turn against the cage; 0 where a spot on it
+///                                                              meets the outer race, pi the inner race [rad]
 /// Sag:      g_i = sum_k h_k(theta) (1 + cos(Z (psi_i - psi_k) / 2)) / 2  within one ball pitch of psi_i, the place of
 ///                 tooth i at rest: all balls lower by h lower the whole race by h                            [m]
 /// where     h_k  how far ball k drops: over a spall of depth h the raised cosine h (1 + cos(pi x / b)) / 2, x from its
 ///                middle, b half its length over the radius it lies on; into it as far as it fits, l^2 / (4 d)  [m]
-///           Z, d, D  number and diameter of the balls, their pitch diameter; no slip of the cage
+///           Z, d, D  number and diameter of the balls, their pitch diameter
+///           s    share of slip: balls roll on the outer race and slip on the inner one, which drives them
 ///
 /// A sound bearing is the rigid ellipse that the contact knows.
 class RaceDeflection

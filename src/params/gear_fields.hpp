@@ -150,6 +150,8 @@ void visitBearing(P& p, Visitor& visit)
   visit("bearing.balls", "-", p.bearing.balls, Range{ 3, 1000 }, "balls of the bearing");
   visit("bearing.ball_diameter", "m", p.bearing.ball_diameter, Range{ 1e-4, 1.0 },
         "diameter of a ball, below pitch_diameter");
+  visit("bearing.cage_slip", "-", p.bearing.cage_slip, Range{ 0.0, 0.2 },
+        ofFaults("share by which cage and balls turn slower than without slip"));
   visit("bearing.viscosity", "m^2/s", p.bearing.viscosity, Range{ 1e-7, 1e-1 },
         ofOthers("kinematic viscosity that the grease acts with at viscosity_temperature"));
   visit("bearing.oil_viscosity", "m^2/s", p.bearing.oil_viscosity, Range{ 1e-6, 1e-1 },

@@ -24,7 +24,7 @@ namespace
 /// How often the sag over one tooth, or anywhere, has a maximum in `turns` of the wave generator.
 TEST(RaceDeflection, OrdersComeOutOfTheKinematics)
 {
-  const Parameters parameters = shippedParameters();
+  Parameters parameters = shippedParameters();
   const int teeth = parameters.gear.teeth_flexspline;
   const auto events_per_turn = [&](const std::function<void(RaceDeflection&)>& damage)
   {
@@ -51,6 +51,11 @@ TEST(RaceDeflection, OrdersComeOutOfTheKinematics)
   EXPECT_NEAR(events_per_turn([&](RaceDeflection& b) { b.addOuterSpall(0.3, 1e-5, length); }), 10.3207, 0.006);
   EXPECT_NEAR(events_per_turn([&](RaceDeflection& b) { b.addBallSpall(4, 1e-5, length); }), 2.0 * 4.8244, 0.006);
   EXPECT_NEAR(RaceDeflection(parameters.bearing).cageRate(), 0.4487, 5e-5);
+  // Balls and cage that lag pass the outer race less often and the inner one, which runs ahead, more often.
+  parameters.bearing.cage_slip = 0.02;
+  EXPECT_NEAR(events_per_turn([&](RaceDeflection& b) { b.addInnerSpall(0.3, 1e-5, length); }), 12.8857, 0.006);
+  EXPECT_NEAR(events_per_turn([&](RaceDeflection& b) { b.addOuterSpall(0.3, 1e-5, length); }), 10.1143, 0.006);
+  EXPECT_NEAR(events_per_turn([&](RaceDeflection& b) { b.addBallSpall(4, 1e-5, length); }), 2.0 * 4.7279, 0.006);
 }
 
 TEST(RaceDeflection, NoBallDropsButTheOneThatMay)

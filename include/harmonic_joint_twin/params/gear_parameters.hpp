@@ -140,6 +140,7 @@ struct BearingParameters
   double pitch_diameter{};
   int balls{};
   double ball_diameter{};
+  double cage_slip{};
   double viscosity{};
   double oil_viscosity{};
   double viscosity_temperature{};
