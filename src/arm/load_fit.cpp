@@ -367,7 +367,7 @@ LoadProblem::Fit LoadFit::explained(const std::vector<bool>& counts, double size
     }
   }
   const double friction = LoadProblem::ANY_FRICTION;  // a faulty joint is no other arm
-  const auto upright = LoadProblem(joints, LoadProblem::Term::PAYLOAD, friction).likeliestFit(data_->payload.mass);
+  const LoadProblem::Fit upright = LoadProblem(joints, LoadProblem::Term::PAYLOAD, friction).fit(data_->payload.mass);
   const LoadProblem both(joints, LoadProblem::Term::BOTH, friction);
   LoadProblem::Fit mounted = both.fit(data_->payload.mass);
   mounted.cost += OTHER_MOUNTING;

@@ -43,8 +43,7 @@ public:
   };
   /// `counts`: whether the current of a joint, by its number, is measured: else it is left out.
   FoundLoad solve(const std::vector<bool>& counts, Part part);
-  /// How well the arm explains the currents of the joints that count, with its best payload, and with another gain of
-  /// the joint that it suits best, or with the best mounting.
+  /// How well the arm explains the currents of the joints that count, with its best payload, or the best mounting too.
   /// @param size of all currents, as a multiple of what they are taken for [-]
   LoadProblem::Fit explained(const std::vector<bool>& counts, double size = 1.0);
   double moved() const;  ///< time in which a joint moved [s]

@@ -24,15 +24,14 @@ constexpr double KNOWN_MOMENT = 2.0;
 constexpr double KNOWN_GRAVITY = 10.0;
 constexpr double FIXED = 1e-6;
 constexpr double KNOWN_GAIN = 0.05;
-constexpr double OTHER_GAIN = 0.3;     // of a sensor or a motor that is another than configured
 constexpr double KNOWN_OFFSET = 0.03;  // [A]
 
 /// How much rarer an arm's joints are whose gain, Coulomb and viscous friction and offset are these, logarithm: a fault
-/// may add any friction (Cauchy), gains, known to `gain`, and offsets are normally distributed.
-double rareness(const Eigen::Vector4d& own, double gain)
+/// may add any friction (Cauchy), gains and offsets are normally distributed.
+double rareness(const Eigen::Vector4d& own)
 {
   const auto squared = [&](int term, double deviation) { return 0.5 * std::pow(own[term] / deviation, 2); };
-  return squared(0, gain) + std::log1p(squared(1, LoadProblem::SOUND_FRICTION)) +
+  return squared(0, KNOWN_GAIN) + std::log1p(squared(1, LoadProblem::SOUND_FRICTION)) +
          std::log1p(squared(2, LoadProblem::SOUND_FRICTION)) + squared(3, KNOWN_OFFSET);
 }
 
@@ -110,21 +109,20 @@ LoadProblem::Shared LoadProblem::values() const
   return solveAll(rows_, information).head<SHARED>();
 }
 
-LoadProblem::Fit LoadProblem::fit(double mass, const std::optional<std::size_t>& other_gain) const
+LoadProblem::Fit LoadProblem::fit(double mass) const
 {
   constexpr double ROWS = 60.0;    // that count: errors of a model are not independent from row to row
   constexpr double FLOOR = 0.02;   // of the currents: that the twin of no real arm falls below [-]
   constexpr double NO_MASS = 0.5;  // below zero: deviation that masses of links make [kg]
-  constexpr double RARE = 4.0;     // logarithm of how much rarer another gain is
   Eigen::MatrixXd information;
-  const Eigen::VectorXd all = solveAll(rows_, information, other_gain);
+  const Eigen::VectorXd all = solveAll(rows_, information);
   double left = 0.0;
   double squares = 0.0;
-  double cost = other_gain ? RARE : 0.0;
+  double cost = 0.0;
   for (std::size_t i = 0; i < rows_.size(); ++i)
   {
     const auto own = static_cast<Eigen::Index>(SHARED + NUISANCES * i);
-    cost += rareness(all.segment<NUISANCES>(own), i == other_gain ? OTHER_GAIN : KNOWN_GAIN);
+    cost += rareness(all.segment<NUISANCES>(own));
     left += errorsOf(rows_[i], own, all).squaredNorm();
     for (std::size_t k = 0; k < rows_[i].size(); ++k)
     {
@@ -136,17 +134,6 @@ LoadProblem::Fit LoadProblem::fit(double mass, const std::optional<std::size_t>&
   const double below_zero = std::min(mass + all[0], 0.0);
   fit.cost = cost + ROWS * std::log(std::hypot(fit.left, FLOOR)) + 0.5 * std::pow(below_zero / NO_MASS, 2);
   return fit;
-}
-
-LoadProblem::Fit LoadProblem::likeliestFit(double mass) const
-{
-  Fit best = fit(mass);
-  for (std::size_t i = 0; i < rows_.size(); ++i)
-  {
-    const Fit other = fit(mass, i);
-    best = other.cost < best.cost ? other : best;
-  }
-  return best;
 }
 
 std::optional<double> LoadProblem::likelyChange() const
@@ -210,8 +197,7 @@ Eigen::VectorXd LoadProblem::errorsOf(const Rows& rows, Eigen::Index own, const 
   return errors;
 }
 
-Eigen::VectorXd LoadProblem::solveAll(const std::vector<Rows>& rows, Eigen::MatrixXd& information,
-                                      const std::optional<std::size_t>& other_gain) const
+Eigen::VectorXd LoadProblem::solveAll(const std::vector<Rows>& rows, Eigen::MatrixXd& information) const
 {
   const auto size = static_cast<Eigen::Index>(SHARED + NUISANCES * rows.size());
   Eigen::VectorXd known(size);
@@ -219,10 +205,6 @@ Eigen::VectorXd LoadProblem::solveAll(const std::vector<Rows>& rows, Eigen::Matr
   for (Eigen::Index own = SHARED; own < size; own += NUISANCES)
   {
     known.segment<NUISANCES>(own) = Eigen::Map<const Eigen::Vector4d>(known_own_.data());
-  }
-  if (other_gain)
-  {
-    known[static_cast<Eigen::Index>(SHARED + NUISANCES * *other_gain)] = OTHER_GAIN;
   }
   Eigen::VectorXd all = Eigen::VectorXd::Zero(size);
   constexpr int ROUNDS = 5;

@@ -69,10 +69,8 @@ public:
     double left{ 1.0 };  ///< share, rms [-]
     double cost{};       ///< logarithm of a likelihood, less is likelier; errors of models count for what they are [-]
   };
-  /// `mass`: of the payload that counts [kg]. No change of it leaves less than none. `other_gain`: the joint that has
-  /// another gain than configured.
-  Fit fit(double mass, const std::optional<std::size_t>& other_gain = std::nullopt) const;
-  Fit likeliestFit(double mass) const;  ///< with another gain of no joint or of any
+  /// `mass`: of the payload that counts [kg]. No change of it leaves less than none.
+  Fit fit(double mass) const;
 
   /// When the payload most likely became another one [s]: the best of all times with LEAST_MOTION before and after, by
   /// what a payload of its own on either side takes of the squares that one payload leaves. None: too little motion.
@@ -82,9 +80,8 @@ public:
 private:
   /// What is left of a joint's rows, whose nuisances begin at `own` [A].
   static Eigen::VectorXd errorsOf(const Rows& rows, Eigen::Index own, const Eigen::VectorXd& all);
-  /// All terms. `information`: the inverse of their variance. `other_gain`: as of `fit`.
-  Eigen::VectorXd solveAll(const std::vector<Rows>& rows, Eigen::MatrixXd& information,
-                           const std::optional<std::size_t>& other_gain = std::nullopt) const;
+  /// All terms. `information`: the inverse of their variance.
+  Eigen::VectorXd solveAll(const std::vector<Rows>& rows, Eigen::MatrixXd& information) const;
   void add(const Rows& rows, Eigen::Index own, const Eigen::VectorXd& all, Eigen::MatrixXd& information,
            Eigen::VectorXd& right) const;
 

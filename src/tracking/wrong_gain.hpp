@@ -36,12 +36,8 @@ struct GainEvidence
     {
       return {};
     }
-    constexpr double OF_TYPE = 0.05;  // share by which gains of one type differ, deviation
-    const double half_width = 1.96 * std::hypot(load.uncertainty, OF_TYPE * load.value);
-    return { Reason::EFFORT_UNIT, "the current is " + fixedText(load.value, 2) + " [" +
-                                      fixedText(load.value - half_width, 2) + ", " +
-                                      fixedText(load.value + half_width, 2) +
-                                      "] times what load and inertia take, and " + fixedText(friction, 2) +
+    return { Reason::EFFORT_UNIT, "the current is " + roundedText(load.value, 2) +
+                                      " times what load and inertia take, and " + roundedText(friction, 2) +
                                       " times what friction takes: another gain (telemetry.torque_per_current) or unit "
                                       "than configured, not friction" };
   }

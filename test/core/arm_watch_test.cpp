@@ -103,23 +103,6 @@ TEST(RankArms, CurrentsOfHalfTheSizeAreNoSmallerArm)
   EXPECT_EQ(ranked(rowsOfUr5(30.0)).front().size, 1.0);
 }
 
-TEST(RankArms, GainOfAJointIsNoOtherArm)
-{
-  constexpr std::size_t SHOULDER = 1;
-  for (const double gain : { 0.7, 1.4 })
-  {
-    std::vector<std::vector<MotionRow>> rows = rowsOfUr5(30.0);
-    for (std::vector<MotionRow>& row : rows)
-    {
-      row[SHOULDER].current *= gain;
-    }
-    const std::vector<ArmFit> fits = ranked(rows);
-    EXPECT_EQ(fits.front().arm, "ur5") << gain;
-    EXPECT_EQ(betterArm(fits, "ur3"), "ur5") << gain;
-    EXPECT_EQ(betterArm(fits, "ur10"), "ur5") << gain;
-  }
-}
-
 TEST(ArmWatch, AnswersAfterHalfAMinuteOfMotion)
 {
   constexpr double REST = 60.0;  // [s]

@@ -77,7 +77,6 @@ TEST(GainEvidence, ACurrentThatDepartsAsAWholeIsAGain)
     EXPECT_EQ(evidence.misfit().reason, Reason::EFFORT_UNIT);
     EXPECT_THAT(evidence.misfit().clause, HasSubstr("telemetry.torque_per_current"));
   }
-  EXPECT_THAT(shown(1.4, 1.4).misfit().clause, HasSubstr("1.40 [1.26, 1.54] times what load and inertia take"));
   EXPECT_FALSE(shown(1.1, 1.1).misfit().exists()) << "gains of one type differ by as much";
 }
 
