@@ -122,8 +122,7 @@ def bags_of(bench, own_trials, own, twin):
                     paths=REFERENCE)
     yield with_twin(bench.sound("motions_sound", gear, own, TEMPERATURE, SOUND, seed + 2000), seed + 2000, paths=SOUND)
     for trial in own_trials:
-        yield with_twin(bench.sweep(f"{trial.name}_{gear.name}_{own.tag}", gear, own, TEMPERATURE,
-                                    bench.fault_classes(trial, KINDS), 1, trial.seed), trial.seed, len(KINDS))
+        yield with_twin(bench.faulty(trial, own, TEMPERATURE, KINDS), trial.seed, len(KINDS))
 
 
 def numbers_of(windows):

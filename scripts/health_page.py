@@ -294,13 +294,12 @@ def slip_table(bench, trials):
     """Faults of the bearing, whose balls are not where its lines are sought; a sound one is the same with slip."""
     kinds = [kind["kind"] for kind in bench.kinds if kind["kind"].startswith("bearing_")]
     runs = collections.defaultdict(list)
-    for trial, motion, slip in itertools.product(trials, (CHECK_UP, None), SLIPS):
-        motion = motion or next(own for own in trial.motions if own != CHECK_UP)
+    for trial, slip in itertools.product(trials, SLIPS):
         gear = trial.gear._replace(name=f"{trial.gear.name} slip {slip:g}",
                                    settings=[*trial.gear.settings, f"  bearing.cage_slip: {slip}"])
-        bags = bench.sweep(f"{trial.name}_{gear.name}_{motion.tag}", gear, motion, DRAWN,
-                           bench.fault_classes(trial, kinds), 1, trial.seed)
-        runs[slip] += bench.judge(bags, trial.gear, motion)
+        for motion in trial.motions:
+            bags = bench.faulty(trial._replace(gear=gear), motion, DRAWN, kinds)
+            runs[slip] += bench.judge(bags, trial.gear, motion)
     columns = list(itertools.product((True, False), severities_of(runs[SLIPS[0]])))
     lines = ["| slip | " + " | ".join(f"{'check-up' if check_up else 'at work'}, {severity:g}"
                                       for check_up, severity in columns)

@@ -114,7 +114,8 @@ def drawn(number):
 
 
 def as_measured(number):
-    """Preload and grease from the spread of those fitted to six joints of a UR5 and a UR5e (config/joints)."""
+    """Preload and grease from the spread of those fitted to six joints of a UR5 and a UR5e (config/joints); friction
+    that falls from rest on."""
     draw = numpy.random.default_rng(number).uniform
     gear = even(f"as measured {number}", draw(0.93, 1.07), draw(-1.4e-6, -0.7e-6),
                 round(math.exp(draw(math.log(284.0), math.log(997.0)))), draw(280e-6, 340e-6))
@@ -303,9 +304,9 @@ class Bench:
             f"  {kind['kind']}:", f"    - {{kind: {kind['kind']}, severity: {{grid: {trial.severities}}}, "
                                   f"place: {place_of(kind, trial.tooth)}, onset: 0.0}}")]
 
-    def faulty(self, trial, motion, temperature):
+    def faulty(self, trial, motion, temperature, kinds=None):
         return self.sweep(f"{trial.name}_{trial.gear.name}_{motion.tag}", trial.gear, motion, temperature,
-                          self.fault_classes(trial), 1, trial.seed, "auto" if trial.gear.alike else "full_ring")
+                          self.fault_classes(trial, kinds), 1, trial.seed, "auto" if trial.gear.alike else "full_ring")
 
     def signatures(self, trials, path, kinds=None, options=()):
         """Of the trials' faults, each beside a sound run at the same temperature, without noise."""
