@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Written by scripts/assessment_counts.py from docs/health.md.
+// Written by lab/run assessment_counts from docs/health.md.
 #pragma once
 
 namespace hjt::assessment_counts

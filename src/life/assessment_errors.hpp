@@ -46,7 +46,7 @@ constexpr double IN_SET = shareOf(assessment_counts::IN_SETS, assessment_counts:
 constexpr double FALSE_ALARMS = shareOf(assessment_counts::SOUND_ALARMS, assessment_counts::SOUND_RUNS);
 
 /// How WearReadings depart from the wear of flanks and interface, counted on lives with signals (seeds 11 and 421 of
-/// scripts/lives_judged.py). In a motion like one of the signatures' the gain of the flanks differs by 0.06 from gear
+/// lab/lives_judged.py). In a motion like one of the signatures' the gain of the flanks differs by 0.06 from gear
 /// to gear.
 constexpr ReadingErrors FLANK_READING{ 0.06, 0.012, 0.005, 0.03 };
 constexpr ReadingErrors INTERFACE_READING{ 0.2, 0.08, 0.015, 0.03 };

@@ -130,7 +130,7 @@ TEST(FlexsplineStress, TurnsWithTheLoad)
 
 TEST(FlexsplineStress, OfTheCupIsThatOfItsShell)
 {
-  // Figures of scripts/validation/cup_shell.py: 47.5 MPa where the rim cones freely.
+  // Figures of lab/validation/cup_shell.py: 47.5 MPa where the rim cones freely.
   const StressCycle cones = stressUnder(shippedParameters({ "stress.coning_restraint=0.0" }), 0.0).cycle(TRANSITION);
   EXPECT_NEAR(cones.amplitude(), 47.5e6, 6e6);
   const StressCycle held = stressUnder(shippedParameters({ "stress.coning_restraint=1.0" }), 0.0).cycle(TRANSITION);

@@ -5,14 +5,14 @@ import sys
 
 import project
 
-sys.path.append(os.path.join(project.ROOT, "scripts"))
+sys.path.append(os.path.join(project.ROOT, "lab"))
 import assessment_counts as script  # noqa: E402  (its folder is known now)
 
 
 def check(root):
     if project.text(root, script.HEADER) == script.header(project.text(root, script.PAGE)):
         return []
-    return [f"{script.HEADER}: not what {script.PAGE} says; run scripts/assessment_counts.py"]
+    return [f"{script.HEADER}: not what {script.PAGE} says; run lab/run assessment_counts"]
 
 
 if __name__ == "__main__":

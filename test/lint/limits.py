@@ -10,7 +10,7 @@ import project
 
 FUNCTION_LINES = 60
 FILE_LINES = 400
-TOPS = ("bench", "examples", "include", "python", "scripts", "src", "test")
+TOPS = ("bench", "examples", "include", "lab", "python", "scripts", "src", "test")
 CPP = (".cpp", ".hpp", ".c")
 SHEBANG = re.compile(r"#!.*\b(bash|sh|python3)$")
 NO_FUNCTION = re.compile(r"(template\s*<.*>\s*)?(inline\s+)?(namespace|class|struct|union|enum|extern)\b"

@@ -7,12 +7,14 @@ Argument: the package's build directory, everything built.
 """
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
 import unittest
 
-SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
+CHECKOUT = pathlib.Path(__file__).resolve().parents[2]
+SCRIPTS = CHECKOUT / "scripts"
 BUILD = os.path.abspath(sys.argv.pop(1))
 SETUP = os.path.join(BUILD, "devel", "setup.bash")
 
@@ -24,14 +26,18 @@ class Scripts(unittest.TestCase):
         self.out = folder.name
 
     def test_each_has_a_help(self):
-        scripts = [path for path in SCRIPTS.rglob("*") if path.is_file() and os.access(path, os.X_OK)]
-        self.assertGreater(len(scripts), 20)
-        for path in scripts:
-            done = self.run_script("bash", "-c", f"source {SETUP} >&2; {path} --help", cwd=self.out, timeout=60)
-            self.assertEqual(done.returncode, 0, f"{path.name}\n{done.stdout[-4000:]}")
-            self.assertIn("usage", done.stdout.lower(), path.name)
-            self.assertNotIn("Built target", done.stdout, path.name)
-            self.assertEqual(os.listdir(self.out), [], path.name)
+        commands = [str(path) for folder in (SCRIPTS, CHECKOUT / "lab") for path in folder.rglob("*")
+                    if path.is_file() and os.access(path, os.X_OK)]
+        listed = re.findall(r"^  (\w+) {2,}\S", self.run_script(CHECKOUT / "lab" / "run", "--help").stdout, re.M)
+        self.assertGreater(len(listed), 15)
+        commands += [f"{CHECKOUT}/lab/run {name}" for name in listed]
+        self.assertGreater(len(commands), 30)
+        for command in commands:
+            done = self.run_script("bash", "-c", f"source {SETUP} >&2; {command} --help", cwd=self.out, timeout=60)
+            self.assertEqual(done.returncode, 0, f"{command}\n{done.stdout[-4000:]}")
+            self.assertIn("usage", done.stdout.lower(), command)
+            self.assertNotIn("Built target", done.stdout, command)
+            self.assertEqual(os.listdir(self.out), [], command)
 
     @staticmethod
     def run_script(*command, **options):

@@ -11,7 +11,7 @@ import h5py
 import robot
 import tool
 
-sys.path.insert(0, tool.CHECKOUT + "/scripts")
+sys.path.insert(0, tool.CHECKOUT + "/lab")
 import health_signatures  # noqa: E402  (after its folder)
 
 ARCSEC = math.pi / 180.0 / 3600.0

@@ -143,7 +143,7 @@ class Lives(tool.ToolTest):
         if importlib.util.find_spec("sklearn") is None:
             self.skipTest("python3-sklearn is not installed")
         self.read_only("a")
-        script = tool.CHECKOUT + "/scripts/lives_learner.py"
+        script = tool.CHECKOUT + "/lab/lives_learner.py"
         done = subprocess.run([sys.executable, script, "a", "--prior", "a/index.csv", "--out", "a.png"],
                               cwd=self.directory, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                               universal_newlines=True, timeout=120 * tool.SLOWER, check=False)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""`scripts/validate`: every fast row holds as shipped, and a wrong parameter makes the rows fail that it should."""
+"""`lab/run validate`: every fast row holds as shipped, and a wrong parameter makes the rows fail that it should."""
 import os
 import subprocess
 import sys
@@ -7,7 +7,7 @@ import tempfile
 import unittest
 
 CHECKOUT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-sys.path.insert(0, os.path.join(CHECKOUT, "scripts", "validation"))
+sys.path.insert(0, os.path.join(CHECKOUT, "lab", "validation"))
 import page as validation_page  # noqa: E402
 
 RECORDINGS = os.environ.get("HJT_TELEMETRY_DIR", os.path.join(CHECKOUT, "..", "shared", "telemetry"))
@@ -15,10 +15,10 @@ RECORDINGS = os.environ.get("HJT_TELEMETRY_DIR", os.path.join(CHECKOUT, "..", "s
 
 def validate(*arguments):
     """Exit code, failing rows, and everything printed."""
-    command = [sys.executable, os.path.join(CHECKOUT, "scripts", "validation", "validate.py"), "--tool", Validate.tool,
+    command = [sys.executable, os.path.join(CHECKOUT, "lab", "validation", "validate.py"), "--tool", Validate.tool,
                "--docs", os.path.join(CHECKOUT, "docs"), "--telemetry", RECORDINGS, "--fast", *arguments]
     done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True,
-                          check=False, env={**os.environ, "OPENBLAS_NUM_THREADS": "1"})  # as scripts/validate
+                          check=False, env={**os.environ, "OPENBLAS_NUM_THREADS": "1"})  # as lab/run validate
     failing = {line.split()[1].rstrip(":") for line in done.stdout.splitlines() if line.startswith("FAILS")}
     return done.returncode, failing, done.stdout
 

@@ -1,0 +1,283 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Has the tool make the signatures of the causes, and fits how far they are to be trusted on another gear. Written into
+a file of signatures and as a table."""
+import collections
+import itertools
+import math
+
+import numpy
+
+import health_file
+import health_motions
+import lab
+from health_runs import COMPARED, DRAWN, FITTED, FITTED_MODELS, once, split_table
+
+# Changes as a share of the sound value: stiffness and play go with the size of the cup. Thicker grease multiplies the
+# friction there is, which differs threefold over the temperatures; preload and wear add to it.
+SHARES = ["torsional_stiffness", "second_stiffness", "lost_motion", "hysteresis", "hysteresis_area"]
+STIFFNESSES = SHARES[:2]  # change as a compliance does: an eccentric encoder adds the same to that of every drive
+SHARES_OF_GREASE = SHARES + ["running_torque", "coulomb_torque", "viscous_friction"]
+NEIGHBOURS = ["wave_generator_2", "circular_spline_2"]
+# As in the source.
+# Strength; drag, over the running torque; noise; weight beforehand.
+UNKNOWNS = numpy.array([(3.0, 0, 0, 1), (10.0, 0, 0, 1), (30.0, 0, 0, 1), (100.0, 0, 0, 1),
+                        (0, 0.05, 0, 0.1), (0, 0.15, 0, 0.1), (0, 0.4, 0, 0.1), (0, 1.0, 0, 0.1),
+                        (0, 0, 0.12, 0.1), (0, 0, 0.25, 0.1), (0, 0, 0.5, 0.1), (0, 0, 1.0, 0.1)])
+SPEED_RANGE, DIRECTION_RANGE, OTHER_MOTION = 0.2, 0.3, 1e-3
+MISFIT_WEIGHT, MISFIT_SEVERITY = 0.2, 0.5
+
+WITHIN = 0.683            # of a normal quantity, one standard deviation
+
+# A row each; `kinds` of motion: speed [rad/s] and direction, magnitudes, 0 of any. `sound`: values by name.
+Table = collections.namedtuple("Table", "causes motions severities kinds changes sound")
+# Of the law in fault_signatures.hpp, by its letters: r m e l b_0.
+Errors = collections.namedtuple("Errors", "number motion length line weight")
+START = Errors(0.3, 0.25, 0.0015, 0.5, 0.6)         # of the search
+
+
+def amplitude_change(sound, change):
+    """As amplitudeChange in baseline.hpp."""
+    size = numpy.where(sound > 0.0, sound, 1.0)
+    power = numpy.maximum(1.0 + change / size, 0.0) ** (2.0 / 3.0)
+    return numpy.where(sound > 0.0, 1.5 * size * (power - 1.0), change)
+
+
+def shares(cause):
+    return SHARES_OF_GREASE if cause == "lubricant_degradation" else SHARES
+
+
+class Layout:
+    """Names of the numbers of a signature, and the indicators they are made of."""
+
+    def __init__(self, indicators):
+        lines = [name for name in indicators if name.endswith("_cos")]
+        self.locked = [name[:-4] for name in lines]
+        self.names = [name for name in indicators if not name.endswith(("_cos", "_sin"))]
+        self.lines = {name for name in self.names if name.startswith(("error_", "torque_", "ripple_"))}
+
+    def terms(self, window):
+        """(number, has a phase, half the square of the sound line's amplitude or that of the sound lost motion,
+        residual) of each that was compared."""
+        residual = window["residual"]
+        for number, name in enumerate(self.names):
+            parts = [name + "_cos", name + "_sin"] if name in self.locked else [name]
+            parts = [part for part in parts if residual[part] is not None]
+            # Orders 2 and 1.98 are told apart so little in a motion to and fro that they count as one.
+            lines = [name.replace(one, other) for one in NEIGHBOURS for other in NEIGHBOURS if name.endswith(one)]
+            amplitudes = [residual[part][0] for line in lines or [name] for part in (line + "_cos", line + "_sin")
+                          if name in self.locked and residual[part] is not None]
+            for part in parts:
+                play = residual[part][0] ** 2 if name == "lost_motion" else 0.0
+                yield number, name in self.locked, play + 0.5 * sum(value ** 2 for value in amplitudes), residual[part]
+
+
+def kind_of(window):
+    """Of motion."""
+    return window["speed"], abs(window["direction"])
+
+
+def likeness(kinds, kind):
+    """How far the motion of each row and the window's are alike, 0 to 1."""
+    speeds, directions = kinds.T
+    square = (numpy.log(kind[0] / numpy.where(speeds > 0.0, speeds, kind[0])) / SPEED_RANGE) ** 2
+    square += numpy.where(speeds > 0.0, (kind[1] - directions) / DIRECTION_RANGE, 0.0) ** 2
+    return numpy.exp(-0.5 * square)
+
+
+class Hypotheses:
+    """What a window says of every row of the table and of what is in none; the law is in fault_signatures.hpp."""
+
+    def __init__(self, layout, window, table):
+        number, phase, line, residual = zip(*layout.terms(window))
+        number, self.phase, self.line = list(number), numpy.array(phase), numpy.array(line)
+        sound, difference, self.own, *common = numpy.array(residual).T
+        self.common = numpy.array(common).T
+        self.freedom = window["freedom"]
+        self.table = table
+        self.causes = numpy.array(table.causes)
+        share = {cause: [layout.names[i] in shares(cause) for i in number] for cause in set(table.causes)}
+        known = numpy.array([table.sound[layout.names[i]] if layout.names[i] in STIFFNESSES else 0.0 for i in number])
+        unit = numpy.where(known > 0.0, sound ** 2 / numpy.where(known > 0.0, known, 1.0), sound)
+        change = table.changes[:, number] * numpy.where([share[cause] for cause in table.causes], unit, 1.0)
+        free = [not has_phase and layout.names[i] in layout.lines for i, has_phase in zip(number, phase)]
+        change = numpy.where(free, amplitude_change(sound, change), change)
+        self.rows = len(table.severities)
+        alike = likeness(table.kinds, kind_of(window))
+        self.prior = OTHER_MOTION + alike
+        self.unlike = numpy.pad(1.0 - alike, (0, len(UNKNOWNS)))
+        sounds = {name: (window["residual"][name] or [0.0])[0] for name in ("running_torque", "kinematic_error")}
+        drag, noise = UNKNOWNS[:, 1] * sounds["running_torque"], UNKNOWNS[:, 2] * sounds["kinematic_error"]
+        unknown = {"running_torque": drag, "coulomb_torque": drag, "kinematic_error": noise}
+        none = numpy.zeros(len(UNKNOWNS))
+        self.change = numpy.vstack([change, numpy.array([unknown.get(layout.names[i], none) for i in number]).T])
+        self.severity = numpy.pad(table.severities, (0, len(UNKNOWNS)))
+        self.square = numpy.sum(numpy.where(phase, 0.5, 1.0) * self.change ** 2 / self.own, axis=1)
+        self.left = difference - numpy.where(phase, 0.0, self.change)
+
+    def log_likelihoods(self, errors):
+        strength = self.square * errors.length ** 2
+        strength[self.rows:] += UNKNOWNS[:, 0] ** 2 + (1.0 + UNKNOWNS[:, 2]) ** 2 - 1.0
+        variance = self.own * (1.0 + strength[:, None])
+        of_number = errors.number ** 2 + self.unlike[:, None] * errors.motion ** 2
+        variance += numpy.where(self.phase, 0.5, of_number) * self.change ** 2
+        variance += (errors.line * self.severity[:, None]) ** 2 * self.line
+        weighted = self.common / variance[:, :, None]
+        inner = numpy.eye(self.common.shape[1]) + numpy.swapaxes(weighted, 1, 2) @ self.common
+        projected = numpy.einsum("hia,hi->ha", weighted, self.left)
+        square = numpy.sum(self.left ** 2 / variance, axis=1)
+        square -= numpy.einsum("ha,ha->h", projected, numpy.linalg.solve(inner, projected[..., None])[..., 0])
+        logarithm = numpy.sum(numpy.log(variance / self.own), axis=1) + numpy.linalg.slogdet(inner)[1]
+        return -0.5 * (logarithm + (self.freedom + len(self.phase)) *
+                       numpy.log1p(numpy.maximum(square, 0.0) / self.freedom))
+
+    def misfit(self, row):
+        """Mean square of what a row leaves, in a sound drive's spreads; 1 at least."""
+        left, weighted = self.left[row], self.common / self.own[:, None]
+        projected = weighted.T @ left
+        square = numpy.sum(left ** 2 / self.own) - projected @ numpy.linalg.solve(
+            numpy.eye(self.common.shape[1]) + weighted.T @ self.common, projected)
+        return max(square / len(left), 1.0)
+
+    def posterior(self, errors):
+        """(probability, severity, its variance) by cause."""
+        found = self.log_likelihoods(errors)
+        misfit = self.misfit(numpy.argmax(found[:self.rows]))
+        weight = errors.weight * (MISFIT_WEIGHT + (1.0 - MISFIT_WEIGHT) / misfit)
+        names = list(dict.fromkeys(self.table.causes))
+        weights = numpy.exp(weight * (found - found.max()))
+        faults = self.prior * weights[:self.rows]
+        means = {cause: numpy.sum(faults[self.causes == cause]) / numpy.sum(self.prior[self.causes == cause])
+                 for cause in names}
+        severity, variance = {}, {}
+        for cause in names:
+            own, shares_of_own = self.table.severities[self.causes == cause], faults[self.causes == cause] + 1e-300
+            severity[cause] = numpy.average(own, weights=shares_of_own)
+            variance[cause] = (numpy.average((own - severity[cause]) ** 2, weights=shares_of_own)
+                               + (MISFIT_SEVERITY * (1.0 - 1.0 / misfit) * severity[cause]) ** 2)
+        means["none"] = numpy.average(weights[self.rows:], weights=UNKNOWNS[:, 3])
+        total = sum(means.values())
+        return {cause: mean / total for cause, mean in means.items()}, severity, variance
+
+
+def calibration_windows(bench, trials):
+    """(kind, severity, last compared window as the tool reports it) of faulty runs of other gears."""
+    found = health_motions.calibration_windows(bench)
+    for trial in trials:
+        for motion in trial.motions:
+            bags = bench.faulty(trial, motion, DRAWN)
+            report = bench.indicators(bags,
+                                      ["--baseline", bench.reference(trial.gear, motion), *once(motion)])
+            last = {window["recording"]: window for window in report["windows"]
+                    if window["assessment"]["state"] in COMPARED}
+            found += [(row["class"], float(row["fault_severity"]), last[str(bag)]) for bag, row in bags
+                      if str(bag) in last]
+    return found
+
+
+Alarm = collections.namedtuple("Alarm", "kind severity hypotheses")
+
+
+def alarms_of(layout, windows, table):
+    return [Alarm(kind, severity, Hypotheses(layout, window, table)) for kind, severity, window in windows
+            if window["assessment"]["level"] != "OK"]
+
+
+def loss(alarms, errors):
+    """Mean of minus the logarithm of the true cause's probability."""
+    return -numpy.mean([math.log(max(alarm.hypotheses.posterior(errors)[0][alarm.kind], 1e-3)) for alarm in alarms])
+
+
+def fitted_errors(alarms):
+    """Of least loss: one after the other, larger or smaller by a factor as long as that helps."""
+    errors, least = START, loss(alarms, START)
+    for factor in (1.6, 1.25):
+        for name, step in itertools.product(Errors._fields, (factor, 1.0 / factor)):
+            while True:
+                tried = errors._replace(**{name: float(f"{getattr(errors, name) * step:.3g}")})
+                found = loss(alarms, tried)
+                if found > least - 1e-3:
+                    break
+                errors, least = tried, found
+    return errors
+
+
+def report(alarms, errors):
+    found = [alarm.hypotheses.posterior(errors)[0] for alarm in alarms]
+    best = [max(probability, key=probability.get) for probability in found]
+    confidence = numpy.mean([probability[cause] for probability, cause in zip(found, best)])
+    right = sum(alarm.kind == cause for alarm, cause in zip(alarms, best))
+    print(f"evaluate_health: {errors}: mean log probability {-loss(alarms, errors):.3f}, cause right in {right} of "
+          f"{len(alarms)} alarms, mean confidence {confidence:.3f}")
+
+
+def severity_error(alarms, errors):
+    """Of the estimate, as a share of it, so that WITHIN of the estimates with the right cause are no farther off than
+    their stated deviation."""
+    shares_off = []
+    for alarm in alarms:
+        probability, severity, variance = alarm.hypotheses.posterior(errors)
+        if max(probability, key=probability.get) == alarm.kind:
+            square = (severity[alarm.kind] - alarm.severity) ** 2 - variance[alarm.kind]
+            shares_off.append(math.sqrt(max(square, 0.0)) / severity[alarm.kind])
+    return numpy.quantile(shares_off, WITHIN)
+
+
+def write(bench, path, page, trials, errors_alone):
+    """Errors, fitted to `trials` and to other motions, and `carried` of the file stay until the new ones are known: the
+    tool takes them over."""
+    if not errors_alone:
+        bench.signatures(FITTED, path)
+        bench.signatures(FITTED_MODELS, path, health_motions.KINDS, ("--add", path))
+    table, _ = read(path)
+    windows = calibration_windows(bench, trials)
+    layout = Layout(windows[0][2]["indicators"])
+    alarms = alarms_of(layout, windows, table)
+    errors = fitted_errors(alarms)
+    report(alarms, errors)
+    health_file.replace(path, "errors", {**errors._asdict(), "severity": round(severity_error(alarms, errors), 2)})
+    write_table(layout, health_file.read(path)["sound"], table, page, trials)
+
+
+def with_severities_between(rows):
+    """As in signature_file.cpp; of (cause, motion, kind, severity, changes)."""
+    for one, after in itertools.zip_longest(rows, rows[1:]):
+        yield one
+        if after and one[:3] == after[:3] and 0.0 < one[3] < after[3]:
+            severity = math.sqrt(one[3] * after[3])
+            share = (severity - one[3]) / (after[3] - one[3])
+            yield (*one[:3], severity, [first + share * (last - first) for first, last in zip(one[4], after[4])])
+
+
+def read(path):
+    """(table, errors) of what `write` wrote, as the tool takes it."""
+    content = health_file.read(path)
+    rows = [(row[0], row[1], tuple(map(float, row[2:4])), float(row[4]), list(map(float, row[5:])))
+            for row in content["signatures"]]
+    causes, motions, *numbers = zip(*with_severities_between(rows))
+    kinds, severities, found = (numpy.array(own, float) for own in numbers)
+    return (Table(causes, motions, severities, kinds, found, content["sound"]),
+            Errors(*(content["errors"][name] for name in Errors._fields)))
+
+
+def write_table(layout, sound, table, page, trials):
+    """Severity 0.4, first gear in the check-up: the numbers in which the kinds differ most."""
+    shown = [("torsional_stiffness", 1e-3, "K1 [kN·m/rad]"), ("second_stiffness", 1e-3, "K2 [kN·m/rad]"),
+             ("lost_motion", 206265.0, "lost motion [″]"), ("hysteresis", 206265.0, "hysteresis [″]"),
+             ("hysteresis_area", 1e3, "loop [mJ]"), ("running_torque", 1e3, "running torque [mN·m]"),
+             ("viscous_friction", 1e6, "viscous [µN·m·s/rad]"), ("kinematic_error", 206265.0, "kinematic error [″]"),
+             ("error_wave_generator_1", 206265.0, "order 1 [″]"), ("error_wave_generator_2", 206265.0, "order 2 [″]"),
+             ("error_circular_spline_2", 206265.0, "circular spline [″]"), ("error_cage_lobes", 206265.0, "cage [″]"),
+             ("error_outer", 206265.0, "outer [″]"), ("error_inner", 206265.0, "inner [″]")]
+    lines = split_table(("signatures fitted to", FITTED), ("those of whole members also to", FITTED_MODELS),
+                        ("their errors fitted to", trials),
+                        ("and to", health_motions.trials(health_motions.FITTED_GEARS)))
+    lines += ["", "| cause | " + " | ".join(text for _, _, text in shown) + " |", "|---|" + "---|" * len(shown)]
+    shown_causes = set()
+    for cause, motion, severity, change in zip(table.causes, table.motions, table.severities, table.changes):
+        if motion == "check_up" and severity == 0.4 and cause not in shown_causes:
+            shown_causes.add(cause)
+            by_name = {name: number * (sound[name] if name in shares(cause) else 1.0)
+                       for name, number in zip(layout.names, change)}
+            lines.append(f"| `{cause}` | " + " | ".join(f"{scale * by_name[name]:.2g}" for name, scale, _ in shown)
+                         + " |")
+    lab.write(page, "signatures", lines)

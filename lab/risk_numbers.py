@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Scores the failure modes of the thesis' Table 3.7 again: how well each is detected is what docs/health.md found with
+three sets of sensors. Writes the table into docs/faults.md."""
+import argparse
+import csv
+
+import lab
+
+KINDS = {  # by their order in the thesis' table
+    "Wear of the interface wave generator - flexspline": "interface_wear",
+    "Crack behind the toothed rim": "rear_section_crack",
+    "Degraded lubricant": "lubricant_degradation",
+    "Worn teeth": "tooth_wear",
+    "Crack at the tooth root": "tooth_root_crack",
+    "Crack in the flexspline's flange": "flange_crack",
+    "Crack at the tooth tip": "tooth_tip_crack",
+    "Pitting": "pitting",
+    "Wear of the wave generator": "wave_generator_wear",
+    "Crack in the flexspline": "flexspline_crack",
+    "Buckling": "buckling",
+    "Ratcheting": "ratcheting"}
+SENSORS = ("UR5", "UR5e", "motor encoder")
+
+
+def detection(seen):
+    """D by what is seen: 1 sure ... 10 not at all."""
+    if seen.startswith("from 0.3"):
+        return 2
+    if seen.startswith("from 1"):
+        return 5
+    return 8 if seen.startswith("1 of 2") else 10
+
+
+def seen_table(text):
+    """Cells of the first columns of the table by kind."""
+    lines = text.split("<!-- seen:begin -->")[1].split("<!-- seen:end -->")[0].splitlines()
+    rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines if line.startswith("| `")]
+    return {row[0].strip("`"): row[1:1 + len(SENSORS)] for row in rows}
+
+
+def places(numbers):
+    """Rank of each, the largest first; equal ones share theirs."""
+    return [1 + sum(other > number for other in numbers) for number in numbers]
+
+
+def main():
+    argparse.ArgumentParser(description=__doc__).parse_args()
+    seen = seen_table((lab.CHECKOUT / "docs" / "health.md").read_text(encoding="utf-8"))
+    with open(lab.CHECKOUT / "lab" / "validation" / "fmeca.csv", encoding="utf-8") as file:
+        modes = list(csv.DictReader(file))
+    scores = [[int(mode["detection"])] + [detection(cell) for cell in seen[KINDS[mode["mode"]]]] for mode in modes]
+    risks = [[int(mode["severity"]) * int(mode["occurrence"]) * score for score in row]
+             for mode, row in zip(modes, scores)]
+    ranks = list(zip(*map(places, zip(*risks))))
+    lines = ["| mode | S | O | thesis: D, RPN (rank) | " + " | ".join(SENSORS) + " |",
+             "|---" * (4 + len(SENSORS)) + "|"]
+    for mode, score, risk, rank in sorted(zip(modes, scores, risks, ranks), key=lambda row: row[3][0]):
+        cells = [f"{d}, {number} ({place})" for d, number, place in zip(score, risk, rank)]
+        lines.append(f"| {mode['mode']} | {mode['severity']} | {mode['occurrence']} | " + " | ".join(cells) + " |")
+    lines.append("| sum | | | " + " | ".join(str(sum(column)) for column in zip(*risks)) + " |")
+    lab.write(lab.CHECKOUT / "docs" / "faults.md", "risk", lines)
+
+
+if __name__ == "__main__":
+    main()

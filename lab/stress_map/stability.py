@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The short page of the stress matrix: verdicts by group of cells, where the twin is accurate, what it reports."""
+import collections
+import csv
+import math
+import os
+import shutil
+
+import cells
+import judge
+
+HEAD = """# Stability
+
+Written by `lab/run stress`; do not edit. Behaviour of the twin far from its usual range: one factor at a time, two at a
+time, all at once at random. Every cell is a run of the Python module's twin, compared with
+converged runs of the same cell.
+
+```sh
+lab/run stress                # every cell: the complete tables and maps in out/stability
+lab/run stress --seeds 200    # more random cells; the seed makes a cell again
+```
+
+The exit code is 0 only if every cell is one of
+
+- **accurate**: the solver reported nothing, and torque and angles stay within {accuracy:.0f} % of the converged run;
+- **degraded, reported**: `~health` has `solver_state` DEGRADED or FAILED, and a counter gives the cause. The result may
+  be good or not;
+- **refused with a reason**: the twin does not start, and a message states the reason.
+
+A NaN, a run of more than {timeout:.0f} s or a wrong result without a report makes it 1.
+"""
+
+MEANING = """## What is compared
+
+The **error** is the largest difference to the converged run over {duration:g} s, of the joint torque, the output's angle and
+the motor's, each over its scale: the largest torque (at least {torque:g} N·m, where the first slope of the cup ends) and the
+travel (at least the {angle:.2f} mrad that belong to it). The **converged run** is the same cell at a step that resolves a
+period of the joint's fastest natural mode 600 times, at most a tenth of the cell's. The **drift** is the largest energy
+residual over the work of motor and load.
+
+## What the solver reports
+
+| message | condition | reason |
+|---|---|---|
+| steps too long | the joint's fastest natural mode advances more than 0.1 rad of phase in a substep (the twin divides a step by itself) | the phase error of the leapfrog is phase²/24 of the phase; at 0.1 rad that makes 1 % of the amplitude after four periods |
+| with teeth jumping | a tooth changes its space below the tip circle | ratcheting, or a gear whose teeth do not fit |
+| cut | the equilibrium of the ring was found only over a shorter path, or by repeating the insertion | the state may be on another branch |
+| failed | no equilibrium was found | the last good state is held |
+| refused | the natural mode advances more than 2.48 rad a step, or the insertion finds no equilibrium | a step is divided into 31 substeps of 0.08 rad at most |
+"""  # noqa: E501
+
+MAPS = {"map: step and stiffness": "map__step_and_stiffness",
+        "map: step and speed, five teeth missing": "map__step_and_speed__five_teeth_missing"}
+
+
+def percent(value):
+    return "–" if math.isnan(value) else f"{100.0 * value:.2g} %"
+
+
+def by_group(judged):
+    groups = collections.defaultdict(list)
+    for j in judged:
+        groups[j.cell.group].append(j)
+    return groups
+
+
+def boundary(judged):
+    """In words, from the cells: how long a step may be, and what a report of the solver is worth."""
+    def steps(group):
+        good = [j.cell.step for j in judged if j.cell.group == group and j.verdict == judge.ACCURATE]
+        return f"{max(good):g} s" if good else "no step"
+
+    ran = [j for j in judged if not math.isnan(j.error)]
+    quiet = [j for j in ran if j.verdict == judge.ACCURATE]
+    flagged = [j for j in ran if j.verdict == judge.DEGRADED]
+    if not quiet:
+        return "No cell is accurate."
+    return (f"With the shipped parameters the longest accurate step is {steps('step, load steps of 100 N.m')} under "
+            f"load steps and {steps('step, reversal at 3030 rpm')} under reversals with 12 N·m at the motor, four "
+            f"times what it can give. Over all {len(quiet)} cells in which the solver reported nothing the largest "
+            f"error is {percent(max(j.error for j in quiet))}, the largest energy drift "
+            f"{percent(max(j.drift for j in quiet))}. Of the {len(flagged)} degraded cells "
+            f"{sum(j.error <= judge.ACCURACY for j in flagged)} were within the "
+            f"accuracy all the same: the solver warns early rather than late.")
+
+
+def group_rows(groups):
+    """A row a group: cells by verdict, the largest error of those that the solver reported nothing about."""
+    rows = []
+    for name, members in groups.items():
+        count = collections.Counter(j.verdict for j in members)
+        errors = [j.error for j in members if j.verdict == judge.ACCURATE]
+        other = sum(count[verdict] for verdict in judge.VERDICTS if verdict not in judge.GOOD)
+        rows.append([name, len(members), *(count[verdict] or "" for verdict in judge.GOOD), other or "",
+                     percent(max(errors)) if errors else "–"])
+    return rows
+
+
+def write(docs, complete, judged, table):
+    """docs/stability.md and .csv; maps come from the folder of the complete page. `table`: makes lines of a table."""
+    groups = by_group(judged)
+    count = collections.Counter(j.verdict for j in judged)
+    lines = [HEAD.format(accuracy=100.0 * judge.ACCURACY, timeout=judge.TIMEOUT)]
+    lines += table(["verdict", "cells"], [[verdict, count[verdict]] for verdict in judge.VERDICTS])
+    lines += ["", "## Where it is accurate", "", boundary(judged), ""]
+    images = os.path.join("images", "stability")
+    for name, file in MAPS.items():
+        if os.path.exists(os.path.join(complete, images, file + ".png")):
+            os.makedirs(os.path.join(docs, images), exist_ok=True)
+            shutil.copyfile(os.path.join(complete, images, file + ".png"), os.path.join(docs, images, file + ".png"))
+            lines += [f"![{name[5:].capitalize()}: the error in each square (blue: accurate; orange: degraded, "
+                      f"reported; grey: refused)]({images}/{file}.png)", ""]
+    lines += [MEANING.format(duration=cells.DURATION, torque=judge.LEAST_TORQUE, angle=1e3 * judge.LEAST_ANGLE)]
+    lines += ["Groups of cells (one factor, two factors, edges, random), with the largest error of the accurate: "
+              "[stability.csv](stability.csv)."]
+    with open(os.path.join(docs, "stability.md"), "w", encoding="utf-8") as file:
+        file.write("\n".join(lines).rstrip() + "\n")
+    with open(os.path.join(docs, "stability.csv"), "w", encoding="utf-8", newline="") as file:
+        rows = csv.writer(file, lineterminator="\n")
+        rows.writerow(["factor", "cells", *judge.GOOD, "none of these", "largest error of the accurate"])
+        rows.writerows(group_rows(groups))
