@@ -35,6 +35,7 @@ public:
 
   /// The present equilibrium is the surface's.
   bool onSurface() const noexcept { return on_surface_; }
+  const ResponseSurface* surface() const noexcept { return surface_; }            ///< the one to be used; null: none
   const ResponseSurface::Place& surfacePlace() const noexcept { return place_; }  ///< while there
 
   /// Of the present equilibrium. While the surface is in use the full ring is elsewhere.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -14,7 +13,9 @@
 
 #include "model/ring_response.hpp"
 #include "solver/ball_drops.hpp"
+#include "solver/shared_values.hpp"
 #include "solver/surface_energy.hpp"
+#include "solver/tooth_response.hpp"
 
 namespace hjt
 {
@@ -83,39 +84,7 @@ private:
   Bilinear bilinear_{};
 };
 
-/// Nodes one after the other, which nobody changes any more: those of a vector, or what lies in a file in memory.
-/// Copies share them.
-class SurfaceNodes
-{
-public:
-  SurfaceNodes() = default;
-  explicit SurfaceNodes(std::vector<SurfaceNode> nodes)
-  {
-    const auto own = std::make_shared<const std::vector<SurfaceNode>>(std::move(nodes));
-    *this = SurfaceNodes(own, own->data(), own->size());
-  }
-  SurfaceNodes(std::shared_ptr<const void> owner, const SurfaceNode* first, std::size_t size) noexcept
-    : owner_(std::move(owner)), first_(first), size_(size)
-  {
-  }
-
-  const SurfaceNode& operator[](std::size_t i) const noexcept { return first_[i]; }
-  const SurfaceNode* begin() const noexcept { return first_; }
-  const SurfaceNode* end() const noexcept { return first_ + size_; }
-  const SurfaceNode* data() const noexcept { return first_; }
-  std::size_t size() const noexcept { return size_; }
-  bool empty() const noexcept { return size_ == 0; }
-
-  friend bool operator==(const SurfaceNodes& a, const SurfaceNodes& b)
-  {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end());
-  }
-
-private:
-  std::shared_ptr<const void> owner_;
-  const SurfaceNode* first_{};
-  std::size_t size_{};
-};
+using SurfaceNodes = SharedValues<SurfaceNode>;
 
 /// Values of the ring in equilibrium over  u = wave generator angle within a tooth pitch  and  v = output angle - wave
 /// generator angle / ratio. Plain data: what is built, cached and read.
@@ -126,6 +95,7 @@ struct SurfaceTable
   int columns{};              ///< intervals of u over a pitch, equal
   std::vector<double> lines;  ///< v of the lines, ascending [rad]
   SurfaceNodes nodes;         ///< (columns + 1) a line; the last is the first again
+  ToothResponse teeth;        ///< over the same range, on lines of its own
 };
 
 /// Difference between a gear with unequal teeth and the ideal gear at the same angles, over one period of the pattern:
@@ -314,6 +284,11 @@ public:
   /// Of the first share, where there are several.
   const SurfaceTable& table() const noexcept { return tables_->table; }
   const DeviationTable& deviations() const noexcept { return tables_->deviations; }
+  /// The table has forces of teeth, and no fault or error of single teeth or balls changes them.
+  bool hasTeeth() const noexcept
+  {
+    return shares_.empty() && !balls_ && tables_->deviations.pitches.empty() && !tables_->table.teeth.lines.empty();
+  }
   const std::optional<BallDrops>& balls() const noexcept { return balls_; }
   const std::vector<Share>& shares() const noexcept { return shares_; }  ///< none: the tables are its own
   double lowest() const noexcept { return lowest_; }                     ///< of v [rad]

@@ -12,6 +12,7 @@
 #include "base/text_stream.hpp"
 #include "surface/parallel_tasks.hpp"
 #include "surface/surface_lines.hpp"
+#include "surface/tooth_response_builder.hpp"
 
 namespace hjt
 {
@@ -77,8 +78,9 @@ public:
     }
     if (good())
     {
-      result.table = { ring.pitch(), ring.ratio(), columns_, {}, {} };
+      result.table = { ring.pitch(), ring.ratio(), columns_, {}, {}, {} };
       fill(result.table);
+      result.table.teeth = buildToothResponse(parameters_, model_, withinLimit(), step_, mirrored_, threads_, solves_);
     }
     result.failure_reason = failure_reason_;
     result.solves = solves_ + ring.solves();
@@ -168,6 +170,22 @@ private:
     {
       lines_[coarse_[i - first]] = std::move(lines[i]);
     }
+  }
+
+  /// Of the coarse lines, those up to the first beyond the torque limit each way.
+  std::vector<double> withinLimit() const
+  {
+    const auto beyond = [&](double v) { return std::abs(lines_.at(v).front()[SurfaceNode::ENERGY_BY_V]) >= limit_; };
+    std::vector<double> within;
+    for (std::size_t i = 0; i < coarse_.size(); ++i)
+    {
+      const std::size_t inner = coarse_[i] > 0.0 ? i - 1 : coarse_[i] < 0.0 ? i + 1 : i;
+      if (!beyond(coarse_[inner]))
+      {
+        within.push_back(coarse_[i]);
+      }
+    }
+    return within;
   }
 
   void refine()

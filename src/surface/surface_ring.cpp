@@ -201,6 +201,24 @@ Node SurfaceRing::measure()
   return SurfaceNode(node);
 }
 
+void SurfaceRing::measureTeeth(float* values) const noexcept
+{
+  const RingForces& forces = ring_.forces();
+  const RingShape& shape = ring_.shape();
+  const int stored = shape.solved;
+  const auto set = [&](int quantity, int tooth, double value)
+  { values[quantity * stored + tooth] = static_cast<float>(value); };
+  for (int i = 0; i < stored; ++i)
+  {
+    set(ToothResponse::WAVE_GENERATOR_FORCE, i, forces.of<WaveGeneratorContact>().force[i]);
+    set(ToothResponse::RIM_TENSION, i, model_.ring.of<RimTension>().tension(shape, i));
+    set(ToothResponse::BENDING_FORCE, i, model_.ring.of<RimBending>().bendingForce(shape, forces.of<RimBending>(), i));
+    set(ToothResponse::MESH_FORCE, i, forces.of<ToothMesh>().flank_force[i]);
+    set(ToothResponse::X, i, shape.points[2 * i]);
+    set(ToothResponse::Y, i, shape.points[2 * i + 1]);
+  }
+}
+
 /// The forces that are left over, times what the teeth would move by: torques as in equilibrium, to the first order.
 Eigen::Vector2d SurfaceRing::torques() const
 {

@@ -57,6 +57,14 @@ public:
   /// All values of a node at the present place.
   SurfaceNode measure();
 
+  /// Those of a node of the ToothResponse; `values`: as many as the solved teeth have quantities.
+  void measureTeeth(float* values) const noexcept;
+  int teeth() const noexcept { return ring_.shape().teeth(); }
+  int solvedTeeth() const noexcept
+  {
+    return ring_.shape().solved;
+  }  ///< half of them, if the other half is the same; once inserted
+
   double motorAngle() const noexcept { return ring_.position().wave_generator_angle; }  ///< [rad]
   double pitch() const noexcept { return pitch_; }                                      ///< of the teeth [rad]
   double ratio() const noexcept { return ratio_; }                                      ///< nominal [-]

@@ -42,6 +42,12 @@ std::string body(const SurfaceTable& table)
   append(bytes, sizes.data(), sizes.size());
   append(bytes, table.lines.data(), table.lines.size());
   append(bytes, table.nodes.data(), table.nodes.size());
+  const ToothResponse& teeth = table.teeth;
+  const std::array<double, 4> counts{ static_cast<double>(teeth.teeth), static_cast<double>(teeth.stored),
+                                      static_cast<double>(teeth.columns), static_cast<double>(teeth.lines.size()) };
+  append(bytes, counts.data(), counts.size());
+  append(bytes, teeth.lines.data(), teeth.lines.size());
+  append(bytes, teeth.values.data(), teeth.values.size());
   return bytes;
 }
 
@@ -114,11 +120,12 @@ public:
   }
 
   /// Where they lie. `count` below 1e12.
-  SurfaceNodes nodes(std::size_t count)
+  template <class T>
+  SharedValues<T> shared(std::size_t count)
   {
-    static_assert(alignof(SurfaceNode) == sizeof(double) && std::is_trivially_copyable_v<SurfaceNode>);
-    const char* start = take(count * sizeof(SurfaceNode));
-    return start != nullptr ? SurfaceNodes(file_, reinterpret_cast<const SurfaceNode*>(start), count) : SurfaceNodes();
+    static_assert(alignof(T) <= sizeof(double) && std::is_trivially_copyable_v<T>);
+    const char* start = take(count * sizeof(T));
+    return start != nullptr ? SharedValues<T>(file_, reinterpret_cast<const T*>(start), count) : SharedValues<T>();
   }
 
   bool complete() const { return good_ && bytes_.empty(); }
@@ -164,10 +171,23 @@ bool parseBody(BodyReader& reader, SurfaceTable& table)
   const std::size_t lines = reader.size(2.0);
   table.columns = static_cast<int>(columns);
   reader.numbers(table.lines, lines);
-  table.nodes = reader.nodes(lines * (columns + 1));
+  table.nodes = reader.shared<SurfaceNode>(lines * (columns + 1));
+  ToothResponse& teeth = table.teeth;
+  teeth.pitch = table.pitch;
+  teeth.ratio = table.ratio;
+  teeth.teeth = static_cast<int>(reader.size(0.0));
+  teeth.stored = static_cast<int>(reader.size(0.0));
+  teeth.columns = static_cast<int>(reader.size(0.0));
+  const std::size_t tooth_lines = reader.size(0.0);
+  reader.numbers(teeth.lines, tooth_lines);
+  teeth.values = reader.shared<float>(tooth_lines * (static_cast<std::size_t>(teeth.columns) + 1) * teeth.nodeSize());
+  const bool teeth_fit = tooth_lines == 0 || (tooth_lines > 1 && teeth.columns > 0 && teeth.stored > 0 &&
+                                              teeth.teeth % teeth.stored == 0 && teeth.teeth <= 2 * teeth.stored);
   // Written so that NaN fails.
-  return reader.complete() && table.pitch > 0.0 && table.pitch < TWO_PI && std::abs(table.ratio) >= 1.0 &&
-         std::isfinite(table.ratio) && ascending(table.lines) && finite(table.nodes);
+  return reader.complete() && teeth_fit && ascending(teeth.lines) &&
+         std::all_of(teeth.values.begin(), teeth.values.end(), [](float x) { return std::isfinite(x); }) &&
+         table.pitch > 0.0 && table.pitch < TWO_PI && std::abs(table.ratio) >= 1.0 && std::isfinite(table.ratio) &&
+         ascending(table.lines) && finite(table.nodes);
 }
 
 bool parseBody(BodyReader& reader, DeviationTable& table)
@@ -181,7 +201,7 @@ bool parseBody(BodyReader& reader, DeviationTable& table)
     const std::size_t lines = reader.size(0.0);
     pitch.columns = static_cast<int>(columns);
     reader.numbers(pitch.lines, lines);
-    pitch.nodes = reader.nodes(lines > 0 ? lines * (columns + 1) : 0);
+    pitch.nodes = reader.shared<SurfaceNode>(lines > 0 ? lines * (columns + 1) : 0);
     good = good && lines != 1 && ascending(pitch.lines) && finite(pitch.nodes);
   }
   return good && reader.complete();

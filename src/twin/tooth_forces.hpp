@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 
 #include "harmonic_joint_twin/twin/twin.hpp"
-#include "solver/ring_equilibrium.hpp"
+#include "solver/joint_dynamics.hpp"
 
 namespace hjt
 {
@@ -30,5 +31,22 @@ inline void fillToothForces(const RingEquilibrium& ring, int shift, ToothForces&
     out.tooth_x[place] = cosine * x - sine * y;
     out.tooth_y[place] = sine * x + cosine * y;
   }
+}
+
+/// The same at the joint's present angles, where it runs on the table of a gear of equal teeth. False elsewhere.
+inline bool fillToothForces(const JointDynamics& joint, ToothForces& out) noexcept
+{
+  const ResponseSurface* surface = joint.surface();
+  if (!joint.onSurface() || !surface->hasTeeth())
+  {
+    return false;
+  }
+  // In the order of ToothResponse::Quantity.
+  const std::array<double*, ToothResponse::QUANTITIES> arrays{
+    out.wave_generator_force.data(), out.rim_tension.data(), out.bending_force.data(),
+    out.mesh_force.data(),           out.tooth_x.data(),     out.tooth_y.data(),
+  };
+  const DrivePosition now = joint.position();
+  return surface->table().teeth.at(now.wave_generator_angle, now.output_angle, arrays.data());
 }
 }  // namespace hjt

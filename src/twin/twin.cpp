@@ -192,6 +192,10 @@ ToothForces Twin::makeToothForces() const
 
 bool Twin::toothForces(ToothForces& out) noexcept
 {
+  if (fillToothForces(impl_->stepper.dynamics(), out))
+  {
+    return true;
+  }
   const RingEquilibrium* ring = impl_->observed_ring.at(impl_->stepper.dynamics());
   if (ring == nullptr)
   {

@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "surface/tooth_response_builder.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <utility>
+
+#include "surface/parallel_tasks.hpp"
+#include "surface/surface_lines.hpp"
+
+namespace hjt
+{
+namespace
+{
+constexpr int MIN_COLUMNS = 8;
+constexpr int MAX_COLUMNS = 32;
+constexpr int MAX_HALVINGS = 4;
+
+using Values = std::vector<float>;
+using Lines = std::map<double, Values>;  // by their v [rad]
+
+/// As in ToothResponse, a node after the other.
+class ToothResponseBuilder
+{
+public:
+  ToothResponseBuilder(const SurfaceParameters& parameters, const JointModel& model, double step)
+    : parameters_(parameters), model_(model), step_(step)
+  {
+  }
+
+  ToothResponse build(const std::vector<double>& coarse, bool mirrored, unsigned threads, std::atomic<int>& solves)
+  {
+    ToothResponse table;
+    {
+      LineRing ring(parameters_, model_);
+      const bool led = ring.leadTo(0.0, step_);
+      table.teeth = ring.ring().teeth();
+      table.stored = ring.ring().solvedTeeth();
+      table.pitch = ring.ring().pitch();
+      table.ratio = ring.ring().ratio();
+      stored_ = static_cast<std::size_t>(table.stored);
+      if (led)
+      {
+        chooseColumns(ring, mirrored ? coarse.back() : std::max(coarse.back(), -coarse.front()));
+      }
+      solves += ring.ring().solves();
+    }
+    table.columns = columns_;
+    Lines lines;
+    std::vector<Lines> between(coarse.size() - 1);
+    runTasks(
+        between.size(), threads,
+        [&](std::size_t i)
+        {
+          LineRing own(parameters_, model_);
+          const bool outwards = std::abs(coarse[i]) < std::abs(coarse[i + 1]);
+          const double inner = coarse[outwards ? i : i + 1];
+          const double outer = coarse[outwards ? i + 1 : i];
+          Values first = own.leadTo(inner, step_) ? measure(own, inner, columns_) : Values{};
+          Values last = measure(own, outer, columns_);
+          if (!first.empty() && !last.empty())
+          {
+            refine(own, inner, first, outer, last, 0, between[i]);
+            between[i][inner] = std::move(first);
+            between[i][outer] = std::move(last);
+          }
+          solves += own.ring().solves();
+        },
+        [](std::size_t) {});
+    for (Lines& part : between)
+    {
+      if (part.empty())
+      {
+        return {};
+      }
+      lines.merge(part);
+    }
+    if (failed_)
+    {
+      return {};
+    }
+    if (mirrored)
+    {
+      addMirrorImages(lines, table);
+    }
+    fill(lines, table);
+    return table;
+  }
+
+private:
+  std::size_t nodeSize() const { return ToothResponse::QUANTITIES * stored_; }
+
+  /// The nodes at one v; the last is the first with the teeth one further. Empty: no equilibrium, or too many.
+  Values measure(LineRing& line_ring, double v, int columns)
+  {
+    SurfaceRing& ring = line_ring.ring();
+    const std::size_t size = (static_cast<std::size_t>(columns) + 1) * nodeSize();
+    if (values_.fetch_add(size) + size > MAX_TOOTH_VALUES)
+    {
+      failed_ = true;
+      return {};
+    }
+    Values line(size);
+    const bool backwards = ring.motorAngle() > 0.5 * ring.pitch();
+    for (int i = 0; i <= columns; ++i)
+    {
+      const int column = backwards ? columns - i : i;
+      if (!ring.moveTo(ring.pitch() * column / columns, v))
+      {
+        return {};
+      }
+      ring.measureTeeth(&line[static_cast<std::size_t>(column) * nodeSize()]);
+    }
+    return line;
+  }
+
+  /// Whether `middle` lies in the middle between two nodes, within the tolerance.
+  bool agrees(const float* below, const float* above, const float* middle) const
+  {
+    for (std::size_t quantity = 0; quantity < ToothResponse::X; ++quantity)
+    {
+      const std::size_t first = quantity * stored_;
+      const float* values = middle + first;
+      const auto [least, most] = std::minmax_element(values, values + stored_);
+      const double largest = std::max(std::abs(*least), std::abs(*most));
+      const double tolerance = std::max(LEAST_TOOTH_FORCE, TOOTH_FORCE_SHARE * largest);
+      for (std::size_t i = 0; i < stored_; ++i)
+      {
+        if (std::abs(0.5 * (static_cast<double>(below[first + i]) + above[first + i]) - values[i]) > tolerance)
+        {
+          return false;
+        }
+      }
+    }
+    return true;
+  }
+
+  void chooseColumns(LineRing& ring, double outermost)
+  {
+    columns_ = MIN_COLUMNS;
+    for (const double share : { 0.05, 0.15, 0.5, 0.9 })
+    {
+      const double v = -share * outermost;
+      const Values finest = measure(ring, v, 2 * MAX_COLUMNS);
+      const auto suffice = [&]
+      {
+        const int stride = 2 * MAX_COLUMNS / columns_;
+        const auto node = [&](int i) { return &finest[static_cast<std::size_t>(i) * nodeSize()]; };
+        for (int i = 0; i < 2 * MAX_COLUMNS; i += stride)
+        {
+          if (!agrees(node(i), node(i + stride), node(i + stride / 2)))
+          {
+            return false;
+          }
+        }
+        return true;
+      };
+      while (!finest.empty() && columns_ < MAX_COLUMNS && !suffice())
+      {
+        columns_ *= 2;
+      }
+    }
+  }
+
+  void refine(LineRing& ring, double v_below, const Values& below, double v_above, const Values& above, int halvings,
+              Lines& found)
+  {
+    const double v = 0.5 * (v_below + v_above);
+    Values line = measure(ring, v, columns_);
+    if (line.empty())
+    {
+      failed_ = true;
+      return;
+    }
+    bool good = true;
+    for (std::size_t i = 0; good && i < line.size(); i += nodeSize())
+    {
+      good = agrees(&below[i], &above[i], &line[i]);
+    }
+    if (!good && halvings < MAX_HALVINGS)
+    {
+      refine(ring, v_below, below, v, line, halvings + 1, found);
+      refine(ring, v, line, v_above, above, halvings + 1, found);
+    }
+    if (!good)
+    {
+      found[v] = std::move(line);
+    }
+  }
+
+  void addMirrorImages(Lines& lines, const ToothResponse& table) const
+  {
+    Lines images;
+    for (const auto& [v, line] : lines)
+    {
+      images[-v] = v > 0.0 ? mirrorImage(line, table) : line;
+    }
+    lines.merge(images);
+  }
+
+  static void fill(const Lines& lines, ToothResponse& table)
+  {
+    Values all;
+    for (const auto& [v, line] : lines)
+    {
+      table.lines.push_back(v);
+      all.insert(all.end(), line.begin(), line.end());
+    }
+    table.values = SharedValues<float>(std::move(all));
+  }
+
+  /// At the opposite v. A pitch less u is the place in the mirror, whose teeth count the other way round.
+  Values mirrorImage(const Values& line, const ToothResponse& table) const
+  {
+    const double cosine = std::cos(table.pitch);
+    const double sine = std::sin(table.pitch);
+    // Half a turn further the places have the opposite sign.
+    const auto tooth = [&](int number, double& sign)
+    {
+      const int whole = (number % table.teeth + table.teeth) % table.teeth;
+      sign = whole >= table.stored ? -1.0 : 1.0;
+      return static_cast<std::size_t>(whole % table.stored);
+    };
+    Values image(line.size());
+    for (int column = 0; column <= table.columns; ++column)
+    {
+      const float* from = &line[static_cast<std::size_t>(table.columns - column) * nodeSize()];
+      float* to = &image[static_cast<std::size_t>(column) * nodeSize()];
+      const auto value = [&](std::size_t quantity, std::size_t i) { return from[quantity * stored_ + i]; };
+      for (int i = 0; i < table.stored; ++i)
+      {
+        double sign = 1.0;
+        double unused = 1.0;
+        const std::size_t opposite = tooth(1 - i, sign);
+        const std::size_t segment = tooth(-i, unused);
+        const double x = sign * value(ToothResponse::X, opposite);
+        const double y = sign * value(ToothResponse::Y, opposite);
+        const std::array<double, ToothResponse::QUANTITIES> values{
+          value(ToothResponse::WAVE_GENERATOR_FORCE, opposite),
+          value(ToothResponse::RIM_TENSION, segment),
+          -value(ToothResponse::BENDING_FORCE, segment),
+          -value(ToothResponse::MESH_FORCE, opposite),
+          cosine * x + sine * y,
+          sine * x - cosine * y,
+        };
+        for (std::size_t quantity = 0; quantity < values.size(); ++quantity)
+        {
+          to[quantity * stored_ + static_cast<std::size_t>(i)] = static_cast<float>(values[quantity]);
+        }
+      }
+    }
+    return image;
+  }
+
+  const SurfaceParameters& parameters_;
+  const JointModel& model_;
+  double step_;  // between coarse lines [rad]
+  std::size_t stored_{};
+  int columns_{ MIN_COLUMNS };
+  std::atomic<std::size_t> values_{ 0 };
+  std::atomic<bool> failed_{ false };
+};
+}  // namespace
+
+ToothResponse buildToothResponse(const SurfaceParameters& parameters, const JointModel& model,
+                                 const std::vector<double>& coarse, double step, bool mirrored, unsigned threads,
+                                 std::atomic<int>& solves)
+{
+  return ToothResponseBuilder(parameters, model, step).build(coarse, mirrored, threads, solves);
+}
+}  // namespace hjt
