@@ -66,14 +66,13 @@ def cache_folder():
 def turn(root):
     """Whether it is a file's turn, by the commit of the tree. None: all files' turn."""
     def git(*arguments):
-        done = subprocess.run(["git", "-C", root, "-c", f"safe.directory={root}", *arguments], stdout=subprocess.PIPE,
-                              stderr=subprocess.DEVNULL, universal_newlines=True, check=False)
-        return done.stdout.strip() if done.returncode == 0 else ""
+        return output(["git", "-C", root, "-c", f"safe.directory={root}", *arguments]).decode().strip()
 
     commits, last = git("rev-list", "--count", "HEAD"), git("log", "-1", "--format=%ct")
     if not commits or not last or git("rev-parse", "--show-toplevel") != os.path.realpath(root):
         return None
-    names = "\n".join([git("log", "--first-parent", "-m", f"--since={int(last) - CHANGED_BEFORE}", "--name-only", "--format="),
+    since = f"--since={int(last) - CHANGED_BEFORE}"
+    names = "\n".join([git("log", "--first-parent", "-m", since, "--name-only", "--format="),
                        git("diff", "HEAD", "--name-only"), git("ls-files", "--others", "--exclude-standard")])
     fresh = set(names.splitlines())
     return lambda path: path in fresh or zlib.crc32(path.encode()) % PARTS == int(commits) % PARTS
