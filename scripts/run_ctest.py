@@ -1,14 +1,20 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs ctest in the current folder and names what its closing lines do not: every skipped test with its reason, and
-every test that passed only when it was repeated. The names stand just before ctest's closing lines.
+"""Runs ctest in the current folder and names what its closing lines do not: every skipped test with its reason, every
+test that passed only when it was repeated, and the sums of the tests' own times by label. They stand just before
+ctest's closing lines.
 
 Usage: run_ctest.py [OPTION OF CTEST...]
 Ends with ctest's exit code; with 1 if ctest passed and a test was skipped without a reason.
 
+A test labelled `timed` judges time, and a machine shared with others can make it late: one that fails runs a second
+time, alone, after all others.
+
 A reason is a line `skipped: REASON` in the test's output, or the words of Python's unittest. rosunit does not show the
 output of a test with a master: its reasons are read from the results in test_results/.
 """
+import collections
+import json
 import pathlib
 import re
 import subprocess
@@ -16,7 +22,8 @@ import sys
 import time
 
 CLOSING = re.compile(r"\d+% tests passed")
-RESULT = re.compile(r"\s*(?:\d+/\d+\s+)?Test\s+#\d+: (\S+) \.*\s*(\*\*\*\S+|Passed)")
+RESULT = re.compile(r"\s*(?:\d+/\d+\s+)?Test\s+#\d+: (\S+) \.*\s*(\*\*\*[^\d\s]+|Passed).*?(\d+\.\d+) sec")
+TIMED = "timed"  # the label
 GIVEN = re.compile(r"^skipped: *(.*)$", re.MULTILINE)
 BY_UNITTEST = re.compile(r"skipped (['\"])(.*)\1$", re.MULTILINE)
 # A runner's own count of the tests that it skipped.
@@ -24,9 +31,9 @@ COUNTED = re.compile(r"^(?:OK|FAILED) \(.*\bskipped=(\d+)|^\[  SKIPPED \] (\d+) 
 
 
 def run(arguments):
-    """Runs ctest and prints its output as it comes, but the closing lines. @returns exit code, the closing lines, and
-    the results of each test in their order: {name: ["***Failed", "Passed"]}."""
-    closing, results = [], {}
+    """Runs ctest and prints its output as it comes, but the closing lines. @returns exit code, the closing lines, the
+    results of each test in their order, {name: ["***Failed", "Passed"]}, and their times [s]."""
+    closing, results, times = [], {}, collections.Counter()
     command = ["ctest", *arguments]
     with subprocess.Popen(command, stdout=subprocess.PIPE, universal_newlines=True, errors="replace") as ctest:
         for line in ctest.stdout:
@@ -37,7 +44,61 @@ def run(arguments):
             result = RESULT.match(line)
             if result:
                 results.setdefault(result.group(1), []).append(result.group(2))
-    return ctest.returncode, "".join(closing), results
+                times[result.group(1)] += float(result.group(3))
+    return ctest.returncode, "".join(closing), results, times
+
+
+def labels():
+    """Those of every test, by name."""
+    listed = subprocess.run(["ctest", "--show-only=json-v1"], stdout=subprocess.PIPE, universal_newlines=True,
+                            check=False)
+    try:
+        tests = json.loads(listed.stdout)["tests"]
+    except (KeyError, ValueError):  # an option such as --help
+        return {}
+    properties = {test["name"]: {each["name"]: each["value"] for each in test.get("properties", [])} for test in tests}
+    return {name: found.get("LABELS", []) for name, found in properties.items()}
+
+
+def sums(times, labels_of):
+    """Lines of the tests' own times: of each label, and of all."""
+    by_label = collections.defaultdict(list)
+    for name, seconds in times.items():
+        for label in labels_of.get(name, []):
+            by_label[label].append(seconds)
+    found = [f"{sum(each):.0f} s in {len(each)} tests: {label}" for label, each in sorted(by_label.items())]
+    return found + [f"{sum(times.values()):.0f} s in {len(times)} tests: all"]
+
+
+def repeat(arguments, closing, results, times, labels_of):
+    """Runs each timed test that failed again. @returns the closing lines less those that passed then, or None if none
+    did."""
+    late = [name for name, states in results.items() if states[-1] not in ("Passed", "***Skipped", "***Not")
+            and TIMED in labels_of.get(name, [])]
+    if not late or any(option.startswith("--repeat") for option in arguments):
+        return None
+    print("\nOnce more, alone: " + ", ".join(late), flush=True)
+    options = ["--output-on-failure"] if "--output-on-failure" in arguments else []
+    chosen = "^(" + "|".join(map(re.escape, late)) + ")$"
+    _, _, again, more = run([*options, "-j", "1", "-R", chosen])
+    for name, states in again.items():
+        results[name] += states
+        times[name] += more[name]
+    return without(closing, {name for name, states in again.items() if states[-1] == "Passed"})
+
+
+def without(closing, passed):
+    """Closing lines of ctest in which these tests have not failed; None if nothing changes."""
+    if not passed:
+        return None
+    kept = [line for line in closing.splitlines() if not any(f" - {name} (" in line for name in passed)]
+    failed, total = map(int, re.search(r"(\d+) tests failed out of (\d+)", closing).groups())
+    failed -= len(passed)
+    share = int(100.0 * (total - failed) / total) if failed else 100
+    kept[0] = f"{share}% tests passed, {failed} tests failed out of {total}"
+    if not failed:
+        kept = [line for line in kept if "tests FAILED" not in line]
+    return "\n".join(kept) + "\n"
 
 
 def outputs(started):
@@ -78,15 +139,24 @@ def main():
         print(__doc__)
         return 0
     started = time.time()
-    code, closing, results = run(sys.argv[1:])
-    repeated = [name for name, states in results.items() if states[-1] == "Passed" and len(states) > 1]
+    arguments = sys.argv[1:]
+    labels_of = labels()  # first: ctest writes its log anew for every question
+    code, closing, results, times = run(arguments)
     without_test = skipped(results, started)
-    if repeated or without_test:
+    cleared = repeat(arguments, closing, results, times, labels_of)
+    if cleared is not None:
+        closing = cleared
+        code = 0 if " 0 tests failed" in closing else code
+        without_test = list(dict.fromkeys(without_test + skipped(results, started)))
+    repeated = [name for name, states in results.items() if states[-1] == "Passed" and len(states) > 1]
+    if results:
         print()
     for name in repeated:
         print(f"passed when repeated: {name}")
     for name, reason in without_test:
         print(f"skipped: {name}: {reason or 'NO REASON GIVEN'}")
+    for line in sums(times, labels_of) if results else []:
+        print(line)
     print("\n" + closing, end="", flush=True)
     return code or (1 if any(not reason for _, reason in without_test) else 0)
 

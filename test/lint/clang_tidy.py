@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Names and likely faults by clang-tidy (.clang-tidy) in every source of src/, test/ and bench/ that the build
-compiles.
+"""Names and likely faults by clang-tidy (.clang-tidy) in the sources of src/, test/ and bench/ that the build compiles:
+those changed in the working tree or within the day before its commit, and a third of the others, which the number of
+commits chooses. --all, or sources without git: every one.
 
-usage: clang_tidy.py BUILD_FOLDER
+usage: clang_tidy.py [--all] BUILD_FOLDER
 
 A file without findings is remembered in ${XDG_CACHE_HOME:-~/.cache}/harmonic_joint_twin/clang_tidy and checked again
 only after a change of the file, of a header that it includes, of the compiler's options, of .clang-tidy or of the tool.
@@ -20,6 +21,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import zlib
 
 import project
 
@@ -27,6 +29,8 @@ FOLDERS = ("src", "test", "bench")
 # The first that is installed. From 22 on, declarations of system headers are skipped: half the time.
 TOOLS = ("clang-tidy-22", "clang-tidy")
 VERSIONS = (14, 22)  # that the sources are written for: the checks of others differ
+PARTS = 3  # of the unchanged files, one of which a commit has checked
+CHANGED_BEFORE = 86400  # changed files: by how much their commit may be older than the last [s]
 KEPT_DAYS = 60  # what no run has asked for since then is removed
 
 
@@ -59,19 +63,46 @@ def cache_folder():
     return folder
 
 
+def turn(root):
+    """Whether it is a file's turn, by the commit of the tree. None: all files' turn."""
+    def git(*arguments):
+        return output(["git", "-C", root, "-c", f"safe.directory={root}", *arguments]).decode().strip()
+
+    commits, last = git("rev-list", "--count", "HEAD"), git("log", "-1", "--format=%ct")
+    if not commits or not last or git("rev-parse", "--show-toplevel") != os.path.realpath(root):
+        return None
+    since = f"--since={int(last) - CHANGED_BEFORE}"
+    names = "\n".join([git("log", "--first-parent", "-m", since, "--name-only", "--format="),
+                       git("diff", "HEAD", "--name-only"), git("ls-files", "--others", "--exclude-standard")])
+    fresh = set(names.splitlines())
+    return lambda path: path in fresh or zlib.crc32(path.encode()) % PARTS == int(commits) % PARTS
+
+
+def members(entry):
+    """The sources that a file of CMake's unity build includes; the file itself if it is none."""
+    path = os.path.normpath(os.path.join(entry["directory"], entry["file"]))
+    if os.path.basename(os.path.dirname(path)) != "Unity":
+        return [path]
+    with open(path, encoding="utf-8") as file:
+        names = re.findall(r'^#include "(.*)"$', file.read(), flags=re.MULTILINE)
+    return [os.path.normpath(name) for name in names]
+
+
 def commands(build, root):
     """Compile commands by source, one each, without the precompiled header: a source must include what it uses."""
     with open(os.path.join(build, "compile_commands.json"), encoding="utf-8") as file:
         entries = json.load(file)
     found = {}
-    for entry in entries:
-        path = os.path.normpath(os.path.join(entry["directory"], entry["file"]))
+    for entry, path in ((entry, path) for entry in entries for path in members(entry)):
         if os.path.relpath(path, root).split(os.sep)[0] not in FOLDERS:
             continue
+        compiled = os.path.normpath(os.path.join(entry["directory"], entry["file"]))
         arguments = entry.get("arguments") or shlex.split(entry["command"])
-        rules = [f"{arguments[arguments.index('-o') + 1]}.d"] if "-o" in arguments else []
+        arguments = [path if os.path.normpath(word) == compiled else word for word in arguments]
+        # The rule of a unity file names the headers of the other sources as well.
+        rules = [f"{arguments[arguments.index('-o') + 1]}.d"] if "-o" in arguments and path == compiled else []
         for index in reversed([i for i, word in enumerate(arguments) if word.endswith("cmake_pch.hxx")]):
-            rules.append(f"{arguments[index]}.gch.d")
+            rules += [f"{arguments[index]}.gch.d"] if rules else []
             del arguments[index - 1:index + 1]
         arguments = [word for word in arguments if word != "-Winvalid-pch"]
         found[path] = {"directory": entry["directory"], "file": path, "arguments": arguments, "rules": rules}
@@ -105,7 +136,7 @@ def key(entry, common, root):
     return text_hash("\n".join([common, *options, *map(file_hash, files)]).encode()) if files else None
 
 
-def check(build, root=project.ROOT):
+def check(build, root=project.ROOT, whole=False):
     tool = next(filter(shutil.which, TOOLS))
     version = output([tool, "--version"])
     if int(re.search(rb"version (\d+)", version).group(1)) not in VERSIONS:
@@ -113,7 +144,9 @@ def check(build, root=project.ROOT):
         project.skip(f"needs clang-tidy {wanted}, here is {' '.join(version.decode().split())}")
     file_hash.cache_clear()
     changed.cache_clear()
-    entries = commands(build, root)
+    known = commands(build, root)
+    is_turn = None if whole else turn(root)
+    entries = {path: entry for path, entry in known.items() if not is_turn or is_turn(os.path.relpath(path, root))}
     common = text_hash(version) + file_hash(os.path.join(root, ".clang-tidy"))
     cache = cache_folder()
 
@@ -133,7 +166,7 @@ def check(build, root=project.ROOT):
                 pass
         return ""
 
-    problems = [] if entries else ["src: no compiled sources found"]
+    problems = [] if known else ["src: no compiled sources found"]
     with tempfile.TemporaryDirectory() as database, concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         with open(os.path.join(database, "compile_commands.json"), "w", encoding="utf-8") as file:
             # clang-tidy takes no other keys than its own.
@@ -144,11 +177,13 @@ def check(build, root=project.ROOT):
             print(f"{os.path.relpath(path, root)}: {state}", flush=True)
             if found:
                 problems.append(found)
+    if len(entries) < len(known):
+        print(f"{len(known) - len(entries)} unchanged files are left to other commits")
     return problems
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
+    if len(sys.argv) not in (2, 3) or sys.argv[1:-1] not in ([], ["--all"]):
         sys.exit(__doc__)
     os.nice(10)  # other tests run beside it
-    project.run(lambda root: check(sys.argv[1], root))
+    project.run(lambda root: check(sys.argv[-1], root, len(sys.argv) == 3))

@@ -99,6 +99,46 @@ class ClangTidy(Tree):
             self.assertIn("naming", "".join(self.problems("int Read();\n")))
         self.assertEqual(os.listdir(os.path.join(self.root, "cache", "harmonic_joint_twin", "clang_tidy")), [])
 
+    def test_source_of_a_unity_build_is_checked_alone(self):
+        one, two = (self.write(f"src/{name}.cpp", f"std::vector<int> {name}();\n") for name in ("one", "two"))
+        self.write("src/one.cpp", "#include <vector>\nstd::vector<int> one();\n")
+        unity = self.write("build/Unity/unity_0_cxx.cxx", f'#include "{one}"\n#include "{two}"\n')
+        command = ["c++", "-std=c++17", "-o", "unity.o", "-c", unity]
+        self.write("build/compile_commands.json",
+                   json.dumps([{"directory": self.root, "file": unity, "arguments": command}]))
+        try:
+            with contextlib.redirect_stdout(self.printed):
+                problems = clang_tidy.check(os.path.join(self.root, "build"), self.root)
+        except SystemExit:
+            skip_as(self, self.printed.getvalue())
+        self.assertEqual(self.printed.getvalue(), "src/one.cpp: clean\nsrc/two.cpp: FAULTS\n")
+        self.assertIn("vector", "".join(problems))
+
+    def test_a_commit_has_its_changes_and_a_third_of_the_rest_checked(self):
+        def commit(days):
+            stamp = f"{1700000000 + 86400 * days} +0000"
+            names = {f"GIT_{who}_{what}": "a" for who in ("AUTHOR", "COMMITTER") for what in ("NAME", "EMAIL")}
+            with unittest.mock.patch.dict(os.environ, GIT_AUTHOR_DATE=stamp, GIT_COMMITTER_DATE=stamp, **names):
+                for command in (["add", "src"], ["commit", "-qm", "change"]):
+                    subprocess.run(["git", "-C", self.root, *command], check=True, stdout=subprocess.DEVNULL)
+
+        names = [f"src/file_{number}.cpp" for number in range(30)]
+        self.assertIsNone(clang_tidy.turn(self.root))
+        subprocess.run(["git", "init", "-q", self.root], check=True)
+        for name in names:
+            self.write(name, "int first();\n")
+        commit(0)
+        self.assertEqual(set(filter(clang_tidy.turn(self.root), names)), set(names))  # all are new
+        seen = []
+        for day in (2, 4, 6):
+            self.write("src/file_7.cpp", f"int second{day}();\n")
+            commit(day)
+            seen.append(set(filter(clang_tidy.turn(self.root), names)))
+        self.assertEqual(set.union(*seen), set(names))
+        self.assertEqual(set.intersection(*seen), {"src/file_7.cpp"})
+        self.write("src/file_8.cpp", "int third();\n")
+        self.assertTrue(clang_tidy.turn(self.root)("src/file_8.cpp"))
+
     def test_precompiled_header_hides_nothing(self):
         prefix = self.write("build/cmake_pch.hxx", "#include <vector>\n")
         options = ["-Winvalid-pch", "-include", prefix]
