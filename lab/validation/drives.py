@@ -7,6 +7,7 @@ import numpy as np
 from scipy.interpolate import RegularGridInterpolator
 
 from bounds import AtMost, Between, Within
+from evidence import fitted, measured
 from page import BLUE, GREEN, GREY, ORANGE, number
 
 sys.path.append(os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "real"))
@@ -84,7 +85,8 @@ gear's: seals, output bearing and motor are in it.
             page.check(f"drives.ur5e.{joint}.{speed:g}", f"{joint}, loss at {speed:g} rad/s",
                        "factory test, two robots",
                        Between(round(0.98 * low, 2), round(1.02 * high, 2)), loss, "N·m",
-                       "two robots and 2 %, which two degrees of grease temperature make")
+                       "two robots and 2 %, which two degrees of grease temperature make",
+                       evidence=fitted("preload and viscosity of joints/ur5e_*.yaml to these tests"))
     if page.fast:
         return
     sweep = np.geomspace(0.01, 3.3, 25)
@@ -126,9 +128,20 @@ shoulder's friction at low load.
         page.check(f"drives.ur10e.friction.{joint}", f"{joint}, friction over speed, rms error", "recording",
                    AtMost(round(friction[0] / 7.0, 2)), np.sqrt(np.mean((twin - friction) ** 2)), "N·m",
                    f"a seventh of the friction at the slowest, as for the UR5; within a bin it scatters by "
-                   f"{scatter.mean():.1f} N·m", known=UR10E_KNOWN.get(joint, ""))
+                   f"{scatter.mean():.1f} N·m", known=UR10E_KNOWN.get(joint, ""),
+                   evidence=ur10e_evidence(joint, names[0]))
         rows.append([joint, names[0], *(f"{value:.1f}" for value in (friction[0], twin[0], friction[-1], twin[-1]))])
     page.table(["joint", "recording", "slowest bin [N·m]", "twin", "fastest bin [N·m]", "twin"], rows)
+
+
+def ur10e_evidence(joint, recording_name):
+    """Of a row of one joint in one recording."""
+    if joint == "shoulder" and recording_name == UR10E[joint][3][0]:
+        return fitted("contact.fit of joints/size_4.yaml to the friction at low load in this recording")
+    shares = {"shoulder": "contact.fit of joints/size_4.yaml is fitted to another recording of this joint",
+              "base": "contact.fit of joints/size_4.yaml is fitted to the shoulder",
+              "elbow": "joints/elbow.yaml is fitted to a UR5"}
+    return measured(shares[joint])
 
 
 def moving_rows(data, joint, gain):
@@ -170,7 +183,8 @@ friction at low load, and decides what the balls gain by the load.
             twin = parts_of(at_rows(page, overlays, speed, load), speed, load, along)
             page.check(f"drives.ur10e.load_loss.{joint}.{k + 1}", f"{joint}, friction by load in {name}, of the load",
                        "four recordings", Between(round(band[0], 1), round(band[1], 1)), 100.0 * twin[2], "%",
-                       f"spread of the four recordings and of each; this one has {100.0 * recorded[2]:.1f} %")
+                       f"spread of the four recordings and of each; this one has {100.0 * recorded[2]:.1f} %",
+                       evidence=ur10e_evidence(joint, name))
             table.append([joint, name, *(f"{a:.1f} ({b:.1f})" for a, b in zip(recorded[:2], twin[:2])),
                           f"{100.0 * recorded[2]:.1f} ({100.0 * twin[2]:.1f})"])
     page.table(["joint", "recording", "at standstill [N·m] (twin)", "by speed [N·m at 1 rad/s] (twin)",
@@ -186,7 +200,9 @@ def payload(page):
     page.check("drives.ur10e.payload", "mass at the flange, by `joint_twin compare`", "recording: weighed",
                Within(PAYLOAD, absolute=min(GAINS_KNOWN * PAYLOAD, found["payload_half_width"])), found["payload_mass"],
                "kg", f"gains are known to {50.0 * GAINS_KNOWN:g} %, one standard deviation, and scale what the payload "
-               f"takes; the tool's own 95 % interval, ± {found['payload_half_width']:.2f} kg, has to hold it too")
+               f"takes; the tool's own 95 % interval, ± {found['payload_half_width']:.2f} kg, has to hold it too",
+               evidence=measured("the current gains of the arm are of the same robot, from its calibration without "
+                                 "payload"))
 
 
 def own_share(page):
@@ -249,7 +265,8 @@ the controller's rigid-body model, in bins of speed. Again one viscosity for thr
         page.check(f"drives.ur5.{name}", f"{name}, friction over speed, rms error", "recording", AtMost(1.0), error,
                    "N·m",
                    f"a seventh of the friction at the slowest; within a bin the recording scatters by "
-                   f"{maps[name][:, 3].mean():.1f} N·m")
+                   f"{maps[name][:, 3].mean():.1f} N·m",
+                   evidence=fitted("preload and viscosity of joints/*.yaml to this recording"))
     page.text("""
 *Limits of this recording:* the rigid-body torque is the controller's, so errors of its masses and of the
 payload look like friction (the shoulder has the largest weight and the largest residual); no temperature; no encoder
@@ -287,14 +304,19 @@ of the encoders leaves open, is taken out. Only the part at constant speed is us
     page.check("drives.torsion_slope", "mean slope of torque over torsion", f"recording: {number(slope)} N·m/rad",
                Within(slope / 1e3, relative=0.20), twin_slope / 1e3, "10³ N·m/rad",
                "size 25 is inferred; links and bearings between the encoders only soften; motor torque contains "
-               "friction")
+               "friction",
+               evidence=measured("cup.friction_torque is fitted to the gap of the same drive's run without load, not "
+                                 "to this sweep"))
     page.check("drives.torsion_residual", "rms of recording less twin", "recording", AtMost(0.35),
                1e3 * np.std(found.torsion - found.predicted), "mrad", "a straight line fitted to this very recording "
-               f"leaves {1e3 * np.std(found.torsion - np.polyval(line, found.torque)):.2f} mrad")
+               f"leaves {1e3 * np.std(found.torsion - np.polyval(line, found.torque)):.2f} mrad",
+               evidence=measured("cup.friction_torque is fitted to the gap of the same drive's run without load, not "
+                                 "to this sweep"))
     loop = page.tool("hysteresis", "--amplitude", 67, "--lost-motion-torque", 2.68)
     page.check("drives.direction_gap", "gap between the directions, no load", "recording without load",
                Within(1e3 * DIRECTION_GAP, relative=0.2), 1e3 * loop["hysteresis"], "mrad",
-               "fitted (`cup.friction_torque`); read from a published figure")
+               "fitted (`cup.friction_torque`); read from a published figure",
+               evidence=fitted("cup.friction_torque to it"))
     page.text("""
 *Limits of this recording:* the drive's size is inferred from its ratio and torque; the sweep is one way, 7 s
 long; the torque is computed from current. It shows no soft beginning at small load; whether the drive has none or the

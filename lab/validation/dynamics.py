@@ -6,6 +6,7 @@ import math
 import numpy as np
 
 from bounds import AtLeast, AtMost, Between, Within
+from evidence import IDENTITY, SELF_CONSISTENT
 from page import BLUE, GREEN, GREY, ORANGE, PURPLE, RED
 
 THESIS = ("--config", "config/thesis_insertion.yaml")
@@ -50,12 +51,13 @@ Euler) at a fixed step of 10 µs.
     euler = transient(page, "implicit_euler", 1e-5)
     structured = transient(page, "esdirk4", 5e-6)
     page.check("dynamics.implicit_euler", "largest F_WG after 30 ms, implicit Euler at 10 µs", "thesis 6.4: 538.8 N",
-               Within(538.8, absolute=0.1), euler["force_max_mean"], "N", "digits given")
+               Within(538.8, absolute=0.1), euler["force_max_mean"], "N", "digits given", evidence=SELF_CONSISTENT)
     page.check("dynamics.implicit_euler_swing", "the same, highest less lowest", "thesis figure 6.5: settled",
-               AtMost(0.1), euler["force_max_highest"] - euler["force_max_lowest"], "N", "digits given")
+               AtMost(0.1), euler["force_max_highest"] - euler["force_max_lowest"], "N", "digits given",
+               evidence=SELF_CONSISTENT)
     page.check("dynamics.structured_does_not_settle", "the same, ESDIRK 4 at 5 µs", "-",
                AtLeast(100.0), structured["force_max_highest"] - structured["force_max_lowest"], "N",
-               "not settled, beyond doubt")
+               "not settled, beyond doubt", evidence=SELF_CONSISTENT)
     numerical_damping(page)
     if page.fast:
         return
@@ -63,17 +65,19 @@ Euler) at a fixed step of 10 µs.
     for end in ("lowest", "highest"):
         page.check(f"dynamics.structured_{end}", f"largest F_WG over every step, ESDIRK 4 at 5 µs: {end}",
                    "Runge-Kutta 4 at 0.25 µs", Within(reference[f"force_max_{end}"], relative=0.02),
-                   structured[f"force_max_{end}"], "N", "extreme of a swing of 230 N, step 20 times longer")
+                   structured[f"force_max_{end}"], "N", "extreme of a swing of 230 N, step 20 times longer",
+                   evidence=SELF_CONSISTENT)
     fine = transient(page, "esdirk4", 2.5e-6)
     page.check("dynamics.structured_position", "tooth points at 50 ms, largest deviation over w0, ESDIRK 4 at 2.5 µs",
                "Runge-Kutta 4 at 0.25 µs", AtMost(0.1), 100.0 * position_error(fine, reference), "%",
-               "vibration of 1.1e5 rad/s kept in phase for 5000 radians")
+               "vibration of 1.1e5 rad/s kept in phase for 5000 radians", evidence=SELF_CONSISTENT)
     real = transient(page, "esdirk4", 1e-6, THESIS + ("--set", f"ring.mass={REAL_MASS}"))
     page.check("dynamics.real_mass_swing", "largest F_WG, 30 to 50 ms, highest less lowest, real masses",
                "thesis 5.1: the factor 50 has little influence",
                AtMost(0.1 * (reference["force_max_highest"] - reference["force_max_lowest"])),
                real["force_max_highest"] - real["force_max_lowest"], "N",
-               "a tenth of the swing with fifty-fold masses: the factor does have an influence")
+               "a tenth of the swing with fifty-fold masses: the factor does have an influence",
+               evidence=SELF_CONSISTENT)
     page.text(f"""
 With real masses the ring swings by {real['force_max_highest'] - real['force_max_lowest']:.0f} N, with those of the
 thesis by {reference['force_max_highest'] - reference['force_max_lowest']:.0f} N: fifty times the mass holds fifty
@@ -96,11 +100,11 @@ def numerical_damping(page):
     share = euler["energy_lost"] / (euler["energy_lost"] + euler["energy_dissipated"])
     page.check("dynamics.numerical_damping", "share of the damping that is implicit Euler's own, 10 µs",
                "energy ledger",
-               Between(0.99, 1.0), share, "", "nearly all; the rest is Table 6.1's dashpots")
+               Between(0.99, 1.0), share, "", "nearly all; the rest is Table 6.1's dashpots", evidence=SELF_CONSISTENT)
     fine = transient(page, "esdirk4", 5e-6, NORMAL)
     page.check("dynamics.energy", "energy residual over energy supplied, ESDIRK 4 at 5 µs",
                "conservation of energy", AtMost(1e-4), abs(fine["energy_lost"]) / fine["energy_supplied"], "",
-               "the method's numerical damping of unresolved vibration")
+               "the method's numerical damping of unresolved vibration", evidence=IDENTITY)
     page.text(f"""
 Of {1e3 * (euler['energy_lost'] + euler['energy_dissipated']):.2f} mJ of vibration, implicit Euler at 10 µs takes out
 {1e3 * euler['energy_lost']:.2f} mJ by itself; the dashpots take {1e3 * euler['energy_dissipated']:.3f} mJ. (Contact
@@ -210,11 +214,11 @@ the travelling equilibrium; the first 20 ms are not compared.
                "error of the flank force at 317 rad/s, 20 N·m: by ESDIRK 4 at 4 µs over by Runge-Kutta "
                "4 at 0.2 µs", "the same equations", Within(1.0, absolute=0.1),
                ours["mesh_force"]["error_rms"] / explicit["mesh_force"]["error_rms"], "",
-               "ringing compared by its size, over 10 ms")
+               "ringing compared by its size, over 10 ms", evidence=SELF_CONSISTENT)
     page.check("dynamics.fewer_evaluations", "force evaluations of the second over those of the first", "-",
                AtLeast(5.0),
                explicit["force_evaluations"] / ours["force_evaluations"], "",
-               "a gain beyond doubt, not a matter of tuning")
+               "a gain beyond doubt, not a matter of tuning", evidence=SELF_CONSISTENT)
     heavy = {case: turning(page, *case, mass=THESIS_MASS) for case in cases}
     page.table(["speed [rad/s]", "load [N·m]", "masses"] + [label for _, label in QUANTITIES],
                [[f"{speed:.0f}", f"{load:.0f}", masses] + [f"{percent(run, key)} ({percent(run, key, 'max')})"
@@ -238,7 +242,7 @@ def check_errors(page, name, where, run):
                              ("contact_force", 1.0, "F_WG per tooth"), ("mesh_force", 1.0, "flank force per tooth")):
         page.check(f"dynamics.{name}_{key}", f"{what} {where}: dynamic against quasi-static, rms", CLAIM, AtMost(limit),
                    100.0 * run[key]["relative_rms"], "%", "the claim" if limit == 1.0 else "well below it",
-                   known=RINGING if f"{name}_{key}" in RINGS else "")
+                   known=RINGING if f"{name}_{key}" in RINGS else "", evidence=SELF_CONSISTENT)
 
 
 def percent(run, key, kind="rms"):
@@ -257,13 +261,14 @@ def sweep(page):
         page.check(f"dynamics.sweep_{key}", f"{what}, {where}, rms", CLAIM, AtMost(limit),
                    100.0 * max(run[key]["relative_rms"] for run in every), "%",
                    "the claim" if limit == 1.0 else "well below it",
-                   known=RINGING if f"sweep_{key}" in RINGS else "")
+                   known=RINGING if f"sweep_{key}" in RINGS else "", evidence=SELF_CONSISTENT)
     page.check("dynamics.sweep_mean_torque", "mean wave generator torque over 5 ms, of the same speeds", CLAIM,
-               AtMost(0.5), 100.0 * max(abs(mean_torque_error(run)) for run in every), "%", "half of it")
+               AtMost(0.5), 100.0 * max(abs(mean_torque_error(run)) for run in every), "%", "half of it",
+               evidence=SELF_CONSISTENT)
     page.check("dynamics.sweep_slow", "flank force per tooth, worst of the speeds up to 60 rad/s, rms", CLAIM,
                AtMost(0.5),
                max(100.0 * run["mesh_force"]["relative_rms"] for run in every if run["speed"] <= HALF_SPEED), "%",
-               "half of it")
+               "half of it", evidence=SELF_CONSISTENT)
     expected_error(page, runs)
     worst = max(every, key=lambda run: run["mesh_force"]["relative_rms"])
     damped = turning(page, worst["speed"], worst["load"], *DAMPED, **window)
@@ -309,7 +314,8 @@ def expected_error(page, runs):
         page.check(f"dynamics.expected_error.{name}",
                    f"{where}: error of the flank force, over the one expected from speed and load, rms of "
                    f"{len(group)} speeds", "dynamic ring at 20 and 100 N·m, size 25, to which two constants are fitted",
-                   Between(1.0 / 3.0, 3.0), ratio(group), "", "its order is asked for; at one speed it may be far off")
+                   Between(1.0 / 3.0, 3.0), ratio(group), "", "its order is asked for; at one speed it may be far off",
+                   evidence=SELF_CONSISTENT)
     above = [run["mesh_force"]["error_rms"] / run["expected_mesh_force_error"] for run in groups["50Nm"][1]]
     page.text(f"""
 `mesh_force_error` of `~contact_forces` and `~health` is the error of a loaded tooth's force that is to be expected at

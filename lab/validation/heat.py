@@ -7,6 +7,7 @@ import numpy as np
 from scipy.optimize import curve_fit
 
 from bounds import AtMost, Between, Within
+from evidence import MEASUREMENT, fitted, measured
 from drives import recording
 from page import BLUE, GREY, ORANGE
 
@@ -67,7 +68,9 @@ recording below, that of size 14 follows from its surface.
         page.check(f"heat.time_constant.{size.replace(' ', '_')}", f"{size}, housing to surroundings",
                    "UR3: base, shoulder, elbow" if size == "size 25" else "UR3: wrists",
                    Between(*RECORDED[size]), constant, "s",
-                   "fitted" if size == "size 25" else "not fitted; the joints of the two robots differ")
+                   "fitted" if size == "size 25" else "not fitted; the joints of the two robots differ",
+                   evidence=fitted("thermal.ambient_conductance of size 25 to it") if size == "size 25" else
+                   measured("the conductance of size 25, fitted to other joints, by the surface"))
 
 
 def read_warm_up(path):
@@ -118,7 +121,8 @@ conductance and mean power, starts the second part at the temperature found ther
         page.check(f"heat.ur3.{joint}", f"{joint}: temperature in the second part, rms error", "recording",
                    AtMost(0.5), error, "K", "0.5 K make 1.5 % of the friction that grows with speed",
                    known="" if joint in LARGE else
-                   "the arm around a wrist warms up more slowly than the wrist; the twin has no such part")
+                   "the arm around a wrist warms up more slowly than the wrist; the twin has no such part",
+                   evidence=fitted("end, rise and time constant of each joint to the first part of this recording"))
     page.text("""
 In base, shoulder and elbow what 49 minutes show determines where the joint settles. The wrists settle up to 1.2 K
 higher: beyond their own time constant there is a slower one, that of the arm around them, which a joint between
@@ -166,10 +170,12 @@ def friction_of_wrist(page, time, current, temperature, speed):
         row = page.tool("losses", "--positions", 4, "--speeds", f"{motor_speed:.6g}", "--loads", 0, "--config",
                         "size_14.yaml", "--set", f"input.temperature={degrees:.2f}")["rows"][0]
         friction.append(row["gear_loss"] + row["motor"])
-    page.check("heat.ur3.friction", f"wrist_1: friction at {hot:.1f} °C over that at {cold:.1f} °C, less one",
-               "recording, current along the motion", Between(round(100.0 * low, 1), round(100.0 * high, 1)),
-               100.0 * (friction[1] / friction[0] - 1.0), "%",
-               "95 % of resampled minutes; a size 14 gear for a smaller one")
+    page.text(f"""
+wrist_1: friction at {hot:.1f} °C over that at {cold:.1f} °C, less one: {100.0 * low:.1f} … {100.0 * high:.1f} %
+recorded (95 % of resampled minutes), {100.0 * (friction[1] / friction[0] - 1.0):.1f} % of the twin, a size 14 gear for
+a smaller one. The band contains too much to judge by.
+""")
+    page.value("heat.ur3.friction", 100.0 * (friction[1] / friction[0] - 1.0), "%")
 
 
 def viscous(page):
@@ -190,7 +196,7 @@ def viscous(page):
                    f"{AMBIENT:g} °C, less one, mean of six joints",
                    "Raviola et al., Robotics 10(3) 83 (2021), warmed up", Within(published, absolute=3.0),
                    float(np.mean([falls[overlays] for overlays in joints])), "%",
-                   "the rise is assumed; a UR3's joints rise by 9 to 12 K, which makes that much")
+                   "the rise is assumed; a UR3's joints rise by 9 to 12 K, which makes that much", evidence=MEASUREMENT)
     thin = [fall(("size_14.yaml",), rise) for rise in (9.0, 12.0)]
     bare = fall(("joints/elbow.yaml",), RISE), fall((), RISE)
     page.text(f"""

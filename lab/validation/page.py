@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 sys.path.append(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 from bounds import number  # noqa: E402  (the folder of lab is known now)
 from lab import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, STYLE, plt  # noqa: E402, F401  (colours: of the sections)
+from evidence import Evidence  # noqa: E402
 
 
 class ToolError(RuntimeError):
@@ -26,6 +27,7 @@ class Row:
     value: float
     unit: str
     reason: str
+    evidence: Evidence
     known: str = ""  # why it does not hold; empty if it should
 
     @property
@@ -74,17 +76,18 @@ class Page:
     def fast(self):
         return self.settings.fast
 
-    def tool(self, *arguments):
-        """Runs `joint_twin ARGUMENTS --json` and gives the parsed document. The same call is run once."""
-        return json.loads(self.run(*arguments, "--json"))
+    def tool(self, *arguments, unfinished=False):
+        """Runs `joint_twin ARGUMENTS --json` and gives the parsed document. The same call is run once. `unfinished`:
+        a document is taken of a run that gave up, too."""
+        return json.loads(self.run(*arguments, "--json", unfinished=unfinished))
 
-    def run(self, *arguments):
+    def run(self, *arguments, unfinished=False):
         """Runs `joint_twin ARGUMENTS` and gives what it printed. The same call is run once."""
         command = tuple(str(argument) for argument in arguments)
         if command not in self.results:
             line = [self.settings.tool, *command, *self.settings.arguments]
             done = subprocess.run(line, capture_output=True, text=True, cwd=self.settings.work, check=False)
-            if done.returncode:
+            if done.returncode and not (unfinished and done.stdout):
                 raise ToolError(f"joint_twin {' '.join(line[1:])}: exit code {done.returncode}\n{done.stderr.strip()}")
             # As a reader would call it, in a folder of his own.
             self.commands.append(" ".join(["joint_twin", *line[1:]]).replace(str(self.settings.work), "$PWD"))
@@ -108,12 +111,12 @@ class Page:
         self._flush()
         self.lines += markdown_table(header, rows) + [""]
 
-    def check(self, name, quantity, source, bound, value, unit, reason, known=""):
+    def check(self, name, quantity, source, bound, value, unit, reason, known="", *, evidence):
         """One judged quantity. `bound`: see bounds.py. `reason`: why the tolerance is what it is. `known`: why it does
-        not hold; empty if it should."""
+        not hold; empty if it should. `evidence`: what it is worth, see evidence.py."""
         if any(row.name == name for row in self.rows):
             raise ValueError(f"two rows are called {name}")
-        row = Row(name, quantity, source, bound, float(value), unit, reason, known)
+        row = Row(name, quantity, source, bound, float(value), unit, reason, evidence, known)
         self.rows.append(row)
         self.pending.append(row)
 
@@ -139,9 +142,10 @@ class Page:
 
     def _flush(self):
         if self.pending:
-            header = ["row", "quantity", "source", "expected", "twin", "tolerance", "verdict"]
+            header = ["row", "quantity", "source", "expected", "twin", "tolerance", "evidence", "verdict"]
             cells = [[f"`{row.name}`", row.quantity, row.source, with_unit(row.bound.expected(), row.unit),
                       with_unit(number(row.value), row.unit), f"{row.bound.tolerance(row.unit)}: {row.reason}",
+                      ": ".join(part for part in (row.evidence.title, row.evidence.link) if part),
                       f"{row.verdict}: {row.known}" if row.known and not row.holds else row.verdict]
                      for row in self.pending]
             self.lines += markdown_table(header, cells) + [""]

@@ -3,6 +3,7 @@
 import math
 
 from bounds import AtLeast, AtMost, Within
+from evidence import MEASUREMENT, SELF_CONSISTENT
 from page import BLUE, ORANGE
 from teeth_profiles import chord
 from teeth_runs import golden, loaded
@@ -59,13 +60,13 @@ same, and the shipped angle is free.
                "thesis 3.2.2 [51], 4 [83]",
                Within(16.0, absolute=1.0), from_gap, "°",
                "one paper, which has 16° in one place and 17° in another",
-               known="plane teeth against whole gears, whose teeth lean along their width, too")
+               known="plane teeth against whole gears, whose teeth lean along their width, too", evidence=MEASUREMENT)
     page.check("teeth.interference_free", "flank forces at no load and no clearance, 16°",
                "thesis 4 [83]: free from 16°", AtMost(0.0),
-               forces[angles.index(16)], "N", "no contact is no force")
+               forces[angles.index(16)], "N", "no contact is no force", evidence=SELF_CONSISTENT)
     page.check("teeth.interference_below", "the same at 12°", "interference below 16°", AtLeast(100.0),
                forces[angles.index(12)], "N",
-               "a force that would be felt: ten teeth's share of the preload")
+               "a force that would be felt: ten teeth's share of the preload", evidence=SELF_CONSISTENT)
 
 
 def crossing(angles, values):

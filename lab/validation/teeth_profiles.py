@@ -3,6 +3,7 @@
 import math
 
 from bounds import AtLeast, AtMost
+from evidence import SELF_CONSISTENT
 from teeth_runs import PROFILES, golden, lobe
 
 
@@ -137,10 +138,11 @@ the path at a gap of a few micrometres, which its own concave root has cut at fu
     page.check("teeth.cycloid_conjugate", "cycloid: largest less smallest gap along the mesh at no load",
                "conjugate on the ideal ring",
                AtMost(3.0), max(gaps["cycloid"]) - min(gaps["cycloid"]), "µm",
-               "difference of the elastic ring from the ideal one; a tenth of the straight flank's gap")
+               "difference of the elastic ring from the ideal one; a tenth of the straight flank's gap",
+               evidence=SELF_CONSISTENT)
     for name in ("trapezoid", "involute", "double_arc"):
         page.check(f"teeth.no_interference_{name}",
                    f"{PROFILES[name][0]}: smallest gap at no load beyond 10° from the major axis",
                    "no interference of a sound profile (thesis, 3.2.2)", AtLeast(0.0),
                    min(gap for angle, gap in engaged(name) if abs(angle) > 10.0), "µm",
-                   "pressed only near the axis, by the preload of 1 µm")
+                   "pressed only near the axis, by the preload of 1 µm", evidence=SELF_CONSISTENT)

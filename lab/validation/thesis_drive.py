@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from bounds import AtMost, Within
+from evidence import IDENTITY, OWN_PROGRAM, THESIS_PROGRAM
 from independent_drive import IndependentDrive
 from page import BLUE, GREEN, GREY, ORANGE, RED
 from thesis_data import (MEASURED, OPERATION, PITCH, RATIO, TEETH_FS, locked, locked_table, parameters,
@@ -60,12 +61,12 @@ gives each tooth the whole cup's stiffness against its own angle; the twin lets 
     ] for row in rows[1:]])
     page.check("thesis.cup_share", "torque of the cup by load, at 150 N·m", "thesis eq. 3.8: 100/101",
                Within(100.0 / 101.0, relative=5e-5), rows[-1]["housing_torque"] / rows[-1]["torque"], "",
-               "the wave generator's torque, 1/101 of the load, varies by 0.3 % within a pitch")
+               "the wave generator's torque varies by 0.3 % within a pitch", evidence=THESIS_PROGRAM)
     mean = [float(np.mean(ring.teeth["angle_deviation"])) for ring in rings]
     page.check("thesis.cup_law", "mean of the teeth's angles against the cup's law, largest difference in torque",
                "thesis eq. 7.1, Table 7.1", AtMost(1e-6),
                max(abs(cup_torque(cup, -turn_) - row["housing_torque"]) for turn_, row in zip(mean, rows)), "N·m",
-               "rounding")
+               "rounding", evidence=IDENTITY)
     page.text(f"""
 Read literally, with the round ring as zero, eq. 7.2 meets ±{1e3 * wave:.1f} mrad of wave with {first:.0f} N·m/rad on
 each tooth: {per_tooth:.0f} N·m, or {per_tooth / rings[0].rho[0]:.0f} N, per tooth with no load at all; and {TEETH_FS}
@@ -105,11 +106,11 @@ The ellipse turns, the teeth stay: each is pushed out and let in twice a turn. T
     page.check("thesis.rotation_pattern", "forces at 45° against those at 0°, 25 teeth on: largest difference",
                "thesis 7.2, symmetry", AtMost(1e-5),
                np.max(np.abs(np.roll(force, shift) - quarter.teeth["wave_generator_force"])), "N",
-               "25 whole pitches: the same state renumbered; 1e8 N/m times rounding of the positions")
+               "25 whole pitches, renumbered; 1e8 N/m times rounding of the positions", evidence=IDENTITY)
     back = np.max(np.hypot(rings[-1].x - start.x, rings[-1].y - start.y))
     page.check("thesis.rotation_return", "largest distance of a tooth from where it was, half a turn later",
                "thesis 7.2: teeth oscillate", AtMost(1e-12), back, "m",
-               "rounding; solved from the round ring at each angle, the cup holds the mean")
+               "rounding; solved from the round ring at each angle, the cup holds the mean", evidence=IDENTITY)
 
 
 def draw_torsion(figure, rows, rings, cup):
@@ -184,17 +185,17 @@ makes the speed settle.
     page.check("thesis.equilibrium_sum", "∫(T_in − T_FS − T_f) dt against J ω at the end", "thesis eq. 7.29–7.30",
                Within(1.0, absolute=2e-3),
                float(np.sum(left)) * step / (inertia * run["motor_velocity"][-1]), "",
-               "friction is reported reduced to the motor: the flanks' small share at the joint is in it")
+               "friction is reduced to the motor: the flanks' share at the joint is in it", evidence=IDENTITY)
     page.check("thesis.equilibrium_instant", "T_in − T_FS − T_f − J dω/dt: rms over the run by T_in", "thesis eq. 7.29",
                AtMost(1e-3),
                float(np.sqrt(np.mean((left - inertia * acceleration)[1:-1]**2))) / MOTOR_TORQUE, "",
-               "central difference of the speed at 10 kHz")
+               "central difference of the speed at 10 kHz", evidence=IDENTITY)
     for row, ring in zip(*locked_table(page)):
         if row["torque"] == 150.0:
             signed = float(np.sum(ring.rho * ring.teeth["wave_generator_force"] * np.sin(ring.gamma)))
             page.check("thesis.signed_gamma", "eq. 7.28 with signed γ, no friction, 150 N·m, against the twin's torque",
                        "thesis eq. 7.26–7.28, sign kept", Within(row["wave_generator_torque"], relative=1e-2), signed,
-                       "N·m", "eq. 7.21 takes the normal at the tooth, not at the foot of the contact")
+                       "N·m", "eq. 7.21 takes the normal at the tooth, not at the contact", evidence=THESIS_PROGRAM)
     numbers, ring = thesis_insertion(page)
     force = numbers["wave_generator_force_sum"]
     bearing = given["bearing"]
@@ -265,14 +266,15 @@ upwards the condition is always true. In the twin a tooth engages when its flank
     page.check("thesis.condition_735",
                "share of teeth engaged by eq. 7.35 at the twin's flank angle",
                "the tips on the minor axis pass the base circle too",
-               Within(100.0), 100.0 * share_engaged(free.rho, twin_angle), "%", "a count")
+               Within(100.0), 100.0 * share_engaged(free.rho, twin_angle), "%", "a count", evidence=IDENTITY)
     page.table(["load [N·m]"] + [f"{row['torque']:g}" for row in rows],
                [["teeth that carry"] + [row["teeth_loaded"] for row in rows],
                 ["share [%]"] + [f"{100.0 * row['teeth_loaded'] / TEETH_FS:g}" for row in rows]])
     carrying = [row["teeth_loaded"] for row in rows]
     page.check("thesis.engagement_grows", "teeth that carry: times the number falls as the load rises",
                "thesis 7.4, 7.1: contact grows with load", Within(0.0),
-               sum(after < before for before, after in zip(carrying, carrying[1:])), "", "a count")
+               sum(after < before for before, after in zip(carrying, carrying[1:])), "",
+               "a count", evidence=THESIS_PROGRAM)
 
 
 def draw_engagement(figure, rows, rings):
@@ -334,13 +336,13 @@ that by up to 0.4 % (5 N·m), in the mean over a pitch by nothing.
         worst = max(abs(found[load][k] - values[k]) for load, values in own.items())
         page.check(f"thesis.locked_{name}", f"{quantity}, five loads: largest difference", "independent_drive.py",
                    AtMost(most), worst, unit,
-                   "both solve to 1e-6 N a tooth, on flanks of 5e7 N/m" if most else "a count")
+                   "both solve to 1e-6 N a tooth, on flanks of 5e7 N/m" if most else "a count", evidence=OWN_PROGRAM)
     cosine = math.cos(parameters(page, *OPERATION)["mesh"]["flank_angle"])
     torque = float(np.sum(rings[-1].teeth["mesh_force"])) * cosine * MEASURED.circular_spline_mean_radius
     page.check("thesis.output_balance", "Σ F_t cos β r_CS at 150 N·m by the load", "thesis eq. 7.37 at rest",
                Within(1.0, absolute=0.01),
                abs(torque) / rows[-1]["torque"], "",
-               "one radius for all teeth, 32.15 mm; they carry between 31.95 and 32.15 mm")
+               "one radius for all teeth, 32.15 mm; they carry between 31.95 and 32.15 mm", evidence=IDENTITY)
     run, steps = turn(page)
     error = run["output_angle"] - run["wave_generator_angle"] / RATIO
     page.figure(
@@ -352,12 +354,12 @@ that by up to 0.4 % (5 N·m), in the mean over a pitch by nothing.
         size=(8.6, 2.6))
     page.check("thesis.drift_pitch", "drift of the ratio over a tooth pitch, largest over a turn",
                "tooth numbers", AtMost(1e-12), np.max(np.abs(error[steps:] - error[:-steps])), "rad",
-               "rounding")
+               "rounding", evidence=IDENTITY)
     page.check("thesis.drift_turn", "drift of the ratio over a motor turn", "tooth numbers", AtMost(1e-12),
-               abs(error[-1] - error[0]), "rad", "rounding")
+               abs(error[-1] - error[0]), "rad", "rounding", evidence=IDENTITY)
     page.check("thesis.mean_torque", "101 T_WG/T, mean over a turn", "virtual work", Within(-1.0, absolute=5e-6),
                RATIO * float(np.mean(run["wave_generator_torque"][:-1])) / LOAD, "",
-               "a mean over the steps of a turn")
+               "a mean over the steps of a turn", evidence=IDENTITY)
     arcseconds = math.degrees(np.max(error) - np.min(error)) * 3600.0
     page.value("thesis.perfect_error", arcseconds, "″")
     page.text(f"The kinematic error of the perfect gear is {arcseconds:.2f}″ from peak to peak, tooth pass alone.")

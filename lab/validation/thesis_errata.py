@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from bounds import Within
+from evidence import IDENTITY, THESIS_PROGRAM
 from thesis_data import (INSERTION, MEASURED, OPERATION, PITCH, RATIO, TEETH_CS, TEETH_FS, locked_table, parameters,
                          thesis_insertion, turn)
 from thesis_drive import share_engaged
@@ -69,7 +70,8 @@ def contact_point(page, ring, force):
     normal = wrapped_degrees(math.atan2(a * a * x, b * b * y))
     page.check("thesis.contact_point",
                "eq. 5.11 against the true foot of the normal: largest difference of overlap among teeth in contact",
-               "the equilibrium of chapter 6", Within(2.0, absolute=0.5), 1e6 * off, "µm", "known to be *up to 2 µm*")
+               "the equilibrium of chapter 6", Within(2.0, absolute=0.5), 1e6 * off, "µm", "known to be *up to 2 µm*",
+               evidence=IDENTITY)
     return [
         ["5.8b", "slope of the normal a²x/(b²y)",
          f"tooth 10: normal at {normal:.1f}°, by eq. 5.15 {math.degrees(ring.normal[tooth]):.1f}°", "a²y/(b²x)"],
@@ -204,11 +206,13 @@ def chapter_7(page):
     given = parameters(page, *OPERATION)
     wave = float(np.max(np.abs(rings[0].teeth["angle_deviation"])))
     page.check("thesis.absolute_gamma", "eq. 7.27 with |γ| and no friction, at rest, no load",
-               "the equilibrium of chapter 6", Within(12.0, absolute=0.5), absolute, "N·m", "known to two digits")
+               "the equilibrium of chapter 6", Within(12.0, absolute=0.5), absolute, "N·m", "known to two digits",
+               evidence=THESIS_PROGRAM)
     page.check("thesis.symmetric_gamma", "the same with signed γ", "symmetry", Within(0.0, absolute=1e-6), signed,
-               "N·m", "rounding")
+               "N·m", "rounding", evidence=IDENTITY)
     page.check("thesis.literal_friction", "friction of eq. 7.25–7.28 on a sliding race, μ = 0.07",
-               "the equilibrium of chapter 6", Within(74.0, absolute=1.0), friction, "N·m", "known to two digits")
+               "the equilibrium of chapter 6", Within(74.0, absolute=1.0), friction, "N·m", "known to two digits",
+               evidence=THESIS_PROGRAM)
     return [
         ["7.2", "the cup's stiffness on each tooth's own angle",
          f"{given['cup']['torsion_stiffness'][0] * wave:.0f} N·m on a tooth with no load; {TEETH_FS} K_T in all",

@@ -7,6 +7,7 @@ import os
 import numpy as np
 
 from bounds import AtLeast, AtMost, Within, number
+from evidence import IDENTITY
 from page import BLUE, GREEN, GREY, ORANGE, RED
 from thesis_data import MEASURED, TEETH_CS, TEETH_FS, parameters, turn
 
@@ -88,14 +89,14 @@ the sum of the three is a result too.
         name = held.replace(" ", "_")
         page.check(f"thesis.ratio_{name}_held", f"{speeds}, {held} held", f"thesis eq. {equation}",
                    Within(expected, relative=1e-9), speed_ratio, "",
-                   "a whole turn brings every tooth back: only rounding is left")
+                   "a whole turn brings every tooth back: only rounding is left", evidence=IDENTITY)
         page.check(f"thesis.torque_{name}_held", f"{torques}, {held} held, mean over the turn",
                    f"thesis eq. {equation}, lossless",
                    Within(expected, relative=1e-6), torque_ratio, "",
-                   "virtual work; the solver leaves 5e-7 N on a tooth")
+                   "virtual work; the solver leaves 5e-7 N on a tooth", evidence=IDENTITY)
     page.check("thesis.torque_sum", "largest sum of the torques on wave generator, circular spline and flexspline",
                "third law", AtMost(1e-6), np.max(np.abs(-run["wave_generator_torque"] - load + run["housing_torque"])),
-               "N·m", "5e-7 N left on a tooth, at 0.03 m")
+               "N·m", "5e-7 N left on a tooth, at 0.03 m", evidence=IDENTITY)
 
 
 def inertias(page):
@@ -138,9 +139,10 @@ of squares.
     page.check("thesis.inertia_circular_spline",
                "inertia of the circular spline in use", "eq. 3.18 corrected, mass from the volume",
                Within(circular_spline_inertia(volume_mass),
-                      relative=0.002), in_use, "kg·m²", "three digits in the configuration")
+                      relative=0.002), in_use, "kg·m²", "three digits in the configuration", evidence=IDENTITY)
     page.check("thesis.inertia_wave_generator", "inertia of the wave generator in use", "thesis Table 3.2",
-               Within(8.12e-5, relative=1e-3), given["motor"]["wave_generator_inertia"], "kg·m²", "the digits given")
+               Within(8.12e-5, relative=1e-3), given["motor"]["wave_generator_inertia"], "kg·m²", "the digits given",
+               evidence=IDENTITY)
 
 
 def cracks(page):
@@ -154,9 +156,9 @@ b_R =
 {number(ratio)}, so {crack_direction(ratio)}.
 """)
     page.check("thesis.backup_ratio", "backup ratio of the configured gear", "thesis eq. 3.21",
-               Within(1.6, absolute=1e-9), ratio, "", "0.8/0.5, two exact figures")
+               Within(1.6, absolute=1e-9), ratio, "", "0.8/0.5, two exact figures", evidence=IDENTITY)
     page.check("thesis.backup_ratio_advised", "backup ratio against the advised least", "thesis 3.4.2", AtLeast(1.3),
-               ratio, "", "the advice itself")
+               ratio, "", "the advice itself", evidence=IDENTITY)
     page.figure("thesis_gear",
                 "Left: the coefficients of the elliptical ring (thesis fig. 3.10), dots at this wave generator. Right: "
                 "direction of a crack by backup ratio (thesis 3.4.2), and this gear.",
@@ -173,9 +175,10 @@ b_R =
     ] for mode in modes])
     page.check("thesis.fmeca_products", "largest difference between printed RPN and S·O·D, 12 failures",
                "thesis eq. 3.19, Table 3.7", Within(0.0), max(abs(int(mode["rpn"]) - product(mode)) for mode in modes),
-               "", "whole numbers")
+               "", "whole numbers", evidence=IDENTITY)
     page.check("thesis.fmeca_order", "rows out of order of S·O·D", "thesis Table 3.7", Within(0.0),
-               sum(product(above) < product(below) for above, below in zip(modes, modes[1:])), "", "whole numbers")
+               sum(product(above) < product(below) for above, below in zip(modes, modes[1:])), "", "whole numbers",
+               evidence=IDENTITY)
 
 
 def product(mode):

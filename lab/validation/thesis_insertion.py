@@ -6,6 +6,7 @@ import math
 import numpy as np
 
 from bounds import AtMost, Within, number
+from evidence import IDENTITY, OWN_PROGRAM, THESIS_PROGRAM
 from independent_ring import IndependentRing
 from page import BLUE, GREEN, GREY, ORANGE, PURPLE, RED
 from thesis_data import INSERTION, MEASURED, OPERATION, TEETH_FS, insertion, thesis_insertion
@@ -50,31 +51,43 @@ def thesis_rows(page, numbers, ring):
     force = numbers["wave_generator_force_max"]
     gap_x, gap_y = largest_gap(ring)
     rows = (
-        ("force_max", "largest force of the wave generator on a tooth", "Table 6.3, fig. 6.5",
+        (THESIS_PROGRAM,
+         "force_max", "largest force of the wave generator on a tooth", "Table 6.3, fig. 6.5",
          Within(538.8, absolute=0.05), force, "N", "the digits given"),
-        ("force_minor_axis", "the same force at the minor axis, tooth 50", "6.2", Within(0.0),
+        (THESIS_PROGRAM,
+         "force_minor_axis", "the same force at the minor axis, tooth 50", "6.2", Within(0.0),
          ring.teeth["wave_generator_force"][50], "N", "the thesis: no contact there"),
-        ("tension_min", "least force between neighbouring teeth", "6.3, fig. 6.8", Within(2300.0, absolute=50.0),
+        (THESIS_PROGRAM,
+         "tension_min", "least force between neighbouring teeth", "6.3, fig. 6.8", Within(2300.0, absolute=50.0),
          numbers["tension_min"], "N", "*circa 2300*"),
-        ("tension_max", "largest force between neighbouring teeth", "6.3, fig. 6.8", Within(8000.0, absolute=50.0),
+        (THESIS_PROGRAM,
+         "tension_max", "largest force between neighbouring teeth", "6.3, fig. 6.8", Within(8000.0, absolute=50.0),
          numbers["tension_max"], "N", "*circa 8000*"),
-        ("tooth_0", "x of tooth 0", "6.3", Within(31.0, absolute=0.05), 1e3 * ring.x[0], "mm", "the digits given"),
-        ("tooth_50", "y of the tooth on the minor axis", "6.3", Within(30.4, absolute=0.05), 1e3 * ring.y[50], "mm",
+        (IDENTITY,
+         "tooth_0", "x of tooth 0", "6.3", Within(31.0, absolute=0.05), 1e3 * ring.x[0], "mm", "the digits given"),
+        (THESIS_PROGRAM,
+         "tooth_50", "y of the tooth on the minor axis", "6.3", Within(30.4, absolute=0.05), 1e3 * ring.y[50], "mm",
          "the digits given"),
-        ("gap", "largest gap to the polar estimate of eq. 6.1", "6.1, fig. 6.4", Within(0.15, absolute=0.01),
+        (THESIS_PROGRAM,
+         "gap", "largest gap to the polar estimate of eq. 6.1", "6.1, fig. 6.4", Within(0.15, absolute=0.01),
          1e3 * max(np.max(np.abs(gap_x)), np.max(np.abs(gap_y))), "mm", "*up to about 0.15*"),
-        ("balance", "largest force left on a tooth when eq. 5.1–5.2, with the bending force of either segment, "
+        (IDENTITY,
+         "balance", "largest force left on a tooth when eq. 5.1–5.2, with the bending force of either segment, "
          "are summed from the positions alone", "eq. 5.1–5.2",
          AtMost(1e-4), ring.out_of_balance(), "N", "rounding of the positions times 5e9 N/m"),
-        ("contact_law", "largest difference of contact force from eq. 5.23 at these positions", "eq. 5.11–5.23",
+        (IDENTITY,
+         "contact_law", "largest difference of contact force from eq. 5.23 at these positions", "eq. 5.11–5.23",
          AtMost(1e-4), np.max(np.abs(ring.contact_force() - ring.teeth["wave_generator_force"])), "N", "rounding"),
-        ("tension_law", "largest difference of tension from eq. 5.33 at these positions", "eq. 5.33, plus put in",
+        (IDENTITY,
+         "tension_law", "largest difference of tension from eq. 5.33 at these positions", "eq. 5.33, plus put in",
          AtMost(1e-4), np.max(np.abs(ring.tension - ring.teeth["rim_tension"])), "N", "rounding"),
-        ("bending_law", "largest difference of bending force from eq. 5.52 at these positions", "eq. 5.47–5.52",
+        (IDENTITY,
+         "bending_law", "largest difference of bending force from eq. 5.52 at these positions", "eq. 5.47–5.52",
          AtMost(1e-4), np.max(np.abs(ring.bending - ring.teeth["bending_force"])), "N", "rounding"),
     )
-    for name, quantity, where, bound, value, unit, reason in rows:
-        page.check(f"thesis.{name}", quantity, f"thesis {where}", bound, value, unit, reason)
+    page.value("thesis.force_shipped", page.tool("insert")["wave_generator_force_max"], "N")
+    for evidence, name, quantity, where, bound, value, unit, reason in rows:
+        page.check(f"thesis.{name}", quantity, f"thesis {where}", bound, value, unit, reason, evidence=evidence)
 
 
 @functools.lru_cache(maxsize=None)
@@ -126,7 +139,8 @@ text of the thesis and run for this page: the twin's value, its in brackets.
         for name, quantity, unit, scale, bound in quantities:
             worst = scale * float(np.max(np.abs(of_twin.teeth[name] - of_program[name])))
             page.check(f"thesis.independent_{case}_{name}", f"{laws}: {quantity} of any tooth, largest difference",
-                       INDEPENDENT, AtMost(bound), worst, unit, "both solve to 1e-5 N; a rim of 5e9 N/m")
+                       INDEPENDENT, AtMost(bound), worst, unit, "both solve to 1e-5 N; a rim of 5e9 N/m",
+                       evidence=OWN_PROGRAM)
     per_ball = ball_load(working_ring.teeth["wave_generator_force"])
     page.text(f"""
 *Working laws*: bending resists a change of curvature between neighbours, not a segment's turn from rest, and contact
@@ -180,7 +194,8 @@ growth with w0 can be compared: both are nearly proportional.
     spread = per_tooth / np.array([w0 for w0, _ in LITERATURE])
     page.check("thesis.growth", "force by w0: at 0.8 mm against 0.35 mm", "thesis 6.2: *direct proportionality*",
                Within(1.0, absolute=0.05), spread[-1] / spread[0], "",
-               "the literature's own values depart by 4 %, downwards; those of the thesis' equations upwards")
+               "the literature's own values depart by 4 %, downwards; those of the thesis' equations upwards",
+               evidence=THESIS_PROGRAM)
 
 
 def rim_figures(page, ring):
@@ -203,20 +218,23 @@ def rim_figures(page, ring):
     page.check(
         "thesis.bending_45", "bending components at 45°, x over y", "thesis 6.4: *identical*",
         Within(1.0, absolute=0.05), ratio, "",
-        f"read off a figure; the segments there are turned by {np.degrees(np.mean(ring.turn[middle])):.2f}° from 45°")
+        f"read off a figure; the segments there are turned by {np.degrees(np.mean(ring.turn[middle])):.2f}° from 45°",
+        evidence=IDENTITY)
     page.check(
         "thesis.bending_axes", "bending force at the axes by its largest", "thesis 6.4: *nil*", AtMost(0.05),
         max(abs(ring.bending[i]) + abs(ring.bending[i - 1])
             for i in (0, 50, 100, 150)) / 2 / np.max(np.abs(ring.bending)), "",
-        "segments lie half a pitch off the axes")
+        "segments lie half a pitch off the axes", evidence=IDENTITY)
     ellipse = 2.0 * math.pi * math.sqrt((31.0**2 + 30.4**2) / 2.0)
     x, y = independent_ring("polar", "absolute").points()
     stretched = float(np.sum(np.hypot(np.roll(x, -1) - x, np.roll(y, -1) - y))) / (TEETH_FS * ring.rest_distance) - 1.0
     page.check("thesis.perimeter", "growth of the perimeter, sum of the distances", INDEPENDENT,
-               Within(100.0 * stretched, absolute=1e-6), 100.0 * perimeter_growth(ring), "%", "both solve to 1e-5 N")
+               Within(100.0 * stretched, absolute=1e-6), 100.0 * perimeter_growth(ring), "%", "both solve to 1e-5 N",
+               evidence=OWN_PROGRAM)
     page.check("thesis.perimeter_formula", "perimeter by eq. 6.3 from tooth 0 and tooth 50, rounded to 0.1 mm as there",
                "thesis 6.3", Within(192.90, absolute=5e-3), 2.0 * math.pi * math.sqrt(
-                   (round(1e3 * ring.x[0], 1)**2 + round(1e3 * ring.y[50], 1)**2) / 2.0), "mm", "the digits given")
+                   (round(1e3 * ring.x[0], 1)**2 + round(1e3 * ring.y[50], 1)**2) / 2.0), "mm", "the digits given",
+               evidence=IDENTITY)
     page.text(f"""
 The thesis finds +0.16 % ({ellipse:.2f} mm after, 192.59 mm before), with an ellipse's formula on radii rounded to 0.1
 mm. The distances themselves add up to +{100 * perimeter_growth(ring):.3f} %. The finite-element study it cites has

@@ -19,6 +19,8 @@ def _names(part):
 
 
 def __getattr__(name):
+    if name == "__all__":  # of `from harmonic_joint_twin import *`
+        return __dir__()
     if not name.startswith("_"):
         for part in _parts():
             if name in _names(part):

@@ -11,6 +11,7 @@
 #include "harmonic_joint_twin/statics/torsion_loop.hpp"
 #include "python/configuration.hpp"
 #include "python/tooth_values.hpp"
+#include "statics/analysed_faults.hpp"
 #include "statics/fatigue_law.hpp"
 #include "statics/gear_checks.hpp"
 #include "statics/gear_design.hpp"
@@ -59,6 +60,13 @@ void requireFinite(const char* name, const std::vector<double>& values)
   }
 }
 
+/// The parameters, for an analysis that honours their faults. @throws ParameterError if one cannot act in it.
+Parameters analysed(const Configuration& parameters, Analysis analysis)
+{
+  requireFaultsAct(parameters.values(), analysis);
+  return parameters.values();
+}
+
 std::string valueWithUnit(double value, const char* unit)
 {
   return numberText(value) + ' ' + unit;
@@ -66,7 +74,8 @@ std::string valueWithUnit(double value, const char* unit)
 
 InsertionResult insertion(const Configuration& parameters)
 {
-  InsertionResult result = withoutLock([given = parameters.values()] { return analyseInsertion(given); });
+  InsertionResult result =
+      withoutLock([given = analysed(parameters, Analysis::INSERTION)] { return analyseInsertion(given); });
   if (!result.status.ok())
   {
     throw NotConverged("the insertion", result.status);
@@ -76,7 +85,7 @@ InsertionResult insertion(const Configuration& parameters)
 
 FitCheck fit(const Configuration& parameters)
 {
-  FitCheck check = withoutLock([given = parameters.values()] { return checkFit(given); });
+  FitCheck check = withoutLock([given = analysed(parameters, Analysis::RING)] { return checkFit(given); });
   if (!check.status.ok())
   {
     throw NotConverged("the gear without load", check.status);
@@ -90,7 +99,7 @@ std::vector<StiffnessRow> stiffness(const Configuration& parameters, const std::
   requireFinite("angle", { angle });
   std::vector<StiffnessRow> rows;
   withoutLock(
-      [&, given = parameters.values()]
+      [&, given = analysed(parameters, Analysis::RING)]
       {
         InterruptCheck check;
         // No row depends on another.
@@ -115,7 +124,7 @@ py::array_t<TurnValues> turn(const Configuration& parameters, double load, doubl
   requireFinite("load", { load });
   requireFinite("angle_range", { angle_range });
   const std::vector<TurnRow> rows = withoutLock(
-      [&, given = parameters.values()]
+      [&, given = analysed(parameters, Analysis::RING)]
       {
         InterruptCheck check;
         return analyseTurn(given, load, angle_range, steps, [&](int) { check(); });
@@ -141,7 +150,7 @@ py::array_t<LossValues> losses(const Configuration& parameters, const std::vecto
   requireFinite("speeds", speeds);
   requireFinite("loads", loads);
   const std::vector<LossRow> rows = withoutLock(
-      [&, given = parameters.values()]
+      [&, given = analysed(parameters, Analysis::WITH_FRICTION)]
       {
         InterruptCheck check;
         return analyseLosses(given, speeds, loads, positions, [&](int) { check(); });
@@ -164,8 +173,8 @@ py::array_t<LossValues> losses(const Configuration& parameters, const std::vecto
 
 Breakaway breakaway(const Configuration& parameters, int positions)
 {
-  Breakaway result =
-      withoutLock([given = parameters.values(), positions] { return analyseBreakaway(given, positions); });
+  Breakaway result = withoutLock([given = analysed(parameters, Analysis::WITH_FRICTION), positions]
+                                 { return analyseBreakaway(given, positions); });
   if (!result.status.ok())
   {
     throw NotConverged("the load that drives the gear back", result.status);
@@ -176,7 +185,7 @@ Breakaway breakaway(const Configuration& parameters, int positions)
 TorsionLoop torsionLoop(const Configuration& parameters, double amplitude, double lost_motion_torque, int steps)
 {
   requireFinite("amplitude", { amplitude });
-  TorsionLoop loop = withoutLock([&, given = parameters.values()]
+  TorsionLoop loop = withoutLock([&, given = analysed(parameters, Analysis::WITH_FRICTION)]
                                  { return analyseTorsionLoop(given, amplitude, lost_motion_torque, steps); });
   if (!loop.status.ok())
   {

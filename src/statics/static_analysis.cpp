@@ -9,6 +9,7 @@
 
 #include "gear/angle.hpp"
 #include "gear/ratio.hpp"
+#include "model/faults/joint_faults.hpp"
 #include "solver/output_balance.hpp"
 #include "statics/arguments.hpp"
 #include "statics/flexspline_stress.hpp"
@@ -76,7 +77,7 @@ double housingTorque(const RingEquilibrium& ring)
 
 InsertionResult analyseInsertion(const Parameters& parameters)
 {
-  RingModel model(parameters);
+  RingModel model = startingJoint(parameters).ring;
   model.setMeshed(false);
   InsertionResult result;
   const auto start = std::chrono::steady_clock::now();
@@ -109,7 +110,7 @@ FitCheck checkFit(const Parameters& parameters)
   FitCheck check;
   for (const bool meshed : { false, true })
   {
-    RingModel model(parameters);
+    RingModel model = startingJoint(parameters).ring;
     model.setMeshed(meshed);
     RingEquilibrium ring(model, staticSolver(parameters.solver));
     check.status = meshed ? insertUnderLoad(ring, 0.0, 0.0) : ring.insert({ 0.0, 0.0, parameters.gear.wave_amplitude });
@@ -127,7 +128,7 @@ FitCheck checkFit(const Parameters& parameters)
 std::vector<StiffnessRow> analyseStiffness(const Parameters& parameters, double wave_generator_angle,
                                            const std::vector<double>& torques)
 {
-  const RingModel model(parameters);
+  const RingModel model = startingJoint(parameters).ring;
   RingEquilibrium unloaded(model, staticSolver(parameters.solver));
   const SolveStatus status = insertUnderLoad(unloaded, wave_generator_angle, 0.0);
   std::vector<StiffnessRow> rows;
@@ -160,7 +161,7 @@ std::vector<TurnRow> analyseTurn(const Parameters& parameters, double load_torqu
                                  const std::function<void(int)>& progress)
 {
   requireAtLeast("steps", steps, 1);
-  const RingModel model(parameters);
+  const RingModel model = startingJoint(parameters).ring;
   RingEquilibrium ring(model, staticSolver(parameters.solver));
   SolveStatus status = ring.insert({ 0.0, 0.0, parameters.gear.wave_amplitude });
   std::vector<TurnRow> rows;

@@ -2,7 +2,7 @@
 #include "harmonic_joint_twin/statics/torsion_loop.hpp"
 
 #include "base/number_text.hpp"
-#include "model/joint_model.hpp"
+#include "model/faults/joint_faults.hpp"
 #include "solver/output_balance.hpp"
 #include "solver/ring_equilibrium.hpp"
 #include "statics/arguments.hpp"
@@ -72,7 +72,7 @@ TorsionLoop analyseTorsionLoop(const Parameters& parameters, double amplitude, d
                      " [N.m] is out of range, allowed: 0 ... " + numberText(amplitude) + " (amplitude)");
   }
   requireAtLeast("steps", steps, 2);
-  const JointModel model(parameters);
+  const JointModel model = startingJoint(parameters);
   RingEquilibrium ring(model.ring, staticSolver(parameters.solver));
   JointFriction friction(parameters.gear.teeth_flexspline);
   TorsionLoop loop;

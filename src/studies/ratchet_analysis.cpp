@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/faults/joint_faults.hpp"
 #include "solver/output_balance.hpp"
 
 namespace hjt
@@ -152,7 +153,7 @@ RatchetResult analyseRatchet(const Parameters& parameters, double wave_generator
 {
   constexpr double FALL = 0.9;  // of the largest torque: what is past that is a jump, not a ripple
   RatchetResult result;
-  const RingModel model(parameters);
+  const RingModel model = startingJoint(parameters).ring;
   RingEquilibrium ring(model, parameters.solver);
   result.status = insertUnderLoad(ring, wave_generator_angle, 0.0);
   if (!result.status.ok())

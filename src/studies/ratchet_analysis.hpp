@@ -28,14 +28,14 @@ enum class RatchetEnd
 {
   LIMIT_REACHED,  ///< the torque limit: no jump up to there
   TEETH_JUMPED,   ///< the torque fell as teeth left their spaces
-  NO_EQUILIBRIUM  ///< the ring found none at the next angle, however near: it snaps
+  NO_EQUILIBRIUM  ///< gave up: the ring found none at the next angle; the peak is a lower bound of the jump
 };
 
 struct RatchetResult
 {
   SolveStatus status;  ///< at no load
   RatchetEnd end{};
-  RatchetRow peak;  ///< of the largest torque: the jump, unless the limit was reached
+  RatchetRow peak;  ///< of the largest torque: the jump, if the teeth jumped
   std::vector<RatchetRow> rows;
 };
 

@@ -50,6 +50,12 @@ class Package(unittest.TestCase):
                                      "    print('ParameterError:', e)")
             self.assertEqual(raised.strip(), words)
 
+    def test_a_star_brings_every_public_name(self):
+        found = {}
+        exec("from harmonic_joint_twin import *", found)  # pylint: disable=exec-used  (only a module may import so)
+        self.assertLessEqual({"Twin", "Parameters", "compare", "load", "Arm"}, set(found))
+        self.assertNotIn("importlib", found)
+
     def test_unknown_names_are_named(self):
         printed = self.run_python("import harmonic_joint_twin as hjt", "try:", "    hjt.Twn",
                                   "except AttributeError as e:", "    print(e)")

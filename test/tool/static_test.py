@@ -268,6 +268,13 @@ class Ratchet(tool.ToolTest):
                 self.assertAlmostEqual(peak["lobe_force"] / (1e7 * (0.35e-3 - peak["wave_amplitude"])), 1.0, delta=1e-5)
         self.assertRegex(self.succeed("ratchet", "--torque-limit", 100).stdout, r"largest torque +\d+\.\d+ N\.m")
 
+    def test_a_search_that_gave_up_is_no_result(self):
+        done = self.run_tool("ratchet", "--torque-limit", 20000, "--lobe-stiffness", 1e7, "--angle-step", 4e-4)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertRegex(done.stdout, "end +gave up, no equilibrium")
+        self.assertIn("the search gave up", done.stderr)
+        self.assertIn("lower bound", done.stderr)
+
     def test_wrong_usage(self):
         for arguments in [["--lobe-stiffness", "0"], ["--lobe-stiffness", "nan"], ["--angle-step", "0"],
                           ["--torque-limit", "-5"], ["--angle", "inf"]]:

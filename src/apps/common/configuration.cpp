@@ -73,4 +73,11 @@ Parameters loadGear(const ConfigurationOptions& options)
   printGearWarnings(parameters);
   return parameters;
 }
+
+Parameters loadAnalysed(const ConfigurationOptions& options, Analysis analysis)
+{
+  Parameters parameters = loadGear(options);
+  requireFaultsAct(parameters, analysis);
+  return parameters;
+}
 }  // namespace hjt

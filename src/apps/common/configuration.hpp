@@ -5,6 +5,7 @@
 
 #include "apps/common/command.hpp"
 #include "messages/topics.hpp"
+#include "statics/analysed_faults.hpp"
 
 #include "twin/configuration_options.hpp"
 
@@ -17,7 +18,7 @@ struct CommonOptions : ConfigurationOptions
   bool force{};
 };
 
-/// `--fault`, for the commands that march the joint.
+/// `--fault`, for the commands that march or analyse the joint.
 void addFaultOption(Command& command, ConfigurationOptions& options);
 
 /// Options about the configuration alone.
@@ -33,4 +34,7 @@ void printGearWarnings(const Parameters& parameters);
 
 /// The parameters, with those warnings. @throws ParameterError.
 Parameters loadGear(const ConfigurationOptions& options);
+
+/// The same for an analysis, with the faults that it honours. @throws ParameterError if one cannot act in it.
+Parameters loadAnalysed(const ConfigurationOptions& options, Analysis analysis);
 }  // namespace hjt

@@ -25,6 +25,7 @@ void declarePitch(Command& command, PitchOptions& options)
 {
   command.add("--positions", options.positions, "wave generator angles per tooth pitch that are averaged over")
       .range(1, 100000);
+  addFaultOption(command, options);
   addCommonOptions(command, options);
 }
 
@@ -52,7 +53,7 @@ const std::vector<Column<LossRow>> LOSS_COLUMNS{
 
 int losses(const LossesOptions& options)
 {
-  const Parameters parameters = loadGear(options);
+  const Parameters parameters = loadAnalysed(options, Analysis::WITH_FRICTION);
   const std::vector<LossRow> rows =
       analyseLosses(parameters, options.speeds, options.loads, options.positions,
                     [&options, show = showProgress("turning")](int done)
@@ -81,7 +82,7 @@ const Subcommand LOSSES{ Subject::GEAR, "losses", "friction and efficiency of st
 
 int breakaway(const PitchOptions& options)
 {
-  const Parameters parameters = loadGear(options);
+  const Parameters parameters = loadAnalysed(options, Analysis::WITH_FRICTION);
   const Breakaway result = analyseBreakaway(parameters, options.positions);
   if (!result.status.ok())
   {
@@ -112,8 +113,8 @@ int hysteresis(const HysteresisOptions& options)
     std::cerr << "joint_twin: --lost-motion-torque must not exceed --amplitude [N.m]\n";
     return EXIT_USAGE;
   }
-  const TorsionLoop loop =
-      analyseTorsionLoop(loadGear(options), options.amplitude, options.lost_motion_torque, options.steps);
+  const TorsionLoop loop = analyseTorsionLoop(loadAnalysed(options, Analysis::WITH_FRICTION), options.amplitude,
+                                              options.lost_motion_torque, options.steps);
   if (!loop.status.ok())
   {
     return notConverged("the torsion loop", loop.status);
@@ -135,6 +136,7 @@ void declareHysteresis(Command& command, HysteresisOptions& options)
       .required()
       .positive();
   command.add("--steps", options.steps, "angles of one sweep").range(2, 1000000);
+  addFaultOption(command, options);
   addCommonOptions(command, options);
 }
 

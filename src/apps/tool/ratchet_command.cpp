@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <iostream>
 #include <limits>
 
 #include "apps/common/configuration.hpp"
@@ -6,6 +7,7 @@
 #include "output/exit_code.hpp"
 #include "output/progress.hpp"
 #include "output/report.hpp"
+#include "output/text_table.hpp"
 
 #include "studies/ratchet_analysis.hpp"
 
@@ -25,7 +27,7 @@ const char* endOf(RatchetEnd end)
 {
   return end == RatchetEnd::LIMIT_REACHED ? "limit reached" :
          end == RatchetEnd::TEETH_JUMPED  ? "teeth jumped" :
-                                            "no equilibrium";
+                                            "gave up, no equilibrium";
 }
 
 const std::vector<Column<RatchetRow>> COLUMNS{ { "output_angle", &RatchetRow::output_angle },
@@ -41,8 +43,9 @@ const std::vector<Column<RatchetRow>> COLUMNS{ { "output_angle", &RatchetRow::ou
 
 int ratchet(const RatchetOptions& options)
 {
-  const RatchetResult result = analyseRatchet(loadParameters(options), options.angle, options.lobe_stiffness,
-                                              options.angle_step, options.torque_limit, showProgress("loading"));
+  const RatchetResult result =
+      analyseRatchet(loadAnalysed(options, Analysis::RING), options.angle, options.lobe_stiffness, options.angle_step,
+                     options.torque_limit, showProgress("loading"));
   if (!result.status.ok())
   {
     return notConverged("no load", result.status);
@@ -61,6 +64,13 @@ int ratchet(const RatchetOptions& options)
                               { "peak.teeth_jumped", "teeth jumped", peak.teeth_jumped },
                               { "peak.teeth_loaded", "teeth loaded", peak.teeth_loaded },
                               { "rows", "", Table(COLUMNS, result.rows).rows() } });
+  if (result.end == RatchetEnd::NO_EQUILIBRIUM)
+  {
+    std::cerr << "joint_twin: the search gave up: no equilibrium found a step of " << shortNumber(options.angle_step)
+              << " rad beyond " << shortNumber(result.rows.empty() ? 0.0 : result.rows.back().output_angle)
+              << " rad; the torque has not fallen, the largest is a lower bound of the jump\n";
+    return EXIT_FAILED;
+  }
   return EXIT_DONE;
 }
 
@@ -68,11 +78,13 @@ void declare(Command& command, RatchetOptions& options)
 {
   command
       .add("--lobe-stiffness", options.lobe_stiffness,
-           "radial stiffness of each lobe of the wave generator, default rigid [N/m]")
+           "radial stiffness of each lobe with plug and circular spline in its housing, some 1e8 at size 25 "
+           "(docs/model.md, Jump) [N/m]; default rigid, which makes the largest torque an upper bound")
       .range(1e3, 1e15);
   command.add("--angle", options.angle, "wave generator angle [rad]");
   command.add("--angle-step", options.angle_step, "step of the output angle [rad]").range(1e-6, 1e-2);
   command.add("--torque-limit", options.torque_limit, "ends the search if nothing has jumped [N.m]").range(1.0, 1e6);
+  addFaultOption(command, options);
   addCommonOptions(command, options);
 }
 

@@ -79,7 +79,7 @@ struct InsertOptions : CommonOptions
 
 int insert(const InsertOptions& options)
 {
-  const Parameters parameters = loadGear(options);
+  const Parameters parameters = loadAnalysed(options, Analysis::INSERTION);
   requireWritable(options.csv, options.force);
   const InsertionResult result = analyseInsertion(parameters);
   if (!result.status.ok())
@@ -111,6 +111,7 @@ int insert(const InsertOptions& options)
 void declareInsert(Command& command, InsertOptions& options)
 {
   command.add("--csv", options.csv, "write positions and forces of every tooth").type("FILE");
+  addFaultOption(command, options);
   addCommonOptions(command, options);
 }
 
@@ -189,7 +190,7 @@ double largestStress(const Parameters& parameters, const StiffnessRow& row)
 
 int stiffness(const StiffnessOptions& options)
 {
-  const Parameters parameters = loadGear(options);
+  const Parameters parameters = loadAnalysed(options, Analysis::RING);
   requireWritable(options.csv, options.force);
   const auto rows = analyseStiffness(parameters, options.angle, options.torques);
   for (const StiffnessRow& row : rows)
@@ -227,6 +228,7 @@ void declareStiffness(Command& command, StiffnessOptions& options)
       .required();
   command.add("--angle", options.angle, "wave generator angle [rad]");
   command.add("--csv", options.csv, "write positions and forces of every tooth at every torque").type("FILE");
+  addFaultOption(command, options);
   addCommonOptions(command, options);
   command
       .flag("--teeth", options.teeth,
@@ -255,9 +257,9 @@ const std::vector<Column<TurnRow>> TURN_COLUMNS{
 
 int turn(const TurnOptions& options)
 {
-  const std::vector<TurnRow> rows = analyseTurn(loadGear(options), options.load, options.angle_range, options.steps,
-                                                [&options, show = showProgress("turning")](int step)
-                                                { show(static_cast<double>(step) / options.steps); });
+  const std::vector<TurnRow> rows = analyseTurn(
+      loadAnalysed(options, Analysis::RING), options.load, options.angle_range, options.steps,
+      [&options, show = showProgress("turning")](int step) { show(static_cast<double>(step) / options.steps); });
   for (const TurnRow& row : rows)
   {
     if (!row.status.ok())
@@ -275,6 +277,7 @@ void declareTurn(Command& command, TurnOptions& options)
   command.add("--load", options.load, "load on the circular spline [N.m]").required();
   command.add("--angle-range", options.angle_range, "wave generator turns from 0 to this [rad]").required();
   command.add("--steps", options.steps, "steps of equal size").required().range(1, 1e8);
+  addFaultOption(command, options);
   addCommonOptions(command, options);
 }
 

@@ -230,24 +230,25 @@ struct Edit
 {
   FaultKind kind;
   void (*edit)(const Fault& fault, const Parameters& parameters, JointModel& joint) noexcept;
+  unsigned parts;  // FaultPart
 };
 constexpr std::array EDITS{
-  Edit{ FaultKind::INTERFACE_WEAR, wearInterface },
-  Edit{ FaultKind::REAR_SECTION_CRACK, crackRearSection },
-  Edit{ FaultKind::LUBRICANT_DEGRADATION, degradeLubricant },
-  Edit{ FaultKind::TOOTH_WEAR, wearTeeth },
-  Edit{ FaultKind::TOOTH_ROOT_CRACK, crackToothRoot },
-  Edit{ FaultKind::FLANGE_CRACK, crackFlange },
-  Edit{ FaultKind::TOOTH_TIP_CRACK, crackToothTip },
-  Edit{ FaultKind::PITTING, pit },
-  Edit{ FaultKind::WAVE_GENERATOR_WEAR, wearWaveGenerator },
-  Edit{ FaultKind::FLEXSPLINE_CRACK, crackFlexspline },
-  Edit{ FaultKind::BUCKLING, buckle },
-  Edit{ FaultKind::RATCHETING, ratchet },
-  Edit{ FaultKind::BEARING_INNER_RACE, spallInnerRace },
-  Edit{ FaultKind::BEARING_OUTER_RACE, spallOuterRace },
-  Edit{ FaultKind::BEARING_BALL, spallBall },
-  Edit{ FaultKind::BEARING_CAGE, breakCage },
+  Edit{ FaultKind::INTERFACE_WEAR, wearInterface, GENERATOR_PART | FRICTION_PART },
+  Edit{ FaultKind::REAR_SECTION_CRACK, crackRearSection, CUP_PART | FRICTION_PART },
+  Edit{ FaultKind::LUBRICANT_DEGRADATION, degradeLubricant, FRICTION_PART },
+  Edit{ FaultKind::TOOTH_WEAR, wearTeeth, MESH_PART },
+  Edit{ FaultKind::TOOTH_ROOT_CRACK, crackToothRoot, MESH_PART },
+  Edit{ FaultKind::FLANGE_CRACK, crackFlange, CUP_PART | FRICTION_PART },
+  Edit{ FaultKind::TOOTH_TIP_CRACK, crackToothTip, MESH_PART },
+  Edit{ FaultKind::PITTING, pit, MESH_PART | FRICTION_PART },
+  Edit{ FaultKind::WAVE_GENERATOR_WEAR, wearWaveGenerator, GENERATOR_PART | FRICTION_PART },
+  Edit{ FaultKind::FLEXSPLINE_CRACK, crackFlexspline, RIM_PART },
+  Edit{ FaultKind::BUCKLING, buckle, RIM_PART | CUP_PART },
+  Edit{ FaultKind::RATCHETING, ratchet, MESH_PART },
+  Edit{ FaultKind::BEARING_INNER_RACE, spallInnerRace, GENERATOR_PART },
+  Edit{ FaultKind::BEARING_OUTER_RACE, spallOuterRace, GENERATOR_PART },
+  Edit{ FaultKind::BEARING_BALL, spallBall, GENERATOR_PART },
+  Edit{ FaultKind::BEARING_CAGE, breakCage, GENERATOR_PART },
 };
 static_assert(hasRowsInOrder(EDITS), "one edit for each FaultKind, in its order");
 }  // namespace
@@ -255,6 +256,12 @@ static_assert(hasRowsInOrder(EDITS), "one edit for each FaultKind, in its order"
 bool rootCrackRunsThroughTooth(const GearParameters& gear) noexcept
 {
   return gear.rim_thickness > gear.tooth_height_flexspline;
+}
+
+unsigned partsOf(const Fault& fault, const GearParameters& gear) noexcept
+{
+  const bool into_rim = fault.kind == FaultKind::TOOTH_ROOT_CRACK && !rootCrackRunsThroughTooth(gear);
+  return into_rim ? static_cast<unsigned>(RIM_PART) : EDITS[static_cast<std::size_t>(fault.kind)].parts;
 }
 
 void addFault(const Fault& fault, const Parameters& parameters, JointModel& joint) noexcept

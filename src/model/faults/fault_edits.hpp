@@ -10,6 +10,17 @@ namespace hjt
 /// docs/faults.md says what each kind stands for.
 void addFault(const Fault& fault, const Parameters& parameters, JointModel& joint) noexcept;
 
+/// What a fault changes of the joint: bits of partsOf.
+enum FaultPart : unsigned
+{
+  RIM_PART = 1,        ///< stiffness or free shape of the flexspline's rim
+  CUP_PART = 2,        ///< wall of its cup
+  MESH_PART = 4,       ///< teeth
+  GENERATOR_PART = 8,  ///< wave generator with its bearing, or how the rim lies on it
+  FRICTION_PART = 16
+};
+unsigned partsOf(const Fault& fault, const GearParameters& gear) noexcept;
+
 /// Whether a crack at a tooth's root runs through the tooth (true) or into the rim, by the backup ratio rim thickness /
 /// tooth height (thesis 3.4.2): through the tooth above 1, into the rim below 0.4. Between both the worse is taken.
 bool rootCrackRunsThroughTooth(const GearParameters& gear) noexcept;
