@@ -58,7 +58,8 @@ ${CMAKE_CXX_FLAGS_${TYPE}} ${LOOP_OPTIONS} Eigen ${EIGEN3_VERSION_STRING} Boost 
     COMMAND ${CMAKE_COMMAND} -E touch ${NAME}.stamp
     DEPENDS ${FILES} ${NAME}.txt ${SOURCE_HASH_SCRIPT} COMMENT "Hash of the sources: ${FUNCTION}" VERBATIM)
   add_custom_target(${PROJECT_NAME}_${FUNCTION} DEPENDS ${NAME}.stamp)
-  set_source_files_properties(${NAME}.cpp PROPERTIES GENERATED TRUE)
+  # Alone, since it changes with every source.
+  set_source_files_properties(${NAME}.cpp PROPERTIES GENERATED TRUE SKIP_UNITY_BUILD_INCLUSION ON)
   target_sources(${TARGET} PRIVATE ${NAME}.cpp)
   add_dependencies(${TARGET} ${PROJECT_NAME}_${FUNCTION})
 endfunction()

@@ -16,7 +16,7 @@ namespace hjt
 {
 namespace
 {
-constexpr double PERIOD = 0.02;  // of the rows that count, at least [s]
+constexpr double ROW_PERIOD = 0.02;  // of the rows that count, at least [s]
 
 std::vector<double> gainsOf(const std::vector<Parameters>& joints)
 {
@@ -115,7 +115,7 @@ private:
         samples_[i].load = sample->torques[i];
         predicted_[i] = twins_[i].step(samples_[i]).current;
       }
-      if (samples_.front().time >= last_time_ + PERIOD)
+      if (samples_.front().time >= last_time_ + ROW_PERIOD)
       {
         last_time_ = samples_.front().time;
         load_fit_.add(samples_, predicted_);

@@ -15,7 +15,6 @@ namespace hjt
 {
 namespace
 {
-constexpr double DEGREE = TWO_PI / 360.0;
 constexpr double ACCELERATION = 300.0 * DEGREE;  // moderate: 17 N.m at a stretched UR5 [rad/s^2]
 constexpr double REST = 0.5;                     // before and after [s]
 constexpr std::size_t MAX_INSTANTS = 450'000;    // an hour at a controller's 125 Hz

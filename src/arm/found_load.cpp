@@ -12,7 +12,6 @@ namespace hjt
 {
 namespace
 {
-constexpr double DEGREE = PI / 180.0;
 }  // namespace
 
 bool IdentifiedPayload::differs() const

@@ -18,17 +18,16 @@ namespace hjt
 {
 namespace
 {
-constexpr double MOVING = 0.02;       // beyond stiction and the noise of a slope [rad/s]
-constexpr double MOVED = 0.02;        // a joint whose range is less does not move [rad]
-constexpr double FASTEST = 10.0;      // no joint of an arm turns faster [rad/s]
-constexpr double FACTOR_OFF = 0.03;   // of angle over velocity: more than gains and scales of encoders are off
-constexpr double DEVIATIONS = 3.0;    // beyond which a difference is no chance
-constexpr double WIDEST_FACTOR = 20;  // of stamps; beyond it another unit is likelier
-constexpr double LAG_OFF = 0.05;      // [s]
+constexpr double MOVING_SLOPE = 0.02;  // beyond stiction and the noise of a slope [rad/s]
+constexpr double MOVED = 0.02;         // a joint whose range is less does not move [rad]
+constexpr double FASTEST = 10.0;       // no joint of an arm turns faster [rad/s]
+constexpr double FACTOR_OFF = 0.03;    // of angle over velocity: more than gains and scales of encoders are off
+constexpr double DEVIATIONS = 3.0;     // beyond which a difference is no chance
+constexpr double WIDEST_FACTOR = 20;   // of stamps; beyond it another unit is likelier
+constexpr double LAG_OFF = 0.05;       // [s]
 constexpr std::uint64_t MIN_ROWS = 100;
 constexpr double UNCHANGED = 2.0;       // no current stays the same in motion for longer [s]
 constexpr double LEAST_SQUARE = 1e-12;  // of an uncertainty: made-up data have none
-constexpr double DEGREE = PI / 180.0;
 
 /// "0.2 s later": of currents behind their motion. `longest`: nothing longer is tried [s].
 std::string lagText(double lag, double longest)
@@ -146,7 +145,7 @@ void RecordingFit::update(const std::vector<MotionSample>& joints, const std::ve
     reach.most_speed = std::max(reach.most_speed, sample.velocity);
     reach.least_current = std::min(reach.least_current, sample.current);
     reach.most_current = std::max(reach.most_current, sample.current);
-    const bool joint_moves = std::abs(sample.velocity) > MOVING;
+    const bool joint_moves = std::abs(sample.velocity) > MOVING_SLOPE;
     moves = moves || joint_moves;
     joint.moving_rows += joint_moves ? 1 : 0;
     joint.fast_rows += std::abs(sample.velocity) > FASTEST ? 1 : 0;

@@ -28,16 +28,16 @@ enum Opcode : std::uint8_t
   DATA_END = 0x0F
 };
 
-constexpr std::size_t MAGIC = 8;             // [byte]
-constexpr std::size_t RECORD_HEAD = 9;       // opcode and length [byte]
-constexpr std::size_t MAX_CHUNK = 1U << 30;  // [byte]
+constexpr std::size_t MAGIC = 8;                  // [byte]
+constexpr std::size_t RECORD_HEAD = 9;            // opcode and length [byte]
+constexpr std::size_t MAX_MCAP_CHUNK = 1U << 30;  // [byte]
 
-struct Damage
+struct McapDamage
 {
   std::string what;
 };
 
-/// Takes fields out of a record. @throws Damage beyond its end.
+/// Takes fields out of a record. @throws McapDamage beyond its end.
 class Fields
 {
 public:
@@ -61,7 +61,7 @@ public:
   {
     if (count > left_)
     {
-      throw Damage{ "a record that is shorter than its fields" };
+      throw McapDamage{ "a record that is shorter than its fields" };
     }
     const std::uint8_t* taken = at_;
     at_ += count;
@@ -81,7 +81,7 @@ Bytes unpackedLz4(const std::uint8_t* data, std::size_t size, std::size_t unpack
   LZ4F_dctx* context = nullptr;
   if (LZ4F_isError(LZ4F_createDecompressionContext(&context, LZ4F_VERSION)) != 0)
   {
-    throw Damage{ "no memory for a chunk" };
+    throw McapDamage{ "no memory for a chunk" };
   }
   Bytes unpacked(unpacked_size);
   std::size_t written = 0;
@@ -102,7 +102,7 @@ Bytes unpackedLz4(const std::uint8_t* data, std::size_t size, std::size_t unpack
   LZ4F_freeDecompressionContext(context);
   if (hint != 0 || written != unpacked.size())
   {
-    throw Damage{ "a chunk that lz4 does not unpack" };
+    throw McapDamage{ "a chunk that lz4 does not unpack" };
   }
   return unpacked;
 }
@@ -112,7 +112,7 @@ Bytes unpackedZstd(const std::uint8_t* data, std::size_t size, std::size_t unpac
   Bytes unpacked(unpacked_size);
   if (ZSTD_decompress(unpacked.data(), unpacked.size(), data, size) != unpacked.size())
   {
-    throw Damage{ "a chunk that zstd does not unpack" };
+    throw McapDamage{ "a chunk that zstd does not unpack" };
   }
   return unpacked;
 }
@@ -177,7 +177,7 @@ private:
         std::memcpy(&length, head.data() + 1, sizeof(length));
         if (!file || length > size_ - at - RECORD_HEAD)
         {
-          throw Damage{ "it was not closed" };
+          throw McapDamage{ "it was not closed" };
         }
         if (head[0] == DATA_END || head[0] == FOOTER)
         {
@@ -193,7 +193,7 @@ private:
         progress(static_cast<double>(at) / static_cast<double>(size_));
       }
     }
-    catch (const Damage& damage)
+    catch (const McapDamage& damage)
     {
       remark_ =
           path_ + " is read up to byte " + std::to_string(at) + " of " + std::to_string(size_) + ": " + damage.what;
@@ -256,9 +256,9 @@ private:
     const std::string compression = fields.text();
     const auto size = fields.number<std::uint64_t>();
     const std::uint8_t* data = fields.take(size);
-    if (unpacked_size > MAX_CHUNK)
+    if (unpacked_size > MAX_MCAP_CHUNK)
     {
-      throw Damage{ "a chunk of " + std::to_string(unpacked_size) + " bytes" };
+      throw McapDamage{ "a chunk of " + std::to_string(unpacked_size) + " bytes" };
     }
     Bytes unpacked;
     if (compression == "lz4")
@@ -275,7 +275,7 @@ private:
     }
     else
     {
-      throw Damage{ "a chunk compressed by " + compression + "; `mcap compress` recompresses it by zstd" };
+      throw McapDamage{ "a chunk compressed by " + compression + "; `mcap compress` recompresses it by zstd" };
     }
     Fields records(unpacked.data(), unpacked.size());
     while (records.left() > 0)

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "gear/angle.hpp"
+#include "gear/block_sums.hpp"
 #include "gear/vector_clones.hpp"
 
 namespace hjt
@@ -45,14 +46,12 @@ HJT_VECTOR_CLONES double CupTorsion::meanRotation(const RingShape& shape) const 
   const double* __restrict__ point = shape.points.data();
   const auto along = [&](int i) { return rest[2 * i] * point[2 * i] + rest[2 * i + 1] * point[2 * i + 1]; };
   const auto across = [&](int i) { return rest[2 * i] * point[2 * i + 1] - rest[2 * i + 1] * point[2 * i]; };
-  double sum = 0.0;
-  double large = 0.0;  // angles; as wide as the other numbers, for the vectors
-#pragma omp simd reduction(+ : sum, large)
-  for (int i = 0; i < n; ++i)
+  const auto small_angles = [&](int i, double* terms)
   {
-    large += std::abs(across(i)) < SMALL_TANGENT * along(i) ? 0.0 : 1.0;
-    sum += smallAngle(across(i) / along(i));
-  }
+    terms[0] = smallAngle(across(i) / along(i));
+    terms[1] = std::abs(across(i)) < SMALL_TANGENT * along(i) ? 0.0 : 1.0;  // as wide as an angle, for the vectors
+  };
+  auto [sum, large] = blockSums<2>(0, n, small_angles);
   if (large > 0.0)
   {
     sum = 0.0;
@@ -69,15 +68,13 @@ HJT_VECTOR_CLONES double CupTorsion::meanRotationRate(const RingShape& shape, co
   const int n = shape.solved;
   const double* __restrict__ point = shape.points.data();
   const double* __restrict__ speed = speeds.data();
-  double sum = 0.0;
-#pragma omp simd reduction(+ : sum)
-  for (int i = 0; i < n; ++i)
+  const auto rotation_rate = [&](int i)
   {
     const double x = point[2 * i];
     const double y = point[2 * i + 1];
-    sum += (x * speed[2 * i + 1] - y * speed[2 * i]) / (x * x + y * y);
-  }
-  return sum / n;
+    return (x * speed[2 * i + 1] - y * speed[2 * i]) / (x * x + y * y);
+  };
+  return blockSum(0, n, rotation_rate) / n;
 }
 
 double CupTorsion::torque(double rotation) const noexcept

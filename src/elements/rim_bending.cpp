@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "gear/angle.hpp"
+#include "gear/block_sums.hpp"
 #include "gear/vector_clones.hpp"
 
 namespace hjt
@@ -52,17 +53,15 @@ HJT_VECTOR_CLONES void RimBending::addMoments(const RingShape& shape, Scratch& s
   { return reference[2 * i] * direction[2 * i] + reference[2 * i + 1] * direction[2 * i + 1]; };
   const auto across = [&](int i)
   { return reference[2 * i] * direction[2 * i + 1] - reference[2 * i + 1] * direction[2 * i]; };
-  double energy = 0.0;
-  double large = 0.0;  // angles; as wide as the other numbers, for the vectors
-#pragma omp simd reduction(+ : energy, large)
-  for (int i = 0; i < n; ++i)
+  const auto bend = [&](int i, double* terms)
   {
     const double turn = smallAngle(across(i) / along(i));
     const double angle = turn - natural_angle[i];
-    large += std::abs(across(i)) < SMALL_TANGENT * along(i) ? 0.0 : 1.0;
     moment[i] = stiffness[i] * angle + race * turn;
-    energy += 0.5 * stiffness[i] * angle * angle + 0.5 * race * turn * turn;
-  }
+    terms[0] = 0.5 * stiffness[i] * angle * angle + 0.5 * race * turn * turn;
+    terms[1] = std::abs(across(i)) < SMALL_TANGENT * along(i) ? 0.0 : 1.0;  // as wide as an angle, for the vectors
+  };
+  auto [energy, large] = blockSums<2>(0, n, bend);
   if (large > 0.0)
   {
     energy = 0.0;

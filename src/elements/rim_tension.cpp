@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "elements/rim_tension.hpp"
 
+#include "gear/block_sums.hpp"
 #include "gear/vector_clones.hpp"
 
 namespace hjt
@@ -20,17 +21,15 @@ HJT_VECTOR_CLONES void RimTension::addForces(const RingShape& shape, const Drive
   const double* __restrict__ stiffness = stiffness_.data();
   double* __restrict__ segment = sum.segment.data();
   const double rest = rest_length_;
-  double energy = 0.0;
-#pragma omp simd reduction(+ : energy)
-  for (int i = 0; i < n; ++i)
+  const auto pull_segment = [&](int i)
   {
     const double stretch = length[i] - rest;
     const double pull = stiffness[i] * stretch;
     segment[2 * i] = pull * direction[2 * i];
     segment[2 * i + 1] = pull * direction[2 * i + 1];
-    energy += 0.5 * pull * stretch;
-  }
-  sum.energy += energy;
+    return 0.5 * pull * stretch;
+  };
+  sum.energy += blockSum(0, n, pull_segment);
   sum.addSegmentForces(n);
 }
 

@@ -2,6 +2,7 @@
 #include "elements/ring_damping.hpp"
 
 #include "elements/contact_ramp.hpp"
+#include "gear/block_sums.hpp"
 #include "gear/vector_clones.hpp"
 
 namespace hjt
@@ -33,6 +34,9 @@ HJT_VECTOR_CLONES void RingDamping::add(const Contact& contact, const RingRates&
   const double* normal = contact.normal.data();
   const double* depth = contact.depth.data();
   const double smoothing = smoothing_;
+  const double tension = tension_;
+  const double tooth = tooth_;
+  const double contact_strength = contact_;
   const auto stretch = [&](const double* rate, int i, int j) {
     return direction[2 * i] * (rate[2 * j] - rate[2 * i]) + direction[2 * i + 1] * (rate[2 * j + 1] - rate[2 * i + 1]);
   };
@@ -40,29 +44,29 @@ HJT_VECTOR_CLONES void RingDamping::add(const Contact& contact, const RingRates&
   { return normal[2 * i] * rate[2 * i] + normal[2 * i + 1] * rate[2 * i + 1]; };
   const double last_m = stretch(m, n - 1, shape.next(n - 1));
   const double last_o = stretch(o, n - 1, shape.next(n - 1));
-  double mm = tension_ * last_m * last_m;
-  double mo = tension_ * last_m * last_o;
-  double oo = tension_ * last_o * last_o;
-#pragma omp simd reduction(+ : mm, mo, oo)
-  for (int i = 0; i < n - 1; ++i)
+  const auto by_segment = [&](int i, double* terms)
   {
     const double stretch_m = stretch(m, i, i + 1);
     const double stretch_o = stretch(o, i, i + 1);
-    mm += tension_ * stretch_m * stretch_m;
-    mo += tension_ * stretch_m * stretch_o;
-    oo += tension_ * stretch_o * stretch_o;
-  }
-#pragma omp simd reduction(+ : mm, mo, oo)
-  for (int i = 0; i < n; ++i)
+    terms[0] = tension * stretch_m * stretch_m;
+    terms[1] = tension * stretch_m * stretch_o;
+    terms[2] = tension * stretch_o * stretch_o;
+  };
+  const auto by_tooth = [&](int i, double* terms)
   {
-    const double dashpot = contact_ * ContactRamp(depth[i], smoothing).tangent;
+    const double dashpot = contact_strength * ContactRamp(depth[i], smoothing).tangent;
     const double surface = point[2 * i] * normal[2 * i + 1] - point[2 * i + 1] * normal[2 * i];
     const double depth_m = surface - inward(m, i);
     const double depth_o = -inward(o, i);
-    mm += dashpot * depth_m * depth_m + tooth_ * (m[2 * i] * m[2 * i] + m[2 * i + 1] * m[2 * i + 1]);
-    mo += dashpot * depth_m * depth_o + tooth_ * (m[2 * i] * o[2 * i] + m[2 * i + 1] * o[2 * i + 1]);
-    oo += dashpot * depth_o * depth_o + tooth_ * (o[2 * i] * o[2 * i] + o[2 * i + 1] * o[2 * i + 1]);
-  }
+    terms[0] = dashpot * depth_m * depth_m + tooth * (m[2 * i] * m[2 * i] + m[2 * i + 1] * m[2 * i + 1]);
+    terms[1] = dashpot * depth_m * depth_o + tooth * (m[2 * i] * o[2 * i] + m[2 * i + 1] * o[2 * i + 1]);
+    terms[2] = dashpot * depth_o * depth_o + tooth * (o[2 * i] * o[2 * i] + o[2 * i + 1] * o[2 * i + 1]);
+  };
+  const auto [mm_segments, mo_segments, oo_segments] = blockSums<3>(0, n - 1, by_segment);
+  const auto [mm_teeth, mo_teeth, oo_teeth] = blockSums<3>(0, n, by_tooth);
+  const double mm = tension * last_m * last_m + mm_segments + mm_teeth;
+  const double mo = tension * last_m * last_o + mo_segments + mo_teeth;
+  const double oo = tension * last_o * last_o + oo_segments + oo_teeth;
   const double copies = shape.copies();
   friction.viscous(0, 0) += copies * mm;
   friction.viscous(0, 1) += copies * mo;
@@ -88,9 +92,6 @@ HJT_VECTOR_CLONES DashpotPower RingDamping::addForces(const RingShape& shape, co
   const double dashpot = contact_;
   const double smoothing = smoothing_;
   const double turning = speed[2 * n];
-  double dissipated = 0.0;
-  double supplied = 0.0;
-  double torque = 0.0;  // on the wave generator
   const auto stretch_rate = [&](int i, int j)
   {
     return direction[2 * i] * (speed[2 * j] - speed[2 * i]) +
@@ -106,14 +107,9 @@ HJT_VECTOR_CLONES DashpotPower RingDamping::addForces(const RingShape& shape, co
     out[2 * i + 1] += pull * direction[2 * i + 1] - pull_before * direction[2 * before + 1];
     return pull * rate;
   };
-  dissipated += add_segments(n - 1, 0, 1) + add_segments(n - 2, n - 1, 0);
-#pragma omp simd reduction(+ : dissipated)
-  for (int i = 1; i < n - 1; ++i)
-  {
-    dissipated += add_segments(i - 1, i, i + 1);
-  }
-#pragma omp simd reduction(+ : dissipated, supplied, torque)
-  for (int i = 0; i < n; ++i)
+  const double ends = add_segments(n - 1, 0, 1) + add_segments(n - 2, n - 1, 0);
+  const double by_segments = blockSum(1, n - 2, [&](int i) { return add_segments(i - 1, i, i + 1); });
+  const auto add_contact = [&](int i, double* terms)
   {
     const double vx = speed[2 * i];
     const double vy = speed[2 * i + 1];
@@ -123,12 +119,13 @@ HJT_VECTOR_CLONES DashpotPower RingDamping::addForces(const RingShape& shape, co
     const double push = strength * rate;
     out[2 * i] += push * normal[2 * i] - tooth * vx;
     out[2 * i + 1] += push * normal[2 * i + 1] - tooth * vy;
-    torque -= push * lever;
-    dissipated += push * rate + tooth * (vx * vx + vy * vy);
-    supplied += push * grows[i];
-  }
-  out[2 * n] += torque;
-  return { dissipated, supplied };
+    terms[0] = push * lever;
+    terms[1] = push * rate + tooth * (vx * vx + vy * vy);
+    terms[2] = push * grows[i];
+  };
+  const auto [torque, by_teeth, supplied] = blockSums<3>(0, n, add_contact);
+  out[2 * n] -= torque;  // on the wave generator
+  return { ends + by_segments + by_teeth, supplied };
 }
 
 void RingDamping::addTangent(const RingShape& shape, const Contact& contact, double scale,

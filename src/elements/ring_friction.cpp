@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "gear/angle.hpp"
+#include "gear/block_sums.hpp"
 #include "gear/vector_clones.hpp"
 
 namespace hjt
@@ -43,12 +44,8 @@ HJT_VECTOR_CLONES double InterfaceFriction::torque(const RingShape& shape, const
     const double across = y * (rate[2 * j] - rate[2 * h]) - x * (rate[2 * j + 1] - rate[2 * h + 1]);
     return force[i] * std::abs(across) / (x * x + y * y);  // by the rate at which the chord tilts
   };
-  double sum = lost(shape.previous(0), 0, 1) + lost(n - 2, n - 1, shape.next(n - 1));
-#pragma omp simd reduction(+ : sum)
-  for (int i = 1; i < n - 1; ++i)
-  {
-    sum += lost(i - 1, i, i + 1);
-  }
+  const double ends = lost(shape.previous(0), 0, 1) + lost(n - 2, n - 1, shape.next(n - 1));
+  const double sum = ends + blockSum(1, n - 2, [&](int i) { return lost(i - 1, i, i + 1); });
   return coefficient_ * slip_lever_ * shape.copies() * sum;
 }
 
@@ -67,13 +64,10 @@ HJT_VECTOR_CLONES double FlexingLoss::bendingRate(const RingShape& shape, const 
         direction[2 * i] * (rate[2 * j + 1] - rate[2 * i + 1]) - direction[2 * i + 1] * (rate[2 * j] - rate[2 * i]);
     return across / length[i];  // of the segment from tooth i to tooth j
   };
-  double sum = std::abs(moments[0] * (turning(0, 1) - turning(n - 1, 0))) +
-               std::abs(moments[n - 1] * (turning(n - 1, 0) - turning(n - 2, n - 1)));
-#pragma omp simd reduction(+ : sum)
-  for (int i = 1; i < n - 1; ++i)
-  {
-    sum += std::abs(moments[i] * (turning(i, i + 1) - turning(i - 1, i)));
-  }
+  const double ends = std::abs(moments[0] * (turning(0, 1) - turning(n - 1, 0))) +
+                      std::abs(moments[n - 1] * (turning(n - 1, 0) - turning(n - 2, n - 1)));
+  const double sum =
+      ends + blockSum(1, n - 2, [&](int i) { return std::abs(moments[i] * (turning(i, i + 1) - turning(i - 1, i))); });
   return 0.25 * TWO_PI * sum;
 }
 }  // namespace hjt

@@ -6,6 +6,7 @@
 #include "elements/contact_ramp.hpp"
 #include "elements/hertz_contact.hpp"
 #include "elements/race_fit.hpp"
+#include "gear/block_sums.hpp"
 #include "gear/vector_clones.hpp"
 
 namespace hjt
@@ -158,18 +159,16 @@ HJT_VECTOR_CLONES double WaveGeneratorContact::press(int solved, Scratch& scratc
     double* __restrict__ depth = scratch.depth.data();
     double* __restrict__ force = scratch.force.data();
     double* __restrict__ slope = scratch.slope.data();
-    double energy = 0.0;
-#pragma omp simd reduction(+ : energy)
-    for (int i = 0; i < solved; ++i)
+    const auto press_tooth = [&](int i)
     {
       const double pressed = depth[i] - gap[i];
       const auto contact = law(pressed);
       depth[i] = pressed;
       force[i] = stiffness[i] * contact.force;
       slope[i] = stiffness[i] * contact.tangent;
-      energy += stiffness[i] * contact.energy;
-    }
-    return energy;
+      return stiffness[i] * contact.energy;
+    };
+    return blockSum(0, solved, press_tooth);
   };
   return support_ == SupportKind::SPRINGS ? press_by([=](double depth) { return ContactRamp(depth, smoothing); }) :
                                             press_by([](double depth) { return HertzContact(depth); });
@@ -200,16 +199,16 @@ HJT_VECTOR_CLONES void WaveGeneratorContact::addForces(const RingShape& shape, c
   const double* __restrict__ normal = scratch.normal.data();
   const double* __restrict__ contact_force = scratch.force.data();
   double* __restrict__ teeth = sum.teeth.data();
-#pragma omp simd reduction(+ : torque)
-  for (int i = 0; i < n; ++i)
+  const auto push_tooth = [&](int i)
   {
     const double force = contact_force[i];
     const double nx = normal[2 * i];
     const double ny = normal[2 * i + 1];
     teeth[2 * i] += force * nx;
     teeth[2 * i + 1] += force * ny;
-    torque -= force * (point[2 * i] * ny - point[2 * i + 1] * nx);
-  }
+    return force * (point[2 * i] * ny - point[2 * i + 1] * nx);
+  };
+  torque -= blockSum(0, n, push_tooth);
   if (hasSag())
   {
     torque += scratch.force.dot(scratch.gap_rate);
@@ -233,9 +232,7 @@ HJT_VECTOR_CLONES void WaveGeneratorContact::addTangent(const RingShape& shape, 
   double* __restrict__ xy = tangent.diagonal.xy.data();
   double* __restrict__ yy = tangent.diagonal.yy.data();
   double* __restrict__ by_angle = tangent.wave_generator.data();
-  double by_angle_twice = 0.0;
-#pragma omp simd reduction(+ : by_angle_twice)
-  for (int i = 0; i < n; ++i)
+  const auto add_tooth = [&](int i)
   {
     const double x = point[2 * i];
     const double y = point[2 * i + 1];
@@ -256,8 +253,9 @@ HJT_VECTOR_CLONES void WaveGeneratorContact::addTangent(const RingShape& shape, 
     const double sideways = force * (1.0 - turn * reach);
     by_angle[2 * i] -= along * nx - sideways * ny;
     by_angle[2 * i + 1] -= along * ny + sideways * nx;
-    by_angle_twice += along * lever + sideways * reach;
-  }
+    return along * lever + sideways * reach;
+  };
+  double by_angle_twice = blockSum(0, n, add_tooth);
   if (hasSag())
   {
     // The gap changes with the wave generator's angle alone.

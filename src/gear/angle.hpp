@@ -7,6 +7,7 @@ namespace hjt
 {
 constexpr double PI = 3.14159265358979323846;
 constexpr double TWO_PI = 2.0 * PI;
+constexpr double DEGREE = PI / 180.0;
 
 /// Tangent up to which the series of `smallAngle` is good to full double precision.
 constexpr double SMALL_TANGENT = 0.02;

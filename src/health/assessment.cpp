@@ -12,7 +12,7 @@ namespace hjt
 {
 namespace
 {
-constexpr int LEAST_WINDOWS = 3;  // of which an outlier can be left out, and in a row for another level
+constexpr int LEAST_EVIDENCE = 3;  // of which an outlier can be left out, and in a row for another level
 }
 
 const char* levelName(HealthLevel level) noexcept
@@ -46,7 +46,7 @@ std::string whyNotJudged(const Assessment& assessment)
 
 Assessor::Assessor(const Parameters& parameters)
   : signatures_(loadSignatures(parameters.indicators.signatures))
-  , least_windows_(std::min(parameters.indicators.evidence_windows, LEAST_WINDOWS))
+  , least_windows_(std::min(parameters.indicators.evidence_windows, LEAST_EVIDENCE))
   , error_factor_(parameters.indicators.error_factor)
   , baseline_(parameters, signatures_)
   , patterns_(signatures_)

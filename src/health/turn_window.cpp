@@ -12,8 +12,8 @@ namespace hjt
 namespace
 {
 constexpr int MARKS_PER_TOOTH = 16;
-constexpr double MIN_TRAVEL = 1e-6;  // of the output, as a share of the nominal one [-]
-constexpr double FARTHEST = 1e15;    // place in marks; beyond it numbers do not tell one mark from the next
+constexpr double MIN_TRAVEL = 1e-6;      // of the output, as a share of the nominal one [-]
+constexpr double FARTHEST_PLACE = 1e15;  // place in marks; beyond it numbers do not tell one mark from the next
 }  // namespace
 
 TurnWindow::TurnWindow(const GearParameters& gear)
@@ -35,7 +35,7 @@ void TurnWindow::reset() noexcept
 void TurnWindow::update(double motor_angle, double torsion) noexcept
 {
   double place = direction_ * motor_angle * marks_per_radian_;
-  if (!(std::abs(place) < FARTHEST))
+  if (!(std::abs(place) < FARTHEST_PLACE))
   {
     reset();
     return;

@@ -10,9 +10,9 @@ namespace hjt
 {
 namespace
 {
-constexpr double LOAD_STEPS = 16.0;        // in the rated torque
-constexpr double NO_LOAD = 64.0;           // its node
-constexpr double TEMPERATURE_STEP = 10.0;  // [K]
+constexpr double LOAD_STEPS = 16.0;         // in the rated torque
+constexpr double NO_LOAD = 64.0;            // its node
+constexpr double TEMPERATURE_CLASS = 10.0;  // [K]
 
 /// The two nodes around a place on the grid, and what the upper one gets. A place that is a node but for rounding is
 /// one; NaN counts as the first.
@@ -51,7 +51,7 @@ void UsageHistory::clear() noexcept
 void UsageHistory::add(const DutyPhase& use) noexcept
 {
   const Share load(use.load_torque / load_step_ + NO_LOAD, LOADS);
-  const Share temperature((use.temperature - MIN_TEMPERATURE) / TEMPERATURE_STEP, TEMPERATURES);
+  const Share temperature((use.temperature - MIN_TEMPERATURE) / TEMPERATURE_CLASS, TEMPERATURES);
   const double travel = use.duration * use.motor_speed;
   for (std::size_t i = 0; i < 2; ++i)
   {
@@ -115,7 +115,7 @@ DutyCycle UsageHistory::duty() const
       if (node.time > 0.0)
       {
         duty.phases.push_back({ node.time, node.travel / node.time, (static_cast<double>(i) - NO_LOAD) * load_step_,
-                                MIN_TEMPERATURE + static_cast<double>(k) * TEMPERATURE_STEP });
+                                MIN_TEMPERATURE + static_cast<double>(k) * TEMPERATURE_CLASS });
       }
     }
   }

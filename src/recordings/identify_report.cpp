@@ -129,7 +129,7 @@ std::vector<ReportLine> linesOf(const IdentifiedPayload& found)
   return lines;
 }
 
-const std::vector<Column<IdentifiedJoint>> JOINT_COLUMNS{
+const std::vector<Column<IdentifiedJoint>> JOINT_TABLE{
   { "joint", &IdentifiedJoint::name, "joint" },
   { "signal", [](const IdentifiedJoint& joint) { return joint.left_out.identified.signal; }, "current, rms [A]" },
   { "configured", [](const IdentifiedJoint& joint) { return joint.left_out.configured.all; }, "as configured [A]" },
@@ -155,7 +155,7 @@ IdentifyReport reportOf(const Identified& identified)
   report.values.lines = { { "rows", "rows", identified.found.rows }, { "load", "load", identified.load } };
   const std::vector<ReportLine> payload = linesOf(*identified.payload);
   report.values.lines.insert(report.values.lines.end(), payload.begin(), payload.end());
-  report.values.tables = { { "joints", Table(JOINT_COLUMNS, identified.joints) } };
+  report.values.tables = { { "joints", Table(JOINT_TABLE, identified.joints) } };
   return report;
 }
 

@@ -27,7 +27,7 @@ namespace
 constexpr const char* WRENCH = "wrench";
 constexpr const char* PAYLOAD = "payload";
 /// Between two warnings of the same kind [s].
-constexpr double WARNING_PERIOD = 1.0;
+constexpr double ARM_WARNING_PERIOD = 1.0;
 
 /// Those of the drives as they start are waited for: so many rings would not keep up with the clock. Those of faults
 /// that come later are built beside the running arm.
@@ -108,7 +108,7 @@ ArmNode::ArmNode(ros::NodeHandle& node, const ArmDescription& arm, const std::ve
   , realtime_(requestRealtime(drives.front().realtime, loop_))
   , timing_publisher_(node, drives.front(), loop_)
   , reset_service_(node.advertiseService("reset", &ArmNode::reset, this))
-  , stop_timer_(node.createWallTimer(ros::WallDuration(WARNING_PERIOD), [this](const auto&) { tellOfStop(); }))
+  , stop_timer_(node.createWallTimer(ros::WallDuration(ARM_WARNING_PERIOD), [this](const auto&) { tellOfStop(); }))
 {
   for (std::size_t i = 0; i < arm.joints.size(); ++i)
   {
@@ -142,7 +142,7 @@ void ArmNode::receiveCommand(const trajectory_msgs::JointTrajectory& message)
 {
   if (advance_.stop_reason != nullptr)
   {
-    ROS_WARN_STREAM_THROTTLE(WARNING_PERIOD,
+    ROS_WARN_STREAM_THROTTLE(ARM_WARNING_PERIOD,
                              "Refused a trajectory on ~" << topics::COMMAND << ": protective stop; ~reset ends it");
     return;
   }
@@ -154,7 +154,7 @@ void ArmNode::receiveCommand(const trajectory_msgs::JointTrajectory& message)
                                  readTrajectory(message, description_, advance_.shown.read(), toSeconds(ahead), points);
   if (!errors.empty())
   {
-    ROS_WARN_STREAM_THROTTLE(WARNING_PERIOD, "Refused a trajectory on ~" << topics::COMMAND << ": " << errors);
+    ROS_WARN_STREAM_THROTTLE(ARM_WARNING_PERIOD, "Refused a trajectory on ~" << topics::COMMAND << ": " << errors);
     return;
   }
   advance_.motion.give(ArmMotion(std::move(points), ArmAccelerations::OF_CUBICS));
@@ -183,7 +183,7 @@ void ArmNode::receiveWrench(const geometry_msgs::WrenchStamped& message)
   }
   if (!errors.empty())
   {
-    ROS_WARN_STREAM_THROTTLE(WARNING_PERIOD, "Refused a wrench on ~" << WRENCH << ": " << errors);
+    ROS_WARN_STREAM_THROTTLE(ARM_WARNING_PERIOD, "Refused a wrench on ~" << WRENCH << ": " << errors);
     return;
   }
   advance_.wrench.give(wrench);
@@ -195,7 +195,7 @@ void ArmNode::receivePayload(const geometry_msgs::Inertia& message)
   const std::string errors = payloadErrors(payload);
   if (!errors.empty())
   {
-    ROS_WARN_STREAM_THROTTLE(WARNING_PERIOD, "Refused a payload on ~" << PAYLOAD << ": " << errors);
+    ROS_WARN_STREAM_THROTTLE(ARM_WARNING_PERIOD, "Refused a payload on ~" << PAYLOAD << ": " << errors);
     return;
   }
   advance_.payload.give(payload);
@@ -214,10 +214,11 @@ void ArmNode::receiveTemperature(const sensor_msgs::Temperature& message)
   // Written so that NaN fails.
   if (!(message.temperature >= MIN_TEMPERATURE && message.temperature <= MAX_TEMPERATURE))
   {
-    ROS_WARN_STREAM_THROTTLE(
-        WARNING_PERIOD, "Refused a temperature on ~"
-                            << topics::JOINT_TEMPERATURES << ": " << numberText(message.temperature)
-                            << " [degC] is out of range, allowed: " << rangeText({ MIN_TEMPERATURE, MAX_TEMPERATURE }));
+    ROS_WARN_STREAM_THROTTLE(ARM_WARNING_PERIOD, "Refused a temperature on ~"
+                                                     << topics::JOINT_TEMPERATURES << ": "
+                                                     << numberText(message.temperature)
+                                                     << " [degC] is out of range, allowed: "
+                                                     << rangeText({ MIN_TEMPERATURE, MAX_TEMPERATURE }));
     return;
   }
   const Stamp stamp = stampOr(message.header.stamp, ros::Time::now());

@@ -17,7 +17,7 @@ using trajectory_msgs::JointTrajectory;
 using trajectory_msgs::JointTrajectoryPoint;
 
 constexpr double SAME_PLACE = 0.01;       // that a point at time 0 may be from the present set point [rad]
-constexpr std::size_t MAX_NAMES = 300;    // of the names in a message that are shown [bytes]
+constexpr std::size_t MAX_SHOWN = 300;    // of the names in a message that are shown [bytes]
 constexpr double SPEED_TOLERANCE = 1e-6;  // [-]
 
 /// Place of each joint of the arm in the message. @returns what is wrong with its names, or nothing.
@@ -30,7 +30,7 @@ std::string placesOf(const JointTrajectory& message, const ArmDescription& arm, 
     if (std::count(found, names.end(), joint.name) != 1)
     {
       return (found == names.end() ? "it lacks " : "it names more than once ") + joint.name + "; it names " +
-             printable(joined(names, ", "), MAX_NAMES);
+             printable(joined(names, ", "), MAX_SHOWN);
     }
     places.push_back(static_cast<std::size_t>(found - names.begin()));
   }

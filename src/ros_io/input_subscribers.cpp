@@ -6,15 +6,10 @@
 #include "messages/time.hpp"
 #include "messages/topics.hpp"
 #include "ros_io/input_topics.hpp"
+#include "ros_io/warning_period.hpp"
 
 namespace hjt
 {
-namespace
-{
-/// Between two warnings of the same kind [s].
-constexpr double WARNING_PERIOD = 5.0;
-}  // namespace
-
 InputSubscribers::InputSubscribers(ros::NodeHandle& node, const Twin& twin, Inbox& inbox)
   : names_(twin.parameters().joint.name), inbox_(inbox), faults_(InputTopics{ node, too_large_ }, twin, inbox)
 {

@@ -10,6 +10,7 @@
 #include "messages/time.hpp"
 #include "messages/topics.hpp"
 #include "ros_io/node_surface_source.hpp"
+#include "ros_io/warning_period.hpp"
 #include "tracking/effort.hpp"
 
 namespace hjt
@@ -18,8 +19,6 @@ namespace
 {
 using diagnostic_msgs::DiagnosticStatus;
 
-/// Between two warnings of the same kind [s].
-constexpr double WARNING_PERIOD = 5.0;
 /// Report the telemetry as stopped after this long without a row [s].
 constexpr double STOPPED_AFTER = 0.5;
 /// Warn when a stamp differs from the clock by more than this [s].

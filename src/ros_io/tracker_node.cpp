@@ -17,13 +17,12 @@
 #include "messages/topics.hpp"
 #include "ros_io/input_topics.hpp"
 #include "ros_io/joint_name.hpp"
+#include "ros_io/warning_period.hpp"
 
 namespace hjt
 {
 namespace
 {
-/// Between two warnings of the same kind [s].
-constexpr double WARNING_PERIOD = 5.0;
 /// Between two verdicts [s].
 constexpr double VERDICT_PERIOD = 1.0;
 /// Wait for the first message before it is missed [s].

@@ -56,11 +56,9 @@ struct alignas(32) SchurFactors
   double inverse_pivots[SCHUR];
 };
 
-/// Code for one kind of processor.
+/// Code for one kind of processor. What is solved has the same bits by each.
 struct Kernels
 {
-  const char* name;  ///< e.g. "AVX2": the last bits of what is solved differ from kind to kind
-
   void (*factor)(const Layout& layout, const Tangent& tangent, double* factors, const Sums& sums);
 
   /// Eliminates right-hand sides `b` (a pointer each to 2 rows a tooth; [0], [1], [2] for 1, 2, 3 of them).
@@ -82,7 +80,7 @@ struct Kernels
 
 extern const Kernels BASELINE;  ///< for every processor of the architecture
 #ifdef HJT_AVX2
-extern const Kernels AVX2;    ///< x86-64 with AVX2 and FMA
+extern const Kernels AVX2;    ///< x86-64 with AVX2
 extern const Kernels AVX512;  ///< with AVX-512 VL and DQ: the same vectors, twice the registers
 #endif
 

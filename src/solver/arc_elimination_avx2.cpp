@@ -5,6 +5,6 @@ namespace hjt
 {
 namespace arcs
 {
-const Kernels AVX2 = kernels("AVX2");
+const Kernels AVX2 = kernels();
 }  // namespace arcs
 }  // namespace hjt

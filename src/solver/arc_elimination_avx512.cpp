@@ -5,6 +5,6 @@ namespace hjt
 {
 namespace arcs
 {
-const Kernels AVX512 = kernels("AVX512");
+const Kernels AVX512 = kernels();
 }  // namespace arcs
 }  // namespace hjt

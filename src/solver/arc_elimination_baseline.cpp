@@ -5,7 +5,7 @@ namespace hjt
 {
 namespace arcs
 {
-const Kernels BASELINE = kernels("BASELINE");
+const Kernels BASELINE = kernels();
 
 const Kernels& fastest() noexcept
 {
@@ -14,7 +14,7 @@ const Kernels& fastest() noexcept
   {
     return AVX512;
   }
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+  if (__builtin_cpu_supports("avx2"))
   {
     return AVX2;
   }

@@ -365,10 +365,11 @@ void backward(const Layout& where, const double* factors, const double* rows, co
   }
 }
 
-constexpr Kernels kernels(const char* name)
+constexpr Kernels kernels()
 {
-  return { name,        factor,    { forward<1>, forward<2>, forward<3> }, { backward<1>, backward<2>, backward<3> },
-           factorSchur, solveSchur };
+  return {
+    factor, { forward<1>, forward<2>, forward<3> }, { backward<1>, backward<2>, backward<3> }, factorSchur, solveSchur
+  };
 }
 }  // namespace
 }  // namespace arcs

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "gear/block_sums.hpp"
 #include "gear/vector_clones.hpp"
 
 namespace hjt
@@ -112,18 +113,16 @@ public:
     const double motor = old_speeds[0];
     const double output = old_speeds[1];
     const double least = SLIDING * width;
-    double by_motor = 0.0;
-    double by_output = 0.0;
-#pragma omp simd reduction(+ : by_motor, by_output)
-    for (int j = 0; j < count_; ++j)
+    const auto take_term = [&](int j, double* terms)
     {
       sense_[j] = std::copysign(1.0, m[j] * motor + o[j] * output);
       by_motor_[j] = sense_[j] * m[j];
       by_output_[j] = sense_[j] * o[j];
       least_[j] = least * (std::abs(m[j]) + follow * std::abs(o[j]));
-      by_motor += c[j] * by_motor_[j];
-      by_output += c[j] * by_output_[j];
-    }
+      terms[0] = c[j] * by_motor_[j];
+      terms[1] = c[j] * by_output_[j];
+    };
+    const auto [by_motor, by_output] = fewSums<2>(count_, take_term);
     strength = { by_motor, by_output };
     return true;
   }
@@ -181,13 +180,7 @@ HJT_VECTOR_CLONES DryFriction::Slopes DryFriction::slopes(const FrictionTerms& t
   const double output = v[1];
   const double width = width_;
   Slopes sum;
-  double first_0 = 0.0;
-  double first_1 = 0.0;
-  double second_00 = 0.0;
-  double second_01 = 0.0;
-  double second_11 = 0.0;
-#pragma omp simd reduction(+ : first_0, first_1, second_00, second_01, second_11)
-  for (int j = 0; j < count; ++j)
+  const auto slope_of = [&](int j, double* terms)
   {
     const double m = by_motor[j];
     const double o = by_output[j];
@@ -196,12 +189,13 @@ HJT_VECTOR_CLONES DryFriction::Slopes DryFriction::slopes(const FrictionTerms& t
     const double inverse = 1.0 / std::sqrt(slip * slip + e * e);
     const double force = strength[j] * slip * inverse;
     const double stiffness = strength[j] * inverse * (e * inverse) * (e * inverse);
-    first_0 += force * m;
-    first_1 += force * o;
-    second_00 += stiffness * m * m;
-    second_01 += stiffness * m * o;
-    second_11 += stiffness * o * o;
-  }
+    terms[0] = force * m;
+    terms[1] = force * o;
+    terms[2] = stiffness * m * m;
+    terms[3] = stiffness * m * o;
+    terms[4] = stiffness * o * o;
+  };
+  const auto [first_0, first_1, second_00, second_01, second_11] = fewSums<5>(count, slope_of);
   sum.first = { first_0, first_1 };
   sum.second << second_00, second_01, second_01, second_11;
   return sum;

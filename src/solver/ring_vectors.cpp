@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "gear/block_sums.hpp"
 #include "gear/vector_clones.hpp"
 
 namespace hjt
@@ -16,7 +17,7 @@ HJT_VECTOR_CLONES double largest(const Eigen::VectorXd& values, int teeth) noexc
   const int n = 2 * teeth;
   const double* __restrict__ value = values.data();
   double most = 0.0;
-  double sum = 0.0;  // a comparison does not see what is not a number
+  double sum = 0.0;  // a comparison does not see what is not a number; its last bits are not used
 #pragma omp simd reduction(max : most) reduction(+ : sum)
   for (int i = 0; i < n; ++i)
   {
@@ -46,13 +47,7 @@ HJT_VECTOR_CLONES double dot(const Eigen::VectorXd& a, const Eigen::VectorXd& b,
   const int n = 2 * teeth;
   const double* first = a.data();
   const double* second = b.data();
-  double sum = 0.0;
-#pragma omp simd reduction(+ : sum)
-  for (int i = 0; i < n; ++i)
-  {
-    sum += first[i] * second[i];
-  }
-  return sum;
+  return blockSum(0, n, [&](int i) { return first[i] * second[i]; });
 }
 
 HJT_VECTOR_CLONES int signsChanged(const Eigen::VectorXd& a, const Eigen::VectorXd& b, int teeth) noexcept

@@ -13,7 +13,7 @@ namespace hjt
 {
 namespace
 {
-constexpr int POSITIONS = 4;  // of a tooth pitch, for the efficiency
+constexpr int EFFICIENCY_POSITIONS = 4;  // of a tooth pitch, for the efficiency
 
 std::string shortNumber(double value)
 {
@@ -106,7 +106,8 @@ std::vector<std::string> gearWarnings(const Parameters& parameters)
                        "gear has some 5 % of its teeth in contact");
   }
   if (const LossRow row =
-          analyseLosses(sound, { sound.life.rated_speed }, { sound.life.rated_torque }, POSITIONS, nullptr).front();
+          analyseLosses(sound, { sound.life.rated_speed }, { sound.life.rated_torque }, EFFICIENCY_POSITIONS, nullptr)
+              .front();
       row.status.ok() && (row.gear_efficiency < 0.55 || row.gear_efficiency > 0.92))
   {
     warnings.push_back("efficiency of the gear at life.rated_torque = " + shortNumber(sound.life.rated_torque) +

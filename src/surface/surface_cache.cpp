@@ -16,7 +16,6 @@
 #include "base/whole_file.hpp"
 #include "params/field_table.hpp"
 #include "params/variants.hpp"
-#include "solver/arc_elimination.hpp"
 #include "surface/ball_builder.hpp"
 #include "surface/cache_folder.hpp"
 #include "surface/deviation_builder.hpp"
@@ -30,16 +29,16 @@ namespace hjt
 namespace
 {
 /// First line of a file, before the hash of the code that made it.
-constexpr const char* FORMAT = "harmonic_joint_twin response surface ";
+constexpr const char* FIRST_WORDS = "harmonic_joint_twin response surface ";
 const std::string NO_SURFACE = "no response surface: ";
 const std::string FULL_RING_INSTEAD = "; the twin solves the full ring at every step";
 
-/// What a file must begin with: all that its table depends on. Code, the kind of processor, whose vectors round in
-/// their own way, parameters, faults, and what stands in files that the parameters name.
+/// What a file must begin with: all that its table depends on. Code, parameters, faults, and what stands in files that
+/// the parameters name.
 std::string header(const Parameters& parameters, const std::string& faults)
 {
-  std::string text = FORMAT + std::string(surfaceSourceHash()) + ' ' + arcs::fastest().name + '\n' +
-                     describeSurfaceParameters(parameters, !faults.empty());
+  std::string text =
+      FIRST_WORDS + std::string(surfaceSourceHash()) + '\n' + describeSurfaceParameters(parameters, !faults.empty());
   text += faults + '\n';
   for (const std::string& path :
        { parameters.manufacture.flexspline_pitch.table, parameters.manufacture.circular_spline_pitch.table })

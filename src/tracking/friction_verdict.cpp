@@ -45,11 +45,6 @@ constexpr double MAX_ARM_FRICTION = 2.5;
 
 constexpr std::size_t MIN_POINTS = 3;
 
-std::string rounded(double value, int digits)
-{
-  return fixedText(value, digits);
-}
-
 /// The mean friction one way is against the motion in every drive. 0: so it is; else the way it is not.
 double impossibleWay(const std::vector<FrictionPoint>& points)
 {
@@ -96,7 +91,7 @@ Gap whyNone(const std::vector<FrictionPoint>& points, const JointEvidence& evide
   if (evidence.friction().blocks().count() < MIN_POINTS)
   {
     return { Reason::TOO_SHORT, "Too few rows show the joint's friction: it moves steadily for less than " +
-                                    rounded(MIN_POINTS * FrictionBlocks::LENGTH, 0) + " s." };
+                                    fixedText(MIN_POINTS * FrictionBlocks::LENGTH, 0) + " s." };
   }
   return { Reason::SOUND, "" };
 }
@@ -106,14 +101,14 @@ Gap whyImpossible(const FrictionFactor& factor, const std::vector<FrictionPoint>
 {
   if (factor.is_below_faults && factor.value < -LEAST_OF_FAULTS)
   {
-    return { Reason::EFFORT_NOT_CURRENT, "Friction pushes the joint along (" + rounded(factor.value, 2) +
+    return { Reason::EFFORT_NOT_CURRENT, "Friction pushes the joint along (" + fixedText(factor.value, 2) +
                                              " times the expected one): effort or angle of this joint is of the "
                                              "opposite sign." };
   }
   if (factor.is_below_faults && std::abs(factor.value) < NO_FRICTION)
   {
     return { Reason::NO_FRICTION,
-             "The effort holds no friction (" + rounded(factor.value, 2) +
+             "The effort holds no friction (" + fixedText(factor.value, 2) +
                  " times the expected one): it is a modelled or commanded torque, or something else carries the "
                  "joint." };
   }
@@ -196,7 +191,8 @@ std::string factorText(const FrictionFactor& factor)
 
 std::string factorText(const JudgedFriction& friction)
 {
-  return rounded(friction.factor, 2) + " [" + rounded(friction.lower, 2) + ", " + rounded(friction.upper, 2) + "]";
+  return fixedText(friction.factor, 2) + " [" + fixedText(friction.lower, 2) + ", " + fixedText(friction.upper, 2) +
+         "]";
 }
 
 const char* wrongLoad(LoadOrigin load)
@@ -299,8 +295,8 @@ std::string frictionText(const FrictionFactor& factor, const JointEvidence& evid
       "Friction is " +
       factorText(JudgedFriction{ factor.value / shared, factor.low() / shared, factor.high() / shared, true }) +
       " times " + referenceText(factor.reference) +
-      (shared == 1.0 ? "" : ", apart from the " + rounded(shared, 2) + " times that the arm's joints share") +
-      " (an interval that reaches into " + rounded(1.0 - less, 2) + " to " + rounded(1.0 + more, 2) +
+      (shared == 1.0 ? "" : ", apart from the " + fixedText(shared, 2) + " times that the arm's joints share") +
+      " (an interval that reaches into " + fixedText(1.0 - less, 2) + " to " + fixedText(1.0 + more, 2) +
       " counts as sound).";
   if (finding.level != VerdictLevel::OK)
   {
@@ -316,13 +312,13 @@ std::string frictionText(const FrictionFactor& factor, const JointEvidence& evid
     text += " The reference did not judge this joint's friction; the twin is taken in its place.";
   }
   const std::vector<FrictionPoint> points = evidence.friction().points();
-  text += " At " + rounded(evidence.temperature(), 0) + " degC (" + temperatureSource(evidence) + ")";
+  text += " At " + fixedText(evidence.temperature(), 0) + " degC (" + temperatureSource(evidence) + ")";
   text += std::isfinite(context.own.temperature) ?
-              ", the reference at " + rounded(context.own.temperature, 0) +
+              ", the reference at " + fixedText(context.own.temperature, 0) +
                   " degC; the twin's law of friction makes up for the difference." :
               ".";
-  return text + " Measured at " + std::to_string(points.size()) + " speeds from " + rounded(points.front().speed, 2) +
-         " to " + rounded(points.back().speed, 2) + " rad/s.";
+  return text + " Measured at " + std::to_string(points.size()) + " speeds from " + fixedText(points.front().speed, 2) +
+         " to " + fixedText(points.back().speed, 2) + " rad/s.";
 }
 
 void nameCauses(const SignatureSet& signatures, double way, Finding& finding)
@@ -358,7 +354,7 @@ Finding judgeFriction(const JointEvidence& evidence, const JointContext& context
   if (std::abs(std::log(context.arm_friction)) > std::log(MAX_ARM_FRICTION))
   {
     finding.reason = Reason::COMMON_FRICTION;
-    verdict.friction_text = "The friction of the whole arm is " + rounded(context.arm_friction, 2) +
+    verdict.friction_text = "The friction of the whole arm is " + fixedText(context.arm_friction, 2) +
                             " times the reference's, more than temperature makes: gain or unit of the currents are not "
                             "the configured ones.";
     return finding;

@@ -12,11 +12,6 @@ namespace hjt
 {
 namespace
 {
-std::string rounded(double value, int digits)
-{
-  return fixedText(value, digits);
-}
-
 std::string whole(double value)
 {
   return fixedText(value, 0);
@@ -24,7 +19,8 @@ std::string whole(double value)
 
 std::string wrongLoadText(const Verdict& verdict)
 {
-  return "Of " + rounded(verdict[Figure::CURRENT], 2) + " A rms " + rounded(verdict[Figure::CURRENT_UNEXPLAINED], 2) +
+  return "Of " + fixedText(verdict[Figure::CURRENT], 2) + " A rms " +
+         fixedText(verdict[Figure::CURRENT_UNEXPLAINED], 2) +
          " A are neither predicted nor explained by another friction or a constant: " + wrongLoad(verdict.load);
 }
 
@@ -37,10 +33,10 @@ std::string wrongEffortText(double current, double predicted, Reason reason)
       return "The recorded effort goes against the current that this motion takes: effort or angle of this joint is "
              "of the opposite sign, or its load is another than configured (mounting, payload).";
     }
-    return "The recorded effort is " + rounded(current, 2) + " A rms where this motion takes some " +
-           rounded(predicted, 2) + " A: it is not the motor's current.";
+    return "The recorded effort is " + fixedText(current, 2) + " A rms where this motion takes some " +
+           fixedText(predicted, 2) + " A: it is not the motor's current.";
   }
-  return "The recorded effort is " + rounded(current / predicted, 1) +
+  return "The recorded effort is " + fixedText(current / predicted, 1) +
          " times the current that this motion takes: it is expected in A, not in N.m; or telemetry.torque_per_current "
          "is wrong.";
 }
@@ -56,7 +52,7 @@ std::string reasonText(const Verdict& verdict, Reason reason)
     case Reason::EFFORT_TOO_LARGE:
       return wrongEffortText(verdict[Figure::CURRENT], verdict[Figure::CURRENT_PREDICTED], reason);
     case Reason::COMMON_FRICTION:
-      return "The friction of the whole arm is " + rounded(verdict[Figure::FRICTION_OF_ARM], 2) +
+      return "The friction of the whole arm is " + fixedText(verdict[Figure::FRICTION_OF_ARM], 2) +
              " times that of the reference: its signals are of another temperature or gain.";
     case Reason::NO_MOTOR_ANGLE:
       return "One angle a joint: torsion needs encoders at the motor and at the output.";
@@ -71,7 +67,7 @@ std::string reasonText(const Verdict& verdict, Reason reason)
       return "No reference was given, and the recording is too short to learn one (" +
              whole(verdict[Figure::WINDOWS_NEEDED]) + " windows at one operating point).";
     case Reason::TORSION_NO_DRIVE:
-      return "Torsion is " + rounded(verdict[Figure::TORSION_OF_TWIN], 2) +
+      return "Torsion is " + fixedText(verdict[Figure::TORSION_OF_TWIN], 2) +
              " times the twin's, which no fault makes: load, or the angles of motor and joint, are not this joint's, "
              "or "
              "of other signs.";
@@ -132,17 +128,18 @@ std::string ratioText(const Verdict& verdict, const RatioText& ratio, const Find
   const double lowest = std::max(0.0, 1.0 - ratio.tolerance);
   const double highest = 1.0 + ratio.tolerance;
   int digits = 2;
-  while (digits < 6 && finding.level != VerdictLevel::OK &&
-         (rounded(value, digits) == rounded(lowest, digits) || rounded(value, digits) == rounded(highest, digits)))
+  while (
+      digits < 6 && finding.level != VerdictLevel::OK &&
+      (fixedText(value, digits) == fixedText(lowest, digits) || fixedText(value, digits) == fixedText(highest, digits)))
   {
     ++digits;
   }
-  const std::string sound = rounded(lowest, digits) + " to " + rounded(highest, digits) + " counts as sound";
+  const std::string sound = fixedText(lowest, digits) + " to " + fixedText(highest, digits) + " counts as sound";
   std::string text =
-      std::string(ratio.what) + " is " + rounded(ratio.to_twin, digits) + " times the twin's" +
-      (known ? " and " + rounded(ratio.to_own, digits) + " times this joint's own when it was sound" : "") +
+      std::string(ratio.what) + " is " + fixedText(ratio.to_twin, digits) + " times the twin's" +
+      (known ? " and " + fixedText(ratio.to_own, digits) + " times this joint's own when it was sound" : "") +
       (ratio.of_arm == 1.0 ? "" :
-                             ", " + rounded(value, digits) + " times once the " + rounded(ratio.of_arm, digits) +
+                             ", " + fixedText(value, digits) + " times once the " + fixedText(ratio.of_arm, digits) +
                                  " times of the whole arm are taken out") +
       " (" + sound + ").";
   if (finding.level != VerdictLevel::OK)
@@ -165,13 +162,13 @@ std::string torsionText(const Verdict& verdict, const Finding& finding)
   const double share = verdict[Figure::ENCODER_SHARE];
   if (std::isfinite(alike) && finding.level != VerdictLevel::OK)
   {
-    text += " An error of the output encoder once a turn, of amplitude " + rounded(1e3 * alike, 2) +
+    text += " An error of the output encoder once a turn, of amplitude " + fixedText(1e3 * alike, 2) +
             " mrad or more, would look the same: sensors.output_eccentricity is " +
-            rounded(1e3 * verdict[Figure::ENCODER_ECCENTRICITY], 2) + " mrad.";
+            fixedText(1e3 * verdict[Figure::ENCODER_ECCENTRICITY], 2) + " mrad.";
   }
   if (share > 0.01)
   {
-    text += " " + rounded(share, 2) +
+    text += " " + fixedText(share, 2) +
             " of the tolerance is for the encoders' eccentricity; a recording of "
             "the sound joint (--reference) would narrow it.";
   }
@@ -188,7 +185,7 @@ std::string signalsText(const Verdict& verdict, const Finding& finding)
     return whole(verdict[Figure::WINDOWS]) + " windows compared with " + reference + ": nothing out of the ordinary.";
   }
   std::string text =
-      "From " + rounded(verdict[Figure::ALARM_TIME], 1) + " s on the signals depart from " + reference +
+      "From " + fixedText(verdict[Figure::ALARM_TIME], 1) + " s on the signals depart from " + reference +
       (finding.causes.empty() ? ", cause not known" : ". Most likely cause: " + causeNames(finding, ", ")) +
       ". Strongest: ";
   const auto describe = [](const Evidence& evidence)
@@ -238,9 +235,9 @@ std::string hiddenText(const Verdict& verdict, Hidden hidden)
       return "How friction depends on the speed: fewer than three speeds.";
     case Hidden::LOADED:
       return "Anything that shows under load only, such as stiffness and cracks: the load varies by " +
-             rounded(verdict[Figure::MOST_LOAD] - verdict[Figure::LEAST_LOAD], 1) + " N.m.";
+             fixedText(verdict[Figure::MOST_LOAD] - verdict[Figure::LEAST_LOAD], 1) + " N.m.";
     case Hidden::HIGH_ORDERS:
-      return "Lines above order " + rounded(verdict[Figure::HIGHEST_ORDER], 1) +
+      return "Lines above order " + fixedText(verdict[Figure::HIGHEST_ORDER], 1) +
              " of the motor's turn at the highest speed: the recording has too few rows a turn to show them; "
              "slower motion shows more.";
   }

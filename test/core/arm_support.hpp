@@ -23,6 +23,8 @@ namespace hjt
 {
 using Angles = std::array<double, 6>;
 
+constexpr std::size_t ELBOW = 2;  // its place among the joints
+
 inline ArmDescription shipped(const std::string& name)
 {
   return readArmDescription(HJT_TEST_CONFIG_DIR "/arms/" + name + ".yaml");

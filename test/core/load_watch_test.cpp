@@ -31,7 +31,6 @@ JudgedJoints judgedJoints()
 const JudgedJoints JUDGED = judgedJoints();
 const Payload CARRIED{ 3.0, { 0.0, 0.03, 0.08 } };
 constexpr double LONG = 40.0;  // more than the motion after which a payload is looked for [s]
-constexpr std::size_t ELBOW = 2;
 
 /// That arm, configured with that payload.
 ArmDescription configured(ArmDescription arm, const Payload& payload)
@@ -246,7 +245,6 @@ TEST(LoadWatch, LeavesOutAJointWithoutEfforts)
 /// A wall, a ceiling, a stand that is tilted.
 TEST(LoadWatch, FindsHowEveryShippedArmIsMounted)
 {
-  constexpr double DEGREE = PI / 180.0;
   for (const auto& [name, tilt] :
        { std::pair("ur3", 90.0), std::pair("ur3e", 180.0), std::pair("ur5", 15.0), std::pair("ur5e", 135.0),
          std::pair("ur10", 90.0), std::pair("ur10e", 50.0), std::pair("ur16e", 15.0) })

@@ -10,6 +10,7 @@
 
 #include "arm/arm_configuration.hpp"
 #include "arm/recording_fit.hpp"
+#include "test/core/arm_support.hpp"
 #include "test/support/allocation_count.hpp"
 
 namespace hjt
@@ -20,7 +21,6 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 
 constexpr std::size_t JOINTS = 6;
-constexpr std::size_t ELBOW = 2;
 constexpr double RATIO = 101.0;
 
 /// What a made-up UR5 gives of one joint at one time.

@@ -27,7 +27,6 @@
 #include "harmonic_joint_twin/twin/twin.hpp"
 #include "model/joint_model.hpp"
 #include "params/field_table.hpp"
-#include "solver/arc_elimination.hpp"
 #include "surface/cache_folder.hpp"
 #include "surface/faulty_surface.hpp"
 #include "surface/surface_builder.hpp"
@@ -328,28 +327,6 @@ TEST(SurfaceCache, RefusesATableThatIsNoneUnderTheRightHash)
   {
     EXPECT_FALSE(is_taken_with(place, number)) << place << ": " << number;
   }
-}
-
-/// The bits of a table are those of one kind of processor (see cyclic_solver_test): another one builds its own.
-TEST(SurfaceCache, IsOfOneKindOfProcessor)
-{
-  surface();
-  std::ifstream file(surfaceCacheFile(surfaceParameters(), cacheDirectory()), std::ios::binary);
-  std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  const std::string kind = std::string(" ") + arcs::fastest().name + "\n";
-  const std::size_t place = bytes.find(kind);
-  ASSERT_LT(place, bytes.find('\n'));
-  bytes.resize(bytes.size() - sizeof(std::uint64_t));
-  const auto is_taken = [&](const std::string& other)
-  {
-    std::string changed = bytes;
-    changed.replace(place, kind.size(), other);
-    const std::uint64_t sum = tableChecksum(changed);
-    changed.append(reinterpret_cast<const char*>(&sum), sizeof(sum));
-    return isTaken([&](const std::string& path) { std::ofstream(path, std::ios::binary) << changed; });
-  };
-  EXPECT_TRUE(is_taken(kind));
-  EXPECT_FALSE(is_taken(" another\n"));
 }
 
 /// A parameter is in the key unless the table of fields says that it shapes no surface.

@@ -20,7 +20,6 @@ namespace hjt
 {
 namespace
 {
-constexpr double DEGREE = PI / 180.0;
 constexpr double WINDOW = 20.0;           // [s]
 constexpr double SLOPE = 300.0 * DEGREE;  // of a trapezoid [rad/s^2]
 

@@ -31,7 +31,7 @@ def has_avx2():
         flags = set(pathlib.Path("/proc/cpuinfo").read_text(encoding="utf-8").split())
     except OSError:
         return False
-    return {"avx2", "fma"} <= flags
+    return "avx2" in flags
 
 
 def count(benchmark):

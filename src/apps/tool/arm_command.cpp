@@ -11,11 +11,11 @@ namespace hjt
 {
 namespace
 {
-using Options = Printed<ArmRunOptions>;
+using PrintedArmRun = Printed<ArmRunOptions>;
 
-int run(const Options& given)
+int runArm(const PrintedArmRun& given)
 {
-  Options options = given;
+  PrintedArmRun options = given;
   options.watch = consoleWatch();
   const ArmRun found = runArm(options);
   if (found.joints.empty())
@@ -32,7 +32,7 @@ int run(const Options& given)
   return reportWritten(options.out, options.json);
 }
 
-void declare(Command& command, Options& options)
+void declare(Command& command, PrintedArmRun& options)
 {
   command
       .add("motion", options.motion,
@@ -58,6 +58,6 @@ void declare(Command& command, Options& options)
 }
 
 const Subcommand ARM{ Subject::JOINT, "arm", "run a whole arm in closed loop: its drives, links and controller",
-                      declare, run };
+                      declare, runArm };
 }  // namespace
 }  // namespace hjt

@@ -13,7 +13,7 @@ namespace hjt
 {
 namespace
 {
-using Options = Judging<ComparisonOptions>;
+using JudgedComparison = Judging<ComparisonOptions>;
 
 void printArm(const ComparedRecording& compared)
 {
@@ -44,9 +44,9 @@ void printJoint(const ComparedRecording& compared)
                        { "", "measured less predicted current, rms", joint.residual_rms, "A" } });
 }
 
-int run(const Options& given)
+int runCompare(const JudgedComparison& given)
 {
-  Options options = given;
+  JudgedComparison options = given;
   options.watch = consoleWatch();
   const ComparedRecording compared = compare(options);
   if (interruptSignal() != 0)
@@ -66,7 +66,7 @@ int run(const Options& given)
   return exitCodeOf(options.fail_on, compared.health, compared.is_judged);
 }
 
-void declare(Command& command, Options& options)
+void declare(Command& command, JudgedComparison& options)
 {
   addArmOptions(command, options, options.json);
   command
@@ -78,6 +78,6 @@ void declare(Command& command, Options& options)
 
 const Subcommand COMPARE{ Subject::RECORDING, "compare",
                           "compares a recorded joint or arm with the twin: verdict, figures and data as a page",
-                          declare, run };
+                          declare, runCompare };
 }  // namespace
 }  // namespace hjt

@@ -38,7 +38,8 @@ int faults(const CommonOptions& options)
   return EXIT_DONE;
 }
 
-const Subcommand FAULTS{ Subject::JOINT, "faults", "list the kinds of faults: size of severity 1, places, symptoms",
-                         addCommonOptions, faults };
+const Subcommand LIST_OF_FAULTS{ Subject::JOINT, "faults",
+                                 "list the kinds of faults: size of severity 1, places, symptoms", addCommonOptions,
+                                 faults };
 }  // namespace
 }  // namespace hjt

@@ -11,7 +11,7 @@ namespace hjt
 {
 namespace
 {
-struct Options : Printed<FollowOptions>
+struct PrintedFollow : Printed<FollowOptions>
 {
   std::string mode_name{ "motion" };
 };
@@ -20,9 +20,9 @@ const std::map<std::string, InputMode> MODES{ { "torque", InputMode::TORQUE },
                                               { "motion", InputMode::MOTION },
                                               { "observer", InputMode::OBSERVER } };
 
-int run(const Options& given)
+int runFollow(const PrintedFollow& given)
 {
-  Options options = given;
+  PrintedFollow options = given;
   options.mode = MODES.at(options.mode_name);
   options.watch = consoleWatch();
   const Followed followed = follow(options);
@@ -34,7 +34,7 @@ int run(const Options& given)
   return interruptSignal() == 0 ? EXIT_DONE : EXIT_BY_SIGNAL + interruptSignal();
 }
 
-void declare(Command& command, Options& options)
+void declare(Command& command, PrintedFollow& options)
 {
   addArmOptions(command, options, options.json);
   command.add("--mode", options.mode_name, "input of the twin: the recorded current, motion, or both")
@@ -50,6 +50,6 @@ void declare(Command& command, Options& options)
 
 const Subcommand FOLLOW{ Subject::RECORDING, "follow",
                          "runs a healthy joint on a recording: measured and predicted motion and current", declare,
-                         run };
+                         runFollow };
 }  // namespace
 }  // namespace hjt

@@ -16,7 +16,7 @@ namespace hjt
 {
 namespace
 {
-struct Options : Printed<IdentifyOptions>
+struct PrintedIdentify : Printed<IdentifyOptions>
 {
   std::vector<double> train_pair;
   std::vector<double> judge_pair;
@@ -50,7 +50,7 @@ std::optional<Span> spanOf(const std::vector<double>& pair)
   return pair.empty() ? std::nullopt : std::make_optional(Span{ pair[0], pair[1] });
 }
 
-int runOfController(const Options& options)
+int runOfController(const PrintedIdentify& options)
 {
   if (!options.train_pair.empty() || !options.judge_pair.empty())
   {
@@ -64,13 +64,13 @@ int runOfController(const Options& options)
   return any ? EXIT_DONE : EXIT_FAILED;
 }
 
-int run(const Options& given)
+int runIdentify(const PrintedIdentify& given)
 {
   if (given.controller)
   {
     return runOfController(given);
   }
-  Options options = given;
+  PrintedIdentify options = given;
   options.train = spanOf(options.train_pair);
   options.judge = spanOf(options.judge_pair);
   options.watch = consoleWatch();
@@ -83,7 +83,7 @@ int run(const Options& given)
   return identified.any ? EXIT_DONE : EXIT_FAILED;
 }
 
-void declare(Command& command, Options& options)
+void declare(Command& command, PrintedIdentify& options)
 {
   addArmOptions(command, options, options.json);
   command.add("--out", options.out, "the overlay; of an arm a directory, an overlay for each joint")
@@ -106,7 +106,8 @@ void declare(Command& command, Options& options)
 
 const Subcommand IDENTIFY{
   Subject::RECORDING, "identify",
-  "gain, friction, inertia and ripple of a joint from its recorded motion and current, as an overlay", declare, run
+  "gain, friction, inertia and ripple of a joint from its recorded motion and current, as an overlay", declare,
+  runIdentify
 };
 }  // namespace
 }  // namespace hjt

@@ -57,17 +57,17 @@ enum Quantity
   MOMENT,
   TEMPERATURE
 };
-constexpr std::size_t COLUMNS = 1 + QUANTITIES.size() * JOINTS;
-using Row = std::array<double, COLUMNS>;
+constexpr std::size_t ROW_COLUMNS = 1 + QUANTITIES.size() * JOINTS;
+using Row = std::array<double, ROW_COLUMNS>;
 
 constexpr std::size_t column(Quantity quantity, int joint)
 {
   return 1 + static_cast<std::size_t>(quantity) * JOINTS + static_cast<std::size_t>(joint);
 }
 
-NumberTable<COLUMNS>::Names columnNames()
+NumberTable<ROW_COLUMNS>::Names columnNames()
 {
-  NumberTable<COLUMNS>::Names names;
+  NumberTable<ROW_COLUMNS>::Names names;
   names[0] = "timestamp";
   for (const Quantity quantity : { POSITION, VELOCITY, CURRENT, MOMENT, TEMPERATURE })
   {
@@ -166,8 +166,8 @@ double countLines(const std::string& path)
 }
 
 /// All rows into the bag; the number of rows written. On an error the rows before it stay in a readable bag.
-std::uint64_t importRows(const ImportOptions& options, const UrJoint& joint, double ratio, NumberTable<COLUMNS>& table,
-                         BagWriter& bag)
+std::uint64_t importRows(const ImportOptions& options, const UrJoint& joint, double ratio,
+                         NumberTable<ROW_COLUMNS>& table, BagWriter& bag)
 {
   RowWriter writer(options, joint, ratio, bag);
   Progress progress("importing");
@@ -218,7 +218,7 @@ int import(const ImportOptions& options)
   const UrJoint joint = *findUrJoint(options.joint);
   const double ratio = options.ratio.value_or(nominalRatio(parameters.gear));
   requireWritable(options.out, options.force, options.csv);
-  NumberTable<COLUMNS> table(options.csv, columnNames(), JOINTS, JOINTS);
+  NumberTable<ROW_COLUMNS> table(options.csv, columnNames(), JOINTS, JOINTS);
   const InterruptScope interrupts;
   BagWriter bag(options.out);
   const std::uint64_t rows = importRows(options, joint, ratio, table, bag);

@@ -9,11 +9,11 @@ namespace hjt
 {
 namespace
 {
-using Options = Printed<IndicatorsOptions>;
+using PrintedIndicators = Printed<IndicatorsOptions>;
 
-int run(const Options& given)
+int runIndicators(const PrintedIndicators& given)
 {
-  Options options = given;
+  PrintedIndicators options = given;
   options.watch = consoleWatch();
   const AssessedWindows found = indicators(options);
   if (!found.windows.empty())
@@ -27,7 +27,7 @@ int run(const Options& given)
   return found.unread.empty() && (options.baseline.empty() || found.is_judged) ? EXIT_DONE : EXIT_FAILED;
 }
 
-void declare(Command& command, Options& options)
+void declare(Command& command, PrintedIndicators& options)
 {
   addSignalOptions(command, options);
   command
@@ -53,7 +53,7 @@ void declare(Command& command, Options& options)
 
 const Subcommand INDICATORS{
   Subject::RECORDING, "indicators",
-  "health indicators and assessment of a recording, from encoders and torque or current alone", declare, run
+  "health indicators and assessment of a recording, from encoders and torque or current alone", declare, runIndicators
 };
 }  // namespace
 }  // namespace hjt

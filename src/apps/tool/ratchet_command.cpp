@@ -30,16 +30,17 @@ const char* endOf(RatchetEnd end)
                                             "gave up, no equilibrium";
 }
 
-const std::vector<Column<RatchetRow>> COLUMNS{ { "output_angle", &RatchetRow::output_angle },
-                                               { "torque", &RatchetRow::torque },
-                                               { "wave_amplitude", &RatchetRow::wave_amplitude },
-                                               { "lobe_force", &RatchetRow::lobe_force },
-                                               { "depth_max", &RatchetRow::depth_max },
-                                               { "mesh_force_max", &RatchetRow::mesh_force_max },
-                                               { "wave_generator_force_max", &RatchetRow::wave_generator_force_max },
-                                               { "teeth_loaded", &RatchetRow::teeth_loaded },
-                                               { "snaps", &RatchetRow::snaps },
-                                               { "teeth_jumped", &RatchetRow::teeth_jumped } };
+const std::vector<Column<RatchetRow>> RATCHET_COLUMNS{ { "output_angle", &RatchetRow::output_angle },
+                                                       { "torque", &RatchetRow::torque },
+                                                       { "wave_amplitude", &RatchetRow::wave_amplitude },
+                                                       { "lobe_force", &RatchetRow::lobe_force },
+                                                       { "depth_max", &RatchetRow::depth_max },
+                                                       { "mesh_force_max", &RatchetRow::mesh_force_max },
+                                                       { "wave_generator_force_max",
+                                                         &RatchetRow::wave_generator_force_max },
+                                                       { "teeth_loaded", &RatchetRow::teeth_loaded },
+                                                       { "snaps", &RatchetRow::snaps },
+                                                       { "teeth_jumped", &RatchetRow::teeth_jumped } };
 
 int ratchet(const RatchetOptions& options)
 {
@@ -63,7 +64,7 @@ int ratchet(const RatchetOptions& options)
                               { "peak.snaps", "snaps before", peak.snaps },
                               { "peak.teeth_jumped", "teeth jumped", peak.teeth_jumped },
                               { "peak.teeth_loaded", "teeth loaded", peak.teeth_loaded },
-                              { "rows", "", Table(COLUMNS, result.rows).rows() } });
+                              { "rows", "", Table(RATCHET_COLUMNS, result.rows).rows() } });
   if (result.end == RatchetEnd::NO_EQUILIBRIUM)
   {
     std::cerr << "joint_twin: the search gave up: no equilibrium found a step of " << shortNumber(options.angle_step)

@@ -9,11 +9,11 @@ namespace hjt
 {
 namespace
 {
-using Options = Printed<RemainingOptions>;
+using PrintedRemaining = Printed<RemainingOptions>;
 
-int run(const Options& given)
+int runRemaining(const PrintedRemaining& given)
 {
-  Options options = given;
+  PrintedRemaining options = given;
   options.watch = consoleWatch();
   const Report report = reportOf(remaining(options));
   if (interruptSignal() != 0)
@@ -24,7 +24,7 @@ int run(const Options& given)
   return EXIT_DONE;
 }
 
-void declare(Command& command, Options& options)
+void declare(Command& command, PrintedRemaining& options)
 {
   addSignalOptions(command, options);
   command.add("--hours", options.hours,
@@ -51,6 +51,7 @@ void declare(Command& command, Options& options)
 }
 
 const Subcommand REMAINING{ Subject::RECORDING, "remaining",
-                            "use of a recorded joint, and how long a drive lasts that is used so", declare, run };
+                            "use of a recorded joint, and how long a drive lasts that is used so", declare,
+                            runRemaining };
 }  // namespace
 }  // namespace hjt

@@ -24,7 +24,7 @@ namespace hjt
 {
 namespace
 {
-struct SweepOptions : CommonOptions
+struct SweepCommandOptions : CommonOptions
 {
   std::string plan;
   std::string out;
@@ -36,7 +36,7 @@ struct SweepOptions : CommonOptions
   bool list{};
 };
 
-void printList(const Plan& plan, const SweepOptions& options)
+void printList(const Plan& plan, const SweepCommandOptions& options)
 {
   const SweepDirectory directory(plan, options.out);
   std::cout << directory.indexHeader() << '\n';
@@ -53,7 +53,7 @@ void printList(const Plan& plan, const SweepOptions& options)
   }
 }
 
-void declare(Command& command, SweepOptions& options)
+void declare(Command& command, SweepCommandOptions& options)
 {
   command.add("plan", options.plan, "what to run and record (docs/datasets.md)").required().type("PLAN.yaml");
   command.add("--out", options.out, "directory of runs and index; runs that stand there finished are kept")
@@ -79,7 +79,7 @@ void declare(Command& command, SweepOptions& options)
           });
 }
 
-void tellResult(const SweepOptions& options, const Plan& plan, const SweepResult& result)
+void tellResult(const SweepCommandOptions& options, const Plan& plan, const SweepResult& result)
 {
   const std::string index = options.out + "/index.csv";
   if (options.json)
@@ -101,7 +101,7 @@ void tellResult(const SweepOptions& options, const Plan& plan, const SweepResult
        "rows without forces on the teeth (NaN): no equilibrium was found for them; index.csv says in which runs");
 }
 
-int workOff(const SweepOptions& options, const Plan& plan)
+int workOff(const SweepCommandOptions& options, const Plan& plan)
 {
   if (options.list)
   {
@@ -128,12 +128,12 @@ int workOff(const SweepOptions& options, const Plan& plan)
   return result.failed > 0 ? EXIT_FAILED : EXIT_DONE;
 }
 
-int sweep(const SweepOptions& options)
+int sweep(const SweepCommandOptions& options)
 {
   return workOff(options, Plan(options.plan, options));
 }
 
-int sweepLives(const SweepOptions& options)
+int sweepLives(const SweepCommandOptions& options)
 {
   const Plan plan(options.plan, options);
   if (plan.lives() == nullptr)

@@ -9,7 +9,7 @@ namespace hjt
 {
 namespace
 {
-enum Column
+enum ProfileColumn
 {
   TIME,
   MOTOR_TORQUE,

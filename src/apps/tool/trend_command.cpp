@@ -12,7 +12,7 @@ namespace hjt
 {
 namespace
 {
-using Options = Judging<TrendOptions>;
+using JudgedTrend = Judging<TrendOptions>;
 
 void print(const Trend& trend)
 {
@@ -33,9 +33,9 @@ void print(const Trend& trend)
   }
 }
 
-int run(const Options& given)
+int runTrend(const JudgedTrend& given)
 {
-  Options options = given;
+  JudgedTrend options = given;
   options.watch = consoleWatch();
   const Trend found = trend(options);
   if (interruptSignal() != 0)
@@ -55,7 +55,7 @@ int run(const Options& given)
   return exitCodeOf(options.fail_on, found.health, found.is_judged);
 }
 
-void declare(Command& command, Options& options)
+void declare(Command& command, JudgedTrend& options)
 {
   command
       .add("recordings", options.recordings,
@@ -71,6 +71,6 @@ void declare(Command& command, Options& options)
 const Subcommand TREND{ Subject::RECORDING, "trend",
                         "friction of each joint over the recordings of months: whether it changes. The verdict is the "
                         "worse of that and the latest recording's",
-                        declare, run };
+                        declare, runTrend };
 }  // namespace
 }  // namespace hjt
