@@ -145,10 +145,9 @@ public:
     return { number, places };
   }
 
-  bool slid(int place, const Eigen::Vector2d& old_speeds) const
+  bool slid(std::size_t place, const Eigen::Vector2d& old_speeds) const
   {
-    const auto j = static_cast<std::size_t>(place);
-    return by_motor_[j] * old_speeds[0] + by_output_[j] * old_speeds[1] >= least_[j];
+    return by_motor_[place] * old_speeds[0] + by_output_[place] * old_speeds[1] >= least_[place];
   }
 
   /// Counts no more. @returns the sense in which it slid.
@@ -288,7 +287,7 @@ HJT_VECTOR_CLONES bool DryFriction::slide(const JointFriction& friction, double 
   { return Eigen::Vector2d(inverse * (d * to[0] - b * to[1]), inverse * (a * to[1] - b * to[0])); };
   Eigen::Vector2d v = answer(free_momentum - viscous * old_speeds - step * strength);
   const SlidingTerms::Stops stops = sliding.stops(v);
-  if (stops.number > 1.0 || (stops.number > 0.0 && sliding.slid(static_cast<int>(stops.places), old_speeds)))
+  if (stops.number > 1.0 || (stops.number > 0.0 && sliding.slid(static_cast<std::size_t>(stops.places), old_speeds)))
   {
     return false;
   }
@@ -349,11 +348,10 @@ Eigen::Vector2d DryFriction::stopOrSlide(const JointFriction& friction, double v
   const Eigen::Vector2d gained = free_momentum.cwiseQuotient(inertia_) - old_speeds;  // without friction, in the step
   Eigen::Vector2d speeds = old_speeds;
   double rest = 1.0;  // of the step
-  for (int part = 0; part < MAX_PARTS; ++part)
+  for (int part = 1;; ++part)
   {
-    const Eigen::Vector2d undivided =
-        solve(friction, velocity_ratio, speeds, speeds + rest * gained, rest * step);
-    if (!anyStops(friction.terms, std::abs(velocity_ratio), speeds, undivided))
+    const Eigen::Vector2d undivided = solve(friction, velocity_ratio, speeds, speeds + rest * gained, rest * step);
+    if (part == MAX_PARTS || !anyStops(friction.terms, std::abs(velocity_ratio), speeds, undivided))
     {
       return undivided;
     }
@@ -361,17 +359,16 @@ Eigen::Vector2d DryFriction::stopOrSlide(const JointFriction& friction, double v
     { return std::abs(term.slip.dot(speeds)) >= SLIDING * width(term, velocity_ratio); };
     sticking.terms.clear();
     sticking.viscous = friction.viscous;
-    Eigen::Vector2d sliding = Eigen::Vector2d::Zero();
+    Eigen::Vector2d free = speeds + rest * gained;
     for (const FrictionTerm term : friction.terms)
     {
-      if (slides(term))
+      if (!slides(term))
       {
-        sliding += std::copysign(term.strength, term.slip.dot(speeds)) * term.slip;
+        sticking.terms.push_back(term);
         continue;
       }
-      sticking.terms.push_back(term);
+      free -= rest * step * std::copysign(term.strength, term.slip.dot(speeds)) * term.slip.cwiseQuotient(inertia_);
     }
-    const Eigen::Vector2d free = speeds + rest * (gained - step * sliding.cwiseQuotient(inertia_));
     const Eigen::Vector2d onward = solve(sticking, velocity_ratio, speeds, free, rest * step);
     double share = 1.0;  // of the rest, up to the first stop
     for (const FrictionTerm term : friction.terms)
@@ -387,7 +384,6 @@ Eigen::Vector2d DryFriction::stopOrSlide(const JointFriction& friction, double v
     speeds += share * (onward - speeds);
     rest *= 1.0 - share;
   }
-  return solve(friction, velocity_ratio, speeds, speeds + rest * gained, rest * step);
 }
 
 Eigen::Vector2d DryFriction::torque(const JointFriction& friction, double velocity_ratio,

@@ -88,13 +88,7 @@ Eigen::Vector2d Leapfrog::kick(JointDynamics& system, JointState& x, const Eigen
   system.drive_torque = 0.0;
   Eigen::Vector2d torque = system.torque();
   torque[0] += presliding;
-  Eigen::Vector2d after = drive(system, torque, full, kept, 1.0 - lag, before, dt);
-  if (before[0] == 0.0 && after[0] != 0.0)
-  {
-    // It breaks away: from then on friction has the strength of the speeds that it comes to.
-    system.updateFriction(0.5 * after);
-    after = drive(system, torque, full, kept, 1.0 - lag, before, dt);
-  }
+  const Eigen::Vector2d after = drive(system, torque, full, kept, 1.0 - lag, before, dt);
   torque[0] += system.driveTorque();
   const Eigen::Vector2d kicked = inertia.cwiseProduct(after - before) / dt;
   friction_ = kicked - torque;
