@@ -31,14 +31,11 @@ namespace
 {
 using namespace boost::numeric::odeint;
 
-/// The twin's own. Its speeds belong half a step ahead of its angles: a first kick of half a step from rest brings them
-/// there.
+/// The twin's own. Its inputs are held over a step.
 Run leapfrog(const OperatingProblem& problem, Way way, double step, double limit)
 {
   Journey journey(problem, way);
   Leapfrog stepper;
-  journey.dynamics.inputs.motor_torque = motorTorque(0.0);
-  stepper.do_step(journey.dynamics, journey.x, 0.0, 0.5 * step);
   return travel(journey, limit,
                 [&](double due, Run& run)
                 {
@@ -46,8 +43,7 @@ Run leapfrog(const OperatingProblem& problem, Way way, double step, double limit
                   for (int k = 0; k < steps; ++k)
                   {
                     const double end = due - SAMPLE_PERIOD + (k + 1) * step;
-                    journey.dynamics.inputs.motor_torque =
-                        0.5 * (motorTorque(end - 0.5 * step) + motorTorque(end + 0.5 * step));  // over the kick
+                    journey.dynamics.inputs.motor_torque = motorTorque(end - 0.5 * step);
                     stepper.do_step(journey.dynamics, journey.x, end - step, step);
                   }
                   run.steps += steps;

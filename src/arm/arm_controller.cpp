@@ -95,7 +95,7 @@ void ArmController::control(ArmTwin& twin, const std::vector<JointMotion>& set_p
     {
       integral_[i] += toSeconds(period_) * gain.speed / gain.integral_time * error;
     }
-    drive.commandMotorTorque(twin.stamp() + twin.stepLength(), std::clamp(torque, -limit, limit) / ratio);
+    drive.commandMotorTorque(twin.stamp(), std::clamp(torque, -limit, limit) / ratio);
   }
 }
 }  // namespace hjt

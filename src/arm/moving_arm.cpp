@@ -116,11 +116,11 @@ void MovingArm::watch() noexcept
   }
   for (std::size_t i = 0; i < twin_.joints() && stop_; ++i)
   {
-    const Stamp next = twin_.stamp() + twin_.stepLength();
+    const Stamp now = twin_.stamp();
     const Stamp release = motion_begin_ - toStampLength(0.5 * settling_ + leadIn());
-    twin_.drive(i).commandMotorTorque(next, 0.0);
-    twin_.drive(i).commandBrake(next, true);
-    if (release > next)
+    twin_.drive(i).commandMotorTorque(now, 0.0);
+    twin_.drive(i).commandBrake(now, true);
+    if (release > now)
     {
       twin_.drive(i).commandBrake(release, true);  // after the release that is queued
     }

@@ -45,21 +45,22 @@ public:
   /// Before the step that ends `time` [s] after the start.
   void feed(Twin& twin, double time)
   {
-    const Stamp instant = twin.stamp() + twin.stepLength();
-    twin.commandMotorTorque(instant,
-                            duty_.torque ? easedIn(time) * duty_.torque->value(time) : controlTorque(twin, time));
+    const Stamp begin = twin.stamp();
+    const double middle = time - 0.5 * toSeconds(twin.stepLength());  // what is held over the step is its mean
+    twin.commandMotorTorque(begin,
+                            duty_.torque ? easedIn(middle) * duty_.torque->value(middle) : controlTorque(twin, time));
     if (duty_.load)
     {
-      const double load = easedIn(time) * duty_.load->value(time);
+      const double load = easedIn(middle) * duty_.load->value(middle);
       if (load != last_load_)
       {
-        twin.commandLoadTorque(instant, load);
+        twin.commandLoadTorque(begin, load);
         last_load_ = load;
       }
     }
     if (duty_.temperature)
     {
-      twin.setTemperature(instant, duty_.temperature->value(time));
+      twin.setTemperature(begin, duty_.temperature->value(time));
     }
   }
 

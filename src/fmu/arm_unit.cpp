@@ -105,7 +105,7 @@ public:
     {
       for (std::size_t i = 0; i < parts_.size(); ++i)
       {
-        twin.drive(i).commandMotorTorque(twin.stamp() + twin.stepLength(), parts_[i].motorTorque(values));
+        twin.drive(i).commandMotorTorque(twin.stamp(), parts_[i].motorTorque(values));
       }
       twin.step(until);
     }
@@ -136,8 +136,7 @@ private:
   void giveInputs(const Values& values, Stamp until)
   {
     ArmTwin& twin = moving_.twin();
-    const Stamp instant = twin.stamp() + twin.stepLength();
-    if (instant > until)
+    if (twin.stamp() + twin.stepLength() > until)
     {
       return;
     }
@@ -150,7 +149,7 @@ private:
     }
     for (std::size_t i = 0; i < parts_.size(); ++i)
     {
-      parts_[i].giveInputs(instant, values, twin.drive(i));
+      parts_[i].giveInputs(twin.stamp(), values, twin.drive(i));
     }
   }
 

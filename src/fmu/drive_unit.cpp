@@ -22,14 +22,14 @@ public:
   {
     const std::uint64_t failures = twin_.counters().solver_failures;
     const Stamp until = stampAt(end) + twin_.stepLength() / 1000;  // sums of steps are rounded
-    Stamp instant = twin_.stamp() + twin_.stepLength();
-    if (instant <= until)
+    const Stamp last = until - twin_.stepLength();                 // that a step begins at
+    if (twin_.stamp() <= last)
     {
-      part_.giveInputs(instant, values, twin_);
+      part_.giveInputs(twin_.stamp(), values, twin_);
     }
-    for (; instant <= until; instant += twin_.stepLength())
+    while (twin_.stamp() <= last)
     {
-      twin_.commandMotorTorque(instant, part_.motorTorque(values));  // at every instant: it does not time out
+      twin_.commandMotorTorque(twin_.stamp(), part_.motorTorque(values));  // at every instant: it does not time out
       twin_.step(until);
     }
     part_.moved();

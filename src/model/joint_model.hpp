@@ -16,13 +16,16 @@
 
 namespace hjt
 {
-/// What acts on the joint from outside, at one instant.
+/// What acts on the joint from outside, held over a step.
 struct JointInputs
 {
+  double load() const noexcept { return load_torque + arm_torque; }  ///< on the output [N.m]
+
   double motor_torque{};  ///< wanted of the drive at 25 degC, within its torque limit [N.m]
   double load_torque{};   ///< external, at the output; > 0 resists positive motion [N.m]
   bool brake_engaged{};
   double temperature{};  ///< of the grease [degC]
+  double arm_torque{};   ///< likewise of an arm around the joint, as it is at the step's end [N.m]
 };
 
 /// The whole joint: ring, motor, bearing, load, frictions. Solvers hold it const; JointFaults keeps one that changes.

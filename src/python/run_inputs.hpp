@@ -157,12 +157,12 @@ public:
   /// One step of a twin with its inputs.
   void step(Twin& twin, py::ssize_t step, py::ssize_t twin_number) const noexcept
   {
-    const Stamp instant = twin.stamp() + twin.stepLength();
+    const Stamp begin = twin.stamp();
     for (const InputColumn& column : columns_)
     {
-      column.push(twin, instant, step, twin_number);
+      column.push(twin, begin, step, twin_number);
     }
-    twin.step(instant);
+    twin.step(begin + twin.stepLength());
   }
 
 private:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "solver/dry_friction.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -13,6 +14,7 @@ namespace hjt
 namespace
 {
 constexpr double STICK_RANGE = 1e3;   // in regularisation speeds: slower, the motor may really be at rest
+constexpr double SLIDING = 3e4;       // slip over the regularisation's width, far from standing still
 constexpr double MIN_WIDTH = 1e-100;  // of a term that nothing slips: its square and the inverse stay numbers
 
 /// How far to go from `v` along `change`: all the way if the function still falls there, else to where it stops
@@ -101,7 +103,6 @@ public:
   inline __attribute__((always_inline)) bool take(const FrictionTerms& terms, const Eigen::Vector2d& old_speeds,
                                                   double follow, double width, Eigen::Vector2d& strength)
   {
-    constexpr double SLIDING = 3e4;  // slip over the regularisation's width, far from standing still
     count_ = terms.packedSize();
     if (count_ == 0 || count_ > MAX_TERMS)
     {
@@ -141,6 +142,11 @@ public:
       places += stopped * j;
     }
     return { number, places };
+  }
+
+  bool slid(std::size_t place, const Eigen::Vector2d& old_speeds) const
+  {
+    return by_motor_[place] * old_speeds[0] + by_output_[place] * old_speeds[1] >= least_[place];
   }
 
   /// Counts no more. @returns the sense in which it slid.
@@ -275,7 +281,7 @@ HJT_VECTOR_CLONES bool DryFriction::slide(const JointFriction& friction, double 
   { return Eigen::Vector2d(inverse * (d * to[0] - b * to[1]), inverse * (a * to[1] - b * to[0])); };
   Eigen::Vector2d v = answer(free_momentum - viscous * old_speeds - step * strength);
   const SlidingTerms::Stops stops = sliding.stops(v);
-  if (stops.number > 1.0)
+  if (stops.number > 1.0 || (stops.number > 0.0 && sliding.slid(static_cast<std::size_t>(stops.places), old_speeds)))
   {
     return false;
   }
@@ -304,6 +310,74 @@ HJT_VECTOR_CLONES bool DryFriction::slide(const JointFriction& friction, double 
   }
   speeds = v;
   return true;
+}
+
+/// Whether a term slides before, and after no more, or the other way.
+HJT_VECTOR_CLONES bool DryFriction::anyStops(const FrictionTerms& terms, double follow, const Eigen::Vector2d& before,
+                                             const Eigen::Vector2d& after) const noexcept
+{
+  const int count = terms.packedSize();
+  const double* __restrict__ by_motor = terms.byMotor();
+  const double* __restrict__ by_output = terms.byOutput();
+  const double least = SLIDING * width_;
+  double stops = 0.0;
+#pragma omp simd reduction(+ : stops)
+  for (int j = 0; j < count; ++j)
+  {
+    const double m = by_motor[j];
+    const double o = by_output[j];
+    const double slides = least * (std::abs(m) + follow * std::abs(o)) + MIN_WIDTH;
+    const double old = m * before[0] + o * before[1];
+    const double now = std::copysign(1.0, old) * (m * after[0] + o * after[1]);
+    stops += std::abs(old) >= slides && now < slides ? 1.0 : 0.0;
+  }
+  return stops > 0.0;
+}
+
+Eigen::Vector2d DryFriction::stopOrSlide(const JointFriction& friction, double velocity_ratio,
+                                         const Eigen::Vector2d& old_speeds, const Eigen::Vector2d& free_momentum,
+                                         double step, JointFriction& sticking) const noexcept
+{
+  constexpr int MAX_PARTS = 4;
+  const Eigen::Vector2d gained = free_momentum.cwiseQuotient(inertia_) - old_speeds;  // without friction, in the step
+  Eigen::Vector2d speeds = old_speeds;
+  double rest = 1.0;  // of the step
+  for (int part = 1;; ++part)
+  {
+    const Eigen::Vector2d undivided = solve(friction, velocity_ratio, speeds, speeds + rest * gained, rest * step);
+    if (part == MAX_PARTS || !anyStops(friction.terms, std::abs(velocity_ratio), speeds, undivided))
+    {
+      return undivided;
+    }
+    const auto slides = [&](const FrictionTerm& term)
+    { return std::abs(term.slip.dot(speeds)) >= SLIDING * width(term, velocity_ratio); };
+    sticking.terms.clear();
+    sticking.viscous = friction.viscous;
+    Eigen::Vector2d free = speeds + rest * gained;
+    for (const FrictionTerm term : friction.terms)
+    {
+      if (!slides(term))
+      {
+        sticking.terms.push_back(term);
+        continue;
+      }
+      free -= rest * step * std::copysign(term.strength, term.slip.dot(speeds)) * term.slip.cwiseQuotient(inertia_);
+    }
+    const Eigen::Vector2d onward = solve(sticking, velocity_ratio, speeds, free, rest * step);
+    double share = 1.0;  // of the rest, up to the first stop
+    for (const FrictionTerm term : friction.terms)
+    {
+      const double before = term.slip.dot(speeds);
+      const double after = term.slip.dot(onward);
+      share = slides(term) && before * after < 0.0 ? std::min(share, before / (before - after)) : share;
+    }
+    if (share == 1.0)
+    {
+      return undivided;
+    }
+    speeds += share * (onward - speeds);
+    rest *= 1.0 - share;
+  }
 }
 
 Eigen::Vector2d DryFriction::torque(const JointFriction& friction, double velocity_ratio,

@@ -31,8 +31,14 @@ public:
   Eigen::Vector2d solve(const JointFriction& friction, double velocity_ratio, const Eigen::Vector2d& old_speeds,
                         const Eigen::Vector2d& free_speeds, double step) const noexcept;
 
-  /// The same minimum where every term, or every one but one, slides as it did at the old speeds, far from standing
-  /// still: linear but for one unknown. False, and nothing done, elsewhere, at rest above all. Differs from `solve` by
+  /// The same in two parts where a term that slides comes to rest within the step: up to there it slides, and those that
+  /// do not slide at the old speeds stick. `free_momentum`: M v_free [N.m.s]; `sticking`: room.
+  Eigen::Vector2d stopOrSlide(const JointFriction& friction, double velocity_ratio, const Eigen::Vector2d& old_speeds,
+                              const Eigen::Vector2d& free_momentum, double step,
+                              JointFriction& sticking) const noexcept;
+
+  /// The same minimum where every term, or every one but one that stood, slides as it did at the old speeds, far from
+  /// standing still: linear but for one unknown. False, and nothing done, elsewhere, at rest above all. Differs from `solve` by
   /// the tails of the regularisation, less than 1e-9 of the friction. `free_momentum`: M v_free [N.m.s].
   bool slide(const JointFriction& friction, double velocity_ratio, const Eigen::Vector2d& old_speeds,
              const Eigen::Vector2d& free_momentum, double step, Eigen::Vector2d& speeds) const noexcept;
@@ -53,6 +59,8 @@ private:
 
   double width(const FrictionTerm& term, double velocity_ratio) const noexcept;
   Slopes slopes(const FrictionTerms& terms, double follow, const Eigen::Vector2d& v) const noexcept;
+  bool anyStops(const FrictionTerms& terms, double follow, const Eigen::Vector2d& before,
+                const Eigen::Vector2d& after) const noexcept;
 
   Eigen::Vector2d inertia_;
   double width_;

@@ -14,6 +14,7 @@ JointDynamics::JointDynamics(const JointModel& model, const SolverParameters& pa
   , ring_(model.ring, parameters)
   , dry_(model.inertia(), parameters.stiction_velocity)
   , friction_(model.ring.rest.teeth())
+  , sticking_(model.ring.rest.teeth())
   , remembers_(model.cup_friction.hasState() || model.motor.preslidingAngle() > 0.0 || model.brake.hasPlay())
   , temperature_(inputs.temperature)
   , viscosity_(model.bearing.viscosity(temperature_))
@@ -28,7 +29,7 @@ SolveStatus JointDynamics::solveAtRest() noexcept
   double torque = 0.0;
   for (int i = 0; result.ok(); ++i)
   {
-    const double wanted = inputs.load_torque - model_->load.gravityTorque(ring_.position().output_angle);
+    const double wanted = inputs.load() - model_->load.gravityTorque(ring_.position().output_angle);
     if (i > 0 && std::abs(wanted - torque) <= balanceTolerance(ring_))
     {
       break;
@@ -256,6 +257,12 @@ double JointDynamics::viscosity() noexcept
   return viscosity_;
 }
 
+Eigen::Vector2d JointDynamics::stopOrSlide(const DryFriction& friction, const Eigen::Vector2d& before,
+                                           const Eigen::Vector2d& momentum, double dt) noexcept
+{
+  return friction.stopOrSlide(friction_, velocityRatio(), before, momentum, dt, sticking_);
+}
+
 void JointDynamics::operator()(const JointState& x, JointState& rate, double) noexcept
 {
   using namespace joint_state;
@@ -276,7 +283,7 @@ void JointDynamics::operator()(const JointState& x, JointState& rate, double) no
   rate[DRIVE_TORQUE] =
       model_->motor.currentRate() * (model_->motor.limited(inputs.motor_torque, speeds[0]) - x[DRIVE_TORQUE]);
   rate[MOTOR_WORK] = driveTorque() * speeds[0];
-  rate[LOAD_WORK] = inputs.load_torque * speeds[1];
+  rate[LOAD_WORK] = inputs.load() * speeds[1];
   rate[DISSIPATED] = -(drag + presliding).dot(speeds);
 }
 }  // namespace hjt

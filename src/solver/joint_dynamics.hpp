@@ -54,7 +54,7 @@ public:
   /// All torques at the present ring but those of dry and viscous friction [N.m].
   Eigen::Vector2d torque() const noexcept
   {
-    return model_->torque(response_, position(), shaftTorque(), inputs.load_torque) - now_.cup.torque * cup_rates_;
+    return model_->torque(response_, position(), shaftTorque(), inputs.load()) - now_.cup.torque * cup_rates_;
   }
 
   /// Of the drive, at the temperature of its magnets, without ripple [N.m].
@@ -84,6 +84,10 @@ public:
 
   /// Brings `friction()` up to date with the present ring; `speeds` of motor and output [rad/s].
   void updateFriction(const Eigen::Vector2d& speeds) noexcept;
+
+  /// Speeds after a kick, as DryFriction::stopOrSlide by the present friction; counts in `status` what is not found.
+  Eigen::Vector2d stopOrSlide(const DryFriction& friction, const Eigen::Vector2d& before,
+                              const Eigen::Vector2d& momentum, double dt) noexcept;
 
   void operator()(const JointState& x, JointState& rate, double t) noexcept;
 
@@ -146,7 +150,8 @@ private:
   bool surface_agrees_{};  // at the present angles, while on the full ring
   DryFriction dry_;
   JointFriction friction_;
-  bool remembers_;  // friction does
+  JointFriction sticking_;  // room for the part of it that does not slide
+  bool remembers_;          // friction does
   Memory accepted_;
   Memory now_;                             // at the present ring
   Eigen::Vector2d cup_rates_{ 0.0, 0.0 };  // of the rim's mean rotation by motor and output angle, if that matters

@@ -86,10 +86,10 @@ void JointStepper::useSurface(const ResponseSurface* surface) noexcept
   dynamics_.useSurface(surface);
 }
 
-bool JointStepper::reset(double load_torque) noexcept
+bool JointStepper::reset(double arm_torque) noexcept
 {
   dynamics_.inputs = {};
-  dynamics_.inputs.load_torque = load_torque;
+  dynamics_.inputs.arm_torque = arm_torque;
   dynamics_.drive_torque = 0.0;
   const bool settled = dynamics_.solveAtRest().ok();
   x_.setZero();
@@ -97,7 +97,7 @@ bool JointStepper::reset(double load_torque) noexcept
   speeds_.setZero();
   friction_.setZero();
   balance_ = 0.0;
-  leapfrog_.reset(load_torque);
+  leapfrog_.reset(arm_torque);
   rest_steps_ = 0;
   throughput_ = 0.0;
   released_ = 0.0;
@@ -127,10 +127,9 @@ void JointStepper::divideAgain(double output_inertia) noexcept
   const bool too_many = wanted < substeps_ && phase <= wanted * AIM * phase_limit_;
   if (too_few || too_many)
   {
-    leapfrog_.comeBack(x_);
     substeps_ = wanted;
     substep_ = step_ / substeps_;
-    leapfrog_.goAhead(dynamics_, x_, substep_);
+    leapfrog_.retake(dynamics_, x_, substep_);
   }
 }
 
@@ -140,18 +139,16 @@ bool JointStepper::staysAtRest(const JointInputs& inputs) const noexcept
   const JointInputs& last = dynamics_.inputs;
   return rest_steps_ * step_ >= REST_TIME && inputs.motor_torque == last.motor_torque &&
          std::abs(x_[DRIVE_TORQUE] - inputs.motor_torque) <= SETTLED * std::abs(inputs.motor_torque) &&
-         inputs.load_torque == last.load_torque && inputs.brake_engaged == last.brake_engaged &&
-         inputs.temperature == last.temperature;
+         inputs.load_torque == last.load_torque && inputs.arm_torque == last.arm_torque &&
+         inputs.brake_engaged == last.brake_engaged && inputs.temperature == last.temperature;
 }
 
 bool JointStepper::updateModel() noexcept
 {
   const double stored = dynamics_.storedEnergy();
-  const Eigen::Vector2d torque = dynamics_.torque();
   const bool good = dynamics_.updateModel().ok();
   released_ += stored - dynamics_.storedEnergy();
-  // The last kick, half of which belongs after this instant, was still by the old torque.
-  released_ -= 0.5 * substep_ * (torque - dynamics_.torque()).dot(x_.segment<2>(MOTOR_SPEED));
+  leapfrog_.retake(dynamics_, x_, substep_);
   return good;
 }
 
@@ -164,12 +161,11 @@ bool JointStepper::step(const JointInputs& inputs) noexcept
   }
   dynamics_.status = {};
   bool good = true;
+  const double arm_torque = dynamics_.inputs.arm_torque;
+  dynamics_.inputs = inputs;
   for (int i = 0; good && i < substeps_; ++i)
   {
-    if (i == substeps_ / 2)
-    {
-      dynamics_.inputs = inputs;
-    }
+    dynamics_.inputs.arm_torque = i < substeps_ / 2 ? arm_torque : inputs.arm_torque;
     good = substep();
   }
   dynamics_.inputs = inputs;

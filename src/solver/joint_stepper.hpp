@@ -31,15 +31,15 @@ public:
     dynamics_.setModel(copied);
   }
 
-  /// Puts the joint at rest where it settles under a load [N.m]. @returns false if it does not settle.
-  bool reset(double load_torque = 0.0) noexcept;
+  /// Puts the joint at rest where it settles under an arm's load [N.m]. @returns false if it does not settle.
+  bool reset(double arm_torque = 0.0) noexcept;
 
-  /// One step with `inputs` at its end; the drive's speed limit and current loop take from the torque wanted. False:
+  /// One step under `inputs`, which act from its begin on; the drive's speed limit and current loop take from the torque wanted. False:
   /// the ring did not converge; the last good angles stay, at rest.
   ///
   /// A step that is too long for the joint's fastest swing is done in `substeps()` equal ones. Their number is
-  /// fixed by the parameters and an arm's inertia, so that live equals offline, and odd: inputs then act from half a
-  /// step before their instant on, as in a step that is not divided.
+  /// fixed by the parameters and an arm's inertia, so that live equals offline, and odd: the arm's load then acts from
+  /// half a step before its instant on, as in a step that is not divided.
   ///
   /// A joint at rest stays as it is until an input changes: its motor sticks, and for REST_TIME its output has moved
   /// slower than regularised friction creeps, or than counts. Then nothing is solved.

@@ -10,7 +10,7 @@ namespace
 {
 /// Speeds after a kick that without friction would bring a momentum [N.m.s]. On the surface the friction is in few
 /// terms, and all is done to be quick.
-Eigen::Vector2d rub(const JointDynamics& system, const DryFriction& friction, const Eigen::Vector2d& before,
+Eigen::Vector2d rub(JointDynamics& system, const DryFriction& friction, const Eigen::Vector2d& before,
                     const Eigen::Vector2d& momentum, double dt) noexcept
 {
   Eigen::Vector2d after;
@@ -18,8 +18,7 @@ Eigen::Vector2d rub(const JointDynamics& system, const DryFriction& friction, co
   {
     return after;
   }
-  return friction.solve(system.friction(), system.velocityRatio(), before, momentum.cwiseQuotient(friction.inertia()),
-                        dt);
+  return system.stopOrSlide(friction, before, momentum, dt);
 }
 
 /// Speeds after a kick in which the drive's torque fades with the speed, as it is at the kick's end: one solution,
@@ -74,76 +73,128 @@ Eigen::Vector2d drive(JointDynamics& system, const Eigen::Vector2d& others, doub
 }
 }  // namespace
 
+/// Speeds after a kick over `dt`. `rubbing`: speeds that friction's strength is taken at [rad/s]; `lag`: what is left of
+/// the drive's torque that the last kick had [-].
+Eigen::Vector2d Leapfrog::kick(JointDynamics& system, JointState& x, const Eigen::Vector2d& before,
+                               const Eigen::Vector2d& rubbing, double lag, double dt) noexcept
+{
+  const Eigen::Vector2d inertia = system.inertia();
+  const double wanted = system.inputs.motor_torque;
+  const double kept = lag * x[joint_state::DRIVE_TORQUE];
+  const double full = wanted + lag * (x[joint_state::DRIVE_TORQUE] - wanted);
+  system.drive_torque = full;
+  system.updateFriction(rubbing);
+  const double presliding = system.preslidingTorque();
+  system.drive_torque = 0.0;
+  Eigen::Vector2d torque = system.torque();
+  torque[0] += presliding;
+  const Eigen::Vector2d after = drive(system, torque, full, kept, 1.0 - lag, before, dt);
+  torque[0] += system.driveTorque();
+  const Eigen::Vector2d kicked = inertia.cwiseProduct(after - before) / dt;
+  friction_ = kicked - torque;
+  friction_[0] += presliding;
+  link_torque_ = kicked[1] + system.inputs.load();
+  x[joint_state::DRIVE_TORQUE] = system.drive_torque;
+  inertia_ = inertia;
+  acted_ = system.inputs;
+  return after;
+}
+
+/// What acts from now on acts on the speeds otherwise than what acted in the last kick. A current that lags does not
+/// jump; the arm's load belongs to a step's end.
+bool Leapfrog::actOtherwise(const JointDynamics& system) const noexcept
+{
+  const JointInputs& now = system.inputs;
+  return !moves_ || (now.motor_torque != acted_.motor_torque && system.model().motor.currentRate() == 0.0) ||
+         now.load_torque != acted_.load_torque || now.brake_engaged != acted_.brake_engaged;
+}
+
 void Leapfrog::do_step(JointDynamics& system, JointState& x, double, double dt) noexcept
 {
   using namespace joint_state;
+  if (actOtherwise(system))
+  {
+    retake(system, x, dt);
+  }
   const Eigen::Vector2d before = x.segment<2>(MOTOR_SPEED);
   const Eigen::Vector2d angles = x.segment<2>(MOTOR_ANGLE) + dt * before;
   if (!system.place(angles[0], angles[1]).ok())
   {
-    x.segment<2>(MOTOR_SPEED).setZero();
-    speeds_.setZero();
+    stop(system, x);
     return;
   }
-  const Motor& motor = system.model().motor;
   const Eigen::Vector2d inertia = system.inertia();
   const double slipped = system.accept();
-  const double wanted = system.inputs.motor_torque;
-  const double lag = motor.currentLeft(dt);
-  system.drive_torque = wanted + lag * (x[DRIVE_TORQUE] - wanted);
-  system.updateFriction(before);
-  const double presliding = system.preslidingTorque();
-  const double full = system.drive_torque;
-  system.drive_torque = 0.0;
-  Eigen::Vector2d torque = system.torque();
-  torque[0] += presliding;
-  const Eigen::Vector2d after = drive(system, torque, full, lag * x[DRIVE_TORQUE], 1.0 - lag, before, dt);
-  torque[0] += system.driveTorque();
+  // At this instant; where they might turn round meanwhile, as they were.
+  Eigen::Vector2d rubbing = 2.0 * before - speeds_;
+  for (int i = 0; i < 2; ++i)
+  {
+    rubbing[i] = rubbing[i] * before[i] > 0.0 ? rubbing[i] : before[i];
+  }
+  const Eigen::Vector2d after = kick(system, x, before, rubbing, system.model().motor.currentLeft(dt), dt);
   speeds_ = 0.5 * (before + after);
-  const Eigen::Vector2d kick = inertia.cwiseProduct(after - before) / dt;
-  friction_ = kick - torque;
-  friction_[0] += presliding;
+  half_kick_ = after - speeds_;
   x.segment<2>(MOTOR_ANGLE) = angles;
   x.segment<2>(MOTOR_SPEED) = after;
-  x[DRIVE_TORQUE] = system.drive_torque;
 
   // Half of the kick's work belongs before the instant, half after: then the ledger's only error is the quadrature.
   const double motor_work = dt * system.driveTorque() * speeds_[0];
-  const double load_work = dt * system.inputs.load_torque * speeds_[1];
+  const double load_work = dt * system.inputs.load() * speeds_[1];
   const double dissipated = -dt * friction_.dot(speeds_);
   x[DISSIPATED] += slipped;
-  const double kinetic = 0.25 * (before.dot(inertia.cwiseProduct(before)) + after.dot(inertia.cwiseProduct(after)));
-  balance_ = x[MOTOR_WORK] - x[LOAD_WORK] - x[DISSIPATED] + 0.5 * (motor_work - load_work - dissipated) - kinetic;
-  delivered_ = x[LOAD_WORK] + 0.5 * load_work + 0.25 * inertia[1] * (before[1] * before[1] + after[1] * after[1]);
-  link_torque_ = kick[1] + system.inputs.load_torque;
+  const Eigen::Vector2d kinetic = 0.25 * inertia.cwiseProduct(before.cwiseAbs2() + after.cwiseAbs2()) - retaken_;
+  balance_ = x[MOTOR_WORK] - x[LOAD_WORK] - x[DISSIPATED] + 0.5 * (motor_work - load_work - dissipated) - kinetic.sum();
+  delivered_ = x[LOAD_WORK] + 0.5 * load_work + kinetic[1];
   work_ = { motor_work, load_work, dissipated };
   x.segment<3>(MOTOR_WORK) += work_;
 }
 
-void Leapfrog::goAhead(JointDynamics& system, JointState& x, double dt) noexcept
+void Leapfrog::retake(JointDynamics& system, JointState& x, double dt) noexcept
 {
   using namespace joint_state;
-  const double half = 0.5 * dt;
-  const Eigen::Vector2d before = x.segment<2>(MOTOR_SPEED);
   const Eigen::Vector2d inertia = system.inertia();
-  system.updateFriction(before);
-  const double presliding = system.preslidingTorque();
-  Eigen::Vector2d torque = system.torque();
-  torque[0] += presliding;
-  const Eigen::Vector2d free = before + half * torque.cwiseQuotient(inertia);
-  const Eigen::Vector2d after =
-      system.dryFriction().solve(system.friction(), system.velocityRatio(), before, free, half);
-  Eigen::Vector2d friction = inertia.cwiseProduct(after - free) / half;
-  friction[0] += presliding;
-  x.segment<2>(MOTOR_SPEED) = after;
-  x.segment<3>(MOTOR_WORK) += half * Eigen::Vector3d(system.driveTorque() * before[0],
-                                                     system.inputs.load_torque * before[1], -friction.dot(before));
-}
-
-void Leapfrog::comeBack(JointState& x) const noexcept
-{
-  using namespace joint_state;
+  if (!moves_)
+  {
+    moves_ = true;
+    speeds_ = x.segment<2>(MOTOR_SPEED);
+    half_kick_.setZero();
+    work_.setZero();
+    inertia_ = inertia;
+  }
   x.segment<2>(MOTOR_SPEED) = speeds_;
   x.segment<3>(MOTOR_WORK) -= 0.5 * work_;
+  // An arm changed the output's inertia at the speeds that are taken back.
+  x[LOAD_WORK] += (inertia - inertia_).dot(half_kick_.cwiseProduct(speeds_ + 0.5 * half_kick_));
+  retaken_ -= 0.5 * inertia_.cwiseProduct(half_kick_.cwiseAbs2());
+
+  const double half = 0.5 * dt;
+  const double arm_torque = system.inputs.arm_torque;
+  system.inputs.arm_torque = acted_.arm_torque;
+  const bool lags = system.model().motor.currentRate() > 0.0;
+  const Eigen::Vector2d after = kick(system, x, speeds_, speeds_, lags ? 1.0 : 0.0, half);
+  half_kick_ = after - speeds_;
+  retaken_ += 0.5 * inertia.cwiseProduct(half_kick_.cwiseAbs2());
+  work_ = dt * Eigen::Vector3d(system.driveTorque() * speeds_[0], system.inputs.load() * speeds_[1],
+                               -friction_.dot(speeds_));
+  x.segment<2>(MOTOR_SPEED) = after;
+  x.segment<3>(MOTOR_WORK) += 0.5 * work_;
+  system.inputs.arm_torque = arm_torque;
+}
+
+/// At the last instant.
+void Leapfrog::stop(const JointDynamics& system, JointState& x) noexcept
+{
+  using namespace joint_state;
+  x.segment<3>(MOTOR_WORK) -= 0.5 * work_;
+  const Eigen::Vector2d kinetic =
+      0.5 * system.inertia().cwiseProduct(speeds_.cwiseAbs2() + half_kick_.cwiseAbs2()) - retaken_;
+  x[DISSIPATED] += kinetic.sum();
+  x.segment<2>(MOTOR_SPEED).setZero();
+  speeds_.setZero();
+  retaken_.setZero();
+  work_.setZero();
+  moves_ = false;
+  balance_ = x[MOTOR_WORK] - x[LOAD_WORK] - x[DISSIPATED];
+  delivered_ = x[LOAD_WORK];
 }
 }  // namespace hjt

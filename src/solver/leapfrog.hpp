@@ -14,8 +14,10 @@ namespace hjt
 /// One ring solve a step, order 2, symplectic without friction; a joint that sticks keeps its angle to the last bit,
 /// because the speeds that move it have already seen friction.
 ///
-/// `system` is a JointDynamics. If the ring does not converge the angles stay, the speeds become zero and
-/// `system.status` says so.
+/// `system` is a JointDynamics; its inputs act from the instant on that a step begins at. Half of each kick belongs to
+/// the step after it: where inputs jump, that half is done again with the new ones. The first step begins with speeds
+/// at the instant of the angles. If the ring does not converge the angles stay, the joint stands, what it moved with is
+/// dissipated, and `system.status` says so.
 class Leapfrog
 {
 public:
@@ -30,10 +32,8 @@ public:
 
   void do_step(JointDynamics& system, JointState& x, double t, double dt) noexcept;
 
-  /// `goAhead` turns speeds at the instant of the angles into those half a step ahead: half of a kick, with half of its
-  /// work, at the present ring. `comeBack` undoes it after the last step.
-  void goAhead(JointDynamics& system, JointState& x, double dt) noexcept;
-  void comeBack(JointState& x) const noexcept;
+  /// Does the half of the last kick that belongs after the instant again: ring, inputs or step are others from here on.
+  void retake(JointDynamics& system, JointState& x, double dt) noexcept;
 
   /// Speeds at the instant of the angles, mean of before and after the kick [rad/s].
   const Eigen::Vector2d& speeds() const noexcept { return speeds_; }
@@ -50,21 +50,32 @@ public:
   /// Of the gear and all friction on what hangs on the output, at the instant of the angles [N.m].
   double linkTorque() const noexcept { return link_torque_; }
 
-  /// Before a first step, at rest under a load [N.m]: nothing is delivered.
-  void reset(double load_torque) noexcept
+  /// Before a first step, at rest under the load of an arm [N.m]: nothing is delivered.
+  void reset(double arm_torque) noexcept
   {
-    speeds_.setZero();
-    work_.setZero();
-    delivered_ = 0.0;
-    link_torque_ = load_torque;
+    *this = {};
+    acted_.arm_torque = arm_torque;
+    link_torque_ = arm_torque;
   }
 
 private:
+  Eigen::Vector2d kick(JointDynamics& system, JointState& x, const Eigen::Vector2d& before,
+                       const Eigen::Vector2d& rubbing, double lag, double dt) noexcept;
+  bool actOtherwise(const JointDynamics& system) const noexcept;
+  void stop(const JointDynamics& system, JointState& x) noexcept;
+
   Eigen::Vector2d speeds_{ 0.0, 0.0 };
   Eigen::Vector2d friction_{ 0.0, 0.0 };
   double balance_{};
   double delivered_{};
   double link_torque_{};
   Eigen::Vector3d work_{ 0.0, 0.0, 0.0 };  // of the last kick, in the order of the state [J]
+  Eigen::Vector2d inertia_{ 0.0, 0.0 };    // that it moved [kg.m^2]
+  Eigen::Vector2d half_kick_{ 0.0, 0.0 };  // what it changed the speeds by after the instant [rad/s]
+  /// The ledger takes the kinetic energy at an instant as the mean of that half a step before and after it. Where a half
+  /// is done again, that changes though no speed at the instant does: by motor and output, summed [J].
+  Eigen::Vector2d retaken_{ 0.0, 0.0 };
+  JointInputs acted_;  // in the last kick
+  bool moves_{};       // a kick was done: speeds are half a step ahead
 };
 }  // namespace hjt

@@ -68,9 +68,10 @@ bool Twin::Impl::reset(Stamp stamp) noexcept
   now = instant * step_length;
   simulated_until = stamp;
   in_force_since.fill(std::numeric_limits<Stamp>::min());
-  command = 0.0;
+  motor_torque = {};
+  command_clamped = false;
   commanded = false;
-  load_torque = 0.0;
+  load_torque = {};
   load_clamped = false;
   temperature = parameters.input.temperature;
   resetHeat();
@@ -127,73 +128,86 @@ bool Twin::Impl::takeFaults() noexcept
   return good;
 }
 
-void Twin::Impl::takeInputs() noexcept
+/// What acts in the step from `begin` to now: each input from its stamp on.
+void Twin::Impl::takeInputs(Stamp begin) noexcept
 {
+  motor_torque.begin(begin);
+  load_torque.begin(begin);
+  timeOutCommand(begin);
+  if (!queue.isDue(now - 1))
+  {
+    return;
+  }
   Input input;
-  while (queue.pop(now, input))
+  while (queue.pop(now - 1, input))
   {
     Stamp& since = in_force_since[static_cast<std::size_t>(input.kind)];
-    if (input.stamp < since)
+    if (input.stamp >= since)  // else late, and a newer one is in force
     {
-      continue;  // late, and a newer one is in force
+      since = input.stamp;
+      takeInput(input, std::max(input.stamp, begin));
     }
-    since = input.stamp;
-    switch (input.kind)
-    {
-      case InputKind::MOTOR_TORQUE:
-        command = input.value;
-        commanded = true;
-        break;
-      case InputKind::LOAD_TORQUE:
-        load_torque =
-            std::clamp(input.value, -parameters.output.load_torque_limit, parameters.output.load_torque_limit);
-        load_clamped = load_torque != input.value;
-        break;
-      case InputKind::BRAKE:
-        if (const bool wanted = input.value != 0.0; wanted != brake_commanded)
-        {
-          brake_commanded = wanted;
-          brake_moves = input.stamp + toStampLength(parameters.brake.delay);
-        }
-        break;
-      case InputKind::TEMPERATURE:
-        temperature = std::clamp(input.value, MIN_TEMPERATURE, MAX_TEMPERATURE);
-        break;
-    }
+  }
+  timeOutCommand(begin);  // one that came too late
+}
+
+void Twin::Impl::takeInput(const Input& input, Stamp at) noexcept
+{
+  switch (input.kind)
+  {
+    case InputKind::MOTOR_TORQUE:
+      motor_torque.set(model().motor.clamped(input.value), at);
+      command_clamped = motor_torque.value() != input.value;
+      commanded = true;
+      break;
+    case InputKind::LOAD_TORQUE:
+      load_torque.set(
+          std::clamp(input.value, -parameters.output.load_torque_limit, parameters.output.load_torque_limit), at);
+      load_clamped = load_torque.value() != input.value;
+      break;
+    case InputKind::BRAKE:
+      if (const bool wanted = input.value != 0.0; wanted != brake_commanded)
+      {
+        brake_commanded = wanted;
+        brake_moves = input.stamp + toStampLength(parameters.brake.delay);
+      }
+      break;
+    case InputKind::TEMPERATURE:
+      temperature = std::clamp(input.value, MIN_TEMPERATURE, MAX_TEMPERATURE);
+      break;
   }
 }
 
-/// The latest command, or zero when it has timed out.
-double Twin::Impl::commandInForce() noexcept
+/// A command that is older than the timeout at the step's begin is zero.
+void Twin::Impl::timeOutCommand(Stamp begin) noexcept
 {
   const Stamp since = in_force_since[static_cast<std::size_t>(InputKind::MOTOR_TORQUE)];
   // The other way round, the age of a command from the earliest stamp does not fit into one.
-  if (commanded && since < now - toStampLength(parameters.input.command_timeout))
+  if (commanded && since < begin - toStampLength(parameters.input.command_timeout))
   {
     commanded = false;
+    command_clamped = false;
     ++counters.command_timeouts;
+    motor_torque.set(0.0, begin);
   }
-  return commanded ? command : 0.0;
 }
 
 void Twin::Impl::step() noexcept
 {
+  const Stamp begin = now;
   ++instant;
   now += step_length;
   simulated_until = now;
   const bool followed = !waiting.isDue(now) || takeFaults();
-  if (queue.isDue(now))
-  {
-    takeInputs();
-  }
-  moveBrake();
+  takeInputs(begin);
+  moveBrake(begin);
   takeSurface();
-  const double wanted = commandInForce();
-  const double within_limit = model().motor.clamped(wanted);
-  converged = stepper.step({ within_limit, load_torque + arm_torque, brake_engaged, greaseTemperature() }) && followed;
+  const JointInputs inputs{ motor_torque.mean(now), load_torque.mean(now), brake_engaged, greaseTemperature(),
+                            arm_torque };
+  converged = stepper.step(inputs) && followed;
   takeHeat(stepper.driveTorque());
   ++counters.steps;
-  counters.torque_clamped += within_limit != wanted ? 1 : 0;
+  counters.torque_clamped += command_clamped ? 1 : 0;
   counters.speed_limited += stepper.isSpeedLimited() ? 1 : 0;
   counters.load_clamped += load_clamped ? 1 : 0;
   const bool cut = stepper.status().cuts > 0;
@@ -209,10 +223,10 @@ void Twin::Impl::step() noexcept
   observe();
 }
 
-/// Carries out the last command of the brake once its delay is over.
-void Twin::Impl::moveBrake() noexcept
+/// Carries out the last command of the brake at the first instant at which its delay is over.
+void Twin::Impl::moveBrake(Stamp begin) noexcept
 {
-  if (brake_commanded != brake_engaged && now >= brake_moves)
+  if (brake_commanded != brake_engaged && begin >= brake_moves)
   {
     brake_engaged = brake_commanded;
   }
@@ -268,7 +282,7 @@ JointOutputs Twin::Impl::outputs() const noexcept
   outputs.output_angle = stepper.outputAngle();
   outputs.output_velocity = stepper.speeds()[1];
   outputs.motor_torque = stepper.dynamics().shaftTorque();
-  outputs.load_torque = load_torque + arm_torque;
+  outputs.load_torque = load_torque.value() + arm_torque;
   outputs.temperature = greaseTemperature();
   outputs.housing_temperature = housingTemperature();
   outputs.wave_generator_torque = -ring.wave_generator_torque;
@@ -311,7 +325,7 @@ void Twin::Impl::takeReadings() noexcept
   sample.output_angle = readings.output_angle;
   sample.motor_velocity = readings.motor_velocity;
   sample.motor_torque = sensors.motorTorque();
-  sample.load_torque = load_torque + arm_torque;
+  sample.load_torque = load_torque.value() + arm_torque;
   sample.temperature = housingTemperature();
   if (signals.update(sample))
   {

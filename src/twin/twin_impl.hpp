@@ -20,6 +20,34 @@
 
 namespace hjt
 {
+/// A torque that inputs set, held from stamp to stamp. Over a step its mean acts.
+class HeldTorque
+{
+public:
+  void begin(Stamp step) noexcept
+  {
+    from_ = begin_ = step;
+    sum_ = 0.0;
+  }
+  void set(double value, Stamp at) noexcept
+  {
+    sum_ += value_ * toSeconds(at - from_);
+    from_ = at;
+    value_ = value;
+  }
+  double value() const noexcept { return value_; }  ///< in force at last [N.m]
+  double mean(Stamp end) const noexcept             ///< from the step's begin [N.m]
+  {
+    return from_ == begin_ ? value_ : (sum_ + value_ * toSeconds(end - from_)) / toSeconds(end - begin_);
+  }
+
+private:
+  double value_{};
+  double sum_{};  // up to from_ [N.m.s]
+  Stamp begin_{};
+  Stamp from_{};  // in force since then, of this step
+};
+
 /// The twin's parts and what happens in one of its steps.
 struct Twin::Impl
 {
@@ -54,9 +82,10 @@ struct Twin::Impl
   InputQueue queue;
   std::array<Stamp, INPUT_KINDS> in_force_since{};  // stamp of the input in force, by kind
   TwinCounters counters;
-  double command{};      // last motor torque command [N.m]
-  bool commanded{};      // a command is in force, not timed out
-  double load_torque{};  // last load torque, clamped [N.m]
+  HeldTorque motor_torque;  // as commanded, within the motor's limit
+  bool command_clamped{};   // by that limit
+  bool commanded{};         // a command is in force, not timed out
+  HeldTorque load_torque;   // clamped
   bool load_clamped{};
   double arm_torque{};   // of an arm around the joint, beside its inertia [N.m]
   double temperature{};  // received or configured: of the drive, or of its surroundings [degC]
@@ -89,14 +118,15 @@ private:
   void useSurface() noexcept;
   void scheduleConfigured(Stamp stamp) noexcept;
   bool takeFaults() noexcept;
-  void takeInputs() noexcept;
+  void takeInputs(Stamp begin) noexcept;
+  void takeInput(const Input& input, Stamp at) noexcept;
   void takeSurface() noexcept;
-  double commandInForce() noexcept;
+  void timeOutCommand(Stamp begin) noexcept;
   double greaseTemperature() const noexcept;
   double housingTemperature() const noexcept;
   void resetHeat() noexcept;
   void takeHeat(double motor_torque) noexcept;
-  void moveBrake() noexcept;
+  void moveBrake(Stamp begin) noexcept;
   void observe() noexcept;
   void takeReadings() noexcept;
 };

@@ -187,16 +187,37 @@ TEST(TwinReset, ForgetsALoadThatWasTooLarge)
   EXPECT_EQ(twin.counters().load_clamped, 0U);
 }
 
-TEST(TwinInputs, ActFromTheFirstInstantNotBeforeTheirStamp)
+TEST(TwinInputs, ActFromTheirStampOn)
 {
   Twin twin(shippedParameters());
-  twin.commandMotorTorque(250000, 1.0);
+  twin.commandMotorTorque(225000, 1.0);
+  twin.commandMotorTorque(300000, 0.5);
   ASSERT_TRUE(twin.step(SECOND) && twin.step(SECOND));
   EXPECT_EQ(twin.outputs().motor_torque, 0.0);
   ASSERT_TRUE(twin.step(SECOND));
   EXPECT_EQ(twin.outputs().stamp, 300000);
-  EXPECT_EQ(twin.outputs().motor_torque, 1.0);
+  EXPECT_DOUBLE_EQ(twin.outputs().motor_torque, 0.75);  // the mean over the step
+  ASSERT_TRUE(twin.step(SECOND));
+  EXPECT_EQ(twin.outputs().motor_torque, 0.5);
   EXPECT_EQ(twin.counters().input.late, 0U);
+}
+
+TEST(TwinInputs, BetweenInstantsMoveTheMotorAsOnFinerInstants)
+{
+  // Commands that change at tenths of a millisecond and 37 us, held meanwhile.
+  const auto angle = [](const std::string& rate)
+  {
+    Twin twin(shippedParameters({ rate }));
+    for (int i = 0; i < 20; ++i)
+    {
+      twin.commandMotorTorque(i * MILLISECOND + (i % 2) * 37000, 0.4 + 0.01 * i);
+    }
+    advance(twin, 20 * MILLISECOND);
+    return twin.outputs().motor_angle;
+  };
+  const double exact = angle("solver.rate=160000");
+  EXPECT_GT(exact, 0.1);
+  EXPECT_NEAR(angle("solver.rate=10000"), exact, 1e-5);
 }
 
 TEST(TwinInputs, LateOnesActAtOnceAndAreCounted)

@@ -77,14 +77,14 @@ Stamp TorqueProfile::duration() const
 
 void TorqueProfile::feed(Twin& twin, Stamp begin)
 {
-  const Stamp instant = twin.stamp() + twin.stepLength();
   // A profile holds its torque for any time; the command is repeated at every instant, so it does not time out.
-  twin.commandMotorTorque(instant, motor_torque_);
-  for (; next_ < inputs_.size() && begin + inputs_[next_].stamp <= instant; ++next_)
+  twin.commandMotorTorque(twin.stamp(), motor_torque_);
+  const Stamp end = twin.stamp() + twin.stepLength();
+  for (; next_ < inputs_.size() && begin + inputs_[next_].stamp < end; ++next_)
   {
     const Input& input = inputs_[next_];
     motor_torque_ = input.kind == InputKind::MOTOR_TORQUE ? input.value : motor_torque_;
-    twin.push({ instant, input.kind, input.value });
+    twin.push({ begin + input.stamp, input.kind, input.value });
   }
 }
 }  // namespace hjt

@@ -25,7 +25,7 @@ public:
 
   Stamp duration() const;  ///< up to the last entry [ns]
 
-  /// Gives the twin, standing at its instant, what is due at the next one. `begin`: the instant of t = 0.
+  /// Gives the twin, standing at its instant, what acts in its next step. `begin`: the instant of t = 0.
   void feed(Twin& twin, Stamp begin);
 
 private:
