@@ -194,7 +194,7 @@ TEST(ArmDynamics, SaysWhatTheDescriptionLacks)
   EXPECT_THAT(text(arm), testing::HasSubstr("has no joint 'seventh_joint'"));
   arm = shipped("ur5");
   arm.tip = "hand";
-  EXPECT_THAT(text(arm), testing::HasSubstr("no chain of links from 'base_link' to 'hand'"));
+  EXPECT_THAT(text(arm), testing::HasSubstr("no chain of links from 'base' to 'hand'"));
   EXPECT_THROW(readArmDescription("no/such/arm.yaml"), ParameterError);
 }
 
