@@ -23,6 +23,7 @@ struct ArmJoint
   double speed_limit{};               ///< 0: none given [rad/s]
   double torque_limit{};              ///< at the output, 0: none given [N.m]
   double feedback_limit{};            ///< of its controller's torque beyond what is fed forward, 0: none [N.m]
+  double delay{};                     ///< of a set point until its controller acts on it [s]
   std::vector<double> check_up;       ///< angles of all joints where its check-up begins; empty: none [rad]
   std::optional<JointGains> gains;    ///< of its controller; none: ArmController::defaultGains
 };

@@ -11,6 +11,7 @@
 
 #include "arm/arm_program.hpp"
 #include "base/csv_rows.hpp"
+#include "base/median.hpp"
 #include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 
@@ -56,6 +57,47 @@ void restAtEnd(double length, ArmSetPoint& point)
   {
     joint.velocity = std::abs(joint.velocity) <= ACCELERATION * length ? 0.0 : joint.velocity;
   }
+}
+
+/// What shows that the set points of a joint have other units or signs than they should; empty: nothing.
+std::string jointErrors(const std::vector<ArmSetPoint>& points, std::size_t joint)
+{
+  constexpr double FARTHEST = 18.9;        // three turns: a UR's joints have one either way [rad]
+  constexpr double LEAST_WAY = 0.1;        // that tells of the speeds [rad]
+  constexpr double LEAST_PART = 1e-4;      // of a row, likewise [rad]
+  constexpr Range SAME_RATES{ 0.5, 2.0 };  // speeds over the angles' rates, median: jumps are left to the arm
+  const auto farthest =
+      std::max_element(points.begin(), points.end(),
+                       [&](const ArmSetPoint& a, const ArmSetPoint& b)
+                       { return std::abs(a.joints[joint].position) < std::abs(b.joints[joint].position); });
+  if (const double angle = farthest->joints[joint].position; std::abs(angle) > FARTHEST)
+  {
+    return "an angle of " + roundedText(angle, 5) + " at " + roundedText(farthest->time, 5) +
+           " s; angles are in rad, allowed: -18.9 ... 18.9 (degrees?)";
+  }
+  double way = 0.0;  // [rad]
+  std::vector<double> ratios;
+  for (std::size_t k = 1; k < points.size(); ++k)
+  {
+    const JointMotion& from = points[k - 1].joints[joint];
+    const JointMotion& to = points[k].joints[joint];
+    const double part = to.position - from.position;
+    way += std::abs(part);
+    if (std::abs(part) > LEAST_PART)
+    {
+      ratios.push_back(0.5 * (from.velocity + to.velocity) * (points[k].time - points[k - 1].time) / part);
+    }
+  }
+  const double ratio = way > LEAST_WAY && !ratios.empty() ? upperMedian(ratios.begin(), ratios.end()) : 1.0;
+  if (ratio < SAME_RATES.min || ratio > SAME_RATES.max)
+  {
+    return "its speeds are " + roundedText(ratio, 3) + " of the rate of its angles, allowed: 0.5 ... 2 (" +
+           (ratio < 0.0 ? "of the other sign" :
+            ratio > 1.0 ? "degrees/s?" :
+                          "none?") +
+           ")";
+  }
+  return {};
 }
 }  // namespace
 
@@ -144,6 +186,17 @@ void requireMotion(const std::vector<ArmSetPoint>& points, const std::string& wh
     {
       throw InputError(what + ", row " + std::to_string(i + 1) + ": the time does not go on, " +
                        numberText(points[i].time) + " s after " + numberText(points[i - 1].time) + " s");
+    }
+  }
+}
+
+void requireUnits(const std::vector<ArmSetPoint>& points, const ArmDescription& arm, const std::string& what)
+{
+  for (std::size_t i = 0; i < arm.joints.size(); ++i)
+  {
+    if (const std::string errors = jointErrors(points, i); !errors.empty())
+    {
+      throw InputError(what + ": " + arm.joints[i].short_name + ": " + errors);
     }
   }
 }

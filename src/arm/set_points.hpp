@@ -28,4 +28,7 @@ std::string straightenedText(double change);
 
 /// @throws InputError if there is none, or the time does not go on. `what`: they are of.
 void requireMotion(const std::vector<ArmSetPoint>& points, const std::string& what);
+
+/// @throws InputError if a joint's angles are those of degrees, or its speeds not the angles' rates by size and sign.
+void requireUnits(const std::vector<ArmSetPoint>& points, const ArmDescription& arm, const std::string& what);
 }  // namespace hjt

@@ -185,6 +185,7 @@ public:
   {
     const InUse::Hold hold = in_use_.hold();  // reading and warning may let other threads in
     std::vector<ArmSetPoint> points = setPointsIn(motion, arm_);
+    requireUnits(points, arm_, "motion");
     const double change = straightenTimes(points);
     warnPython(change > 0.0 ? std::vector<std::string>{ straightenedText(change) } : std::vector<std::string>());
     const double length = points.back().time - points.front().time;
