@@ -53,6 +53,7 @@ void ArmWatch::ask()
   is_last ? rows.swap(rows_) : void(rows = rows_);
   moved_ = is_last ? -REST : moved_;
   next_look_ = is_last ? FIRST_LOOK : 2.0 * next_look_;
+  is_stopped_ = false;
   answer_ = std::async(std::launch::async,
                        [this, rows = std::move(rows)]
                        {
@@ -73,6 +74,11 @@ bool ArmWatch::look()
   {
     return false;
   }
+  if (is_stopped_)
+  {
+    answer_ = {};  // of rows of before
+    return false;
+  }
   other_ = answer_.get();
   is_settled_ = true;
   if (!other_.empty())
@@ -89,5 +95,8 @@ void ArmWatch::reset()
   moved_ = 0.0;
   next_look_ = FIRST_LOOK;
   last_moved_ = last_time_ = -HUGE_VAL;
+  other_.clear();
+  is_settled_ = false;
+  is_stopped_ = true;
 }
 }  // namespace hjt

@@ -33,7 +33,7 @@ public:
 
   /// Rows of all joints at one time, `current` the effort as it comes.
   void add(const std::vector<MotionRow>& rows);
-  /// Other rows follow.
+  /// Other rows follow: what was found of those before, or is still asked of them, counts no more.
   void reset();
 
   /// True: an answer has come. @throws what the making of the arms threw.
@@ -63,7 +63,7 @@ private:
   double last_time_{ -HUGE_VAL };   // of a row that is kept [s]
   double moved_{};                  // since the last start, but for the rest [s]
   double next_look_{ FIRST_LOOK };
-  std::atomic<bool> is_stopped_{ false };
-  std::future<std::string> answer_;  // last: it is waited for before the rest goes
+  std::atomic<bool> is_stopped_{ false };  // what is asked does not count
+  std::future<std::string> answer_;        // last: it is waited for before the rest goes
 };
 }  // namespace hjt

@@ -134,6 +134,43 @@ TEST(ArmWatch, AnswersAfterHalfAMinuteOfMotion)
   EXPECT_EQ(watch.other(), "ur5");
 }
 
+TEST(ArmWatch, ForgetsWithItsRowsWhatWasAskedOfThem)
+{
+  ArmWatch watch(candidates, "ur10");
+  const auto finish = [&watch]
+  {
+    constexpr int PATIENCE = 1200;
+    for (int k = 0; k < PATIENCE && !watch.look(); ++k)
+    {
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+  };
+  const auto add = [&watch]
+  {
+    for (const std::vector<MotionRow>& row : rowsOfUr5(31.0))
+    {
+      watch.add(row);
+    }
+  };
+  add();
+  finish();
+  ASSERT_EQ(watch.other(), "ur5");
+  watch.reset();
+  EXPECT_EQ(watch.other(), "");
+  EXPECT_FALSE(watch.isSettled());
+  add();
+  watch.reset();  // before the answer has come
+  for (int k = 0; k < 100; ++k)
+  {
+    EXPECT_FALSE(watch.look());
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  EXPECT_EQ(watch.other(), "");
+  add();
+  finish();
+  EXPECT_EQ(watch.other(), "ur5");
+}
+
 TEST(ArmWatch, KeepsNoRowsInWhichNoMotionIsSeen)
 {
   ArmWatch watch(candidates, "ur10");
