@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <iterator>
 
+#include "arm/set_points.hpp"
 #include "base/joined.hpp"
 #include "base/number_text.hpp"
 #include "base/printable.hpp"
@@ -194,6 +195,7 @@ std::string readTrajectory(const JointTrajectory& message, const ArmDescription&
   {
     return "it does not end at rest";
   }
-  return speedErrors(points, arm);
+  const std::string errors = motionErrors(points, arm);
+  return errors.empty() ? speedErrors(points, arm) : errors;
 }
 }  // namespace hjt
