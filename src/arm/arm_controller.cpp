@@ -43,6 +43,7 @@ ArmController::ArmController(const ArmDescription& arm, const ArmTwin& twin, std
   , feed_forward_(twin.joints())
   , integral_(twin.joints())
   , speed_(twin.joints())
+  , before_(twin.joints())
 {
   double longest = 0.0;
   for (const ArmJoint& joint : arm.joints)
@@ -62,6 +63,7 @@ ArmController::ArmController(const ArmDescription& arm, const ArmTwin& twin, std
 void ArmController::reset() noexcept
 {
   std::fill(integral_.begin(), integral_.end(), 0.0);
+  std::fill(speed_.begin(), speed_.end(), 0.0);
   controlled_ = NEVER;
   limited_ = 0;
 }
@@ -74,7 +76,11 @@ bool ArmController::isDue(const ArmTwin& twin) const noexcept
 double ArmController::speed(const ArmTwin& twin, std::size_t joint) const noexcept
 {
   const Twin& drive = twin.drive(joint);
-  return twin.stamp() < controlled_ + period_ ? speed_[joint] : jointSpeed(drive.encoders(), drive);
+  if (twin.stamp() >= controlled_ + period_)
+  {
+    return jointSpeed(drive.encoders(), drive);
+  }
+  return twin.stamp() == controlled_ ? before_[joint] : speed_[joint];
 }
 
 /// Gives the set point to the ways to the joints; the first after a reset was there before.
@@ -116,6 +122,7 @@ ArmController::Wanted ArmController::delayed(std::size_t joint, double periods) 
 void ArmController::control(ArmTwin& twin, const std::vector<JointMotion>& set_point) noexcept
 {
   take(twin, set_point);
+  before_.swap(speed_);
   controlled_ = twin.stamp();
   for (std::size_t i = 0; i < twin.joints(); ++i)
   {

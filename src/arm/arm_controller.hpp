@@ -45,7 +45,8 @@ public:
   /// How often a joint's feedback was at its limit while its brake was off, since reset [-].
   std::uint64_t limitedControls() const noexcept { return limited_; }
   double feedForward(std::size_t joint) const noexcept { return feed_forward_[joint]; }
-  /// Of a joint by the motor's encoder: while it controls what the last control had, else the present [rad/s].
+  /// Of a joint by the motor's encoder: while it controls the one that the torque until now was made of, else the
+  /// present [rad/s].
   double speed(const ArmTwin& twin, std::size_t joint) const noexcept;
 
 private:
@@ -75,6 +76,7 @@ private:
   std::vector<double> feed_forward_;
   std::vector<double> integral_;  // of the torque [N.m]
   std::vector<double> speed_;     // of the joints at the last control [rad/s]
+  std::vector<double> before_;    // and at the one before [rad/s]
   Stamp controlled_{ NEVER };     // the last one
   std::uint64_t limited_{};       // controls of a joint [-]
 };

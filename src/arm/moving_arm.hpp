@@ -14,7 +14,7 @@ namespace hjt
 struct JointReading
 {
   double position{};  ///< by the encoder at the output [rad]
-  double velocity{};  ///< by that at the motor, over the ratio, as its last control had it [rad/s]
+  double velocity{};  ///< by that at the motor, over the ratio, that the current was made of [rad/s]
   double current{};   ///< of the motor [A]
 };
 
