@@ -102,7 +102,7 @@ class ArmTwin(tool.ToolTest):
             lines = file.read().splitlines()
         jump = [line.split(",") for line in lines]
         for row in jump[40:]:
-            row[3] = str(float(row[3]) + 1.0)  # the elbow, within a row
+            row[3] = str(float(row[3]) + 0.5)  # the elbow, within a row
         self.write("motion.csv", "\n".join(map(",".join, jump)) + "\n")
         done = self.run_tool("arm", "motion.csv", "--arm", "ur5", "--out", "run.csv", "--json", "--set",
                              "solver.scene=full_ring")
@@ -179,7 +179,7 @@ class ArmTwin(tool.ToolTest):
     def test_units_and_signs_are_held_against_the_motion(self):
         header = "timestamp," + ",".join(f"{name}_{i}" for name in ("target_q", "target_qd") for i in range(JOINTS))
         for scale, speed_scale, text in (
-                (180 / math.pi, 180 / math.pi, "set point 1: shoulder_pan_joint: angle = 43.5"),
+                (180 / math.pi, 180 / math.pi, "shoulder_pan_joint would turn at 57.3 rad/s at 0.16 s"),
                 (1.0, -1.0, "base: its speeds are -1 of the rate of its angles, allowed: 0.5 ... 2 (of the other"),
                 (1.0, 180 / math.pi, "base: its speeds are 57.3 of the rate of its angles"),
                 (1.0, 0.0, "base: its speeds are 0 of the rate of its angles, allowed: 0.5 ... 2 (none?)")):
