@@ -17,13 +17,13 @@ ROS_DEBIAN_RUN=(
 )
 # To build.
 LIBRARIES=(
-  libboost-dev libboost-program-options-dev libceres-dev libeigen3-dev libfmt-dev libhdf5-dev liblz4-dev
+  libboost-dev libboost-program-options-dev libceres-dev libconsole-bridge-dev libeigen3-dev libfmt-dev libhdf5-dev liblz4-dev
   liborocos-kdl-dev libsqlite3-dev libyaml-cpp-dev libzstd-dev nlohmann-json3-dev pybind11-dev python3-dev
 )
 ROS_DEBIAN=(
   catkin ros-message-generation ros-message-runtime
   libroscpp-dev libdiagnostic-updater-dev libdynamic-reconfigure-config-init-mutex-dev libkdl-parser-dev
-  librosbag-dev librosbag-storage-dev libtopic-tools-dev
+  librosbag-dev librosbag-storage-dev libtopic-tools-dev liburdf-dev
   libgeometry-msgs-dev libros-rosgraph-msgs-dev libsensor-msgs-dev libstd-msgs-dev libstd-srvs-dev
   libtrajectory-msgs-dev libvisualization-msgs-dev
   ros-diagnostic-msgs ros-geometry-msgs ros-sensor-msgs ros-std-msgs ros-std-srvs ros-trajectory-msgs ros-visualization-msgs

@@ -12,6 +12,7 @@ LINE_BAND = (10.0, 55.0)   # frequencies of the lines that the rows resolve [Hz]
 SLOW = 3.0                 # below it an error is none of ripple [Hz]
 WANTED = 0.8               # of the simple fit's error
 GAINS_FROM = "no5"         # recording on which the controller's gains are identified
+DELAY_FROM = {"no7", "no7_pushed"}  # recordings of the motion that the delay of the set points was read from
 BARE_IN = "no9"            # recording that is run without the cup's friction too
 # Errors of the circular spline alone: a gear with errors on both members has no table.
 BUILT = ["--config", "as_built.yaml", "--set", "manufacture.flexspline_pitch_deviation=0.0", "--set",
@@ -21,6 +22,18 @@ BUILT = ["--config", "as_built.yaml", "--set", "manufacture.flexspline_pitch_dev
 def tracking(data, joint):
     """Actual less target angle, rms about its mean: an offset is the encoder's zero [mrad]."""
     return 1e3 * float(np.std(data[f"actual_q_{joint}"] - data[f"target_q_{joint}"]))
+
+
+def likeness(loop, joint):
+    """Correlation in time of the run's tracking error with the recorded one."""
+    recorded = loop.recording.data
+    mine, robots = (data[f"actual_q_{joint}"] - data[f"target_q_{joint}"] for data in (loop.data, recorded))
+    return float(np.corrcoef(np.interp(loop.times, loop.data["timestamp"], mine), robots)[0, 1])
+
+
+def both_ways(ratios, factor):
+    """How many of the ratios are within a factor of 1, above and below."""
+    return int(np.count_nonzero((ratios <= factor) & (ratios >= 1.0 / factor)))
 
 
 def line_amplitude(time, speed, values):
@@ -181,7 +194,7 @@ What bounds it: [arm_twin.md](arm_twin.md#errors-of-manufacture).
 
 def section(runner, recordings, fit, joints, shown, picture, train):
     """Lines of the page. `fit`: of the current, on another recording, told the motion."""
-    rows, tracked, currents, parts = [], [], [], []
+    rows, tracked, alike, currents, parts = [], [], [], [], []
     for recording in recordings:
         loop = ClosedLoop(runner, recording, "identified_arm")
         if recording.name == shown:
@@ -193,7 +206,9 @@ def section(runner, recordings, fit, joints, shown, picture, train):
             lines = [line_amplitude(data["timestamp"], data[f"actual_qd_{number}"], data[f"actual_current_{number}"])
                      for data in (loop.data, recording.data)]
             cells.append(f"{cell(*errors)}; {cell(current, told, simple)}; {cell(*lines)}")
-            tracked.append(errors[0] / errors[1])
+            if recording.name not in DELAY_FROM:
+                tracked.append(errors[0] / errors[1])
+                alike.append(likeness(loop, number))
             if not np.isnan(current):
                 currents.append(current / simple)
                 parts.append([[*slow_and_fast(recording, name, residual), rms(residual[recording.moving(name)])]
@@ -212,8 +227,10 @@ about its mean, twin / recorded [mrad]; error of the current in moving rows, rms
 (`follow`) / simple fit told the motion [A]; amplitude of the current at {LOOP_LINES} lines a turn of the joint, twin /
 recorded [A], –: no steady motion of a frequency that the rows resolve.
 
-The tracking error is within 1.5 of the recorded one in {np.count_nonzero(tracked <= 1.5)} of {len(tracked)} (recording,
-joint); within a factor of two in {np.count_nonzero((tracked <= 2.0) & (tracked >= 0.5))}. The current in moving rows is
+The delay of the set points is that of no6. In the motions that it is not, the tracking error is within a factor of 1.5
+of the recorded one, neither larger nor smaller, in {both_ways(tracked, 1.5)} of {len(tracked)} (recording, joint),
+within a factor of two in {both_ways(tracked, 2.0)}; its correlation in time with the recorded one is
+{np.median(alike):.2f} in the median, least {np.min(alike):.2f}. The current in moving rows is
 within {WANTED:g} of the simple fit's error in {np.count_nonzero(currents <= WANTED)} of {len(currents)}, and below
 it in {np.count_nonzero(currents < 1.0)}.
 

@@ -116,11 +116,17 @@ ParameterMap armDriveParameters(const ArmJoint& joint, const fs::path& directory
 std::vector<ParameterMap> armDriveMaps(const ArmDescription& arm, const ConfigurationOptions& options,
                                        const std::string& identified)
 {
+  constexpr const char* SCENE = "solver.scene";
   std::vector<ParameterMap> maps;
+  ParameterMap defaults;
+  readDefaultConfiguration(configDirectory(options), defaults);
   for (const ArmJoint& joint : arm.joints)
   {
     maps.push_back(armDriveParameters(joint, configDirectory(options), identified));
-    readAssignment("solver.scene=auto", maps.back());
+    if (maps.back().at(SCENE).origin == defaults.at(SCENE).origin)
+    {
+      readAssignment(std::string(SCENE) + "=auto", maps.back());
+    }
     addOverlays(options, maps.back());
   }
   return maps;

@@ -43,7 +43,7 @@ ParameterMap armJointParameters(const ArmJoint& joint, const std::filesystem::pa
 ParameterMap armDriveParameters(const ArmJoint& joint, const std::filesystem::path& directory,
                                 const std::string& identified);
 
-/// Those of all drives, solver.scene = auto and what the options lay over it.
+/// Those of all drives, solver.scene = auto where neither the joint's files nor the options say otherwise.
 std::vector<ParameterMap> armDriveMaps(const ArmDescription& arm, const ConfigurationOptions& options,
                                        const std::string& identified);
 

@@ -78,6 +78,10 @@ public:
                 "greatest torque of the controller beyond what it feeds forward");
       }
     }
+    if (holds(map_, place + ".delay"))
+    {
+      fields_(place + ".delay", "s", joint.delay, Range{ 0.0, 0.1 }, "of a set point until the controller acts on it");
+    }
     if (isMapOrNone(place + ".controller") && holds(map_, place + ".controller"))
     {
       readGains(place + ".controller", fields_, joint.gains.emplace());

@@ -20,9 +20,11 @@ struct ArmJoint
   std::string short_name;             ///< of files and namespaces, a name in ROS; no other joint's
   std::vector<std::string> overlays;  ///< configuration files of its drive, later wins
   ParameterMap parameters;            ///< over the overlays
+  Range angles{ -100.0, 100.0 };      ///< of the URDF; without limits 16 turns either way [rad]
   double speed_limit{};               ///< 0: none given [rad/s]
   double torque_limit{};              ///< at the output, 0: none given [N.m]
   double feedback_limit{};            ///< of its controller's torque beyond what is fed forward, 0: none [N.m]
+  double delay{};                     ///< of a set point until its controller acts on it [s]
   std::vector<double> check_up;       ///< angles of all joints where its check-up begins; empty: none [rad]
   std::optional<JointGains> gains;    ///< of its controller; none: ArmController::defaultGains
 };
@@ -79,8 +81,9 @@ struct ArmDescription
 /// range; and as readLinks.
 ArmDescription readArmDescription(const std::string& path);
 
-/// The links of the URDF's chain from base to tip. @throws ParameterError if it cannot be read, has no such chain,
-/// other joints than the description names, or masses, inertia, places or axes that no robot has.
+/// The links of the URDF's chain from base to tip, and the ranges of the joints' angles. @throws ParameterError if any
+/// of it cannot be read, it has no such chain, other joints than the description names, a joint that moves no mass, or
+/// masses, inertia, places or axes that no robot has.
 void readLinks(ArmDescription& arm);
 
 /// A controller's gains, SHORT_NAME.position ... of the joints that the file names. @throws ParameterError alike.

@@ -2,8 +2,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <mutex>
 #include <string>
 
+#include <console_bridge/console.h>
+#include <urdf/model.h>
 #include <kdl/chain.hpp>
 #include <kdl/tree.hpp>
 #include <kdl_parser/kdl_parser.hpp>
@@ -53,6 +56,92 @@ std::size_t depthOf(const std::string& xml)
   return deepest;
 }
 
+/// Takes what the parser of URDF reports while it exists. The parser passes over numbers that it cannot read.
+class ParserErrors : public console_bridge::OutputHandler
+{
+public:
+  ParserErrors() : lock_(mutex()) { console_bridge::useOutputHandler(this); }
+  ~ParserErrors() override { console_bridge::restorePreviousOutputHandler(); }
+  ParserErrors(const ParserErrors&) = delete;
+  ParserErrors(ParserErrors&&) = delete;
+  ParserErrors& operator=(const ParserErrors&) = delete;
+  ParserErrors& operator=(ParserErrors&&) = delete;
+
+  void log(const std::string& text, console_bridge::LogLevel level, const char* /*file*/, int /*line*/) override
+  {
+    if (first_.empty() && level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR)
+    {
+      first_ = text;
+    }
+  }
+
+  const std::string& first() const { return first_; }  ///< empty: none
+
+private:
+  /// The handler is the process's.
+  static std::mutex& mutex()
+  {
+    static std::mutex of_handler;
+    return of_handler;
+  }
+
+  std::lock_guard<std::mutex> lock_;
+  std::string first_;
+};
+
+/// @throws ParameterError with the parser's first error.
+void parse(const ArmDescription& arm, urdf::Model& model, KDL::Tree& tree)
+{
+  std::string error;
+  bool is_read = false;
+  {
+    const ParserErrors errors;
+    is_read = model.initString(arm.urdf);
+    error = errors.first();
+  }
+  if (!is_read || !error.empty() || !kdl_parser::treeFromUrdfModel(model, tree))
+  {
+    throw ParameterError(arm.origin + ": its URDF cannot be read" + (error.empty() ? "" : ": " + error));
+  }
+}
+
+/// Each joint moves a mass, its own link's or one that is fixed to it: without any the loads and limits of all joints
+/// before are those of another arm. @throws ParameterError.
+void requireMasses(const ArmDescription& arm, const KDL::Chain& chain)
+{
+  const KDL::Segment* moved = nullptr;
+  double mass = 0.0;
+  const auto require_mass = [&]
+  {
+    if (moved != nullptr && mass == 0.0)
+    {
+      throw ParameterError(arm.origin + ": its URDF: link '" + moved->getName() + "', which joint '" +
+                           moved->getJoint().getName() +
+                           "' moves, has no mass: it needs <inertial> with <mass value=\"KILOGRAMS\"/> above 0");
+    }
+  };
+  for (const KDL::Segment& segment : chain.segments)
+  {
+    if (segment.getJoint().getType() != KDL::Joint::None)
+    {
+      require_mass();
+      moved = &segment;
+      mass = 0.0;
+    }
+    mass += segment.getInertia().getMass();
+  }
+  require_mass();
+}
+
+/// What the URDF allows; without limits, of a joint that turns on, a great many turns.
+Range angleRange(const urdf::Model& model, const std::string& joint)
+{
+  const auto found = model.getJoint(joint);
+  const bool is_limited =
+      found->type == urdf::Joint::REVOLUTE && found->limits && found->limits->lower < found->limits->upper;
+  return is_limited ? Range{ found->limits->lower, found->limits->upper } : ArmJoint{}.angles;
+}
+
 /// @throws ParameterError where the link that a joint carries, or its place, is none that a robot can have.
 void requirePlausible(const ArmDescription& arm, const KDL::Segment& segment)
 {
@@ -90,8 +179,8 @@ void requirePlausible(const ArmDescription& arm, const KDL::Segment& segment)
   }
 }
 
-/// Each checked.
-KDL::Chain chainOf(const ArmDescription& arm)
+/// Each checked; the joints get their ranges.
+KDL::Chain chainOf(ArmDescription& arm)
 {
   constexpr std::size_t MAX_DEPTH = 100;
   if (depthOf(arm.urdf) > MAX_DEPTH)
@@ -99,11 +188,9 @@ KDL::Chain chainOf(const ArmDescription& arm)
     throw ParameterError(arm.origin + ": its URDF has more than " + std::to_string(MAX_DEPTH) +
                          " elements within each other");
   }
+  urdf::Model model;
   KDL::Tree tree;
-  if (!kdl_parser::treeFromString(arm.urdf, tree))
-  {
-    throw ParameterError(arm.origin + ": its URDF cannot be read");
-  }
+  parse(arm, model, tree);
   KDL::Chain chain;
   if (!tree.getChain(arm.base, arm.tip, chain))
   {
@@ -124,12 +211,13 @@ KDL::Chain chainOf(const ArmDescription& arm)
                            joint.getName() + "', not '" +
                            (found < arm.joints.size() ? arm.joints[found].name : std::string("none")) + "'");
     }
-    ++found;
+    arm.joints[found++].angles = angleRange(model, joint.getName());
   }
   if (found < arm.joints.size())
   {
     throw ParameterError(arm.origin + ": the URDF's chain has no joint '" + arm.joints[found].name + "'");
   }
+  requireMasses(arm, chain);
   return chain;
 }
 

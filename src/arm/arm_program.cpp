@@ -5,6 +5,7 @@
 
 #include "arm/arm_file.hpp"
 #include "arm/check_up.hpp"
+#include "arm/set_points.hpp"
 #include "params/field_reader.hpp"
 
 namespace hjt
@@ -119,6 +120,7 @@ std::vector<ArmSetPoint> readArmProgram(const std::string& path, const ArmDescri
   {
     points.push_back({ instant.time, std::move(instant.joints) });
   }
+  requireMotion(points, arm, path);
   return points;
 }
 }  // namespace hjt

@@ -78,24 +78,33 @@ bool MovingArm::reset(Stamp stamp) noexcept
   {
     twin_.drive(i).commandBrake(twin_.stamp() + toStampLength(0.5 * settling_), false);
   }
+  control();
   return true;
 }
 
 bool MovingArm::step(Stamp until) noexcept
 {
-  const Stamp next = twin_.stamp() + twin_.stepLength();
-  const bool controls = next <= until && !stop_ && controller_.isDue(twin_);
-  if (controls)
+  if (!twin_.step(until))
   {
-    wantedAt(next, set_point_);
+    return false;
+  }
+  control();
+  return true;
+}
+
+/// At an instant of the control: what acts from there on.
+void MovingArm::control() noexcept
+{
+  if (stop_ || !controller_.isDue(twin_))
+  {
+    return;
+  }
+  wantedAt(twin_.stamp(), set_point_);
+  watch();
+  if (!stop_)
+  {
     controller_.control(twin_, set_point_);
   }
-  const bool stepped = twin_.step(until);
-  if (controls)
-  {
-    watch();
-  }
-  return stepped;
 }
 
 /// Whether the joints are where the controller wants them.

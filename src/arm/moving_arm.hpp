@@ -14,7 +14,7 @@ namespace hjt
 struct JointReading
 {
   double position{};  ///< by the encoder at the output [rad]
-  double velocity{};  ///< by that at the motor, over the ratio, as its last control had it [rad/s]
+  double velocity{};  ///< by that at the motor, over the ratio, that the current was made of [rad/s]
   double current{};   ///< of the motor [A]
 };
 
@@ -78,6 +78,7 @@ public:
 
 private:
   double leadIn() const noexcept { return lead_in_.end() - lead_in_.begin(); }  // [s]
+  void control() noexcept;
   void watch() noexcept;
   void wantedAt(Stamp stamp, std::vector<JointMotion>& motion) noexcept;
 
@@ -91,7 +92,7 @@ private:
   bool is_commanded_{};
   Stamp motion_begin_{};
   Stamp command_begin_{};
-  std::vector<JointMotion> set_point_;  // of the next control
+  std::vector<JointMotion> set_point_;  // of the last control
   std::vector<double> fastest_;         // at which the joints are stopped [rad/s]
   std::optional<ProtectiveStop> stop_;
 };

@@ -11,6 +11,7 @@
 
 #include "arm/arm_program.hpp"
 #include "base/csv_rows.hpp"
+#include "base/median.hpp"
 #include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 
@@ -56,6 +57,81 @@ void restAtEnd(double length, ArmSetPoint& point)
   {
     joint.velocity = std::abs(joint.velocity) <= ACCELERATION * length ? 0.0 : joint.velocity;
   }
+}
+
+/// What shows that the speeds of a joint have another unit or sign than they should; empty: nothing.
+std::string rateErrors(const std::vector<ArmSetPoint>& points, std::size_t joint)
+{
+  constexpr double LEAST_WAY = 0.1;        // that tells of the speeds [rad]
+  constexpr double LEAST_PART = 1e-4;      // of a row, likewise [rad]
+  constexpr Range SAME_RATES{ 0.5, 2.0 };  // speeds over the angles' rates, median: jumps are left to the arm
+  double way = 0.0;                        // [rad]
+  std::vector<double> ratios;
+  for (std::size_t k = 1; k < points.size(); ++k)
+  {
+    const JointMotion& from = points[k - 1].joints[joint];
+    const JointMotion& to = points[k].joints[joint];
+    const double part = to.position - from.position;
+    way += std::abs(part);
+    if (std::abs(part) > LEAST_PART)
+    {
+      ratios.push_back(0.5 * (from.velocity + to.velocity) * (points[k].time - points[k - 1].time) / part);
+    }
+  }
+  const double ratio = way > LEAST_WAY && !ratios.empty() ? upperMedian(ratios.begin(), ratios.end()) : 1.0;
+  if (ratio < SAME_RATES.min || ratio > SAME_RATES.max)
+  {
+    return "its speeds are " + roundedText(ratio, 3) + " of the rate of its angles, allowed: 0.5 ... 2 (" +
+           (ratio < 0.0 ? "of the other sign" :
+            ratio > 1.0 ? "degrees/s?" :
+                          "none?") +
+           ")";
+  }
+  return {};
+}
+
+constexpr double LONGEST = 1e6;  // of a motion, eleven days [s]
+
+std::string rangeErrors(const JointMotion& motion, const ArmJoint& joint)
+{
+  const auto errors = [&](const char* what, double value, const char* unit, const Range& range)
+  {
+    return value >= range.min && value <= range.max ? std::string() :
+                                                      joint.name + ": " + what + " = " + numberText(value) + " [" +
+                                                          unit + "] is out of range, allowed: " + rangeText(range);
+  };
+  std::string angle = errors("angle", motion.position, "rad", joint.angles);
+  return !angle.empty() ? angle + "; are they degrees?" :
+                          errors("speed", motion.velocity, "rad/s", Range{ -100.0, 100.0 }) +
+                              errors("acceleration", motion.acceleration, "rad/s^2", Range{ -1e4, 1e4 });
+}
+
+/// What no controller would send; a little more than a joint's speed it may.
+std::string speedErrors(const std::vector<ArmSetPoint>& points, const ArmDescription& arm)
+{
+  constexpr double TIMES = 3.0;  // the joint's greatest speed
+  constexpr double SHORT = 0.1;  // stamps of single set points jitter [s]
+  std::size_t from = 0;
+  for (const ArmSetPoint& to : points)
+  {
+    while (points[from + 1 < points.size() ? from + 1 : from].time <= to.time - SHORT)
+    {
+      ++from;
+    }
+    const double length = to.time - points[from].time;
+    for (std::size_t i = 0; i < arm.joints.size() && length >= SHORT; ++i)
+    {
+      const double speed = std::abs(to.joints[i].position - points[from].joints[i].position) / length;
+      const double limit = arm.joints[i].speed_limit;
+      if (limit > 0.0 && !(speed <= TIMES * limit))
+      {
+        return arm.joints[i].name + " would turn at " + roundedText(speed, 3) + " rad/s at " +
+               roundedText(to.time - points.front().time, 4) + " s, its limit is " + roundedText(limit, 4) +
+               " rad/s; are the angles degrees?";
+      }
+    }
+  }
+  return {};
 }
 }  // namespace
 
@@ -132,18 +208,55 @@ std::string straightenedText(double change)
          fixedText(1e3 * change, 1) + " ms";
 }
 
-void requireMotion(const std::vector<ArmSetPoint>& points, const std::string& what)
+std::string motionErrors(const std::vector<ArmSetPoint>& points, const ArmDescription& arm)
+{
+  // All written so that NaN fails.
+  for (std::size_t k = 0; k < points.size(); ++k)
+  {
+    const ArmSetPoint& point = points[k];
+    const std::string place = "set point " + std::to_string(k + 1) + ": ";
+    const double time = point.time - points.front().time;
+    if (k > 0 && !(point.time > points[k - 1].time))
+    {
+      return place + "the time does not go on, " + numberText(point.time) + " s after " +
+             numberText(points[k - 1].time) + " s";
+    }
+    if (!(time <= LONGEST))
+    {
+      return place + "it is " + numberText(time) + " s after the first, allowed: " + numberText(LONGEST) + " s";
+    }
+    for (std::size_t i = 0; i < arm.joints.size(); ++i)
+    {
+      std::string errors = rangeErrors(point.joints[i], arm.joints[i]);
+      if (!errors.empty())
+      {
+        return place + errors;
+      }
+    }
+  }
+  return speedErrors(points, arm);
+}
+
+void requireMotion(const std::vector<ArmSetPoint>& points, const ArmDescription& arm, const std::string& what)
 {
   if (points.empty())
   {
     throw InputError(what + " has no row");
   }
-  for (std::size_t i = 1; i < points.size(); ++i)
+  const std::string errors = motionErrors(points, arm);
+  if (!errors.empty())
   {
-    if (points[i].time <= points[i - 1].time)
+    throw InputError(what + ": " + errors);
+  }
+}
+
+void requireRates(const std::vector<ArmSetPoint>& points, const ArmDescription& arm, const std::string& what)
+{
+  for (std::size_t i = 0; i < arm.joints.size(); ++i)
+  {
+    if (const std::string errors = rateErrors(points, i); !errors.empty())
     {
-      throw InputError(what + ", row " + std::to_string(i + 1) + ": the time does not go on, " +
-                       numberText(points[i].time) + " s after " + numberText(points[i - 1].time) + " s");
+      throw InputError(what + ": " + arm.joints[i].short_name + ": " + errors);
     }
   }
 }
@@ -200,8 +313,8 @@ std::vector<ArmSetPoint> readSetPoints(const std::string& path, const ArmDescrip
     }
     points.push_back(point);
   }
-  requireMotion(points, path);
   fillRates(points, has_velocity, has_acceleration);
+  requireMotion(points, arm, path);
   return points;
 }
 }  // namespace hjt

@@ -26,6 +26,13 @@ double straightenTimes(std::vector<ArmSetPoint>& points);
 /// What a user must know of such a change, above 0 [s].
 std::string straightenedText(double change);
 
-/// @throws InputError if there is none, or the time does not go on. `what`: they are of.
-void requireMotion(const std::vector<ArmSetPoint>& points, const std::string& what);
+/// What of it no arm can be told, by whichever way it comes; empty: nothing. The time has to go on, for a million seconds
+/// at most; angles lie within the joint's range, and speeds within three times its greatest.
+std::string motionErrors(const std::vector<ArmSetPoint>& points, const ArmDescription& arm);
+
+/// @throws InputError if there is none, or with motionErrors. `what`: they are of.
+void requireMotion(const std::vector<ArmSetPoint>& points, const ArmDescription& arm, const std::string& what);
+
+/// @throws InputError if a joint's speeds are not the angles' rates by size and sign.
+void requireRates(const std::vector<ArmSetPoint>& points, const ArmDescription& arm, const std::string& what);
 }  // namespace hjt

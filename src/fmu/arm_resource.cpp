@@ -27,6 +27,7 @@ void visitArm(Arm& arm, Fields& fields)
     fields(place + "name", joint.short_name, "of its variables");
     fields(place + "speed_limit", "rad/s", joint.speed_limit, ANY, "0: none");
     fields(place + "feedback_limit", "N.m", joint.feedback_limit, ANY, "0: none");
+    fields(place + "delay", "s", joint.delay, ANY, "of its set points");
     fields(place + "position", "1/s", joint.gains->position, ANY, "gain");
     fields(place + "speed", "N.m.s/rad", joint.gains->speed, ANY, "gain");
     fields(place + "integral_time", "s", joint.gains->integral_time, ANY, "of the speed's control");

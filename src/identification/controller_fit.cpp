@@ -6,6 +6,8 @@
 
 #include <Eigen/QR>
 
+#include "base/number_text.hpp"
+
 namespace hjt
 {
 namespace
@@ -19,6 +21,7 @@ constexpr double SLOWEST = 1.0;        // [s]
 constexpr double AT_REST = 0.01;       // at which the sign of the speed turns smoothly [rad/s]
 constexpr double LEAST_MOTION = 5.0;   // [s]
 constexpr double LEAST_EXPLAINED = 1.0 / 3.0;
+constexpr double WIDEST = 0.5;      // half width of the ratio of both gains, of it
 constexpr double JUMP = 0.1;        // of the set point's speed within a row, beside those about it [rad/s]
 constexpr double AT_LIMIT = 0.95;   // of the limit
 constexpr double TRANSIENT = 0.25;  // of either, to both sides [s]
@@ -115,10 +118,10 @@ Column linearRows(const std::vector<ControllerRow>& rows, double period, double 
   return linear;
 }
 
-/// Half widths of the first two coefficients, by leaving out each piece in turn.
-Eigen::Vector2d halfWidths(const Eigen::MatrixXd& columns, const Column& values)
+/// Half widths of the first two coefficients and of their ratio, by leaving out each piece in turn.
+Eigen::Vector3d halfWidths(const Eigen::MatrixXd& columns, const Column& values)
 {
-  Eigen::Matrix<double, 2, PIECES> found;
+  Eigen::Matrix<double, 3, PIECES> found;
   const Eigen::Index rows = values.size();
   for (Eigen::Index piece = 0; piece < PIECES; ++piece)
   {
@@ -128,9 +131,10 @@ Eigen::Vector2d halfWidths(const Eigen::MatrixXd& columns, const Column& values)
     Column of_rest(rest.rows());
     rest << columns.topRows(begin), columns.bottomRows(rows - end);
     of_rest << values.head(begin), values.tail(rows - end);
-    found.col(piece) = rest.colPivHouseholderQr().solve(of_rest).head<2>();
+    const Column solved = rest.colPivHouseholderQr().solve(of_rest);
+    found.col(piece) << solved[0], solved[1], solved[0] / solved[1];
   }
-  const Eigen::Vector2d mean = found.rowwise().mean();
+  const Eigen::Vector3d mean = found.rowwise().mean();
   return QUANTILE *
          ((PIECES - 1.0) / PIECES * (found.colwise() - mean).rowwise().squaredNorm()).array().sqrt().matrix();
 }
@@ -182,9 +186,10 @@ ControllerFit fitController(const std::vector<ControllerRow>& rows, double perio
       fit.speed_current = found[1];
     }
   }
-  const Eigen::Vector2d half_widths = halfWidths(columns_at(fit.lag), values);
+  const Eigen::Vector3d half_widths = halfWidths(columns_at(fit.lag), values);
   fit.angle_half_width = half_widths[0];
   fit.speed_half_width = half_widths[1];
+  fit.position_half_width = half_widths[2];
   fit.explained = 1.0 - least / values.squaredNorm();
   // Written so that NaN is refused.
   if (!(fit.angle_half_width < fit.angle_current && fit.speed_half_width < fit.speed_current))
@@ -195,9 +200,15 @@ ControllerFit fitController(const std::vector<ControllerRow>& rows, double perio
   {
     fit.refusal = "the errors explain less than a third of its current";
   }
+  else if (const double sum = fit.angle_current / fit.speed_current;
+           !(fit.position_half_width < std::min(WIDEST * sum, sum - 1.0 / usual.integral_time)))
+  {
+    fit.refusal = "the recording does not tell the gain of its angle: with the integral's " + roundedText(sum, 3) +
+                  " +- " + roundedText(fit.position_half_width, 3) + " 1/s, the integral's alone " +
+                  roundedText(1.0 / usual.integral_time, 3);
+  }
   else
   {
-    const double sum = fit.angle_current / fit.speed_current;
     const double by_integral = std::min(1.0 / usual.integral_time, 0.5 * sum);
     const Eigen::Vector2d friction = torque_per_current * fedForward(rows);
     fit.gains = { sum - by_integral, torque_per_current * fit.speed_current, 1.0 / by_integral, friction[0],

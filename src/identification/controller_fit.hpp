@@ -8,7 +8,7 @@
 
 namespace hjt
 {
-/// A joint at one row of its controller's recording; errors: target less actual.
+/// A joint at one row of its controller's recording. Errors: target less actual, the target as old as the actual value.
 struct ControllerRow
 {
   double angle_error{};     ///< [rad]
@@ -22,11 +22,12 @@ struct ControllerRow
 /// Gains of a joint's controller, identified.
 struct ControllerFit
 {
-  double angle_current{};     ///< current for an error of the angle [A/rad]
-  double angle_half_width{};  ///< 95 % [A/rad]
-  double speed_current{};     ///< current for an error of the speed [A.s/rad]
-  double speed_half_width{};  ///< 95 % [A.s/rad]
-  double lag{};               ///< of the recorded current behind the errors [s]
+  double angle_current{};        ///< current for an error of the angle [A/rad]
+  double angle_half_width{};     ///< 95 % [A/rad]
+  double speed_current{};        ///< current for an error of the speed [A.s/rad]
+  double speed_half_width{};     ///< 95 % [A.s/rad]
+  double position_half_width{};  ///< 95 %, of the gain of the angle [1/s]
+  double lag{};                  ///< of the recorded current behind the errors [s]
   double explained{};  ///< share of the current's variance beside the rigid-body torque's, swings shorter than 1 s
   JointGains gains;
   std::string refusal;  ///< why they stay as they were; empty: they do not

@@ -11,6 +11,7 @@ enum ExitCode : int
   EXIT_USAGE = 2,
   EXIT_DEPARTS = 3,     ///< a verdict is as bad as the user asked to be told
   EXIT_NOT_JUDGED = 4,  ///< nothing could be judged, and the user asked for a verdict
+  EXIT_STOPPED = 5,     ///< the arm stopped by itself
   EXIT_BY_SIGNAL = 128  ///< plus the signal's number
 };
 }  // namespace hjt

@@ -161,6 +161,7 @@ try
   }
   std::vector<ArmSetPoint> points =
       options.set_points.empty() ? readSetPoints(options.motion, arm) : options.set_points;
+  requireRates(points, arm, options.motion.empty() ? "motion" : options.motion);
   if (const double change = straightenTimes(points); change > 0.0)
   {
     options.watch.notice(straightenedText(change));

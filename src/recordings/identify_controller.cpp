@@ -32,7 +32,36 @@ struct Recorded
 {
   double period{};                                 // of the rows, median [s]
   std::vector<std::vector<ControllerRow>> joints;  // the moment in place of its current
+  std::vector<std::vector<double>> angles;         // actual [rad]
 };
+
+/// By how much the actual speeds are behind the actual angles' rates, least squares, not less than 0 [s].
+double ageOfSpeeds(const std::vector<ControllerRow>& rows, const std::vector<double>& angles, double period)
+{
+  double products = 0.0;
+  double squares = 0.0;
+  for (std::size_t k = 1; k + 1 < rows.size(); ++k)
+  {
+    const double rate = (angles[k + 1] - angles[k - 1]) / (2.0 * period);
+    const double bend = (angles[k + 1] - 2.0 * angles[k] + angles[k - 1]) / (period * period);
+    const double speed = rows[k].speed - rows[k].speed_error;
+    products += (rate - speed) * bend;
+    squares += bend * bend;
+  }
+  return squares > 0.0 ? std::max(products / squares, 0.0) : 0.0;
+}
+
+/// The errors that the controller had, which takes set points late, and their speeds as late as it reads its own.
+void takeDelays(double delay, double speed_age, double period, std::vector<ControllerRow>& rows)
+{
+  const std::vector<ControllerRow> logged = rows;
+  for (std::size_t k = 1; k + 1 < rows.size(); ++k)
+  {
+    const double acceleration = (logged[k + 1].speed - logged[k - 1].speed) / (2.0 * period);
+    rows[k].angle_error -= delay * (logged[k].speed - 0.5 * delay * acceleration);
+    rows[k].speed_error -= (delay + speed_age) * acceleration;
+  }
+}
 
 Recorded readController(const std::string& path, std::size_t joints)
 {
@@ -66,6 +95,7 @@ Recorded readController(const std::string& path, std::size_t joints)
   };
   Recorded recorded;
   recorded.joints.resize(joints);
+  recorded.angles.resize(joints);
   std::vector<double> steps;
   double before = 0.0;
   while (rows.next())
@@ -82,6 +112,7 @@ Recorded readController(const std::string& path, std::size_t joints)
       std::transform(columns[i].begin(), columns[i].end(), value.begin(), number);
       recorded.joints[i].push_back(
           { value[0] - value[4], value[1] - value[5], value[1], value[3], value[2], value[6] });
+      recorded.angles[i].push_back(value[4]);
     }
   }
   recorded.period = steps.empty() ? 0.0 : upperMedian(steps.begin(), steps.end());
@@ -90,6 +121,11 @@ Recorded readController(const std::string& path, std::size_t joints)
     throw InputError(path + ": the times of its rows do not go on");
   }
   return recorded;
+}
+
+std::string halfWidthText(double half_width)
+{
+  return "; 95 %: +- " + roundedText(half_width, 3);
 }
 
 std::string textOf(const RecordingOptions& options, const std::vector<IdentifiedController>& joints)
@@ -102,9 +138,11 @@ std::string textOf(const RecordingOptions& options, const std::vector<Identified
   {
     const ControllerFit& fit = joint.fit;
     text += "\n" + joint.name + ":\n  # Speed wanted for an error of the angle [1/s]" +
-            (fit.refusal.empty() ? "" : "; as configured: " + fit.refusal) +
+            (fit.refusal.empty() ? halfWidthText(fit.position_half_width) : "; as configured: " + fit.refusal) +
             ".\n  position: " + numberText(fit.gains.position) + "\n  # Torque for an error of the speed [N.m.s/rad]" +
-            (joint.is_limited ? "; identified more, beyond what this loop bears" : "") +
+            (joint.is_limited    ? "; identified more, beyond what this loop bears" :
+             fit.refusal.empty() ? halfWidthText(joint.fit.gains.speed / fit.speed_current * fit.speed_half_width) :
+                                   "") +
             ".\n  speed: " + numberText(fit.gains.speed) +
             "\n  # Of the speed's control [s].\n  integral_time: " + numberText(fit.gains.integral_time) +
             "\n  # Friction that is fed forward, constant [N.m].\n  coulomb: " + numberText(fit.gains.coulomb) +
@@ -135,11 +173,13 @@ std::vector<IdentifiedController> identifyController(const RecordingOptions& opt
     {
       row.rigid_current /= gain;
     }
+    const double period = recorded.period * options.time_scale;
+    takeDelays(arm.joints[i].delay, ageOfSpeeds(recorded.joints[i], recorded.angles[i], period), period,
+               recorded.joints[i]);
     const JointGains usual = arm.joints[i].gains.value_or(ArmController::defaultGains(drive));
     IdentifiedController& joint = joints.emplace_back();
     joint.name = arm.joints[i].short_name;
-    joint.fit = fitController(recorded.joints[i], recorded.period * options.time_scale, gain, usual,
-                              arm.joints[i].feedback_limit);
+    joint.fit = fitController(recorded.joints[i], period, gain, usual, arm.joints[i].feedback_limit);
     const double most = MOST_SPEED_GAIN * ArmController::defaultGains(drive).speed;
     joint.is_limited = joint.fit.refusal.empty() && joint.fit.gains.speed > most;
     if (joint.is_limited)
@@ -165,6 +205,7 @@ Report reportOf(const std::vector<IdentifiedController>& joints)
     { "speed_half_width", [](const Joint& joint) { return joint.fit.speed_half_width; }, "+-" },
     { "lag", [](const Joint& joint) { return joint.fit.lag; }, "lag [s]" },
     { "explained", [](const Joint& joint) { return joint.fit.explained; }, "explained" },
+    { "position_half_width", [](const Joint& joint) { return joint.fit.position_half_width; } },
     { "position", [](const Joint& joint) { return joint.fit.gains.position; } },
     { "speed", [](const Joint& joint) { return joint.fit.gains.speed; } },
     { "integral_time", [](const Joint& joint) { return joint.fit.gains.integral_time; } },

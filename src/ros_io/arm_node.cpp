@@ -146,6 +146,12 @@ void ArmNode::receiveCommand(const trajectory_msgs::JointTrajectory& message)
                              "Refused a trajectory on ~" << topics::COMMAND << ": protective stop; ~reset ends it");
     return;
   }
+  if (message.points.empty())
+  {
+    // As joint_trajectory_controller does, whichever joints it names.
+    advance_.motion.give(ArmMotion(stopFrom(advance_.shown.read()), ArmAccelerations::OF_CUBICS));
+    return;
+  }
   const Stamp now = rosNow();
   const Stamp ahead = std::max<Stamp>(stampOr(message.header.stamp, toRosTime(now)) - now, 0);
   std::vector<ArmSetPoint> points;

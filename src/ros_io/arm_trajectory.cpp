@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 
+#include "arm/set_points.hpp"
 #include "base/joined.hpp"
 #include "base/number_text.hpp"
 #include "base/printable.hpp"
@@ -20,21 +22,34 @@ constexpr double SAME_PLACE = 0.01;       // that a point at time 0 may be from 
 constexpr std::size_t MAX_SHOWN = 300;    // of the names in a message that are shown [bytes]
 constexpr double SPEED_TOLERANCE = 1e-6;  // [-]
 
-/// Place of each joint of the arm in the message. @returns what is wrong with its names, or nothing.
+constexpr std::size_t NOT_NAMED = static_cast<std::size_t>(-1);
+
+/// Place of each joint of the arm in the message, or NOT_NAMED. @returns what is wrong with its names, or nothing.
 std::string placesOf(const JointTrajectory& message, const ArmDescription& arm, std::vector<std::size_t>& places)
 {
-  for (const ArmJoint& joint : arm.joints)
+  const std::vector<std::string>& names = message.joint_names;
+  places.assign(arm.joints.size(), NOT_NAMED);
+  for (std::size_t place = 0; place < names.size(); ++place)
   {
-    const std::vector<std::string>& names = message.joint_names;
-    const auto found = std::find(names.begin(), names.end(), joint.name);
-    if (std::count(found, names.end(), joint.name) != 1)
+    const auto joint = std::find_if(arm.joints.begin(), arm.joints.end(),
+                                    [&](const ArmJoint& each) { return each.name == names[place]; });
+    const bool is_known = joint != arm.joints.end();
+    std::size_t* const its = is_known ? &places[static_cast<std::size_t>(joint - arm.joints.begin())] : nullptr;
+    if (its == nullptr || *its != NOT_NAMED)
     {
-      return (found == names.end() ? "it lacks " : "it names more than once ") + joint.name + "; it names " +
-             printable(joined(names, ", "), MAX_SHOWN);
+      return (is_known ? "it names more than once " : "no joint of the arm is ") + printable(names[place], MAX_SHOWN) +
+             "; it names " + printable(joined(names, ", "), MAX_SHOWN);
     }
-    places.push_back(static_cast<std::size_t>(found - names.begin()));
+    *its = place;
   }
-  return {};
+  return names.empty() ? "it names no joint" : "";
+}
+
+/// Where a joint comes to rest that slows down for so long [s], evenly less: its speed falls with the square of what is
+/// left of the time, as the cubic between has it.
+JointMotion restOf(const JointMotion& joint, double length)
+{
+  return { joint.position + joint.velocity * length / 3.0, 0.0, 0.0 };
 }
 
 std::string sizeErrors(const JointTrajectoryPoint& point, std::size_t joints)
@@ -69,8 +84,10 @@ double greatestSpeed(const JointMotion& from, const JointMotion& to, double leng
   return greatest;
 }
 
-/// Velocities where the message has none: the slopes through both neighbours; 0 at the end.
-void fillVelocities(const JointTrajectory& message, std::vector<ArmSetPoint>& points)
+/// Velocities where the message has none: the slopes through both neighbours; 0 at the end, and of joints that it does
+/// not name.
+void fillVelocities(const JointTrajectory& message, const std::vector<std::size_t>& places,
+                    std::vector<ArmSetPoint>& points)
 {
   const std::size_t first = points.size() - message.points.size();
   for (std::size_t k = 1; k + 1 < points.size(); ++k)
@@ -84,7 +101,8 @@ void fillVelocities(const JointTrajectory& message, std::vector<ArmSetPoint>& po
     for (std::size_t i = 0; i < points[k].joints.size(); ++i)
     {
       points[k].joints[i].velocity =
-          (after.joints[i].position - before.joints[i].position) / (after.time - before.time);
+          places[i] == NOT_NAMED ? 0.0 :
+                                   (after.joints[i].position - before.joints[i].position) / (after.time - before.time);
     }
   }
 }
@@ -110,6 +128,22 @@ std::string speedErrors(const std::vector<ArmSetPoint>& points, const ArmDescrip
 }
 }  // namespace
 
+std::vector<ArmSetPoint> stopFrom(const std::vector<JointMotion>& present)
+{
+  constexpr double ACCELERATION = 4.0;  // at first, of the fastest joint; the gentle motion has half of it [rad/s^2]
+  constexpr double SHORTEST = 0.2;      // [s]
+  double fastest = 0.0;
+  for (const JointMotion& joint : present)
+  {
+    fastest = std::max(fastest, std::abs(joint.velocity));
+  }
+  const double length = std::max(2.0 * fastest / ACCELERATION, SHORTEST);
+  std::vector<ArmSetPoint> points{ { 0.0, present }, { length, {} } };
+  std::transform(present.begin(), present.end(), std::back_inserter(points.back().joints),
+                 [&](const JointMotion& joint) { return restOf(joint, length); });
+  return points;
+}
+
 std::string readTrajectory(const JointTrajectory& message, const ArmDescription& arm,
                            const std::vector<JointMotion>& present, double delay, std::vector<ArmSetPoint>& points)
 {
@@ -118,11 +152,8 @@ std::string readTrajectory(const JointTrajectory& message, const ArmDescription&
   {
     return errors;
   }
-  if (message.points.empty())
-  {
-    return "it has no points";
-  }
   points.assign(1, { 0.0, present });
+  std::vector<JointMotion> rest = present;  // of the joints that it does not name
   for (const JointTrajectoryPoint& point : message.points)
   {
     const std::string place = "points[" + std::to_string(&point - message.points.data()) + "]: ";
@@ -135,8 +166,11 @@ std::string readTrajectory(const JointTrajectory& message, const ArmDescription&
     double farthest = 0.0;
     for (std::size_t i = 0; i < places.size(); ++i)
     {
-      set_point.joints.push_back(
-          { point.positions[places[i]], point.velocities.empty() ? 0.0 : point.velocities[places[i]], 0.0 });
+      rest[i] = points.size() == 1 ? restOf(present[i], std::max(set_point.time, 0.0)) : rest[i];
+      set_point.joints.push_back(places[i] == NOT_NAMED ?
+                                     rest[i] :
+                                     JointMotion{ point.positions[places[i]],
+                                                  point.velocities.empty() ? 0.0 : point.velocities[places[i]], 0.0 });
       farthest = std::max(farthest, std::abs(set_point.joints[i].position - points.back().joints[i].position));
     }
     if (set_point.time <= points.back().time)
@@ -155,12 +189,13 @@ std::string readTrajectory(const JointTrajectory& message, const ArmDescription&
   {
     return "it does not move";
   }
-  fillVelocities(message, points);
+  fillVelocities(message, places, points);
   const auto is_moving = [](const JointMotion& joint) { return joint.velocity != 0.0; };
   if (std::any_of(points.back().joints.begin(), points.back().joints.end(), is_moving))
   {
     return "it does not end at rest";
   }
-  return speedErrors(points, arm);
+  const std::string errors = motionErrors(points, arm);
+  return errors.empty() ? speedErrors(points, arm) : errors;
 }
 }  // namespace hjt

@@ -39,6 +39,21 @@ TEST(GentleMotion, TakesEveryJointBothWaysSlowlyAndFast)
   }
 }
 
+/// The scene is chosen for a joint whose files leave it as shipped, and for that alone.
+TEST(ArmDriveMaps, AJointsOwnSceneCounts)
+{
+  ArmDescription arm = readArmDescription(findArm("ur5", HJT_TEST_CONFIG_DIR));
+  arm.joints[2].parameters["solver.scene"] = { std::string("full_ring"), "the arm's file" };
+  ConfigurationOptions options;
+  options.config_dir = HJT_TEST_CONFIG_DIR;
+  const auto scene_of = [&](std::size_t joint)
+  { return parseParameters(armDriveMaps(arm, options, "")[joint]).solver.scene; };
+  EXPECT_EQ(scene_of(2), SceneKind::FULL_RING);
+  EXPECT_EQ(scene_of(1), SceneKind::AUTO);
+  options.assignments = { "solver.scene=full_ring" };
+  EXPECT_EQ(scene_of(1), SceneKind::FULL_RING);
+}
+
 /// A motor may hold more than its gear bears: those loads are left out.
 TEST(FrictionMap, IsMadeForEveryDriveOfEveryShippedArm)
 {

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
 #include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 
 #include "arm/arm_configuration.hpp"
 #include "arm/arm_dynamics.hpp"
 #include "arm/arm_file.hpp"
+#include "arm/set_points.hpp"
 #include "test/core/complaint.hpp"
 #include "test/support/temporary_folder.hpp"
 
@@ -124,12 +127,25 @@ TEST(ArmDynamics, RefusesLinksThatNoRobotHas)
                  "..." },
            Case{ "<mass value=\"8.393\"/>", "<mass value=\"1e300\"/>", "mass = 1.0e+300 [kg] is out of range" },
            Case{ "ixx=\"", "ixx=\"-", "inertia = -" },
+           Case{ "<mass value=\"8.393\"/>", "<mass value=\"8,393\"/>", "URDF cannot be read: " },
+           Case{ "<mass value=\"8.393\"/>", "<mass value=\"8.393 kg\"/>", "URDF cannot be read: " },
+           Case{ "<mass value=\"8.393\"/>", "<mass valu=\"8.393\"/>", "URDF cannot be read: " },
+           Case{ "<mass value=\"8.393\"/>", "<mass value=\"nan\"/>", "URDF cannot be read: " },
+           Case{ "<mass value=\"8.393\"/>", "<mass value=\"0\"/>",
+                 "link 'upper_arm_link', which joint 'shoulder_lift_joint' moves, has no mass" },
        })
   {
     ArmDescription arm = sound;
     arm.urdf = replaced(arm.urdf, one.from, one.to);
     EXPECT_THAT(complaintOf([&] { readLinks(arm); }), testing::HasSubstr(one.expected)) << one.to;
   }
+  ArmDescription massless = sound;
+  for (std::size_t at = massless.urdf.find("<inertial>"); at != std::string::npos;
+       at = massless.urdf.find("<inertial>"))
+  {
+    massless.urdf.erase(at, massless.urdf.find("</inertial>") + std::string("</inertial>").size() - at);
+  }
+  EXPECT_THAT(complaintOf([&] { readLinks(massless); }), testing::HasSubstr("link 'shoulder_link', which joint"));
   ArmDescription deep = sound;
   std::string flat;  // a hundred of them, none within another
   for (int i = 0; i < 100; ++i)
@@ -145,6 +161,30 @@ TEST(ArmDynamics, RefusesLinksThatNoRobotHas)
   EXPECT_THAT(complaintOf([&] { readLinks(deep); }), testing::HasSubstr("more than 100 elements"));
   deep.urdf = replaced(sound.urdf, "</robot>", flat + nest.substr(3, nest.size() - 7) + "<b/></robot>");
   EXPECT_EQ(complaintOf([&] { readLinks(deep); }), "");
+}
+
+TEST(SetPoints, NoArmIsToldWhatItCannotDo)
+{
+  ArmDescription arm = readArmDescription(SHIPPED);
+  arm.urdf =
+      replaced(arm.urdf, "<joint name=\"elbow_joint\" type=\"continuous\">",
+               "<joint name=\"elbow_joint\" type=\"revolute\"><limit lower=\"-3.0\" upper=\"3.0\" effort=\"150\" "
+               "velocity=\"3.14\"/>");
+  readLinks(arm);
+  const auto errors = [&](double angle, double end)
+  {
+    std::vector<ArmSetPoint> points{ { 0.0, std::vector<JointMotion>(6) }, { end, std::vector<JointMotion>(6) } };
+    points[1].joints[2].position = angle;
+    return motionErrors(points, arm);
+  };
+  EXPECT_EQ(errors(2.9, 1.0), "");
+  EXPECT_THAT(errors(3.1, 10.0),
+              testing::HasSubstr("elbow_joint: angle = 3.1 [rad] is out of range, allowed: -3 ... 3"));
+  EXPECT_THAT(errors(1e300, 1.0), testing::HasSubstr("elbow_joint: angle = 1.0e+300 [rad] is out of range"));
+  EXPECT_THAT(errors(std::nan(""), 1.0), testing::HasSubstr("out of range"));
+  EXPECT_THAT(errors(2.9, 0.2), testing::HasSubstr("elbow_joint would turn at 14.5 rad/s at 0.2 s, its limit is 3.14"));
+  EXPECT_THAT(errors(2.9, 6e8), testing::HasSubstr("set point 2: it is 6.0e+8 s after the first"));
+  EXPECT_THAT(errors(0.0, 0.0), testing::HasSubstr("set point 2: the time does not go on"));
 }
 }  // namespace
 }  // namespace hjt

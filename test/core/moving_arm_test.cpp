@@ -168,11 +168,13 @@ TEST(MovingArm, TheControllersFeedbackIsLimited)
     MovingArm arm(description, { drive(), drive() },
                   ArmMotion({ { 0.0, at }, { 0.1, at }, { 0.101, away }, { 0.3, away } }), {});
     const double gain = arm.twin().drive(0).parameters().telemetry.torque_per_current;
-    while (arm.step(arm.motionBegin() + toStampLength(0.3)))
+    double fed_forward = 0.0;  // beside the current that an instant shows, which the control of before made
+    for (; arm.step(arm.motionBegin() + toStampLength(0.3));
+         fed_forward = arm.controller().isDue(arm.twin()) ? arm.controller().feedForward(0) : fed_forward)
     {
       if (arm.twin().stamp() > arm.motionBegin() + toStampLength(0.102))
       {
-        const double feedback = gain * arm.reading(0).current - arm.controller().feedForward(0);
+        const double feedback = gain * arm.reading(0).current - fed_forward;
         most[is_limited] = std::max(most[is_limited], std::abs(feedback));
       }
     }
@@ -182,7 +184,7 @@ TEST(MovingArm, TheControllersFeedbackIsLimited)
   EXPECT_NEAR(most[1], LIMIT, 0.02 * LIMIT);
 }
 
-/// The speed that it shows is the one that the last control had; where none controls, that of the instant.
+/// The speed that it shows is the one that its current was made of; where none controls, that of the instant.
 TEST(MovingArm, TheSpeedIsThatOfTheControl)
 {
   const std::vector<JointMotion> from{ { 0.3, 0.0, 0.0 }, { -0.8, 0.0, 0.0 } };
@@ -195,9 +197,13 @@ TEST(MovingArm, TheSpeedIsThatOfTheControl)
     return twin.encoders().motor_velocity / nominalRatio(twin.parameters().gear);
   };
   double before = 0.0;
-  while (arm.step(arm.motionBegin() + toStampLength(0.1)))
+  while (arm.step(arm.motionBegin() + toStampLength(0.1003)))
   {
-    before = arm.controller().isDue(arm.twin()) ? speed() : before;  // what the control of the next step reads
+    if (arm.controller().isDue(arm.twin()))
+    {
+      EXPECT_EQ(arm.reading(0).velocity, before);  // the torque of this instant is still to come
+      before = speed();
+    }
   }
   EXPECT_GT(before, 0.1);
   EXPECT_EQ(arm.reading(0).velocity, before);
@@ -207,6 +213,97 @@ TEST(MovingArm, TheSpeedIsThatOfTheControl)
     arm.twin().step(MAX_STAMP);
   }
   EXPECT_EQ(arm.reading(0).velocity, speed());
+}
+
+/// Joint 0 at a steady speed, from rest: by how much it is behind its set point, over the speed [s].
+double lagAtSteadySpeed(double delay)
+{
+  constexpr double SPEED = 0.5;  // [rad/s]
+  ArmDescription description = rods("0 0 1", 2);
+  description.joints[0].delay = delay;
+  const auto point = [](double time, double angle, double speed) {
+    return ArmSetPoint{ time, { { angle, speed, 0.0 }, { -0.8, 0.0, 0.0 } } };
+  };
+  MovingArm arm(
+      description, { drive(), drive() },
+      ArmMotion({ point(0.0, 0.3, 0.0), point(0.5, 0.3 + 0.25 * SPEED, SPEED), point(1.5, 0.3 + 1.25 * SPEED, SPEED) },
+                ArmAccelerations::OF_CUBICS),
+      {});
+  std::vector<JointMotion> wanted(2);
+  double behind = 0.0;
+  int count = 0;
+  while (arm.step(arm.motionBegin() + toStampLength(1.49)))
+  {
+    if (arm.twin().stamp() > arm.motionBegin() + toStampLength(1.2))
+    {
+      arm.wanted(wanted);
+      behind += wanted[0].position - arm.reading(0).position;
+      ++count;
+    }
+  }
+  EXPECT_FALSE(arm.protectiveStop());
+  return behind / count / SPEED;
+}
+
+/// A set point acts when its delay is over, not before and not a step late.
+TEST(MovingArm, ItIsBehindItsSetPointsByTheirDelay)
+{
+  constexpr double CLOSE = 0.03e-3;  // an encoder's count over the speed is 0.01 ms [s]
+  EXPECT_NEAR(lagAtSteadySpeed(0.0), 0.0, CLOSE);
+  EXPECT_NEAR(lagAtSteadySpeed(0.5e-3), 0.5e-3, CLOSE);
+  EXPECT_NEAR(lagAtSteadySpeed(0.85e-3), 0.85e-3, CLOSE);  // between two periods of the control
+}
+
+/// The set point's speed is held against the encoder's of the same time: how long that is averaged moves no angle.
+TEST(MovingArm, TheWindowOfTheSpeedMakesNoLead)
+{
+  constexpr double ACCELERATION = 2.0;  // [rad/s^2]
+  double angles[2] = {};
+  for (const bool is_long : { false, true })
+  {
+    Parameters smooth = drive();
+    smooth.sensors.velocity_window = is_long ? 10e-3 : 1e-3;
+    smooth.sensors.motor_counts_per_turn = 1 << 20;
+    std::vector<ArmSetPoint> points;
+    for (int k = 0; k <= 50; ++k)
+    {
+      const double time = k / 125.0;
+      points.push_back(
+          { time,
+            { { 0.3 + 0.5 * ACCELERATION * time * time, ACCELERATION * time, ACCELERATION }, { -0.8, 0.0, 0.0 } } });
+    }
+    MovingArm arm(rods("0 0 1", 2), { smooth, smooth }, ArmMotion(points), {});
+    while (arm.step(arm.motionBegin() + toStampLength(0.35)))
+    {
+    }
+    angles[is_long] = arm.twin().motion()[0].position;
+  }
+  // 4.5 ms of the speed over a gain of 20 1/s would be 450 urad.
+  EXPECT_NEAR(angles[1], angles[0], 45e-6);
+}
+
+/// The integral leaves what an encoder does not see: at rest the current stands.
+TEST(MovingArm, AtRestTheCurrentStands)
+{
+  const std::vector<JointMotion> from{ { 0.3, 0.0, 0.0 }, { -0.8, 0.0, 0.0 } };
+  const std::vector<JointMotion> to{ { 0.4, 0.0, 0.0 }, { -0.7, 0.0, 0.0 } };
+  MovingArm arm(rods("0 1 0", 2), { drive(), drive() },
+                ArmMotion({ { 0.0, from }, { 0.3, to } }, ArmAccelerations::OF_CUBICS), {});
+  double least[2] = { HUGE_VAL, HUGE_VAL };
+  double most[2] = { -HUGE_VAL, -HUGE_VAL };
+  while (arm.step(arm.motionBegin() + toStampLength(5.0)))
+  {
+    for (std::size_t i = 0; i < 2 && arm.twin().stamp() > arm.motionBegin() + toStampLength(3.0); ++i)
+    {
+      least[i] = std::min(least[i], arm.reading(i).current);
+      most[i] = std::max(most[i], arm.reading(i).current);
+      EXPECT_NEAR(arm.reading(i).position, to[i].position, 30e-6);
+    }
+  }
+  for (std::size_t i = 0; i < 2; ++i)
+  {
+    EXPECT_LT(most[i] - least[i], 0.02) << i;  // [A]; a UR5's at rest: 0.01 rms
+  }
 }
 }  // namespace
 }  // namespace hjt

@@ -309,7 +309,7 @@ class Errors(Recordings):
                 (lambda: hjt.indicators("a.txt"), hjt.InputError, "'a.txt' must end in"),
                 (lambda: hjt.arm({"time": [0.0], "position": [0.0]}, "ur5"), hjt.ParameterError, "6"),
                 (lambda: hjt.arm({"time": [0.0, 0.0], "position": np.zeros((2, 6))}, "ur5"), hjt.InputError,
-                 "motion, row 2: the time does not go on"),
+                 "motion: set point 2: the time does not go on"),
                 (lambda: hjt.arm({"time": [0.0]}, "ur5"), hjt.InputError, "'position', of shape (rows, joints)"),
                 (lambda: hjt.remaining({"time": [0.0]}), hjt.InputError, "recordings[0]: column 'motor_torque'"),
                 (lambda: hjt.remaining("a.csv", hours=0.0), hjt.InputError, "hours = 0"),

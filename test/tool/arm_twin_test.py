@@ -102,11 +102,11 @@ class ArmTwin(tool.ToolTest):
             lines = file.read().splitlines()
         jump = [line.split(",") for line in lines]
         for row in jump[40:]:
-            row[3] = str(float(row[3]) + 1.0)  # the elbow, within a row
+            row[3] = str(float(row[3]) + 0.5)  # the elbow, within a row
         self.write("motion.csv", "\n".join(map(",".join, jump)) + "\n")
         done = self.run_tool("arm", "motion.csv", "--arm", "ur5", "--out", "run.csv", "--json", "--set",
                              "solver.scene=full_ring")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.returncode, 5, done.stderr)
         self.assertIn("protective stop", done.stderr)
         stop = json.loads(done.stdout)["protective_stop"]
         self.assertEqual((stop["joint"], stop["reason"]), ("elbow", "off its set point"))
@@ -175,6 +175,17 @@ class ArmTwin(tool.ToolTest):
             table.writerow(["timestamp"] + [f"target_q_{i}" for i in range(JOINTS)])
             for k, angles in enumerate(targets[:fastest] + 25 * [targets[fastest]] + targets[fastest:]):
                 table.writerow([k / 125, *angles])
+
+    def test_units_and_signs_are_held_against_the_motion(self):
+        header = "timestamp," + ",".join(f"{name}_{i}" for name in ("target_q", "target_qd") for i in range(JOINTS))
+        for scale, speed_scale, text in (
+                (180 / math.pi, 180 / math.pi, "shoulder_pan_joint would turn at 57.3 rad/s at 0.16 s"),
+                (1.0, -1.0, "base: its speeds are -1 of the rate of its angles, allowed: 0.5 ... 2 (of the other"),
+                (1.0, 180 / math.pi, "base: its speeds are 57.3 of the rate of its angles"),
+                (1.0, 0.0, "base: its speeds are 0 of the rate of its angles, allowed: 0.5 ... 2 (none?)")):
+            rows = [[0.08 * k] + [scale * (0.76 + 0.08 * k)] * JOINTS + [speed_scale] * JOINTS for k in range(4)]
+            self.write("motion.csv", "\n".join([header] + [",".join(map(str, row)) for row in rows]) + "\n")
+            self.fail_with(1, [f"motion.csv: {text}"], "arm", "motion.csv", "--arm", "ur5", "--out", "no.csv")
 
     def test_what_is_wrong_is_named(self):
         write_motion(self.path("motion.csv"), duration=0.1)

@@ -20,6 +20,7 @@ NOISY, NOISY_TOLERANCE = ["docs/indicators.md", "docs/health.md"], 0.05
 ROUNDING = 1e-6  # smaller numbers are rounding of the solver, as the columns `residual`
 SHOWN = ["README.md", "docs/tool.md", "docs/own_gear.md", "docs/gear_study.md", "docs/indicators.md", "docs/health.md"]
 RUN = ["README.md", "docs/tool.md", "docs/own_gear.md", "docs/faults.md"]
+ARM, ARM_EXAMPLE = "docs/arm_twin.md", "joint_twin checkup "  # page, and how its first try without a robot begins
 
 
 def blocks(page, language):
@@ -119,6 +120,18 @@ class Pages(tool.ToolTest):
                             done = self.shell(line)
                             self.assertEqual(done.returncode, 0, done.stdout)
         self.assertGreater(ran, 5)
+
+    def test_the_first_try_without_a_robot_names_the_worn_joint_alone(self):
+        lines = next(block for block in blocks(self.page(ARM), "sh") if block[0].startswith(ARM_EXAMPLE))
+        verdicts = []
+        for line in lines:
+            done = self.shell(line)
+            self.assertEqual(done.returncode, 0, f"{line}\n{done.stdout}")
+            verdicts += [done.stdout] if " compare " in line else []
+        sound, worn = verdicts
+        self.assertRegex(sound, r"(?m)^OK$")
+        self.assertRegex(worn, r"(?m)^WARN$")
+        self.assertEqual(re.findall(r"(?m)^(\w+): Not as in a sound joint: friction", worn), ["elbow"])
 
     def can_run(self, line):
         """Whether every file is there that the command reads; words behind --out and the like are written."""

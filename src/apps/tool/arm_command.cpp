@@ -29,7 +29,8 @@ int runArm(const PrintedArmRun& given)
   warnOf(found.counters);
   warn(found.feedback_limited, "times a joint's controller was at its limit (limits: feedback of the arm's file)");
   warn(found.stop ? 1 : 0, "protective stop: the arm stands in its brakes from there on");
-  return reportWritten(options.out, options.json);
+  const int written = reportWritten(options.out, options.json);
+  return written == EXIT_DONE && found.stop ? EXIT_STOPPED : written;
 }
 
 void declare(Command& command, PrintedArmRun& options)

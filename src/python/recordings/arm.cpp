@@ -56,7 +56,6 @@ std::vector<ArmSetPoint> setPointsOf(const py::object& columns)
     }
   }
   fillRates(points, static_cast<bool>(velocities), static_cast<bool>(accelerations));
-  requireMotion(points, "motion");
   return points;
 }
 
@@ -95,11 +94,12 @@ std::vector<ArmSetPoint> setPointsIn(const py::object& motion, const ArmDescript
 {
   std::vector<ArmSetPoint> points =
       py::isinstance<py::str>(motion) ? readSetPoints(py::cast<std::string>(motion), arm) : setPointsOf(motion);
-  if (points.front().joints.size() != arm.joints.size())
+  if (!points.empty() && points.front().joints.size() != arm.joints.size())
   {
     throw InputError("motion: of " + std::to_string(points.front().joints.size()) + " joints; the arm has " +
                      std::to_string(arm.joints.size()));
   }
+  requireMotion(points, arm, "motion");
   return points;
 }
 
@@ -151,6 +151,7 @@ public:
     {
       point.joints.push_back({ angle, 0.0, 0.0 });
     }
+    requireMotion({ point }, arm_, "start");
     PythonWatch watch(given["progress"]);
     const Watch followed = watch.watch();
     try
@@ -185,6 +186,7 @@ public:
   {
     const InUse::Hold hold = in_use_.hold();  // reading and warning may let other threads in
     std::vector<ArmSetPoint> points = setPointsIn(motion, arm_);
+    requireRates(points, arm_, "motion");
     const double change = straightenTimes(points);
     warnPython(change > 0.0 ? std::vector<std::string>{ straightenedText(change) } : std::vector<std::string>());
     const double length = points.back().time - points.front().time;
