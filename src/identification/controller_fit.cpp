@@ -21,10 +21,10 @@ constexpr double SLOWEST = 1.0;        // [s]
 constexpr double AT_REST = 0.01;       // at which the sign of the speed turns smoothly [rad/s]
 constexpr double LEAST_MOTION = 5.0;   // [s]
 constexpr double LEAST_EXPLAINED = 1.0 / 3.0;
-constexpr double WIDEST = 0.5;      // half width of the ratio of both gains, of it
-constexpr double JUMP = 0.1;        // of the set point's speed within a row, beside those about it [rad/s]
-constexpr double AT_LIMIT = 0.95;   // of the limit
-constexpr double TRANSIENT = 0.25;  // of either, to both sides [s]
+constexpr double WIDEST_RATIO = 0.5;  // half width of the ratio of both gains, of it
+constexpr double JUMP = 0.1;          // of the set point's speed within a row, beside those about it [rad/s]
+constexpr double AT_LIMIT = 0.95;     // of the limit
+constexpr double TRANSIENT = 0.25;    // of either, to both sides [s]
 
 using Column = Eigen::VectorXd;
 
@@ -201,7 +201,7 @@ ControllerFit fitController(const std::vector<ControllerRow>& rows, double perio
     fit.refusal = "the errors explain less than a third of its current";
   }
   else if (const double sum = fit.angle_current / fit.speed_current;
-           !(fit.position_half_width < std::min(WIDEST * sum, sum - 1.0 / usual.integral_time)))
+           !(fit.position_half_width < std::min(WIDEST_RATIO * sum, sum - 1.0 / usual.integral_time)))
   {
     fit.refusal = "the recording does not tell the gain of its angle: with the integral's " + roundedText(sum, 3) +
                   " +- " + roundedText(fit.position_half_width, 3) + " 1/s, the integral's alone " +

@@ -15,6 +15,7 @@ namespace
 {
 constexpr double STICK_RANGE = 1e3;   // in regularisation speeds: slower, the motor may really be at rest
 constexpr double SLIDING = 3e4;       // slip over the regularisation's width, far from standing still
+constexpr double MOVING = 30.0;       // likewise, no creeping: friction is full to 6e-4
 constexpr double MIN_WIDTH = 1e-100;  // of a term that nothing slips: its square and the inverse stay numbers
 
 /// How far to go from `v` along `change`: all the way if the function still falls there, else to where it stops
@@ -146,7 +147,7 @@ public:
 
   bool slid(std::size_t place, const Eigen::Vector2d& old_speeds) const
   {
-    return by_motor_[place] * old_speeds[0] + by_output_[place] * old_speeds[1] >= least_[place];
+    return by_motor_[place] * old_speeds[0] + by_output_[place] * old_speeds[1] >= MOVING / SLIDING * least_[place];
   }
 
   /// Counts no more. @returns the sense in which it slid.
@@ -312,71 +313,86 @@ HJT_VECTOR_CLONES bool DryFriction::slide(const JointFriction& friction, double 
   return true;
 }
 
-/// Whether a term slides before, and after no more, or the other way.
+/// Whether a term moves before, and after no more, or the other way.
 HJT_VECTOR_CLONES bool DryFriction::anyStops(const FrictionTerms& terms, double follow, const Eigen::Vector2d& before,
                                              const Eigen::Vector2d& after) const noexcept
 {
   const int count = terms.packedSize();
   const double* __restrict__ by_motor = terms.byMotor();
   const double* __restrict__ by_output = terms.byOutput();
-  const double least = SLIDING * width_;
+  const double least = MOVING * width_;
   double stops = 0.0;
 #pragma omp simd reduction(+ : stops)
   for (int j = 0; j < count; ++j)
   {
     const double m = by_motor[j];
     const double o = by_output[j];
-    const double slides = least * (std::abs(m) + follow * std::abs(o)) + MIN_WIDTH;
+    const double moves = least * (std::abs(m) + follow * std::abs(o)) + MIN_WIDTH;
     const double old = m * before[0] + o * before[1];
     const double now = std::copysign(1.0, old) * (m * after[0] + o * after[1]);
-    stops += std::abs(old) >= slides && now < slides ? 1.0 : 0.0;
+    stops += std::abs(old) >= moves && now < moves ? 1.0 : 0.0;
   }
   return stops > 0.0;
 }
 
-Eigen::Vector2d DryFriction::stopOrSlide(const JointFriction& friction, double velocity_ratio,
-                                         const Eigen::Vector2d& old_speeds, const Eigen::Vector2d& free_momentum,
-                                         double step, JointFriction& sticking) const noexcept
+KickedSpeeds DryFriction::stopOrSlide(const JointFriction& friction, double velocity_ratio,
+                                      const Eigen::Vector2d& old_speeds, const Eigen::Vector2d& free_momentum,
+                                      double step, JointFriction& sticking) const noexcept
 {
-  constexpr int MAX_PARTS = 4;
+  constexpr int MAX_PARTS = 16;  // teeth stop one after the other: ten are seen
   const Eigen::Vector2d gained = free_momentum.cwiseQuotient(inertia_) - old_speeds;  // without friction, in the step
-  Eigen::Vector2d speeds = old_speeds;
+  KickedSpeeds speeds{ old_speeds, old_speeds };
   double rest = 1.0;  // of the step
+  const auto go_on = [&](double share, const Eigen::Vector2d& to)
+  {
+    if (rest >= 0.5 && rest * (1.0 - share) <= 0.5)
+    {
+      speeds.halfway += (rest - 0.5) / (rest * share) * (to - speeds.after);
+    }
+    else if (rest > 0.5)
+    {
+      speeds.halfway = to;
+    }
+    speeds.after = to;
+    rest *= 1.0 - share;
+  };
   for (int part = 1;; ++part)
   {
-    const Eigen::Vector2d undivided = solve(friction, velocity_ratio, speeds, speeds + rest * gained, rest * step);
-    if (part == MAX_PARTS || !anyStops(friction.terms, std::abs(velocity_ratio), speeds, undivided))
+    const Eigen::Vector2d undivided =
+        solve(friction, velocity_ratio, speeds.after, speeds.after + rest * gained, rest * step);
+    if (part == MAX_PARTS || !anyStops(friction.terms, std::abs(velocity_ratio), speeds.after, undivided))
     {
-      return undivided;
+      go_on(1.0, undivided);
+      return speeds;
     }
-    const auto slides = [&](const FrictionTerm& term)
-    { return std::abs(term.slip.dot(speeds)) >= SLIDING * width(term, velocity_ratio); };
+    const auto moves = [&](const FrictionTerm& term)
+    { return std::abs(term.slip.dot(speeds.after)) >= MOVING * width(term, velocity_ratio); };
     sticking.terms.clear();
     sticking.viscous = friction.viscous;
-    Eigen::Vector2d free = speeds + rest * gained;
+    Eigen::Vector2d free = speeds.after + rest * gained;
     for (const FrictionTerm term : friction.terms)
     {
-      if (!slides(term))
+      if (!moves(term))
       {
         sticking.terms.push_back(term);
         continue;
       }
-      free -= rest * step * std::copysign(term.strength, term.slip.dot(speeds)) * term.slip.cwiseQuotient(inertia_);
+      free -=
+          rest * step * std::copysign(term.strength, term.slip.dot(speeds.after)) * term.slip.cwiseQuotient(inertia_);
     }
-    const Eigen::Vector2d onward = solve(sticking, velocity_ratio, speeds, free, rest * step);
+    const Eigen::Vector2d onward = solve(sticking, velocity_ratio, speeds.after, free, rest * step);
     double share = 1.0;  // of the rest, up to the first stop
     for (const FrictionTerm term : friction.terms)
     {
-      const double before = term.slip.dot(speeds);
+      const double before = term.slip.dot(speeds.after);
       const double after = term.slip.dot(onward);
-      share = slides(term) && before * after < 0.0 ? std::min(share, before / (before - after)) : share;
+      share = moves(term) && before * after < 0.0 ? std::min(share, before / (before - after)) : share;
     }
+    go_on(share, share < 1.0 ? speeds.after + share * (onward - speeds.after) : undivided);
     if (share == 1.0)
     {
-      return undivided;
+      return speeds;
     }
-    speeds += share * (onward - speeds);
-    rest *= 1.0 - share;
   }
 }
 

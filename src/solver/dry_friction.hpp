@@ -7,6 +7,13 @@
 
 namespace hjt
 {
+/// Speeds of motor and output after a time step and half way through it [rad/s].
+struct KickedSpeeds
+{
+  Eigen::Vector2d after;
+  Eigen::Vector2d halfway;
+};
+
 /// Speeds after a time step with all friction taken implicitly: the minimum of
 ///
 ///   1/2 (v - v_free)^T M (v - v_free) + h/4 (v + v_old)^T D (v + v_old) + h sum_j c_j sqrt((a_j v)^2 + e_j^2)
@@ -31,11 +38,10 @@ public:
   Eigen::Vector2d solve(const JointFriction& friction, double velocity_ratio, const Eigen::Vector2d& old_speeds,
                         const Eigen::Vector2d& free_speeds, double step) const noexcept;
 
-  /// The same in two parts where a term that slides comes to rest within the step: up to there it slides, and those that
-  /// do not slide at the old speeds stick. `free_momentum`: M v_free [N.m.s]; `sticking`: room.
-  Eigen::Vector2d stopOrSlide(const JointFriction& friction, double velocity_ratio, const Eigen::Vector2d& old_speeds,
-                              const Eigen::Vector2d& free_momentum, double step,
-                              JointFriction& sticking) const noexcept;
+  /// The same in parts where a term that moves comes to rest within the step: up to there it slides, and those that do not
+  /// move at the old speeds stick. `free_momentum`: M v_free [N.m.s]; `sticking`: room.
+  KickedSpeeds stopOrSlide(const JointFriction& friction, double velocity_ratio, const Eigen::Vector2d& old_speeds,
+                           const Eigen::Vector2d& free_momentum, double step, JointFriction& sticking) const noexcept;
 
   /// The same minimum where every term, or every one but one that stood, slides as it did at the old speeds, far from
   /// standing still: linear but for one unknown. False, and nothing done, elsewhere, at rest above all. Differs from `solve` by

@@ -257,8 +257,8 @@ double JointDynamics::viscosity() noexcept
   return viscosity_;
 }
 
-Eigen::Vector2d JointDynamics::stopOrSlide(const DryFriction& friction, const Eigen::Vector2d& before,
-                                           const Eigen::Vector2d& momentum, double dt) noexcept
+KickedSpeeds JointDynamics::stopOrSlide(const DryFriction& friction, const Eigen::Vector2d& before,
+                                        const Eigen::Vector2d& momentum, double dt) noexcept
 {
   return friction.stopOrSlide(friction_, velocityRatio(), before, momentum, dt, sticking_);
 }

@@ -85,9 +85,9 @@ public:
   /// Brings `friction()` up to date with the present ring; `speeds` of motor and output [rad/s].
   void updateFriction(const Eigen::Vector2d& speeds) noexcept;
 
-  /// Speeds after a kick, as DryFriction::stopOrSlide by the present friction; counts in `status` what is not found.
-  Eigen::Vector2d stopOrSlide(const DryFriction& friction, const Eigen::Vector2d& before,
-                              const Eigen::Vector2d& momentum, double dt) noexcept;
+  /// DryFriction::stopOrSlide by the present friction.
+  KickedSpeeds stopOrSlide(const DryFriction& friction, const Eigen::Vector2d& before, const Eigen::Vector2d& momentum,
+                           double dt) noexcept;
 
   void operator()(const JointState& x, JointState& rate, double t) noexcept;
 

@@ -8,15 +8,31 @@ namespace hjt
 {
 namespace
 {
+/// What friction's strength is taken at in a kick: of each speed the mean amount over it, by the line through the speeds
+/// at its begin and half a kick earlier [rad/s].
+Eigen::Vector2d rubbingSpeeds(const Eigen::Vector2d& before, const Eigen::Vector2d& earlier) noexcept
+{
+  Eigen::Vector2d mean;
+  for (int i = 0; i < 2; ++i)
+  {
+    const double from = std::abs(before[i]);
+    const double to = 3.0 * before[i] - 2.0 * earlier[i];
+    const bool turns = before[i] * to < 0.0;
+    const double amount = turns ? 0.5 * (from * from + to * to) / (from + std::abs(to)) : 0.5 * (from + std::abs(to));
+    mean[i] = from > 0.0 ? std::copysign(amount, before[i]) : 0.0;
+  }
+  return mean;
+}
+
 /// Speeds after a kick that without friction would bring a momentum [N.m.s]. On the surface the friction is in few
 /// terms, and all is done to be quick.
-Eigen::Vector2d rub(JointDynamics& system, const DryFriction& friction, const Eigen::Vector2d& before,
-                    const Eigen::Vector2d& momentum, double dt) noexcept
+KickedSpeeds rub(JointDynamics& system, const DryFriction& friction, const Eigen::Vector2d& before,
+                 const Eigen::Vector2d& momentum, double dt) noexcept
 {
   Eigen::Vector2d after;
   if (system.onSurface() && friction.slide(system.friction(), system.velocityRatio(), before, momentum, dt, after))
   {
-    return after;
+    return { after, 0.5 * (before + after) };
   }
   return system.stopOrSlide(friction, before, momentum, dt);
 }
@@ -26,8 +42,8 @@ Eigen::Vector2d rub(JointDynamics& system, const DryFriction& friction, const Ei
 ///
 /// `others`: torques but the drive's and friction [N.m]; `kept`: of the drive's old torque [N.m]; `share`: of the
 /// wanted torque that the current takes [-].
-Eigen::Vector2d fade(JointDynamics& system, const Eigen::Vector2d& others, double kept, double share,
-                     const Eigen::Vector2d& before, double dt) noexcept
+KickedSpeeds fade(JointDynamics& system, const Eigen::Vector2d& others, double kept, double share,
+                  const Eigen::Vector2d& before, double dt) noexcept
 {
   const Motor& motor = system.model().motor;
   const double wanted = system.inputs.motor_torque;
@@ -40,43 +56,42 @@ Eigen::Vector2d fade(JointDynamics& system, const Eigen::Vector2d& others, doubl
     inertia[0] += dt * gain * slope;
     return rub(system, system.dryFriction().withMotor(inertia[0]), before, momentum, dt);
   };
-  Eigen::Vector2d after = kick(kept + share * motor.faded(wanted, 0.0), share * motor.fadeSlope(wanted));
-  if (std::abs(after[0]) > motor.speedLimit())
+  KickedSpeeds speeds = kick(kept + share * motor.faded(wanted, 0.0), share * motor.fadeSlope(wanted));
+  if (std::abs(speeds.after[0]) > motor.speedLimit())
   {
-    after = kick(kept, 0.0);
+    speeds = kick(kept, 0.0);
   }
-  system.drive_torque = kept + share * motor.faded(wanted, after[0]);
-  return after;
+  system.drive_torque = kept + share * motor.faded(wanted, speeds.after[0]);
+  return speeds;
 }
 
 /// Speeds after a kick by `others`, as of `fade`, and a drive that holds its torque back by the speed at the end or has
 /// all of it, `full` [N.m]. Nearly always it is as it was at the start.
-Eigen::Vector2d drive(JointDynamics& system, const Eigen::Vector2d& others, double full, double kept, double share,
-                      const Eigen::Vector2d& before, double dt) noexcept
+KickedSpeeds drive(JointDynamics& system, const Eigen::Vector2d& others, double full, double kept, double share,
+                   const Eigen::Vector2d& before, double dt) noexcept
 {
   const Motor& motor = system.model().motor;
   const double wanted = system.inputs.motor_torque;
-  Eigen::Vector2d after;
   if (motor.fades(wanted, before[0]))
   {
-    after = fade(system, others, kept, share, before, dt);
-    if (motor.fades(wanted, after[0]))
+    const KickedSpeeds faded = fade(system, others, kept, share, before, dt);
+    if (motor.fades(wanted, faded.after[0]))
     {
-      return after;
+      return faded;
     }
   }
   system.drive_torque = full;
   Eigen::Vector2d momentum = system.inertia().cwiseProduct(before) + dt * others;
   momentum[0] += dt * system.driveTorque();
-  after = rub(system, system.dryFriction(), before, momentum, dt);
-  return motor.fades(wanted, after[0]) ? fade(system, others, kept, share, before, dt) : after;
+  const KickedSpeeds speeds = rub(system, system.dryFriction(), before, momentum, dt);
+  return motor.fades(wanted, speeds.after[0]) ? fade(system, others, kept, share, before, dt) : speeds;
 }
 }  // namespace
 
 /// Speeds after a kick over `dt`. `rubbing`: speeds that friction's strength is taken at [rad/s]; `lag`: what is left of
 /// the drive's torque that the last kick had [-].
-Eigen::Vector2d Leapfrog::kick(JointDynamics& system, JointState& x, const Eigen::Vector2d& before,
-                               const Eigen::Vector2d& rubbing, double lag, double dt) noexcept
+KickedSpeeds Leapfrog::kick(JointDynamics& system, JointState& x, const Eigen::Vector2d& before,
+                            const Eigen::Vector2d& rubbing, double lag, double dt) noexcept
 {
   const Eigen::Vector2d inertia = system.inertia();
   const double wanted = system.inputs.motor_torque;
@@ -88,16 +103,16 @@ Eigen::Vector2d Leapfrog::kick(JointDynamics& system, JointState& x, const Eigen
   system.drive_torque = 0.0;
   Eigen::Vector2d torque = system.torque();
   torque[0] += presliding;
-  const Eigen::Vector2d after = drive(system, torque, full, kept, 1.0 - lag, before, dt);
+  const KickedSpeeds speeds = drive(system, torque, full, kept, 1.0 - lag, before, dt);
   torque[0] += system.driveTorque();
-  const Eigen::Vector2d kicked = inertia.cwiseProduct(after - before) / dt;
+  const Eigen::Vector2d kicked = inertia.cwiseProduct(speeds.after - before) / dt;
   friction_ = kicked - torque;
   friction_[0] += presliding;
   link_torque_ = kicked[1] + system.inputs.load();
   x[joint_state::DRIVE_TORQUE] = system.drive_torque;
   inertia_ = inertia;
   acted_ = system.inputs;
-  return after;
+  return speeds;
 }
 
 /// What acts from now on acts on the speeds otherwise than what acted in the last kick. A current that lags does not
@@ -125,28 +140,30 @@ void Leapfrog::do_step(JointDynamics& system, JointState& x, double, double dt) 
   }
   const Eigen::Vector2d inertia = system.inertia();
   const double slipped = system.accept();
-  // At this instant; where they might turn round meanwhile, as they were.
-  Eigen::Vector2d rubbing = 2.0 * before - speeds_;
-  for (int i = 0; i < 2; ++i)
-  {
-    rubbing[i] = rubbing[i] * before[i] > 0.0 ? rubbing[i] : before[i];
-  }
-  const Eigen::Vector2d after = kick(system, x, before, rubbing, system.model().motor.currentLeft(dt), dt);
+  const auto [after, halfway] =
+      kick(system, x, before, rubbingSpeeds(before, halfway_), system.model().motor.currentLeft(dt), dt);
   speeds_ = 0.5 * (before + after);
+  halfway_ = halfway;
   half_kick_ = after - speeds_;
   x.segment<2>(MOTOR_ANGLE) = angles;
   x.segment<2>(MOTOR_SPEED) = after;
 
-  // Half of the kick's work belongs before the instant, half after: then the ledger's only error is the quadrature.
-  const double motor_work = dt * system.driveTorque() * speeds_[0];
-  const double load_work = dt * system.inputs.load() * speeds_[1];
-  const double dissipated = -dt * friction_.dot(speeds_);
+  // What is done over half of the way belongs before the instant, the rest after: then the ledger's only error is the
+  // quadrature.
+  const Eigen::Vector3d until = works(system, before, dt);
+  rest_ = works(system, after, dt);
   x[DISSIPATED] += slipped;
-  const Eigen::Vector2d kinetic = 0.25 * inertia.cwiseProduct(before.cwiseAbs2() + after.cwiseAbs2()) - retaken_;
-  balance_ = x[MOTOR_WORK] - x[LOAD_WORK] - x[DISSIPATED] + 0.5 * (motor_work - load_work - dissipated) - kinetic.sum();
-  delivered_ = x[LOAD_WORK] + 0.5 * load_work + kinetic[1];
-  work_ = { motor_work, load_work, dissipated };
-  x.segment<3>(MOTOR_WORK) += work_;
+  const Eigen::Vector2d kinetic = 0.5 * inertia.cwiseProduct(before.cwiseProduct(after)) - retaken_;
+  balance_ = x[MOTOR_WORK] - x[LOAD_WORK] - x[DISSIPATED] + until[0] - until[1] - until[2] - kinetic.sum();
+  delivered_ = x[LOAD_WORK] + until[1] + kinetic[1];
+  x.segment<3>(MOTOR_WORK) += until + rest_;
+}
+
+/// Of the last kick's torques over half a step at these speeds, in the order of the state [J].
+Eigen::Vector3d Leapfrog::works(const JointDynamics& system, const Eigen::Vector2d& speeds, double dt) const noexcept
+{
+  return 0.5 * dt *
+         Eigen::Vector3d(system.driveTorque() * speeds[0], system.inputs.load() * speeds[1], -friction_.dot(speeds));
 }
 
 void Leapfrog::retake(JointDynamics& system, JointState& x, double dt) noexcept
@@ -157,27 +174,29 @@ void Leapfrog::retake(JointDynamics& system, JointState& x, double dt) noexcept
   {
     moves_ = true;
     speeds_ = x.segment<2>(MOTOR_SPEED);
+    halfway_ = speeds_;
     half_kick_.setZero();
-    work_.setZero();
+    rest_.setZero();
     inertia_ = inertia;
   }
-  x.segment<2>(MOTOR_SPEED) = speeds_;
-  x.segment<3>(MOTOR_WORK) -= 0.5 * work_;
+  x.segment<3>(MOTOR_WORK) -= rest_;
+  retaken_ += 0.5 * inertia_.cwiseProduct(half_kick_.cwiseAbs2());
+  // Where something stopped within the kick, the speed half way is not the mean that its works are of.
+  x[DISSIPATED] += 0.5 * inertia_.dot(speeds_.cwiseAbs2() - halfway_.cwiseAbs2());
   // An arm changed the output's inertia at the speeds that are taken back.
-  x[LOAD_WORK] += (inertia - inertia_).dot(half_kick_.cwiseProduct(speeds_ + 0.5 * half_kick_));
-  retaken_ -= 0.5 * inertia_.cwiseProduct(half_kick_.cwiseAbs2());
+  x[LOAD_WORK] += 0.5 * (inertia - inertia_).dot(x.segment<2>(MOTOR_SPEED).cwiseAbs2() - halfway_.cwiseAbs2());
+  speeds_ = halfway_;
 
   const double half = 0.5 * dt;
   const double arm_torque = system.inputs.arm_torque;
   system.inputs.arm_torque = acted_.arm_torque;
   const bool lags = system.model().motor.currentRate() > 0.0;
-  const Eigen::Vector2d after = kick(system, x, speeds_, speeds_, lags ? 1.0 : 0.0, half);
+  const Eigen::Vector2d after = kick(system, x, speeds_, speeds_, lags ? 1.0 : 0.0, half).after;
   half_kick_ = after - speeds_;
-  retaken_ += 0.5 * inertia.cwiseProduct(half_kick_.cwiseAbs2());
-  work_ = dt * Eigen::Vector3d(system.driveTorque() * speeds_[0], system.inputs.load() * speeds_[1],
-                               -friction_.dot(speeds_));
+  retaken_ -= 0.5 * inertia.cwiseProduct(half_kick_.cwiseAbs2());
+  rest_ = works(system, after, dt);
   x.segment<2>(MOTOR_SPEED) = after;
-  x.segment<3>(MOTOR_WORK) += 0.5 * work_;
+  x.segment<3>(MOTOR_WORK) += rest_;
   system.inputs.arm_torque = arm_torque;
 }
 
@@ -185,14 +204,14 @@ void Leapfrog::retake(JointDynamics& system, JointState& x, double dt) noexcept
 void Leapfrog::stop(const JointDynamics& system, JointState& x) noexcept
 {
   using namespace joint_state;
-  x.segment<3>(MOTOR_WORK) -= 0.5 * work_;
+  x.segment<3>(MOTOR_WORK) -= rest_;
   const Eigen::Vector2d kinetic =
-      0.5 * system.inertia().cwiseProduct(speeds_.cwiseAbs2() + half_kick_.cwiseAbs2()) - retaken_;
+      0.5 * system.inertia().cwiseProduct(speeds_.cwiseAbs2() - half_kick_.cwiseAbs2()) - retaken_;
   x[DISSIPATED] += kinetic.sum();
   x.segment<2>(MOTOR_SPEED).setZero();
   speeds_.setZero();
   retaken_.setZero();
-  work_.setZero();
+  rest_.setZero();
   moves_ = false;
   balance_ = x[MOTOR_WORK] - x[LOAD_WORK] - x[DISSIPATED];
   delivered_ = x[LOAD_WORK];

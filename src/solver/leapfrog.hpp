@@ -59,21 +59,23 @@ public:
   }
 
 private:
-  Eigen::Vector2d kick(JointDynamics& system, JointState& x, const Eigen::Vector2d& before,
-                       const Eigen::Vector2d& rubbing, double lag, double dt) noexcept;
+  KickedSpeeds kick(JointDynamics& system, JointState& x, const Eigen::Vector2d& before, const Eigen::Vector2d& rubbing,
+                    double lag, double dt) noexcept;
+  Eigen::Vector3d works(const JointDynamics& system, const Eigen::Vector2d& speeds, double dt) const noexcept;
   bool actOtherwise(const JointDynamics& system) const noexcept;
   void stop(const JointDynamics& system, JointState& x) noexcept;
 
   Eigen::Vector2d speeds_{ 0.0, 0.0 };
+  Eigen::Vector2d halfway_{ 0.0, 0.0 };  // through the last kick, at the instant of the angles [rad/s]
   Eigen::Vector2d friction_{ 0.0, 0.0 };
   double balance_{};
   double delivered_{};
   double link_torque_{};
-  Eigen::Vector3d work_{ 0.0, 0.0, 0.0 };  // of the last kick, in the order of the state [J]
+  Eigen::Vector3d rest_{ 0.0, 0.0, 0.0 };  // of the last kick's works, after the instant [J]
   Eigen::Vector2d inertia_{ 0.0, 0.0 };    // that it moved [kg.m^2]
   Eigen::Vector2d half_kick_{ 0.0, 0.0 };  // what it changed the speeds by after the instant [rad/s]
-  /// The ledger takes the kinetic energy at an instant as the mean of that half a step before and after it. Where a half
-  /// is done again, that changes though no speed at the instant does: by motor and output, summed [J].
+  /// The ledger takes the kinetic energy at an instant from the product of the speeds half a step before and after it.
+  /// Where a half is done again, that changes though no speed at the instant does: by motor and output, summed [J].
   Eigen::Vector2d retaken_{ 0.0, 0.0 };
   JointInputs acted_;  // in the last kick
   bool moves_{};       // a kick was done: speeds are half a step ahead

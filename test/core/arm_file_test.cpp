@@ -36,11 +36,11 @@ struct Case
 
 constexpr Case BAD_VALUES[] = {
   { "torque: 150.0", "torque: .nan",
-    "arm.yaml:29: joints.0.limits.torque = .nan [N.m] is not a finite number, allowed: 0.001 ... 1.0e+6 [N.m]" },
+    "arm.yaml:31: joints.0.limits.torque = .nan [N.m] is not a finite number, allowed: 0.001 ... 1.0e+6 [N.m]" },
   { "feedback: 42.8", "feedback: 0.0", "joints.0.limits.feedback = 0.0 [N.m] is out of range, allowed: 0.001" },
   { "torque: 150.0", "torque: -150.0", "joints.0.limits.torque = -150.0 [N.m] is out of range" },
   { "speed: 3.141592653589793", "speed: 0",
-    "arm.yaml:29: joints.0.limits.speed = 0 [rad/s] is out of range, allowed: 0.001 ... 100 [rad/s]" },
+    "arm.yaml:31: joints.0.limits.speed = 0 [rad/s] is out of range, allowed: 0.001 ... 100 [rad/s]" },
   { "{speed: 3.141592653589793, torque: 150.0, feedback: 42.8}", "3", "joints.0.limits = 3 must be keys and values" },
   { "mass: 0.0", "mass: .nan", "arm.yaml:15: payload.mass = .nan [kg] is not a finite number, allowed: 0 ... 10000" },
   { "mass: 0.0", "mass: -3", "payload.mass = -3 [kg] is out of range, allowed: 0 ... 10000 [kg]" },
@@ -51,19 +51,19 @@ constexpr Case BAD_VALUES[] = {
   { "[0.0, 0.0, -9.82]", "[0.0, 0.0, .nan]", "arm.yaml:11: gravity = [0.0, 0.0, .nan] [m/s^2] is not a finite" },
   { "[0.0, 0.0, -9.82]", "[0.0, -9.82]", "gravity = [0.0, -9.82] must be a list of 3 numbers [m/s^2]" },
   { "[0.0, 0.0, -9.82]", "[0.0, down, -9.82]", "arm.yaml:11: gravity must be a list of numbers alone" },
-  { "check_up: [0.0, -0.35,", "check_up: [.nan, -0.35,", "arm.yaml:30: joints.0.check_up = [.nan, -0.35, 0.0," },
+  { "check_up: [0.0, -0.35,", "check_up: [.nan, -0.35,", "arm.yaml:33: joints.0.check_up = [.nan, -0.35, 0.0," },
   { "check_up: [0.0, -0.35,", "check_up: [100.0, -0.35,", "allowed: -6.283185307179586 ... 6.283185307179586 [rad]" },
   { "check_up: [0.0, -0.35,", "check_up: [-0.35,", "must be a list of 6 numbers [rad]" },
   { "short_name: base", "short_name: 'a b'",
-    "arm.yaml:26: joints.0.short_name = 'a b' must be a name: a letter, then letters, digits and underscores" },
+    "arm.yaml:28: joints.0.short_name = 'a b' must be a name: a letter, then letters, digits and underscores" },
   { "short_name: base", "short_name: ../../../escaped", "joints.0.short_name = '../../../escaped' must be a name" },
   { "short_name: shoulder", "short_name: base",
-    "arm.yaml:32: joints.1.short_name = 'base' must be another than joints.0.short_name" },
+    "arm.yaml:35: joints.1.short_name = 'base' must be another than joints.0.short_name" },
   { "short_name: base", "short_name: 5", "joints.0.short_name = 5 must be a text" },
   { "parameters: {telemetry.inertia_in_load: 1.877e-4}", "parameters: [1, 2]",
-    "arm.yaml:28: joints.0.parameters = [1.0, 2.0] must be keys and values" },
+    "arm.yaml:30: joints.0.parameters = [1.0, 2.0] must be keys and values" },
   { "overlays: [joints/base.yaml, recorded_load.yaml, beside_robot.yaml]", "overlays: joints/base.yaml",
-    "arm.yaml:27: joints.0.overlays = 'joints/base.yaml' must be a list of configuration files" },
+    "arm.yaml:29: joints.0.overlays = 'joints/base.yaml' must be a list of configuration files" },
   { "payload:\n", "payload:\n  mass: 1.0\n", "payload.mass stands twice in this file (first at" },
   { "ur5.urdf", "/dev/zero", "arm.yaml:5: description: /dev/zero cannot be read: it is a folder, a device or a pipe" },
 };
@@ -98,7 +98,7 @@ TEST(ArmDescription, ParametersOfAJointAreNamedWithTheirLine)
       folder.write("arm.yaml", replaced(text, "telemetry.inertia_in_load: 1.877e-4", "motor.torqe_limit: 1.0"));
   const ArmDescription arm = readArmDescription(path);
   EXPECT_THAT(complaintOf([&] { parseParameters(armJointParameters(arm.joints[0], HJT_TEST_CONFIG_DIR, "")); }),
-              testing::HasSubstr("arm.yaml:28: unknown parameter motor.torqe_limit = 1.0 (did you mean"));
+              testing::HasSubstr("arm.yaml:30: unknown parameter motor.torqe_limit = 1.0 (did you mean"));
 }
 
 TEST(ArmDrives, KeepTheRotorThatARecordingDoesNotShow)

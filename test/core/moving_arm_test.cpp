@@ -197,17 +197,15 @@ TEST(MovingArm, TheSpeedIsThatOfTheControl)
     return twin.encoders().motor_velocity / nominalRatio(twin.parameters().gear);
   };
   double before = 0.0;
+  int others = 0;  // instants between controls at which the joint has another speed
   while (arm.step(arm.motionBegin() + toStampLength(0.1003)))
   {
-    if (arm.controller().isDue(arm.twin()))
-    {
-      EXPECT_EQ(arm.reading(0).velocity, before);  // the torque of this instant is still to come
-      before = speed();
-    }
+    ASSERT_EQ(arm.reading(0).velocity, before);  // at a control the torque of this instant is still to come
+    others += speed() != before ? 1 : 0;
+    before = arm.controller().isDue(arm.twin()) ? speed() : before;
   }
   EXPECT_GT(before, 0.1);
-  EXPECT_EQ(arm.reading(0).velocity, before);
-  EXPECT_NE(speed(), before);
+  EXPECT_GT(others, 0);
   for (int k = 0; k < 50; ++k)
   {
     arm.twin().step(MAX_STAMP);

@@ -100,6 +100,7 @@ TEST(ResponseSurface, OfAGearThatIsNotItsMirrorImageIsMeasuredBothWays)
   const std::vector<std::string> narrow{ "output.load_torque_limit=40.0", "motor.torque_limit=0.39" };
   std::vector<std::string> oblique = narrow;
   oblique.emplace_back("manufacture.wave_generator_eccentricity=[5.0e-6, 2.0e-6]");
+  std::vector<double> solves_a_node;
   for (const bool mirrored : { true, false })
   {
     const Parameters parameters = shippedParameters(mirrored ? narrow : oblique);
@@ -107,7 +108,7 @@ TEST(ResponseSurface, OfAGearThatIsNotItsMirrorImageIsMeasuredBothWays)
     EXPECT_EQ(SurfaceRing(parameters, model).isMirrored(), mirrored);
     const SurfaceBuild build = buildSurface(parameters, model, {});
     ASSERT_EQ(build.failure_reason, "");
-    EXPECT_EQ(build.solves < static_cast<int>(0.7 * static_cast<double>(build.table.nodes.size())), mirrored);
+    solves_a_node.push_back(static_cast<double>(build.solves) / static_cast<double>(build.table.nodes.size()));
     const ResponseSurface table(build.table);
     SurfaceRing ring(parameters, model);
     ASSERT_TRUE(ring.insert());
@@ -126,6 +127,7 @@ TEST(ResponseSurface, OfAGearThatIsNotItsMirrorImageIsMeasuredBothWays)
       }
     }
   }
+  EXPECT_LT(solves_a_node[0], 0.5 * solves_a_node[1]);
 }
 
 TEST(ResponseSurface, NeedsOneTorqueLimit)

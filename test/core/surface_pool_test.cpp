@@ -59,7 +59,7 @@ TEST(SurfacePool, TriesAgainWhereTheMakerFailed)
   const auto make = []
   {
     return std::make_shared<const ResponseSurface>(
-        SurfaceTable{ 1.0, 1.0, 1, { 0.0, 1.0 }, SurfaceNodes(std::vector<SurfaceNode>(4)) });
+        SurfaceTable{ 1.0, 1.0, 1, { 0.0, 1.0 }, SurfaceNodes(std::vector<SurfaceNode>(4)), {} });
   };
   EXPECT_THROW(pool.obtain("a", fail), std::runtime_error);
   EXPECT_TRUE(pool.obtain("a", make));
@@ -82,7 +82,7 @@ TEST(SurfacePool, MakesEachSurfaceOnceForAllThreads)
     ++made;
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
     return std::make_shared<const ResponseSurface>(
-        SurfaceTable{ 1.0, 1.0, 1, { 0.0, 1.0 }, SurfaceNodes(std::vector<SurfaceNode>(4)) });
+        SurfaceTable{ 1.0, 1.0, 1, { 0.0, 1.0 }, SurfaceNodes(std::vector<SurfaceNode>(4)), {} });
   };
   SurfacePool::Surface first;
   SurfacePool::Surface second;

@@ -70,17 +70,17 @@ TEST(TwinBrake, ActsAfterItsDelay)
 {
   Twin twin(shippedParameters({ "brake.delay=20.0e-3", "input.command_timeout=10.0" }));
   twin.commandBrake(10 * MILLISECOND, true);
-  advance(twin, 30 * MILLISECOND - MILLISECOND / 10);
-  EXPECT_FALSE(twin.outputs().brake_engaged);
   advance(twin, 30 * MILLISECOND);
+  EXPECT_FALSE(twin.outputs().brake_engaged);
+  advance(twin, 30 * MILLISECOND + twin.stepLength());
   EXPECT_TRUE(twin.outputs().brake_engaged);
   // One that is given again, as in a loop, is no other.
   Twin told_often(shippedParameters({ "brake.delay=20.0e-3", "input.command_timeout=10.0" }));
-  for (Stamp time = 10; time <= 30; ++time)
+  for (Stamp time = 10; time <= 31; ++time)
   {
     told_often.commandBrake(time * MILLISECOND, true);
     advance(told_often, time * MILLISECOND);
-    EXPECT_EQ(told_often.outputs().brake_engaged, time == 30) << time;
+    EXPECT_EQ(told_often.outputs().brake_engaged, time == 31) << time;
   }
   // A command that is taken back before its delay is over changes nothing.
   twin.commandBrake(40 * MILLISECOND, false);

@@ -50,13 +50,13 @@ TEST(TwinFailure, HoldsTheLastGoodStateAndRecovers)
   EXPECT_GT(failures, 0U);
   EXPECT_EQ(twin.counters().solver_failures, failures);
   EXPECT_EQ(twin.health().solver_state, SolverState::FAILED);
-  // The load gone, it finds its way back and stays there, once its swing is too slow to take a step over what one
-  // iteration cannot solve: each failure stops it, and it starts again.
-  advance(twin, 250 * MILLISECOND);
+  // The load gone, it finds its way back and stays there, once its swing has died down so far that no step of it is beyond
+  // one iteration: each failure stops it where it is strained, and it swings again.
+  advance(twin, 600 * MILLISECOND);
   const std::uint64_t before = twin.counters().solver_failures;
-  advance(twin, 400 * MILLISECOND);
+  advance(twin, 800 * MILLISECOND);
   EXPECT_EQ(twin.counters().solver_failures, before);
-  EXPECT_EQ(twin.health(250 * MILLISECOND).solver_state, SolverState::OK);
+  EXPECT_EQ(twin.health(600 * MILLISECOND).solver_state, SolverState::OK);
   EXPECT_EQ(twin.health().solver_state, SolverState::FAILED);
 }
 

@@ -215,7 +215,7 @@ record:
     def test_forces_that_were_not_found_are_not_numbers(self):
         self.write("plan.yaml", """
 duration: 0.3
-set: {solver.scene: auto, solver.max_iterations: {grid: [2, 20]}}
+set: {solver.scene: auto, manufacture.flexspline_pitch_deviation: 4.0e-6, solver.max_iterations: {grid: [2, 20]}}
 duty: [{torque: {constant: 0.4}, load: {constant: 20.0}}]
 record:
   start: 0.01

@@ -13,7 +13,7 @@ namespace
 {
 using PrintedArmRun = Printed<ArmRunOptions>;
 
-int runArm(const PrintedArmRun& given)
+int simulateArm(const PrintedArmRun& given)
 {
   PrintedArmRun options = given;
   options.watch = consoleWatch();
@@ -59,6 +59,6 @@ void declare(Command& command, PrintedArmRun& options)
 }
 
 const Subcommand ARM{ Subject::JOINT, "arm", "run a whole arm in closed loop: its drives, links and controller",
-                      declare, runArm };
+                      declare, simulateArm };
 }  // namespace
 }  // namespace hjt
