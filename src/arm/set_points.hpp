@@ -26,8 +26,8 @@ double straightenTimes(std::vector<ArmSetPoint>& points);
 /// What a user must know of such a change, above 0 [s].
 std::string straightenedText(double change);
 
-/// What of it no arm can be told, by whichever way it comes; empty: nothing. The time has to go on, for a million seconds
-/// at most; angles lie within the joint's range, and speeds within three times its greatest.
+/// What of it no arm can be told, by whichever way it comes; empty: nothing. The time has to go on, for a million
+/// seconds at most; angles lie within the joint's range, and speeds within three times its greatest.
 std::string motionErrors(const std::vector<ArmSetPoint>& points, const ArmDescription& arm);
 
 /// @throws InputError if there is none, or with motionErrors. `what`: they are of.

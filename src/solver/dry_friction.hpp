@@ -38,14 +38,14 @@ public:
   Eigen::Vector2d solve(const JointFriction& friction, double velocity_ratio, const Eigen::Vector2d& old_speeds,
                         const Eigen::Vector2d& free_speeds, double step) const noexcept;
 
-  /// The same in parts where a term that moves comes to rest within the step: up to there it slides, and those that do not
-  /// move at the old speeds stick. `free_momentum`: M v_free [N.m.s]; `sticking`: room.
+  /// The same in parts where a term that moves comes to rest within the step: up to there it slides, and those that do
+  /// not move at the old speeds stick. `free_momentum`: M v_free [N.m.s]; `sticking`: room.
   KickedSpeeds stopOrSlide(const JointFriction& friction, double velocity_ratio, const Eigen::Vector2d& old_speeds,
                            const Eigen::Vector2d& free_momentum, double step, JointFriction& sticking) const noexcept;
 
   /// The same minimum where every term, or every one but one that stood, slides as it did at the old speeds, far from
-  /// standing still: linear but for one unknown. False, and nothing done, elsewhere, at rest above all. Differs from `solve` by
-  /// the tails of the regularisation, less than 1e-9 of the friction. `free_momentum`: M v_free [N.m.s].
+  /// standing still: linear but for one unknown. False, and nothing done, elsewhere, at rest above all. Differs from
+  /// `solve` by the tails of the regularisation, less than 1e-9 of the friction. `free_momentum`: M v_free [N.m.s].
   bool slide(const JointFriction& friction, double velocity_ratio, const Eigen::Vector2d& old_speeds,
              const Eigen::Vector2d& free_momentum, double step, Eigen::Vector2d& speeds) const noexcept;
 

@@ -34,8 +34,8 @@ public:
   /// Puts the joint at rest where it settles under an arm's load [N.m]. @returns false if it does not settle.
   bool reset(double arm_torque = 0.0) noexcept;
 
-  /// One step under `inputs`, which act from its begin on; the drive's speed limit and current loop take from the torque wanted. False:
-  /// the ring did not converge; the last good angles stay, at rest.
+  /// One step under `inputs`, which act from its begin on; the drive's speed limit and current loop take from the
+  /// torque wanted. False: the ring did not converge; the last good angles stay, at rest.
   ///
   /// A step that is too long for the joint's fastest swing is done in `substeps()` equal ones. Their number is
   /// fixed by the parameters and an arm's inertia, so that live equals offline, and odd: the arm's load then acts from

@@ -8,8 +8,8 @@ namespace hjt
 {
 namespace
 {
-/// What friction's strength is taken at in a kick: of each speed the mean amount over it, by the line through the speeds
-/// at its begin and half a kick earlier [rad/s].
+/// What friction's strength is taken at in a kick: of each speed the mean amount over it, by the line through the
+/// speeds at its begin and half a kick earlier [rad/s].
 Eigen::Vector2d rubbingSpeeds(const Eigen::Vector2d& before, const Eigen::Vector2d& earlier) noexcept
 {
   Eigen::Vector2d mean;
@@ -88,8 +88,8 @@ KickedSpeeds drive(JointDynamics& system, const Eigen::Vector2d& others, double 
 }
 }  // namespace
 
-/// Speeds after a kick over `dt`. `rubbing`: speeds that friction's strength is taken at [rad/s]; `lag`: what is left of
-/// the drive's torque that the last kick had [-].
+/// Speeds after a kick over `dt`. `rubbing`: speeds that friction's strength is taken at [rad/s]; `lag`: what is left
+/// of the drive's torque that the last kick had [-].
 KickedSpeeds Leapfrog::kick(JointDynamics& system, JointState& x, const Eigen::Vector2d& before,
                             const Eigen::Vector2d& rubbing, double lag, double dt) noexcept
 {

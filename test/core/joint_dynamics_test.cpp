@@ -97,8 +97,8 @@ TEST(MotorTorques, AreDerivativesOfTheirEnergy)
 
 TEST(FrictionInTheRunningJoint, BalancesMomentumInEveryStep)
 {
-  // What the leapfrog takes for friction must be the friction law at the speeds it arrives at, but in the steps in which
-  // a sliding term stops: those have it by two laws one after the other.
+  // What the leapfrog takes for friction must be the friction law at the speeds it arrives at, but in the steps in
+  // which a sliding term stops: those have it by two laws one after the other.
   const Parameters parameters = shippedParameters();
   const JointModel model(parameters);
   JointDynamics dynamics(model, parameters.solver);
@@ -205,8 +205,8 @@ TEST(Stiction, HoldsTheMotorToTheLastBit)
   EXPECT_GT(stepper.motorAngle(), 1.0);
 }
 
-/// As shipped, friction of every kind on: angles of the motor under commands that are held for a millisecond, at the end
-/// of each [rad].
+/// As shipped, friction of every kind on: angles of the motor under commands that are held for a millisecond, at the
+/// end of each [rad].
 Eigen::VectorXd motorAnglesByLeapfrog(double rate, double start_speed, double mean_torque)
 {
   constexpr int COMMANDS = 50;

@@ -50,8 +50,8 @@ TEST(TwinFailure, HoldsTheLastGoodStateAndRecovers)
   EXPECT_GT(failures, 0U);
   EXPECT_EQ(twin.counters().solver_failures, failures);
   EXPECT_EQ(twin.health().solver_state, SolverState::FAILED);
-  // The load gone, it finds its way back and stays there, once its swing has died down so far that no step of it is beyond
-  // one iteration: each failure stops it where it is strained, and it swings again.
+  // The load gone, it finds its way back and stays there, once its swing has died down so far that no step of it is
+  // beyond one iteration: each failure stops it where it is strained, and it swings again.
   advance(twin, 600 * MILLISECOND);
   const std::uint64_t before = twin.counters().solver_failures;
   advance(twin, 800 * MILLISECOND);

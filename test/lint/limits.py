@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A function has at most 60 lines between its braces, or below its `def`; a file of code at most 400.
+"""A function has at most 60 lines between its braces, or below its `def`; a file of code at most 700.
 
 C++ is read as clang-format leaves it: the braces of a function's body stand alone on lines of one indentation.
 """
@@ -9,7 +9,7 @@ import re
 import project
 
 FUNCTION_LINES = 60
-FILE_LINES = 400
+FILE_LINES = 700
 TOPS = ("bench", "examples", "include", "lab", "python", "scripts", "src", "test")
 CPP = (".cpp", ".hpp", ".c")
 SHEBANG = re.compile(r"#!.*\b(bash|sh|python3)$")

@@ -93,7 +93,7 @@ class SimTime(unittest.TestCase):
         self.states.clear()
         self.run_clock(100 * SECOND + 501 * MILLISECOND, 101 * SECOND + 60 * MILLISECOND)
         for message in self.states.messages():
-            acts = message.header.stamp.to_nsec() >= command_stamp
+            acts = message.header.stamp.to_nsec() > command_stamp  # in the step that ends at the message's stamp
             self.assertEqual(message.effort[0], 0.25 if acts else 0.0, message.header.stamp)
         self.assertEqual(self.diagnostics.number("Input", "Too late for their stamp"), 0)
 

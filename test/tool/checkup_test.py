@@ -78,7 +78,7 @@ class Checkup(tool.ToolTest):
     def test_no_program_is_written_without_limits_or_for_hours(self):
         wrists = "limits: {speed: 3.141592653589793, torque: 28.0, feedback: 14.0}"
         for before, after, text in ((wrists, "", "wrist_1_joint has no limits"),
-                                    ("torque: 150.0", "torque: .nan", "arm.yaml:29: joints.0.limits.torque = .nan"),
+                                    ("torque: 150.0", "torque: .nan", "arm.yaml:31: joints.0.limits.torque = .nan"),
                                     ("[0.0, -1.5707963267948966,", "[0.0, -100.0,", "joints.1.check_up = [0.0, -100.0"),
                                     ("speed: 3.141592653589793", "speed: 0.001",
                                      "take more than 3600 s: it moves at 0.000833 rad/s")):

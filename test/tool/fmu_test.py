@@ -9,7 +9,7 @@ import shutil
 import subprocess
 
 import tool
-from fmu_unit import ERROR, IMPORTER, OK, RATE, SCHEMAS, Fmu
+from fmu_unit import ERROR, IMPORTER, OK, SCHEMAS, Fmu
 
 
 class Description(Fmu):
@@ -111,10 +111,9 @@ class Run(Fmu):
             self.assertEqual(said, "")
 
     def test_takes_inputs_as_they_change(self):
-        """A row of a profile acts in the step that ends at its time; an input of the unit in the step that begins."""
-        step = 1.0 / RATE
+        """From their time on, as the rows of a profile."""
         profile = self.write("profile.csv", "time,motor_torque,load_torque,brake\n0,0.4,5,0\n"
-                             f"{0.05 + step},-0.4,30,0\n{0.1 + step},0,10,1\n0.15,0,10,1\n")
+                             "0.05,-0.4,30,0\n0.1,0,10,1\n0.15,0,10,1\n")
         row = self.simulated("--profile", profile)
         unit = self.unit()
         unit.start(motor_torque=0.4, load_torque=5.0, stop=0.15)

@@ -70,12 +70,12 @@ class Simulate(tool.ToolTest):
             self.assertEqual("beyond output.torque_limit" in done.stderr, is_beyond, done.stderr)
             self.assertNotIn("clamped", done.stderr)
 
-    def test_profile_is_held_between_its_rows(self):
+    def test_a_row_of_a_profile_acts_from_its_time_on(self):
         self.write("p.csv", "motor_torque,time,load_torque,brake\n0.4,0,2.5,0\n-0.2,0.1,-1.5,0\n0.3,0.2,0,1\n")
         self.succeed("simulate", "--profile", "p.csv", "--duration", 0.25, "--out", "a.csv")
         for row in self.rows("a.csv"):
-            expected = (0.4, 2.5, 0.0) if row["time"] < 0.1 else (-0.2, -1.5, 0.0) if row["time"] < 0.2 else \
-                       (0.3, 0.0, 1.0)
+            until = row["time"] - 1e-9  # what acted in the step that ends then
+            expected = (0.4, 2.5, 0.0) if until < 0.1 else (-0.2, -1.5, 0.0) if until < 0.2 else (0.3, 0.0, 1.0)
             self.assertEqual((row["motor_torque"], row["load_torque"], row["brake"]), expected, row["time"])
 
     def test_scenes_agree(self):

@@ -213,10 +213,16 @@ record:
         self.assertEqual(json.loads(record[0].data)["duty"], "turning")
 
     def test_forces_that_were_not_found_are_not_numbers(self):
+        # Teeth of one gear that differ: their forces come from the ring beside the loop.
         self.write("plan.yaml", """
 duration: 0.3
-set: {solver.scene: auto, manufacture.flexspline_pitch_deviation: 4.0e-6, solver.max_iterations: {grid: [2, 20]}}
-duty: [{torque: {constant: 0.4}, load: {constant: 20.0}}]
+set:
+  solver.scene: auto
+  solver.max_iterations: {grid: [2, 20]}
+  manufacture.flexspline_pitch_deviation: 2.0e-5
+  motor.torque_limit: 0.5
+  output.load_torque_limit: 40.0
+duty: [{torque: {sinus: {mean: 0.0, amplitude: 0.5, frequency: 5.0, phase: 0.0}}, load: {constant: 20.0}}]
 record:
   start: 0.01
   groups: {teeth: {rate: 1000.0, columns: [mesh_force, tooth_x, motor_angle]}}
