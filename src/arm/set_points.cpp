@@ -221,6 +221,11 @@ std::string motionErrors(const std::vector<ArmSetPoint>& points, const ArmDescri
       return place + "the time does not go on, " + numberText(point.time) + " s after " +
              numberText(points[k - 1].time) + " s";
     }
+    if (point.joints.size() != arm.joints.size())
+    {
+      return place + "it is of " + std::to_string(point.joints.size()) + " joints; the arm has " +
+             std::to_string(arm.joints.size());
+    }
     if (!(time <= LONGEST))
     {
       return place + "it is " + numberText(time) + " s after the first, allowed: " + numberText(LONGEST) + " s";

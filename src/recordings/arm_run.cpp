@@ -161,7 +161,9 @@ try
   }
   std::vector<ArmSetPoint> points =
       options.set_points.empty() ? readSetPoints(options.motion, arm) : options.set_points;
-  requireRates(points, arm, options.motion.empty() ? "motion" : options.motion);
+  const std::string name = options.motion.empty() ? "motion" : options.motion;
+  requireMotion(points, arm, name);
+  requireRates(points, arm, name);
   if (const double change = straightenTimes(points); change > 0.0)
   {
     options.watch.notice(straightenedText(change));

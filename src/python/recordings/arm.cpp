@@ -94,11 +94,6 @@ std::vector<ArmSetPoint> setPointsIn(const py::object& motion, const ArmDescript
 {
   std::vector<ArmSetPoint> points =
       py::isinstance<py::str>(motion) ? readSetPoints(py::cast<std::string>(motion), arm) : setPointsOf(motion);
-  if (!points.empty() && points.front().joints.size() != arm.joints.size())
-  {
-    throw InputError("motion: of " + std::to_string(points.front().joints.size()) + " joints; the arm has " +
-                     std::to_string(arm.joints.size()));
-  }
   requireMotion(points, arm, "motion");
   return points;
 }
