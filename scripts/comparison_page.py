@@ -19,6 +19,7 @@ try:
 except ImportError as missing:
     sys.exit(f"comparison_page: {missing.name} is not installed; apt-get install python3-{missing.name.split('.')[0]}")
 
+matplotlib.rcdefaults()  # not those of a matplotlibrc in the folder of the call
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (the backend is chosen before pyplot is loaded)
 from matplotlib.dates import AutoDateLocator, ConciseDateFormatter  # noqa: E402

@@ -2,6 +2,7 @@
 """matplotlib without a screen, a style, and Okabe and Ito's colours: distinct for every eye and in grey."""
 import matplotlib
 
+matplotlib.rcdefaults()  # not those of a matplotlibrc in the folder of the call
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402, F401  (the backend is chosen before pyplot is loaded)
 

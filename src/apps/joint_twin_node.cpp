@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include <ros/names.h>
 #include <ros/ros.h>
 
 #include "arm/arm_configuration.hpp"
@@ -199,6 +200,30 @@ void nameAsInMessages(const hjt::JointAffixes& affixes, hjt::ArmDescription& arm
   arm.base = affixes.prefix + arm.base;
 }
 
+/// Before or after a joint's name, together a name of ROS.
+std::string affixOf(const ros::NodeHandle& node, const std::string& key)
+{
+  XmlRpc::XmlRpcValue value;
+  std::string affix;
+  std::string error;
+  if (!node.getParam(key, value))
+  {
+    return affix;
+  }
+  if (value.getType() == XmlRpc::XmlRpcValue::TypeString)
+  {
+    affix = static_cast<std::string>(value);
+  }
+  const bool is_name = value.getType() == XmlRpc::XmlRpcValue::TypeString &&
+                       ros::names::validate(key == hjt::PREFIX ? affix + "joint" : "joint" + affix, error);
+  if (!is_name)
+  {
+    throw hjt::ParameterError("~" + key + (affix.empty() ? "" : " = '" + affix + "'") +
+                              " must be a text of letters, digits, '_' and '/', a prefix beginning with a letter");
+  }
+  return affix;
+}
+
 /// All joints of the arm `name`: its files, then the parameters of this node over those of every joint. What comes of
 /// it stands on the parameter server below the name of each.
 void runArm(ros::NodeHandle& node, const std::string& name, const hjt::FoundParameters& found)
@@ -212,7 +237,7 @@ void runArm(ros::NodeHandle& node, const std::string& name, const hjt::FoundPara
   }
   hjt::readLinks(arm);
   const std::string identified = node.param<std::string>(hjt::IDENTIFIED, "");
-  const hjt::JointAffixes affixes{ node.param<std::string>(hjt::PREFIX, ""), node.param<std::string>(hjt::SUFFIX, "") };
+  const hjt::JointAffixes affixes{ affixOf(node, hjt::PREFIX), affixOf(node, hjt::SUFFIX) };
   const hjt::ParameterMap overrides = hjt::readParameterServer(node.getNamespace());
   const std::string reference = node.param<std::string>(hjt::REFERENCE, "");
   ROS_INFO_STREAM("Arm " << arm.origin << (identified.empty() ? "" : ", identified: " + identified)

@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <optional>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -184,20 +183,11 @@ std::string beside(const std::string& path, const std::string& name)
 
 std::string textOf(const std::string& path, const std::string& place)
 {
-  std::error_code error;
-  const std::filesystem::file_status status = std::filesystem::status(path, error);
-  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
-  {
-    throw ParameterError(place + path + " cannot be read: it is a folder, a device or a pipe");
-  }
-  if (std::filesystem::is_regular_file(status) && std::filesystem::file_size(path, error) > MAX_TEXT)
-  {
-    throw ParameterError(place + path + " is larger than " + std::to_string(MAX_TEXT) + " bytes");
-  }
-  std::optional<std::string> text = wholeFile(path);
+  std::string reason = "it is empty";
+  std::optional<std::string> text = wholeFile(path, MAX_TEXT, &reason);
   if (!text || text->empty())
   {
-    throw ParameterError(place + path + " cannot be read, or is empty");
+    throw ParameterError(place + path + " cannot be read: " + reason);
   }
   return std::move(*text);
 }

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstddef>
 #include <string>
 
 #include "harmonic_joint_twin/params/parameter_map.hpp"
 
 namespace hjt
 {
-/// The text of a file of at most MAX_TEXT bytes. `place`: where it is named, for the error text. @throws ParameterError
-/// if it is no regular file, larger, empty, or cannot be read.
-constexpr std::size_t MAX_TEXT = 10'000'000;
+/// The text of a file of at most MAX_TEXT bytes (base/whole_file.hpp). `place`: where it is named, for the error text.
+/// @throws ParameterError if it is no regular file, larger, empty, or cannot be read.
 std::string textOf(const std::string& path, const std::string& place = "");
 
 /// `name` in the folder of the file `path`; `name` if it is absolute.

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <array>
+#include <cstdio>
+#include <filesystem>
 #include <map>
+#include <optional>
 
 #include <sqlite3.h>
 
 #include "bags/recording_format.hpp"
 #include "bags/ros2_messages.hpp"
+#include "base/temporary_directory.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 
 namespace hjt
@@ -21,18 +26,29 @@ struct EndStatement
   void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
 };
 
+namespace fs = std::filesystem;
+
+/// The name of a file as SQLite reads it in a URI.
+std::string uriOf(const std::string& path)
+{
+  std::string uri = "file:";
+  for (const char c : fs::absolute(path).string())
+  {
+    std::array<char, 4> code{};
+    std::snprintf(code.data(), code.size(), "%%%02X", static_cast<unsigned>(static_cast<unsigned char>(c)));
+    uri += c == '%' || c == '?' || c == '#' ? code.data() : std::string(1, c);
+  }
+  return uri;
+}
+
 class DatabaseMessages : public RecordedMessages
 {
 public:
   explicit DatabaseMessages(const std::string& path) : RecordedMessages(path)
   {
-    sqlite3* database = nullptr;
-    const int result = sqlite3_open_v2(path.c_str(), &database, SQLITE_OPEN_READONLY, nullptr);
-    database_.reset(database);
-    if (result != SQLITE_OK)
-    {
-      fail();
-    }
+    openFile();
+    requireTable("topics");
+    requireTable("messages");
     const auto topics = prepare("SELECT id, name, type, serialization_format FROM topics");
     while (step(topics))
     {
@@ -81,6 +97,63 @@ public:
   }
 
 private:
+  /// Without writing beside it: SQLite makes files of its own for a recording in WAL mode (rosbag2's resilient preset),
+  /// and mends what a recorder left when it was killed. With such files beside it a copy is read.
+  void openFile()
+  {
+    bool is_clean = true;
+    for (const char* ending : { "-wal", "-journal" })
+    {
+      std::error_code error;
+      const std::uintmax_t size = fs::file_size(path_ + ending, error);
+      is_clean = is_clean && (error || size == 0);
+    }
+    std::string name = uriOf(path_) + "?immutable=1";
+    int flags = SQLITE_OPEN_READONLY | SQLITE_OPEN_URI;
+    if (!is_clean)
+    {
+      name = copied();
+      flags = SQLITE_OPEN_READWRITE;
+    }
+    sqlite3* database = nullptr;
+    const int result = sqlite3_open_v2(name.c_str(), &database, flags, nullptr);
+    database_.reset(database);
+    if (result != SQLITE_OK)
+    {
+      fail();
+    }
+  }
+
+  /// With what lies beside it.
+  std::string copied()
+  {
+    const std::string copy = (fs::path(copy_.emplace().path()) / "copy.db3").string();
+    for (const char* ending : { "", "-wal", "-journal" })
+    {
+      std::error_code error;
+      if (fs::is_regular_file(path_ + ending, error))
+      {
+        fs::copy_file(path_ + ending, copy + ending, error);
+      }
+      if (error && fs::exists(path_ + ending))
+      {
+        throw InputError(path_ + ending + " cannot be copied to " + copy_->path() + ": " + error.message());
+      }
+    }
+    return copy;
+  }
+
+  /// A view in its place may have no end.
+  void requireTable(const char* table) const
+  {
+    const auto found = prepare("SELECT type, COUNT(*) FROM sqlite_master WHERE name = ?1 COLLATE NOCASE");
+    sqlite3_bind_text(found.get(), 1, table, -1, SQLITE_STATIC);
+    if (!step(found) || text(found, 0) != "table")
+    {
+      throw InputError(path_ + " is a SQLite file without a table '" + table + "', so not a .db3 of ROS 2");
+    }
+  }
+
   using Statement = std::unique_ptr<sqlite3_stmt, EndStatement>;
 
   [[noreturn]] void fail() const
@@ -115,6 +188,7 @@ private:
     return text == nullptr ? "" : reinterpret_cast<const char*>(text);
   }
 
+  std::optional<TemporaryDirectory> copy_;  // that is read in place of the file
   std::unique_ptr<sqlite3, CloseDatabase> database_;
   std::map<std::int64_t, Ros2Channel> channels_;
 };

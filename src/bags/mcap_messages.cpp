@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <fstream>
@@ -28,9 +29,11 @@ enum Opcode : std::uint8_t
   DATA_END = 0x0F
 };
 
-constexpr std::size_t MAGIC = 8;                  // [byte]
-constexpr std::size_t RECORD_HEAD = 9;            // opcode and length [byte]
-constexpr std::size_t MAX_MCAP_CHUNK = 1U << 30;  // [byte]
+constexpr std::size_t MAGIC = 8;                    // [byte]
+constexpr std::size_t RECORD_HEAD = 9;              // opcode and length [byte]
+constexpr std::uint64_t MAX_MCAP_CHUNK = 1U << 30;  // unpacked [byte]
+constexpr std::uint64_t SMALL_CHUNK = 1U << 26;     // of whatever file [byte]
+constexpr std::uint64_t MOST_PACKED = 100;          // unpacked over the file's size
 
 struct McapDamage
 {
@@ -185,7 +188,7 @@ private:
         }
         record.resize(length);
         file.read(reinterpret_cast<char*>(record.data()), static_cast<std::streamsize>(length));
-        if (!takeRecord(head[0], Fields(record.data(), record.size()), take, count))
+        if (!takeRecord(head[0], Fields(record.data(), record.size()), false, take, count))
         {
           return;
         }
@@ -200,7 +203,8 @@ private:
     }
   }
 
-  bool takeRecord(std::uint8_t opcode, Fields fields, const Take& take, const Count& count)
+  /// A chunk holds no chunk: each would stand in memory beside the one around it.
+  bool takeRecord(std::uint8_t opcode, Fields fields, bool is_in_chunk, const Take& take, const Count& count)
   {
     switch (opcode)
     {
@@ -216,6 +220,10 @@ private:
       case MESSAGE:
         return takeMessage(fields, take, count);
       case CHUNK:
+        if (is_in_chunk)
+        {
+          throw McapDamage{ "a chunk within a chunk" };
+        }
         return takeChunk(fields, take, count);
       default:
         return true;
@@ -256,7 +264,7 @@ private:
     const std::string compression = fields.text();
     const auto size = fields.number<std::uint64_t>();
     const std::uint8_t* data = fields.take(size);
-    if (unpacked_size > MAX_MCAP_CHUNK)
+    if (unpacked_size > std::min(MAX_MCAP_CHUNK, std::max(SMALL_CHUNK, MOST_PACKED * size_)))
     {
       throw McapDamage{ "a chunk of " + std::to_string(unpacked_size) + " bytes" };
     }
@@ -282,7 +290,7 @@ private:
     {
       const auto opcode = records.number<std::uint8_t>();
       const auto length = records.number<std::uint64_t>();
-      if (!takeRecord(opcode, Fields(records.take(length), length), take, count))
+      if (!takeRecord(opcode, Fields(records.take(length), length), true, take, count))
       {
         return false;
       }

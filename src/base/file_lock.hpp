@@ -18,8 +18,9 @@ namespace hjt
 class FileLock
 {
 public:
-  /// Makes the file if it is not there. @throws InputError if that fails, or another holds it.
-  explicit FileLock(const std::string& path) : descriptor_(open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666))
+  /// Makes the file if it is not there; a link is not followed. @throws InputError if that fails, or another holds it.
+  explicit FileLock(const std::string& path)
+    : descriptor_(open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666))
   {
     if (descriptor_ < 0)
     {

@@ -24,12 +24,16 @@ class NumberTable
 public:
   using Names = std::array<std::string, N>;
 
+  /// A header with other names for the same columns.
+  using Translate = std::vector<std::string> (*)(std::vector<std::string> header);
+
   /// The last `optional` columns may be missing. @throws InputError on an unreadable file or a wrong header: it names
   /// all columns that are missing.
-  NumberTable(const std::string& path, const Names& names, std::size_t optional = 0, std::size_t lenient = 0)
+  NumberTable(const std::string& path, const Names& names, std::size_t optional = 0, std::size_t lenient = 0,
+              Translate translate = nullptr)
     : names_(names), strict_(N - lenient), rows_(path)
   {
-    const std::vector<std::string>& header = rows_.header();
+    const std::vector<std::string> header = translate != nullptr ? translate(rows_.header()) : rows_.header();
     std::vector<std::string> missing;
     for (std::size_t i = 0; i < N; ++i)
     {

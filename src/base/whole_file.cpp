@@ -5,22 +5,40 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <random>
 #include <utility>
 
-#include "base/text_stream.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 
 namespace hjt
 {
 namespace
 {
+struct Descriptor
+{
+  explicit Descriptor(int opened) : number(opened) {}
+  ~Descriptor()
+  {
+    if (number >= 0)
+    {
+      close(number);
+    }
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor(Descriptor&&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  Descriptor& operator=(Descriptor&&) = delete;
+
+  const int number;
+};
+
 /// Brings a file's or a directory's content to the disk.
 void synchronise(const std::string& path)
 {
@@ -55,12 +73,33 @@ void writeAll(int descriptor, const std::string& bytes, const std::string& path)
   }
 }
 
+/// Beside `target`, open for writing. `path`: as the user named it. @throws InputError.
+int openBeside(const std::string& target, const std::string& path, mode_t mode, std::string& name)
+{
+  // Several may write the same file at once: each has one of its own.
+  constexpr int TRIES = 10;
+  for (int i = 0; i < TRIES; ++i)
+  {
+    std::random_device number;
+    name = target + "." + std::to_string(number()) + std::to_string(number()) + ".part";
+    const int descriptor = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode);
+    if (descriptor >= 0)
+    {
+      return descriptor;
+    }
+    if (errno != EEXIST)
+    {
+      break;
+    }
+  }
+  throw InputError(path + " cannot be written: " + std::strerror(errno));
+}
+
 /// Gives the name `target` to a new file. `path`: as the user named it.
 void replaceFile(const std::string& path, const std::string& target, const std::string& bytes, mode_t mode)
 {
-  // Shards may write the same file at once: each has a temporary of its own.
-  const std::string temporary = target + "." + std::to_string(std::random_device{}()) + ".part";
-  const int descriptor = open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
+  std::string temporary;
+  const int descriptor = openBeside(target, path, mode, temporary);
   try
   {
     writeAll(descriptor, bytes, path);
@@ -68,30 +107,67 @@ void replaceFile(const std::string& path, const std::string& target, const std::
   }
   catch (const InputError&)
   {
-    if (descriptor >= 0)
-    {
-      std::remove(temporary.c_str());
-    }
+    std::remove(temporary.c_str());
     throw;
   }
 }
+
+constexpr mode_t READABLE = 0666;  // as the user's mask allows
 }  // namespace
 
-std::optional<std::string> wholeFile(const std::string& path)
+std::optional<std::string> wholeFile(const std::string& path, std::size_t most, std::string* reason)
 {
-  const std::ifstream file(path, std::ios::binary);
-  TextStream bytes;
-  bytes << file.rdbuf();  // fails where there are none, and where reading ends with an error
-  std::string text = bytes.str();
-  return file && (bytes || text.empty()) ? std::optional(std::move(text)) : std::nullopt;
+  const auto fail = [&](const std::string& why)
+  {
+    if (reason != nullptr)
+    {
+      *reason = why;
+    }
+    return std::nullopt;
+  };
+  // Opening a pipe that nobody writes to waits for ever.
+  const Descriptor file{ open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK) };
+  struct stat status
+  {
+  };
+  if (file.number < 0 || fstat(file.number, &status) != 0)
+  {
+    return fail(std::strerror(errno));
+  }
+  if (!S_ISREG(status.st_mode))
+  {
+    return fail("it is a folder, a device or a pipe");
+  }
+  std::string text;
+  for (;;)
+  {
+    constexpr std::size_t PIECE = 1U << 16;
+    if (static_cast<std::uint64_t>(std::max<off_t>(status.st_size, 0)) > most || text.size() > most)
+    {
+      return fail("it is larger than " + std::to_string(most) + " bytes");
+    }
+    const std::size_t size = text.size();
+    text.resize(size + PIECE);
+    const ssize_t count = read(file.number, text.data() + size, PIECE);
+    text.resize(size + static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
+    if (count == 0)
+    {
+      return text;
+    }
+    if (count < 0 && errno != EINTR)
+    {
+      return fail(std::strerror(errno));
+    }
+  }
 }
 
-std::string readFile(const std::string& path)
+std::string readFile(const std::string& path, std::size_t most)
 {
-  std::optional<std::string> bytes = wholeFile(path);
+  std::string reason;
+  std::optional<std::string> bytes = wholeFile(path, most, &reason);
   if (!bytes)
   {
-    throw InputError("'" + path + "' cannot be read");
+    throw InputError("'" + path + "' cannot be read: " + reason);
   }
   return std::move(*bytes);
 }
@@ -109,13 +185,19 @@ void writeTextFile(const std::string& path, const std::string& text)
     writeAll(descriptor, text, path);
     return;
   }
-  constexpr mode_t READABLE = 0666;  // as the user's mask allows
   replaceFile(path, error ? path : there.string(), text, READABLE);
 }
 
 void writePrivateFile(const std::string& path, const std::string& bytes)
 {
   replaceFile(path, path, bytes, S_IRUSR | S_IWUSR);
+}
+
+std::string makeFileBeside(const std::string& target)
+{
+  std::string name;
+  close(openBeside(target, target, READABLE, name));
+  return name;
 }
 
 void bringToDisk(const std::string& temporary, const std::string& path)

@@ -78,7 +78,7 @@ ArmPlan::ArmPlan(const PlanNode& root, const std::string& directory, const Confi
         std::cerr << "warning: " << path << ": " << straightenedText(change) << '\n';
       }
       motions_[file] = { std::make_shared<const std::vector<ArmSetPoint>>(std::move(points)),
-                         std::to_string(textHash(readFile(path))) };
+                         std::to_string(textHash(readFile(path, MAX_BINARY))) };
     }
   }
 }

@@ -43,7 +43,7 @@ void writeOrRefuse(const Action& action)
 }  // namespace
 
 BagRunFile::BagRunFile(const RunSpec& spec, const Twin* twin, std::string path)
-  : path_(std::move(path)), temporary_(path_ + ".part"), last_(SIMULATION_EPOCH)
+  : path_(std::move(path)), temporary_(makeFileBeside(path_)), last_(SIMULATION_EPOCH)
 {
   if (spec.arm)
   {

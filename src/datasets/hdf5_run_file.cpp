@@ -75,7 +75,7 @@ bool writeFaults(hid_t file, const std::vector<RunFault>& faults, const std::opt
 
 Hdf5RunFile::Hdf5RunFile(const Recording& recording, const RunSpec& spec, const Twin* twin, std::string path)
   : path_(std::move(path))
-  , temporary_(path_ + ".part")
+  , temporary_(makeFileBeside(path_))
   , faults_(spec.faults)
   , joints_(spec.arm ? spec.arm->drives.size() : 1)
   , indicators_(recording.indicators)

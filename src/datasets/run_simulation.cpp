@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "datasets/run_simulation.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
+#include "base/temporary_directory.hpp"
 #include "output/interrupt.hpp"
 #include "output/run_summary.hpp"
 
@@ -119,9 +117,8 @@ RunCost RunSimulation::sample(std::uint64_t number, double seconds)
   const auto since = [](Clock::time_point begin)
   { return std::chrono::duration<double>(Clock::now() - begin).count(); };
   const RunSpec spec = plan_.run(number);
-  const std::string path = (std::filesystem::temp_directory_path() /
-                            ("joint_twin_" + std::to_string(getpid()) + runFileExtension(plan_.recording().format)))
-                               .string();
+  const TemporaryDirectory folder;
+  const std::string path = folder.path() + "/run" + runFileExtension(plan_.recording().format);
   RunCost cost;
   const Clock::time_point first_begin = Clock::now();
   begin(spec);  // has to build its surfaces, once for all runs
@@ -137,7 +134,6 @@ RunCost RunSimulation::sample(std::uint64_t number, double seconds)
   cost.real_time_factor = toSeconds(subject->drive().stamp() - start) / since(marched);
   const Clock::time_point marched_to = Clock::now();
   file->finish(recordOf(spec, path));
-  std::filesystem::remove(path);
   cost.ends += since(marched_to);
   return cost;
 }

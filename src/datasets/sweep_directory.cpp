@@ -158,7 +158,12 @@ void SweepDirectory::open()
                                        name + " cannot be opened: " + std::strerror(errno));
   }
   lockByte(plan_file_, PLAN_LOCK, F_OFD_SETLKW, F_WRLCK);
-  const std::string found = wholeFile(name).value_or("");
+  const std::string found = wholeFile(name, MAX_BINARY).value_or("");
+  if (found.empty() && fs::exists(path_ + "/index.csv"))
+  {
+    fs::remove(name, error);
+    throw InputError(path_ + "/index.csv is of something else: there is no plan.json beside it; give another --out");
+  }
   // Not there yet, or left half written by a process that was killed.
   if (found.size() < text.size() && text.compare(0, found.size(), found) == 0)
   {

@@ -69,11 +69,11 @@ void addLibraries(const UnitLibraries& libraries, const std::string& name, Zip& 
 #else
   const std::string binaries = "binaries/x86_64-linux/";
 #endif
-  zip.add(binaries + name + ".so", readFile(libraries.own));
+  zip.add(binaries + name + ".so", readFile(libraries.own, MAX_BINARY));
   for (const std::string& other : libraries.others)
   {
     const std::string file = fs::path(other).filename();
-    zip.add(binaries + file, readFile(other));
+    zip.add(binaries + file, readFile(other, MAX_BINARY));
     const std::string package = file.substr(0, file.find(".so"));
     std::error_code error;
     for (const fs::directory_entry& entry : fs::directory_iterator("/usr/share/doc", error))

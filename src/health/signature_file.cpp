@@ -266,10 +266,12 @@ private:
 
 std::string readText(const std::string& path)
 {
-  std::optional<std::string> text = wholeFile(path);
+  std::string reason;
+  std::optional<std::string> text = wholeFile(path, MAX_TEXT, &reason);
   if (!text)
   {
-    throw ParameterError("indicators.signatures = '" + path + "': cannot be read; name a file, or " + NO_FILE);
+    throw ParameterError("indicators.signatures = '" + path + "': cannot be read: " + reason + "; name a file, or " +
+                         NO_FILE);
   }
   return std::move(*text);
 }

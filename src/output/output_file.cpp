@@ -47,6 +47,26 @@ void requireWritable(const std::string& path, bool force, const std::string& inp
   }
 }
 
+void prepareReport(const std::string& folder, const std::string& data, bool force)
+{
+  namespace fs = std::filesystem;
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error)
+  {
+    throw InputError(folder + " cannot be made a directory: " + error.message());
+  }
+  requireWritable((fs::path(folder) / data).string(), force);
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+  {
+    if (!force && !entry.is_directory(error))
+    {
+      throw InputError(folder + " holds files already, " + entry.path().filename().string() +
+                       " among them; give another directory, or --force, which overwrites those of a report");
+    }
+  }
+}
+
 void finishStandardOutput()
 {
   errno = 0;
@@ -68,7 +88,7 @@ CsvWriter::CsvWriter(const std::string& path, const std::vector<std::string>& co
   const bool is_stream = fs::exists(status) && (!fs::is_regular_file(status) || fs::equivalent(path, STDOUT, error));
   const fs::path there = fs::canonical(path, error);  // none: it is new
   target_ = is_stream || error ? path : there.string();
-  written_ = is_stream ? target_ : target_ + ".part";
+  written_ = is_stream ? target_ : makeFileBeside(target_);
   file_.reset(std::fopen(written_.c_str(), "w"));
   require(file_ != nullptr);
   require(std::fputs((joined(columns, ",") + "\n").c_str(), file_.get()) >= 0);

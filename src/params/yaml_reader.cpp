@@ -220,10 +220,11 @@ void eraseFaults(ParameterMap& map)
 
 void readYamlFile(const std::string& path, ParameterMap& map)
 {
-  const std::optional<std::string> text = wholeFile(path);
+  std::string reason = "it is empty";
+  const std::optional<std::string> text = wholeFile(path, MAX_TEXT, &reason);
   if (!text || text->empty())
   {
-    fail(path, "cannot be read, or is empty");
+    fail(path, "cannot be read: " + reason);
   }
   std::vector<YAML::Node> documents;
   try

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "arm/arm_configuration.hpp"
 #include "base/number_text.hpp"
@@ -77,6 +78,12 @@ ArmRecording::ArmRecording(const RecordingOptions& options)
   if (is_arm_ && isFile())
   {
     stated_gains_ = readStatedGains(source_, arm_.joints.size());
+    const std::optional<Payload> stated = readStatedPayload(source_);
+    if (stated && stated->mass > 0.0 && arm_.payload.mass == 0.0)
+    {
+      arm_.payload = *stated;
+      payload_text_ = "payload of " + roundedText(stated->mass, 3) + " kg, as the controller states";
+    }
   }
   for (std::size_t i = 0; i < arm_.joints.size(); ++i)
   {
@@ -96,6 +103,7 @@ ArmRecording::ArmRecording(const RecordingOptions& options)
     {
       parameters = drive;
     }
+    source_.speeds.push_back(greatestSpeed(parameters));
   }
 }
 
@@ -115,6 +123,7 @@ MotionSource ArmRecording::source(std::size_t joint) const
   MotionSource source = source_;
   source.joint = is_arm_ ? affixes_(arm_.joints[joint].name) : source_.joint;
   source.csv_joint = is_arm_ ? static_cast<int>(joint) : source_.csv_joint;
+  source.speeds = { source_.speeds[joint] };
   source.current_per_effort = currentPerEffort(parameters);
   source.current_per_motor_torque = nominalRatio(parameters.gear) / parameters.telemetry.torque_per_current;
   return source;
@@ -190,29 +199,6 @@ MotionFindings ArmRecording::readSamplesBy(const Read& read, const VisitSample& 
   return found;
 }
 
-/// The rows at hand, as readArmMotion reads a file.
-MotionCount ArmRecording::readRows(const std::function<bool(const std::vector<MotionRow>&)>& visit) const
-{
-  const std::function<void(double)> progress = watch_.progress("reading");
-  MotionCount count;
-  for (const std::vector<MotionRow>& row : *options_.rows)
-  {
-    if (row.size() != arm_.joints.size())
-    {
-      throw InputError(source_.path + " has " + std::to_string(row.size()) +
-                       " joints, expected: " + std::to_string(arm_.joints.size()));
-    }
-    ++count.rows;
-    count.duration = row.front().time;
-    progress(static_cast<double>(count.rows) / static_cast<double>(options_.rows->size()));
-    if (!visit(row))
-    {
-      break;
-    }
-  }
-  return count;
-}
-
 MotionFindings ArmRecording::readJoint(const VisitRows& visit, double end) const
 {
   RatioFit ratio(nominalRatio(parameters_.front().gear));
@@ -226,9 +212,7 @@ MotionFindings ArmRecording::readJoint(const VisitRows& visit, double end) const
     visit(rows);
     return !watch_.stopped() && row.time < end;
   };
-  static_cast<MotionCount&>(found) = isFile() ?
-                                         readMotion(source(0), take, watch_.progress("reading")) :
-                                         readRows([&](const std::vector<MotionRow>& row) { return take(row.front()); });
+  static_cast<MotionCount&>(found) = readMotion(source(0), take, watch_.progress("reading"));
   if (!found.misfit.exists())
   {
     found.misfit = { Reason::GEAR_RATIO, ratio.text() };
@@ -243,7 +227,7 @@ MotionCount ArmRecording::readArmRows(const std::function<bool(const std::vector
   {
     names.push_back(affixes_(joint.name));
   }
-  return isFile() ? readArmMotion(source_, names, visit, watch_.progress("reading")) : readRows(visit);
+  return readArmMotion(source_, names, visit, watch_.progress("reading"));
 }
 
 void ArmRecording::readEfforts(const VisitMotion& visit, double end) const
@@ -294,6 +278,10 @@ MotionFindings ArmRecording::readArm(const VisitRows& visit, RecordingFit& fit, 
     return !watch_.stopped() && motion.front().time < end;
   };
   static_cast<MotionCount&>(findings) = readArmRows(take);
+  if (!payload_text_.empty())
+  {
+    findings.remarks.push_back(payload_text_);
+  }
   forward(true);
   findings.velocity_ratio = fit.stampFactor().value;
   fit.refuse(findings.misfit);

@@ -78,7 +78,6 @@ public:
 private:
   using Read = std::function<MotionFindings(const VisitRows&)>;
 
-  MotionCount readRows(const std::function<bool(const std::vector<MotionRow>&)>& visit) const;
   MotionCount readArmRows(const std::function<bool(const std::vector<MotionRow>&)>& visit) const;
   MotionFindings readJoint(const VisitRows& visit, double end) const;
   MotionFindings readArm(const VisitRows& visit, RecordingFit& fit, double end) const;
@@ -94,6 +93,7 @@ private:
   std::vector<Parameters> parameters_;
   std::vector<double> inertias_in_load_;  // of the motors, in a controller's torque, at the joints [kg.m^2]
   MotionSource source_;
+  std::string payload_text_;  // where it is the controller's in place of the file's; else empty
   bool has_load_{};
   bool uses_recorded_{};
 };

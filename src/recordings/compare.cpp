@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "output/temporary_directory.hpp"
+#include "output/output_file.hpp"
 #include "output/text_table.hpp"
 #include "recordings/joint_comparison.hpp"
 #include "recordings/report_page.hpp"
@@ -205,6 +205,7 @@ void judgeArm(const std::vector<Misfit>& misfits, bool has_reference, ComparedRe
   {
     compared.health = std::max(compared.health, severityOf(joint.verdict.level));
     compared.is_judged = compared.is_judged || joint.verdict.isJudged();
+    compared.not_judged += joint.verdict.isJudged() ? 0 : 1;
   }
   compared.level = compared.is_judged ? levelName(compared.health) : levelName(VerdictLevel::NOT_JUDGED);
   const bool same = misfits.front().exists() &&
@@ -226,6 +227,7 @@ Json documentOfArm(const ComparisonOptions& options, const ComparedRecording& co
            { "arm", options.arm },
            { "made_with", MADE_WITH },
            { "level", compared.level },
+           { "joints_not_judged", compared.not_judged },
            { "text", compared.text },
            { "load", options.load },
            { "temperature", temperatures / static_cast<double>(compared.joints.size()) },
@@ -241,26 +243,32 @@ Json documentOfArm(const ComparisonOptions& options, const ComparedRecording& co
            { "joints", tableOf(compared).rows() } };
 }
 
-/// @throws InputError if one of the files that the page is made of cannot be written to `directory`.
-void prepareDirectory(const ComparisonOptions& options, const std::string& directory, const char* data_file)
-{
-  std::error_code error;
-  fs::create_directories(directory, error);
-  if (error)
-  {
-    throw InputError(directory + " cannot be made a directory: " + error.message());
-  }
-  for (const char* name : { data_file, REPORT_PAGE })
-  {
-    requireWritable((fs::path(directory) / name).string(), options.force, options.recording);
-  }
-}
-
 /// The directory of a joint's report, or of its reference, in that of the whole.
 std::string directoryOf(const ArmRecording& recording, const std::string& whole, std::size_t joint)
 {
   return recording.isArm() && !whole.empty() ? (fs::path(whole) / recording.joints()[joint].short_name).string() :
                                                whole;
+}
+
+/// Once: a second pass writes the files again.
+void prepareReports(const ComparisonOptions& options, const ArmRecording& recording)
+{
+  if (recording.isArm())
+  {
+    refuseReferenceOfOtherArm(options);
+  }
+  if (options.report.empty())
+  {
+    return;
+  }
+  if (recording.isArm())
+  {
+    prepareReport(options.report, ARM_FILE, options.force);
+  }
+  for (std::size_t i = 0; i < recording.joints().size(); ++i)
+  {
+    prepareReport(directoryOf(recording, options.report, i), COMPARISON_FILE, options.force);
+  }
 }
 
 std::vector<std::unique_ptr<JointComparison>> prepareJoints(const ComparisonOptions& options,
@@ -269,16 +277,10 @@ std::vector<std::unique_ptr<JointComparison>> prepareJoints(const ComparisonOpti
   const LoadOrigin load = recording.usesRecordedLoad() ? LoadOrigin::RECORDED :
                           recording.isArm()            ? LoadOrigin::ARM :
                                                          LoadOrigin::CONFIGURED;
-  if (recording.isArm())
-  {
-    refuseReferenceOfOtherArm(options);
-    prepareDirectory(options, options.report, ARM_FILE);
-  }
   std::vector<std::unique_ptr<JointComparison>> joints;
   for (std::size_t i = 0; i < recording.joints().size(); ++i)
   {
     const std::string directory = directoryOf(recording, options.report, i);
-    prepareDirectory(options, directory, COMPARISON_FILE);
     std::vector<std::string> references;
     for (const std::string& reference : options.references)
     {
@@ -291,11 +293,12 @@ std::vector<std::unique_ptr<JointComparison>> prepareJoints(const ComparisonOpti
   return joints;
 }
 
-/// With its data in `options.report`.
+/// With its data in `options.report`, if that is given.
 ComparedRecording compareInto(const ComparisonOptions& options)
 {
   refuseReferenceAsReport(options);
   ArmRecording recording(options);
+  prepareReports(options, recording);
   ComparedRecording compared;
   std::vector<std::unique_ptr<JointComparison>> joints;
   AssessmentSettings settings;
@@ -332,13 +335,17 @@ ComparedRecording compareInto(const ComparisonOptions& options)
   {
     judgeArm(arm.judged.misfits, !options.references.empty(), compared);
     compared.document = documentOfArm(options, compared);
-    writeTextFile((fs::path(options.report) / ARM_FILE).string(), compared.document.dump() + "\n");
+    if (!options.report.empty())
+    {
+      writeTextFile((fs::path(options.report) / ARM_FILE).string(), compared.document.dump() + "\n");
+    }
   }
   else
   {
     const Verdict& verdict = compared.joints.front().verdict;
     compared.level = levelName(verdict.level);
     compared.is_judged = verdict.isJudged();
+    compared.not_judged = verdict.isJudged() ? 0 : 1;
     compared.health = severityOf(verdict.level);
     compared.text = verdictText(verdict);
     compared.document = compared.joints.front().document;
@@ -349,15 +356,8 @@ ComparedRecording compareInto(const ComparisonOptions& options)
 
 ComparedRecording compare(const ComparisonOptions& options)
 {
-  if (options.report.empty())
-  {
-    const TemporaryDirectory directory;
-    ComparisonOptions passing = options;
-    passing.report = directory.path();
-    return compareInto(passing);
-  }
   ComparedRecording compared = compareInto(options);
-  if (!compared.joints.empty())
+  if (!compared.joints.empty() && !options.report.empty())
   {
     compared.page = (fs::path(options.report) / REPORT_PAGE).string();
     makePage(options.report);

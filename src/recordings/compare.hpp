@@ -46,7 +46,8 @@ struct ComparedRecording
   std::string level;
   std::string text;  ///< a sentence or two
   bool is_judged{};
-  HealthLevel health{};  ///< the worst of the joints
+  std::size_t not_judged{};  ///< joints; the level does not speak for them
+  HealthLevel health{};      ///< the worst of the joints
   MotionFindings found;
   AssumedLoad assumed;                ///< that the joints are judged with in place of the configured one
   ArmFriction friction;               ///< what the joints have in common

@@ -245,10 +245,10 @@ Json factorJson(const ComparisonRecord& record)
                                            { "reference", referenceName(record.friction.reference) } } :
                                      Json(std::optional<double>());
 }
-}  // namespace
 
-Json writeComparison(const std::string& directory, const RecordingComparison& comparison, const Parameters& parameters,
-                     const ComparisonRecord& record)
+/// What the page's figures are made of.
+void writeData(const std::string& directory, const RecordingComparison& comparison, const Parameters& parameters,
+               const ComparisonRecord& record)
 {
   writeCourse(directory + "/course.csv", comparison);
   writeFriction(directory, comparison);
@@ -260,7 +260,16 @@ Json writeComparison(const std::string& directory, const RecordingComparison& co
   {
     writeBaseline(directory + "/" + BASELINE_FILE, comparison.evidence().assessor().baseline(), false);
   }
+}
+}  // namespace
 
+Json writeComparison(const std::string& directory, const RecordingComparison& comparison, const Parameters& parameters,
+                     const ComparisonRecord& record)
+{
+  if (!directory.empty())
+  {
+    writeData(directory, comparison, parameters, record);
+  }
   const MotionReach& reach = comparison.evidence().reach();
   Json orders;
   const LineOrders tracked = trackedOrders(parameters.gear, parameters.bearing);
@@ -303,7 +312,10 @@ Json writeComparison(const std::string& directory, const RecordingComparison& co
                   { "highest_order", record.verdict[Figure::HIGHEST_ORDER] },
                   { "windows_assessed", comparison.evidence().assessedWindows() },
                   { "health", healthJson(comparison) } };
-  writeTextFile(directory + "/" + COMPARISON_FILE, all.dump() + "\n");
+  if (!directory.empty())
+  {
+    writeTextFile(directory + "/" + COMPARISON_FILE, all.dump() + "\n");
+  }
   return all;
 }
 }  // namespace hjt

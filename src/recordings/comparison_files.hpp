@@ -31,7 +31,7 @@ Json verdictFields(const Verdict& verdict);
 
 /// Writes COMPARISON_FILE, BASELINE_FILE and tables beside them, as CSV: course, friction, friction_twin, spectrum,
 /// teeth, health, and where the recording has them torsion, torsion_twin, twin_states. Solves the ring under the loads
-/// of the recording. Gives what COMPARISON_FILE holds.
+/// of the recording. Gives what COMPARISON_FILE holds; with an empty `directory` that alone, and nothing is written.
 /// @throws InputError if a file cannot be written.
 Json writeComparison(const std::string& directory, const RecordingComparison& comparison, const Parameters& parameters,
                      const ComparisonRecord& record);

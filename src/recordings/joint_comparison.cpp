@@ -30,16 +30,28 @@ JointComparison::JointComparison(const ArmRecording& recording, std::size_t join
   , source_(recording.source(joint))
   , is_file_(recording.isFile())
   , directory_(directory)
-  , windows_((fs::path(directory) / "windows.csv").string(), WINDOW_COLUMNS)
   , comparison_(recording.parameters(joint), load, std::move(sound.baseline),
-                [this](const JudgedWindow& window) { windows_.write(window); })
+                [this](const JudgedWindow& window)
+                {
+                  if (windows_)
+                  {
+                    windows_->write(window);
+                  }
+                })
 {
+  if (!directory_.empty())
+  {
+    windows_.emplace((fs::path(directory) / "windows.csv").string(), WINDOW_COLUMNS);
+  }
 }
 
 ComparedJoint JointComparison::write(const Parameters& parameters, const MotionFindings& found,
                                      const JointContext& context, const std::string& twin_topic)
 {
-  windows_.close();
+  if (windows_)
+  {
+    windows_->close();
+  }
   ComparisonRecord record;
   record.recording = source_.path;
   record.joint = source_.joint;
@@ -50,7 +62,10 @@ ComparedJoint JointComparison::write(const Parameters& parameters, const MotionF
   {
     record.contents =
         readContents(source_, twin_topic, found, reach.motor_rows, reach.temperature_rows, found.has_load);
-    record.twin_states = readTwinStates(source_, twin_topic, toSeconds(found.start));
+    if (!directory_.empty())  // of the page alone
+    {
+      record.twin_states = readTwinStates(source_, twin_topic, toSeconds(found.start));
+    }
   }
   record.verdict = judge(evidence(), context);
   record.friction = frictionFactor(evidence(), context);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,8 +39,8 @@ public:
 private:
   const MotionSource source_;
   const bool is_file_;
-  const std::string directory_;
-  TableFile<JudgedWindow> windows_;
+  const std::string directory_;                     // empty: no file is written
+  std::optional<TableFile<JudgedWindow>> windows_;  // likewise
   RecordingComparison comparison_;
 };
 }  // namespace hjt

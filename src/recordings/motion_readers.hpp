@@ -10,7 +10,7 @@
 
 namespace hjt
 {
-// The two kinds of recordings behind readMotion and readArmMotion; times as they are recorded.
+// The kinds of recordings behind readMotion and readArmMotion; times as they are recorded.
 
 using VisitRows = std::function<bool(const std::vector<MotionRow>& rows)>;
 
@@ -20,6 +20,10 @@ MotionCount readMessageMotion(const MotionSource& source, const std::vector<std:
 
 /// A table: the joints of these numbers in its columns.
 MotionCount readTableMotion(const MotionSource& source, const std::vector<int>& numbers, const VisitRows& visit,
+                            const std::function<void(double)>& progress);
+
+/// Rows at hand, MotionSource::rows, of so many joints; times scaled.
+MotionCount readArrayMotion(const MotionSource& source, std::size_t joints, const VisitRows& visit,
                             const std::function<void(double)>& progress);
 
 // Remarks of a reading.

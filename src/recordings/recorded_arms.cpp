@@ -9,6 +9,8 @@
 #include "arm/arm_configuration.hpp"
 #include "bags/recorded_messages.hpp"
 #include "base/csv_rows.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "recordings/controller_columns.hpp"
 
 namespace hjt
 {
@@ -27,12 +29,37 @@ CheckedContents readTableContents(const MotionSource& source)
   contents.is_csv = true;
   const std::string temperatures = "joint_temperatures_";
   const CsvRows table(source.path);
+  if (const std::string foreign = foreignTable(table.header()); !foreign.empty())
+  {
+    throw InputError(source.path + ": " + foreign);
+  }
   for (const std::string& name : table.header())
   {
     contents.temperature =
         name.compare(0, temperatures.size(), temperatures) == 0 ? temperatures + "N" : contents.temperature;
   }
   return contents;
+}
+
+/// @throws InputError where no name tells a joint.
+void requireNames(const std::string& topic, const std::vector<std::string>& names)
+{
+  const auto all = [&](const auto& is) { return !names.empty() && std::all_of(names.begin(), names.end(), is); };
+  if (all([](const std::string& name) { return name.empty(); }))
+  {
+    throw InputError(topic + ": the joints have no names (each name is empty), so whose the values are is not known");
+  }
+  const auto names_quantity = [](const std::string& name)
+  {
+    const std::string quantity = name.substr(name.rfind('/') + 1);
+    return quantity != name && (quantity == "position" || quantity == "velocity" || quantity == "effort");
+  };
+  if (all(names_quantity))
+  {
+    throw InputError(
+        topic + ": the names carry the quantity (" + names.front() +
+        "); a message has to name each joint once, with its position, velocity and effort in these fields");
+  }
 }
 
 CheckedContents readMessageContents(const MotionSource& source)
@@ -55,6 +82,7 @@ CheckedContents readMessageContents(const MotionSource& source)
           return true;
         }
         const sensor_msgs::JointState& state = *message.state;
+        contents.has_angles = contents.has_angles || !state.position.empty();
         for (std::size_t i = 0; i < state.name.size(); ++i)
         {
           if (!holds(contents.named, state.name[i]))
@@ -70,6 +98,7 @@ CheckedContents readMessageContents(const MotionSource& source)
         return ++read < MESSAGES || contents.usable.size() < contents.named.size();
       },
       [](double) {});
+  requireNames(source.topic, contents.named);
   contents.named = withoutMotors(contents.named);
   contents.usable = withoutMotors(contents.usable);
   return contents;

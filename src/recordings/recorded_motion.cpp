@@ -2,6 +2,7 @@
 #include "recordings/recorded_motion.hpp"
 
 #include <numeric>
+#include <utility>
 
 #include "bags/recorded_messages.hpp"
 #include "bags/recording_format.hpp"
@@ -12,17 +13,64 @@ namespace hjt
 {
 namespace
 {
-/// What times are multiplied by after reading: those of a table are scaled as they are read, since their unit decides
-/// what a jump is.
+/// What times are multiplied by after reading: those of a table or of arrays are scaled as they are read, since their
+/// unit decides what a jump is.
 double scaleOf(const MotionSource& source)
 {
-  return isCsv(source) ? 1.0 : source.time_scale;
+  return source.rows || isCsv(source) ? 1.0 : source.time_scale;
 }
 
-void scaleTimes(double scale, MotionRow& row)
+std::string leftOutText(std::uint64_t rows, const char* reason)
 {
-  row.time *= scale;
-  row.received *= scale;
+  return std::to_string(rows) + (rows == 1 ? " row is left out: " : " rows are left out: ") + reason;
+}
+
+void addRemarks(const LeftOutRows& left_out, MotionCount& count)
+{
+  const auto remark = [&](std::uint64_t rows, const char* reason)
+  {
+    if (rows > 0)
+    {
+      count.remarks.push_back(leftOutText(rows, reason));
+    }
+  };
+  remark(left_out.unreachable, "angles that the joints cannot have reached from the rows beside them");
+  remark(left_out.repeated,
+         "they repeat the values of the row before while the joints move (held by a driver, or a recorder was stuck)");
+  remark(left_out.bunched, "stamps come in bunches, each within a quarter of the mean step after another");
+}
+
+/// Reads rows of so many joints by `read`, which hands them on, through the filter.
+template <class Read>
+MotionCount readFiltered(const MotionSource& source, std::size_t joints, const VisitRows& visit, const Read& read)
+{
+  const double scale = scaleOf(source);
+  std::vector<double> speeds = source.speeds;
+  speeds.resize(joints, MotionSource::FASTEST);
+  RowFilter filter(std::move(speeds));
+  std::vector<MotionRow> rows;
+  bool more = true;
+  MotionCount count = read(
+      [&](const std::vector<MotionRow>& recorded)
+      {
+        rows = recorded;
+        for (MotionRow& row : rows)
+        {
+          row.time *= scale;
+          row.received *= scale;
+        }
+        return more = filter.push(rows, visit);
+      });
+  if (more)
+  {
+    filter.finish(visit);
+  }
+  count.left_out = filter.leftOut();
+  count.duration *= scale;
+  count.rows -= count.left_out.all();
+  count.corrupt += count.left_out.impossible + count.left_out.unreachable;
+  addRemarks(count.left_out, count);
+  return count;
 }
 }  // namespace
 
@@ -41,17 +89,20 @@ MotionCount readMotion(const MotionSource& source, const std::function<bool(cons
                        const std::function<void(double)>& progress)
 {
   TimeFit fit;
-  const double scale = scaleOf(source);
-  const auto scaled = [&](const std::vector<MotionRow>& read)
+  const auto fitted = [&](const std::vector<MotionRow>& rows)
   {
-    MotionRow row = read.front();
-    scaleTimes(scale, row);
+    const MotionRow& row = rows.front();
     fit.add(row.time, row.position, row.recorded_velocity);
     return visit(row);
   };
-  MotionCount count = isCsv(source) ? readTableMotion(source, { source.csv_joint }, scaled, progress) :
-                                      readMessageMotion(source, { source.joint }, scaled, progress);
-  count.duration *= scale;
+  MotionCount count =
+      readFiltered(source, 1, fitted,
+                   [&](const VisitRows& take)
+                   {
+                     return source.rows   ? readArrayMotion(source, 1, take, progress) :
+                            isCsv(source) ? readTableMotion(source, { source.csv_joint }, take, progress) :
+                                            readMessageMotion(source, { source.joint }, take, progress);
+                   });
   count.velocity_ratio = fit.factor().value;
   return count;
 }
@@ -60,22 +111,14 @@ MotionCount readArmMotion(const MotionSource& source, const std::vector<std::str
                           const std::function<bool(const std::vector<MotionRow>&)>& visit,
                           const std::function<void(double)>& progress)
 {
-  std::vector<MotionRow> rows;
-  const double scale = scaleOf(source);
-  const auto scaled = [&](const std::vector<MotionRow>& read)
-  {
-    rows = read;
-    for (MotionRow& row : rows)
-    {
-      scaleTimes(scale, row);
-    }
-    return visit(rows);
-  };
   std::vector<int> numbers(names.size());
   std::iota(numbers.begin(), numbers.end(), 0);
-  MotionCount count = isCsv(source) ? readTableMotion(source, numbers, scaled, progress) :
-                                      readMessageMotion(source, names, scaled, progress);
-  count.duration *= scale;
-  return count;
+  return readFiltered(source, names.size(), visit,
+                      [&](const VisitRows& take)
+                      {
+                        return source.rows   ? readArrayMotion(source, names.size(), take, progress) :
+                               isCsv(source) ? readTableMotion(source, numbers, take, progress) :
+                                               readMessageMotion(source, names, take, progress);
+                      });
 }
 }  // namespace hjt

@@ -4,12 +4,14 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "harmonic_joint_twin/base/stamp.hpp"
 #include "tracking/motion_differentiator.hpp"
 #include "tracking/reason.hpp"
+#include "tracking/row_filter.hpp"
 
 namespace hjt
 {
@@ -28,6 +30,12 @@ struct MotionSource
   double current_per_motor_torque{};
   double current_per_effort{ 1.0 };  ///< of one joint: motor current of 1 of its effort [A], [A/(N.m)]
   double time_scale{ 1.0 };          ///< by which the times in the recording are multiplied
+  /// Of the joints, the greatest, beyond which RowFilter takes no angle; of one that has none here FASTEST [rad/s].
+  std::vector<double> speeds;
+  /// A recording at hand in place of a file: a row of each joint at each time, currents in A.
+  std::shared_ptr<const std::vector<std::vector<MotionRow>>> rows;
+
+  static constexpr double FASTEST = 20.0;  ///< faster than any joint [rad/s]
 };
 
 /// What a reading found.
@@ -35,6 +43,7 @@ struct MotionCount
 {
   std::uint64_t rows{};
   std::uint64_t corrupt{};  ///< messages that could not be read, hold no finite angle and current, or cannot be true
+  LeftOutRows left_out;     ///< by the filter; the impossible and unreachable ones count as corrupt too
   double duration{};        ///< of the recording [s]
   Stamp start{};            ///< stamp of the first row [ns]
   double least_delay{};     ///< messages: of the recording behind the stamps [s]
@@ -61,11 +70,12 @@ bool recordsLoad(const MotionSource& source);
 
 /// Reads a recording row by row, in memory that does not grow with it beyond the bag's own index.
 ///
+/// All kinds go through RowFilter, which leaves out what was not measured or cannot be true.
 /// Times start at the first row; a loop's rounds follow each other (RowTime). Angles folded into one turn are made
 /// continuous (UnfoldedAngle).
 /// Messages: header stamps count, or the time of recording where they are zero in all messages. A load counts for rows
 /// from its stamp on. Left out and counted: a row that agrees neither with the one before nor with the one after, its
-/// angle beyond what a joint can reach in the time or its stamp more than a second off theirs; one with all efforts
+/// angle beyond what any joint can reach in the time or its stamp more than a second off theirs; one with all efforts
 /// zero where others have some; one without a stamp where others have one. `misfit` where two sources give the same
 /// joint. Table: columns timestamp, actual_q_N, actual_current_N, target_moment_N, as `joint_twin import`, and
 /// joint_temperatures_N [degC]. Temperatures of messages are sensor_msgs/Temperature of any topic whose frame_id is the

@@ -17,6 +17,7 @@ namespace hjt
 struct CheckedContents
 {
   bool is_csv{};
+  bool has_angles{};                ///< messages: a position
   std::vector<std::string> named;   ///< joints in the messages, their motors' entries not among them
   std::vector<std::string> usable;  ///< those with angle and effort
   std::string temperature;          ///< topic or column; empty: none

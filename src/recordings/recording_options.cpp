@@ -36,6 +36,7 @@ MotionSource motionSource(const RecordingOptions& options)
   source.load_topic = options.joint_namespace + "/" + topics::LOAD;
   source.joint = options.joint;
   source.time_scale = options.time_scale;
+  source.rows = options.rows;
   if (const std::optional<UrJoint> known = findUrJoint(options.joint))
   {
     source.joint = options.affixes(known->name);

@@ -9,6 +9,7 @@
 
 #include "base/median.hpp"
 #include "base/number_table.hpp"
+#include "recordings/controller_columns.hpp"
 
 namespace hjt
 {
@@ -86,7 +87,7 @@ std::vector<double> readStatedGains(const MotionSource& source, std::size_t join
   {
     return gains;
   }
-  NumberTable<COLUMNS> table(source.path, columnNames(), COLUMNS, COLUMNS);
+  NumberTable<COLUMNS> table(source.path, columnNames(), COLUMNS, COLUMNS, controllerColumns);
   if (!table.hasColumn(CURRENT) || !table.hasColumn(MOMENT))
   {
     return gains;
@@ -118,5 +119,40 @@ std::vector<double> readStatedGains(const MotionSource& source, std::size_t join
     gains[joint] = agreedRatio(ratios[joint], at_rest);
   }
   return gains;
+}
+
+std::optional<Payload> readStatedPayload(const MotionSource& source)
+{
+  constexpr std::size_t VALUES = 4;
+  using Row = std::array<double, VALUES>;
+  if (!isCsv(source))
+  {
+    return std::nullopt;
+  }
+  NumberTable<VALUES> table(source.path, { "payload", "payload_cog_0", "payload_cog_1", "payload_cog_2" }, VALUES,
+                            VALUES);
+  if (!table.hasColumn(0))
+  {
+    return std::nullopt;
+  }
+  table.allowCutOff();
+  table.allowUneven();
+  std::optional<Row> stated;
+  Row row{};
+  while (table.read(row))
+  {
+    const bool is_whole = std::all_of(row.begin(), row.end(), [](double value) { return std::isfinite(value); });
+    if (is_whole && stated && row != *stated)
+    {
+      return std::nullopt;
+    }
+    stated = is_whole ? row : stated;
+  }
+  if (!stated)
+  {
+    return std::nullopt;
+  }
+  const Payload payload{ (*stated)[0], { (*stated)[1], (*stated)[2], (*stated)[3] } };
+  return payloadErrors(payload).empty() ? std::make_optional(payload) : std::nullopt;
 }
 }  // namespace hjt

@@ -9,6 +9,7 @@
 #include "base/joined.hpp"
 #include "base/number_table.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
+#include "recordings/controller_columns.hpp"
 #include "recordings/motion_readers.hpp"
 #include "recordings/row_time.hpp"
 #include "tracking/held_values.hpp"
@@ -45,7 +46,7 @@ public:
 
   JointTable(const std::string& path, const std::vector<int>& numbers)
     // A value that is no number spoils its row, not the file.
-    : names_(names(numbers)), table_(path, names_, COLUMNS - 1 - 2 * COUNT, COLUMNS)
+    : names_(names(numbers)), table_(path, names_, COLUMNS - 1 - 2 * COUNT, COLUMNS, controllerColumns)
   {
     table_.allowCutOff();
     table_.allowUneven();
@@ -368,6 +369,11 @@ MotionCount readTableMotion(const MotionSource& source, const std::vector<int>& 
 bool tableRecordsLoad(const MotionSource& source)
 {
   const CsvRows rows(source.path);  // what is missing is for the reader to say
+  const std::string foreign = foreignTable(rows.header());
+  if (!foreign.empty())
+  {
+    throw InputError(source.path + ": " + foreign);
+  }
   const std::string name = NAMES[MOMENT] + std::to_string(source.csv_joint);
   return std::find(rows.header().begin(), rows.header().end(), name) != rows.header().end();
 }

@@ -73,7 +73,9 @@ std::vector<std::string> filesOf(const std::vector<std::string>& given)
     const bool is_folder = fs::is_directory(path) && !isRos2Directory(path);
     for (const std::string& file : is_folder ? recordingsIn(path) : std::vector<std::string>{ path })
     {
-      if (known.insert(fs::canonical(file).string()).second)
+      std::error_code error;
+      const std::string there = fs::canonical(file, error).string();
+      if (known.insert(error ? file : there).second)  // a link to nowhere gets its row, with the reason
       {
         files.push_back(file);
       }
@@ -300,6 +302,11 @@ void judgeTrend(Trend& trend)
       trend.latest = i;
     }
   }
+  for (std::size_t i = 0; i < joints; ++i)
+  {
+    const bool is_latest_judged = trend.latest && trend.recordings[*trend.latest].compared.joints[i].verdict.isJudged();
+    trend.not_judged += is_latest_judged || trend.joints[i].level != VerdictLevel::NOT_JUDGED ? 0 : 1;
+  }
   if (trend.latest)
   {
     trend.health = std::max(trend.health, trend.recordings[*trend.latest].compared.health);
@@ -318,12 +325,7 @@ void requireFiles(const TrendOptions& options)
   {
     return;
   }
-  std::error_code error;
-  fs::create_directories(options.report, error);
-  for (const char* name : { TREND_FILE, REPORT_PAGE })
-  {
-    requireWritable((fs::path(options.report) / name).string(), options.force);
-  }
+  prepareReport(options.report, TREND_FILE, options.force);
 }
 }  // namespace
 

@@ -54,10 +54,11 @@ struct Trend
   std::vector<JointTrend> joints;          ///< from the base on
   std::optional<std::size_t> latest;       ///< of the recordings, the last one that was judged
   std::string level;
-  std::string text;      ///< a sentence or two
-  HealthLevel health{};  ///< the worse of the trends and the latest recording
-  bool is_judged{};      ///< a trend, or the latest recording
-  std::string page;      ///< its path; empty: none
+  std::string text;          ///< a sentence or two
+  HealthLevel health{};      ///< the worse of the trends and the latest recording
+  bool is_judged{};          ///< a trend, or the latest recording
+  std::size_t not_judged{};  ///< joints of which neither is judged
+  std::string page;          ///< its path; empty: none
 };
 
 /// Judges each recording as `compare` does, and whether the friction of a joint changes from one to the other.

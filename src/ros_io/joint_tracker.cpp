@@ -54,6 +54,7 @@ JointTracker::JointTracker(ros::NodeHandle& node, const Parameters& parameters, 
   , takes_arm_load_(parameters.telemetry.load == LoadSource::ARM)
   , thermal_model_(parameters.thermal.model)
   , ratio_(nominalRatio(parameters.gear))
+  , greatest_speed_(hjt::greatestSpeed(parameters))
   , current_per_effort_(hjt::currentPerEffort(parameters))
   // Built before the first row is read, so that the same rows give the same numbers.
   , tracker_(parameters, parameters.input.mode, nodeSurfaceSource(false))
@@ -257,7 +258,8 @@ void JointTracker::look(const ros::WallTime& now)
   const StreamTimingReport timing = stream_.timing.report();
   const TrackerCounters counters = tracker_.counters();
   recent_refusals_.update(refusals_.incomplete + refusals_.not_finite + refusals_.load + refusals_.temperature +
-                              stream_.far_stamps + stream_.too_large + stream_.without_effort,
+                              stream_.far_stamps + stream_.too_large + stream_.without_effort +
+                              stream_.left_out.impossible + stream_.left_out.unreachable,
                           now);
   recent_disorder_.update(timing.repeated + timing.backward, now);
   recent_missing_.update(timing.missing, now);

@@ -75,6 +75,7 @@ public:
 
   const std::string& joint() const { return names_.joint; }
   double currentPerEffort() const { return current_per_effort_; }  ///< [A], [A/(N.m)]
+  double greatestSpeed() const { return greatest_speed_; }         ///< [rad/s]
   /// Its load comes with `pushLoad` from the motion of the whole arm.
   bool takesArmLoad() const { return takes_arm_load_; }
 
@@ -160,6 +161,7 @@ private:
   const bool takes_arm_load_;
   const ThermalModel thermal_model_;
   const double ratio_;                          // of motor to output
+  const double greatest_speed_;                 // [rad/s]
   const double current_per_effort_;             // [A], [A/(N.m)]
   static constexpr std::uint64_t SILENT = 100;  // messages
   std::uint64_t without_effort_{};              // messages one after the other

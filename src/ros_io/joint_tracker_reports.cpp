@@ -30,6 +30,9 @@ void JointTracker::reportTelemetry(DiagnosticStatusWrapper& status) const
   status.add("Names in the last of those", stream_.found_names);
   status.add("Without position or effort, refused", refusals_.incomplete);
   status.add("Efforts all zero, refused", stream_.without_effort);
+  status.add("Angles that cannot be, left out", stream_.left_out.impossible + stream_.left_out.unreachable);
+  status.add("Values that repeat in motion, left out", stream_.left_out.repeated);
+  status.add("Stamps in bunches, left out", stream_.left_out.bunched);
   status.add("Jumps of angles by a turn, taken out", stream_.folds);
   status.add("Mounting that is not configured", stream_.mounting.empty() ? "none found" : stream_.mounting);
   status.add("Payload that is not configured", stream_.payload.empty() ? "none found" : stream_.payload);

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "ros_io/telemetry_clock.hpp"
+#include "tracking/row_filter.hpp"
 #include "tracking/stream_timing.hpp"
 
 namespace hjt
@@ -24,6 +25,7 @@ struct TelemetryStream
   std::string lack;                    ///< what the messages since the last row lack, a clause; empty: nothing
   std::string mounting;                ///< that the currents show and is not configured, a clause; empty: none
   std::string payload;                 ///< that the currents show and is not configured, a clause; empty: none
+  LeftOutRows left_out;                ///< by the filter
   std::uint64_t folds{};               ///< jumps by a turn that were taken out of the angles
   std::uint64_t without_effort{};      ///< messages refused for efforts all zero
   std::atomic<std::uint64_t> too_large{ 0 };

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <ros/console.h>
 #include <ros/master.h>
@@ -102,6 +103,12 @@ void TrackerNode::addJoint(ros::NodeHandle node, const Parameters& parameters, c
 
 void TrackerNode::subscribe(ros::NodeHandle& node)
 {
+  std::vector<double> speeds;
+  for (const auto& joint : joints_)
+  {
+    speeds.push_back(joint->greatestSpeed());
+  }
+  filter_.emplace(std::move(speeds));
   timer_ = node.createWallTimer(ros::WallDuration(DiagnosticTasks::LOOK_PERIOD),
                                 [this](const ros::WallTimerEvent&) { look(); });
   patience_ = node.createWallTimer(
@@ -202,6 +209,7 @@ void TrackerNode::push(Stamp stamp)
   if (moved || time < last_time_ - StreamTiming::RESTART)
   {
     restart();
+    filter_->reset();
   }
   if (moved && arm_load_)
   {
@@ -227,18 +235,29 @@ void TrackerNode::push(Stamp stamp)
                                       << " are folded into one turn: their jumps by 2 pi are taken out");
   }
   stream_.timing.add(time, rows_.front().received);
+  filter_->push(rows_,
+                [this](const std::vector<MotionRow>& rows)
+                {
+                  follow(rows);
+                  return true;
+                });
+  stream_.left_out = filter_->leftOut();
+}
+
+void TrackerNode::follow(const std::vector<MotionRow>& rows)
+{
   if (!arm_load_)
   {
-    joints_.front()->push(rows_.front());
+    joints_.front()->push(rows.front());
     return;
   }
-  arm_load_->push(rows_);
+  arm_load_->push(rows);
   while (const ArmSample* sample = arm_load_->pop())
   {
     take(*sample);
   }
   lookAtLoad();
-  watchArm();
+  watchArm(rows);
 }
 
 void TrackerNode::take(const ArmSample& sample)

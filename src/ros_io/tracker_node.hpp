@@ -19,6 +19,7 @@
 #include "arm/load_watch.hpp"
 #include "arm/recording_fit.hpp"
 #include "ros_io/joint_tracker.hpp"
+#include "tracking/row_filter.hpp"
 #include "tracking/unfolded_angle.hpp"
 
 namespace hjt
@@ -59,7 +60,8 @@ private:
   void push(Stamp stamp);
   void take(const ArmSample& sample);
   void addToLoad(const ArmSample& sample);
-  void watchArm();
+  void follow(const std::vector<MotionRow>& rows);
+  void watchArm(const std::vector<MotionRow>& rows);
   void resetFit();
   void restart();
   void lookAtFriction(double time);
@@ -74,6 +76,7 @@ private:
   std::mutex mutex_;  // of everything below: callbacks run in several threads
   TelemetryStream stream_;
   std::vector<std::unique_ptr<JointTracker>> joints_;
+  std::optional<RowFilter> filter_;  // of all joints together
   std::optional<ArmLoad> arm_load_;
   std::optional<RecordingFit> fit_;  // of an arm
   std::optional<LoadWatch> load_;

@@ -63,13 +63,13 @@ void TrackerNode::addToLoad(const ArmSample& sample)
 }
 
 /// By the law of `joint_twin compare`.
-void TrackerNode::watchArm()
+void TrackerNode::watchArm(const std::vector<MotionRow>& rows)
 {
   if (!arm_)
   {
     return;
   }
-  efforts_ = rows_;
+  efforts_ = rows;
   for (std::size_t i = 0; i < joints_.size(); ++i)
   {
     efforts_[i].current /= joints_[i]->currentPerEffort();

@@ -86,7 +86,7 @@ TEST(ArmDescription, WhatIsWrongIsNamedWithLineKeyValueUnitAndRange)
   folder.write("ur5.urdf", std::string(10'000'001, ' '));
   EXPECT_THAT(complaint(BAD_VALUES[0]), testing::HasSubstr("joints.0.limits.torque"));
   EXPECT_THAT(complaint({ "mass: 0.0", "mass: 1.0", "" }),
-              testing::HasSubstr("ur5.urdf is larger than 10000000 bytes"));
+              testing::HasSubstr("ur5.urdf cannot be read: it is larger than 10000000 bytes"));
 }
 
 TEST(ArmDescription, ParametersOfAJointAreNamedWithTheirLine)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The command line: kinds of options, what of it is refused, help, interrupts, what cannot be printed."""
+import glob
 import os
 import signal
 import subprocess
@@ -157,11 +158,15 @@ class OutputFiles(tool.ToolTest):
         process = subprocess.Popen([self.executable, *self.SIMULATE, "1000"], cwd=self.directory,
                                    stderr=subprocess.DEVNULL)
         self.addCleanup(process.kill)
-        part = self.path("out.csv.part")
+        self.write("out.csv.part", "precious too")
         deadline = time.monotonic() + 30.0 * tool.SLOWER
-        while not os.path.exists(part) or os.path.getsize(part) < 20000:
+        parts = []
+        while not parts or os.path.getsize(parts[0]) < 20000:
             self.assertLess(time.monotonic(), deadline, "nothing written")
             time.sleep(0.01)
+            parts = glob.glob(self.path("out.csv.*.part"))
+        part = parts[0]
+        self.assertEqual(tool.read_bytes(self.path("out.csv.part")), b"precious too")
         process.kill()
         process.communicate()
         self.assertEqual(tool.read_bytes(self.path("out.csv")), b"precious")

@@ -15,7 +15,7 @@ from check_test import sound, swinging, write_csv
 from recorded import states, write_bag, write_db3, write_mcap
 
 
-class Recordings(tool.ToolTest):
+class RecordingTest(tool.ToolTest):
     plain = {}  # what is found in the columns as they are
 
     def check(self, recording, *more):
@@ -26,9 +26,9 @@ class Recordings(tool.ToolTest):
 
     def assert_as_plain(self, found, rows=None):
         """Nothing of what was done to the rows is left in what the joints do."""
-        if not Recordings.plain:
-            Recordings.plain = self.check(write_csv(self.path("plain.csv"), self.columns))
-        plain = Recordings.plain
+        if not RecordingTest.plain:
+            RecordingTest.plain = self.check(write_csv(self.path("plain.csv"), self.columns))
+        plain = RecordingTest.plain
         self.assertTrue(plain["usable"])
         self.assertEqual([joint["judged"] for joint in found["joints"]], [joint["judged"] for joint in plain["joints"]])
         self.assertEqual(found["findings"], plain["findings"])
@@ -41,6 +41,8 @@ class Recordings(tool.ToolTest):
         super().setUp()
         self.columns = sound(self)
 
+
+class Recordings(RecordingTest):
     def test_ros_2_files_are_read_as_a_bag_is(self):
         self.assert_as_plain(self.check(write_db3(self.path("a.db3"), states(self.columns))))
         self.assert_as_plain(self.check(write_db3(self.path("big.db3"), states(self.columns), big=True)))

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """`joint_twin sweep` of whole arms, and the files of `joint_twin arm` that hold the same."""
+import glob
 import json
 import os
 import signal
@@ -150,7 +151,7 @@ class SweepArm(SweepTest):
                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         self.addCleanup(process.kill)
         deadline = time.monotonic() + 60.0 * tool.SLOWER
-        while not os.path.exists(self.path("run.h5.part")):
+        while not glob.glob(self.path("run.h5.*.part")):
             self.assertLess(time.monotonic(), deadline)
             time.sleep(0.01)
         process.send_signal(signal.SIGINT)

@@ -85,8 +85,10 @@ std::string textOfEffort(const CheckedContents& contents, const CheckedArm& arm)
                     { return std::find(contents.named.begin(), contents.named.end(), name) != contents.named.end(); });
     return contents.usable.empty() || names_them ?
                "none: " +
-                   (contents.named.empty() ? std::string() : "the messages name joints but their effort is empty; ") +
-                   "the motors' currents have to be recorded as effort" :
+                   (contents.named.empty() ? std::string() :
+                    contents.has_angles    ? "the messages name joints but their effort is empty; " :
+                                             "the messages name joints but their position is empty; ") +
+                   "the angles have to be recorded as position, the motors' currents as effort" :
                "of none of the arm's joints; the messages name " + joined(contents.usable) +
                    ": an arm's file gives its joints these names (docs/arm.md)";
   }

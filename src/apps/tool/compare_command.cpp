@@ -17,7 +17,7 @@ using JudgedComparison = Judging<ComparisonOptions>;
 
 void printArm(const ComparedRecording& compared)
 {
-  std::cout << compared.level << '\n';
+  std::cout << headlineOf(compared.level, compared.is_judged, compared.not_judged, compared.joints.size()) << '\n';
   printWrapped(compared.text, 0);
   std::cout << '\n';
   tableOf(compared).print();
@@ -56,14 +56,14 @@ int runCompare(const JudgedComparison& given)
   if (options.json)
   {
     std::cout << compared.document.dump() << '\n';
-    return exitCodeOf(options.fail_on, compared.health, compared.is_judged);
+    return exitCodeOf(options.fail_on, compared.health, compared.is_judged, compared.not_judged);
   }
   compared.is_arm ? printArm(compared) : printJoint(compared);
   if (!compared.page.empty())
   {
     std::cout << (compared.is_arm ? "\n" : "") << "written: " << compared.page << '\n';
   }
-  return exitCodeOf(options.fail_on, compared.health, compared.is_judged);
+  return exitCodeOf(options.fail_on, compared.health, compared.is_judged, compared.not_judged);
 }
 
 void declare(Command& command, JudgedComparison& options)

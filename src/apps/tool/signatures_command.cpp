@@ -6,13 +6,13 @@
 #include <vector>
 
 #include "apps/tool/plan_options.hpp"
+#include "base/temporary_directory.hpp"
 #include "datasets/sweep.hpp"
 #include "output/exit_code.hpp"
 #include "output/interrupt.hpp"
 #include "output/output_file.hpp"
 #include "output/report.hpp"
 #include "output/run_summary.hpp"
-#include "output/temporary_directory.hpp"
 #include "recordings/signatures.hpp"
 
 #include "base/whole_file.hpp"
@@ -56,11 +56,8 @@ SweepResult workOff(const SignaturesOptions& options, const std::string& runs, S
 int signatures(const SignaturesOptions& options)
 {
   requireWritable(options.out, options.force);
-  const std::optional<std::string> kept = options.add.empty() ? std::nullopt : wholeFile(options.add);
-  if (!options.add.empty() && !kept)
-  {
-    throw InputError(options.add + ": cannot be read");
-  }
+  const std::optional<std::string> kept =
+      options.add.empty() ? std::nullopt : std::make_optional(readFile(options.add));
   for (const std::string& path : options.plans)
   {
     checkSignaturePlan(Plan(path, options));

@@ -17,7 +17,7 @@ using JudgedTrend = Judging<TrendOptions>;
 void print(const Trend& trend)
 {
   constexpr std::size_t NARROW = 0;
-  std::cout << trend.level << '\n';
+  std::cout << headlineOf(trend.level, trend.is_judged, trend.not_judged, trend.joints.size()) << '\n';
   printWrapped(trend.text, 0);
   std::cout << '\n';
   recordingsOf(trend).print(NARROW);
@@ -45,14 +45,14 @@ int runTrend(const JudgedTrend& given)
   if (options.json)
   {
     std::cout << documentOf(found).dump() << '\n';
-    return exitCodeOf(options.fail_on, found.health, found.is_judged);
+    return exitCodeOf(options.fail_on, found.health, found.is_judged, found.not_judged);
   }
   print(found);
   for (const std::string& written : { options.out, found.page })
   {
     std::cout << (written.empty() ? "" : "written: " + written + "\n");
   }
-  return exitCodeOf(options.fail_on, found.health, found.is_judged);
+  return exitCodeOf(options.fail_on, found.health, found.is_judged, found.not_judged);
 }
 
 void declare(Command& command, JudgedTrend& options)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "apps/common/motion_options.hpp"
@@ -12,12 +13,15 @@ namespace hjt
 template <class Options>
 struct Judging : Printed<Options>
 {
-  std::string fail_on;  ///< warn or error; empty: the exit code is no verdict
+  std::string fail_on;  ///< warn, error or not-judged; empty: the exit code is no verdict
 };
 
 /// `--reference` and `--fail-on`.
 void addVerdictOptions(Command& command, ComparisonOptions& options, std::string& fail_on);
 
-/// What the process answers to a verdict.
-int exitCodeOf(const std::string& fail_on, HealthLevel health, bool is_judged);
+/// What the process answers to a verdict. `not_judged`: joints that it does not speak for.
+int exitCodeOf(const std::string& fail_on, HealthLevel health, bool is_judged, std::size_t not_judged);
+
+/// The level, and for how many joints it does not speak.
+std::string headlineOf(const std::string& level, bool is_judged, std::size_t not_judged, std::size_t joints);
 }  // namespace hjt

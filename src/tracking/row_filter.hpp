@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "gear/ratio.hpp"
+#include "tracking/motion_differentiator.hpp"
+#include "tracking/plausible.hpp"
+#include "tracking/stream_timing.hpp"
+
+namespace hjt
+{
+/// Rows that RowFilter left out, by the reason.
+struct LeftOutRows
+{
+  std::uint64_t impossible{};   ///< a value is not finite, or beyond what a sound message holds
+  std::uint64_t unreachable{};  ///< an angle that the rows beside it contradict
+  std::uint64_t repeated{};     ///< all values are those of the row before, while the joints move
+  std::uint64_t bunched{};      ///< follows the row before much sooner than rows do
+
+  std::uint64_t all() const noexcept { return impossible + unreachable + repeated + bunched; }
+};
+
+/// The greatest speed of a joint by its motor [rad/s].
+inline double greatestSpeed(const Parameters& parameters) noexcept
+{
+  return parameters.motor.speed_limit / nominalRatio(parameters.gear);
+}
+
+/// Lets through the rows of some joints that are new and can be true; of recordings, arrays and live messages alike.
+///
+/// An angle that a joint cannot have reached from the row before is held back: if a row within MotionDifferentiator's
+/// MAX_GAP can be reached from the row before it, what was held back is left out; else the angles did jump, or the
+/// stamps or the unit are wrong, which others have to say, and all goes on. In this way no good row waits, but the
+/// first, which has none before it. A row that repeats angles, currents and velocities of all joints while they move was
+/// not measured: a recorder was stuck, or a driver publishes faster than its robot measures. A row that follows another
+/// within a quarter of the mean step was stamped when a buffer was emptied, and its stamp is not its time. After
+/// construction nothing throws or allocates.
+class RowFilter
+{
+public:
+  using Rows = std::vector<MotionRow>;
+
+  /// @param speeds the joints' greatest [rad/s]
+  explicit RowFilter(std::vector<double> speeds)
+    : speeds_(std::move(speeds)), last_(speeds_.size()), raw_(speeds_.size()), held_(ROOM, Rows(speeds_.size()))
+  {
+  }
+
+  /// What follows is a new stream.
+  void reset() noexcept
+  {
+    has_last_ = has_raw_ = is_confirmed_ = moves_ = false;
+    held_count_ = 0;
+    rows_ = 0;
+    mean_step_ = 0.0;
+  }
+
+  /// One row of each joint, all of one time. Calls `visit` with each that is let through, in their order; false: the
+  /// visitor has had enough.
+  template <class Visit>
+  bool push(const Rows& rows, const Visit& visit)
+  {
+    if (!std::all_of(rows.begin(), rows.end(), [](const MotionRow& row) { return isPlausible(row); }))
+    {
+      ++left_out_.impossible;
+      return true;
+    }
+    const double step = has_raw_ ? rows.front().time - raw_.front().time : 0.0;
+    bool more = true;
+    if (step < -StreamTiming::RESTART)
+    {
+      more = finish(visit);
+      reset();
+    }
+    if (isRepeated(rows))
+    {
+      ++left_out_.repeated;
+      return more;
+    }
+    if (isBunched(rows, step))
+    {
+      ++left_out_.bunched;
+      return more;
+    }
+    return more && place(rows, visit);
+  }
+
+  /// Of what waits, what is true as far as it can be told.
+  template <class Visit>
+  bool finish(const Visit& visit)
+  {
+    const bool waits = has_last_ && !is_confirmed_;
+    is_confirmed_ = true;
+    left_out_.unreachable += held_count_;
+    held_count_ = 0;
+    return !waits || visit(last_);
+  }
+
+  const LeftOutRows& leftOut() const noexcept { return left_out_; }
+
+private:
+  static constexpr std::size_t ROOM = 16;       // rows that are held back, at most
+  static constexpr double SLACK = 0.02;         // of a row's time: messages come in bursts [s]
+  static constexpr double MARGIN = 1.2;         // over the greatest speed [-]
+  static constexpr double MOVING = 0.01;        // [rad/s]
+  static constexpr double BUNCHED = 0.25;       // of the mean step
+  static constexpr double MEMORY = 64.0;        // of the mean step [rows]
+  static constexpr std::uint64_t SETTLED = 16;  // rows until it counts
+
+  bool canReach(const Rows& from, const Rows& to) const noexcept
+  {
+    const double time = std::max(0.0, to.front().time - from.front().time) + SLACK;
+    bool can = true;
+    for (std::size_t i = 0; i < to.size(); ++i)
+    {
+      can = can && std::abs(to[i].position - from[i].position) <= MARGIN * speeds_[i] * time;
+    }
+    return can;
+  }
+
+  static bool isSame(double a, double b) noexcept { return a == b || (std::isnan(a) && std::isnan(b)); }
+
+  bool isRepeated(const Rows& rows) noexcept
+  {
+    bool is_same = has_raw_ && rows.front().time > raw_.front().time;
+    bool moves = false;
+    for (std::size_t i = 0; i < rows.size(); ++i)
+    {
+      const MotionRow& now = rows[i];
+      const MotionRow& before = raw_[i];
+      is_same = is_same && now.position == before.position && now.current == before.current &&
+                isSame(now.recorded_velocity, before.recorded_velocity);
+      moves = moves || std::abs(now.recorded_velocity) > MOVING;
+    }
+    return is_same && (std::isfinite(rows.front().recorded_velocity) ? moves : moves_);
+  }
+
+  bool isBunched(const Rows& rows, double step) noexcept
+  {
+    if (has_raw_ && step > 0.0)
+    {
+      const double counted = std::min(step, MotionDifferentiator::MAX_GAP);
+      ++rows_;
+      mean_step_ += (counted - mean_step_) / std::min(static_cast<double>(rows_), MEMORY);
+    }
+    const double since = has_raw_ ? rows.front().time - kept_ : HUGE_VAL;
+    const bool is_bunched = rows_ > SETTLED && since > 0.0 && since < BUNCHED * mean_step_;
+    if (has_raw_ && step > 0.0)
+    {
+      moves_ = false;
+      for (std::size_t i = 0; i < rows.size(); ++i)
+      {
+        moves_ = moves_ || std::abs(rows[i].position - raw_[i].position) > MOVING * step;
+      }
+    }
+    std::copy(rows.begin(), rows.end(), raw_.begin());
+    has_raw_ = true;
+    kept_ = is_bunched ? kept_ : rows.front().time;
+    return is_bunched;
+  }
+
+  template <class Visit>
+  bool place(const Rows& rows, const Visit& visit)
+  {
+    if (!has_last_)
+    {
+      has_last_ = true;
+      std::copy(rows.begin(), rows.end(), last_.begin());
+      return true;
+    }
+    if (canReach(last_, rows))
+    {
+      left_out_.unreachable += held_count_;
+      held_count_ = 0;
+      return accept(rows, visit);
+    }
+    if (!is_confirmed_ && held_count_ > 0 && canReach(held_[held_count_ - 1], rows))
+    {
+      // Two rows that agree against the first one.
+      ++left_out_.unreachable;
+      is_confirmed_ = true;
+      return release(visit) && accept(rows, visit);
+    }
+    if (held_count_ == ROOM || rows.front().time - last_.front().time > MotionDifferentiator::MAX_GAP)
+    {
+      return release(visit) && accept(rows, visit);
+    }
+    std::copy(rows.begin(), rows.end(), held_[held_count_++].begin());
+    return true;
+  }
+
+  template <class Visit>
+  bool accept(const Rows& rows, const Visit& visit)
+  {
+    const bool more = is_confirmed_ || visit(last_);
+    is_confirmed_ = true;
+    std::copy(rows.begin(), rows.end(), last_.begin());
+    return more && visit(last_);
+  }
+
+  /// What was held back.
+  template <class Visit>
+  bool release(const Visit& visit)
+  {
+    bool more = true;
+    for (std::size_t i = 0; i < held_count_ && more; ++i)
+    {
+      more = accept(held_[i], visit);
+    }
+    held_count_ = 0;
+    return more;
+  }
+
+  std::vector<double> speeds_;
+  Rows last_;               // let through last; the first one waits for the second
+  Rows raw_;                // as they came, but for repeated ones
+  std::vector<Rows> held_;  // that cannot be reached from the last
+  std::size_t held_count_{};
+  bool has_last_{};
+  bool has_raw_{};
+  bool is_confirmed_{};  // the last one was let through
+  bool moves_{};         // by the angles of the two rows before
+  std::uint64_t rows_{};
+  double mean_step_{};  // [s]
+  double kept_{};       // time of the last row that was not bunched [s]
+  LeftOutRows left_out_;
+};
+}  // namespace hjt
