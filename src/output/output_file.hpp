@@ -14,8 +14,8 @@ namespace hjt
 /// option that was left out, is none.
 void requireWritable(const std::string& path, bool force, const std::string& input = "");
 
-/// Makes the folder of a report, which has the file `data` and a page. @throws InputError if it cannot be made, or holds
-/// files and `force` is not given: an earlier report, or somebody's own.
+/// Makes the folder of a report, which has the file `data` and a page. @throws InputError if it cannot be made, or
+/// holds files and `force` is not given: an earlier report, or somebody's own.
 void prepareReport(const std::string& folder, const std::string& data, bool force);
 
 /// Brings what was printed to where it goes. @throws InputError if not all could be written.

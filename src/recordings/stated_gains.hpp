@@ -15,7 +15,7 @@ namespace hjt
 /// messages, which hold no target currents, all are NaN. @throws InputError on an unreadable file.
 std::vector<double> readStatedGains(const MotionSource& source, std::size_t joints);
 
-/// The payload that a controller's table states, columns payload [kg] and payload_cog_0 ... 2 [m]; none: it has none, or
-/// another in some rows. @throws InputError.
+/// The payload that a controller's table states, columns payload [kg] and payload_cog_0 ... 2 [m]; none: it has none,
+/// or another in some rows. @throws InputError.
 std::optional<Payload> readStatedPayload(const MotionSource& source);
 }  // namespace hjt

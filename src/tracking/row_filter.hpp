@@ -38,10 +38,10 @@ inline double greatestSpeed(const Parameters& parameters) noexcept
 /// An angle that a joint cannot have reached from the row before is held back: if a row within MotionDifferentiator's
 /// MAX_GAP can be reached from the row before it, what was held back is left out; else the angles did jump, or the
 /// stamps or the unit are wrong, which others have to say, and all goes on. In this way no good row waits, but the
-/// first, which has none before it. A row that repeats angles, currents and velocities of all joints while they move was
-/// not measured: a recorder was stuck, or a driver publishes faster than its robot measures. A row that follows another
-/// within a quarter of the mean step was stamped when a buffer was emptied, and its stamp is not its time. After
-/// construction nothing throws or allocates.
+/// first, which has none before it. A row that repeats angles, currents and velocities of all joints while they move
+/// was not measured: a recorder was stuck, or a driver publishes faster than its robot measures. A row that follows
+/// another within a quarter of the mean step was stamped when a buffer was emptied, and its stamp is not its time.
+/// After construction nothing throws or allocates.
 class RowFilter
 {
 public:
