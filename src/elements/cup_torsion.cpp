@@ -46,10 +46,10 @@ HJT_VECTOR_CLONES double CupTorsion::meanRotation(const RingShape& shape) const 
   const double* __restrict__ point = shape.points.data();
   const auto along = [&](int i) { return rest[2 * i] * point[2 * i] + rest[2 * i + 1] * point[2 * i + 1]; };
   const auto across = [&](int i) { return rest[2 * i] * point[2 * i + 1] - rest[2 * i + 1] * point[2 * i]; };
-  const auto small_angles = [&](int i, double* terms)
+  const auto small_angles = [&](int i, auto& rows, int k)
   {
-    terms[0] = smallAngle(across(i) / along(i));
-    terms[1] = std::abs(across(i)) < SMALL_TANGENT * along(i) ? 0.0 : 1.0;  // as wide as an angle, for the vectors
+    rows[0][k] = smallAngle(across(i) / along(i));
+    rows[1][k] = std::abs(across(i)) < SMALL_TANGENT * along(i) ? 0.0 : 1.0;  // as wide as an angle, for the vectors
   };
   auto [sum, large] = blockSums<2>(0, n, small_angles);
   if (large > 0.0)

@@ -53,13 +53,13 @@ HJT_VECTOR_CLONES void RimBending::addMoments(const RingShape& shape, Scratch& s
   { return reference[2 * i] * direction[2 * i] + reference[2 * i + 1] * direction[2 * i + 1]; };
   const auto across = [&](int i)
   { return reference[2 * i] * direction[2 * i + 1] - reference[2 * i + 1] * direction[2 * i]; };
-  const auto bend = [&](int i, double* terms)
+  const auto bend = [&](int i, auto& rows, int k)
   {
     const double turn = smallAngle(across(i) / along(i));
     const double angle = turn - natural_angle[i];
     moment[i] = stiffness[i] * angle + race * turn;
-    terms[0] = 0.5 * stiffness[i] * angle * angle + 0.5 * race * turn * turn;
-    terms[1] = std::abs(across(i)) < SMALL_TANGENT * along(i) ? 0.0 : 1.0;  // as wide as an angle, for the vectors
+    rows[0][k] = 0.5 * stiffness[i] * angle * angle + 0.5 * race * turn * turn;
+    rows[1][k] = std::abs(across(i)) < SMALL_TANGENT * along(i) ? 0.0 : 1.0;  // as wide as an angle, for the vectors
   };
   auto [energy, large] = blockSums<2>(0, n, bend);
   if (large > 0.0)

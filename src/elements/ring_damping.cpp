@@ -44,23 +44,23 @@ HJT_VECTOR_CLONES void RingDamping::add(const Contact& contact, const RingRates&
   { return normal[2 * i] * rate[2 * i] + normal[2 * i + 1] * rate[2 * i + 1]; };
   const double last_m = stretch(m, n - 1, shape.next(n - 1));
   const double last_o = stretch(o, n - 1, shape.next(n - 1));
-  const auto by_segment = [&](int i, double* terms)
+  const auto by_segment = [&](int i, auto& rows, int k)
   {
     const double stretch_m = stretch(m, i, i + 1);
     const double stretch_o = stretch(o, i, i + 1);
-    terms[0] = tension * stretch_m * stretch_m;
-    terms[1] = tension * stretch_m * stretch_o;
-    terms[2] = tension * stretch_o * stretch_o;
+    rows[0][k] = tension * stretch_m * stretch_m;
+    rows[1][k] = tension * stretch_m * stretch_o;
+    rows[2][k] = tension * stretch_o * stretch_o;
   };
-  const auto by_tooth = [&](int i, double* terms)
+  const auto by_tooth = [&](int i, auto& rows, int k)
   {
     const double dashpot = contact_strength * ContactRamp(depth[i], smoothing).tangent;
     const double surface = point[2 * i] * normal[2 * i + 1] - point[2 * i + 1] * normal[2 * i];
     const double depth_m = surface - inward(m, i);
     const double depth_o = -inward(o, i);
-    terms[0] = dashpot * depth_m * depth_m + tooth * (m[2 * i] * m[2 * i] + m[2 * i + 1] * m[2 * i + 1]);
-    terms[1] = dashpot * depth_m * depth_o + tooth * (m[2 * i] * o[2 * i] + m[2 * i + 1] * o[2 * i + 1]);
-    terms[2] = dashpot * depth_o * depth_o + tooth * (o[2 * i] * o[2 * i] + o[2 * i + 1] * o[2 * i + 1]);
+    rows[0][k] = dashpot * depth_m * depth_m + tooth * (m[2 * i] * m[2 * i] + m[2 * i + 1] * m[2 * i + 1]);
+    rows[1][k] = dashpot * depth_m * depth_o + tooth * (m[2 * i] * o[2 * i] + m[2 * i + 1] * o[2 * i + 1]);
+    rows[2][k] = dashpot * depth_o * depth_o + tooth * (o[2 * i] * o[2 * i] + o[2 * i + 1] * o[2 * i + 1]);
   };
   const auto [mm_segments, mo_segments, oo_segments] = blockSums<3>(0, n - 1, by_segment);
   const auto [mm_teeth, mo_teeth, oo_teeth] = blockSums<3>(0, n, by_tooth);
@@ -109,7 +109,7 @@ HJT_VECTOR_CLONES DashpotPower RingDamping::addForces(const RingShape& shape, co
   };
   const double ends = add_segments(n - 1, 0, 1) + add_segments(n - 2, n - 1, 0);
   const double by_segments = blockSum(1, n - 2, [&](int i) { return add_segments(i - 1, i, i + 1); });
-  const auto add_contact = [&](int i, double* terms)
+  const auto add_contact = [&](int i, auto& rows, int k)
   {
     const double vx = speed[2 * i];
     const double vy = speed[2 * i + 1];
@@ -119,9 +119,9 @@ HJT_VECTOR_CLONES DashpotPower RingDamping::addForces(const RingShape& shape, co
     const double push = strength * rate;
     out[2 * i] += push * normal[2 * i] - tooth * vx;
     out[2 * i + 1] += push * normal[2 * i + 1] - tooth * vy;
-    terms[0] = push * lever;
-    terms[1] = push * rate + tooth * (vx * vx + vy * vy);
-    terms[2] = push * grows[i];
+    rows[0][k] = push * lever;
+    rows[1][k] = push * rate + tooth * (vx * vx + vy * vy);
+    rows[2][k] = push * grows[i];
   };
   const auto [torque, by_teeth, supplied] = blockSums<3>(0, n, add_contact);
   out[2 * n] -= torque;  // on the wave generator

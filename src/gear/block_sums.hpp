@@ -8,8 +8,8 @@ namespace hjt
 {
 /// Sums over teeth or terms of friction, whose bits do not depend on the width of the processor's vectors. A simd
 /// reduction adds in an order that the width decides; here the terms are computed in vectors, put down, and added in an
-/// order of their own. `terms(i, term)` writes N terms of place i to term[0 ... N-1]; what else it writes, it writes at
-/// no place of another i.
+/// order of their own. `terms(i, rows, k)` writes N terms of place i to rows[0 ... N-1][k]; what else it writes, it
+/// writes at no place of another i. A local array of them, and GCC makes no vectors of the loop.
 namespace block_sums
 {
 constexpr int BLOCK = 32;
@@ -21,12 +21,7 @@ inline __attribute__((always_inline)) void fill(int first, int count, const Term
 #pragma omp simd
   for (int k = 0; k < count; ++k)
   {
-    double term[N];
-    terms(first + k, term);
-    for (int m = 0; m < N; ++m)
-    {
-      block[m][k] = term[m];
-    }
+    terms(first + k, block, k);
   }
 }
 
@@ -79,7 +74,7 @@ inline __attribute__((always_inline)) std::array<double, N> blockSums(int first,
 template <class Term>
 inline __attribute__((always_inline)) double blockSum(int first, int count, const Term& term) noexcept
 {
-  return blockSums<1>(first, count, [&](int i, double* terms) { terms[0] = term(i); })[0];
+  return blockSums<1>(first, count, [&](int i, auto& rows, int k) { rows[0][k] = term(i); })[0];
 }
 
 /// The same of a few terms, a dozen or so: added one after the other.

@@ -115,14 +115,14 @@ public:
     const double motor = old_speeds[0];
     const double output = old_speeds[1];
     const double least = SLIDING * width;
-    const auto take_term = [&](int j, double* terms)
+    const auto take_term = [&](int j, auto& rows, int k)
     {
       sense_[j] = std::copysign(1.0, m[j] * motor + o[j] * output);
       by_motor_[j] = sense_[j] * m[j];
       by_output_[j] = sense_[j] * o[j];
       least_[j] = least * (std::abs(m[j]) + follow * std::abs(o[j]));
-      terms[0] = c[j] * by_motor_[j];
-      terms[1] = c[j] * by_output_[j];
+      rows[0][k] = c[j] * by_motor_[j];
+      rows[1][k] = c[j] * by_output_[j];
     };
     const auto [by_motor, by_output] = fewSums<2>(count_, take_term);
     strength = { by_motor, by_output };
@@ -187,7 +187,7 @@ HJT_VECTOR_CLONES DryFriction::Slopes DryFriction::slopes(const FrictionTerms& t
   const double output = v[1];
   const double width = width_;
   Slopes sum;
-  const auto slope_of = [&](int j, double* terms)
+  const auto slope_of = [&](int j, auto& rows, int k)
   {
     const double m = by_motor[j];
     const double o = by_output[j];
@@ -196,11 +196,11 @@ HJT_VECTOR_CLONES DryFriction::Slopes DryFriction::slopes(const FrictionTerms& t
     const double inverse = 1.0 / std::sqrt(slip * slip + e * e);
     const double force = strength[j] * slip * inverse;
     const double stiffness = strength[j] * inverse * (e * inverse) * (e * inverse);
-    terms[0] = force * m;
-    terms[1] = force * o;
-    terms[2] = stiffness * m * m;
-    terms[3] = stiffness * m * o;
-    terms[4] = stiffness * o * o;
+    rows[0][k] = force * m;
+    rows[1][k] = force * o;
+    rows[2][k] = stiffness * m * m;
+    rows[3][k] = stiffness * m * o;
+    rows[4][k] = stiffness * o * o;
   };
   const auto [first_0, first_1, second_00, second_01, second_11] = fewSums<5>(count, slope_of);
   sum.first = { first_0, first_1 };

@@ -70,7 +70,7 @@ class Limits(Tree):
         for path, first in [("src/one.cpp", "\n"), ("scripts/one", "#!/usr/bin/env bash\n"), ("test/one.py", "\n")]:
             with self.subTest(path):
                 full = self.write(path, first + "\n" * limits.FILE_LINES)
-                self.assert_fault(limits.check, f"{path}:1: 401 lines")
+                self.assert_fault(limits.check, f"{path}:1: {limits.FILE_LINES + 1} lines")
                 os.remove(full)
         self.write("docs/one.md", "\n" * (limits.FILE_LINES + 1))
         self.assert_clean(limits.check)
