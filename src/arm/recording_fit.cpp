@@ -82,7 +82,7 @@ RecordingFinding velocityFinding(const FittedFactor& own, double of_stamps)
 }
 }  // namespace
 
-RecordingFit::RecordingFit(const std::vector<Parameters>& joints, const LoadPart& part) : part_(part)
+RecordingFit::RecordingFit(const std::vector<Parameters>& joints)
 {
   for (const Parameters& parameters : joints)
   {
@@ -120,10 +120,6 @@ void RecordingFit::reset() noexcept
 
 void RecordingFit::update(const std::vector<MotionSample>& joints, const std::vector<double>& torques) noexcept
 {
-  if (!part_.holds(joints.front().time))
-  {
-    return;
-  }
   const double step = joints.front().time - last_time_;
   last_time_ = joints.front().time;
   bool moves = false;
@@ -316,6 +312,16 @@ bool RecordingFit::isMeasured(std::size_t joint) const
 {
   const Joint& own = joints_[joint];
   return own.reach.least_current != own.reach.most_current && own.unchanged <= UNCHANGED;
+}
+
+std::vector<bool> RecordingFit::measured() const
+{
+  std::vector<bool> all;
+  for (std::size_t i = 0; i < joints_.size(); ++i)
+  {
+    all.push_back(isMeasured(i));
+  }
+  return all;
 }
 
 std::vector<RecordingFinding> RecordingFit::ofJoint(std::size_t number) const

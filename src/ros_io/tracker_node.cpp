@@ -256,7 +256,7 @@ void TrackerNode::take(const ArmSample& sample)
   lookAtFriction(sample.joints.front().time);
   if (load_)
   {
-    addToLoad(sample);
+    load_->add(sample);
   }
 }
 

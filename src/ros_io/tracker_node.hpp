@@ -58,14 +58,13 @@ private:
   bool isWithoutEffort() const;
   void push(Stamp stamp);
   void take(const ArmSample& sample);
-  void addToLoad(const ArmSample& sample);
   void watchArm();
   void resetFit();
   void restart();
   void lookAtFriction(double time);
   void lookAtLoad();
   JudgedJoints judgedJoints() const;
-  std::string sinceText(const LoadPart& part) const;
+  std::string sinceText(double since) const;
   void updateFit(const ArmSample& sample);
   void judge(const ros::WallTime& now);
   void look();
