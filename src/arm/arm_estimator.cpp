@@ -8,28 +8,14 @@
 
 #include <Eigen/Cholesky>
 
+#include "arm/arm_estimator_terms.hpp"
 #include "arm/residual_statistics.hpp"
 
 namespace hjt
 {
 namespace
 {
-// Terms of the arm, then of each joint.
-constexpr int JUMP = ArmEstimator::LOAD;
-constexpr int GAIN = JUMP + ArmEstimator::PAYLOAD;
-constexpr int FRICTION = GAIN + 1;
-constexpr int COLD = FRICTION + 1;
-constexpr int GROUP = COLD + 1;  // base to elbow, wrists
-constexpr int GROUPS = 2;
-constexpr int OWN = GROUP + GROUPS;
-constexpr int OWN_GAIN = 0;
-constexpr int OWN_FRICTION = 1;
-constexpr int OWN_COLD = 2;
-constexpr int OWN_OFFSET = 3;
-constexpr int OWN_LOSS = 4;
-constexpr int OWN_INERTIA = 5;
-constexpr int PER_JOINT = 6;
-constexpr int USED = GROUP + 1 + PER_JOINT;  // of one joint's rows
+using namespace term;
 
 // Widths of the priors, chosen on recordings of UR5 and UR10e (docs/arm.md, Payload).
 constexpr double MASS = 0.3;             // [kg]
@@ -48,59 +34,17 @@ constexpr double JOINT_COLD = 0.3;       // [10 K]
 constexpr double JOINT_OFFSET = 0.1;     // [A]
 constexpr double JOINT_LOSS = 0.02;      // of the load [-]
 constexpr double JOINT_INERTIA = 0.3;    // of the rotor's [-]
-constexpr double NEVER = 1e-6;           // of a term that is left out
 
-constexpr double INDEPENDENT = 40.0;  // rows of a joint, at most
-constexpr double FREEDOM = 4.0;       // of Student's t
-constexpr double LEAST = 0.01;        // deviation of rows [A]
-constexpr std::size_t FEWEST = 20;    // rows of a joint that counts
-constexpr int ROUNDS = 15;
-constexpr int STARTS = 4;
-
-int groupOf(std::size_t joint)
-{
-  constexpr std::size_t TO_ELBOW = 3;
-  return joint < TO_ELBOW ? GROUP : GROUP + 1;
-}
-
-int ownOf(std::size_t joint)
-{
-  return OWN + PER_JOINT * static_cast<int>(joint);
-}
-
-/// What start it is tells the causes that are hardly held at first: the load; all; load and friction; friction.
-double looseness(int start, int term)
-{
-  constexpr double OF_LOAD = 0.01;
-  constexpr double OF_OTHERS = 0.05;
-  const bool is_load = term < GAIN;
-  const bool is_friction = term >= FRICTION && (term < OWN || (term - OWN) % PER_JOINT == OWN_FRICTION);
-  const bool is_loose = start == 1 || (is_load && start != 3) || (is_friction && start > 1);
-  return !is_loose ? 1.0 : is_load ? OF_LOAD : OF_OTHERS;
-}
+constexpr std::size_t FEWEST = 20;  // rows of a joint that counts
 }  // namespace
-
-struct ArmEstimator::Prior
-{
-  Eigen::VectorXd width;
-  std::vector<bool> normal;  // else Cauchy's
-};
-
-struct ArmEstimator::Point
-{
-  Eigen::VectorXd at;
-  Eigen::MatrixXd information;
-  std::vector<double> deviations;  // of the rows of each joint [A]
-  double rareness{};
-  double cost{ std::numeric_limits<double>::infinity() };
-};
 
 bool ArmEstimator::Known::isBeyond(double least) const
 {
   return std::abs(value) - half_width > least;
 }
 
-ArmEstimator::ArmEstimator(Rows rows) : rows_(std::move(rows)), size_(ownOf(rows_.size()))
+ArmEstimator::ArmEstimator(Rows rows, const Eigen::Vector3d& gravity)
+  : rows_(std::move(rows)), gravity_(gravity), size_(ownOf(rows_.size()))
 {
   for (std::vector<Row>& joint : rows_)
   {
@@ -154,99 +98,51 @@ double ArmEstimator::errorOf(std::size_t joint, std::size_t row, const std::vect
   const double gain = 1.0 + at[GAIN] + at[own + OWN_GAIN];
   const double state = !states.empty() && states[of.leg] ? 1.0 : 0.0;
   const auto carried = of.load.head<PAYLOAD>();
-  const double inner = of.predicted + of.load.dot(at.head<LOAD>()) + state * carried.dot(at.segment<PAYLOAD>(JUMP)) +
-                       (at[FRICTION] + at[groupOf(joint)] + at[own + OWN_FRICTION]) * of.friction +
-                       (at[COLD] + at[own + OWN_COLD]) * of.cold + at[own + OWN_LOSS] * of.loss +
+  const double load = of.load.dot(at.head<LOAD>()) + state * carried.dot(at.segment<PAYLOAD>(JUMP));
+  const double friction_factor = 1.0 + at[FRICTION] + at[groupOf(joint)] + at[own + OWN_FRICTION];
+  const double way = std::copysign(1.0, of.friction);
+  const double size = std::abs(of.torque + load);
+  const double friction = of.friction + way * of.rise * (size - std::abs(of.torque));
+  const double inner = of.predicted + load + friction_factor * friction - of.friction +
+                       (at[COLD] + at[own + OWN_COLD]) * of.cold + at[own + OWN_LOSS] * way * size +
                        at[own + OWN_INERTIA] * of.inertia;
   if (slope != nullptr)
   {
-    slope->head<LOAD>() = gain * of.load;
-    slope->segment<PAYLOAD>(JUMP) = state * gain * carried;
-    slope->segment<GROUP + 1 - GAIN>(GAIN) << inner, gain * of.friction, gain * of.cold, gain * of.friction;
-    slope->tail<PER_JOINT>() << inner, gain * of.friction, gain * of.cold, 1.0, gain * of.loss, gain * of.inertia;
+    const double by_load =
+        1.0 + (friction_factor * of.rise + at[own + OWN_LOSS]) * way * std::copysign(1.0, of.torque + load);
+    slope->head<LOAD>() = gain * by_load * of.load;
+    slope->segment<PAYLOAD>(JUMP) = state * gain * by_load * carried;
+    slope->segment<GROUP + 1 - GAIN>(GAIN) << inner, gain * friction, gain * of.cold, gain * friction;
+    slope->tail<PER_JOINT>() << inner, gain * friction, gain * of.cold, 1.0, gain * way * size, gain * of.inertia;
   }
   return of.current - gain * inner - at[own + OWN_OFFSET];
 }
 
-/// By Gauss and Newton; with a `start` what it names is hardly held in the first rounds, -1: all is held.
-ArmEstimator::Point ArmEstimator::refine(const Prior& prior, const std::vector<bool>& states, Eigen::VectorXd at,
-                                         int start, int rounds) const
+/// Of the currents over those that are predicted.
+double ArmEstimator::multiple() const
 {
-  constexpr int LOOSE_ROUNDS = 5;
-  constexpr double FLOOR = 0.02;  // that the rows of no real arm fall below [A]
-  constexpr double COUNTED = 60.0;
-  Point point;
-  point.deviations.resize(rows_.size());
-  Eigen::VectorXd slope(USED);
-  std::vector<Eigen::MatrixXd> slopes;  // of each joint's rows
-  std::vector<Eigen::MatrixXd> weighted;
+  double both = 0.0;
+  double squares = std::numeric_limits<double>::min();
   for (const std::vector<Row>& joint : rows_)
   {
-    slopes.emplace_back(static_cast<Eigen::Index>(joint.size()), USED);
-    weighted.emplace_back(static_cast<Eigen::Index>(joint.size()), USED);
-  }
-  for (int round = 0; round < rounds; ++round)
-  {
-    point.information = Eigen::MatrixXd::Zero(size_, size_);
-    Eigen::VectorXd right = Eigen::VectorXd::Zero(size_);
-    point.rareness = 0.0;
-    for (int k = 0; k < size_; ++k)
+    for (const Row& row : joint)
     {
-      const double t = at[k] / prior.width[k];
-      const bool is_normal = prior.normal[static_cast<std::size_t>(k)];
-      const bool may_be_loose = start >= 0 && round < LOOSE_ROUNDS && prior.width[k] > NEVER;
-      const double weight = (may_be_loose ? looseness(start, k) : 1.0) / (prior.width[k] * prior.width[k]) *
-                            (is_normal ? 1.0 : 2.0 / (1.0 + t * t));
-      point.information(k, k) = weight;
-      right[k] = -weight * at[k];
-      point.rareness += is_normal ? 0.5 * t * t : std::log1p(t * t);
+      both += row.current * row.predicted;
+      squares += row.predicted * row.predicted;
     }
-    point.cost = point.rareness;
-    for (std::size_t i = 0; i < rows_.size(); ++i)
-    {
-      const auto count = static_cast<Eigen::Index>(rows_[i].size());
-      if (count == 0)
-      {
-        continue;
-      }
-      Eigen::VectorXd error(count);
-      for (Eigen::Index k = 0; k < count; ++k)
-      {
-        error[k] = errorOf(i, static_cast<std::size_t>(k), states, at, &slope);
-        slopes[i].row(k) = slope.transpose();
-      }
-      const double deviation = std::max(robustDeviation(error), LEAST);
-      const double rows_a_tale = std::max({ 1.0, correlationRows(error), static_cast<double>(count) / INDEPENDENT });
-      const Eigen::ArrayXd squares = (error / deviation).array().square();
-      const Eigen::VectorXd weights = (FREEDOM + 1.0) / (FREEDOM + squares) / (deviation * deviation * rows_a_tale);
-      weighted[i].noalias() = weights.asDiagonal() * slopes[i];
-      const Eigen::MatrixXd products = slopes[i].transpose() * weighted[i];
-      const Eigen::VectorXd sums = weighted[i].transpose() * error;
-      const auto term = [&](int k) { return k < GROUP ? k : k == GROUP ? groupOf(i) : ownOf(i) + k - GROUP - 1; };
-      for (int k = 0; k < USED; ++k)
-      {
-        right[term(k)] += sums[k];
-        for (int l = 0; l < USED; ++l)
-        {
-          point.information(term(k), term(l)) += products(k, l);
-        }
-      }
-      point.deviations[i] = deviation;
-      point.cost += COUNTED * std::log(std::hypot(deviation, FLOOR));
-    }
-    at += point.information.ldlt().solve(right);
   }
-  point.at = std::move(at);
-  return point;
+  return both / squares;
 }
 
-/// The likeliest of those that the starts lead to: they are not one.
+/// The likeliest of those that the starts lead to, and that all currents are another multiple: they are not one.
 ArmEstimator::Point ArmEstimator::best(const Prior& prior, const std::vector<bool>& states) const
 {
   Point best;
-  for (int start = 0; start < STARTS; ++start)
+  for (int start = 0; start <= STARTS; ++start)
   {
-    Point other = refine(prior, states, Eigen::VectorXd::Zero(size_), start, ROUNDS);
+    Eigen::VectorXd at = Eigen::VectorXd::Zero(size_);
+    at[GAIN] = start < STARTS ? 0.0 : multiple() - 1.0;
+    Point other = refine(prior, states, std::move(at), start < STARTS ? start : HELD);
     if (other.cost < best.cost)
     {
       best = std::move(other);
@@ -293,7 +189,7 @@ std::vector<bool> ArmEstimator::likelier(const Point& by) const
       for (std::size_t k = 0; k < rows_[i].size(); ++k)
       {
         const double t = errorOf(i, k, all, by.at, nullptr) / by.deviations[i];
-        costs[rows_[i][k].leg] += (state ? 1.0 : -1.0) * std::log1p(t * t / FREEDOM);
+        costs[rows_[i][k].leg] += (state ? 1.0 : -1.0) * std::log1p(t * t / STUDENT);
       }
     }
   }
@@ -319,7 +215,7 @@ ArmEstimator::Point ArmEstimator::withJump(bool with_gravity, const Point& witho
     Point now;
     for (int turn = 0; turn < TURNS; ++turn)
     {
-      now = turn == 0 ? this->best(prior, tried) : refine(prior, tried, now.at, -1, ROUNDS);
+      now = turn == 0 ? this->best(prior, tried) : refine(prior, tried, now.at, HELD);
       if (now.cost < limit)
       {
         best = now;
@@ -368,7 +264,7 @@ ArmEstimator::Estimate ArmEstimator::estimateOf(const Point& point, const std::v
       const Row& row = rows_[i][k];
       power += row.friction * row.friction;
       cold += row.friction * row.cold;
-      loss += row.friction * row.loss;
+      loss += std::abs(row.friction * row.torque);
       left += std::pow(errorOf(i, k, states, point.at, nullptr), 2);
       all += row.current * row.current;
     }

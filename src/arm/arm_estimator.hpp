@@ -10,15 +10,18 @@ namespace hjt
 {
 /// What explains the currents of an arm beside those that its twins predict: the most likely causes a posteriori.
 ///
-///   current = (1 + g + g_i) (predicted + Y_i . x + jump_i + (f + f_group + f_i) friction + (c + c_i) cold + l_i loss
-///             + j_i inertia) + o_i
-/// with x mass and moments of a payload and the change of gravity, `jump` those of another payload in the legs of state
-/// 1, g gains, f friction over the twin's, c the same by temperature, l a loss in proportion to the load, j the rotor's
-/// inertia, o offsets. Few arms carry another payload, hang otherwise, or have a joint of another gain or friction:
-/// their priors are Cauchy's. All differ in what is left, by a normal distribution. Rows are those of one joint that
-/// moves one way; outliers (contact) count as by Student's t of 4 degrees of freedom. A joint's rows tell no more than
-/// INDEPENDENT ones: errors of a model are no noise. A joint's gain is free only where its load is at least its
-/// friction: elsewhere both look alike.
+///   current = (1 + g + g_i) (predicted + L_i + F_i (friction + rise_i U_i) - friction + (c + c_i) cold
+///             + l_i |T_i + L_i| + j_i inertia) + o_i
+/// where L_i = Y_i . x + jump_i   x: mass and moments of a payload and the change of gravity; jump: those of another
+///                                payload in the legs of state 1
+///       F_i = 1 + f + f_group + f_i, of the twin's friction; c the same by temperature
+///       U_i = |T_i + L_i| - |T_i|, T_i the load as configured, rise_i how much friction rises with it
+///       g, o gains and offsets, l_i a loss in proportion to the load, j_i the rotor's inertia
+/// friction, rise and loss of the sign of the motion. Few arms carry another payload, hang otherwise, or have a joint
+/// of another gain or friction: their priors are Cauchy's. All differ in what is left, by a normal distribution. Rows are
+/// those of one joint that moves one way; outliers (contact) count as by Student's t of 4 degrees of freedom. A joint's
+/// rows tell no more than INDEPENDENT ones: errors of a model are no noise. A joint's gain is free only where its load
+/// is at least its friction: elsewhere both look alike.
 class ArmEstimator
 {
 public:
@@ -37,8 +40,9 @@ public:
     double predicted{};
     double friction{};          ///< of the twin
     double cold{};              ///< the same 10 K colder, less that
-    double loss{};              ///< the load, with the sign of the motion
+    double torque{};            ///< of the load as configured
     double inertia{};           ///< of the rotor
+    double rise{};              ///< of the friction with the load, size by size [-]
     Load load{ Load::Zero() };  ///< of units of mass, moments and gravity
   };
   using Rows = std::vector<std::vector<Row>>;  ///< of each joint, from the base on
@@ -70,7 +74,8 @@ public:
     double cost{};                 ///< logarithm of a likelihood a posteriori
   };
 
-  explicit ArmEstimator(Rows rows);
+  /// `gravity`: as configured, in the frame of the base [m/s^2]; that of another mounting is of its size.
+  ArmEstimator(Rows rows, const Eigen::Vector3d& gravity);
 
   /// By `with_gravity` the mounting may be another, by `with_jump` the payload may change between legs.
   Estimate solve(bool with_gravity = true, bool with_jump = true) const;
@@ -82,14 +87,19 @@ private:
   Prior priorOf(bool with_gravity, bool with_jump) const;
   double errorOf(std::size_t joint, std::size_t row, const std::vector<bool>& states, const Eigen::VectorXd& at,
                  Eigen::VectorXd* slope) const;
-  Point refine(const Prior& prior, const std::vector<bool>& states, Eigen::VectorXd at, int start, int rounds) const;
+  Point refine(const Prior& prior, const std::vector<bool>& states, Eigen::VectorXd at, int start) const;
+  double multiple() const;
   Point best(const Prior& prior, const std::vector<bool>& states) const;
   Point withJump(bool with_gravity, const Point& without, std::vector<bool>& states) const;
   std::vector<bool> parted(const Point& by) const;
   std::vector<bool> likelier(const Point& by) const;
   Estimate estimateOf(const Point& point, const std::vector<bool>& states) const;
 
+  void addPrior(const Prior& prior, int start, Point& point, Eigen::VectorXd& right) const;
+  void addRows(std::size_t joint, const std::vector<bool>& states, Point& point, Eigen::VectorXd& right) const;
+
   Rows rows_;
+  Eigen::Vector3d gravity_;
   std::size_t legs_{};
   int size_;  // of all terms
 };

@@ -49,20 +49,8 @@ public:
 
   ArmFit fit()
   {
-    const std::vector<bool> measured = fit_.measured();
-    constexpr double OTHER_SIZE = 20.0;  // logarithm of how much rarer it is
-    constexpr double CLEAR = 0.3;        // of its logarithm: payloads and gains make less
-    const LoadFit::Fit usual = load_fit_.explained(measured);
-    const double size = fit_.effort().factor.value;
-    if (size > 0.0 && std::abs(std::log(size)) > CLEAR)
-    {
-      const LoadFit::Fit other = load_fit_.explained(measured, size);
-      if (other.cost + OTHER_SIZE < usual.cost)
-      {
-        return { name_, unit_, size, other.left, other.cost + OTHER_SIZE + cost_ };
-      }
-    }
-    return { name_, unit_, 1.0, usual.left, usual.cost + cost_ };
+    const LoadFit::Fit fit = load_fit_.explained(fit_.measured());
+    return { name_, unit_, fit.size, fit.left, fit.cost + cost_ };
   }
 
   /// The unit of the efforts that leaves clearly less than the configured one.

@@ -10,22 +10,30 @@
 
 namespace hjt
 {
-LoadFit::LoadFit(const ArmDescription& arm, const std::vector<Parameters>& joints)
+namespace
+{
+constexpr double OTHER_MOUNTING = 10.0;  // logarithm of how much rarer it is
+}  // namespace
+
+LoadFit::Drive::Drive(const Parameters& parameters)
+  : gain(parameters.telemetry.torque_per_current)
+  , rotor(std::pow(nominalRatio(parameters.gear), 2) * Motor(parameters.motor).inertia())
+  , temperature(parameters.input.temperature)
+{
+}
+
+LoadFit::LoadFit(const ArmDescription& arm, const std::vector<Drive>& drives)
   : payload_(arm.payload)
   , gravity_(arm.gravity.data())
   , unit_(arm)
-  , torques_(static_cast<Eigen::Index>(joints.size()), ArmEstimator::LOAD)
-  , motion_(joints.size())
-  , rows_(joints.size())
-  , blocks_(joints.size())
+  , torques_(static_cast<Eigen::Index>(drives.size()), ArmEstimator::LOAD)
+  , motion_(drives.size())
+  , rows_(drives.size())
+  , blocks_(drives.size())
 {
-  for (const Parameters& parameters : joints)
+  for (const Drive& drive : drives)
   {
-    Joint joint;
-    joint.gain = parameters.telemetry.torque_per_current;
-    joint.rotor = std::pow(nominalRatio(parameters.gear), 2) * Motor(parameters.motor).inertia();
-    joint.temperature = parameters.input.temperature;
-    joints_.push_back(joint);
+    joints_.push_back({ drive });
   }
 }
 
@@ -64,7 +72,8 @@ void LoadFit::close(std::size_t joint, double time)
   {
     ArmEstimator::Row& row = rows_[joint].emplace_back(block.sum);
     const double share = 1.0 / static_cast<double>(block.count);
-    for (double* part : { &row.current, &row.predicted, &row.friction, &row.cold, &row.loss, &row.inertia })
+    for (double* part :
+         { &row.current, &row.predicted, &row.friction, &row.cold, &row.torque, &row.inertia, &row.rise })
     {
       *part *= share;
     }
@@ -77,8 +86,8 @@ void LoadFit::close(std::size_t joint, double time)
 /// Half of the rows go where there are more than enough.
 void LoadFit::thin()
 {
-  static constexpr std::size_t ENOUGH = 6000;  // ten minutes of each joint
-  if (std::none_of(rows_.begin(), rows_.end(), [](const auto& joint) { return joint.size() > ENOUGH; }))
+  constexpr std::size_t ENOUGH = 6000;  // ten minutes of each joint
+  if (std::all_of(rows_.begin(), rows_.end(), [&](const auto& joint) { return joint.size() <= ENOUGH; }))
   {
     return;
   }
@@ -94,11 +103,36 @@ void LoadFit::thin()
   }
 }
 
+/// `load`: torques of units of mass, moments and gravity [N.m].
+void LoadFit::addTo(Joint& joint, const MotionSample& sample, const MotionDriven& twin, const ArmEstimator::Load& load)
+{
+  constexpr double COLDER = 10.0;     // [K]
+  constexpr double LEAST_LOAD = 0.1;  // [N.m]
+  const double gain = joint.drive.gain;
+  const double temperature = sample.temperatureOr(joint.drive.temperature);
+  const MotionPrediction now = twin.at(temperature);
+  const double of_mass = std::max(std::abs(load[0]), LEAST_LOAD);
+  const double most = std::abs(sample.load) + of_mass;
+  const double least = std::max(std::abs(sample.load) - of_mass, 0.0);
+  const auto frictionAt = [&](double size) { return std::abs(twin.frictionAt(sample.velocity, size, temperature)); };
+  ArmEstimator::Row& sum = joint.open.sum;
+  sum.current += sample.current;
+  sum.predicted += now.current;
+  sum.friction += now.friction_torque / gain;
+  sum.cold += (twin.at(temperature - COLDER).friction_torque - now.friction_torque) / gain;
+  sum.torque += sample.load / gain;
+  sum.inertia += joint.drive.rotor * sample.acceleration / gain;
+  sum.rise += (frictionAt(most) - frictionAt(least)) / (most - least);
+  sum.load += load / gain;
+  ++joint.open.count;
+  joint.loads += sample.load * sample.load;
+  joint.weights += load[0] * load[0];
+}
+
 void LoadFit::add(const std::vector<MotionSample>& samples, const std::vector<const MotionDriven*>& twins)
 {
   constexpr double MOVING = 0.05;     // [rad/s]
   constexpr double MOBILISED = 0.05;  // of the friction that the motion leaves open, at most [-]
-  constexpr double COLDER = 10.0;     // [K]
   const double time = samples.front().time;
   const double step = time - last_time_;
   double speed = 0.0;
@@ -117,13 +151,10 @@ void LoadFit::add(const std::vector<MotionSample>& samples, const std::vector<co
   for (std::size_t i = 0; i < samples.size(); ++i)
   {
     const MotionSample& sample = samples[i];
-    Joint& joint = joints_[i];
-    Open& block = joint.open;
-    const double temperature = sample.temperatureOr(joint.temperature);
-    const MotionPrediction twin = twins[i]->at(temperature);
-    const double friction = twin.friction_torque / joint.gain;
+    Open& block = joints_[i].open;
+    const MotionPrediction twin = twins[i]->at(sample.temperatureOr(joints_[i].drive.temperature));
     const bool counts = std::abs(sample.velocity) > MOVING && std::isfinite(sample.current) &&
-                        twin.band < MOBILISED * std::abs(friction);
+                        joints_[i].drive.gain * twin.band < MOBILISED * std::abs(twin.friction_torque);
     if (sample.after_gap || !counts || sample.velocity * block.velocity < 0.0 || time > block.begin + BLOCK ||
         block.sum.leg + 1 != legs_.size())
     {
@@ -138,23 +169,13 @@ void LoadFit::add(const std::vector<MotionSample>& samples, const std::vector<co
       block = { {}, 0, time, sample.velocity };
       block.sum.leg = legs_.size() - 1;
     }
-    const auto torques = torques_.row(static_cast<Eigen::Index>(i));
-    block.sum.current += sample.current;
-    block.sum.predicted += twin.current;
-    block.sum.friction += friction;
-    block.sum.cold += twins[i]->at(temperature - COLDER).friction_torque / joint.gain - friction;
-    block.sum.loss += std::copysign(sample.load, friction) / joint.gain;
-    block.sum.inertia += joint.rotor * sample.acceleration / joint.gain;
-    block.sum.load += torques.transpose() / joint.gain;
-    ++block.count;
-    joint.loads += sample.load * sample.load;
-    joint.weights += torques[0] * torques[0];
+    addTo(joints_[i], sample, *twins[i], torques_.row(static_cast<Eigen::Index>(i)).transpose());
   }
   thin();
 }
 
-/// Those of the joints that count, as many as `most` of each, their currents over `size`.
-ArmEstimator::Rows LoadFit::rowsOf(const std::vector<bool>& counts, std::size_t most, double size) const
+/// Those of the joints that count, as many as `most` of each.
+ArmEstimator::Rows LoadFit::rowsOf(const std::vector<bool>& counts, std::size_t most) const
 {
   ArmEstimator::Rows rows(rows_.size());
   for (std::size_t i = 0; i < rows.size(); ++i)
@@ -163,7 +184,6 @@ ArmEstimator::Rows LoadFit::rowsOf(const std::vector<bool>& counts, std::size_t 
     for (std::size_t k = 0; counts[i] && k < rows_[i].size(); k += every)
     {
       rows[i].push_back(rows_[i][k]);
-      rows[i].back().current /= size;
     }
   }
   return rows;
@@ -227,10 +247,16 @@ ArmEstimator::Estimate LoadFit::estimate(const std::vector<bool>& counts)
   {
     close(i, last_time_);
   }
-  const ArmEstimator estimator(rowsOf(counts, MOST_ROWS, 1.0));
-  const ArmEstimator::Estimate estimate = estimator.solve();
+  const ArmEstimator estimator(rowsOf(counts, MOST_ROWS), gravity_);
+  const auto likelier = [&](bool may_change)
+  {
+    ArmEstimator::Estimate mounted = estimator.solve(true, may_change);
+    ArmEstimator::Estimate upright = estimator.solve(false, may_change);
+    return mounted.cost + OTHER_MOUNTING < upright.cost ? mounted : upright;
+  };
+  const ArmEstimator::Estimate estimate = likelier(true);
   const ArmEstimator::Known jump{ estimate.jump[0], estimate.jump_half_width[0] };
-  return estimate.states.empty() || jump.isBeyond(LEAST_JUMP) ? estimate : estimator.solve(true, false);
+  return estimate.states.empty() || jump.isBeyond(LEAST_JUMP) ? estimate : likelier(false);
 }
 
 FoundLoad LoadFit::solve(const std::vector<bool>& counts)
@@ -260,27 +286,27 @@ FoundLoad LoadFit::solve(const std::vector<bool>& counts)
   return found;
 }
 
-LoadFit::Fit LoadFit::explained(const std::vector<bool>& counts, double size)
+LoadFit::Fit LoadFit::explained(const std::vector<bool>& counts)
 {
-  constexpr std::size_t MOST_ROWS = 400;   // of a joint
-  constexpr double OTHER_MOUNTING = 10.0;  // logarithm of how much rarer it is
-  constexpr double GRAVITY_SIZE = 0.1;     // deviation of its size: else it is none [-]
-  constexpr double ROWS = 60.0;            // that count: errors of a model are not independent from row to row
-  constexpr double FLOOR = 0.02;           // of the currents: that the twin of no real arm falls below [-]
-  constexpr double NO_MASS = 0.5;          // below zero: deviation that masses of links make [kg]
-  const ArmEstimator estimator(rowsOf(counts, MOST_ROWS, size));
+  constexpr std::size_t MOST_ROWS = 400;  // of a joint
+  constexpr double OTHER_SIZE = 20.0;     // logarithm of how much rarer it is
+  constexpr double CLEAR = 0.3;           // of the size, logarithm: payloads and gains make less
+  constexpr double ROWS = 60.0;           // that count: errors of a model are not independent from row to row
+  constexpr double FLOOR = 0.02;          // of the currents: that the twin of no real arm falls below [-]
+  constexpr double NO_MASS = 0.5;         // below zero: deviation that masses of links make [kg]
+  const ArmEstimator estimator(rowsOf(counts, MOST_ROWS), gravity_);
   Fit best;
   for (const bool is_mounted : { false, true })
   {
-    const ArmEstimator::Estimate found = estimator.solve(is_mounted, false);
+    const ArmEstimator::Estimate found = estimator.solve(is_mounted);
     const double below_zero = std::min(payload_.mass + found.payload[0], 0.0);
     double cost =
         found.rareness + ROWS * std::log(std::hypot(found.left, FLOOR)) + 0.5 * std::pow(below_zero / NO_MASS, 2);
-    if (is_mounted)
-    {
-      cost += OTHER_MOUNTING + 0.5 * std::pow((mountingOf(found).size - 1.0) / GRAVITY_SIZE, 2);
-    }
-    best = !is_mounted || cost < best.cost ? Fit{ found.left, cost } : best;
+    cost += is_mounted ? OTHER_MOUNTING : 0.0;
+    const double size = 1.0 + found.gain.value;
+    const bool is_other = !(std::abs(std::log(size)) < CLEAR);
+    cost += is_other ? OTHER_SIZE : 0.0;
+    best = !is_mounted || cost < best.cost ? Fit{ is_other ? size : 1.0, found.left, cost } : best;
   }
   return best;
 }

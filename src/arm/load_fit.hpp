@@ -22,8 +22,22 @@ namespace hjt
 class LoadFit
 {
 public:
-  /// @param joints parameters of each, from the base on
-  LoadFit(const ArmDescription& arm, const std::vector<Parameters>& joints);
+  /// What it knows of a joint's drive.
+  struct Drive
+  {
+    explicit Drive(const Parameters& parameters);
+
+    double gain;         ///< [N.m/A]
+    double rotor;        ///< inertia at the joint [kg.m^2]
+    double temperature;  ///< of samples without one [degC]
+  };
+
+  /// @param drives from the base on
+  LoadFit(const ArmDescription& arm, const std::vector<Drive>& drives);
+  LoadFit(const ArmDescription& arm, const std::vector<Parameters>& joints)
+    : LoadFit(arm, std::vector<Drive>(joints.begin(), joints.end()))
+  {
+  }
 
   /// Samples of one time, and the twins, which made the step to it.
   void add(const std::vector<MotionSample>& samples, const std::vector<const MotionDriven*>& twins);
@@ -36,12 +50,12 @@ public:
   /// Of the currents, what is left with the best of all terms, and how much these take.
   struct Fit
   {
+    double size{ 1.0 };  ///< of all currents, where it is another than gains of a type make [-]
     double left{ 1.0 };  ///< share, rms [-]
     double cost{};       ///< logarithm of a likelihood, less is likelier; errors of models count for what they are [-]
   };
   /// How well the arm explains the currents of the joints that count, with its best payload, or the best mounting too.
-  /// @param size of all currents, as a multiple of what they are taken for [-]
-  Fit explained(const std::vector<bool>& counts, double size = 1.0);
+  Fit explained(const std::vector<bool>& counts);
   double moved() const { return moved_; }  ///< time in which a joint moved [s]
 
 private:
@@ -56,18 +70,17 @@ private:
   };
   struct Joint
   {
-    double gain{};         // [N.m/A]
-    double rotor{};        // inertia at the joint [kg.m^2]
-    double temperature{};  // of samples without one [degC]
-    double loads{};        // sum of squares [(N.m)^2]
-    double weights{};      // of 1 kg at the tip, likewise
-    Open open;
+    Drive drive;
+    double loads{};    // sum of squares [(N.m)^2]
+    double weights{};  // of 1 kg at the tip, likewise
+    Open open{};
   };
 
   void cutLegs(double time, double speed);
+  static void addTo(Joint& joint, const MotionSample& sample, const MotionDriven& twin, const ArmEstimator::Load& load);
   void close(std::size_t joint, double time);
   void thin();
-  ArmEstimator::Rows rowsOf(const std::vector<bool>& counts, std::size_t most, double size) const;
+  ArmEstimator::Rows rowsOf(const std::vector<bool>& counts, std::size_t most) const;
   double ofLinks(const std::vector<bool>& counts) const;
   IdentifiedPayload payloadOf(const ArmEstimator::Carried& beside, const ArmEstimator::Carried& half_width,
                               double of_links) const;

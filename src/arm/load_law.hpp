@@ -46,13 +46,13 @@ struct JudgedJoints
 void addMisfit(const Misfit& misfit, std::vector<Misfit>& misfits);
 
 /// The law by which the load is another than configured, of a recording and live alike. What the currents show is
-/// tried: a mounting, and, where nothing but what a load makes too stands against a joint, a payload, since it explains no
-/// telemetry that does not fit. It stands where every joint fits with it, else it is taken back.
+/// tried: a mounting, and, where nothing but what a load makes too stands against a joint, a payload, since it explains
+/// no telemetry that does not fit. It stands where every joint fits with it, else it is taken back.
 class LoadLaw
 {
 public:
-  /// `found`: beside the load that counts, and so are `joints`; while a load is tried it is not looked at. True: another
-  /// counts from now on.
+  /// `found`: beside the load that counts, and so are `joints`; while a load is tried it is not looked at. True:
+  /// another counts from now on.
   bool take(const FoundLoad& found, const JudgedJoints& joints);
 
   const AssumedLoad& counts() const { return counts_; }

@@ -4,7 +4,7 @@
 namespace hjt
 {
 LoadWatch::LoadWatch(const ArmDescription& arm, const std::vector<Parameters>& joints)
-  : given_(arm), arm_(arm), joints_(joints)
+  : given_(arm), arm_(arm), drives_(joints.begin(), joints.end())
 {
   for (const Parameters& joint : joints)
   {
@@ -24,7 +24,7 @@ void LoadWatch::reset()
 
 void LoadWatch::start(double first_look)
 {
-  fit_.emplace(arm_, joints_);
+  fit_.emplace(arm_, drives_);
   last_time_ = -HUGE_VAL;
   next_look_ = first_look;
   is_new_ = true;

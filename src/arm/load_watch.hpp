@@ -52,7 +52,7 @@ private:
   const ArmDescription given_;
   ArmDescription arm_;
   LoadLaw law_;
-  const std::vector<Parameters> joints_;
+  const std::vector<LoadFit::Drive> drives_;
   std::vector<MotionDriven> twins_;
   std::optional<LoadFit> fit_;
   std::vector<MotionSample> samples_;

@@ -310,16 +310,15 @@ std::vector<RecordingFinding> RecordingFit::ofArm() const
 
 bool RecordingFit::isMeasured(std::size_t joint) const
 {
-  const Joint& own = joints_[joint];
-  return own.reach.least_current != own.reach.most_current && own.unchanged <= UNCHANGED;
+  return reach(joint).least_current != reach(joint).most_current && joints_[joint].unchanged <= UNCHANGED;
 }
 
 std::vector<bool> RecordingFit::measured() const
 {
-  std::vector<bool> all;
+  std::vector<bool> all(joints_.size());
   for (std::size_t i = 0; i < joints_.size(); ++i)
   {
-    all.push_back(isMeasured(i));
+    all[i] = isMeasured(i);
   }
   return all;
 }

@@ -88,6 +88,10 @@ JointEvidence::Row JointEvidence::judge(const MotionSample& sample, bool fits) n
   {
     twin_torsion_ = course_.to(sample.load);
   }
+  if (!contact_.isTouching())
+  {
+    addGain(sample, residual, step);
+  }
   if (isTouched())
   {
     ++now_.reach.touched_rows;
@@ -97,7 +101,7 @@ JointEvidence::Row JointEvidence::judge(const MotionSample& sample, bool fits) n
     }
     return Row::TOUCHED;
   }
-  addRow(sample, residual, step);
+  addRow(sample, residual);
   return fits && watchSignals(sample) ? Row::WINDOW : Row::COUNTED;
 }
 
@@ -124,7 +128,19 @@ double JointEvidence::addToReach(const MotionSample& sample) noexcept
   return step;
 }
 
-void JointEvidence::addRow(const MotionSample& sample, double residual, double step) noexcept
+/// Rows after a contact too: to a current of another multiple, contact is what its load makes.
+void JointEvidence::addGain(const MotionSample& sample, double residual, double step) noexcept
+{
+  if (std::abs(sample.velocity) > MOVING && tellsFriction(predicted_))
+  {
+    const double friction = predicted_.friction_torque / parameters_.telemetry.torque_per_current;
+    const Eigen::Vector4d parts(1.0, friction, predicted_.current - friction, residual);
+    now_.gains += parts * parts.transpose();
+    now_.gains_time += step;
+  }
+}
+
+void JointEvidence::addRow(const MotionSample& sample, double residual) noexcept
 {
   const double gain = parameters_.telemetry.torque_per_current;
   const double friction = predicted_.friction_torque;
@@ -142,9 +158,6 @@ void JointEvidence::addRow(const MotionSample& sample, double residual, double s
   {
     const double way = sample.velocity < 0.0 ? -1.0 : 1.0;
     const double measured = friction + gain * residual;
-    const Eigen::Vector4d parts(1.0, friction / gain, predicted_.current - friction / gain, residual);
-    now_.gains += parts * parts.transpose();
-    now_.gains_time += step;
     now_.friction.add(sample.time, sample.velocity, way * measured, way * friction, sample.load);
     if (std::isfinite(sample.target_current))
     {

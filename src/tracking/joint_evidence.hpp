@@ -191,7 +191,8 @@ private:
   };
 
   double addToReach(const MotionSample& sample) noexcept;
-  void addRow(const MotionSample& sample, double residual, double step) noexcept;
+  void addGain(const MotionSample& sample, double residual, double step) noexcept;
+  void addRow(const MotionSample& sample, double residual) noexcept;
   bool watchSignals(const MotionSample& sample) noexcept;
   double loadQuantile(double share) const;
   double counted() const;  // rows, 1 at least

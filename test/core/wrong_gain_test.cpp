@@ -113,12 +113,13 @@ TEST(GainEvidence, UnderNoiseItIsLessSure)
   EXPECT_FALSE(blurred.isExcluded());
 }
 
+/// But for the rows after it until the friction is mobilised again: some of 7500.
 TEST(GainEvidence, APauseTellsNothing)
 {
   const GainEvidence all = shown(1.4, 1.4, 4.0, 1.0);
   const GainEvidence paused = shown(1.4, 1.4, 4.0, 1.0, 1200.0);
-  EXPECT_NEAR(paused.load.value, all.load.value, 1e-9);
-  EXPECT_NEAR(paused.load.uncertainty, all.load.uncertainty, 1e-3 * all.load.uncertainty);
+  EXPECT_NEAR(paused.load.value, all.load.value, 0.1 * all.load.uncertainty);
+  EXPECT_NEAR(paused.load.uncertainty, all.load.uncertainty, 0.01 * all.load.uncertainty);
 }
 }  // namespace
 }  // namespace hjt
