@@ -4,14 +4,16 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "tracking/plausible.hpp"
 #include "tracking/stream_timing.hpp"
 
 namespace hjt
 {
-ArmLoad::ArmLoad(const ArmDescription& arm)
+ArmLoad::ArmLoad(const ArmDescription& arm, PayloadCourse course)
   : dynamics_(arm)
+  , course_(std::move(course))
   , times_(dynamics_.joints())
   , slow_(dynamics_.joints(), MotionDifferentiator(HALF_WIDTH))
   , fast_(dynamics_.joints())
@@ -89,8 +91,21 @@ bool ArmLoad::take(std::vector<MotionDifferentiator>& from, bool at_end, std::ve
     samples[i] = *sample;
     motion_[i] = { sample->position, sample->velocity, sample->acceleration };
   }
+  carry(samples.front().time);
   dynamics_.torques(motion_, torques);
   return true;
+}
+
+/// What the course says for that time; before it begins, what comes first.
+void ArmLoad::carry(double time) noexcept
+{
+  const auto next = std::find_if(course_.begin(), course_.end(), [time](const auto& from) { return from.time > time; });
+  const auto now = static_cast<std::size_t>(std::max<std::ptrdiff_t>(next - course_.begin(), 1) - 1);
+  if (!course_.empty() && now != carried_)
+  {
+    dynamics_.setPayload(course_[now].payload);
+    carried_ = now;
+  }
 }
 
 const ArmSample* ArmLoad::pop(bool at_end) noexcept

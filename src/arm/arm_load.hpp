@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <vector>
 
 #include "arm/arm_dynamics.hpp"
+#include "arm/payload_course.hpp"
 #include "arm/row_times.hpp"
 #include "tracking/motion_differentiator.hpp"
 
@@ -37,7 +39,7 @@ public:
   static constexpr double HALF_WIDTH = 0.1;
 
   /// @throws ParameterError as ArmDynamics.
-  explicit ArmLoad(const ArmDescription& arm);
+  explicit ArmLoad(const ArmDescription& arm, PayloadCourse course = {});
 
   /// What follows is a new stream.
   void reset() noexcept;
@@ -53,12 +55,16 @@ public:
 private:
   /// Rows that wait for their fast rates, at most.
   static constexpr std::size_t ROOM = 256;
+  static constexpr std::size_t NONE = static_cast<std::size_t>(-1);
 
   bool take(std::vector<MotionDifferentiator>& from, bool at_end, std::vector<MotionSample>& samples,
             std::vector<double>& torques) noexcept;
   void pushFast() noexcept;
+  void carry(double time) noexcept;
 
   ArmDynamics dynamics_;
+  const PayloadCourse course_;
+  std::size_t carried_{ NONE };  // of the course
   RowTimes times_;
   // One a joint, all with rows of the same times, for load and vibration.
   std::vector<MotionDifferentiator> slow_;

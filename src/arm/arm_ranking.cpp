@@ -18,16 +18,6 @@ namespace
 {
 constexpr double ROW_PERIOD = 0.02;  // of the rows that count, at least [s]
 
-std::vector<double> gainsOf(const std::vector<Parameters>& joints)
-{
-  std::vector<double> gains;
-  for (const Parameters& joint : joints)
-  {
-    gains.push_back(joint.telemetry.torque_per_current);
-  }
-  return gains;
-}
-
 /// With efforts of that unit.
 std::vector<Parameters> withUnit(std::vector<Parameters> joints, EffortUnit unit)
 {
@@ -59,24 +49,8 @@ public:
 
   ArmFit fit()
   {
-    std::vector<bool> measured;
-    for (std::size_t i = 0; i < twins_.size(); ++i)
-    {
-      measured.push_back(fit_.isMeasured(i));
-    }
-    constexpr double OTHER_SIZE = 20.0;  // logarithm of how much rarer it is
-    constexpr double CLEAR = 0.3;        // of its logarithm: payloads and gains make less
-    const LoadProblem::Fit usual = load_fit_.explained(measured);
-    const double size = fit_.effort().factor.value;
-    if (size > 0.0 && std::abs(std::log(size)) > CLEAR)
-    {
-      const LoadProblem::Fit other = load_fit_.explained(measured, size);
-      if (other.cost + OTHER_SIZE < usual.cost)
-      {
-        return { name_, unit_, size, other.left, other.cost + OTHER_SIZE + cost_ };
-      }
-    }
-    return { name_, unit_, 1.0, usual.left, usual.cost + cost_ };
+    const LoadFit::Fit fit = load_fit_.explained(fit_.measured());
+    return { name_, unit_, fit.size, fit.left, fit.cost + cost_ };
   }
 
   /// The unit of the efforts that leaves clearly less than the configured one.
@@ -98,10 +72,13 @@ private:
     , cost_(candidate.cost)
     , load_(candidate.arm)
     , fit_(joints)
-    , load_fit_(candidate.arm, gainsOf(joints))
+    , load_fit_(candidate.arm, joints)
     , twins_(joints.begin(), joints.end())
-    , predicted_(joints.size())
   {
+    for (const MotionDriven& twin : twins_)
+    {
+      beside_.push_back(&twin);
+    }
   }
 
   void forward(bool at_end)
@@ -113,12 +90,12 @@ private:
       for (std::size_t i = 0; i < samples_.size(); ++i)
       {
         samples_[i].load = sample->torques[i];
-        predicted_[i] = twins_[i].step(samples_[i]).current;
+        twins_[i].step(samples_[i]);
       }
       if (samples_.front().time >= last_time_ + ROW_PERIOD)
       {
         last_time_ = samples_.front().time;
-        load_fit_.add(samples_, predicted_);
+        load_fit_.add(samples_, beside_);
       }
     }
   }
@@ -132,7 +109,7 @@ private:
   std::vector<MotionDriven> twins_;
   std::vector<MotionRow> rows_;
   std::vector<MotionSample> samples_;
-  std::vector<double> predicted_;  // [A]
+  std::vector<const MotionDriven*> beside_;
   double last_time_{ -HUGE_VAL };  // that counted [s]
 };
 

@@ -83,21 +83,29 @@ std::string IdentifiedMounting::text() const
          part(gravity[1]) + ", " + part(gravity[2]) + "] in the arm's file";
 }
 
-std::string LoadPart::text() const
+Misfit FoundLoad::misfit() const
 {
-  return (std::isinf(begin) ? "" : "from " + fixedText(begin, 0) + " s") +
-         (std::isinf(begin) || std::isinf(end) ? "" : " ") +
-         (std::isinf(end) ? " on" : "to " + fixedText(end, 0) + " s");
+  constexpr double NOTEWORTHY = 0.2;  // gains of one type differ by less
+  if (std::abs(gain) - gain_half_width < NOTEWORTHY)
+  {
+    return {};
+  }
+  return { Reason::EFFORT_UNIT, "the currents of all joints are " + fixedText(1.0 + gain, 2) + " +- " +
+                                    fixedText(gain_half_width, 2) +
+                                    " times what load and friction take: another gain (telemetry.torque_per_current) "
+                                    "or unit than configured" };
 }
 
-bool FoundLoad::showsPayload() const
+FoundLoad FoundLoad::last() const
 {
-  return payload.differs() && payload.residual_share < CLEARLY &&
-         !(mounting.differs() && mounting.residual_share < payload.residual_share);
-}
-
-bool FoundLoad::showsMounting() const
-{
-  return mounting.differs() && mounting.residual_share < CLEARLY * std::min(1.0, mounting.share_otherwise);
+  if (changes.empty())
+  {
+    return *this;
+  }
+  FoundLoad found = *this;
+  found.payload = changes.back().is_found ? payload : otherwise;
+  found.changes.clear();
+  found.since = changes.back().time;
+  return found;
 }
 }  // namespace hjt

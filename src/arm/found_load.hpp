@@ -4,8 +4,10 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "arm/arm_description.hpp"
+#include "tracking/reason.hpp"
 
 namespace hjt
 {
@@ -18,8 +20,6 @@ struct IdentifiedPayload
   std::array<double, 3> moment{};             ///< mass times centre, in the frame of the tip [kg.m]
   std::array<double, 3> moment_half_width{};  ///< of their 95 % intervals [kg.m]
   double least_claim{};                       ///< what sound arms of this mass show without a payload, at most [kg]
-  double residual_share{ 1.0 };               ///< of the torques not predicted, that is left with it, rms [-]
-  double share_of_gain{ 1.0 };                ///< likewise, if all currents are one multiple of what is predicted [-]
 
   /// The configured mass is outside the interval, and farther off than arms without a payload show.
   bool differs() const;
@@ -40,9 +40,6 @@ struct IdentifiedMounting
   std::array<double, 3> gravity{};     ///< the direction found, of the configured size [m/s^2]
   double half_width{};                 ///< of its 95 % interval [rad]
   double size{ 1.0 };                  ///< of the gravity that fits best, over the configured [-]
-  double residual_share{ 1.0 };        ///< of the torques not predicted, that is left with it, rms [-]
-  /// Of the same rows: left with a payload, with another gain of all joints or of one of them, whichever leaves least.
-  double share_otherwise{ 1.0 };
 
   double tilt() const;  ///< between the two [rad]
   /// The configured direction is far outside the interval, farther off than arms mounted as configured show, and what
@@ -52,30 +49,28 @@ struct IdentifiedMounting
   std::string text() const;
 };
 
-/// A part of the time in which the payload stays what it is.
-struct LoadPart
+/// From a time on the arm carries the payload that was found, or what it carries else.
+struct PayloadChange
 {
-  double begin{ -HUGE_VAL };  ///< [s]
-  double end{ HUGE_VAL };     ///< [s]
-
-  bool isAll() const { return std::isinf(begin) && std::isinf(end); }
-  bool holds(double time) const { return time >= begin && time < end; }
-  /// "from 12 s to 34 s"
-  std::string text() const;
+  double time{};  ///< [s]
+  bool is_found{};
 };
 
 /// What the currents of an arm show of its load.
 struct FoundLoad
 {
-  static constexpr double CLEARLY = 0.9;  ///< what is clearly better leaves less of the torques not predicted [-]
-
   IdentifiedPayload payload;
   IdentifiedMounting mounting;
-  LoadPart part{};  ///< that they are of: another payload is carried before or after
+  IdentifiedPayload otherwise{};         ///< carried before, after and between, where `payload` is not
+  std::vector<PayloadChange> changes{};  ///< in their order, the first at the begin of the rows; empty: none
 
-  /// It explains the currents clearly better than the load as it counts, and another mounting does not as well.
-  bool showsPayload() const;
-  /// It explains the currents clearly better than the load as it counts, and than what else may be the reason.
-  bool showsMounting() const;
+  double gain{};             ///< of all currents beside 1, apart from load and friction [-]
+  double gain_half_width{};  ///< of its 95 % interval [-]
+
+  /// Why no joint can be judged: the currents of all are another multiple than those of gains of one type.
+  Misfit misfit() const;
+  /// What is carried at last, as if it had been all the time, and since when.
+  FoundLoad last() const;
+  double since{ -HUGE_VAL };  ///< [s]
 };
 }  // namespace hjt

@@ -1,61 +1,103 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <memory>
+#include <cstddef>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "arm/arm_description.hpp"
+#include "arm/arm_estimator.hpp"
 #include "arm/found_load.hpp"
-#include "arm/load_problem.hpp"
-#include "tracking/motion_differentiator.hpp"
+#include "arm/unit_loads.hpp"
+#include "harmonic_joint_twin/params/parameters.hpp"
+#include "tracking/motion_driven.hpp"
 
 namespace hjt
 {
-/// Payload and mounting of an arm from the currents of all joints while they move, by least squares.
-///
-///   residual_i = (Y_i . x + e_i (load_i + Y_i . x)) / gain_i + s a_i + b_i v + o_i
-/// with x mass and moments of a payload, or the change of gravity, Y_i the torque of their units at joint i (rigid-body
-/// dynamics), and for each joint nuisances (LoadProblem). Each row of the fit is the mean over 0.1 s of one joint that
-/// moves one way. The interval of the mass holds the fit's and 2 % of the links' own masses. The payload is of rows in
-/// which nothing touches the arm, where it does not change; the mounting of all, since another one looks like contact.
-///
-/// A payload that is picked up or put down: where two parts of the time, each with terms of its own, show masses whose
-/// difference is one that would be named, and leave clearly less, the time is parted there, and each part likewise.
+/// Payload and mounting of an arm from the currents of all joints while they move (ArmEstimator). A row of the fit is
+/// the mean over 0.1 s of one joint that moves one way with all its friction; of long recordings as many rows are kept
+/// as say what is said at all, evenly over the time. Between legs, from one standstill to the next or of 5 s, the
+/// payload may change. The interval of a mass holds the fit's and 2 % of the links' own masses.
 class LoadFit
 {
 public:
-  static constexpr double MOST_TIME = 600.0;  ///< of motion; what comes later does not count [s]
-
-  /// @param gains of each joint, from the base on [N.m/A]
-  LoadFit(const ArmDescription& arm, std::vector<double> gains);
-  ~LoadFit();
-  LoadFit(const LoadFit&) = delete;
-  LoadFit& operator=(const LoadFit&) = delete;
-
-  /// Samples of one time, and the current that each joint's twin predicts [A]. `touched`: something touches the arm.
-  void add(const std::vector<MotionSample>& samples, const std::vector<double>& predicted, bool touched = false);
-
-  /// Of the time, where the payload changes in it.
-  enum class Part
+  /// What it knows of a joint's drive.
+  struct Drive
   {
-    LONGEST,
-    LAST
+    explicit Drive(const Parameters& parameters);
+
+    double gain;         ///< [N.m/A]
+    double rotor;        ///< inertia at the joint [kg.m^2]
+    double temperature;  ///< of samples without one [degC]
   };
+
+  /// @param drives from the base on
+  LoadFit(const ArmDescription& arm, const std::vector<Drive>& drives);
+  LoadFit(const ArmDescription& arm, const std::vector<Parameters>& joints)
+    : LoadFit(arm, std::vector<Drive>(joints.begin(), joints.end()))
+  {
+  }
+
+  /// Samples of one time, and the twins, which made the step to it.
+  void add(const std::vector<MotionSample>& samples, const std::vector<const MotionDriven*>& twins);
+
   /// `counts`: whether the current of a joint, by its number, is measured: else it is left out.
-  FoundLoad solve(const std::vector<bool>& counts, Part part);
+  FoundLoad solve(const std::vector<bool>& counts);
+  /// All that it rests on.
+  ArmEstimator::Estimate estimate(const std::vector<bool>& counts);
+
+  /// Of the currents, what is left with the best of all terms, and how much these take.
+  struct Fit
+  {
+    double size{ 1.0 };  ///< of all currents, where it is another than gains of a type make [-]
+    double left{ 1.0 };  ///< share, rms [-]
+    double cost{};       ///< logarithm of a likelihood, less is likelier; errors of models count for what they are [-]
+  };
   /// How well the arm explains the currents of the joints that count, with its best payload, or the best mounting too.
-  /// @param size of all currents, as a multiple of what they are taken for [-]
-  LoadProblem::Fit explained(const std::vector<bool>& counts, double size = 1.0);
-  double moved() const;  ///< time in which a joint moved [s]
+  Fit explained(const std::vector<bool>& counts);
+  double moved() const { return moved_; }  ///< time in which a joint moved [s]
 
 private:
-  struct Data;
-  std::unique_ptr<Data> data_;
-};
+  static constexpr double BLOCK = 0.1;  ///< that a row is the mean of [s]
 
-/// The same of whole recordings.
-/// @param samples of each joint, from the base on, of the same times. @param predicted current of each [A]
-/// @param gains [N.m/A]
-IdentifiedPayload identifyPayload(const ArmDescription& arm, const std::vector<std::vector<MotionSample>>& samples,
-                                  const std::vector<std::vector<double>>& predicted, const std::vector<double>& gains);
+  struct Open
+  {
+    ArmEstimator::Row sum;
+    std::size_t count{};
+    double begin{};     // [s]
+    double velocity{};  // [rad/s]
+  };
+  struct Joint
+  {
+    Drive drive;
+    double loads{};    // sum of squares [(N.m)^2]
+    double weights{};  // of 1 kg at the tip, likewise
+    Open open{};
+  };
+
+  void cutLegs(double time, double speed);
+  static void addTo(Joint& joint, const MotionSample& sample, const MotionDriven& twin, const ArmEstimator::Load& load);
+  void close(std::size_t joint, double time);
+  void thin();
+  ArmEstimator::Rows rowsOf(const std::vector<bool>& counts, std::size_t most) const;
+  double ofLinks(const std::vector<bool>& counts) const;
+  IdentifiedPayload payloadOf(const ArmEstimator::Carried& beside, const ArmEstimator::Carried& half_width,
+                              double of_links) const;
+  IdentifiedMounting mountingOf(const ArmEstimator::Estimate& found) const;
+
+  Payload payload_;
+  Eigen::Vector3d gravity_;
+  UnitLoads unit_;
+  Eigen::MatrixXd torques_;
+  std::vector<JointMotion> motion_;
+  std::vector<Joint> joints_;
+  ArmEstimator::Rows rows_;
+  std::vector<double> legs_;  // begin of each [s]
+  double still_{};            // for how long [s]
+  double moved_{};            // [s]
+  double last_time_{};
+  std::size_t stride_{ 1 };  // of the blocks one is kept
+  std::vector<std::size_t> blocks_;
+};
 }  // namespace hjt

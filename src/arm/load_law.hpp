@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "arm/found_load.hpp"
+#include "arm/payload_course.hpp"
 #include "arm/recording_fit.hpp"
 #include "tracking/common_friction.hpp"
 
@@ -16,11 +17,15 @@ struct AssumedLoad
 {
   std::optional<IdentifiedPayload> payload;
   std::optional<IdentifiedMounting> mounting;
-  LoadPart part{};  ///< of the rows that are judged: the payload changes
+  std::optional<IdentifiedPayload> otherwise;  ///< where `payload` is not carried; none: the configured one
+  std::vector<PayloadChange> changes{};        ///< as of FoundLoad
+  double since{ -HUGE_VAL };                   ///< that the payload is carried [s]
 
   bool isConfigured() const { return !payload && !mounting; }
   std::string text() const;                   ///< in sentences; empty: as configured, all the time
   void configure(ArmDescription& arm) const;  ///< of an arm with the configured load
+  /// What an arm with the configured payload carries; empty: one all the time.
+  PayloadCourse course(const Payload& configured) const;
 };
 
 /// The joints of an arm beside their twins, with the load that counts.
@@ -37,14 +42,17 @@ struct JudgedJoints
   ArmFriction common;
 };
 
+/// Of the joints that have none.
+void addMisfit(const Misfit& misfit, std::vector<Misfit>& misfits);
+
 /// The law by which the load is another than configured, of a recording and live alike. What the currents show is
-/// tried: a mounting; then, where nothing but the load stands against a joint, a payload, since it explains no
-/// telemetry that does not fit, nor an arm led by hand. It stands where every joint fits with it, else
-/// it is taken back.
+/// tried: a mounting, and, where nothing but what a load makes too stands against a joint, a payload, since it explains
+/// no telemetry that does not fit. It stands where every joint fits with it, else it is taken back.
 class LoadLaw
 {
 public:
-  /// `found`: beside the load that counts, and so are `joints`. True: another counts from now on.
+  /// `found`: beside the load that counts, and so are `joints`; while a load is tried it is not looked at. True:
+  /// another counts from now on.
   bool take(const FoundLoad& found, const JudgedJoints& joints);
 
   const AssumedLoad& counts() const { return counts_; }
@@ -52,13 +60,10 @@ public:
   bool isTrying() const { return is_trying_; }
 
 private:
-  bool explains(const JudgedJoints& joints) const;
-  std::optional<AssumedLoad> other(const FoundLoad& found, const JudgedJoints& joints);
+  std::optional<AssumedLoad> other(const FoundLoad& found, const JudgedJoints& joints) const;
 
   AssumedLoad counts_;
   AssumedLoad stands_;
   bool is_trying_{};
-  bool tried_mounting_{};  // since something stood
-  bool tried_payload_{};
 };
 }  // namespace hjt

@@ -3,14 +3,17 @@
 
 namespace hjt
 {
-LoadWatch::LoadWatch(const ArmDescription& arm, const std::vector<Parameters>& joints) : given_(arm), arm_(arm)
+LoadWatch::LoadWatch(const ArmDescription& arm, const std::vector<Parameters>& joints)
+  : given_(arm), arm_(arm), drives_(joints.begin(), joints.end())
 {
   for (const Parameters& joint : joints)
   {
-    gains_.push_back(joint.telemetry.torque_per_current);
     twins_.emplace_back(joint);
   }
-  predicted_.resize(joints.size());
+  for (const MotionDriven& twin : twins_)
+  {
+    beside_.push_back(&twin);
+  }
   reset();
 }
 
@@ -21,33 +24,40 @@ void LoadWatch::reset()
 
 void LoadWatch::start(double first_look)
 {
-  fit_.emplace(arm_, gains_);
+  fit_.emplace(arm_, drives_);
   last_time_ = -HUGE_VAL;
   next_look_ = first_look;
   is_new_ = true;
 }
 
-void LoadWatch::add(const ArmSample& sample, bool touched)
+void LoadWatch::add(const ArmSample& sample)
 {
   samples_ = sample.joints;
   for (std::size_t i = 0; i < samples_.size(); ++i)
   {
     samples_[i].load = sample.torques[i];
     samples_[i].after_gap = samples_[i].after_gap || is_new_;
-    predicted_[i] = twins_[i].step(samples_[i]).current;
+    twins_[i].step(samples_[i]);
   }
   is_new_ = false;
   if (samples_.front().time >= last_time_ + PERIOD)
   {
     last_time_ = samples_.front().time;
-    fit_->add(samples_, predicted_, touched);
+    fit_->add(samples_, beside_);
   }
 }
 
 bool LoadWatch::look(const JudgedJoints& joints)
 {
   const bool was_trying = isTrying();
-  const bool is_other = law_.take(fit_->solve(joints.measured, LoadFit::Part::LAST), joints);
+  const FoundLoad found = was_trying ? FoundLoad() : fit_->solve(joints.measured);
+  const bool alternates = found.changes.size() > 2 && found.changes.back().time > last_time_ - FIRST_LOOK;
+  misfit_ = alternates ? Misfit{ Reason::LOAD_WRONG,
+                                 "the payload changes from leg to leg, as in picking and placing: "
+                                 "record the motion and compare it, which judges each leg with its "
+                                 "payload" } :
+                         found.misfit();
+  const bool is_other = !alternates && law_.take(found.last(), joints);
   has_looked_ = true;
   if (is_other)
   {

@@ -23,8 +23,7 @@ public:
   /// `joints`: parameters of each. @throws ParameterError as MotionDriven.
   LoadWatch(const ArmDescription& arm, const std::vector<Parameters>& joints);
 
-  /// `touched`: something touches the arm, or looks like it.
-  void add(const ArmSample& sample, bool touched = false);
+  void add(const ArmSample& sample);
   /// Starts again with the load that counts: other rows follow.
   void reset();
 
@@ -35,6 +34,8 @@ public:
 
   const AssumedLoad& assumed() const { return law_.counts(); }
   bool isTrying() const { return law_.isTrying(); }
+  /// Why no joint can be judged: a payload that is taken up and put down again and again, or another gain of all.
+  const Misfit& misfit() const { return misfit_; }
   /// It has looked, and tries nothing: the load is what it counts as.
   bool isSettled() const { return has_looked_ && !isTrying(); }
   /// The arm with the payload and the mounting that count.
@@ -51,14 +52,15 @@ private:
   const ArmDescription given_;
   ArmDescription arm_;
   LoadLaw law_;
-  std::vector<double> gains_;  // [N.m/A]
+  const std::vector<LoadFit::Drive> drives_;
   std::vector<MotionDriven> twins_;
   std::optional<LoadFit> fit_;
   std::vector<MotionSample> samples_;
-  std::vector<double> predicted_;  // [A]
+  std::vector<const MotionDriven*> beside_;
   double last_time_{ -HUGE_VAL };  // that counted [s]
   double next_look_{ FIRST_LOOK };
   bool has_looked_{};
+  Misfit misfit_;
   bool is_new_{ true };  // the next row comes after a gap
 };
 }  // namespace hjt

@@ -81,7 +81,7 @@ RecordingFinding velocityFinding(const FittedFactor& own, double of_stamps)
 }
 }  // namespace
 
-RecordingFit::RecordingFit(const std::vector<Parameters>& joints, const LoadPart& part) : part_(part)
+RecordingFit::RecordingFit(const std::vector<Parameters>& joints)
 {
   for (const Parameters& parameters : joints)
   {
@@ -119,10 +119,6 @@ void RecordingFit::reset() noexcept
 
 void RecordingFit::update(const std::vector<MotionSample>& joints, const std::vector<double>& torques) noexcept
 {
-  if (!part_.holds(joints.front().time))
-  {
-    return;
-  }
   const double step = joints.front().time - last_time_;
   last_time_ = joints.front().time;
   bool moves = false;
@@ -313,8 +309,17 @@ std::vector<RecordingFinding> RecordingFit::ofArm() const
 
 bool RecordingFit::isMeasured(std::size_t joint) const
 {
-  const Joint& own = joints_[joint];
-  return own.reach.least_current != own.reach.most_current && own.unchanged <= UNCHANGED;
+  return reach(joint).least_current != reach(joint).most_current && joints_[joint].unchanged <= UNCHANGED;
+}
+
+std::vector<bool> RecordingFit::measured() const
+{
+  std::vector<bool> all(joints_.size());
+  for (std::size_t i = 0; i < joints_.size(); ++i)
+  {
+    all[i] = isMeasured(i);
+  }
+  return all;
 }
 
 std::vector<RecordingFinding> RecordingFit::ofJoint(std::size_t number) const

@@ -10,7 +10,6 @@
 #include <Eigen/Core>
 
 #include "arm/arm_load.hpp"
-#include "arm/found_load.hpp"
 #include "arm/recording_units.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "tracking/current_lag.hpp"
@@ -60,8 +59,7 @@ public:
   static constexpr double PATIENCE = 30.0;  ///< [s]
 
   /// @param joints of the arm; the currents in the samples follow from their efforts as these are configured.
-  /// @param part of the time, whose rows count
-  explicit RecordingFit(const std::vector<Parameters>& joints, const LoadPart& part = {});
+  explicit RecordingFit(const std::vector<Parameters>& joints);
 
   void reset() noexcept;
   /// `torques`: NaN where the load is not known.
@@ -71,8 +69,7 @@ public:
   FittedFactor stampFactor() const;
   EffortFit effort() const;
   const JointReach& reach(std::size_t joint) const { return joints_[joint].reach; }
-  /// Its current changes, as a measured one does.
-  bool isMeasured(std::size_t joint) const;
+  std::vector<bool> measured() const;  ///< of each joint: its current changes, as a measured one does
   bool hasVelocity(std::size_t joint) const { return joints_[joint].time.hasVelocity(); }
   /// Of angle and velocity of the joint.
   const TimeFit& timeFit(std::size_t joint) const { return joints_[joint].time; }
@@ -101,6 +98,7 @@ public:
   std::vector<Misfit> whyNotJudged() const;
 
 private:
+  bool isMeasured(std::size_t joint) const;
   std::optional<RecordingFinding> ofTimes() const;
   std::optional<RecordingFinding> ofCurrents() const;
   /// Regression of the current on a constant, Coulomb and viscous friction, the acceleration, which draws the current
@@ -141,7 +139,6 @@ private:
 
   std::vector<FittedFactor> timeFactors() const;
 
-  LoadPart part_;
   Misfit refusal_;
   std::vector<Joint> joints_;
   double last_time_{ std::numeric_limits<double>::quiet_NaN() };

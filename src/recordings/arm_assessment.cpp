@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "recordings/load_collector.hpp"
+#include "arm/load_fit.hpp"
 #include "recordings/recorded_ranking.hpp"
 
 namespace hjt
@@ -32,18 +32,24 @@ void holdAgainstController(const std::vector<AssessedJoint*>& joints)
   }
 }
 
-/// `part`: of the time, whose rows count.
-ArmAssessment pass(const ArmRecording& recording, const AssessmentSettings& settings, const LoadPart& part,
+/// `looks_for_load`: else it is what it counts as.
+ArmAssessment pass(const ArmRecording& recording, const AssessmentSettings& settings, bool looks_for_load,
                    bool gives_notice, RecordingFit& fit)
 {
   ArmAssessment arm;
   arm.joints = settings.make_joints();
-  std::optional<LoadCollector> load;
-  if (recording.isArm() && !recording.usesRecordedLoad())
+  std::optional<LoadFit> load;
+  std::vector<MotionSample> samples(arm.joints.size());
+  std::vector<const MotionDriven*> twins;
+  if (looks_for_load)
   {
-    load.emplace(recording);
+    load.emplace(recording.arm(), recording.parameters());
+    for (const AssessedJoint* joint : arm.joints)
+    {
+      twins.push_back(&joint->evidence().twin());
+    }
   }
-  fit = RecordingFit(recording.parameters(), part);
+  fit = RecordingFit(recording.parameters());
   StreamTiming timing;
   arm.found = recording.readSamples(
       [&](std::size_t i, const MotionSample& sample)
@@ -52,15 +58,11 @@ ArmAssessment pass(const ArmRecording& recording, const AssessmentSettings& sett
         {
           timing.add(sample.time, sample.received);
         }
-        if (!part.holds(sample.time))
-        {
-          return;
-        }
         arm.joints[i]->update(sample);
-        if (load)
+        samples[i] = sample;
+        if (load && i + 1 == samples.size())  // rows of one time come one after the other
         {
-          const JointEvidence& evidence = arm.joints[i]->evidence();
-          load->add(i, sample, evidence.predicted().current, evidence.isTouched());
+          load->add(samples, twins);
         }
       },
       fit);
@@ -69,7 +71,12 @@ ArmAssessment pass(const ArmRecording& recording, const AssessmentSettings& sett
   {
     recording.noticeOf(arm.found);
   }
-  const std::vector<Misfit> misfits = recording.isArm() ? fit.whyNotJudged() : std::vector<Misfit>{ arm.found.misfit };
+  std::vector<Misfit> misfits = recording.isArm() ? fit.whyNotJudged() : std::vector<Misfit>{ arm.found.misfit };
+  if (load && !settings.watch.stopped())
+  {
+    arm.load = load->solve(fit.measured());
+    addMisfit(arm.load->misfit(), misfits);
+  }
   if (settings.beside_controller)
   {
     holdAgainstController(arm.joints);
@@ -80,10 +87,6 @@ ArmAssessment pass(const ArmRecording& recording, const AssessmentSettings& sett
     frictions.push_back(arm.joints[i]->friction(misfits[i]));
   }
   arm.judged = JudgedJoints(fit, misfits, std::move(frictions), recording.parameters(0).comparison.repeat_tolerance);
-  if (load && !settings.watch.stopped())
-  {
-    arm.load = load->fit().solve(arm.judged.measured, LoadFit::Part::LONGEST);
-  }
   return arm;
 }
 
@@ -101,22 +104,23 @@ void nameOther(const ArmRecording& recording, std::vector<Misfit>& misfits)
 ArmAssessment assess(ArmRecording& recording, const AssessmentSettings& settings, RecordingFit& fit)
 {
   const ArmDescription configured = recording.arm();
+  const bool shows_load = recording.isArm() && !recording.usesRecordedLoad();
   LoadLaw law;
-  ArmAssessment arm = pass(recording, settings, {}, settings.gives_notice, fit);
-  while (arm.load && !settings.watch.stopped() && law.take(*arm.load, arm.judged))
+  ArmAssessment arm = pass(recording, settings, shows_load, settings.gives_notice, fit);
+  while (shows_load && !settings.watch.stopped() && law.take(arm.load.value_or(FoundLoad()), arm.judged))
   {
     ArmDescription other = configured;
     law.counts().configure(other);
-    recording.setPayload(other.payload);
+    recording.setPayload(other.payload, law.counts().course(configured.payload));
     recording.setGravity(other.gravity);
-    arm = pass(recording, settings, law.counts().part, false, fit);
+    arm = pass(recording, settings, false, false, fit);
     if (!law.isTrying())
     {
       break;  // taken back: it would be found again
     }
   }
   arm.assumed = law.counts();
-  if (arm.load && settings.looks_for_arm && recording.options().identified.empty() && !settings.watch.stopped())
+  if (shows_load && settings.looks_for_arm && recording.options().identified.empty() && !settings.watch.stopped())
   {
     nameOther(recording, arm.judged.misfits);
   }

@@ -24,8 +24,7 @@ struct ArmAssessment
 
   JointContext context(std::size_t joint) const
   {
-    return joints[joint]->context(judged.misfits[joint], found.duration, judged.common.factors[joint],
-                                  judged.common.deviations[joint]);
+    return joints[joint]->context(judged.misfits[joint], judged.common.factors[joint], judged.common.deviations[joint]);
   }
 };
 

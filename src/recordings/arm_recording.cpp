@@ -242,7 +242,7 @@ void ArmRecording::readEfforts(const VisitMotion& visit, double end) const
 
 MotionFindings ArmRecording::readArm(const VisitRows& visit, RecordingFit& fit, double end) const
 {
-  ArmLoad load(arm_);
+  ArmLoad load(arm_, course_);
   std::vector<ArmJointRow> rows(arm_.joints.size());
   std::vector<MotionRow> in_current;
   MotionFindings findings;

@@ -40,7 +40,11 @@ public:
   const ArmDescription& arm() const { return arm_; }  ///< of one joint: that alone
   const std::vector<ArmJoint>& joints() const { return arm_.joints; }
   /// In place of the configured one.
-  void setPayload(const Payload& payload) { arm_.payload = payload; }
+  void setPayload(const Payload& payload, PayloadCourse course = {})
+  {
+    arm_.payload = payload;
+    course_ = std::move(course);
+  }
   void setGravity(const std::array<double, 3>& gravity) { arm_.gravity = gravity; }
   MotionSource source(std::size_t joint) const;        ///< of that joint alone
   std::string twinNamespace(std::size_t joint) const;  ///< of its twin's topics, those of arm.launch
@@ -89,6 +93,7 @@ private:
   JointAffixes affixes_;
   bool is_arm_;
   ArmDescription arm_;
+  PayloadCourse course_;
   std::vector<double> stated_gains_;
   std::vector<Parameters> parameters_;
   std::vector<double> inertias_in_load_;  // of the motors, in a controller's torque, at the joints [kg.m^2]

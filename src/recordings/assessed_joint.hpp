@@ -24,10 +24,9 @@ public:
   void holdAgainstController() { has_controller_ = true; }
 
   /// `factor`, `deviation`: what the joints of an arm have in common.
-  JointContext context(const Misfit& misfit, double duration = 0.0, double factor = 1.0,
-                       double deviation = UNWITNESSED) const
+  JointContext context(const Misfit& misfit, double factor = 1.0, double deviation = UNWITNESSED) const
   {
-    return { own_, is_identified_, has_controller_, duration, factor, misfit, deviation };
+    return { own_, is_identified_, has_controller_, factor, misfit, deviation };
   }
   MeasuredFriction friction(const Misfit& misfit) const { return measuredFriction(evidence(), context(misfit)); }
   /// Why it is not judged; SOUND: it is.

@@ -163,18 +163,24 @@ void identifyJoint(const IdentifyOptions& options, const Parameters& parameters,
 /// By the currents that the twins predict as configured.
 IdentifiedPayload payloadOf(const ArmRecording& recording, const std::vector<std::vector<MotionSample>>& samples)
 {
-  std::vector<std::vector<double>> predicted(samples.size());
-  std::vector<double> gains;
-  for (std::size_t i = 0; i < samples.size(); ++i)
+  LoadFit fit(recording.arm(), recording.parameters());
+  std::vector<MotionDriven> twins(recording.parameters().begin(), recording.parameters().end());
+  std::vector<const MotionDriven*> beside;
+  for (const MotionDriven& twin : twins)
   {
-    MotionDriven twin(recording.parameters(i));
-    for (const MotionSample& sample : samples[i])
-    {
-      predicted[i].push_back(twin.step(sample).current);
-    }
-    gains.push_back(recording.parameters(i).telemetry.torque_per_current);
+    beside.push_back(&twin);
   }
-  return identifyPayload(recording.arm(), samples, predicted, gains);
+  std::vector<MotionSample> row(samples.size());
+  for (std::size_t k = 0; k < samples.front().size(); ++k)
+  {
+    for (std::size_t i = 0; i < samples.size(); ++i)
+    {
+      row[i] = samples[i][k];
+      twins[i].step(row[i]);
+    }
+    fit.add(row, beside);
+  }
+  return fit.solve(std::vector<bool>(samples.size(), true)).payload;
 }
 
 /// Where the overlay of a joint goes. @throws InputError if it must not be written.

@@ -173,8 +173,7 @@ void judgeJoints(const CheckedTwins& twins, const RecordingFit& fit, const std::
   {
     CheckedJoint& joint = arm.joints[i];
     const Misfit& misfit = misfitOf(joint.misfit, common.misfit);
-    joint.verdict = judge(twins[i].evidence(),
-                          twins[i].context(misfit, arm.found.duration, common.factors[i], common.deviations[i]));
+    joint.verdict = judge(twins[i].evidence(), twins[i].context(misfit, common.factors[i], common.deviations[i]));
   }
 }
 

@@ -274,7 +274,7 @@ void TrackerNode::take(const ArmSample& sample)
   lookAtFriction(sample.joints.front().time);
   if (load_)
   {
-    addToLoad(sample);
+    load_->add(sample);
   }
 }
 

@@ -59,7 +59,6 @@ private:
   bool isWithoutEffort() const;
   void push(Stamp stamp);
   void take(const ArmSample& sample);
-  void addToLoad(const ArmSample& sample);
   void follow(const std::vector<MotionRow>& rows);
   void watchArm(const std::vector<MotionRow>& rows);
   void resetFit();
@@ -67,7 +66,7 @@ private:
   void lookAtFriction(double time);
   void lookAtLoad();
   JudgedJoints judgedJoints() const;
-  std::string sinceText(const LoadPart& part) const;
+  std::string sinceText(double since) const;
   void updateFit(const ArmSample& sample);
   void judge(const ros::WallTime& now);
   void look();

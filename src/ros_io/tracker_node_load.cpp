@@ -51,15 +51,14 @@ void TrackerNode::updateFit(const ArmSample& sample)
   {
     nameOtherArm(arm_->other(), misfits);
   }
+  if (load_)
+  {
+    addMisfit(load_->misfit(), misfits);
+  }
   for (std::size_t i = 0; i < joints_.size(); ++i)
   {
     joints_[i]->setMisfit(misfits[i], settled);
   }
-}
-
-void TrackerNode::addToLoad(const ArmSample& sample)
-{
-  load_->add(sample, std::any_of(joints_.begin(), joints_.end(), [](const auto& joint) { return joint->isTouched(); }));
 }
 
 /// By the law of `joint_twin compare`.
@@ -92,9 +91,9 @@ void TrackerNode::watchArm(const std::vector<MotionRow>& rows)
 }
 
 /// When the payload became another; empty: it is the one of all rows.
-std::string TrackerNode::sinceText(const LoadPart& part) const
+std::string TrackerNode::sinceText(double since) const
 {
-  return std::isinf(part.begin) ? "" : "; since " + dateText(stream_.clock.stamp(part.begin), "%H:%M:%S") + " UTC";
+  return std::isinf(since) ? "" : "; since " + dateText(stream_.clock.stamp(since), "%H:%M:%S") + " UTC";
 }
 
 JudgedJoints TrackerNode::judgedJoints() const
@@ -104,12 +103,7 @@ JudgedJoints TrackerNode::judgedJoints() const
   {
     frictions.push_back(joint->verdict().measuredFriction());
   }
-  JudgedJoints judged(*fit_, fit_->whyNotJudged(), std::move(frictions), repeat_tolerance_);
-  if (friction_->found().temperature)
-  {
-    judged.common.median = friction_->found().median;  // the twins are predicted with it
-  }
-  return judged;
+  return { *fit_, fit_->whyNotJudged(), std::move(frictions), repeat_tolerance_ };
 }
 
 /// What the currents show of the load counts in place of the configured one, by the law of `joint_twin compare`.
@@ -125,14 +119,14 @@ void TrackerNode::lookAtLoad()
   if (is_other || was_trying)
   {
     stream_.mounting = assumed.mounting && !load_->isTrying() ? assumed.mounting->text() : "";
-    stream_.payload = assumed.payload && !load_->isTrying() ? assumed.payload->text() + sinceText(assumed.part) : "";
+    stream_.payload = assumed.payload && !load_->isTrying() ? assumed.payload->text() + sinceText(assumed.since) : "";
   }
   if (is_other)
   {
-    ROS_INFO_STREAM((load_->isTrying()     ? "Another load than configured is tried: no WARN until it is known to fit" :
-                     !assumed.part.isAll() ? "The payload changed: the joints start again" :
-                     assumed.isConfigured() ? "The configured load counts again" :
-                                              "The load that stood before counts again"));
+    ROS_INFO_STREAM((load_->isTrying() ? "Another load than configured is tried: no WARN until it is known to fit" :
+                     !std::isinf(assumed.since) ? "The payload changed: the joints start again" :
+                     assumed.isConfigured()     ? "The configured load counts again" :
+                                                  "The load that stood before counts again"));
     arm_load_.emplace(load_->arm());
     resetFit();
     for (const auto& joint : joints_)

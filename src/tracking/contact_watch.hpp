@@ -90,6 +90,7 @@ public:
     constexpr double OFTEN = 0.2;  // share of the motion
     return touched_ > 0.0 && touched_ < OFTEN * (usual_[0].time + usual_[1].time);
   }
+  bool isTouching() const noexcept { return hasSeen() && time_ == last_; }  ///< now
   /// Now, or less than HOLD ago.
   bool isRecent() const noexcept { return hasSeen() && time_ - last_ < HOLD; }
   const Contact& last() const noexcept { return contact_; }     ///< the last one

@@ -24,7 +24,7 @@ void JointEvidence::Sums::reset() noexcept
   beside_controller = FrictionPoints();
   torsion.reset();
   std::fill(loads.begin(), loads.end(), std::uint64_t{ 0 });
-  current_squares = predicted_squares = temperatures = alarm_time = 0.0;
+  current_squares = predicted_squares = temperatures = alarm_time = gains_time = 0.0;
   products.setZero();
   gains.setZero();
   assessed = 0;
@@ -83,10 +83,14 @@ JointEvidence::Row JointEvidence::judge(const MotionSample& sample, bool fits) n
   const bool was_touched = isTouched();
   contact_.update(sample, gain * residual, predicted_.friction_torque,
                   predicted_.band > parameters_.telemetry.current_deviation);
-  addToReach(sample);
+  const double step = addToReach(sample);
   if (std::isfinite(sample.motor_angle))
   {
     twin_torsion_ = course_.to(sample.load);
+  }
+  if (!contact_.isTouching())
+  {
+    addGain(sample, residual, step);
   }
   if (isTouched())
   {
@@ -101,9 +105,12 @@ JointEvidence::Row JointEvidence::judge(const MotionSample& sample, bool fits) n
   return fits && watchSignals(sample) ? Row::WINDOW : Row::COUNTED;
 }
 
-void JointEvidence::addToReach(const MotionSample& sample) noexcept
+/// The time since the row before; 0: that is none, or before a gap [s].
+double JointEvidence::addToReach(const MotionSample& sample) noexcept
 {
   MotionReach& reach = now_.reach;
+  const double since = sample.time - reach.end;
+  const double step = reach.rows > 0 && since > 0.0 && since <= MotionDifferentiator::MAX_GAP ? since : 0.0;
   if (reach.rows++ == 0)
   {
     reach.begin = sample.time;
@@ -111,12 +118,26 @@ void JointEvidence::addToReach(const MotionSample& sample) noexcept
     reach.least_angle = reach.most_angle = sample.position;
   }
   reach.end = sample.time;
+  reach.sampled += step;
   reach.least_load = std::min(reach.least_load, sample.load);
   reach.most_load = std::max(reach.most_load, sample.load);
   reach.least_angle = std::min(reach.least_angle, sample.position);
   reach.most_angle = std::max(reach.most_angle, sample.position);
   reach.motor_rows += std::isfinite(sample.motor_angle) ? 1 : 0;
   reach.temperature_rows += std::isfinite(sample.temperature) ? 1 : 0;
+  return step;
+}
+
+/// Rows after a contact too: to a current of another multiple, contact is what its load makes.
+void JointEvidence::addGain(const MotionSample& sample, double residual, double step) noexcept
+{
+  if (std::abs(sample.velocity) > MOVING && tellsFriction(predicted_))
+  {
+    const double friction = predicted_.friction_torque / parameters_.telemetry.torque_per_current;
+    const Eigen::Vector4d parts(1.0, friction, predicted_.current - friction, residual);
+    now_.gains += parts * parts.transpose();
+    now_.gains_time += step;
+  }
 }
 
 void JointEvidence::addRow(const MotionSample& sample, double residual) noexcept
@@ -137,8 +158,6 @@ void JointEvidence::addRow(const MotionSample& sample, double residual) noexcept
   {
     const double way = sample.velocity < 0.0 ? -1.0 : 1.0;
     const double measured = friction + gain * residual;
-    const Eigen::Vector4d parts(1.0, friction / gain, predicted_.current - friction / gain, residual);
-    now_.gains += parts * parts.transpose();
     now_.friction.add(sample.time, sample.velocity, way * measured, way * friction, sample.load);
     if (std::isfinite(sample.target_current))
     {
@@ -244,9 +263,8 @@ FittedFactor JointEvidence::loadFactor() const
   constexpr double CORRELATED = 0.5;  // rows nearer to each other tell the same [s]
   constexpr double LEAST = 0.1;       // of the load that friction does not explain, rms [A]
   const double rows = now_.gains(0, 0);
-  const double period = (now_.reach.end - now_.reach.begin) / counted();
   FittedFactor factor;
-  if (rows * period < 10.0 * CORRELATED)
+  if (now_.gains_time < 10.0 * CORRELATED)
   {
     return factor;
   }
@@ -261,7 +279,7 @@ FittedFactor JointEvidence::loadFactor() const
   const double slope = left(0, 1) / left(0, 0);
   const double rest = std::max(0.0, left(1, 1) - slope * left(0, 1));
   factor.value = 1.0 + slope;
-  factor.uncertainty = std::sqrt(rest / left(0, 0) * CORRELATED / (rows * period));
+  factor.uncertainty = std::sqrt(rest / left(0, 0) * CORRELATED / now_.gains_time);
   return factor;
 }
 

@@ -37,6 +37,7 @@ struct MotionReach
   std::uint64_t touched_rows{};      ///< rows left out: something touched the arm, or had a moment before
   double begin{};                    ///< of the rows [s]
   double end{};                      ///< [s]
+  double sampled{};                  ///< time between rows that follow each other, without gaps [s]
   double least_load{};               ///< [N.m]
   double most_load{};                ///< [N.m]
   double least_angle{};              ///< [rad]
@@ -181,6 +182,7 @@ private:
     Eigen::Matrix3d products{ Eigen::Matrix3d::Zero() };  // of 1, predicted friction, residual [1, A, A]
     /// The same of 1, predicted friction, the rest of the prediction and the residual, where friction tells.
     Eigen::Matrix4d gains{ Eigen::Matrix4d::Zero() };
+    double gains_time{};  // that these rows are of [s]
     std::uint64_t assessed{};
     std::optional<JudgedWindow> worst;
     std::optional<Assessment> too_few;
@@ -188,7 +190,8 @@ private:
     std::array<std::uint64_t, CAUSE_COUNT> votes{};
   };
 
-  void addToReach(const MotionSample& sample) noexcept;
+  double addToReach(const MotionSample& sample) noexcept;
+  void addGain(const MotionSample& sample, double residual, double step) noexcept;
   void addRow(const MotionSample& sample, double residual) noexcept;
   bool watchSignals(const MotionSample& sample) noexcept;
   double loadQuantile(double share) const;

@@ -217,7 +217,7 @@ Finding judgeSignals(const JointEvidence& evidence, const JointContext& context,
 }
 
 /// Order of the motor's turn that the rows resolve at the highest speed; 0: the joint does not move.
-double highestOrder(const JointEvidence& evidence, double duration)
+double highestOrder(const JointEvidence& evidence)
 {
   constexpr double RESOLVED = 0.4;  // of the rows' rate; half of it is the limit
   double fastest = 0.0;
@@ -225,7 +225,7 @@ double highestOrder(const JointEvidence& evidence, double duration)
   {
     fastest = std::max(fastest, std::abs(point.speed));
   }
-  const double turns = fastest * evidence.ratio() * duration / TWO_PI;
+  const double turns = std::abs(fastest * evidence.ratio()) * evidence.reach().sampled / TWO_PI;
   return turns > 0.0 ? RESOLVED * static_cast<double>(evidence.reach().rows) / turns : 0.0;
 }
 
@@ -271,7 +271,7 @@ void setFigures(const JointEvidence& evidence, const JointContext& context, Verd
   verdict[Figure::MOST_LOAD] = reach.most_load;
   verdict[Figure::TEMPERATURE] = evidence.temperature();
   verdict[Figure::REFERENCE_TEMPERATURE] = context.own.temperature;
-  verdict[Figure::HIGHEST_ORDER] = highestOrder(evidence, context.duration);
+  verdict[Figure::HIGHEST_ORDER] = highestOrder(evidence);
   if (evidence.contact().hasSeen() || reach.touched_rows > 0)
   {
     const Contact& last = evidence.contact().last();

@@ -33,7 +33,6 @@ struct JointContext
   OwnReference own;
   bool is_identified{};   ///< the twin's friction is that of this joint
   bool has_controller{};  ///< without `own` the friction is held against what the arm's controller expects
-  double duration{};      ///< of the recording [s]
   /// Multiple of the reference's friction by what the joints of an arm have in common: temperature or gain, no fault.
   double arm_friction{ 1.0 };
   Misfit misfit;  ///< of its rows

@@ -14,7 +14,7 @@ void VerdictWatch::setMisfit(const Misfit& misfit, bool settled)
 
 JointContext VerdictWatch::context(double arm_friction, double arm_deviation, const Misfit& of_arm) const
 {
-  return { own_, is_identified_, false, 0.0, arm_friction, misfit_.exists() ? misfit_ : of_arm, arm_deviation };
+  return { own_, is_identified_, false, arm_friction, misfit_.exists() ? misfit_ : of_arm, arm_deviation };
 }
 
 MeasuredFriction VerdictWatch::measuredFriction() const

@@ -17,7 +17,6 @@
 #include "arm/arm_configuration.hpp"
 #include "arm/arm_dynamics.hpp"
 #include "arm/arm_load.hpp"
-#include "arm/load_fit.hpp"
 #include "arm/moving_arm.hpp"
 #include "base/number_table.hpp"
 #include "elements/motor.hpp"
@@ -196,93 +195,6 @@ TEST(ArmDynamics, SaysWhatTheDescriptionLacks)
   arm.tip = "hand";
   EXPECT_THAT(text(arm), testing::HasSubstr("no chain of links from 'base' to 'hand'"));
   EXPECT_THROW(readArmDescription("no/such/arm.yaml"), ParameterError);
-}
-
-/// Samples and currents of an arm with a payload, of which the twins know nothing, with friction and gains that they
-/// know badly.
-struct LoadedArm
-{
-  explicit LoadedArm(const Payload& payload) : samples(6), predicted(6)
-  {
-    ArmDescription with = arm;
-    with.payload = payload;
-    ArmDynamics bare(arm);
-    ArmDynamics heavy(with);
-    std::mt19937 engine(11);
-    std::normal_distribution<double> unit;
-    for (int row = 0; row < 5000; ++row)
-    {
-      const double time = 0.008 * row;
-      std::vector<JointMotion> motion(6);
-      for (std::size_t i = 0; i < 6; ++i)
-      {
-        const double rate = 0.9 + 0.13 * static_cast<double>(i);
-        motion[i] = { BENT[i] + 0.8 * std::sin(rate * time), 0.8 * rate * std::cos(rate * time),
-                      -0.8 * rate * rate * std::sin(rate * time) };
-      }
-      const std::vector<double> expected = torquesOf(bare, motion);
-      const std::vector<double> torques = torquesOf(heavy, motion);
-      for (std::size_t i = 0; i < 6; ++i)
-      {
-        MotionSample sample;
-        sample.time = time;
-        sample.position = motion[i].position;
-        sample.velocity = motion[i].velocity;
-        sample.acceleration = motion[i].acceleration;
-        sample.load = expected[i];
-        const double friction = 0.2 * std::copysign(1.0, sample.velocity) + 0.1 * sample.velocity;
-        sample.current = 1.04 * torques[i] / gains[i] + friction + 0.3 * unit(engine);
-        samples[i].push_back(sample);
-        predicted[i].push_back(expected[i] / gains[i]);
-      }
-    }
-  }
-
-  ArmDescription arm = shipped("ur5");
-  std::vector<double> gains = std::vector<double>(6, 10.7);
-  std::vector<std::vector<MotionSample>> samples;
-  std::vector<std::vector<double>> predicted;
-};
-
-TEST(IdentifyPayload, FindsMassAndCentreBesideWrongFrictionAndGain)
-{
-  const Payload payload{ 3.0, { 0.02, -0.03, 0.08 } };
-  LoadedArm robot(payload);
-  const IdentifiedPayload found = identifyPayload(robot.arm, robot.samples, robot.predicted, robot.gains);
-  EXPECT_NEAR(found.mass, 3.0, found.mass_half_width);
-  EXPECT_TRUE(found.differs());
-  EXPECT_GT(found.mass_half_width, 0.0);
-  EXPECT_LT(found.mass_half_width, 0.5);
-  for (std::size_t axis = 0; axis < 3; ++axis)
-  {
-    EXPECT_NEAR(found.moment[axis], 3.0 * payload.centre[axis], 0.05) << axis;
-    EXPECT_DOUBLE_EQ(found.payload().centre[axis], found.moment[axis] / found.mass) << axis;
-  }
-  EXPECT_EQ(found.payload().mass, found.mass);
-
-  // Once it is configured, nothing more is found.
-  ArmDescription loaded = robot.arm;
-  loaded.payload = payload;
-  for (std::size_t i = 0; i < 6; ++i)
-  {
-    for (std::size_t row = 0; row < robot.samples[i].size(); ++row)
-    {
-      robot.predicted[i][row] = robot.samples[i][row].current;
-    }
-  }
-  const IdentifiedPayload again = identifyPayload(loaded, robot.samples, robot.predicted, robot.gains);
-  EXPECT_NEAR(again.mass, 3.0, 1e-9);
-  EXPECT_FALSE(again.differs());
-}
-
-TEST(IdentifyPayload, ClaimsNoPayloadThatArmsWithoutOneShowToo)
-{
-  const LoadedArm robot({ 0.6, {} });
-  const IdentifiedPayload found = identifyPayload(robot.arm, robot.samples, robot.predicted, robot.gains);
-  EXPECT_NEAR(found.mass, 0.6, found.mass_half_width);
-  EXPECT_LT(found.mass_half_width, 0.6) << "it is seen";
-  EXPECT_GT(found.least_claim, 0.6);
-  EXPECT_FALSE(found.differs());
 }
 
 /// The controller's rigid-body torque in recordings of a UR5, from its own target motion. It takes the links for points

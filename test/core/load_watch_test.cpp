@@ -140,7 +140,7 @@ TEST(LoadWatch, FindsWhatIsTakenUpOrPutDownWhileItMoves)
   const IdentifiedPayload& payload = *robot.watch.assumed().payload;
   EXPECT_NEAR(payload.mass, CARRIED.mass, payload.mass_half_width);
   EXPECT_LT(payload.mass_half_width, 0.5);
-  EXPECT_NEAR(robot.watch.assumed().part.begin, taken_up, 1.5);
+  EXPECT_NEAR(robot.watch.assumed().since, taken_up, 1.5);
 
   robot.carry(CARRIED, 20.0);
   EXPECT_TRUE(robot.moved({}, JUDGED, 15.0));
@@ -158,7 +158,7 @@ TEST(LoadWatch, TakesNoOtherFrictionForAPayloadThatIsTakenUp)
     EXPECT_FALSE(robot.moved({}));
     robot.friction = factor;
     EXPECT_FALSE(robot.moved({})) << factor;
-    EXPECT_TRUE(robot.watch.assumed().part.isAll());
+    EXPECT_EQ(robot.watch.assumed().since, -HUGE_VAL);
   }
 }
 
@@ -185,7 +185,6 @@ TEST(LoadLaw, DoesNotTryAgainThatThereIsNoPayload)
   found.payload.mass = -0.3;
   found.payload.mass_half_width = 0.5;
   found.payload.least_claim = 0.9;
-  found.payload.residual_share = 0.5;
   LoadLaw law;
   EXPECT_TRUE(law.take(found, JUDGED));
   found.payload.configured = {};  // beside what counts now
@@ -283,24 +282,6 @@ TEST(LoadWatch, TakesNothingElseForAMountingOrAPayload)
     EXPECT_TRUE(factors[1] == 1.5 || other.watch.assumed().isConfigured())
         << other.watch.assumed().text() << " of a factor " << factors[0];
   }
-}
-
-TEST(FoundLoad, NamesNoneOfTwoThatExplainTheCurrentsAsWell)
-{
-  FoundLoad found;
-  found.mounting.configured = { 0.0, 0.0, -9.81 };
-  found.mounting.gravity = { 0.0, -9.81, 0.0 };
-  found.mounting.half_width = 0.02;
-  found.mounting.residual_share = 0.4;
-  EXPECT_TRUE(found.showsMounting());
-  found.mounting.share_otherwise = 0.42;  // by the payload
-  found.payload.mass = 3.0;
-  found.payload.mass_half_width = 0.1;
-  found.payload.residual_share = 0.42;
-  EXPECT_FALSE(found.showsMounting());
-  EXPECT_FALSE(found.showsPayload());
-  found.payload.residual_share = 0.3;
-  EXPECT_TRUE(found.showsPayload());
 }
 }  // namespace
 }  // namespace hjt

@@ -16,7 +16,9 @@ namespace
 using testing::HasSubstr;
 
 /// A joint under a load of this amplitude [N.m], whose friction and load are multiples of its twin's.
-GainEvidence shown(double load_factor, double friction_factor, double amplitude = 20.0, double noise = 0.05)
+/// `pause`: after half a minute of it the recorder stood for so long [s].
+GainEvidence shown(double load_factor, double friction_factor, double amplitude = 20.0, double noise = 0.05,
+                   double pause = 0.0)
 {
   constexpr double PERIOD = 0.008;  // [s]
   const Parameters parameters = shippedParameters({ "motor.viscous_friction=0.0", "solver.rate=2000" });
@@ -35,6 +37,9 @@ GainEvidence shown(double load_factor, double friction_factor, double amplitude 
     sample.load = amplitude * std::sin(sample.position + 0.4);
     const MotionPrediction predicted = twin.step(sample);
     const double friction = predicted.friction_torque / gain;
+    const bool is_second = sample.time > 30.0;
+    sample.after_gap = sample.after_gap || (pause > 0.0 && is_second && sample.time < 30.0 + 1.5 * PERIOD);
+    sample.time += is_second ? pause : 0.0;
     sample.current = friction_factor * friction + load_factor * (predicted.current - friction) + of_current(engine);
     evidence.update(sample);
   }
@@ -106,6 +111,15 @@ TEST(GainEvidence, UnderNoiseItIsLessSure)
   const GainEvidence blurred = shown(1.4, 1.4, 4.0, 2.0);
   EXPECT_GT(blurred.load.uncertainty, 3.0 * clear.load.uncertainty);
   EXPECT_FALSE(blurred.isExcluded());
+}
+
+/// But for the rows after it until the friction is mobilised again: some of 7500.
+TEST(GainEvidence, APauseTellsNothing)
+{
+  const GainEvidence all = shown(1.4, 1.4, 4.0, 1.0);
+  const GainEvidence paused = shown(1.4, 1.4, 4.0, 1.0, 1200.0);
+  EXPECT_NEAR(paused.load.value, all.load.value, 0.1 * all.load.uncertainty);
+  EXPECT_NEAR(paused.load.uncertainty, all.load.uncertainty, 0.01 * all.load.uncertainty);
 }
 }  // namespace
 }  // namespace hjt

@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "arm/arm_estimator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <Eigen/Cholesky>
+
+#include "arm/arm_estimator_terms.hpp"
+#include "arm/residual_statistics.hpp"
+
+namespace hjt
+{
+namespace
+{
+using namespace term;
+
+// Widths of the priors, chosen on recordings of UR5 and UR10e (docs/arm.md, Payload).
+constexpr double MASS = 0.3;             // [kg]
+constexpr double MOMENT = 0.05;          // [kg.m]
+constexpr double TILT = 0.2;             // [m/s^2]
+constexpr double JUMP_MASS = 1.0;        // [kg]
+constexpr double JUMP_MOMENT = 0.1;      // [kg.m]
+constexpr double ARM_GAIN = 0.01;        // [-]
+constexpr double ARM_FRICTION = 0.1;     // [-]
+constexpr double ARM_COLD = 1.0;         // [10 K]
+constexpr double GROUP_FRICTION = 0.04;  // [-]
+constexpr double JOINT_GAIN = 0.03;      // [-]
+constexpr double ALIKE_GAIN = 0.003;     // of a joint whose load is less than its friction [-]
+constexpr double JOINT_FRICTION = 0.05;  // [-]
+constexpr double JOINT_COLD = 0.3;       // [10 K]
+constexpr double JOINT_OFFSET = 0.1;     // [A]
+constexpr double JOINT_LOSS = 0.02;      // of the load [-]
+constexpr double JOINT_INERTIA = 0.3;    // of the rotor's [-]
+
+constexpr std::size_t FEWEST = 20;  // rows of a joint that counts
+}  // namespace
+
+bool ArmEstimator::Known::isBeyond(double least) const
+{
+  return std::abs(value) - half_width > least;
+}
+
+ArmEstimator::ArmEstimator(Rows rows, const Eigen::Vector3d& gravity)
+  : rows_(std::move(rows)), gravity_(gravity), size_(ownOf(rows_.size()))
+{
+  for (std::vector<Row>& joint : rows_)
+  {
+    if (joint.size() < FEWEST)
+    {
+      joint.clear();
+    }
+    for (const Row& row : joint)
+    {
+      legs_ = std::max(legs_, row.leg + 1);
+    }
+  }
+}
+
+ArmEstimator::Prior ArmEstimator::priorOf(bool with_gravity, bool with_jump) const
+{
+  Prior prior{ Eigen::VectorXd::Constant(size_, NEVER), std::vector<bool>(static_cast<std::size_t>(size_)) };
+  prior.width.head<PAYLOAD>() << MASS, MOMENT, MOMENT, MOMENT;
+  if (with_gravity)
+  {
+    prior.width.segment<GRAVITY>(PAYLOAD).setConstant(TILT);
+  }
+  if (with_jump)
+  {
+    prior.width.segment<PAYLOAD>(JUMP) << JUMP_MASS, JUMP_MOMENT, JUMP_MOMENT, JUMP_MOMENT;
+  }
+  prior.width.segment<OWN - GAIN>(GAIN) << ARM_GAIN, ARM_FRICTION, ARM_COLD, GROUP_FRICTION, GROUP_FRICTION;
+  std::fill(prior.normal.begin() + COLD, prior.normal.begin() + OWN, true);
+  for (std::size_t i = 0; i < rows_.size(); ++i)
+  {
+    double load = 0.0;
+    double friction = 0.0;
+    for (const Row& row : rows_[i])
+    {
+      load += std::pow(row.predicted - row.friction, 2);
+      friction += std::pow(row.friction, 2);
+    }
+    prior.width.segment<PER_JOINT>(ownOf(i)) << (load < friction ? ALIKE_GAIN : JOINT_GAIN), JOINT_FRICTION, JOINT_COLD,
+        JOINT_OFFSET, JOINT_LOSS, JOINT_INERTIA;
+    std::fill_n(prior.normal.begin() + ownOf(i) + OWN_COLD, PER_JOINT - OWN_COLD, true);
+  }
+  return prior;
+}
+
+/// `slope`: by the terms of the arm, of the group and of the joint.
+double ArmEstimator::errorOf(std::size_t joint, std::size_t row, const std::vector<bool>& states,
+                             const Eigen::VectorXd& at, Eigen::VectorXd* slope) const
+{
+  const Row& of = rows_[joint][row];
+  const int own = ownOf(joint);
+  const double gain = 1.0 + at[GAIN] + at[own + OWN_GAIN];
+  const double state = !states.empty() && states[of.leg] ? 1.0 : 0.0;
+  const auto carried = of.load.head<PAYLOAD>();
+  const double load = of.load.dot(at.head<LOAD>()) + state * carried.dot(at.segment<PAYLOAD>(JUMP));
+  const double friction_factor = 1.0 + at[FRICTION] + at[groupOf(joint)] + at[own + OWN_FRICTION];
+  const double way = std::copysign(1.0, of.friction);
+  const double size = std::abs(of.torque + load);
+  const double friction = of.friction + way * of.rise * (size - std::abs(of.torque));
+  const double inner = of.predicted + load + friction_factor * friction - of.friction +
+                       (at[COLD] + at[own + OWN_COLD]) * of.cold + at[own + OWN_LOSS] * way * size +
+                       at[own + OWN_INERTIA] * of.inertia;
+  if (slope != nullptr)
+  {
+    const double by_load =
+        1.0 + (friction_factor * of.rise + at[own + OWN_LOSS]) * way * std::copysign(1.0, of.torque + load);
+    slope->head<LOAD>() = gain * by_load * of.load;
+    slope->segment<PAYLOAD>(JUMP) = state * gain * by_load * carried;
+    slope->segment<GROUP + 1 - GAIN>(GAIN) << inner, gain * friction, gain * of.cold, gain * friction;
+    slope->tail<PER_JOINT>() << inner, gain * friction, gain * of.cold, 1.0, gain * way * size, gain * of.inertia;
+  }
+  return of.current - gain * inner - at[own + OWN_OFFSET];
+}
+
+/// Of the currents over those that are predicted.
+double ArmEstimator::multiple() const
+{
+  double both = 0.0;
+  double squares = std::numeric_limits<double>::min();
+  for (const std::vector<Row>& joint : rows_)
+  {
+    for (const Row& row : joint)
+    {
+      both += row.current * row.predicted;
+      squares += row.predicted * row.predicted;
+    }
+  }
+  return both / squares;
+}
+
+/// The likeliest of those that the starts lead to, and that all currents are another multiple: they are not one.
+ArmEstimator::Point ArmEstimator::best(const Prior& prior, const std::vector<bool>& states) const
+{
+  Point best;
+  for (int start = 0; start <= STARTS; ++start)
+  {
+    Eigen::VectorXd at = Eigen::VectorXd::Zero(size_);
+    at[GAIN] = start < STARTS ? 0.0 : multiple() - 1.0;
+    Point other = refine(prior, states, std::move(at), start < STARTS ? start : HELD);
+    if (other.cost < best.cost)
+    {
+      best = std::move(other);
+    }
+  }
+  return best;
+}
+
+/// Legs whose own mass, beside that of a point, is in the upper half of all.
+std::vector<bool> ArmEstimator::parted(const Point& by) const
+{
+  constexpr double NOISE = 0.05;  // deviation, at least [A]
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(legs_), 2);
+  for (std::size_t i = 0; i < rows_.size(); ++i)
+  {
+    const double weight = 1.0 / std::pow(std::max(by.deviations[i], NOISE), 2);
+    for (std::size_t k = 0; k < rows_[i].size(); ++k)
+    {
+      const Row& row = rows_[i][k];
+      const auto leg = static_cast<Eigen::Index>(row.leg);
+      sums(leg, 0) += weight * row.load[0] * errorOf(i, k, {}, by.at, nullptr);
+      sums(leg, 1) += weight * row.load[0] * row.load[0];
+    }
+  }
+  const Eigen::VectorXd masses = sums.col(0).array() / (sums.col(1).array() + std::numeric_limits<double>::min());
+  const double middle = 0.5 * (masses.minCoeff() + masses.maxCoeff());
+  std::vector<bool> states(legs_);
+  for (std::size_t leg = 0; leg < legs_; ++leg)
+  {
+    states[leg] = masses[static_cast<Eigen::Index>(leg)] > middle;
+  }
+  return states;
+}
+
+/// The state that the rows of each leg fit better.
+std::vector<bool> ArmEstimator::likelier(const Point& by) const
+{
+  std::vector<double> costs(legs_);  // of state 1 beyond that of state 0
+  for (const bool state : { false, true })
+  {
+    const std::vector<bool> all(legs_, state);
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+    {
+      for (std::size_t k = 0; k < rows_[i].size(); ++k)
+      {
+        const double t = errorOf(i, k, all, by.at, nullptr) / by.deviations[i];
+        costs[rows_[i][k].leg] += (state ? 1.0 : -1.0) * std::log1p(t * t / STUDENT);
+      }
+    }
+  }
+  std::vector<bool> states(legs_);
+  std::transform(costs.begin(), costs.end(), states.begin(), [](double cost) { return cost < 0.0; });
+  return states;
+}
+
+/// The payload may have two states, between which it changes from leg to leg; `states` stays empty where that is not
+/// clearly likelier. Begun by what one payload leaves, and by what the arm as configured leaves.
+ArmEstimator::Point ArmEstimator::withJump(bool with_gravity, const Point& without, std::vector<bool>& states) const
+{
+  constexpr double CLEARLY = 20.0;
+  constexpr int TURNS = 6;
+  const Prior prior = priorOf(with_gravity, true);
+  Point best = without;
+  double limit = without.cost - CLEARLY;
+  Point configured = without;
+  configured.at.setZero();
+  for (const Point* from : { &without, static_cast<const Point*>(&configured) })
+  {
+    std::vector<bool> tried = parted(*from);
+    Point now;
+    for (int turn = 0; turn < TURNS; ++turn)
+    {
+      now = turn == 0 ? this->best(prior, tried) : refine(prior, tried, now.at, HELD);
+      if (now.cost < limit)
+      {
+        best = now;
+        limit = now.cost;
+        states = tried;
+      }
+      std::vector<bool> next = likelier(now);
+      if (next == tried)
+      {
+        break;
+      }
+      tried = std::move(next);
+    }
+  }
+  return best;
+}
+
+ArmEstimator::Estimate ArmEstimator::estimateOf(const Point& point, const std::vector<bool>& states) const
+{
+  const Eigen::MatrixXd covariance = point.information.ldlt().solve(Eigen::MatrixXd::Identity(size_, size_));
+  const Eigen::VectorXd half_widths = NORMAL_95 * covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+  const auto known = [&](const Eigen::VectorXd& terms) {
+    return Known{ terms.dot(point.at), NORMAL_95 * std::sqrt(std::max(0.0, terms.dot(covariance * terms))) };
+  };
+  Estimate found;
+  found.payload = point.at.head<PAYLOAD>();
+  found.payload_half_width = half_widths.head<PAYLOAD>();
+  found.gravity = point.at.segment<GRAVITY>(PAYLOAD);
+  found.gravity_half_width = half_widths.segment<GRAVITY>(PAYLOAD);
+  found.jump = point.at.segment<PAYLOAD>(JUMP);
+  found.jump_half_width = half_widths.segment<PAYLOAD>(JUMP);
+  found.gain = known(Eigen::VectorXd::Unit(size_, GAIN));
+  found.states = states;
+  found.rareness = point.rareness;
+  found.cost = point.cost;
+  double left = 0.0;
+  double all = 0.0;
+  for (std::size_t i = 0; i < rows_.size(); ++i)
+  {
+    const int own = ownOf(i);
+    double power = std::numeric_limits<double>::min();
+    double cold = 0.0;
+    double loss = 0.0;
+    for (std::size_t k = 0; k < rows_[i].size(); ++k)
+    {
+      const Row& row = rows_[i][k];
+      power += row.friction * row.friction;
+      cold += row.friction * row.cold;
+      loss += std::abs(row.friction * row.torque);
+      left += std::pow(errorOf(i, k, states, point.at, nullptr), 2);
+      all += row.current * row.current;
+    }
+    found.gains.push_back(known(Eigen::VectorXd::Unit(size_, own + OWN_GAIN)));
+    // Of what the other terms add, the part that is in proportion to the friction.
+    Eigen::VectorXd terms = Eigen::VectorXd::Zero(size_);
+    terms[groupOf(i)] = terms[own + OWN_FRICTION] = 1.0;
+    terms[own + OWN_COLD] = cold / power;
+    terms[own + OWN_LOSS] = loss / power;
+    found.own.push_back(known(terms));
+    terms[FRICTION] = 1.0;
+    terms[COLD] = cold / power;
+    found.frictions.push_back(known(terms));
+    found.frictions.back().value += 1.0;
+  }
+  found.left = all > 0.0 ? std::sqrt(left / all) : 1.0;
+  return found;
+}
+
+ArmEstimator::Estimate ArmEstimator::solve(bool with_gravity, bool with_jump) const
+{
+  std::vector<bool> states;
+  Point point = best(priorOf(with_gravity, false), states);
+  if (with_jump && legs_ > 1)
+  {
+    point = withJump(with_gravity, point, states);
+  }
+  return estimateOf(point, states);
+}
+}  // namespace hjt

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace hjt
+{
+/// What explains the currents of an arm beside those that its twins predict: the most likely causes a posteriori.
+///
+///   current = (1 + g + g_i) (predicted + L_i + F_i (friction + rise_i U_i) - friction + (c + c_i) cold
+///             + l_i |T_i + L_i| + j_i inertia) + o_i
+/// where L_i = Y_i . x + jump_i   x: mass and moments of a payload and the change of gravity; jump: those of another
+///                                payload in the legs of state 1
+///       F_i = 1 + f + f_group + f_i, of the twin's friction; c the same by temperature
+///       U_i = |T_i + L_i| - |T_i|, T_i the load as configured, rise_i how much friction rises with it
+///       g, o gains and offsets, l_i a loss in proportion to the load, j_i the rotor's inertia
+/// friction, rise and loss of the sign of the motion. Few arms carry another payload, hang otherwise, or have a joint
+/// of another gain or friction: their priors are Cauchy's. All differ in what is left, by a normal distribution. Rows are
+/// those of one joint that moves one way; outliers (contact) count as by Student's t of 4 degrees of freedom. A joint's
+/// rows tell no more than INDEPENDENT ones: errors of a model are no noise. A joint's gain is free only where its load
+/// is at least its friction: elsewhere both look alike.
+class ArmEstimator
+{
+public:
+  static constexpr int PAYLOAD = 4;  ///< mass and its three moments
+  static constexpr int GRAVITY = 3;  ///< its change
+  static constexpr int LOAD = PAYLOAD + GRAVITY;
+  using Load = Eigen::Matrix<double, LOAD, 1>;
+  using Carried = Eigen::Matrix<double, PAYLOAD, 1>;
+
+  /// Means of a joint while it moves one way [A].
+  struct Row
+  {
+    double time{};  ///< [s]
+    std::size_t leg{};
+    double current{};
+    double predicted{};
+    double friction{};          ///< of the twin
+    double cold{};              ///< the same 10 K colder, less that
+    double torque{};            ///< of the load as configured
+    double inertia{};           ///< of the rotor
+    double rise{};              ///< of the friction with the load, size by size [-]
+    Load load{ Load::Zero() };  ///< of units of mass, moments and gravity
+  };
+  using Rows = std::vector<std::vector<Row>>;  ///< of each joint, from the base on
+
+  /// Value and half width of its 95 % interval.
+  struct Known
+  {
+    double value{};
+    double half_width{};
+
+    bool isBeyond(double least) const;  ///< the interval, from `least` either way
+  };
+
+  struct Estimate
+  {
+    Carried payload{ Carried::Zero() };  ///< of the legs of state 0, beside the configured one
+    Carried payload_half_width{ Carried::Zero() };
+    Carried jump{ Carried::Zero() };  ///< to the legs of state 1
+    Carried jump_half_width{ Carried::Zero() };
+    Eigen::Vector3d gravity{ Eigen::Vector3d::Zero() };  ///< beside the configured one
+    Eigen::Vector3d gravity_half_width{ Eigen::Vector3d::Zero() };
+    Known gain;                    ///< of the arm, beside 1
+    std::vector<Known> gains;      ///< of each joint, beside the arm's
+    std::vector<Known> frictions;  ///< of each joint, over the twin's, in its rows
+    std::vector<Known> own;        ///< of each joint beside the arm's: the part that is a fault's
+    std::vector<bool> states;      ///< of each leg; empty: one payload
+    double left{ 1.0 };            ///< of the currents, share, rms [-]
+    double rareness{};             ///< of what is found, logarithm
+    double cost{};                 ///< logarithm of a likelihood a posteriori
+  };
+
+  /// `gravity`: as configured, in the frame of the base [m/s^2]; that of another mounting is of its size.
+  ArmEstimator(Rows rows, const Eigen::Vector3d& gravity);
+
+  /// By `with_gravity` the mounting may be another, by `with_jump` the payload may change between legs.
+  Estimate solve(bool with_gravity = true, bool with_jump = true) const;
+
+private:
+  struct Prior;
+  struct Point;
+
+  Prior priorOf(bool with_gravity, bool with_jump) const;
+  double errorOf(std::size_t joint, std::size_t row, const std::vector<bool>& states, const Eigen::VectorXd& at,
+                 Eigen::VectorXd* slope) const;
+  Point refine(const Prior& prior, const std::vector<bool>& states, Eigen::VectorXd at, int start) const;
+  double multiple() const;
+  Point best(const Prior& prior, const std::vector<bool>& states) const;
+  Point withJump(bool with_gravity, const Point& without, std::vector<bool>& states) const;
+  std::vector<bool> parted(const Point& by) const;
+  std::vector<bool> likelier(const Point& by) const;
+  Estimate estimateOf(const Point& point, const std::vector<bool>& states) const;
+
+  void addPrior(const Prior& prior, int start, Point& point, Eigen::VectorXd& right) const;
+  void addRows(std::size_t joint, const std::vector<bool>& states, Point& point, Eigen::VectorXd& right) const;
+
+  Rows rows_;
+  Eigen::Vector3d gravity_;
+  std::size_t legs_{};
+  int size_;  // of all terms
+};
+}  // namespace hjt

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <Eigen/Cholesky>
+
+#include "arm/arm_estimator_terms.hpp"
+#include "arm/residual_statistics.hpp"
+
+namespace hjt
+{
+namespace
+{
+using namespace term;
+
+constexpr double INDEPENDENT = 40.0;  // rows of a joint, at most
+constexpr double LEAST = 0.01;        // deviation of rows [A]
+
+/// How much rarer a row is, logarithm, by the square of its error in deviations.
+double rarer(double square)
+{
+  return 0.5 * (STUDENT + 1.0) * std::log1p(square / STUDENT);
+}
+
+/// What start it is tells the causes that are hardly held at first: the load; all; load and friction; friction.
+double looseness(int start, int term)
+{
+  constexpr double OF_LOAD = 0.01;
+  constexpr double OF_OTHERS = 0.05;
+  const bool is_load = term < GAIN;
+  const bool is_friction = term >= FRICTION && (term < OWN || (term - OWN) % PER_JOINT == OWN_FRICTION);
+  const bool is_loose = start == 1 || (is_load && (start == 0 || start == 2)) || (is_friction && start > 1);
+  return !is_loose ? 1.0 : is_load ? OF_LOAD : OF_OTHERS;
+}
+}  // namespace
+
+void ArmEstimator::addPrior(const Prior& prior, int start, Point& point, Eigen::VectorXd& right) const
+{
+  for (int k = 0; k < size_; ++k)
+  {
+    const double t = point.at[k] / prior.width[k];
+    const bool is_normal = prior.normal[static_cast<std::size_t>(k)];
+    const double weight = (prior.width[k] > NEVER ? looseness(start, k) : 1.0) / (prior.width[k] * prior.width[k]) *
+                          (is_normal ? 1.0 : 2.0 / (1.0 + t * t));
+    point.information(k, k) += weight;
+    right[k] -= weight * point.at[k];
+    point.rareness += is_normal ? 0.5 * t * t : std::log1p(t * t);
+  }
+  // Gravity's size is known but for the masses of the links, which look like it. At first it may turn over; weightless
+  // as configured there is nothing to turn.
+  constexpr double LINKS = 0.02;  // of their masses
+  const Eigen::Vector3d total = gravity_ + point.at.segment<GRAVITY>(PAYLOAD);
+  if (looseness(start, PAYLOAD) < 1.0 || !(prior.width[PAYLOAD] > NEVER) || gravity_.isZero() || total.isZero())
+  {
+    return;
+  }
+  const double weight = 1.0 / std::pow(LINKS * gravity_.norm(), 2);
+  const double error = gravity_.norm() - total.norm();
+  const Eigen::Vector3d way = total.normalized();
+  point.information.block<GRAVITY, GRAVITY>(PAYLOAD, PAYLOAD) += weight * way * way.transpose();
+  right.segment<GRAVITY>(PAYLOAD) += weight * error * way;
+  point.rareness += 0.5 * weight * error * error;
+}
+
+void ArmEstimator::addRows(std::size_t joint, const std::vector<bool>& states, Point& point,
+                           Eigen::VectorXd& right) const
+{
+  constexpr double FLOOR = 0.02;  // that the rows of no real arm fall below [A]
+  constexpr double COUNTED = 60.0;
+  const auto count = static_cast<Eigen::Index>(rows_[joint].size());
+  Eigen::VectorXd error(count);
+  Eigen::VectorXd slope(USED);
+  Eigen::MatrixXd slopes(count, USED);
+  for (Eigen::Index k = 0; k < count; ++k)
+  {
+    error[k] = errorOf(joint, static_cast<std::size_t>(k), states, point.at, &slope);
+    slopes.row(k) = slope.transpose();
+  }
+  const double deviation = std::max(robustDeviation(error), LEAST);
+  const double rows_a_tale = std::max({ 1.0, correlationRows(error), static_cast<double>(count) / INDEPENDENT });
+  const Eigen::ArrayXd squares = (error / deviation).array().square();
+  const Eigen::VectorXd weights = (STUDENT + 1.0) / (STUDENT + squares) / (deviation * deviation * rows_a_tale);
+  const Eigen::MatrixXd weighted = weights.asDiagonal() * slopes;
+  const Eigen::MatrixXd products = slopes.transpose() * weighted;
+  const Eigen::VectorXd sums = weighted.transpose() * error;
+  const auto term = [&](int k) { return k < GROUP ? k : k == GROUP ? groupOf(joint) : ownOf(joint) + k - GROUP - 1; };
+  for (int k = 0; k < USED; ++k)
+  {
+    right[term(k)] += sums[k];
+    for (int l = 0; l < USED; ++l)
+    {
+      point.information(term(k), term(l)) += products(k, l);
+    }
+  }
+  point.deviations[joint] = deviation;
+  const double scale = std::hypot(deviation, FLOOR);
+  point.cost += COUNTED * (std::log(scale) + (error / scale).array().square().unaryExpr(&rarer).mean());
+}
+
+/// By Gauss and Newton; what `start` names is hardly held in the first rounds.
+ArmEstimator::Point ArmEstimator::refine(const Prior& prior, const std::vector<bool>& states, Eigen::VectorXd at,
+                                         int start) const
+{
+  constexpr int ROUNDS = 15;
+  constexpr int LOOSE_ROUNDS = 5;
+  Point point;
+  point.at = std::move(at);
+  point.deviations.resize(rows_.size());
+  for (int round = 0; round < ROUNDS; ++round)
+  {
+    point.information = Eigen::MatrixXd::Zero(size_, size_);
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(size_);
+    point.rareness = 0.0;
+    addPrior(prior, round < LOOSE_ROUNDS ? start : HELD, point, right);
+    point.cost = point.rareness;
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+    {
+      if (!rows_[i].empty())
+      {
+        addRows(i, states, point, right);
+      }
+    }
+    point.at += point.information.ldlt().solve(right);
+  }
+  return point;
+}
+}  // namespace hjt
