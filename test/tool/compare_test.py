@@ -123,12 +123,14 @@ class Compare(tool.ToolTest):
         robot.write_bag(self.path("short.bag"), 2.0)
         self.compare("sound.bag")
         for name, least, code in (("sound.bag", "warn", 0), ("worn.bag", "warn", 3), ("worn.bag", "error", 0),
-                                  ("worn.bag", None, 0), ("short.bag", "warn", 4),
-                                  ("sound.bag", "not-judged", 0), ("worn.bag", "not-judged", 3), ("short.bag", "not-judged", 4), ("short.bag", None, 0)):
+                                  ("worn.bag", None, 0), ("short.bag", "warn", 4), ("sound.bag", "not-judged", 0),
+                                  ("worn.bag", "not-judged", 3), ("short.bag", "not-judged", 4),
+                                  ("short.bag", None, 0)):
             asked = ["--fail-on", least] if least else []
             done = self.run_tool("compare", name, *OPTIONS, *GAIN, "--json", *asked)
             self.assertEqual(done.returncode, code, (name, least, done.stdout, done.stderr))
-        self.fail_with(2, ["--fail-on", "{warn,error,not-judged}"], "compare", "sound.bag", *OPTIONS, "--json", "--fail-on", "ok")
+        self.fail_with(2, ["--fail-on", "{warn,error,not-judged}"], "compare", "sound.bag", *OPTIONS, "--json",
+                       "--fail-on", "ok")
 
     def test_json_needs_no_report_and_leaves_no_file(self):
         robot.write_bag(self.path("a.bag"), 30.0)
