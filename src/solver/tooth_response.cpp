@@ -23,7 +23,10 @@ void blend(const Corners& from, std::size_t first, std::size_t count, double* ou
   const float* b = from.node[1] + first;
   const float* c = from.node[2] + first;
   const float* d = from.node[3] + first;
-  const auto [wa, wb, wc, wd] = from.weight;
+  const float wa = from.weight[0];
+  const float wb = from.weight[1];
+  const float wc = from.weight[2];
+  const float wd = from.weight[3];
 #pragma omp simd
   for (std::size_t i = 0; i < count; ++i)
   {

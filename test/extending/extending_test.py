@@ -92,8 +92,10 @@ def run_example(build, copy, text):
     program = next((each for each in programs if each.exists()), None)
     if program is None:
         fail(f"no program {command[0]} was built")
+    # A workspace that is sourced would bring its own libraries.
+    libraries = os.pathsep.join([str(build / "devel/lib"), os.environ.get("LD_LIBRARY_PATH", "")])
     result = subprocess.run([program, *command[1:]], cwd=copy, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                            universal_newlines=True)
+                            universal_newlines=True, env={**os.environ, "LD_LIBRARY_PATH": libraries})
     print(result.stdout)
     if result.returncode != 0:
         fail(f"{text}: ended with {result.returncode}")
