@@ -18,14 +18,8 @@
 
 namespace hjt
 {
-namespace
-{
-constexpr std::size_t SHOULDER = 1;
-constexpr std::size_t ELBOW = 2;
-constexpr std::size_t WRIST_2 = 4;
-constexpr double LEG = 4.0;  // from one standstill to the next [s]
-
-struct Case
+// The parameter of a test's class: not in an unnamed namespace.
+struct EstimatorCase
 {
   std::string name;
   std::array<double, 6> friction{ 1.0, 1.0, 1.0, 1.0, 1.0, 1.0 };  // times the twins'
@@ -37,9 +31,15 @@ struct Case
   double push{};    // at the elbow, for 2 s [N.m]
 };
 
-Case with(const std::string& name, const std::function<void(Case&)>& change)
+namespace
 {
-  Case made;
+constexpr std::size_t SHOULDER = 1;
+constexpr std::size_t WRIST_2 = 4;
+constexpr double LEG = 4.0;  // from one standstill to the next [s]
+
+EstimatorCase with(const std::string& name, const std::function<void(EstimatorCase&)>& change)
+{
+  EstimatorCase made;
   made.name = name;
   change(made);
   return made;
@@ -86,7 +86,7 @@ JointMotion motionAt(std::size_t joint, double time)
 }
 
 /// The rows of a case: friction of joints differs by 5 %, gains by 2 %, offsets by 0.02 A, currents by noise of 0.05 A.
-LoadFit fitOf(const Case& of, unsigned seed)
+LoadFit fitOf(const EstimatorCase& of, unsigned seed)
 {
   constexpr double PERIOD = 0.02;  // [s]
   constexpr double DURATION = 80.0;
@@ -152,14 +152,14 @@ const std::vector<bool> ALL(6, true);
 constexpr unsigned SEEDS = 2;
 }  // namespace
 
-class ArmEstimatorTable : public testing::TestWithParam<Case>
+class ArmEstimatorTable : public testing::TestWithParam<EstimatorCase>
 {
 };
 
 /// Within 0.15 where friction is a fault's, as the joints differ by 5 % and by what the prior takes.
 TEST_P(ArmEstimatorTable, FindsTheTruth)
 {
-  const Case& of = GetParam();
+  const EstimatorCase& of = GetParam();
   for (unsigned seed = 1; seed <= SEEDS; ++seed)
   {
     SCOPED_TRACE(of.name + ", seed " + std::to_string(seed));
@@ -188,76 +188,76 @@ TEST_P(ArmEstimatorTable, FindsTheTruth)
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, ArmEstimatorTable,
-                         testing::Values(with("sound", [](Case&) {}),
-                                         with("elbow_friction", [](Case& c) { c.friction[ELBOW] = 1.6; }),
-                                         with("wrist_2_friction", [](Case& c) { c.friction[WRIST_2] = 1.6; }),
-                                         with("cold", [](Case& c) { c.friction.fill(1.4); }),
-                                         with("elbow_gain", [](Case& c) { c.gain[ELBOW] = 1.4; }),
-                                         with("elbow_gain_2", [](Case& c) { c.gain[ELBOW] = 2.0; }),
-                                         with("all_gains", [](Case& c) { c.gain.fill(1.4); }),
-                                         with("payload", [](Case& c) { c.mass = 1.8; }),
+                         testing::Values(with("sound", [](EstimatorCase&) {}),
+                                         with("elbow_friction", [](EstimatorCase& c) { c.friction[ELBOW] = 1.6; }),
+                                         with("wrist_2_friction", [](EstimatorCase& c) { c.friction[WRIST_2] = 1.6; }),
+                                         with("cold", [](EstimatorCase& c) { c.friction.fill(1.4); }),
+                                         with("elbow_gain", [](EstimatorCase& c) { c.gain[ELBOW] = 1.4; }),
+                                         with("elbow_gain_2", [](EstimatorCase& c) { c.gain[ELBOW] = 2.0; }),
+                                         with("all_gains", [](EstimatorCase& c) { c.gain.fill(1.4); }),
+                                         with("payload", [](EstimatorCase& c) { c.mass = 1.8; }),
                                          with("payload_elbow_friction",
-                                              [](Case& c)
+                                              [](EstimatorCase& c)
                                               {
                                                 c.mass = 1.8;
                                                 c.friction[ELBOW] = 1.6;
                                               }),
                                          with("payload_elbow_gain",
-                                              [](Case& c)
+                                              [](EstimatorCase& c)
                                               {
                                                 c.mass = 1.8;
                                                 c.gain[ELBOW] = 1.4;
                                               }),
                                          with("payload_cold",
-                                              [](Case& c)
+                                              [](EstimatorCase& c)
                                               {
                                                 c.mass = 1.8;
                                                 c.friction.fill(1.4);
                                               }),
                                          with("payload_shoulder_friction",
-                                              [](Case& c)
+                                              [](EstimatorCase& c)
                                               {
                                                 c.mass = 3.0;
                                                 c.friction[SHOULDER] = 1.6;
                                               }),
                                          with("taken_up",
-                                              [](Case& c)
+                                              [](EstimatorCase& c)
                                               {
                                                 c.mass = 3.0;
                                                 c.from = 32.0;
                                               }),
                                          with("in_turns",
-                                              [](Case& c)
+                                              [](EstimatorCase& c)
                                               {
                                                 c.mass = 2.0;
                                                 c.in_turns = true;
                                               }),
                                          with("in_turns_cold",
-                                              [](Case& c)
+                                              [](EstimatorCase& c)
                                               {
                                                 c.mass = 2.0;
                                                 c.in_turns = true;
                                                 c.friction.fill(1.4);
                                               }),
-                                         with("wall", [](Case& c) { c.tilt = 0.5 * PI; }),
+                                         with("wall", [](EstimatorCase& c) { c.tilt = 0.5 * PI; }),
                                          with("tilted_elbow_friction",
-                                              [](Case& c)
+                                              [](EstimatorCase& c)
                                               {
                                                 c.tilt = 0.35;
                                                 c.friction[ELBOW] = 1.6;
                                               }),
                                          with("push_elbow_friction",
-                                              [](Case& c)
+                                              [](EstimatorCase& c)
                                               {
                                                 c.push = 25.0;
                                                 c.friction[ELBOW] = 1.6;
                                               }),
-                                         with("no_friction", [](Case& c) { c.friction.fill(0.0); })),
-                         [](const testing::TestParamInfo<Case>& info) { return info.param.name; });
+                                         with("no_friction", [](EstimatorCase& c) { c.friction.fill(0.0); })),
+                         [](const testing::TestParamInfo<EstimatorCase>& info) { return info.param.name; });
 
 TEST(LoadFit, NamesAGainOfAllJoints)
 {
-  Case of;
+  EstimatorCase of;
   EXPECT_FALSE(fitOf(of, 1).solve(ALL).misfit().exists());
   of.gain.fill(1.4);
   const Misfit misfit = fitOf(of, 1).solve(ALL).misfit();
@@ -267,7 +267,7 @@ TEST(LoadFit, NamesAGainOfAllJoints)
 
 TEST(LoadFit, LeavesOutAJointThatIsNotMeasured)
 {
-  Case of;
+  EstimatorCase of;
   of.mass = 2.0;
   of.gain[SHOULDER] = 0.0;
   std::vector<bool> counts = ALL;

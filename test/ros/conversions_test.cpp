@@ -85,6 +85,9 @@ TEST_F(Messages, CarryEncoderAnglesAndTorquesUnderBothNames)
   EXPECT_GT(message.position[0], 0.1);
 }
 
+}  // namespace
+
+// A template argument of a header's class: not in an unnamed namespace.
 struct HealthListener
 {
   bool is_listening{ true };
@@ -117,6 +120,8 @@ private:
   Message message_;
 };
 
+namespace
+{
 TEST_F(Messages, SummariseTheStepsSinceTheLastHealth)
 {
   HealthListener listener;
