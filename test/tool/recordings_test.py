@@ -181,8 +181,8 @@ class Recordings(RecordingTest):
 
     def test_all_that_a_header_lacks_is_named_at_once(self):
         with open(self.path("a.csv"), "w", encoding="ascii") as file:
-            file.write("time,actual_q_0,actual_q_1\n0.0,1.0,1.0\n")
-        self.fail_with(1, ["'timestamp'", "'actual_q_5'", "'actual_current_0'", "'actual_current_5'", "time"], "check",
+            file.write("when,actual_q_0,actual_q_1\n0.0,1.0,1.0\n")
+        self.fail_with(1, ["'timestamp'", "'actual_q_5'", "'actual_current_0'", "'actual_current_5'", "when"], "check",
                        "a.csv", "--arm", "ur5")
         with open(self.path("b.csv"), "w", encoding="ascii") as file:
             file.write("0.0,1.0,1.0\n0.1,1.0,1.0\n")

@@ -97,7 +97,7 @@ class Trend(tool.ToolTest):
         found = self.trend(folder)
         rows = {os.path.basename(row["recording"]): row for row in found["recordings"]}
         self.assertEqual(sorted(rows), ["other.csv", "short.csv", "torn.bag", "w.csv", "x.csv", "y.csv", "z.csv"])
-        for name, why in (("torn.bag", "cannot be read as a bag"), ("other.csv", "timestamp"),
+        for name, why in (("torn.bag", "cannot be read as a bag"), ("other.csv", "'actual_q_2'"),
                           ("short.csv", "Fewer than three speeds")):
             self.assertEqual(rows[name]["level"], "NOT JUDGED")
             self.assertIn(why, rows[name]["text"])

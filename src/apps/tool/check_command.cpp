@@ -123,9 +123,9 @@ std::string textOfStamps(const CheckedArm& arm)
   const std::string rate = arm.timing.period > 0.0 ? roundedText(1.0 / arm.timing.period, 4) + " Hz" :
                            arm.found.rows == 0     ? std::string("none that could be used") :
                                                      std::string("one row");
-  return rate + ", " + std::to_string(arm.timing.missing) + " rows missing, " + std::to_string(arm.found.gaps) +
-         " gaps, " + std::to_string(arm.found.refused) + " repeated or out of order, " +
-         std::to_string(arm.found.corrupt) + " unreadable";
+  return rate + ", " + std::to_string(arm.timing.missing) + " missing, " + std::to_string(arm.found.gaps) + " gaps, " +
+         std::to_string(arm.found.refused) + " repeated or out of order, " + std::to_string(arm.found.corrupt) +
+         " unreadable";
 }
 
 std::string textOfVelocities(const CheckedArm& arm)
