@@ -57,6 +57,12 @@ public:
   /// takes the place of its first.
   void follow(ArmMotion& motion) noexcept;
 
+  /// Of the motion that it follows: time until its end, < 0 behind it [s].
+  double commandLeft() const noexcept
+  {
+    return commanded_.end() - commanded_.begin() - toSeconds(twin_.stamp() - command_begin_);
+  }
+
   /// For a motion that comes point by point: goes from the last set point to this one, which is due at `time` of the
   /// motion given at construction, later than the last. That motion has two set points; the first is the start.
   void goOn(double time, const std::vector<JointMotion>& set_point) noexcept { motion_.goOn(time, set_point); }

@@ -58,10 +58,11 @@ std::array<double, 3> valuesOf(const geometry_msgs::Vector3& vector)
 
 ArmNode::Advance::Advance(const ArmDescription& description, const std::vector<Parameters>& drives)
   : arm(description, drives, gentleMotion(description), armSurfaces(drives))
-  , motion(gentleMotion(description))
+  , command({ gentleMotion(description), {} })
   , wrench(ArmWrench{})
   , payload(Payload{})
   , wanted_(drives.size())
+  , watch_(description, arm.twin())
 {
   for (std::size_t i = 0; i < drives.size(); ++i)
   {
@@ -69,10 +70,12 @@ ArmNode::Advance::Advance(const ArmDescription& description, const std::vector<P
   }
   arm.wanted(wanted_);
   shown.tryWrite(wanted_);
+  report.tryWrite(watch_.report());
 }
 
 bool ArmNode::Advance::reset(Stamp stamp) noexcept
 {
+  watch_.forget();
   return arm.reset(stamp);
 }
 
@@ -83,16 +86,27 @@ void ArmNode::Advance::push(const LiveInput& input) noexcept
 
 bool ArmNode::Advance::step(Stamp until) noexcept
 {
-  motion.take([this](ArmMotion& commanded) { arm.follow(commanded); });
+  command.take(
+      [this](Command& given)
+      {
+        arm.follow(given.motion);
+        watch_.begin(given.goal);
+      });
   wrench.take([this](const ArmWrench& acting) { arm.twin().setWrench(acting); });
   payload.take([this](const Payload& carried) { arm.setPayload(carried); });
-  return arm.step(until);
+  if (!arm.step(until))
+  {
+    return false;
+  }
+  watch_.look(arm);
+  return true;
 }
 
 void ArmNode::Advance::show(LoopStatus& /*status*/) noexcept
 {
   arm.wanted(wanted_);
   shown.tryWrite(wanted_);
+  report.tryWrite(watch_.report());
   const std::optional<ProtectiveStop>& stop = arm.protectiveStop();
   stopped_joint = stop ? stop->joint : 0;
   stop_reason = stop ? stop->reason : nullptr;
@@ -129,41 +143,59 @@ ArmNode::ArmNode(ros::NodeHandle& node, const ArmDescription& arm, const std::ve
 
 void ArmNode::tellOfStop()
 {
-  const char* reason = advance_.stop_reason;
-  if (reason != nullptr && !told_of_stop_)
+  const std::string reason = stopReason();
+  if (!reason.empty() && !told_of_stop_)
   {
-    ROS_ERROR_STREAM("Protective stop: " << description_.joints[advance_.stopped_joint].short_name << " is " << reason
-                                         << "; the arm stands in its brakes until ~reset");
+    ROS_ERROR_STREAM("Protective stop: " << reason << "; the arm stands in its brakes until ~reset");
   }
-  told_of_stop_ = reason != nullptr;
+  told_of_stop_ = !reason.empty();
+}
+
+std::string ArmNode::stopReason() const
+{
+  const char* reason = advance_.stop_reason;
+  return reason == nullptr ? "" : description_.joints[advance_.stopped_joint].short_name + " is " + reason;
 }
 
 void ArmNode::receiveCommand(const trajectory_msgs::JointTrajectory& message)
 {
+  ArmGoal unwatched;
+  if (const std::string errors = command(message, unwatched); !errors.empty())
+  {
+    ROS_WARN_STREAM_THROTTLE(ARM_WARNING_PERIOD, "Refused a trajectory on ~" << topics::COMMAND << ": " << errors);
+  }
+}
+
+std::string ArmNode::command(const trajectory_msgs::JointTrajectory& message, ArmGoal& goal)
+{
   if (advance_.stop_reason != nullptr)
   {
-    ROS_WARN_STREAM_THROTTLE(ARM_WARNING_PERIOD,
-                             "Refused a trajectory on ~" << topics::COMMAND << ": protective stop; ~reset ends it");
-    return;
+    return "protective stop; ~reset ends it";
   }
   if (message.points.empty())
   {
     // As joint_trajectory_controller does, whichever joints it names.
-    advance_.motion.give(ArmMotion(stopFrom(advance_.shown.read()), ArmAccelerations::OF_CUBICS));
-    return;
+    give(stopFrom(advance_.shown.read()), goal);
+    return "";
   }
   const Stamp now = rosNow();
   const Stamp ahead = std::max<Stamp>(stampOr(message.header.stamp, toRosTime(now)) - now, 0);
   std::vector<ArmSetPoint> points;
-  const std::string errors = ahead > FAR_STAMP ?
-                                 "its stamp is more than a day ahead of the clock" :
-                                 readTrajectory(message, description_, advance_.shown.read(), toSeconds(ahead), points);
-  if (!errors.empty())
+  std::string errors = ahead > FAR_STAMP ?
+                           "its stamp is more than a day ahead of the clock" :
+                           readTrajectory(message, description_, advance_.shown.read(), toSeconds(ahead), points);
+  if (errors.empty())
   {
-    ROS_WARN_STREAM_THROTTLE(ARM_WARNING_PERIOD, "Refused a trajectory on ~" << topics::COMMAND << ": " << errors);
-    return;
+    give(std::move(points), goal);
   }
-  advance_.motion.give(ArmMotion(std::move(points), ArmAccelerations::OF_CUBICS));
+  return errors;
+}
+
+void ArmNode::give(std::vector<ArmSetPoint> points, ArmGoal& goal)
+{
+  const std::lock_guard<std::mutex> lock(command_mutex_);
+  goal.number = ++commands_;
+  advance_.command.give({ ArmMotion(std::move(points), ArmAccelerations::OF_CUBICS), goal });
 }
 
 void ArmNode::receiveWrench(const geometry_msgs::WrenchStamped& message)
