@@ -26,8 +26,11 @@ namespace
 {
 constexpr const char* WRENCH = "wrench";
 constexpr const char* PAYLOAD = "payload";
+constexpr const char* UNLOCK = "unlock_protective_stop";
 /// Between two warnings of the same kind [s].
 constexpr double ARM_WARNING_PERIOD = 1.0;
+/// Between two looks at a protective stop [s].
+constexpr double STATE_PERIOD = 0.05;
 
 /// Those of the drives as they start are waited for: so many rings would not keep up with the clock. Those of faults
 /// that come later are built beside the running arm.
@@ -94,6 +97,12 @@ bool ArmNode::Advance::step(Stamp until) noexcept
       });
   wrench.take([this](const ArmWrench& acting) { arm.twin().setWrench(acting); });
   payload.take([this](const Payload& carried) { arm.setPayload(carried); });
+  if (unlock == Unlock::ASKED)
+  {
+    const bool is_done = arm.unlock();
+    stop_reason = is_done ? nullptr : stop_reason.load();
+    unlock = is_done ? Unlock::DONE : Unlock::MOVES;
+  }
   if (!arm.step(until))
   {
     return false;
@@ -121,8 +130,11 @@ ArmNode::ArmNode(ros::NodeHandle& node, const ArmDescription& arm, const std::ve
         [this] { publishers_.offer(advance_.arm); }, [this](Stamp instant) { return publishers_.finishCycle(instant); })
   , realtime_(requestRealtime(drives.front().realtime, loop_))
   , timing_publisher_(node, drives.front(), loop_)
+  , limits_(arm, drives)
   , reset_service_(node.advertiseService("reset", &ArmNode::reset, this))
-  , stop_timer_(node.createWallTimer(ros::WallDuration(ARM_WARNING_PERIOD), [this](const auto&) { tellOfStop(); }))
+  , unlock_service_(node.advertiseService(UNLOCK, &ArmNode::unlock, this))
+  , driver_states_(ros::NodeHandle())
+  , stop_timer_(node.createWallTimer(ros::WallDuration(STATE_PERIOD), [this](const auto&) { tellOfStop(); }))
 {
   for (std::size_t i = 0; i < arm.joints.size(); ++i)
   {
@@ -146,9 +158,11 @@ void ArmNode::tellOfStop()
   const std::string reason = stopReason();
   if (!reason.empty() && !told_of_stop_)
   {
-    ROS_ERROR_STREAM("Protective stop: " << reason << "; the arm stands in its brakes until ~reset");
+    ROS_ERROR_STREAM("Protective stop: " << reason << "; the arm stands in its brakes until ~" << UNLOCK
+                                         << " or ~reset");
   }
   told_of_stop_ = !reason.empty();
+  driver_states_.show(told_of_stop_);
 }
 
 std::string ArmNode::stopReason() const
@@ -170,7 +184,7 @@ std::string ArmNode::command(const trajectory_msgs::JointTrajectory& message, Ar
 {
   if (advance_.stop_reason != nullptr)
   {
-    return "protective stop; ~reset ends it";
+    return std::string("protective stop; ~") + UNLOCK + " ends it";
   }
   if (message.points.empty())
   {
@@ -184,6 +198,11 @@ std::string ArmNode::command(const trajectory_msgs::JointTrajectory& message, Ar
   std::string errors = ahead > FAR_STAMP ?
                            "its stamp is more than a day ahead of the clock" :
                            readTrajectory(message, description_, advance_.shown.read(), toSeconds(ahead), points);
+  if (errors.empty())
+  {
+    const std::lock_guard<std::mutex> lock(command_mutex_);
+    errors = limits_.errors(points);
+  }
   if (errors.empty())
   {
     give(std::move(points), goal);
@@ -236,6 +255,8 @@ void ArmNode::receivePayload(const geometry_msgs::Inertia& message)
     ROS_WARN_STREAM_THROTTLE(ARM_WARNING_PERIOD, "Refused a payload on ~" << PAYLOAD << ": " << errors);
     return;
   }
+  const std::lock_guard<std::mutex> lock(command_mutex_);
+  limits_.setPayload(payload);
   advance_.payload.give(payload);
 }
 
@@ -268,6 +289,23 @@ bool ArmNode::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& re
 {
   response.success = loop_.reset();
   response.message = response.success ? "the arm restarts where it began" : "the loop does not answer";
+  return true;
+}
+
+bool ArmNode::unlock(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response)
+{
+  constexpr int LOOKS = 200;
+  const ros::WallDuration period(0.005);
+  advance_.unlock = Unlock::ASKED;
+  for (int look = 0; advance_.unlock == Unlock::ASKED && look < LOOKS; ++look)
+  {
+    period.sleep();
+  }
+  const Unlock answer = advance_.unlock.exchange(Unlock::NOT_ASKED);
+  response.success = answer == Unlock::DONE;
+  response.message = answer == Unlock::DONE  ? "the arm is held where it stands" :
+                     answer == Unlock::MOVES ? "the arm still moves" :
+                                               "the loop does not answer";
   return true;
 }
 }  // namespace hjt

@@ -18,12 +18,14 @@
 #include <trajectory_msgs/JointTrajectory.h>
 
 #include "arm/goal_watch.hpp"
+#include "arm/motion_limits.hpp"
 #include "live/handover.hpp"
 #include "live/inbox.hpp"
 #include "live/realtime.hpp"
 #include "live/try_lock_value.hpp"
 #include "live/twin_loop.hpp"
 #include "ros_io/arm_publishers.hpp"
+#include "ros_io/driver_states.hpp"
 #include "ros_io/fault_subscriber.hpp"
 #include "ros_io/timing_publisher.hpp"
 
@@ -54,6 +56,14 @@ public:
   std::string stopReason() const;
 
 private:
+  enum class Unlock : std::uint8_t
+  {
+    NOT_ASKED,
+    ASKED,
+    DONE,
+    MOVES
+  };
+
   /// What the loop advances.
   class Advance : public Advanced
   {
@@ -74,6 +84,7 @@ private:
     TryLockValue<GoalReport> report;
     std::atomic<const char*> stop_reason{ nullptr };  ///< of a protective stop; none: it moves
     std::atomic<std::size_t> stopped_joint{};         ///< of which joint
+    std::atomic<Unlock> unlock{ Unlock::NOT_ASKED };
 
   private:
     std::vector<JointMotion> wanted_;
@@ -86,6 +97,7 @@ private:
   void receivePayload(const geometry_msgs::Inertia& message);
   void receiveTemperature(const sensor_msgs::Temperature& message);
   void tellOfStop();
+  bool unlock(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
 
   const ArmDescription description_;
@@ -97,6 +109,7 @@ private:
   TimingPublisher timing_publisher_;
   std::atomic<std::uint64_t> too_large_{ 0 };
   std::mutex command_mutex_;
+  MotionLimits limits_;
   std::uint64_t commands_{};                              // given to the loop
   std::vector<std::unique_ptr<FaultSubscriber>> faults_;  // of each joint
   ros::Subscriber command_subscriber_;
@@ -104,6 +117,8 @@ private:
   ros::Subscriber payload_subscriber_;
   ros::Subscriber temperature_subscriber_;
   ros::ServiceServer reset_service_;
+  ros::ServiceServer unlock_service_;
+  DriverStates driver_states_;
   bool told_of_stop_{};
   ros::WallTimer stop_timer_;
 };

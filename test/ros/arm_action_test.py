@@ -2,17 +2,26 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The live twin of an arm, driven by the action FollowJointTrajectory as MoveIt drives a robot."""
 import math
+import struct
 import sys
+import time
 import unittest
 
 import actionlib
 import control_msgs.msg
+import genmsg
+import genpy.dynamic
+import numpy as np
+import roslib.packages
 import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
 from control_msgs.msg import FollowJointTrajectoryAction, FollowJointTrajectoryGoal, JointTolerance
 from control_msgs.msg import FollowJointTrajectoryResult as Result
+from geometry_msgs.msg import PoseStamped, WrenchStamped
 from sensor_msgs.msg import JointState
+from std_msgs.msg import Bool, Float64
+from std_srvs.srv import Trigger
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from ros_support import PACKAGE, PATIENCE, Listener, wait_until
@@ -29,6 +38,8 @@ SUMS = {
     "FollowJointTrajectoryActionResult": "c4fb3b000dc9da4fd99699380efcc5d9",
     "FollowJointTrajectoryActionFeedback": "d8920dc4eae9fc107e00999cce4be641",
 }
+# Of github.com/UniversalRobots/Universal_Robots_ROS_Driver.
+MODE_SUMS = {"RobotMode": "73b72d58742c4889c47118411b03a3b4", "SafetyMode": "5da08725a63d4237bad689481131a84b"}
 
 
 def trajectory(angles, duration, names=NAMES):
@@ -37,15 +48,37 @@ def trajectory(angles, duration, names=NAMES):
     return JointTrajectory(joint_names=names, points=[point])
 
 
+def transforms(*listeners):
+    """By frame: its parent, rotation and translation. Debian has no Python module of tf2_msgs."""
+    frames = {}
+    for message in (each for listener in listeners for each in listener.messages()):
+        header = message._connection_header
+        kind = genpy.dynamic.generate_dynamic(header["type"], header["message_definition"])[header["type"]]
+        for each in kind().deserialize(message._buff).transforms:
+            x, y, z, w = (getattr(each.transform.rotation, axis) for axis in "xyzw")
+            rotation = np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+                                 [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+                                 [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]])
+            place = each.transform.translation
+            frames[each.child_frame_id] = each.header.frame_id, rotation, np.array([place.x, place.y, place.z])
+    return frames
+
+
 class ArmAction(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.states = Listener("/joint_states", JointState)
         cls.command = rospy.Publisher("/arm_twin/command", JointTrajectory, queue_size=1)
+        cls.wrench = rospy.Publisher("/arm_twin/wrench", WrenchStamped, queue_size=1)
+        cls.modes = [Listener(f"/ur_hardware_interface/{name}_mode", rospy.AnyMsg) for name in ("robot", "safety")]
+        cls.program = Listener("/ur_hardware_interface/robot_program_running", Bool)
+        cls.scaling = Listener("/speed_scaling_factor", Float64)
         cls.states.wait_for(10, 4.0 * PATIENCE)  # the first time it builds its tables
         cls.client = actionlib.ActionClient(CONTROLLER + "/follow_joint_trajectory", FollowJointTrajectoryAction)
         wait_until(cls.client.wait_for_server, "the action")
-        wait_until(lambda: cls.command.get_num_connections() == 1, "the commands' topic")
+        wait_until(lambda: cls.command.get_num_connections() == cls.wrench.get_num_connections() == 1, "its topics")
+        for listener in (*cls.modes, cls.program, cls.scaling):
+            listener.wait_for(1)
 
     def setUp(self):
         self.feedback = []
@@ -136,18 +169,76 @@ class ArmAction(unittest.TestCase):
                            goal_time_tolerance=rospy.Duration.from_sec(0.05))
         self.ends(handle, GoalStatus.ABORTED, Result.GOAL_TOLERANCE_VIOLATED, "tolerance 1e-09")
 
-    def test_7_what_it_cannot_follow_is_rejected(self):
+    def test_7_after_a_protective_stop_it_goes_on_from_where_it_stands(self):
+        self.go(START)
+        handle = self.send(FAR, 5.0)
+        wait_until(lambda: self.off(START) > 0.2, "the arm on its way")
+        push = WrenchStamped()
+        push.wrench.force.x = push.wrench.force.z = -1000.0  # more than any joint bears
+        self.wrench.publish(push)
+        self.ends(handle, GoalStatus.ABORTED, Result.PATH_TOLERANCE_VIOLATED, "protective stop: ")
+        self.wrench.publish(WrenchStamped())
+        self.ends(self.send(START, 2.0), GoalStatus.REJECTED, Result.INVALID_GOAL, "~unlock_protective_stop ends it")
+        wait_until(lambda: self.states_of_driver() == (7, 3, False, 0.0), "the driver's states in the stop")
+        unlock = rospy.ServiceProxy("/arm_twin/unlock_protective_stop", Trigger)
+        wait_until(lambda: unlock().success, "the end of the stop")
+        stood = self.last()
+        wait_until(lambda: self.states_of_driver() == (7, 1, True, 1.0), "the driver's states")
+        time.sleep(0.5)
+        self.assertLess(self.off(stood), 5e-3)
+        self.assertGreater(self.off(START), 0.1)
+        self.go(START, 3.0)
+        self.assertLess(self.off(START), 2e-3)
+
+    def states_of_driver(self):
+        modes = [struct.unpack("b", listener.messages()[-1]._buff)[0] for listener in self.modes]
+        return (*modes, self.program.messages()[-1].data, self.scaling.messages()[-1].data)
+
+    def test_8_tf_has_the_tool_where_the_twin_has_it(self):
+        if not roslib.packages.find_node("robot_state_publisher", "robot_state_publisher"):
+            self.skipTest("robot_state_publisher is not installed")
+        self.go(START)
+        self.go(THERE)
+        wait_until(lambda: self.speed() < 2e-3, "the arm at rest")
+        pose = Listener("/arm_twin/tool_pose", PoseStamped).wait_for(1)[-1].pose.position
+        moving, fixed = (Listener(name, rospy.AnyMsg) for name in ("/tf", "/tf_static"))
+        wait_until(lambda: {"tool"} <= set(transforms(moving, fixed)), "the frame of the tool")
+        moving.clear()
+        moving.wait_for(2)
+        frames = transforms(moving, fixed)
+        place, frame = np.zeros(3), "tool"
+        while frame != "base":
+            frame, rotation, translation = frames[frame]
+            place = rotation @ place + translation
+        self.assertLess(math.dist(place, (pose.x, pose.y, pose.z)), 1e-3)
+        self.assertGreater(abs(place[0]) + abs(place[1]), 0.1)
+
+    def test_8_the_modes_are_messages_of_the_driver(self):
+        for listener in self.modes:
+            header = listener.messages()[-1]._connection_header
+            definition = header["message_definition"]
+            package, name = header["type"].split("/")
+            context = genmsg.MsgContext.create_default()
+            spec = genmsg.msg_loader.load_msg_from_string(context, definition, header["type"])
+            self.assertEqual(genmsg.gentools.compute_md5(context, spec), header["md5sum"])
+            self.assertEqual((package, header["md5sum"]), ("ur_dashboard_msgs", MODE_SUMS[name]))
+
+    def test_9_what_it_cannot_follow_is_rejected(self):
         cases = (
             (Result.INVALID_JOINTS, "no joint of the arm is knee_joint", 2.0,
              dict(names=NAMES[:5] + ("knee_joint",))),
             (Result.INVALID_GOAL, "its limit is 3.142", 0.05, {}),
+            (Result.INVALID_GOAL, "rad/s^2; it", None, {}),
             (Result.INVALID_GOAL, "path_tolerance names 'knee_joint'", 2.0,
              dict(path_tolerance=[JointTolerance("knee_joint", 0.1, 0.0, 0.0)])),
             (Result.INVALID_GOAL, "goal_tolerance of elbow_joint is not a number", 2.0,
              dict(goal_tolerance=[JointTolerance("elbow_joint", math.nan, 0.0, 0.0)])),
         )
         for code, text, duration, others in cases:
-            self.ends(self.send(dict(FAR, knee_joint=0.0), duration, **others), GoalStatus.REJECTED, code, text)
+            near = {name: angle + 0.05 for name, angle in self.last().items()}
+            where = near if duration is None else FAR
+            handle = self.send(dict(where, knee_joint=0.0), duration or 0.05, **others)
+            self.ends(handle, GoalStatus.REJECTED, code, text)
 
 
 if __name__ == "__main__":
