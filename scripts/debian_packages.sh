@@ -22,7 +22,7 @@ LIBRARIES=(
 )
 ROS_DEBIAN=(
   catkin ros-message-generation ros-message-runtime
-  libroscpp-dev libdiagnostic-updater-dev libdynamic-reconfigure-config-init-mutex-dev libkdl-parser-dev
+  libactionlib-dev libroscpp-dev libdiagnostic-updater-dev libdynamic-reconfigure-config-init-mutex-dev libkdl-parser-dev
   librosbag-dev librosbag-storage-dev libtopic-tools-dev liburdf-dev
   libgeometry-msgs-dev libros-rosgraph-msgs-dev libsensor-msgs-dev libstd-msgs-dev libstd-srvs-dev
   libtrajectory-msgs-dev libvisualization-msgs-dev

@@ -16,7 +16,7 @@
 #include "messages/joint_affixes.hpp"
 #include "messages/topics.hpp"
 #include "params/configuration_files.hpp"
-#include "ros_io/arm_node.hpp"
+#include "ros_io/arm_action.hpp"
 #include "ros_io/joint_name.hpp"
 #include "ros_io/parameter_server.hpp"
 #include "ros_io/shutdown_signals.hpp"
@@ -259,7 +259,7 @@ void runArm(ros::NodeHandle& node, const std::string& name, const hjt::FoundPara
     hjt::addIdentifiedGains(identified, arm);
     hjt::giveOwnSeeds(parameters);
     hjt::addArmFaults(arm, itemsOf(node.param<std::string>(hjt::FAULT, "")), parameters);
-    run<hjt::ArmNode>(node, arm, parameters);
+    run<hjt::ArmWithAction>(node, arm, parameters);
   }
   else
   {

@@ -11,19 +11,18 @@ namespace hjt
 {
 namespace
 {
-/// Of the motor, seen from the joint [kg.m^2].
-double motorInertia(const Parameters& drive)
-{
-  const double ratio = nominalRatio(drive.gear);
-  return ratio * ratio * (drive.motor.rotor_inertia + drive.motor.wave_generator_inertia);
-}
-
 /// By the motor's encoder [rad/s].
 double jointSpeed(const EncoderReadings& read, const Twin& drive)
 {
   return read.motor_velocity / nominalRatio(drive.parameters().gear);
 }
 }  // namespace
+
+double ArmController::motorInertia(const Parameters& drive)
+{
+  const double ratio = nominalRatio(drive.gear);
+  return ratio * ratio * (drive.motor.rotor_inertia + drive.motor.wave_generator_inertia);
+}
 
 JointGains ArmController::defaultGains(const Parameters& drive)
 {

@@ -26,6 +26,9 @@ namespace hjt
 class ArmController
 {
 public:
+  /// Of the motor, seen from the joint [kg.m^2].
+  static double motorInertia(const Parameters& drive);
+
   /// For a drive without gains of its own: speed control of 25 Hz on the motor, position of 3 Hz, no friction.
   static JointGains defaultGains(const Parameters& drive);
 

@@ -72,6 +72,7 @@ bool MovingArm::reset(Stamp stamp) noexcept
   }
   controller_.reset();
   is_commanded_ = false;
+  is_held_ = false;
   stop_.reset();
   motion_begin_ = twin_.stamp() + toStampLength(settling_ + leadIn());
   for (std::size_t i = 0; i < twin_.joints(); ++i)
@@ -136,12 +137,35 @@ void MovingArm::watch() noexcept
   }
 }
 
+bool MovingArm::unlock() noexcept
+{
+  const std::vector<JointMotion>& joints = twin_.motion();
+  // Written so that NaN moves.
+  const bool is_still = std::all_of(joints.begin(), joints.end(),
+                                    [](const JointMotion& joint) { return std::abs(joint.velocity) <= STILL; });
+  if (!stop_ || !is_still)
+  {
+    return !stop_;
+  }
+  stop_.reset();
+  controller_.reset();
+  is_held_ = true;
+  for (std::size_t i = 0; i < joints.size(); ++i)
+  {
+    set_point_[i] = { joints[i].position, 0.0, 0.0 };
+    twin_.drive(i).commandBrake(twin_.stamp(), false);
+  }
+  control();
+  return true;
+}
+
 void MovingArm::follow(ArmMotion& motion) noexcept
 {
   wanted(set_point_);
   motion.beginFrom(set_point_);
   std::swap(commanded_, motion);
   is_commanded_ = true;
+  is_held_ = false;
   command_begin_ = std::max(twin_.stamp(), motion_begin_);  // never while the brakes hold
 }
 
@@ -153,7 +177,7 @@ void MovingArm::setPayload(const Payload& payload) noexcept
 
 void MovingArm::wantedAt(Stamp stamp, std::vector<JointMotion>& motion) noexcept
 {
-  if (stop_)
+  if (stop_ || is_held_)
   {
     for (std::size_t i = 0; i < motion.size(); ++i)
     {

@@ -31,7 +31,8 @@ struct ProtectiveStop
 /// motion it comes by a lead-in.
 ///
 /// Where a joint is STOP_DEVIATION off its set point, or faster than STOP_SPEED of its limit, the controller stops all:
-/// the motors give no torque, the brakes engage, until the next reset. The bounds are assumed; the maker gives none.
+/// the motors give no torque, the brakes engage, until it is unlocked or reset. The bounds are assumed; the maker gives
+/// none.
 ///
 /// After construction nothing but a copy throws or allocates.
 class MovingArm
@@ -41,6 +42,7 @@ public:
   static constexpr double SETTLING = 0.5;         ///< if no other is given [s]
   static constexpr double STOP_DEVIATION = 0.1;   ///< [rad]
   static constexpr double STOP_SPEED = 1.1;       ///< of ArmJoint::speed_limit [-]
+  static constexpr double STILL = 0.1;            ///< speed of a joint that may be unlocked [rad/s]
 
   /// `drives`: as ArmTwin takes them; the onsets of their faults count from the motion's begin, but those at 0 are
   /// there from the reset on. settling: from 0 on [s]. @throws ParameterError.
@@ -57,6 +59,12 @@ public:
   /// takes the place of its first.
   void follow(ArmMotion& motion) noexcept;
 
+  /// Of the motion that it follows: time until its end, < 0 behind it [s].
+  double commandLeft() const noexcept
+  {
+    return commanded_.end() - commanded_.begin() - toSeconds(twin_.stamp() - command_begin_);
+  }
+
   /// For a motion that comes point by point: goes from the last set point to this one, which is due at `time` of the
   /// motion given at construction, later than the last. That motion has two set points; the first is the start.
   void goOn(double time, const std::vector<JointMotion>& set_point) noexcept { motion_.goOn(time, set_point); }
@@ -66,6 +74,10 @@ public:
 
   /// Present set point; `motion`: of the joints' size.
   void wanted(std::vector<JointMotion>& motion) noexcept { wantedAt(twin_.stamp(), motion); }
+
+  /// Ends a protective stop: the arm is held where it stands, until the next motion. False: a joint still moves, it
+  /// stays stopped.
+  bool unlock() noexcept;
 
   /// None: it moves.
   const std::optional<ProtectiveStop>& protectiveStop() const noexcept { return stop_; }
@@ -95,5 +107,6 @@ private:
   std::vector<JointMotion> set_point_;  // of the last control
   std::vector<double> fastest_;         // at which the joints are stopped [rad/s]
   std::optional<ProtectiveStop> stop_;
+  bool is_held_{};  // where the last set point is, after a stop
 };
 }  // namespace hjt

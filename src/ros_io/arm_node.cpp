@@ -26,8 +26,11 @@ namespace
 {
 constexpr const char* WRENCH = "wrench";
 constexpr const char* PAYLOAD = "payload";
+constexpr const char* UNLOCK = "unlock_protective_stop";
 /// Between two warnings of the same kind [s].
 constexpr double ARM_WARNING_PERIOD = 1.0;
+/// Between two looks at a protective stop [s].
+constexpr double STATE_PERIOD = 0.05;
 
 /// Those of the drives as they start are waited for: so many rings would not keep up with the clock. Those of faults
 /// that come later are built beside the running arm.
@@ -58,10 +61,11 @@ std::array<double, 3> valuesOf(const geometry_msgs::Vector3& vector)
 
 ArmNode::Advance::Advance(const ArmDescription& description, const std::vector<Parameters>& drives)
   : arm(description, drives, gentleMotion(description), armSurfaces(drives))
-  , motion(gentleMotion(description))
+  , command({ gentleMotion(description), {} })
   , wrench(ArmWrench{})
   , payload(Payload{})
   , wanted_(drives.size())
+  , watch_(description, arm.twin())
 {
   for (std::size_t i = 0; i < drives.size(); ++i)
   {
@@ -69,10 +73,12 @@ ArmNode::Advance::Advance(const ArmDescription& description, const std::vector<P
   }
   arm.wanted(wanted_);
   shown.tryWrite(wanted_);
+  report.tryWrite(watch_.report());
 }
 
 bool ArmNode::Advance::reset(Stamp stamp) noexcept
 {
+  watch_.forget();
   return arm.reset(stamp);
 }
 
@@ -83,16 +89,33 @@ void ArmNode::Advance::push(const LiveInput& input) noexcept
 
 bool ArmNode::Advance::step(Stamp until) noexcept
 {
-  motion.take([this](ArmMotion& commanded) { arm.follow(commanded); });
+  command.take(
+      [this](Command& given)
+      {
+        arm.follow(given.motion);
+        watch_.begin(given.goal);
+      });
   wrench.take([this](const ArmWrench& acting) { arm.twin().setWrench(acting); });
   payload.take([this](const Payload& carried) { arm.setPayload(carried); });
-  return arm.step(until);
+  if (unlock == Unlock::ASKED)
+  {
+    const bool is_done = arm.unlock();
+    stop_reason = is_done ? nullptr : stop_reason.load();
+    unlock = is_done ? Unlock::DONE : Unlock::MOVES;
+  }
+  if (!arm.step(until))
+  {
+    return false;
+  }
+  watch_.look(arm);
+  return true;
 }
 
 void ArmNode::Advance::show(LoopStatus& /*status*/) noexcept
 {
   arm.wanted(wanted_);
   shown.tryWrite(wanted_);
+  report.tryWrite(watch_.report());
   const std::optional<ProtectiveStop>& stop = arm.protectiveStop();
   stopped_joint = stop ? stop->joint : 0;
   stop_reason = stop ? stop->reason : nullptr;
@@ -107,8 +130,11 @@ ArmNode::ArmNode(ros::NodeHandle& node, const ArmDescription& arm, const std::ve
         [this] { publishers_.offer(advance_.arm); }, [this](Stamp instant) { return publishers_.finishCycle(instant); })
   , realtime_(requestRealtime(drives.front().realtime, loop_))
   , timing_publisher_(node, drives.front(), loop_)
+  , limits_(arm, drives)
   , reset_service_(node.advertiseService("reset", &ArmNode::reset, this))
-  , stop_timer_(node.createWallTimer(ros::WallDuration(ARM_WARNING_PERIOD), [this](const auto&) { tellOfStop(); }))
+  , unlock_service_(node.advertiseService(UNLOCK, &ArmNode::unlock, this))
+  , driver_states_(ros::NodeHandle())
+  , stop_timer_(node.createWallTimer(ros::WallDuration(STATE_PERIOD), [this](const auto&) { tellOfStop(); }))
 {
   for (std::size_t i = 0; i < arm.joints.size(); ++i)
   {
@@ -129,41 +155,66 @@ ArmNode::ArmNode(ros::NodeHandle& node, const ArmDescription& arm, const std::ve
 
 void ArmNode::tellOfStop()
 {
-  const char* reason = advance_.stop_reason;
-  if (reason != nullptr && !told_of_stop_)
+  const std::string reason = stopReason();
+  if (!reason.empty() && !told_of_stop_)
   {
-    ROS_ERROR_STREAM("Protective stop: " << description_.joints[advance_.stopped_joint].short_name << " is " << reason
-                                         << "; the arm stands in its brakes until ~reset");
+    ROS_ERROR_STREAM("Protective stop: " << reason << "; the arm stands in its brakes until ~" << UNLOCK
+                                         << " or ~reset");
   }
-  told_of_stop_ = reason != nullptr;
+  told_of_stop_ = !reason.empty();
+  driver_states_.show(told_of_stop_);
+}
+
+std::string ArmNode::stopReason() const
+{
+  const char* reason = advance_.stop_reason;
+  return reason == nullptr ? "" : description_.joints[advance_.stopped_joint].short_name + " is " + reason;
 }
 
 void ArmNode::receiveCommand(const trajectory_msgs::JointTrajectory& message)
 {
+  ArmGoal unwatched;
+  if (const std::string errors = command(message, unwatched); !errors.empty())
+  {
+    ROS_WARN_STREAM_THROTTLE(ARM_WARNING_PERIOD, "Refused a trajectory on ~" << topics::COMMAND << ": " << errors);
+  }
+}
+
+std::string ArmNode::command(const trajectory_msgs::JointTrajectory& message, ArmGoal& goal)
+{
   if (advance_.stop_reason != nullptr)
   {
-    ROS_WARN_STREAM_THROTTLE(ARM_WARNING_PERIOD,
-                             "Refused a trajectory on ~" << topics::COMMAND << ": protective stop; ~reset ends it");
-    return;
+    return std::string("protective stop; ~") + UNLOCK + " ends it";
   }
   if (message.points.empty())
   {
     // As joint_trajectory_controller does, whichever joints it names.
-    advance_.motion.give(ArmMotion(stopFrom(advance_.shown.read()), ArmAccelerations::OF_CUBICS));
-    return;
+    give(stopFrom(advance_.shown.read()), goal);
+    return "";
   }
   const Stamp now = rosNow();
   const Stamp ahead = std::max<Stamp>(stampOr(message.header.stamp, toRosTime(now)) - now, 0);
   std::vector<ArmSetPoint> points;
-  const std::string errors = ahead > FAR_STAMP ?
-                                 "its stamp is more than a day ahead of the clock" :
-                                 readTrajectory(message, description_, advance_.shown.read(), toSeconds(ahead), points);
-  if (!errors.empty())
+  std::string errors = ahead > FAR_STAMP ?
+                           "its stamp is more than a day ahead of the clock" :
+                           readTrajectory(message, description_, advance_.shown.read(), toSeconds(ahead), points);
+  if (errors.empty())
   {
-    ROS_WARN_STREAM_THROTTLE(ARM_WARNING_PERIOD, "Refused a trajectory on ~" << topics::COMMAND << ": " << errors);
-    return;
+    const std::lock_guard<std::mutex> lock(command_mutex_);
+    errors = limits_.errors(points);
   }
-  advance_.motion.give(ArmMotion(std::move(points), ArmAccelerations::OF_CUBICS));
+  if (errors.empty())
+  {
+    give(std::move(points), goal);
+  }
+  return errors;
+}
+
+void ArmNode::give(std::vector<ArmSetPoint> points, ArmGoal& goal)
+{
+  const std::lock_guard<std::mutex> lock(command_mutex_);
+  goal.number = ++commands_;
+  advance_.command.give({ ArmMotion(std::move(points), ArmAccelerations::OF_CUBICS), goal });
 }
 
 void ArmNode::receiveWrench(const geometry_msgs::WrenchStamped& message)
@@ -204,6 +255,8 @@ void ArmNode::receivePayload(const geometry_msgs::Inertia& message)
     ROS_WARN_STREAM_THROTTLE(ARM_WARNING_PERIOD, "Refused a payload on ~" << PAYLOAD << ": " << errors);
     return;
   }
+  const std::lock_guard<std::mutex> lock(command_mutex_);
+  limits_.setPayload(payload);
   advance_.payload.give(payload);
 }
 
@@ -236,6 +289,23 @@ bool ArmNode::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& re
 {
   response.success = loop_.reset();
   response.message = response.success ? "the arm restarts where it began" : "the loop does not answer";
+  return true;
+}
+
+bool ArmNode::unlock(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response)
+{
+  constexpr int LOOKS = 200;
+  const ros::WallDuration period(0.005);
+  advance_.unlock = Unlock::ASKED;
+  for (int look = 0; advance_.unlock == Unlock::ASKED && look < LOOKS; ++look)
+  {
+    period.sleep();
+  }
+  const Unlock answer = advance_.unlock.exchange(Unlock::NOT_ASKED);
+  response.success = answer == Unlock::DONE;
+  response.message = answer == Unlock::DONE  ? "the arm is held where it stands" :
+                     answer == Unlock::MOVES ? "the arm still moves" :
+                                               "the loop does not answer";
   return true;
 }
 }  // namespace hjt

@@ -4,6 +4,8 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <mutex>
+#include <string>
 #include <vector>
 
 #include <geometry_msgs/Inertia.h>
@@ -15,13 +17,15 @@
 #include <std_srvs/Trigger.h>
 #include <trajectory_msgs/JointTrajectory.h>
 
-#include "arm/moving_arm.hpp"
+#include "arm/goal_watch.hpp"
+#include "arm/motion_limits.hpp"
 #include "live/handover.hpp"
 #include "live/inbox.hpp"
 #include "live/realtime.hpp"
 #include "live/try_lock_value.hpp"
 #include "live/twin_loop.hpp"
 #include "ros_io/arm_publishers.hpp"
+#include "ros_io/driver_states.hpp"
 #include "ros_io/fault_subscriber.hpp"
 #include "ros_io/timing_publisher.hpp"
 
@@ -32,10 +36,34 @@ namespace hjt
 class ArmNode
 {
 public:
+  /// A motion and what counts as following it.
+  struct Command
+  {
+    ArmMotion motion;
+    ArmGoal goal;
+  };
+
   /// `drives`: as ArmTwin takes them. Waits for their response surfaces, then starts. @throws ParameterError.
   ArmNode(ros::NodeHandle& node, const ArmDescription& arm, const std::vector<Parameters>& drives);
 
+  /// From any thread: sets out on a trajectory, in place of what the arm did; without points it comes to rest. The goal
+  /// gets its number. @returns why not, or nothing.
+  std::string command(const trajectory_msgs::JointTrajectory& message, ArmGoal& goal);
+  /// How the last command that the loop has taken is followed.
+  GoalReport report() const { return advance_.report.read(); }
+  const ArmDescription& description() const noexcept { return description_; }
+  /// From any thread: in a protective stop why, else nothing.
+  std::string stopReason() const;
+
 private:
+  enum class Unlock : std::uint8_t
+  {
+    NOT_ASKED,
+    ASKED,
+    DONE,
+    MOVES
+  };
+
   /// What the loop advances.
   class Advance : public Advanced
   {
@@ -49,22 +77,27 @@ private:
     void show(LoopStatus& status) noexcept override;
 
     MovingArm arm;
-    Handover<ArmMotion> motion;
+    Handover<Command> command;
     Handover<ArmWrench> wrench;
     Handover<Payload> payload;
-    TryLockValue<std::vector<JointMotion>> shown;     ///< present set point
+    TryLockValue<std::vector<JointMotion>> shown;  ///< present set point
+    TryLockValue<GoalReport> report;
     std::atomic<const char*> stop_reason{ nullptr };  ///< of a protective stop; none: it moves
     std::atomic<std::size_t> stopped_joint{};         ///< of which joint
+    std::atomic<Unlock> unlock{ Unlock::NOT_ASKED };
 
   private:
     std::vector<JointMotion> wanted_;
+    GoalWatch watch_;
   };
 
   void receiveCommand(const trajectory_msgs::JointTrajectory& message);
+  void give(std::vector<ArmSetPoint> points, ArmGoal& goal);
   void receiveWrench(const geometry_msgs::WrenchStamped& message);
   void receivePayload(const geometry_msgs::Inertia& message);
   void receiveTemperature(const sensor_msgs::Temperature& message);
   void tellOfStop();
+  bool unlock(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
 
   const ArmDescription description_;
@@ -75,12 +108,17 @@ private:
   RealtimeState realtime_;
   TimingPublisher timing_publisher_;
   std::atomic<std::uint64_t> too_large_{ 0 };
+  std::mutex command_mutex_;
+  MotionLimits limits_;
+  std::uint64_t commands_{};                              // given to the loop
   std::vector<std::unique_ptr<FaultSubscriber>> faults_;  // of each joint
   ros::Subscriber command_subscriber_;
   ros::Subscriber wrench_subscriber_;
   ros::Subscriber payload_subscriber_;
   ros::Subscriber temperature_subscriber_;
   ros::ServiceServer reset_service_;
+  ros::ServiceServer unlock_service_;
+  DriverStates driver_states_;
   bool told_of_stop_{};
   ros::WallTimer stop_timer_;
 };

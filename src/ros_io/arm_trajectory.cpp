@@ -144,6 +144,12 @@ std::vector<ArmSetPoint> stopFrom(const std::vector<JointMotion>& present)
   return points;
 }
 
+std::string jointErrors(const JointTrajectory& message, const ArmDescription& arm)
+{
+  std::vector<std::size_t> places;
+  return placesOf(message, arm, places);
+}
+
 std::string readTrajectory(const JointTrajectory& message, const ArmDescription& arm,
                            const std::vector<JointMotion>& present, double delay, std::vector<ArmSetPoint>& points)
 {

@@ -203,7 +203,8 @@ void writeParameterServer(const std::string& parameter_namespace, const Paramete
 ParameterMap readParameterServer(const std::string& parameter_namespace)
 {
   ParameterMap map = readAll(parameter_namespace);
-  for (const char* key : { DIAGNOSTIC_PERIOD, ARM, IDENTIFIED, REFERENCE, DESCRIPTION, PREFIX, SUFFIX, FAULT })
+  for (const char* key :
+       { DIAGNOSTIC_PERIOD, ARM, IDENTIFIED, REFERENCE, DESCRIPTION, PREFIX, SUFFIX, FAULT, CONTROLLER })
   {
     map.erase(key);
   }

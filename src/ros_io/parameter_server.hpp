@@ -12,7 +12,8 @@ namespace hjt
 /// Parameters of an arm's node beside those of its drives: name or file of the arm; directory of overlays that
 /// `joint_twin identify --arm` wrote; reports of the sound arm that `joint_twin compare --arm` wrote, directories or
 /// files in them, with commas between them; name of the parameter that holds another URDF of it; what stands around the
-/// names; faults of an arm without a robot, JOINT:KIND:SEVERITY[:PLACE[:ONSET]], with commas between them.
+/// names; faults of an arm without a robot, JOINT:KIND:SEVERITY[:PLACE[:ONSET]], with commas between them; name of its
+/// controller, below which its action stands.
 constexpr const char* ARM = "arm";
 constexpr const char* IDENTIFIED = "identified";
 constexpr const char* REFERENCE = "reference";
@@ -20,6 +21,7 @@ constexpr const char* DESCRIPTION = "description";
 constexpr const char* PREFIX = "prefix";  ///< before the arm's names of the joints in the messages
 constexpr const char* SUFFIX = "suffix";  ///< behind them
 constexpr const char* FAULT = "fault";
+constexpr const char* CONTROLLER = "controller";
 /// Section of what an arm's launch file sets, launch/input/mode: counts where nothing else says it. Of a user's file
 /// with `input: 3` roslaunch would make `input: {mode: ...}`, were it input/mode.
 constexpr const char* LAUNCH = "launch";

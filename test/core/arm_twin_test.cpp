@@ -272,6 +272,55 @@ TEST(MovingArm, StopsWhereItCannotFollow)
   EXPECT_FALSE(arm.protectiveStop());
 }
 
+/// It goes on from where a push has left it.
+TEST(MovingArm, IsUnlockedInPlace)
+{
+  MovingArm arm(rods("0 1 0", 2), { drive(), drive() },
+                ArmMotion({ { 0.0, { { 0.3, 0.0, 0.0 }, { -0.8, 0.0, 0.0 } } } }), {});
+  const auto run_for = [&](double time)
+  {
+    const Stamp end = arm.twin().stamp() + toStampLength(time);
+    while (arm.step(end))
+    {
+    }
+  };
+  run_for(MovingArm::SETTLING);
+  EXPECT_TRUE(arm.unlock());  // there is nothing to unlock
+  arm.twin().setWrench({ { 3000.0, 0.0, -3000.0 }, {} });
+  while (!arm.protectiveStop() && toSeconds(arm.twin().stamp()) < 2.0)
+  {
+    run_for(1e-3);
+  }
+  arm.twin().setWrench({});
+  ASSERT_TRUE(arm.protectiveStop());
+  EXPECT_FALSE(arm.unlock());
+  EXPECT_TRUE(arm.protectiveStop());
+  double waited = 0.0;
+  while (!arm.unlock() && waited < 10.0)  // in its brakes it swings
+  {
+    EXPECT_TRUE(arm.protectiveStop());
+    run_for(0.1);
+    waited += 0.1;
+  }
+  const std::vector<JointMotion> stood = arm.twin().motion();
+  EXPECT_GT(std::abs(stood[0].position - 0.3) + std::abs(stood[1].position + 0.8), 0.05);
+  EXPECT_FALSE(arm.protectiveStop()) << waited;
+  run_for(0.3);
+  ASSERT_FALSE(arm.protectiveStop());
+  std::vector<ArmSetPoint> way{ { 0.0, stood }, { 0.5, { { 0.3, 0.0, 0.0 }, { -0.8, 0.0, 0.0 } } } };
+  for (std::size_t i = 0; i < 2; ++i)
+  {
+    EXPECT_FALSE(arm.twin().drive(i).outputs().brake_engaged);
+    EXPECT_NEAR(arm.twin().motion()[i].position, stood[i].position, 2e-3);
+  }
+  ArmMotion back(way, ArmAccelerations::OF_CUBICS);
+  arm.follow(back);
+  run_for(1.0);
+  EXPECT_FALSE(arm.protectiveStop());
+  EXPECT_NEAR(arm.twin().motion()[0].position, 0.3, 2e-3);
+  EXPECT_NEAR(arm.twin().motion()[1].position, -0.8, 2e-3);
+}
+
 TEST(SampleMoves, LimitedJerkKeepsTheWayAndEveryLimit)
 {
   constexpr double PERIOD = 1e-4;

@@ -35,18 +35,20 @@ SEES = {
     "datasets": ["arm", "bags", "output"],
     "recordings": ["datasets", "identification"],
     "python/recordings": ["python", "recordings"],
+    "ros_control": ["arm"],
     "ros_io": ["live", "messages", "arm"],
     "apps/common": ["recordings"],
     "apps/tool": ["apps/common", "studies", "fmu"],
     "apps": ["apps/tool", "ros_io"],
     "bench": ["apps/common", "studies"],
     "test/core": ["arm", "identification", "studies"],
-    "test/ros": ["ros_io", "recordings"],
+    "test/ros": ["ros_io", "recordings", "ros_control"],
     "test/outside": ["twin"],
     "test/support": [],
+    "test/support/ros_control": [],
 }
-WITH_ROS = {"messages", "bags", "datasets", "recordings", "output", "python/recordings", "ros_io", "apps",
-            "apps/common", "apps/tool", "test/ros"}
+WITH_ROS = {"messages", "bags", "datasets", "recordings", "output", "python/recordings", "ros_control", "ros_io",
+            "apps", "apps/common", "apps/tool", "test/ros", "test/support/ros_control"}
 # The core may use the standard library, POSIX and these; everything else is taken for ROS or an application's library.
 LIBRARIES = re.compile(r"<([a-z_0-9]+|(dlfcn|fcntl|malloc|sys/file|sys/mman|sys/stat|time|unistd)\.h|"
                        r"(Eigen|boost|unsupported/Eigen|yaml-cpp)/[\w/.-]+)>$")

@@ -92,7 +92,7 @@ class ArmFault(unittest.TestCase):
         last = self.states.messages()[-1]
         point = JointTrajectoryPoint(positions=list(last.position), time_from_start=rospy.Duration(2))
         command.publish(JointTrajectory(joint_names=last.name, points=[point]))
-        said("Refused a trajectory on ~command: protective stop; ~reset ends it")
+        said("Refused a trajectory on ~command: protective stop; ~unlock_protective_stop ends it")
         self.assertTrue(rospy.ServiceProxy(f"{NODE}/reset", Trigger)().success)
         wait_until(lambda: min(self.speeds()) > 0.05, "all six joints in motion again")
 
