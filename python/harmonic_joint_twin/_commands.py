@@ -330,7 +330,9 @@ def remaining(recordings: Union[Recording, Sequence[Recording]], *,
 
     Returns a dict: 'hours' and 'remaining_q10', 'remaining_q50', 'remaining_q90' [h], 'turns', 'nearest' limit and its
     'used' [%], 'density', 'end_probability', with a baseline 'level', 'cause', 'wear_flank', 'wear_interface',
-    'lost_motion' [rad]. InputError, ParameterError.
+    'lost_motion' [rad], and at level OK 'seen_from', the least severity of each fault that would have shown, None:
+    none would, and 'blind_to', those faults in words. Laws of ageing are those of the configuration, never of a run.
+    InputError, ParameterError.
     """
     return _call("remaining",
                  {**_signals(recordings, columns),

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Data sets and verdicts as frames of pandas, which is loaded when the first of these functions runs."""
+import hashlib
 import importlib
+import json
 import os
 from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional, Sequence, Union
 
@@ -14,52 +16,65 @@ if TYPE_CHECKING:
 
 Frame = Any  # pandas.DataFrame; pandas has no types
 
-__all__ = ["assess", "drive_fault", "load", "reference", "write_cmapss"]
+__all__ = ["assess", "drive_fault", "load", "reference", "write_card", "write_cmapss"]
 
 # A check-up is one window, judged by itself: docs/health.md.
 CHECK_UP = {"indicators.evidence_windows": 1, "indicators.false_alarm_rate": 1e-3}
 ALL_WINDOWS = {"indicators.baseline_windows": 10000}
 DIRECTION_ROWS = 5  # over which the motor's direction is taken: a count of its noise is none
+# Of a group's columns those that tell the truth; the index's are labels or settings, all of them.
+TRUTH = ("severity", "window_severity")
 
 
-def _group(file: str, group: str, is_arm: bool) -> Dict[str, "NDArray[Any]"]:
+def _group(file: str, group: str, is_arm: bool, wanted: Optional[Sequence[str]]) -> Dict[str, "NDArray[Any]"]:
+    """Its columns of one number a row, those that are wanted alone; None: all."""
     h5py = importlib.import_module("h5py")
     with h5py.File(file, "r") as run:
         groups = [name for name, item in run.items() if isinstance(item, h5py.Group) and name != "parameters"]
         if group not in groups:
             raise _hjt.InputError(f"{file} has no group '{group}'; it holds {', '.join(groups)}")
-        columns = {name: column[:] for name, column in run[group].items() if column.ndim == 1}
+        found: Dict[str, Any] = {name: (column, None) for name, column in run[group].items() if column.ndim == 1}
         if is_arm:
-            columns.update({f"{name}_{i}": column[:, i] for name, column in run[group].items() if column.ndim == 2
-                            for i in range(column.shape[1])})
-        return columns
+            found.update({f"{name}_{i}": (column, i) for name, column in run[group].items() if column.ndim == 2
+                          for i in range(column.shape[1])})
+        return {name: column[:] if i is None else column[:, i] for name, (column, i) in found.items()
+                if wanted is None or name in wanted}
 
 
-def load(folder: Path, group: Optional[str] = "indicators") -> Frame:
+def load(folder: Path, group: Optional[str] = "indicators", *, columns: Optional[Sequence[str]] = None) -> Frame:
     """A data set of sweep or lives as one frame.
 
-    folder: of the data set. group: of its files, 'indicators' or a name in the plan; None: the index alone.
+    folder: of the data set. group: of its files, 'indicators' or a name in the plan; None: the index alone. columns:
+    names of the group or of the index, all that is then read, beside 'file'; None: all.
 
     Returns a pandas.DataFrame: a row for each sample or window of the group, its columns of one number a row, and
     beside them the run's columns of index.csv, labels among them; 'file' with its path. Of whole arms a column for each
     joint, 'actual_q_0' ... from the base on, 'severity_0' ... Without a group a row for each
-    run. Runs that failed are left out, files that cannot be read too, with a warning. InputError.
+    run. Its attrs["features"] names the columns that a joint shows, attrs["labels"] all others: what was done to it,
+    and the truth. Runs that failed are left out, files that cannot be read too, with a warning. InputError.
     """
     pandas = importlib.import_module("pandas")
     path = os.path.join(os.fspath(folder), "index.csv")
     if not os.path.exists(path):
         raise _hjt.InputError(f"{path} is not there: no data set, or one whose sweep has not ended")
     index = pandas.read_csv(path)
+    missing = int((index["status"] == "missing").sum())
+    _commands._remark([f"{folder} is unfinished: {missing} of {len(index)} runs are missing; the same sweep again "
+                       "makes them"] if missing else [])
     index = index[index["status"] == "ok"].reset_index(drop=True)
     index["file"] = [os.path.join(os.fspath(folder), file) for file in index["file"]]
     if group is None:
-        return index
+        return _chosen(index, columns, index.columns)
     parts, unread = [], []
     for file in index["file"]:
         if not file.endswith(".h5"):
             raise _hjt.InputError(f"{file} is no HDF5 file: a data set of bags has its index alone, group=None")
         try:
-            parts.append(pandas.DataFrame({"file": file, **_group(file, group, "fault_joint" in index)}))
+            part = pandas.DataFrame(_group(file, group, "fault_joint" in index, columns))
+            if not len(part.columns) and columns is not None:
+                raise _hjt.InputError(f"columns: group '{group}' has none of {', '.join(columns)}")
+            part.insert(0, "file", file)
+            parts.append(part)
         except OSError as error:
             unread.append(f"not read: {file}: {error}; the same sweep again makes it anew")
     if unread and not parts:
@@ -68,7 +83,21 @@ def load(folder: Path, group: Optional[str] = "indicators") -> Frame:
     if not any(map(len, parts)):
         raise _hjt.InputError(f"{folder}: no run holds a row of '{group}'; is a window (indicators.window_turns, "
                               "window_time) longer than a run less record.start, or has every run failed?")
-    return pandas.concat(parts, ignore_index=True).merge(index, on="file")
+    of_group = pandas.concat(parts, ignore_index=True)
+    of_index = [name for name in index if columns is None or name in columns or name == "file"]
+    return _chosen(of_group.merge(index[of_index], on="file"), columns, index.columns)
+
+
+def _chosen(frame: Frame, columns: Optional[Sequence[str]], of_index: Sequence[str]) -> Frame:
+    """With 'file' and the columns alone, and which of them are labels."""
+    if columns is not None:
+        missing = [name for name in columns if name not in frame]
+        if missing:
+            raise _hjt.InputError(f"columns: there is no '{missing[0]}'; load without columns shows all")
+        frame = frame[["file", *(name for name in columns if name != "file")]].copy()
+    labels = [name for name in frame if name in of_index or name in TRUTH or name.startswith("severity_")]
+    frame.attrs.update(labels=labels, features=[name for name in frame if name not in labels])
+    return frame
 
 
 def drive_fault(recording: Arrays, kind: str, size: float, *, onset: float = 0.0,
@@ -232,3 +261,75 @@ def write_cmapss(folder: Path, out: Path, *, duty: Optional[str] = None, seed: i
                         ("RUL", cut.groupby("unit", as_index=False).last()[["unit", "RUL"]])):
         table.to_csv(os.path.join(out, name + ".csv"), index=False)
     return {"train": int(train["unit"].nunique()), "test": int(cut["unit"].nunique()), "indicators": names}
+
+
+def _columns_of(file: str) -> List[str]:
+    """Table rows: groups of a run with their columns, of indicators only how many."""
+    h5py = importlib.import_module("h5py")
+    lines = ["| group | column | unit | meaning |", "|---|---|---|---|"]
+    with h5py.File(file, "r") as run:
+        for name, group in run.items():
+            if not isinstance(group, h5py.Group) or name == "parameters":
+                continue
+            if name == "indicators":
+                lines.append(f"| `indicators` | {len(group)} columns | as its attributes say | a row for each window |")
+                continue
+            rate = f", {group.attrs['sample_rate']:g} Hz" if "sample_rate" in group.attrs else ""
+            lines += [f"| `{name}`{rate} | `{column}` | {data.attrs.get('unit', '')} | "
+                      f"{data.attrs.get('meaning', '')} |" for column, data in group.items()]
+    return lines
+
+
+def _digest(path: str) -> str:
+    digest = hashlib.sha256()
+    with open(path, "rb") as file:
+        for part in iter(lambda: file.read(1 << 20), b""):
+            digest.update(part)
+    return digest.hexdigest()
+
+
+def write_card(folder: Path, *, licence: str, authors: str, title: Optional[str] = None, text: str = "") -> Document:
+    """The card of a data set: README.md, as Hugging Face and Zenodo take it, and SHA256SUMS, for sha256sum -c.
+
+    folder: of the data set, complete. licence: its identifier by SPDX. authors: to be cited. title: None: the plan's
+    name. text: what is to be said of it, Markdown.
+
+    Returns a dict: 'card' and 'sums', paths, and 'files', how many. InputError.
+    """
+    index = load(folder, group=None)
+    place = os.fspath(folder)
+    with open(os.path.join(place, "plan.json"), encoding="utf-8") as file:
+        document = json.load(file)
+    if len(index) != document["runs"]:
+        raise _hjt.InputError(f"{place}: {len(index)} of {document['runs']} runs are there; a card is of a complete "
+                              "set")
+    name, version = title or document["plan"]["name"], document["version"]
+    counts = index["class"].value_counts(sort=False)
+    is_life = "life.drive" in index
+    files = sorted(os.path.relpath(os.path.join(at, one), place) for at, _, several in os.walk(place) for one in several
+                   if one not in ("README.md", "SHA256SUMS"))
+    lines = ["---", f"pretty_name: {json.dumps(name)}", f"license: {licence.lower()}", "tags: [simulated, prognostics, "
+             "harmonic drive]", "---", f"# {name}", "", *([text, ""] if text else []),
+             f"Simulated recordings of a robot joint's harmonic drive: {len(index)} runs"
+             + (f" of {index['life.drive'].nunique()} drives from new to their end" if is_life else "") + ".", "",
+             "| class | runs |", "|---|---|", *(f"| {each} | {count} |" for each, count in counts.items()), "",
+             "## How it was made", "",
+             f"By harmonic_joint_twin {version}, `joint_twin {'lives' if is_life else 'sweep'}`, from the plan in "
+             "`plan.json` (seed, draws, faults, sensors' errors, all parameters): the same plan gives the same bytes.",
+             "",
+             "## What is in it", "",
+             "`index.csv` has a row for each run: file, class, faults, seeds, drawn variables. All of its columns are "
+             "labels or settings; so are `severity` and `window_severity` of the files. Runs are in the order of "
+             "their classes: shuffle them, and split by run"
+             + (", or as `life.split` says, by drive" if is_life else "") + ".", "",
+             *(_columns_of(index["file"][0]) if index["file"][0].endswith(".h5") else ["Bags of ROS."]), "",
+             "## Licence and citation", "", f"{licence}. {authors}: {name}. Made with harmonic_joint_twin {version}.",
+             "",
+             "`sha256sum -c SHA256SUMS` checks the files."]
+    sums = os.path.join(place, "SHA256SUMS")
+    with open(sums, "w", encoding="utf-8") as file:
+        file.writelines(f"{_digest(os.path.join(place, one))}  {one}\n" for one in files)
+    card = os.path.join(place, "README.md")
+    with open(card, "w", encoding="utf-8") as file:
+        file.write("\n".join(lines) + "\n")
+    return {"card": card, "sums": sums, "files": len(files)}

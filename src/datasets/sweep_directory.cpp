@@ -94,6 +94,12 @@ std::vector<std::string> faultKeys(const Plan& plan)
   return keys;
 }
 
+/// What the index says of a run that is not there, not yet or no longer.
+Json missingRun(std::uint64_t run)
+{
+  return { { "run", run }, { "status", "missing" }, { "faults", Json::array() }, { "variables", Json::object() } };
+}
+
 /// In what the document of a directory differs from that of a plan.
 std::string otherThan(const Json& found, const Json& wanted)
 {
@@ -276,10 +282,7 @@ void SweepDirectory::writeIndex() const
     for (std::uint64_t run = 0; run < plan_.runs(); ++run)
     {
       const Json found = record(run);
-      if (found.is_object())
-      {
-        text += indexRow(found) + '\n';
-      }
+      text += indexRow(found.is_object() ? found : missingRun(run)) + '\n';
     }
     writeTextFile(path_ + "/index.csv", text);
   }

@@ -38,6 +38,10 @@ std::string whyNotJudged(const Assessment& assessment)
                  "the healthy reference needs " + needed + " windows at this operating point, has " + here;
     case AssessmentState::TOO_FEW_WINDOWS:
       return "too few windows: a verdict needs " + needed + " at one operating point, has " + here;
+    case AssessmentState::OTHER_PAYLOAD:
+      return "this payload is not in the reference: windows with payload and load like it belong there; a wrong gain "
+             "of "
+             "the current looks like one";
     case AssessmentState::ASSESSED:
       break;
   }
@@ -140,7 +144,9 @@ void Assessor::setState(BaselineState compared) noexcept
     assessment_.state = is_verdict ? AssessmentState::ASSESSED : AssessmentState::TOO_FEW_WINDOWS;
     return;
   }
-  assessment_.state = compared == BaselineState::LEARNING ? AssessmentState::LEARNING : AssessmentState::NO_REFERENCE;
+  assessment_.state = compared == BaselineState::LEARNING      ? AssessmentState::LEARNING :
+                      compared == BaselineState::OTHER_PAYLOAD ? AssessmentState::OTHER_PAYLOAD :
+                                                                 AssessmentState::NO_REFERENCE;
 }
 
 HealthLevel Assessor::levelOf(const FeatureScores& scores, const OperatingPoint& point) noexcept

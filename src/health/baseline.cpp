@@ -5,12 +5,12 @@
 #include <cmath>
 #include <numeric>
 
-#include <Eigen/Core>
-#include <boost/math/distributions/normal.hpp>
+#include <Eigen/Dense>
 
 #include "gear/angle.hpp"
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/health/fault_signatures.hpp"
+#include "health/deviation_laws.hpp"
 #include "health/indicator_table.hpp"
 #include "health/reference_fit.hpp"
 
@@ -18,74 +18,36 @@ namespace hjt
 {
 namespace
 {
-constexpr std::size_t TRIMMED = 5;        // one of so many is left out at either end
-constexpr std::size_t LEAST_WINDOWS = 3;  // of which one can be left out at either end
-constexpr double CARRIED_WINDOWS = 10.0;  // of the means that CarriedError is fitted to
-constexpr std::size_t JUMPS = 2;          // no scatter: the onset of a fault, and the newest window beside the oldest
+constexpr std::size_t TRIMMED = 5;              // one of so many is left out at either end
+constexpr std::size_t LEAST_WINDOWS = 3;        // of which one can be left out at either end
+constexpr double OTHER_PAYLOAD_WIDENING = 4.0;  // a spread of 2.2 times its usual one, which would hide most faults
+constexpr double LEAST_RIDGE = 4e-4;            // noise of the estimate, 0.02 of half a class
+constexpr std::size_t JUMPS = 2;  // no scatter: the onset of a fault, and the newest window beside the oldest
 
-/// Student's t with `freedom` as a normal deviate, and back.
-double normalScore(double t, double freedom) noexcept
+/// Of Baseline::Compared windows.
+template <class Window>
+PlaceVector meanAlong(const Window* windows, std::size_t count) noexcept
 {
-  return std::copysign(std::sqrt(freedom * std::log1p(t * t / freedom)), t) * (8.0 * freedom + 1.0) /
-         (8.0 * freedom + 3.0);
-}
-double studentOf(double score, double freedom) noexcept
-{
-  const double plain = score * (8.0 * freedom + 3.0) / (8.0 * freedom + 1.0);
-  return std::sqrt(freedom * std::expm1(plain * plain / freedom));
+  PlaceVector sum = PlaceVector::Zero();
+  std::for_each(windows, windows + count, [&](const Window& window) { sum += mapped(window.along); });
+  return sum / static_cast<double>(count);
 }
 
-/// That so large a share lies beyond.
-double normalQuantile(double share)
+Deviation deviationOf(double difference, double expected, double spread, const Uncertainty& uncertainty,
+                      double threshold) noexcept
 {
-  return boost::math::quantile(boost::math::complement(boost::math::normal(), share));
-}
-
-/// What stays from one window to the next.
-struct Persistence
-{
-  double stays;        // r
-  double independent;  // e
-};
-
-Persistence persistenceOf(const ReferenceBin& bin, const Reference& reference) noexcept
-{
-  if (!(reference.within > 0.0 && reference.variance > 0.0))
+  Deviation deviation;
+  deviation.expected = expected;
+  deviation.spread = spread;
+  if (spread > 0.0)
   {
-    return { 1.0, 1.0 };
+    deviation.freedom = uncertainty.freedom();
+    deviation.stretch = uncertainty.stretch();
+    const double student = deviation.stretch * difference / spread;
+    deviation.score = normalScore(student, deviation.freedom);
+    deviation.threshold_factor = std::abs(student) / studentOf(threshold, deviation.freedom);
   }
-  const double found = 1.0 - reference.within / reference.variance;
-  // Its standard error (von Neumann 1941): what is not seen to stay may, and what seems to may not.
-  const double error = 1.0 / std::sqrt(std::max(reference.count - bin.runs, 1));
-  const double least = std::clamp(found - error, 0.0, 1.0);
-  const double runs = static_cast<double>(bin.runs) / bin.windows;
-  return { std::clamp(found + error, error, 1.0), std::max((1.0 - least) / (1.0 + least), std::min(runs, 1.0)) };
-}
-
-/// What the drive differs from the model by: of a line the root of the sum of squares over the lines of its signal
-/// whose phase stays, for resonances make any of them large in one motion and small in another.
-double sizeOffModel(const ReferenceBin& bin, std::size_t indicator) noexcept
-{
-  if (indicator < SCALAR_COUNT)
-  {
-    return std::abs(bin.references[indicator].mean);
-  }
-  double square = 0.0;
-  for (std::size_t line = 0; line < FIRST_LOCKED; ++line)
-  {
-    const double amplitude = bin.references[amplitudeIndex(signalOf(indicator), line)].mean;
-    square += amplitude * amplitude;
-  }
-  return std::sqrt(square);
-}
-
-/// What a reference carried to another motion is less sure by, where a mean is of so many windows.
-double carriedVariance(const ReferenceBin& bin, const CarriedError& error, std::size_t indicator,
-                       double windows) noexcept
-{
-  const double off = error.share * sizeOffModel(bin, indicator);
-  // Below CARRIED_WINDOWS as if all of it were noise.
-  return (error.deviation * error.deviation + off * off) * std::max(CARRIED_WINDOWS / windows, 1.0);
+  return deviation;
 }
 }  // namespace
 
@@ -103,7 +65,7 @@ Baseline::Baseline(const Parameters& parameters, std::shared_ptr<const Signature
   : signatures_(std::move(signatures))
   , windows_(parameters.indicators.baseline_windows)
   , evidence_windows_(static_cast<std::size_t>(parameters.indicators.evidence_windows))
-  , least_spread_(parameters.indicators.least_spread)
+  , repeatability_(repeatabilityOf(parameters))
   , load_step_(hjt::loadStep(parameters))
 {
   const auto patterns = static_cast<double>(patternCount(*signatures_));
@@ -203,16 +165,21 @@ BaselineState Baseline::update(const SignalIndicators& indicators, const SignalI
   const auto index = static_cast<std::size_t>(bin - bins_.data());
   if (!given_ && bin->windows < windows_)
   {
-    learnWindow(*bin, sums_[index], indicators, placeIn(bin->bin, indicators.point, load_step_));
+    learnWindow(*bin, sums_[index], indicators, model, placeIn(bin->bin, indicators.point, load_step_));
     if (++windows_here_ == windows_)
     {
-      fitReference(*bin, sums_[index], bins_, sums_, fit_room_);
+      fitReference(*bin, sums_[index], bins_, sums_, repeatability_, fit_room_);
     }
     return BaselineState::LEARNING;
   }
+  const Place place = placeFrom(*bin, indicators.point);
+  if (isOtherPayload(*bin, place))
+  {
+    return BaselineState::OTHER_PAYLOAD;
+  }
   Recent& recent = recent_[index];
   const std::size_t first = index * evidence_windows_;
-  take(*bin, indicators, model, compared_[first + recent.next]);
+  take(*bin, place, indicators, model, compared_[first + recent.next]);
   recent.next = (recent.next + 1) % evidence_windows_;
   windows_here_ = static_cast<int>(++recent.count);
   bin_ = bin->bin;
@@ -220,56 +187,73 @@ BaselineState Baseline::update(const SignalIndicators& indicators, const SignalI
   return BaselineState::COMPARED;
 }
 
-double Baseline::variance(std::size_t indicator, const ReferenceBin& bin, const Average& average, double left,
-                          const Widening& widening) const noexcept
+Baseline::Variance Baseline::variance(std::size_t indicator, const ReferenceBin& bin, const Average& average,
+                                      double left, const Widening& widening) const noexcept
 {
-  // Of a part of a line a share of its amplitude: the part itself may be near zero.
-  const double least = least_spread_ * bin.references[amplitudeOf(indicator)].mean;
+  const double repeats = repeatsWithin(repeatability_, bin, indicator);
   const double usual = bin.references[indicator].relative_square;
   const double square = left * (usual > 0.0 ? std::max(average.relative_square / usual, 1.0) : 1.0);
-  return square * widening.stays + std::max(square * widening.varies, average.scatter_square / average.weight) +
-         least * least + floor_[indicator] * floor_[indicator] + widening.carried;
+  const double learned =
+      square * widening.stays + std::max(square * widening.varies, average.scatter_square / average.weight);
+  return { learned + repeats * repeats + floor_[indicator] * floor_[indicator] +
+               (square + repeats * repeats) * widening.slopes + widening.carried,
+           learned };
 }
 
-Deviation Baseline::deviation(double difference, double expected, double spread, double freedom) const noexcept
+double Baseline::scoreOf(double difference, const Deviation& scale) const noexcept
 {
-  Deviation deviation;
-  deviation.expected = expected;
-  deviation.spread = spread;
-  if (spread > 0.0)
-  {
-    const double student = difference / spread;
-    deviation.score = normalScore(student, freedom);
-    deviation.threshold_factor = std::abs(student) / studentOf(threshold_, freedom);
-  }
-  return deviation;
+  return scale.spread > 0.0 ? normalScore(scale.stretch * difference / scale.spread, scale.freedom) : 0.0;
+}
+
+double Baseline::scoreOf(std::size_t indicator, double change, const Deviations& deviations) const noexcept
+{
+  return scoreOf(change, deviations[indicator]);
 }
 
 Deviation Baseline::pattern(double student) const noexcept
 {
-  const double freedom = std::max(residual_.freedom, 1.0);
   Deviation deviation;
-  deviation.score = normalScore(student, freedom);
-  deviation.threshold_factor = student / studentOf(pattern_threshold_, freedom);
+  deviation.spread = 1.0;
+  deviation.freedom = residual_.pattern_freedom;
+  deviation.stretch = residual_.pattern_stretch;
+  deviation.score = scoreOf(student, deviation);
+  deviation.threshold_factor = deviation.stretch * student / studentOf(pattern_threshold_, deviation.freedom);
   return deviation;
 }
 
-void Baseline::take(const ReferenceBin& bin, const SignalIndicators& indicators, const SignalIndicators* model,
-                    Compared& window) noexcept
+Place Baseline::placeFrom(const ReferenceBin& bin, const OperatingPoint& point) const noexcept
 {
-  const Place here = placeIn(bin.bin, indicators.point, load_step_);
-  PlaceVector place = mapped(here) - mapped(bin.mean_place);
+  const Place here = placeIn(bin.bin, point, load_step_);
+  Place place;
+  mapped(place) = mapped(here) - mapped(bin.mean_place);
   if (carried_)
   {
-    place.tail<PLACES - OWN_PLACES>().setZero();  // load and payload are the model's to follow
+    mapped(place).tail<PLACES - OWN_PLACES>().setZero();  // load and payload are the model's to follow
   }
-  window.leverage = place.dot(mapped(bin.leverage) * place);
+  return place;
+}
+
+bool Baseline::isOtherPayload(const ReferenceBin& bin, const Place& place) const noexcept
+{
+  Squares information = mapped(bin.information);
+  information.diagonal().array() += std::max(std::pow(repeatability_.share / SLOPE_SHARE, 2), LEAST_RIDGE);
+  PlaceVector off = mapped(place);
+  off.head<OWN_PLACES>().setZero();
+  return off.dot(information.ldlt().solve(off)) > OTHER_PAYLOAD_WIDENING;
+}
+
+void Baseline::take(const ReferenceBin& bin, const Place& place, const SignalIndicators& indicators,
+                    const SignalIndicators* model, Compared& window) noexcept
+{
+  const Eigen::SelfAdjointEigenSolver<Squares> axes(mapped(bin.information));
+  mapped(axes_sizes_) = axes.eigenvalues().cwiseMax(0.0);
+  mapped(window.along) = (axes.eigenvectors().transpose() * mapped(place)).array().square();
   window.relative = relativeErrors(indicators);
   for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
   {
     const Reference& reference = bin.references[i];
     window.difference[i] = std::numeric_limits<double>::quiet_NaN();
-    expected_[i] = reference.mean + place.dot(mapped(reference.slopes));
+    expected_[i] = reference.mean + mapped(place).dot(mapped(reference.slopes));
     residual_.sound[i] =
         reference.count < MIN_WINDOWS ? 0.0 : expected_[i] + (model != nullptr ? model->values[i] : 0.0);
     if (reference.count < MIN_WINDOWS || !std::isfinite(indicators.values[i]))
@@ -332,13 +316,11 @@ void Baseline::compare(const ReferenceBin& bin, std::size_t first, std::size_t c
   double causes = 0.0;
   double freedoms = 0.0;
   double compared = 0.0;
-  double leverage = 0.0;
-  for (std::size_t i = first; i < first + count; ++i)
-  {
-    leverage += compared_[i].leverage / static_cast<double>(count);
-  }
+  MeanUncertainty scalars;
+  const PlaceVector along = meanAlong(&compared_[first], count);
   residual_.windows = static_cast<int>(count);
   const std::array<double, INDICATOR_COUNT> alike = varianceOfAlike(bin);
+  const std::array<CommonPersistence, TAILS> persistences{ commonPersistence(bin, 0), commonPersistence(bin, 1) };
   for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
   {
     const bool sound_known = std::isfinite(residual_.sound[i]);  // else the model did not determine it in this window
@@ -349,13 +331,16 @@ void Baseline::compare(const ReferenceBin& bin, std::size_t first, std::size_t c
       continue;
     }
     const Reference& reference = bin.references[i];
-    const Persistence persistence = persistenceOf(bin, reference);
+    const Persistence persistence = persistenceOf(bin, reference, persistences[tailOf(i)]);
     const double n = reference.count;
-    const double fitted = reference.fitted ? bin.slopes_freedom : 0.0;
+    const double fitted = reference.slopes_freedom;
     const double known_with = carried_ ? signatures_->carried[i].freedom : n;
     const double freedom = std::clamp(persistence.independent * n - 1.0 - fitted, 1.0, known_with);
-    const double h = (1.0 + (reference.fitted ? leverage * bin.windows : 0.0)) / n / persistence.independent;
-    const Widening widening{ persistence.stays + h, (1.0 - persistence.stays) / average.weight,
+    const double leverage =
+        reference.fitted ? (along.array() / (mapped(axes_sizes_).array() + reference.ridge)).sum() : 0.0;
+    const Widening widening{ persistence.stays + 1.0 / n / persistence.independent,
+                             (1.0 - persistence.stays) / average.weight,
+                             leverage * bin.windows / n / persistence.independent,
                              carried_ ? carriedVariance(bin, signatures_->carried[i], i, static_cast<double>(count)) :
                                         0.0 };
     const double prior = alike[i] > 0.0 && !carried_ ? ALIKE_FREEDOM : 0.0;
@@ -363,8 +348,14 @@ void Baseline::compare(const ReferenceBin& bin, std::size_t first, std::size_t c
     freedoms += freedom;
     compared += 1.0;
     residual_.difference[i] = average.difference;
-    deviations[i] = deviation(average.difference, expected_[i], std::sqrt(variance(i, bin, average, usual, widening)),
-                              freedom + prior);
+    const Variance variance = this->variance(i, bin, average, usual, widening);
+    const Uncertainty uncertainty =
+        uncertaintyOf(variance.learned / variance.all, bin.tail[tailOf(i)], average.weight, freedom + prior);
+    deviations[i] = deviationOf(average.difference, expected_[i], std::sqrt(variance.all), uncertainty, threshold_);
+    if (i < SCALAR_COUNT)
+    {
+      scalars.add(uncertainty);
+    }
     if (!sound_known)
     {
       continue;
@@ -372,11 +363,13 @@ void Baseline::compare(const ReferenceBin& bin, std::size_t first, std::size_t c
     const Causes common = carried_ ? Causes(Causes::Zero()) : Causes(Eigen::Map<const Causes>(reference.common.data()));
     const double found = static_cast<double>((common.array() != 0.0).count());
     const double left =
-        std::max(1.0 - common.squaredNorm(), LEAST_LEFT) * (n - 1.0 - fitted) / (n - 1.0 - fitted - found);
+        std::max(1.0 - common.squaredNorm(), LEAST_LEFT) * (n - 1.0 - fitted) / std::max(n - 1.0 - fitted - found, 1.0);
     causes = std::max(causes, found);
-    residual_.own[i] = variance(i, bin, average, left * usual, widening);
+    residual_.own[i] = this->variance(i, bin, average, left * usual, widening).all;
     Eigen::Map<Causes>(residual_.common[i].data()) = std::sqrt(usual * (widening.stays + widening.varies)) * common;
   }
   residual_.freedom = compared > 0.0 ? std::max(freedoms / compared - causes, 1.0) : 0.0;
+  residual_.pattern_freedom = scalars.mean().freedom();
+  residual_.pattern_stretch = scalars.mean().stretch();
 }
 }  // namespace hjt

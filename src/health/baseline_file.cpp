@@ -14,13 +14,15 @@
 #include "base/whole_file.hpp"
 #include "base/yaml_number.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
+#include "health/deviation_laws.hpp"
 #include "health/reference_fit.hpp"
 
 namespace hjt
 {
 namespace
 {
-constexpr int FORMAT = 3;  // by what the indicators mean
+constexpr int FORMAT = 4;       // by what the indicators mean, and what is kept of them
+constexpr int OWN_NUMBERS = 6;  // of an indicator, before what is fitted
 
 std::size_t indicatorNamed(const std::string& name)
 {
@@ -53,20 +55,18 @@ ReferenceBin readBin(const YAML::Node& node)
               node["temperature"].as<int>() };
   bin.windows = node["windows"].as<int>();
   bin.runs = node["runs"].as<int>();
-  if (node["place"])
+  bin.mean_place = readNumbers<PLACES>(node["place"]);
+  bin.tail = readNumbers<TAILS>(node["tail"]);
+  if (node["information"].size() != PLACES)
   {
-    bin.mean_place = readNumbers<PLACES>(node["place"]);
-    if (node["leverage"].size() != PLACES)
-    {
-      throw InputError("leverage must have as many rows as place has numbers");
-    }
-    std::transform(node["leverage"].begin(), node["leverage"].end(), bin.leverage.begin(), readNumbers<PLACES>);
-    bin.slopes_freedom = yamlNumber(node["slopes_freedom"]);
-    if (!mapped(bin.mean_place).allFinite() || !mapped(bin.leverage).allFinite() ||
-        !std::isfinite(bin.slopes_freedom) || bin.slopes_freedom < 0.0)
-    {
-      throw InputError("place, leverage and slopes_freedom must be finite, slopes_freedom >= 0");
-    }
+    throw InputError("information must have as many rows as place has numbers");
+  }
+  std::transform(node["information"].begin(), node["information"].end(), bin.information.begin(), readNumbers<PLACES>);
+  const bool tails_in_range =
+      std::all_of(bin.tail.begin(), bin.tail.end(), [](double tail) { return tail >= 0.0 && tail <= MOST_TAIL; });
+  if (!mapped(bin.mean_place).allFinite() || !mapped(bin.information).allFinite() || !tails_in_range)
+  {
+    throw InputError("place and information must be finite, tail within 0 ... " + numberText(MOST_TAIL));
   }
   for (const auto& entry : node["indicators"])
   {
@@ -74,30 +74,34 @@ ReferenceBin readBin(const YAML::Node& node)
     std::transform(entry.second.begin(), entry.second.end(), std::back_inserter(numbers),
                    [](const YAML::Node& number) { return yamlNumber(number); });
     const auto name = entry.first.as<std::string>();
-    const bool knows_error = numbers.size() == 5 || numbers.size() == 5 + PLACES + COMMON_CAUSES;
-    const double error = knows_error ? numbers[4] : 0.0;  // files of before have none
-    numbers.erase(numbers.begin() + (knows_error ? 4 : 0), numbers.begin() + (knows_error ? 5 : 0));
-    const bool fitted = numbers.size() == 4 + PLACES + COMMON_CAUSES && node["place"];
-    const bool finite =
-        std::all_of(numbers.begin(), numbers.end(), [](double number) { return std::isfinite(number); });
-    if ((numbers.size() != 4 && !fitted) || !finite || numbers[0] < 1.0 || numbers[2] < 0.0 || numbers[3] < 0.0 ||
-        !(error >= 0.0 && std::isfinite(error)))
+    const bool fitted = numbers.size() == OWN_NUMBERS + 2 + PLACES + COMMON_CAUSES;
+    const bool in_range =
+        std::all_of(numbers.begin(), numbers.end(), [](double number) { return std::isfinite(number); }) &&
+        (numbers.size() == OWN_NUMBERS || fitted) && numbers[0] >= 1.0 &&
+        std::all_of(numbers.begin() + 2, numbers.begin() + OWN_NUMBERS + (fitted ? 2 : 0),
+                    [](double number) { return number >= 0.0; });
+    if (!in_range || (fitted && !(numbers[OWN_NUMBERS] > 0.0)))
     {
-      throw InputError(name +
-                       " must be [windows >= 1, mean, spread >= 0, spread from window to window >= 0, standard error "
-                       ">= 0], and slopes over the bin's 'place' and shares of common causes or none");
+      throw InputError(
+          name +
+          " must be [windows >= 1, mean, spread >= 0, spread from window to window >= 0, standard error "
+          ">= 0, magnitude >= 0], and ridge > 0, degrees of freedom >= 0, slopes over the bin's 'place' and "
+          "shares of common causes or none");
     }
     Reference& reference = bin.references[indicatorNamed(name)];
     reference.count = static_cast<int>(numbers[0]);
     reference.mean = numbers[1];
     reference.variance = numbers[2] * numbers[2];
     reference.within = numbers[3] * numbers[3];
-    reference.relative_square = error * error;
+    reference.relative_square = numbers[4] * numbers[4];
+    reference.scale = numbers[5];
     reference.fitted = fitted;
     if (fitted)
     {
-      std::copy_n(numbers.begin() + 4, PLACES, reference.slopes.begin());
-      std::copy_n(numbers.begin() + 4 + PLACES, COMMON_CAUSES, reference.common.begin());
+      reference.ridge = numbers[OWN_NUMBERS];
+      reference.slopes_freedom = numbers[OWN_NUMBERS + 1];
+      std::copy_n(numbers.begin() + OWN_NUMBERS + 2, PLACES, reference.slopes.begin());
+      std::copy_n(numbers.begin() + OWN_NUMBERS + 2 + PLACES, COMMON_CAUSES, reference.common.begin());
     }
   }
   return bin;
@@ -117,7 +121,7 @@ std::vector<ReferenceBin> readBaseline(const std::string& path, const Parameters
     }
     if (!file["format"] || file["format"].as<int>() != FORMAT)
     {
-      throw InputError("it is of another version, whose indicators mean something else; save it again");
+      throw InputError("it is of another version of the software; save it again");
     }
     const double step = file["load_step"] ? yamlNumber(file["load_step"]) : 0.0;
     if (std::abs(step - loadStep(parameters)) > 1e-6 * loadStep(parameters))
@@ -163,9 +167,13 @@ void writeBaseline(const std::string& path, const Baseline& baseline, bool less_
           "K.\n"
           "# Place in it: temperature, its square, the load's mean magnitude, its part that stays over the angle, its "
           "parts over sine\n# and cosine of the angle, inertia.\n"
+          "# Information of the slopes: products of the places. Tail of scalars and of lines: 1 / degrees of freedom, "
+          "0: "
+          "normal.\n"
           "# Each indicator: [windows, mean, spread, spread from one window to the next, standard error of a line over "
-          "the least\n# one of its signal (0: not known), slopes over the place, share of the spread that goes with "
-          "each common cause],\n# units as in docs/indicators.md.\n"
+          "the least\n# one of its signal (0: not known), mean magnitude, ridge and degrees of freedom of the slopes, "
+          "slopes over the place,\n# share of the spread that goes with each common cause], units as in "
+          "docs/indicators.md.\n"
           "format: "
        << FORMAT << "\nload_step: " << numberText(baseline.loadStep()) << "\nmodel: " << (less_model ? "true" : "false")
        << "  # whether a model's indicators were subtracted\nbaseline:\n";
@@ -175,13 +183,13 @@ void writeBaseline(const std::string& path, const Baseline& baseline, bool less_
     ReferenceBin bin = baseline.bins()[b];
     if (!baseline.given())
     {
-      fitReference(bin, baseline.sums()[b], baseline.bins(), baseline.sums(), room);
+      fitReference(bin, baseline.sums()[b], baseline.bins(), baseline.sums(), baseline.repeatability(), room);
     }
     text << "  - speed: " << bin.bin.speed << "\n    direction: " << bin.bin.direction << "\n    load: " << bin.bin.load
          << "\n    temperature: " << bin.bin.temperature << "\n    windows: " << bin.windows
-         << "\n    runs: " << bin.runs << "\n    place: [" << list(bin.mean_place)
-         << "]\n    slopes_freedom: " << numberText(bin.slopes_freedom) << "\n    leverage:\n";
-    for (const Place& row : bin.leverage)
+         << "\n    runs: " << bin.runs << "\n    place: [" << list(bin.mean_place) << "]\n    tail: [" << list(bin.tail)
+         << "]\n    information:\n";
+    for (const Place& row : bin.information)
     {
       text << "      - [" << list(row) << "]\n";
     }
@@ -193,10 +201,11 @@ void writeBaseline(const std::string& path, const Baseline& baseline, bool less_
       {
         text << "      " << indicatorName(i) << ": [" << reference.count << ", " << numberText(reference.mean) << ", "
              << numberText(std::sqrt(reference.variance)) << ", " << numberText(std::sqrt(reference.within)) << ", "
-             << numberText(std::sqrt(reference.relative_square));
+             << numberText(std::sqrt(reference.relative_square)) << ", " << numberText(reference.scale);
         if (reference.fitted)
         {
-          text << ", " << list(reference.slopes) << ", " << list(reference.common);
+          text << ", " << numberText(reference.ridge) << ", " << numberText(reference.slopes_freedom) << ", "
+               << list(reference.slopes) << ", " << list(reference.common);
         }
         text << "]\n";
       }

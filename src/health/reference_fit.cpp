@@ -6,14 +6,18 @@
 
 #include <Eigen/Dense>
 
+#include "health/deviation_laws.hpp"
 #include "health/indicator_table.hpp"
+#include "health/tail_fit.hpp"
 
 namespace hjt
 {
 namespace
 {
-constexpr int MIN_FITTED = 16;  // windows before slopes and correlations mean anything
-constexpr int MIN_STEPS = 8;    // pairs of windows before what they differ by means anything
+constexpr int MIN_FITTED = 4;  // windows before slopes mean anything
+constexpr int RIDGE_STEPS = 4;
+constexpr double LEAST_FREEDOM = 1.0;  // that a spread is divided by
+constexpr int MIN_STEPS = 8;           // pairs of windows before what they differ by means anything
 // Of a place, rms: nearer ones count as one, 0.025 K and a quarter of a percent of the class of load [-].
 constexpr double PLACE_ERROR = 0.005;
 constexpr int MIN_ALIKE = 4;    // lines before what they have in common means anything
@@ -44,10 +48,10 @@ struct SharedPlaces
 {
   SharedPlaces(const PlaceSquares& places, int windows) noexcept
   {
-    Squares whole = mapped(places);
-    whole.diagonal().array() += windows * PLACE_ERROR * PLACE_ERROR;
-    own_inverse = whole.topLeftCorner<OWN, OWN>().inverse();
-    by_own.noalias() = own_inverse * whole.topRightCorner<OWN, SHARED>();
+    const Squares whole = mapped(places);
+    Eigen::Matrix<double, OWN, OWN> own = whole.topLeftCorner<OWN, OWN>();
+    own.diagonal().array() += windows * PLACE_ERROR * PLACE_ERROR;
+    by_own.noalias() = own.inverse() * whole.topRightCorner<OWN, SHARED>();
     squares = whole.bottomRightCorner<SHARED, SHARED>() - whole.bottomLeftCorner<SHARED, OWN>() * by_own;
   }
 
@@ -56,8 +60,7 @@ struct SharedPlaces
     return mapped(with).tail<SHARED>() - by_own.transpose() * mapped(with).head<OWN>();
   }
 
-  Eigen::Matrix<double, OWN, OWN> own_inverse;  // of the squares of the own coordinates
-  Eigen::Matrix<double, OWN, SHARED> by_own;    // slopes of the shared ones over the own ones
+  Eigen::Matrix<double, OWN, SHARED> by_own;  // slopes of the shared ones over the own ones
   SharedSquares squares;
 };
 
@@ -67,62 +70,72 @@ bool isAlikeButForTemperature(OperatingBin one, const OperatingBin& other) noexc
   return one == other;
 }
 
-void fitLeverage(ReferenceBin& bin, const LearnedSums& sums, const std::vector<ReferenceBin>& bins,
-                 const std::vector<LearnedSums>& all_sums) noexcept
+bool serves(const ReferenceBin& other, const ReferenceBin& bin) noexcept
 {
-  SharedSquares squares = SharedSquares::Zero();
+  return isAlikeButForTemperature(other.bin, bin.bin) && !(other.bin == bin.bin);
+}
+
+/// What all windows know of the slopes in this class.
+void fitInformation(ReferenceBin& bin, const LearnedSums& sums, const std::vector<ReferenceBin>& bins,
+                    const std::vector<LearnedSums>& all_sums) noexcept
+{
+  bin.information = sums.windows.places;
   for (std::size_t i = 0; i < bins.size(); ++i)
   {
-    if (isAlikeButForTemperature(bins[i].bin, bin.bin) && bins[i].windows >= MIN_FITTED)
+    if (serves(bins[i], bin))
     {
-      squares += SharedPlaces(all_sums[i].windows.places, bins[i].windows).squares;
+      mapped(bin.information).bottomRightCorner<SHARED, SHARED>() +=
+          SharedPlaces(all_sums[i].windows.places, bins[i].windows).squares;
     }
   }
-  const SharedSquares inverse = squares.inverse();
-  const SharedPlaces own(sums.windows.places, bin.windows);
-  Eigen::Map<Squares> leverage = mapped(bin.leverage);
-  leverage.bottomRightCorner<SHARED, SHARED>() = inverse;
-  leverage.topRightCorner<OWN, SHARED>() = -own.by_own * inverse;
-  leverage.bottomLeftCorner<SHARED, OWN>() = leverage.topRightCorner<OWN, SHARED>().transpose();
-  leverage.topLeftCorner<OWN, OWN>() = own.own_inverse + own.by_own * inverse * own.by_own.transpose();
-  bin.slopes_freedom = OWN + (inverse * own.squares).trace();
 }
 
 void fitSlopes(ReferenceBin& bin, const LearnedSums& learned, const std::vector<ReferenceBin>& bins,
-               const std::vector<LearnedSums>& all_sums, std::size_t indicator) noexcept
+               const std::vector<LearnedSums>& all_sums, const Repeatability& repeatability,
+               std::size_t indicator) noexcept
 {
   Reference& reference = bin.references[indicator];
   const IndicatorSums& sums = learned.windows.by_indicator[indicator];
   const IndicatorSums& steps = learned.steps.by_indicator[indicator];
+  const double usual = SLOPE_SHARE * bin.references[amplitudeOf(indicator)].scale;
   PlaceVector slopes = PlaceVector::Zero();
-  reference.fitted = sums.count >= MIN_FITTED && sums.square > 0.0;
+  reference.fitted = sums.count >= MIN_FITTED && sums.square > 0.0 && usual > 0.0;
   if (reference.fitted)
   {
-    SharedSquares squares = SharedSquares::Zero();
-    SharedVector mixed = SharedVector::Zero();
+    Squares information = mapped(sums.places);
+    PlaceVector mixed = mapped(sums.mixed);
     for (std::size_t i = 0; i < bins.size(); ++i)
     {
       const IndicatorSums& others = all_sums[i].windows.by_indicator[indicator];
-      if (isAlikeButForTemperature(bins[i].bin, bin.bin) && others.count >= MIN_FITTED)
+      if (serves(bins[i], bin) && others.count >= MIN_FITTED)
       {
         const SharedPlaces places(others.places, others.count);
-        squares += places.squares;
-        mixed += places.mixed(others.mixed);
+        information.bottomRightCorner<SHARED, SHARED>() += places.squares;
+        mixed.tail<SHARED>() += places.mixed(others.mixed);
       }
     }
-    const SharedSquares inverse = squares.inverse();
-    const SharedPlaces own(sums.places, sums.count);
-    slopes.tail<SHARED>() = inverse * mixed;
-    slopes.head<OWN>() = own.own_inverse * mapped(sums.mixed).head<OWN>() - own.by_own * slopes.tail<SHARED>();
-    const double freedom = sums.count - 1.0 - OWN - (inverse * own.squares).trace();
-    reference.variance = std::max(squareLeft(sums, slopes), 0.0) / freedom;
+    const double repeats = repeatsWithin(repeatability, bin, indicator);
+    reference.variance = sums.square / (sums.count - 1.0);
+    for (int i = 0; i < RIDGE_STEPS; ++i)  // the spread shrinks with the slopes, and the ridge with it
+    {
+      reference.ridge = std::max((reference.variance + repeats * repeats) / (usual * usual), PLACE_ERROR * PLACE_ERROR);
+      Squares ridged = information;
+      ridged.diagonal().array() += reference.ridge;
+      const Eigen::LDLT<Squares> solver(ridged);
+      slopes = solver.solve(mixed);
+      const Squares own = solver.solve(mapped(sums.places));
+      reference.slopes_freedom = (2.0 * own - solver.solve(information) * own).trace();
+      reference.variance = std::max(squareLeft(sums, slopes), 0.0) /
+                           std::max(sums.count - 1.0 - reference.slopes_freedom, LEAST_FREEDOM);
+    }
     reference.mean = learned.windows.means[indicator] +
                      slopes.dot(mapped(bin.mean_place) - mapped(learned.windows.mean_places[indicator]));
   }
   mapped(reference.slopes) = slopes;
+  // Beyond the variance by chance where windows are independent; the mean of many such is then not off.
   reference.within = steps.count >= MIN_STEPS && reference.variance > 0.0 ?
                          std::clamp(0.5 * squareLeft(steps, slopes) / steps.count, LEAST_LEFT * reference.variance,
-                                    reference.variance) :
+                                    2.0 * reference.variance) :
                          0.0;
 }
 
@@ -155,6 +168,7 @@ void fitCommonCauses(ReferenceBin& bin, const ReferenceSums& sums, FitRoom& room
   Mixed mixed = Mixed::Zero();
   Vector scale = Vector::Zero();  // 0: left out
   int used = 0;
+  double slopes_freedom = 0.0;
   for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
   {
     Reference& reference = bin.references[i];
@@ -166,6 +180,7 @@ void fitCommonCauses(ReferenceBin& bin, const ReferenceSums& sums, FitRoom& room
       mixed.col(column) = mapped(sums.by_indicator[i].mixed);
       scale[column] = 1.0 / std::sqrt(squareLeft(sums.by_indicator[i], slopes.col(column)));
       ++used;
+      slopes_freedom += reference.slopes_freedom;
     }
   }
   mixed -= 0.5 * mapped(sums.places) * slopes;
@@ -181,7 +196,8 @@ void fitCommonCauses(ReferenceBin& bin, const ReferenceSums& sums, FitRoom& room
   left.noalias() -= slopes.transpose() * mixed;
   left.noalias() -= mixed.transpose() * slopes;
   left = scale.asDiagonal() * left * scale.asDiagonal();
-  const double edge = std::pow(1.0 + std::sqrt(used / (bin.windows - 1.0 - bin.slopes_freedom)), 2);
+  const double left_freedom = bin.windows - 1.0 - (used > 0 ? slopes_freedom / used : 0.0);
+  const double edge = std::pow(1.0 + std::sqrt(used / std::max(left_freedom, LEAST_FREEDOM)), 2);
   for (std::size_t cause = 0; cause < COMMON_CAUSES && used > 0; ++cause)
   {
     Eigen::Index widest = 0;
@@ -215,7 +231,7 @@ std::array<double, INDICATOR_COUNT> varianceOfAlike(const ReferenceBin& bin) noe
   for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
   {
     const Reference& reference = bin.references[i];
-    const double freedom = reference.count - 1.0 - (reference.fitted ? bin.slopes_freedom : 0.0);
+    const double freedom = reference.count - 1.0 - reference.slopes_freedom;
     if (freedom >= 1.0 && reference.variance > 0.0 && reference.relative_square > 0.0)
     {
       sums[kindOfLine(i)] +=
@@ -254,7 +270,7 @@ std::array<double, INDICATOR_COUNT> relativeErrors(const SignalIndicators& indic
 }
 
 void learnWindow(ReferenceBin& bin, LearnedSums& learned, const SignalIndicators& indicators,
-                 const Place& here) noexcept
+                 const SignalIndicators* model, const Place& here) noexcept
 {
   ++bin.windows;
   ReferenceSums& sums = learned.windows;
@@ -283,6 +299,9 @@ void learnWindow(ReferenceBin& bin, LearnedSums& learned, const SignalIndicators
     bin.references[i].count = sums.by_indicator[i].count;
     bin.references[i].mean = sums.means[i];
     bin.references[i].variance = sums.by_indicator[i].square / std::max(count - 1.0, 1.0);
+    const double whole =
+        indicators.values[i] + (model != nullptr && std::isfinite(model->values[i]) ? model->values[i] : 0.0);
+    bin.references[i].scale += (std::abs(whole) - bin.references[i].scale) / count;
     if (const double error = errors[i]; error > 0.0)
     {
       double& square = bin.references[i].relative_square;
@@ -292,6 +311,13 @@ void learnWindow(ReferenceBin& bin, LearnedSums& learned, const SignalIndicators
     {
       add(indicators.values[i] - steps.last[i], moved, 1.0, steps.by_indicator[i]);
     }
+  }
+  if (KeptWindows& kept = learned.kept; kept.count < KeptWindows::MOST)
+  {
+    kept.places[kept.count] = here;
+    std::transform(indicators.values.begin(), indicators.values.end(), kept.values[kept.count].begin(),
+                   [](double value) { return static_cast<float>(value); });
+    ++kept.count;
   }
   std::size_t pair = 0;
   for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
@@ -307,17 +333,14 @@ void learnWindow(ReferenceBin& bin, LearnedSums& learned, const SignalIndicators
 }
 
 void fitReference(ReferenceBin& bin, const LearnedSums& sums, const std::vector<ReferenceBin>& bins,
-                  const std::vector<LearnedSums>& all_sums, FitRoom& room) noexcept
+                  const std::vector<LearnedSums>& all_sums, const Repeatability& repeatability, FitRoom& room) noexcept
 {
-  if (bin.windows < MIN_FITTED)
-  {
-    return;
-  }
-  fitLeverage(bin, sums, bins, all_sums);
+  fitInformation(bin, sums, bins, all_sums);
   for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
   {
-    fitSlopes(bin, sums, bins, all_sums, i);
+    fitSlopes(bin, sums, bins, all_sums, repeatability, i);
   }
+  fitTails(bin, sums);
   fitCommonCauses(bin, sums.windows, room);
 }
 }  // namespace hjt

@@ -28,7 +28,7 @@ SeenFrom seenFrom(const Assessor& assessor, const OperatingPoint& point)
   {
     double weight{};
     double pattern{};  // Student's t
-    double single{};   // of the indicator furthest off
+    double single{};   // score of the indicator furthest off
   };
   std::map<std::pair<std::size_t, double>, Mean> means;
   for (const Signature& signature : set.signatures)
@@ -38,7 +38,7 @@ SeenFrom seenFrom(const Assessor& assessor, const OperatingPoint& point)
     Mean& mean = means[{ cause, signature.severity }];
     mean.weight += weight;
     mean.pattern += weight * terms.along(directions[cause], &signature);
-    mean.single += weight * terms.largest(signature);
+    mean.single += weight * terms.largest(signature, baseline, assessor.deviations());
   }
   SeenFrom least;
   least.fill(std::numeric_limits<double>::quiet_NaN());
@@ -47,7 +47,7 @@ SeenFrom seenFrom(const Assessor& assessor, const OperatingPoint& point)
     double& from = least[key.first];
     from = std::isnan(from) ? HUGE_VAL : from;
     if (baseline.pattern(mean.pattern / mean.weight).score > baseline.patternThreshold() ||
-        baseline.pattern(mean.single / mean.weight).score > baseline.threshold())
+        mean.single / mean.weight > baseline.threshold())
     {
       from = std::min(from, key.second);
     }

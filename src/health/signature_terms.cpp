@@ -190,13 +190,14 @@ void SignatureTerms::addDirection(const Signature& signature, double weight, Dir
   }
 }
 
-double SignatureTerms::largest(const Signature& signature) const noexcept
+double SignatureTerms::largest(const Signature& signature, const Baseline& baseline,
+                               const Deviations& deviations) const noexcept
 {
   double largest = 0.0;
   for (std::size_t i = 0; i < count_; ++i)
   {
     const Term& term = terms_[i];
-    largest = std::max(largest, std::abs(changeBy(signature, term)) / std::sqrt(term.own + term.common.squaredNorm()));
+    largest = std::max(largest, std::abs(baseline.scoreOf(term.indicator, changeBy(signature, term), deviations)));
   }
   return largest;
 }
@@ -239,6 +240,7 @@ void SignatureTerms::add(const WindowResidual& residual, std::size_t indicator, 
                          residual.own[indicator],
                          Eigen::Map<const Causes>(residual.common[indicator].data()),
                          number,
+                         indicator,
                          line_square.has_value(),
                          sound,
                          line_square.value_or(is_play ? sound * sound : 0.0) };

@@ -38,8 +38,8 @@ public:
   /// in place of the difference.
   double along(const Direction& direction, const Signature* instead = nullptr) const noexcept;
 
-  /// Of the signature's changes the largest over the spread that a sound drive has.
-  double largest(const Signature& signature) const noexcept;
+  /// Of the signature's changes the largest score by itself.
+  double largest(const Signature& signature, const Baseline& baseline, const Deviations& deviations) const noexcept;
 
 private:
   using Causes = Eigen::Matrix<double, COMMON_CAUSES, 1>;
@@ -52,6 +52,7 @@ private:
     double own;
     Causes common;
     std::size_t number;  // of the signature
+    std::size_t indicator;
     bool has_phase;      // one of two parts of a line
     double sound;        // what a share is taken of
     double line_square;  // half the square of the sound line's amplitude, that of the sound lost motion; 0 of others

@@ -48,7 +48,7 @@ void visitIndicators(P& p, Visitor& visit)
   visit("indicators.baseline_classes", "-", p.indicators.baseline_classes, Range{ 1, 1000 },
         ofOthers("classes of operating points the healthy reference is learned of at most, 0.2 MB of memory each"));
   visit("indicators.least_spread", "-", p.indicators.least_spread, Range{ 0.0, 1.0 },
-        ofOthers("smallest spread of an indicator, as a share of its healthy mean"));
+        ofOthers("repeatability of a sound drive from one recording to the next, as a share of each indicator"));
   visit("indicators.false_alarm_rate", "-", p.indicators.false_alarm_rate, Range{ 1e-12, 0.5 },
         ofOthers("chance that the mean of healthy windows shows any indicator or pattern beyond its threshold"));
   visit("indicators.evidence_windows", "-", p.indicators.evidence_windows, Range{ 1, 100 },

@@ -43,6 +43,8 @@ const char* assessmentStateName(AssessmentState state)
       return "NO_REFERENCE";
     case AssessmentState::TOO_FEW_WINDOWS:
       return "TOO_FEW_WINDOWS";
+    case AssessmentState::OTHER_PAYLOAD:
+      return "OTHER_PAYLOAD";
   }
   return "WAITING";
 }
@@ -186,8 +188,8 @@ void bindAssessment(py::module& module)
       .def_readonly("windows", &Assessment::windows, "windows seen [-]")
       .def_property_readonly(
           "state", [](const Assessment& self) { return assessmentStateName(self.state); },
-          "'WAITING', 'LEARNING', 'ASSESSED', 'NO_REFERENCE' or 'TOO_FEW_WINDOWS': level 'OK' is a verdict in "
-          "'ASSESSED' only")
+          "'WAITING', 'LEARNING', 'ASSESSED', 'NO_REFERENCE', 'TOO_FEW_WINDOWS' or 'OTHER_PAYLOAD': level 'OK' is a "
+          "verdict in 'ASSESSED' only")
       .def_readonly("windows_here", &Assessment::windows_here,
                     "at the last operating point: in the reference if there is no more, else compared [-]")
       .def_readonly("windows_needed", &Assessment::windows_needed, "of those, for a reference or a verdict [-]")

@@ -20,7 +20,8 @@ namespace
 {
 const char* stateName(AssessmentState state)
 {
-  constexpr std::array NAMES{ "waiting", "learning", "assessed", "no reference", "too few windows" };
+  constexpr std::array NAMES{ "waiting",      "learning",        "assessed",
+                              "no reference", "too few windows", "payload not in the reference" };
   return NAMES[static_cast<std::size_t>(state)];
 }
 
@@ -128,21 +129,6 @@ Json strongestJson(const WindowResult& window)
                             { "percent", strongest->percent } };
 }
 
-/// Severities by cause, of causes with signatures; null: at none of theirs.
-Json seenFromJson(const WindowResult& window)
-{
-  Json json;
-  for (std::size_t cause = 0; window.seen_from && cause < CAUSE_COUNT; ++cause)
-  {
-    const double severity = (*window.seen_from)[cause];
-    if (!std::isnan(severity))
-    {
-      json[causeName(static_cast<Cause>(cause))] = std::isfinite(severity) ? Json(severity) : Json();
-    }
-  }
-  return json;
-}
-
 std::vector<Column<WindowResult>> documentColumns()
 {
   using W = const WindowResult&;
@@ -158,7 +144,8 @@ std::vector<Column<WindowResult>> documentColumns()
   columns.push_back({ "freedom", [](const WindowResult& window) { return window.residual.freedom; } });
   columns.push_back({ "averaged", [](const WindowResult& window) { return window.residual.windows; } });
   columns.push_back({ "strongest", strongestJson });
-  columns.push_back({ "seen_from", seenFromJson });
+  columns.push_back(
+      { "seen_from", [](W window) { return window.seen_from ? seenFromJson(*window.seen_from) : Json(); } });
   columns.push_back({ "assessment", [](const WindowResult& window) { return toJson(window.assessment); } });
   return columns;
 }
@@ -202,6 +189,19 @@ void printTable(const WindowResult& window)
 }
 
 }  // namespace
+
+Json seenFromJson(const SeenFrom& seen_from)
+{
+  Json json;
+  for (std::size_t cause = 0; cause < CAUSE_COUNT; ++cause)
+  {
+    if (!std::isnan(seen_from[cause]))
+    {
+      json[causeName(static_cast<Cause>(cause))] = std::isfinite(seen_from[cause]) ? Json(seen_from[cause]) : Json();
+    }
+  }
+  return json;
+}
 
 void writeWindows(const std::string& path, const std::vector<WindowResult>& windows)
 {

@@ -39,6 +39,9 @@ struct AssessedWindows
   std::vector<UnreadRecording> unread;  ///< the recordings that have none
 };
 
+/// Severities by cause, of causes with signatures; null: at none of theirs.
+Json seenFromJson(const SeenFrom& seen_from);
+
 /// A CSV file with a row per window; no path: none.
 void writeWindows(const std::string& path, const std::vector<WindowResult>& windows);
 

@@ -154,7 +154,7 @@ void ClosestAssessment::take(const Assessment& assessment)
 {
   const auto nearness = [](const Assessment& of)
   {
-    constexpr std::array BY_STATE{ 0, 1, 3, 1, 2 };
+    constexpr std::array BY_STATE{ 0, 1, 3, 1, 2, 1 };
     return std::tuple(BY_STATE[static_cast<std::size_t>(of.state)], of.windows_here);
   };
   closest_ = nearness(assessment) >= nearness(closest_) ? assessment : closest_;

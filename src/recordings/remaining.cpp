@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "output/output_file.hpp"
+#include "recordings/indicators_report.hpp"
 #include "recordings/recorded_windows.hpp"
 
 #include "base/number_text.hpp"
@@ -105,12 +106,52 @@ Json endJson(const RemainingHours& remaining)
   return json;
 }
 
+/// Ratings of the run's gear, as a catalogue gives them, and the laws of ageing of the configuration: those that a
+/// simulated drive was made with are what nobody knows of a real one.
+LifeParameters assumedLife(const RemainingOptions& options, const LifeParameters& of_run)
+{
+  ParameterMap map = defaultParameterMap(options);
+  addOverlays(options, map);
+  LifeParameters life = parseParameters(map).life;
+  life.rated_torque = of_run.rated_torque;
+  life.repeated_peak_torque = of_run.repeated_peak_torque;
+  life.momentary_peak_torque = of_run.momentary_peak_torque;
+  life.momentary_peak_cycles = of_run.momentary_peak_cycles;
+  life.rated_speed = of_run.rated_speed;
+  life.bearing_l10 = of_run.bearing_l10;
+  life.bearing_l50 = of_run.bearing_l50;
+  life.face_width = of_run.face_width;
+  life.elastic_modulus = of_run.elastic_modulus;
+  return life;
+}
+
 /// What the recordings say of the drive's wear.
 struct Condition
 {
+  void take(const Assessor& assessor, const OperatingPoint& point)
+  {
+    if (!supersedes(assessor.assessment(), assessment))
+    {
+      return;
+    }
+    assessment = assessor.assessment();
+    seen_from = assessment.level == HealthLevel::OK ? std::make_optional(seenFrom(assessor, point)) : std::nullopt;
+  }
+
   Assessment assessment;  // the last one that counts; of none its state is WAITING
+  std::optional<SeenFrom> seen_from;
   ReadWear read;
 };
+
+/// Use at which a recording was made [h].
+double hoursOf(const RemainingOptions& options, std::size_t recording, const UsageHistory& use)
+{
+  if (options.hours.empty())
+  {
+    return use.hours();
+  }
+  return options.hours[options.hours.size() > 1 ? recording : 0];
+}
 
 /// Goes through the recordings: their use, unless a duty cycle says it, wear and the last assessment that counts, if
 /// there is a reference to hold them against. @throws InputError if that comes to none.
@@ -118,7 +159,6 @@ Condition readRecordings(const RemainingOptions& options, Assessor& assessor, Us
 {
   const bool is_assessed = !options.baseline.empty();
   Condition condition;
-  Assessment& assessment = condition.assessment;
   bool any = false;
   std::string why_not;
   for (std::size_t i = 0; i < options.recordings.size(); ++i)
@@ -131,7 +171,7 @@ Condition readRecordings(const RemainingOptions& options, Assessor& assessor, Us
     const auto judge = [&](const SignalIndicators& window)
     {
       judged.take(assessor.update(window));
-      assessment = supersedes(assessor.assessment(), assessment) ? assessor.assessment() : assessment;
+      condition.take(assessor, window.point);
       const WearReading read = readWear(assessor.baseline().residual(), window.point, assessor.signatures());
       wear = read.is_read ? read : wear;
     };
@@ -161,11 +201,7 @@ Condition readRecordings(const RemainingOptions& options, Assessor& assessor, Us
     }
     if (wear.is_read)
     {
-      const bool each = options.hours.size() > 1;
-      condition.read.readings.push_back({ each                  ? options.hours[i] :
-                                          options.hours.empty() ? use.hours() :
-                                                                  options.hours[0],
-                                          wear });
+      condition.read.readings.push_back({ hoursOf(options, i, use), wear });
     }
     any = any || judged.isJudged() || wear.is_read;
     why_not +=
@@ -176,6 +212,20 @@ Condition readRecordings(const RemainingOptions& options, Assessor& assessor, Us
     throw InputError("nothing can be judged by " + options.baseline + ": " + why_not);
   }
   return condition;
+}
+
+/// Names of the faults that would not show at any severity, "none" without one.
+std::string unseen(const SeenFrom& seen_from)
+{
+  std::string names;
+  for (std::size_t cause = 0; cause < CAUSE_COUNT; ++cause)
+  {
+    if (std::isinf(seen_from[cause]))
+    {
+      names += (names.empty() ? "" : ", ") + std::string(causeName(static_cast<Cause>(cause)));
+    }
+  }
+  return names.empty() ? "none" : names;
 }
 
 /// @throws InputError
@@ -207,7 +257,8 @@ Remaining remaining(const RemainingOptions& options)
 {
   requireRanges(options);
   const RecordingParameters first = recordingParameters(options, options.recordings.front());
-  const Parameters& parameters = first.values;
+  Parameters parameters = first.values;
+  parameters.life = assumedLife(options, first.values.life);
   requireWritable(options.use_record, options.force, options.recordings.front());
   UsageHistory use = options.duty.empty() ? UsageHistory(parameters.life) : UsageHistory(parameters.life, options.duty);
   Assessor assessor(parameters);
@@ -244,6 +295,7 @@ Remaining remaining(const RemainingOptions& options)
   found.parameters = first.origin;
   found.estimate = LifeEstimator(parameters).estimate(use, assessed ? &assessment : nullptr, 0.0, condition.read);
   found.assessment = assessed ? std::make_optional(assessment) : std::nullopt;
+  found.seen_from = condition.seen_from;
   if (!condition.read.readings.empty())
   {
     found.wear = condition.read.readings.back().reading;
@@ -270,6 +322,11 @@ Report reportOf(const Remaining& found)
     lines.push_back({ "level", "assessed", levelName(found.assessment->level) });
     lines.push_back({ "largest_score", "largest score over threshold", found.assessment->largest_score });
     lines.push_back({ "cause", "cause", causeName(found.assessment->cause) });
+  }
+  if (found.seen_from)
+  {
+    lines.push_back({ "seen_from", "", seenFromJson(*found.seen_from) });
+    lines.push_back({ "blind_to", "would not show", unseen(*found.seen_from) });
   }
   if (found.wear)
   {

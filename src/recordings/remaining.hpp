@@ -9,6 +9,7 @@
 #include "recordings/recorded_signals.hpp"
 
 #include "harmonic_joint_twin/health/assessment.hpp"
+#include "health/seen_from.hpp"
 #include "life/life_estimate.hpp"
 
 namespace hjt
@@ -28,6 +29,7 @@ struct Remaining
   LifeEstimate estimate;
   std::optional<Assessment> assessment;  ///< the last one that counts; none: nothing was assessed
   std::optional<WearReading> wear;       ///< the last one
+  std::optional<SeenFrom> seen_from;     ///< of the assessment, where nothing was found
   const char* parameters{};              ///< whose they are, in words
 };
 

@@ -360,7 +360,7 @@ private:
     runTasks(count, threads_, with_rings,
              [&](std::size_t done)
              {
-               if (progress_)
+               if (progress_ && count > 0)
                {
                  progress_(from + (to - from) * static_cast<double>(done) / static_cast<double>(count));
                }

@@ -3,6 +3,7 @@
 """Data sets and verdicts as frames. Argument: the tool."""
 import os
 import shutil
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -68,6 +69,51 @@ class DataSets(unittest.TestCase):
             hjt.load("old", "signal")
         with self.assertRaisesRegex(hjt.InputError, "index.csv is not there"):
             hjt.load("nothing")
+
+    def test_columns_are_chosen_and_labels_stand_apart(self):
+        whole = hjt.load("old", "signals")
+        names = ["motor_torque_reading", "class", "time"]
+        some = hjt.load("old", "signals", columns=names)
+        self.assertEqual(list(some), ["file", *names])
+        pandas.testing.assert_frame_equal(some, whole[["file", *names]])
+        self.assertEqual(some.attrs, {"features": ["motor_torque_reading", "time"], "labels": ["file", "class"]})
+        windows = hjt.load("old")
+        self.assertEqual(set(windows.attrs["labels"]) & {"window_severity", "class", "run", "running_torque"},
+                         {"window_severity", "class", "run"})
+        self.assertIn("running_torque", windows.attrs["features"])
+        self.assertFalse([name for name in windows.attrs["features"] if "severity" in name or "class" in name])
+        self.assertEqual(list(hjt.load("old", group=None, columns=["class"])), ["file", "class"])
+        for group, wrong, said in (("signals", ["time", "clas"], "there is no 'clas'"),
+                                   ("signals", ["class"], "group 'signals' has none of class"),
+                                   (None, ["time"], "there is no 'time'")):
+            with self.assertRaisesRegex(hjt.InputError, said):
+                hjt.load("old", group, columns=wrong)
+
+    def test_a_card_says_what_a_set_is_and_its_sums_hold(self):
+        shutil.copytree("old", "published")
+        found = hjt.write_card("published", licence="CC-BY-4.0", authors="A. Author", title="Old grease")
+        self.assertEqual(found["files"], WORN + 2)
+        with open(found["card"], encoding="utf-8") as file:
+            card = file.read()
+        self.assertTrue(card.startswith('---\npretty_name: "Old grease"\nlicense: cc-by-4.0\n'), card[:80])
+        for part in ("| lubricant_degradation | 2 |", "CC-BY-4.0. A. Author: Old grease.",
+                     "| `signals`, 500 Hz | `motor_torque_reading` | N.m |", "harmonic_joint_twin 0."):
+            self.assertIn(part, card)
+        check = ["sha256sum", "-c", "--quiet", "SHA256SUMS"]
+        subprocess.run(check, cwd="published", check=True)
+        self.assertEqual(hjt.sweep("old.yaml", "published")["done"], 0, "the set is as it was")
+        with open("published/index.csv", "a", encoding="utf-8") as file:
+            file.write("\n")
+        self.assertNotEqual(subprocess.run(check, cwd="published", check=False, capture_output=True).returncode, 0)
+        os.remove(sorted(hjt.load("published", group=None)["file"])[0])
+        index = pandas.read_csv("published/index.csv")
+        index.loc[0, "status"] = "missing"
+        index.to_csv("published/index.csv", index=False)
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always")
+            with self.assertRaisesRegex(hjt.InputError, "1 of 2 runs are there; a card is of a complete set"):
+                hjt.write_card("published", licence="CC-BY-4.0", authors="A. Author")
+        self.assertIn("published is unfinished: 1 of 2 runs are missing", str(said[0].message))
 
     def test_an_arm_comes_with_a_column_for_each_joint(self):
         with open("moves.yaml", "w", encoding="utf-8") as file:

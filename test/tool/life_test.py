@@ -111,6 +111,12 @@ class Life(tool.ToolTest):
             for path in (new, spalled) for more in (["--baseline", "b.yaml"], []))
         self.assertEqual((sound["level"], worn["cause"]), ("OK", "bearing_outer_race"))
         self.assertNotIn("level", unread)
+        self.assertNotIn("blind_to", worn)
+        blind = sound["blind_to"].split(", ")
+        self.assertIn("buckling", blind)
+        self.assertEqual(blind, [cause for cause, from_ in sound["seen_from"].items() if from_ is None])
+        self.assertIn("bearing_outer_race", sound["seen_from"])
+        self.assertNotIn("bearing_outer_race", blind)
         self.assertGreater(worn["end_probability"]["bearing"], unread["end_probability"]["bearing"])
         self.assertLess(worn["remaining_q50"], 0.5 * unread["remaining_q50"])
         # The load went one way only: that nothing was found says nothing.
@@ -128,6 +134,23 @@ class Life(tool.ToolTest):
         self.fail_with(1, ["new.csv: the healthy reference needs 8 windows at this operating point, has 3\n",
                            "spalled.csv: the healthy reference needs 8"], "remaining", new, spalled, *options,
                        "--baseline", "few.yaml")
+
+    def test_the_laws_of_ageing_of_a_run_are_not_taken_from_it(self):
+        plan = ("duration: 3.0\nset: {solver.scene: auto%s}\nduty: [{speed: {constant: 1.5}, load: {constant: 60.0}}]\n"
+                "record: {start: 1.0, groups: {signals: {rate: 100.0, columns: [motor_angle_encoder, "
+                "motor_torque_reading, load_torque, housing_temperature]}}}\n")
+        laws = ("life.flank_wear_coefficient: 3.0e-17", "life.interface_wear_coefficient: 3.0e-17",
+                "life.wear_spread: 0.1", "life.endurance_limit: 5.0e+7", "life.grease_wear_factor: 30.0")
+        self.write("plain.yaml", plan % "")
+        self.write("worn.yaml", plan % "".join(", " + law for law in laws))
+        found = []
+        for name in ("plain", "worn"):
+            self.succeed("sweep", name + ".yaml", "--out", name)
+            found.append(self.succeed_json("remaining", name + "/runs/run_000000000.h5", "--hours", 1000.0))
+        self.assertEqual(found[0]["density"], found[1]["density"])
+        told = self.succeed_json("remaining", "plain/runs/run_000000000.h5", "--hours", 1000.0, "--set",
+                                 "life.flank_wear_coefficient=3.0e-17")
+        self.assertLess(told["remaining_q50"], 0.5 * found[0]["remaining_q50"], "but from the command line")
 
     def test_the_use_may_be_a_duty_cycle(self):
         new = self.write("new.csv", indicators_test.recording())

@@ -22,11 +22,12 @@ const char* levelName(HealthLevel level) noexcept;  ///< "WARN"
 
 enum class AssessmentState : std::uint8_t
 {
-  WAITING = 0,         ///< no window has been completed
-  LEARNING = 1,        ///< the reference of this operating point is being learned
-  ASSESSED = 2,        ///< the last window was compared with the reference, and the level is a verdict
-  NO_REFERENCE = 3,    ///< the given reference does not know this operating point
-  TOO_FEW_WINDOWS = 4  ///< compared; nothing found, in fewer windows of this operating point than another level takes
+  WAITING = 0,          ///< no window has been completed
+  LEARNING = 1,         ///< the reference of this operating point is being learned
+  ASSESSED = 2,         ///< the last window was compared with the reference, and the level is a verdict
+  NO_REFERENCE = 3,     ///< the given reference does not know this operating point
+  TOO_FEW_WINDOWS = 4,  ///< compared; nothing found, in fewer windows of this operating point than another level takes
+  OTHER_PAYLOAD = 5     ///< not compared: the reference says nothing of this payload or load
 };
 
 /// One indicator that speaks for the level.
@@ -83,7 +84,7 @@ std::string whyNotJudged(const Assessment& assessment);
 /// after three such means in a row, each of three windows at least, that show the higher level. It falls after three
 /// that show a lower one at the operating point that last showed the level. With indicators.evidence_windows below
 /// three, that many do. Until so many means could have shown another level, OK is no verdict. While the operating point
-/// has no reference, the last verdict stands.
+/// has no reference, or none of the payload, the last verdict stands.
 class Assessor
 {
 public:

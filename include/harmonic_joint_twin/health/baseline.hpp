@@ -58,6 +58,14 @@ using PlaceSquares = std::array<Place, PLACES>;  ///< by pairs of coordinates
 /// steps, the inertia by its torque at 5 rad/s^2; 0 of what is not measured [-].
 Place placeIn(const OperatingBin& bin, const OperatingPoint& point, double load_step) noexcept;
 
+/// How far a sound drive repeats from one recording to the next, whatever its reference has seen.
+struct Repeatability
+{
+  double share{};            ///< indicators.least_spread [-]
+  double friction_share{};   ///< of the friction, at any speed [-]
+  double friction_torque{};  ///< of the friction too, at the motor [N.m]
+};
+
 /// What else moves healthy indicators together from one window to another.
 constexpr std::size_t COMMON_CAUSES = 3;
 
@@ -69,7 +77,10 @@ struct Reference
   double variance{};         // about the mean, from fitReference on about what the place makes of it
   double within{};           // half the mean square of what successive windows differ by; 0: not known
   double relative_square{};  // of the windows' relativeErrors, mean; 0: not known [-]
+  double scale{};            // mean magnitude, what was subtracted included; unit of the indicator
   bool fitted{};             // has slopes and shares of common causes
+  double ridge{};            // lambda: information of the slopes before any window, in windows at place 1 [-]
+  double slopes_freedom{};   // degrees of freedom that the slopes take [-]
   Place slopes{};            // over the place, unit of the indicator
   /// Shares of the spread that go with each common cause, of unit variance [-]
   std::array<double, COMMON_CAUSES> common{};
@@ -104,15 +115,31 @@ struct StepSums
   Place last_place{};
 };
 
+/// Scalars, and lines: of each kind the tails are alike.
+constexpr std::size_t TAILS = 2;
+constexpr std::size_t tailOf(std::size_t indicator)
+{
+  return indicator < SCALAR_COUNT ? 0 : 1;
+}
+
 struct ReferenceBin
 {
   OperatingBin bin;
   int windows{};
   int runs{};  // stretches of windows that follow each other
   Place mean_place{};
-  PlaceSquares leverage{};  // covariance of the slopes, of unit variance; from fitReference
-  double slopes_freedom{};  // degrees of freedom that the slopes take; from fitReference
+  PlaceSquares information{};        // of the slopes by the windows' places, without ridge; from fitReference
+  std::array<double, TAILS> tail{};  // 1/degrees of freedom of the windows' own distribution, 0: normal; likewise
   std::array<Reference, INDICATOR_COUNT> references;
+};
+
+/// The first windows themselves: their tails are in no sum.
+struct KeptWindows
+{
+  static constexpr std::size_t MOST = 64;
+  std::size_t count{};
+  std::array<Place, MOST> places{};
+  std::array<std::array<float, INDICATOR_COUNT>, MOST> values{};
 };
 
 /// What a class is learned from, beside its ReferenceBin.
@@ -120,6 +147,7 @@ struct LearnedSums
 {
   ReferenceSums windows;
   StepSums steps;
+  KeptWindows kept;
 };
 
 /// What fitReference works in.
@@ -137,6 +165,8 @@ struct Deviation
   /// not compared.
   double score{ std::numeric_limits<double>::quiet_NaN() };
   double threshold_factor{};  ///< deviation over spread, as a multiple of that at the threshold [-]
+  double freedom{};           ///< v': degrees of freedom that deviation over spread has [-]
+  double stretch{ 1.0 };      ///< of it, to Student's unit [-]
 };
 
 using Deviations = std::array<Deviation, INDICATOR_COUNT>;
@@ -158,38 +188,46 @@ struct WindowResidual
   std::array<double, INDICATOR_COUNT> own{};         ///< diagonal of D; 0: not compared
   std::array<std::array<double, COMMON_CAUSES>, INDICATOR_COUNT> common{};  ///< rows of F
   double freedom{};                                                         ///< v: of the reference's spreads [-]
+  double pattern_freedom{};                                                 ///< v' of what scalars have together [-]
+  double pattern_stretch{ 1.0 };                                            ///< of it, to Student's unit [-]
 };
 
 enum class BaselineState : std::uint8_t
 {
-  LEARNING,     ///< the window went into the reference of its operating point
-  COMPARED,     ///< the window was compared with it
-  NO_REFERENCE  ///< no reference for this operating point, and none is learned
+  LEARNING,      ///< the window went into the reference of its operating point
+  COMPARED,      ///< the window was compared with it
+  NO_REFERENCE,  ///< no reference for this operating point, and none is learned
+  OTHER_PAYLOAD  ///< the reference says nothing of what the joint carries in this window
 };
 
 /// Indicators of a healthy joint by operating point: learned from the first windows there, or given. Compared is the
 /// trimmed mean over the last indicators.evidence_windows windows of a class: a fifth of them, one at least of three or
 /// more, is left out at either end.
 ///
-/// Law:   t = mean(x - m - b (z - z_0)) / sqrt(p (r + h) + max(p (1 - r), w^2) / k + (f m)^2 + q^2)
+/// Law:   S^2 = p (r + 1/(e n)) + max(p (1 - r), w^2) / k + R^2 + q^2 + (p + R^2) (z - z_0)' L (z - z_0) / e
+///        t = g mean(x - m - b (z - z_0)) / S,   g^2 = 1 / (1 - 2 y^2 a / k)
 ///        p = (v s^2 + v_0 s_0^2) / (v + v_0) max(c^2 / c_0^2, 1)
-///        score = sign(t) sqrt(v' log(1 + t^2 / v')) (8 v' + 1) / (8 v' + 3),  v' = v + v_0
-///        v = e n - 1 - d, at least 1
+///        score = sign(t) sqrt(v' log(1 + t^2 / v')) (8 v' + 1) / (8 v' + 3)
+///        1 / v' = y^2 ((1 + 3 a / (1 - 4 a)) / (v + v_0) + a / k),   v = e n - 1 - d, at least 1
 /// where  m, s, n  mean, standard deviation and number of the healthy windows
 ///        z, z_0   place of the window in its class, mean of the healthy ones;  b, s  slopes over it and what they
-///                 leave, by least squares;  L, d  covariance of the slopes where s = 1, degrees of freedom they take
-///        h        (1/n + (z - z_0)' L (z - z_0)) / e: grows beyond what was learned
+///                 leave, by ridge regression (fitReference);  L, d  covariance of the slopes where s = 1, degrees of
+///                 freedom they take
+///        y        share of S^2 that is learned: of p and w^2 (Satterthwaite 1946)
+///        a        1 / degrees of freedom of one window's own distribution, by the healthy ones; 0: normal
+///        R        repeatability of the drive from one recording to the next (Repeatability)
 ///        k        windows averaged, less those left out at one end
 ///        w^2      half the mean square of the steps from each to the next, without the two largest: of more than
 ///                 three windows
 ///        r        share of s^2 that stays from one window to the next: 1 less half the mean square of what successive
-///                 windows differ by, over s^2 (von Neumann 1941), plus its standard error; 1 if none followed another
+///                 windows differ by, over s^2 (von Neumann 1941), drawn to the mean of scalars or lines by as much as
+///                 its error explains their scatter, plus what it is then uncertain by; 1 if none followed another
 ///        e        share of the windows that count as independent, (1 - r') / (1 + r'), at least one in every stretch;
 ///                 r' as r, less the error; 1 if none followed another
 ///        s_0, v_0 spread by lines like it (varianceOfAlike) and ALIKE_FREEDOM; of what is no line, or carried, v_0 = 0
 ///        c, c_0   what the motion makes of the fit's standard error (relativeErrors), rms, of the windows averaged and
 ///                 of the healthy ones: what a line is off by differs between windows as c does
-///        f  indicators.least_spread;  q  a tenth of what one encoder count makes; 0.3 for kurtosis, 0.5 for crest
+///        q        a tenth of what one encoder count makes; 0.3 for kurtosis, 0.5 for crest
 /// A carried reference is one of another motion, for windows from which a model is subtracted. They are compared with
 /// the class of motion to and fro at their temperature that has most windows. b is over temperature alone, the variance
 /// grows by the squares of CarriedError::deviation and of CarriedError::share of |m| (of a line: of all amplitudes of
@@ -197,10 +235,11 @@ enum class BaselineState : std::uint8_t
 /// The score turns Student's t into a normal deviate (Wallace 1959), so that few windows give no more alarms than many.
 /// Thresholds: normal quantiles of indicators.false_alarm_rate, one half of it shared by all indicators, two-sided, the
 /// other by the patterns of all causes, one-sided (Bonferroni); without patterns all of it by the indicators.
-/// A window at the edge of a class with too few windows for a reference is one of the class beyond that edge.
+/// A window at the edge of a class with too few windows for a reference is one of the class beyond that edge. One whose
+/// payload or load widens S^2 beyond OTHER_PAYLOAD_WIDENING times is not compared.
 ///
 /// Learning opens indicators.baseline_classes classes at most, whose memory the constructor takes: 0.2 MB each. A
-/// reference that is given needs 14 kB a class, and its memory takes the place of the other.
+/// reference that is given needs 19 kB a class, and its memory takes the place of the other.
 class Baseline
 {
 public:
@@ -235,6 +274,9 @@ public:
   int windowsNeeded() const noexcept { return given_ ? MIN_WINDOWS : windows_; }
   bool given() const noexcept { return given_; }           ///< by setReference: there are no sums to fit again
   double loadStep() const noexcept { return load_step_; }  ///< [N.m]
+  const Repeatability& repeatability() const noexcept { return repeatability_; }
+  /// Score of such a change of one indicator by itself, with the spread of the last window; 0: not compared.
+  double scoreOf(std::size_t indicator, double change, const Deviations& deviations) const noexcept;
 
 private:
   /// One window against its reference.
@@ -242,7 +284,7 @@ private:
   {
     std::array<double, INDICATOR_COUNT> difference{};  // NaN: not compared
     std::array<double, INDICATOR_COUNT> relative{};    // relativeErrors
-    double leverage{};                                 // (z - z_0)' L (z - z_0)
+    Place along{};                                     // z - z_0 along the axes of the slopes' information, squared
   };
 
   /// The last windows of a class, oldest overwritten.
@@ -266,29 +308,41 @@ private:
   {
     double stays{};
     double varies{};
+    double slopes{};   // by what slopes are uncertain by
     double carried{};  // added by carrying [unit of the indicator squared]
+  };
+
+  /// Of a difference [unit of the indicator squared].
+  struct Variance
+  {
+    double all{};
+    double learned{};  // of it, by the reference's windows and their scatter
   };
 
   ReferenceBin* find(const OperatingPoint& point) noexcept;
   ReferenceBin* findCarried(const OperatingBin& bin) noexcept;
   void makeRoom(std::size_t bins);
-  void take(const ReferenceBin& bin, const SignalIndicators& indicators, const SignalIndicators* model,
-            Compared& window) noexcept;
+  /// The window's place less the reference's mean one, as it is compared.
+  Place placeFrom(const ReferenceBin& bin, const OperatingPoint& point) const noexcept;
+  bool isOtherPayload(const ReferenceBin& bin, const Place& place) const noexcept;
+  void take(const ReferenceBin& bin, const Place& place, const SignalIndicators& indicators,
+            const SignalIndicators* model, Compared& window) noexcept;
   Average average(std::size_t first, std::size_t count, std::size_t indicator) const noexcept;
-  /// Of a difference; `left`: of the reference [unit of the indicator squared].
-  double variance(std::size_t indicator, const ReferenceBin& bin, const Average& average, double left,
-                  const Widening& widening) const noexcept;
-  Deviation deviation(double difference, double expected, double spread, double freedom) const noexcept;
+  /// `left`: of the reference [unit of the indicator squared].
+  Variance variance(std::size_t indicator, const ReferenceBin& bin, const Average& average, double left,
+                    const Widening& widening) const noexcept;
+  double scoreOf(double difference, const Deviation& scale) const noexcept;
   void compare(const ReferenceBin& bin, std::size_t first, std::size_t count, Deviations& deviations) noexcept;
 
   std::shared_ptr<const SignatureSet> signatures_;
   const int windows_;
   const std::size_t evidence_windows_;
-  const double least_spread_;
+  const Repeatability repeatability_;
   const double load_step_;  // [N.m]
   double threshold_{};
   double pattern_threshold_{};
   std::array<double, INDICATOR_COUNT> floor_{};  // q
+  Place axes_sizes_{};                           // information along its axes, of the last window's class
   WindowResidual residual_;
   std::array<double, INDICATOR_COUNT> expected_{};  // of the last window, less what was subtracted
   OperatingBin bin_;
