@@ -165,12 +165,7 @@ TEST(ArmDynamics, RefusesLinksThatNoRobotHas)
 
 TEST(SetPoints, NoArmIsToldWhatItCannotDo)
 {
-  ArmDescription arm = readArmDescription(SHIPPED);
-  arm.urdf =
-      replaced(arm.urdf, "<joint name=\"elbow_joint\" type=\"continuous\">",
-               "<joint name=\"elbow_joint\" type=\"revolute\"><limit lower=\"-3.0\" upper=\"3.0\" effort=\"150\" "
-               "velocity=\"3.14\"/>");
-  readLinks(arm);
+  const ArmDescription arm = readArmDescription(SHIPPED);
   const auto errors = [&](double angle, double end)
   {
     std::vector<ArmSetPoint> points{ { 0.0, std::vector<JointMotion>(6) }, { end, std::vector<JointMotion>(6) } };
@@ -178,8 +173,9 @@ TEST(SetPoints, NoArmIsToldWhatItCannotDo)
     return motionErrors(points, arm);
   };
   EXPECT_EQ(errors(2.9, 1.0), "");
-  EXPECT_THAT(errors(3.1, 10.0),
-              testing::HasSubstr("elbow_joint: angle = 3.1 [rad] is out of range, allowed: -3 ... 3"));
+  EXPECT_EQ(errors(6.3, 10.0), "");
+  EXPECT_THAT(errors(6.4, 10.0),
+              testing::HasSubstr("elbow_joint: angle = 6.4 [rad] is out of range, allowed: -6.3355 ... 6.3355"));
   EXPECT_THAT(errors(1e300, 1.0), testing::HasSubstr("elbow_joint: angle = 1.0e+300 [rad] is out of range"));
   EXPECT_THAT(errors(std::nan(""), 1.0), testing::HasSubstr("out of range"));
   EXPECT_THAT(errors(2.9, 0.2), testing::HasSubstr("elbow_joint would turn at 14.5 rad/s at 0.2 s, its limit is 3.14"));

@@ -57,7 +57,7 @@ class Bodies:
     def __init__(self, name):
         root = xml.parse(os.path.join(ARMS, description(name)["description"])).getroot()
         self.links = {link.get("name"): link.find("inertial") for link in root.iter("link")}
-        self.joints = [joint for joint in root.iter("joint") if joint.get("type") == "continuous"]
+        self.joints = [joint for joint in root.iter("joint") if joint.get("type") != "fixed"]
         self.masses = [float(self.links[joint.find("child").get("link")].find("mass").get("value"))
                        for joint in self.joints]
 
