@@ -159,10 +159,10 @@ SweepResult runSweep(const Plan& plan, SweepDirectory& directory, const SweepOpt
     else
     {
       result.damaged += std::filesystem::exists(directory.runFile(run)) ? 1 : 0;
-      directory.lock(run);  // all before any work: of two sweeps one goes on to its end
       todo.push_back(run);
     }
   }
+  directory.claim(todo);  // all before any work: of two sweeps one goes on to its end
   if (!todo.empty())
   {
     Workers workers(plan, directory, surface_source, todo);

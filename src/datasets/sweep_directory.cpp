@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <set>
 
 #include "datasets/file_seal.hpp"
 #include "datasets/run_file.hpp"
@@ -186,12 +187,30 @@ void SweepDirectory::open()
   lockByte(plan_file_, PLAN_LOCK, F_OFD_SETLK, F_UNLCK);
 }
 
-void SweepDirectory::lock(std::uint64_t run) const
+void SweepDirectory::claim(const std::vector<std::uint64_t>& runs) const
 {
-  if (!lockByte(plan_file_, run, F_OFD_SETLK, F_WRLCK))
+  std::set<std::string> names;
+  for (const std::uint64_t run : runs)
   {
-    throw InputError(runFile(run) + " is being written by another sweep into " + path_ +
-                     "; wait for it, or give each a shard of its own");
+    if (!lockByte(plan_file_, run, F_OFD_SETLK, F_WRLCK))
+    {
+      throw InputError(runFile(run) + " is being written by another sweep into " + path_ +
+                       "; wait for it, or give each a shard of its own");
+    }
+    names.insert(fs::path(runFileName(run)).filename().string());
+  }
+  std::vector<fs::path> leftovers;
+  for (const fs::directory_entry& entry : fs::directory_iterator(path_ + "/runs"))
+  {
+    // RUN.NUMBER.part, of makeFileBeside.
+    if (entry.path().extension() == ".part" && names.count(entry.path().stem().stem().string()) > 0)
+    {
+      leftovers.push_back(entry.path());
+    }
+  }
+  for (const fs::path& leftover : leftovers)
+  {
+    fs::remove(leftover);
   }
 }
 

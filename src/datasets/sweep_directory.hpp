@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 #include <utility>
 
 #include "datasets/plan.hpp"
@@ -22,8 +23,9 @@ public:
   /// Makes it, or takes it up again. @throws InputError if it holds something else than runs of this very plan.
   void open();
 
-  /// Keeps other processes from writing this run until this one ends. @throws InputError if one does already.
-  void lock(std::uint64_t run) const;
+  /// Keeps other processes from writing these runs until this one ends, and removes what one that was killed left of
+  /// them. @throws InputError if another writes one of them.
+  void claim(const std::vector<std::uint64_t>& runs) const;
 
   /// Whether the run's file is there, whole and undamaged.
   bool isFinished(std::uint64_t run) const;

@@ -31,7 +31,8 @@ struct Persistence
   double independent;  // e
 };
 
-/// Of all indicators of a class of one kind, scalars or lines: what stays, mean, and what single ones differ from it by.
+/// Of all indicators of a class of one kind, scalars or lines: what stays, mean, and what single ones differ from it
+/// by.
 struct CommonPersistence
 {
   double mean{};

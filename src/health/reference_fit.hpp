@@ -55,7 +55,8 @@ void learnWindow(ReferenceBin& bin, LearnedSums& sums, const SignalIndicators& i
                  const SignalIndicators* model, const Place& here) noexcept;
 
 /// What an indicator changes by over half a class, as a share of it, standard deviation beforehand [-]. Friction of the
-/// shipped drive, of all that a sound drive shows the most: 14 % in 5 K (threefold from 10 to 50 degC), 16 % by 12.6 N.m.
+/// shipped drive, of all that a sound drive shows the most: 14 % in 5 K (threefold from 10 to 50 degC), 16 % by
+/// 12.6 N.m.
 constexpr double SLOPE_SHARE = 0.2;
 
 /// Makes of the sums what windows are compared with: the straight line over the place, and of what it leaves the first
@@ -66,8 +67,8 @@ constexpr double SLOPE_SHARE = 0.2;
 ///
 /// Law:   b = (A + lambda)^-1 a,  d = tr((2 - (A + lambda)^-1 A) (A + lambda)^-1 A_own),
 ///        lambda = (s^2 + R^2) / (SLOPE_SHARE m)^2
-/// where  A, a  products of the places, and of places and indicator, from their means, less what in other bins goes with
-///              the slopes that each has of its own;  A_own  of this bin's windows
+/// where  A, a  products of the places, and of places and indicator, from their means, less what in other bins goes
+///              with the slopes that each has of its own;  A_own  of this bin's windows
 ///        d     what the squares left fall short by where there are no slopes, in s^2 (Hastie and Tibshirani,
 ///              Generalized Additive Models, 1990, section 3.5)
 ///        b, s  slopes, drawn beforehand from a normal distribution of SLOPE_SHARE m; spread they leave

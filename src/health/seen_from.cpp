@@ -13,6 +13,12 @@
 
 namespace hjt
 {
+namespace
+{
+/// Likeness of the motions from which on a signature tells of lines, which depend on the motion more than on the fault.
+constexpr double ALIKE = 0.5;
+}  // namespace
+
 SeenFrom seenFrom(const Assessor& assessor, const OperatingPoint& point)
 {
   const SignatureSet& set = assessor.signatures();
@@ -34,11 +40,12 @@ SeenFrom seenFrom(const Assessor& assessor, const OperatingPoint& point)
   for (const Signature& signature : set.signatures)
   {
     const auto cause = static_cast<std::size_t>(signature.cause);
-    const double weight = OTHER_MOTION + likeness(signature.motion, point);
+    const double alike = likeness(signature.motion, point);
+    const double weight = OTHER_MOTION + alike;
     Mean& mean = means[{ cause, signature.severity }];
     mean.weight += weight;
     mean.pattern += weight * terms.along(directions[cause], &signature);
-    mean.single += weight * terms.largest(signature, baseline, assessor.deviations());
+    mean.single += weight * terms.largest(signature, alike > ALIKE, baseline, assessor.deviations());
   }
   SeenFrom least;
   least.fill(std::numeric_limits<double>::quiet_NaN());

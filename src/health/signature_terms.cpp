@@ -190,13 +190,17 @@ void SignatureTerms::addDirection(const Signature& signature, double weight, Dir
   }
 }
 
-double SignatureTerms::largest(const Signature& signature, const Baseline& baseline,
+double SignatureTerms::largest(const Signature& signature, bool with_lines, const Baseline& baseline,
                                const Deviations& deviations) const noexcept
 {
   double largest = 0.0;
   for (std::size_t i = 0; i < count_; ++i)
   {
     const Term& term = terms_[i];
+    if (term.number >= SCALAR_COUNT && !with_lines)
+    {
+      continue;
+    }
     largest = std::max(largest, std::abs(baseline.scoreOf(term.indicator, changeBy(signature, term), deviations)));
   }
   return largest;

@@ -38,8 +38,9 @@ public:
   /// in place of the difference.
   double along(const Direction& direction, const Signature* instead = nullptr) const noexcept;
 
-  /// Of the signature's changes the largest score by itself.
-  double largest(const Signature& signature, const Baseline& baseline, const Deviations& deviations) const noexcept;
+  /// Of the signature's changes the largest score by itself; of those of lines only `with_lines`.
+  double largest(const Signature& signature, bool with_lines, const Baseline& baseline,
+                 const Deviations& deviations) const noexcept;
 
 private:
   using Causes = Eigen::Matrix<double, COMMON_CAUSES, 1>;

@@ -79,8 +79,8 @@ public:
     return static_cast<double>(beyond) / (drives * verdicts);
   }
 
-  /// Score over the threshold of drives of which one indicator, that goes with the temperature, is so far off [spreads of
-  /// a window]: median.
+  /// Score over the threshold of drives of which one indicator, that goes with the temperature, is so far off [spreads
+  /// of a window]: median.
   double score(int drives, double off)
   {
     std::vector<double> scores;

@@ -179,7 +179,7 @@ class ArmTwin(tool.ToolTest):
     def test_units_and_signs_are_held_against_the_motion(self):
         header = "timestamp," + ",".join(f"{name}_{i}" for name in ("target_q", "target_qd") for i in range(JOINTS))
         for scale, speed_scale, text in (
-                (180 / math.pi, 180 / math.pi, "shoulder_pan_joint would turn at 57.3 rad/s at 0.16 s"),
+                (180 / math.pi, 180 / math.pi, "set point 1: shoulder_pan_joint: angle = 43.5"),
                 (1.0, -1.0, "base: its speeds are -1 of the rate of its angles, allowed: 0.5 ... 2 (of the other"),
                 (1.0, 180 / math.pi, "base: its speeds are 57.3 of the rate of its angles"),
                 (1.0, 0.0, "base: its speeds are 0 of the rate of its angles, allowed: 0.5 ... 2 (none?)")):

@@ -37,6 +37,9 @@ class Sweep(SweepTest):
                     if name.endswith(".h5")}
         self.assertLess(len(finished), 8)
         self.assertFalse(os.path.exists(self.path("killed/index.csv")))
+        name = f"run_{len(finished):09}.h5"
+        self.assertNotIn(name, finished)
+        self.write(f"killed/runs/{name}.12345678.part", "what it was at when it was killed")
         done = self.sweep("killed", "--jobs", 2)
         self.assertIn(f"{len(finished)} were there", done.stderr)
         for name, written in finished.items():
