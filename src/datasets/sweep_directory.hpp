@@ -3,8 +3,8 @@
 
 #include <cstdint>
 #include <string>
-#include <vector>
 #include <utility>
+#include <vector>
 
 #include "datasets/plan.hpp"
 #include "output/ordered_json.hpp"
