@@ -133,6 +133,7 @@ TEST_F(Assessed, LineAtAQuarterTurnFromTheHealthyOneIsSeenByItsPhase)
 
 TEST_F(Assessed, SoundJointTellsFromWhichSeverityOnAFaultWouldHaveShown)
 {
+  joint_.speed = [](double) { return 141.0; };  // as signatures have it: they tell of lines
   windows(LEARNING + 5);
   const OperatingPoint point = joint_.nextWindow().point;
   const SeenFrom fine = seenFrom(assessor_, point);
