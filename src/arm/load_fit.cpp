@@ -114,7 +114,7 @@ void LoadFit::addTo(Joint& joint, const MotionSample& sample, const MotionDriven
   const double of_mass = std::max(std::abs(load[0]), LEAST_LOAD);
   const double most = std::abs(sample.load) + of_mass;
   const double least = std::max(std::abs(sample.load) - of_mass, 0.0);
-  const auto frictionAt = [&](double size) { return std::abs(twin.frictionAt(sample.velocity, size, temperature)); };
+  const auto friction_at = [&](double size) { return std::abs(twin.frictionAt(sample.velocity, size, temperature)); };
   ArmEstimator::Row& sum = joint.open.sum;
   sum.current += sample.current;
   sum.predicted += now.current;
@@ -122,7 +122,7 @@ void LoadFit::addTo(Joint& joint, const MotionSample& sample, const MotionDriven
   sum.cold += (twin.at(temperature - COLDER).friction_torque - now.friction_torque) / gain;
   sum.torque += sample.load / gain;
   sum.inertia += joint.drive.rotor * sample.acceleration / gain;
-  sum.rise += (frictionAt(most) - frictionAt(least)) / (most - least);
+  sum.rise += (friction_at(most) - friction_at(least)) / (most - least);
   sum.load += load / gain;
   ++joint.open.count;
   joint.loads += sample.load * sample.load;

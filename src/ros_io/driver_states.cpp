@@ -2,7 +2,6 @@
 #include "ros_io/driver_states.hpp"
 
 #include <string>
-#include <utility>
 
 #include <ros/serialization.h>
 #include <std_msgs/Bool.h>
@@ -50,8 +49,8 @@ topic_tools::ShapeShifter makeSafetyMode(bool protective_stop)
 }
 }  // namespace
 
-DriverStates::DriverStates(ros::NodeHandle parent)
-  : parent_(std::move(parent))
+DriverStates::DriverStates(const ros::NodeHandle& parent)
+  : parent_(parent)
   , robot_mode_(makeRobotMode().advertise(parent_, "ur_hardware_interface/robot_mode", 1, true))
   , safety_mode_(makeSafetyMode(false).advertise(parent_, "ur_hardware_interface/safety_mode", 1, true))
   , program_(parent_.advertise<std_msgs::Bool>("ur_hardware_interface/robot_program_running", 1, true))

@@ -15,7 +15,7 @@ class DriverStates
 {
 public:
   /// `parent`: of the driver's names.
-  explicit DriverStates(ros::NodeHandle parent);
+  explicit DriverStates(const ros::NodeHandle& parent);
 
   /// Publishes what has changed.
   void show(bool protective_stop);

@@ -118,7 +118,8 @@ TEST(RowFilter, LeavesOutValuesThatRepeatInMotion)
       [](int k, Rows& rows)
       {
         const double time = rows[0].time;
-        rows = rowsAt(PERIOD * (k / 4 * 4));
+        const int first = k / 4 * 4;
+        rows = rowsAt(PERIOD * first);
         rows[0].time = rows[1].time = time;
       });
   EXPECT_EQ(held.left_out.repeated, 3U * ROWS / 4U);
@@ -149,8 +150,12 @@ TEST(RowFilter, LeavesOutValuesThatRepeatInMotion)
 
 TEST(RowFilter, LeavesOutRowsOfABunch)
 {
-  const Filtered bunched =
-      filtered([](int k, Rows& rows) { rows[0].time = rows[1].time = PERIOD * (k / 4 * 4 + 3) + 0.0002 * (k % 4); });
+  const Filtered bunched = filtered(
+      [](int k, Rows& rows)
+      {
+        const int last = k / 4 * 4 + 3;
+        rows[0].time = rows[1].time = PERIOD * last + 0.0002 * (k % 4);
+      });
   EXPECT_NEAR(static_cast<double>(bunched.left_out.bunched), 0.75 * ROWS, 20.0);
   const Filtered jitter =
       filtered([](int k, Rows& rows) { rows[0].time = rows[1].time += k % 2 == 0 ? 0.002 : -0.002; });
