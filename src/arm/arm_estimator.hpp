@@ -10,16 +10,20 @@ namespace hjt
 {
 /// What explains the currents of an arm beside those that its twins predict: the most likely causes a posteriori.
 ///
-///   current = (1 + g + g_i) (predicted + L_i + F_i (friction + rise_i U_i) - friction + (c + c_i) cold             +
-/// l_i |T_i + L_i| + j_i inertia) + o_i where L_i = Y_i . x + jump_i   x: mass and moments of a payload and the change
-/// of gravity; jump: those of another                                payload in the legs of state 1       F_i = 1 + f +
-/// f_group + f_i, of the twin's friction; c the same by temperature       U_i = |T_i + L_i| - |T_i|, T_i the load as
-/// configured, rise_i how much friction rises with it       g, o gains and offsets, l_i a loss in proportion to the
-/// load, j_i the rotor's inertia friction, rise and loss of the sign of the motion. Few arms carry another payload,
-/// hang otherwise, or have a joint of another gain or friction: their priors are Cauchy's. All differ in what is left,
-/// by a normal distribution. Rows are those of one joint that moves one way; outliers (contact) count as by Student's t
-/// of 4 degrees of freedom. A joint's rows tell no more than INDEPENDENT ones: errors of a model are no noise. A
-/// joint's gain is free only where its load is at least its friction: elsewhere both look alike.
+///   current = (1 + g + g_i) (predicted + L_i + F_i (friction + rise_i U_i) - friction + (c + c_i) cold
+///             + l_i |T_i + L_i| + j_i inertia) + o_i
+///   L_i = Y_i . x + jump_i     x      mass and moments of a payload, and the change of gravity
+///                              jump   of another payload, in the legs of state 1
+///   F_i = 1 + f + f_group + f_i, of the twin's friction;  c, c_i  the same by temperature
+///   U_i = |T_i + L_i| - |T_i|  T_i    load as configured
+///                              rise_i how much friction rises with it
+///   g, o gains and offsets;  l_i  loss in proportion to the load;  j_i  of the rotor's inertia
+///
+/// Friction, rise and loss have the sign of the motion. Few arms carry another payload, hang otherwise, or have a joint
+/// of another gain or friction: their priors are Cauchy's. All differ in what is left, by a normal distribution. Rows
+/// are those of one joint that moves one way; outliers (contact) count as by Student's t of 4 degrees of freedom. A
+/// joint's rows tell no more than INDEPENDENT ones: errors of a model are no noise. A joint's gain is free only where
+/// its load is at least its friction: elsewhere both look alike.
 class ArmEstimator
 {
 public:

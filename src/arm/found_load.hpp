@@ -63,6 +63,7 @@ struct FoundLoad
   IdentifiedMounting mounting;
   IdentifiedPayload otherwise{};         ///< carried before, after and between, where `payload` is not
   std::vector<PayloadChange> changes{};  ///< in their order, the first at the begin of the rows; empty: none
+  double since{ -HUGE_VAL };             ///< the rows that it is of [s]
 
   double gain{};             ///< of all currents beside 1, apart from load and friction [-]
   double gain_half_width{};  ///< of its 95 % interval [-]
@@ -71,6 +72,5 @@ struct FoundLoad
   Misfit misfit() const;
   /// What is carried at last, as if it had been all the time, and since when.
   FoundLoad last() const;
-  double since{ -HUGE_VAL };  ///< [s]
 };
 }  // namespace hjt

@@ -40,8 +40,7 @@ std::string whyNotJudged(const Assessment& assessment)
       return "too few windows: a verdict needs " + needed + " at one operating point, has " + here;
     case AssessmentState::OTHER_PAYLOAD:
       return "this payload is not in the reference: windows with payload and load like it belong there; a wrong gain "
-             "of "
-             "the current looks like one";
+             "of the current looks like one";
     case AssessmentState::ASSESSED:
       break;
   }

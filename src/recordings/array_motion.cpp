@@ -59,14 +59,7 @@ MotionCount readArrayMotion(const MotionSource& source, std::size_t joints, cons
   {
     folds += angle.folds();
   }
-  if (folds > 0)
-  {
-    count.remarks.push_back(foldsText(folds));
-  }
-  if (times.rounds() > 1)
-  {
-    count.remarks.push_back(roundsText(times.rounds()));
-  }
+  remarkOnRounds(folds, times.rounds(), count);
   count.misfit = { Reason::TWO_SOURCES, sources.text() };
   if (!count.misfit.exists())
   {

@@ -368,8 +368,7 @@ private:
     remark(!layout_.silent.empty(), silentText({ layout_.silent.begin(), layout_.silent.end() }));
     const std::string lacking = missingText(missing, count_);
     remark(!lacking.empty(), lacking);
-    remark(folds > 0, foldsText(folds));
-    remark(time_.rounds() > 1, roundsText(time_.rounds()));
+    remarkOnRounds(folds, time_.rounds(), count_);
     remark(parts_.size() > 1, "the joints come in " + std::to_string(parts_.size()) +
                                   " messages: put side by side in time by lines between their rows");
   }

@@ -27,12 +27,12 @@ MotionCount readArrayMotion(const MotionSource& source, std::size_t joints, cons
                             const std::function<void(double)>& progress);
 
 // Remarks of a reading.
-std::string foldsText(std::uint64_t folds);
+/// Of angles that were folded into one turn, and of a recording that was played in a loop.
+void remarkOnRounds(std::uint64_t folds, std::uint64_t rounds, MotionCount& count);
 /// Of joints whose effort is never a number.
 std::string silentText(const std::vector<std::string>& joints);
 /// Of values that are no number in more than a few rows; empty: none. `missing`: in how many, by name.
 std::string missingText(const std::map<std::string, std::uint64_t>& missing, const MotionCount& count);
-std::string roundsText(std::uint64_t rounds);
 
 /// The table has a load of that joint.
 bool tableRecordsLoad(const MotionSource& source);

@@ -40,17 +40,28 @@ void addRemarks(const LeftOutRows& left_out, MotionCount& count)
   remark(left_out.bunched, "stamps come in bunches, each within a quarter of the mean step after another");
 }
 
-/// Reads rows of so many joints by `read`, which hands them on, through the filter.
-template <class Read>
-MotionCount readFiltered(const MotionSource& source, std::size_t joints, const VisitRows& visit, const Read& read)
+/// By the reader of its kind. `names`, `numbers`: of the joints in messages and tables.
+MotionCount readAny(const MotionSource& source, const std::vector<std::string>& names, const std::vector<int>& numbers,
+                    const VisitRows& visit, const std::function<void(double)>& progress)
+{
+  return source.rows   ? readArrayMotion(source, names.size(), visit, progress) :
+         isCsv(source) ? readTableMotion(source, numbers, visit, progress) :
+                         readMessageMotion(source, names, visit, progress);
+}
+
+/// The same through the filter.
+MotionCount readFiltered(const MotionSource& source, const std::vector<std::string>& names,
+                         const std::vector<int>& numbers, const VisitRows& visit,
+                         const std::function<void(double)>& progress)
 {
   const double scale = scaleOf(source);
   std::vector<double> speeds = source.speeds;
-  speeds.resize(joints, MotionSource::FASTEST);
+  speeds.resize(names.size(), MotionSource::FASTEST);
   RowFilter filter(std::move(speeds));
   std::vector<MotionRow> rows;
   bool more = true;
-  MotionCount count = read(
+  MotionCount count = readAny(
+      source, names, numbers,
       [&](const std::vector<MotionRow>& recorded)
       {
         rows = recorded;
@@ -60,7 +71,8 @@ MotionCount readFiltered(const MotionSource& source, std::size_t joints, const V
           row.received *= scale;
         }
         return more = filter.push(rows, visit);
-      });
+      },
+      progress);
   if (more)
   {
     filter.finish(visit);
@@ -95,14 +107,7 @@ MotionCount readMotion(const MotionSource& source, const std::function<bool(cons
     fit.add(row.time, row.position, row.recorded_velocity);
     return visit(row);
   };
-  MotionCount count =
-      readFiltered(source, 1, fitted,
-                   [&](const VisitRows& take)
-                   {
-                     return source.rows   ? readArrayMotion(source, 1, take, progress) :
-                            isCsv(source) ? readTableMotion(source, { source.csv_joint }, take, progress) :
-                                            readMessageMotion(source, { source.joint }, take, progress);
-                   });
+  MotionCount count = readFiltered(source, { source.joint }, { source.csv_joint }, fitted, progress);
   count.velocity_ratio = fit.factor().value;
   return count;
 }
@@ -113,12 +118,6 @@ MotionCount readArmMotion(const MotionSource& source, const std::vector<std::str
 {
   std::vector<int> numbers(names.size());
   std::iota(numbers.begin(), numbers.end(), 0);
-  return readFiltered(source, names.size(), visit,
-                      [&](const VisitRows& take)
-                      {
-                        return source.rows   ? readArrayMotion(source, names.size(), take, progress) :
-                               isCsv(source) ? readTableMotion(source, numbers, take, progress) :
-                                               readMessageMotion(source, names, take, progress);
-                      });
+  return readFiltered(source, names, numbers, visit, progress);
 }
 }  // namespace hjt

@@ -9,6 +9,7 @@
 #include "recordings/indicators_report.hpp"
 #include "recordings/recorded_windows.hpp"
 
+#include "base/joined.hpp"
 #include "base/number_text.hpp"
 #include "base/whole_file.hpp"
 #include "gear/ratio.hpp"
@@ -217,15 +218,15 @@ Condition readRecordings(const RemainingOptions& options, Assessor& assessor, Us
 /// Names of the faults that would not show at any severity, "none" without one.
 std::string unseen(const SeenFrom& seen_from)
 {
-  std::string names;
+  std::vector<std::string> names;
   for (std::size_t cause = 0; cause < CAUSE_COUNT; ++cause)
   {
     if (std::isinf(seen_from[cause]))
     {
-      names += (names.empty() ? "" : ", ") + std::string(causeName(static_cast<Cause>(cause)));
+      names.emplace_back(causeName(static_cast<Cause>(cause)));
     }
   }
-  return names.empty() ? "none" : names;
+  return names.empty() ? "none" : joined(names);
 }
 
 /// @throws InputError

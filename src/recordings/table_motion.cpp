@@ -287,14 +287,7 @@ private:
     {
       count_.remarks.push_back(text);
     }
-    if (folds > 0)
-    {
-      count_.remarks.push_back(foldsText(folds));
-    }
-    if (times_.rounds() > 1)
-    {
-      count_.remarks.push_back(roundsText(times_.rounds()));
-    }
+    remarkOnRounds(folds, times_.rounds(), count_);
     count_.misfit = { Reason::STAMPS, order_.text() };
   }
 
@@ -312,9 +305,18 @@ private:
 };
 }  // namespace
 
-std::string foldsText(std::uint64_t folds)
+void remarkOnRounds(std::uint64_t folds, std::uint64_t rounds, MotionCount& count)
 {
-  return "angles are folded into one turn: unwrapped, " + std::to_string(folds) + " jumps of 2 pi";
+  if (folds > 0)
+  {
+    count.remarks.push_back("angles are folded into one turn: unwrapped, " + std::to_string(folds) + " jumps of 2 pi");
+  }
+  if (rounds > 1)
+  {
+    count.remarks.push_back("stamps jump back or by days " + std::to_string(rounds - 1) +
+                            " times, as of a recording played in a loop: each of " + std::to_string(rounds) +
+                            " rounds is read for itself");
+  }
 }
 
 std::string missingText(const std::map<std::string, std::uint64_t>& missing, const MotionCount& count)
@@ -337,12 +339,6 @@ std::string missingText(const std::map<std::string, std::uint64_t>& missing, con
 std::string silentText(const std::vector<std::string>& joints)
 {
   return "never a number: the effort of " + joined(joints) + ", which counts as 0: not judged, the others are";
-}
-
-std::string roundsText(std::uint64_t rounds)
-{
-  return "stamps jump back or by days " + std::to_string(rounds - 1) +
-         " times, as of a recording played in a loop: each of " + std::to_string(rounds) + " rounds is read for itself";
 }
 
 MotionCount readTableMotion(const MotionSource& source, const std::vector<int>& numbers, const VisitRows& visit,

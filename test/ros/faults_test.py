@@ -174,9 +174,9 @@ class FaultsOfANode(unittest.TestCase):
         # Short windows, and few for the reference, of a twin, which repeats so. After the start /diagnostics says
         # nothing but changes of level.
         self.start(**{"indicators/window_turns": 5.0, "indicators/baseline_windows": 60,
-                      "indicators/evidence_windows": 2, "indicators/least_spread": 0.0005,
+                      "indicators/evidence_windows": 2,
                       "indicators/false_alarm_rate": 0.02, "diagnostic_period": 3600.0})
-        self.torque = 0.4  # takes the motor to its speed limit and holds it there
+        self.torque = 0.8  # takes the motor to its speed limit and holds it there, with the fault too
         self.indicators = self.listener("indicators", Indicators)
         self.assessment = self.listener("assessment", Assessment)
         self.run_until(lambda: self.assessment.messages() and self.last().state == Assessment.ASSESSED, "a reference")

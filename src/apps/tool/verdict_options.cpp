@@ -15,8 +15,7 @@ void addVerdictOptions(Command& command, ComparisonOptions& options, std::string
   command
       .add("--fail-on", fail_on,
            "exit code 3 if the verdict is this or worse, 4 if nothing can be judged; with not-judged 3 for a warning "
-           "and "
-           "4 for a joint that is not judged. Without it the verdict changes none")
+           "and 4 for a joint that is not judged. Without it the verdict changes none")
       .choice({ "warn", "error", "not-judged" });
 }
 
