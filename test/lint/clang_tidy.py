@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Names and likely faults by clang-tidy (.clang-tidy) in the sources of src/, test/ and bench/ that the build compiles:
-those changed in the working tree or within the day before its commit, and a third of the others, which the number of
+those changed in the working tree or within the day before its commit, and a sixth of the others, which the number of
 commits chooses. --all, or sources without git: every one.
 
 usage: clang_tidy.py [--all] BUILD_FOLDER
@@ -29,7 +29,7 @@ FOLDERS = ("src", "test", "bench")
 # The first that is installed. From 22 on, declarations of system headers are skipped: half the time.
 TOOLS = ("clang-tidy-22", "clang-tidy")
 VERSIONS = (14, 22)  # that the sources are written for: the checks of others differ
-PARTS = 3  # of the unchanged files, one of which a commit has checked
+PARTS = 6  # of the unchanged files, one of which a commit has checked
 CHANGED_BEFORE = 86400  # changed files: by how much their commit may be older than the last [s]
 KEPT_DAYS = 60  # what no run has asked for since then is removed
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""`joint_twin compare` over hours: time and memory."""
+"""`joint_twin compare` over hours: processor time and memory."""
 import os
 
 import robot
@@ -14,7 +14,7 @@ SLACK = 4 * 1024 ** 2  # [byte]
 
 class Long(tool.ToolTest):
     def compare(self, name):
-        """Seconds and peak memory [byte], without the page: that another program makes."""
+        """Processor time [s] and peak memory [byte], without the page: that another program makes."""
         code, took, peak = self.measure("compare", name, *OPTIONS, environment={"PYTHONPATH": self.directory})
         self.assertEqual(code, 1)
         self.assertIn("comparison.json", os.listdir(self.path("report")))

@@ -68,19 +68,21 @@ class ToolTest(unittest.TestCase):
         return done
 
     def measure(self, *arguments, environment=None):
-        """Exit code, seconds, and peak memory of the tool itself [byte]. Under a sanitizer the test is skipped."""
+        """Exit code, processor time and peak memory of the tool itself [s, byte]. Under a sanitizer the test is
+        skipped."""
         if SLOWER != 1.0:
             self.skipTest("time and memory are the sanitizer's")
-        started = time.monotonic()
         process = subprocess.Popen([self.executable, *map(str, arguments)], cwd=self.directory,
                                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
                                    env=dict(os.environ, **(environment or {})))
-        # Not the usage reported at the end: it counts what this process had when it started the other.
-        peak = 0
-        while process.poll() is None:
-            peak = max(peak, peak_memory(process.pid))
+        # Not the most that the usage holds at the end: it counts what this process had when it started the other.
+        peak, ended = 0, 0
+        while not ended:
             time.sleep(0.01)
-        return process.returncode, time.monotonic() - started, peak
+            peak = max(peak, peak_memory(process.pid))
+            ended, status, usage = os.wait4(process.pid, os.WNOHANG)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        return process.returncode, usage.ru_utime + usage.ru_stime, peak
 
     def interrupt_while_writing(self, name, number, *arguments):
         """Starts the tool, sends it a signal once the bag `name` has content; exit code and stderr."""
