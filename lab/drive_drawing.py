@@ -135,7 +135,7 @@ def arm(axis):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", type=Path, default=CHECKOUT / "docs" / "images", help="folder of the PNG [%(default)s]")
+    parser.add_argument("--out", type=Path, default=CHECKOUT / "docs" / "images", help="folder [%(default)s]")
     given = parser.parse_args()
     for name, draw in (("drive_front", front), ("drive_cut", cut), ("arm_drives", arm)):
         figure, axis = plt.subplots(figsize=(6.4, 5.4))
