@@ -168,7 +168,7 @@ the lead of one cancels the lag of the other. A wave generator off its axis and 
 one: 10 µm each make 10 µrad (`manufacture.wave_generator_eccentricity`, `manufacture.flexspline_eccentricity`), 7
 µrad at 67 N·m. An eccentric motor encoder makes one too, 11 µrad at the output for 1.1 mrad at the motor, and does not
 fall with load; without load the recording cannot tell the two apart. Once and twice a turn of the output it has 0.6 and
-0.35 mrad, more than the total allowed for such a gear (1 minute of arc): an eccentric output encoder, not fitted.
+0.35 mrad, more than the total allowed for such a gear (1 minute of arc): the output encoder is eccentric.
 
 *Limits of this recording:* the drive's size is inferred from its ratio and torque; the sweep is one way and 7 s long;
 the torque is computed from current; the error without load was read off a published figure, whose points scatter by
