@@ -15,9 +15,12 @@ from drawing import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, STYLE, plt  # noqa: 
 # Tables that nobody reads line by line: by the name of their part, the files beside the page that hold all of their
 # rows, in the order of the tables, and which rows the page shows (None: no table).
 APART = {
+    "arm_faults": [("arm_faults_worst.csv", "interface|lubricant|tooth_wear|wave|pitting|ratcheting")],
     "bound": [("health_bound.csv", None)],
     "cycle": [("performance.csv", "100 rad/s|reversing")],
     "motions": [("health_motions.csv", "all of them|another model|a further model")],
+    "others": [("faults_others.csv", r"\| none|0\.02 N|\b1 counts|1 mrad|\b5 %")],
+    "read": [("life_read.csv", "all check-ups|line through lost motion")],
     "series": [("health_series.csv", r"^\| all ")],
     "signatures": [("signatures_runs.csv", None), ("signatures.csv", None)],
 }
