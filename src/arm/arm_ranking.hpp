@@ -37,7 +37,7 @@ struct ArmCandidate
   std::string name;
   ArmDescription arm;
   std::vector<Parameters> joints;  ///< the load that of the arm
-  double cost{};                   ///< of what the rows do not hold, logarithm [-]
+  double cost{};                   ///< negative log likelihood of the rows [-]
 };
 
 /// Rows of all joints at one time, `current` the effort as it comes.

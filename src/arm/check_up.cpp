@@ -208,7 +208,7 @@ private:
   ArmDynamics dynamics_;
   ArmPose from_;
   double period_;
-  double begin_{};  // of what comes next [s]
+  double begin_{};  // of the next piece [s]
   std::vector<ArmInstant> instants_;
 };
 }  // namespace

@@ -56,7 +56,7 @@ public:
   ArmSpec read(const PlanNode& duty, const PlanValues& values, const ParameterMap& settings,
                const std::vector<RunFault>* faults, const std::string& faults_origin) const;
 
-  /// What the runs depend on beside the plan.
+  /// Inputs of the runs besides the plan.
   OrderedJson configuration() const;
   OrderedJson motions() const;  ///< by their files, a hash each
 

@@ -13,7 +13,7 @@
 
 namespace hjt
 {
-/// One place of a plan's file. Read once, then only looked at, from any thread.
+/// One place of a plan's file. Read once, then used read-only from any thread.
 struct PlanNode
 {
   enum class Kind

@@ -50,7 +50,7 @@ public:
   /// Springs with sliders, which have a state; else one dry term.
   bool hasState() const noexcept { return torque_ > 0.0 && width_ > 0.0; }
 
-  /// What springs and sliders remember, and what follows from it at `rotation`.
+  /// State of springs and sliders, and the torque that follows from it at `rotation`.
   struct State
   {
     std::array<double, ELEMENTS> twist{};  ///< z [rad]

@@ -23,7 +23,7 @@ inline Stamp stampAt(double time)  ///< [s]
   return EPOCH + static_cast<Stamp>(std::llround(1e9 * time));
 }
 
-/// What an instance simulates, from its start on.
+/// The simulated object of an instance, from its start on.
 class Simulation
 {
 public:
@@ -45,7 +45,7 @@ protected:
   Simulation& operator=(const Simulation&) = default;
 };
 
-/// What a unit's resources hold.
+/// Resources of a unit.
 class Unit
 {
 public:

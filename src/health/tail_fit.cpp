@@ -27,7 +27,7 @@ bool tellsTail(std::size_t indicator) noexcept
          indicator != indexOf(ScalarIndicator::RESIDUAL_CREST) && !isFreeAmplitude(indicator);
 }
 
-/// What windows are off by, each from all others in their spread, by logarithmic classes.
+/// Deviations of windows, each from all others in units of their spread, by logarithmic classes.
 struct Residuals
 {
   static constexpr std::size_t CLASSES = 48;

@@ -47,7 +47,7 @@ Column withoutSlow(const Column& values, Eigen::Index width)
   return fast;
 }
 
-/// As they were `rows` before, on lines between the rows.
+/// Values `rows` earlier, interpolated between the rows.
 Column delayed(const Column& values, double rows)
 {
   Column before(values.size());
@@ -61,7 +61,7 @@ Column delayed(const Column& values, double rows)
   return before;
 }
 
-/// What the rows hold, in columns.
+/// Contents of the rows, in columns.
 struct Record
 {
   Record(const std::vector<ControllerRow>& rows, double period)

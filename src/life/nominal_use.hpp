@@ -9,7 +9,7 @@
 
 namespace hjt
 {
-/// What a duty cycle does to the nominal drive, in closed form: loads per revolution of the new drive, grease that
+/// Wear of the nominal drive by a duty cycle, in closed form: loads per revolution of the new drive, grease that
 /// ages.
 class NominalUse
 {

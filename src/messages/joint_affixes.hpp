@@ -6,7 +6,7 @@
 
 namespace hjt
 {
-/// What stands before and after the names of an arm's joints in messages: "left_", "".
+/// Prefix and suffix of the joints' names in messages: "left_", "".
 struct JointAffixes
 {
   std::string prefix;

@@ -21,7 +21,7 @@
 
 namespace hjt
 {
-/// What each of FAULTS must be.
+/// Allowed form of each entry of FAULTS.
 constexpr const char* FAULT_FORM = "{kind: ..., severity: ..., place: ..., onset: ...}";
 
 /// Fills one field after the other from the map; collects what is wrong, so that the user sees all of it at once.

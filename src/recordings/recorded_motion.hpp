@@ -38,7 +38,7 @@ struct MotionSource
   static constexpr double FASTEST = 20.0;  ///< faster than any joint [rad/s]
 };
 
-/// What a reading found.
+/// Counts of a reading.
 struct MotionCount
 {
   std::uint64_t rows{};
@@ -55,7 +55,7 @@ struct MotionCount
   Misfit misfit;                     ///< with this nothing can be judged; none: nothing stands against it
 };
 
-/// What was found, and what stood in the way.
+/// Motion that was read, and the reasons why it cannot be judged.
 struct MotionFindings : MotionCount
 {
   std::uint64_t refused{};  ///< rows repeated or out of order

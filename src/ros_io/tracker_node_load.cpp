@@ -18,7 +18,7 @@ namespace hjt
 {
 namespace
 {
-/// Between two looks at what does not fit [s].
+/// Period of the check of the telemetry [s].
 constexpr double FIT_PERIOD = 1.0;
 }  // namespace
 

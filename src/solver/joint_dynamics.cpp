@@ -107,7 +107,7 @@ SolveStatus JointDynamics::updateModel() noexcept
   const SolveStatus result = ring_.updateModel();
   viscosity_ = model_->bearing.viscosity(temperature_);
   takeRing();
-  accept();  // what slips meanwhile is part of what the edit sets free
+  accept();  // slip in this step is part of the energy that the edit releases
   return result;
 }
 
@@ -135,7 +135,7 @@ void JointDynamics::takeRing() noexcept
   slideShaft();
 }
 
-/// What friction remembers, by the surface's response at the present angles.
+/// Sets the internal state of the friction from the surface's response at the present angles.
 void JointDynamics::takeSurface() noexcept
 {
   if (model_->cup_friction.hasState())

@@ -182,7 +182,7 @@ private:
   double deepest_;
   double turn_;
   double ball_pitch_;
-  Eigen::VectorXd share_;  // of the drop that the race sags by over each tooth
+  Eigen::VectorXd share_;  // share of the drop by which the race sags over each tooth
 };
 using Lines = std::array<std::vector<Coefficients>, LINES + 1>;
 

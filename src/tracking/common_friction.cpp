@@ -13,7 +13,7 @@ namespace hjt
 {
 namespace
 {
-/// What the joints of a group have in common, apart from factors of their friction.
+/// Common factor of a group of joints, besides factors of their friction.
 JointGroup groupOf(const std::vector<MeasuredFriction>& joints, const std::vector<double>& factors, double tolerance,
                    std::size_t begin, std::size_t end)
 {

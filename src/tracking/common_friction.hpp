@@ -17,7 +17,7 @@ class Tracker;
 /// By which the temperature of a drive, and what else the joints of an arm have in common, changes friction from day to
 /// day, where no other joints tell: standard deviation of the logarithm [-].
 constexpr double UNWITNESSED = 0.06;
-/// Of what the joints have in common, from which on they are no witnesses: standard deviation of the logarithm [-].
+/// Of common factors of the joints, from which on they are no witnesses: standard deviation of the logarithm [-].
 constexpr double NO_WITNESS = 0.05;
 
 /// Joints that witness for each other, at least.
@@ -52,7 +52,7 @@ struct JointGroup
   bool is_known{};       ///< most of at least three agree on it
 };
 
-/// What the friction of an arm's joints has in common.
+/// Common factors of the friction of an arm's joints.
 struct ArmFriction
 {
   std::vector<double> factors;        ///< of each joint, that of its group in it
@@ -95,7 +95,7 @@ public:
   /// Forgets what was found; the joints go back to the configured temperature.
   void reset();
 
-  /// After the rows of a time [s]; works every PERIOD. True: what the joints have in common has changed.
+  /// After the rows of a time [s]; works every PERIOD. True: common factors of the joints has changed.
   bool look(double time);
 
   const ArmFriction& found() const { return found_; }
@@ -109,7 +109,7 @@ private:
   double tolerance_;
   std::vector<double> sound_;
   double next_look_{ -std::numeric_limits<double>::infinity() };  // [s]
-  int steady_{};                                                  // looks in a row that differ from what was found
+  int steady_{};                                                  // successive updates that differ from the result
   ArmFriction found_;
 };
 }  // namespace hjt

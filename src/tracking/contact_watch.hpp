@@ -13,7 +13,7 @@
 
 namespace hjt
 {
-/// What touched a joint's side of the arm.
+/// A contact on a joint's side of the arm.
 struct Contact
 {
   double since{};    ///< when it was first seen [s]

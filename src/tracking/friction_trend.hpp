@@ -15,10 +15,10 @@ namespace hjt
 struct DatedFriction
 {
   double time{};            ///< in any unit
-  double factor{};          ///< > 0, apart from what the joints have in common [-]
+  double factor{};          ///< > 0, apart from common factors of the joints [-]
   double deviation{};       ///< standard deviation of its logarithm, > 0 [-]
   double slow_deviation{};  ///< the part of it that may last for a season: of the temperature [-]
-  double common{};          ///< logarithm of what the joints have in common; 0: not known [-]
+  double common{};          ///< logarithm of common factors of the joints; 0: not known [-]
 };
 
 /// A line through the logarithms of a joint's friction over time, each weighted by its deviation. Where the factors

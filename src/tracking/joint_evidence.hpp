@@ -27,7 +27,7 @@ struct JudgedWindow
   Assessment assessment;
 };
 
-/// What the measured motion covers.
+/// Coverage of the measured motion.
 struct MotionReach
 {
   std::uint64_t rows{};
@@ -91,7 +91,7 @@ public:
   /// Of the sound joint; without it the signals' reference is learned from the first windows.
   void setReference(std::vector<ReferenceBin> bins);
 
-  /// What became of a row.
+  /// Result of a row.
   enum class Row
   {
     IMPOSSIBLE,  ///< its current or load is beyond what the joint has
@@ -144,7 +144,7 @@ public:
   /// What of the residual is left after the best constant and the best multiple of the predicted friction: neither a
   /// constant load nor worn or cold grease counts, rms [A].
   double unexplainedRms() const;
-  /// What the motion takes beside friction, load and inertia, in the measured current: a multiple of the predicted one.
+  /// The part of the measured current besides friction, load and inertia: a multiple of the predicted one.
   /// NaN: too little of it to tell.
   FittedFactor loadFactor() const;
   double temperature() const;  ///< that the rows were judged at, mean [degC]
@@ -165,7 +165,7 @@ public:
   double causeShare() const;  ///< of the windows in alarm that name it; 0: none is [-]
 
 private:
-  /// What adds up over the rows.
+  /// Sums over the rows.
   struct Sums
   {
     explicit Sums(const Parameters& parameters);

@@ -53,7 +53,7 @@ public:
   {
   }
 
-  /// What follows is a new stream.
+  /// Starts a new stream.
   void reset() noexcept
   {
     has_last_ = has_raw_ = is_confirmed_ = moves_ = false;
@@ -205,7 +205,7 @@ private:
     return more && visit(last_);
   }
 
-  /// What was held back.
+  /// Gives the rows that were held back to `visit`.
   template <class Visit>
   bool release(const Visit& visit)
   {
@@ -220,7 +220,7 @@ private:
 
   std::vector<double> speeds_;
   Rows last_;               // let through last; the first one waits for the second
-  Rows raw_;                // as they came, but for repeated ones
+  Rows raw_;                // unfiltered, without repeated ones
   std::vector<Rows> held_;  // that cannot be reached from the last
   std::size_t held_count_{};
   bool has_last_{};

@@ -15,7 +15,7 @@ constexpr const char* COMPARISON_FILE = "comparison.json";
 constexpr const char* BASELINE_FILE = "baseline.yaml";
 constexpr const char* FRICTION_FILE = "friction.csv";
 
-/// What earlier comparisons left of the joint when it was sound.
+/// Figures of the sound joint from earlier comparisons.
 struct SoundJoint
 {
   OwnReference own;

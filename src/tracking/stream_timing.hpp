@@ -73,7 +73,7 @@ public:
 
 private:
   static constexpr std::size_t KEPT = 256;  // rows that medians are made of
-  static constexpr std::size_t RENEW = 32;  // rows between two looks at the period
+  static constexpr std::size_t RENEW = 32;  // rows between two updates of the period
 
   template <std::size_t N>
   static double quantile(std::array<double, N> values, std::size_t count, double part) noexcept

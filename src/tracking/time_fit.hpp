@@ -125,7 +125,7 @@ private:
   static constexpr std::size_t KEPT = 256;           // windows: 200 s of motion
   static constexpr double MEMORY = 2000.0;           // pieces that the lag is made of
   static constexpr double MIN_ACCELERATED = 20.0;    // such pieces
-  static constexpr double LEAST_ACCELERATION = 0.1;  // of those [rad/s^2]
+  static constexpr double LEAST_ACCELERATION = 0.1;  // of the pieces that are fitted [rad/s^2]
 
   struct Piece
   {

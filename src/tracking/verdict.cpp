@@ -256,7 +256,7 @@ std::vector<Hidden> cannotShow(const JointEvidence& evidence, const Verdict& ver
   return hidden;
 }
 
-/// What does not depend on what is judged.
+/// Sets the figures that do not depend on the kind of verdict.
 void setFigures(const JointEvidence& evidence, const JointContext& context, Verdict& verdict)
 {
   const MotionReach& reach = evidence.reach();

@@ -32,7 +32,7 @@ public:
 
   /// Makes the verdict again, alone.
   void judge() { judge(1.0, UNWITNESSED, {}); }
-  /// Makes it after what the joints have in common of `measuredFriction`. `joint`: its number.
+  /// Makes it after common factors of the joints of `measuredFriction`. `joint`: its number.
   void judge(const ArmFriction& arm, std::size_t joint)
   {
     judge(arm.factors[joint], arm.deviations[joint], arm.misfit);
