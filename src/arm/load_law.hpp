@@ -38,7 +38,7 @@ struct JudgedJoints
 
   std::vector<Misfit> misfits;  ///< of each, or what all have in common
   std::vector<MeasuredFriction> frictions;
-  std::vector<bool> measured;  ///< a joint whose effort is none says nothing of the load
+  std::vector<bool> measured;  ///< false: the joint gives no effort, so it says nothing of the load
   ArmFriction common;
 };
 

@@ -91,7 +91,7 @@ public:
   std::vector<RecordingFinding> ofArm() const;
   std::vector<RecordingFinding> ofJoint(std::size_t joint) const;
 
-  /// It has seen enough for its findings, or PATIENCE of motion without.
+  /// Whether the rows suffice for its findings, or PATIENCE of motion has passed without any.
   bool isSettled() const;
 
   /// For each joint the first finding of arm or joint with which nothing can be judged.

@@ -36,7 +36,7 @@ struct PlanNode
   [[noreturn]] void refuse(const std::string& what) const;
 };
 
-/// The number that a value is, whole or not; nothing if it is none.
+/// The value as a number, whole or not; nothing if it is no number.
 std::optional<double> numberIn(const ParameterValue& value);
 
 OrderedJson jsonOf(const ParameterValue& value);

@@ -22,7 +22,7 @@ namespace hjt
 namespace
 {
 constexpr int FORMAT = 4;       // by what the indicators mean, and what is kept of them
-constexpr int OWN_NUMBERS = 6;  // of an indicator, before what is fitted
+constexpr int OWN_NUMBERS = 6;  // numbers of an indicator before the fitted ones
 
 std::size_t indicatorNamed(const std::string& name)
 {

@@ -26,7 +26,7 @@ struct MotionSource
   int csv_joint{};                       ///< its number in the columns of a CSV file
   std::string topic{ "/joint_states" };  ///< sensor_msgs/JointState
   std::string load_topic;                ///< sensor_msgs/JointState, effort the load [N.m]
-  /// Above 0: where the messages tell an effort of NAME_motor, that is its torque; the current of 1 N.m of it [A].
+  /// Above 0: the effort of NAME_motor in the messages is a torque; current for 1 N.m of it [A].
   double current_per_motor_torque{};
   double current_per_effort{ 1.0 };  ///< of one joint: motor current of 1 of its effort [A], [A/(N.m)]
   double time_scale{ 1.0 };          ///< by which the times in the recording are multiplied

@@ -78,7 +78,7 @@ public:
     last_ = stamp;
   }
 
-  /// As a clause; empty: they do, or nearly.
+  /// The deviation as a clause; empty: the times agree, or nearly.
   std::string text() const
   {
     constexpr std::uint64_t FEWEST = 10;

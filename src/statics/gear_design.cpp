@@ -180,7 +180,7 @@ void applyRatings(const Parameters& from, const GearRequest& request, const Gear
   const std::string rule = rule_of(request.ratings);
   designer.set("cup.torsion_breakpoints", { figures.breakpoints[0], figures.breakpoints[1] },
                rule_of(request.breakpoints));
-  // As much of the torsion as in the configured gear.
+  // The same share of the torsion as in the configured gear.
   designer.scale("cup.friction_torque", figures.breakpoints[0] / from.cup.torsion_breakpoints[0],
                  "in proportion to T1, at which the torsion is alike");
   designer.set("life.rated_torque", figures.rated_torque, rule);

@@ -16,7 +16,7 @@ constexpr double CATALOGUE_SPEED = 2000.0 * PI / 30.0;  // [rad/s]
 constexpr double CATALOGUE_TEMPERATURE = 20.0;          // [degC]
 constexpr int FRICTION_POSITIONS = 8;                   // of a tooth pitch, over which friction is averaged
 
-/// The gear wanted. What is left out follows from the size.
+/// Requested gear. Values that are left out follow from the size.
 struct GearRequest
 {
   double size{ 25.0 };                  ///< as catalogues count: 25 has the configured dimensions [-]

@@ -106,7 +106,7 @@ public:
 
   int solves() const noexcept { return solves_; }
 
-  /// Beyond the torque limits tolerances are this much wider.
+  /// Factor on the tolerances beyond the torque limits.
   double overload(const SurfaceNode& node) const noexcept;
 
 private:

@@ -22,7 +22,7 @@ struct LeftOutRows
   std::uint64_t impossible{};   ///< a value is not finite, or beyond what a sound message holds
   std::uint64_t unreachable{};  ///< an angle that the rows beside it contradict
   std::uint64_t repeated{};     ///< all values are those of the row before, while the joints move
-  std::uint64_t bunched{};      ///< follows the row before much sooner than rows do
+  std::uint64_t bunched{};      ///< rows much closer to the one before than the period
 
   std::uint64_t all() const noexcept { return impossible + unreachable + repeated + bunched; }
 };

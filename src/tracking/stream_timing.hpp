@@ -19,7 +19,7 @@ struct StreamTimingReport
   std::uint64_t missing{};   ///< that the period would have had between two others
   double period{};           ///< between stamps, median of the last rows [s]
   double longest_gap{};      ///< between stamps [s]
-  double offset{};  ///< reception less stamp, the smallest of the last rows: clocks' offset and shortest way [s]
+  double offset{};  ///< smallest reception less stamp of the last rows: offset of the clocks and shortest transport [s]
   double jitter{};  ///< how far beyond it 95 of 100 rows stay [s]
 };
 

@@ -166,7 +166,7 @@ struct Verdict
   double& operator[](Figure figure) { return figures[static_cast<std::size_t>(figure)]; }
 
   VerdictLevel level{ VerdictLevel::NOT_JUDGED };
-  Reason reason{ Reason::NO_STEADY_MOTION };  ///< of the worst finding; if none is judged of the first
+  Reason reason{ Reason::NO_STEADY_MOTION };  ///< reason of the worst finding; if none is judged, of the first
   std::string joint;
   JudgedFriction friction;
   std::string friction_text;        ///< finding, or why it is not judged, in sentences

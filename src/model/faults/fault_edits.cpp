@@ -11,7 +11,7 @@ namespace hjt
 {
 namespace
 {
-/// `change` the entry of a place, or to all for WHOLE_MEMBER.
+/// Applies `change` to the entry of a place, or to all for WHOLE_MEMBER.
 template <class Change>
 void atPlace(int place, Eigen::VectorXd& values, const Change& change) noexcept
 {
