@@ -289,9 +289,9 @@ def section(runner, telemetry, docs, images):
     draw_means(os.path.join(images, "means.png"), judged_errors)
     means, means_of, worst_means = met(judged_errors, "means", WANTED_MEANS)
     moving, moving_of, worst_moving = met(judged_errors, "moving", WANTED_MOVING)
-    summary = [f"Of {means_of} (recording, large joint) that were not identified on, {means} have means over 0.1 s "
-               f"within {WANTED_MEANS:g} of the fit's (worst {worst_means:.2f}), and {moving} of {moving_of} have "
-               f"moving rows within {WANTED_MOVING:g} of it (worst {worst_moving:.2f}).", judged_right]
+    summary = [f"In recordings that were not identified on, the twin's error in means over 0.1 s is at most "
+               f"{WANTED_MEANS:g} of the fit's for {means} of {means_of} large joints (worst {worst_means:.2f}), that "
+               f"in moving rows at most {WANTED_MOVING:g} for {moving} of {moving_of} (worst {worst_moving:.2f}).", judged_right]
     write_errors(os.path.join(docs, "real_robot_current.csv"), {**judged_errors, TRAIN: all_errors[TRAIN]})
     print("\n".join([*share_table(all_errors), *map(",".join, raised_lines), *summary]))
     return [*heading, *introduction(summary, recordings), *load_table(recordings),
