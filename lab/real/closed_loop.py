@@ -227,9 +227,9 @@ def section(runner, recordings, fit, joints, shown, docs, train):
 ### In closed loop
 
 `joint_twin arm` along the targets of each recording, drives identified on the recording of the other sections, the
-controller's gains typical: the twin is told neither angles nor currents. [{LOOP_ROWS}]({LOOP_ROWS}) has for each
+controller's gains typical: the twin gets neither angles nor currents. [{LOOP_ROWS}]({LOOP_ROWS}) has for each
 recording and joint the tracking error (actual less target angle, rms about its mean), the rms error of the current in
-moving rows (closed loop, told the motion by `follow`, simple fit), and the amplitude of the current at {LOOP_LINES}
+moving rows (closed loop, prescribed motion by `follow`, simple fit), and the amplitude of the current at {LOOP_LINES}
 lines a turn, where a steady motion shows it.
 
 The delay of the set points is that of no6. In the motions that it is not, the tracking error is within a factor of 1.5
@@ -240,8 +240,9 @@ within {WANTED:g} of the simple fit's error in {np.count_nonzero(currents <= WAN
 it in {np.count_nonzero(currents < 1.0)}.
 
 Ripple bounds the current. Below {SLOW:g} Hz the error in closed loop is {loop_slow:.2f} of the fit's, above it
-{loop_fast:.2f} (medians; told the motion {told_slow:.2f} and {told_fast:.2f}): these drives have no errors of
-manufacture, so they make no ripple, and what is told the motion sees that of the robot. In {bound} of {len(currents)}
+{loop_fast:.2f} (medians; with the motion prescribed {told_slow:.2f} and {told_fast:.2f}). These drives have no errors
+of manufacture, so they make no ripple; a twin on the prescribed motion has that of the robot. In {bound} of
+{len(currents)}
 what the fit leaves above {SLOW:g} Hz alone is more than {WANTED:g} of its error.
 """, *built_section(runner, recordings, fit, joints, train, docs), f"""
 ![Tracking error of three joints in {shown}, recorded and in closed loop]({PICTURE})

@@ -17,8 +17,9 @@ HEAD = """# Beside a real robot
 
 Written by `lab/run compare_real`; do not edit.
 
-How to use it: this page shows how far the twin differs from a robot that is sound. A difference has to be larger than that
-before it means something. The page also counts the right verdicts on recordings of sound joints and of raised friction.
+How to use it: this page shows how far the twin differs from a robot that is sound. A difference has to be larger than
+that before it means something. The page also counts the right verdicts on recordings of sound joints and of raised
+friction.
 
 How far to trust it: one UR5, one UR10e and one drive of another maker, all sound. The recordings are not part of
 this project. The

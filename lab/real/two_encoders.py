@@ -97,8 +97,8 @@ recording it takes the origin, which the zeros of the encoders leave open. The r
             [[name, f"{1e3 * a:.2f}", f"{1e3 * b:.2f}"] for name, (a, b) in self.errors.items()]),
                 *table(["stiffness [10³ N·m/rad]", "catalogue", "identified"], rows), f"""
 *Weakness:* fitted to the halves of the sweep separately, the factor is {self.halves[0]:.2f} at
-negative and {self.halves[1]:.2f} at positive angles, farther apart than the interval, which
-is therefore too narrow; identified on one half and tested on the other, it is worse there than the catalogue. The rest
+negative and {self.halves[1]:.2f} at positive angles. They differ by more than the interval, which
+is therefore too narrow. Identified on one half and tested on the other, it is worse there than the catalogue. The rest
 is slow waves of the transmission error, which load and mounting change; one sweep cannot separate them from torsion.
 The catalogue's curve lies between the two.
 """]

@@ -291,7 +291,8 @@ def section(runner, telemetry, docs, images):
     moving, moving_of, worst_moving = met(judged_errors, "moving", WANTED_MOVING)
     summary = [f"In recordings that were not identified on, the twin's error in means over 0.1 s is at most "
                f"{WANTED_MEANS:g} of the fit's for {means} of {means_of} large joints (worst {worst_means:.2f}), that "
-               f"in moving rows at most {WANTED_MOVING:g} for {moving} of {moving_of} (worst {worst_moving:.2f}).", judged_right]
+               f"in moving rows at most {WANTED_MOVING:g} for {moving} of {moving_of} (worst {worst_moving:.2f}).",
+               judged_right]
     write_errors(os.path.join(docs, "real_robot_current.csv"), {**judged_errors, TRAIN: all_errors[TRAIN]})
     print("\n".join([*share_table(all_errors), *map(",".join, raised_lines), *summary]))
     return [*heading, *introduction(summary, recordings), *load_table(recordings),
@@ -355,7 +356,7 @@ CB series, six joints (K. Kufieta, *Force Estimation in Robotic Manipulators*, N
 {summary[0]}
 {summary[1]}
 
-Rows: {rows_of(recordings)}.
+The recordings have {rows_of(recordings)}.
 no2 was logged at 62.5 Hz; its rows are taken as they are, and a mean over {MEAN:g} s has half as many. In no5_pushed a
 person pushes the arm: contact is no fault, but no twin predicts it. no7 is the motion of no6 on another day.
 
