@@ -20,7 +20,7 @@ namespace hjt
 namespace
 {
 constexpr double OUTLIER = 3.0;        // blocks that many deviations off count less
-constexpr double LEAST_GREASE = 0.05;  // of the configured, so that a viscosity remains
+constexpr double LEAST_GREASE = 0.05;  // least share of the configured viscosity
 constexpr double NARROWED = 0.5;       // deviation after the motion over that before
 constexpr std::size_t MIN_BLOCKS = 12;
 constexpr std::size_t MAX_BLOCKS = 20000;  // a longer recording is thinned out

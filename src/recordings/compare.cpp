@@ -88,7 +88,7 @@ const std::vector<Column<ComparedJoint>> ARM_COLUMNS{
 std::string groupText(const JointGroup& group, const std::vector<ComparedJoint>& lines)
 {
   constexpr double NOTEWORTHY = 0.1;
-  constexpr double MOST = 2.5;  // that temperature or lubricant make
+  constexpr double MOST = 2.5;  // largest factor by temperature or lubricant
   if (!group.is_known || std::abs(group.median - 1.0) < NOTEWORTHY)
   {
     return {};

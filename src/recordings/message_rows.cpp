@@ -16,8 +16,8 @@ namespace hjt
 namespace
 {
 constexpr double FASTEST = 20.0;    // joint; faster ones are damaged angles [rad/s]
-constexpr double SLACK = 0.02;      // of the time a joint has for its way: messages come in bursts [s]
-constexpr double CLOCK_STEP = 1.0;  // by which the delay of a message may differ from its neighbour's [s]
+constexpr double SLACK = 0.02;      // added to the time that a joint has for its way: messages come in bursts [s]
+constexpr double CLOCK_STEP = 1.0;  // largest difference of the delays of neighbouring messages [s]
 
 /// Whether a row is no measurement: the efforts of all these joints are exactly zero, or all values of one joint.
 bool isWithoutEffort(const sensor_msgs::JointState& message, const std::vector<std::string>& names)

@@ -20,7 +20,7 @@ namespace hjt
 namespace
 {
 constexpr std::size_t JOINTS = 6;
-constexpr double LATEST = 9e9;  // that a stamp holds [s]
+constexpr double LATEST = 9e9;  // largest time that a stamp holds [s]
 
 /// Columns of one joint; the first two are required.
 enum Quantity : std::size_t

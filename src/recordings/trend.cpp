@@ -59,7 +59,7 @@ std::vector<std::string> recordingsIn(const std::string& folder)
   return found;
 }
 
-/// Each once, in the order given.
+/// The files without repetition, in the given order.
 std::vector<std::string> filesOf(const std::vector<std::string>& given)
 {
   std::vector<std::string> files;

@@ -191,7 +191,7 @@ double JointDynamics::accept() noexcept
 /// teeth have jumped.
 bool JointDynamics::surfaceAgrees() const noexcept
 {
-  constexpr double MARGIN = 0.05;   // of the surface's range
+  constexpr double MARGIN = 0.05;   // share of the surface's range
   constexpr double TABLED = 2e-6;   // of the output's angle at given torque [rad]
   constexpr double BETWEEN = 2e-4;  // the same of a surface that lies between others; a tooth's jump is 3e-2
   ResponseSurface::Place place;

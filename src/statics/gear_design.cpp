@@ -22,9 +22,9 @@ namespace hjt
 namespace
 {
 constexpr double CONFIGURED_SIZE = 25.0;
-constexpr double TORSION_ERROR = 1e-4;  // of a fitted twist
+constexpr double TORSION_ERROR = 1e-4;  // relative error of a fitted twist
 constexpr int TORSION_TRIALS = 30;
-constexpr int FITTED_BITS = 12;          // of a fitted torque's parameter
+constexpr int FITTED_BITS = 12;          // bits of a fitted torque's parameter
 constexpr double LEAST_OF_START = 1e-3;  // least value of it tried, over where the fit starts
 constexpr int CATALOGUE_RATIO = 100;     // whose friction the catalogue has
 constexpr const char* ORIGIN = "gear";

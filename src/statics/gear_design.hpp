@@ -14,7 +14,7 @@ namespace hjt
 /// Conditions under which a catalogue gives its torques of friction.
 constexpr double CATALOGUE_SPEED = 2000.0 * PI / 30.0;  // [rad/s]
 constexpr double CATALOGUE_TEMPERATURE = 20.0;          // [degC]
-constexpr int FRICTION_POSITIONS = 8;                   // of a tooth pitch, over which friction is averaged
+constexpr int FRICTION_POSITIONS = 8;                   // in a tooth pitch, over which friction is averaged
 
 /// Requested gear. Values that are left out follow from the size.
 struct GearRequest

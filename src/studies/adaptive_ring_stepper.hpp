@@ -35,7 +35,7 @@ public:
   /// they became shorter than a billionth of it.
   bool step(RingMotion& motion, double length) noexcept override
   {
-    constexpr double SHORTEST = 1e-9;  // of the whole length
+    constexpr double SHORTEST = 1e-9;  // share of the whole length
     const double end = motion.time + length;
     begin_ = motion;
     method_.restart();

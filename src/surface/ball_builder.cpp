@@ -18,7 +18,7 @@ namespace
 constexpr int LINES = 48;         // intervals of w
 constexpr int COLUMNS = 8;        // of u over a pitch
 constexpr int PLACES = 80;        // of chi over half a turn
-constexpr double SCALE = 1e-3;    // of v: lines are even below it and in even ratios above [rad]
+constexpr double SCALE = 1e-3;    // of v: lines are equidistant below it and geometric above [rad]
 constexpr double LONGEST = 1e-3;  // way of v at once [rad]
 
 using Coefficients = BallTable::Coefficients;

@@ -82,7 +82,7 @@ public:
         factors[i] *= group.median;
       }
     }
-    constexpr double TINY = 1e-3;  // of a ratio, which may be zero
+    constexpr double TINY = 1e-3;  // least ratio, which may be zero
     double sum = 0.0;
     for (const double ratio : ratios(factors))
     {
@@ -142,7 +142,7 @@ std::optional<double> temperatureOf(const std::vector<MeasuredFriction>& joints,
 
 ArmFriction ofWholeArm(const std::vector<MeasuredFriction>& joints, double tolerance)
 {
-  constexpr double MAX_MISFIT = 0.67;  // of a temperature, over that without: it makes one faulty joint fit a little
+  constexpr double MAX_MISFIT = 0.67;  // left with a temperature: it also fits one faulty joint a little
   ArmFriction arm;
   arm.factors.assign(joints.size(), 1.0);
   arm.deviations.assign(joints.size(), UNWITNESSED);

@@ -102,8 +102,8 @@ public:
 
 private:
   static constexpr double PERIOD = 1.0;   // [s]
-  static constexpr double CHANGE = 0.05;  // of the median that is followed
-  static constexpr int LOOKS = 10;        // in a row that show a change
+  static constexpr double CHANGE = 0.05;  // change of the median that starts a new estimate
+  static constexpr int LOOKS = 10;        // successive updates that have to show a change
 
   std::vector<Tracker*> joints_;
   double tolerance_;

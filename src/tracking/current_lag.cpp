@@ -44,7 +44,7 @@ double ownLag(const std::array<double, CurrentLag::LAGS>& left)
 double commonLag(const std::vector<std::array<double, CurrentLag::LAGS>>& left)
 {
   constexpr double CLEARLY = 0.93;  // of the rms residual without a lag: sound recordings of a UR5 leave more
-  constexpr double AGREES = 0.96;   // of each joint that agrees
+  constexpr double AGREES = 0.96;   // of the rms residual, for each joint that agrees
   double best_share = CLEARLY;
   double best_lag = 0.0;
   for (std::size_t i = 0; i < CurrentLag::LAGS; ++i)

@@ -73,7 +73,7 @@ private:
     double position{};        // [rad]
     std::uint64_t segment{};  // number of gaps before it
   };
-  static constexpr std::size_t ROOM = 512;      // more than two windows of rows at MIN_STEP
+  static constexpr std::size_t ROOM = 512;      // holds two windows of rows at MIN_STEP
   static constexpr int MIN_ROWS = 4;            // rows for a parabola that does not only pass through them
   static constexpr std::uint64_t MIN_SIDE = 2;  // rows to either side, however far apart
 

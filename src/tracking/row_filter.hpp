@@ -107,8 +107,8 @@ public:
 
 private:
   static constexpr std::size_t ROOM = 16;       // rows that are held back, at most
-  static constexpr double SLACK = 0.02;         // of a row's time: messages come in bursts [s]
-  static constexpr double MARGIN = 1.2;         // over the greatest speed [-]
+  static constexpr double SLACK = 0.02;         // added to a row's time: messages come in bursts [s]
+  static constexpr double MARGIN = 1.2;         // factor on the greatest speed [-]
   static constexpr double MOVING = 0.01;        // [rad/s]
   static constexpr double BUNCHED = 0.25;       // of the mean step
   static constexpr double MEMORY = 64.0;        // of the mean step [rows]

@@ -98,7 +98,7 @@ public:
     {
       values[i] = std::abs(values[i] - factor.value);
     }
-    constexpr double DEVIATION = 1.48;  // of a normal distribution, over its median magnitude
+    constexpr double DEVIATION = 1.48;  // standard deviation over median magnitude of a normal distribution
     const double typical = upperMedian(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count));
     factor.uncertainty = DEVIATION * typical / std::sqrt(static_cast<double>(count));
     return factor;

@@ -34,7 +34,7 @@ constexpr double END_POSITION = 0.1;   // [rad]
 constexpr double END_SPEED = 0.05;     // [rad/s]
 constexpr double PATIENCE = 0.6;       // [s]
 
-constexpr double LOOK_PERIOD = 0.01;  // at the report [s]
+constexpr double LOOK_PERIOD = 0.01;  // period of checking the report [s]
 constexpr int LOOKS_A_FEEDBACK = 5;
 
 /// As in JointTolerance.msg: 0 keeps the default, below 0 there is no tolerance.
