@@ -27,7 +27,7 @@ struct IdentifiedPayload
   bool isCarried() const { return mass > mass_half_width; }
   /// It differs, and is a mass, or none where one is configured.
   bool isOther() const;
-  /// What it is, its centre where it has a mass.
+  /// The payload in words, with its centre where it has a mass.
   Payload payload() const;
   /// "the currents look like a payload of ... in place of the configured ...", a clause.
   std::string text() const;

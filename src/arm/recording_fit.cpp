@@ -55,7 +55,7 @@ std::string rounded(double value)
   return roundedText(value, 3);
 }
 
-/// What is wrong between angle and velocity of one joint whose factor is not that of the stamps; empty: nothing.
+/// Contradiction of angle and velocity of one joint whose factor is not that of the stamps; empty: nothing.
 RecordingFinding velocityFinding(const FittedFactor& own, double of_stamps)
 {
   constexpr double STANDS = 0.01;

@@ -12,7 +12,7 @@ namespace hjt
 {
 /// A value of the plan that is not the same in every run: from a grid, or drawn.
 ///
-/// What is drawn depends on the plan's seed, the variable's name and the number of the run alone, not on the other
+/// A draw depends on the plan's seed, the variable's name and the number of the run alone, not on the other
 /// variables, the order of the runs or the number of workers: Philox4x32-10 gives the words, Boost.Random the
 /// distribution.
 class Variable

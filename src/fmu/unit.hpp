@@ -16,7 +16,7 @@ namespace hjt::fmu
 using Values = std::vector<Value>;  ///< of all variables of a unit
 using Notice = std::function<void(const std::string&)>;
 
-constexpr Stamp EPOCH = 1'000'000'000'000'000'000;  ///< of time 0, as `joint_twin simulate` starts
+constexpr Stamp EPOCH = 1'000'000'000'000'000'000;  ///< stamp of time 0, as in `joint_twin simulate`
 
 inline Stamp stampAt(double time)  ///< [s]
 {

@@ -15,7 +15,7 @@ namespace
 {
 constexpr double LEAST_OTHERS = 0.05;  // least share of a window's weight that the other windows determine
 constexpr double TAIL_STEP = 0.01;     // 1 / degrees of freedom
-// What the logarithm of the likelihood must gain over the normal distribution's: chance gives less in 95 %, half the
+// Least gain of the log likelihood over the normal distribution's: chance gives less in 95 %, half the
 // quantile of chi square with one degree of freedom. Of so few windows the spread's own degrees of freedom say enough.
 constexpr double LEAST_GAIN = 1.92;
 

@@ -184,7 +184,7 @@ private:
     return nearest.empty() ? "" : " (did you mean " + nearest + "?)";
   }
 
-  /// What `key` must be, if known keys stand below it or it is the list of faults; else nothing.
+  /// Allowed form of `key`, if known keys stand below it or it is the list of faults; else nothing.
   std::string groupKind(const std::string& key) const
   {
     const auto below = known_.lower_bound(key + '.');

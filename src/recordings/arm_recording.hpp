@@ -19,7 +19,7 @@ struct ArmJointRow
 {
   MotionSample row;        ///< its load the one chosen, at the output; rates are those of an arm's joint only
   double recorded_load{};  ///< [N.m]
-  double motor_part{};     ///< what of the motor's inertia a controller's torque holds beside the arm's load [N.m]
+  double motor_part{};     ///< of the motor's inertia, in a controller's torque beside the arm's load [N.m]
 };
 
 /// The recording of an arm, or of one joint as an arm of one, and the twin's parameters of each of its joints. The load

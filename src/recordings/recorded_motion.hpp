@@ -51,7 +51,7 @@ struct MotionCount
   std::uint64_t refused_temperatures{};  ///< not finite, or beyond what a drive can have
   /// Of one joint: change of the angles by the stamps, over the recorded velocities; 1: they agree, NaN: not known.
   double velocity_ratio{ std::numeric_limits<double>::quiet_NaN() };
-  std::vector<std::string> remarks;  ///< what was mended or left out in reading, clauses without a full stop
+  std::vector<std::string> remarks;  ///< repaired or omitted data, clauses without a full stop
   Misfit misfit;                     ///< with this nothing can be judged; none: nothing stands against it
 };
 

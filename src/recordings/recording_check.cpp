@@ -63,7 +63,7 @@ void takeFit(const RecordingFit& fit, const std::vector<Parameters>& parameters,
   }
 }
 
-/// A joint beside its twin, of which nothing is written.
+/// A joint beside its twin, without output files.
 class CheckedTwin : public AssessedJoint
 {
 public:

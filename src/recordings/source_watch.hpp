@@ -31,7 +31,7 @@ public:
       last_publisher_ = publisher;
     }
     const double step = std::max(LEAST_STEP, LEAST_OF_RANGE * rangeWith(rows));
-    if (step > GROWN * counted_step_)  // what moved before was noise
+    if (step > GROWN * counted_step_)  // the motion before was noise
     {
       counted_step_ = step;
       moves_ = returns_ = 0;

@@ -79,7 +79,7 @@ struct Fresh
   Lanes cup_x, cup_y;  // to the cup
 };
 
-/// What the teeth eliminated so far add to the two that come next: blocks, and couplings to the border.
+/// Contributions of the eliminated teeth to the next two: blocks, and couplings to the border.
 struct Carried
 {
   Lanes d_xx{}, d_xy{}, d_yy{};

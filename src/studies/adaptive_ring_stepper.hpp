@@ -46,7 +46,7 @@ public:
     double rest = length;
     while (rest > 0.0)
     {
-      // What is left is shared out evenly: no tiny step at the end.
+      // The remaining time is divided evenly: no tiny step at the end.
       const double stride = rest / std::max(1.0, std::ceil(rest / next_ - 1e-9));
       before_ = motion;
       ring_.pairTeeth(motion.q, motion.time);

@@ -45,7 +45,7 @@ std::vector<JointGroup> groupsOf(const std::vector<MeasuredFriction>& joints, co
   return { groupOf(joints, factors, tolerance, 0, half), groupOf(joints, factors, tolerance, half, joints.size()) };
 }
 
-/// What factors of the joints' friction, each of its twin's, leave of the measured ratios.
+/// Remainder of the measured ratios after factors of the joints' friction.
 class Left
 {
 public:
@@ -199,7 +199,7 @@ double scatterBeside(std::size_t joint, const JointGroup& group, const std::vect
   return count > 1.0 ? std::sqrt(std::max(0.0, variance - SOUND * SOUND) / count) : 0.0;
 }
 
-/// What the joints of a group have in common goes into the arm's factors of those that share it.
+/// Adds the common factor of a group to the arm's factors of the joints that share it.
 void take(const JointGroup& group, const std::vector<MeasuredFriction>& joints, ArmFriction& arm)
 {
   constexpr double CHANCE = NO_WITNESS;  // share that three joints may have in common, as those of their type differ

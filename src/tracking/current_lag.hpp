@@ -14,7 +14,7 @@
 
 namespace hjt
 {
-/// What a constant, Coulomb and viscous friction, acceleration and load explain of a joint's current, if the current
+/// Part of a joint's current that a constant, Coulomb and viscous friction, acceleration and load explain, if it
 /// came earlier or later than the motion. Fixed memory; nothing allocates.
 ///
 /// Rows count at most every 20 ms, the motion between them on lines. Of motion faster than 0.05 rad/s, the last two

@@ -57,7 +57,7 @@ private:
 /// Not known: fewer than MIN_RECORDINGS, or no time between them.
 FrictionTrend frictionTrend(const std::vector<DatedFriction>& recordings);
 
-/// What the joints of a group have in common in each recording: of the logarithms of their friction, each less the
+/// Common factor of a group of joints in each recording: of the logarithms of their friction, each less the
 /// joint's own median, the median joint's. It is taken alike of all recordings, so that it makes no step from one to
 /// the other. `logarithms`: by joint and recording; none: not known. None: of fewer than MIN_WITNESSES joints.
 std::vector<std::optional<double>> commonOfRecordings(

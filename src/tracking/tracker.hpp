@@ -167,7 +167,7 @@ private:
   TelemetryParameters telemetry_;
   double ratio_;
   GreaseTemperature grease_;
-  double temperature_;                           // of it, at the last row [degC]
+  double temperature_;                           // of the grease, at the last row [degC]
   std::optional<double> estimated_temperature_;  // in its place where none is received [degC]
   JointEvidence evidence_;
   std::unique_ptr<Follower> follower_;

@@ -194,7 +194,7 @@ struct NamedFigure
   const char* unit;
 };
 
-/// What is known of a verdict's figures, and the indicators of the worst window with their sound values.
+/// The known figures of a verdict, and the indicators of the worst window with their sound values.
 std::vector<NamedFigure> evidenceOf(const Verdict& verdict);
 
 // Sentences for people and documents.
@@ -217,7 +217,7 @@ inline const char* temperatureSource(const JointEvidence& evidence)
   return evidence.isTemperatureReceived() ? "received" : "configured";
 }
 
-/// What the rows show of the friction, as a multiple of the joint's own when sound, else of the twin's. The evidence
+/// Friction that the rows show, as a multiple of the joint's own when sound, else of the twin's. The evidence
 /// must outlive it.
 MeasuredFriction measuredFriction(const JointEvidence& evidence, const JointContext& context);
 }  // namespace hjt

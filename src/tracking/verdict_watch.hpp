@@ -23,7 +23,7 @@ public:
   {
   }
 
-  /// What does not fit in the telemetry; none: nothing, or that is not yet `settled`.
+  /// Misfit of the telemetry; none: it fits, or that is not yet `settled`.
   void setMisfit(const Misfit& misfit, bool settled);
   const Misfit& misfit() const { return misfit_; }
 
