@@ -37,7 +37,7 @@ struct TopicLayout
   bool has_efforts{};  ///< a message has an effort other than zero
   /// Joints whose effort is its effort is never a number, while those of other joints are: their current counts as 0.
   std::set<std::string> silent;
-  /// Joints that come together, by their places; one list with all: a message holds all of them.
+  /// Indices of the joints that share a message; a single list: a message holds all of them.
   std::vector<std::vector<std::size_t>> parts;
 };
 

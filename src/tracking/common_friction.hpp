@@ -37,7 +37,7 @@ struct MeasuredFriction
   bool temperature_received{};       ///< that one was
   std::function<double(double)> at;  ///< the twin's at a temperature [degC], in the motion that was measured [N.m]
   bool is_below_faults{};            ///< less than any fault leaves of it
-  bool is_none{};                    ///< next to none at all
+  bool is_none{};                    ///< friction is nearly zero
   bool is_against{};                 ///< the current goes against the motion's
   bool is_load_wrong{};              ///< the current fits no load of this joint
   bool is_to_own{};                  ///< the expected one is the joint's own when it was sound

@@ -94,7 +94,7 @@ private:
       return;
     }
     std::uint64_t above = end_ - 1;
-    for (std::size_t i = 0; i < LAGS; ++i)  // from the latest motion on
+    for (std::size_t i = 0; i < LAGS; ++i)  // lags in descending order
     {
       const double time = now.time - lagAt(i);
       while (above > oldest + 1 && at(above - 1).time >= time)
