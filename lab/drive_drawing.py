@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The labelled drawing of docs/glossary.md: the drive from the front and cut along its axis, and where the six drives
-of a UR5 sit. Teeth and deformation are drawn larger than they are; the arm is in the proportions of its data sheet."""
+"""The labelled drawings of docs/glossary.md and README.md: the drive from the front and cut along its axis, and where
+the six drives of a UR5 sit. Each can be read at a width of 400 pixels. Teeth and deformation are drawn larger than they
+are; the arm is in the proportions of its data sheet."""
 import argparse
+from pathlib import Path
 
 import numpy as np
 from matplotlib.patches import Circle, Polygon, Rectangle
@@ -12,6 +14,7 @@ SHOWN_TEETH = 50      # a quarter of the flexspline's 200; the circular spline h
 RADIUS, WAVE = 1.0, 0.075  # of the rim, and how far a lobe stands out; exaggerated some ten times
 HEIGHT = 0.05         # of a tooth
 BALLS = 23
+TEXT = 12             # size of the letters [pt]
 SECTION = {"facecolor": "0.75", "edgecolor": "0.25", "hatch": "////", "linewidth": 0.6}
 # Modified Denavit-Hartenberg lengths of a UR5, data sheet [m].
 D1, A2, A3, D4, D5, D6 = 0.0892, 0.425, 0.3923, 0.1092, 0.0947, 0.0823
@@ -26,7 +29,7 @@ def toothed(teeth, radius_of, inward):
 
 
 def note(axis, text, at, of, colour="black"):
-    axis.annotate(text, of, at, color=colour, fontsize=9, ha="center", va="center",
+    axis.annotate(text, of, at, color=colour, fontsize=TEXT, ha="center", va="center",
                   arrowprops={"arrowstyle": "-", "color": colour, "linewidth": 0.8})
 
 
@@ -53,15 +56,15 @@ def front(axis):
                            edgecolor=GREEN))
     axis.add_patch(Circle((0, 0), 0.16, facecolor="white", edgecolor=GREEN))
     axis.plot([-1.42, 1.42], [0, 0], ls=(0, (8, 3, 2, 3)), color="0.3", lw=0.8)
-    note(axis, "circular spline, 202 teeth:\nturns with the joint", (-1.35, 1.62), (-0.80, 0.98), BLUE)
-    note(axis, "flexspline, 200 teeth:\nits rim is an elastic ring", (1.42, 1.62), (0.69, 0.74), RED)
-    note(axis, "wave generator (motor):\noval plug, ball bearing around it", (-0.85, -1.62), (-0.25, -0.55), GREEN)
-    note(axis, "balls between two races", (1.15, -1.62), (0.56, -0.62), "0.3")
-    note(axis, "lobe: teeth in mesh", (1.62, -0.95), (1.11, -0.08), "black")
-    axis.text(1.46, 0.0, "major\naxis", fontsize=9, va="center")
-    note(axis, "teeth apart", (0.0, 1.58), (0.0, 1.02), "black")
-    axis.set_title("From the front")
-    axis.set(xlim=(-1.9, 2.0), ylim=(-1.85, 1.8), aspect="equal")
+    note(axis, "circular spline\n202 teeth, turns\nwith the joint", (-1.45, 1.42), (-0.86, 0.92), BLUE)
+    note(axis, "flexspline\n200 teeth, its rim\nis elastic", (1.48, 1.42), (0.69, 0.74), RED)
+    note(axis, "wave generator\non the motor's shaft:\noval plug in a bearing", (-1.3, -1.62), (-0.25, -0.55), GREEN)
+    note(axis, "balls between\ntwo races", (1.35, -1.62), (0.56, -0.62), "0.3")
+    note(axis, "lobe: teeth\nin mesh", (1.85, -0.85), (1.11, -0.08), "black")
+    note(axis, "major\naxis", (1.85, 0.35), (1.35, 0.0), "black")
+    note(axis, "teeth apart", (0.0, 1.62), (0.0, 1.02), "black")
+    axis.set_title("The drive from the front", fontsize=TEXT + 2)
+    axis.set(xlim=(-2.2, 2.2), ylim=(-1.95, 1.8), aspect="equal")
 
 
 def mirrored(axis, corners, **style):
@@ -73,7 +76,7 @@ def cut(axis):
     """Along the axis, through the lobes: motor on the left, output on the right."""
     axis.add_patch(Rectangle((-1.9, -0.14), 2.15, 0.28, facecolor="#d6ead9", edgecolor=GREEN))
     axis.add_patch(Rectangle((-2.05, -0.55), 0.75, 1.1, facecolor="0.9", edgecolor="0.4"))
-    axis.text(-1.675, 0.33, "motor", ha="center", va="center", fontsize=9)
+    axis.text(-1.675, 0.33, "motor", ha="center", va="center", fontsize=TEXT)
     mirrored(axis, [(-0.18, 0.14), (0.22, 0.14), (0.22, 0.62), (-0.18, 0.62)], facecolor="#d6ead9", edgecolor=GREEN)
     for sign in (1.0, -1.0):
         axis.add_patch(Circle((0.02, sign * 0.71), 0.085, facecolor="white", edgecolor="0.3"))
@@ -90,15 +93,16 @@ def cut(axis):
     for sign in (1.0, -1.0):
         axis.add_patch(Circle((0.03, sign * 1.315), 0.058, facecolor="white", edgecolor="0.3"))
     axis.plot([-2.2, 1.5], [0, 0], ls=(0, (8, 3, 2, 3)), color="0.3", lw=0.8)
-    axis.text(0.82, 0.42, "output:\nthe joint's\nlink", fontsize=9, va="center", color=BLUE)
-    note(axis, "housing", (-1.55, 1.62), (-1.17, 1.42), "0.3")
-    note(axis, "output bearing", (0.75, 1.66), (0.06, 1.33), "0.3")
-    note(axis, "toothed rim", (0.95, -1.62), (0.05, -0.93), RED)
-    note(axis, "cup: thin wall that\ntwists under load", (-0.35, -1.68), (-0.55, -0.885), RED)
-    note(axis, "flange: holds the\nflexspline still", (-1.75, -1.2), (-1.08, -0.48), RED)
+    note(axis, "output:\nthe joint's\nlink", (1.3, 0.55), (0.75, 0.3), BLUE)
+    note(axis, "housing", (-1.75, 1.7), (-1.17, 1.45), "0.3")
+    note(axis, "output bearing", (0.75, 1.74), (0.06, 1.33), "0.3")
+    note(axis, "circular\nspline", (1.35, -0.75), (0.18, -1.12), BLUE)
+    note(axis, "rim with\nthe teeth", (0.95, -1.85), (0.05, -0.93), RED)
+    note(axis, "cup: thin wall,\ntwists under load", (-0.4, -1.85), (-0.55, -0.885), RED)
+    note(axis, "flange:\nfixed to the\nhousing", (-1.85, -1.15), (-1.05, -0.55), RED)
     note(axis, "wave\ngenerator", (-0.55, 0.45), (-0.15, 0.35), GREEN)
-    axis.set_title("Cut along the axis, through the lobes")
-    axis.set(xlim=(-2.3, 1.6), ylim=(-1.85, 1.8), aspect="equal")
+    axis.set_title("Cut along its axis, through the lobes", fontsize=TEXT + 2)
+    axis.set(xlim=(-2.35, 1.75), ylim=(-2.05, 1.9), aspect="equal")
 
 
 def arm(axis):
@@ -121,24 +125,25 @@ def arm(axis):
         colour = ORANGE if size_3 else PURPLE
         axis.plot(*at, "o", color=colour, ms=12 if size_3 else 8, mec="black", mew=0.6, zorder=2)
         note(axis, name, text, at, "black")
-    axis.plot([], [], "o", color=ORANGE, ms=9, label="size 3: drive HFUS-25-2SH, ratio 101")
-    axis.plot([], [], "o", color=PURPLE, ms=7, label="size 1: drive of size 14, ratio 101")
-    axis.legend(loc="lower right", fontsize=8, bbox_to_anchor=(1.02, -0.02))
-    axis.text(tool[0] + 0.02, tool[1] - 0.035, "tool, payload", fontsize=9)
-    axis.set_title("The six drives of a UR5")
-    axis.set(xlim=(-0.30, 0.86), ylim=(-0.16, 0.62), aspect="equal")
+    axis.plot([], [], "o", color=ORANGE, ms=9, label="joint of size 3: drive of size 25, 101:1")
+    axis.plot([], [], "o", color=PURPLE, ms=7, label="joint of size 1: drive of size 14, 101:1")
+    axis.legend(loc="upper center", fontsize=TEXT, bbox_to_anchor=(0.5, 0.06), frameon=False)
+    axis.text(tool[0] + 0.02, tool[1] - 0.04, "tool,\npayload", fontsize=TEXT)
+    axis.set_title("The six drives of a UR5", fontsize=TEXT + 2)
+    axis.set(xlim=(-0.34, 0.90), ylim=(-0.16, 0.62), aspect="equal")
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", default=CHECKOUT / "docs" / "images" / "drive_drawing.png", help="PNG [%(default)s]")
+    parser.add_argument("--out", type=Path, default=CHECKOUT / "docs" / "images", help="folder [%(default)s]")
     given = parser.parse_args()
-    figure, axes = plt.subplots(1, 3, figsize=(15, 5.2), width_ratios=[1.05, 1.05, 1.2])
-    for axis, draw in zip(axes, (front, cut, arm)):
+    for name, draw in (("drive_front", front), ("drive_cut", cut), ("arm_drives", arm)):
+        figure, axis = plt.subplots(figsize=(6.4, 5.4))
         axis.axis("off")
         draw(axis)
-    figure.tight_layout()
-    figure.savefig(given.out, dpi=110)
+        figure.tight_layout(pad=0.3)
+        figure.savefig(given.out / f"{name}.png", dpi=125)
+        plt.close(figure)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the programs of the laboratory share: the measured part of a page that is written by hand otherwise, between
 `<!-- NAME:begin -->` and `<!-- NAME:end -->`, and the drawing style of the package's own figures."""
+import csv
 import pathlib
+import re
 import sys
 
 CHECKOUT = pathlib.Path(__file__).resolve().parent.parent
@@ -10,13 +12,49 @@ sys.path.append(str(CHECKOUT / "scripts"))
 from drawing import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, STYLE, plt  # noqa: E402, F401  (after its folder)
 
 
+# Tables that nobody reads line by line: by the name of their part, the files beside the page that hold all of their
+# rows, in the order of the tables, and which rows the page shows (None: no table).
+APART = {
+    "arm_faults": [("arm_faults_worst.csv", "interface|lubricant|tooth_wear|wave|pitting|ratcheting")],
+    "bound": [("health_bound.csv", None)],
+    "cycle": [("performance.csv", "100 rad/s|reversing")],
+    "motions": [("health_motions.csv", "all of them|another model|a further model")],
+    "others": [("faults_others.csv", r"\| none|0\.02 N|\b1 counts|1 mrad|\b5 %")],
+    "read": [("life_read.csv", "all check-ups|line through lost motion")],
+    "series": [("health_series.csv", r"^\| all ")],
+    "signatures": [("signatures_runs.csv", None), ("signatures.csv", None)],
+}
+
+
+def apart(folder, name, lines):
+    """`lines`, their tables written to the files that APART gives; a link to the file stands below each."""
+    files = list(APART.get(name, []))
+    found, row = [], 0
+    while row < len(lines):
+        table = []
+        while row < len(lines) and lines[row].startswith("|"):
+            table.append(lines[row])
+            row += 1
+        if not table or not files:
+            found += table or [lines[row]]
+            row += not table
+            continue
+        file, shown = files.pop(0)
+        cells = [[cell.strip().strip("`") for cell in line.strip("|").split("|")] for line in table]
+        with open(folder / file, "w", encoding="utf-8", newline="") as out:
+            csv.writer(out, lineterminator="\n").writerows(cells[:1] + cells[2:])
+        found += table[:2] + [line for line in table[2:] if re.search(shown, line)] + [""] if shown else []
+        found.append(f"All rows: [{file}]({file}).")
+    return found
+
+
 def write(path, name, lines):
+    path = pathlib.Path(path)
+    lines = apart(path.parent, name, "\n".join(lines).split("\n"))
     begin, end = f"<!-- {name}:begin -->", f"<!-- {name}:end -->"
-    with open(path, encoding="utf-8") as page:
-        before, rest = page.read().split(begin)
+    before, rest = path.read_text(encoding="utf-8").split(begin)
     after = rest.split(end)[1]
-    with open(path, "w", encoding="utf-8") as page:
-        page.write(before + "\n".join([begin, "", *lines, "", end]) + after)
+    path.write_text(before + "\n".join([begin, "", *lines, "", end]) + after, encoding="utf-8")
 
 
 def write_or_print(docs, page, name, lines):

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The whole arm in closed loop along the recorded targets, not told how the robot moved: its angles and currents beside
 the recorded ones."""
+import os
+
 import numpy as np
 
-from runs import BLUE, GREY, figure, read, rms, save, table
+from runs import BLUE, GREY, figure, read, rms, save, write_rows
 
 LOOP_LINES = 200           # a turn of the joint
 STEADY = 0.05              # share by which the speed may vary in a stretch whose line is read
@@ -13,6 +15,10 @@ SLOW = 3.0                 # below it an error is none of ripple [Hz]
 WANTED = 0.8               # of the simple fit's error
 GAINS_FROM = "no5"         # recording on which the controller's gains are identified
 DELAY_FROM = {"no7", "no7_pushed"}  # recordings of the motion that the delay of the set points was read from
+# Files beside the page.
+LOOP_ROWS, BUILT_ROWS, PICTURE = "real_robot_loop.csv", "real_robot_built.csv", "images/real_robot/closed_loop.png"
+TRACKED = ["tracking_twin [mrad]", "tracking_recorded [mrad]"]
+LINES = ["current_line_twin [A]", "current_line_recorded [A]"]
 BARE_IN = "no9"            # recording that is run without the cup's friction too
 # Errors of the circular spline alone: a gear with errors on both members has no table.
 BUILT = ["--config", "as_built.yaml", "--set", "manufacture.flexspline_pitch_deviation=0.0", "--set",
@@ -156,7 +162,7 @@ def bare_sentence(runner, recordings, loops):
             f"currents by {without_current} A (with it {with_current}, recorded {recorded_current}).")
 
 
-def built_section(runner, recordings, fit, joints, train):
+def built_section(runner, recordings, fit, joints, train, docs):
     """Lines of the page: drives with errors of manufacture, the controller's gains identified on one recording."""
     runner.run("identify", f"{train}.csv", "--arm", "ur5", "--out", "built")
     gains = runner.run("identify", f"{GAINS_FROM}.csv", "--arm", "ur5", "--controller", "--out", "built", "--json")
@@ -164,17 +170,17 @@ def built_section(runner, recordings, fit, joints, train):
     for recording in recordings:
         loop = loops[recording.name] = ClosedLoop(runner, recording, "built", *BUILT)
         stops += [recording.name] if loop.report["protective_stop"] else []
-        cells = []
         for number, name in enumerate(joints):
             current, _, simple = moving_errors(recording, name, fit, loop, number)
-            lines = [[line_of(data, number, data[f"actual_current_{number}"]),
-                      1e6 * line_of(data, number, data[f"actual_q_{number}"] - data[f"target_q_{number}"])]
-                     for data in (loop.data, recording.data)]
-            cells.append(f"{cell(tracking(loop.data, number), tracking(recording.data, number))}; "
-                         f"{cell(current, simple)}; {cell(lines[0][0], lines[1][0])}; "
-                         f"{cell(lines[0][1], lines[1][1], digits=0)}")
-            ratios[name].append(lines[0][0] / lines[1][0])
-        rows.append([recording.name, *cells])
+            both = loop.data, recording.data
+            currents, angles = ([line_of(data, number, data[f"actual_current_{number}"]) for data in both],
+                                [1e6 * line_of(data, number, data[f"actual_q_{number}"] - data[f"target_q_{number}"])
+                                 for data in both])
+            rows.append([recording.name, name, *(tracking(data, number) for data in both), current, simple, *currents,
+                         *angles])
+            ratios[name].append(currents[0] / currents[1])
+    write_rows(os.path.join(docs, BUILT_ROWS), ["recording", "joint", *TRACKED, "current_loop [A]", "current_fit [A]",
+                                                *LINES, "angle_line_twin [urad]", "angle_line_recorded [urad]"], rows)
     known = np.concatenate([np.array(values)[~np.isnan(values)] for values in ratios.values()])
     found = ", ".join(f"{joint['joint']} {joint['speed']:.0f} N·m·s/rad, {joint['position']:.0f} 1/s"
                       for joint in gains["joints"] if not joint["refusal"])
@@ -183,29 +189,27 @@ def built_section(runner, recordings, fit, joints, train):
     return [f"""
 **With errors of manufacture and identified gains.** Circular splines of `config/as_built.yaml` (7″ at {LOOP_LINES} a
 turn; the flexsplines equal, so that each drive has a table), the controller's gains by `identify --controller` on
-{GAINS_FROM}: {found}. In each cell: tracking error, twin / recorded [mrad]; error of the current in moving rows, twin /
-simple fit [A]; line of the current, twin / recorded [A]; line of the output's angle, twin / recorded [µrad].
+{GAINS_FROM}: {found}. All figures: [{BUILT_ROWS}]({BUILT_ROWS}).
 
 The line of the current is within a factor of two of the recorded one in {within} of {len(known)}; median of twin over
 recorded: {float(np.median(known)):.2f}.{stopped} {bare_sentence(runner, recordings, loops)}
 What bounds it: [arm_twin.md](arm_twin.md#errors-of-manufacture).
-""", *table(["recording", *joints], rows)]
+"""]
 
 
-def section(runner, recordings, fit, joints, shown, picture, train):
+def section(runner, recordings, fit, joints, shown, docs, train):
     """Lines of the page. `fit`: of the current, on another recording, told the motion."""
     rows, tracked, alike, currents, parts = [], [], [], [], []
     for recording in recordings:
         loop = ClosedLoop(runner, recording, "identified_arm")
         if recording.name == shown:
-            draw(picture, loop, list(enumerate(joints))[1:4])
-        cells = []
+            draw(os.path.join(docs, PICTURE), loop, list(enumerate(joints))[1:4])
         for number, name in enumerate(joints):
             current, told, simple = moving_errors(recording, name, fit, loop, number)
             errors = tracking(loop.data, number), tracking(recording.data, number)
             lines = [line_amplitude(data["timestamp"], data[f"actual_qd_{number}"], data[f"actual_current_{number}"])
                      for data in (loop.data, recording.data)]
-            cells.append(f"{cell(*errors)}; {cell(current, told, simple)}; {cell(*lines)}")
+            rows.append([recording.name, name, *errors, current, told, simple, *lines])
             if recording.name not in DELAY_FROM:
                 tracked.append(errors[0] / errors[1])
                 alike.append(likeness(loop, number))
@@ -213,7 +217,8 @@ def section(runner, recordings, fit, joints, shown, picture, train):
                 currents.append(current / simple)
                 parts.append([[*slow_and_fast(recording, name, residual), rms(residual[recording.moving(name)])]
                               for residual in residuals_of(recording, name, fit, loop, number)])
-        rows.append([recording.name, *cells])
+    write_rows(os.path.join(docs, LOOP_ROWS), ["recording", "joint", *TRACKED, "current_loop [A]", "current_told [A]",
+                                               "current_fit [A]", *LINES], rows)
     tracked, currents, parts = np.array(tracked), np.array(currents), np.array(parts)
     (loop_slow, loop_fast), (told_slow, told_fast) = (np.median(parts[:, k, :2] / parts[:, 2, :2], axis=0)
                                                       for k in (0, 1))
@@ -222,10 +227,10 @@ def section(runner, recordings, fit, joints, shown, picture, train):
 ### In closed loop
 
 `joint_twin arm` along the targets of each recording, drives identified on the recording of the other sections, the
-controller's gains typical: the twin is told neither angles nor currents. In each cell: actual less target angle, rms
-about its mean, twin / recorded [mrad]; error of the current in moving rows, rms, closed loop / told the motion
-(`follow`) / simple fit told the motion [A]; amplitude of the current at {LOOP_LINES} lines a turn of the joint, twin /
-recorded [A], –: no steady motion of a frequency that the rows resolve.
+controller's gains typical: the twin gets neither angles nor currents. [{LOOP_ROWS}]({LOOP_ROWS}) has for each
+recording and joint the tracking error (actual less target angle, rms about its mean), the rms error of the current in
+moving rows (closed loop, prescribed motion by `follow`, simple fit), and the amplitude of the current at {LOOP_LINES}
+lines a turn, where a steady motion shows it.
 
 The delay of the set points is that of no6. In the motions that it is not, the tracking error is within a factor of 1.5
 of the recorded one, neither larger nor smaller, in {both_ways(tracked, 1.5)} of {len(tracked)} (recording, joint),
@@ -235,9 +240,10 @@ within {WANTED:g} of the simple fit's error in {np.count_nonzero(currents <= WAN
 it in {np.count_nonzero(currents < 1.0)}.
 
 Ripple bounds the current. Below {SLOW:g} Hz the error in closed loop is {loop_slow:.2f} of the fit's, above it
-{loop_fast:.2f} (medians; told the motion {told_slow:.2f} and {told_fast:.2f}): these drives have no errors of
-manufacture, so they make no ripple, and what is told the motion sees that of the robot. In {bound} of {len(currents)}
+{loop_fast:.2f} (medians; with the motion prescribed {told_slow:.2f} and {told_fast:.2f}). These drives have no errors
+of manufacture, so they make no ripple; a twin on the prescribed motion has that of the robot. In {bound} of
+{len(currents)}
 what the fit leaves above {SLOW:g} Hz alone is more than {WANTED:g} of its error.
-""", *table(["recording", *joints], rows), *built_section(runner, recordings, fit, joints, train), f"""
-![Tracking error of three joints in {shown}, recorded and in closed loop](images/real_robot/closed_loop.png)
+""", *built_section(runner, recordings, fit, joints, train, docs), f"""
+![Tracking error of three joints in {shown}, recorded and in closed loop]({PICTURE})
 """]

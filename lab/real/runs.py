@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the sections of docs/real_robot.md share: runs of the tool, tables, figures."""
+import csv
 import glob
 import json
 import os
@@ -54,6 +55,15 @@ def read(path):
 
 def rms(values):
     return float(np.sqrt(np.mean(np.square(values))))
+
+
+def write_rows(path, head, rows):
+    """A CSV file: numbers to four digits, empty where there is none."""
+    with open(path, "w", encoding="utf-8", newline="") as file:
+        lines = csv.writer(file, lineterminator="\n")
+        lines.writerow(head)
+        for row in rows:
+            lines.writerow([cell if isinstance(cell, str) else "" if np.isnan(cell) else f"{cell:.4g}" for cell in row])
 
 
 def table(head, rows):

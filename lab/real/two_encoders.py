@@ -97,8 +97,8 @@ recording it takes the origin, which the zeros of the encoders leave open. The r
             [[name, f"{1e3 * a:.2f}", f"{1e3 * b:.2f}"] for name, (a, b) in self.errors.items()]),
                 *table(["stiffness [10³ N·m/rad]", "catalogue", "identified"], rows), f"""
 *Weakness:* fitted to the halves of the sweep separately, the factor is {self.halves[0]:.2f} at
-negative and {self.halves[1]:.2f} at positive angles, farther apart than the interval, which
-is therefore too narrow; identified on one half and tested on the other, it is worse there than the catalogue. The rest
+negative and {self.halves[1]:.2f} at positive angles. They differ by more than the interval, which
+is therefore too narrow. Identified on one half and tested on the other, it is worse there than the catalogue. The rest
 is slow waves of the transmission error, which load and mounting change; one sweep cannot separate them from torsion.
 The catalogue's curve lies between the two.
 """]
@@ -168,7 +168,7 @@ the lead of one cancels the lag of the other. A wave generator off its axis and 
 one: 10 µm each make 10 µrad (`manufacture.wave_generator_eccentricity`, `manufacture.flexspline_eccentricity`), 7
 µrad at 67 N·m. An eccentric motor encoder makes one too, 11 µrad at the output for 1.1 mrad at the motor, and does not
 fall with load; without load the recording cannot tell the two apart. Once and twice a turn of the output it has 0.6 and
-0.35 mrad, more than the total allowed for such a gear (1 minute of arc): an eccentric output encoder, not fitted.
+0.35 mrad, more than the total allowed for such a gear (1 minute of arc): the output encoder is eccentric.
 
 *Limits of this recording:* the drive's size is inferred from its ratio and torque; the sweep is one way and 7 s long;
 the torque is computed from current; the error without load was read off a published figure, whose points scatter by

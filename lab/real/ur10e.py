@@ -60,9 +60,9 @@ def section(runner, telemetry, _docs, _images):
         rows.append([name + (" (identified on)" if name == TRAIN else ""), *cells])
     shares = np.array(shares)
     return [*heading, f"""
-A recording of 2020 at 100 Hz (S. Mamedov, *dynamic_calibration*; not part of this project). It holds no target angles:
-`joint_twin arm` gets the measured ones, smoothed by polynomials of degree {DEGREE} over {WINDOW} rows, so the motion is
-told but for its ripple, and there is no tracking error to compare. Drives identified on {TRAIN} alone, gains typical.
+Recordings of 2020 at 100 Hz (S. Mamedov, *dynamic_calibration*). They hold no target angles: `joint_twin arm` gets
+the measured ones, smoothed by polynomials of degree {DEGREE} over {WINDOW} rows. So the motion is told but for its
+ripple, and there is no tracking error to compare. Drives identified on {TRAIN} alone, gains typical.
 In each cell: error of the current in moving rows, rms, closed loop / `follow` / simple fit with the recorded moment
 [A]; amplitude of the current at 200 lines a turn, twin / recorded [A], –: no steady motion of a frequency that the rows
 resolve. The payload of 2.805 kg in ...Load is told to none of them; the fit has it in the moment only as far as the

@@ -8,12 +8,13 @@ import numpy as np
 
 import closed_loop
 from pairs import is_alarm, pairs_text
-from runs import BLUE, GREEN, GREY, RED, figure, read, rms, save, table
+from runs import BLUE, GREEN, GREY, RED, figure, read, rms, save, table, write_rows
 
 FOLDER = "ur5_cb"
 TRAIN = "no6"          # the only recording that is identified on
 RAISED_IN = ["no2", "no5", "no9"]
 SHOWN = "no2"          # in the figure of the currents
+RAISED_ROWS = "real_robot_raised.csv"  # beside the page
 RAISED = 0.2           # share of a joint's friction
 JOINTS = ["base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3"]
 LARGE = JOINTS[:3]
@@ -192,13 +193,8 @@ def verdict_cell(arm):
     return arm["level"] + common + (f" ({'; '.join(others)})" if others else "")
 
 
-def ratio_cells(arm, raised=()):
-    def cell(joint):
-        value = joint["friction_ratio"]
-        text = "–" if value is None else f"{value:.2f}"
-        return f"**{text}**" if joint["joint"] in raised else text
-
-    return [cell(joint) for joint in arm["joints"]]
+def ratio_cells(arm):
+    return ["–" if joint["friction_ratio"] is None else f"{joint['friction_ratio']:.2f}" for joint in arm["joints"]]
 
 
 def is_right(arm, raised):
@@ -208,13 +204,14 @@ def is_right(arm, raised):
     return departing == (set(raised) & seen if len(raised) == 1 else set())
 
 
-def raised_table(verdicts):
-    rows, right = [], 0
+def raised_rows(verdicts):
+    """(rows with their head, how many are right)."""
+    rows, right = [["recording", "raised", *JOINTS, "verdict", "right"]], 0
     for (name, what), (arm, raised) in verdicts.items():
         answer = "yes" if is_right(arm, raised) else "no"
         right += answer == "yes"
-        rows.append([name, what, *ratio_cells(arm, raised), verdict_cell(arm), answer])
-    return table(["recording", "raised", *JOINTS, "verdict", "right"], rows), right
+        rows.append([name, what, *ratio_cells(arm), verdict_cell(arm), answer])
+    return rows, right
 
 
 def named_text(verdicts):
@@ -287,24 +284,25 @@ def section(runner, telemetry, docs, images):
     all_errors = {recording.name: errors_of(recording, fit) for recording in recordings}
     judged_errors = {recording.name: all_errors[recording.name] for recording in judged}
 
-    verdicts, raised_lines, judged_right = verdict_section(runner, by_name, judged)
+    verdicts, raised_lines, judged_right = verdict_section(runner, by_name, judged, docs)
     draw_current(os.path.join(images, "current.png"), by_name.get(SHOWN, judged[0]))
     draw_means(os.path.join(images, "means.png"), judged_errors)
     means, means_of, worst_means = met(judged_errors, "means", WANTED_MEANS)
     moving, moving_of, worst_moving = met(judged_errors, "moving", WANTED_MOVING)
-    summary = [f"Of {means_of} (recording, large joint) that were not identified on, {means} have means over 0.1 s "
-               f"within {WANTED_MEANS:g} of the fit's (worst {worst_means:.2f}), and {moving} of {moving_of} have "
-               f"moving rows within {WANTED_MOVING:g} of it (worst {worst_moving:.2f}).", judged_right]
+    summary = [f"In recordings that were not identified on, the twin's error in means over 0.1 s is at most "
+               f"{WANTED_MEANS:g} of the fit's for {means} of {means_of} large joints (worst {worst_means:.2f}), that "
+               f"in moving rows at most {WANTED_MOVING:g} for {moving} of {moving_of} (worst {worst_moving:.2f}).",
+               judged_right]
     write_errors(os.path.join(docs, "real_robot_current.csv"), {**judged_errors, TRAIN: all_errors[TRAIN]})
-    print("\n".join([*share_table(all_errors), *raised_lines, *summary]))
+    print("\n".join([*share_table(all_errors), *map(",".join, raised_lines), *summary]))
     return [*heading, *introduction(summary, recordings), *load_table(recordings),
             *current_section(all_errors),
             *closed_loop.section(runner, judged, fit, JOINTS, by_name.get(SHOWN, judged[0]).name,
-                                 os.path.join(images, "closed_loop.png"), TRAIN), *verdicts]
+                                 docs, TRAIN), *verdicts]
 
 
-def verdict_section(runner, by_name, judged):
-    """(lines of the page, those of the raised friction, a sentence)."""
+def verdict_section(runner, by_name, judged, docs):
+    """(lines of the page, rows of the raised friction, a sentence)."""
     verdicts = Verdicts(runner)
     other = judged[0].name
     alone = {name: verdicts.start(name, f"report_{name}") for name in (TRAIN, *(r.name for r in judged))}
@@ -326,46 +324,46 @@ def verdict_section(runner, by_name, judged):
     false_alarms = sum(is_alarm(joint) for runs in (alone, beside) for run in runs.values()
                        for joint in run.result()["joints"])
     of_pairs = [pairs_text([run.result() for run in pairs.values()], (LARGE, JOINTS[3:]))]
-    raised_lines, right = raised_table(raised)
+    raised_lines, right = raised_rows(raised)
+    write_rows(os.path.join(docs, RAISED_ROWS), raised_lines[0], raised_lines[1:])
     sentence = (f"Sound joints called WARN or worse: {false_alarms} of {2 * len(JOINTS) * len(alone)}. Raised friction "
                 f"judged right: {right} of {len(raised)}. {named_text(raised.values())}")
     lines = ["""
 ### Verdicts
 
 """ + f"""`joint_twin compare --arm ur5`, alone and with the report of {TRAIN} as `--reference` (of {TRAIN}: that of
-{other}). The arm is sound in all of them. Numbers: friction as a multiple of the reference's, at the speeds of both,
-apart from what joints share; –: not shown.
+{other}). The arm is sound in all of them. The numbers are the friction as a multiple of
+the reference's, at the speeds of both, apart from what joints share; –: the motion does not show it.
 """, *table(["recording", "verdict alone", *JOINTS, "verdict with reference"], sound), *of_pairs, f"""
-{100.0 * RAISED:.0f} % of the identified friction of one joint, or of all, added to the recorded current. Right: the
-raised joint is named and no other; of all, none is named. A joint whose friction the recording does not show cannot be
-named.
-""", *raised_lines, """
+Then {100.0 * RAISED:.0f} % of the identified friction of one joint, or of all, is added to the recorded current. It is
+right that the raised joint is named and no other; where all are raised, that none is named. A joint whose friction the
+recording does not show cannot be named. All runs: [{RAISED_ROWS}]({RAISED_ROWS}).
+""", """
 ### Limits of these recordings
 
-One arm, sound. No encoder on the other side of the gear, so no torsion; no temperature; no payload. Some rows of no5
-and no7 are missing, up to 0.4 s.
+The arm has no encoder on the other side of the gear, so no torsion; temperature and payload are not recorded. Some rows
+of no5 and no7 are missing, up to 0.4 s.
 """]
     return lines, raised_lines, sentence
 
 
 def introduction(summary, recordings):
     return [f"""
-CB series, six joints (K. Kufieta, *Force Estimation in Robotic Manipulators*, NTNU 2014). The recordings are not part
-of this project. The twins get what a driver's `/joint_states` has: angles and currents of the six joints. The load of
-each joint follows from the angles of all ([arm.md](arm.md)). All six are identified on {TRAIN} alone
-(`joint_twin identify --arm`) and judged on the others, which were not used for it.
+CB series, six joints (K. Kufieta, *Force Estimation in Robotic Manipulators*, NTNU 2014). The twins get what a driver's
+`/joint_states` has: angles and currents of the six joints. The load of each joint follows from the angles of all
+([arm.md](arm.md)). All six are identified on {TRAIN} alone (`joint_twin identify --arm`) and judged on the others.
 
 {summary[0]}
 {summary[1]}
 
-Rows: {rows_of(recordings)}.
+The recordings have {rows_of(recordings)}.
 no2 was logged at 62.5 Hz; its rows are taken as they are, and a mean over {MEAN:g} s has half as many. In no5_pushed a
 person pushes the arm: contact is no fault, but no twin predicts it. no7 is the motion of no6 on another day.
 
 ### Load
 
-Load of the arm less the controller's `target_moment` [N·m], rms, of the range of that, and in per cent where the range
-is 1 N·m or more. Angles are the measured ones.
+The load of the arm is compared with the controller's `target_moment` [N·m]: rms of the difference, of the range of the
+moment, and in per cent where the range is 1 N·m or more.
 """]
 
 
@@ -373,19 +371,20 @@ def current_section(all_errors):
     return [f"""
 ### Error of the predicted current
 
-The twin's error over a fit's, of the means over {MEAN:g} s around each moving row, and of all moving rows (faster than
-{MOVING:g} rad/s). *Load arm*: from `/joint_states` alone; *load target_moment*: identified and predicted with the
+The table has the twin's error over that of a simple fit: of the means over {MEAN:g} s around each moving row, and of
+all moving rows (faster than {MOVING:g} rad/s). *Load arm*: from `/joint_states` alone; *load target_moment*:
+identified and predicted with the
 recorded moment. *Fit*: gain, Coulomb and viscous friction with the recorded moment, least squares over all rows of
 {TRAIN}, which the twins are identified on. Wanted: {WANTED_MEANS:g} and {WANTED_MOVING:g}. The errors of all joints,
 moving and resting: [real_robot_current.csv](real_robot_current.csv) [A, rms].
 """, *share_table(all_errors), """
 ![Error of means over 0.1 s](images/real_robot/means.png)
 
-What is left in moving rows beyond the means is ripple at the lines of the teeth, 200 a turn of each joint, which the
-arm answers in every joint's current.
+The rest of the error in moving rows is ripple at the lines of the teeth, 200 a turn of each joint, which the arm
+carries into every joint's current.
 
-*Resting*, stiction holds the joint and the current is the controller's choice within a band: two encoder counts, 9.4
-µrad, are a quarter of the presliding angle and so some 0.3 A. The prediction there is a band, not a value.
+At rest stiction holds the joint, and any current within a band gives the same angle: two encoder counts, 9.4 µrad, are
+a quarter of the presliding angle and so some 0.3 A. The prediction there is a band, not a value.
 
 ![Current of the three large joints, measured and predicted](images/real_robot/current.png)
 

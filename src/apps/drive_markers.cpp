@@ -39,7 +39,7 @@ std::string readText(const ros::NodeHandle& node, const std::string& name, const
   return value;
 }
 
-/// What is no finite number is refused: `value` becomes the present one. Ranges are those of dynamic_reconfigure.
+/// Values that are not finite are refused: `value` becomes the present one. Ranges are those of dynamic_reconfigure.
 void refuseUnlessFinite(double& value, double present, const char* name)
 {
   if (!std::isfinite(value))

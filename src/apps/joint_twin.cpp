@@ -19,7 +19,7 @@
 #ifdef HJT_COMPLETE_TOOL
 namespace hjt
 {
-const char* toolHelp();  ///< what joint_twin_complete says to --help; by cmake/tool_help.cmake
+const char* toolHelp();  ///< output of joint_twin_complete --help; by cmake/tool_help.cmake
 }
 
 namespace

@@ -22,7 +22,7 @@ namespace
 {
 namespace py = pybind11;
 
-/// What is written to a stream as long as it lives, kept from the stream.
+/// Captures what is written to a stream during its lifetime.
 class Captured
 {
 public:

@@ -51,7 +51,7 @@ std::set<std::string> topicsToRecord(const std::string& played_bag, const std::s
 /// messages lose joint states when the machine stalls for a tenth of a second, and with `--all` on a simulated clock it
 /// looks for topics only once the clock runs, and misses what came first.
 ///
-/// What has come waits in memory for the disk, up to a number of bytes; beyond it messages are lost and counted.
+/// Received messages wait in memory for the disk, up to a number of bytes; beyond it messages are lost and counted.
 class TopicRecorder
 {
 public:
@@ -61,7 +61,7 @@ public:
   {
     for (const std::string& topic : topics)
     {
-      constexpr std::uint32_t NO_BOUND = 0;  // of ROS' own queue, which `receive` empties at once
+      constexpr std::uint32_t NO_BOUND = 0;  // ROS' own queue has no bound, as `receive` empties it at once
       subscribers_.push_back(node_.subscribe<ShapeShifter>(
           topic, NO_BOUND, [this, topic](const ShapeShifter::ConstPtr& message) { receive(topic, message); },
           ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay()));

@@ -104,7 +104,7 @@ void ArmController::take(const ArmTwin& twin, const std::vector<JointMotion>& se
   }
 }
 
-/// As it was so long ago: on a line between two set points.
+/// Set point of that time before, interpolated linearly.
 ArmController::Wanted ArmController::delayed(std::size_t joint, double periods) const noexcept
 {
   const std::vector<Wanted>& line = line_[joint];

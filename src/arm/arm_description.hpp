@@ -39,7 +39,7 @@ struct Payload
   std::array<double, 3> centre{};  ///< in the frame of the tip [m]
 };
 
-/// What is out of range of it; empty: nothing.
+/// Values out of range; empty: none.
 std::string payloadErrors(const Payload& payload);
 
 /// How a joint moves the link that it carries.

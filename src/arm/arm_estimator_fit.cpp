@@ -49,7 +49,7 @@ void ArmEstimator::addPrior(const Prior& prior, int start, Point& point, Eigen::
   }
   // Gravity's size is known but for the masses of the links, which look like it. At first it may turn over; weightless
   // as configured there is nothing to turn.
-  constexpr double LINKS = 0.02;  // of their masses
+  constexpr double LINKS = 0.02;  // uncertainty of the links' masses, as a share
   const Eigen::Vector3d total = gravity_ + point.at.segment<GRAVITY>(PAYLOAD);
   if (looseness(start, PAYLOAD) < 1.0 || !(prior.width[PAYLOAD] > NEVER) || gravity_.isZero() || total.isZero())
   {
@@ -66,7 +66,7 @@ void ArmEstimator::addPrior(const Prior& prior, int start, Point& point, Eigen::
 void ArmEstimator::addRows(std::size_t joint, const std::vector<bool>& states, Point& point,
                            Eigen::VectorXd& right) const
 {
-  constexpr double FLOOR = 0.02;  // that the rows of no real arm fall below [A]
+  constexpr double FLOOR = 0.02;  // least residual of a real arm [A]
   constexpr double COUNTED = 60.0;
   const auto count = static_cast<Eigen::Index>(rows_[joint].size());
   Eigen::VectorXd error(count);

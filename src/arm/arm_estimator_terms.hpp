@@ -33,7 +33,7 @@ constexpr int USED = GROUP + 1 + PER_JOINT;  // of one joint's rows
 constexpr double NEVER = 1e-6;   // width of the prior of a term that is left out
 constexpr double STUDENT = 4.0;  // degrees of freedom of what rows leave
 constexpr int STARTS = 4;
-constexpr int HELD = -1;  // of starts: nothing is held less at first
+constexpr int HELD = -1;  // a start with all priors at full weight
 
 inline int groupOf(std::size_t joint)
 {

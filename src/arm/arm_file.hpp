@@ -14,7 +14,7 @@ std::string textOf(const std::string& path, const std::string& place = "");
 /// `name` in the folder of the file `path`; `name` if it is absolute.
 std::string beside(const std::string& path, const std::string& name);
 
-/// What an arm's YAML file holds, under keys joined by dots: "payload.mass", "joints.0.name". A list of numbers is one
+/// Contents of an arm's YAML file, under keys joined by dots: "payload.mass", "joints.0.name". A list of numbers is one
 /// value; elements of another have keys of their own. Keys that the file does not give are those of the file that it is
 /// `like`, and so on; "description" is beside the file that gives it.
 /// @throws ParameterError naming file and line.

@@ -133,7 +133,7 @@ void requireMasses(const ArmDescription& arm, const KDL::Chain& chain)
   require_mass();
 }
 
-/// What the URDF allows; without limits, of a joint that turns on, a great many turns.
+/// Range that the URDF allows; without limits a great many turns.
 Range angleRange(const urdf::Model& model, const std::string& joint)
 {
   const auto found = model.getJoint(joint);
@@ -154,7 +154,7 @@ void requirePlausible(const ArmDescription& arm, const KDL::Segment& segment)
                            "': " + what);
     }
   };
-  // All written so that NaN fails.
+  // The comparisons are written so that NaN fails.
   const auto require_range = [&](const char* what, double value, const char* unit, const Range& range)
   {
     require(value >= range.min && value <= range.max, std::string(what) + " = " + numberText(value) + " [" + unit +

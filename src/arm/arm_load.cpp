@@ -96,7 +96,7 @@ bool ArmLoad::take(std::vector<MotionDifferentiator>& from, bool at_end, std::ve
   return true;
 }
 
-/// What the course says for that time; before it begins, what comes first.
+/// Payload at that time; before the course begins, the first one.
 void ArmLoad::carry(double time) noexcept
 {
   const auto next = std::find_if(course_.begin(), course_.end(), [time](const auto& from) { return from.time > time; });

@@ -41,7 +41,7 @@ public:
   /// @throws ParameterError as ArmDynamics.
   explicit ArmLoad(const ArmDescription& arm, PayloadCourse course = {});
 
-  /// What follows is a new stream.
+  /// Starts a new stream.
   void reset() noexcept;
 
   /// One row for each joint, all of one time. False: the row is not later than the one before, or one that no joint can

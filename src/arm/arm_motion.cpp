@@ -12,7 +12,7 @@ namespace hjt
 {
 void ArmMotion::goOn(double time, const std::vector<JointMotion>& joints) noexcept
 {
-  // What follows at once is the last one changed.
+  // A move without a pause changes the last one.
   if (goes_on_ && time > end())
   {
     std::swap(points_[0], points_[1]);

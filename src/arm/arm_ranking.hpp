@@ -36,8 +36,8 @@ struct ArmCandidate
 {
   std::string name;
   ArmDescription arm;
-  std::vector<Parameters> joints;  ///< the load that of the arm
-  double cost{};                   ///< of what the rows do not hold, logarithm [-]
+  std::vector<Parameters> joints;  ///< their load is that of the arm
+  double cost{};                   ///< negative log likelihood of the rows [-]
 };
 
 /// Rows of all joints at one time, `current` the effort as it comes.
@@ -57,6 +57,6 @@ std::string betterArm(const std::vector<ArmFit>& ranked, const std::string& own)
 std::string otherArmText(const std::string& other);
 /// Nothing is judged of a joint that the load may be wrong for, where the arm may be the `other`.
 void nameOtherArm(const std::string& other, std::vector<Misfit>& misfits);
-/// There is such a joint.
+/// Whether a joint's misfit may be that of another arm.
 bool mayBeOtherArm(const std::vector<Misfit>& misfits);
 }  // namespace hjt

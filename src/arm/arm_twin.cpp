@@ -25,7 +25,7 @@ constexpr std::array<std::array<double, 3>, 3> EXTRAPOLATIONS{
 std::vector<double> leastInertia(ArmDynamics& dynamics, const std::vector<double>& spline_inertia)
 {
   constexpr int POSES = 500;
-  constexpr double MARGIN = 0.8;  // of the least found: poses between them
+  constexpr double MARGIN = 0.8;  // factor on the least inertia found, for poses between
   const auto joints = static_cast<Eigen::Index>(spline_inertia.size());
   std::vector<JointMotion> pose(spline_inertia.size());
   std::vector<double> least(spline_inertia.size(), std::numeric_limits<double>::infinity());

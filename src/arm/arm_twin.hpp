@@ -73,7 +73,7 @@ public:
   /// At the tip, from the next step on.
   void setPayload(const Payload& payload) noexcept { dynamics_.setPayload(payload); }
 
-  /// What the drives delivered less what the arm holds, since reset [J]: the error of the coupling. Not meaningful once
+  /// Energy delivered by the drives less that of the arm, since reset [J]: error of the coupling. Not meaningful once
   /// a wrench or another payload was set.
   double energyResidual() noexcept;
   double deliveredEnergy() const noexcept;  ///< by all drives to the links since reset [J]

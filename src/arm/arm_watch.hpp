@@ -63,7 +63,7 @@ private:
   double last_time_{ -HUGE_VAL };   // of a row that is kept [s]
   double moved_{};                  // since the last start, but for the rest [s]
   double next_look_{ FIRST_LOOK };
-  std::atomic<bool> is_stopped_{ false };  // what is asked does not count
+  std::atomic<bool> is_stopped_{ false };  // pending questions are ignored
   std::future<std::string> answer_;        // last: it is waited for before the rest goes
 };
 }  // namespace hjt

@@ -18,7 +18,7 @@ namespace
 constexpr double ACCELERATION = 300.0 * DEGREE;  // moderate: 17 N.m at a stretched UR5 [rad/s^2]
 constexpr double REST = 0.5;                     // before and after [s]
 constexpr std::size_t MAX_INSTANTS = 450'000;    // an hour at a controller's 125 Hz
-constexpr double LIMIT_SHARE = 5.0 / 6.0;        // of the joint's speed limit that a stroke takes at most [-]
+constexpr double LIMIT_SHARE = 5.0 / 6.0;        // largest share of the joint's speed limit in a stroke [-]
 
 /// To an angle about the pose.
 struct Stroke
@@ -208,7 +208,7 @@ private:
   ArmDynamics dynamics_;
   ArmPose from_;
   double period_;
-  double begin_{};  // of what comes next [s]
+  double begin_{};  // of the next piece [s]
   std::vector<ArmInstant> instants_;
 };
 }  // namespace

@@ -15,8 +15,8 @@ struct ArmMove
 {
   std::vector<double> target;  ///< angles of all joints [rad]
   double speed{};              ///< of the joint that goes farthest, at most [rad/s]
-  double acceleration{};       ///< of that joint, at most [rad/s^2]
-  double jerk{};               ///< of that joint, at most; 0: without limit [rad/s^3]
+  double acceleration{};       ///< largest of that joint [rad/s^2]
+  double jerk{};               ///< largest of that joint; 0: no limit [rad/s^3]
   double wait{};               ///< at rest afterwards [s]
 };
 

@@ -76,7 +76,7 @@ bool IdentifiedMounting::differs() const
 
 std::string IdentifiedMounting::text() const
 {
-  constexpr double LEAST = 1.0;  // of the half width that is printed [deg]
+  constexpr double LEAST = 1.0;  // least half width that is printed [deg]
   const auto part = [](double value) { return fixedText(std::abs(value) < 0.05 ? 0.0 : value, 1); };  // no "-0.0"
   return "another mounting than configured: gravity looks tilted by " + fixedText(tilt() / DEGREE, 0) + " +- " +
          fixedText(std::max(half_width / DEGREE, LEAST), 0) + " deg: set gravity: [" + part(gravity[0]) + ", " +

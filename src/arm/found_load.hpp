@@ -19,7 +19,7 @@ struct IdentifiedPayload
   double mass_half_width{};                   ///< of its 95 % interval [kg]
   std::array<double, 3> moment{};             ///< mass times centre, in the frame of the tip [kg.m]
   std::array<double, 3> moment_half_width{};  ///< of their 95 % intervals [kg.m]
-  double least_claim{};                       ///< what sound arms of this mass show without a payload, at most [kg]
+  double least_claim{};                       ///< largest mass that sound arms of this mass show without a payload [kg]
 
   /// The configured mass is outside the interval, and farther off than arms without a payload show.
   bool differs() const;
@@ -27,7 +27,7 @@ struct IdentifiedPayload
   bool isCarried() const { return mass > mass_half_width; }
   /// It differs, and is a mass, or none where one is configured.
   bool isOther() const;
-  /// What it is, its centre where it has a mass.
+  /// The payload in words, with its centre where it has a mass.
   Payload payload() const;
   /// "the currents look like a payload of ... in place of the configured ...", a clause.
   std::string text() const;
@@ -56,7 +56,7 @@ struct PayloadChange
   bool is_found{};
 };
 
-/// What the currents of an arm show of its load.
+/// Load of an arm as its currents show it.
 struct FoundLoad
 {
   IdentifiedPayload payload;
@@ -70,7 +70,7 @@ struct FoundLoad
 
   /// Why no joint can be judged: the currents of all are another multiple than those of gains of one type.
   Misfit misfit() const;
-  /// What is carried at last, as if it had been all the time, and since when.
+  /// The last payload, taken as constant, and since when it is carried.
   FoundLoad last() const;
 };
 }  // namespace hjt

@@ -16,7 +16,7 @@ struct JointTolerance
   double velocity{ HUGE_VAL };  ///< [rad/s]
 };
 
-/// What counts as following a commanded motion.
+/// Tolerances of a commanded motion.
 struct ArmGoal
 {
   std::uint64_t number{};            ///< of the command; later ones have larger numbers
@@ -47,7 +47,7 @@ struct GoalReport
   double error{};                   ///< by which it was off [rad], [rad/s]
   double tolerance{};               ///< likewise
   std::vector<JointMotion> wanted;  ///< set point
-  std::vector<JointMotion> actual;  ///< what the controller shows; no accelerations
+  std::vector<JointMotion> actual;  ///< reported by the controller, without accelerations
 };
 
 /// Judges at the arm's states whether it follows what it was commanded, as joint_trajectory_controller does. After

@@ -13,7 +13,7 @@ namespace hjt
 {
 namespace
 {
-/// As it is named, beside the configured one; none: it is that.
+/// The payload to be named beside the configured one; none: it is the configured one.
 template <class Found>
 std::optional<Found> named(Found found, const std::optional<Found>& counts)
 {

@@ -24,7 +24,7 @@ struct AssumedLoad
   bool isConfigured() const { return !payload && !mounting; }
   std::string text() const;                   ///< in sentences; empty: as configured, all the time
   void configure(ArmDescription& arm) const;  ///< of an arm with the configured load
-  /// What an arm with the configured payload carries; empty: one all the time.
+  /// Payloads over time of an arm with the configured payload; empty: one all the time.
   PayloadCourse course(const Payload& configured) const;
 };
 
@@ -38,7 +38,7 @@ struct JudgedJoints
 
   std::vector<Misfit> misfits;  ///< of each, or what all have in common
   std::vector<MeasuredFriction> frictions;
-  std::vector<bool> measured;  ///< a joint whose effort is none says nothing of the load
+  std::vector<bool> measured;  ///< false: the joint gives no effort, so it says nothing of the load
   ArmFriction common;
 };
 
@@ -56,7 +56,7 @@ public:
   bool take(const FoundLoad& found, const JudgedJoints& joints);
 
   const AssumedLoad& counts() const { return counts_; }
-  /// What counts does not stand yet.
+  /// Whether a load that was found is still on trial.
   bool isTrying() const { return is_trying_; }
 
 private:

@@ -38,7 +38,7 @@ FittedFactor RecordingFit::LoadRegression::slope(double& content) const
 {
   constexpr double CORRELATED = 0.5;  // rows nearer to each other tell the same [s]
   constexpr double MIN_SECONDS = 3.0;
-  constexpr double MIN_CONTENT = 0.1;  // of the load that is left, rms: errors of friction and inertia leave less [A]
+  constexpr double MIN_CONTENT = 0.1;  // least rms of the remaining load: errors of friction and inertia leave less [A]
   const double seconds = sums_(0, 0);
   FittedFactor slope;
   if (seconds < MIN_SECONDS)
@@ -60,7 +60,7 @@ FittedFactor RecordingFit::LoadRegression::slope(double& content) const
 EffortFit RecordingFit::effort() const
 {
   constexpr double WIDE = 2.0;                   // a payload or another gain make no more of it
-  constexpr double MAX_UNCERTAINTY = 1.0 / 3.0;  // of the factor itself: beyond, the load may not be in the effort
+  constexpr double MAX_UNCERTAINTY = 1.0 / 3.0;  // share of the factor: beyond, the effort may not contain the load
   EffortFit fit;
   fit.unit = joints_.front().effort;
   double weights = 0.0;

@@ -34,7 +34,7 @@ std::vector<JointGains> gainsOf(const ArmDescription& arm, const std::vector<Par
 /// Faults with an onset come that long after the motion's begin.
 std::vector<Parameters> withFaultsInMotion(std::vector<Parameters> drives, double settling)
 {
-  constexpr double LATEST_ONSET = 1e9;  // that a drive takes [s]
+  constexpr double LATEST_ONSET = 1e9;  // largest onset that a drive accepts [s]
   for (Parameters& drive : drives)
   {
     for (Fault& fault : drive.faults)

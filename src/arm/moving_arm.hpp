@@ -10,7 +10,7 @@
 
 namespace hjt
 {
-/// What an arm's controller shows of a joint.
+/// State of a joint as the arm's controller reports it.
 struct JointReading
 {
   double position{};  ///< by the encoder at the output [rad]

@@ -14,6 +14,6 @@ struct PayloadFrom
   Payload payload;
 };
 
-/// What an arm carries one after the other, in order of time; empty: what it is configured with.
+/// Payloads of an arm in order of time; empty: the configured one.
 using PayloadCourse = std::vector<PayloadFrom>;
 }  // namespace hjt

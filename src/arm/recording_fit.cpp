@@ -21,13 +21,13 @@ namespace
 constexpr double MOVING_SLOPE = 0.02;  // beyond stiction and the noise of a slope [rad/s]
 constexpr double MOVED = 0.02;         // a joint whose range is less does not move [rad]
 constexpr double FASTEST = 10.0;       // no joint of an arm turns faster [rad/s]
-constexpr double FACTOR_OFF = 0.03;    // of angle over velocity: more than gains and scales of encoders are off
-constexpr double DEVIATIONS = 3.0;     // beyond which a difference is no chance
-constexpr double WIDEST_FACTOR = 20;   // of stamps; beyond it another unit is likelier
+constexpr double FACTOR_OFF = 0.03;    // of angle over velocity: beyond the errors of encoders' scales
+constexpr double DEVIATIONS = 3.0;     // beyond these a difference is significant
+constexpr double WIDEST_FACTOR = 20;   // largest factor of stamps; beyond it another unit is likelier
 constexpr double LAG_OFF = 0.05;       // [s]
 constexpr std::uint64_t MIN_ROWS = 100;
 constexpr double UNCHANGED = 2.0;       // no current stays the same in motion for longer [s]
-constexpr double LEAST_SQUARE = 1e-12;  // of an uncertainty: made-up data have none
+constexpr double LEAST_SQUARE = 1e-12;  // least square of an uncertainty: simulated data may have none
 
 /// "0.2 s later": of currents behind their motion. `longest`: nothing longer is tried [s].
 std::string lagText(double lag, double longest)
@@ -55,7 +55,7 @@ std::string rounded(double value)
   return roundedText(value, 3);
 }
 
-/// What is wrong between angle and velocity of one joint whose factor is not that of the stamps; empty: nothing.
+/// Contradiction of angle and velocity of one joint whose factor is not that of the stamps; empty: nothing.
 RecordingFinding velocityFinding(const FittedFactor& own, double of_stamps)
 {
   constexpr double STANDS = 0.01;
@@ -252,7 +252,7 @@ std::optional<RecordingFinding> RecordingFit::ofCurrents() const
 
 std::vector<RecordingFinding> RecordingFit::ofArm() const
 {
-  constexpr double MIN_SHARE = 0.1;  // of the moving rows: jolts at joins are fewer
+  constexpr double MIN_SHARE = 0.1;  // least share of the moving rows: jolts where pieces are joined are fewer
   const auto is_too_fast = [](const Joint& joint)
   { return static_cast<double>(joint.fast_rows) > static_cast<double>(MIN_ROWS) + MIN_SHARE * joint.moving_rows; };
   std::vector<RecordingFinding> findings;

@@ -29,7 +29,7 @@ struct RecordingFinding
   std::optional<Reason> stops;  ///< nothing can be judged with it
 };
 
-/// What a joint does in a recording; empty ranges before the first row.
+/// Ranges of a joint in a recording; empty before the first row.
 struct JointReach
 {
   std::uint64_t rows{};
@@ -80,7 +80,7 @@ public:
   /// Of the moving joints, rms; NaN: nothing moved.
   struct LoadRest
   {
-    double current{};  ///< what constant, friction and rotor inertia fitted leave of the current [A]
+    double current{};  ///< current less constant, friction and rotor inertia, fitted [A]
     double left{};     ///< and the load as it is too [A]
 
     double share() const { return left / current; }  ///< of the current that the load leaves; not finite: no motion [-]
@@ -91,7 +91,7 @@ public:
   std::vector<RecordingFinding> ofArm() const;
   std::vector<RecordingFinding> ofJoint(std::size_t joint) const;
 
-  /// It has seen enough for its findings, or PATIENCE of motion without.
+  /// Whether the rows suffice for its findings, or PATIENCE of motion has passed without any.
   bool isSettled() const;
 
   /// For each joint the first finding of arm or joint with which nothing can be judged.
@@ -110,7 +110,7 @@ private:
     /// Slope of the current over the load; NaN: it says too little of it. `content`: square of the load that the others
     /// do not explain, summed over time.
     FittedFactor slope(double& content) const;
-    /// What constant, friction and acceleration leave of load and current [A^2 s].
+    /// Sums of load and current without constant, friction and acceleration [A^2 s].
     Eigen::Matrix2d left() const;
     double seconds() const { return sums_(0, 0); }
 

@@ -27,7 +27,7 @@ public:
 
   explicit RowTimes(std::size_t joints) : last_(joints), agreements_(joints) {}
 
-  /// What the stamp of these rows, one of each joint, is late by [s]. The rows are later than those before.
+  /// Delay of the stamp of these rows, one of each joint [s]. The rows are later than those before.
   double stampError(const std::vector<MotionRow>& rows) noexcept;
 
   void reset() noexcept;

@@ -59,7 +59,7 @@ void restAtEnd(double length, ArmSetPoint& point)
   }
 }
 
-/// What shows that the speeds of a joint have another unit or sign than they should; empty: nothing.
+/// Evidence that the speeds of a joint have another unit or sign; empty: none.
 std::string rateErrors(const std::vector<ArmSetPoint>& points, std::size_t joint)
 {
   constexpr double LEAST_WAY = 0.1;        // that tells of the speeds [rad]
@@ -106,7 +106,7 @@ std::string rangeErrors(const JointMotion& motion, const ArmJoint& joint)
                               errors("acceleration", motion.acceleration, "rad/s^2", Range{ -1e4, 1e4 });
 }
 
-/// What no controller would send; a little more than a joint's speed it may.
+/// Beyond any controller's set points, which may be a little faster than the joint.
 std::string speedErrors(const std::vector<ArmSetPoint>& points, const ArmDescription& arm)
 {
   constexpr double TIMES = 3.0;  // the joint's greatest speed
@@ -210,7 +210,7 @@ std::string straightenedText(double change)
 
 std::string motionErrors(const std::vector<ArmSetPoint>& points, const ArmDescription& arm)
 {
-  // All written so that NaN fails.
+  // The comparisons are written so that NaN fails.
   for (std::size_t k = 0; k < points.size(); ++k)
   {
     const ArmSetPoint& point = points[k];

@@ -23,7 +23,7 @@ void fillRates(std::vector<ArmSetPoint>& points, bool has_velocity, bool has_acc
 /// are not the angles' rates, or the stamps go with them. Returns the largest change of a step; 0: none [s].
 double straightenTimes(std::vector<ArmSetPoint>& points);
 
-/// What a user must know of such a change, above 0 [s].
+/// Remark for the user on such a change, above 0 [s].
 std::string straightenedText(double change);
 
 /// What of it no arm can be told, by whichever way it comes; empty: nothing. The time has to go on, for a million

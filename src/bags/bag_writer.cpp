@@ -115,7 +115,7 @@ BagWriter::BagWriter(std::string path)
   {
     throw InputError(path_ + " cannot be written: " + std::strerror(errno));
   }
-  std::setvbuf(file_.get(), nullptr, _IONBF, 0);  // what is written is large
+  std::setvbuf(file_.get(), nullptr, _IONBF, 0);  // writes are large
   Bytes version;
   put(version, VERSION, sizeof(VERSION) - 1);
   flush(version);
@@ -134,7 +134,7 @@ BagWriter::~BagWriter()
   }
 }
 
-/// What all messages begin with. @returns the time of recording
+/// First step of writing any message. @returns the time of recording
 ros::Time BagWriter::begin(Stamp stamp)
 {
   if (!file_)

@@ -32,7 +32,7 @@ enum Opcode : std::uint8_t
 constexpr std::size_t MAGIC = 8;                    // [byte]
 constexpr std::size_t RECORD_HEAD = 9;              // opcode and length [byte]
 constexpr std::uint64_t MAX_MCAP_CHUNK = 1U << 30;  // unpacked [byte]
-constexpr std::uint64_t SMALL_CHUNK = 1U << 26;     // of whatever file [byte]
+constexpr std::uint64_t SMALL_CHUNK = 1U << 26;     // accepted whatever the size of the file [byte]
 constexpr std::uint64_t MOST_PACKED = 100;          // unpacked over the file's size
 
 struct McapDamage

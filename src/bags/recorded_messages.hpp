@@ -63,7 +63,7 @@ public:
   virtual void visit(const std::vector<std::string>& topics, bool with_temperatures, const Visit& visit,
                      const Progress& progress) = 0;
 
-  /// What was left out of a damaged file; empty: nothing.
+  /// Parts of a damaged file that were left out; empty: none.
   const std::string& remark() const { return remark_; }
 
 protected:

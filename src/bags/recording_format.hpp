@@ -5,7 +5,7 @@
 
 namespace hjt
 {
-/// What a recording is, by its first bytes; its name counts for nothing.
+/// Format of a recording, by its first bytes and not by its name.
 enum class RecordingFormat
 {
   BAG,        ///< of ROS 1

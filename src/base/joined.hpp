@@ -5,7 +5,7 @@
 
 namespace hjt
 {
-/// What `text` makes of each item, `separator` between two.
+/// Joins `text(item)` of all items, with `separator` between two.
 template <class Items, class Text>
 std::string joined(const Items& items, const char* separator, const Text& text)
 {

@@ -178,7 +178,7 @@ void writeTextFile(const std::string& path, const std::string& text)
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   const fs::path there = fs::canonical(path, error);  // behind links
-  // What links of /proc/self/fd lead to may have no name.
+  // Targets of links in /proc/self/fd may have no name.
   if (fs::exists(status) && (error || !fs::is_regular_file(status)))
   {
     const int descriptor = open(path.c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC);

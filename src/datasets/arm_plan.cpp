@@ -18,7 +18,7 @@ namespace
 {
 namespace fs = std::filesystem;
 
-/// As it is from the plan's folder, else as it is. `folder`: of one, else of a file.
+/// The path from the plan's folder, if it exists there, else unchanged. `folder`: of one, else of a file.
 std::string beside(const std::string& directory, const std::string& name, bool folder)
 {
   const fs::path path = fs::path(directory) / name;

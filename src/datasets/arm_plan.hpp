@@ -40,7 +40,7 @@ void setFaults(const std::vector<RunFault>& faults, std::size_t joint, const std
 /// The faults that a drive's configuration holds.
 std::vector<RunFault> configuredFaults(const Parameters& drive, std::size_t joint);
 
-/// What a plan of whole arms, with the key `arm`, has beyond one of drives. All members throw InputError that names
+/// Part of a plan with the key `arm` that a plan of drives lacks. All members throw InputError that names
 /// file, line, key, value, unit and range, or ParameterError.
 class ArmPlan
 {
@@ -56,7 +56,7 @@ public:
   ArmSpec read(const PlanNode& duty, const PlanValues& values, const ParameterMap& settings,
                const std::vector<RunFault>* faults, const std::string& faults_origin) const;
 
-  /// What the runs depend on beside the plan.
+  /// Inputs of the runs besides the plan.
   OrderedJson configuration() const;
   OrderedJson motions() const;  ///< by their files, a hash each
 

@@ -7,7 +7,7 @@ const std::vector<RunColumn>& driveColumns()
 {
   using I = const Instant&;
   static const std::vector<RunColumn> COLUMNS{
-    // What a robot's controller has.
+    // Columns of a robot's controller.
     { "motor_angle_encoder", "rad", "motor encoder", [](I i) { return i.encoders.motor_angle; } },
     { "motor_velocity_encoder", "rad/s", "motor encoder, difference over sensors.velocity_window",
       [](I i) { return i.encoders.motor_velocity; } },
@@ -17,7 +17,7 @@ const std::vector<RunColumn>& driveColumns()
     { "motor_torque_reading", "N.m", "motor torque estimated from the current",
       [](I i) { return i.motor_torque_reading; } },
     { "speed_reference", "rad/s", "reference of the joint speed", [](I i) { return i.speed_reference; } },
-    // What only the twin knows.
+    // Columns of true values, which only the twin knows.
     { "motor_angle", "rad", "motor, true", [](I i) { return i.outputs.motor_angle; } },
     { "motor_velocity", "rad/s", "motor, true", [](I i) { return i.outputs.motor_velocity; } },
     { "output_angle", "rad", "output, true", [](I i) { return i.outputs.output_angle; } },

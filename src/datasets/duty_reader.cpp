@@ -16,7 +16,7 @@ namespace
 constexpr Range LARGE{ -1e6, 1e6 };  // any value of a waveform
 constexpr double BANDWIDTH = 8.0;    // of the speed control [Hz]
 
-/// Of what a key of a duty cycle gives.
+/// Unit of the values of a key of a duty cycle.
 const char* unitOf(const std::string& key)
 {
   return key == "speed" ? "rad/s" : key == "temperature" ? "degC" : "N.m";

@@ -26,7 +26,7 @@ namespace hjt
 {
 namespace
 {
-constexpr double SAMPLE = 1.0;  // of a run, by the clock [s]
+constexpr double SAMPLE = 1.0;  // length of a trial run by the clock [s]
 
 /// Notes which surfaces a twin asks for, and makes none.
 class AskedSurfaces : public SurfacePool
@@ -122,7 +122,7 @@ std::string shortTime(double seconds)
 {
   constexpr double MINUTE = 60.0;
   constexpr double HOUR = 3600.0;
-  constexpr double MANY = 100.0;  // of one unit
+  constexpr double MANY = 100.0;  // larger values are shown in the next unit
   return seconds < MANY          ? rounded(seconds) + " s" :
          seconds < MANY * MINUTE ? rounded(seconds / MINUTE) + " min" :
                                    rounded(seconds / HOUR) + " h";

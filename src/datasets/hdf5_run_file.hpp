@@ -58,7 +58,7 @@ private:
   std::string path_;
   std::string temporary_;
   Hdf5Handle file_;
-  Stamp from_{};  // recorded are instants after this one
+  Stamp from_{};  // later instants are recorded
   Stamp begin_{};
   std::vector<RunFault> faults_;
   std::size_t joints_;

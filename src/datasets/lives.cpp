@@ -17,7 +17,7 @@ namespace hjt
 {
 namespace
 {
-constexpr std::size_t MAX_CHECK_UPS = 1'000'000;  // of all drives
+constexpr std::size_t MAX_CHECK_UPS = 1'000'000;  // of all drives together
 constexpr int POSITIONS = 8;                      // of the wave generator in a tooth pitch, for the loads of a turn
 /// Where a bearing's first spall may lie.
 constexpr std::array SPALLED{ FaultKind::BEARING_OUTER_RACE, FaultKind::BEARING_INNER_RACE, FaultKind::BEARING_BALL };

@@ -33,7 +33,7 @@ public:
   /// The wear that the drive has then.
   std::vector<GrowingFault> faultsAt(std::uint64_t check_up) const;
 
-  /// What is true of the drive then.
+  /// True state of the drive at that time.
   Labels labelsAt(std::uint64_t check_up) const;
   static std::vector<std::string> labelNames();
 

@@ -32,7 +32,7 @@ struct RunSpec
   std::string duty_name;
   std::uint64_t repeat{};
   double duration{};      ///< [s]
-  Parameters parameters;  ///< what grows stands in its faults as a staircase; of an arm its first drive's
+  Parameters parameters;  ///< growing faults are a staircase; of an arm those of its first drive
   std::vector<RunFault> faults;
   RunDuty duty;
   std::optional<ArmSpec> arm;                                     ///< of a plan of whole arms

@@ -13,7 +13,7 @@
 
 namespace hjt
 {
-/// One place of a plan's file. Read once, then only looked at, from any thread.
+/// One place of a plan's file. Read once, then used read-only from any thread.
 struct PlanNode
 {
   enum class Kind
@@ -36,7 +36,7 @@ struct PlanNode
   [[noreturn]] void refuse(const std::string& what) const;
 };
 
-/// The number that a value is, whole or not; nothing if it is none.
+/// The value as a number, whole or not; nothing if it is no number.
 std::optional<double> numberIn(const ParameterValue& value);
 
 OrderedJson jsonOf(const ParameterValue& value);

@@ -13,7 +13,7 @@
 
 namespace hjt
 {
-/// What the plan says in one run: each variable has its value. All members throw InputError that names file, line, key,
+/// The plan in one run: each variable has its value. All members throw InputError that names file, line, key,
 /// value, unit and range.
 class PlanValues
 {

@@ -46,7 +46,7 @@ public:
   void feed(Twin& twin, double time)
   {
     const Stamp begin = twin.stamp();
-    const double middle = time - 0.5 * toSeconds(twin.stepLength());  // what is held over the step is its mean
+    const double middle = time - 0.5 * toSeconds(twin.stepLength());  // an input has its mean over the step
     twin.commandMotorTorque(begin,
                             duty_.torque ? easedIn(middle) * duty_.torque->value(middle) : controlTorque(twin, time));
     if (duty_.load)

@@ -22,7 +22,7 @@ constexpr const char* PROTECTIVE_STOP = "protective_stop";
 /// Of the windows in a run's file, the standard error of a line; its parts have that of its amplitude.
 std::string errorColumn(std::size_t indicator);
 
-/// What one run is written to. Nothing stands under its name before `finish`.
+/// File of one run. It gets its name in `finish`.
 class RunFile
 {
 public:
@@ -51,7 +51,7 @@ void addOutcome(const TwinCounters& counters, std::uint64_t on_surface, double e
 /// An arm's protective stop, into the record of its run.
 void addProtectiveStop(const ArmDescription& arm, const MovingArm& moving, OrderedJson& record);
 
-/// Of the format's files, with the dot.
+/// Extension of the format's files, with the dot.
 const char* runFileExtension(RunFormat format);
 
 /// The record of a finished run; none if there is no readable file.

@@ -13,10 +13,10 @@
 
 namespace hjt
 {
-/// What a run costs.
+/// Cost of a run.
 struct RunCost
 {
-  double surfaces{};          ///< the building of its response surfaces, or the look for them in the cache [s]
+  double surfaces{};          ///< time to build its response surfaces or to find them in the cache [s]
   double ends{};              ///< before the first step, the surfaces at hand, and after the last one [s]
   double real_time_factor{};  ///< simulated over real time, one core [-]
 };
@@ -44,7 +44,7 @@ public:
 private:
   using Clock = std::chrono::steady_clock;
 
-  /// What moves in a run: a drive in its duty cycle, or an arm along its set points.
+  /// Object of a run: a drive in its duty cycle, or an arm along its set points.
   class Subject
   {
   public:

@@ -23,7 +23,7 @@ struct SweepResult
 {
   std::uint64_t done{};                 ///< runs finished by this call
   std::uint64_t present{};              ///< runs that stood there finished before
-  std::uint64_t damaged{};              ///< of those done, runs whose file was damaged
+  std::uint64_t damaged{};              ///< runs of those done whose file was damaged
   std::uint64_t failed{};               ///< of this shard's, of those and of the others
   std::uint64_t rows_without_forces{};  ///< of them
 };

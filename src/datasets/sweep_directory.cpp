@@ -84,7 +84,7 @@ std::uint64_t hashOf(const RunSpec& spec)
   return hash;
 }
 
-/// What a row of the index tells of each fault.
+/// Columns of each fault in a row of the index.
 std::vector<std::string> faultKeys(const Plan& plan)
 {
   std::vector<std::string> keys{ "kind", "severity", "place", "onset", "ramp" };
@@ -95,7 +95,7 @@ std::vector<std::string> faultKeys(const Plan& plan)
   return keys;
 }
 
-/// What the index says of a run that is not there, not yet or no longer.
+/// Row of the index for a run without a file.
 Json missingRun(std::uint64_t run)
 {
   return { { "run", run }, { "status", "missing" }, { "faults", Json::array() }, { "variables", Json::object() } };

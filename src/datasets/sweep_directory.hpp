@@ -49,6 +49,6 @@ private:
   int plan_file_{ -1 };
 };
 
-/// What the index says of a run before it has run: labels, variables, seeds.
+/// Row of the index before the run: labels, variables, seeds.
 OrderedJson recordOf(const RunSpec& spec, const std::string& file);
 }  // namespace hjt

@@ -26,7 +26,7 @@ PhiloxStream wordsOf(std::uint32_t seed, const std::string& name, std::uint64_t 
                       { seed ^ static_cast<std::uint32_t>(hash), static_cast<std::uint32_t>(hash >> 32) });
 }
 
-constexpr double MIN_SHARE = 1e-3;  // of a normal distribution between its limits: values beyond are drawn again
+constexpr double MIN_SHARE = 1e-3;  // least share of a normal distribution within its limits: others are redrawn
 constexpr double MAX_WHOLE = 1e15;  // which a double holds exactly
 
 /// Of a normal distribution {mean, standard deviation, lowest, highest}, what lies between its limits.

@@ -12,7 +12,7 @@ namespace hjt
 {
 /// A value of the plan that is not the same in every run: from a grid, or drawn.
 ///
-/// What is drawn depends on the plan's seed, the variable's name and the number of the run alone, not on the other
+/// A draw depends on the plan's seed, the variable's name and the number of the run alone, not on the other
 /// variables, the order of the runs or the number of workers: Philox4x32-10 gives the words, Boost.Random the
 /// distribution.
 class Variable
@@ -28,7 +28,7 @@ public:
   const PlanNode& node() const { return *node_; }
   std::size_t gridSize() const { return distribution_ == Distribution::GRID ? choices_.size() : 1; }
 
-  /// `digit`: which of the grid's values; what is drawn does not look at it.
+  /// `digit`: index of the grid's value; draws do not depend on it.
   ParameterValue value(std::uint32_t seed, std::uint64_t run, std::size_t digit) const;
 
 private:
@@ -51,7 +51,7 @@ private:
   std::vector<ParameterValue> choices_;
 };
 
-/// What a key that holds a text may be in some run. @throws InputError.
+/// Possible values of a key with a text, over all runs. @throws InputError.
 std::vector<std::string> textsOf(const PlanNode& map, const std::string& key);
 
 /// A word of its own for each run: seeds of what is random within it.

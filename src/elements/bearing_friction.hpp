@@ -79,7 +79,7 @@ public:
   /// exponent, 4 % off, and by the series of (1 - e)^(-1/3) comes to 2e-6 and to rounding.
   static double twoThirdsPower(double x) noexcept
   {
-    constexpr std::uint64_t ONE = 0x553ef0ff289dd796;  // what makes a third of the bits of 1 those of 1
+    constexpr std::uint64_t ONE = 0x553ef0ff289dd796;  // offset with which a third of the bits of 1 are those of 1
     std::uint64_t bits{};
     std::memcpy(&bits, &x, sizeof(bits));
     bits = ONE - bits / 3;

@@ -53,7 +53,7 @@ public:
   }
 
 private:
-  static constexpr double CONTACT = 1e-9;  // what rounding leaves of the play where the shaft leans on the pin [-]
+  static constexpr double CONTACT = 1e-9;  // rounding error of the play where the shaft leans on the pin [-]
 
   double holding_torque_;  // [N.m]
   double half_play_;       // [rad]

@@ -50,7 +50,7 @@ public:
   /// Springs with sliders, which have a state; else one dry term.
   bool hasState() const noexcept { return torque_ > 0.0 && width_ > 0.0; }
 
-  /// What springs and sliders remember, and what follows from it at `rotation`.
+  /// State of springs and sliders, and the torque that follows from it at `rotation`.
   struct State
   {
     std::array<double, ELEMENTS> twist{};  ///< z [rad]
@@ -103,7 +103,7 @@ public:
   bool isTerm() const noexcept { return torque_ > 0.0 && !hasState(); }
 
 private:
-  static constexpr double RATIO = 3.0;  // of an element's width to the next
+  static constexpr double RATIO = 3.0;  // width of an element over that of the next
   // Of an element's width to the widest.
   static constexpr std::array<double, ELEMENTS> SHARES{
     1.0, 1.0 / 3.0, 1.0 / 9.0, 1.0 / 27.0, 1.0 / 81.0, 1.0 / 243.0

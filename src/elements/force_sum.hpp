@@ -32,7 +32,7 @@ struct ForceSum
   /// The whole from the sum over the first half of the ring.
   void repeat() noexcept
   {
-    // What the half's end teeth did to their neighbours beyond it.
+    // Forces of the half's end teeth on their neighbours beyond it.
     const Eigen::Index half = teeth.size() / 2;
     teeth.head<2>() -= teeth.segment<2>(half);
     teeth.segment<2>(half - 2) -= teeth.tail<2>();
@@ -42,7 +42,7 @@ struct ForceSum
     energy *= 2.0;
   }
 
-  /// What the solved teeth and their neighbours have.
+  /// Sets the sums of the solved teeth and their neighbours to zero.
   void setZero(int solved) noexcept
   {
     teeth.head(std::min<Eigen::Index>(2 * solved + 2, teeth.size())).setZero();

@@ -7,7 +7,7 @@
 
 namespace hjt
 {
-/// What hangs on the output: inertia, friction and gravity (thesis eq. 7.37-7.38, brackets mended).
+/// Load of the output: inertia, friction and gravity (thesis eq. 7.37-7.38, brackets mended).
 ///
 /// Gravity's energy:  U = -m g l cos(phi - phi_g), phi_g the angle at which the load hangs straight down. [J]
 class Load

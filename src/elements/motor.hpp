@@ -38,7 +38,7 @@ public:
   double fadeSpeed() const noexcept { return (1.0 - FADE) * parameters_.speed_limit; }  ///< where that begins [rad/s]
   double speedLimit() const noexcept { return parameters_.speed_limit; }                ///< [rad/s]
 
-  /// What is left of a torque that fades [N.m]: faded(T, 0) - fadeSlope(T) |speed|, and not below zero.
+  /// Torque that fades with the speed [N.m]: faded(T, 0) - fadeSlope(T) |speed|, and not below zero.
   double faded(double torque, double speed) const noexcept
   {
     return torque * std::max(1.0 - std::abs(speed) / parameters_.speed_limit, 0.0) / FADE;

@@ -37,7 +37,7 @@ public:
   {
   }
 
-  using Contact = WaveGeneratorContact::Scratch;  ///< what the contact found at the same shape
+  using Contact = WaveGeneratorContact::Scratch;  ///< result of the contact at the same shape
 
   /// Seen through the joint's two angles, the ring following them: adds to the viscous matrix.
   void add(const Contact& contact, const RingRates& rates, JointFriction& friction) const noexcept;

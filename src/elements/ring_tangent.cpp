@@ -40,7 +40,7 @@ void RingTangent::closeHalf() noexcept
 {
   const int half = teeth() / 2;
   const int last = half - 1;
-  // What the end teeth added at their neighbours beyond the half: tooth `half` is the first one again, the last tooth
+  // Entries of the end teeth for their neighbours beyond the half: tooth `half` is the first one again, the last tooth
   // of the ring that of the half.
   const int beyond = teeth() - 1;
   for (Eigen::VectorXd* entry : { &diagonal.xx, &diagonal.xy, &diagonal.yy })

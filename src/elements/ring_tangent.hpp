@@ -81,7 +81,7 @@ struct RingTangent
 
   void setZero() noexcept { setZero(teeth()); }
 
-  /// What the solved teeth and their neighbours have.
+  /// Sets the sums of the solved teeth and their neighbours to zero.
   void setZero(int solved_teeth) noexcept
   {
     solved = solved_teeth;
@@ -128,6 +128,6 @@ struct RingTangent
   double wave_generator_stiffness{};  ///< second derivative by the wave generator angle [N.m/rad]
   int solved{};                       ///< teeth of the ring that it is of: all, or the first half
   double output_stiffness{};          ///< second derivative by the output angle [N.m/rad]
-  SymmetricBlocks segment;            ///< what an element does between teeth i and i+1, before `addSegments`
+  SymmetricBlocks segment;            ///< an element's tangent between teeth i and i+1, before `addSegments`
 };
 }  // namespace hjt

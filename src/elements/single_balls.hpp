@@ -43,7 +43,7 @@ public:
   {
     explicit Scratch(int teeth) : balls(static_cast<std::size_t>(teeth)) {}
 
-    std::vector<Ball> balls;  ///< as many as teeth; of those beyond the bearing's own no force is known
+    std::vector<Ball> balls;  ///< one per tooth; entries beyond the number of balls have no force
   };
 
   /// Finds the forces of the balls, and with them those on the teeth; adds the torque on the wave generator by the

@@ -45,7 +45,7 @@ public:
   /// @throws ParameterError on a bad table of pitch errors.
   ToothMesh(const Parameters& parameters, const ToothRing& rest);
 
-  /// What it found, one entry per tooth.
+  /// Intermediate results, one entry per tooth.
   struct Scratch
   {
     explicit Scratch(int teeth);

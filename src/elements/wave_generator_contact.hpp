@@ -31,7 +31,7 @@ class WaveGeneratorContact
 public:
   WaveGeneratorContact(const Parameters& parameters, const ToothRing& rest);
 
-  /// What it found, one entry per tooth.
+  /// Intermediate results, one entry per tooth.
   struct Scratch : SingleBalls::Scratch
   {
     explicit Scratch(int teeth);

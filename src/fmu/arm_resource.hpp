@@ -9,7 +9,7 @@ namespace hjt::fmu
 {
 constexpr const char* ARM_FILE = "arm.yaml";  ///< among the resources; beside it a folder of each joint's drive
 
-/// What an arm in closed loop needs of its description: links as numbers, gravity, payload, limits and gains. The
+/// Data of an arm's description for the closed loop: links as numbers, gravity, payload, limits and gains. The
 /// joints have gains.
 std::string armResource(const ArmDescription& arm);
 

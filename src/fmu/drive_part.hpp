@@ -22,10 +22,10 @@ public:
   /// `base` with the values that were set; faults that were set are there from the start. @throws ParameterError.
   Parameters parameters(const Parameters& base, const Values& values) const;
 
-  /// Before the first step: the twin starts with these, but for a load, and with its brake so.
+  /// Inputs before the first step: the load is ignored, the brake is set.
   void begin(const Values& values, bool brake_engaged);
 
-  /// What has changed of the inputs, but the motor's torque, from this instant on.
+  /// Commands the inputs that have changed, except the motor's torque, from this instant on.
   void giveInputs(Stamp instant, const Values& values, Twin& twin);
   double motorTorque(const Values& values) const noexcept { return values[first_ + MOTOR_TORQUE].numbers[0]; }
 

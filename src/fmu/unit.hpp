@@ -16,14 +16,14 @@ namespace hjt::fmu
 using Values = std::vector<Value>;  ///< of all variables of a unit
 using Notice = std::function<void(const std::string&)>;
 
-constexpr Stamp EPOCH = 1'000'000'000'000'000'000;  ///< of time 0, as `joint_twin simulate` starts
+constexpr Stamp EPOCH = 1'000'000'000'000'000'000;  ///< stamp of time 0, as in `joint_twin simulate`
 
 inline Stamp stampAt(double time)  ///< [s]
 {
   return EPOCH + static_cast<Stamp>(std::llround(1e9 * time));
 }
 
-/// What an instance simulates, from its start on.
+/// The simulated object of an instance, from its start on.
 class Simulation
 {
 public:
@@ -45,7 +45,7 @@ protected:
   Simulation& operator=(const Simulation&) = default;
 };
 
-/// What a unit's resources hold.
+/// Resources of a unit.
 class Unit
 {
 public:

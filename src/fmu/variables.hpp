@@ -36,7 +36,7 @@ struct Value
   std::string text{};
 };
 
-/// What stands for it in the description and in calls; its value reference is its place in the list.
+/// A variable of the unit, for its description and calls; its value reference is its place in the list.
 struct FmuVariable
 {
   std::string name;

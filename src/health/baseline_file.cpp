@@ -21,8 +21,8 @@ namespace hjt
 {
 namespace
 {
-constexpr int FORMAT = 4;       // by what the indicators mean, and what is kept of them
-constexpr int OWN_NUMBERS = 6;  // of an indicator, before what is fitted
+constexpr int FORMAT = 4;       // changes with the meaning and the stored numbers of the indicators
+constexpr int OWN_NUMBERS = 6;  // numbers of an indicator before the fitted ones
 
 std::size_t indicatorNamed(const std::string& name)
 {

@@ -15,7 +15,7 @@ namespace
 constexpr double MISFIT_WEIGHT = 0.2;    // w_1: share of the evidence's weight that is left where no signature fits
 constexpr double MISFIT_SEVERITY = 0.5;  // share of the severity there: other drives soften up to three times as much
 
-/// What is in no table: anything of a strength S, and what is no wear of a gear.
+/// Causes without signatures: anything of a strength S, and what is no wear of a gear.
 struct Unknown
 {
   double strength;  // S

@@ -21,10 +21,10 @@ double normalQuantile(double share);
 /// are `share` 0.01 here; of other numbers nothing is measured, a third is assumed.
 Repeatability repeatabilityOf(const Parameters& parameters);
 
-/// What a sound drive's indicator differs by from one recording to the next, standard deviation, unit of the indicator.
+/// Standard deviation of a sound drive's indicator from one recording to the next, unit of the indicator.
 double repeatsWithin(const Repeatability& repeatability, const ReferenceBin& bin, std::size_t indicator) noexcept;
 
-/// What stays from one window to the next.
+/// Share of the variance that stays from one window to the next.
 struct Persistence
 {
   double stays;        // r
@@ -45,7 +45,7 @@ CommonPersistence commonPersistence(const ReferenceBin& bin, std::size_t kind) n
 Persistence persistenceOf(const ReferenceBin& bin, const Reference& reference,
                           const CommonPersistence& common) noexcept;
 
-/// What a reference carried to another motion is less sure by, where a mean is of so many windows.
+/// Additional uncertainty of a reference carried to another motion, for a mean of so many windows.
 double carriedVariance(const ReferenceBin& bin, const CarriedError& error, std::size_t indicator,
                        double windows) noexcept;
 
@@ -53,7 +53,7 @@ double carriedVariance(const ReferenceBin& bin, const CarriedError& error, std::
 /// than from normal windows, 1 + 3 of it. Bounded: from 4 degrees of freedom down there is none.
 double excessOf(double tail) noexcept;
 
-/// What the law of a deviation over its spread differs from the normal distribution by.
+/// Difference of the distribution of a deviation over its spread from the normal one.
 struct Uncertainty
 {
   double inverse{};  // 1 / v'

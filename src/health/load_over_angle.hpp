@@ -7,7 +7,7 @@
 
 namespace hjt
 {
-/// What a joint carries, from its load torque over its angle: a payload gives the same on any path.
+/// Payload of a joint, from its load torque over its angle: a payload gives the same on any path.
 ///
 /// Law:   T = c + s sin(phi) + k cos(phi),  least squares over the time
 /// where  T, phi  load torque [N.m], output angle [rad];  s, k  weight;  c  what does not depend on the angle

@@ -8,10 +8,10 @@ namespace hjt
 {
 namespace
 {
-constexpr double LOAD_STEP = 0.375;           // of the rated torque
+constexpr double LOAD_STEP = 0.375;           // share of the rated torque
 constexpr double TEMPERATURE_STEP = 10.0;     // [K]
 constexpr double ONE_WAY = 0.5;               // share of travel one way less the other that counts as one direction
-constexpr double REACH = 0.25;                // of a step, beyond the edge of a class
+constexpr double REACH = 0.25;                // share of a step beyond the edge of a class
 constexpr double INERTIA_ACCELERATION = 5.0;  // [rad/s^2]
 
 int stepOf(double value, double step) noexcept

@@ -16,7 +16,7 @@
 
 namespace hjt
 {
-/// One sample as the tracker takes it.
+/// A sample of the tracker.
 struct LineSample
 {
   double motor_angle{};      ///< [rad]
@@ -140,7 +140,7 @@ private:
   static constexpr double MAX_INFLATION = 4.0;  // of a line's variance by its neighbours [-]
   static constexpr double USED_BAND = 0.8;      // of half the samples a turn [-]
   static constexpr double LEAST_LOAD = 0.05;    // spread of the load, of the rated torque [-]
-  static constexpr double ONE_WAY = 0.9;        // mean direction of a motion that does not go both ways [-]
+  static constexpr double ONE_WAY = 0.9;        // least mean direction of a motion in one direction [-]
 
   // Columns: nuisances, lines in proportion to the load, the others by their orders.
   static constexpr int DIRECTION = 1;

@@ -36,7 +36,7 @@ std::array<std::size_t, SIGNATURE_SIZE> indicatorsOfNumbers();
 /// unit that this software has not.
 std::shared_ptr<const SignatureSet> loadSignatures(const std::string& name);
 
-/// What a file says (config/signatures/size_25.yaml has the format). `path`: for the messages alone. @throws as above.
+/// Contents of a file (format: config/signatures/size_25.yaml). `path`: for the messages alone. @throws as above.
 SignatureSet parseSignatures(const std::string& text, const std::string& path);
 
 /// The text of a file, which reads back as the same set but for the digits beyond the third of a change. `motions`:

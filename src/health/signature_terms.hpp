@@ -55,7 +55,7 @@ private:
     std::size_t number;  // of the signature
     std::size_t indicator;
     bool has_phase;      // one of two parts of a line
-    double sound;        // what a share is taken of
+    double sound;        // value that a share refers to
     double line_square;  // half the square of the sound line's amplitude, that of the sound lost motion; 0 of others
   };
 

@@ -7,7 +7,7 @@
 
 namespace hjt
 {
-/// What the torsion of the drive is read from, at one instant.
+/// Inputs of the drive's torsion at one instant.
 struct TorsionSample
 {
   double torsion;       ///< motor angle / ratio - output angle [rad]

@@ -13,9 +13,9 @@ namespace hjt
 {
 namespace
 {
-constexpr double LEAST_OTHERS = 0.05;  // of a window's weight, that the others decide what it should be
+constexpr double LEAST_OTHERS = 0.05;  // least share of a window's weight that the other windows determine
 constexpr double TAIL_STEP = 0.01;     // 1 / degrees of freedom
-// What the logarithm of the likelihood must gain over the normal distribution's: chance gives less in 95 %, half the
+// Least gain of the log likelihood over the normal distribution's: chance gives less in 95 %, half the
 // quantile of chi square with one degree of freedom. Of so few windows the spread's own degrees of freedom say enough.
 constexpr double LEAST_GAIN = 1.92;
 
@@ -27,7 +27,7 @@ bool tellsTail(std::size_t indicator) noexcept
          indicator != indexOf(ScalarIndicator::RESIDUAL_CREST) && !isFreeAmplitude(indicator);
 }
 
-/// What windows are off by, each from all others in their spread, by logarithmic classes.
+/// Deviations of windows, each from all others in units of their spread, by logarithmic classes.
 struct Residuals
 {
   static constexpr std::size_t CLASSES = 48;

@@ -22,9 +22,9 @@ constexpr double AT_REST = 0.01;       // at which the sign of the speed turns s
 constexpr double LEAST_MOTION = 5.0;   // [s]
 constexpr double LEAST_EXPLAINED = 1.0 / 3.0;
 constexpr double WIDEST_RATIO = 0.5;  // half width of the ratio of both gains, of it
-constexpr double JUMP = 0.1;          // of the set point's speed within a row, beside those about it [rad/s]
-constexpr double AT_LIMIT = 0.95;     // of the limit
-constexpr double TRANSIENT = 0.25;    // of either, to both sides [s]
+constexpr double JUMP = 0.1;          // of the set point's speed in a row, beyond its neighbours' changes [rad/s]
+constexpr double AT_LIMIT = 0.95;     // share of the limit
+constexpr double TRANSIENT = 0.25;    // left out to both sides of a jump or a limit [s]
 
 using Column = Eigen::VectorXd;
 
@@ -47,7 +47,7 @@ Column withoutSlow(const Column& values, Eigen::Index width)
   return fast;
 }
 
-/// As they were `rows` before, on lines between the rows.
+/// Values `rows` earlier, interpolated between the rows.
 Column delayed(const Column& values, double rows)
 {
   Column before(values.size());
@@ -61,7 +61,7 @@ Column delayed(const Column& values, double rows)
   return before;
 }
 
-/// What the rows hold, in columns.
+/// Contents of the rows, in columns.
 struct Record
 {
   Record(const std::vector<ControllerRow>& rows, double period)

@@ -20,7 +20,7 @@ namespace hjt
 namespace
 {
 constexpr double OUTLIER = 3.0;        // blocks that many deviations off count less
-constexpr double LEAST_GREASE = 0.05;  // of the configured, so that a viscosity remains
+constexpr double LEAST_GREASE = 0.05;  // least share of the configured viscosity
 constexpr double NARROWED = 0.5;       // deviation after the motion over that before
 constexpr std::size_t MIN_BLOCKS = 12;
 constexpr std::size_t MAX_BLOCKS = 20000;  // a longer recording is thinned out
@@ -31,7 +31,7 @@ bool isFriction(std::size_t quantity)
 }
 }  // namespace
 
-/// Of one block, each value a parameter block of its own.
+/// Residual of one block; each value is a parameter block.
 struct FrictionFit::Residual
 {
   const Block& block;
@@ -76,7 +76,7 @@ FrictionFit::FrictionFit(const Parameters& parameters, const FrictionMap& fricti
   }
   solve();
 
-  // Beside what was found, and without changing it: on other motions of a recorded arm it made wrist_3 a half worse.
+  // Reported beside the result, not used: on other motions of a recorded arm it made wrist_3 worse by a half.
   const Values found = values_;
   const Values width = half_width_;
   asked_[STRIBECK] = true;
@@ -91,7 +91,7 @@ FrictionFit::FrictionFit(const Parameters& parameters, const FrictionMap& fricti
   refusal_[STRIBECK] = is_there ? "" : "its 95 % interval holds zero";
 }
 
-/// What is known of a joint of this type before it moves: gain within 10 %; offset 0.03 A; the motor's inertia within
+/// Sets the prior, a joint of this type: gain within 10 %; offset 0.03 A; the motor's inertia within
 /// half of it; parts of its friction within half of all friction at 1 rad/s of the joint and without load.
 void FrictionFit::setKnown(const Parameters& parameters, const FrictionMap& friction)
 {

@@ -138,7 +138,7 @@ void storeInertia(const FrictionFit& fit, bool load_recorded, Identification& re
   result.values.push_back(found);
 }
 
-/// What the friction's fit found, as parameters of the twin.
+/// Stores the results of the friction fit as parameters of the twin.
 void storeFriction(const FrictionFit& fit, bool load_recorded, Identification& result)
 {
   const auto add = [&](FrictionFit::Quantity quantity, const char* name, const char* key, const char* unit,
@@ -196,7 +196,7 @@ double rowPeriod(const std::vector<MotionSample>& samples)
   return upperMedian(steps.begin(), steps.end());
 }
 
-/// What the motion-driven twin's torque lacks without ripple in the rows that move.
+/// Measured torque less that of the motion-driven twin without ripple, in moving rows.
 std::vector<RippleRow> rippleRows(const Parameters& parameters, const std::vector<MotionSample>& samples)
 {
   MotionDriven twin(withoutRipple(parameters));

@@ -63,14 +63,14 @@ struct Identification
   Parameters parameters;  ///< with the identified values
 };
 
-/// What the identified parameters are judged on.
+/// Errors by which the identified parameters are judged.
 struct JudgedPart
 {
   std::vector<MotionSample> samples;
   double from{ -1e300 };  ///< earlier samples only lead up to it [s]
 };
 
-/// What of a joint's friction, inertia, gain and ripple a motion shows; the model is the one of MotionDriven, its
+/// Friction, inertia, gain and ripple of a joint that a motion shows; the model is the one of MotionDriven, its
 /// parameters are the twin's. In this order, each with what came before: FrictionFit and RippleFit on the rows that
 /// move, presliding on all.
 ///

@@ -22,7 +22,7 @@ constexpr std::array<double, 2> RESONANCES{ 2.0, 100.0 };  // [Hz]
 constexpr std::array<double, 2> DAMPINGS{ 0.05, 1.0 };     // [-]
 constexpr std::array<double, 2> LAGS{ -0.02, 0.02 };       // [s]
 
-/// Of one row, each value a parameter block of its own.
+/// Residual of one row; each value is a parameter block.
 struct Residual
 {
   const TorqueRipple::Orders& orders;

@@ -9,7 +9,7 @@
 
 namespace hjt
 {
-/// What of the motor's torque is left when load, inertia and friction are known, at one instant.
+/// Motor torque less load, inertia and friction, at one instant.
 struct RippleRow
 {
   double position;  ///< of the joint [rad]

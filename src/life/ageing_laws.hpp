@@ -8,7 +8,7 @@
 
 namespace hjt
 {
-/// What one turn of the wave generator at a steady load does to the drive: forces, slips and stresses of the tooth
+/// Load of one turn of the wave generator at a steady load: forces, slips and stresses of the tooth
 /// model, friction coefficients left out.
 struct RevolutionLoad
 {

@@ -55,7 +55,7 @@ constexpr double OTHER_MOTION_GAIN = 0.25;
 /// Wear of the flanks first takes up the preload and opens no play: mean of what readings are short by, as a severity;
 /// its standard deviation from drive to drive is FLANK_READING.offset.
 constexpr double FLANK_SHORT = 0.012;
-/// What the flanks' wear takes from the interface's reading, over the flanks' reading: mean, standard deviation [-].
+/// Bias of the interface's reading by the flanks' wear, over the flanks' reading: mean, standard deviation [-].
 constexpr double INTERFACE_SHORT = 0.55;
 constexpr double FLANK_IN_INTERFACE = 0.2;
 

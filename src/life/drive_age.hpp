@@ -72,7 +72,7 @@ inline double strengthOf(const UnitVariation& variation, std::size_t place)
                                                                       variation.strength;
 }
 
-/// What ends a drive's use.
+/// Ends of a drive's use.
 enum class EndOfLife
 {
   FLANK_WEAR,

@@ -182,7 +182,7 @@ std::optional<EndOfLife> DriveAgeing::ended(const UnitVariation& variation, cons
 DriveAgeing::Life DriveAgeing::live(const UnitVariation& variation, double hours, double every, bool grease_changes,
                                     const std::function<void(double, const DriveAge&)>& visit) const
 {
-  constexpr double TOLERANCE = 1e-8;  // of the limits
+  constexpr double TOLERANCE = 1e-8;  // share of the limits
   constexpr int BISECTIONS = 50;
   namespace odeint = boost::numeric::odeint;
   Scale scale(parameters_, variation);

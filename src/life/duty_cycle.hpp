@@ -19,7 +19,7 @@ struct DutyPhase
   double turns() const { return duration * motor_speed / TWO_PI; }  ///< of the wave generator, >= 0
 };
 
-/// What the joint does over and over.
+/// The repeated motion of the joint.
 struct DutyCycle
 {
   std::vector<DutyPhase> phases;

@@ -14,7 +14,7 @@
 
 namespace hjt
 {
-/// What a record of use says of the drive.
+/// State of the drive by a record of use.
 struct LifeEstimate
 {
   double hours{};            ///< of use so far

@@ -9,7 +9,7 @@
 
 namespace hjt
 {
-/// What a duty cycle does to the nominal drive, in closed form: loads per revolution of the new drive, grease that
+/// Wear of the nominal drive by a duty cycle, in closed form: loads per revolution of the new drive, grease that
 /// ages.
 class NominalUse
 {
@@ -92,9 +92,9 @@ public:
   }
 
 private:
-  static constexpr double FARTHEST = 1.5;  // of the limits
+  static constexpr double FARTHEST = 1.5;  // share of the limits
 
-  static constexpr double SLOWEST = 1e-3;  // of the new drive's rate: what wears no longer has a depth too
+  static constexpr double SLOWEST = 1e-3;  // share of the new drive's rate: a depth that wears no longer stays defined
 
   /// Of two rates; 1 of a use that does not wear.
   static double share(double rate, double of) { return of > 0.0 ? std::max(rate / of, SLOWEST) : 1.0; }

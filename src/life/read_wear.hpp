@@ -26,7 +26,7 @@ struct ReadWear
   double lost_motion_limit{ HUGE_VAL };  ///< at which the drive is at its end, as the windows have it [rad]
 };
 
-/// What readings say beside the nominal use. `reference_hours`: of use when the reference was learned [h].
+/// Wear by readings, over the nominal use. `reference_hours`: of use when the reference was learned [h].
 inline WearTrends trendsOf(const ReadWear& read, const NominalUse& use, const FaultScaleParameters& fault_scale,
                            double reference_hours)
 {

@@ -15,7 +15,7 @@ namespace
 {
 using namespace assessment_errors;
 
-constexpr double SEVERITY_RANGE = 0.9;  // of the severities that signatures have: 0.1 to 1
+constexpr double SEVERITY_RANGE = 0.9;  // range of the signatures' severities: 0.1 to 1
 constexpr double LEAST_FATIGUE_SPREAD = 1e-6;
 constexpr double LEAST_SPREAD = 0.1;  // of a severity's logarithm, from one assessment to the next
 

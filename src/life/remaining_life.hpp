@@ -17,7 +17,7 @@ namespace hjt
 /// Fatigue strengths at which the fatigue by a use is known, evenly spaced in their logarithm; straight in the
 /// logarithms between them.
 constexpr std::size_t STRENGTHS = 49;
-constexpr double STRENGTH_REACH = 1.5;  // of the logarithm, below and above the median
+constexpr double STRENGTH_REACH = 1.5;  // reach in the logarithm, below and above the median
 
 /// Of entry i, over the median's.
 inline double strengthAt(std::size_t i)
@@ -136,7 +136,7 @@ public:
 
 private:
   static constexpr std::size_t PARTICLES = 4096;
-  static constexpr double SPALLED = 0.25;  // of them, the first: bearings with a spall, however rare those are
+  static constexpr double SPALLED = 0.25;  // share of drives with a spall, which come first, however rare spalls are
   enum Nature
   {
     FLANK,

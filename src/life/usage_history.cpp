@@ -10,7 +10,7 @@ namespace hjt
 {
 namespace
 {
-constexpr double LOAD_STEPS = 16.0;         // in the rated torque
+constexpr double LOAD_STEPS = 16.0;         // steps of load up to the rated torque
 constexpr double NO_LOAD = 64.0;            // its node
 constexpr double TEMPERATURE_CLASS = 10.0;  // [K]
 

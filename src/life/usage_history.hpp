@@ -23,7 +23,7 @@ public:
   UsageHistory(const LifeParameters& life, const std::string& path);
 
   void clear() noexcept;
-  void add(const DutyPhase& use) noexcept;  ///< what lies beyond the nodes counts as the outermost ones
+  void add(const DutyPhase& use) noexcept;  ///< values beyond the nodes count as the outermost ones
   void add(const UsageHistory& other) noexcept;
 
   double hours() const noexcept;

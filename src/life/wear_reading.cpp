@@ -25,7 +25,7 @@ public:
     for (const Signature& signature : set.signatures)
     {
       const bool counts = signature.cause == causeOf(kind) && signature.severity > 0.0 &&
-                          signature.change[indexOf(indicator)] != 0.0;  // 0: not known in that motion
+                          signature.change[indexOf(indicator)] != 0.0;  // 0: the motion does not determine it
       const std::size_t node = counts ? nodeOf(signature.severity, weights) : MAX_NODES;
       if (node == MAX_NODES)
       {

@@ -14,7 +14,7 @@ struct WearReading
   double flank{};              ///< tooth_wear [-]
   double interface = 0.0;      ///< interface_wear [-]
   double alike{};              ///< how far the motion is like one that the signatures are known in, 0 ... 1 [-]
-  double lost_motion{};        ///< what the windows had [rad]
+  double lost_motion{};        ///< of the windows [rad]
   double lost_motion_slope{};  ///< that one unit of `flank` adds, at the largest severities of the signatures [rad]
 };
 

@@ -25,7 +25,7 @@ struct WearPoint
   double reading;
 };
 
-/// What readings over a drive's use say of its rate of wear.
+/// Rate of wear of a drive from readings over its use.
 ///
 /// Law:   r_i = g u_i + d + n_i,   g = f (1 + b),   n_i^2 = a^2 + (c r_i)^2 + (v (r - r_i))^2
 /// where  u, r  WearPoint, of the last one without index;  f  factor of the drive's wear over the nominal drive's
@@ -89,7 +89,7 @@ private:
   double ones_{};
 };
 
-/// What readings say of both kinds of wear.
+/// Trends of both kinds of wear, from readings.
 struct WearTrends
 {
   WearTrend flank;

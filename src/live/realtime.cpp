@@ -64,7 +64,7 @@ void applyMemoryLock(bool lock_memory, RealtimeState& state)
   {
     return;
   }
-  // What comes later is no business of the loop's, which allocates nothing, and would fail where the limit is low.
+  // Later memory is not of the loop, which allocates nothing; locking it would fail where the limit is low.
   if (mlockall(MCL_CURRENT) == 0)
   {
     state.memory = "locked";

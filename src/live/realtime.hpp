@@ -10,7 +10,7 @@
 
 namespace hjt
 {
-/// What the system granted of the parameters below `realtime`, in words.
+/// The granted parameters below `realtime`, in words.
 struct RealtimeState
 {
   std::string scheduling;  ///< policy and priority of the loop's thread

@@ -123,7 +123,7 @@ public:
     forEach([&visit](auto& output) { visit(output.sink); });
   }
 
-  /// What `get` returns for each channel and its sink.
+  /// Results of `get` for each channel and its sink.
   template <class Get>
   auto collect(Get&& get) const
   {

@@ -109,7 +109,7 @@ harmonic_joint_twin::Faults makeFaults(const JointNames& names, Stamp stamp, con
 std::string readFault(const harmonic_joint_twin::Fault& message, const Parameters& parameters,
                       std::vector<Fault>& steps);
 
-/// What was found in a stamped torque message.
+/// Contents of a stamped torque message.
 enum class EffortStatus
 {
   FOUND,

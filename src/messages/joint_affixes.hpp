@@ -6,7 +6,7 @@
 
 namespace hjt
 {
-/// What stands before and after the names of an arm's joints in messages: "left_", "".
+/// Prefix and suffix of the joints' names in messages: "left_", "".
 struct JointAffixes
 {
   std::string prefix;
@@ -26,7 +26,7 @@ std::vector<JointAffixes> findAffixes(const std::vector<std::string>& joints, co
 /// Of the sensors of one joint, `NAME_motor` is that of joint NAME: the names without those.
 std::vector<std::string> withoutMotors(const std::vector<std::string>& names);
 
-/// What of `joints` the messages that name `names` lack, as a clause, and the prefix or suffix that would find them,
+/// The joints of `joints` that messages with `names` lack, as a clause, and the prefix or suffix that would find them,
 /// spelled as options; empty: they name all.
 std::string lackText(const std::vector<std::string>& joints, const std::vector<std::string>& names);
 }  // namespace hjt

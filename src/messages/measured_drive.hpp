@@ -29,7 +29,7 @@ public:
   void fill(Stamp stamp, harmonic_joint_twin::Stress& message) noexcept;
   /// The noise of the sensors is that of the sample in the stamp's period of publish.encoders_rate.
   void fill(Stamp stamp, harmonic_joint_twin::Encoders& message) noexcept;
-  /// What follows from one instant; what takes a turn of the drive is not valid.
+  /// Values of one instant; those that take a turn of the drive are not valid.
   void fill(Stamp stamp, harmonic_joint_twin::Health& message) noexcept;
 
 private:

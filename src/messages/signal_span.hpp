@@ -35,7 +35,7 @@ private:
   std::uint64_t count_{};
 };
 
-/// What passed since a topic's last message. The spans are those of the steps in which somebody listened to a topic
+/// Range of a signal since a topic's last message, over the steps in which somebody listened to a topic
 /// that summarises them.
 struct SinceMessage
 {
@@ -49,7 +49,7 @@ struct SinceMessage
     joint_torque.add(outputs.joint_torque);
   }
 
-  Stamp stamp;              ///< of that message [ns]
+  Stamp stamp;              ///< of the last message [ns]
   SignalSpan torsion;       ///< [rad]
   SignalSpan motor_torque;  ///< [N.m]
   SignalSpan joint_torque;  ///< [N.m]

@@ -11,7 +11,7 @@
 
 namespace hjt
 {
-/// What was found of a joint in a robot's telemetry.
+/// Values of a joint in a robot's telemetry.
 enum class TelemetryStatus
 {
   FOUND,

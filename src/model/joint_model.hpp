@@ -16,7 +16,7 @@
 
 namespace hjt
 {
-/// What acts on the joint from outside, held over a step.
+/// External inputs of the joint, constant over a step.
 struct JointInputs
 {
   double load() const noexcept { return load_torque + arm_torque; }  ///< on the output [N.m]
@@ -65,7 +65,7 @@ struct JointModel
     return response;
   }
 
-  /// What the friction depends on beside the ring.
+  /// Inputs of the friction besides the ring.
   struct Running
   {
     Eigen::Vector2d speeds;  ///< of motor and output [rad/s]
@@ -73,7 +73,7 @@ struct JointModel
     double viscosity;        ///< of the bearing's grease [m^2/s]
   };
 
-  /// What outer race and flexing rim take at the motor shaft [N.m]. `running`: rates of the ring's points by motor
+  /// Friction of outer race and flexing rim at the motor shaft [N.m]. `running`: rates of the ring's points by motor
   /// angle while the output follows [m/rad].
   double ringTorque(const RingShape& shape, const RingForces& forces, const Eigen::VectorXd& running) const noexcept
   {

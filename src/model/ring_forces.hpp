@@ -47,7 +47,7 @@ struct RingForces : ForceSum
     std::apply([](auto&... scratch) { (scratch.repeat(), ...); }, scratch_);
   }
 
-  /// What an element found.
+  /// Intermediate results of an element.
   template <class Element>
   const typename Element::Scratch& of() const noexcept
   {

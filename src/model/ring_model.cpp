@@ -71,7 +71,7 @@ void RingModel::tangent(const RingShape& shape, const RingForces& forces, RingTa
 
 int RingModel::solvedTeeth() const noexcept
 {
-  constexpr int FEWEST = 16;  // that a half has enough of for CyclicSolver
+  constexpr int FEWEST = 16;  // fewest teeth of a half for CyclicSolver
   const bool repeats = std::apply([](const auto&... element) { return (element.repeats() && ...); }, elements_) &&
                        rest.teeth() >= FEWEST;
   return repeats ? rest.teeth() / 2 : rest.teeth();

@@ -5,7 +5,7 @@
 
 namespace hjt
 {
-/// What the joint feels of the ring in equilibrium at its two angles, friction apart.
+/// Torques and stiffness of the ring in equilibrium at the joint's two angles, without friction.
 struct RingResponse
 {
   double energy{};                 ///< stored [J]

@@ -124,7 +124,7 @@ struct ReportTable
   Table table;
 };
 
-/// What a function found out.
+/// Result of a function.
 struct Report
 {
   std::vector<ReportLine> lines;

@@ -38,5 +38,5 @@ inline Meaning ofOthers(const char* text)
 }
 
 constexpr double NO_LIMIT = std::numeric_limits<double>::max();
-constexpr Range ERROR_SHIFT{ -1e-4, 1e-4 };  ///< of what is off by its manufacture or its fit [m]
+constexpr Range ERROR_SHIFT{ -1e-4, 1e-4 };  ///< for errors of manufacture and fit [m]
 }  // namespace hjt

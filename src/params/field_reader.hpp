@@ -21,7 +21,7 @@
 
 namespace hjt
 {
-/// What each of FAULTS must be.
+/// Allowed form of each entry of FAULTS.
 constexpr const char* FAULT_FORM = "{kind: ..., severity: ..., place: ..., onset: ...}";
 
 /// Fills one field after the other from the map; collects what is wrong, so that the user sees all of it at once.
@@ -184,7 +184,7 @@ private:
     return nearest.empty() ? "" : " (did you mean " + nearest + "?)";
   }
 
-  /// What `key` must be, if known keys stand below it or it is the list of faults; else nothing.
+  /// Allowed form of `key`, if known keys stand below it or it is the list of faults; else nothing.
   std::string groupKind(const std::string& key) const
   {
     const auto below = known_.lower_bound(key + '.');

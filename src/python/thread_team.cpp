@@ -15,7 +15,7 @@ namespace hjt
 {
 namespace
 {
-/// Waits awake for what comes soon: about as long as it takes to wake a thread.
+/// Spins for about as long as it takes to wake a thread.
 template <class Condition>
 void spin(const Condition& condition)
 {

@@ -34,7 +34,7 @@ struct AssessmentSettings
   std::function<std::vector<AssessedJoint*>()> make_joints;
   bool beside_controller{ true };  ///< without a reference hold the friction against the controller's where that is one
   bool looks_for_arm{ true };      ///< judge nothing where another shipped arm explains the recording clearly better
-  bool gives_notice{ true };       ///< of what does not fit in the recording
+  bool gives_notice{ true };       ///< whether misfits of the recording are printed
   Watch watch;
 };
 

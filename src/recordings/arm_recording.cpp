@@ -19,7 +19,7 @@ namespace hjt
 {
 namespace
 {
-/// `gain`: that the recording states; NaN: none. What is identified or set counts in its place.
+/// `gain`: stated in the recording; NaN: none. An identified or configured gain takes precedence.
 Parameters parametersOf(const ArmJoint& joint, double gain, const RecordingOptions& options)
 {
   ParameterMap map = armJointParameters(joint, configDirectory(options), options.identified);

@@ -19,7 +19,7 @@ struct ArmJointRow
 {
   MotionSample row;        ///< its load the one chosen, at the output; rates are those of an arm's joint only
   double recorded_load{};  ///< [N.m]
-  double motor_part{};     ///< what of the motor's inertia a controller's torque holds beside the arm's load [N.m]
+  double motor_part{};     ///< of the motor's inertia, in a controller's torque beside the arm's load [N.m]
 };
 
 /// The recording of an arm, or of one joint as an arm of one, and the twin's parameters of each of its joints. The load
@@ -37,7 +37,7 @@ public:
   const RecordingOptions& options() const { return options_; }
   bool isArm() const { return is_arm_; }
   bool isFile() const { return !options_.rows; }
-  const ArmDescription& arm() const { return arm_; }  ///< of one joint: that alone
+  const ArmDescription& arm() const { return arm_; }  ///< for a single joint: that joint alone
   const std::vector<ArmJoint>& joints() const { return arm_.joints; }
   /// In place of the configured one.
   void setPayload(const Payload& payload, PayloadCourse course = {})
@@ -46,7 +46,7 @@ public:
     course_ = std::move(course);
   }
   void setGravity(const std::array<double, 3>& gravity) { arm_.gravity = gravity; }
-  MotionSource source(std::size_t joint) const;        ///< of that joint alone
+  MotionSource source(std::size_t joint) const;        ///< with that joint alone
   std::string twinNamespace(std::size_t joint) const;  ///< of its twin's topics, those of arm.launch
   /// `telemetry.inertia_in_load` is that of the load that is chosen.
   const Parameters& parameters(std::size_t joint) const { return parameters_[joint]; }

@@ -140,7 +140,7 @@ void move(const ArmRunOptions& options, const ArmMotion& motion, MovingArm& movi
   }
   if (rows && rows->isRun() && options.watch.stopped())
   {
-    throw Stopped{};  // no part of a run under a run's name
+    throw Stopped{};  // an incomplete run gets no file
   }
   if (rows)
   {

@@ -84,11 +84,11 @@ const std::vector<Column<ComparedJoint>> ARM_COLUMNS{
   { "current_residual_rms", &ComparedJoint::residual_rms, "less predicted [A]" }
 };
 
-/// What the joints of a group have in common, if that is worth a word.
+/// Common factor of a group of joints, if it is large enough to be named.
 std::string groupText(const JointGroup& group, const std::vector<ComparedJoint>& lines)
 {
   constexpr double NOTEWORTHY = 0.1;
-  constexpr double MOST = 2.5;  // that temperature or lubricant make
+  constexpr double MOST = 2.5;  // largest factor by temperature or lubricant
   if (!group.is_known || std::abs(group.median - 1.0) < NOTEWORTHY)
   {
     return {};
@@ -152,7 +152,7 @@ std::string withoutReference(const std::vector<ComparedJoint>& lines)
              "The reference did not judge the friction of " + joined(names) + "; the twin is taken in its place. ";
 }
 
-/// What of their friction is taken out before it is judged, where it is not what the whole arm has, which is said.
+/// Factors that are divided out before the friction is judged, where they differ from the arm's factor.
 std::string sharedText(const std::vector<ComparedJoint>& lines, double of_whole_arm)
 {
   std::vector<std::pair<std::string, std::vector<std::string>>> shares;  // factor, joints
@@ -174,7 +174,7 @@ std::string sharedText(const std::vector<ComparedJoint>& lines, double of_whole_
                               " times the reference's friction. ";
 }
 
-/// What the joints have in common, and each that departs or is not judged.
+/// Common factors of the joints, and each joint that departs or is not judged.
 std::string textOf(const std::vector<ComparedJoint>& lines, const ArmFriction& arm, bool has_reference)
 {
   std::string text;

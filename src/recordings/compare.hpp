@@ -31,7 +31,7 @@ struct ComparedJoint
   Verdict verdict;
   RecordingContents contents;
   std::optional<FrictionFactor> friction;  ///< measured over expected; none: not judged
-  std::string contact;                     ///< what touched it, in a sentence; empty: nothing
+  std::string contact;                     ///< contact that was found, in a sentence; empty: none
   double temperature{};                    ///< that it was judged at [degC]
   const char* temperature_source{};
   std::uint64_t rows{};
@@ -50,7 +50,7 @@ struct ComparedRecording
   HealthLevel health{};      ///< the worst of the joints
   MotionFindings found;
   AssumedLoad assumed;                ///< that the joints are judged with in place of the configured one
-  ArmFriction friction;               ///< what the joints have in common
+  ArmFriction friction;               ///< common factors of the joints
   std::vector<ComparedJoint> joints;  ///< from the base on; none: stopped
   Json document;                      ///< the data of the page
   std::string page;                   ///< its path; empty: none

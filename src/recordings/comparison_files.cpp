@@ -232,7 +232,7 @@ double frictionDeviation(const ComparisonRecord& record)
   return record.is_friction_judged ? record.friction.scatter : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// As it is judged, apart from what the joints of an arm share; null: it is not.
+/// Friction factor after division by the arm's common factor; null: not judged.
 Json factorJson(const ComparisonRecord& record)
 {
   const JudgedFriction& friction = record.verdict.friction;
@@ -246,7 +246,7 @@ Json factorJson(const ComparisonRecord& record)
                                      Json(std::optional<double>());
 }
 
-/// What the page's figures are made of.
+/// Writes the data of the page's figures.
 void writeData(const std::string& directory, const RecordingComparison& comparison, const Parameters& parameters,
                const ComparisonRecord& record)
 {

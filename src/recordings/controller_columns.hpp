@@ -11,6 +11,6 @@ namespace hjt
 /// keep their names.
 std::vector<std::string> controllerColumns(std::vector<std::string> header);
 
-/// What another program wrote, and how its data can be read, as a clause; empty: nothing known.
+/// The program that wrote the file, and how its data can be read, as a clause; empty: not known.
 std::string foreignTable(const std::vector<std::string>& header);
 }  // namespace hjt

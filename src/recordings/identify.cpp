@@ -82,7 +82,7 @@ bool saysSomething(const Identification& found)
                      [](const RippleLine& line) { return line.refusal.empty() && line.half_width < line.amplitude; });
 }
 
-/// What the user must know to judge the result of one joint.
+/// Remarks for the user that help to judge the result of one joint.
 void noticeOf(const IdentifiedJoint& joint, bool any, const Watch& watch)
 {
   const JudgedErrors& judged = joint.found.judged;

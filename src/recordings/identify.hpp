@@ -21,7 +21,7 @@ struct IdentifyOptions : RecordingOptions
   int folds{};                ///< pieces to predict each from the others, 2 ... 100; 0: none, of an arm 5
 };
 
-/// What was identified of a joint, on and judged on which part.
+/// Identified parameters of a joint, and the parts of the recording for training and judging.
 struct IdentifiedJoint
 {
   std::string name;  ///< short

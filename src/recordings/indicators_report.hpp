@@ -15,7 +15,7 @@ namespace hjt
 struct WindowResult
 {
   std::string recording;
-  const char* origin;      ///< what the window was made of, in words
+  const char* origin;      ///< source of the window, in words
   const char* parameters;  ///< and with whose parameters
   SignalIndicators indicators;
   Deviations deviations;

@@ -122,7 +122,7 @@ private:
   std::uint64_t dropped_{};
 };
 
-/// What the messages of a topic gave of the joints, for the text where that was nothing.
+/// Content of a topic's messages for the joints, for the error text if there is none.
 class SeenNames
 {
 public:

@@ -16,10 +16,10 @@ namespace hjt
 namespace
 {
 constexpr double FASTEST = 20.0;    // joint; faster ones are damaged angles [rad/s]
-constexpr double SLACK = 0.02;      // of the time a joint has for its way: messages come in bursts [s]
-constexpr double CLOCK_STEP = 1.0;  // by which the delay of a message may differ from its neighbour's [s]
+constexpr double SLACK = 0.02;      // added to the time that a joint has for its way: messages come in bursts [s]
+constexpr double CLOCK_STEP = 1.0;  // largest difference of the delays of neighbouring messages [s]
 
-/// What no measurement gives: the efforts of all these joints exactly zero; of one joint all that it gives.
+/// Whether a row is no measurement: the efforts of all these joints are exactly zero, or all values of one joint.
 bool isWithoutEffort(const sensor_msgs::JointState& message, const std::vector<std::string>& names)
 {
   const auto is_zero = [&](const std::vector<double>& values, const std::string& name)
@@ -64,7 +64,7 @@ std::vector<std::string> beyondEfforts(const sensor_msgs::JointState& message)
              std::vector<std::string>();
 }
 
-/// Of which joints a message has angles, and efforts that are numbers.
+/// The joints of which a message has angles, and efforts that are numbers.
 struct JointsSeen
 {
   void add(const sensor_msgs::JointState& message, const std::vector<std::string>& names)

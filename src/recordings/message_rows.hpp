@@ -35,9 +35,9 @@ struct TopicLayout
 {
   bool has_stamps{};   ///< a message has a stamp
   bool has_efforts{};  ///< a message has an effort other than zero
-  /// Joints whose effort is never a number, while that of others is: their current counts as 0.
+  /// Joints whose effort is its effort is never a number, while those of other joints are: their current counts as 0.
   std::set<std::string> silent;
-  /// Joints that come together, by their places; one list with all: a message holds all of them.
+  /// Indices of the joints that share a message; a single list: a message holds all of them.
   std::vector<std::vector<std::size_t>> parts;
 };
 
@@ -86,7 +86,7 @@ private:
   std::vector<double> loads_;
   std::vector<TemperatureRecord> temperatures_;
   std::optional<StampedRows> waiting_;
-  std::optional<StampedRows> last_;  // as it came, true or not
+  std::optional<StampedRows> last_;  // unfiltered
   std::uint64_t seen_{};             // the only row has no neighbour to disagree with
   std::uint64_t corrupt_{};
   std::uint64_t without_time_{};

@@ -64,7 +64,7 @@ void requireNames(const std::string& topic, const std::vector<std::string>& name
 
 CheckedContents readMessageContents(const MotionSource& source)
 {
-  constexpr int MESSAGES = 1000;  // by then every publisher of the topic was heard
+  constexpr int MESSAGES = 1000;  // after so many messages every publisher of the topic was heard
   CheckedContents contents;
   const std::unique_ptr<RecordedMessages> recording = RecordedMessages::open(source.path);
   recording->requireStates(source.topic);

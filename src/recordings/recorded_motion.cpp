@@ -13,7 +13,7 @@ namespace hjt
 {
 namespace
 {
-/// What times are multiplied by after reading: those of a table or of arrays are scaled as they are read, since their
+/// Factor on the times after reading: those of a table or of arrays are scaled as they are read, since their
 /// unit decides what a jump is.
 double scaleOf(const MotionSource& source)
 {

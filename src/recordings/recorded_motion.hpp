@@ -26,7 +26,7 @@ struct MotionSource
   int csv_joint{};                       ///< its number in the columns of a CSV file
   std::string topic{ "/joint_states" };  ///< sensor_msgs/JointState
   std::string load_topic;                ///< sensor_msgs/JointState, effort the load [N.m]
-  /// Above 0: where the messages tell an effort of NAME_motor, that is its torque; the current of 1 N.m of it [A].
+  /// Above 0: the effort of NAME_motor in the messages is a torque; current for 1 N.m of it [A].
   double current_per_motor_torque{};
   double current_per_effort{ 1.0 };  ///< of one joint: motor current of 1 of its effort [A], [A/(N.m)]
   double time_scale{ 1.0 };          ///< by which the times in the recording are multiplied
@@ -38,7 +38,7 @@ struct MotionSource
   static constexpr double FASTEST = 20.0;  ///< faster than any joint [rad/s]
 };
 
-/// What a reading found.
+/// Counts of a reading.
 struct MotionCount
 {
   std::uint64_t rows{};
@@ -51,11 +51,11 @@ struct MotionCount
   std::uint64_t refused_temperatures{};  ///< not finite, or beyond what a drive can have
   /// Of one joint: change of the angles by the stamps, over the recorded velocities; 1: they agree, NaN: not known.
   double velocity_ratio{ std::numeric_limits<double>::quiet_NaN() };
-  std::vector<std::string> remarks;  ///< what was mended or left out in reading, clauses without a full stop
+  std::vector<std::string> remarks;  ///< repaired or omitted data, clauses without a full stop
   Misfit misfit;                     ///< with this nothing can be judged; none: nothing stands against it
 };
 
-/// What was found, and what stood in the way.
+/// Motion that was read, and the reasons why it cannot be judged.
 struct MotionFindings : MotionCount
 {
   std::uint64_t refused{};  ///< rows repeated or out of order

@@ -63,7 +63,7 @@ void takeFit(const RecordingFit& fit, const std::vector<Parameters>& parameters,
   }
 }
 
-/// A joint beside its twin, of which nothing is written.
+/// A joint beside its twin, without output files.
 class CheckedTwin : public AssessedJoint
 {
 public:
@@ -93,7 +93,7 @@ public:
     return all;
   }
 
-  /// What the differentiators of all joints have.
+  /// Samples that the differentiators of all joints have ready.
   void addReady(std::vector<MotionDifferentiator>& joints, bool at_end)
   {
     for (std::size_t i = 0; i < joints.size(); ++i)

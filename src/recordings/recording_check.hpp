@@ -13,7 +13,7 @@
 
 namespace hjt
 {
-/// What a recording holds.
+/// Contents of a recording.
 struct CheckedContents
 {
   bool is_csv{};

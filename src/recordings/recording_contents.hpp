@@ -20,7 +20,7 @@ struct ContentLine
   bool found{};
 };
 
-/// What a recording holds.
+/// Contents of a recording.
 struct RecordingContents
 {
   std::vector<ContentLine> lines;

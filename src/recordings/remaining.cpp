@@ -126,7 +126,7 @@ LifeParameters assumedLife(const RemainingOptions& options, const LifeParameters
   return life;
 }
 
-/// What the recordings say of the drive's wear.
+/// Readings of the drive's wear from the recordings.
 struct Condition
 {
   void take(const Assessor& assessor, const OperatingPoint& point)

@@ -19,7 +19,7 @@ struct SpectrumLine
   double backward{};
 };
 
-/// What repeats with the joint's angle in a residual, in orders of the motor's turn.
+/// The part of a residual that repeats with the joint's angle, in orders of the motor's turn.
 ///
 /// The residual is averaged over narrow bins of the joint's angle, both ways apart; so memory does not grow, time needs
 /// not be even and what does not stay in place goes out. The amplitude at order o is |2 / n sum r exp(-i o theta)| over

@@ -78,12 +78,12 @@ public:
     last_ = stamp;
   }
 
-  /// As a clause; empty: they do, or nearly.
+  /// The deviation as a clause; empty: the times agree, or nearly.
   std::string text() const
   {
     constexpr std::uint64_t FEWEST = 10;
     constexpr std::uint64_t MOST = 5;    // rows for one that goes back
-    constexpr std::uint64_t COPIES = 9;  // of one row, at most
+    constexpr std::uint64_t COPIES = 9;  // most copies of one row
     if (rows_ < FEWEST)
     {
       return {};

@@ -40,7 +40,7 @@ public:
   std::string doubt() const
   {
     constexpr double TURN = 2.0 * M_PI;  // a motor that turns by less may stand, and its speed be noise [rad]
-    constexpr double FACTOR = 100.0;     // below that of milliseconds, beyond that of another unit of the speed
+    constexpr double FACTOR = 100.0;     // between the factors of milliseconds and of another unit of the speed
     if (2 * rare_ > steps_)
     {
       return "most samples come " + numberText(RARE) + " s apart or more";

@@ -17,7 +17,7 @@ namespace hjt
 /// on, and is recorded as a bag.
 void checkSignaturePlan(const Plan& plan);
 
-/// What faults change in the health indicators, from the runs of plans: the last window of each run with one fault less
+/// Changes of the health indicators by faults, from the runs of plans: the last window of each run with one fault less
 /// that of the sound run under the same conditions, the mean over the conditions, by motion and severity. Other
 /// severities lie on straight lines between those that were run, from nothing at 0 on.
 class SignatureRuns

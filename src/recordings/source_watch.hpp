@@ -31,7 +31,7 @@ public:
       last_publisher_ = publisher;
     }
     const double step = std::max(LEAST_STEP, LEAST_OF_RANGE * rangeWith(rows));
-    if (step > GROWN * counted_step_)  // what moved before was noise
+    if (step > GROWN * counted_step_)  // the motion before was noise
     {
       counted_step_ = step;
       moves_ = returns_ = 0;
@@ -73,8 +73,8 @@ public:
   }
 
 private:
-  static constexpr double LEAST_STEP = 5e-3;      // more than the noise of an angle [rad]
-  static constexpr double LEAST_OF_RANGE = 1e-3;  // of the joints' ranges together: angles may be in degrees
+  static constexpr double LEAST_STEP = 5e-3;      // beyond the noise of an angle [rad]
+  static constexpr double LEAST_OF_RANGE = 1e-3;  // share of the sum of the joints' ranges: angles may be in degrees
   static constexpr double GROWN = 5.0;
   static constexpr double NEARER = 0.3;  // [-]
   static constexpr double LEAST_SHARE = 0.05;

@@ -60,7 +60,7 @@ bool isAtRest(const std::array<double, COLUMNS>& row)
 double agreedRatio(std::vector<double>& ratios, std::size_t rows)
 {
   constexpr std::size_t LEAST = 10;
-  constexpr std::size_t SHARE = 5;  // a joint with load at rest has it in each; others have one as a motion begins
+  constexpr std::size_t SHARE = 5;  // a loaded joint at rest has it in each pose; others only as a motion begins
   constexpr double AGREE = 0.005;   // a controller computes both with the same numbers [-]
   if (ratios.size() < std::max(LEAST, rows / SHARE))
   {

@@ -20,9 +20,9 @@ namespace hjt
 namespace
 {
 constexpr std::size_t JOINTS = 6;
-constexpr double LATEST = 9e9;  // that a stamp holds [s]
+constexpr double LATEST = 9e9;  // largest time that a stamp holds [s]
 
-/// Of one joint; the first two have to be there.
+/// Columns of one joint; the first two are required.
 enum Quantity : std::size_t
 {
   ANGLE,
@@ -138,7 +138,7 @@ private:
   std::array<bool, COUNT> is_silent_{};
 };
 
-/// What the currents of a table are, by all of its rows.
+/// Kind of the currents in a table, judged by all of its rows.
 template <std::size_t COUNT>
 struct CurrentsSeen
 {
@@ -170,7 +170,7 @@ struct CurrentsSeen
   }
 
   bool has_any{};  ///< else made up without currents, or one joint: its rows at zero are no failed reading
-  std::array<bool, COUNT> is_silent{};  ///< never a number, while that of others is
+  std::array<bool, COUNT> is_silent{};  ///< its effort is never a number, while those of other joints are
 };
 
 template <std::size_t COUNT>
@@ -364,7 +364,7 @@ MotionCount readTableMotion(const MotionSource& source, const std::vector<int>& 
 
 bool tableRecordsLoad(const MotionSource& source)
 {
-  const CsvRows rows(source.path);  // what is missing is for the reader to say
+  const CsvRows rows(source.path);  // a missing file is reported by the reader
   const std::string foreign = foreignTable(rows.header());
   if (!foreign.empty())
   {

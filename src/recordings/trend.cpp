@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 /// Stamps before the year 2000 are no date but seconds since something was started [ns].
 constexpr Stamp FIRST_DATE = 946'684'800'000'000'000;
-/// What changes within a day is the temperature of the drives [h].
+/// Changes within this time are of the drives' temperature and make no trend [h].
 constexpr double DAY = 24.0;
 constexpr double PER_CENT = 100.0;
 
@@ -59,7 +59,7 @@ std::vector<std::string> recordingsIn(const std::string& folder)
   return found;
 }
 
-/// Each once, in the order given.
+/// The files without repetition, in the given order.
 std::vector<std::string> filesOf(const std::vector<std::string>& given)
 {
   std::vector<std::string> files;

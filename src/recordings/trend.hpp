@@ -25,7 +25,7 @@ struct DatedRecording
   std::string path;
   std::optional<Stamp> date;         ///< of its first row [ns since 1970]; none: its stamps are no calendar's
   double time{};                     ///< hours since the first recording; without dates its place in the order
-  std::vector<std::string> remarks;  ///< what was said while it was read
+  std::vector<std::string> remarks;  ///< remarks of the reader
   std::string unread;                ///< why it was not compared; empty: it was
   ComparedRecording compared;        ///< without documents; no joints: it was not
   /// Of each joint, for its trend: friction apart from what the joints of its group have in common, which is taken

@@ -96,7 +96,7 @@ std::vector<Column<DatedRecording>> fieldsOf(std::size_t i, const std::string& b
              ofJoint(i, [](const ComparedJoint& joint) { return joint.temperature_source; }) } };
 }
 
-/// What is known of a recording besides its joints.
+/// Data of a recording besides its joints.
 std::vector<Column<DatedRecording>> wholeFields()
 {
   return { { "recording", &DatedRecording::path },

@@ -16,7 +16,7 @@ struct Watch
                                                                            { return [](double) {}; } };
   /// Asked at every row and between the steps; true: the rest is left out and files are closed.
   std::function<bool()> stopped{ [] { return false; } };
-  /// What a user must know, in a sentence without a full stop.
+  /// A remark for the user, in a sentence without a full stop.
   std::function<void(const std::string&)> notice{ [](const std::string&) {} };
 };
 

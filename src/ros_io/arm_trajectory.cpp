@@ -18,8 +18,8 @@ namespace
 using trajectory_msgs::JointTrajectory;
 using trajectory_msgs::JointTrajectoryPoint;
 
-constexpr double SAME_PLACE = 0.01;       // that a point at time 0 may be from the present set point [rad]
-constexpr std::size_t MAX_SHOWN = 300;    // of the names in a message that are shown [bytes]
+constexpr double SAME_PLACE = 0.01;       // largest distance of a point at time 0 from the present set point [rad]
+constexpr std::size_t MAX_SHOWN = 300;    // length of the names of a message that is shown [bytes]
 constexpr double SPEED_TOLERANCE = 1e-6;  // [-]
 
 constexpr std::size_t NOT_NAMED = static_cast<std::size_t>(-1);
@@ -130,7 +130,7 @@ std::string speedErrors(const std::vector<ArmSetPoint>& points, const ArmDescrip
 
 std::vector<ArmSetPoint> stopFrom(const std::vector<JointMotion>& present)
 {
-  constexpr double ACCELERATION = 4.0;  // at first, of the fastest joint; the gentle motion has half of it [rad/s^2]
+  constexpr double ACCELERATION = 4.0;  // of the fastest joint, first trial; the gentle motion has half of it [rad/s^2]
   constexpr double SHORTEST = 0.2;      // [s]
   double fastest = 0.0;
   for (const JointMotion& joint : present)

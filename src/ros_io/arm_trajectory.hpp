@@ -17,7 +17,7 @@ namespace hjt
 std::string readTrajectory(const trajectory_msgs::JointTrajectory& message, const ArmDescription& arm,
                            const std::vector<JointMotion>& present, double delay, std::vector<ArmSetPoint>& points);
 
-/// What is wrong with the joints that it names, or nothing.
+/// Error in the joints that it names, or nothing.
 std::string jointErrors(const trajectory_msgs::JointTrajectory& message, const ArmDescription& arm);
 
 /// From the present set point to rest, all joints at once.

@@ -9,7 +9,7 @@
 
 namespace hjt
 {
-/// What ur_robot_driver says of a robot's state, by its names, latched: robot and safety mode, whether it takes
+/// State of the robot as ur_robot_driver publishes it, by its names, latched: robot and safety mode, whether it takes
 /// commands, the share of its speed. The modes are messages of ur_dashboard_msgs, which need not be there.
 class DriverStates
 {

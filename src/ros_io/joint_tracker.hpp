@@ -90,12 +90,12 @@ public:
   void push(const MotionRow& row);        ///< of a single joint
   void compare(const MotionSample& row);  ///< of an arm's
 
-  /// What does not fit in its telemetry; none: nothing, or that is not yet `settled`.
+  /// Misfit of its telemetry; none: it fits, or that is not yet `settled`.
   void setMisfit(const Misfit& misfit, bool settled);
 
   Tracker& tracker() { return tracker_; }
 
-  /// What the friction of the arm's joints has in common now, as a multiple of the expected of this one [-]; 1:
+  /// Common factor of the friction of the arm's joints now, as a multiple of the expected of this one [-]; 1:
   /// nothing, or the twin predicts with it.
   void setArmFriction(double ratio) { arm_friction_ = ratio; }
 

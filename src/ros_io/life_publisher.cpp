@@ -21,7 +21,7 @@ namespace
 {
 /// Between two counts of the loop [ns].
 constexpr Stamp COUNT_PERIOD = 1'000'000;
-/// Between two stretches handed over [ns]; a longer gap between two instants is no use of the drive.
+/// Length of the stretches handed over [ns]; a longer gap between two instants is no use of the drive.
 constexpr Stamp STRETCH = 1'000'000'000;
 constexpr std::size_t STRETCH_SLOTS = 2;
 

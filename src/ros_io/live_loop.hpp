@@ -12,6 +12,6 @@ Stamp rosNow();
 /// Whether the clock is the system's or somebody's on /clock, which is settled once the node runs.
 ClockKind rosClockKind();
 
-/// What the system grants the loop; what it refuses is in the log.
+/// Requests the parameters below `realtime` from the system; refusals are logged.
 RealtimeState requestRealtime(const RealtimeParameters& parameters, TwinLoop& loop);
 }  // namespace hjt

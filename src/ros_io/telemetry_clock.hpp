@@ -44,7 +44,7 @@ public:
   double seconds(Stamp stamp) const { return toSeconds(stamp - *zero_); }
   Stamp stamp(double seconds) const { return *zero_ + std::llround(1e9 * seconds); }
 
-  /// What this clock shows at a time of reception [ns].
+  /// Time of this clock at a time of reception [ns].
   Stamp at(Stamp received) const { return received - offset_; }
   /// Whether a stamp received then can be of this clock.
   bool isOf(Stamp stamp, Stamp received) const { return agree(received - stamp, offset_); }

@@ -11,7 +11,7 @@
 
 namespace hjt
 {
-/// What the joints of a robot share: the messages of one topic. Guarded by the node's mutex but for `too_large`.
+/// The messages of one topic, which all joints of a robot share. Guarded by the node's mutex but for `too_large`.
 struct TelemetryStream
 {
   std::string topic;
@@ -22,7 +22,7 @@ struct TelemetryStream
   std::uint64_t clock_changes{};       ///< restarts because all stamps had moved far
   std::uint64_t other_temperatures{};  ///< received whose frame_id is none of the joints
   std::string found_names;             ///< in the last message that lacks a joint
-  std::string lack;                    ///< what the messages since the last row lack, a clause; empty: nothing
+  std::string lack;                    ///< missing parts of the messages since the last row, a clause; empty: none
   std::string mounting;                ///< that the currents show and is not configured, a clause; empty: none
   std::string payload;                 ///< that the currents show and is not configured, a clause; empty: none
   LeftOutRows left_out;                ///< by the filter

@@ -37,7 +37,7 @@ public:
   {
     ArmDescription description;
     std::vector<Parameters> joints;
-    std::vector<SoundJoint> sound;        ///< what is known of each when it was sound
+    std::vector<SoundJoint> sound;        ///< figures of each joint when it was sound
     bool is_identified{};                 ///< the joints' friction is that of this very arm
     std::string name;                     ///< of a shipped one that may be another
     ArmWatch::MakeCandidates candidates;  ///< none: it is taken at its word

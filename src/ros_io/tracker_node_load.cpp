@@ -18,7 +18,7 @@ namespace hjt
 {
 namespace
 {
-/// Between two looks at what does not fit [s].
+/// Period of the check of the telemetry [s].
 constexpr double FIT_PERIOD = 1.0;
 }  // namespace
 
@@ -106,7 +106,7 @@ JudgedJoints TrackerNode::judgedJoints() const
   return { *fit_, fit_->whyNotJudged(), std::move(frictions), repeat_tolerance_ };
 }
 
-/// What the currents show of the load counts in place of the configured one, by the law of `joint_twin compare`.
+/// Uses the load that the currents show in place of the configured one, by the test of `joint_twin compare`.
 void TrackerNode::lookAtLoad()
 {
   if (!load_ || !load_->isDue())

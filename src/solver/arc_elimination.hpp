@@ -13,7 +13,7 @@ namespace arcs
 constexpr int COUNT = 4;
 constexpr int BORDER = 5;  ///< columns every tooth of an arc couples to: the separator before the arc, and the cup
 
-// What the elimination of a tooth leaves for the substitutions, in entries of lanes.
+// Factors of an eliminated tooth for the substitutions, in entries of lanes.
 constexpr int FACTOR_ENTRIES = 21;
 // Sums over an arc for the separators: their own block with the cup's, the one after the arc, and between the two.
 constexpr int BEFORE_ENTRIES = BORDER * (BORDER + 1) / 2;

@@ -26,7 +26,7 @@ inline Lanes patch(const Layout& layout, Lanes values, double value)
   return idle ? value + Lanes{} : values;
 }
 
-/// What a tooth leaves: the inverse of its block, and that times its couplings to the teeth.
+/// Factors of a tooth: the inverse of its block, and that times its couplings to the teeth.
 struct Weights
 {
   Lanes inverse_xx, inverse_xy, inverse_yy;
@@ -79,7 +79,7 @@ struct Fresh
   Lanes cup_x, cup_y;  // to the cup
 };
 
-/// What the teeth eliminated so far add to the two that come next: blocks, and couplings to the border.
+/// Contributions of the eliminated teeth to the next two: blocks, and couplings to the border.
 struct Carried
 {
   Lanes d_xx{}, d_xy{}, d_yy{};
@@ -342,7 +342,7 @@ void backward(const Layout& where, const double* factors, const double* rows, co
         vx -= f->border_x[e] * lanes(before)[BORDER * c + e];
         vy -= f->border_y[e] * lanes(before)[BORDER * c + e];
       }
-      // What the next step waits for comes last.
+      // Last come the values that the next step depends on.
       vx -= f->second_xx * qx[c] + f->second_xy * qy[c];
       vy -= f->second_yx * qx[c] + f->second_yy * qy[c];
       vx -= f->next_xx * px[c] + f->next_xy * py[c];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the elimination computes with, and the matrix that it leaves. Included as arc_elimination_kernels.hpp is.
+// Number type of the elimination, and the matrix that it leaves. Included as arc_elimination_kernels.hpp is.
 #pragma once
 
 #include "solver/arc_elimination.hpp"

@@ -118,7 +118,7 @@ BallDrops::Change BallDrops::at(double motor_angle, double v) const noexcept
   return drop.value != 0.0 ? ofBall(motor_angle, v, bearing_.ballPlace(ball, motor_angle), drop) : Change{};
 }
 
-/// Of one ball at a place in the housing [rad].
+/// Drop of one ball at a place in the housing [rad].
 BallDrops::Change BallDrops::ofBall(double motor_angle, double v, double place,
                                     const RaceDeflection::Drop& drop) const noexcept
 {

@@ -16,7 +16,7 @@ namespace
 constexpr double STICK_RANGE = 1e3;   // in regularisation speeds: slower, the motor may really be at rest
 constexpr double SLIDING = 3e4;       // slip over the regularisation's width, far from standing still
 constexpr double MOVING = 30.0;       // likewise, no creeping: friction is full to 6e-4
-constexpr double MIN_WIDTH = 1e-100;  // of a term that nothing slips: its square and the inverse stay numbers
+constexpr double MIN_WIDTH = 1e-100;  // of a term without slip: its square and the inverse stay finite
 
 /// How far to go from `v` along `change`: all the way if the function still falls there, else to where it stops
 /// falling. Looks at slopes only: values near a minimum differ by less than their rounding. Leaves the gradient there
@@ -25,7 +25,7 @@ template <class Gradient>
 double searchLine(Gradient& gradient, const Eigen::Vector2d& v, const Eigen::Vector2d& change, Eigen::Vector2d& slope)
 {
   constexpr int MAX_BISECTIONS = 60;
-  constexpr double FLAT = 0.1;  // of the first slope
+  constexpr double FLAT = 0.1;  // share of the first slope
   const double first = slope.dot(change);
   slope = gradient(v + change);
   double low = 0.0;

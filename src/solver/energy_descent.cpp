@@ -20,7 +20,7 @@ EnergyDescent::EnergyDescent(const RingModel& model, double tolerance)
 bool EnergyDescent::findWayDown(RingLinearisation& system, const RingState& state) noexcept
 {
   constexpr int MAX_SHIFTS = 30;
-  constexpr double FIRST_SHIFT = 1e-6;  // of the stiffest diagonal entry
+  constexpr double FIRST_SHIFT = 1e-6;  // share of the stiffest diagonal entry
   double shift = 0.0;
   for (int i = 0; i < MAX_SHIFTS; ++i)
   {
@@ -55,7 +55,7 @@ double EnergyDescent::slopeAt(double length, RingLinearisation& system, RingStat
 bool EnergyDescent::step(RingLinearisation& system, RingState& state) noexcept
 {
   constexpr int MAX_TRIALS = 40;
-  constexpr double LEVEL = 0.3;  // of the first slope
+  constexpr double LEVEL = 0.3;  // share of the first slope
   if (!findWayDown(system, state))
   {
     return false;
@@ -81,7 +81,7 @@ bool EnergyDescent::step(RingLinearisation& system, RingState& state) noexcept
 /// Taken if it lowers the energy (or, at the level of rounding, the forces).
 bool EnergyDescent::dampedStep(double damping, RingLinearisation& system, RingState& state) noexcept
 {
-  constexpr double ROUNDING = 1e-12;  // of the energy
+  constexpr double ROUNDING = 1e-12;  // share of the energy
   const double energy = system.forces().energy;
   const double residual = system.residual();
   system.updateTangent(state);

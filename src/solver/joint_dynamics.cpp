@@ -107,7 +107,7 @@ SolveStatus JointDynamics::updateModel() noexcept
   const SolveStatus result = ring_.updateModel();
   viscosity_ = model_->bearing.viscosity(temperature_);
   takeRing();
-  accept();  // what slips meanwhile is part of what the edit sets free
+  accept();  // slip in this step is part of the energy that the edit releases
   return result;
 }
 
@@ -135,7 +135,7 @@ void JointDynamics::takeRing() noexcept
   slideShaft();
 }
 
-/// What friction remembers, by the surface's response at the present angles.
+/// Sets the internal state of the friction from the surface's response at the present angles.
 void JointDynamics::takeSurface() noexcept
 {
   if (model_->cup_friction.hasState())
@@ -191,7 +191,7 @@ double JointDynamics::accept() noexcept
 /// teeth have jumped.
 bool JointDynamics::surfaceAgrees() const noexcept
 {
-  constexpr double MARGIN = 0.05;   // of the surface's range
+  constexpr double MARGIN = 0.05;   // share of the surface's range
   constexpr double TABLED = 2e-6;   // of the output's angle at given torque [rad]
   constexpr double BETWEEN = 2e-4;  // the same of a surface that lies between others; a tooth's jump is 3e-2
   ResponseSurface::Place place;

@@ -128,7 +128,7 @@ private:
   double viscosity() noexcept;
   double brakeTorque(double motor_speed) noexcept;
 
-  /// What friction remembers of the way to some angles.
+  /// Internal state of the friction after the motion to some angles.
   struct Memory
   {
     CupFriction::State cup;

@@ -16,7 +16,7 @@ using namespace joint_state;
 
 namespace
 {
-constexpr double AIM = 0.8;  // of the phase limit, of a substep: under load friction stiffens the joint further [-]
+constexpr double AIM = 0.8;  // share of the phase limit for a substep: friction under load stiffens the joint [-]
 }  // namespace
 
 JointStepper::JointStepper(const Parameters& parameters, const JointModel& model)
@@ -70,7 +70,7 @@ double JointStepper::frequency(double output_inertia) const noexcept
 /// `phase`: of that swing in a step [rad].
 int JointStepper::substepsFor(double phase) const noexcept
 {
-  constexpr double LENGTH = 1e-4;  // of a substep: contacts and friction want it whatever the swing [s]
+  constexpr double LENGTH = 1e-4;  // longest substep that contacts and friction allow at any swing [s]
   if (phase <= phase_limit_)
   {
     return 1;
@@ -135,7 +135,7 @@ void JointStepper::divideAgain(double output_inertia) noexcept
 
 bool JointStepper::staysAtRest(const JointInputs& inputs) const noexcept
 {
-  constexpr double SETTLED = 1e-9;  // of the torque wanted, that the current may be away from it
+  constexpr double SETTLED = 1e-9;  // share of the wanted torque by which the current may differ
   const JointInputs& last = dynamics_.inputs;
   return rest_steps_ * step_ >= REST_TIME && inputs.motor_torque == last.motor_torque &&
          std::abs(x_[DRIVE_TORQUE] - inputs.motor_torque) <= SETTLED * std::abs(inputs.motor_torque) &&

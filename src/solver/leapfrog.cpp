@@ -8,7 +8,7 @@ namespace hjt
 {
 namespace
 {
-/// What friction's strength is taken at in a kick: of each speed the mean amount over it, by the line through the
+/// Speeds for the strength of friction in a kick: of each speed the mean amount over it, by the line through the
 /// speeds at its begin and half a kick earlier [rad/s].
 Eigen::Vector2d rubbingSpeeds(const Eigen::Vector2d& before, const Eigen::Vector2d& earlier) noexcept
 {
@@ -115,7 +115,7 @@ KickedSpeeds Leapfrog::kick(JointDynamics& system, JointState& x, const Eigen::V
   return speeds;
 }
 
-/// What acts from now on acts on the speeds otherwise than what acted in the last kick. A current that lags does not
+/// The present inputs act on the speeds otherwise than those of the last kick. A current that lags does not
 /// jump; the arm's load belongs to a step's end.
 bool Leapfrog::actOtherwise(const JointDynamics& system) const noexcept
 {
@@ -148,7 +148,7 @@ void Leapfrog::do_step(JointDynamics& system, JointState& x, double, double dt) 
   x.segment<2>(MOTOR_ANGLE) = angles;
   x.segment<2>(MOTOR_SPEED) = after;
 
-  // What is done over half of the way belongs before the instant, the rest after: then the ledger's only error is the
+  // The work over half of the way belongs before the instant, the rest after: then the ledger's only error is the
   // quadrature.
   const Eigen::Vector3d until = works(system, before, dt);
   rest_ = works(system, after, dt);

@@ -73,7 +73,7 @@ private:
   double link_torque_{};
   Eigen::Vector3d rest_{ 0.0, 0.0, 0.0 };  // of the last kick's works, after the instant [J]
   Eigen::Vector2d inertia_{ 0.0, 0.0 };    // that it moved [kg.m^2]
-  Eigen::Vector2d half_kick_{ 0.0, 0.0 };  // what it changed the speeds by after the instant [rad/s]
+  Eigen::Vector2d half_kick_{ 0.0, 0.0 };  // change of the speeds after the instant [rad/s]
   /// The ledger takes the kinetic energy at an instant from the product of the speeds half a step before and after it.
   /// Where a half is done again, that changes though no speed at the instant does: by motor and output, summed [J].
   Eigen::Vector2d retaken_{ 0.0, 0.0 };

@@ -44,7 +44,7 @@ SolveCode codeOfFailure(const RingEquilibrium& ring, double load_torque) noexcep
 
 double balanceTolerance(const RingEquilibrium& ring) noexcept
 {
-  constexpr double SHARE = 1e-11;  // of a tooth space: a few roundings of an angle of some radians
+  constexpr double SHARE = 1e-11;  // share of a tooth space: a few roundings of an angle of some radians
   return std::max(SHARE * toothSpace(ring) * ring.stiffness()(1, 1),
                   ring.rounding() * ring.model().gear.flexspline_inner_radius);
 }
@@ -52,7 +52,7 @@ double balanceTolerance(const RingEquilibrium& ring) noexcept
 SolveStatus balanceOutput(RingEquilibrium& ring, double wave_generator_angle, double load_torque) noexcept
 {
   constexpr int MAX_IDLE = 20;          // iterations in a row that come no closer
-  constexpr double CLOSER = 0.999;      // of the least excess before
+  constexpr double CLOSER = 0.999;      // the excess has to fall below this share of the least one so far
   constexpr double FIRST_REACH = 0.01;  // of a tooth space
   constexpr double MAX_REACH = 0.25;    // farther, teeth would pair with other spaces
   SolveStatus total = turnWaveGenerator(ring, wave_generator_angle);

@@ -24,7 +24,7 @@ namespace hjt
 class SurfaceNode
 {
 public:
-  /// What is kept, in this order.
+  /// Values of a node, in this order.
   enum Value : std::uint8_t
   {
     ENERGY,                    // U [J]

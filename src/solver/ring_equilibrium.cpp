@@ -283,7 +283,7 @@ SolveStatus RingEquilibrium::solve(const DrivePosition& target) noexcept
   return solvePredicted();
 }
 
-/// From the present state as a guess.
+/// Starts from the present state.
 SolveStatus RingEquilibrium::solvePredicted() noexcept
 {
   const int jumps = model_->meshed() ? model_->of<ToothMesh>().pairNearest(now_.position, now_.shape) : 0;

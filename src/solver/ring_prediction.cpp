@@ -149,7 +149,7 @@ bool RingPrediction::guessFromKept(const DrivePosition& target, RingState& state
 
 void RingPrediction::guess(const DrivePosition& target, RingState& state) noexcept
 {
-  constexpr double SMALL = 0.02;  // of a pitch; below it the tangent alone is as good
+  constexpr double SMALL = 0.02;  // share of a pitch below which the tangent alone is as good
   const double pitch = model_->rest.pitchAngle();
   const double pitches = (target.wave_generator_angle - state.position.wave_generator_angle) / pitch;
   if (model_->meshed() && std::abs(pitches) > SMALL && std::abs(pitches) < MAX_PITCHES)

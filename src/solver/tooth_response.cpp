@@ -16,7 +16,7 @@ struct Corners
   std::array<float, 4> weight;
 };
 
-/// Of the stored teeth from `first` on, `count` of them.
+/// Blends `count` stored teeth from `first` on.
 void blend(const Corners& from, std::size_t first, std::size_t count, double* out) noexcept
 {
   const float* a = from.node[0] + first;

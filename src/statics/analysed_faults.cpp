@@ -11,7 +11,7 @@ namespace hjt
 {
 namespace
 {
-/// What an analysis leaves out of what the fault changes; nullptr if it has some of that.
+/// The effect of a fault that an analysis lacks; nullptr if it has part of the effect.
 const char* missingFor(const Fault& fault, const Parameters& parameters, Analysis analysis)
 {
   const unsigned changed = partsOf(fault, parameters.gear);

@@ -35,7 +35,7 @@ public:
   /// Amplitude without mean stress that does as much damage at the notch of a place [Pa]. Compression is no help.
   double equivalentAmplitude(std::size_t place, const StressCycle& cycle) const noexcept
   {
-    constexpr double LEAST_MARGIN = 1e-3;  // what breaks at once counts as a large amplitude
+    constexpr double LEAST_MARGIN = 1e-3;  // immediate failure counts as a large amplitude
     const double mean =
         notch_factor_[place] * StressCycle::equivalent(std::max(cycle.mean(), 0.0), cycle.shear) / ultimate_;
     return notch_factor_[place] * cycle.amplitude() / std::max(1.0 - mean, LEAST_MARGIN);

@@ -13,7 +13,7 @@ namespace hjt
 {
 namespace
 {
-constexpr int EFFICIENCY_POSITIONS = 4;  // of a tooth pitch, for the efficiency
+constexpr int EFFICIENCY_POSITIONS = 4;  // in a tooth pitch, for the efficiency
 
 std::string shortNumber(double value)
 {

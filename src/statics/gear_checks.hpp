@@ -11,7 +11,7 @@ namespace hjt
 /// Why the gear cannot turn, sound and as drawn: its teeth jam without load. Empty if they do not.
 std::string jamOf(const Parameters& parameters);
 
-/// What does not go together, one text each: key, value, and what it should be near; a jam comes alone. They take a few
+/// Inconsistent values, one text each: key, value, and what it should be near; a jam comes alone. They take a few
 /// equilibria, some 10 ms.
 std::vector<std::string> gearWarnings(const Parameters& parameters);
 }  // namespace hjt

@@ -22,9 +22,9 @@ namespace hjt
 namespace
 {
 constexpr double CONFIGURED_SIZE = 25.0;
-constexpr double TORSION_ERROR = 1e-4;  // of a fitted twist
+constexpr double TORSION_ERROR = 1e-4;  // relative error of a fitted twist
 constexpr int TORSION_TRIALS = 30;
-constexpr int FITTED_BITS = 12;          // of a fitted torque's parameter
+constexpr int FITTED_BITS = 12;          // bits of a fitted torque's parameter
 constexpr double LEAST_OF_START = 1e-3;  // least value of it tried, over where the fit starts
 constexpr int CATALOGUE_RATIO = 100;     // whose friction the catalogue has
 constexpr const char* ORIGIN = "gear";
@@ -180,7 +180,7 @@ void applyRatings(const Parameters& from, const GearRequest& request, const Gear
   const std::string rule = rule_of(request.ratings);
   designer.set("cup.torsion_breakpoints", { figures.breakpoints[0], figures.breakpoints[1] },
                rule_of(request.breakpoints));
-  // As much of the torsion as in the configured gear.
+  // The same share of the torsion as in the configured gear.
   designer.scale("cup.friction_torque", figures.breakpoints[0] / from.cup.torsion_breakpoints[0],
                  "in proportion to T1, at which the torsion is alike");
   designer.set("life.rated_torque", figures.rated_torque, rule);

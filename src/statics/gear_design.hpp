@@ -14,9 +14,9 @@ namespace hjt
 /// Conditions under which a catalogue gives its torques of friction.
 constexpr double CATALOGUE_SPEED = 2000.0 * PI / 30.0;  // [rad/s]
 constexpr double CATALOGUE_TEMPERATURE = 20.0;          // [degC]
-constexpr int FRICTION_POSITIONS = 8;                   // of a tooth pitch, over which friction is averaged
+constexpr int FRICTION_POSITIONS = 8;                   // in a tooth pitch, over which friction is averaged
 
-/// The gear wanted. What is left out follows from the size.
+/// Requested gear. Values that are left out follow from the size.
 struct GearRequest
 {
   double size{ 25.0 };                  ///< as catalogues count: 25 has the configured dimensions [-]
@@ -32,7 +32,7 @@ struct GearRequest
   std::optional<double> no_load_torque;   ///< at the wave generator, 2000 rpm, 20 degC [N.m]
 };
 
-/// What a maker's catalogue gives for a gear; 0: it gives no such figure.
+/// Figures of a maker's catalogue for a gear; 0: not given.
 struct GearFigures
 {
   std::array<double, 3> stiffness{};    ///< K1, K2, K3 of the whole gear [N.m/rad]
@@ -43,12 +43,12 @@ struct GearFigures
   double momentary_peak_torque{};       ///< [N.m]
   double starting_torque{};             ///< at the wave generator, 20 degC [N.m]
   double no_load_torque{};              ///< at the wave generator, 2000 rpm, 20 degC [N.m]
-  std::string source;                   ///< of what was not given
+  std::string source;                   ///< source of the figures that were not given
 
   double torsion(double torque) const;  ///< [rad], of a torque >= 0 [N.m]
 };
 
-/// What the request gives; else the catalogue's values of the family HFUS/CSF. A ratio that it does not have is scaled
+/// Figures of the request; else those of the catalogue of the family HFUS/CSF. A ratio that it does not have is scaled
 /// from the next ratio of that size, a size that it does not have from size 25.
 /// @throws ParameterError if a given figure is none that a gear can have.
 GearFigures gearFigures(const GearRequest& request);

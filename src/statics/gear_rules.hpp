@@ -6,7 +6,7 @@
 #include "gear/angle.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
 
-// What belongs together in a gear: docs/gear_study.md derives it.
+// Rules between the parameters of a gear: docs/gear_study.md derives it.
 namespace hjt
 {
 /// w0 at which the teeth roll in their spaces without jamming [m]: a tooth at mid-height z above the bore moves by

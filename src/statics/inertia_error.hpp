@@ -7,7 +7,7 @@
 
 namespace hjt
 {
-/// What the equilibrium of the ring leaves out: error of the flank forces, root mean square over the loaded teeth, as
+/// Error of a ring without inertia: error of the flank forces, root mean square over the loaded teeth, as
 /// it is to be expected near a motor speed [rad/s] under a torque at the output [N.m]. [N]
 ///
 ///   E = a m w^2 r0 sqrt(1 + (T / (p r0^3))^4)

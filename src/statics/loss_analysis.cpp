@@ -26,7 +26,7 @@ public:
   PitchWalk& walk() { return walk_; }
   const SolveStatus& status() const { return walk_.status(); }
 
-  /// What each friction takes at this position, per motor speed [N.m].
+  /// Torque of each friction at this position, per motor speed [N.m].
   LossShares shares(double speed, double velocity_ratio)
   {
     const Eigen::Vector2d rates(1.0, velocity_ratio);  // of both angles by the motor's

@@ -35,7 +35,7 @@ public:
   /// they became shorter than a billionth of it.
   bool step(RingMotion& motion, double length) noexcept override
   {
-    constexpr double SHORTEST = 1e-9;  // of the whole length
+    constexpr double SHORTEST = 1e-9;  // share of the whole length
     const double end = motion.time + length;
     begin_ = motion;
     method_.restart();
@@ -46,7 +46,7 @@ public:
     double rest = length;
     while (rest > 0.0)
     {
-      // What is left is shared out evenly: no tiny step at the end.
+      // The remaining time is divided evenly: no tiny step at the end.
       const double stride = rest / std::max(1.0, std::ceil(rest / next_ - 1e-9));
       before_ = motion;
       ring_.pairTeeth(motion.q, motion.time);

@@ -21,7 +21,7 @@ struct WaveGrowth
   double at(double time) const noexcept { return amplitude + speed * (time - begin); }  ///< [m]
 };
 
-/// What moves a dynamic ring from outside. A driven body keeps its speed, whatever acts on it.
+/// External drive of a dynamic ring. A driven body keeps its speed, whatever acts on it.
 struct RingDrive
 {
   WaveGrowth wave;

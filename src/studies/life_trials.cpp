@@ -154,7 +154,7 @@ public:
   LifeForecast forecast(double hours, double remaining, const DriveAge& age)
   {
     constexpr int STRETCHES = 400;
-    constexpr double HORIZON = 3.0;  // of the present age; past it use goes on as in the last stretch
+    constexpr double HORIZON = 3.0;  // in present ages; later use is as in the last stretch
     const Usage so_far = use_.until(hours);
     const FutureLoad ahead = use_.from(hours, HORIZON * (hours + options_.every), STRETCHES);
     const Assessment assessment = assessments_.of(age);

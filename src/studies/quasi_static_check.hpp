@@ -68,7 +68,7 @@ enum class QuasiStaticOutcome
 struct QuasiStaticResult
 {
   QuasiStaticOutcome outcome{ QuasiStaticOutcome::NO_EQUILIBRIUM };
-  SolveStatus status;                  ///< of the equilibrium looked for last
+  SolveStatus status;                  ///< of the last equilibrium that was sought
   double stopped_at{};                 ///< [s]
   DynamicError contact_force;          ///< per tooth [N]
   DynamicError mesh_force;             ///< per tooth; size over the loaded ones [N]

@@ -151,7 +151,7 @@ RatchetRow rowOf(const RingEquilibrium& ring, CompliantDrive& drive, double unlo
 RatchetResult analyseRatchet(const Parameters& parameters, double wave_generator_angle, double lobe_stiffness,
                              double angle_step, double torque_limit, const std::function<void(double)>& progress)
 {
-  constexpr double FALL = 0.9;  // of the largest torque: what is past that is a jump, not a ripple
+  constexpr double FALL = 0.9;  // share of the largest torque: a larger fall is a jump and no ripple
   RatchetResult result;
   const RingModel model = startingJoint(parameters).ring;
   RingEquilibrium ring(model, parameters.solver);

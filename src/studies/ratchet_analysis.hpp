@@ -20,7 +20,7 @@ struct RatchetRow
   double mesh_force_max{};            ///< [N]
   double wave_generator_force_max{};  ///< [N]
   int teeth_loaded{};                 ///< [-]
-  int snaps{};                        ///< so far: steps at which the ring found its next equilibrium only downhill [-]
+  int snaps{};                        ///< steps so far whose next equilibrium was found by energy descent only [-]
   int teeth_jumped{};                 ///< teeth in contact in another space than at no load [-]
 };
 

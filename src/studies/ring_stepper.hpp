@@ -19,7 +19,7 @@ struct RingMotion
   double dissipated{};  ///< by dashpots and viscous friction [J]
 };
 
-/// What a run has cost.
+/// Cost of a run.
 struct StepCounts
 {
   long steps{};

@@ -18,7 +18,7 @@ namespace
 constexpr int LINES = 48;         // intervals of w
 constexpr int COLUMNS = 8;        // of u over a pitch
 constexpr int PLACES = 80;        // of chi over half a turn
-constexpr double SCALE = 1e-3;    // of v: lines are even below it and in even ratios above [rad]
+constexpr double SCALE = 1e-3;    // of v: lines are equidistant below it and geometric above [rad]
 constexpr double LONGEST = 1e-3;  // way of v at once [rad]
 
 using Coefficients = BallTable::Coefficients;
@@ -182,7 +182,7 @@ private:
   double deepest_;
   double turn_;
   double ball_pitch_;
-  Eigen::VectorXd share_;  // of the drop that the race sags by over each tooth
+  Eigen::VectorXd share_;  // share of the drop by which the race sags over each tooth
 };
 using Lines = std::array<std::vector<Coefficients>, LINES + 1>;
 

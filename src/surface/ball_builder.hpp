@@ -11,7 +11,7 @@
 
 namespace hjt
 {
-/// What a ball that drops changes in a gear, or why there is no table of it.
+/// Effect of a dropped ball on a gear, or why there is no table of it.
 struct BallBuild
 {
   BallTable table;

@@ -27,11 +27,11 @@ using Rings = DeviationRings;
 using Torques = DeviationCheck::Torques;
 
 constexpr double SMALLEST = 0.1;  // a line's largest deviation counts as at least this part of the largest of all [-]
-constexpr double FINEST = 0.3;    // of what the surface may miss, that a deviation needs not be finer than [-]
-constexpr double WIDEST = 3.0;    // of the share of a deviation that its table may miss, for the sake of that [-]
+constexpr double FINEST = 0.3;    // of the surface's tolerance; no deviation needs to be finer [-]
+constexpr double WIDEST = 3.0;    // largest factor by which that may raise a deviation's own tolerance [-]
 constexpr int COARSE_LINES = 12;  // a side, before refinement; denser towards no load
 constexpr int MAX_HALVINGS = 5;   // of an interval between two lines
-constexpr double SAME_TORQUE = 1e-7;  // of the torque limit, that equal torques may differ by [-]
+constexpr double SAME_TORQUE = 1e-7;  // difference of equal torques, as a share of the torque limit [-]
 constexpr int MIN_COLUMNS = 4;
 constexpr int MAX_COLUMNS = 16;
 
@@ -231,7 +231,7 @@ private:
         checks_missed_ += good ? 0 : 1;
       }
     }
-    // What moves with the load may move to the next pitch.
+    // The effect may move to the next pitch with the load.
     for (std::size_t pitch = 0; pitch < pitches_; ++pitch)
     {
       columns_[pitch] = std::max({ enough[last(pitch)], enough[pitch], enough[next(pitch)] });

@@ -79,7 +79,7 @@ private:
   /// Torques at every node; what friction and lobes need in the mean: where a tooth begins to touch, rates jump.
   bool gives(const DeviationLine& line, const DeviationLine& opposite, const Same& same) const
   {
-    constexpr double SAME_FRICTION = 0.01;  // of the mean deviation [-]
+    constexpr double SAME_FRICTION = 0.01;  // difference of equal friction, as a share of the mean deviation [-]
     constexpr std::array VALUES{ SurfaceNode::CONTACT_FORCE, SurfaceNode::RING_TORQUE, SurfaceNode::VISCOUS,
                                  SurfaceNode::OUTPUT_STIFFNESS, SurfaceNode::LOBE_FORCE };
     std::array<double, VALUES.size()> misses{};

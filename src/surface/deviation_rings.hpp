@@ -70,7 +70,7 @@ struct DeviationRings
   /// The gear's own at a column of those that `measureEqual` was at last. False: no equilibrium.
   bool measureActual(std::size_t pitch, std::size_t column, SurfaceNode& node)
   {
-    constexpr double NEAR = 0.6;  // of a pitch
+    constexpr double NEAR = 0.6;  // share of a pitch
     const double turned = equal.pitch() * static_cast<double>(pitch);
     const int places = static_cast<int>(pitch) % static_cast<int>(shapes_[column].points.size() / 2);
     const double angle = turned + equal.pitch() * static_cast<double>(column) / static_cast<double>(shapes_.size());

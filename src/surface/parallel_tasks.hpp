@@ -13,7 +13,7 @@ unsigned processors() noexcept;
 /// fixed, so what a task leaves must not depend on the ones before it. `finished`: called from the caller's thread
 /// after each of its tasks with the number that all threads have finished, and once in the end with `count`.
 ///
-/// What a task or `finished` throws ends the rest and is passed on.
+/// An exception of a task or of `finished` ends the other tasks and is rethrown.
 void runTasks(std::size_t count, unsigned threads, const std::function<void(std::size_t)>& task,
               const std::function<void(std::size_t)>& finished);
 }  // namespace hjt

@@ -33,7 +33,7 @@ constexpr const char* FIRST_WORDS = "harmonic_joint_twin response surface ";
 const std::string NO_SURFACE = "no response surface: ";
 const std::string FULL_RING_INSTEAD = "; the twin solves the full ring at every step";
 
-/// What a file must begin with: all that its table depends on. Code, parameters, faults, and what stands in files that
+/// Head of a file: all that its table depends on. Code, parameters, faults, and what stands in files that
 /// the parameters name.
 std::string header(const Parameters& parameters, const std::string& faults)
 {

@@ -55,7 +55,7 @@ SurfacePool::Surface SurfacePool::obtain(const std::string& key, const std::func
     }
     catch (...)
     {
-      // What stopped the other maker, perhaps only a request to stop, need not stop this one.
+      // The reason that stopped the other thread, perhaps only a request, need not stop this one.
     }
   }
 }

@@ -20,7 +20,7 @@ using Node = SurfaceNode;
 
 constexpr double ANGLE_TOLERANCE = 1e-8;   // of the output at given torque [rad]; 0.002 seconds of arc
 constexpr double MOTOR_TOLERANCE = 1e-4;   // of the motor's torque limit [-]
-constexpr double SAME_TORQUE = 1e-6;       // of the torque limit, that equal torques may differ by [-]
+constexpr double SAME_TORQUE = 1e-6;       // difference of equal torques, as a share of the torque limit [-]
 constexpr double OVERLOAD_FACTOR = 10.0;   // beyond the torque limits the tolerances are this much wider
 constexpr double COLLISION_MARGIN = 1.25;  // over the gear's momentary peak torque [-]
 
@@ -268,7 +268,7 @@ double SurfaceRing::frictionTorque(const Node& node) const noexcept
 
 bool SurfaceRing::isMirrored()
 {
-  constexpr double SAME_FRICTION = 1e-5;  // of itself [-]
+  constexpr double SAME_FRICTION = 1e-5;  // relative difference of equal friction [-]
   constexpr int PLACES = 8;               // in a pitch
   std::vector<Node> nodes;
   bool mirrored = true;
@@ -304,7 +304,7 @@ bool SurfaceRing::isMirrored()
 
 int SurfaceRing::repetition()
 {
-  constexpr double LOAD = 0.25;  // of the torque limit [-]
+  constexpr double LOAD = 0.25;  // share of the torque limit [-]
   const int teeth = model_.ring.rest.teeth();
   // A turn of the wave generator by half brings the lobes to the flexspline's same teeth; half a turn and a pitch to
   // the circular spline's. Where its lobes differ, twice as much.

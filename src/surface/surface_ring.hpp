@@ -47,7 +47,7 @@ public:
   /// To v = output angle - motor angle / ratio [rad]. False: the ring found no equilibrium there.
   bool moveTo(double motor_angle, double v);
 
-  /// The same, from a guess at the tooth points there.
+  /// The same, with initial tooth points as a guess.
   bool moveTo(double motor_angle, double v, const Eigen::VectorXd& guess);
 
   /// Tooth points, and after `measure` their rates by the motor's angle at the same v [m], [m/rad].
@@ -106,7 +106,7 @@ public:
 
   int solves() const noexcept { return solves_; }
 
-  /// Beyond the torque limits tolerances are this much wider.
+  /// Factor on the tolerances beyond the torque limits.
   double overload(const SurfaceNode& node) const noexcept;
 
 private:

@@ -22,7 +22,7 @@ constexpr int MAX_HALVINGS = 4;
 using Values = std::vector<float>;
 using Lines = std::map<double, Values>;  // by their v [rad]
 
-/// As in ToothResponse, a node after the other.
+/// As in ToothResponse, node by node.
 class ToothResponseBuilder
 {
 public:

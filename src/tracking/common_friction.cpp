@@ -13,7 +13,7 @@ namespace hjt
 {
 namespace
 {
-/// What the joints of a group have in common, apart from factors of their friction.
+/// Common factor of a group of joints, besides factors of their friction.
 JointGroup groupOf(const std::vector<MeasuredFriction>& joints, const std::vector<double>& factors, double tolerance,
                    std::size_t begin, std::size_t end)
 {
@@ -45,7 +45,7 @@ std::vector<JointGroup> groupsOf(const std::vector<MeasuredFriction>& joints, co
   return { groupOf(joints, factors, tolerance, 0, half), groupOf(joints, factors, tolerance, half, joints.size()) };
 }
 
-/// What factors of the joints' friction, each of its twin's, leave of the measured ratios.
+/// Remainder of the measured ratios after factors of the joints' friction.
 class Left
 {
 public:
@@ -82,7 +82,7 @@ public:
         factors[i] *= group.median;
       }
     }
-    constexpr double TINY = 1e-3;  // of a ratio, which may be zero
+    constexpr double TINY = 1e-3;  // least ratio, which may be zero
     double sum = 0.0;
     for (const double ratio : ratios(factors))
     {
@@ -142,7 +142,7 @@ std::optional<double> temperatureOf(const std::vector<MeasuredFriction>& joints,
 
 ArmFriction ofWholeArm(const std::vector<MeasuredFriction>& joints, double tolerance)
 {
-  constexpr double MAX_MISFIT = 0.67;  // of a temperature, over that without: it makes one faulty joint fit a little
+  constexpr double MAX_MISFIT = 0.67;  // left with a temperature: it also fits one faulty joint a little
   ArmFriction arm;
   arm.factors.assign(joints.size(), 1.0);
   arm.deviations.assign(joints.size(), UNWITNESSED);
@@ -199,7 +199,7 @@ double scatterBeside(std::size_t joint, const JointGroup& group, const std::vect
   return count > 1.0 ? std::sqrt(std::max(0.0, variance - SOUND * SOUND) / count) : 0.0;
 }
 
-/// What the joints of a group have in common goes into the arm's factors of those that share it.
+/// Adds the common factor of a group to the arm's factors of the joints that share it.
 void take(const JointGroup& group, const std::vector<MeasuredFriction>& joints, ArmFriction& arm)
 {
   constexpr double CHANCE = NO_WITNESS;  // share that three joints may have in common, as those of their type differ

@@ -17,7 +17,7 @@ class Tracker;
 /// By which the temperature of a drive, and what else the joints of an arm have in common, changes friction from day to
 /// day, where no other joints tell: standard deviation of the logarithm [-].
 constexpr double UNWITNESSED = 0.06;
-/// Of what the joints have in common, from which on they are no witnesses: standard deviation of the logarithm [-].
+/// Of common factors of the joints, from which on they are no witnesses: standard deviation of the logarithm [-].
 constexpr double NO_WITNESS = 0.05;
 
 /// Joints that witness for each other, at least.
@@ -37,7 +37,7 @@ struct MeasuredFriction
   bool temperature_received{};       ///< that one was
   std::function<double(double)> at;  ///< the twin's at a temperature [degC], in the motion that was measured [N.m]
   bool is_below_faults{};            ///< less than any fault leaves of it
-  bool is_none{};                    ///< next to none at all
+  bool is_none{};                    ///< friction is nearly zero
   bool is_against{};                 ///< the current goes against the motion's
   bool is_load_wrong{};              ///< the current fits no load of this joint
   bool is_to_own{};                  ///< the expected one is the joint's own when it was sound
@@ -52,7 +52,7 @@ struct JointGroup
   bool is_known{};       ///< most of at least three agree on it
 };
 
-/// What the friction of an arm's joints has in common.
+/// Common factors of the friction of an arm's joints.
 struct ArmFriction
 {
   std::vector<double> factors;        ///< of each joint, that of its group in it
@@ -95,21 +95,21 @@ public:
   /// Forgets what was found; the joints go back to the configured temperature.
   void reset();
 
-  /// After the rows of a time [s]; works every PERIOD. True: what the joints have in common has changed.
+  /// After the rows of a time [s]; works every PERIOD. True: common factors of the joints has changed.
   bool look(double time);
 
   const ArmFriction& found() const { return found_; }
 
 private:
   static constexpr double PERIOD = 1.0;   // [s]
-  static constexpr double CHANGE = 0.05;  // of the median that is followed
-  static constexpr int LOOKS = 10;        // in a row that show a change
+  static constexpr double CHANGE = 0.05;  // change of the median that starts a new estimate
+  static constexpr int LOOKS = 10;        // successive updates that have to show a change
 
   std::vector<Tracker*> joints_;
   double tolerance_;
   std::vector<double> sound_;
   double next_look_{ -std::numeric_limits<double>::infinity() };  // [s]
-  int steady_{};                                                  // looks in a row that differ from what was found
+  int steady_{};                                                  // successive updates that differ from the result
   ArmFriction found_;
 };
 }  // namespace hjt

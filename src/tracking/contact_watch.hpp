@@ -13,7 +13,7 @@
 
 namespace hjt
 {
-/// What touched a joint's side of the arm.
+/// A contact on a joint's side of the arm.
 struct Contact
 {
   double since{};    ///< when it was first seen [s]
@@ -43,9 +43,9 @@ public:
   {
     constexpr double MOVING = 0.02;  // beyond the noise of a slope [rad/s]
     constexpr double MEAN = 0.1;     // [s]
-    constexpr double SETTLED = 0.3;  // of motion one way: presliding and the controller's start are over [s]
+    constexpr double SETTLED = 0.3;  // of motion one way: then presliding and the start are over [s]
     constexpr double LASTING = 0.1;  // [s]
-    constexpr double KNOWN = 2.0;    // of motion one way, before which nothing is usual [s]
+    constexpr double KNOWN = 2.0;    // motion in one direction before a mean is known [s]
     constexpr double OF_FRICTION = 0.5;
     constexpr double OF_LOAD = 0.05;
     constexpr double OF_LARGEST = 0.02;
@@ -58,7 +58,7 @@ public:
       moved_ = beyond_ = mean_ = 0.0;
       return;
     }
-    constexpr double ROWS = 4.0;  // that rates take in at least
+    constexpr double ROWS = 4.0;  // fewest rows in the window of the rates
     const double smeared = std::max(0.0, ROWS * step - 2.0 * MotionDifferentiator::HALF_WIDTH);
     Usual& usual = usual_[way > 0 ? 1 : 0];
     const double bound =

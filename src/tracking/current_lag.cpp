@@ -30,7 +30,7 @@ constexpr std::size_t MIDDLE = CurrentLag::LAGS / 2;
 
 double ownLag(const std::array<double, CurrentLag::LAGS>& left)
 {
-  constexpr double CLEARLY = 0.75;  // of what is left without a lag, rms
+  constexpr double CLEARLY = 0.75;  // of the rms residual without a lag
   std::size_t best = MIDDLE;
   for (std::size_t i = 1; i + 1 < CurrentLag::LAGS; ++i)
   {
@@ -43,8 +43,8 @@ double ownLag(const std::array<double, CurrentLag::LAGS>& left)
 
 double commonLag(const std::vector<std::array<double, CurrentLag::LAGS>>& left)
 {
-  constexpr double CLEARLY = 0.93;  // of what is left without a lag, rms: sound recordings of a UR5 leave more
-  constexpr double AGREES = 0.96;   // of each joint that agrees
+  constexpr double CLEARLY = 0.93;  // of the rms residual without a lag: sound recordings of a UR5 leave more
+  constexpr double AGREES = 0.96;   // of the rms residual, for each joint that agrees
   double best_share = CLEARLY;
   double best_lag = 0.0;
   for (std::size_t i = 0; i < CurrentLag::LAGS; ++i)

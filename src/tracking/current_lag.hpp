@@ -14,7 +14,7 @@
 
 namespace hjt
 {
-/// What a constant, Coulomb and viscous friction, acceleration and load explain of a joint's current, if the current
+/// Part of a joint's current that a constant, Coulomb and viscous friction, acceleration and load explain, if it
 /// came earlier or later than the motion. Fixed memory; nothing allocates.
 ///
 /// Rows count at most every 20 ms, the motion between them on lines. Of motion faster than 0.05 rad/s, the last two
@@ -94,7 +94,7 @@ private:
       return;
     }
     std::uint64_t above = end_ - 1;
-    for (std::size_t i = 0; i < LAGS; ++i)  // from the latest motion on
+    for (std::size_t i = 0; i < LAGS; ++i)  // lags in descending order
     {
       const double time = now.time - lagAt(i);
       while (above > oldest + 1 && at(above - 1).time >= time)

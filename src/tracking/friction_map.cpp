@@ -20,7 +20,7 @@ constexpr std::array<double, 7> SPEEDS{ 0.01, 0.06, 0.36, 2.16, 12.96, 77.76, 46
 // Shares of the largest load.
 constexpr std::array<double, 11> LOADS{ 0.0, 0.02, 0.05, 0.08, 0.12, 0.2, 0.3, 0.45, 0.6, 0.8, 1.0 };
 
-/// What the motor can hold, or what acts on a joint that has no motor [N.m].
+/// Largest load that the motor can hold, or the load limit of a joint without a motor [N.m].
 double largestLoad(const Parameters& parameters)
 {
   const double largest = parameters.motor.torque_limit > 0.0 ?

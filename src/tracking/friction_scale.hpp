@@ -35,7 +35,7 @@ public:
   std::optional<double> ratio() const noexcept
   {
     constexpr double MIN_TIME = 10.0;         // [s]
-    constexpr double CORRELATED = 0.5;        // rows nearer to each other say the same [s]
+    constexpr double CORRELATED = 0.5;        // rows closer than this are correlated [s]
     constexpr double MAX_UNCERTAINTY = 0.05;  // a third of what joints may differ by
     if (time_ < MIN_TIME)
     {

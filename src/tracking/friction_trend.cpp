@@ -12,7 +12,7 @@ namespace hjt
 {
 namespace
 {
-/// By which a joint's answer to what the joints have in common differs from the others': standard deviation [-].
+/// By which a joint's answer to common factors of the joints differs from the others': standard deviation [-].
 constexpr double OTHER_ANSWER = 0.5;
 
 double weightOf(const DatedFriction& recording)

@@ -15,10 +15,10 @@ namespace hjt
 struct DatedFriction
 {
   double time{};            ///< in any unit
-  double factor{};          ///< > 0, apart from what the joints have in common [-]
+  double factor{};          ///< > 0, apart from common factors of the joints [-]
   double deviation{};       ///< standard deviation of its logarithm, > 0 [-]
   double slow_deviation{};  ///< the part of it that may last for a season: of the temperature [-]
-  double common{};          ///< logarithm of what the joints have in common; 0: not known [-]
+  double common{};          ///< logarithm of common factors of the joints; 0: not known [-]
 };
 
 /// A line through the logarithms of a joint's friction over time, each weighted by its deviation. Where the factors
@@ -57,7 +57,7 @@ private:
 /// Not known: fewer than MIN_RECORDINGS, or no time between them.
 FrictionTrend frictionTrend(const std::vector<DatedFriction>& recordings);
 
-/// What the joints of a group have in common in each recording: of the logarithms of their friction, each less the
+/// Common factor of a group of joints in each recording: of the logarithms of their friction, each less the
 /// joint's own median, the median joint's. It is taken alike of all recordings, so that it makes no step from one to
 /// the other. `logarithms`: by joint and recording; none: not known. None: of fewer than MIN_WITNESSES joints.
 std::vector<std::optional<double>> commonOfRecordings(

@@ -39,7 +39,7 @@ public:
 
   void clear() noexcept { begin_ = end_; }
 
-  /// What was pushed so far belongs to rows that have come.
+  /// Marks the values pushed so far as those of rows that were received.
   void mark() noexcept { marked_ = end_; }
 
   /// The time of the rows jumps back: forgets all but what was pushed since the mark from a time before `earliest` on,

@@ -261,7 +261,7 @@ double JointEvidence::unexplainedRms() const
 FittedFactor JointEvidence::loadFactor() const
 {
   constexpr double CORRELATED = 0.5;  // rows nearer to each other tell the same [s]
-  constexpr double LEAST = 0.1;       // of the load that friction does not explain, rms [A]
+  constexpr double LEAST = 0.1;       // least rms of the load that friction does not explain [A]
   const double rows = now_.gains(0, 0);
   FittedFactor factor;
   if (now_.gains_time < 10.0 * CORRELATED)

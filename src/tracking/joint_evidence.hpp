@@ -27,7 +27,7 @@ struct JudgedWindow
   Assessment assessment;
 };
 
-/// What the measured motion covers.
+/// Coverage of the measured motion.
 struct MotionReach
 {
   std::uint64_t rows{};
@@ -77,7 +77,7 @@ struct EvidenceParameters
   double possible_current;  ///< [A]
 };
 
-/// What a measured joint shows beside the twin that makes the same motion, row by row, live and offline alike:
+/// Evidence of a measured joint beside the twin in the same motion, row by row, live and offline alike:
 /// `hjt::judge` makes the verdict of it. Rows while something touches the arm, and ContactWatch::HOLD after it, count
 /// for nothing, unless the load is the configured one. Memory is fixed; after construction nothing allocates or throws.
 class JointEvidence
@@ -91,7 +91,7 @@ public:
   /// Of the sound joint; without it the signals' reference is learned from the first windows.
   void setReference(std::vector<ReferenceBin> bins);
 
-  /// What became of a row.
+  /// Result of a row.
   enum class Row
   {
     IMPOSSIBLE,  ///< its current or load is beyond what the joint has
@@ -141,10 +141,10 @@ public:
   double residualRms() const;   ///< [A]
   /// Standard deviation of the residual about its mean: an unknown constant load does not count [A].
   double residualSpread() const;
-  /// What of the residual is left after the best constant and the best multiple of the predicted friction: neither a
+  /// The residual that is left after the best constant and the best multiple of the predicted friction: neither a
   /// constant load nor worn or cold grease counts, rms [A].
   double unexplainedRms() const;
-  /// What the motion takes beside friction, load and inertia, in the measured current: a multiple of the predicted one.
+  /// The part of the measured current besides friction, load and inertia: a multiple of the predicted one.
   /// NaN: too little of it to tell.
   FittedFactor loadFactor() const;
   double temperature() const;  ///< that the rows were judged at, mean [degC]
@@ -162,10 +162,10 @@ public:
   const std::optional<Assessment>& tooFew() const { return now_.too_few; }  ///< the last one of too few windows
   double alarmTime() const { return now_.alarm_time; }                      ///< when the level first left OK [s]
   Cause cause() const;                                                      ///< that most windows in alarm name
-  double causeShare() const;  ///< of the windows in alarm that name it; 0: none is [-]
+  double causeShare() const;  ///< share of the windows in alarm that name the cause; 0: none [-]
 
 private:
-  /// What adds up over the rows.
+  /// Sums over the rows.
   struct Sums
   {
     explicit Sums(const Parameters& parameters);

@@ -20,11 +20,11 @@ struct MotionRow
   double motor_angle{ std::numeric_limits<double>::quiet_NaN() };  ///< NaN: not measured [rad]
   double recorded_velocity{ std::numeric_limits<double>::quiet_NaN() };  ///< NaN: not recorded [rad/s]
   double received{};                                                     ///< when it arrived, from the same zero [s]
-  double stamp_error{};                                                  ///< what `time` is later than the motion [s]
+  double stamp_error{};                                                  ///< delay of `time` behind the motion [s]
   /// At the output, of the links' vibration, which the load leaves out [N.m].
   double vibration{};
   double temperature{ std::numeric_limits<double>::quiet_NaN() };  ///< of the drive; NaN: not measured [degC]
-  /// What the controller expects of the motor in this motion; NaN: not recorded [A].
+  /// Motor current that the controller expects in this motion; NaN: not recorded [A].
   double target_current{ std::numeric_limits<double>::quiet_NaN() };
 
   double temperatureOr(double configured) const noexcept
@@ -66,14 +66,14 @@ public:
   std::uint64_t gaps() const noexcept { return segment_; }
 
 private:
-  /// What a fit takes of a row.
+  /// Values of a row that a fit uses.
   struct Point
   {
     double time{};            // true [s]
     double position{};        // [rad]
     std::uint64_t segment{};  // number of gaps before it
   };
-  static constexpr std::size_t ROOM = 512;      // more than two windows of rows at MIN_STEP
+  static constexpr std::size_t ROOM = 512;      // holds two windows of rows at MIN_STEP
   static constexpr int MIN_ROWS = 4;            // rows for a parabola that does not only pass through them
   static constexpr std::uint64_t MIN_SIDE = 2;  // rows to either side, however far apart
 

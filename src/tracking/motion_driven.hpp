@@ -14,7 +14,7 @@
 
 namespace hjt
 {
-/// What weight and inertia of a load take to make a motion, > 0 resists positive motion [N.m].
+/// Torque of a load's weight and inertia in a motion, > 0 resists positive motion [N.m].
 inline double ownTorque(const Load& load, const MotionSample& sample) noexcept
 {
   return load.inertia() * sample.acceleration - load.gravityTorque(sample.position);

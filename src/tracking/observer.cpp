@@ -14,7 +14,7 @@ namespace hjt
 {
 namespace
 {
-constexpr double DAMPING = 0.02;    // of the torsional swing, of critical [-]
+constexpr double DAMPING = 0.02;    // of the torsional swing, share of critical damping [-]
 constexpr double DEVIATIONS = 3.0;  // of a band
 // Of the first state, rms.
 constexpr double FIRST_TORSION = 1.0e-4;        // [rad]

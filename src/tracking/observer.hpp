@@ -66,9 +66,9 @@ struct Observation
   double friction_torque{};  ///< a healthy joint's, at the motor, with its sign [N.m]
   double residual_torque{};  ///< at the motor: torque beyond that of the healthy joint that explains the measurement
                              ///< [N.m]
-  double residual_band{};    ///< of it, three deviations, if the noise is as stated and the joint healthy [N.m]
+  double residual_band{};    ///< three deviations, if the noise is as stated and the joint healthy [N.m]
   double innovation{};       ///< output angle measured less predicted [rad]
-  double innovation_band{};  ///< of it, three deviations [rad]
+  double innovation_band{};  ///< band of the innovation: three deviations [rad]
   bool sticking{};           ///< friction holds the motor: any torque within it fits, so the residual carries no
                              ///< information
 };

@@ -57,7 +57,7 @@ public:
 
 private:
   static constexpr double LEAST_WAY = 0.5;  // [rad]
-  static constexpr double OFF = 0.005;      // more than torsion and encoders make of it [-]
+  static constexpr double OFF = 0.005;      // beyond the effect of torsion and encoders [-]
 
   double ratio_;
   MotionRow last_;

@@ -7,7 +7,7 @@
 
 namespace hjt
 {
-/// What a verdict rests on, or why there is none. Numbers and names are those of Verdict.msg.
+/// Reason of a verdict, or why there is none. Numbers and names are those of Verdict.msg.
 enum class Reason : std::uint8_t
 {
   SOUND = 0,                 ///< judged: as in a sound joint

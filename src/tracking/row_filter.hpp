@@ -22,7 +22,7 @@ struct LeftOutRows
   std::uint64_t impossible{};   ///< a value is not finite, or beyond what a sound message holds
   std::uint64_t unreachable{};  ///< an angle that the rows beside it contradict
   std::uint64_t repeated{};     ///< all values are those of the row before, while the joints move
-  std::uint64_t bunched{};      ///< follows the row before much sooner than rows do
+  std::uint64_t bunched{};      ///< rows much closer to the one before than the period
 
   std::uint64_t all() const noexcept { return impossible + unreachable + repeated + bunched; }
 };
@@ -53,7 +53,7 @@ public:
   {
   }
 
-  /// What follows is a new stream.
+  /// Starts a new stream.
   void reset() noexcept
   {
     has_last_ = has_raw_ = is_confirmed_ = moves_ = false;
@@ -107,8 +107,8 @@ public:
 
 private:
   static constexpr std::size_t ROOM = 16;       // rows that are held back, at most
-  static constexpr double SLACK = 0.02;         // of a row's time: messages come in bursts [s]
-  static constexpr double MARGIN = 1.2;         // over the greatest speed [-]
+  static constexpr double SLACK = 0.02;         // added to a row's time: messages come in bursts [s]
+  static constexpr double MARGIN = 1.2;         // factor on the greatest speed [-]
   static constexpr double MOVING = 0.01;        // [rad/s]
   static constexpr double BUNCHED = 0.25;       // of the mean step
   static constexpr double MEMORY = 64.0;        // of the mean step [rows]
@@ -205,7 +205,7 @@ private:
     return more && visit(last_);
   }
 
-  /// What was held back.
+  /// Gives the rows that were held back to `visit`.
   template <class Visit>
   bool release(const Visit& visit)
   {
@@ -220,7 +220,7 @@ private:
 
   std::vector<double> speeds_;
   Rows last_;               // let through last; the first one waits for the second
-  Rows raw_;                // as they came, but for repeated ones
+  Rows raw_;                // unfiltered, without repeated ones
   std::vector<Rows> held_;  // that cannot be reached from the last
   std::size_t held_count_{};
   bool has_last_{};

@@ -9,13 +9,13 @@
 
 namespace hjt
 {
-// Of what `joint_twin compare` writes into the directory of an arm's or a joint's report.
+// Files that `joint_twin compare` writes into the directory of an arm's or a joint's report.
 constexpr const char* ARM_FILE = "arm.json";
 constexpr const char* COMPARISON_FILE = "comparison.json";
 constexpr const char* BASELINE_FILE = "baseline.yaml";
 constexpr const char* FRICTION_FILE = "friction.csv";
 
-/// What earlier comparisons left of the joint when it was sound.
+/// Figures of the sound joint from earlier comparisons.
 struct SoundJoint
 {
   OwnReference own;

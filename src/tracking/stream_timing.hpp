@@ -19,7 +19,7 @@ struct StreamTimingReport
   std::uint64_t missing{};   ///< that the period would have had between two others
   double period{};           ///< between stamps, median of the last rows [s]
   double longest_gap{};      ///< between stamps [s]
-  double offset{};  ///< reception less stamp, the smallest of the last rows: clocks' offset and shortest way [s]
+  double offset{};  ///< smallest reception less stamp of the last rows: offset of the clocks and shortest transport [s]
   double jitter{};  ///< how far beyond it 95 of 100 rows stay [s]
 };
 
@@ -73,7 +73,7 @@ public:
 
 private:
   static constexpr std::size_t KEPT = 256;  // rows that medians are made of
-  static constexpr std::size_t RENEW = 32;  // rows between two looks at the period
+  static constexpr std::size_t RENEW = 32;  // rows between two updates of the period
 
   template <std::size_t N>
   static double quantile(std::array<double, N> values, std::size_t count, double part) noexcept

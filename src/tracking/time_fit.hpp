@@ -98,7 +98,7 @@ public:
     {
       values[i] = std::abs(values[i] - factor.value);
     }
-    constexpr double DEVIATION = 1.48;  // of a normal distribution, over its median magnitude
+    constexpr double DEVIATION = 1.48;  // standard deviation over median magnitude of a normal distribution
     const double typical = upperMedian(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count));
     factor.uncertainty = DEVIATION * typical / std::sqrt(static_cast<double>(count));
     return factor;
@@ -125,7 +125,7 @@ private:
   static constexpr std::size_t KEPT = 256;           // windows: 200 s of motion
   static constexpr double MEMORY = 2000.0;           // pieces that the lag is made of
   static constexpr double MIN_ACCELERATED = 20.0;    // such pieces
-  static constexpr double LEAST_ACCELERATION = 0.1;  // of those [rad/s^2]
+  static constexpr double LEAST_ACCELERATION = 0.1;  // of the pieces that are fitted [rad/s^2]
 
   struct Piece
   {

@@ -259,7 +259,7 @@ Comparison Tracker::comparisonOf(MotionSample& sample) noexcept
   const bool is_known = received || load_source_ == LoadSource::MODEL;
   load_is_known_ = is_known;
   sample.load = received.value_or(0.0) + (is_all ? 0.0 : ownTorque(load_, sample));
-  // What of the motor's inertia a controller reckons with is not there a second time.
+  // The controller's load holds part of the motor's inertia already; it is not added again.
   const double external =
       received.value_or(0.0) - (is_all ? telemetry_.inertia_in_load * ratio_ * ratio_ * sample.acceleration : 0.0);
 
@@ -282,7 +282,7 @@ Comparison Tracker::comparisonOf(MotionSample& sample) noexcept
                telemetry_.torque_per_current * (sample.current - telemetry_.current_offset) / ratio_);
   if (!is_known)
   {
-    now.current.band = 0.0;  // what the load makes of the current cannot be judged
+    now.current.band = 0.0;  // the current cannot be judged without the load
   }
   now.residual_torque = telemetry_.torque_per_current * now.current.residual();
 

@@ -39,7 +39,7 @@ struct Comparison
   Compared position;         ///< of the joint [rad]
   Compared velocity;         ///< of the joint [rad/s]
   Compared current;          ///< of the motor [A]
-  double joint_torque{};     ///< what the joint gives to the arm: measured, less friction and the rotor's inertia [N.m]
+  double joint_torque{};     ///< torque on the arm: measured, less friction and the rotor's inertia [N.m]
   double friction_torque{};  ///< of a healthy joint, at the joint, with its sign [N.m]
   double load_torque{};      ///< at the output that was reckoned with, all in all, > 0 resists positive motion [N.m]
   bool load_provided{};      ///< a load was received; else weight and inertia as configured, and where telemetry.load
@@ -55,7 +55,7 @@ struct Comparison
   bool isOutside() const noexcept { return std::abs(current.residual()) > current.band && current.band > 0.0; }
 };
 
-/// What came of the rows that were given.
+/// Counts of the rows that were given.
 struct TrackerCounters
 {
   std::uint64_t compared{};              ///< rows beside which there is a comparison
@@ -98,7 +98,7 @@ public:
 
   bool hasEstimate() const noexcept { return estimated_temperature_.has_value(); }
 
-  /// What the signals of the sound joint are; none: learned from the first windows. Allocates.
+  /// Reference of the joint's signals; none: learned from the first windows. Allocates.
   void setReference(std::vector<ReferenceBin> bins) { evidence_.setReference(std::move(bins)); }
 
   /// A row of telemetry; its own load is passed over. Take the comparisons afterwards.
@@ -138,7 +138,7 @@ public:
   const SignalIndicators& signalIndicators() const noexcept { return evidence_.indicators(); }
   const Assessment& assessment() const noexcept { return evidence_.assessor().assessment(); }
 
-  /// What a mode does with a sample: fills position, velocity, current, torques. @param external load besides the
+  /// Predicts a sample in this mode: fills position, velocity, current, torques. @param external load besides the
   /// weight and inertia that are configured; the whole is in the sample [N.m]
   class Follower
   {
@@ -167,7 +167,7 @@ private:
   TelemetryParameters telemetry_;
   double ratio_;
   GreaseTemperature grease_;
-  double temperature_;                           // of it, at the last row [degC]
+  double temperature_;                           // of the grease, at the last row [degC]
   std::optional<double> estimated_temperature_;  // in its place where none is received [degC]
   JointEvidence evidence_;
   std::unique_ptr<Follower> follower_;

@@ -76,10 +76,10 @@ double agreement(const JointEvidence& evidence)
 /// Why the recorded current says nothing about the drive: not that of its motor, or of another load; none: it fits.
 std::optional<Reason> whyRowsDoNotFit(const JointEvidence& evidence)
 {
-  constexpr double MIN_RATIO = 0.02;  // of the predicted current, rms
+  constexpr double MIN_RATIO = 0.02;  // least share of the predicted current, rms
   constexpr double MAX_RATIO = 4.0;
   constexpr double MAX_UNEXPLAINED = 0.5;
-  constexpr double SPREAD = 2.0;  // of the residual over the predicted current: a constant load has none
+  constexpr double SPREAD = 2.0;  // spread of the residual over that of the predicted current; a constant: 0
   constexpr double AGREES = 0.7;  // correlation of measured and predicted current
   const double noticeable = 2.0 * evidence.parameters().telemetry.current_deviation;
   const double measured = evidence.currentRms();
@@ -94,7 +94,7 @@ std::optional<Reason> whyRowsDoNotFit(const JointEvidence& evidence)
   }
   if (predicted > noticeable && measured > 0.5 * predicted && -agreement(evidence) > AGREES * measured * predicted)
   {
-    return Reason::EFFORT_NOT_CURRENT;  // but of the opposite sign
+    return Reason::EFFORT_NOT_CURRENT;  // of the opposite sign
   }
   // Spikes, noise and a load from outside are large as well, but not a multiple of the prediction.
   if (measured > noticeable && measured > MAX_RATIO * predicted && evidence.residualSpread() > SPREAD * predicted &&
@@ -107,7 +107,7 @@ std::optional<Reason> whyRowsDoNotFit(const JointEvidence& evidence)
   {
     return Reason::LOAD_WRONG;
   }
-  constexpr std::uint64_t MIN_BLOCKS = 3;  // of friction, apart from what was touched
+  constexpr std::uint64_t MIN_BLOCKS = 3;  // of friction without contact
   const MotionReach& reach = evidence.reach();
   return reach.touched_rows > 0 && reach.most_angle - reach.least_angle > LEAST_MOTION &&
                  evidence.friction().blocks().count() < MIN_BLOCKS ?
@@ -160,7 +160,7 @@ Finding judgeTorsion(const JointEvidence& evidence, const OwnReference& own, Ver
   verdict[Figure::TORSION_OF_OWN] = ratio.to_own;
   verdict[Figure::TORSION_TOLERANCE] = ratio.tolerance(parameters);
   judgeRatio(ratio, parameters, Reason::TORSION, finding);
-  constexpr double MIN_TURN = 0.01;  // below it the joint hardly turns
+  constexpr double MIN_TURN = 0.01;  // least turn of the joint
   if (!ratio.isOwnKnown())
   {
     verdict[Figure::ENCODER_SHARE] = eccentricity;
@@ -219,7 +219,7 @@ Finding judgeSignals(const JointEvidence& evidence, const JointContext& context,
 /// Order of the motor's turn that the rows resolve at the highest speed; 0: the joint does not move.
 double highestOrder(const JointEvidence& evidence)
 {
-  constexpr double RESOLVED = 0.4;  // of the rows' rate; half of it is the limit
+  constexpr double RESOLVED = 0.4;  // share of the rows' rate; the limit is a half
   double fastest = 0.0;
   for (const FrictionPoint& point : evidence.friction().points())
   {
@@ -256,7 +256,7 @@ std::vector<Hidden> cannotShow(const JointEvidence& evidence, const Verdict& ver
   return hidden;
 }
 
-/// What does not depend on what is judged.
+/// Sets the figures that do not depend on the kind of verdict.
 void setFigures(const JointEvidence& evidence, const JointContext& context, Verdict& verdict)
 {
   const MotionReach& reach = evidence.reach();

@@ -27,7 +27,7 @@ struct OwnReference
   bool is_unjudged{};             ///< there is a recording, but it did not show the joint's friction
 };
 
-/// What is known of a joint besides its samples.
+/// Context of a joint besides its samples.
 struct JointContext
 {
   OwnReference own;
@@ -78,7 +78,7 @@ enum class Figure : std::uint8_t
   FRICTION_OF_TWIN,        ///< over the twin's [-]
   FRICTION_OF_CONTROLLER,  ///< over what the arm's controller expects [-]
   FRICTION_OF_OWN,         ///< over the joint's own when it was sound [-]
-  FRICTION_OF_ARM,         ///< that all joints of the arm have in common [-]
+  FRICTION_OF_ARM,         ///< common factor of all joints of the arm [-]
   FRICTION_SCATTER,        ///< standard deviation of its logarithm by the scatter of the rows [-]
   FRICTION_LOWEST,         ///< of a sound joint [-]
   FRICTION_HIGHEST,        ///< of a sound joint [-]
@@ -89,7 +89,7 @@ enum class Figure : std::uint8_t
   ENCODER_ERROR,           ///< of the output encoder once a turn, that would look the same [rad]
   ENCODER_ECCENTRICITY,    ///< of the output encoder as configured [rad]
   WINDOWS,                 ///< of the signals, compared [-]
-  WINDOWS_HERE,            ///< of them at one operating point, where those are too few [-]
+  WINDOWS_HERE,            ///< windows at one operating point, if those are too few [-]
   WINDOWS_NEEDED,          ///< at one operating point [-]
   ALARM_TIME,              ///< from which on the signals depart [s]
   CONTACT_SINCE,           ///< of the last contact [s]
@@ -111,7 +111,7 @@ struct WeightedCause
   double weight{};  ///< of the windows in alarm that name it; of causes that cannot be told apart an equal share [-]
 };
 
-/// What is judged of a joint.
+/// Quantities of a joint that are judged.
 enum class FindingSubject
 {
   FRICTION,
@@ -139,7 +139,7 @@ struct JudgedFriction
   bool has_interval{};
 };
 
-/// What a recording cannot show.
+/// Limits of a recording.
 enum class Hidden
 {
   TORSION,             ///< no angle of the motor
@@ -166,10 +166,10 @@ struct Verdict
   double& operator[](Figure figure) { return figures[static_cast<std::size_t>(figure)]; }
 
   VerdictLevel level{ VerdictLevel::NOT_JUDGED };
-  Reason reason{ Reason::NO_STEADY_MOTION };  ///< of the worst finding; if none is judged of the first
+  Reason reason{ Reason::NO_STEADY_MOTION };  ///< reason of the worst finding; if none is judged, of the first
   std::string joint;
   JudgedFriction friction;
-  std::string friction_text;        ///< what is found of it, or why it is not judged, in sentences
+  std::string friction_text;        ///< finding, or why it is not judged, in sentences
   std::vector<Finding> findings;    ///< none: nothing was looked at
   std::vector<Evidence> evidence;   ///< of the worst window of the signals, strongest first
   std::vector<Hidden> cannot_show;  ///< by these rows
@@ -194,7 +194,7 @@ struct NamedFigure
   const char* unit;
 };
 
-/// What is known of a verdict's figures, and the indicators of the worst window with their sound values.
+/// The known figures of a verdict, and the indicators of the worst window with their sound values.
 std::vector<NamedFigure> evidenceOf(const Verdict& verdict);
 
 // Sentences for people and documents.
@@ -217,7 +217,7 @@ inline const char* temperatureSource(const JointEvidence& evidence)
   return evidence.isTemperatureReceived() ? "received" : "configured";
 }
 
-/// What the rows show of the friction, as a multiple of the joint's own when sound, else of the twin's. The evidence
+/// Friction that the rows show, as a multiple of the joint's own when sound, else of the twin's. The evidence
 /// must outlive it.
 MeasuredFriction measuredFriction(const JointEvidence& evidence, const JointContext& context);
 }  // namespace hjt

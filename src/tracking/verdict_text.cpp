@@ -117,7 +117,7 @@ struct RatioText
   double to_own;  // NaN: not known
   double of_arm;
   double tolerance;
-  const char* besides;  // what else moves it
+  const char* besides;  // other causes
 };
 
 std::string ratioText(const Verdict& verdict, const RatioText& ratio, const Finding& finding)

@@ -23,7 +23,7 @@ public:
   {
   }
 
-  /// What does not fit in the telemetry; none: nothing, or that is not yet `settled`.
+  /// Misfit of the telemetry; none: it fits, or that is not yet `settled`.
   void setMisfit(const Misfit& misfit, bool settled);
   const Misfit& misfit() const { return misfit_; }
 
@@ -32,7 +32,7 @@ public:
 
   /// Makes the verdict again, alone.
   void judge() { judge(1.0, UNWITNESSED, {}); }
-  /// Makes it after what the joints have in common of `measuredFriction`. `joint`: its number.
+  /// Makes it after common factors of the joints of `measuredFriction`. `joint`: its number.
   void judge(const ArmFriction& arm, std::size_t joint)
   {
     judge(arm.factors[joint], arm.deviations[joint], arm.misfit);

@@ -5,7 +5,7 @@
 
 namespace hjt
 {
-/// All teeth at the joint's present angles, for those who look at them.
+/// All teeth at the joint's present angles, for output.
 ///
 /// While the joint runs on the response surface its own ring stays where it was: a second ring is brought to the
 /// present angles instead, so that looking changes nothing in the run. Allocates at construction only.

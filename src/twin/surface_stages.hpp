@@ -27,7 +27,7 @@ public:
   const ResponseSurface* of(const FaultList& faults) const noexcept;
 
 private:
-  static constexpr int MAX_TABLES = 4;         // that are built without a thought
+  static constexpr int MAX_TABLES = 4;         // with more, those between the first and the last are left out
   static constexpr std::size_t NODES = 8;      // intervals that a growth is divided into, of a gear of equal teeth
   static constexpr std::size_t FEW_NODES = 4;  // where teeth differ: each table takes several times as long
 

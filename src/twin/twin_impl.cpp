@@ -128,7 +128,7 @@ bool Twin::Impl::takeFaults() noexcept
   return good;
 }
 
-/// What acts in the step from `begin` to now: each input from its stamp on.
+/// Takes the inputs of the step from `begin` to now, each acting from its stamp on.
 void Twin::Impl::takeInputs(Stamp begin) noexcept
 {
   motor_torque.begin(begin);
@@ -301,7 +301,7 @@ JointOutputs Twin::Impl::outputs() const noexcept
   return outputs;
 }
 
-/// What watches the joint step by step: sensors and health.
+/// Updates the observers of the joint, in every step: sensors and health.
 void Twin::Impl::observe() noexcept
 {
   const JointDynamics& dynamics = stepper.dynamics();

@@ -44,34 +44,34 @@ struct Alternative
 {
   Cause cause{};
   double confidence{};          ///< its probability [-]
-  double severity{};            ///< of the fault if this is the cause, mean; 0 with NONE [-]
+  double severity{};            ///< mean severity of the fault, if this is the cause; 0 with NONE [-]
   double severity_deviation{};  ///< standard deviation of that [-]
 };
 
-/// What the indicators say of the drive.
+/// State of the drive by its indicators.
 struct Assessment
 {
   static constexpr std::size_t MAX_EVIDENCE = 3;
   static constexpr std::size_t MAX_ALTERNATIVES = 3;
-  static constexpr double SET = 0.9;  ///< of the probability, which cause and alternatives have together at least
+  static constexpr double SET = 0.9;  ///< least probability of cause and alternatives together
 
   std::int64_t stamp{};     ///< end of the last window [ns]
   std::uint64_t windows{};  ///< windows seen
   AssessmentState state{};
   int windows_here{};    ///< at the last operating point: in the reference if there is no more, else compared
-  int windows_needed{};  ///< of those, for a reference or a verdict
+  int windows_needed{};  ///< windows that a reference or a verdict takes
   HealthLevel level{};
   Cause cause{};                ///< the most likely; NONE at level OK, or if no known fault explains the departure
   bool shows_play{};            ///< the last window had its lost motion compared: its load went both ways
-  Cause pattern{};              ///< whose pattern has the largest score; NONE: an indicator has
+  Cause pattern{};              ///< cause with the pattern of the largest score; NONE: an indicator has a larger one
   double confidence{};          ///< probability of the cause, 0 at level OK [-]
-  double severity{};            ///< of the fault, if this is the cause: mean; 0 with NONE [-]
+  double severity{};            ///< mean severity of the fault, if this is the cause; 0 with NONE [-]
   double severity_deviation{};  ///< standard deviation of that [-]
-  double largest_score{};       ///< of the last windows' mean, over the threshold: beyond 1 is out of the ordinary [-]
+  double largest_score{};       ///< largest score of the last windows' mean over the threshold; beyond 1: alarm [-]
   std::size_t alternative_count{};
   std::array<Alternative, MAX_ALTERNATIVES> alternatives;  ///< most likely first, until SET is reached
   std::size_t evidence_count{};
-  std::array<Evidence, MAX_EVIDENCE> evidence;  ///< strongest first: beyond the threshold, one at least in alarm
+  std::array<Evidence, MAX_EVIDENCE> evidence;  ///< beyond the threshold, strongest first; in alarm at least one
 };
 
 /// Why the last window has no verdict, as a clause; empty: it has one.
@@ -131,8 +131,8 @@ private:
   const double error_factor_;
   Baseline baseline_;
   Deviations deviations_;
-  Assessment assessment_;  // of the last window, without its cause while that is searched for
-  Assessment settled_;     // with it
+  Assessment assessment_;  // of the last window, without its cause during the search
+  Assessment settled_;     // of the last window, with its cause
   CausePatterns patterns_;
   CauseSearch cause_search_;
   OperatingPoint point_;  // of the search

@@ -14,11 +14,11 @@ namespace hjt
 {
 struct SignatureSet;
 
-/// What an indicator of a sound drive, less a model's, differs by from one motion to another.
+/// How far an indicator of a sound drive, less the model's, differs from one motion to another.
 struct CarriedError
 {
   double deviation{ 1e30 };  ///< rms of a drive like the model, unit of the indicator; 1e30: not known
-  double share{};            ///< of what drive and model differ by, of a line all of its signal [-]
+  double share{};            ///< share of the difference of drive and model, of a line of all lines of its signal [-]
   double freedom{ 1.0 };     ///< degrees of freedom both are known with [-]
 };
 
@@ -46,7 +46,7 @@ bool isInReach(const OperatingBin& bin, const OperatingPoint& point, double load
 /// The gear's step between two classes of load [N.m].
 double loadStep(const Parameters& parameters) noexcept;
 
-/// What healthy indicators follow within a class: temperature, its square, the load's mean magnitude, and what the
+/// Covariates of healthy indicators within a class: temperature, its square, the load's mean magnitude, and what the
 /// joint carries, which stays over a job and is the same on any path: the load's constant part and its parts over sine
 /// and cosine of the output angle, and the inertia.
 constexpr std::size_t PLACES = 7;
@@ -66,7 +66,7 @@ struct Repeatability
   double friction_torque{};  ///< of the friction too, at the motor [N.m]
 };
 
-/// What else moves healthy indicators together from one window to another.
+/// Common causes that change several healthy indicators together from window to window.
 constexpr std::size_t COMMON_CAUSES = 3;
 
 /// One healthy indicator, over the windows that determined it.
@@ -76,7 +76,7 @@ struct Reference
   double mean{};             // unit of the indicator; from fitReference on at the mean place of the class
   double variance{};         // about the mean, from fitReference on about what the place makes of it
   double within{};           // half the mean square of what successive windows differ by; 0: not known
-  double relative_square{};  // of the windows' relativeErrors, mean; 0: not known [-]
+  double relative_square{};  // mean square of the windows' relativeErrors; 0: not known [-]
   double scale{};            // mean magnitude, what was subtracted included; unit of the indicator
   bool fitted{};             // has slopes and shares of common causes
   double ridge{};            // lambda: information of the slopes before any window, in windows at place 1 [-]
@@ -142,7 +142,7 @@ struct KeptWindows
   std::array<std::array<float, INDICATOR_COUNT>, MOST> values{};
 };
 
-/// What a class is learned from, beside its ReferenceBin.
+/// Sums that the reference of a class is fitted to, in addition to its ReferenceBin.
 struct LearnedSums
 {
   ReferenceSums windows;
@@ -150,7 +150,7 @@ struct LearnedSums
   KeptWindows kept;
 };
 
-/// What fitReference works in.
+/// Working memory of fitReference.
 struct FitRoom
 {
   std::vector<double> correlations = std::vector<double>(INDICATOR_COUNT * INDICATOR_COUNT);
@@ -166,30 +166,30 @@ struct Deviation
   double score{ std::numeric_limits<double>::quiet_NaN() };
   double threshold_factor{};  ///< deviation over spread, as a multiple of that at the threshold [-]
   double freedom{};           ///< v': degrees of freedom that deviation over spread has [-]
-  double stretch{ 1.0 };      ///< of it, to Student's unit [-]
+  double stretch{ 1.0 };      ///< its spread in Student's unit [-]
 };
 
 using Deviations = std::array<Deviation, INDICATOR_COUNT>;
 
-/// What an amplitude changes by, as a nearly normal number. An amplitude of noise alone is Rayleigh's, whose tail is
+/// Change of an amplitude, as a nearly normal number. An amplitude of noise alone is Rayleigh's, whose tail is
 /// far longer than the normal one; that of its power 2/3 is not (Wilson and Hilferty 1931).
 ///
 /// Law:   c = 3/2 m^(1/3) ((m + x)^(2/3) - m^(2/3)),  to first order x;  x where m is none
 /// where  m  sound amplitude;  x  change of it, not below -m;  in the unit of the amplitude
 double amplitudeChange(double sound, double change) noexcept;
 
-/// What the last windows of a class differ from their reference by, and what sound ones differ by: covariance D + F F',
+/// Difference of the last windows of a class from their reference, and the covariance of sound ones, D + F F',
 /// F  Reference::common times the reference's share of a score's spread, D  that spread squared, of what F leaves.
 struct WindowResidual
 {
-  int windows{};                                     ///< that were averaged [-]
+  int windows{};                                     ///< number of windows averaged [-]
   std::array<double, INDICATOR_COUNT> sound{};       ///< reference with what was subtracted, units of the indicators
   std::array<double, INDICATOR_COUNT> difference{};  ///< from it; of what isFreeAmplitude by amplitudeChange
   std::array<double, INDICATOR_COUNT> own{};         ///< diagonal of D; 0: not compared
   std::array<std::array<double, COMMON_CAUSES>, INDICATOR_COUNT> common{};  ///< rows of F
   double freedom{};                                                         ///< v: of the reference's spreads [-]
   double pattern_freedom{};                                                 ///< v' of what scalars have together [-]
-  double pattern_stretch{ 1.0 };                                            ///< of it, to Student's unit [-]
+  double pattern_stretch{ 1.0 };                                            ///< its spread in Student's unit [-]
 };
 
 enum class BaselineState : std::uint8_t
@@ -261,16 +261,16 @@ public:
 
   double threshold() const noexcept { return threshold_; }                 ///< of |score| [-]
   Deviation pattern(double student) const noexcept;                        ///< scores that, along a pattern
-  double patternThreshold() const noexcept { return pattern_threshold_; }  ///< of such a score [-]
+  double patternThreshold() const noexcept { return pattern_threshold_; }  ///< of the score of a pattern [-]
   const WindowResidual& residual() const noexcept { return residual_; }    ///< of the class of the last window
-  const OperatingBin& bin() const noexcept { return bin_; }                ///< that class
+  const OperatingBin& bin() const noexcept { return bin_; }                ///< class of the last window
   const std::vector<ReferenceBin>& bins() const noexcept { return bins_; }
   const std::vector<LearnedSums>& sums() const noexcept
   {
     return sums_;
   }                                                           ///< by bin; empty of a reference that was given
-  int windowsHere() const noexcept { return windows_here_; }  ///< of it: in the reference, or compared since reset
-  /// Of a class, for its reference.
+  int windowsHere() const noexcept { return windows_here_; }  ///< in the reference, or compared since reset
+  /// Sums of a class, for its reference.
   int windowsNeeded() const noexcept { return given_ ? MIN_WINDOWS : windows_; }
   bool given() const noexcept { return given_; }           ///< by setReference: there are no sums to fit again
   double loadStep() const noexcept { return load_step_; }  ///< [N.m]
@@ -303,20 +303,20 @@ private:
     double weight{};           // k
   };
 
-  /// Of the reference's variance: what stays from window to window, and what is left of the rest in a mean.
+  /// Shares of the reference's variance: that which stays from window to window, and that of the rest in a mean.
   struct Widening
   {
     double stays{};
     double varies{};
-    double slopes{};   // by what slopes are uncertain by
+    double slopes{};   // by the uncertainty of the slopes
     double carried{};  // added by carrying [unit of the indicator squared]
   };
 
-  /// Of a difference [unit of the indicator squared].
+  /// Variance of a difference [unit of the indicator squared].
   struct Variance
   {
     double all{};
-    double learned{};  // of it, by the reference's windows and their scatter
+    double learned{};  // part of the variance that was learned: from the reference's windows and their scatter
   };
 
   ReferenceBin* find(const OperatingPoint& point) noexcept;
@@ -344,7 +344,7 @@ private:
   std::array<double, INDICATOR_COUNT> floor_{};  // q
   Place axes_sizes_{};                           // information along its axes, of the last window's class
   WindowResidual residual_;
-  std::array<double, INDICATOR_COUNT> expected_{};  // of the last window, less what was subtracted
+  std::array<double, INDICATOR_COUNT> expected_{};  // of the last window, without the model's indicators
   OperatingBin bin_;
   int windows_here_{};
   bool given_{};

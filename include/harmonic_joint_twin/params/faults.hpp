@@ -54,7 +54,7 @@ struct Fault
   bool isActiveAtStart() const noexcept { return severity > 0.0 && onset == 0.0; }
 };
 
-/// What a place counts.
+/// Parts that Fault::place numbers.
 enum class FaultPlace : std::uint8_t
 {
   MEMBER,      ///< the whole member only
@@ -66,14 +66,14 @@ enum class FaultPlace : std::uint8_t
   BALL         ///< balls, or pockets of the cage
 };
 
-/// What a kind of fault is: a row of FAULT_DESCRIPTIONS.
+/// Description of a kind of fault: a row of FAULT_DESCRIPTIONS.
 struct FaultDescription
 {
   FaultKind kind;
   const char* name;      ///< of the kind, in files and messages
-  FaultPlace place;      ///< what Fault::place counts
+  FaultPlace place;      ///< parts that Fault::place numbers
   bool whole;            ///< WHOLE_MEMBER is allowed
-  const char* severity;  ///< what severity 1 is
+  const char* severity;  ///< size of the fault at severity 1
   const char* shows;     ///< where it shows first; orders by a name in braces, see shownFirst
 };
 
@@ -163,7 +163,7 @@ std::string placeText(FaultKind kind, const Parameters& parameters);
 
 /// Whether severity, place and onset are within their ranges.
 bool isValid(const Fault& fault, const Parameters& parameters) noexcept;
-/// What is wrong with it, with values and ranges, one a line; empty if nothing is. `key` leads each line.
+/// Errors of the fault, with values and ranges, one a line; empty if it is valid. `key` begins each line.
 std::string faultErrors(const Fault& fault, const Parameters& parameters, const std::string& key);
 
 /// Reads KIND:SEVERITY[:PLACE[:ONSET]]; without a place it is the first allowed. @throws ParameterError.

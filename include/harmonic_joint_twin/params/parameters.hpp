@@ -143,7 +143,7 @@ enum class StressPlace
 };
 constexpr std::size_t STRESS_PLACES = 3;
 
-/// What turns the shape of the flexspline into stress (statics/flexspline_stress.hpp).
+/// Coefficients that give the stress from the shape of the flexspline (statics/flexspline_stress.hpp).
 struct StressParameters
 {
   double tooth_base{};
@@ -213,7 +213,7 @@ enum class LoadSource
   ARM             ///< of links and payload, from the motion of all joints of the arm
 };
 
-/// What a robot gives as effort of a measured joint.
+/// Quantity that a robot publishes as the effort of a joint.
 enum class EffortUnit
 {
   CURRENT,       ///< of the motor [A]
@@ -349,7 +349,7 @@ struct Parameters
   ComparisonParameters comparison;
   PublishParameters publish;
   FaultScaleParameters fault_scale;
-  std::vector<Fault> faults;  ///< that it starts with, or gets on its way
+  std::vector<Fault> faults;  ///< present at the start, or set in during the run
   RealtimeParameters realtime;
 };
 }  // namespace hjt

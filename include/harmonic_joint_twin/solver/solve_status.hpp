@@ -17,7 +17,7 @@ enum class SolveCode
   DISENGAGED        ///< no tooth touches, at any output angle within reach
 };
 
-/// What the solver was doing.
+/// Task of the solver.
 enum class SolveStage
 {
   INSERTION,  ///< of the wave generator
@@ -29,13 +29,13 @@ enum class SolveStage
 struct [[nodiscard]] SolveStatus
 {
   SolveCode code{ SolveCode::CONVERGED };  ///< how it ended
-  SolveStage stage{ SolveStage::MOTION };  ///< what it was doing
+  SolveStage stage{ SolveStage::MOTION };  ///< task that ended so
   int iterations{};                        ///< Newton iterations, all attempts
   int cuts{};                              ///< halvings of the path
   int max_iterations{};                    ///< solver.max_iterations, if the last attempt ran out of them; else 0
   int jumps{};                 ///< teeth that changed their space through a tip: ratcheting, or too long a move
   double residual{};           ///< largest out-of-balance force component on a tooth [N]
-  double unbalanced_torque{};  ///< of the last balance: load that the mesh does not carry [N.m]
+  double unbalanced_torque{};  ///< part of the load that the mesh did not carry in the last balance [N.m]
 
   bool ok() const noexcept { return code == SolveCode::CONVERGED; }  ///< it converged
 

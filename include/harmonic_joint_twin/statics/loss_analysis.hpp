@@ -22,7 +22,7 @@ struct LossShares
   double output{};   ///< dry friction of the output's bearing and seals
   double motor{};    ///< dry and viscous of the motor, and viscous of the output
 
-  /// What the gear with its output's bearing and seals loses.
+  /// Loss of the gear with the output's bearing and seals.
   double gear() const { return bearing + interface + flexing + mesh + cup + damping + output; }
 };
 
@@ -32,7 +32,7 @@ struct LossRow
   SolveStatus status;     ///< of the ring; the numbers hold if ok()
   double motor_speed{};   ///< [rad/s]
   double load_torque{};   ///< at the output, > 0 resists [N.m]
-  double load_reduced{};  ///< what the load asks of the motor without friction, mean of load x d(output)/d(motor) [N.m]
+  double load_reduced{};  ///< torque of the load at the motor without friction, mean of load x d(output)/d(motor) [N.m]
   LossShares loss;        ///< [N.m]
   double gear_efficiency{};  ///< load power over motor power, the motor's own friction left out; 0 without load [-]
 };

@@ -14,7 +14,7 @@ namespace hjt
 /// Names of the places, in the order of the arrays by place. Laws and sources: docs/life.md.
 constexpr std::array<const char*, STRESS_PLACES> STRESS_PLACE_NAMES{ "tooth space", "transition", "flange" };
 
-/// What one place of the flexspline goes through in a turn of the wave generator at a steady load: nominal stresses,
+/// Stress of one place of the flexspline over a turn of the wave generator at a steady load: nominal stresses,
 /// without the notch.
 struct StressCycle
 {
@@ -45,7 +45,7 @@ struct ToothStress
   /// By place, the same all around [Pa].
   std::array<double, STRESS_PLACES> shear{};
 
-  /// What one tooth goes through in a turn is what all teeth have at one instant, as far as they are alike. `place`:
+  /// Stress of one tooth over a turn: that of all teeth at one instant, if they are equal. `place`:
   /// below STRESS_PLACES.
   StressCycle cycle(std::size_t place) const noexcept
   {

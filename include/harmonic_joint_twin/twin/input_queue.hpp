@@ -24,18 +24,18 @@ constexpr std::size_t INPUT_KINDS = 4;  ///< number of kinds
 struct Input
 {
   Stamp stamp{};     ///< acts from here on [ns]
-  InputKind kind{};  ///< what `value` is
+  InputKind kind{};  ///< meaning of `value`
   double value{};    ///< torque [N.m], temperature [degC], or 1 for an engaged brake
 };
 
 /// A fault that sets in at a time.
 struct StampedFault
 {
-  Stamp stamp{};  ///< its severity counts from here on [ns]
+  Stamp stamp{};  ///< time from which the fault is active [ns]
   Fault fault{};
 };
 
-/// What comes to a twin at a time.
+/// An input of the twin, with the time from which it acts.
 using TwinInput = std::variant<Input, StampedFault>;
 
 /// When it acts [ns].

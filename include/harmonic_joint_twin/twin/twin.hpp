@@ -30,7 +30,7 @@ struct JointOutputs
   double output_velocity{};        ///< [rad/s]
   double motor_torque{};           ///< applied, after command timeout and limits
   double load_torque{};            ///< external torque at the output, > 0 resists positive motion
-  double temperature{};            ///< of the grease, that its friction has [degC]
+  double temperature{};            ///< of the grease, which sets the friction [degC]
   double housing_temperature{};    ///< [degC]
   double wave_generator_torque{};  ///< of the wave generator on the flexspline: the motor's, less friction and inertia
   double joint_torque{};           ///< of the mesh on the circular spline
@@ -71,7 +71,7 @@ struct HealthReport
 {
   MotionIndicators motion;     ///< of the last turns, from the true angles
   LobeLoads lobes;             ///< at the current instant
-  SolverState solver_state{};  ///< of the steps that Twin::health was asked about
+  SolverState solver_state{};  ///< over the steps since the last call of Twin::health
   double mesh_force_error{};   ///< expected at this speed and load, rms over the loaded teeth: inertia is left out [N]
 };
 
@@ -143,7 +143,7 @@ public:
   /// output.load_inertia [kg.m^2], >= 0, and its torque on the output beside that and the load torque, > 0 resists
   /// positive motion [N.m]. Both finite. A reset settles under that torque.
   void coupleArm(double inertia, double torque) noexcept;
-  double linkTorque() const noexcept;  ///< of gear and friction on load and arm, as they take it [N.m]
+  double linkTorque() const noexcept;  ///< of gear and friction on the output, as load and arm feel it [N.m]
   /// To load and arm, since reset: work on them and the output's kinetic energy [J].
   double deliveredEnergy() const noexcept;
 
@@ -154,7 +154,7 @@ public:
   Stamp stepLength() const noexcept;  ///< [ns]
 
   JointOutputs outputs() const noexcept;          ///< true state at the current instant
-  EncoderReadings encoders() const noexcept;      ///< what the sensors read there, with their errors
+  EncoderReadings encoders() const noexcept;      ///< readings of the sensors, with their errors
   double motorTorqueReading() const noexcept;     ///< as the drive estimates it from its current [N.m]
   const TwinCounters& counters() const noexcept;  ///< since the last reset
   bool onSurface() const noexcept;  ///< the current instant comes from the response surface, not from all teeth
@@ -174,7 +174,7 @@ public:
   void watchSignals(bool on) noexcept;
   bool watchesSignals() const noexcept;                       ///< as set by watchSignals
   const SignalIndicators& signalIndicators() const noexcept;  ///< of the last window
-  /// Of the last window; of one in alarm 50 ms after its end, for so long its cause is searched for.
+  /// Of the last window. If it is in alarm, from 50 ms after its end on: the search for its cause takes that long.
   const Assessment& assessment() const noexcept;
 
 private:

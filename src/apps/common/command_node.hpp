@@ -59,7 +59,7 @@ struct UsageError : std::runtime_error
   using std::runtime_error::runtime_error;
 };
 
-/// What a command line asks for.
+/// Request of a command line.
 struct Request
 {
   const CommandNode* command;

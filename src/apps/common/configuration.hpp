@@ -11,7 +11,7 @@
 
 namespace hjt
 {
-/// What every subcommand of the tool takes.
+/// Options of every subcommand of the tool.
 struct CommonOptions : ConfigurationOptions
 {
   bool json{};

@@ -159,7 +159,7 @@ private:
     }
   }
 
-  /// What is due at the twin's next instant.
+  /// Feeds the messages that are due at the twin's next instant.
   void feed()
   {
     const Stamp instant = twin_.stamp() + twin_.stepLength();

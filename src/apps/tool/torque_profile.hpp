@@ -9,7 +9,7 @@
 
 namespace hjt
 {
-/// What drives a simulation: motor torque, load and brake over time, each held until the next entry.
+/// Inputs of a simulation: motor torque, load and brake over time, each held until the next entry.
 class TorqueProfile
 {
 public:

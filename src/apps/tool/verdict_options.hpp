@@ -19,7 +19,7 @@ struct Judging : Printed<Options>
 /// `--reference` and `--fail-on`.
 void addVerdictOptions(Command& command, ComparisonOptions& options, std::string& fail_on);
 
-/// What the process answers to a verdict. `not_judged`: joints that it does not speak for.
+/// Exit code of the process for a verdict. `not_judged`: joints that are not judged.
 int exitCodeOf(const std::string& fail_on, HealthLevel health, bool is_judged, std::size_t not_judged);
 
 /// The level, and for how many joints it does not speak.

@@ -11,7 +11,7 @@ namespace hjt
 {
 namespace
 {
-/// `change` the entry of a place, or to all for WHOLE_MEMBER.
+/// Applies `change` to the entry of a place, or to all for WHOLE_MEMBER.
 template <class Change>
 void atPlace(int place, Eigen::VectorXd& values, const Change& change) noexcept
 {
@@ -168,7 +168,7 @@ void pit(const Fault& fault, const Parameters& parameters, JointModel& joint) no
   atPlace(fault.place, joint.mesh_friction.toothFactor(), [&](double& factor) { factor *= friction; });
 }
 
-/// What a jump leaves behind: worn tips, and a circular spline that is no more coaxial.
+/// Damage after a jump: worn tips, and a circular spline that is no longer coaxial.
 void ratchet(const Fault& fault, const Parameters& parameters, JointModel& joint) noexcept
 {
   ToothMesh& mesh = joint.ring.edit<ToothMesh>();

@@ -10,7 +10,7 @@ namespace hjt
 /// docs/faults.md says what each kind stands for.
 void addFault(const Fault& fault, const Parameters& parameters, JointModel& joint) noexcept;
 
-/// What a fault changes of the joint: bits of partsOf.
+/// Parts of the joint that a fault changes: bits of partsOf.
 enum FaultPart : unsigned
 {
   RIM_PART = 1,        ///< stiffness or free shape of the flexspline's rim

@@ -34,10 +34,10 @@ constexpr double END_POSITION = 0.1;   // [rad]
 constexpr double END_SPEED = 0.05;     // [rad/s]
 constexpr double PATIENCE = 0.6;       // [s]
 
-constexpr double LOOK_PERIOD = 0.01;  // at the report [s]
+constexpr double LOOK_PERIOD = 0.01;  // period of checking the report [s]
 constexpr int LOOKS_A_FEEDBACK = 5;
 
-/// As in JointTolerance.msg: 0 leaves it as it is, below 0 there is none.
+/// As in JointTolerance.msg: 0 keeps the default, below 0 there is no tolerance.
 void take(double given, double& tolerance)
 {
   tolerance = given < 0.0 ? HUGE_VAL : given > 0.0 ? given : tolerance;

@@ -21,7 +21,7 @@ class FaultList
 {
 public:
   /// Adds a fault, or replaces the severity of the one of its kind and place; severity 0 takes it away.
-  /// What is as it should be already stays, with its stamp. @returns false if there is no room: nothing was done.
+  /// Faults that have these values already keep their stamp. @returns false if there is no room: nothing is changed.
   bool set(const Fault& fault, std::int64_t since) noexcept;
   void clear() noexcept  ///< takes all away
   {
