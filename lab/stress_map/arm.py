@@ -109,6 +109,7 @@ CELLS = [
     ("seven faults in six joints, at once in motion", SMOOTH, {"faults": ALL_FAULTS}),
     ("a UR3e", SMOOTH, {"arm": "ur3e"}),
     ("a UR16e", SMOOTH, {"arm": "ur16e"}),
+    ("a UR8 Long", SMOOTH, {"arm": "ur8long"}),
     ("rows at 1 kHz", SMOOTH, {"rate": 1000.0}),
 ]
 

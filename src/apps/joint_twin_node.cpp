@@ -224,11 +224,12 @@ std::string affixOf(const ros::NodeHandle& node, const std::string& key)
   return affix;
 }
 
-/// All joints of the arm `name`: its files, then the parameters of this node over those of every joint. What comes of
+/// All joints of the arm `asked`: its files, then the parameters of this node over those of every joint. What comes of
 /// it stands on the parameter server below the name of each.
-void runArm(ros::NodeHandle& node, const std::string& name, const hjt::FoundParameters& found)
+void runArm(ros::NodeHandle& node, const std::string& asked, const hjt::FoundParameters& found)
 {
   const auto directory = hjt::configurationDirectory("");
+  const std::string name = hjt::mainName(asked, directory);
   hjt::ArmDescription arm = hjt::readArmDescription(hjt::findArm(name, directory));
   const std::string description = node.param<std::string>(hjt::DESCRIPTION, "");
   if (!description.empty() && !node.getParam(description, arm.urdf))

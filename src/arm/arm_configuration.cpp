@@ -14,6 +14,23 @@ namespace hjt
 {
 namespace fs = std::filesystem;
 
+namespace
+{
+/// Where `file` is another name of an arm, a link to the file beside it: that file.
+std::optional<fs::path> namesakeOf(const fs::path& file)
+{
+  std::error_code error;
+  const fs::path target = fs::read_symlink(file, error);
+  return error || target.has_parent_path() ? std::nullopt : std::optional(file.parent_path() / target);
+}
+}  // namespace
+
+std::string mainName(const std::string& name, const fs::path& directory)
+{
+  const std::optional<fs::path> namesake = namesakeOf(directory / "arms" / (name + ".yaml"));
+  return namesake ? namesake->stem().string() : name;
+}
+
 std::string findArm(const std::string& name, const fs::path& directory)
 {
   std::error_code error;
@@ -21,7 +38,7 @@ std::string findArm(const std::string& name, const fs::path& directory)
   {
     return name;
   }
-  const fs::path shipped = directory / "arms" / (name + ".yaml");
+  const fs::path shipped = directory / "arms" / (mainName(name, directory) + ".yaml");
   if (!fs::exists(shipped, error))
   {
     throw ParameterError("arm " + name + ": neither a file nor an arm in " + shipped.parent_path().string());
@@ -35,7 +52,7 @@ std::vector<fs::path> armFiles(const fs::path& directory)
   std::error_code error;  // a configuration of one's own may have none
   for (const fs::directory_entry& entry : fs::directory_iterator(directory / "arms", error))
   {
-    if (entry.path().extension() == ".yaml")
+    if (entry.path().extension() == ".yaml" && !namesakeOf(entry.path()))
     {
       files.push_back(entry.path());
     }

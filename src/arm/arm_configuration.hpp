@@ -14,11 +14,14 @@
 
 namespace hjt
 {
+/// Of a shipped arm with several names the one that armsLike() has, else `name`.
+std::string mainName(const std::string& name, const std::filesystem::path& directory);
+
 /// `name` if that is a file, else arms/NAME.yaml in the directory of the default configuration.
 /// @throws ParameterError if there is neither.
 std::string findArm(const std::string& name, const std::filesystem::path& directory);
 
-/// Files of the arms there, by name.
+/// Files of the arms there, by name; further names of an arm, links beside its file, are left out.
 std::vector<std::filesystem::path> armFiles(const std::filesystem::path& directory);
 
 /// The names of the joints, from the base on.

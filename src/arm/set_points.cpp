@@ -9,6 +9,7 @@
 #include <optional>
 #include <tuple>
 
+#include "arm/arm_dynamics.hpp"
 #include "arm/arm_program.hpp"
 #include "base/csv_rows.hpp"
 #include "base/median.hpp"
@@ -133,6 +134,33 @@ std::string speedErrors(const std::vector<ArmSetPoint>& points, const ArmDescrip
   }
   return {};
 }
+/// At rest in each set point no joint may bear more of links and payload than its limit.
+std::string weightErrors(const std::vector<ArmSetPoint>& points, const ArmDescription& arm)
+{
+  ArmDynamics dynamics(arm);
+  std::vector<JointMotion> still(arm.joints.size());
+  std::vector<double> torques(arm.joints.size());
+  for (std::size_t k = 0; k < points.size(); ++k)
+  {
+    for (std::size_t i = 0; i < still.size(); ++i)
+    {
+      still[i].position = points[k].joints[i].position;
+    }
+    dynamics.torques(still, torques);
+    for (std::size_t i = 0; i < still.size(); ++i)
+    {
+      const ArmJoint& joint = arm.joints[i];
+      if (joint.torque_limit > 0.0 && !(std::abs(torques[i]) <= joint.torque_limit))
+      {
+        return "set point " + std::to_string(k + 1) + ": " + joint.name +
+               " cannot bear the weight of links and payload (" + numberText(arm.payload.mass) + " kg), " +
+               roundedText(std::abs(torques[i]), 4) + " N.m at rest; its limit is " +
+               roundedText(joint.torque_limit, 4) + " N.m";
+      }
+    }
+  }
+  return {};
+}
 }  // namespace
 
 void fillRates(std::vector<ArmSetPoint>& points, bool has_velocity, bool has_acceleration)
@@ -248,7 +276,8 @@ void requireMotion(const std::vector<ArmSetPoint>& points, const ArmDescription&
   {
     throw InputError(what + " has no row");
   }
-  const std::string errors = motionErrors(points, arm);
+  std::string errors = motionErrors(points, arm);
+  errors = errors.empty() ? weightErrors(points, arm) : errors;
   if (!errors.empty())
   {
     throw InputError(what + ": " + errors);

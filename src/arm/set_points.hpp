@@ -30,7 +30,8 @@ std::string straightenedText(double change);
 /// seconds at most; angles lie within the joint's range, and speeds within three times its greatest.
 std::string motionErrors(const std::vector<ArmSetPoint>& points, const ArmDescription& arm);
 
-/// @throws InputError if there is none, or with motionErrors. `what`: they are of.
+/// @throws InputError if there is none, with motionErrors, or where a joint cannot bear the weight of links and payload
+/// at rest. `what`: they are of.
 void requireMotion(const std::vector<ArmSetPoint>& points, const ArmDescription& arm, const std::string& what);
 
 /// @throws InputError if a joint's speeds are not the angles' rates by size and sign.

@@ -70,7 +70,8 @@ std::string betterArm(const ArmRecording& recording)
 {
   const RecordingOptions& options = recording.options();
   const std::vector<std::string> names = armsLike(recording.arm(), configDirectory(options));
-  const bool is_shipped = std::find(names.begin(), names.end(), options.arm) != names.end();
-  return is_shipped ? betterArm(rankArms(options, names), options.arm) : std::string();
+  const std::string name = mainName(options.arm, configDirectory(options));
+  const bool is_shipped = std::find(names.begin(), names.end(), name) != names.end();
+  return is_shipped ? betterArm(rankArms(options, names), name) : std::string();
 }
 }  // namespace hjt

@@ -19,7 +19,7 @@ namespace
 /// Of every shipped arm: beyond a limit it throws.
 TEST(GentleMotion, TakesEveryJointBothWaysSlowlyAndFast)
 {
-  for (const char* name : { "ur3", "ur3e", "ur5", "ur5e", "ur10", "ur10e", "ur16e" })
+  for (const char* name : { "ur3", "ur3e", "ur5", "ur5e", "ur10", "ur10e", "ur15", "ur16e", "ur18", "ur8long" })
   {
     const ArmDescription arm = readArmDescription(findArm(name, HJT_TEST_CONFIG_DIR));
     const ArmMotion motion = gentleMotion(arm);
@@ -58,7 +58,7 @@ TEST(ArmDriveMaps, AJointsOwnSceneCounts)
 TEST(FrictionMap, IsMadeForEveryDriveOfEveryShippedArm)
 {
   std::set<std::vector<std::string>> seen;
-  for (const char* name : { "ur3", "ur3e", "ur5", "ur5e", "ur10", "ur10e", "ur16e" })
+  for (const char* name : { "ur3", "ur3e", "ur5", "ur5e", "ur10", "ur10e", "ur15", "ur16e", "ur18", "ur8long" })
   {
     for (const ArmJoint& joint : readArmDescription(findArm(name, HJT_TEST_CONFIG_DIR)).joints)
     {

@@ -193,6 +193,10 @@ class ArmTwin(tool.ToolTest):
                               (["--fault", "tooth_wear:0.5"], "JOINT one of base"),
                               (["--fault", "elbow:tooth_wear:5"], "severity")):
             self.fail_with(1, [text], "arm", "motion.csv", "--arm", "ur5", "--out", "no.csv", *options)
+        ur5 = os.path.join(tool.CHECKOUT, "config/arms/ur5.yaml")
+        self.write("heavy.yaml", f"like: {ur5}\npayload: {{mass: 1000.0, centre: [0.0, 0.0, 0.0]}}\n")
+        self.fail_with(1, ["set point 1: shoulder_lift_joint cannot bear the weight of links and payload (1000.0 kg)",
+                           "its limit is 150 N.m"], "arm", "motion.csv", "--arm", "heavy.yaml", "--out", "no.csv")
         self.write("fast.yaml", f"start: {START}\nmoves:\n  - {{to: {[2.0] + START[1:]}, speed: 9.0, "
                    "acceleration: 50.0}\n")
         self.fail_with(1, ["shoulder_pan_joint would have a speed of"], "arm", "fast.yaml", "--arm", "ur5", "--out",

@@ -195,7 +195,8 @@ class Check(tool.ToolTest):
         found = self.check("arm.csv")
         self.assertTrue(found["usable"])
         self.assertEqual((found["arm"], found["load"]), ("ur5", "arm"))
-        self.assertEqual(found["arms"], ["ur10", "ur10e", "ur16e", "ur3", "ur3e", "ur5", "ur5e"])
+        self.assertEqual(found["arms"], ["ur10", "ur10e", "ur15", "ur16e", "ur18", "ur3", "ur3e", "ur5",
+                                         "ur5e", "ur8long"])
         self.assertAlmostEqual(found["stamp_factor"], 1.0, delta=0.005)
         self.assertAlmostEqual(found["period"], 0.008, places=6)
         self.assertLessEqual(set(found["arms_alike"]), {"ur5e"})
