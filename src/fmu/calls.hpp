@@ -11,8 +11,8 @@
 #include "fmu/fmi.hpp"
 #include "fmu/instance.hpp"
 
-/// What the functions of both versions of FMI do: whatever an instance throws becomes an error and a message; nothing is
-/// printed.
+/// What the functions of both versions of FMI do: whatever an instance throws becomes an error and a message; nothing
+/// is printed.
 namespace hjt::fmu
 {
 /// The usual floating-point environment in place of the importer's, which may trap, or flush small numbers to zero.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// FMI 2.0's C functions for co-simulation; names, arguments and the order of calls are the standard's. Truth values are
-/// whole numbers there, and each element of an array is a variable.
+/// FMI 2.0's C functions for co-simulation; names, arguments and the order of calls are the standard's. Truth values
+/// are whole numbers there, and each element of an array is a variable.
 
 #include <optional>
 
