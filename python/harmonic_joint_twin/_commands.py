@@ -103,6 +103,8 @@ def check(recording: Path, arm: Optional[str] = None, *, topic: Optional[str] = 
     Returns a dict: 'usable', 'arm', 'findings', 'joints' (one dict each), 'next' (commands) and more. InputError,
     ParameterError.
     """
+    if not isinstance(recording, (str, os.PathLike)):
+        raise _hjt.InputError("check reads a file; of arrays, identify, compare and follow say what is wrong")
     return _run("check", [recording], {"arm": arm, "topic": topic, "time_scale": time_scale}, overlays)
 
 
@@ -134,10 +136,10 @@ def identify(recording: Recording, *, joint: Optional[str] = None, arm: Optional
              force: bool = False, overlays: Overlays = (), progress: Optional[Progress] = None) -> Document:
     """Gain, friction, inertia and ripple of a joint, or of all joints of an arm, from a recording: the tool's identify.
 
-    recording: bag, CSV of a UR controller, or columns: a structured array or a mapping of arrays with 'time' [s], shape
-    (rows,), and, of shape (rows,) or for an arm (rows, joints), 'position' [rad], 'current' [A] and, if recorded,
-    'load' (at the output, > 0 resists positive motion) [N.m], 'velocity' [rad/s], 'temperature' [degC], 'motor_angle'
-    [rad].
+    recording: bag, CSV of a UR controller, or columns: a structured array or a mapping of arrays with 'time' [s] or
+    dates, shape (rows,), and, of shape (rows,) or for an arm (rows, joints), 'position' [rad], 'current' [A] and, if
+    recorded, 'load' (at the output, > 0 resists positive motion) [N.m], 'velocity' [rad/s], 'temperature' [degC],
+    'motor_angle' [rad].
     joint or arm: one of them. out: the overlay to write, of an arm a directory. train, judge: (from, to), the parts to
     identify and to judge on [s]; None: the first third and the rest, of an arm all. folds: pieces to leave out in turn,
     2 ... 100. load (arm): 'arm', from the motion of all joints, or 'target_moment', as recorded. identified: directory
@@ -163,7 +165,9 @@ def compare(recording: Recording, report: Path, *, joint: Optional[str] = None, 
     report: directory that gets report.html, its figures and its data. reference: earlier reports, in sound condition.
     Others as of identify.
 
-    Returns the report's data as a dict: 'level', 'text', of an arm 'joints'. InputError, ParameterError.
+    Returns the report's data as a dict: of a joint 'verdict' (a dict: 'level', 'reason', 'text', 'friction_factor' and
+    more), 'friction_ratio', 'motion' and more; of an arm 'level', 'text', 'joints' (one dict each). InputError,
+    ParameterError.
     """
     return _call("compare",
                  {"recording": recording, "report": report, "joint": joint, "arm": arm,

@@ -210,14 +210,13 @@ public:
       parts.emplace_back(variables_, first, prefixOf(arm.joints[i]));
       drives.push_back(parts.back().parameters(drives_[i], values));
     }
-    ArmSetPoint first{ timeOf(stampAt(start)), std::vector<JointMotion>(drives.size()) };
-    takeSetPoint(values, first.joints);
-    const bool controlled = values[CONTROLLER].numbers[0] != 0.0;
-    for (JointMotion& joint : first.joints)
+    // A parameter: importers give the inputs of the first step before the start, too.
+    ArmSetPoint first{ timeOf(stampAt(start)), {} };
+    for (const double angle : values[START_POSITION].numbers)
     {
-      joint.velocity = controlled ? joint.velocity : 0.0;  // without its controller the arm stands there
+      first.joints.push_back({ angle, 0.0, 0.0 });
     }
-    const double settling = controlled ? MovingArm::SETTLING : 0.0;
+    const double settling = values[CONTROLLER].numbers[0] != 0.0 ? MovingArm::SETTLING : 0.0;
     MovingArm moving(arm, drives, ArmMotion({ first, first }), unitSurfaces(notice), settling);
     return std::make_unique<ArmSimulation>(arm_, std::move(moving), std::move(parts), values, start);
   }

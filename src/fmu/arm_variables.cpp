@@ -9,6 +9,8 @@ namespace hjt::fmu
 {
 namespace
 {
+constexpr Range ANGLES{ -100.0, 100.0 };  // [rad]
+
 std::vector<double> gainsOf(const ArmDescription& arm, double JointGains::*gain)
 {
   std::vector<double> gains;
@@ -29,8 +31,7 @@ void addArmInputs(const ArmDescription& arm, std::vector<FmuVariable>& all)
   };
   constexpr double WRENCH = 1000.0;  // as the node's ~wrench [N], [N.m]
   const std::vector<double> zeros(arm.joints.size(), 0.0);
-  add("target_q", "rad", "set points of the joints for the end of the step; before the start: where the arm stands",
-      zeros, { -100.0, 100.0 });
+  add("target_q", "rad", "set points of the joints for the end of the step", zeros, ANGLES);
   add("target_qd", "rad/s", "speeds there", zeros, { -100.0, 100.0 });
   add("target_qdd", "rad/s^2", "accelerations there", zeros, { -1e6, 1e6 });
   add("wrench_force", "N", "on the tip from outside, in the frame of the base", { 0.0, 0.0, 0.0 }, { -WRENCH, WRENCH });
@@ -66,6 +67,7 @@ void addArmParameters(const ArmDescription& arm, std::vector<FmuVariable>& all)
     const bool is_array = start.size() > 1;
     all.push_back({ name, unit, meaning, Causality::PARAMETER, Type::FLOAT64, { std::move(start) }, range, is_array });
   };
+  add("start_q", "rad", "where the arm stands at the start", std::vector<double>(arm.joints.size(), 0.0), ANGLES);
   all.push_back({ "controller.on",
                   "-",
                   "follows the set points; false: motor_torque of the joints goes to the motors",

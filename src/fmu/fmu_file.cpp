@@ -62,12 +62,13 @@ private:
 
 /// The library as the unit's and what it loads, with licences from where Debian keeps them:
 /// /usr/share/doc/libNAME-VERSION/copyright.
-void addLibraries(const UnitLibraries& libraries, const std::string& name, Zip& zip)
+void addLibraries(const UnitLibraries& libraries, const std::string& name, Version version, Zip& zip)
 {
 #ifdef __aarch64__
   const std::string binaries = "binaries/aarch64-linux/";
+  static_cast<void>(version);
 #else
-  const std::string binaries = "binaries/x86_64-linux/";
+  const std::string binaries = version == Version::FMI_3 ? "binaries/x86_64-linux/" : "binaries/linux64/";
 #endif
   zip.add(binaries + name + ".so", readFile(libraries.own, MAX_BINARY));
   for (const std::string& other : libraries.others)
@@ -88,16 +89,16 @@ void addLibraries(const UnitLibraries& libraries, const std::string& name, Zip& 
   }
 }
 
-std::string finish(const UnitDescription& unit, const UnitLibraries& libraries, Zip& zip)
+std::string finish(const UnitDescription& unit, const UnitLibraries& libraries, Version version, Zip& zip)
 {
-  zip.add("modelDescription.xml", modelDescription(unit));
+  zip.add("modelDescription.xml", modelDescription(unit, version));
   zip.add("documentation/licenses/license.txt", readFile(packageDirectory() / "LICENSE"));
-  addLibraries(libraries, unit.library, zip);
+  addLibraries(libraries, unit.library, version, zip);
   return zip.bytes();
 }
 }  // namespace
 
-std::string driveFmu(const Parameters& parameters, const UnitLibraries& libraries)
+std::string driveFmu(const Parameters& parameters, const UnitLibraries& libraries, Version version)
 {
   Zip zip;
   Resources resources(zip);
@@ -106,11 +107,11 @@ std::string driveFmu(const Parameters& parameters, const UnitLibraries& librarie
                               "harmonic_joint_twin",  resources.token(),
                               carried.solver.rate,    0.001,
                               driveVariables(carried) };
-  return finish(unit, libraries, zip);
+  return finish(unit, libraries, version, zip);
 }
 
 std::string armFmu(const std::string& name, const ArmDescription& arm, const std::vector<Parameters>& drives,
-                   const UnitLibraries& libraries)
+                   const UnitLibraries& libraries, Version version)
 {
   ArmDescription whole = arm;
   std::vector<Parameters> carried;
@@ -132,6 +133,6 @@ std::string armFmu(const std::string& name, const ArmDescription& arm, const std
                               drives.front().solver.rate,
                               1.0 / arm.state_rate,
                               armVariables(whole, carried) };
-  return finish(unit, libraries, zip);
+  return finish(unit, libraries, version, zip);
 }
 }  // namespace hjt::fmu

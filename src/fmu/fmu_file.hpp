@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "arm/arm_description.hpp"
+#include "fmu/fmi.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
 
 namespace hjt::fmu
@@ -16,11 +17,11 @@ struct UnitLibraries
   std::vector<std::string> others;  ///< paths of what it loads and a system may lack
 };
 
-/// A co-simulation unit of FMI 3.0 of this drive, as the bytes of its file. Files that parameters name go into the
-/// unit. @throws InputError.
-std::string driveFmu(const Parameters& parameters, const UnitLibraries& libraries);
+/// A co-simulation unit of this drive, as the bytes of its file. Files that parameters name go into the unit. @throws
+/// InputError.
+std::string driveFmu(const Parameters& parameters, const UnitLibraries& libraries, Version version);
 
 /// The same of an arm with these drives under its controller. @throws InputError.
 std::string armFmu(const std::string& name, const ArmDescription& arm, const std::vector<Parameters>& drives,
-                   const UnitLibraries& libraries);
+                   const UnitLibraries& libraries, Version version);
 }  // namespace hjt::fmu

@@ -5,7 +5,6 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
-#include <string_view>
 #include <utility>
 
 #include "base/number_text.hpp"
@@ -48,20 +47,6 @@ std::string nameAndValue(const FmuVariable& variable, std::size_t element, doubl
 }
 }  // namespace
 
-void sendMessage(LogMessage log, void* environment, Status status, const char* message) noexcept
-{
-  if (log == nullptr)
-  {
-    return;
-  }
-  std::string text;
-  for (const char letter : std::string_view(message))
-  {
-    text.append(letter == '#' ? 2 : 1, letter);
-  }
-  log(environment, status, LOG_CATEGORIES[categoryOf(status)], text.c_str());
-}
-
 Instance::State::State(const State& other)
   : mode(other.mode)
   , start(other.start)
@@ -78,8 +63,8 @@ Instance::State& Instance::State::operator=(const State& other)
   return *this = State(other);
 }
 
-Instance::Instance(const std::string& resources, const std::string& token, bool logs, void* environment, LogMessage log)
-  : environment_(environment), log_(log), unit_(openUnit(folderOf(resources), token))
+Instance::Instance(const std::string& resources, const std::string& token, bool logs, Log log)
+  : log_(std::move(log)), unit_(openUnit(folderOf(resources), token))
 {
   logs_.fill(logs);
   reset();
@@ -87,9 +72,9 @@ Instance::Instance(const std::string& resources, const std::string& token, bool 
 
 void Instance::log(Status status, const std::string& message) const noexcept
 {
-  if (logs_[categoryOf(status)])
+  if (log_ && logs_[categoryOf(status)])
   {
-    sendMessage(log_, environment_, status, message.c_str());
+    log_(status, LOG_CATEGORIES[categoryOf(status)], message);
   }
 }
 
@@ -112,31 +97,36 @@ void Instance::requireMode(bool allowed, const char* call, const char* what) con
   }
 }
 
-void Instance::enterInitialization(double start, std::optional<double> stop)
+void Instance::setUp(double start, std::optional<double> stop)
 {
-  requireMode(state_.mode == Mode::INSTANTIATED, "fmi3EnterInitializationMode");
+  requireMode(state_.mode == Mode::INSTANTIATED, "setting startTime");
   if (!(std::abs(start) <= LARGEST_TIME) || (stop && !(*stop >= start)))
   {
     throw CallError("startTime = " + numberText(start) + " [s]" +
                     (stop ? ", stopTime = " + numberText(*stop) + " [s]" : std::string()) +
                     " out of range, allowed: a start within +-1e9 and a stop not before it");
   }
-  state_.mode = Mode::INITIALIZATION;
   state_.start = start;
   state_.time = start;
   state_.stop = stop;
 }
 
+void Instance::enterInitialization()
+{
+  requireMode(state_.mode == Mode::INSTANTIATED, "EnterInitializationMode");
+  state_.mode = Mode::INITIALIZATION;
+}
+
 void Instance::exitInitialization()
 {
-  requireMode(state_.mode == Mode::INITIALIZATION, "fmi3ExitInitializationMode");
+  requireMode(state_.mode == Mode::INITIALIZATION, "ExitInitializationMode");
   start();
   state_.mode = Mode::STEP;
 }
 
 void Instance::terminate()
 {
-  requireMode(state_.mode == Mode::STEP, "fmi3Terminate");
+  requireMode(state_.mode == Mode::STEP, "Terminate");
   state_.mode = Mode::TERMINATED;
 }
 
@@ -149,18 +139,25 @@ void Instance::reset()
   }
 }
 
-const FmuVariable& Instance::variable(ValueReference reference, Type type) const
+Instance::Elements Instance::elements(Type type, const References& of, std::size_t place) const
 {
-  if (reference >= unit_->variables().size())
+  const ValueReference reference = of.references[place];
+  const bool is_element = of.version == Version::FMI_2;
+  const std::size_t variable = is_element ? reference & ((1u << ELEMENT_SHIFT) - 1) : reference;
+  const std::size_t first = is_element ? reference >> ELEMENT_SHIFT : 0;
+  const auto& variables = unit_->variables();
+  const std::size_t size = variable >= variables.size()             ? 0 :
+                           variables[variable].type == Type::STRING ? 1 :
+                                                                      state_.values[variable].numbers.size();
+  if (first >= size)
   {
     throw CallError("no variable has the value reference " + std::to_string(reference));
   }
-  const FmuVariable& found = unit_->variables()[reference];
-  if (found.type != type)
+  if (variables[variable].type != type)
   {
-    throw CallError(found.name + " is of another type than the function");
+    throw CallError(variables[variable].name + " is of another type than the function");
   }
-  return found;
+  return { variable, first, is_element ? first + 1 : size };
 }
 
 void Instance::requireCount(Type type, const References& of) const
@@ -168,8 +165,8 @@ void Instance::requireCount(Type type, const References& of) const
   std::size_t expected = 0;
   for (std::size_t i = 0; i < of.size; ++i)
   {
-    variable(of.references[i], type);
-    expected += type == Type::STRING ? 1 : state_.values[of.references[i]].numbers.size();
+    const Elements asked = elements(type, of, i);
+    expected += asked.end - asked.begin;
   }
   if (of.values != expected)
   {
@@ -203,20 +200,22 @@ void Instance::setNumbers(Type type, const References& of, const std::function<d
   std::size_t place = 0;
   for (std::size_t i = 0; i < of.size; ++i)
   {
-    const FmuVariable& target = variable(of.references[i], type);
-    requireSettable(target);
-    const std::size_t elements = state_.values[of.references[i]].numbers.size();
-    for (std::size_t k = 0; k < elements; ++k)
+    const Elements target = elements(type, of, i);
+    const FmuVariable& variable = unit_->variables()[target.variable];
+    requireSettable(variable);
+    for (std::size_t k = target.begin; k < target.end; ++k)
     {
-      check(target, k, number(place++));
+      check(variable, k, number(place++));
     }
   }
   place = 0;
   bool differs = false;
   for (std::size_t i = 0; i < of.size; ++i)
   {
-    for (double& element : state_.values[of.references[i]].numbers)
+    const Elements target = elements(type, of, i);
+    for (std::size_t k = target.begin; k < target.end; ++k)
     {
+      double& element = state_.values[target.variable].numbers[k];
       const double before = std::exchange(element, number(place++));
       differs = differs || element != before;
     }
@@ -229,7 +228,7 @@ void Instance::setTexts(const References& of, const char* const* texts)
   requireCount(Type::STRING, of);
   for (std::size_t i = 0; i < of.size; ++i)
   {
-    const FmuVariable& target = variable(of.references[i], Type::STRING);
+    const FmuVariable& target = unit_->variables()[elements(Type::STRING, of, i).variable];
     requireSettable(target);
     if (texts[i] == nullptr)
     {
@@ -239,7 +238,7 @@ void Instance::setTexts(const References& of, const char* const* texts)
   bool differs = false;
   for (std::size_t i = 0; i < of.size; ++i)
   {
-    std::string& text = state_.values[of.references[i]].text;
+    std::string& text = state_.values[elements(Type::STRING, of, i).variable].text;
     differs = text != texts[i] || differs;
     text = texts[i];
   }
@@ -256,7 +255,7 @@ void Instance::changed(bool differs)
 }
 
 /// Brings the value up to date. @returns false if it is of the last instant that had one.
-bool Instance::update(ValueReference reference)
+bool Instance::update(std::size_t reference)
 {
   const FmuVariable& asked = unit_->variables()[reference];
   if (asked.causality == Causality::INDEPENDENT)
@@ -288,7 +287,7 @@ void Instance::start()
 
 bool Instance::step(double at, double length)
 {
-  requireMode(state_.mode == Mode::STEP, "fmi3DoStep");
+  requireMode(state_.mode == Mode::STEP, "DoStep");
   const double tolerance = 1e-9 * std::max(1.0, std::abs(state_.time));
   const double end = at + length;
   const auto asked = [&]

@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "fmu/fmi3.hpp"
+#include "fmu/fmi.hpp"
 #include "fmu/unit.hpp"
 
 namespace hjt::fmu
@@ -27,10 +27,8 @@ struct References
   const ValueReference* references;
   std::size_t size;
   std::size_t values;
+  Version version;
 };
-
-/// To an importer's log, if it has one. Doubles `#`, which would begin a value reference there.
-void sendMessage(LogMessage log, void* environment, Status status, const char* message) noexcept;
 
 /// Where an instance of FMI is.
 enum class Mode
@@ -48,7 +46,7 @@ class Instance
 {
 public:
   /// `resources`: folder of the unit's. @throws InputError.
-  Instance(const std::string& resources, const std::string& token, bool logs, void* environment, LogMessage log);
+  Instance(const std::string& resources, const std::string& token, bool logs, Log log);
 
   /// To the instance's user, if he wants it. `status`: what the call returns, or OK where it only tells.
   void log(Status status, const std::string& message) const noexcept;
@@ -56,7 +54,8 @@ public:
   /// On: for these categories alone, for all if none is named. Off: for all.
   void setLogging(bool on, std::size_t count, const char* const* categories);
 
-  void enterInitialization(double start, std::optional<double> stop);
+  void setUp(double start, std::optional<double> stop);
+  void enterInitialization();
   void exitInitialization();
   void terminate();
   void reset();
@@ -93,18 +92,24 @@ public:
   void takeUp(const State& state) { state_ = state; }
 
 private:
-  const FmuVariable& variable(ValueReference reference, Type type) const;
+  /// Elements of a variable that a reference means.
+  struct Elements
+  {
+    std::size_t variable;
+    std::size_t begin;
+    std::size_t end;
+  };
+  Elements elements(Type type, const References& of, std::size_t place) const;
   void requireMode(bool allowed, const char* call, const char* what = "") const;
   void requireSettable(const FmuVariable& variable) const;
   static void check(const FmuVariable& variable, std::size_t element, double value);
   void requireCount(Type type, const References& of) const;
-  bool update(ValueReference reference);
+  bool update(std::size_t reference);
   void start();
   void changed(bool differs);
 
   std::array<bool, std::size(LOG_CATEGORIES)> logs_;
-  void* environment_;
-  LogMessage log_;
+  Log log_;
   std::shared_ptr<const Unit> unit_;
   State state_;
 };
@@ -117,16 +122,12 @@ bool Instance::get(Type type, const References& of, const Put& put)
   bool is_present = true;
   for (std::size_t i = 0; i < of.size; ++i)
   {
-    is_present = update(of.references[i]) && is_present;
-    const Value& found = state_.values[of.references[i]];
-    if (type == Type::STRING)
+    const Elements asked = elements(type, of, i);
+    is_present = update(asked.variable) && is_present;
+    const Value& found = state_.values[asked.variable];
+    for (std::size_t k = asked.begin; k < asked.end; ++k)
     {
-      put(place++, 0.0, found.text);
-      continue;
-    }
-    for (const double number : found.numbers)
-    {
-      put(place++, number, found.text);
+      put(place++, found.numbers.empty() ? 0.0 : found.numbers[k], found.text);
     }
   }
   return is_present;

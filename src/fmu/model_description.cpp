@@ -9,7 +9,7 @@
 #include "base/joined.hpp"
 #include "base/number_text.hpp"
 #include "base/xml_text.hpp"
-#include "fmu/fmi3.hpp"
+#include "fmu/fmi.hpp"
 
 namespace hjt::fmu
 {
@@ -94,78 +94,129 @@ std::string startText(const FmuVariable& variable)
                 });
 }
 
-std::string element(const FmuVariable& variable, std::size_t reference)
+/// What both versions say of a variable itself.
+std::string generalAttributes(const FmuVariable& variable, std::size_t reference)
 {
-  constexpr std::array TYPES{ "Float64", "Int32", "Boolean", "String" };
   constexpr std::array CAUSALITIES{ "independent", "input", "output", "parameter" };
-  const std::string type = TYPES[static_cast<std::size_t>(variable.type)];
   const bool continuous = variable.type == Type::FLOAT64 && !variable.is_discrete;
-  const bool starts = variable.causality == Causality::INPUT || variable.causality == Causality::PARAMETER;
-  std::string text = "    <" + type + attribute("name", variable.name) +
-                     attribute("valueReference", std::to_string(reference)) +
-                     (variable.description.empty() ? "" : attribute("description", variable.description)) +
-                     attribute("causality", CAUSALITIES[static_cast<std::size_t>(variable.causality)]) +
-                     attribute("variability", variable.causality == Causality::PARAMETER ? "fixed" :
-                                              continuous                                 ? "continuous" :
-                                                                                           "discrete");
-  text += variable.causality == Causality::OUTPUT ? attribute("initial", "calculated") : "";
-  text += variable.type == Type::FLOAT64 && variable.unit != "-" ? attribute("unit", variable.unit) : "";
+  return attribute("name", variable.name) + attribute("valueReference", std::to_string(reference)) +
+         (variable.description.empty() ? "" : attribute("description", variable.description)) +
+         attribute("causality", CAUSALITIES[static_cast<std::size_t>(variable.causality)]) +
+         attribute("variability", variable.causality == Causality::PARAMETER ? "fixed" :
+                                  continuous                                 ? "continuous" :
+                                                                               "discrete") +
+         (variable.causality == Causality::OUTPUT ? attribute("initial", "calculated") : "");
+}
+
+bool starts(const FmuVariable& variable)
+{
+  return variable.causality == Causality::INPUT || variable.causality == Causality::PARAMETER;
+}
+
+/// And of its values, but for texts.
+std::string valueAttributes(const FmuVariable& variable)
+{
+  std::string text = variable.type == Type::FLOAT64 && variable.unit != "-" ? attribute("unit", variable.unit) : "";
   if (variable.range)
   {
     text += bound("min", variable, variable.range->min) + bound("max", variable, variable.range->max);
   }
-  text += starts && variable.type != Type::STRING ? attribute("start", startText(variable)) : "";
-  std::string inner;
-  if (variable.is_array)
+  return text + (starts(variable) && variable.type != Type::STRING ? attribute("start", startText(variable)) : "");
+}
+
+std::string element3(const FmuVariable& variable, std::size_t reference)
+{
+  constexpr std::array TYPES{ "Float64", "Int32", "Boolean", "String" };
+  const std::string type = TYPES[static_cast<std::size_t>(variable.type)];
+  const std::string inner =
+      (variable.is_array ? "<Dimension" + attribute("start", std::to_string(variable.start.numbers.size())) + "/>" :
+                           std::string()) +
+      (variable.type == Type::STRING ? "<Start" + attribute("value", variable.start.text) + "/>" : std::string());
+  return "    <" + type + generalAttributes(variable, reference) + valueAttributes(variable) +
+         (inner.empty() ? "/>\n" : ">" + inner + "</" + type + ">\n");
+}
+
+std::string element2(const FmuVariable& variable, std::size_t reference)
+{
+  constexpr std::array TYPES{ "Real", "Integer", "Boolean", "String" };
+  return "    <ScalarVariable" + generalAttributes(variable, reference) + "><" +
+         TYPES[static_cast<std::size_t>(variable.type)] + valueAttributes(variable) +
+         (variable.type == Type::STRING ? attribute("start", variable.start.text) : "") + "/></ScalarVariable>\n";
+}
+
+/// A variable of a description and its value reference.
+struct Referred
+{
+  FmuVariable variable;
+  std::size_t reference;
+};
+
+/// As the version has them: FMI 2.0 a scalar for each element of an array.
+std::vector<Referred> referred(const std::vector<FmuVariable>& all, Version version)
+{
+  std::vector<Referred> found;
+  for (std::size_t i = 0; i < all.size(); ++i)
   {
-    inner += "<Dimension" + attribute("start", std::to_string(variable.start.numbers.size())) + "/>";
+    if (version == Version::FMI_3 || !all[i].is_array)
+    {
+      found.push_back({ all[i], i });
+      continue;
+    }
+    for (std::size_t k = 0; k < all[i].start.numbers.size(); ++k)
+    {
+      found.push_back({ all[i], k << ELEMENT_SHIFT | i });
+      FmuVariable& scalar = found.back().variable;
+      scalar.name += '[' + std::to_string(k + 1) + ']';
+      scalar.start.numbers = { all[i].start.numbers[k] };
+    }
   }
-  if (variable.type == Type::STRING)
-  {
-    inner += "<Start" + attribute("value", variable.start.text) + "/>";
-  }
-  return text + (inner.empty() ? "/>\n" : ">" + inner + "</" + type + ">\n");
+  return found;
 }
 }  // namespace
 
-std::string modelDescription(const UnitDescription& unit)
+std::string modelDescription(const UnitDescription& unit, Version version)
 {
-  const std::vector<FmuVariable>& all = unit.variables;
+  const bool is_3 = version == Version::FMI_3;
   std::set<std::string> units;
   std::string elements;
   std::string outputs;
   std::string unknowns;
-  for (std::size_t i = 0; i < all.size(); ++i)
+  std::size_t number = 0;
+  for (const auto& [variable, reference] : referred(unit.variables, version))
   {
-    elements += element(all[i], i);
-    if (all[i].type == Type::FLOAT64 && all[i].unit != "-")
+    elements += (is_3 ? element3 : element2)(variable, reference);
+    ++number;
+    if (variable.type == Type::FLOAT64 && variable.unit != "-")
     {
-      units.insert(all[i].unit);
+      units.insert(variable.unit);
     }
-    if (all[i].causality == Causality::OUTPUT)
+    if (variable.causality == Causality::OUTPUT)
     {
       // After a step an output is what it is, whatever the inputs become.
-      outputs +=
-          "    <Output" + attribute("valueReference", std::to_string(i)) + attribute("dependencies", "") + "/>\n";
-      unknowns += "    <InitialUnknown" + attribute("valueReference", std::to_string(i)) + "/>\n";
+      const std::string which =
+          is_3 ? attribute("valueReference", std::to_string(reference)) : attribute("index", std::to_string(number));
+      outputs += std::string(is_3 ? "    <Output" : "    <Unknown") + which + attribute("dependencies", "") + "/>\n";
+      unknowns += std::string(is_3 ? "    <InitialUnknown" : "    <Unknown") + which + "/>\n";
     }
   }
-  return std::string("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiModelDescription fmiVersion=\"3.0\"") +
-         attribute("modelName", unit.name) + attribute("instantiationToken", unit.token) +
-         attribute("description", unit.meaning) + attribute("license", "BSD-3-Clause") +
-         attribute("generationTool", "harmonic_joint_twin " HJT_VERSION) +
+  return std::string("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiModelDescription") +
+         attribute("fmiVersion", is_3 ? "3.0" : "2.0") + attribute("modelName", unit.name) +
+         attribute(is_3 ? "instantiationToken" : "guid", unit.token) + attribute("description", unit.meaning) +
+         attribute("license", "BSD-3-Clause") + attribute("generationTool", "harmonic_joint_twin " HJT_VERSION) +
          attribute("variableNamingConvention", "structured") + ">\n  <CoSimulation" +
-         attribute("modelIdentifier", unit.library) + attribute("canGetAndSetFMUState", "true") +
+         attribute("modelIdentifier", unit.library) +
+         attribute(is_3 ? "canGetAndSetFMUState" : "canGetAndSetFMUstate", "true") +
          attribute("canHandleVariableCommunicationStepSize", "true") +
-         attribute("fixedInternalStepSize", numberText(1.0 / unit.rate)) + "/>\n  <UnitDefinitions>\n" +
+         (is_3 ? attribute("fixedInternalStepSize", numberText(1.0 / unit.rate)) : "") + "/>\n  <UnitDefinitions>\n" +
          joined(units, "", unitDefinition) + "  </UnitDefinitions>\n" + "  <LogCategories>\n" +
          joined(LOG_CATEGORIES, "",
                 [](const char* name) { return "    <Category" + attribute("name", name) + "/>\n"; }) +
          "  </LogCategories>\n  <DefaultExperiment startTime=\"0\" stopTime=\"1\"" +
-         attribute("stepSize", numberText(unit.step)) +
-         "/>\n"
-         "  <ModelVariables>\n" +
-         elements + "  </ModelVariables>\n  <ModelStructure>\n" + outputs + unknowns +
+         attribute("stepSize", numberText(unit.step)) + "/>\n  <ModelVariables>\n" + elements +
+         "  </ModelVariables>\n  <ModelStructure>\n" +
+         (is_3 ? outputs + unknowns :
+                 "    <Outputs>\n" + outputs + "    </Outputs>\n    <InitialUnknowns>\n" + unknowns +
+                     "    </InitialUnknowns>\n") +
          "  </ModelStructure>\n</fmiModelDescription>\n";
 }
 }  // namespace hjt::fmu

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "fmu/fmi.hpp"
 #include "fmu/variables.hpp"
 
 namespace hjt::fmu
@@ -20,6 +21,6 @@ struct UnitDescription
   std::vector<FmuVariable> variables;
 };
 
-/// FMI 3.0's modelDescription.xml.
-std::string modelDescription(const UnitDescription& unit);
+/// The version's modelDescription.xml.
+std::string modelDescription(const UnitDescription& unit, Version version);
 }  // namespace hjt::fmu

@@ -230,6 +230,7 @@ std::vector<ScalarOutput> healthOutputs()
   using O = const JointOutputs&;
   using S = ScalarIndicator;
   constexpr Type F = Type::FLOAT64;
+  constexpr const char* LAST_WINDOW = "of the last window that tells it; 0: none yet";
   return {
     { "transmission_ratio", "-", "over the last motor turn; 0: none yet", F,
       [](T t, O) { return t.health().motion.transmission_ratio.value; } },
@@ -257,18 +258,18 @@ std::vector<ScalarOutput> healthOutputs()
       true },
     { "assessment_severity", "-", "of the fault if that is the cause", F,
       [](T t, O) { return t.assessment().severity; }, true },
-    { "indicator_windows", "-", "windows that the indicators were made of; an indicator of none that tells it is 0",
-      Type::INT32, [](T t, O) { return static_cast<double>(t.signalIndicators().windows); }, true },
-    { "indicator_kinematic_error", "rad", "of the last window", F, indicator<S::KINEMATIC_ERROR>, true },
-    { "indicator_torsional_stiffness", "N.m/rad", "of the last window", F, indicator<S::TORSIONAL_STIFFNESS>, true },
-    { "indicator_lost_motion", "rad", "of the last window", F, indicator<S::LOST_MOTION>, true },
-    { "indicator_hysteresis", "rad", "of the last window", F, indicator<S::HYSTERESIS>, true },
-    { "indicator_hysteresis_area", "J", "of the last window", F, indicator<S::HYSTERESIS_AREA>, true },
-    { "indicator_running_torque", "N.m", "of the last window", F, indicator<S::RUNNING_TORQUE>, true },
-    { "indicator_coulomb_torque", "N.m", "of the last window", F, indicator<S::COULOMB_TORQUE>, true },
-    { "indicator_viscous_friction", "N.m.s/rad", "of the last window", F, indicator<S::VISCOUS_FRICTION>, true },
-    { "indicator_efficiency", "-", "of the last window", F, indicator<S::EFFICIENCY>, true },
-    { "indicator_residual_rms", "rad", "of the last window", F, indicator<S::RESIDUAL_RMS>, true },
+    { "indicator_windows", "-", "windows that the indicators were made of", Type::INT32,
+      [](T t, O) { return static_cast<double>(t.signalIndicators().windows); }, true },
+    { "indicator_kinematic_error", "rad", LAST_WINDOW, F, indicator<S::KINEMATIC_ERROR>, true },
+    { "indicator_torsional_stiffness", "N.m/rad", LAST_WINDOW, F, indicator<S::TORSIONAL_STIFFNESS>, true },
+    { "indicator_lost_motion", "rad", LAST_WINDOW, F, indicator<S::LOST_MOTION>, true },
+    { "indicator_hysteresis", "rad", LAST_WINDOW, F, indicator<S::HYSTERESIS>, true },
+    { "indicator_hysteresis_area", "J", LAST_WINDOW, F, indicator<S::HYSTERESIS_AREA>, true },
+    { "indicator_running_torque", "N.m", LAST_WINDOW, F, indicator<S::RUNNING_TORQUE>, true },
+    { "indicator_coulomb_torque", "N.m", LAST_WINDOW, F, indicator<S::COULOMB_TORQUE>, true },
+    { "indicator_viscous_friction", "N.m.s/rad", LAST_WINDOW, F, indicator<S::VISCOUS_FRICTION>, true },
+    { "indicator_efficiency", "-", LAST_WINDOW, F, indicator<S::EFFICIENCY>, true },
+    { "indicator_residual_rms", "rad", LAST_WINDOW, F, indicator<S::RESIDUAL_RMS>, true },
   };
 }
 }  // namespace

@@ -151,7 +151,7 @@ std::string faultErrors(const Fault& fault, const Parameters& parameters, const 
 Fault parseFault(const std::string& text, const Parameters& parameters)
 {
   const std::vector<std::string> parts = split(text);
-  const std::string origin = "--fault " + text + ": ";
+  const std::string origin = "fault " + text + ": ";
   if (parts.size() < 2 || parts.size() > 4)
   {
     throw ParameterError(origin + "expected KIND:SEVERITY[:PLACE[:ONSET]]");

@@ -22,6 +22,9 @@ public:
   const ParameterMap& map() const { return map_; }
   /// The same with other values. @throws ParameterError.
   Configuration with(const ParameterMap& map) const;
+  Configuration copy() const;                         ///< that may be changed
+  Configuration frozen() const;                       ///< that refuses to be changed: of a twin that has been made
+  bool operator==(const Configuration& other) const;  ///< the same values and faults
 
   py::object value(const std::string& key) const;  ///< @throws py::key_error
   bool contains(const std::string& key) const;
@@ -29,7 +32,7 @@ public:
   void update(const py::dict& changes);
 
   py::list faults() const;
-  void setFaults(const py::iterable& faults);
+  void setFaults(const py::object& faults);  ///< one, or several
 
   /// Every key with its value, for another process.
   py::tuple state() const;
@@ -39,6 +42,9 @@ private:
   Configuration() = default;
   void take(const ParameterMap& map);
 
+  void requireChangeable() const;
+
+  bool is_frozen_{};
   bool has_own_directory_{};
   std::string directory_;
   ParameterMap map_;

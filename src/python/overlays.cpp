@@ -68,6 +68,11 @@ void put(const py::dict& values, ParameterMap& map)
 {
   for (const auto& item : values)
   {
+    if (!py::isinstance<py::str>(item.first))
+    {
+      throw ParameterError(std::string(ORIGIN) + ": key " + py::cast<std::string>(py::repr(item.first)) +
+                           " is no text 'section.name'");
+    }
     const auto key = py::cast<std::string>(item.first);
     map[key] = parameterValue(item.second, key);
   }

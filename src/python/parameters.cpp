@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pybind11/operators.h>
 #include <pybind11/stl.h>
 
 #include <optional>
 #include <type_traits>
 
+#include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "params/choices.hpp"
 #include "params/configuration_files.hpp"
@@ -129,7 +131,23 @@ Fault makeFault(const std::string& kind, double severity, const std::optional<in
   {
     throw ParameterError("unknown kind of fault '" + kind + "', allowed: " + faultNames());
   }
+  if (!(severity >= 0.0 && severity <= 1.0))
+  {
+    throw ParameterError("severity = " + numberText(severity) + " [-] of " + kind +
+                         " is out of range, allowed: 0 ... 1 [-]");
+  }
   return { *named, severity, place.value_or(firstPlace(*named)), onset };
+}
+
+py::tuple partsOf(const Fault& fault)
+{
+  return py::make_tuple(describe(fault.kind).name, fault.severity, fault.place, fault.onset);
+}
+
+Fault faultFrom(const py::tuple& parts)
+{
+  return makeFault(py::cast<std::string>(parts[0]), py::cast<double>(parts[1]), py::cast<int>(parts[2]),
+                   py::cast<double>(parts[3]));
 }
 
 void bindFaults(py::module& module)
@@ -145,7 +163,12 @@ void bindFaults(py::module& module)
           "kind", [](const Fault& self) { return describe(self.kind).name; }, "name of the kind")
       .def_readonly("severity", &Fault::severity, "0 none ... 1 [-]")
       .def_readonly("place", &Fault::place, "from 0 on; -1: the whole member [-]")
-      .def_readonly("onset", &Fault::onset, "after the start, or after the stamp it was injected with [s]");
+      .def_readonly("onset", &Fault::onset, "after the start, or after the stamp it was injected with [s]")
+      .def(
+          "__eq__", [](const Fault& self, const Fault& other) { return partsOf(self).equal(partsOf(other)); },
+          py::is_operator(), py::arg("other"), "Whether kind, severity, place and onset are the same.")
+      .def("__hash__", [](const Fault& self) { return py::hash(partsOf(self)); })
+      .def(py::pickle(&partsOf, &faultFrom));
   addText(fault);
 
   auto kind = py::class_<FaultDescription>(module, "FaultKind", "What a kind of fault is.");
@@ -190,9 +213,36 @@ Configuration::Configuration(const py::args& overlays, const std::string& direct
 
 Configuration Configuration::with(const ParameterMap& map) const
 {
-  Configuration other(*this);
+  Configuration other = copy();
   other.take(map);
   return other;
+}
+
+Configuration Configuration::copy() const
+{
+  Configuration other(*this);
+  other.is_frozen_ = false;
+  return other;
+}
+
+Configuration Configuration::frozen() const
+{
+  Configuration other(*this);
+  other.is_frozen_ = true;
+  return other;
+}
+
+bool Configuration::operator==(const Configuration& other) const
+{
+  return state()[py::slice(1, 3, 1)].equal(other.state()[py::slice(1, 3, 1)]);
+}
+
+void Configuration::requireChangeable() const
+{
+  if (is_frozen_)
+  {
+    throw py::type_error("a twin keeps its parameters: set values in parameters.copy() and make a new twin of it");
+  }
 }
 
 void Configuration::take(const ParameterMap& map)
@@ -240,6 +290,7 @@ std::vector<std::string> Configuration::keys() const
 
 void Configuration::update(const py::dict& changes)
 {
+  requireChangeable();
   ParameterMap map = map_;
   put(changes, map);
   take(map);
@@ -250,10 +301,12 @@ py::list Configuration::faults() const
   return py::cast(values_.faults);
 }
 
-void Configuration::setFaults(const py::iterable& faults)
+void Configuration::setFaults(const py::object& faults)
 {
+  requireChangeable();
+  const bool is_one = py::isinstance<py::str>(faults) || py::isinstance<Fault>(faults);
   std::vector<Fault> list;
-  for (const auto& fault : faults)
+  for (const auto& fault : is_one ? py::object(py::make_tuple(faults)) : faults)
   {
     list.push_back(faultOf(fault, values_));
   }
@@ -273,7 +326,7 @@ py::tuple Configuration::state() const
   py::list faults;
   for (const Fault& fault : values_.faults)
   {
-    faults.append(py::make_tuple(describe(fault.kind).name, fault.severity, fault.place, fault.onset));
+    faults.append(partsOf(fault));
   }
   return py::make_tuple(directory_, values, faults);
 }
@@ -287,9 +340,7 @@ Configuration Configuration::fromState(const py::tuple& state)
   std::vector<Fault> faults;
   for (const auto& fault : py::cast<py::list>(state[2]))
   {
-    const auto parts = py::cast<py::tuple>(fault);
-    faults.push_back(makeFault(py::cast<std::string>(parts[0]), py::cast<double>(parts[1]), py::cast<int>(parts[2]),
-                               py::cast<double>(parts[3])));
+    faults.push_back(faultFrom(py::cast<py::tuple>(fault)));
   }
   putFaults(faults, map);
   configuration.take(map);
@@ -372,20 +423,24 @@ void bindParameters(py::module& module)
       .def(
           "__iter__", [](const Configuration& self) { return py::iter(py::cast(self.keys())); }, "Over all keys.")
       .def("keys", &Configuration::keys, "All keys: list of str; dict(parameters) has their values too.")
+      .def(
+          "items", [](const Configuration& self) { return self.state()[1].attr("items")(); },
+          "All keys with their values, as of a dict.")
+      .def(py::self == py::self)
       .def("update", &Configuration::update, py::arg("changes"),
            "Sets the keys of a dict together, where one alone would contradict another. ParameterError.")
       .def_static("field", &fieldOf, py::arg("key"), "Unit, range and meaning of a key: Field. KeyError.")
-      .def_property("faults", &Configuration::faults, &Configuration::setFaults,
-                    "Faults that the twin starts with, or gets on its way: list of Fault, to be set as a whole; texts "
-                    "'KIND:SEVERITY[:PLACE[:ONSET]]' are taken too.")
+      .def_property(
+          "faults", &Configuration::faults, &Configuration::setFaults,
+          "Faults that the twin starts with, or gets on its way: list of Fault, to be set as a whole, one or several; "
+          "texts 'KIND:SEVERITY[:PLACE[:ONSET]]' are taken too.")
       .def(
           "describe", [](const Configuration& self) { return describeParameters(self.values()); },
           "All keys, values, units and meanings, one a line.")
+      .def("copy", &Configuration::copy, "Another object with the same values.")
+      .def("__copy__", &Configuration::copy)
       .def(
-          "copy", [](const Configuration& self) { return self; }, "Another object with the same values.")
-      .def("__copy__", [](const Configuration& self) { return self; })
-      .def(
-          "__deepcopy__", [](const Configuration& self, const py::dict&) { return self; }, py::arg("memo"))
+          "__deepcopy__", [](const Configuration& self, const py::dict&) { return self.copy(); }, py::arg("memo"))
       .def("__repr__",
            [](const Configuration& self) {
              return "<Parameters of joint '" + self.values().joint.name + "', " + std::to_string(self.keys().size()) +

@@ -14,6 +14,37 @@
 
 namespace hjt
 {
+/// `load_torque_limit`: of the twin; `name`: makes the text of the value's place. @throws InputError for what a twin
+/// would clamp; a motor's drive clamps its torque, too, and counts it.
+template <class Name>
+void requireInput(InputKind kind, double value, double load_torque_limit, const Name& name)
+{
+  const auto refuse = [&](const char* unit, const Range& range)
+  {
+    if (value < range.min || value > range.max)
+    {
+      throw InputError(name() + " = " + numberText(value) + " [" + unit +
+                       "] is out of range, allowed: " + rangeText(range));
+    }
+  };
+  if (!std::isfinite(value))
+  {
+    throw InputError(name() + " = " + numberText(value) + " is not a finite number");
+  }
+  if (kind == InputKind::LOAD_TORQUE)
+  {
+    refuse("N.m", { -load_torque_limit, load_torque_limit });
+  }
+  if (kind == InputKind::TEMPERATURE)
+  {
+    refuse("degC", { MIN_TEMPERATURE, MAX_TEMPERATURE });
+  }
+  if (kind == InputKind::BRAKE)
+  {
+    refuse("-", { 0.0, 1.0 });
+  }
+}
+
 /// What the inputs of a run are for.
 struct RunShape
 {
@@ -26,6 +57,7 @@ struct RunShape
   };
 
   Axes axes{};
+  double load_torque_limit{};  ///< of twins that differ the largest [N.m]
   py::ssize_t twins{ 1 };
   std::optional<py::ssize_t> steps;  ///< empty: set by the first array that has as many
 };
@@ -54,10 +86,7 @@ public:
     takeAxes(shape);
     for (py::ssize_t i = 0; i < values_.size(); ++i)
     {
-      if (!std::isfinite(values_.data()[i]))
-      {
-        throw InputError(name_ + placeText(i) + " = " + numberText(values_.data()[i]) + " is not a finite number");
-      }
+      requireInput(kind, values_.data()[i], shape.load_torque_limit, [&] { return name_ + placeText(i); });
     }
     data_ = values_.data();
   }

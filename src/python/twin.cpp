@@ -35,10 +35,7 @@ Stamp stampOf(const Twin& twin, const std::optional<Stamp>& stamp)
 
 void push(TwinObject& self, InputKind kind, double value, const std::optional<Stamp>& stamp, const char* name)
 {
-  if (!std::isfinite(value))
-  {
-    throw InputError(std::string(name) + " = " + numberText(value) + " is not a finite number");
-  }
+  requireInput(kind, value, self.parameters().values().output.load_torque_limit, [&] { return std::string(name); });
   self.twin().push({ stampOf(self.twin(), stamp), kind, value });
 }
 
@@ -98,7 +95,8 @@ void bindInputs(py::class_<TwinObject>& twin)
           "command_load_torque",
           [](TwinObject& self, double torque, const std::optional<Stamp>& at)
           { push(self, InputKind::LOAD_TORQUE, torque, at, "torque"); },
-          py::arg("torque"), stamp, "External torque at the output; > 0 resists positive motion [N.m].")
+          py::arg("torque"), stamp,
+          "External torque at the output, within output.load_torque_limit; > 0 resists positive motion [N.m].")
       .def(
           "command_brake",
           [](TwinObject& self, bool engaged, const std::optional<Stamp>& at)
@@ -109,7 +107,7 @@ void bindInputs(py::class_<TwinObject>& twin)
           [](TwinObject& self, double degrees, const std::optional<Stamp>& at)
           { push(self, InputKind::TEMPERATURE, degrees, at, "degrees"); },
           py::arg("degrees"), stamp,
-          "Of the drive, or with thermal.model = two_nodes of its surroundings [degC]; kept within -40 ... 150.")
+          "Of the drive, or with thermal.model = two_nodes of its surroundings [degC], -40 ... 150.")
       .def("inject_fault", &injectFault, py::arg("fault"), stamp,
            "A Fault, or its text 'KIND:SEVERITY[:PLACE[:ONSET]]'; sets in onset after stamp. Severity 0 takes it away. "
            "While any is active that was not there from the start all teeth are solved at every step. ParameterError.");
@@ -131,8 +129,9 @@ void bindMarch(py::class_<TwinObject>& twin)
           py::arg("every") = 1, none("out"), none("progress"),
           "A block of steps, without the interpreter's lock; Ctrl-C gets through and leaves the twin at the step it "
           "had reached.\n\n"
-          "steps: how many; None: as many as the arrays have. motor_torque, load_torque [N.m], brake (0 or 1), "
-          "temperature [degC]: a number, or an array of shape (steps,) with the value of each step; None: what was "
+          "steps: how many; None: as many as the arrays have. motor_torque [N.m], clamped to motor.torque_limit and "
+          "counted; load_torque [N.m], within output.load_torque_limit; brake (0 or 1); temperature [degC], "
+          "-40 ... 150: a number, or an array of shape (steps,) with the value of each step; None: what was "
           "commanded before. A given torque does not time out during the run. every: steps from one row to the next. "
           "out: an array of an earlier run, to be overwritten; None: a new one. progress: called with 0 ... 1, at most "
           "twenty times a second and at the end.\n\n"
@@ -166,7 +165,8 @@ void bindReadings(py::class_<TwinObject>& twin)
           "since reset, by name: dict of str to int")
       .def_property_readonly("active_faults", &activeFaults, "list of Fault, by kind and place")
       .def_property_readonly(
-          "parameters", [](const TwinObject& self) { return self.parameters(); }, "a copy: Parameters")
+          "parameters", [](const TwinObject& self) { return self.parameters(); },
+          "Parameters that do not change: set values in a copy and make a Twin of it")
       .def("tooth_forces", &TwinObject::toothForces,
            "Forces on every tooth at the present instant: ToothForces, views that the next call overwrites. On the "
            "response surface this solves a full ring. NotConverged.")

@@ -175,7 +175,7 @@ public:
     {
       throw InputError("steps = " + std::to_string(steps) + " [-] is out of range, allowed: 1 ...");
     }
-    RunShape shape{ RunShape::Axes::TWINS, size(), steps };
+    RunShape shape{ RunShape::Axes::TWINS, loadTorqueLimit(), size(), steps };
     const RunInputs inputs(given, shape);
     StepRows rows = rowsFor({ size() }, out);
     march(inputs, steps, steps, rows.mutable_data(), py::none());
@@ -185,7 +185,7 @@ public:
   StepRows run(const std::optional<py::ssize_t>& given_steps, const GivenInputs& given, py::ssize_t every,
                const py::object& out, const py::object& progress)
   {
-    RunShape shape{ RunShape::Axes::TWINS_AND_STEPS, size(), given_steps };
+    RunShape shape{ RunShape::Axes::TWINS_AND_STEPS, loadTorqueLimit(), size(), given_steps };
     const RunInputs inputs(given, shape);
     const py::ssize_t steps = requireSteps(shape.steps, every);
     StepRows rows = rowsFor({ size(), steps / every }, out);
@@ -224,6 +224,16 @@ public:
 
 private:
   /// In blocks of steps, after which all twins are at the same one.
+  double loadTorqueLimit() const
+  {
+    double limit = 0.0;
+    for (const auto& twin : twins_)
+    {
+      limit = std::max(limit, twin.second->parameters().values().output.load_torque_limit);
+    }
+    return limit;
+  }
+
   void march(const RunInputs& inputs, py::ssize_t steps, py::ssize_t every, StepRow* rows, const py::object& progress)
   {
     std::vector<Twin*> twins;

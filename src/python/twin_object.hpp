@@ -28,7 +28,7 @@ public:
     : twin_(std::move(twin))
     , forces_(std::make_shared<ToothForces>(twin_.makeToothForces()))
     , stress_(std::make_shared<ToothStress>(parameters.values().gear.teeth_flexspline))
-    , parameters_(parameters)
+    , parameters_(parameters.frozen())
   {
   }
 
@@ -46,7 +46,7 @@ public:
   StepRows run(const std::optional<py::ssize_t>& given_steps, const GivenInputs& given, py::ssize_t every = 1,
                const py::object& out = py::none(), const py::object& progress = py::none())
   {
-    RunShape shape{ RunShape::Axes::STEPS, 1, given_steps };
+    RunShape shape{ RunShape::Axes::STEPS, parameters_.values().output.load_torque_limit, 1, given_steps };
     const RunInputs inputs(given, shape);
     const py::ssize_t steps = requireSteps(shape.steps, every);
     StepRows rows = rowsFor({ steps / every }, out);

@@ -183,7 +183,8 @@ void noticeOfUnusedLoad(const ArmRecording& recording, const FollowOptions& opti
   const MotionSource source = recording.source(0);
   if (!recording.isArm() && recording.hasRecordedLoad() && recording.parameters(0).telemetry.load == LoadSource::MODEL)
   {
-    options.watch.notice("the recording holds a load (" + (isCsv(source) ? "target_moment" : source.load_topic) +
+    const std::string load = !recording.isFile() ? "load" : isCsv(source) ? "target_moment" : source.load_topic;
+    options.watch.notice("the recording holds a load (" + load +
                          "), but telemetry.load = model leaves it out; for a controller's rigid-body torque give "
                          "--config recorded_load.yaml after the joint's own file");
   }

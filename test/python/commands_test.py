@@ -125,6 +125,8 @@ class Commands(Recordings):
         self.assertEqual(hjt.Parameters("identified/elbow.yaml")["joint.name"], "elbow_joint")
         verdict = hjt.compare("arm.csv", "report", arm="ur5")
         self.assertIn(verdict["level"], ("OK", "WARN", "not judged"))
+        self.assertLessEqual({"level", "text", "joints"}, set(verdict))
+        self.assertLessEqual({"level", "reason", "text", "friction_factor"}, set(verdict["joints"][0]["verdict"]))
         with open("report/report.html", encoding="utf-8") as file:
             self.assertIn(verdict["level"], file.read())
         self.assertEqual(hjt.trend("arm.csv", arm="ur5"), self.tool("trend", "arm.csv", "--arm", "ur5"))
@@ -139,6 +141,11 @@ class Commands(Recordings):
         for joint, rows in of_file.pop("comparison").items():
             np.testing.assert_array_equal(of_arrays["comparison"][joint], rows, joint)
         self.assertEqual(of_arrays["joints"], of_file["joints"])
+        dates = np.array(np.round(1e9 * columns["time"]), "datetime64[ns]")
+        dated = hjt.follow({**columns, "time": dates}, arm="ur5")
+        self.assertEqual([joint["rows"] for joint in dated["joints"]], [joint["rows"] for joint in of_file["joints"]])
+        residual = "current_residual_rms"
+        self.assertAlmostEqual(dated["joints"][0][residual], of_file["joints"][0][residual], delta=1e-6)
         elbow = {"time": columns["time"], **{name: columns[name][:, 2] for name in ("position", "current")}}
         of_file, of_arrays = (hjt.identify(recording, joint="elbow", overlays=ELBOW[:1])
                               for recording in ("arm.csv", elbow))
@@ -298,6 +305,9 @@ class Errors(Recordings):
                 (lambda: hjt.follow(None, joint="elbow"), hjt.InputError, "recording = None must be the name of"),
                 (lambda: hjt.follow({"time": ["now"], "position": [0.0]}, joint="elbow"), hjt.InputError,
                  "column 'time' must be numbers"),
+                (lambda: hjt.check({"time": [0.0]}), hjt.InputError, "check reads a file"),
+                (lambda: hjt.follow({"time": [0.0], "position": np.array([0], "M8[s]")}, joint="elbow"), hjt.InputError,
+                 "column 'position' must be numbers"),
                 (lambda: hjt.follow({"time": 0.0}, joint="elbow"), hjt.InputError, "'time' has 0 dimensions"),
                 (lambda: hjt.follow("a.csv", joint="elbow", time_scale="fast"), hjt.InputError,
                  "time_scale = 'fast' must be a number"),
@@ -334,6 +344,14 @@ class Errors(Recordings):
         texts = [str(warning.message) for warning in caught]
         self.assertTrue(any("holds no load of the joint" in text for text in texts), texts)
         self.assertEqual({warning.filename for warning in caught}, {__file__})
+
+    def test_a_load_that_is_left_out_is_a_warning_of_arrays_too(self):
+        times, angles = motion(5.0)
+        columns = {"time": times, "position": angles[:, 2], "current": np.ones_like(times)}
+        without = hjt.follow(columns, joint="elbow")
+        with self.assertWarnsRegex(RuntimeWarning, r"holds a load \(load\)"):
+            found = hjt.follow({**columns, "load": np.ones_like(times)}, joint="elbow")
+        self.assertEqual(found["current_residual_rms"], without["current_residual_rms"])
 
     def test_an_existing_file_is_kept(self):
         hjt.checkup("ur5", "a.csv", joint="base")

@@ -68,8 +68,23 @@ class Values(unittest.TestCase):
         pickled = [pickle.loads(pickle.dumps(first, protocol)) for protocol in range(pickle.HIGHEST_PROTOCOL + 1)]
         for other in [first.copy(), copy.copy(first), copy.deepcopy(first)] + pickled:
             self.assertEqual(dict(other), dict(first))
+            self.assertEqual(other, first)
             other["output.load_inertia"] = inertia + 1.0
             self.assertEqual(first["output.load_inertia"], inertia)
+            self.assertNotEqual(other, first)
+            self.assertEqual(dict(other.items()), dict(other))
+        self.assertNotEqual(first, 3)
+
+    def test_of_a_twin_are_kept(self):
+        twin = hjt.Twin(hjt.Parameters())
+        for change in (lambda: twin.parameters.update({"output.load_inertia": 2.0}),
+                       lambda: twin.parameters.__setitem__("output.load_inertia", 2.0),
+                       lambda: setattr(twin.parameters, "faults", "pitting:0.5")):
+            with self.assertRaisesRegex(TypeError, r"parameters\.copy\(\)"):
+                change()
+        other = twin.parameters.copy()
+        other["output.load_inertia"] = 2.0
+        self.assertEqual(hjt.Twin(other).parameters["output.load_inertia"], 2.0)
 
     def test_each_has_unit_range_and_meaning(self):
         parameters = hjt.Parameters()
@@ -108,6 +123,7 @@ class Errors(unittest.TestCase):
         self.refuse({"gear.teeth_flexspline": 200.5}, "gear.teeth_flexspline = 200.5 must be a whole number")
         self.refuse({"mesh.stiffness": object()}, "mesh.stiffness = <object", "neither a number")
         self.refuse({"mesh.stiffness": float("nan")}, "not a finite number")
+        self.refuse({1: 2.0}, "key 1 is no text")
         # Each alone is in range.
         self.refuse({"gear.teeth_circular_spline": 206}, "gear.teeth_circular_spline")
 
@@ -133,18 +149,26 @@ class Faults(unittest.TestCase):
         found = {(fault.kind, fault.severity, fault.place, fault.onset) for fault in parameters.faults}
         self.assertEqual(found, {("tooth_root_crack", 0.5, 40, 1.5), ("lubricant_degradation", 0.2, -1, 0.0)})
         self.assertEqual(len(pickle.loads(pickle.dumps(parameters)).faults), 2)
+        fault = hjt.Fault("tooth_root_crack", 0.5, 40, 1.5)
+        for one in "tooth_root_crack:0.5:40:1.5", fault, pickle.loads(pickle.dumps(fault)):
+            parameters.faults = one
+            self.assertEqual(parameters.faults, [fault])
         parameters.faults = []
         self.assertEqual(parameters.faults, [])
+        self.assertNotEqual(fault, hjt.Fault("tooth_root_crack", 0.5, 41, 1.5))
 
     def test_out_of_range_are_refused(self):
         parameters = hjt.Parameters()
         for bad, part in (("tooth_root_crack:2:40", "severity = 2"), ("tooth_root_crack:0.5:200", "tooth 0 ... 199"),
-                          ("crack:0.5", "unknown kind 'crack'"), (hjt.Fault("pitting", 7.0), "severity = 7")):
+                          ("crack:0.5", "unknown kind 'crack'"), (hjt.Fault("pitting", 0.5, 400), "place = 400"),
+                          ("crack", "fault crack: expected KIND:SEVERITY")):
             with self.assertRaises(hjt.ParameterError) as caught:
                 parameters.faults = [bad]
             self.assertIn(part, str(caught.exception))
         with self.assertRaises(hjt.ParameterError):
             hjt.Fault("crack", 0.5)
+        with self.assertRaisesRegex(hjt.ParameterError, "severity = 7"):
+            hjt.Fault("pitting", 7.0)
 
     def test_kinds_are_listed(self):
         kinds = hjt.fault_kinds()

@@ -21,7 +21,8 @@ def stub_body(node):
     found = {}
     for item in node.body:
         if isinstance(item, ast.FunctionDef):
-            is_property = any(getattr(mark, "id", "") == "property" for mark in item.decorator_list)
+            is_property = any(getattr(mark, "id", "") == "property" or getattr(mark, "attr", "") == "setter"
+                              for mark in item.decorator_list)
             found[item.name] = None if is_property else item
         elif isinstance(item, ast.ClassDef):
             found[item.name] = item

@@ -133,11 +133,17 @@ class Run(unittest.TestCase):
                 ({"motor_torque": np.array([1j])}, "motor_torque is neither a number nor an array"),
                 ({"motor_torque": np.array([0], "M8[s]")}, "motor_torque is neither a number nor an array"),
                 ({"motor_torque": 0.1}, "steps is missing"),
+                ({"temperature": -300.0, "steps": 3}, r"temperature = -300\.0 \[degC\] is out of range, allowed: -40"),
+                ({"load_torque": [0.0, 1e7]}, r"load_torque\[1\] = .* \[N.m\] is out of range, allowed: -284"),
+                ({"brake": 2, "steps": 3}, r"brake = 2\.0 \[-\] is out of range, allowed: 0"),
                 ({"steps": -1}, "steps = -1"), ({"steps": 5, "every": 0}, "every = 0")):
             with self.assertRaisesRegex(hjt.InputError, words):
                 twin.run(**arguments)
         with self.assertRaisesRegex(hjt.InputError, r"torque = \.nan is not a finite number"):
             twin.command_motor_torque(float("nan"))
+        for call, value in (twin.command_load_torque, 1e7), (twin.set_temperature, -300.0):
+            with self.assertRaisesRegex(hjt.InputError, "is out of range, allowed: -"):
+                call(value)
         with self.assertRaisesRegex(hjt.ParameterError, "severity = 3"):
             twin.inject_fault("tooth_wear:3:1")
         for stamp in (2**63 - 1, -2**63):

@@ -63,7 +63,7 @@ class Options(tool.ToolTest):
                 ("DUTY: File does not exist: none.csv", ["life", "age", "none.csv"]),
                 ("DUTY: File is actually a directory: .", ["life", "age", "."]),
                 ("--duration: '-1' is not more than 0", ["simulate", "--duration", "-1"]),
-                ("--format: foo not in {urdf,sdf,mjcf,fmu}", ["export", "--format", "foo"]),
+                ("--format: foo not in {urdf,sdf,mjcf,fmu,fmu2}", ["export", "--format", "foo"]),
                 ("--train: At least 2 required but received 1", [*PAIR, "1"]),
                 ("--train: At Most 2 required but received 3", [*PAIR, "1,2,3"]),
                 ("--identified: Directory does not exist: none", ["identify", "a.bag", "--identified", "none"]),

@@ -194,30 +194,32 @@ std::vector<std::string> loadedLibraries(const std::vector<std::string>& names)
   return search.paths;
 }
 
-std::string armUnit(const ExportOptions& options, const std::filesystem::path& libraries)
+std::string armUnit(const ExportOptions& options, const std::filesystem::path& libraries, fmu::Version version)
 {
   ArmDescription arm = readArmDescription(findArm(options.arm, configDirectory(options)));
   addIdentifiedGains(options.identified, arm);
   return fmu::armFmu(
       std::filesystem::path(options.arm).stem(), arm, armDrives(arm, options, options.identified, {}),
-      { libraries / "harmonic_joint_twin_arm_fmu.so", loadedLibraries({ "libyaml-cpp", "liborocos-kdl" }) });
+      { libraries / "harmonic_joint_twin_arm_fmu.so", loadedLibraries({ "libyaml-cpp", "liborocos-kdl" }) }, version);
 }
 
 int exportFmu(const ExportOptions& options)
 {
   const std::filesystem::path libraries = libraryDirectory() / "harmonic_joint_twin";
+  const fmu::Version version = options.format == "fmu2" ? fmu::Version::FMI_2 : fmu::Version::FMI_3;
   requireWritable(options.out, options.force);
-  const std::string unit = options.arm.empty() ?
-                               fmu::driveFmu(loadGear(options), { libraries / "harmonic_joint_twin_fmu.so",
-                                                                  loadedLibraries({ "libyaml-cpp" }) }) :
-                               armUnit(options, libraries);
+  const std::string unit =
+      options.arm.empty() ?
+          fmu::driveFmu(loadGear(options),
+                        { libraries / "harmonic_joint_twin_fmu.so", loadedLibraries({ "libyaml-cpp" }) }, version) :
+          armUnit(options, libraries, version);
   writeTextFile(options.out, unit);
   return EXIT_DONE;
 }
 
 int exportJoint(const ExportOptions& options)
 {
-  const bool is_fmu = options.format == "fmu";
+  const bool is_fmu = options.format == "fmu" || options.format == "fmu2";
   if (is_fmu == options.out.empty())
   {
     std::cerr << "joint_twin: " << (is_fmu ? "--format fmu needs --out" : "--out is for --format fmu") << '\n';
@@ -261,10 +263,10 @@ void declare(Command& command, ExportOptions& options)
 {
   command
       .add("--format", options.format,
-           "urdf, sdf, mjcf: a joint with its damping and friction, to stdout; fmu: the twin itself as a co-simulation "
-           "unit of FMI 3.0, to --out")
+           "urdf, sdf, mjcf: a joint with its damping and friction, to stdout; fmu, fmu2: the twin itself as a "
+           "co-simulation unit of FMI 3.0 or 2.0, to --out")
       .required()
-      .choice({ "urdf", "sdf", "mjcf", "fmu" });
+      .choice({ "urdf", "sdf", "mjcf", "fmu", "fmu2" });
   command.add("--out", options.out, "file of the unit").type("FILE.fmu");
   command.add("--arm", options.arm, "the unit is this whole arm, its drives, links and controller")
       .type("NAME|FILE.yaml");

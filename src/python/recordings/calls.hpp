@@ -275,11 +275,30 @@ public:
   double at(std::size_t row, std::size_t joint) const { return data_[row * static_cast<std::size_t>(width()) + joint]; }
 
 private:
+  /// Dates and times of numpy or pandas are seconds.
+  static py::object inSeconds(const py::object& column, const std::string& name)
+  {
+    const py::object kind = py::getattr(py::getattr(column, "dtype", py::none()), "kind", py::none());
+    const bool is_date = kind.equal(py::str("M"));
+    if (!is_date && !kind.equal(py::str("m")))
+    {
+      return column;
+    }
+    if (name != "time")
+    {
+      throw InputError("column '" + name + "' must be numbers, it holds times");
+    }
+    const py::module numpy = py::module::import("numpy");
+    const py::object times = numpy.attr("asarray")(column);
+    const py::object since = is_date ? times - numpy.attr("datetime64")(0, "ns") : times;
+    return since / numpy.attr("timedelta64")(1, "s");
+  }
+
   void read(const py::object& column, const std::string& name)
   {
     try
     {
-      values_ = column.cast<Values>();
+      values_ = inSeconds(column, name).cast<Values>();
     }
     catch (const py::error_already_set& error)
     {

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cfenv>
+#include <exception>
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+#include "fmu/fmi.hpp"
+#include "fmu/instance.hpp"
+
+/// What the functions of both versions of FMI do: whatever an instance throws becomes an error and a message; nothing
+/// is printed.
+namespace hjt::fmu
+{
+/// The usual floating-point environment in place of the importer's, which may trap, or flush small numbers to zero.
+class UsualArithmetic
+{
+public:
+  UsualArithmetic() noexcept
+  {
+    std::fegetenv(&importers_);
+    std::fesetenv(FE_DFL_ENV);
+  }
+  ~UsualArithmetic() { std::fesetenv(&importers_); }
+  UsualArithmetic(const UsualArithmetic&) = delete;
+  UsualArithmetic& operator=(const UsualArithmetic&) = delete;
+
+private:
+  std::fenv_t importers_{};
+};
+
+/// What `call` does with the instance, as a status; false is a warning. A null instance is an error too.
+template <class Call>
+Status guarded(Instance* instance, const Call& call) noexcept
+{
+  if (instance == nullptr)
+  {
+    return Status::ERROR;
+  }
+  try
+  {
+    const UsualArithmetic arithmetic;
+    if constexpr (std::is_void_v<decltype(call(*instance))>)
+    {
+      call(*instance);
+      return Status::OK;
+    }
+    else
+    {
+      return call(*instance) ? Status::OK : Status::WARNING;
+    }
+  }
+  catch (const std::exception& error)
+  {
+    instance->log(Status::ERROR, error.what());
+  }
+  catch (...)
+  {
+    instance->log(Status::ERROR, "failed without a reason");
+  }
+  return Status::ERROR;
+}
+
+inline Status refuse(Instance* instance, const char* name) noexcept
+{
+  return guarded(instance, [&](Instance&) { throw CallError(std::string(name) + ": this unit has none of it"); });
+}
+
+/// A new instance, or null and a message, whether logging is on or not. `check`: throws where the call is wrong.
+template <class Check>
+Instance* instantiated(const char* token, const char* resources, bool logs, const Log& log, const Check& check) noexcept
+{
+  try
+  {
+    const UsualArithmetic arithmetic;
+    check();
+    for (const char* text : { token, resources })
+    {
+      if (text == nullptr)
+      {
+        throw CallError("token or path of the resources is a null pointer");
+      }
+    }
+    return std::make_unique<Instance>(resources, token, logs, log).release();
+  }
+  catch (const std::exception& error)
+  {
+    if (log)
+    {
+      log(Status::ERROR, LOG_CATEGORIES[1], error.what());
+    }
+  }
+  catch (...)  // nothing of C++ leaves the unit
+  {
+  }
+  return nullptr;
+}
+
+/// As an importer's log takes it, in which these letters have a meaning.
+inline std::string doubled(const std::string& text, const char* letters)
+{
+  std::string found;
+  for (const char letter : text)
+  {
+    found.append(std::string(letters).find(letter) != std::string::npos ? 2 : 1, letter);
+  }
+  return found;
+}
+
+template <class Pointer>
+void require(Pointer pointer, const char* name)
+{
+  if (pointer == nullptr)
+  {
+    throw CallError(std::string(name) + " is a null pointer");
+  }
+}
+
+inline void requireArrays(const References& of, const void* values)
+{
+  if (of.size > 0)
+  {
+    require(of.references, "valueReferences");
+    require(values, "values");
+  }
+}
+
+template <class Number>
+Status getNumbers(Instance* instance, Type type, const References& of, Number* values) noexcept
+{
+  return guarded(instance,
+                 [&](Instance& self)
+                 {
+                   requireArrays(of, values);
+                   return self.get(type, of,
+                                   [&](std::size_t place, double number, const std::string&)
+                                   { values[place] = static_cast<Number>(number); });
+                 });
+}
+
+template <class Number>
+Status setNumbers(Instance* instance, Type type, const References& of, const Number* values) noexcept
+{
+  return guarded(instance,
+                 [&](Instance& self)
+                 {
+                   requireArrays(of, values);
+                   self.setNumbers(type, of,
+                                   [values](std::size_t place) { return static_cast<double>(values[place]); });
+                 });
+}
+
+inline Status getTexts(Instance* instance, const References& of, const char** values) noexcept
+{
+  return guarded(instance,
+                 [&](Instance& self)
+                 {
+                   requireArrays(of, values);
+                   return self.get(Type::STRING, of,
+                                   [&](std::size_t place, double, const std::string& text)
+                                   { values[place] = text.c_str(); });
+                 });
+}
+
+inline Status setTexts(Instance* instance, const References& of, const char* const* values) noexcept
+{
+  return guarded(instance,
+                 [&](Instance& self)
+                 {
+                   requireArrays(of, values);
+                   self.setTexts(of, values);
+                 });
+}
+
+inline Status setLogging(Instance* instance, bool on, std::size_t count, const char* const* categories) noexcept
+{
+  return guarded(instance,
+                 [&](Instance& self)
+                 {
+                   if (count > 0)
+                   {
+                     require(categories, "categories");
+                   }
+                   self.setLogging(on, count, categories);
+                 });
+}
+
+inline Status getState(Instance* instance, Instance::State** state) noexcept
+{
+  return guarded(instance,
+                 [&](Instance& self)
+                 {
+                   require(state, "FMUState");
+                   Instance::State copy = self.state();
+                   if (*state == nullptr)
+                   {
+                     *state = std::make_unique<Instance::State>().release();
+                   }
+                   **state = std::move(copy);
+                 });
+}
+
+inline Status setState(Instance* instance, const Instance::State* state) noexcept
+{
+  return guarded(instance,
+                 [&](Instance& self)
+                 {
+                   require(state, "FMUState");
+                   self.takeUp(*state);
+                 });
+}
+
+inline Status freeState(Instance* instance, Instance::State** state) noexcept
+{
+  return guarded(instance,
+                 [&](Instance&)
+                 {
+                   require(state, "FMUState");
+                   const std::unique_ptr<Instance::State> freed(*state);
+                   *state = nullptr;
+                 });
+}
+
+/// @returns false if the last good state is held.
+inline bool doStep(Instance& instance, double at, double length)
+{
+  const bool converged = instance.step(at, length);
+  if (!converged)
+  {
+    instance.log(Status::WARNING, "a step found no equilibrium: the last good state is held");
+  }
+  return converged;
+}
+}  // namespace hjt::fmu
