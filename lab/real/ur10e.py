@@ -65,7 +65,7 @@ the measured ones, smoothed by polynomials of degree {DEGREE} over {WINDOW} rows
 ripple, and there is no tracking error to compare. Drives identified on {TRAIN} alone, gains typical.
 In each cell: error of the current in moving rows, rms, closed loop / `follow` / simple fit with the recorded moment
 [A]; amplitude of the current at 200 lines a turn, twin / recorded [A], –: no steady motion of a frequency that the rows
-resolve. The payload of 2.805 kg in ...Load is told to none of them; the fit has it in the moment only as far as the
+resolve. None of them knows the payload of 2.805 kg in ...Load; the fit has it in the moment only as far as the
 controller does.
 
 Of what was not identified on, the current in moving rows is within {WANTED:g} of the simple fit's error in
