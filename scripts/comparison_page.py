@@ -14,16 +14,13 @@ import sys
 
 try:
     import jinja2
-    import matplotlib
     import numpy as np
+    from drawing import plt
 except ImportError as missing:
     sys.exit(f"comparison_page: {missing.name} is not installed; apt-get install python3-{missing.name.split('.')[0]}")
 
-matplotlib.rcdefaults()  # not those of a matplotlibrc in the folder of the call
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402  (the backend is chosen before pyplot is loaded)
-from matplotlib.dates import AutoDateLocator, ConciseDateFormatter  # noqa: E402
-from matplotlib.ticker import MaxNLocator  # noqa: E402
+from matplotlib.dates import AutoDateLocator, ConciseDateFormatter
+from matplotlib.ticker import MaxNLocator
 
 GREY, BLUE, RED, GREEN, ORANGE = "#7a7a7a", "#0072B2", "#D55E00", "#009E73", "#E69F00"
 DPI = 130

@@ -1,8 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """matplotlib without a screen, a style, and Okabe and Ito's colours: distinct for every eye and in grey."""
-import matplotlib
+import os
 
-matplotlib.rcdefaults()  # not those of a matplotlibrc in the folder of the call
+# The settings of no matplotlibrc: neither one in the folder of the call, whatever it holds, nor the user's.
+FOLDER = os.getcwd()
+os.chdir(os.path.dirname(os.path.abspath(__file__)))
+try:
+    import matplotlib
+finally:
+    os.chdir(FOLDER)
+matplotlib.rcdefaults()
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402, F401  (the backend is chosen before pyplot is loaded)
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <variant>
@@ -18,6 +19,7 @@
 #include "params/configuration_files.hpp"
 #include "ros_io/arm_action.hpp"
 #include "ros_io/joint_name.hpp"
+#include "ros_io/master_watch.hpp"
 #include "ros_io/parameter_server.hpp"
 #include "ros_io/shutdown_signals.hpp"
 #include "ros_io/tracker_node.hpp"
@@ -52,7 +54,10 @@ void run(ros::NodeHandle& handle, const Arguments&... arguments)
         "/use_sim_time is true and no time comes on /clock. Beside a robot: rosparam delete /use_sim_time, "
         "then start this node again");
   }
-  ros::waitForShutdown();
+  if (!hjt::waitForShutdownOrNewMaster())
+  {
+    throw std::runtime_error("The ROS master was replaced, and the new one does not know this node: start it again");
+  }
 }
 
 void runJoint(ros::NodeHandle& node, const hjt::FoundParameters& found)

@@ -26,6 +26,8 @@ constexpr milliseconds SHORT_PAUSE{ 4 };
 constexpr milliseconds MAX_PAUSE{ 50 };
 /// Simulated at most in one cycle, more than MAX_PAUSE, so that the loop stays responsive while it catches up [ns].
 constexpr Stamp MAX_CATCH_UP = 60'000'000;
+/// A cycle begins no further step after that long: one that the solver is slow at does not keep requests waiting.
+constexpr milliseconds LONGEST_WORK{ 100 };
 /// A smaller step back, as time synchronisation makes, is waited out [ns].
 constexpr Stamp CLOCK_JUMP_TOLERANCE = 100'000'000;
 /// How long a request waits for the loop.
@@ -107,7 +109,7 @@ void TwinLoop::run()
   while (!stopping_)
   {
     const auto begin = steady_clock::now();
-    cycle();
+    cycle(begin);
     const auto end = steady_clock::now();
     keepTimes(begin, end);
     shown_status_.tryWrite(status_);
@@ -139,7 +141,7 @@ steady_clock::duration TwinLoop::pause(Stamp next_awaited) const noexcept
                                             MAX_PAUSE);
 }
 
-void TwinLoop::cycle() noexcept
+void TwinLoop::cycle(steady_clock::time_point begin) noexcept
 {
   // Without a time there is nothing to restart, and inputs cannot be ordered yet.
   if (clock_() == 0)
@@ -150,17 +152,18 @@ void TwinLoop::cycle() noexcept
   // While a callback holds the inbox the twin only goes on; the next cycle sees to the rest.
   if (!inbox_.use([this](Inputs& inputs) { heed(inputs); }))
   {
-    status_.clock = std::max(status_.clock, clock_());
+    const Stamp now = clock_();
+    status_.clock = isJump(now) ? status_.clock : std::max(status_.clock, now);
   }
   if (status_.state == LoopState::RUNNING)
   {
-    catchUp();
+    catchUp(begin);
   }
   status_.twin_stamp = twin_.stamp();
   twin_.show(status_);
 }
 
-/// The clock after the inputs: what comes after a jump back is not mistaken for what came before it.
+/// The clock after the inputs: what comes after a jump is not mistaken for what came before it.
 void TwinLoop::heed(Inputs& inputs) noexcept
 {
   if (readClock(clock_()))
@@ -180,19 +183,27 @@ void TwinLoop::heed(Inputs& inputs) noexcept
   waiting_ = inputs.size();
 }
 
-/// @returns whether the clock has jumped back.
+/// The first time that is seen is none.
+bool TwinLoop::isJump(Stamp now) const noexcept
+{
+  const Stamp step = now - status_.clock;
+  return status_.clock != 0 && (step < -CLOCK_JUMP_TOLERANCE || step > MAX_CLOCK_STEP);
+}
+
+/// @returns whether the clock has jumped.
 bool TwinLoop::readClock(Stamp now) noexcept
 {
-  const bool back = now + CLOCK_JUMP_TOLERANCE < status_.clock;
-  if (back)
+  const bool jumped = isJump(now);
+  if (jumped)
   {
     ++status_.clock_jumps;
+    status_.last_jump = now - status_.clock;
     status_.state = LoopState::WAITING_FOR_CLOCK;
     status_.clock = now;
     status_.lag = 0;
   }
   status_.clock = std::max(status_.clock, now);
-  return back;
+  return jumped;
 }
 
 void TwinLoop::answerRequests(Inputs& inputs) noexcept
@@ -310,7 +321,7 @@ void TwinLoop::handOver(Inputs& inputs) noexcept
   inputs.clear();
 }
 
-void TwinLoop::catchUp() noexcept
+void TwinLoop::catchUp(steady_clock::time_point begin) noexcept
 {
   if (clock_kind_ == ClockKind::STEPPED && status_.lag < step_length_)
   {
@@ -318,7 +329,7 @@ void TwinLoop::catchUp() noexcept
   }
   const Stamp first = twin_.stamp() + step_length_;
   const Stamp until = std::min(limit(), twin_.stamp() + MAX_CATCH_UP);
-  while (twin_.step(until))
+  while (steady_clock::now() - begin < LONGEST_WORK && twin_.step(until))
   {
     after_step_();
   }

@@ -63,7 +63,8 @@ struct LoopStatus
   Stamp largest_lag{};  ///< since the last start or reset [ns]
   std::uint64_t cycles{};
   std::uint64_t overruns{};     ///< cycles whose work took longer than their period
-  std::uint64_t clock_jumps{};  ///< times the clock jumped back
+  std::uint64_t clock_jumps{};  ///< times the clock jumped, back or ahead
+  Stamp last_jump{};            ///< by how much then; > 0 ahead [ns]
   std::uint64_t resets{};       ///< resets on request
   std::uint64_t far_stamps{};   ///< inputs refused: stamped further than FAR_STAMP from the clock
   bool command_seen{};          ///< a motor torque command has come since the last start or reset
@@ -115,9 +116,9 @@ private:
 
 /// Advances the twin to the clock in a thread of its own: no allocation, no log, no lock that anybody holds for long.
 ///
-/// The twin stays `input.delay` behind the clock. It never skips time: after a jump forward it catches up, a
-/// bounded stretch per cycle so that inputs, requests and the stop are still heard. A clock that jumps back restarts
-/// it.
+/// The twin stays `input.delay` behind the clock. It never skips time: after a step ahead of up to MAX_CLOCK_STEP it
+/// catches up, a bounded stretch per cycle so that inputs, requests and the stop are still heard. A clock that jumps
+/// back, or further ahead, restarts it.
 ///
 /// On a clock that runs, the loop sleeps until the next output is due, at least a fifth of `input.delay`
 /// (one to SHORT_PAUSE), at most MAX_PAUSE. What it simulates then is what it would have simulated in between: inputs
@@ -130,6 +131,9 @@ public:
   /// Called after each cycle with the instant it has reached; returns the instant of the next output [ns].
   /// Must not wait or allocate.
   using AfterCycle = std::function<Stamp(Stamp)>;
+
+  /// From one reading of the clock to the next; more is a jump, of another recording or a machine that slept [ns].
+  static constexpr Stamp MAX_CLOCK_STEP = 10'000'000'000;
 
   /// Starts the thread. Without `after_cycle` every instant is an output. `parameters`: of the twin or one of several.
   TwinLoop(Advanced& twin, const Parameters& parameters, Inbox& inbox, Clock clock, ClockKind clock_kind,
@@ -151,7 +155,8 @@ private:
 
   void run();
   std::chrono::steady_clock::duration pause(Stamp next_awaited) const noexcept;
-  void cycle() noexcept;
+  void cycle(std::chrono::steady_clock::time_point begin) noexcept;
+  bool isJump(Stamp now) const noexcept;
   bool readClock(Stamp now) noexcept;
   void heed(Inputs& inputs) noexcept;
   void answerRequests(Inputs& inputs) noexcept;
@@ -162,7 +167,7 @@ private:
   void start(Stamp stamp, Inputs& inputs) noexcept;
   void handOver(Inputs& inputs) noexcept;
   Stamp limit() const noexcept { return std::max<Stamp>(status_.clock - input_delay_, 0); }
-  void catchUp() noexcept;
+  void catchUp(std::chrono::steady_clock::time_point begin) noexcept;
   void judgeLateness(Stamp due) noexcept;
   void keepTimes(std::chrono::steady_clock::time_point begin, std::chrono::steady_clock::time_point end) noexcept;
 

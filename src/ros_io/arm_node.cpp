@@ -65,6 +65,7 @@ ArmNode::Advance::Advance(const ArmDescription& description, const std::vector<P
   , wrench(ArmWrench{})
   , payload(Payload{})
   , wanted_(drives.size())
+  , counters_(drives.size())
   , watch_(description, arm.twin())
 {
   for (std::size_t i = 0; i < drives.size(); ++i)
@@ -73,6 +74,7 @@ ArmNode::Advance::Advance(const ArmDescription& description, const std::vector<P
   }
   arm.wanted(wanted_);
   shown.tryWrite(wanted_);
+  counters.tryWrite(counters_);
   report.tryWrite(watch_.report());
 }
 
@@ -115,6 +117,11 @@ void ArmNode::Advance::show(LoopStatus& /*status*/) noexcept
 {
   arm.wanted(wanted_);
   shown.tryWrite(wanted_);
+  for (std::size_t i = 0; i < counters_.size(); ++i)
+  {
+    counters_[i] = arm.twin().drive(i).counters();
+  }
+  counters.tryWrite(counters_);
   report.tryWrite(watch_.report());
   const std::optional<ProtectiveStop>& stop = arm.protectiveStop();
   stopped_joint = stop ? stop->joint : 0;
@@ -130,6 +137,11 @@ ArmNode::ArmNode(ros::NodeHandle& node, const ArmDescription& arm, const std::ve
         [this] { publishers_.offer(advance_.arm); }, [this](Stamp instant) { return publishers_.finishCycle(instant); })
   , realtime_(requestRealtime(drives.front().realtime, loop_))
   , timing_publisher_(node, drives.front(), loop_)
+  , diagnostics_(node, description_, drives.front(), realtime_,
+                 [this] {
+                   return ArmDiagnostics::Snapshot{ loop_.status(), advance_.counters.read(), stopReason(),
+                                                    publishers_.dropped() };
+                 })
   , limits_(arm, drives)
   , reset_service_(node.advertiseService("reset", &ArmNode::reset, this))
   , unlock_service_(node.advertiseService(UNLOCK, &ArmNode::unlock, this))

@@ -24,6 +24,7 @@
 #include "live/realtime.hpp"
 #include "live/try_lock_value.hpp"
 #include "live/twin_loop.hpp"
+#include "ros_io/arm_diagnostics.hpp"
 #include "ros_io/arm_publishers.hpp"
 #include "ros_io/driver_states.hpp"
 #include "ros_io/fault_subscriber.hpp"
@@ -80,7 +81,8 @@ private:
     Handover<Command> command;
     Handover<ArmWrench> wrench;
     Handover<Payload> payload;
-    TryLockValue<std::vector<JointMotion>> shown;  ///< present set point
+    TryLockValue<std::vector<JointMotion>> shown;      ///< present set point
+    TryLockValue<std::vector<TwinCounters>> counters;  ///< of each drive
     TryLockValue<GoalReport> report;
     std::atomic<const char*> stop_reason{ nullptr };  ///< of a protective stop; none: it moves
     std::atomic<std::size_t> stopped_joint{};         ///< of which joint
@@ -88,6 +90,7 @@ private:
 
   private:
     std::vector<JointMotion> wanted_;
+    std::vector<TwinCounters> counters_;
     GoalWatch watch_;
   };
 
@@ -107,6 +110,7 @@ private:
   TwinLoop loop_;
   RealtimeState realtime_;
   TimingPublisher timing_publisher_;
+  ArmDiagnostics diagnostics_;
   std::atomic<std::uint64_t> too_large_{ 0 };
   std::mutex command_mutex_;
   MotionLimits limits_;

@@ -116,6 +116,19 @@ Stamp ArmPublishers::finishCycle(Stamp instant) noexcept
   return next;
 }
 
+std::uint64_t ArmPublishers::dropped() const noexcept
+{
+  std::uint64_t sum = states_.counters("").dropped + tool_.counters("").dropped + wanted_tool_.counters("").dropped;
+  for (const auto& drive : drives_)
+  {
+    for (const ChannelCounters& channel : drive->counters())
+    {
+      sum += channel.dropped;
+    }
+  }
+  return sum;
+}
+
 bool ArmPublishers::isHeard() const noexcept
 {
   return states_.isWanted() || tool_.isWanted() || wanted_tool_.isWanted();

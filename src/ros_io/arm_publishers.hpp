@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -28,6 +29,9 @@ public:
 
   /// Loop: as OutputPublishers::finishCycle.
   Stamp finishCycle(Stamp instant) noexcept;
+
+  /// Messages that could not be published.
+  std::uint64_t dropped() const noexcept;
 
 private:
   using Pose = geometry_msgs::PoseStamped;

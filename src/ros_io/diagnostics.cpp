@@ -17,10 +17,6 @@ namespace
 using diagnostic_msgs::DiagnosticStatus;
 using diagnostic_updater::DiagnosticStatusWrapper;
 
-/// Report the ROS clock as stopped after this long without a change [s, wall time].
-constexpr double CLOCK_STANDS_AFTER = 1.0;
-/// Warn when the twin is further behind than this [s].
-constexpr double LAG_WARNING = 1.0;
 /// Warn when a command's stamp is further ahead of the clock than this [s].
 constexpr double AHEAD_WARNING = 1.0;
 
@@ -76,13 +72,11 @@ Diagnostics::Diagnostics(ros::NodeHandle& node, const Parameters& parameters, co
                          const RealtimeState& realtime, const Inbox& inbox, const InputSubscribers& subscribers,
                          const OutputPublishers& publishers)
   : loop_(loop)
-  , realtime_(realtime)
   , inbox_(inbox)
   , subscribers_(subscribers)
   , publishers_(publishers)
   , command_timeout_(parameters.input.command_timeout)
-  , deadline_(parameters.realtime.deadline)
-  , clock_moved_(ros::WallTime::now())
+  , timing_(realtime, parameters.realtime.deadline)
   , tasks_(node.getNamespace().substr(1), parameters.joint.hardware_id)
 {
   tasks_.add("Drive", this, &Diagnostics::judgeDrive, &Diagnostics::reportDrive);
@@ -93,7 +87,6 @@ Diagnostics::Diagnostics(ros::NodeHandle& node, const Parameters& parameters, co
                                 [this](const ros::WallTimerEvent&)
                                 {
                                   readSnapshot();
-                                  logClockJumps();
                                   tasks_.look();
                                 });
 }
@@ -119,27 +112,12 @@ void Diagnostics::readSnapshot()
                        snapshot_.messages.refused_fault + snapshot_.messages.too_large + twin.faults.refused +
                        loop.far_stamps,
                    now);
-  clock_jumps_.update(loop.clock_jumps, now);
-  missed_deadlines_.update(loop.timing.missed_deadlines, now);
   std::uint64_t dropped = 0;
   for (const ChannelCounters& output : snapshot_.outputs)
   {
     dropped += output.dropped;
   }
-  drops_.update(dropped, now);
-  if (loop.clock != last_clock_)
-  {
-    last_clock_ = loop.clock;
-    clock_moved_ = now;
-  }
-}
-
-void Diagnostics::logClockJumps()
-{
-  for (; logged_clock_jumps_ < snapshot_.loop.clock_jumps; ++logged_clock_jumps_)
-  {
-    ROS_WARN("The clock jumped back: the twin restarts");
-  }
+  timing_.update(loop, dropped);
 }
 
 DiagnosticVerdict Diagnostics::judgeDrive() const
@@ -173,22 +151,6 @@ DiagnosticVerdict Diagnostics::judgeInput() const
           { D::WARN, "Motor torque commands stop for longer than input.command_timeout: the torque is then zero" } },
         { age < -AHEAD_WARNING, { D::WARN, "Command stamps are ahead of the clock" } } },
       { D::OK, "Commands arrive" });
-}
-
-DiagnosticVerdict Diagnostics::judgeTiming() const
-{
-  using D = DiagnosticStatus;
-  return firstOf(
-      { { snapshot_.loop.clock == 0, { D::WARN, "No time on /clock yet" } },
-        { clock_jumps_.areRecent(), { D::WARN, "The clock jumped back: restarted" } },
-        { drops_.areRecent(), { D::WARN, "Messages dropped: publishing cannot keep up" } },
-        { toSeconds(snapshot_.loop.lag) > LAG_WARNING,
-          { D::WARN, "Behind the clock and catching up; ~reset restarts at the current instant" } },
-        { missed_deadlines_.areRecent(),
-          { D::WARN, "Deadlines missed: instants simulated late by more than realtime.deadline" } },
-        { (ros::WallTime::now() - clock_moved_).toSec() > CLOCK_STANDS_AFTER, { D::WARN, "The clock has stopped" } },
-        { !realtime_.refusals.empty(), { D::WARN, "In time, but a request of realtime was refused: see the log" } } },
-      { D::OK, "In time" });
 }
 
 DiagnosticVerdict Diagnostics::judgeHealth() const
@@ -255,29 +217,7 @@ void Diagnostics::reportInput(DiagnosticStatusWrapper& status) const
 
 void Diagnostics::reportTiming(DiagnosticStatusWrapper& status) const
 {
-  const LoopStatus& loop = snapshot_.loop;
-  status.add("Clock", ros::Time::isSimTime() ? "/clock" : "system");
-  status.add("Clock [s]", fixedText(toSeconds(loop.clock), 4));
-  status.add("Simulated instant [s]", fixedText(toSeconds(loop.twin_stamp), 4));
-  status.add("Lag [s]", toSeconds(loop.lag));
-  status.add("Largest lag [s]", toSeconds(loop.largest_lag));
-  status.add("Deadline [s]", deadline_);
-  status.add("Deadlines missed", loop.timing.missed_deadlines);
-  status.add("Lateness, median [s]", toSeconds(loop.timing.lateness.quantile(0.5)));
-  status.add("Lateness, 99.9 % [s]", toSeconds(loop.timing.lateness.quantile(0.999)));
-  status.add("Lateness, largest [s]", toSeconds(loop.timing.lateness.largest()));
-  status.add("Wake-up jitter, 99.9 % [s]", toSeconds(loop.timing.wake_up.quantile(0.999)));
-  status.add("Wake-up jitter, largest [s]", toSeconds(loop.timing.wake_up.largest()));
-  status.add("Longest cycle [s]", toSeconds(loop.timing.longest_cycle));
-  status.add("Real-time factor", loop.timing.realTimeFactor());
-  status.add("Load of the loop", loop.timing.load());
-  status.add("Scheduling", realtime_.scheduling);
-  status.add("Memory", realtime_.memory);
-  status.add("Processor", realtime_.processor);
-  status.add("Cycles", loop.cycles);
-  status.add("Cycles overrun", loop.overruns);
-  status.add("Clock jumps back", loop.clock_jumps);
-  status.add("Resets on request", loop.resets);
+  timing_.report(status);
   for (const ChannelCounters& output : snapshot_.outputs)
   {
     status.add(std::string(output.name) + " computed", output.computed);

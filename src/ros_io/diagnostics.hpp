@@ -16,6 +16,7 @@
 #include "ros_io/input_subscribers.hpp"
 #include "ros_io/output_publishers.hpp"
 #include "ros_io/recent_events.hpp"
+#include "ros_io/timing_task.hpp"
 
 namespace hjt
 {
@@ -26,8 +27,7 @@ std::string verdictText(const Assessment& assessment);
 void addAssessment(const Assessment& assessment, diagnostic_updater::DiagnosticStatusWrapper& status);
 
 /// Publishes the state of drive, input, timing and health on /diagnostics: about once a second by the wall clock, and
-/// at once
-/// when a level changes. Also logs, once per jump, that the clock went back.
+/// at once when a level changes.
 class Diagnostics
 {
 public:
@@ -46,10 +46,9 @@ private:
   };
 
   void readSnapshot();
-  void logClockJumps();
   DiagnosticVerdict judgeDrive() const;
   DiagnosticVerdict judgeInput() const;
-  DiagnosticVerdict judgeTiming() const;
+  DiagnosticVerdict judgeTiming() const { return timing_.judge(); }
   DiagnosticVerdict judgeHealth() const;
   void reportDrive(diagnostic_updater::DiagnosticStatusWrapper& status) const;
   void reportInput(diagnostic_updater::DiagnosticStatusWrapper& status) const;
@@ -57,12 +56,10 @@ private:
   void reportHealth(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
   const TwinLoop& loop_;
-  const RealtimeState& realtime_;
   const Inbox& inbox_;
   const InputSubscribers& subscribers_;
   const OutputPublishers& publishers_;
   const double command_timeout_;
-  const double deadline_;
   Snapshot snapshot_;
   RecentEvents solver_failures_;
   RecentEvents step_cuts_;
@@ -75,12 +72,7 @@ private:
   RecentEvents late_inputs_;
   RecentEvents timeouts_;
   RecentEvents lost_inputs_;
-  RecentEvents drops_;
-  RecentEvents clock_jumps_;
-  RecentEvents missed_deadlines_;
-  std::uint64_t logged_clock_jumps_{};
-  Stamp last_clock_{};
-  ros::WallTime clock_moved_;
+  TimingTask timing_;
   DiagnosticTasks tasks_;
   ros::WallTimer timer_;
 };

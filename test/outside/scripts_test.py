@@ -39,6 +39,24 @@ class Scripts(unittest.TestCase):
             self.assertNotIn("Built target", done.stdout, command)
             self.assertEqual(os.listdir(self.out), [], command)
 
+    def test_the_package_takes_no_files_beside_the_tracked_ones(self):
+        tracked = ["CHANGELOG.rst", "CITATION.cff", "CONTRIBUTING.md", "LICENSE", "README.md", "docs/page.md",
+                   "examples/a.cpp"]
+        checkout = pathlib.Path(self.out) / "checkout"
+        for name in [*tracked, "docs/own notes.md", "examples/build/own.o"]:
+            (checkout / name).parent.mkdir(parents=True, exist_ok=True)
+            (checkout / name).write_text(name)
+        subprocess.run(["git", "init", "-q"], cwd=checkout, check=True)
+        subprocess.run(["git", "add", *tracked], cwd=checkout, check=True)
+        script = (SCRIPTS / "package").read_text()
+        function = re.search(r"^install_documents\(\)\n\{.*?^\}", script, re.M | re.S).group()
+        command = f"PACKAGE=name ROOT=$1 PROJECT_DIR=$2\n{function}\ninstall_documents"
+        done = self.run_script("bash", "-ec", command, "-", os.path.join(self.out, "root"), str(checkout))
+        self.assertEqual(done.returncode, 0, done.stdout)
+        folder = pathlib.Path(self.out) / "root" / "usr" / "share" / "doc" / "name"
+        self.assertEqual({str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()},
+                         {*tracked, "copyright"})
+
     @staticmethod
     def run_script(*command, **options):
         return subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False,

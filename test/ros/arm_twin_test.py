@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
 """The live twin of a whole arm in place of a robot, and arm.launch beside it as beside a robot."""
+import itertools
 import math
 import sys
 import time
@@ -205,6 +206,35 @@ class ArmTwin(unittest.TestCase):
         self.states.clear()
         wait_until(lambda: max(abs(self.last()[name] - START[name]) for name in NAMES) < 2e-3
                    if self.states.messages() else False, "the arm at its start")
+
+    def test_8_what_is_too_much_for_real_time_is_said_and_a_reset_is_answered(self):
+        diagnostics = Diagnostics(NODE)
+        wait_until(lambda: diagnostics.statuses("Timing"), "diagnostics")
+        reset = rospy.ServiceProxy(f"{NODE}/reset", Trigger)
+        for side in itertools.cycle((1000.0, -1000.0)):
+            wrench = WrenchStamped()
+            wrench.wrench.force.x, wrench.wrench.torque.x = side, -side
+            wrench.wrench.force.y, wrench.wrench.torque.y = -side, side
+            self.wrench.publish(wrench)
+            time.sleep(0.05)
+            if "Behind the clock" in diagnostics.statuses("Timing")[-1].message:
+                break
+        self.said("s behind the clock")
+        self.assertLess(Listener(f"{NODE}/timing", Timing).wait_for(1)[-1].real_time_factor, 0.99)
+        self.assertGreater(sum(diagnostics.number("Arm", f"{joint}: steps beyond the joint's torque limit")
+                               for joint in JOINTS), 0)
+        for mass in (0.0, 1e4):
+            load = Inertia(m=mass)
+            load.com.x = 10.0
+            self.payload.publish(load)
+            time.sleep(3.0)
+            answer = reset()
+            self.assertTrue(answer.success, answer.message)
+        self.wrench.publish(WrenchStamped())
+        self.payload.publish(Inertia())
+        time.sleep(0.5)
+        self.assertTrue(reset().success)
+        self.said("The twin is in time again")
 
 
 if __name__ == "__main__":

@@ -9,12 +9,13 @@ import re
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 import rosgraph
 import rostest
 
-from ros_support import LAUNCH_TIMEOUT, PACKAGE, Launch, free_port, package_path, wait_until
+from ros_support import LAUNCH_TIMEOUT, PACKAGE, Launch, Node, free_port, package_path, wait_until
 
 AT_ONCE = 3  # masters
 RECORDED = 10000  # of a bag that is being written: more than its head, so the clock runs [bytes]
@@ -108,9 +109,9 @@ class Launches(unittest.TestCase):
         return (by_nodes(parameters), re.findall(r"\w+ is \w+: .* degC", log),
                 {node for node, topic in state if topic == "/clock"})
 
-    def start_master(self):
-        port = free_port()
-        core = subprocess.Popen(["rosmaster", "--core", "-p", str(port)], stdout=subprocess.DEVNULL)
+    def start_master(self, port=None):
+        port = port or free_port()
+        self.core = core = subprocess.Popen(["rosmaster", "--core", "-p", str(port)], stdout=subprocess.DEVNULL)
         self.addCleanup(core.wait)
         self.addCleanup(core.terminate)
         master = rosgraph.Master("/test", f"http://localhost:{port}")
@@ -152,6 +153,20 @@ class Launches(unittest.TestCase):
         self.assertEqual(clock, {"/joint_twin"})
         self.visit("replay", port)
         self.assertTrue(master.getParam("/use_sim_time"))
+
+    def test_a_node_stays_without_its_master_and_ends_when_another_has_come(self):
+        for name, *arguments in (("joint_twin",), ("arm_twin", "_arm:=ur5", "_input/mode:=commands")):
+            port, master = self.start_master()
+            node = Node(name, *arguments, ROS_MASTER_URI=f"http://localhost:{port}")
+            self.addCleanup(node.kill)
+            wait_until(lambda m=master, n=name: (f"/{n}", "/diagnostics") in connections(m), name, LAUNCH_TIMEOUT)
+            self.core.terminate()
+            self.core.wait()
+            time.sleep(7.0)  # longer than from one look at the master to the next
+            self.assertIsNone(node.process.poll(), node.output())
+            self.start_master(port)
+            self.assertEqual(node.wait_for_exit(LAUNCH_TIMEOUT), 1, node.output())
+            self.assertIn("The ROS master was replaced, and the new one does not know this node", node.output())
 
 
 if __name__ == "__main__":

@@ -183,6 +183,15 @@ class Parameters(unittest.TestCase):
             with self.subTest(text=text):
                 self.check_arm_refusal(text, expected)
 
+    def test_what_makes_no_name_with_that_of_a_joint_is_refused(self):
+        for key, value in (("prefix", "a b"), ("prefix", "/../"), ("prefix", 5), ("prefix", "1_"), ("suffix", "\u00e9"),
+                           ("suffix", ["_b"])):
+            with self.subTest(key=key, value=value):
+                load_parameters(NODE, [], {"arm": "ur5", "input/mode": "motion", key: value})
+                self.node = Node(NODE.lstrip("/"))
+                self.assertEqual(self.node.wait_for_exit(), 1)
+                self.check_output("FATAL", f"~{key}", "must be a text of letters, digits, '_' and '/'")
+
 
 if __name__ == "__main__":
     rospy.init_node("parameters_test")

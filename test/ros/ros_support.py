@@ -185,9 +185,10 @@ def load_parameters(node, files, changes=None):
 class Node:
     """A joint_twin_node in a process of its own."""
 
-    def __init__(self, name, *remappings, prefix=()):
+    def __init__(self, name, *remappings, prefix=(), **environment):
         command = [*prefix, executable("joint_twin_node"), f"__name:={name}", *remappings]
-        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                                        env=dict(os.environ, **environment))
         self._lines = []
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()

@@ -37,6 +37,17 @@ class Compare(tool.ToolTest):
             file.write(data)
         return hit
 
+    def test_a_matplotlibrc_in_the_folder_of_the_call_has_no_influence(self):
+        robot.write_bag(self.path("a.bag"), 30.0)
+        self.compare("a.bag")
+        pictures = [f"report/{name}.png" for name in FIGURES]
+        expected = [tool.read_bytes(self.path(name)) for name in pictures]
+        for settings in (b"text.usetex: True\nbackend: module://other\nfont.size: 40\n", b"\xff\xfe"):
+            with open(self.path("matplotlibrc"), "wb") as file:
+                file.write(settings)
+            self.compare("a.bag")
+            self.assertEqual([tool.read_bytes(self.path(name)) for name in pictures], expected, settings)
+
     def test_a_bag_of_a_stranger_gets_a_page_that_needs_nothing_else(self):
         robot.write_bag(self.path("a.bag"), 30.0)
         report = self.compare("a.bag")
