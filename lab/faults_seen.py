@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Which faults of a drive show on a robot's own signals: the shoulder of a UR5 in closed loop, in motions of its own,
-judged beside the same drive when it was sound.
+judged by hjt.assess beside the same drive when it was sound.
 
-Two robots, each with a drive and a program of its own. Each is recorded sound fifty times, at temperatures that the
-judge does not know and on paths that differ a little. Of the first thirty each feature's mean and spread are taken; the
-rest, and recordings with a fault, are judged. An alarm is a feature beyond Student's quantile of FALSE_ALARMS shared by
-all features, and further off than in any of the references from the others of its robot. Recordings that are there
-already are kept.
+Robots, each with a drive and a program of its own. Each is recorded sound, at temperatures that the judge does not know
+and on paths that differ a little; the first thirty recordings are its reference, the rest, and recordings with a fault,
+are judged. Recordings that are there already are kept.
 
     lab/run faults_seen
 """
@@ -14,12 +12,11 @@ import argparse
 import collections
 import concurrent.futures
 import pathlib
+import re
 import sys
+import warnings
 
 import numpy
-import scipy.signal
-import scipy.stats
-import sklearn.covariance
 
 import harmonic_joint_twin as hjt
 
@@ -30,37 +27,27 @@ RATIO = 101.0
 JOINT, PLACE = "shoulder", 1
 REFERENCE, JUDGED = 30, 20       # sound recordings of each robot
 SEVERITIES = (0.3, 1.0)
-FALSE_ALARMS = 0.01              # wanted, of recordings
 TEMPERATURES = (20.0, 30.0)      # of the drives, unknown to the judge [degC]
 STRAY = 0.03                     # of each pose from one recording to the next [rad]
 MOVE, STOP, MOVES = (0.7, 1.4), 0.2, 10  # [s], [s]
-VELOCITY_STEPS = 5               # over which the controller takes the motor's speed: 10 ms
-# What a sound drive's friction differs by from one recording to the next: measured on one UR5 (docs/compare.md), beyond
-# what temperature and sensors do here.
-FRICTION_SHARE, FRICTION_FLOOR = 0.03, 0.22  # [-], [N.m]
-
-SENSORS, ROBOTS = ("UR5", "UR5e", "motor encoder"), (870, 871)
+SENSORS = {"UR5: angle, set point, current, 125 Hz": 125, "UR5e: the same, 500 Hz": 500}  # [Hz]
+ROBOTS, FITTED = (990, 991), (870, 871)  # that are judged; that config/signatures/size_25.yaml is fitted to
 # Sensors of a UR5 as its recordings show them: angles to 4e-6 rad, noise at rest of one count. The torque noise of
 # real_sensors.yaml, 0.01 N.m, is 0.09 A: between what rows differ by at rest, 0.01 to 0.08 A, and in motion, 0.12 to
 # 0.29 A.
 OVERLAY = {"sensors.output_counts_per_turn": 1 << 20, "sensors.output_noise": 5e-6, "sensors.delay": 0.0}
-COLUMNS = ("target_q", "target_qd", "target_qdd", "target_moment", "actual_q", "actual_qd", "actual_current")
+COLUMNS = ("target_q", "target_moment", "actual_q", "actual_current")
+# As docs/python.md has them for a UR's RTDE.
+SIGNALS = {"time": "time", "output_angle": "actual_q", "target_angle": "target_q", "motor_torque": "actual_current",
+           "load_torque": "target_moment"}
+SHARES = ("load_friction", "lag_ripple", "lag_order_1", "lag_order_2", "lag_order_4")
+HIDDEN = 5.0                     # standard errors of a share
+ROBOT_SECTION = """
+# What faults change in friction by load and lag of a robot in closed loop, of any gear in any motion: [cause, severity,
+# then, as shares of the sound values, load_friction, lag_ripple, lag_order_1, _2, _4]. By `lab/run faults_seen --fit`.
+robots:
+"""
 CUP = (33.2e3, 56.1e3, 65.2e3)   # [N.m/rad]
-
-
-def orders():
-    """Lines of the drive by name, in cycles a turn of the motor (src/health/tracked_lines.cpp)."""
-    drive = hjt.Parameters("joints/shoulder.yaml")
-    share = drive["bearing.ball_diameter"] / drive["bearing.pitch_diameter"]
-    cage, ball = 0.5 * (1.0 - share), 1.0 / share - share
-    lobes, outer = 2.0 * (1.0 - cage), drive["bearing.balls"] * cage
-    inner = drive["bearing.balls"] - outer
-    return {"order 1": 1.0, "order 2": 2.0, "order 4": 4.0, "order 6": 6.0, "order 8": 8.0, "cage": lobes,
-            "cage 2": 2.0 * lobes, "ball": ball, "ball -": ball - lobes, "ball +": ball + lobes, "outer": outer,
-            "outer -": outer - 2.0, "outer +": outer + 2.0, "inner": inner, "inner 2": 2.0 * inner}
-
-
-ORDERS = orders()
 
 
 class Robot:
@@ -124,137 +111,9 @@ class Robot:
             return {name: file[name] for name in file.files}
 
 
-BANDS = (4.0, 8.0, 16.0, 31.0, 62.0, 125.0, 250.0)  # [Hz]
-
-
-def fitted(columns, values):
-    """Coefficients of columns of unit rms, and what is left."""
-    matrix = numpy.column_stack(columns)
-    found = numpy.linalg.lstsq(matrix, values, rcond=None)[0]
-    return found, values - matrix @ found
-
-
-def rms(values):
-    return float(numpy.sqrt(numpy.mean(values**2)))
-
-
-def spectral(found, name, values, rate, motor, moves):
-    """Rms in bands, the logarithm, and amplitudes of the lines in the moves, to the power of 2/3."""
-    for low, high in zip(BANDS, BANDS[1:]):
-        if high <= 0.5 * rate:
-            wanted = [low, min(high, 0.499 * rate)]
-            band = scipy.signal.sosfiltfilt(scipy.signal.butter(2, wanted, "bandpass", fs=rate, output="sos"), values)
-            found[f"{name}, {low:g} Hz"] = numpy.log(rms(band) + 1e-12)
-    for line, order in ORDERS.items():
-        power = [abs(numpy.mean(values[move] * numpy.hanning(len(motor[move]))
-                                * numpy.exp(1j * order * motor[move])))**2 for move in moves]
-        found[f"{name}, {line}"] = numpy.cbrt(numpy.mean(power))  # nearly normal (Wilson and Hilferty 1931)
-
-
-def features(run, sensors, gain):
-    """Numbers that tell of the drive, by name."""
-    step = 4 if sensors == "UR5" else 1
-    rate = RATE / step
-    target, speed, acceleration, moment = (run[name][::step] for name in (
-        "target_q", "target_qd", "target_qdd", "target_moment"))
-    angle, torque = run["actual_q"][::step], gain * run["actual_current"][::step]
-    motor = RATIO * angle
-    moving = numpy.abs(speed) > 0.05
-    edges = numpy.flatnonzero(numpy.diff(moving.astype(int)))
-    moves = [slice(a + 1, b + 1) for a, b in zip(edges, edges[1:]) if moving[a + 1] and b - a > 0.3 * rate]
-    turning, one = numpy.tanh(speed / 0.01), numpy.ones_like(speed)
-    found = {}
-    # Friction of each direction, its growth with the speed and with the load, and the gain.
-    names = ("constant friction", "friction by speed", "offset", "gain", "loss by load", "inertia")
-    beyond = torque - moment
-    numbers, left = fitted([turning[moving], speed[moving], one[moving], moment[moving],
-                            (turning * numpy.abs(moment))[moving], acceleration[moving]], beyond[moving])
-    found.update(zip(names, numbers))
-    found["friction"] = float(numpy.mean((beyond * turning)[moving]))
-    found["current left, rms"] = numpy.log(rms(left))
-    # What the controller cannot keep: friction that turns about, torsion that winds up.
-    error, winding = target - angle, numpy.gradient(moment) * rate
-    numbers, left = fitted([turning, speed, one, acceleration, winding, moment, numpy.gradient(turning) * rate], error)
-    found.update(zip(("lag by direction", "lag by speed", "lag", "lag by acceleration", "lag by winding", "lag by load",
-                      "lag at turning"), numbers))
-    found["lag left, rms"] = numpy.log(rms(left))
-    found["lag, largest"] = numpy.log(numpy.abs(error).max())
-    quiet = torque - scipy.signal.sosfiltfilt(scipy.signal.butter(2, 3.0, fs=rate, output="sos"), torque)
-    spectral(found, "current", quiet, rate, motor, moves)
-    spectral(found, "lag", left, rate, motor, moves)
-    if sensors == "motor encoder":
-        torsion(found, run, torque, moves, rate)
-    return found
-
-
-def torsion(found, run, torque, moves, rate):
-    """The motor's angle is the sum of its speeds, each the difference over the last VELOCITY_STEPS rows."""
-    turned = numpy.zeros(len(run["time"]))
-    steps = run["actual_qd"] * VELOCITY_STEPS / RATE
-    for first in range(VELOCITY_STEPS):
-        turned[first::VELOCITY_STEPS] = numpy.cumsum(steps[first::VELOCITY_STEPS])
-    twist = turned - (run["actual_q"] - run["actual_q"][0])
-    moment, speed = run["target_moment"], run["target_qd"]
-    turning = numpy.tanh(speed / 0.01)
-    light = numpy.tanh(moment / 8.0)
-    numbers, left = fitted([moment, light, turning, numpy.ones_like(speed), speed], twist)
-    found.update(zip(("compliance", "compliance at low load", "torsion by direction", "torsion", "torsion by speed"),
-                     numbers))
-    found["torsion left, rms"] = numpy.log(rms(left))
-    spectral(found, "torsion", left, rate, RATIO * run["actual_q"], moves)
-
-
-class Judge:
-    """Sound recordings of one robot with one set of sensors: mean and spread of each feature of the first, and what the
-    others have of them."""
-
-    def __init__(self, sound):
-        self.names = sorted(sound[0])
-        self.reference = self.table(sound[:REFERENCE])
-        self.mean, self.spread = self.moments(self.reference)
-        self.inverse = sklearn.covariance.LedoitWolf().fit(self.deviations(sound[:REFERENCE])).precision_
-        self.others = self.deviations(sound[REFERENCE:])
-
-    def moments(self, table):
-        mean, spread = table.mean(axis=0), table.std(axis=0, ddof=1)
-        friction = mean[self.names.index("friction")]
-        for name in ("friction", "constant friction"):
-            place = self.names.index(name)
-            spread[place] = numpy.hypot(spread[place], numpy.hypot(FRICTION_SHARE * friction, FRICTION_FLOOR))
-        return mean, spread
-
-    def largest_of_its_own(self):
-        """Of each feature the largest deviation of a reference from the others, in their spreads."""
-        found = numpy.zeros(len(self.names))
-        for place, row in enumerate(self.reference):
-            mean, spread = self.moments(numpy.delete(self.reference, place, axis=0))
-            found = numpy.maximum(found, numpy.abs((row - mean) / spread))
-        return found
-
-    def table(self, several):
-        return numpy.array([[one[name] for name in self.names] for one in several])
-
-    def deviations(self, several):
-        """In spreads."""
-        return (self.table(several) - self.mean) / self.spread
-
-    def score(self, one, threshold):
-        """(largest deviation over the threshold, its feature)."""
-        scores = numpy.abs(self.deviations([one])[0]) / threshold
-        return float(scores.max()), self.names[int(scores.argmax())]
-
-    def detectability(self, taught, one):
-        """d' of a detector that knows the direction that `taught` differs in, by the spread of the other recordings."""
-        weights = self.inverse @ self.deviations([taught])[0]
-        sound = self.others @ weights
-        return float((self.deviations([one])[0] @ weights - sound.mean()) / sound.std(ddof=1))
-
-
 # Faults that are not the gear's: kind of hjt.drive_fault, in words, three sizes as printed, their factor to SI.
 Other = collections.namedtuple("Other", "kind words sizes unit factor")
 OTHERS = (Other("brake_drag", "brake drags", (0.01, 0.03, 0.1), "N·m at the motor", 1.0),
-          Other("lost_counts", "motor encoder loses counts", (0.1, 1.0, 10.0), "counts a turn",
-                2.0 * numpy.pi / 4320.0),
           Other("encoder_offset", "output encoder off", (1.0, 5.0, 20.0), "mrad", 1e-3),
           Other("current_gain", "gain of the current", (2.0, 5.0, 10.0), "%", 0.01),
           Other("weak_magnets", "weak magnets", (2.0, 5.0, 10.0), "% of the flux", 0.01))
@@ -268,22 +127,9 @@ def disturbed(robot, seed, other, size, gain):
         elsewhere = robot.record(seed, shift=size * other.factor)
         return {**elsewhere, **{name: sound[name] for name in ("target_q", "target_moment")},
                 "actual_q": elsewhere["actual_q"] - size * other.factor}
-    motor = RATIO * sound["actual_q"][0] + RATIO / RATE * numpy.cumsum(sound["actual_qd"])
     changed = hjt.drive_fault({"time": sound["time"], "motor_torque_reading": sound["actual_current"] * gain / RATIO,
-                               "motor_angle_encoder": motor}, other.kind, size * other.factor)
-    speed = numpy.gradient(changed["motor_angle_encoder"] - motor) * RATE / RATIO
-    return {**sound, "actual_current": changed["motor_torque_reading"] * RATIO / gain,
-            "actual_qd": sound["actual_qd"] + speed}
-
-
-def cell(alarms, unit=""):
-    """Smallest severity from which on all robots alarm; else how many do at the largest. `alarms`: by severity."""
-    from_here = [severity for severity in sorted(alarms)
-                 if all(all(alarms[later]) for later in alarms if later >= severity)]
-    if from_here:
-        return f"from {from_here[0]:g}{unit}"
-    largest = alarms[max(alarms)]
-    return f"{sum(largest)} of {len(largest)} at {max(alarms):g}{unit}" if any(largest) else "no"
+                               "motor_angle_encoder": RATIO * sound["actual_q"]}, other.kind, size * other.factor)
+    return {**sound, "actual_current": changed["motor_torque_reading"] * RATIO / gain}
 
 
 def work_through(robots, kinds, jobs):
@@ -309,38 +155,82 @@ def fault_of(kind, severity):
     return f"{kind}:{severity}" + (":40" if kind == "pitting" else "")
 
 
-class Found:
-    """What was found of a fault and sensors, all robots together."""
+class Judge:
+    """Verdicts on recordings of one robot, by its first sound ones."""
 
-    def __init__(self):
-        self.alarms = collections.Counter()                                          # of sound recordings, by sensors
-        self.seen = collections.defaultdict(lambda: collections.defaultdict(list))   # alarms by severity
-        self.shows = collections.defaultdict(list)                                   # features of the alarms
-        self.detectable = collections.defaultdict(list)                              # d'
-        self.threshold = {}                                                          # of each feature [spreads]
+    def __init__(self, robot, rate, gain):
+        self.rate, self.file = rate, robot.folder / f"reference_{rate}.yaml"
+        sound = [robot.record(seed) for seed in range(REFERENCE)]
+        whole = {"indicators.window_turns": 1e5, "indicators.window_time": float(sound[0]["time"][-1]) - 0.1,
+                 "output.gravity_torque": 0.0}  # the moment has it
+        self.how = {"columns": SIGNALS, "torque_scale": gain / RATIO, "overlays": ["joints/shoulder.yaml", whole]}
+        hjt.reference(self.frames(sound), self.file, force=True, **self.how)
 
-    def take(self, kind, sensors, severity, score, feature):
-        self.seen[kind, sensors][severity].append(score > 1.0)
-        self.shows[kind, sensors].extend([feature] * (score > 1.0))
+    def frames(self, runs):
+        return [{name: run[name][::RATE // self.rate] for name in SIGNALS.values()} for run in runs]
+
+    def __call__(self, runs):
+        return hjt.assess(self.frames(runs), self.file, check_up=True, **self.how)
+
+    def numbers(self, runs):
+        """Those of SHARES, a row for each recording."""
+        windows = hjt.indicators(self.frames(runs), **self.how)["windows"]
+        return numpy.array([[window["indicators"][name] for name in SHARES] for window in windows], float)
 
 
-def sound_of(robot, sensors, gain):
-    return [features(robot.record(seed), sensors, gain) for seed in range(REFERENCE + JUDGED)]
+def shares_of(robots, kinds, gain):
+    """What faults change in the numbers of robots, over the sound values; 0 what the spread of sound recordings hides:
+    {(kind, severity): shares}."""
+    found = collections.defaultdict(list)
+    errors = []
+    for robot in robots:
+        for rate in SENSORS.values():
+            judge = Judge(robot, rate, gain)
+            sound = judge.numbers([robot.record(seed) for seed in range(REFERENCE)])
+            errors.append(numpy.nanstd(sound, axis=0, ddof=1) / numpy.nanmean(sound, axis=0) / numpy.sqrt(len(robots)))
+            for place, kind in enumerate(kinds):
+                runs = [robot.record(seed_of(place, severity), fault_of(kind, severity)) for severity in SEVERITIES]
+                for severity, numbers in zip(SEVERITIES, judge.numbers(runs)):
+                    found[kind, severity].append(numbers / numpy.nanmean(sound, axis=0) - 1.0)
+    error = numpy.nanmean(errors, axis=0)
+    means = {key: numpy.nanmean(several, axis=0) for key, several in found.items()}
+    return {key: numpy.where(numpy.abs(mean) > HIDDEN * error, mean, 0.0) for key, mean in means.items()}
 
 
-def judge_robot(robot, judge, sound, sensors, kinds, gain, found):
-    threshold = found.threshold[sensors]
-    found.alarms[sensors] += sum(judge.score(one, threshold)[0] > 1.0 for one in sound[REFERENCE:])
+def write_shares(path, shares):
+    """The section `robots` of a file of signatures."""
+    text = path.read_text(encoding="utf-8")
+    rows = "".join(f"  - [{', '.join([kind, *(str(float(f'{number:.3g}')) for number in (severity, *numbers))])}]\n"
+                   for (kind, severity), numbers in shares.items() if numpy.any(numbers))
+    text = re.sub(r"\n# What faults change in friction by load.*?(?=\n# A row each)", "", text, flags=re.DOTALL)
+    path.write_text(text.replace("\n# A row each", ROBOT_SECTION + rows + "\n# A row each"), encoding="utf-8")
+
+
+def alarms(verdicts):
+    return list(verdicts["level"].isin(["WARN", "ERROR"]))
+
+
+def in_set(kind, verdict):
+    return kind in [verdict["cause"], *str(verdict["alternatives"]).split(", ")]
+
+
+def judge_robot(robot, judge, kinds, gain, found):
+    """Alarms, causes in the set and what was furthest off, by fault and size."""
+    sound = alarms(judge([robot.record(seed) for seed in range(REFERENCE, REFERENCE + JUDGED)]))
+    found["sound"] += sum(sound)
     for place, kind in enumerate(kinds):
-        runs = [features(robot.record(seed_of(place, severity), fault_of(kind, severity)), sensors, gain)
-                for severity in SEVERITIES]
-        for severity, one in zip(SEVERITIES, runs):
-            found.take(kind, sensors, severity, *judge.score(one, threshold))
-        found.detectable[kind, sensors].append(judge.detectability(runs[-1], runs[0]))
+        verdicts = judge([robot.record(seed_of(place, severity), fault_of(kind, severity)) for severity in SEVERITIES])
+        for severity, alarm, (_, verdict) in zip(SEVERITIES, alarms(verdicts), verdicts.iterrows()):
+            found[kind, severity] += alarm
+            found["alarms"] += alarm
+            found["right"] += alarm and verdict["cause"] == kind
+            found["in set"] += alarm and in_set(kind, verdict)
+            found[kind].update([verdict["indicator"]] * alarm)
     for other in OTHERS:
-        for size in other.sizes:
-            changed = features(disturbed(robot, REFERENCE, other, size, gain), sensors, gain)
-            found.take(other.kind, sensors, size, *judge.score(changed, threshold))
+        verdicts = judge([disturbed(robot, REFERENCE, other, size, gain) for size in other.sizes])
+        for size, alarm, indicator in zip(other.sizes, alarms(verdicts), verdicts["indicator"]):
+            found[other.kind, size] += alarm
+            found[other.kind].update([indicator] * alarm)
 
 
 def main():
@@ -348,46 +238,47 @@ def main():
     parser.add_argument("--work", type=pathlib.Path, required=True, help="folder for the recordings")
     parser.add_argument("--docs", type=pathlib.Path, help="folder of health.md; else to the terminal")
     parser.add_argument("--robots", type=int, default=len(ROBOTS), help="how many [2]")
+    parser.add_argument("--fit", type=pathlib.Path, metavar="FILE", help="of signatures: writes its section `robots` "
+                        "from robots of their own in place of the table")
     parser.add_argument("--jobs", type=int, default=2, help="recordings at a time [2]")
     options = parser.parse_args()
+    warnings.simplefilter("ignore")  # of recordings that are not judged: they count as no alarm
     kinds = list(hjt.fault_kinds())
-    robots = [Robot(number, options.work.resolve()) for number in ROBOTS[:options.robots]]
+    numbers = FITTED if options.fit else ROBOTS
+    robots = [Robot(number, options.work.resolve()) for number in numbers[:options.robots]]
     work_through(robots, kinds, options.jobs)
     gain = hjt.Parameters("joints/shoulder.yaml")["telemetry.torque_per_current"]
-    found = Found()
-    for sensors in SENSORS:
+    if options.fit:
+        write_shares(options.fit, shares_of(robots, kinds, gain))
+        return
+    found = {}
+    for sensors, rate in SENSORS.items():
         print(f"faults_seen: judging, {sensors}", file=sys.stderr, flush=True)
-        sound = [sound_of(robot, sensors, gain) for robot in robots]
-        judges = [Judge(own) for own in sound]
-        student = scipy.stats.t.isf(0.5 * FALSE_ALARMS / len(judges[0].names), REFERENCE - 1)
-        found.threshold[sensors] = numpy.maximum(student, numpy.max(
-            [judge.largest_of_its_own() for judge in judges], axis=0))
-        for robot, judge, own in zip(robots, judges, sound):
-            judge_robot(robot, judge, own, sensors, kinds, gain, found)
-    lines = table(kinds, found, len(robots))
-    lab.write_or_print(options.docs, "health.md", "seen", lines)
+        found[sensors] = collections.Counter()
+        for kind in [*kinds, *(other.kind for other in OTHERS)]:
+            found[sensors][kind] = collections.Counter()
+        for robot in robots:
+            judge_robot(robot, Judge(robot, rate, gain), kinds, gain, found[sensors])
+    lab.write_or_print(options.docs, "health.md", "seen", table(kinds, found, len(robots)))
 
 
 def table(kinds, found, robots):
     def most(kind):
-        names = collections.Counter(name for sensors in SENSORS for name in found.shows[kind, sensors])
-        return "; ".join(name for name, _ in names.most_common(2)) or "-"
+        names = sum((each[kind] for each in found.values()), collections.Counter())
+        return ", ".join(f"`{name}`" for name, _ in names.most_common(2)) or "-"
 
-    judged = robots * JUDGED
-    rows = ["| | UR5: angle, current, 125 Hz | UR5e: the same, 500 Hz | with motor encoder, 500 Hz | shows in "
-            f"| d′ at {SEVERITIES[0]:g} |", "|---|---|---|---|---|---|"]
-    for kind in kinds:
-        best = " / ".join(f"{numpy.median(found.detectable[kind, sensors]):.1f}" for sensors in SENSORS)
-        rows.append(f"| `{kind}` | " + " | ".join(cell(found.seen[kind, sensors]) for sensors in SENSORS)
-                    + f" | {most(kind)} | {best} |")
-    for other in OTHERS:
-        unit = f" {other.unit}".rstrip()
-        cells = [cell(found.seen[other.kind, sensors], unit) for sensors in SENSORS]
-        if other.kind == "lost_counts":
-            cells[:2] = ["not judged"] * 2
-        rows.append(f"| {other.words} | " + " | ".join(cells) + f" | {most(other.kind)} | |")
-    rows.append("| sound: false alarms | " + " | ".join(f"{found.alarms[sensors]} of {judged}" for sensors in SENSORS)
-                + " | | |")
+    def row(words, kind, sizes):
+        cells = [" ".join(str(each[kind, size]) for size in sizes) for each in found.values()]
+        return f"| {words} | " + " | ".join(cells) + f" | {most(kind)} |"
+
+    rows = ["| | " + " | ".join(found) + " | furthest off |", "|---|" + "---|" * (len(found) + 1)]
+    rows += [row(f"`{kind}`", kind, SEVERITIES) for kind in kinds]
+    rows += [row(f"{other.words}, {', '.join(f'{size:g}' for size in other.sizes)} {other.unit}", other.kind,
+                 other.sizes) for other in OTHERS]
+    rows.append(f"| sound, false alarms of {robots * JUDGED} | "
+                + " | ".join(str(each["sound"]) for each in found.values()) + " | |")
+    rows.append("| cause right, in the set | " + " | ".join(
+        f"{each['right']}, {each['in set']} of {each['alarms']}" for each in found.values()) + " | |")
     return rows
 
 

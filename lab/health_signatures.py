@@ -14,7 +14,8 @@ from health_runs import COMPARED, DRAWN, FITTED, FITTED_MODELS, once, split_tabl
 
 # Changes as a share of the sound value: stiffness and play go with the size of the cup. Thicker grease multiplies the
 # friction there is, which differs threefold over the temperatures; preload and wear add to it.
-SHARES = ["torsional_stiffness", "second_stiffness", "lost_motion", "hysteresis", "hysteresis_area"]
+OF_ROBOTS = ["load_friction", "lag_ripple", "lag_order_1", "lag_order_2", "lag_order_4"]  # after the other scalars
+SHARES = ["torsional_stiffness", "second_stiffness", "lost_motion", "hysteresis", "hysteresis_area", *OF_ROBOTS]
 STIFFNESSES = SHARES[:2]  # change as a compliance does: an eccentric encoder adds the same to that of every drive
 SHARES_OF_GREASE = SHARES + ["running_torque", "coulomb_torque", "viscous_friction"]
 NEIGHBOURS = ["wave_generator_2", "circular_spline_2"]
@@ -248,10 +249,19 @@ def with_severities_between(rows):
             yield (*one[:3], severity, [first + share * (last - first) for first, last in zip(one[4], after[4])])
 
 
+def of_robots(content, cause, severity):
+    """Shares of OF_ROBOTS, on straight lines from 0 and between the severities."""
+    known = [[0.0] * (1 + len(OF_ROBOTS)), *(row[1:] for row in content.get("robots", ()) if row[0] == cause)]
+    severities, *shares = numpy.transpose(known)
+    return [float(numpy.interp(severity, severities, share)) for share in shares]
+
+
 def read(path):
     """(table, errors) of what `write` wrote, as the tool takes it."""
     content = health_file.read(path)
-    rows = [(row[0], row[1], tuple(map(float, row[2:4])), float(row[4]), list(map(float, row[5:])))
+    place = 5 + list(content["indicators"]).index("residual_crest") + 1
+    rows = [(row[0], row[1], tuple(map(float, row[2:4])), float(row[4]),
+             [*map(float, row[5:place]), *of_robots(content, row[0], float(row[4])), *map(float, row[place:])])
             for row in content["signatures"]]
     causes, motions, *numbers = zip(*with_severities_between(rows))
     kinds, severities, found = (numpy.array(own, float) for own in numbers)

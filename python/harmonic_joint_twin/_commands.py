@@ -240,7 +240,7 @@ def arm(motion: Recording, arm: Path, *, faults: Sequence[str] = (), out: Option
 
 # Columns that recordings of one joint are read from, where `columns` names no other.
 SIGNALS = ("time", "motor_torque_reading", "motor_torque", "motor_angle_encoder", "output_angle_encoder",
-           "motor_velocity_encoder", "load_torque", "housing_temperature", "temperature")
+           "motor_velocity_encoder", "load_torque", "housing_temperature", "temperature", "target_angle")
 
 
 def _numbers(column: Any) -> "Optional[NDArray[np.float64]]":
@@ -302,11 +302,12 @@ def indicators(recordings: Union[Recording, Sequence[Recording]], *, models: Seq
     recordings: one or several: bag, CSV, run of a data set (HDF5), or columns: a structured array, as of Twin.run, a
     frame of pandas, or a mapping of arrays of shape (rows,): 'time' [s], 'motor_torque' [N.m], or the signal that
     torque_scale makes one, 'motor_angle_encoder' or 'output_angle_encoder' [rad] and, if recorded,
-    'motor_velocity_encoder' [rad/s], 'load_torque' [N.m], 'temperature' [degC]. models: the twin's own recording of
-    each, to be subtracted. joint: of a robot's bag; None: the twin's topics. columns: names of the columns that hold
-    'time', 'motor_torque', 'motor_angle', 'output_angle', 'motor_velocity', 'load_torque', 'temperature', where they
-    are others. baseline: the reference; None: learned from the first windows. save_baseline: file for the learned one.
-    out: CSV of the windows. carry: the baseline is of another motion. force, overlays, progress: as of identify.
+    'motor_velocity_encoder' [rad/s], 'load_torque' [N.m], 'temperature' [degC], 'target_angle' [rad]. models: the
+    twin's own recording of each, to be subtracted. joint: of a robot's bag; None: the twin's topics. columns: names of
+    the columns that hold 'time', 'motor_torque', 'motor_angle', 'output_angle', 'motor_velocity', 'load_torque',
+    'temperature', 'target_angle', where they are others. baseline: the reference; None: learned from the first windows.
+    save_baseline: file for the learned one. out: CSV of the windows. carry: the baseline is of another motion. force,
+    overlays, progress: as of identify.
 
     Returns a dict: 'windows' (one dict each: 'time', 'indicators', 'scores', 'assessment' ...), 'threshold',
     'assessment' of the last. Recordings that are not judged are warned of. InputError, ParameterError.

@@ -39,8 +39,8 @@ std::string whyNotJudged(const Assessment& assessment)
     case AssessmentState::TOO_FEW_WINDOWS:
       return "too few windows: a verdict needs " + needed + " at one operating point, has " + here;
     case AssessmentState::OTHER_PAYLOAD:
-      return "this payload is not in the reference: windows with payload and load like it belong there; a wrong gain "
-             "of the current looks like one";
+      return "payload, load or gain of the current is not in the reference: windows with payload and load like these "
+             "belong there, or the torque per current is another than theirs";
     case AssessmentState::ASSESSED:
       break;
   }

@@ -78,6 +78,8 @@ double repeatsWithin(const Repeatability& repeatability, const ReferenceBin& bin
     case ScalarIndicator::RUNNING_TORQUE:
     case ScalarIndicator::COULOMB_TORQUE:
       return friction(own);
+    case ScalarIndicator::LOAD_FRICTION:
+      return repeatability.friction_share * own;
     case ScalarIndicator::VISCOUS_FRICTION:
     {
       const double speed = std::exp2(bin.bin.speed + 0.5);  // middle of the octave [rad/s]

@@ -50,6 +50,11 @@ inline constexpr std::array<ScalarRow, SCALAR_COUNT> SCALARS{ {
     // Moments of the residual are no normal quantities: smaller spreads are not looked into.
     { ScalarIndicator::RESIDUAL_KURTOSIS, "residual_kurtosis", "-", Feature::IMPULSES, 0.3, FloorUnit::INDICATOR },
     { ScalarIndicator::RESIDUAL_CREST, "residual_crest", "-", Feature::IMPULSES, 0.5, FloorUnit::INDICATOR },
+    { ScalarIndicator::LOAD_FRICTION, "load_friction", "-", Feature::EFFICIENCY },
+    { ScalarIndicator::LAG_RIPPLE, "lag_ripple", "rad", Feature::RESIDUAL },
+    { ScalarIndicator::LAG_ORDER_1, "lag_order_1", "rad", Feature::ORDER_1 },
+    { ScalarIndicator::LAG_ORDER_2, "lag_order_2", "rad", Feature::ORDER_2 },
+    { ScalarIndicator::LAG_ORDER_4, "lag_order_4", "rad", Feature::ORDER_4 },
 } };
 static_assert(isInOrder(SCALARS, &ScalarRow::indicator), "a row for each ScalarIndicator, in its order");
 
@@ -67,6 +72,14 @@ constexpr std::size_t amplitudeOf(std::size_t indicator)
   const std::size_t lines = loaded ? LOADED_COUNT : FIRST_LOADED;
   const std::size_t place = loaded ? indicator - LOADED_BLOCK : (indicator - SCALAR_COUNT) % LINE_BLOCK;
   return indicator < SCALAR_COUNT || place < lines ? indicator : indicator - place + (place - lines) / 2;
+}
+
+/// Whether a window gives the standard error of the indicator by the fit: of torsion and of lines.
+constexpr bool hasError(std::size_t indicator)
+{
+  return indicator >= SCALAR_COUNT ? amplitudeOf(indicator) == indicator :
+                                     indicator >= indexOf(ScalarIndicator::TORSIONAL_STIFFNESS) &&
+                                         indicator <= indexOf(ScalarIndicator::HYSTERESIS);
 }
 
 struct LineRow

@@ -50,7 +50,8 @@ void SignalMonitor::reset() noexcept
   loop_.restart();
   turn_.reset();
   efficiency_.reset();
-  inertia_.reset();
+  balance_.reset();
+  lag_.reset();
   indicators_ = {};
   refused_ = 0;
   started_ = false;
@@ -166,7 +167,7 @@ bool SignalMonitor::update(const SignalSample& given) noexcept
   {
     addSteady(sample, motor_angle, output_angle, travel, torsion);
   }
-  addAny(sample, velocity, output_angle, seconds);
+  addAny(sample, velocity, motor_angle, output_angle, seconds);
   last_ = sample;
   last_angle_ = motor_angle;
   if (progress() < 1.0)
@@ -177,11 +178,16 @@ bool SignalMonitor::update(const SignalSample& given) noexcept
   return true;
 }
 
-/// What counts in any motion: inertia, load and temperature.
-void SignalMonitor::addAny(const SignalSample& sample, double velocity, double output_angle, double seconds) noexcept
+/// What counts in any motion: what the torque goes into, lag, load and temperature.
+void SignalMonitor::addAny(const SignalSample& sample, double velocity, double motor_angle, double output_angle,
+                           double seconds) noexcept
 {
   const bool load_known = std::isfinite(sample.load_torque);
-  inertia_.add(sample.motor_torque - (load_known ? sample.load_torque / ratio_ : 0.0), velocity, output_angle, seconds);
+  const bool moving = std::abs(mean_velocity_) >= parameters_.least_speed;
+  const double load = sample.load_torque / ratio_;
+  balance_.add(sample.motor_torque - (load_known ? load : 0.0), load, velocity, output_angle, seconds, moving);
+  lag_.add(ratio_ * (sample.output_angle - sample.target_angle), motor_angle, motor_angle - last_angle_, seconds,
+           moving);
   if (load_known)
   {
     window_.load.add(std::abs(sample.load_torque), seconds);
@@ -294,17 +300,17 @@ void SignalMonitor::complete(std::int64_t stamp) noexcept
                         load[0],
                         load[1],
                         load[2],
-                        ratio_ * ratio_ * inertia_.fit(window_.load.weight > 0.0) };
+                        ratio_ * ratio_ * balance_.fit(window_.load.weight > 0.0) };
   set(ScalarIndicator::RATIO_DEVIATION, window_.ratio.value());
   set(ScalarIndicator::KINEMATIC_ERROR, window_.kinematic_error.value());
   set(ScalarIndicator::RUNNING_TORQUE, window_.running_torque.value());
   set(ScalarIndicator::EFFICIENCY, efficiency_.efficiency());
-  loop_.fit();
-  set(ScalarIndicator::TORSIONAL_STIFFNESS, loop_.stiffness());
-  set(ScalarIndicator::SECOND_STIFFNESS, loop_.secondStiffness());
-  set(ScalarIndicator::LOST_MOTION, loop_.lostMotion());
-  set(ScalarIndicator::HYSTERESIS, loop_.hysteresis());
-  set(ScalarIndicator::HYSTERESIS_AREA, loop_.loopArea());
+  set(ScalarIndicator::LOAD_FRICTION, balance_.loadFriction());
+  set(ScalarIndicator::LAG_RIPPLE, lag_.ripple());
+  set(ScalarIndicator::LAG_ORDER_1, lag_.line(0));
+  set(ScalarIndicator::LAG_ORDER_2, lag_.line(1));
+  set(ScalarIndicator::LAG_ORDER_4, lag_.line(2));
+  fillTorsion();
   friction_.fit();
   set(ScalarIndicator::COULOMB_TORQUE, friction_.coulomb());
   set(ScalarIndicator::VISCOUS_FRICTION, friction_.viscous());
@@ -330,8 +336,24 @@ void SignalMonitor::complete(std::int64_t stamp) noexcept
   }
   tracker_.reset();
   loop_.reset();
-  inertia_.restart();
+  balance_.restart();
+  lag_.restart();
   window_ = {};
+}
+
+void SignalMonitor::fillTorsion() noexcept
+{
+  loop_.fit();
+  const auto put = [this](ScalarIndicator indicator, const TorsionLoopEstimate::Number& number)
+  {
+    set(indicator, number);
+    indicators_.uncertainty[indexOf(indicator)] = number.valid ? number.error : 0.0;
+  };
+  put(ScalarIndicator::TORSIONAL_STIFFNESS, loop_.stiffness());
+  put(ScalarIndicator::SECOND_STIFFNESS, loop_.secondStiffness());
+  put(ScalarIndicator::LOST_MOTION, loop_.lostMotion());
+  put(ScalarIndicator::HYSTERESIS, loop_.hysteresis());
+  set(ScalarIndicator::HYSTERESIS_AREA, loop_.loopArea());
 }
 
 void SignalMonitor::fillLines(LineSignal signal) noexcept

@@ -9,12 +9,13 @@
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "health/efficiency_estimate.hpp"
 #include "health/friction_estimate.hpp"
-#include "health/inertia_estimate.hpp"
+#include "health/lag_estimate.hpp"
 #include "health/load_over_angle.hpp"
 #include "health/order_tracker.hpp"
 #include "health/ripple_filter.hpp"
 #include "health/signal_sample.hpp"
 #include "health/smoothed_torsion.hpp"
+#include "health/torque_balance.hpp"
 #include "health/torsion_loop_estimate.hpp"
 #include "health/turn_window.hpp"
 
@@ -94,7 +95,8 @@ private:
   SignalSample withWeight(SignalSample sample) const noexcept;
   void addLoop(const SignalSample& sample, double motor_angle, double torsion, double velocity,
                double seconds) noexcept;
-  void addAny(const SignalSample& sample, double velocity, double output_angle, double seconds) noexcept;
+  void addAny(const SignalSample& sample, double velocity, double motor_angle, double output_angle,
+              double seconds) noexcept;
   bool judgeMotion(double velocity, double seconds, bool motor_known) noexcept;
   void addSteady(const SignalSample& sample, double motor_angle, double output_angle, double travel,
                  double torsion) noexcept;
@@ -105,6 +107,7 @@ private:
   void fillLines(LineSignal signal) noexcept;
   void set(ScalarIndicator indicator, double value) noexcept { indicators_.values[indexOf(indicator)] = value; }
   void set(ScalarIndicator indicator, const Indicator& value) noexcept;
+  void fillTorsion() noexcept;
 
   const double ratio_;
   const OutputParameters output_;
@@ -127,7 +130,8 @@ private:
   double mean_velocity_{};  // over about half a turn [rad/s]
   RippleFilter speed_;      // of the speed as read: uneven stamps do not disturb it
   RippleFilter angle_;      // of the motor angle
-  InertiaEstimate inertia_;
+  TorqueBalance balance_;
+  LagEstimate lag_;
   double calm_{};  // how long the motion has been [s]
   std::array<Waiting, 128> waiting_;
   std::size_t first_waiting_{};

@@ -68,7 +68,14 @@ public:
               static_cast<std::size_t>(std::count(above.begin(), above.end(), '\n')) + 2);
   }
 
-  SignatureSet take() { return std::move(set_); }
+  SignatureSet take()
+  {
+    for (Signature& signature : set_.signatures)
+    {
+      addOfRobots(signature);
+    }
+    return std::move(set_);
+  }
 
 private:
   /// `line` 0: of the file as a whole.
@@ -100,6 +107,7 @@ private:
       readIndicators(section(file, "indicators"));
       readSound(section(file, "sound"));
       readCarried(section(file, "carried"));
+      readOfRobots(file["robots"]);
     }
     catch (const YAML::Exception& error)
     {
@@ -198,6 +206,46 @@ private:
       error.deviation = number(entry.second[0], key, { 0.0, 1e30 });
       error.share = number(entry.second[1], key, { 0.0, 1e30 });
       error.freedom = number(entry.second[2], key, { 1.0, 1e9 });
+    }
+  }
+
+  void readOfRobots(const YAML::Node& robots)
+  {
+    for (const YAML::Node& row : robots)
+    {
+      if (!row.IsSequence() || row.size() != 2 + ROBOT_NUMBERS)
+      {
+        fail(lineOf(row), "robots: expected [cause, severity and " + std::to_string(ROBOT_NUMBERS) + " shares]");
+      }
+      RobotSignature signature{ causeNamed(row[0].Scalar(), lineOf(row)), number(row[1], "robots", { 0.0, 1.0 }), {} };
+      for (std::size_t i = 0; i < ROBOT_NUMBERS; ++i)
+      {
+        signature.share[i] = number(row[2 + i], "robots", { -1e3, 1e3 });
+      }
+      set_.of_robots.push_back(signature);
+      std::fill_n(set_.fitted.begin() + FIRST_OF_ROBOT, ROBOT_NUMBERS, true);
+    }
+  }
+
+  /// On straight lines from 0 and between the severities.
+  void addOfRobots(Signature& signature) const
+  {
+    RobotSignature before{};
+    for (const RobotSignature& after : set_.of_robots)
+    {
+      if (after.cause != signature.cause)
+      {
+        continue;
+      }
+      if (signature.severity > before.severity)
+      {
+        const double share = std::min((signature.severity - before.severity) / (after.severity - before.severity), 1.0);
+        for (std::size_t i = 0; i < ROBOT_NUMBERS; ++i)
+        {
+          signature.change[FIRST_OF_ROBOT + i] = before.share[i] + share * (after.share[i] - before.share[i]);
+        }
+      }
+      before = after;
     }
   }
 

@@ -37,6 +37,11 @@ constexpr const char* CARRIED = R"(
 # indicator's unit, share of what drive and model differ by, degrees of freedom]. Not known of what is missing here.
 carried:
 )";
+constexpr const char* ROBOTS = R"(
+# What faults change in friction by load and lag of a robot in closed loop, of any gear in any motion: [cause, severity,
+# then, as shares of the sound values, load_friction, lag_ripple, lag_order_1, _2, _4]. By `lab/run faults_seen --fit`.
+robots:
+)";
 constexpr const char* SIGNATURES = R"(
 # A row each: cause, motion, speed of the motor [rad/s] and share of travel one way less the other [-] (magnitudes; 0 0:
 # any motion), severity [-], then the change of each of the indicators; of stiffness, lost motion and loop, and of
@@ -63,7 +68,7 @@ void writeRow(const Signature& signature, const std::string& motion, const Signa
        << shortText(signature.motion.direction, 2) << ' ' << numberText(signature.severity);
   for (std::size_t i = 0; i < SIGNATURE_SIZE; ++i)
   {
-    if (set.fitted[i])
+    if (set.fitted[i] && !isOfRobot(i))
     {
       text << ' ' << shortText(signature.change[i], 3);
     }
@@ -84,7 +89,7 @@ std::string signatureText(const SignatureSet& set, const std::vector<std::string
   const std::array<std::size_t, SIGNATURE_SIZE> indicators = indicatorsOfNumbers();
   for (std::size_t i = 0; i < SIGNATURE_SIZE; ++i)
   {
-    if (set.fitted[i])
+    if (set.fitted[i] && !isOfRobot(i))
     {
       const std::string unit = indicatorUnit(indicators[i]);
       text << "  " << indicatorName(indicators[i]) << ": " << (unit == "-" ? "\"-\"" : unit) << '\n';
@@ -107,6 +112,19 @@ std::string signatureText(const SignatureSet& set, const std::vector<std::string
       text << "  " << indicatorName(i) << ": [" << numberText(error.deviation) << ", " << numberText(error.share)
            << ", " << numberText(error.freedom) << "]\n";
     }
+  }
+  if (!set.of_robots.empty())
+  {
+    text << ROBOTS;
+  }
+  for (const RobotSignature& signature : set.of_robots)
+  {
+    text << "  - [" << causeName(signature.cause) << ", " << numberText(signature.severity);
+    for (const double share : signature.share)
+    {
+      text << ", " << numberText(share);
+    }
+    text << "]\n";
   }
   text << SIGNATURES;
   for (std::size_t i = 0; i < set.signatures.size(); ++i)

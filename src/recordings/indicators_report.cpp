@@ -20,8 +20,9 @@ namespace
 {
 const char* stateName(AssessmentState state)
 {
-  constexpr std::array NAMES{ "waiting",      "learning",        "assessed",
-                              "no reference", "too few windows", "payload not in the reference" };
+  constexpr std::array NAMES{ "waiting",         "learning",
+                              "assessed",        "no reference",
+                              "too few windows", "payload, load or gain of the current not in the reference" };
   return NAMES[static_cast<std::size_t>(state)];
 }
 

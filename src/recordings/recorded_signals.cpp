@@ -41,6 +41,7 @@ enum Column : std::size_t
   MOTOR_VELOCITY,
   LOAD_TORQUE,
   TEMPERATURE,
+  TARGET_ANGLE,
   COLUMNS
 };
 
@@ -61,7 +62,8 @@ constexpr std::array<ColumnChoice, COLUMNS> CHOICES{
     { "--output-angle", &SignalSource::output_angle, "output_angle_encoder" },
     { "--motor-velocity", &SignalSource::motor_velocity, "motor_velocity_encoder" },
     { "--load-torque", &SignalSource::load_torque, "load_torque" },
-    { "--temperature", &SignalSource::temperature, "housing_temperature", "temperature" } }
+    { "--temperature", &SignalSource::temperature, "housing_temperature", "temperature" },
+    { "--target-angle", &SignalSource::target_angle, "target_angle" } }
 };
 
 bool contains(const std::vector<std::string>& names, const std::string& name)
@@ -112,6 +114,7 @@ SignalSample sampleOf(const std::array<double, COLUMNS>& row, double torque_scal
   sample.motor_torque = torque_scale * row[MOTOR_TORQUE];
   sample.load_torque = row[LOAD_TORQUE];
   sample.temperature = row[TEMPERATURE];
+  sample.target_angle = row[TARGET_ANGLE];
   return sample;
 }
 

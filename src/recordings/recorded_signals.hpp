@@ -27,6 +27,7 @@ struct SignalSource
   std::string motor_velocity;
   std::string load_torque;
   std::string temperature;
+  std::string target_angle;
   // Topics of a bag.
   std::string states_topic;
   std::string load_topic;

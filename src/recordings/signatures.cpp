@@ -228,7 +228,7 @@ std::string SignatureRuns::text(const std::string& gear, const SignatureSet& bas
   std::vector<std::string> motions;  // by signature
   set.gear = gear;
   set.signatures.clear();
-  set.fitted.fill(true);
+  set.fitted.fill(true);  // but what the runs have not: numbers of robots are those of the basis
   for (const FaultDescription& description : FAULT_DESCRIPTIONS)
   {
     for (const Motion& motion : motions_)

@@ -35,12 +35,12 @@ protected:
 
   AgainstSignatures()
   {
-    // A hundredth of the largest change in any signature.
+    // A hundredth of the largest change in any signature; the drive has no load estimate and no set points.
     for (const Signature& signature : signatures_->signatures)
     {
       for (std::size_t i = 0; i < SIGNATURE_SIZE; ++i)
       {
-        spread_[i] = std::max(spread_[i], 0.01 * std::abs(signature.change[i]));
+        spread_[i] = isOfRobot(i) ? 0.0 : std::max(spread_[i], 0.01 * std::abs(signature.change[i]));
       }
     }
   }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <random>
 
 #include <gmock/gmock.h>
@@ -147,6 +148,71 @@ TEST(SignalMonitor, WorksWithTheOutputEncoderAlone)
   EXPECT_TRUE(std::isnan(monitor.indicators().amplitude(LineSignal::KINEMATIC_ERROR, Line::WAVE_GENERATOR_4)));
   EXPECT_TRUE(std::isnan(monitor.indicators().amplitude(LineSignal::MOTOR_RIPPLE, Line::WAVE_GENERATOR_4)));
   EXPECT_TRUE(std::isnan(monitor.indicators()[ScalarIndicator::KINEMATIC_ERROR]));
+}
+
+/// A robot's joint at 125 Hz, one encoder, to and fro at up to 120 rad/s of the motor under a load: friction by load.
+double loadFriction(double share)
+{
+  SignalMonitor monitor(shippedParameters({ "indicators.window_turns=1e5", "indicators.window_time=20.0" }));
+  SignalSample sample;
+  bool done = false;
+  for (int i = 1; !done; ++i)
+  {
+    const double time = 8e-3 * i;
+    sample.stamp = i * std::int64_t{ 8000000 };
+    sample.output_angle = std::sin(1.2 * time);
+    sample.load_torque = 60.0 * std::sin(sample.output_angle) + 8.0;
+    const double speed = 1.2 * RATIO * std::cos(1.2 * time);
+    sample.motor_torque = sample.load_torque / RATIO + 4e-4 * speed +
+                          std::copysign(0.1 + share * std::abs(sample.load_torque) / RATIO, speed);
+    done = monitor.update(sample);
+  }
+  return monitor.indicators()[ScalarIndicator::LOAD_FRICTION];
+}
+
+TEST(SignalMonitor, FindsFrictionThatGrowsWithTheLoad)
+{
+  EXPECT_NEAR(loadFriction(0.06), 0.06, 0.003);
+  EXPECT_NEAR(loadFriction(0.0), 0.0, 0.003);
+}
+
+/// A joint at an even speed that is off its set points by a line at order 2, which changes its sign every `turns` of
+/// the motor, as that of a cracked rim does with the load.
+SignalIndicators windowWithLag(double line, double turns, bool has_set_points = true)
+{
+  constexpr double SPEED = 100.0;
+  SignalMonitor monitor(shippedParameters({ "indicators.window_turns=240" }));
+  SignalSample sample;
+  bool done = false;
+  for (int i = 1; !done; ++i)
+  {
+    sample.stamp = i * SAMPLE;
+    const double angle = SPEED * 1e-9 * SAMPLE * i;
+    const double sign = std::fmod(angle / TWO_PI / turns, 2.0) < 1.0 ? 1.0 : -1.0;
+    sample.output_angle = (angle + sign * line * std::cos(2.0 * angle)) / RATIO;
+    sample.target_angle = has_set_points ? angle / RATIO : std::nan("");
+    sample.motor_torque = 0.1;
+    done = monitor.update(sample);
+  }
+  return monitor.indicators();
+}
+
+TEST(SignalMonitor, FindsWhatAControllerLeavesOfItsSetPoints)
+{
+  constexpr double LINE = 1e-3;
+  // RippleFilter of 20 ms at 200 rad/s, by steps of 0.5 ms.
+  const double kept = std::exp(-1.0 / 40.0);
+  const double share =
+      std::pow(2.0 * std::sin(0.05) / std::abs(1.0 - std::polar(kept, 0.1)), 3) * kept * kept * (1.0 - kept) * 40.0;
+  const SignalIndicators steady = windowWithLag(LINE, 1e6);
+  EXPECT_NEAR(steady[ScalarIndicator::LAG_RIPPLE], share * LINE / std::sqrt(2.0), 0.005 * LINE);
+  EXPECT_NEAR(steady[ScalarIndicator::LAG_ORDER_2], share * LINE, 0.005 * LINE);
+  EXPECT_LT(steady[ScalarIndicator::LAG_ORDER_4], 0.06 * LINE);
+  // The mean over two turns takes four turns of the power at each change of sign.
+  EXPECT_NEAR(windowWithLag(LINE, 30.0)[ScalarIndicator::LAG_ORDER_2], share * LINE * std::sqrt(26.0 / 30.0),
+              0.02 * LINE);
+  EXPECT_LT(windowWithLag(0.0, 30.0)[ScalarIndicator::LAG_RIPPLE], 1e-9);
+  EXPECT_TRUE(std::isnan(windowWithLag(LINE, 30.0, false)[ScalarIndicator::LAG_RIPPLE]));
 }
 
 /// A UR controller's 125 Hz: lines that its samples cannot show do not take those that they can.

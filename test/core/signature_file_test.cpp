@@ -71,6 +71,21 @@ TEST(SignatureFile, IsTakenNumberByNumber)
   EXPECT_EQ(causesThatMove(set, ScalarIndicator::TORSIONAL_STIFFNESS, -1.0, 0.1).size(), 0U);  // not at severity 1
 }
 
+TEST(SignatureFile, GivesSignaturesWhatRobotsShowOfTheirCauseAndSeverity)
+{
+  const std::string robots =
+      "robots:\n  - [pitting, 0.4, 0.2, 0.0, 0.0, 0.0, 1.0]\n"
+      "  - [pitting, 1.0, 0.5, 0.0, 0.0, 0.0, 7.0]\nsignatures: |\n";
+  const SignatureSet set = parseSignatures(replaced("signatures: |\n", robots), "mine.yaml");
+  constexpr std::size_t LINE = indexOf(ScalarIndicator::LAG_ORDER_4);
+  EXPECT_TRUE(set.fitted[LINE]);
+  EXPECT_NEAR(set.signatures[0].change[LINE], 2.0, 1e-12) << "at 0.5, a sixth of the way from 0.4 to 1";
+  EXPECT_NEAR(set.signatures[0].change[indexOf(ScalarIndicator::LOAD_FRICTION)], 0.25, 1e-12);
+  EXPECT_EQ(set.signatures[1].change[LINE], 0.0) << "of another cause";
+  EXPECT_THAT(refusal(replaced("signatures: |\n", "robots: [[pitting, 0.4, 0.2]]\nsignatures: |\n")),
+              testing::HasSubstr("robots: expected [cause, severity and 5 shares]"));
+}
+
 TEST(SignatureFile, TakesRowsOfRunsBehindItsOwn)
 {
   const SignatureSet set = parseSignatures(SMALL, "mine.yaml");

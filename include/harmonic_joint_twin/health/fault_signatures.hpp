@@ -84,7 +84,7 @@ constexpr std::size_t signatureNumber(LineSignal signal, std::size_t line)  ///<
 static_assert(signatureNumber(LineSignal::MOTOR_RIPPLE, LINE_COUNT) == SIGNATURE_SIZE);
 
 /// Whether a signature gives a change as a share of the sound value: stiffness and play go with the size of the cup,
-/// and thicker grease multiplies the friction there is.
+/// thicker grease multiplies the friction there is, and the lag is what the controller's gains leave.
 constexpr bool isShare(Cause cause, ScalarIndicator indicator)
 {
   switch (indicator)
@@ -94,6 +94,11 @@ constexpr bool isShare(Cause cause, ScalarIndicator indicator)
     case ScalarIndicator::LOST_MOTION:
     case ScalarIndicator::HYSTERESIS:
     case ScalarIndicator::HYSTERESIS_AREA:
+    case ScalarIndicator::LOAD_FRICTION:
+    case ScalarIndicator::LAG_RIPPLE:
+    case ScalarIndicator::LAG_ORDER_1:
+    case ScalarIndicator::LAG_ORDER_2:
+    case ScalarIndicator::LAG_ORDER_4:
       return true;
     case ScalarIndicator::RUNNING_TORQUE:
     case ScalarIndicator::COULOMB_TORQUE:
@@ -108,6 +113,23 @@ constexpr bool isStiffness(ScalarIndicator indicator)
 {
   return indicator == ScalarIndicator::TORSIONAL_STIFFNESS || indicator == ScalarIndicator::SECOND_STIFFNESS;
 }
+
+/// Numbers of what a robot in closed loop tells beside, from LOAD_FRICTION on.
+constexpr std::size_t FIRST_OF_ROBOT = indexOf(ScalarIndicator::LOAD_FRICTION);
+constexpr std::size_t ROBOT_NUMBERS = indexOf(ScalarIndicator::LAG_ORDER_4) - FIRST_OF_ROBOT + 1;
+
+constexpr bool isOfRobot(std::size_t number)
+{
+  return number - FIRST_OF_ROBOT < ROBOT_NUMBERS;
+}
+
+/// What a fault changes in those numbers, as shares of the sound values, of any gear in any motion.
+struct RobotSignature
+{
+  Cause cause;
+  double severity;  ///< 0 ... 1 [-]
+  std::array<double, ROBOT_NUMBERS> share;
+};
 
 /// What tells one motion from another.
 struct MotionKind
@@ -132,14 +154,15 @@ struct SignatureSet
 {
   SignatureSet() { sound.fill(std::numeric_limits<double>::quiet_NaN()); }
 
-  std::string gear;          ///< whose, for people
-  double number_error{};     ///< r of CauseSearch [-]
-  double motion_error{};     ///< m [-]
-  double length_error{};     ///< e [-]
-  double line_error{};       ///< l [-]
-  double evidence_weight{};  ///< b_0 [-]
-  double severity_error{};   ///< of the severity by the signatures, as a share of it [-]
-  std::vector<Signature> signatures;
+  std::string gear;                       ///< whose, for people
+  double number_error{};                  ///< r of CauseSearch [-]
+  double motion_error{};                  ///< m [-]
+  double length_error{};                  ///< e [-]
+  double line_error{};                    ///< l [-]
+  double evidence_weight{};               ///< b_0 [-]
+  double severity_error{};                ///< of the severity by the signatures, as a share of it [-]
+  std::vector<Signature> signatures;      ///< those of robots in their own numbers
+  std::vector<RobotSignature> of_robots;  ///< by cause, severities rise
   std::array<bool, SIGNATURE_SIZE>
       fitted{};  ///< numbers that the signatures are known for; the others count for nothing
   std::array<double, SCALAR_COUNT>

@@ -29,6 +29,11 @@ enum class ScalarIndicator : std::size_t
   RESIDUAL_RMS,
   RESIDUAL_KURTOSIS,
   RESIDUAL_CREST,
+  LOAD_FRICTION,
+  LAG_RIPPLE,
+  LAG_ORDER_1,
+  LAG_ORDER_2,
+  LAG_ORDER_4,
   COUNT
 };
 

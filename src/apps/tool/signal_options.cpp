@@ -31,6 +31,8 @@ void addSignalOptions(Command& command, SignalOptions& options)
          "CSV, HDF5: load torque at the output, > 0 resists positive motion [N.m]; default: load_torque");
   column("--temperature", source.temperature,
          "CSV, HDF5: temperature [degC]; default: housing_temperature, else temperature");
+  column("--target-angle", source.target_angle,
+         "CSV, HDF5: set point of the output angle [rad]; default: target_angle");
   command.add("--torque-scale", options.torque_scale,
               "motor torque per unit of the recorded signal [N.m]; default: 1, and with --joint "
               "telemetry.torque_per_current / ratio [N.m/A]");
