@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstddef>
-#include <memory>
 #include <vector>
 
 #include <Eigen/Core>
@@ -26,11 +25,15 @@ public:
       weights_.emplace_back(arm);
     }
     arm.gravity = gravity;
-    arm.payload = {};
-    bare_ = std::make_unique<ArmDynamics>(arm);
+    for (ArmLink& link : arm.links)
+    {
+      links_mass_ += link.mass;
+      link.mass = 0.0;
+      link.inertia = {};
+    }
     const auto add = [&](const std::array<double, 3>& centre)
     {
-      arm.payload = { SMALL, centre };
+      arm.payload = { 1.0, centre };
       loaded_.emplace_back(arm);
     };
     add({});
@@ -45,7 +48,7 @@ public:
     }
   }
 
-  double linksMass() const { return bare_->mass(); }  ///< [kg]
+  double linksMass() const { return links_mass_; }  ///< [kg]
 
   /// Of mass and moments, and of gravity along each axis of the base's frame, at each joint, by column
   /// [N.m/kg], [N.m/(kg.m)], [N.m/(m/s^2)].
@@ -56,12 +59,8 @@ public:
       torques.resize(motion.size());
       dynamics.torques(motion, torques);
     };
-    at(*bare_, first_);
-    at(loaded_[0], second_);
-    for (std::size_t i = 0; i < motion.size(); ++i)
-    {
-      columns(static_cast<Eigen::Index>(i), 0) = (second_[i] - first_[i]) / SMALL;
-    }
+    at(loaded_[0], first_);
+    columns.col(0) = Eigen::Map<const Eigen::VectorXd>(first_.data(), static_cast<Eigen::Index>(first_.size()));
     // To both sides: what of a payload's inertia is quadratic in its centre cancels out.
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
@@ -69,8 +68,7 @@ public:
       at(loaded_[2 + 2 * axis], second_);
       for (std::size_t i = 0; i < motion.size(); ++i)
       {
-        columns(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(1 + axis)) =
-            (first_[i] - second_[i]) / (2.0 * SMALL);
+        columns(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(1 + axis)) = 0.5 * (first_[i] - second_[i]);
       }
     }
     rest_.resize(motion.size());
@@ -88,10 +86,8 @@ public:
   }
 
 private:
-  static constexpr double SMALL = 1e-3;  // [kg]
-
-  std::unique_ptr<ArmDynamics> bare_;
-  std::vector<ArmDynamics> loaded_;
+  double links_mass_{};               // [kg]
+  std::vector<ArmDynamics> loaded_;   // of links without a mass
   std::vector<ArmDynamics> weights_;  // of gravity along each axis
   std::vector<JointMotion> rest_;
   std::vector<double> first_;

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <functional>
@@ -11,6 +13,7 @@
 #include "arm/arm_dynamics.hpp"
 #include "arm/arm_load.hpp"
 #include "arm/load_fit.hpp"
+#include "arm/unit_loads.hpp"
 #include "base/number_table.hpp"
 #include "test/core/arm_support.hpp"
 #include "test/support/allocation_count.hpp"
@@ -28,6 +31,52 @@ std::vector<MotionRow> rowsOf(double time, const Angles& angles)
     rows[i].position = angles[i];
   }
   return rows;
+}
+
+/// A payload's torques are linear in its mass and moments, but for its inertia, which both sides of a centre share: to
+/// the rounding of torques of 10 kN.m, which 1000 kg take.
+TEST(UnitLoads, AreThoseOfAPayloadToTheRounding)
+{
+  constexpr double MASS = 1000.0;                      // [kg]
+  constexpr double ROUNDING = 100.0 * 2.2e-16 * 10.0;  // of sums over six links, of torques a kg [N.m/kg]
+  ArmDescription arm = shipped("ur5");
+  arm.payload = {};
+  UnitLoads unit(arm);
+  ArmDynamics dynamics(arm);
+  EXPECT_NEAR(unit.linksMass(), dynamics.mass(), 1e-12);
+  std::vector<JointMotion> motion(arm.joints.size());
+  std::vector<double> torques(motion.size());
+  std::vector<double> others(motion.size());
+  Eigen::MatrixXd columns(static_cast<Eigen::Index>(motion.size()), 7);
+  for (int pose = 0; pose < 20; ++pose)
+  {
+    for (std::size_t i = 0; i < motion.size(); ++i)
+    {
+      const double turn = 1.0 + static_cast<double>(i) + 7.0 * pose;
+      motion[i] = { 3.0 * std::sin(turn), 2.0 * std::cos(2.0 * turn), 4.0 * std::sin(3.0 * turn) };
+    }
+    unit.torques(motion, columns);
+    for (Eigen::Index axis = -1; axis < 3; ++axis)
+    {
+      std::array<double, 3> centre{};
+      std::array<double, 3> opposite{};
+      if (axis >= 0)
+      {
+        centre[static_cast<std::size_t>(axis)] = 1.0;
+        opposite[static_cast<std::size_t>(axis)] = -1.0;
+      }
+      dynamics.setPayload({ MASS, centre });
+      dynamics.torques(motion, torques);
+      dynamics.setPayload(axis < 0 ? Payload{} : Payload{ MASS, opposite });
+      dynamics.torques(motion, others);
+      const double share = axis < 0 ? MASS : 2.0 * MASS;
+      for (std::size_t i = 0; i < motion.size(); ++i)
+      {
+        const double column = columns(static_cast<Eigen::Index>(i), axis + 1);
+        EXPECT_NEAR(column, (torques[i] - others[i]) / share, ROUNDING * std::max(1.0, std::abs(column))) << axis;
+      }
+    }
+  }
 }
 
 TEST(ArmLoad, FollowsASwingWithUnevenRowsAndAGap)

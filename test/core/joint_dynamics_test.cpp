@@ -11,6 +11,7 @@
 #include "gear/angle.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "solver/joint_stepper.hpp"
+#include "solver/output_balance.hpp"
 #include "test/core/joint_dynamics_support.hpp"
 #include "test_parameters.hpp"
 
@@ -92,6 +93,58 @@ TEST(MotorTorques, AreDerivativesOfTheirEnergy)
     ASSERT_NEAR(motor.coggingTorque(angle), -slope, 1e-8);
     const double curvature = (motor.coggingTorque(angle - STEP) - motor.coggingTorque(angle + STEP)) / (2.0 * STEP);
     ASSERT_LE(std::abs(curvature), motor.coggingStiffness() * (1.0 + 1e-8));
+  }
+}
+
+/// What the dashpots take is the same by the joint's matrix and by the ring's own points that follow its angles.
+TEST(FrictionInTheRunningJoint, HasTheDampingOfTheRingItself)
+{
+  const Parameters parameters = shippedParameters();
+  const JointModel model(parameters);
+  for (const double load : { -40.0, 0.0, 60.0 })
+  {
+    JointDynamics dynamics(model, parameters.solver);
+    dynamics.inputs.load_torque = load;
+    ASSERT_TRUE(dynamics.solveAtRest().ok());
+    const RingEquilibrium& ring = dynamics.ring();
+    const auto& contact = ring.forces().of<WaveGeneratorContact>();
+    JointFriction friction(model.ring.rest.teeth());
+    friction.viscous.setZero();
+    model.damping.add(contact, { ring.shape(), ring.byWaveGenerator(), ring.byOutput() }, friction);
+    const Eigen::Index size = ring.byOutput().size();
+    for (const Eigen::Vector2d& speeds :
+         { Eigen::Vector2d(1.0, 0.0), Eigen::Vector2d(0.0, 1.0), Eigen::Vector2d(1.0, -50.0) })
+    {
+      Eigen::VectorXd points(size + 2);
+      points << speeds[0] * ring.byWaveGenerator() + speeds[1] * ring.byOutput(), speeds;
+      Eigen::VectorXd force = Eigen::VectorXd::Zero(size + 2);
+      const double taken =
+          model.damping.addForces(ring.shape(), contact, points, Eigen::VectorXd::Zero(model.ring.rest.teeth()), force)
+              .dissipated;
+      EXPECT_NEAR(speeds.dot(friction.viscous * speeds), taken, 1e-10 * taken)
+          << load << " N.m, " << speeds.transpose();
+      EXPECT_GT(taken, 0.0);
+    }
+  }
+}
+
+TEST(JointAtRest, BearsTheWeightAtTheAngleThatItStandsAt)
+{
+  for (const char* angle : { "0.0", "1.5", "-1.5" })
+  {
+    const Parameters parameters =
+        shippedParameters({ "output.gravity_torque=60.0", std::string("output.gravity_angle=") + angle });
+    const JointModel model(parameters);
+    for (const double load : { -30.0, 30.0 })
+    {
+      JointDynamics dynamics(model, parameters.solver);
+      dynamics.inputs.load_torque = load;
+      ASSERT_TRUE(dynamics.solveAtRest().ok());
+      const RingEquilibrium& ring = dynamics.ring();
+      EXPECT_NEAR(ring.forces().output_torque, load - model.load.gravityTorque(ring.position().output_angle),
+                  2.0 * balanceTolerance(ring))
+          << angle << " rad, " << load << " N.m";
+    }
   }
 }
 

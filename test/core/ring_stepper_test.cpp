@@ -73,6 +73,26 @@ struct SoftRing : Bench
   RingMotion start;
 };
 
+TEST(QuasiStaticCheck, ComparesEveryQuantityOfARingThatFollows)
+{
+  const Parameters parameters = shippedParameters();
+  QuasiStaticSetup setup;
+  setup.settle_time = 1e-4;
+  setup.duration = 2e-4;
+  const QuasiStaticResult result = checkQuasiStatic(parameters, setup, [](double) {});
+  ASSERT_EQ(result.outcome, QuasiStaticOutcome::DONE);
+  EXPECT_EQ(result.rows.size(), 6U) << "every 37 us";
+  for (const DynamicError& error : { result.contact_force, result.mesh_force, result.position,
+                                     result.wave_generator_torque, result.output_torque, result.torsion })
+  {
+    EXPECT_GT(error.rms, 0.0);
+    EXPECT_GE(error.max, error.rms);
+    EXPECT_GT(error.size, error.rms);
+  }
+  // Radially w cos 2a, along the rim half of that: root mean square of a coordinate, to leading order.
+  EXPECT_NEAR(result.position.size / parameters.gear.wave_amplitude, std::sqrt(5.0 / 16.0), 0.05);
+}
+
 TEST(RingStepper, ConvergesWithItsOrder)
 {
   constexpr double DURATION = 4e-4;
