@@ -76,8 +76,10 @@ public:
     double cost{};                 ///< logarithm of a likelihood a posteriori
   };
 
-  /// `gravity`: as configured, in the frame of the base [m/s^2]; that of another mounting is of its size.
-  ArmEstimator(Rows rows, const Eigen::Vector3d& gravity);
+  /// `gravity`: as configured, in the frame of the base [m/s^2]; that of another mounting is of its size. `repeats`: of
+  /// each joint, by which its friction is another than in its rows when it is sound, standard deviation as a share;
+  /// empty: as joints of one type differ.
+  ArmEstimator(Rows rows, const Eigen::Vector3d& gravity, std::vector<double> repeats = {});
 
   /// By `with_gravity` the mounting may be another, by `with_jump` the payload may change between legs.
   Estimate solve(bool with_gravity = true, bool with_jump = true) const;
@@ -102,6 +104,7 @@ private:
 
   Rows rows_;
   Eigen::Vector3d gravity_;
+  std::vector<double> repeats_;
   std::size_t legs_{};
   int size_;  // of all terms
 };

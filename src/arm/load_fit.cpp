@@ -7,6 +7,7 @@
 #include "arm/residual_statistics.hpp"
 #include "elements/motor.hpp"
 #include "gear/ratio.hpp"
+#include "tracking/friction_verdict.hpp"
 
 namespace hjt
 {
@@ -20,6 +21,13 @@ LoadFit::Drive::Drive(const Parameters& parameters)
   , rotor(std::pow(nominalRatio(parameters.gear), 2) * Motor(parameters.motor).inertia())
   , temperature(parameters.input.temperature)
 {
+}
+
+void LoadFit::Drive::setOwn(bool known, const std::vector<FrictionPoint>& points)
+{
+  const double ratio = FrictionPoints::ratioOf(points);
+  is_own = known;
+  friction = ratio > 0.0 ? ratio : 1.0;
 }
 
 LoadFit::LoadFit(const ArmDescription& arm, const std::vector<Drive>& drives)
@@ -109,6 +117,7 @@ void LoadFit::addTo(Joint& joint, const MotionSample& sample, const MotionDriven
   constexpr double COLDER = 10.0;     // [K]
   constexpr double LEAST_LOAD = 0.1;  // [N.m]
   const double gain = joint.drive.gain;
+  const double own = joint.drive.friction;
   const double temperature = sample.temperatureOr(joint.drive.temperature);
   const MotionPrediction now = twin.at(temperature);
   const double of_mass = std::max(std::abs(load[0]), LEAST_LOAD);
@@ -117,12 +126,12 @@ void LoadFit::addTo(Joint& joint, const MotionSample& sample, const MotionDriven
   const auto friction_at = [&](double size) { return std::abs(twin.frictionAt(sample.velocity, size, temperature)); };
   ArmEstimator::Row& sum = joint.open.sum;
   sum.current += sample.current;
-  sum.predicted += now.current;
-  sum.friction += now.friction_torque / gain;
-  sum.cold += (twin.at(temperature - COLDER).friction_torque - now.friction_torque) / gain;
+  sum.predicted += now.current + (own - 1.0) * now.friction_torque / gain;
+  sum.friction += own * now.friction_torque / gain;
+  sum.cold += own * (twin.at(temperature - COLDER).friction_torque - now.friction_torque) / gain;
   sum.torque += sample.load / gain;
   sum.inertia += joint.drive.rotor * sample.acceleration / gain;
-  sum.rise += (friction_at(most) - friction_at(least)) / (most - least);
+  sum.rise += own * (friction_at(most) - friction_at(least)) / (most - least);
   sum.load += load / gain;
   ++joint.open.count;
   joint.loads += sample.load * sample.load;
@@ -239,15 +248,31 @@ IdentifiedMounting LoadFit::mountingOf(const ArmEstimator::Estimate& estimate) c
   return found;
 }
 
+/// As the estimator takes them.
+std::vector<double> LoadFit::repeats() const
+{
+  std::vector<double> repeats;
+  for (std::size_t i = 0; i < rows_.size(); ++i)
+  {
+    double friction = 0.0;
+    for (const ArmEstimator::Row& row : rows_[i])
+    {
+      friction += joints_[i].drive.gain * std::abs(row.friction) / static_cast<double>(rows_[i].size());
+    }
+    repeats.push_back(joints_[i].drive.is_own ? repeatOfOwn(friction) : HUGE_VAL);
+  }
+  return repeats;
+}
+
 ArmEstimator::Estimate LoadFit::estimate(const std::vector<bool>& counts)
 {
-  constexpr double LEAST_JUMP = 0.3;       // of a mass: friction that rises with a payload looks like less [kg]
+  constexpr double LEAST_JUMP = 0.1;       // of a mass: friction that rises with a payload looks like less [kg]
   constexpr std::size_t MOST_ROWS = 1500;  // of a joint
   for (std::size_t i = 0; i < rows_.size(); ++i)
   {
     close(i, last_time_);
   }
-  const ArmEstimator estimator(rowsOf(counts, MOST_ROWS), gravity_);
+  const ArmEstimator estimator(rowsOf(counts, MOST_ROWS), gravity_, repeats());
   const auto likelier = [&](bool may_change)
   {
     ArmEstimator::Estimate mounted = estimator.solve(true, may_change);

@@ -11,6 +11,7 @@
 #include "arm/found_load.hpp"
 #include "arm/unit_loads.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
+#include "tracking/friction_points.hpp"
 #include "tracking/motion_driven.hpp"
 
 namespace hjt
@@ -26,10 +27,15 @@ public:
   struct Drive
   {
     explicit Drive(const Parameters& parameters);
+    /// `known`: what is expected of its friction is that of this joint when it was sound, `friction` by speed; none:
+    /// as the twin's.
+    void setOwn(bool known, const std::vector<FrictionPoint>& friction);
 
-    double gain;         ///< [N.m/A]
-    double rotor;        ///< inertia at the joint [kg.m^2]
-    double temperature;  ///< of samples without one [degC]
+    double gain;             ///< [N.m/A]
+    double rotor;            ///< inertia at the joint [kg.m^2]
+    double temperature;      ///< of samples without one [degC]
+    bool is_own{};           ///< the friction of this joint when it was sound is known
+    double friction{ 1.0 };  ///< the known one over the twin's [-]
   };
 
   /// @param drives from the base on
@@ -77,6 +83,7 @@ private:
   };
 
   void cutLegs(double time, double speed);
+  std::vector<double> repeats() const;
   static void addTo(Joint& joint, const MotionSample& sample, const MotionDriven& twin, const ArmEstimator::Load& load);
   void close(std::size_t joint, double time);
   void thin();

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "arm/load_watch.hpp"
 
+#include <utility>
+
 namespace hjt
 {
-LoadWatch::LoadWatch(const ArmDescription& arm, const std::vector<Parameters>& joints)
-  : given_(arm), arm_(arm), drives_(joints.begin(), joints.end())
+LoadWatch::LoadWatch(const ArmDescription& arm, const std::vector<Parameters>& joints,
+                     std::vector<LoadFit::Drive> drives)
+  : given_(arm), arm_(arm), drives_(std::move(drives))
 {
   for (const Parameters& joint : joints)
   {

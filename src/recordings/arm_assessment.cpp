@@ -32,6 +32,18 @@ void holdAgainstController(const std::vector<AssessedJoint*>& joints)
   }
 }
 
+/// With the friction that each is held against.
+std::vector<LoadFit::Drive> drivesOf(const std::vector<Parameters>& parameters,
+                                     const std::vector<AssessedJoint*>& joints)
+{
+  std::vector<LoadFit::Drive> drives(parameters.begin(), parameters.end());
+  for (std::size_t i = 0; i < drives.size(); ++i)
+  {
+    drives[i].setOwn(joints[i]->hasReference(), joints[i]->own().friction);
+  }
+  return drives;
+}
+
 /// `looks_for_load`: else it is what it counts as.
 ArmAssessment pass(const ArmRecording& recording, const AssessmentSettings& settings, bool looks_for_load,
                    bool gives_notice, RecordingFit& fit)
@@ -43,7 +55,7 @@ ArmAssessment pass(const ArmRecording& recording, const AssessmentSettings& sett
   std::vector<const MotionDriven*> twins;
   if (looks_for_load)
   {
-    load.emplace(recording.arm(), recording.parameters());
+    load.emplace(recording.arm(), drivesOf(recording.parameters(), arm.joints));
     for (const AssessedJoint* joint : arm.joints)
     {
       twins.push_back(&joint->evidence().twin());

@@ -19,6 +19,7 @@ public:
   virtual void update(const MotionSample& sample) = 0;
   virtual const JointEvidence& evidence() const = 0;
 
+  const OwnReference& own() const { return own_; }
   bool hasReference() const { return is_identified_ || !own_.friction.empty(); }  ///< of its friction
   /// Without a reference the friction is held against what the arm's controller expects.
   void holdAgainstController() { has_controller_ = true; }

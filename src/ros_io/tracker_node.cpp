@@ -84,7 +84,13 @@ TrackerNode::TrackerNode(ros::NodeHandle& node, const Arm& arm)
   friction_.emplace(std::move(trackers), repeat_tolerance_, std::move(frictions));
   if (std::all_of(joints_.begin(), joints_.end(), [](const auto& joint) { return joint->takesArmLoad(); }))
   {
-    load_.emplace(arm.description, arm.joints);
+    std::vector<LoadFit::Drive> drives(arm.joints.begin(), arm.joints.end());
+    for (std::size_t i = 0; i < drives.size(); ++i)
+    {
+      const std::vector<FrictionPoint>& own = arm.sound[i].own.friction;
+      drives[i].setOwn(arm.is_identified || !own.empty(), own);
+    }
+    load_.emplace(arm.description, arm.joints, std::move(drives));
     if (arm.candidates)
     {
       arm_.emplace(arm.candidates, arm.name, arm.unit_is_given);

@@ -165,8 +165,7 @@ double deviationOf(const FrictionRatio& ratio, const FrictionBlocks& blocks, con
   const FrictionPoint forward = FrictionPoints::meanOf(ratio.points, 1.0);
   const double twin = backward.twin + forward.twin;
   const double load = LOAD_SHARE * std::abs(forward.load - backward.load) / twin;
-  const double stated = std::hypot(is_witnessed ? WITNESSED_SHARE : REPEAT_SHARE,
-                                   (is_witnessed ? WITNESSED_TORQUE : REPEAT_TORQUE) / (0.5 * twin));
+  const double stated = is_witnessed ? repeatOfOwn(0.5 * twin) : std::hypot(REPEAT_SHARE, REPEAT_TORQUE / (0.5 * twin));
   const double repeat = repeatDeviation(stated, is_to_own ? context.own : OwnReference());
   const double of_controller = reference == FrictionReference::CONTROLLER ? CONTROLLER_SHARE : 0.0;
   const double size = std::max(std::abs(ratio.value), NO_FRICTION);
@@ -183,6 +182,11 @@ double departure(const FrictionFactor& factor, double arm_friction, double more,
   return std::max(distance / ((1.0 + more) * width - 1.0), -distance / (1.0 - (1.0 - less) / width));
 }
 }  // namespace
+
+double repeatOfOwn(double friction)
+{
+  return std::hypot(WITNESSED_SHARE, WITNESSED_TORQUE / friction);
+}
 
 std::string factorText(const FrictionFactor& factor)
 {
