@@ -322,9 +322,9 @@ void Hdf5RunFile::writeIndicators()
   {
     write(indicatorName(i), indicatorUnit(i), [i](W w) { return w.values[i]; });
   }
-  for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
+  for (std::size_t i = SCALAR_COUNT; i < INDICATOR_COUNT; ++i)
   {
-    if (hasError(i))
+    if (amplitudeOf(i) == i)
     {
       write(errorColumn(i).c_str(), indicatorUnit(i), [i](W w) { return w.uncertainty[i]; });
     }

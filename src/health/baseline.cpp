@@ -198,14 +198,11 @@ Baseline::Variance Baseline::variance(std::size_t indicator, const ReferenceBin&
 {
   const double repeats = repeatsWithin(repeatability_, bin, indicator);
   const double usual = bin.references[indicator].relative_square;
-  const bool is_line = indicator >= SCALAR_COUNT;
-  const double square = left * (is_line && usual > 0.0 ? std::max(average.relative_square / usual, 1.0) : 1.0);
-  // Of the torsion's numbers the error is one of size, beside what the reference's own paths leave.
-  const double by_path = is_line ? 0.0 : std::max(average.relative_square - usual, 0.0);
+  const double square = left * (usual > 0.0 ? std::max(average.relative_square / usual, 1.0) : 1.0);
   const double learned =
       square * widening.stays + std::max(square * widening.varies, average.scatter_square / average.weight);
   return { learned + repeats * repeats + floor_[indicator] * floor_[indicator] +
-               (square + repeats * repeats) * widening.slopes + widening.carried + by_path,
+               (square + repeats * repeats) * widening.slopes + widening.carried,
            learned };
 }
 

@@ -74,14 +74,6 @@ constexpr std::size_t amplitudeOf(std::size_t indicator)
   return indicator < SCALAR_COUNT || place < lines ? indicator : indicator - place + (place - lines) / 2;
 }
 
-/// Whether a window gives the standard error of the indicator by the fit: of torsion and of lines.
-constexpr bool hasError(std::size_t indicator)
-{
-  return indicator >= SCALAR_COUNT ? amplitudeOf(indicator) == indicator :
-                                     indicator >= indexOf(ScalarIndicator::TORSIONAL_STIFFNESS) &&
-                                         indicator <= indexOf(ScalarIndicator::HYSTERESIS);
-}
-
 struct LineRow
 {
   Line line;

@@ -261,8 +261,6 @@ std::array<double, INDICATOR_COUNT> relativeErrors(const SignalIndicators& indic
     of_signal = indicators.uncertainty[i] > 0.0 ? std::min(of_signal, indicators.uncertainty[i]) : of_signal;
   }
   std::array<double, INDICATOR_COUNT> relative{};
-  std::transform(indicators.uncertainty.begin(), indicators.uncertainty.begin() + SCALAR_COUNT, relative.begin(),
-                 [](double error) { return error > 0.0 ? error : 0.0; });
   for (std::size_t i = SCALAR_COUNT; i < INDICATOR_COUNT; ++i)
   {
     const double error = indicators.uncertainty[i];  // of a foreign file NaN too

@@ -46,7 +46,7 @@ constexpr double ALIKE_FREEDOM = 3.0;
 std::array<double, INDICATOR_COUNT> varianceOfAlike(const ReferenceBin& bin) noexcept;
 
 /// Standard error of each line over the least one of its signal's lines in the same window: what the motion makes of
-/// it, whatever the noise [-]. Of a scalar its error itself. 0: not known.
+/// it, whatever the noise [-]. 0: not known.
 std::array<double, INDICATOR_COUNT> relativeErrors(const SignalIndicators& indicators) noexcept;
 
 /// Takes a window up into the sums of its class; `here`: its place there. Does not allocate.

@@ -168,24 +168,6 @@ bool RunningRegression::fit(int used) noexcept
   return true;
 }
 
-double RunningRegression::covariance(const Eigen::Ref<const Eigen::VectorXd>& one,
-                                     const Eigen::Ref<const Eigen::VectorXd>& other) const noexcept
-{
-  double product = 0.0;
-  for (Eigen::Index i = 0; i < one.size(); ++i)
-  {
-    double of_one = 0.0;
-    double of_other = 0.0;
-    for (Eigen::Index k = 0; k <= i; ++k)
-    {
-      of_one += inverse_(i, k) * scale_[k] * one[k];
-      of_other += inverse_(i, k) * scale_[k] * other[k];
-    }
-    product += of_one * of_other;
-  }
-  return product / fitted_rows_;
-}
-
 double RunningRegression::standardError(int column, int target) const noexcept
 {
   return spread_[target] * scale_[column] * std::sqrt(inverse_diagonal_[column] / fitted_rows_);

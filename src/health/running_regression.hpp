@@ -38,9 +38,6 @@ public:
   double coefficient(int column, int target) const noexcept { return coefficients_(column, target); }
   Eigen::Ref<const Eigen::VectorXd> coefficients(int target) const noexcept { return coefficients_.col(target); }
   double standardError(int column, int target) const noexcept;
-  /// Of two sums of coefficients, by the weights of the columns fitted, over that which rows off by 1 would give.
-  double covariance(const Eigen::Ref<const Eigen::VectorXd>& one,
-                    const Eigen::Ref<const Eigen::VectorXd>& other) const noexcept;
   /// Variance of a coefficient over what it would be if its column stood alone; 1: independent of the others [-].
   double inflation(int column) const noexcept { return inverse_diagonal_[column]; }
 

@@ -344,15 +344,10 @@ void SignalMonitor::complete(std::int64_t stamp) noexcept
 void SignalMonitor::fillTorsion() noexcept
 {
   loop_.fit();
-  const auto put = [this](ScalarIndicator indicator, const TorsionLoopEstimate::Number& number)
-  {
-    set(indicator, number);
-    indicators_.uncertainty[indexOf(indicator)] = number.valid ? number.error : 0.0;
-  };
-  put(ScalarIndicator::TORSIONAL_STIFFNESS, loop_.stiffness());
-  put(ScalarIndicator::SECOND_STIFFNESS, loop_.secondStiffness());
-  put(ScalarIndicator::LOST_MOTION, loop_.lostMotion());
-  put(ScalarIndicator::HYSTERESIS, loop_.hysteresis());
+  set(ScalarIndicator::TORSIONAL_STIFFNESS, loop_.stiffness());
+  set(ScalarIndicator::SECOND_STIFFNESS, loop_.secondStiffness());
+  set(ScalarIndicator::LOST_MOTION, loop_.lostMotion());
+  set(ScalarIndicator::HYSTERESIS, loop_.hysteresis());
   set(ScalarIndicator::HYSTERESIS_AREA, loop_.loopArea());
 }
 

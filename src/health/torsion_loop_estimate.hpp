@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "harmonic_joint_twin/health/indicator.hpp"
@@ -47,18 +46,11 @@ private:
 ///                     1 / K1 and 1 / K2 of all windows of a motion, so that their changes have nothing of it
 /// Lost motion  angle between the middles of the loop at T0 and -T0: 2 T0 (1 / K1 + c) [rad]
 /// Loop area    integral of T over the torsion from one maximum of T to the next, mean of the loops that closed [J]
-/// Errors      what is left of e = ECCENTRICITY, by its share of the other columns: a path tells e or does not, so that
-///             K1 and K2 of a drive differ from path to path
 /// K1 needs T to span health.stiffness_torque_span within T1 on either side of no load, K2 beyond T1 on one side, lost
 /// motion 2 T0 on both sides.
 class TorsionLoopEstimate
 {
 public:
-  struct Number : Indicator
-  {
-    double error{};  ///< unit of the value
-  };
-
   TorsionLoopEstimate(const HealthParameters& health, const IndicatorParameters& parameters)
     : first_torque_(parameters.stiffness_torque)
     , torque_span_(health.stiffness_torque_span)
@@ -120,22 +112,19 @@ public:
     }
     const double within =
         std::clamp(highest_, -first_torque_, first_torque_) - std::clamp(lowest_, -first_torque_, first_torque_);
-    stiffness_ = { { within >= torque_span_, 1.0 / slope }, left_[0] / (slope * slope) };
+    stiffness_ = { within >= torque_span_, 1.0 / slope };
     const double second = slope + regression_.coefficient(BEYOND, 0);
-    second_stiffness_ = { { std::max(highest_, -lowest_) - first_torque_ > torque_span_ && second > 0.0, 1.0 / second },
-                          left_[1] / (second * second) };
-    lost_motion_ = { { std::min(highest_, -lowest_) > 2.0 * play_,
-                       2.0 * play_ * (slope + regression_.coefficient(SOFTNESS, 0)) },
-                     2.0 * play_ * left_[2] };
-    hysteresis_ = { { highest_ - lowest_ >= torque_span_ && regression_.inflation(BRANCH) < MAX_INFLATION,
-                      -2.0 * regression_.coefficient(BRANCH, 0) },
-                    2.0 * left_[3] };
+    second_stiffness_ = { std::max(highest_, -lowest_) - first_torque_ > torque_span_ && second > 0.0, 1.0 / second };
+    lost_motion_ = { std::min(highest_, -lowest_) > 2.0 * play_,
+                     2.0 * play_ * (slope + regression_.coefficient(SOFTNESS, 0)) };
+    hysteresis_ = { highest_ - lowest_ >= torque_span_ && regression_.inflation(BRANCH) < MAX_INFLATION,
+                    -2.0 * regression_.coefficient(BRANCH, 0) };
   }
 
-  Number stiffness() const noexcept { return stiffness_; }               ///< K1 [N.m/rad]
-  Number secondStiffness() const noexcept { return second_stiffness_; }  ///< K2 [N.m/rad]
-  Number lostMotion() const noexcept { return lost_motion_; }            ///< [rad]
-  Number hysteresis() const noexcept { return hysteresis_; }             ///< 2 h [rad]
+  Indicator stiffness() const noexcept { return stiffness_; }               ///< K1 [N.m/rad]
+  Indicator secondStiffness() const noexcept { return second_stiffness_; }  ///< K2 [N.m/rad]
+  Indicator lostMotion() const noexcept { return lost_motion_; }            ///< [rad]
+  Indicator hysteresis() const noexcept { return hysteresis_; }             ///< 2 h [rad]
 
   /// [J]
   Indicator loopArea() const noexcept { return loops_ > 0 ? Indicator{ true, area_ / loops_ } : Indicator{}; }
@@ -155,8 +144,7 @@ private:
   // What the law leaves of the torsion of a sound drive, 15 urad rms, over an eccentricity, 0.44 mrad
   // (config/real_sensors.yaml), squared, is 1.2e-3: what tells e must be more [-].
   static constexpr double ECCENTRICITY_LEFT = 1.5e-3;
-  static constexpr double ECCENTRICITY = 0.44e-3;  // as there [rad]
-  static constexpr double LEAST_TOLD = 1e-6;       // of q [-]
+  static constexpr double LEAST_TOLD = 1e-6;  // of q [-]
 
   /// Ridges on e, each by what tells it. False: too few samples.
   bool holdEccentricity() noexcept
@@ -166,30 +154,14 @@ private:
       return false;
     }
     const double rows = regression_.rows();
-    left_ = {};
     for (const int column : { COSINE, SINE })
     {
       const double told = regression_.mean(column, column) / regression_.inflation(column);
-      addLeft(column, told);
       Row row = Row::Zero();
       row[column] = ECCENTRICITY_LEFT * std::sqrt(rows / std::max(told, LEAST_TOLD));
       regression_.add(row, Eigen::Matrix<double, 1, 1>(0.0));
     }
     return true;
-  }
-
-  /// What the ridge on a column of e leaves of it, in each of the numbers.
-  void addLeft(int column, double told) noexcept
-  {
-    constexpr double LEFT = ECCENTRICITY_LEFT * ECCENTRICITY_LEFT;
-    const Row own = Row::Unit(column);
-    const double off = ECCENTRICITY * LEFT / (told * told + LEFT) / regression_.covariance(own, own);
-    const std::array<Row, 4> numbers{ Row::Unit(SLOPE), Row::Unit(SLOPE) + Row::Unit(BEYOND),
-                                      Row::Unit(SLOPE) + Row::Unit(SOFTNESS), Row::Unit(BRANCH) };
-    for (std::size_t i = 0; i < numbers.size(); ++i)
-    {
-      left_[i] = std::hypot(left_[i], off * regression_.covariance(numbers[i], own));
-    }
   }
 
   void followTorque(double torsion, double joint_torque) noexcept
@@ -230,13 +202,12 @@ private:
   Play torque_play_;
   Play direction_play_;
   RunningRegression regression_;
-  double lowest_{};               // torque in the regression [N.m]
-  double highest_{};              // [N.m]
-  std::array<double, 4> left_{};  // of e in 1 / K1, 1 / K2, 1 / K1 + c and h
-  Number stiffness_;
-  Number second_stiffness_;
-  Number lost_motion_;
-  Number hysteresis_;
+  double lowest_{};   // torque in the regression [N.m]
+  double highest_{};  // [N.m]
+  Indicator stiffness_;
+  Indicator second_stiffness_;
+  Indicator lost_motion_;
+  Indicator hysteresis_;
 
   bool started_{};
   bool rising_{};

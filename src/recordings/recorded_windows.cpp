@@ -120,7 +120,7 @@ std::optional<std::vector<SignalIndicators>> windowsOfRun(const std::string& rec
   {
     read(indicatorName(i), [i](W w, double value) { w.values[i] = value; });
   }
-  for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
+  for (std::size_t i = SCALAR_COUNT; i < INDICATOR_COUNT; ++i)
   {
     if (columns.count(errorColumn(i)) > 0)  // files of before have none
     {

@@ -305,30 +305,6 @@ TEST(Reference, KeepsTheSoundValueWhereAModelIsSubtracted)
   EXPECT_DOUBLE_EQ(residual.difference[indexOf(ScalarIndicator::TORSIONAL_STIFFNESS)], -2400.0);
 }
 
-/// K1 of a path that tells the encoder's eccentricity from the torsion less than those of the reference do.
-TEST(Reference, DoubtsAStiffnessThatThePathDeterminesLess)
-{
-  constexpr std::size_t STIFFNESS = indexOf(ScalarIndicator::TORSIONAL_STIFFNESS);
-  const auto score = [](double error)
-  {
-    Assessor assessor(stillDrive());
-    std::mt19937 random(3);
-    std::normal_distribution<double> normal;
-    for (int window = 0; window <= LEARNING; ++window)
-    {
-      const bool is_last = window == LEARNING;
-      SignalIndicators indicators;
-      indicators.point = { 100.0, 0.0, 30.0, 25.0 };
-      indicators.values[STIFFNESS] = (is_last ? 26000.0 : 30000.0) + 100.0 * normal(random);
-      indicators.uncertainty[STIFFNESS] = is_last ? error : 100.0;
-      assessor.update(indicators);
-    }
-    return assessor.assessment().largest_score;
-  };
-  EXPECT_GT(score(100.0), 1.0);
-  EXPECT_LT(score(3000.0), 1.0);
-}
-
 /// A reference of a motion to and fro that is carried to one of twice the speed and three times the load.
 class CarriedReference : public testing::Test
 {
