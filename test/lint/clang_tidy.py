@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Names and likely faults by clang-tidy (.clang-tidy) in the sources of src/, test/ and bench/ that the build compiles:
-those changed in the working tree or within the day before its commit, and a sixth of the others, which the number of
-commits chooses. --all, or sources without git: every one.
+those whose code changed in the working tree or within the day before its commit, and a sixth of the others, which the
+number of commits chooses. --all, or sources without git: every one.
 
 usage: clang_tidy.py [--all] BUILD_FOLDER
 
@@ -66,15 +66,20 @@ def cache_folder():
 def turn(root):
     """Whether it is a file's turn, by the commit of the tree. None: all files' turn."""
     def git(*arguments):
-        return output(["git", "-C", root, "-c", f"safe.directory={root}", *arguments]).decode().strip()
+        return output(["git", "-C", root, "-c", f"safe.directory={root}", *arguments]).decode(errors="replace").strip()
+
+    def code(revision, name):
+        return re.sub(r"\s*//.*", "", git("show", f"{revision}:{name}"))
 
     commits, last = git("rev-list", "--count", "HEAD"), git("log", "-1", "--format=%ct")
     if not commits or not last or git("rev-parse", "--show-toplevel") != os.path.realpath(root):
         return None
-    since = f"--since={int(last) - CHANGED_BEFORE}"
-    names = "\n".join([git("log", "--first-parent", "-m", since, "--name-only", "--format="),
-                       git("diff", "HEAD", "--name-only"), git("ls-files", "--others", "--exclude-standard")])
-    fresh = set(names.splitlines())
+    since = int(last) - CHANGED_BEFORE
+    before = git("rev-list", "-1", "--first-parent", f"--before={since}", "HEAD")
+    fresh = git("log", "--first-parent", "-m", f"--since={since}", "--name-only", "--format=").splitlines()
+    fresh = {name for name in set(fresh) if not before or code(before, name) != code("HEAD", name)}
+    fresh |= set(git("diff", "HEAD", "--name-only").splitlines())
+    fresh |= set(git("ls-files", "--others", "--exclude-standard").splitlines())
     return lambda path: path in fresh or zlib.crc32(path.encode()) % PARTS == int(commits) % PARTS
 
 

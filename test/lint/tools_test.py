@@ -132,6 +132,7 @@ class ClangTidy(Tree):
         seen = []
         for day in range(2, 2 * clang_tidy.PARTS + 1, 2):
             self.write("src/file_7.cpp", f"int second{day}();\n")
+            self.write("src/file_8.cpp", f"int first();  // of {day}\n")
             commit(day)
             seen.append(set(filter(clang_tidy.turn(self.root), names)))
         self.assertEqual(set.union(*seen), set(names))
