@@ -22,8 +22,6 @@ constexpr std::size_t TRIMMED = 5;              // one of so many is left out at
 constexpr std::size_t LEAST_WINDOWS = 3;        // of which one can be left out at either end
 constexpr double OTHER_PAYLOAD_WIDENING = 4.0;  // a spread of 2.2 times its usual one, which would hide most faults
 constexpr double LEAST_RIDGE = 4e-4;            // noise of the estimate, 0.02 of half a class
-/// Of the range of the current's sensor: less of a line no drive's current shows, whatever a simulated one repeats to.
-constexpr double TORQUE_LINE_FLOOR = 1e-5;
 constexpr std::size_t JUMPS = 2;  // no scatter: the onset of a fault, and the newest window beside the oldest
 
 /// Of Baseline::Compared windows.
@@ -80,10 +78,6 @@ Baseline::Baseline(const Parameters& parameters, std::shared_ptr<const Signature
   for (const ScalarRow& row : SCALARS)
   {
     floor_[indexOf(row.indicator)] = row.floor * unit[static_cast<std::size_t>(row.floor_unit)];
-  }
-  for (std::size_t line = SCALAR_COUNT; line < INDICATOR_COUNT; ++line)
-  {
-    floor_[line] = signalOf(line) == LineSignal::MOTOR_TORQUE ? TORQUE_LINE_FLOOR * parameters.motor.torque_limit : 0.0;
   }
   const auto classes = static_cast<std::size_t>(parameters.indicators.baseline_classes);
   bins_.reserve(classes);
