@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
+#include <string>
+
 #include <ros/init.h>
 #include <ros/master.h>
 #include <ros/this_node.h>
@@ -8,16 +11,39 @@
 
 namespace hjt
 {
-/// Whether the master that answers has this node in its lists. None that answers is no reason to doubt: connections go
-/// on without it.
+/// Whether `topic` of the publishers in a master's state has this node.
+inline bool hasThisNode(XmlRpc::XmlRpcValue& publishers, const std::string& topic)
+{
+  for (int i = 0; i < publishers.size(); ++i)
+  {
+    XmlRpc::XmlRpcValue& nodes = publishers[i][1];
+    for (int n = 0; static_cast<std::string&>(publishers[i][0]) == topic && n < nodes.size(); ++n)
+    {
+      if (static_cast<std::string&>(nodes[n]) == ros::this_node::getName())
+      {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+/// Whether the master that answers has all topics of this node: one that came while the node started has the last of
+/// them alone. None that answers is no reason to doubt: connections go on without it.
 inline bool isKnownToMaster()
 {
   XmlRpc::XmlRpcValue arguments;
   arguments[0] = ros::this_node::getName();
-  arguments[1] = ros::this_node::getName();
   XmlRpc::XmlRpcValue response;
-  XmlRpc::XmlRpcValue address;
-  return ros::master::execute("lookupNode", arguments, response, address, false) || !ros::master::check();
+  XmlRpc::XmlRpcValue state;
+  if (!ros::master::execute("getSystemState", arguments, response, state, false))
+  {
+    return true;
+  }
+  ros::V_string topics;
+  ros::this_node::getAdvertisedTopics(topics);
+  return std::all_of(topics.begin(), topics.end(),
+                     [&](const std::string& topic) { return hasThisNode(state[0], topic); });
 }
 
 /// Until the node is told to end: true. False: another master has come, which knows nothing of the node, so that nobody
