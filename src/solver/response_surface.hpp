@@ -86,13 +86,6 @@ private:
 
 using SurfaceNodes = SharedValues<SurfaceNode>;
 
-/// Of a table against the ring, half way between its lines and its columns, while it was built.
-struct TableChecks
-{
-  int made{};
-  int missed{};  ///< beyond the tolerance, where the table is not refined further
-};
-
 /// Values of the ring in equilibrium over  u = wave generator angle within a tooth pitch  and  v = output angle - wave
 /// generator angle / ratio. Plain data: what is built, cached and read.
 struct SurfaceTable
@@ -103,7 +96,6 @@ struct SurfaceTable
   std::vector<double> lines;  ///< v of the lines, ascending [rad]
   SurfaceNodes nodes;         ///< (columns + 1) a line; the last is the first again
   ToothResponse teeth;        ///< over the same range, on lines of its own
-  TableChecks checks{};       ///< of the torques and the mean friction
 };
 
 /// Difference between a gear with unequal teeth and the ideal gear at the same angles, over one period of the pattern:
@@ -120,7 +112,6 @@ struct DeviationTable
   std::vector<Pitch> pitches;  ///< empty: no deviations
   bool swaps_lobes{};          ///< the gear is the same again with its lobes having changed places
   int shift{};                 ///< of the pattern against that of the table [teeth]; >= 0
-  TableChecks checks{};        ///< of each pitch's torques and mean friction
 };
 
 /// Which of ascending values lies below a given one, in constant time.

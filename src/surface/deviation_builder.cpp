@@ -220,15 +220,10 @@ private:
       for (std::size_t pitch = 0; pitch < pitches_; ++pitch)
       {
         int& columns = enough[pitch];
-        const auto suffice = [&] { return check_.columnsSuffice(line.strips[pitch], columns, toleranceOf(line)); };
-        bool good = suffice();
-        while (columns < MAX_COLUMNS && !good)
+        while (columns < MAX_COLUMNS && !check_.columnsSuffice(line.strips[pitch], columns, toleranceOf(line)))
         {
           columns *= 2;
-          good = suffice();
         }
-        checks_made_ += departs(line.strips[pitch]) ? 1 : 0;
-        checks_missed_ += good ? 0 : 1;
       }
     }
     // The effect may move to the next pitch with the load.
@@ -306,14 +301,10 @@ private:
       return;
     }
     Set coarse(pitches_, 0);
-    for (std::size_t pitch = 0; pitch < pitches_; ++pitch)
+    for (std::size_t pitch = 0; pitch < pitches_ && halvings < MAX_HALVINGS; ++pitch)
     {
-      if (wanted[pitch] && !isTolerated(below, above, pitch, line))
-      {
-        coarse[pitch] = halvings < MAX_HALVINGS;
-        checks_missed_ += coarse[pitch] ? 0 : 1;
-      }
-      checks_made_ += wanted[pitch] && !coarse[pitch] && departs(line.strips[pitch]) ? 1 : 0;
+      coarse[pitch] = wanted[pitch] && !check_.gives(below.line.strips[pitch], above.line.strips[pitch],
+                                                     above.v - below.v, line.strips[pitch], toleranceOf(line));
     }
     if (std::find(coarse.begin(), coarse.end(), 1) != coarse.end())
     {
@@ -323,18 +314,6 @@ private:
         refine(rings, below, { middle, line }, coarse, halvings + 1, found);
       }
     }
-  }
-
-  bool isTolerated(const Placed& below, const Placed& above, std::size_t pitch, const Line& middle) const
-  {
-    return check_.gives(below.line.strips[pitch], above.line.strips[pitch], above.v - below.v, middle.strips[pitch],
-                        toleranceOf(middle));
-  }
-
-  template <class Nodes>
-  bool departs(const Nodes& nodes) const
-  {
-    return std::any_of(nodes.begin(), nodes.end(), [&](const Node& node) { return check_.departs(node); });
   }
 
   DeviationTable table() const
@@ -353,14 +332,12 @@ private:
           pitch.nodes.insert(pitch.nodes.end(), strip.begin(), strip.end());
         }
       }
-      if (!departs(pitch.nodes))
+      if (std::none_of(pitch.nodes.begin(), pitch.nodes.end(), [&](const Node& node) { return check_.departs(node); }))
       {
         pitch = {};
       }
     }
-    DeviationTable table = tableOf(std::move(pitches), swapsLobes());
-    table.checks = { checks_made_, checks_missed_ };
-    return table;
+    return tableOf(std::move(pitches), swapsLobes());
   }
 
   bool swapsLobes() const { return static_cast<int>(pitches_) <= model_.ring.rest.teeth() / 2 + 1; }
@@ -407,8 +384,6 @@ private:
   Torques largest_{ Torques::Zero() };     // deviations of the coarse lines
   double longest_way_{};                   // between two solves, in v [rad]
   std::atomic<std::size_t> points_{ 0 };   // of all lines
-  std::atomic<int> checks_made_{ 0 };      // where something departs
-  std::atomic<int> checks_missed_{ 0 };
   std::atomic<int> solves_{ 0 };
   std::atomic<bool> failed_{ false };
   std::atomic<bool> too_many_{ false };

@@ -78,7 +78,7 @@ public:
     }
     if (good())
     {
-      result.table = { ring.pitch(), ring.ratio(), columns_, {}, {}, {}, { checks_made_, checks_missed_ } };
+      result.table = { ring.pitch(), ring.ratio(), columns_, {}, {}, {} };
       fill(result.table);
       result.table.teeth = buildToothResponse(parameters_, model_, withinLimit(), step_, mirrored_, threads_, solves_);
     }
@@ -91,22 +91,17 @@ private:
   bool good() const { return failure_reason_.empty(); }
 
   /// Fewest columns that give a line's torques half way between them.
-  int fewestColumns(LineRing& ring)
+  int fewestColumns(LineRing& ring) const
   {
     int columns = MIN_COLUMNS;
     for (const double load : { 0.1, 0.3, 1.0 })
     {
       const double v = -ring.ring().twist(load * limit_);
       const Line finest = ring.measure(v, 2 * MAX_COLUMNS);
-      const auto suffice = [&] { return !finest.empty() && LineCheck(ring.ring(), columns).columnsSuffice(v, finest); };
-      bool good = suffice();
-      while (columns < MAX_COLUMNS && !good)
+      while (columns < MAX_COLUMNS && (finest.empty() || !LineCheck(ring.ring(), columns).columnsSuffice(v, finest)))
       {
         columns *= 2;
-        good = suffice();
       }
-      ++checks_made_;
-      checks_missed_ += good ? 0 : 1;
     }
     return columns;
   }
@@ -232,16 +227,8 @@ private:
     {
       fail("the ring found no equilibrium between two that it had been in");
     }
-    else if (LineCheck(ring.ring(), columns_).agrees(below.v, below.line, above.v, above.line, middle, line))
-    {
-      ++checks_made_;
-    }
-    else if (halvings == MAX_HALVINGS)
-    {
-      ++checks_made_;
-      ++checks_missed_;
-    }
-    else
+    else if (halvings < MAX_HALVINGS &&
+             !LineCheck(ring.ring(), columns_).agrees(below.v, below.line, above.v, above.line, middle, line))
     {
       refine(ring, below, { middle, line }, halvings + 1, found);
       if (!failed_)
@@ -317,8 +304,6 @@ private:
   std::vector<double> coarse_;  // lines, ascending
   Lines lines_;
   std::atomic<std::size_t> points_{ 0 };
-  std::atomic<int> checks_made_{ 0 };
-  std::atomic<int> checks_missed_{ 0 };
   std::atomic<int> solves_{ 0 };
   std::atomic<bool> failed_{ false };
   std::mutex mutex_;  // of the reason

@@ -69,19 +69,6 @@ void tell(const SurfaceSource& source, const std::string& what)
   }
 }
 
-/// Of a table that is rough in more than single places.
-void tellMisses(const SurfaceSource& source, const TableChecks& checks, const char* where)
-{
-  constexpr int RARE = 20;  // one kink or two in a table of hundreds of intervals
-  if (RARE * checks.missed > checks.made)
-  {
-    tell(source, "response surface" + std::string(where) + ": " + std::to_string(checks.missed) + " of " +
-                     std::to_string(checks.made) +
-                     " checks against the full ring are beyond the tolerance, where the table is not refined further; "
-                     "solver.scene = full_ring does without it");
-  }
-}
-
 /// A table from the cache, or built and stored there. Empty: it could not be built, and the reason was reported.
 template <class Table, class Build>
 std::optional<Table> obtain(const std::string& kind, const std::string& key, const SurfaceSource& source, Build build)
@@ -199,7 +186,6 @@ std::optional<SurfaceTables> obtainTables(const Parameters& parameters, const Jo
     return std::nullopt;
   }
   SurfaceTables tables{ std::move(*table), {} };
-  tellMisses(source, tables.table.checks, "");
   if (pitches > 1)
   {
     std::optional<DeviationTable> deviations = obtain<DeviationTable>(
@@ -214,7 +200,6 @@ std::optional<SurfaceTables> obtainTables(const Parameters& parameters, const Jo
       return std::nullopt;
     }
     tables.deviations = std::move(*deviations);
-    tellMisses(source, tables.deviations.checks, ", where teeth differ");
   }
   return tables;
 }

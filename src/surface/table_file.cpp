@@ -37,12 +37,8 @@ void append(std::string& bytes, const T* values, std::size_t count)
 std::string body(const SurfaceTable& table)
 {
   std::string bytes;
-  const std::array<double, 6> sizes{ table.pitch,
-                                     table.ratio,
-                                     static_cast<double>(table.columns),
-                                     static_cast<double>(table.lines.size()),
-                                     static_cast<double>(table.checks.made),
-                                     static_cast<double>(table.checks.missed) };
+  const std::array<double, 4> sizes{ table.pitch, table.ratio, static_cast<double>(table.columns),
+                                     static_cast<double>(table.lines.size()) };
   append(bytes, sizes.data(), sizes.size());
   append(bytes, table.lines.data(), table.lines.size());
   append(bytes, table.nodes.data(), table.nodes.size());
@@ -58,8 +54,7 @@ std::string body(const SurfaceTable& table)
 std::string body(const DeviationTable& table)
 {
   std::string bytes;
-  const std::array<double, 4> sizes{ static_cast<double>(table.pitches.size()), table.swaps_lobes ? 1.0 : 0.0,
-                                     static_cast<double>(table.checks.made), static_cast<double>(table.checks.missed) };
+  const std::array<double, 2> sizes{ static_cast<double>(table.pitches.size()), table.swaps_lobes ? 1.0 : 0.0 };
   append(bytes, sizes.data(), sizes.size());
   for (const DeviationTable::Pitch& pitch : table.pitches)
   {
@@ -168,13 +163,6 @@ bool ascending(const std::vector<double>& lines)
          std::adjacent_find(lines.begin(), lines.end(), std::greater_equal<>()) == lines.end();
 }
 
-TableChecks parseChecks(BodyReader& reader)
-{
-  const std::size_t made = reader.size(0.0);
-  const std::size_t missed = reader.size(0.0);
-  return { static_cast<int>(made), static_cast<int>(missed) };
-}
-
 bool parseBody(BodyReader& reader, SurfaceTable& table)
 {
   reader.number(table.pitch);
@@ -182,7 +170,6 @@ bool parseBody(BodyReader& reader, SurfaceTable& table)
   const std::size_t columns = reader.size(1.0);
   const std::size_t lines = reader.size(2.0);
   table.columns = static_cast<int>(columns);
-  table.checks = parseChecks(reader);
   reader.numbers(table.lines, lines);
   table.nodes = reader.shared<SurfaceNode>(lines * (columns + 1));
   ToothResponse& teeth = table.teeth;
@@ -207,7 +194,6 @@ bool parseBody(BodyReader& reader, DeviationTable& table)
 {
   table.pitches.resize(reader.size(2.0));
   table.swaps_lobes = reader.size(0.0) != 0;
-  table.checks = parseChecks(reader);
   bool good = true;
   for (DeviationTable::Pitch& pitch : table.pitches)
   {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <optional>
 #include <random>
-#include <string>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -53,31 +52,6 @@ TEST(SurfaceDeviations, OfOneToothAreThoseOfAnotherTurned)
     const double force = ResponseSurface::lobeForces(there)[0];
     EXPECT_NEAR(ResponseSurface::lobeForces(here)[0], force, 0.005 * force);
   }
-}
-
-/// What a table misses of its own checks is counted, kept in its file and told where it is more than single kinks.
-TEST(SurfaceDeviations, WhatTheyMissIsCountedAndTold)
-{
-  const Parameters parameters = surfaceParameters();
-  EXPECT_GT(surface().table().checks.made, 100);
-  EXPECT_LE(20 * surface().table().checks.missed, surface().table().checks.made);
-  std::string notice;
-  const SurfaceSource source{ cacheDirectory(), {}, [&](const std::string& what) { notice = what; } };
-  std::vector<TableChecks> checks;
-  for (const char* where : { "built", "from its file" })
-  {
-    FaultList faults;
-    faults.set(parseFault("tooth_root_crack:0.5:40", parameters), 0);
-    notice.clear();
-    const SurfacePool::Surface surface = surfaceWithFaults(parameters, faults, source);
-    ASSERT_TRUE(surface) << where;
-    checks.push_back(surface->deviations().checks);
-    EXPECT_GT(20 * checks.back().missed, checks.back().made) << where;
-    EXPECT_THAT(notice, testing::HasSubstr(std::to_string(checks.back().missed) + " of " +
-                                           std::to_string(checks.back().made) + " checks against the full ring"));
-  }
-  EXPECT_EQ(checks[0].made, checks[1].made);
-  EXPECT_EQ(checks[0].missed, checks[1].missed);
 }
 
 /// Energy and torques are continuous where the tables of two pitches meet, whatever lines they have.
