@@ -68,8 +68,8 @@ std::string factorText(const JudgedFriction& friction);
 /// with it, and so it is that of sound joints.
 bool controllerIsReference(const std::vector<const JointEvidence*>& joints);
 
-/// By which the friction of a sound joint repeats from its own earlier one, apart from what the joints of its group have
-/// in common: standard deviation as a share [-]. `friction` [N.m]
+/// By which the friction of a sound joint repeats from its own earlier one, apart from what the joints of its group
+/// have in common: standard deviation as a share [-]. `friction` [N.m]
 double repeatOfOwn(double friction);
 
 /// Of the rows that the evidence holds, apart from what the joints of the arm have in common.
