@@ -86,6 +86,17 @@ JointMotion motionAt(std::size_t joint, double time)
            way * far * rate * rate * std::cos(PI * s) * moves };
 }
 
+/// `are_own`: held against the friction that each was found to have, not that of its type.
+std::vector<LoadFit::Drive> drivesOf(const Arm& arm, bool are_own)
+{
+  std::vector<LoadFit::Drive> drives(arm.joints.begin(), arm.joints.end());
+  for (LoadFit::Drive& drive : drives)
+  {
+    drive.setOwn(are_own, {});
+  }
+  return drives;
+}
+
 /// The rows of a case: friction of joints differs by 5 %, gains by 2 %, offsets by 0.02 A, currents by noise of 0.05 A.
 LoadFit fitOf(const EstimatorCase& of, unsigned seed)
 {
@@ -114,12 +125,7 @@ LoadFit fitOf(const EstimatorCase& of, unsigned seed)
   {
     joint = { spread * normal(engine), 0.02 * normal(engine), 0.02 * normal(engine) };
   }
-  std::vector<LoadFit::Drive> expected_drives(arm.joints.begin(), arm.joints.end());
-  for (LoadFit::Drive& drive : expected_drives)
-  {
-    drive.setOwn(of.is_own, {});
-  }
-  LoadFit fit(arm.description, expected_drives);
+  LoadFit fit(arm.description, drivesOf(arm, of.is_own));
   std::vector<JointMotion> motion(6);
   std::vector<MotionSample> samples(6);
   for (int row = 0; row * PERIOD < DURATION; ++row)
