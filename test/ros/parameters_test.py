@@ -95,7 +95,8 @@ class Parameters(unittest.TestCase):
         tested = configuration_files("base") + configuration_files("shoulder") + configuration_files("elbow")
         overlays = ["as_built", "beside_robot", "golden", "real_sensors", "recorded_load", "size_14",
                     "size_11", "size_17", "size_32", "thesis_insertion", *(f"joints/size_{size}" for size in (0, 2, 4)),
-                    *(f"joints/ur5e_{joint}" for joint in ("base", "shoulder", "elbow"))]
+                    *(f"joints/ur5e_{joint}" for joint in ("base", "shoulder", "elbow")),
+                    *(f"joints/ur15_{joint}" for joint in ("base", "elbow", "wrist"))]
         tested += [package_path("config", f"{name}.yaml") for name in overlays]
         self.assertEqual(all_configuration_files(), sorted(set(tested)))
 
