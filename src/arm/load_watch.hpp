@@ -20,12 +20,9 @@ namespace hjt
 class LoadWatch
 {
 public:
-  /// `joints`: parameters of each. @throws ParameterError as MotionDriven.
+  /// `joints`: parameters of each; `drives`: with the friction that is expected of each. @throws ParameterError as
+  /// MotionDriven.
   LoadWatch(const ArmDescription& arm, const std::vector<Parameters>& joints, std::vector<LoadFit::Drive> drives);
-  LoadWatch(const ArmDescription& arm, const std::vector<Parameters>& joints)
-    : LoadWatch(arm, joints, { joints.begin(), joints.end() })
-  {
-  }
 
   void add(const ArmSample& sample);
   /// Starts again with the load that counts: other rows follow.

@@ -134,6 +134,7 @@ std::string speedErrors(const std::vector<ArmSetPoint>& points, const ArmDescrip
   }
   return {};
 }
+
 /// At rest in each set point no joint may bear more of links and payload than its limit.
 std::string weightErrors(const std::vector<ArmSetPoint>& points, const ArmDescription& arm)
 {

@@ -40,12 +40,16 @@ public:
   /// `moving`: it counts.
   void add(double lag, double motor_angle, double travel, double seconds, bool moving) noexcept
   {
+    const bool is_first = age_ == 0.0;
     if (!std::isfinite(lag))
     {
-      reset();
+      if (!is_first)
+      {
+        reset();
+      }
       return;
     }
-    if (age_ == 0.0)
+    if (is_first)
     {
       last_ = lag;
     }

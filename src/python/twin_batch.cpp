@@ -223,7 +223,7 @@ public:
   }
 
 private:
-  /// In blocks of steps, after which all twins are at the same one.
+  /// The largest of the twins [N.m].
   double loadTorqueLimit() const
   {
     double limit = 0.0;
@@ -234,6 +234,7 @@ private:
     return limit;
   }
 
+  /// In blocks of steps, after which all twins are at the same one.
   void march(const RunInputs& inputs, py::ssize_t steps, py::ssize_t every, StepRow* rows, const py::object& progress)
   {
     std::vector<Twin*> twins;

@@ -35,7 +35,7 @@ struct TopicLayout
 {
   bool has_stamps{};   ///< a message has a stamp
   bool has_efforts{};  ///< a message has an effort other than zero
-  /// Joints whose effort is its effort is never a number, while those of other joints are: their current counts as 0.
+  /// Joints whose effort is never a number, while those of other joints are: their current counts as 0.
   std::set<std::string> silent;
   /// Indices of the joints that share a message; a single list: a message holds all of them.
   std::vector<std::vector<std::size_t>> parts;

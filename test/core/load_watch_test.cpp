@@ -104,7 +104,7 @@ struct WatchedArm
   std::array<double, 6> factors{ 1.0, 1.0, 1.0, 1.0, 1.0, 1.0 };  // of the currents
   std::vector<Parameters> parameters = std::vector<Parameters>(6, shippedParameters());
   std::vector<MotionDriven> drives = std::vector<MotionDriven>(6, MotionDriven(parameters.front()));
-  LoadWatch watch{ arm, parameters };
+  LoadWatch watch{ arm, parameters, { parameters.begin(), parameters.end() } };
   double friction = 1.0;   // times the twins'
   std::size_t silent = 6;  // none
   double end{};            // of the motion [s]

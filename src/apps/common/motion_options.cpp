@@ -43,8 +43,7 @@ void addArmOption(Command& command, RecordingOptions& options)
   command
       .add("--arm", options.arm,
            "all joints of an arm in place of one: ur3, ur3e, ur5, ur5e (ur7e), ur8long, ur10, ur10e (ur12e), ur15, "
-           "ur16e, ur18, or a file as "
-           "config/arms/ur5.yaml")
+           "ur16e, ur18, or a file as config/arms/ur5.yaml")
       .type("NAME|FILE.yaml");
 }
 
