@@ -70,20 +70,33 @@ void ArmEstimator::addRows(std::size_t joint, const std::vector<bool>& states, P
   constexpr double COUNTED = 60.0;
   const auto count = static_cast<Eigen::Index>(rows_[joint].size());
   Eigen::VectorXd error(count);
-  Eigen::VectorXd slope(USED);
-  Eigen::MatrixXd slopes(count, USED);
   for (Eigen::Index k = 0; k < count; ++k)
   {
-    error[k] = errorOf(joint, static_cast<std::size_t>(k), states, point.at, &slope);
-    slopes.row(k) = slope.transpose();
+    error[k] = errorOf(joint, static_cast<std::size_t>(k), states, point.at, nullptr);
   }
   const double deviation = std::max(robustDeviation(error), LEAST);
   const double rows_a_tale = std::max({ 1.0, correlationRows(error), static_cast<double>(count) / INDEPENDENT });
   const Eigen::ArrayXd squares = (error / deviation).array().square();
-  const Eigen::VectorXd weights = (STUDENT + 1.0) / (STUDENT + squares) / (deviation * deviation * rows_a_tale);
-  const Eigen::MatrixXd weighted = weights.asDiagonal() * slopes;
-  const Eigen::MatrixXd products = slopes.transpose() * weighted;
-  const Eigen::VectorXd sums = weighted.transpose() * error;
+  const Eigen::VectorXd roots =
+      ((STUDENT + 1.0) / (STUDENT + squares) / (deviation * deviation * rows_a_tale)).sqrt().matrix();
+  // A few rows at a time: those of all would be taken from the system and given back in each round.
+  constexpr Eigen::Index AT_ONCE = 32;
+  Eigen::VectorXd slope(USED);
+  Eigen::Matrix<double, USED, AT_ONCE> weighted;
+  Eigen::Matrix<double, USED, USED> half = Eigen::Matrix<double, USED, USED>::Zero();
+  Eigen::Matrix<double, USED, 1> sums = Eigen::Matrix<double, USED, 1>::Zero();
+  for (Eigen::Index first = 0; first < count; first += AT_ONCE)
+  {
+    weighted.setZero();
+    for (Eigen::Index k = first; k < std::min(count, first + AT_ONCE); ++k)
+    {
+      errorOf(joint, static_cast<std::size_t>(k), states, point.at, &slope);
+      weighted.col(k - first) = roots[k] * slope;
+      sums += roots[k] * error[k] * weighted.col(k - first);
+    }
+    half.selfadjointView<Eigen::Lower>().rankUpdate(weighted);
+  }
+  const Eigen::Matrix<double, USED, USED> products = half.selfadjointView<Eigen::Lower>();
   const auto term = [&](int k) { return k < GROUP ? k : k == GROUP ? groupOf(joint) : ownOf(joint) + k - GROUP - 1; };
   for (int k = 0; k < USED; ++k)
   {
@@ -98,12 +111,14 @@ void ArmEstimator::addRows(std::size_t joint, const std::vector<bool>& states, P
   point.cost += COUNTED * (std::log(scale) + (error / scale).array().square().unaryExpr(&rarer).mean());
 }
 
-/// By Gauss and Newton; what `start` names is hardly held in the first rounds.
+/// By Gauss and Newton, until a step is nothing beside the deviations a posteriori; what `start` names is hardly held in
+/// the first rounds.
 ArmEstimator::Point ArmEstimator::refine(const Prior& prior, const std::vector<bool>& states, Eigen::VectorXd at,
                                          int start) const
 {
   constexpr int ROUNDS = 15;
   constexpr int LOOSE_ROUNDS = 5;
+  constexpr double NOTHING = 1e-3;  // of a deviation
   Point point;
   point.at = std::move(at);
   point.deviations.resize(rows_.size());
@@ -121,7 +136,13 @@ ArmEstimator::Point ArmEstimator::refine(const Prior& prior, const std::vector<b
         addRows(i, states, point, right);
       }
     }
-    point.at += point.information.ldlt().solve(right);
+    const Eigen::VectorXd step = point.information.ldlt().solve(right);
+    point.at += step;
+    if (round >= LOOSE_ROUNDS &&
+        (step.array().square() * point.information.diagonal().array()).maxCoeff() < NOTHING * NOTHING)
+    {
+      break;
+    }
   }
   return point;
 }

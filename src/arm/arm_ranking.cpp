@@ -169,11 +169,21 @@ std::vector<ArmFit> rankArms(const std::vector<ArmCandidate>& candidates, const 
   return fits;
 }
 
-std::string betterArm(const std::vector<ArmFit>& ranked, const std::string& own)
+std::string betterArm(const std::string& own, std::vector<std::string> names, const RankArms& rank)
 {
-  const auto given = std::find_if(ranked.begin(), ranked.end(), [&](const ArmFit& fit) { return fit.arm == own; });
-  return given != ranked.end() && ranked.front().isBetter(*given, ArmFit::CONTRADICTED) ? ranked.front().arm :
-                                                                                          std::string();
+  const auto others = std::remove(names.begin(), names.end(), own);
+  if (others == names.begin() || others == names.end())
+  {
+    return {};
+  }
+  names.erase(others, names.end());
+  const ArmFit given = rank({ own }).front();
+  if (given.cost < LoadFit::leastCost() + ArmFit::CONTRADICTED)
+  {
+    return {};
+  }
+  const ArmFit best = rank(names).front();
+  return best.isBetter(given, ArmFit::CONTRADICTED) ? best.arm : std::string();
 }
 
 std::string otherArmText(const std::string& other)

@@ -50,8 +50,11 @@ using PlayArmRows = std::function<void(const VisitArmRows&)>;
 /// `unit_is_given` efforts are of the configured unit. @throws ParameterError.
 std::vector<ArmFit> rankArms(const std::vector<ArmCandidate>& candidates, const PlayArmRows& play, bool unit_is_given);
 
-/// The one that explains the rows so much better that it contradicts `own`; empty: none.
-std::string betterArm(const std::vector<ArmFit>& ranked, const std::string& own);
+/// Ranks the arms of these names, the best first.
+using RankArms = std::function<std::vector<ArmFit>(const std::vector<std::string>&)>;
+/// Of these names, the one that explains the rows so much better than `own`, which is one of them, that it contradicts
+/// it; empty: none. Where `own` explains them so well that none could, no other is tried.
+std::string betterArm(const std::string& own, std::vector<std::string> names, const RankArms& rank);
 
 /// "the arm may be a ur5e: ..."
 std::string otherArmText(const std::string& other);

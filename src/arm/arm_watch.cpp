@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
+#include <iterator>
+#include <utility>
 
 namespace hjt
 {
@@ -64,7 +66,21 @@ void ArmWatch::ask()
                              visit(rows[i]);
                            }
                          };
-                         return betterArm(rankArms(make_(), play, unit_is_given_), own_);
+                         const std::vector<ArmCandidate> candidates = make_();
+                         std::vector<std::string> names;
+                         for (const ArmCandidate& candidate : candidates)
+                         {
+                           names.push_back(candidate.name);
+                         }
+                         const auto rank = [&](const std::vector<std::string>& of)
+                         {
+                           std::vector<ArmCandidate> chosen;
+                           std::copy_if(candidates.begin(), candidates.end(), std::back_inserter(chosen),
+                                        [&](const ArmCandidate& candidate)
+                                        { return std::find(of.begin(), of.end(), candidate.name) != of.end(); });
+                           return rankArms(chosen, play, unit_is_given_);
+                         };
+                         return betterArm(own_, std::move(names), rank);
                        });
 }
 

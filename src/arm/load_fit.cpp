@@ -14,6 +14,14 @@ namespace hjt
 namespace
 {
 constexpr double OTHER_MOUNTING = 10.0;  // logarithm of how much rarer it is
+constexpr double ROWS = 60.0;            // that count: errors of a model are not independent from row to row
+constexpr double FLOOR = 0.02;           // of the currents: that the twin of no real arm falls below [-]
+
+/// Of what is left of the currents, share.
+double misfitCost(double left)
+{
+  return ROWS * std::log(std::hypot(left, FLOOR));
+}
 }  // namespace
 
 LoadFit::Drive::Drive(const Parameters& parameters)
@@ -311,13 +319,16 @@ FoundLoad LoadFit::solve(const std::vector<bool>& counts)
   return found;
 }
 
+double LoadFit::leastCost()
+{
+  return misfitCost(0.0);
+}
+
 LoadFit::Fit LoadFit::explained(const std::vector<bool>& counts)
 {
   constexpr std::size_t MOST_ROWS = 400;  // of a joint
   constexpr double OTHER_SIZE = 20.0;     // logarithm of how much rarer it is
   constexpr double CLEAR = 0.3;           // of the size, logarithm: payloads and gains make less
-  constexpr double ROWS = 60.0;           // that count: errors of a model are not independent from row to row
-  constexpr double FLOOR = 0.02;          // of the currents: that the twin of no real arm falls below [-]
   constexpr double NO_MASS = 0.5;         // below zero: deviation that masses of links make [kg]
   const ArmEstimator estimator(rowsOf(counts, MOST_ROWS), gravity_);
   Fit best;
@@ -325,8 +336,7 @@ LoadFit::Fit LoadFit::explained(const std::vector<bool>& counts)
   {
     const ArmEstimator::Estimate found = estimator.solve(is_mounted);
     const double below_zero = std::min(payload_.mass + found.payload[0], 0.0);
-    double cost =
-        found.rareness + ROWS * std::log(std::hypot(found.left, FLOOR)) + 0.5 * std::pow(below_zero / NO_MASS, 2);
+    double cost = found.rareness + misfitCost(found.left) + 0.5 * std::pow(below_zero / NO_MASS, 2);
     cost += is_mounted ? OTHER_MOUNTING : 0.0;
     const double size = 1.0 + found.gain.value;
     const bool is_other = !(std::abs(std::log(size)) < CLEAR);

@@ -62,6 +62,8 @@ public:
   };
   /// How well the arm explains the currents of the joints that count, with its best payload, or the best mounting too.
   Fit explained(const std::vector<bool>& counts);
+  /// The least cost of any arm: of one that explains all with no cause that is rare.
+  static double leastCost();
   double moved() const { return moved_; }  ///< time in which a joint moved [s]
 
 private:

@@ -71,7 +71,6 @@ std::string betterArm(const ArmRecording& recording)
   const RecordingOptions& options = recording.options();
   const std::vector<std::string> names = armsLike(recording.arm(), configDirectory(options));
   const std::string name = mainName(options.arm, configDirectory(options));
-  const bool is_shipped = std::find(names.begin(), names.end(), name) != names.end();
-  return is_shipped ? betterArm(rankArms(options, names), name) : std::string();
+  return betterArm(name, names, [&](const std::vector<std::string>& of) { return rankArms(options, of); });
 }
 }  // namespace hjt

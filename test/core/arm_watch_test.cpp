@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which arm rows are of, while they come.
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstddef>
+#include <iterator>
 #include <string>
 #include <thread>
 #include <vector>
@@ -90,9 +93,36 @@ TEST(RankArms, FrictionOfAJointIsNoOtherArm)
   EXPECT_EQ(sound.front().arm, "ur5");
   EXPECT_EQ(worn.front().arm, "ur5");
   EXPECT_LT(worn.front().cost, worn[1].cost - ArmFit::CONTRADICTED);
-  EXPECT_EQ(betterArm(worn, "ur10"), "ur5");
-  EXPECT_EQ(betterArm(worn, "ur5"), "");
-  EXPECT_EQ(betterArm(worn, "mine"), "");
+}
+
+TEST(BetterArm, ContradictsOrIsNotLookedFor)
+{
+  constexpr double WORN = 3.0;
+  const std::vector<ArmFit> sound = ranked(rowsOfUr5(30.0));
+  const std::vector<ArmFit> worn = ranked(rowsOfUr5(30.0, WORN));
+  std::size_t asked = 0;
+  const auto better = [&](const std::string& own, const std::vector<ArmFit>& of)
+  {
+    asked = 0;
+    return betterArm(own, { "ur3", "ur5", "ur10" },
+                     [&](const std::vector<std::string>& names)
+                     {
+                       asked += names.size();
+                       std::vector<ArmFit> fits;
+                       std::copy_if(of.begin(), of.end(), std::back_inserter(fits),
+                                    [&](const ArmFit& fit)
+                                    { return std::find(names.begin(), names.end(), fit.arm) != names.end(); });
+                       return fits;
+                     });
+  };
+  EXPECT_EQ(better("ur10", worn), "ur5");
+  EXPECT_EQ(asked, 3U);
+  EXPECT_EQ(better("ur5", worn), "");
+  EXPECT_EQ(better("mine", worn), "");
+  EXPECT_EQ(asked, 0U);
+  // None can explain more than all: the others are not tried.
+  EXPECT_EQ(better("ur5", sound), "");
+  EXPECT_EQ(asked, 1U);
 }
 
 TEST(RankArms, CurrentsOfHalfTheSizeAreNoSmallerArm)
