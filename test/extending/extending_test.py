@@ -118,8 +118,9 @@ def main():
         examples.append(header(patch))
         count_edits(path, patch, examples[-1])
         run(["patch", "-p1", "--forward", "--no-backup-if-mismatch", "-i", path], cwd=copy)
-    # Quick to build rather than to run; with the assertions.
+    # Quick to build, once and as a whole, rather than to run; with the assertions.
     run(["cmake", "-S", copy, "-B", build, "-DCMAKE_BUILD_TYPE=Debug", "-DCMAKE_CXX_FLAGS_DEBUG=-O0",
+         "-DCMAKE_UNITY_BUILD_BATCH_SIZE=40",
          "-Dharmonic_joint_twin_COMPLETE_TOOL=OFF", f"-DCATKIN_DEVEL_PREFIX={build}/devel",
          "-DPYTHON_EXECUTABLE=/usr/bin/python3"], stdout=subprocess.DEVNULL)
     targets = dict.fromkeys(target for fields in examples for target in fields["Targets"].split())

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Names and likely faults by clang-tidy (.clang-tidy) in the sources of src/, test/ and bench/ that the build compiles:
-those whose code changed in the working tree or within the day before its commit, and a sixth of the others, which the
-number of commits chooses. --all, or sources without git: every one.
+those whose code changed in the working tree or within four hours before its commit, and a sixth of all, which the number
+of commits chooses. That sixth is read as the build compiles it, several sources at once: a third of the time. --all, or
+sources without git: every one, by itself.
 
 usage: clang_tidy.py [--all] BUILD_FOLDER
 
@@ -29,8 +30,8 @@ FOLDERS = ("src", "test", "bench")
 # The first that is installed. From 22 on, declarations of system headers are skipped: half the time.
 TOOLS = ("clang-tidy-22", "clang-tidy")
 VERSIONS = (14, 22)  # that the sources are written for: the checks of others differ
-PARTS = 6  # of the unchanged files, one of which a commit has checked
-CHANGED_BEFORE = 86400  # changed files: by how much their commit may be older than the last [s]
+PARTS = 6  # of all that the build compiles, one of which a commit has checked
+CHANGED_BEFORE = 14400  # changed files: by how much their commit may be older than the last [s]
 KEPT_DAYS = 60  # what no run has asked for since then is removed
 
 
@@ -64,7 +65,7 @@ def cache_folder():
 
 
 def turn(root):
-    """Whether it is a file's turn, by the commit of the tree. None: all files' turn."""
+    """What changed, and whether it is a file's turn by the commit of the tree. None: all files' turn."""
     def git(*arguments):
         return output(["git", "-C", root, "-c", f"safe.directory={root}", *arguments]).decode(errors="replace").strip()
 
@@ -80,7 +81,7 @@ def turn(root):
     fresh = {name for name in set(fresh) if not before or code(before, name) != code("HEAD", name)}
     fresh |= set(git("diff", "HEAD", "--name-only").splitlines())
     fresh |= set(git("ls-files", "--others", "--exclude-standard").splitlines())
-    return lambda path: path in fresh or zlib.crc32(path.encode()) % PARTS == int(commits) % PARTS
+    return fresh, lambda path: zlib.crc32(path.encode()) % PARTS == int(commits) % PARTS
 
 
 def members(entry):
@@ -93,25 +94,50 @@ def members(entry):
     return [os.path.normpath(name) for name in names]
 
 
+def command(entry, path):
+    """That which compiles `path` as `entry` compiles its file, without the precompiled header: a source must include what
+    it uses."""
+    compiled = os.path.normpath(os.path.join(entry["directory"], entry["file"]))
+    arguments = entry.get("arguments") or shlex.split(entry["command"])
+    arguments = [path if os.path.normpath(word) == compiled else word for word in arguments]
+    # The rule of a unity file names the headers of the other sources as well.
+    rules = [f"{arguments[arguments.index('-o') + 1]}.d"] if "-o" in arguments and path == compiled else []
+    for index in reversed([i for i, word in enumerate(arguments) if word.endswith("cmake_pch.hxx")]):
+        rules += [f"{arguments[index]}.gch.d"] if rules else []
+        del arguments[index - 1:index + 1]
+    arguments = [word for word in arguments if word != "-Winvalid-pch"]
+    return {"directory": entry["directory"], "file": path, "arguments": arguments, "rules": rules}
+
+
 def commands(build, root):
-    """Compile commands by source, one each, without the precompiled header: a source must include what it uses."""
+    """Compile commands of all sources, one each, and of all files that the build compiles, by the first source of each."""
     with open(os.path.join(build, "compile_commands.json"), encoding="utf-8") as file:
         entries = json.load(file)
-    found = {}
-    for entry, path in ((entry, path) for entry in entries for path in members(entry)):
-        if os.path.relpath(path, root).split(os.sep)[0] not in FOLDERS:
-            continue
-        compiled = os.path.normpath(os.path.join(entry["directory"], entry["file"]))
-        arguments = entry.get("arguments") or shlex.split(entry["command"])
-        arguments = [path if os.path.normpath(word) == compiled else word for word in arguments]
-        # The rule of a unity file names the headers of the other sources as well.
-        rules = [f"{arguments[arguments.index('-o') + 1]}.d"] if "-o" in arguments and path == compiled else []
-        for index in reversed([i for i, word in enumerate(arguments) if word.endswith("cmake_pch.hxx")]):
-            rules += [f"{arguments[index]}.gch.d"] if rules else []
-            del arguments[index - 1:index + 1]
-        arguments = [word for word in arguments if word != "-Winvalid-pch"]
-        found[path] = {"directory": entry["directory"], "file": path, "arguments": arguments, "rules": rules}
-    return dict(sorted(found.items()))
+    of_sources, of_files = {}, {}
+    for entry in entries:
+        sources = [path for path in members(entry) if os.path.relpath(path, root).split(os.sep)[0] in FOLDERS]
+        for path in sources:
+            of_sources[path] = command(entry, path)
+        if sources:
+            of_files[sources[0]] = command(entry, os.path.normpath(os.path.join(entry["directory"], entry["file"])))
+    return of_sources, of_files
+
+
+def chosen(build, root, whole):
+    """Compile commands by what is said of each, and how many sources the build compiles."""
+    def named(path):
+        return os.path.relpath(path, root)
+
+    of_sources, of_files = commands(build, root)
+    by_commit = None if whole else turn(root)
+    if not by_commit:
+        return {named(path): of_sources[path] for path in sorted(of_sources)}, len(of_sources)
+    fresh, is_turn = by_commit
+    found = {named(path): entry for path, entry in sorted(of_sources.items()) if named(path) in fresh}
+    for path, entry in sorted(of_files.items()):
+        if is_turn(named(path)):
+            found[named(path) if entry["file"] == path else f"{named(path)} and what is compiled with it"] = entry
+    return found, len(of_sources)
 
 
 def files_of_rule(rule, entry):
@@ -149,15 +175,13 @@ def check(build, root=project.ROOT, whole=False):
         project.skip(f"needs clang-tidy {wanted}, here is {' '.join(version.decode().split())}")
     file_hash.cache_clear()
     changed.cache_clear()
-    known = commands(build, root)
-    is_turn = None if whole else turn(root)
-    entries = {path: entry for path, entry in known.items() if not is_turn or is_turn(os.path.relpath(path, root))}
+    entries, known = chosen(build, root, whole)
     common = text_hash(version) + file_hash(os.path.join(root, ".clang-tidy"))
     cache = cache_folder()
 
-    def findings(path):
+    def findings(entry):
         """None if the file is known to be clean, else what clang-tidy reports; empty if there is nothing."""
-        name = key(entries[path], common, root)
+        name, path = key(entry, common, root), entry["file"]
         mark = os.path.join(cache, name) if name else None
         if mark and os.path.exists(mark):
             os.utime(mark)
@@ -177,13 +201,13 @@ def check(build, root=project.ROOT, whole=False):
             # clang-tidy takes no other keys than its own.
             json.dump([{key: entry[key] for key in ("directory", "file", "arguments")} for entry in entries.values()],
                       file)
-        for path, found in zip(entries, pool.map(findings, entries)):
+        for said, found in zip(entries, pool.map(findings, entries.values())):
             state = "known to be clean" if found is None else "FAULTS" if found else "clean"
-            print(f"{os.path.relpath(path, root)}: {state}", flush=True)
+            print(f"{said}: {state}", flush=True)
             if found:
                 problems.append(found)
-    if len(entries) < len(known):
-        print(f"{len(known) - len(entries)} unchanged files are left to other commits")
+    if len(entries) < known:
+        print("Unchanged files are left to other commits")
     return problems
 
 

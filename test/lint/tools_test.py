@@ -99,20 +99,31 @@ class ClangTidy(Tree):
             self.assertIn("naming", "".join(self.problems("int Read();\n")))
         self.assertEqual(os.listdir(os.path.join(self.root, "cache", "harmonic_joint_twin", "clang_tidy")), [])
 
-    def test_source_of_a_unity_build_is_checked_alone(self):
-        one, two = (self.write(f"src/{name}.cpp", f"std::vector<int> {name}();\n") for name in ("one", "two"))
-        self.write("src/one.cpp", "#include <vector>\nstd::vector<int> one();\n")
+    def problems_of_a_unity_build(self, *contents):
+        """Of the sources one and two, compiled at once."""
+        one, two = (self.write(f"src/{name}.cpp", content) for name, content in zip(("one", "two"), contents))
         unity = self.write("build/Unity/unity_0_cxx.cxx", f'#include "{one}"\n#include "{two}"\n')
         command = ["c++", "-std=c++17", "-o", "unity.o", "-c", unity]
         self.write("build/compile_commands.json",
                    json.dumps([{"directory": self.root, "file": unity, "arguments": command}]))
         try:
             with contextlib.redirect_stdout(self.printed):
-                problems = clang_tidy.check(os.path.join(self.root, "build"), self.root)
+                return clang_tidy.check(os.path.join(self.root, "build"), self.root)
         except SystemExit:
             skip_as(self, self.printed.getvalue())
+
+    def test_source_of_a_unity_build_is_checked_alone(self):
+        problems = self.problems_of_a_unity_build("#include <vector>\nstd::vector<int> one();\n",
+                                                  "std::vector<int> two();\n")
         self.assertEqual(self.printed.getvalue(), "src/one.cpp: clean\nsrc/two.cpp: FAULTS\n")
         self.assertIn("vector", "".join(problems))
+
+    def test_unchanged_sources_of_a_unity_build_are_checked_at_once(self):
+        with unittest.mock.patch.object(clang_tidy, "turn", lambda root: ({"src/two.cpp"}, lambda path: True)):
+            problems = self.problems_of_a_unity_build("int Read();\n", "int two();\n")
+        self.assertEqual(self.printed.getvalue(),
+                         "src/two.cpp: clean\nsrc/one.cpp and what is compiled with it: FAULTS\n")
+        self.assertIn("Read", "".join(problems))
 
     def test_a_commit_has_its_changes_and_a_part_of_the_rest_checked(self):
         def commit(days):
@@ -128,17 +139,19 @@ class ClangTidy(Tree):
         for name in names:
             self.write(name, "int first();\n")
         commit(0)
-        self.assertEqual(set(filter(clang_tidy.turn(self.root), names)), set(names))  # all are new
+        self.assertLessEqual(set(names), clang_tidy.turn(self.root)[0])  # all are new
         seen = []
         for day in range(2, 2 * clang_tidy.PARTS + 1, 2):
             self.write("src/file_7.cpp", f"int second{day}();\n")
             self.write("src/file_8.cpp", f"int first();  // of {day}\n")
             commit(day)
-            seen.append(set(filter(clang_tidy.turn(self.root), names)))
+            fresh, is_turn = clang_tidy.turn(self.root)
+            self.assertEqual(fresh - {".clang-tidy"}, {"src/file_7.cpp"})
+            seen.append(set(filter(is_turn, names)))
         self.assertEqual(set.union(*seen), set(names))
-        self.assertEqual(set.intersection(*seen), {"src/file_7.cpp"})
+        self.assertEqual(set.intersection(*seen), set())
         self.write("src/file_8.cpp", "int third();\n")
-        self.assertTrue(clang_tidy.turn(self.root)("src/file_8.cpp"))
+        self.assertIn("src/file_8.cpp", clang_tidy.turn(self.root)[0])
 
     def test_precompiled_header_hides_nothing(self):
         prefix = self.write("build/cmake_pch.hxx", "#include <vector>\n")
