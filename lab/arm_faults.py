@@ -27,7 +27,6 @@ ORDER = (0, 1, 2, 3, 2, 1) * 2 + (0,)
 JOINTS = ("base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3")
 SEVERITIES = (0.3, 1.0)
 MAKERS_REPEATABILITY = 0.1       # of a UR5 [mm]
-STOPPED = 5                      # exit code of `joint_twin arm` after a protective stop
 FIGURES = ("at_rest", "repeatability", "path_rms", "path_max", "current")
 # A fault is hidden where the current shows it [%] and the tool's path departs by no more than this share.
 CURRENT_SEEN, PATH_KEPT = 1.0, 0.1
@@ -60,7 +59,7 @@ def run(options, motion, name, fault):
         words = [options.tool, "arm", motion, "--arm", "ur5", "--out", path, "--force", "--json"]
         done = subprocess.run([*map(str, words), *(["--fault", fault] if fault else [])], stdout=subprocess.PIPE,
                               stderr=subprocess.PIPE, universal_newlines=True, check=False)
-        if done.returncode not in (0, STOPPED):
+        if done.returncode not in (0, lab.STOPPED):
             sys.exit(f"arm_faults: {name}: {done.stderr}")
         report.write_text(done.stdout, encoding="utf-8")
     stopped = json.loads(report.read_text(encoding="utf-8"))["protective_stop"]
