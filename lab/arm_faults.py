@@ -9,6 +9,7 @@ import argparse
 import concurrent.futures
 import csv
 import json
+import math
 import pathlib
 import subprocess
 import sys
@@ -52,15 +53,17 @@ def write_motion(path):
 
 
 def run(options, motion, name, fault):
-    """Columns of the run, by name; made unless this program has made them."""
-    path = options.work / f"{name}.csv"
-    if not path.exists() or path.stat().st_mtime < options.tool.stat().st_mtime:
-        words = [options.tool, "arm", motion, "--arm", "ur5", "--out", path, "--json"]
+    """Columns of the run, by name; None: a protective stop. Made unless this program has made them."""
+    path, report = options.work / f"{name}.csv", options.work / f"{name}.json"
+    if not report.exists() or report.stat().st_mtime < options.tool.stat().st_mtime:
+        words = [options.tool, "arm", motion, "--arm", "ur5", "--out", path, "--force", "--json"]
         done = subprocess.run([*map(str, words), *(["--fault", fault] if fault else [])], stdout=subprocess.PIPE,
                               stderr=subprocess.PIPE, universal_newlines=True, check=False)
-        if done.returncode != 0:
+        if done.returncode not in (0, lab.STOPPED):
             sys.exit(f"arm_faults: {name}: {done.stderr}")
-    return numpy.genfromtxt(path, delimiter=",", names=True)
+        report.write_text(done.stdout, encoding="utf-8")
+    stopped = json.loads(report.read_text(encoding="utf-8"))["protective_stop"]
+    return None if stopped else numpy.genfromtxt(path, delimiter=",", names=True)
 
 
 def tool_of(rows, which):
@@ -86,6 +89,9 @@ def repeatability(rests):
 
 
 def figures_of(rows, sound, stops, joint):
+    """NaN: the arm stopped itself."""
+    if rows is None:
+        return dict.fromkeys(FIGURES, math.nan)
     rests, sound_rests = rests_of(rows, stops), rests_of(sound, stops)
     moved = max(numpy.linalg.norm(rests[pose].mean(axis=0) - sound_rests[pose].mean(axis=0)) for pose in rests)
     error = numpy.linalg.norm(tool_of(rows, "actual") - tool_of(rows, "target"), axis=1)
@@ -136,15 +142,19 @@ def table(kinds, found, sound):
              "| hidden in |", "|---|---|---|---|---|---|"]
     for kind in kinds:
         cells = {joint: found[kind, joint, SEVERITIES[1]] for joint in JOINTS}
+        cells = {joint: cell for joint, cell in cells.items() if not math.isnan(cell["current"])}
         words = []
         for key, shape in (("path_max", "{:.2f}"), ("at_rest", "{:.3f}"), ("repeatability", "{:.3f}"),
                            ("current", "{:+.1f}")):
             without = 0.0 if key == "at_rest" else sound[key]
-            most = max(JOINTS, key=lambda joint: abs(cells[joint][key] - without))
+            most = max(cells, key=lambda joint: abs(cells[joint][key] - without))
             words.append(f"{shape.format(cells[most][key])} {most}")
-        words.append(", ".join(joint for joint in JOINTS if hidden(cells[joint], sound)) or "-")
+        words.append(", ".join(joint for joint in cells if hidden(cells[joint], sound)) or "-")
         lines.append(f"| `{kind}` | " + " | ".join(words) + " |")
-    return lines
+    stopped = [f"`{kind}` of severity {severity:g} in {joint}" for (kind, joint, severity), cell in found.items()
+               if math.isnan(cell["current"])]
+    return lines + (["", "The arm stops itself ([protective stop](#protective-stop)) with " + ", ".join(stopped) + "."]
+                    if stopped else [])
 
 
 def write_csv(path, found, sound):
@@ -153,7 +163,7 @@ def write_csv(path, found, sound):
         rows.writerow(["fault", "joint", "severity", "moved_at_rest_mm", "repeatability_mm", "path_rms_mm",
                        "path_max_mm", "more_current_percent"])
         for case, cell in [(("none", "", 0), sound), *found.items()]:
-            rows.writerow([*case, *(f"{cell[key]:.4g}" for key in FIGURES)])
+            rows.writerow([*case, *("" if math.isnan(cell[key]) else f"{cell[key]:.4g}" for key in FIGURES)])
 
 
 def main():

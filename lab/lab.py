@@ -7,6 +7,7 @@ import re
 import sys
 
 CHECKOUT = pathlib.Path(__file__).resolve().parent.parent
+STOPPED = 5  # exit code of `joint_twin arm` after a protective stop
 
 sys.path.append(str(CHECKOUT / "scripts"))
 from drawing import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, STYLE, plt  # noqa: E402, F401  (after its folder)

@@ -200,7 +200,7 @@ def judge_cell(tool, work, config, cell):
         return run(tool, work, path, arm, rate, faults, row_rate)
 
     code, document, angles, message = moved(RATE)
-    if code < 0 or code not in (0, 1) or (document is None and "joint_twin: " not in message):
+    if code not in (0, 1, lab.STOPPED) or (document is None and "joint_twin: " not in message):
         return judge.CRASHED, float("nan"), message
     if document is None:
         reason = message.splitlines()[-1].split(": ", 2)[-1]

@@ -198,8 +198,9 @@ JointReading MovingArm::reading(std::size_t joint) const noexcept
 {
   const Twin& drive = twin_.drive(joint);
   const double ratio = nominalRatio(drive.parameters().gear);
+  const TelemetryParameters& telemetry = drive.parameters().telemetry;
   const EncoderReadings read = drive.encoders();
   return { twin_.startAngle(joint) + read.output_angle, controller_.speed(twin_, joint),
-           ratio * drive.motorTorqueReading() / drive.parameters().telemetry.torque_per_current };
+           ratio * drive.motorTorqueReading() / telemetry.torque_per_current + telemetry.current_offset };
 }
 }  // namespace hjt

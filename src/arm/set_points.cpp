@@ -65,6 +65,7 @@ std::string rateErrors(const std::vector<ArmSetPoint>& points, std::size_t joint
 {
   constexpr double LEAST_WAY = 0.1;        // that tells of the speeds [rad]
   constexpr double LEAST_PART = 1e-4;      // of a row, likewise [rad]
+  constexpr std::size_t LEAST_ROWS = 3;    // in motion; of fewer the way is a jump
   constexpr Range SAME_RATES{ 0.5, 2.0 };  // speeds over the angles' rates, median: jumps are left to the arm
   double way = 0.0;                        // [rad]
   std::vector<double> ratios;
@@ -79,7 +80,7 @@ std::string rateErrors(const std::vector<ArmSetPoint>& points, std::size_t joint
       ratios.push_back(0.5 * (from.velocity + to.velocity) * (points[k].time - points[k - 1].time) / part);
     }
   }
-  const double ratio = way > LEAST_WAY && !ratios.empty() ? upperMedian(ratios.begin(), ratios.end()) : 1.0;
+  const double ratio = way > LEAST_WAY && ratios.size() >= LEAST_ROWS ? upperMedian(ratios.begin(), ratios.end()) : 1.0;
   if (ratio < SAME_RATES.min || ratio > SAME_RATES.max)
   {
     return "its speeds are " + roundedText(ratio, 3) + " of the rate of its angles, allowed: 0.5 ... 2 (" +

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "identification/cross_validation.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace hjt
@@ -22,6 +23,24 @@ void addError(const CurrentError& part, CurrentError& sum)
   sum.signal = rms(sum.signal, sum.rows, part.signal, part.rows);
   sum.rows += part.rows;
   sum.moving_rows += part.moving_rows;
+}
+
+/// Times between which the joint goes equal ways: the joints of a check-up move one after the other.
+std::vector<double> endsOfPieces(const std::vector<MotionSample>& samples, const Span& train, int pieces)
+{
+  std::vector<double> ways(1, 0.0);  // up to each sample but the first [rad]
+  for (std::size_t i = 1; i < samples.size(); ++i)
+  {
+    ways.push_back(ways.back() + std::abs(samples[i].position - samples[i - 1].position));
+  }
+  std::vector<double> ends(1, train.from);
+  for (int piece = 1; piece < pieces; ++piece)
+  {
+    const auto end = std::lower_bound(ways.begin(), ways.end(), ways.back() * piece / pieces);
+    ends.push_back(samples[static_cast<std::size_t>(end - ways.begin())].time);
+  }
+  ends.push_back(train.to);
+  return ends;
 }
 }  // namespace
 
@@ -47,10 +66,10 @@ JudgedErrors leaveOneOut(const Parameters& parameters, const std::vector<MotionS
                          int folds, bool load_recorded)
 {
   JudgedErrors sum;
-  for (int fold = 0; fold < folds; ++fold)
+  const std::vector<double> ends = endsOfPieces(samplesWithin(all, train), train, folds);
+  for (std::size_t fold = 0; fold < static_cast<std::size_t>(folds); ++fold)
   {
-    const double piece = (train.to - train.from) / folds;
-    const Span hole{ train.from + fold * piece, train.from + (fold + 1) * piece };
+    const Span hole{ ends[fold], ends[fold + 1] };
     const JudgedPart left_out{ samplesWithin(all, { train.from, hole.to }), hole.from };
     const JudgedErrors judged = identify(parameters, samplesWithin(all, train, hole), left_out, load_recorded).judged;
     addError(judged.configured, sum.configured);

@@ -19,8 +19,8 @@ struct Span
 /// Samples within `span` and not within `hole`; the first one after the hole follows a gap.
 std::vector<MotionSample> samplesWithin(const std::vector<MotionSample>& all, const Span& span, const Span& hole = {});
 
-/// `train` is cut into `folds` pieces; each is judged by what the others give, and the errors are pooled. 0 folds: no
-/// rows.
+/// `train`, which has samples, is cut into `folds` pieces in which the joint goes equal ways. Each is judged by what
+/// the others give; the errors are pooled. 0 folds: no rows.
 /// @throws InputError as identify.
 JudgedErrors leaveOneOut(const Parameters& parameters, const std::vector<MotionSample>& all, const Span& train,
                          int folds, bool load_recorded);

@@ -41,16 +41,18 @@ bool isVoid(const MotionRow& row)
 }
 
 /// Of a joint all that it gives turned to exactly zero, or the angles of all did: a source that had no values.
+/// Without a jump of the angle it is a joint that comes to rest at zero and bears nothing there, as a twin's wrist.
 bool isVoidAfter(const std::vector<MotionRow>& before, const std::vector<MotionRow>& rows)
 {
   constexpr std::size_t MANY = 3;
+  constexpr double JUMP = 0.002;  // 16 ms of stopping at 16 rad/s^2 [rad]
   const auto is_at_zero = [](const MotionRow& row) { return row.position == 0.0; };
   const auto all_at_zero = [&](const std::vector<MotionRow>& all)
   { return all.size() >= MANY && std::all_of(all.begin(), all.end(), is_at_zero); };
   bool is_void = all_at_zero(rows) && !all_at_zero(before);
   for (std::size_t i = 0; i < rows.size(); ++i)
   {
-    is_void = is_void || (isVoid(rows[i]) && before[i].position != 0.0 && before[i].current != 0.0);
+    is_void = is_void || (isVoid(rows[i]) && std::abs(before[i].position) > JUMP && before[i].current != 0.0);
   }
   return is_void;
 }

@@ -71,6 +71,28 @@ TEST(MovingArm, APointAtATimeIsTheMotionAndACopyGoesOnAlike)
   EXPECT_GT(std::abs(copy->reading(0).current - whole.reading(0).current), 0.1);
 }
 
+/// As a robot's driver it reads the motor's current with an offset, which no torque has.
+TEST(MovingArm, TheCurrentThatItReadsHasAnOffset)
+{
+  constexpr double OFFSET = 0.05;  // [A]
+  const ArmDescription description = rods("0 1 0", 2);
+  const ArmMotion rest(
+      { { 0.0, { { 0.3, 0.0, 0.0 }, { -0.8, 0.0, 0.0 } } }, { 1.0, { { 0.3, 0.0, 0.0 }, { -0.8, 0.0, 0.0 } } } });
+  Parameters biased = drive();
+  biased.telemetry.current_offset = OFFSET;
+  MovingArm with(description, { biased, drive() }, rest, {});
+  MovingArm without(description, { drive(), drive() }, rest, {});
+  for (MovingArm* arm : { &with, &without })
+  {
+    while (arm->step(arm->motionBegin() + toStampLength(0.01)))
+    {
+    }
+  }
+  EXPECT_NEAR(with.reading(0).current, without.reading(0).current + OFFSET, 1e-12);
+  EXPECT_EQ(with.reading(1).current, without.reading(1).current);
+  EXPECT_EQ(with.twin().motion()[0].position, without.twin().motion()[0].position);
+}
+
 /// From rest to a set point in motion and on to rest: angles, speeds and accelerations are each other's rates, and
 /// neither end moves.
 TEST(MovingArm, WaysFromRestAndToRestAreSmooth)

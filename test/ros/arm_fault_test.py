@@ -1,7 +1,12 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""A fault comes while the live twin of an arm moves, and arm.launch beside it sees it; then its protective stop."""
+"""docs/arm_twin.md as it is printed: the live twin of an arm, arm.launch beside it with the report of the sound arm,
+and a fault that comes while it moves; then its protective stop."""
+import os
+import signal
+import subprocess
 import sys
+import tempfile
 import time
 import unittest
 
@@ -13,23 +18,49 @@ from sensor_msgs.msg import JointState
 from std_srvs.srv import Trigger
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-from harmonic_joint_twin.msg import Fault, Timing
-from ros_support import PACKAGE, PATIENCE, SLOWNESS, Diagnostics, Listener, processor_time, wait_until
+from harmonic_joint_twin.msg import Timing
+from ros_support import (PACKAGE, PATIENCE, SLOWNESS, Diagnostics, Listener, executable, package_path,
+                         processor_time, wait_until)
 
+PAGE = package_path("docs", "arm_twin.md")
+REPORT = "--report sound"  # end of the command that makes what the live node compares with
 NODE, BESIDE = "/arm_twin", "/joint_twin"
 JOINTS = ("base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3")
 SICK = "elbow"
 MEASURED_OVER = 10.0  # processor time [s]
 
 
+def printed(program):
+    """The page's commands that begin with this word."""
+    with open(PAGE, encoding="utf-8") as page:
+        return [line.strip() for line in page if line.startswith(program + " ")]
+
+
 class ArmFault(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.folder = folder.name
+        path = os.path.dirname(executable("joint_twin")) + os.pathsep + os.environ["PATH"]
+        cls.environment = dict(os.environ, PATH=path, PWD=cls.folder)
+        for line in printed("joint_twin"):
+            subprocess.run(["bash", "-c", line], cwd=cls.folder, env=cls.environment, check=True)
+            if line.endswith(REPORT):
+                break
+        for line in printed("roslaunch")[:2]:
+            launch = cls.start(line)
+            cls.addClassCleanup(launch.wait)
+            cls.addClassCleanup(launch.send_signal, signal.SIGINT)
         cls.states = Listener("/joint_states", JointState)
         cls.log = Listener("/rosout", Log)
         cls.timing = Listener(f"{NODE}/timing", Timing)
         cls.diagnostics = {joint: Diagnostics(f"/{joint}/joint_twin") for joint in JOINTS}
         cls.states.wait_for(10, 4.0 * PATIENCE)  # the first time it builds its tables
+
+    @classmethod
+    def start(cls, line):
+        return subprocess.Popen(["bash", "-c", "exec " + line], cwd=cls.folder, env=cls.environment)
 
     def friction(self):
         """Level of that finding, by joint."""
@@ -47,10 +78,9 @@ class ArmFault(unittest.TestCase):
 
     def test_1_a_fault_that_comes_in_motion_is_seen_beside_it(self):
         self.wait_for_friction(dict.fromkeys(JOINTS, "OK"), "six sound joints", 8.0 * PATIENCE)
-        inject = rospy.Publisher(f"/{SICK}/arm_twin/inject_fault", Fault, queue_size=1)
-        wait_until(lambda: inject.get_num_connections() == 1, "the faults' topic")
         wait_until(lambda: min(self.speeds()) > 0.05, "all six joints in motion")
-        inject.publish(Fault(kind="lubricant_degradation", severity=1.0, place=-1))
+        inject, = printed("rostopic")
+        self.assertEqual(self.start(inject).wait(timeout=PATIENCE), 0)
         injected = time.monotonic()
         self.wait_for_friction({joint: "WARN" if joint == SICK else "OK" for joint in JOINTS}, f"the {SICK} alone",
                                12.0 * PATIENCE)

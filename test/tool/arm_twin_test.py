@@ -116,6 +116,13 @@ class ArmTwin(tool.ToolTest):
         # Its set point stays where it stopped, a little more than 0.1 rad ahead, before it came to rest.
         self.assertEqual((rows[-1]["target_qd_2"], rows[-1]["target_q_2"]), (0.0, rows[-20]["target_q_2"]))
         self.assertGreater(rows[-1]["target_q_2"] - rows[-1]["actual_q_2"], 0.05)
+        # A jump in a table of angles alone is left to the arm too, whatever speeds its rows would have.
+        jump = [",".join(map(str, [time] + [angle + way for angle in START]))
+                for time, way in ((0.0, 0.0), (0.3, 0.0), (0.33, 0.5), (0.6, 0.5))]
+        self.write("motion.csv", "\n".join([lines[0], *jump]) + "\n")
+        done = self.run_tool("arm", "motion.csv", "--arm", "ur5", "--out", "jump.csv", "--set",
+                             "solver.scene=full_ring")
+        self.assertEqual(done.returncode, 5, done.stderr)
 
     def test_gains_of_the_controller_are_taken(self):
         write_motion(self.path("motion.csv"), duration=0.8)

@@ -20,6 +20,7 @@ NOISY, NOISY_TOLERANCE = ["docs/indicators.md", "docs/health.md"], 0.05
 ROUNDING = 1e-6  # smaller numbers are rounding of the solver, as the columns `residual`
 SHOWN = ["README.md", "docs/tool.md", "docs/own_gear.md", "docs/gear_study.md", "docs/indicators.md", "docs/health.md"]
 RUN = ["README.md", "docs/tool.md", "docs/own_gear.md", "docs/faults.md"]
+BESIDE, RECORDINGS = "docs/beside_a_robot.md", "mkdir recordings && ln sound.bag later.bag recordings"
 ARM, ARM_EXAMPLE = "docs/arm_twin.md", "joint_twin checkup "  # page, and how its first try without a robot begins
 
 
@@ -121,17 +122,27 @@ class Pages(tool.ToolTest):
                             self.assertEqual(done.returncode, 0, done.stdout)
         self.assertGreater(ran, 5)
 
-    def test_the_first_try_without_a_robot_names_the_worn_joint_alone(self):
-        lines = next(block for block in blocks(self.page(ARM), "sh") if block[0].startswith(ARM_EXAMPLE))
-        verdicts = []
-        for line in lines:
-            done = self.shell(line)
-            self.assertEqual(done.returncode, 0, f"{line}\n{done.stdout}")
-            verdicts += [done.stdout] if " compare " in line else []
-        sound, worn = verdicts
-        self.assertRegex(sound, r"(?m)^OK$")
-        self.assertRegex(worn, r"(?m)^WARN$")
-        self.assertEqual(re.findall(r"(?m)^(\w+): Not as in a sound joint: friction", worn), ["elbow"])
+    def test_the_first_try_without_a_robot_and_the_first_hour_beside_one_name_the_worn_joint_alone(self):
+        """The twin's bags are the robot's; what both pages print runs once."""
+        page = self.page(BESIDE)
+        tries = next(block for block in blocks(self.page(ARM), "sh") if block[0].startswith(ARM_EXAMPLE))
+        hour = [line for block in blocks(page, "sh") for line in block if line.startswith("joint_twin ")]
+        printed = {}
+        for line in [*tries, RECORDINGS, *hour]:
+            command = line.split("#")[0].strip()
+            if command not in printed:
+                done = self.shell(command)
+                self.assertEqual(done.returncode, 0, f"{line}\n{done.stdout}")
+                printed[command] = done.stdout
+        said = {command.split(" --arm")[0]: text for command, text in printed.items()}
+        self.assertRegex(said["joint_twin check sound.bag"], r"125 Hz, 0 missing, 0 gaps, .* 0 unreadable")
+        self.assertRegex(said["joint_twin compare sound.bag"], r"(?m)^OK$")
+        self.assertRegex(said["joint_twin compare later.bag"], r"(?m)^WARN$")
+        found = re.findall(r"(?m)^(\w+): Not as in a sound joint: friction", said["joint_twin compare later.bag"])
+        self.assertEqual(found, ["elbow"])
+        self.assertNotIn("hardly moves", said["joint_twin identify sound.bag"])
+        for done in ("trend recordings", "follow sound.bag"):
+            self.assertIn(f"joint_twin {done}", said)
 
     def can_run(self, line):
         """Whether every file is there that the command reads; words behind --out and the like are written."""
