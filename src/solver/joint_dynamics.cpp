@@ -214,7 +214,7 @@ bool JointDynamics::surfaceAgrees() const noexcept
 {
   constexpr double MARGIN = 0.05;   // share of the surface's range
   constexpr double TABLED = 2e-6;   // of the output's angle at given torque [rad]
-  constexpr double BETWEEN = 2e-4;  // the same of a surface that lies between others; a tooth's jump is 3e-2
+  constexpr double BETWEEN = 2e-5;  // the same of a surface that lies between others; a tooth's jump is 3e-2
   ResponseSurface::Place place;
   if (!surface_->locate(motor_angle_, output_angle_, place) || surface_->nearEdge(place, MARGIN))
   {

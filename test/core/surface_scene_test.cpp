@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <random>
 #include <string>
 #include <utility>
@@ -149,6 +150,24 @@ TEST(SceneAuto, SaysThatTheRingDoesNotFollow)
   EXPECT_TRUE(dynamics.updateModel().ok());
   EXPECT_EQ(dynamics.outputAngle(), OUTPUT);
   EXPECT_NEAR(dynamics.response().output_torque, torque, 1e-3 * std::abs(torque));
+}
+
+/// By 5 N.m, a jump where the joint comes onto it.
+TEST(SceneAuto, TakesNoSurfaceBetweenOthersThatIsOff)
+{
+  constexpr double OUTPUT = 2e-3;
+  const Parameters parameters = surfaceParameters();
+  const JointModel model(parameters);
+  const auto table = std::make_shared<const ResponseSurface>(surface().table(), DeviationTable{});
+  for (const auto& [weight, taken] : { std::pair(1.0, true), std::pair(0.95, false) })
+  {
+    const ResponseSurface weighted({ { table, 0.5 }, { table, weight - 0.5 } });
+    JointDynamics dynamics(model, parameters.solver);
+    ASSERT_TRUE(dynamics.solveAtRest().ok());
+    ASSERT_TRUE(dynamics.place(0.0, OUTPUT).ok());
+    ASSERT_TRUE(dynamics.useSurface(&weighted));
+    EXPECT_EQ(dynamics.placeOnSurface(0.0, OUTPUT), taken) << weight;
+  }
 }
 
 TEST(SceneAuto, ToothForcesAreOfThePresentInstant)
