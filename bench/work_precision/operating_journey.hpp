@@ -50,8 +50,7 @@ public:
     x[joint_state::OUTPUT_ANGLE] = dynamics.outputAngle();
     if (way != Way::RING)
     {
-      dynamics.useSurface(problem.surface.get());
-      if (!dynamics.placeOnSurface(0.0, dynamics.outputAngle()))
+      if (!dynamics.useSurface(problem.surface.get()) || !dynamics.placeOnSurface(0.0, dynamics.outputAngle()))
       {
         throw std::runtime_error("operating: not on the table at the start");
       }

@@ -19,20 +19,20 @@ constexpr double MOVING = 30.0;       // likewise, no creeping: friction is full
 constexpr double MIN_WIDTH = 1e-100;  // of a term without slip: its square and the inverse stay finite
 
 /// How far to go from `v` along `change`: all the way if the function still falls there, else to where it stops
-/// falling. Looks at slopes only: values near a minimum differ by less than their rounding. Leaves the gradient there
-/// in `slope`.
+/// falling, to a slope of `flat` times the first. Looks at slopes only: values near a minimum differ by less than their
+/// rounding. Leaves the gradient there in `slope`.
 template <class Gradient>
-double searchLine(Gradient& gradient, const Eigen::Vector2d& v, const Eigen::Vector2d& change, Eigen::Vector2d& slope)
+double searchLine(Gradient& gradient, const Eigen::Vector2d& v, const Eigen::Vector2d& change, double flat,
+                  Eigen::Vector2d& slope)
 {
   constexpr int MAX_BISECTIONS = 60;
-  constexpr double FLAT = 0.1;  // share of the first slope
   const double first = slope.dot(change);
   slope = gradient(v + change);
   double low = 0.0;
   double high = 1.0;
   double length = 1.0;
   double here = slope.dot(change);
-  for (int i = 0; i < MAX_BISECTIONS && (length < 1.0 || here > 0.0) && std::abs(here) > FLAT * std::abs(first); ++i)
+  for (int i = 0; i < MAX_BISECTIONS && (length < 1.0 || here > 0.0) && std::abs(here) > flat * std::abs(first); ++i)
   {
     (here > 0.0 ? high : low) = length;
     length = 0.5 * (low + high);
@@ -208,12 +208,15 @@ HJT_VECTOR_CLONES DryFriction::Slopes DryFriction::slopes(const FrictionTerms& t
   return sum;
 }
 
-Eigen::Vector2d DryFriction::solve(const JointFriction& friction, double velocity_ratio,
-                                   const Eigen::Vector2d& old_speeds, const Eigen::Vector2d& free_speeds,
-                                   double step) const noexcept
+bool DryFriction::solve(const JointFriction& friction, double velocity_ratio, const Eigen::Vector2d& old_speeds,
+                        const Eigen::Vector2d& free_speeds, double step, Eigen::Vector2d& speeds) const noexcept
 {
   constexpr int MAX_ITERATIONS = 100;
+  constexpr int FEW = 15;           // iterations; 1 of 300 random problems needs more
   constexpr double ENOUGH = 1e-12;  // relative change of the speeds
+  constexpr double ROUNDED = 1e-9;  // the same of speeds that keep changing in their last digits
+  constexpr double FLAT = 0.1;      // share of the first slope
+  constexpr double FLATTER = 1e-3;  // the same: a term that sticks is a kink, on which a search has to end
   Eigen::Matrix2d linear = 0.5 * step * friction.viscous;
   const Eigen::Vector2d drag = linear * old_speeds - inertia_.cwiseProduct(free_speeds);
   linear.diagonal() += inertia_;
@@ -226,41 +229,44 @@ Eigen::Vector2d DryFriction::solve(const JointFriction& friction, double velocit
   };
 
   // Down to the minimum, or with the motor at rest to the minimum over the output's speed alone.
+  Eigen::Vector2d slope;
   const auto descend = [&](Eigen::Vector2d& v, bool motor_free)
   {
-    Eigen::Vector2d slope = gradient(v);
-    for (int i = 0; i < MAX_ITERATIONS; ++i)
+    Eigen::Vector2d change;
+    const auto changes = [&](double share)
     {
-      const Eigen::Vector2d change = newtonStep(hessian, slope, motor_free);
-      if (std::abs(change[0]) <= ENOUGH * (std::abs(v[0]) + width_) &&
-          std::abs(change[1]) <= ENOUGH * (std::abs(v[1]) + std::abs(velocity_ratio) * width_))
-      {
-        break;
-      }
-      v += searchLine(gradient, v, change, slope) * change;
+      return !(std::abs(change[0]) <= share * (std::abs(v[0]) + width_) &&
+               std::abs(change[1]) <= share * (std::abs(v[1]) + std::abs(velocity_ratio) * width_));
+    };
+    slope = gradient(v);
+    change = newtonStep(hessian, slope, motor_free);
+    for (int i = 0; i < MAX_ITERATIONS && changes(ENOUGH); ++i)
+    {
+      v += searchLine(gradient, v, change, i < FEW ? FLAT : FLATTER, slope) * change;
+      change = newtonStep(hessian, slope, motor_free);
     }
-    return slope;
+    return !changes(ROUNDED);
   };
 
   // With the motor at rest if friction can hold it there.
   const auto rests = [&](Eigen::Vector2d& v)
   {
     v[0] = 0.0;
-    const Eigen::Vector2d slope = descend(v, false);
-    return std::abs(slope[0]) <= step * shaftStrength(friction);
+    return descend(v, false) && std::abs(slope[0]) <= step * shaftStrength(friction);
   };
-  Eigen::Vector2d v = old_speeds;
-  if (old_speeds[0] == 0.0 && rests(v))
+  speeds = old_speeds;
+  if (old_speeds[0] == 0.0 && rests(speeds))
   {
-    return v;
+    return true;
   }
-  v = old_speeds;
-  descend(v, true);
-  if (Eigen::Vector2d at_rest = v; std::abs(v[0]) < STICK_RANGE * width_ && rests(at_rest))
+  speeds = old_speeds;
+  const bool found = descend(speeds, true);
+  if (Eigen::Vector2d at_rest = speeds; std::abs(speeds[0]) < STICK_RANGE * width_ && rests(at_rest))
   {
-    return at_rest;
+    speeds = at_rest;
+    return true;
   }
-  return v;
+  return found;
 }
 
 HJT_VECTOR_CLONES bool DryFriction::slide(const JointFriction& friction, double velocity_ratio,
@@ -358,8 +364,12 @@ KickedSpeeds DryFriction::stopOrSlide(const JointFriction& friction, double velo
   };
   for (int part = 1;; ++part)
   {
-    const Eigen::Vector2d undivided =
-        solve(friction, velocity_ratio, speeds.after, speeds.after + rest * gained, rest * step);
+    Eigen::Vector2d undivided;
+    speeds.solved = solve(friction, velocity_ratio, speeds.after, speeds.after + rest * gained, rest * step, undivided);
+    if (!speeds.solved)
+    {
+      return speeds;
+    }
     if (part == MAX_PARTS || !anyStops(friction.terms, std::abs(velocity_ratio), speeds.after, undivided))
     {
       go_on(1.0, undivided);
@@ -380,13 +390,14 @@ KickedSpeeds DryFriction::stopOrSlide(const JointFriction& friction, double velo
       free -=
           rest * step * std::copysign(term.strength, term.slip.dot(speeds.after)) * term.slip.cwiseQuotient(inertia_);
     }
-    const Eigen::Vector2d onward = solve(sticking, velocity_ratio, speeds.after, free, rest * step);
+    Eigen::Vector2d onward;
+    const bool found = solve(sticking, velocity_ratio, speeds.after, free, rest * step, onward);
     double share = 1.0;  // of the rest, up to the first stop
     for (const FrictionTerm term : friction.terms)
     {
       const double before = term.slip.dot(speeds.after);
       const double after = term.slip.dot(onward);
-      share = moves(term) && before * after < 0.0 ? std::min(share, before / (before - after)) : share;
+      share = found && moves(term) && before * after < 0.0 ? std::min(share, before / (before - after)) : share;
     }
     go_on(share, share < 1.0 ? speeds.after + share * (onward - speeds.after) : undivided);
     if (share == 1.0)

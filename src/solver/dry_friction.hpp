@@ -12,6 +12,7 @@ struct KickedSpeeds
 {
   Eigen::Vector2d after;
   Eigen::Vector2d halfway;
+  bool solved{ true };  ///< false: friction was not; the speeds are anything
 };
 
 /// Speeds after a time step with all friction taken implicitly: the minimum of
@@ -34,9 +35,9 @@ public:
   void setOutput(double inertia) noexcept { inertia_[1] = inertia; }  ///< another inertia of the output [kg.m^2]
 
   /// `velocity_ratio`: output speed over motor speed in plain running; scales the regularisation of slips at the
-  /// output.
-  Eigen::Vector2d solve(const JointFriction& friction, double velocity_ratio, const Eigen::Vector2d& old_speeds,
-                        const Eigen::Vector2d& free_speeds, double step) const noexcept;
+  /// output. False: the minimum was not found; `speeds` are anything.
+  [[nodiscard]] bool solve(const JointFriction& friction, double velocity_ratio, const Eigen::Vector2d& old_speeds,
+                           const Eigen::Vector2d& free_speeds, double step, Eigen::Vector2d& speeds) const noexcept;
 
   /// The same in parts where a term that moves comes to rest within the step: up to there it slides, and those that do
   /// not move at the old speeds stick. `free_momentum`: M v_free [N.m.s]; `sticking`: room.

@@ -77,44 +77,65 @@ SolveStatus JointDynamics::place(double motor_angle, double output_angle) noexce
   {
     return {};
   }
-  if (on_surface_)
+  if (on_surface_ && !bringRing())  // a short way then remains to what is asked for
   {
-    on_surface_ = false;
-    const SolveStatus brought = bringRing();  // a short way then remains to what is asked for
-    status.iterations += brought.iterations;
+    return status;
   }
+  on_surface_ = false;
   const SolveStatus result = placeRing(motor_angle, output_angle);
   takeRing();
   surface_agrees_ = surface_ != nullptr && result.ok() && surfaceAgrees();
   return result;
 }
 
-void JointDynamics::useSurface(const ResponseSurface* surface) noexcept
+bool JointDynamics::useSurface(const ResponseSurface* surface) noexcept
 {
-  if (on_surface_ && surface == nullptr)
+  bool good = true;
+  if (on_surface_ && surface != surface_)
   {
     on_surface_ = false;
-    const SolveStatus brought = bringRing();
-    status.iterations += brought.iterations;
-    takeRing();
+    good = bringRing();
+    if (good)
+    {
+      takeRing();
+    }
   }
   surface_ = surface;
-  surface_agrees_ = surface != nullptr && !on_surface_ && surfaceAgrees();
+  surface_agrees_ = surface != nullptr && good && !on_surface_ && surfaceAgrees();
+  return good;
 }
 
 SolveStatus JointDynamics::updateModel() noexcept
 {
-  const SolveStatus result = ring_.updateModel();
+  SolveStatus result = ring_.updateModel();
+  if (result.ok() &&
+      (ring_.position().wave_generator_angle != motor_angle_ || ring_.position().output_angle != output_angle_))
+  {
+    result = ring_.reach(position()).addEffort(result);  // it could not be brought there before
+  }
   viscosity_ = model_->bearing.viscosity(temperature_);
   takeRing();
   accept();  // slip in this step is part of the energy that the edit releases
   return result;
 }
 
-/// From where the full ring was left to the surface's present angles.
-SolveStatus JointDynamics::bringRing() noexcept
+/// From where the full ring was left to the surface's present angles. False: no equilibrium, it stays.
+bool JointDynamics::bringRing() noexcept
 {
-  return ring_.moveTo(position());
+  const SolveStatus brought = ring_.reach(position());
+  status.iterations += brought.iterations;
+  note(brought);
+  return brought.ok();
+}
+
+/// Keeps why a solve failed, if it did.
+void JointDynamics::note(const SolveStatus& solved) noexcept
+{
+  if (!solved.ok())
+  {
+    status.code = solved.code;
+    status.stage = solved.stage;
+  }
 }
 
 /// The full ring's equilibrium is the present one.
@@ -193,7 +214,7 @@ bool JointDynamics::surfaceAgrees() const noexcept
 {
   constexpr double MARGIN = 0.05;   // share of the surface's range
   constexpr double TABLED = 2e-6;   // of the output's angle at given torque [rad]
-  constexpr double BETWEEN = 2e-4;  // the same of a surface that lies between others; a tooth's jump is 3e-2
+  constexpr double BETWEEN = 2e-5;  // the same of a surface that lies between others; a tooth's jump is 3e-2
   ResponseSurface::Place place;
   if (!surface_->locate(motor_angle_, output_angle_, place) || surface_->nearEdge(place, MARGIN))
   {
@@ -210,11 +231,7 @@ SolveStatus JointDynamics::placeRing(double motor_angle, double output_angle) no
   status.cuts += result.cuts;
   status.jumps += result.jumps;
   status.residual = result.residual;
-  if (!result.ok())
-  {
-    status.code = result.code;
-    status.stage = result.stage;
-  }
+  note(result);
   return result;
 }
 
@@ -260,7 +277,14 @@ double JointDynamics::viscosity() noexcept
 KickedSpeeds JointDynamics::stopOrSlide(const DryFriction& friction, const Eigen::Vector2d& before,
                                         const Eigen::Vector2d& momentum, double dt) noexcept
 {
-  return friction.stopOrSlide(friction_, velocityRatio(), before, momentum, dt, sticking_);
+  const KickedSpeeds speeds = friction.stopOrSlide(friction_, velocityRatio(), before, momentum, dt, sticking_);
+  if (!speeds.solved)
+  {
+    status.code = speeds.after.allFinite() ? SolveCode::ITERATION_LIMIT : SolveCode::NOT_FINITE;
+    status.stage = SolveStage::FRICTION;
+    return { Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero(), false };
+  }
+  return speeds;
 }
 
 void JointDynamics::operator()(const JointState& x, JointState& rate, double) noexcept

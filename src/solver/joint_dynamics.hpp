@@ -28,7 +28,9 @@ public:
   SolveStatus solveAtRest() noexcept;
 
   /// Uses this surface where it holds, else the full ring; null: the full ring alone. The surface must outlive its use.
-  void useSurface(const ResponseSurface* surface) noexcept;
+  /// False: the full ring found no equilibrium at the angles that the joint had on the surface until now, and is
+  /// elsewhere; angles and torques stay.
+  [[nodiscard]] bool useSurface(const ResponseSurface* surface) noexcept;
 
   /// After an edit of the model: solves the full ring at the present angles.
   SolveStatus updateModel() noexcept;
@@ -85,7 +87,7 @@ public:
   /// Brings `friction()` up to date with the present ring; `speeds` of motor and output [rad/s].
   void updateFriction(const Eigen::Vector2d& speeds) noexcept;
 
-  /// DryFriction::stopOrSlide by the present friction.
+  /// DryFriction::stopOrSlide by the present friction; where that is not solved the joint stands, and `status` says so.
   KickedSpeeds stopOrSlide(const DryFriction& friction, const Eigen::Vector2d& before, const Eigen::Vector2d& momentum,
                            double dt) noexcept;
 
@@ -118,7 +120,8 @@ public:
   SolveStatus status;     ///< worst since it was last cleared by its reader
 
 private:
-  SolveStatus bringRing() noexcept;
+  bool bringRing() noexcept;
+  void note(const SolveStatus& solved) noexcept;
   SolveStatus placeRing(double motor_angle, double output_angle) noexcept;
   void takeRing() noexcept;
   void takeSurface() noexcept;

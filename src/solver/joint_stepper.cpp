@@ -80,10 +80,10 @@ int JointStepper::substepsFor(double phase) const noexcept
   return least + (least % 2 == 0 ? 1 : 0);
 }
 
-void JointStepper::useSurface(const ResponseSurface* surface) noexcept
+bool JointStepper::useSurface(const ResponseSurface* surface) noexcept
 {
   rest_steps_ = 0;
-  dynamics_.useSurface(surface);
+  return dynamics_.useSurface(surface);
 }
 
 bool JointStepper::reset(double arm_torque) noexcept

@@ -54,7 +54,7 @@ public:
   void setOutputInertia(double inertia) noexcept;
 
   /// See JointDynamics.
-  void useSurface(const ResponseSurface* surface) noexcept;
+  [[nodiscard]] bool useSurface(const ResponseSurface* surface) noexcept;
 
   double motorAngle() const noexcept { return x_[joint_state::MOTOR_ANGLE]; }    ///< [rad]
   double outputAngle() const noexcept { return x_[joint_state::OUTPUT_ANGLE]; }  ///< [rad]

@@ -140,10 +140,11 @@ void Leapfrog::do_step(JointDynamics& system, JointState& x, double, double dt) 
   }
   const Eigen::Vector2d inertia = system.inertia();
   const double slipped = system.accept();
-  const auto [after, halfway] =
+  const KickedSpeeds kicked =
       kick(system, x, before, rubbingSpeeds(before, halfway_), system.model().motor.currentLeft(dt), dt);
+  const Eigen::Vector2d& after = kicked.after;
   speeds_ = 0.5 * (before + after);
-  halfway_ = halfway;
+  halfway_ = kicked.halfway;
   half_kick_ = after - speeds_;
   x.segment<2>(MOTOR_ANGLE) = angles;
   x.segment<2>(MOTOR_SPEED) = after;

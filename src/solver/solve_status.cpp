@@ -13,7 +13,8 @@ namespace
 const char* failureOf(SolveStage stage) noexcept
 {
   constexpr std::array TEXTS{ "the insertion of the wave generator failed",
-                              "the ring cannot be moved to the requested angles", "no output angle balances the load" };
+                              "the ring cannot be moved to the requested angles", "no output angle balances the load",
+                              "the speeds after a step were not found" };
   return TEXTS[static_cast<std::size_t>(stage)];
 }
 

@@ -56,7 +56,7 @@ std::unique_ptr<Twin::Impl> Twin::Impl::copyOf(const Impl& other)
 
 bool Twin::Impl::reset(Stamp stamp) noexcept
 {
-  stepper.useSurface(nullptr);
+  static_cast<void>(stepper.useSurface(nullptr));  // the ring is inserted again
   scheduleConfigured(stamp);
   faults.apply(active);
   useSurface();
@@ -81,9 +81,10 @@ bool Twin::Impl::reset(Stamp stamp) noexcept
   monitor.reset();
   signals.reset();
   assessor.reset();
-  last_failed = std::numeric_limits<Stamp>::min();
-  last_doubtful = last_failed;
-  converged = true;
+  last_doubtful = std::numeric_limits<Stamp>::min();
+  last_failed = settled ? last_doubtful : now;
+  converged = settled;
+  counters.solver_failures = settled ? 0 : 1;
   observe();
   return settled;
 }
@@ -120,12 +121,11 @@ bool Twin::Impl::takeFaults() noexcept
   {
     return true;
   }
-  stepper.useSurface(nullptr);
+  bool good = stepper.useSurface(nullptr);
   faults.apply(active);
-  const bool good = stepper.updateModel();
+  good = stepper.updateModel() && good;
   observed_ring.restart();
-  useSurface();
-  return good;
+  return useSurface() && good;
 }
 
 /// Takes the inputs of the step from `begin` to now, each acting from its stamp on.
@@ -201,10 +201,10 @@ void Twin::Impl::step() noexcept
   const bool followed = !waiting.isDue(now) || takeFaults();
   takeInputs(begin);
   moveBrake(begin);
-  takeSurface();
+  const bool changed = takeSurface();
   const JointInputs inputs{ motor_torque.mean(now), load_torque.mean(now), brake_engaged, greaseTemperature(),
                             arm_torque };
-  converged = stepper.step(inputs) && followed;
+  converged = stepper.step(inputs) && followed && changed;
   takeHeat(stepper.driveTorque());
   ++counters.steps;
   counters.torque_clamped += command_clamped ? 1 : 0;

@@ -115,12 +115,12 @@ private:
 
   void prepareSurface(const SurfaceSource& source);
   const ResponseSurface* presentSurface() const noexcept;
-  void useSurface() noexcept;
+  bool useSurface() noexcept;
   void scheduleConfigured(Stamp stamp) noexcept;
   bool takeFaults() noexcept;
   void takeInputs(Stamp begin) noexcept;
   void takeInput(const Input& input, Stamp at) noexcept;
-  void takeSurface() noexcept;
+  bool takeSurface() noexcept;
   void timeOutCommand(Stamp begin) noexcept;
   double greaseTemperature() const noexcept;
   double housingTemperature() const noexcept;

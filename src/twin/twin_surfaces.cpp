@@ -28,19 +28,19 @@ const ResponseSurface* Twin::Impl::presentSurface() const noexcept
 }
 
 /// The surface while it is that of the present faults; else the full ring, until one is there that was built beside.
-void Twin::Impl::useSurface() noexcept
+bool Twin::Impl::useSurface() noexcept
 {
   const ResponseSurface* present = presentSurface();
-  stepper.useSurface(present);
   surface_awaited = surface_worker.has_value() && present == nullptr;
+  return stepper.useSurface(present);
 }
 
 /// The surface of the present faults, built in the background: requested, and used when ready.
-void Twin::Impl::takeSurface() noexcept
+bool Twin::Impl::takeSurface() noexcept
 {
   if (!surface_awaited)
   {
-    return;
+    return true;
   }
   if (!isSame(active, surface_faults))
   {
@@ -51,7 +51,8 @@ void Twin::Impl::takeSurface() noexcept
   }
   else if (surface_worker->surface() != nullptr)
   {
-    useSurface();
+    return useSurface();
   }
+  return true;
 }
 }  // namespace hjt

@@ -14,13 +14,14 @@ constexpr double STEP = 1e-4;   // [s]
 constexpr double WIDTH = 1e-6;  // stiction velocity [rad/s]
 constexpr double VELOCITY_RATIO = 1.0 / 101.0;
 
-/// A step of random friction: a shaft, many flanks, viscous terms.
+/// A step of random friction: a shaft, many flanks, viscous terms. `wide`: inertias, strengths and torques over six
+/// decades in place of four.
 struct RandomStep
 {
-  explicit RandomStep(std::mt19937& random, int flanks = 12) : friction(200)
+  explicit RandomStep(std::mt19937& random, int flanks = 12, bool wide = false) : friction(200)
   {
     std::uniform_real_distribution<double> part(-1.0, 1.0);
-    const auto size = [&] { return std::pow(10.0, 2.0 * part(random) - 1.0); };
+    const auto size = [&] { return std::pow(10.0, (wide ? 3.0 : 2.0) * part(random) - 1.0); };
     inertia = { 1.7e-4 * size() * 10.0, 0.5 * size() * 10.0 };
     friction.terms.push_back({ 0.2 * size(), { 1.0, 0.0 } });
     for (int i = 0; i < flanks; ++i)
@@ -33,8 +34,9 @@ struct RandomStep
     const double speed = part(random) * std::pow(10.0, 4.0 * part(random) - 2.0);
     old = { speed, speed * VELOCITY_RATIO + 1e-3 * part(random) * size() };
     free = old + Eigen::Vector2d(part(random), part(random))
-                     .cwiseProduct(STEP * Eigen::Vector2d(0.5, 50.0))
-                     .cwiseQuotient(inertia);
+                         .cwiseProduct(STEP * Eigen::Vector2d(0.5, 50.0))
+                         .cwiseQuotient(inertia) *
+                     (wide ? size() : 1.0);
   }
 
   double potential(const Eigen::Vector2d& v) const
@@ -48,6 +50,13 @@ struct RandomStep
       value += STEP * term.strength * std::hypot(term.slip.dot(v), width);
     }
     return value;
+  }
+
+  Eigen::Vector2d solve(const DryFriction& dry) const
+  {
+    Eigen::Vector2d speeds;
+    EXPECT_TRUE(dry.solve(friction, VELOCITY_RATIO, old, free, STEP, speeds));
+    return speeds;
   }
 
   double shaft() const { return friction.terms[0].strength; }  // [N.m]
@@ -87,7 +96,7 @@ TEST(DryFriction, IsTheMinimumFoundByBruteForce)
   {
     const RandomStep step(random);
     const DryFriction dry(step.inertia, WIDTH);
-    const Eigen::Vector2d v = dry.solve(step.friction, VELOCITY_RATIO, step.old, step.free, STEP);
+    const Eigen::Vector2d v = step.solve(dry);
     const double reach = 2.0 * (step.free.cwiseAbs() + step.old.cwiseAbs()).maxCoeff() * 101.0 + 1e-3;
     const auto best_output = [&](double motor) {
       return minimum(-reach, reach, [&](double output) { return step.potential({ motor, output }); });
@@ -130,7 +139,7 @@ TEST(DryFriction, SlidesAsItIsSolved)
       continue;
     }
     ++slid;
-    const Eigen::Vector2d solved = dry.solve(step.friction, VELOCITY_RATIO, step.old, step.free, STEP);
+    const Eigen::Vector2d solved = step.solve(dry);
     // The tails of the regularisation: 1e-9 of the friction; and what `solve` leaves, 1e-12 of the speeds.
     const Eigen::Vector2d friction =
         (step.inertia.cwiseProduct(solved - step.free)).cwiseAbs() + Eigen::Vector2d::Constant(1e-12);
@@ -177,6 +186,24 @@ TEST(FrictionTerms, HaveZerosBehindTheLastWhateverWasThere)
   }
 }
 
+/// Momentum that the speeds after a step leave unbalanced, by motor and output, over what acts there [-].
+Eigen::Vector2d unbalanced(const RandomStep& step)
+{
+  const DryFriction dry(step.inertia, WIDTH);
+  const Eigen::Vector2d v = step.solve(dry);
+  // M (v - v_free) = h (dry friction at v + viscous friction at the mean speed)
+  const Eigen::Vector2d at_end = dry.torque(step.friction, VELOCITY_RATIO, v) + step.friction.viscous * v;
+  const Eigen::Vector2d at_mean = -0.5 * step.friction.viscous * (v + step.old);
+  Eigen::Vector2d error = (step.inertia.cwiseProduct(v - step.free) - STEP * (at_end + at_mean)).cwiseAbs();
+  Eigen::Vector2d scale = step.inertia.cwiseProduct(step.free.cwiseAbs() + v.cwiseAbs() + step.old.cwiseAbs());
+  for (const FrictionTerm term : step.friction.terms)
+  {
+    scale += STEP * term.strength * term.slip.cwiseAbs();
+  }
+  error[0] -= v[0] == 0.0 ? STEP * step.shaft() : 0.0;  // that holds it
+  return error.cwiseQuotient(scale);
+}
+
 TEST(DryFriction, LeavesNoForceUnbalanced)
 {
   constexpr unsigned SEED = 62;
@@ -184,24 +211,32 @@ TEST(DryFriction, LeavesNoForceUnbalanced)
   std::mt19937 random(SEED);
   for (int k = 0; k < 3000; ++k)
   {
-    const RandomStep step(random);
-    const DryFriction dry(step.inertia, WIDTH);
-    const Eigen::Vector2d v = dry.solve(step.friction, VELOCITY_RATIO, step.old, step.free, STEP);
-    // Momentum: M (v - v_free) = h (dry friction at v + viscous friction at the mean speed).
-    const Eigen::Vector2d at_end = dry.torque(step.friction, VELOCITY_RATIO, v) + step.friction.viscous * v;
-    const Eigen::Vector2d at_mean = -0.5 * step.friction.viscous * (v + step.old);
-    const Eigen::Vector2d error = step.inertia.cwiseProduct(v - step.free) - STEP * (at_end + at_mean);
-    Eigen::Vector2d scale = step.inertia.cwiseProduct(step.free.cwiseAbs() + v.cwiseAbs() + step.old.cwiseAbs());
-    for (const FrictionTerm term : step.friction.terms)
-    {
-      scale += STEP * term.strength * term.slip.cwiseAbs();
-    }
     // The search ends where the potential no longer falls by its own rounding: half the digits of the speeds, and of
     // what sticks, friction within 1e-6 rad/s, some fewer.
-    const double held = v[0] == 0.0 ? STEP * step.shaft() : 0.0;
-    EXPECT_LE(std::abs(error[0]), 1e-4 * scale[0] + held) << k;
-    EXPECT_LT(std::abs(error[1]), 1e-4 * scale[1]) << k;
+    EXPECT_LT(unbalanced(RandomStep(random)).maxCoeff(), 1e-4) << k;
   }
+}
+
+/// Of some 80 000 such problems one: each Newton step leads across the kink of a term that sticks, and a search that
+/// ends beside it comes no nearer.
+TEST(DryFriction, IsSolvedAlongAKinkToo)
+{
+  for (const unsigned seed : { 158178U, 185631U, 277132U, 325960U, 381505U })
+  {
+    std::mt19937 random(seed);
+    EXPECT_LT(unbalanced(RandomStep(random, 59, true)).maxCoeff(), 1e-4) << seed;
+  }
+}
+
+TEST(DryFriction, SaysThatNumbersOverflow)
+{
+  const DryFriction dry({ 1e-4, 0.5 }, WIDTH);
+  JointFriction friction(1);
+  friction.terms.push_back({ 0.2, { 1.0, 0.0 } });
+  Eigen::Vector2d speeds;
+  EXPECT_FALSE(dry.solve(friction, VELOCITY_RATIO, { 1.0, 0.01 }, { HUGE_VAL, 0.01 }, STEP, speeds));
+  JointFriction sticking(1);
+  EXPECT_FALSE(dry.stopOrSlide(friction, VELOCITY_RATIO, { 1.0, 0.01 }, { HUGE_VAL, 0.005 }, STEP, sticking).solved);
 }
 
 /// One mass on the motor side with Coulomb friction alone.
@@ -217,7 +252,9 @@ protected:
   double stepped(double speed, double torque) const
   {
     const Eigen::Vector2d old(speed, 0.0);
-    return dry_.solve(friction_, VELOCITY_RATIO, old, { speed + STEP * torque / INERTIA, 0.0 }, STEP)[0];
+    Eigen::Vector2d speeds;
+    EXPECT_TRUE(dry_.solve(friction_, VELOCITY_RATIO, old, { speed + STEP * torque / INERTIA, 0.0 }, STEP, speeds));
+    return speeds[0];
   }
 
   JointFriction friction_{ 0 };
@@ -287,7 +324,9 @@ TEST(DryFriction, WithoutFrictionLeavesTheFreeSpeeds)
   const DryFriction dry({ 1e-4, 0.5 }, WIDTH);
   const JointFriction none(0);
   const Eigen::Vector2d free(3.0, -0.2);
-  EXPECT_LT((dry.solve(none, VELOCITY_RATIO, { 1.0, 1.0 }, free, STEP) - free).norm(), 1e-14);
+  Eigen::Vector2d speeds;
+  EXPECT_TRUE(dry.solve(none, VELOCITY_RATIO, { 1.0, 1.0 }, free, STEP, speeds));
+  EXPECT_LT((speeds - free).norm(), 1e-14);
 }
 
 TEST(DryFriction, NeverFeedsEnergyIn)
@@ -299,7 +338,7 @@ TEST(DryFriction, NeverFeedsEnergyIn)
   {
     const RandomStep step(random);
     const DryFriction dry(step.inertia, WIDTH);
-    const Eigen::Vector2d v = dry.solve(step.friction, VELOCITY_RATIO, step.old, step.free, STEP);
+    const Eigen::Vector2d v = step.solve(dry);
     EXPECT_LE(dry.torque(step.friction, VELOCITY_RATIO, v).dot(v), 0.0);
     // Over the step: friction takes kinetic energy from the free motion, or none.
     const double taken =

@@ -3,8 +3,11 @@
 
 #include <chrono>
 #include <cmath>
+#include <limits>
+#include <memory>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -93,7 +96,7 @@ TEST(SceneAuto, ChangesToTheFullRingAndBackWithoutAStep)
   const JointModel model(parameters);
   JointDynamics dynamics(model, parameters.solver);
   ASSERT_TRUE(dynamics.solveAtRest().ok());
-  dynamics.useSurface(&narrow);
+  ASSERT_TRUE(dynamics.useSurface(&narrow));
   int changes = 0;
   double before = 0.0;
   constexpr double STEP = 2e-6;  // rad; 0.13 N.m a step
@@ -113,6 +116,58 @@ TEST(SceneAuto, ChangesToTheFullRingAndBackWithoutAStep)
   }
   EXPECT_EQ(changes, 2);  // off it at its end, onto it again
   EXPECT_TRUE(dynamics.onSurface());
+}
+
+/// The full ring is where it was left, turns away: it may find no equilibrium where the surface is given up.
+TEST(SceneAuto, SaysThatTheRingDoesNotFollow)
+{
+  constexpr double MOTOR = 20.0;
+  constexpr double OUTPUT = MOTOR / 101.0 + 1e-3;
+  const Parameters parameters = surfaceParameters();
+  JointModel model(parameters);
+  JointDynamics dynamics(model, parameters.solver);
+  ASSERT_TRUE(dynamics.solveAtRest().ok());
+  ASSERT_TRUE(dynamics.useSurface(&surface()));
+  ASSERT_TRUE(dynamics.place(MOTOR, OUTPUT).ok());
+  ASSERT_TRUE(dynamics.onSurface());
+  const double torque = dynamics.response().output_torque;
+  const auto stays = [&]
+  {
+    return dynamics.position() == DrivePosition{ MOTOR, OUTPUT, parameters.gear.wave_amplitude } &&
+           dynamics.response().output_torque == torque;
+  };
+  double& stiffness = model.ring.edit<WaveGeneratorContact>().stiffness()[0];
+  const double sound = std::exchange(stiffness, std::numeric_limits<double>::quiet_NaN());
+  EXPECT_FALSE(dynamics.place(MOTOR, OUTPUT + 1.0).ok()) << "beyond the surface";
+  EXPECT_TRUE(dynamics.onSurface());
+  EXPECT_TRUE(stays());
+  dynamics.status = {};
+  EXPECT_FALSE(dynamics.useSurface(nullptr));
+  EXPECT_FALSE(dynamics.status.ok());
+  EXPECT_FALSE(dynamics.onSurface());
+  EXPECT_TRUE(stays());
+  model.ring.edit<WaveGeneratorContact>().stiffness()[0] = sound;
+  EXPECT_TRUE(dynamics.updateModel().ok());
+  EXPECT_EQ(dynamics.outputAngle(), OUTPUT);
+  EXPECT_NEAR(dynamics.response().output_torque, torque, 1e-3 * std::abs(torque));
+}
+
+/// By 5 N.m, a jump where the joint comes onto it.
+TEST(SceneAuto, TakesNoSurfaceBetweenOthersThatIsOff)
+{
+  constexpr double OUTPUT = 2e-3;
+  const Parameters parameters = surfaceParameters();
+  const JointModel model(parameters);
+  const auto table = std::make_shared<const ResponseSurface>(surface().table(), DeviationTable{});
+  for (const auto& [weight, taken] : { std::pair(1.0, true), std::pair(0.95, false) })
+  {
+    const ResponseSurface weighted({ { table, 0.5 }, { table, weight - 0.5 } });
+    JointDynamics dynamics(model, parameters.solver);
+    ASSERT_TRUE(dynamics.solveAtRest().ok());
+    ASSERT_TRUE(dynamics.place(0.0, OUTPUT).ok());
+    ASSERT_TRUE(dynamics.useSurface(&weighted));
+    EXPECT_EQ(dynamics.placeOnSurface(0.0, OUTPUT), taken) << weight;
+  }
 }
 
 TEST(SceneAuto, ToothForcesAreOfThePresentInstant)

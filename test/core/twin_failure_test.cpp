@@ -60,6 +60,22 @@ TEST(TwinFailure, HoldsTheLastGoodStateAndRecovers)
   EXPECT_EQ(twin.health().solver_state, SolverState::FAILED);
 }
 
+TEST(TwinFailure, IsSaidOfARestartUnderMoreThanTheTeethBear)
+{
+  Twin twin(goldenParameters());
+  twin.coupleArm(1.0, 1e5);
+  ASSERT_TRUE(twin.reset(SECOND));
+  EXPECT_FALSE(twin.outputs().converged);
+  EXPECT_EQ(twin.counters().solver_failures, 1U);
+  EXPECT_EQ(twin.health().solver_state, SolverState::FAILED);
+  EXPECT_TRUE(allFinite(numbers(twin.outputs())));
+  twin.coupleArm(1.0, 50.0);
+  ASSERT_TRUE(twin.reset(SECOND));
+  EXPECT_TRUE(twin.outputs().converged);
+  EXPECT_EQ(twin.counters().solver_failures, 0U);
+  EXPECT_EQ(twin.health().solver_state, SolverState::OK);
+}
+
 class ViolentRun : public testing::TestWithParam<unsigned>
 {
 };

@@ -22,7 +22,8 @@ enum class SolveStage
 {
   INSERTION,  ///< of the wave generator
   MOTION,     ///< to given angles of wave generator and output
-  BALANCE     ///< of the load, by turning the output
+  BALANCE,    ///< of the load, by turning the output
+  FRICTION    ///< in a step of the joint: speeds at which it balances the other torques
 };
 
 /// Outcome of a solve; the caller must look.
