@@ -248,8 +248,8 @@ class OutputFiles(tool.ToolTest):
     def test_a_link_at_the_name_of_a_bag_in_work_is_not_followed(self):
         self.write("victim", "precious")
         os.symlink("victim", self.path("out.bag.active"))
-        self.fail_with(1, ["out.bag.active cannot be written"], "simulate", "--torque", "0.2", "--duration", "0.02", "--out",
-                       "out.bag")
+        self.fail_with(1, ["out.bag.active cannot be written"], "simulate", "--torque", "0.2", "--duration", "0.02",
+                       "--out", "out.bag")
         self.assertEqual(tool.read_bytes(self.path("victim")), b"precious")
 
     def test_a_full_disk_is_named_and_leaves_no_empty_file(self):
