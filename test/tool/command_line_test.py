@@ -3,6 +3,7 @@
 import glob
 import math
 import os
+import re
 import signal
 import subprocess
 import time
@@ -175,6 +176,22 @@ class Process(tool.ToolTest):
                 process.returncode = os.waitstatus_to_exitcode(status)
                 self.assertIn(process.returncode, (128 + signal.SIGINT, -signal.SIGINT))
                 self.assertLess(usage.ru_utime + usage.ru_stime - before, 1.0 * tool.SLOWER)
+
+    def test_identify_says_beforehand_how_long_it_takes(self):
+        self.long_recording("long.csv")
+        process = subprocess.Popen([self.executable, "identify", "long.csv", "--arm", "ur5", "--out", "out"],
+                                   cwd=self.directory, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+        self.addCleanup(process.kill)
+        line = b""
+        while b"identifying" not in line:
+            line = process.stderr.readline()
+            self.assertTrue(line, "nothing said")
+        done, left = re.fullmatch(r"identifying: (\d+) %, (\d+) s left\n", line.decode()).groups()
+        self.assertLess(int(done), 50)
+        self.assertGreater(int(left), 0)
+        process.send_signal(signal.SIGINT)
+        process.communicate()
+        self.assertEqual((process.returncode, os.listdir(self.path("out"))), (128 + signal.SIGINT, []))
 
     def test_output_that_cannot_be_written_is_a_failure(self):
         for arguments in [["stiffness", "--torques", "5", "--json"], ["faults"], ["--help"], ["check", "--help"],
