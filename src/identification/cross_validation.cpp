@@ -63,7 +63,7 @@ std::vector<MotionSample> samplesWithin(const std::vector<MotionSample>& all, co
 }
 
 JudgedErrors leaveOneOut(const Parameters& parameters, const std::vector<MotionSample>& all, const Span& train,
-                         int folds, bool load_recorded)
+                         int folds, bool load_recorded, const std::function<void()>& fitted)
 {
   JudgedErrors sum;
   const std::vector<double> ends = endsOfPieces(samplesWithin(all, train), train, folds);
@@ -76,6 +76,7 @@ JudgedErrors leaveOneOut(const Parameters& parameters, const std::vector<MotionS
     addError(judged.without_ripple, sum.without_ripple);
     addError(judged.identified, sum.identified);
     addError(judged.gain_coulomb_viscous, sum.gain_coulomb_viscous);
+    fitted();
   }
   return sum;
 }

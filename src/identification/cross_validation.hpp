@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "identification/identification.hpp"
@@ -20,8 +21,8 @@ struct Span
 std::vector<MotionSample> samplesWithin(const std::vector<MotionSample>& all, const Span& span, const Span& hole = {});
 
 /// `train`, which has samples, is cut into `folds` pieces in which the joint goes equal ways. Each is judged by what
-/// the others give; the errors are pooled. 0 folds: no rows.
+/// the others give; the errors are pooled. 0 folds: no rows. `fitted` is called after each.
 /// @throws InputError as identify.
 JudgedErrors leaveOneOut(const Parameters& parameters, const std::vector<MotionSample>& all, const Span& train,
-                         int folds, bool load_recorded);
+                         int folds, bool load_recorded, const std::function<void()>& fitted);
 }  // namespace hjt

@@ -17,8 +17,6 @@ using std::chrono::milliseconds;
 constexpr milliseconds BAR_PERIOD{ 200 };
 constexpr milliseconds FIRST_LINE{ 2000 };
 constexpr milliseconds LINE_PERIOD{ 5000 };
-/// The clock is read once in so many calls.
-constexpr unsigned CALLS_PER_LOOK = 64;
 constexpr int BAR_WIDTH = 40;
 }  // namespace
 
@@ -37,10 +35,6 @@ Progress::~Progress()
 
 void Progress::update(double done)
 {
-  if (++calls_ % CALLS_PER_LOOK != 0 && done < 1.0)
-  {
-    return;
-  }
   const auto now = Clock::now();
   if (now >= next_ || (bar_shown_ && done >= 1.0))
   {

@@ -29,7 +29,6 @@ private:
   const bool terminal_;
   const Clock::time_point start_{ Clock::now() };
   Clock::time_point next_;
-  unsigned calls_{};
   bool bar_shown_{};
 };
 

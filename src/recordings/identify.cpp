@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <map>
 
 #include "output/text_table.hpp"
@@ -135,16 +136,24 @@ void chooseParts(const IdentifyOptions& options, double duration, double last, I
   }
 }
 
-/// Fits a joint to its part; the pieces left out in turn judge an arm's. @throws InputError if it hardly moves.
+/// Pieces that are left out in turn: those of an arm judge what was identified.
+int foldsOf(const IdentifyOptions& options)
+{
+  return options.folds > 0 || options.arm.empty() ? options.folds : ARM_FOLDS;
+}
+
+/// Fits a joint to its part, then to what is left of it without each piece; `fitted` is called after each.
+/// @throws InputError if it hardly moves.
 void identifyJoint(const IdentifyOptions& options, const Parameters& parameters, bool load_recorded,
-                   const std::vector<MotionSample>& samples, IdentifiedJoint& joint)
+                   const std::vector<MotionSample>& samples, const std::function<void()>& fitted,
+                   IdentifiedJoint& joint)
 {
   const JudgedPart judge{ samplesWithin(samples, { -HUGE_VAL, joint.judge.to }), joint.judge.from };
   joint.found = identify(parameters, samplesWithin(samples, joint.train), judge, load_recorded);
+  fitted();
   const bool is_arm = !options.arm.empty();
   JudgedErrors& left_out = joint.left_out;
-  left_out = leaveOneOut(parameters, samples, joint.train, options.folds > 0 || !is_arm ? options.folds : ARM_FOLDS,
-                         load_recorded);
+  left_out = leaveOneOut(parameters, samples, joint.train, foldsOf(options), load_recorded, fitted);
   if (is_arm && left_out.identified.moving > RIPPLE_GAIN * left_out.without_ripple.moving)
   {
     left_out.identified = left_out.without_ripple;
@@ -206,14 +215,25 @@ std::vector<IdentifiedJoint> identifyJoints(const IdentifyOptions& options, cons
                                             double duration, const std::vector<std::vector<MotionSample>>& samples)
 {
   std::vector<IdentifiedJoint> joints;
+  const auto progress = options.watch.progress("identifying");
+  const std::size_t fits = 1 + static_cast<std::size_t>(foldsOf(options));  // of a joint, each of about the same time
   for (std::size_t i = 0; i < samples.size() && !options.watch.stopped(); ++i)
   {
     IdentifiedJoint& joint = joints.emplace_back();
     joint.name = recording.joints()[i].short_name;
+    std::size_t done = i * fits;
+    const auto fitted = [&]
+    {
+      progress(static_cast<double>(++done) / static_cast<double>(fits * samples.size()));
+      if (options.watch.stopped())
+      {
+        throw Stopped{};
+      }
+    };
     try
     {
       chooseParts(options, duration, samples[i].empty() ? 0.0 : samples[i].back().time, joint);
-      identifyJoint(options, recording.parameters(i), recording.usesRecordedLoad(), samples[i], joint);
+      identifyJoint(options, recording.parameters(i), recording.usesRecordedLoad(), samples[i], fitted, joint);
     }
     catch (const InputError& error)
     {
@@ -223,6 +243,10 @@ std::vector<IdentifiedJoint> identifyJoints(const IdentifyOptions& options, cons
       }
       joint.found = {};
       joint.refusal = error.what();
+    }
+    catch (const Stopped&)
+    {
+      break;
     }
   }
   return joints;

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Data flows one way: a folder includes itself and the folders it may see, and ROS stays in ros_io and the
-applications.
+"""Data flows one way: a folder includes itself and the folders it may see, ROS stays in ros_io and the applications,
+and few files open others for writing.
 
 Debian keeps ROS' headers in /usr/include, where no include path can keep them from the core.
 """
@@ -67,6 +67,12 @@ INCLUDE = re.compile(r'\s*#\s*include\s*(<[^>]+>|"[^"]+")')
 PUBLIC_HEADER = re.compile(r'"harmonic_joint_twin/([\w/]+)/\w+\.hpp"$')
 OWN_HEADER = re.compile(r'"([\w/]+)/\w+\.hpp"$')
 MESSAGE_HEADER = re.compile(r'[<"]harmonic_joint_twin/[A-Z]\w*\.h[>"]$')
+# What opens files for writing: new ones beside the old under a name that nobody can guess, and never through a link.
+# All else takes one of these.
+WRITERS = {"base/file_lock.hpp", "base/whole_file.cpp", "bags/bag_writer.cpp", "datasets/file_seal.cpp",
+           "datasets/hdf5_run_file.cpp", "datasets/sweep_directory.cpp", "output/output_file.cpp"}
+OPENING = re.compile(r"\bo?fstream\s+\w|\bf(re)?open\(|\bO_(WRONLY|RDWR|CREAT)\b|\b(H5Fcreate|creat|mkstemp)\(|"
+                     r"bagmode::(Write|Append)")
 TEST_HEADERS = ("test/", "bench/")  # helpers of the tests, which benchmarks use too
 
 
@@ -124,6 +130,8 @@ def check(root):
             reason = fault(folder, include.group(1), path.startswith("include/")) if include else None
             if reason:
                 problems.append(f"{path}:{number}: {reason}")
+            if path.startswith(("src/", "include/")) and relative not in WRITERS and OPENING.search(line):
+                problems.append(f"{path}:{number}: opens a file for writing, which {', '.join(sorted(WRITERS))} do")
     return problems if sources else ["include, src: no sources found"]
 
 

@@ -137,6 +137,16 @@ class Layering(Tree):
         self.write("include/harmonic_joint_twin/gear/angle.hpp", '#include "gear/ellipse.hpp"\n')
         self.assert_fault(layering.check, "angle.hpp:1", "public")
 
+    def test_files_are_opened_for_writing_by_few(self):
+        for line in ["std::ofstream out(path);", 'FILE* file = std::fopen(path, "r");', "open(name, O_RDWR | O_CREAT);",
+                     "bag.open(path, rosbag::bagmode::Write);", "H5Fcreate(name, H5F_ACC_TRUNC, 0, 0);"]:
+            with self.subTest(line):
+                self.write("src/output/one.cpp", line + "\n")
+                self.assert_fault(layering.check, "src/output/one.cpp:1", "for writing")
+                self.write("src/output/one.cpp", "#include <fstream>\nstd::ifstream in(path);\n")
+                self.write("src/output/output_file.cpp", line + "\n")
+                self.assert_clean(layering.check)
+
     def test_unknown_folder(self):
         self.write("src/misc/one.cpp", "")
         self.assert_fault(layering.check, "src/misc/one.cpp")

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The command line: kinds of options, what of it is refused, help, interrupts, what cannot be printed."""
 import glob
+import math
 import os
+import re
 import signal
 import subprocess
 import time
@@ -9,6 +11,20 @@ import time
 import tool
 
 PAIR = ["identify", "none.bag", "--joint", "1", "--train"]
+
+
+PARTS = ("actual_q", "actual_qd", "actual_current", "target_moment")
+
+
+def swings(rows):
+    """PARTS of six joints that swing in a whole number of periods."""
+    for row in range(rows):
+        phases = [2.0 * math.pi * (joint + 2) * row / rows for joint in range(6)]
+        yield ([0.4 * math.sin(phase) for phase in phases] +
+               [0.4 * 2.0 * math.pi * (joint + 2) / (0.008 * rows) * math.cos(phase)
+                for joint, phase in enumerate(phases)] +
+               [math.copysign(0.5, math.cos(phase)) + 0.3 * math.sin(phase) for phase in phases] +
+               [3.0 * math.sin(phase) for phase in phases])
 
 
 class Options(tool.ToolTest):
@@ -134,6 +150,49 @@ class Process(tool.ToolTest):
             process.communicate(timeout=20.0 * tool.SLOWER)
             self.assertEqual(process.returncode, -number)
 
+    def long_recording(self, name):
+        """Half an hour of an arm that swings."""
+        block = [",".join(f"{value:.5f}" for value in row) for row in swings(1000)]
+        with open(self.path(name), "w", encoding="ascii") as file:
+            file.write(",".join(["timestamp"] + [f"{part}_{joint}" for part in PARTS
+                                                 for joint in range(6)]) + "\n")
+            file.writelines(f"{0.008 * row:.3f},{block[row % 1000]}\n" for row in range(225000))
+
+    def test_the_first_signal_ends_each_reader_of_recordings_within_a_second(self):
+        self.long_recording("long.csv")
+        for arguments in (["check"], ["compare", "--arm", "ur5"], ["follow", "--arm", "ur5", "--out", "out.csv"],
+                          ["identify", "--arm", "ur5", "--out", "out"],
+                          ["trend", "long.csv", "--arm", "ur5"], ["import", "--joint", "2", "--out", "out.bag"]):
+            with self.subTest(arguments):
+                process = subprocess.Popen([self.executable, arguments[0], "long.csv", *arguments[1:]],
+                                           cwd=self.directory, stdout=subprocess.DEVNULL)
+                self.addCleanup(process.kill)
+                while tool.processor_time(process.pid) < 0.6 * tool.SLOWER:
+                    self.assertIsNone(process.poll())
+                    time.sleep(0.01)
+                before = tool.processor_time(process.pid)
+                process.send_signal(signal.SIGINT)
+                _, status, usage = os.wait4(process.pid, 0)
+                process.returncode = os.waitstatus_to_exitcode(status)
+                self.assertIn(process.returncode, (128 + signal.SIGINT, -signal.SIGINT))
+                self.assertLess(usage.ru_utime + usage.ru_stime - before, 1.0 * tool.SLOWER)
+
+    def test_identify_says_beforehand_how_long_it_takes(self):
+        self.long_recording("long.csv")
+        process = subprocess.Popen([self.executable, "identify", "long.csv", "--arm", "ur5", "--out", "out"],
+                                   cwd=self.directory, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+        self.addCleanup(process.kill)
+        line = b""
+        while b"identifying" not in line:
+            line = process.stderr.readline()
+            self.assertTrue(line, "nothing said")
+        done, left = re.fullmatch(r"identifying: (\d+) %, (\d+) s left\n", line.decode()).groups()
+        self.assertLess(int(done), 50)
+        self.assertGreater(int(left), 0)
+        process.send_signal(signal.SIGINT)
+        process.communicate()
+        self.assertEqual((process.returncode, os.listdir(self.path("out"))), (128 + signal.SIGINT, []))
+
     def test_output_that_cannot_be_written_is_a_failure(self):
         for arguments in [["stiffness", "--torques", "5", "--json"], ["faults"], ["--help"], ["check", "--help"],
                           ["export", "--format", "urdf"], ["parameters"]]:
@@ -142,6 +201,27 @@ class Process(tool.ToolTest):
                                       universal_newlines=True, check=False)
                 self.assertEqual(done.returncode, 1, done.stderr)
                 self.assertIn("joint_twin: standard output cannot be written", done.stderr)
+
+
+class InputFiles(tool.ToolTest):
+    def test_pipes_and_files_without_end_are_refused(self):
+        os.mkfifo(self.path("pipe"))
+        with open(self.path("sparse"), "wb") as file:
+            file.truncate(3 << 30)
+        arms = os.path.join(tool.CHECKOUT, "config", "arms")
+        with open(os.path.join(arms, "ur5.yaml"), encoding="utf-8") as file:
+            arm = file.read().replace("ur5.urdf", os.path.join(arms, "ur5.urdf"))
+        self.write("rows.csv", "time\n0\n")
+        for name, reason in (("pipe", "cannot be read: it is a folder, a device or a pipe"),
+                             ("sparse", "cannot be read: it is larger than 10000000 bytes")):
+            path = self.path(name)
+            self.write("arm.yaml", arm.replace("[joints/base.yaml, ", f"[{path}, "))
+            for arguments in (["parameters", "--config", path],
+                              ["simulate", "--torque", "0", "--duration", "0.01", "--out", "a.csv", "--set",
+                               "indicators.signatures=" + path],
+                              ["check", "rows.csv", "--arm", "arm.yaml"]):
+                with self.subTest(arguments):
+                    self.fail_with(1, [path, reason], *arguments)
 
 
 class OutputFiles(tool.ToolTest):
@@ -181,6 +261,13 @@ class OutputFiles(tool.ToolTest):
         self.assertTrue(tool.read_bytes(self.path("there.csv")).startswith(b"tooth,"))
         self.assertIn(tool.read_bytes(self.path("there.csv")).decode(), self.succeed(*insert, "/dev/stdout").stdout)
         self.assertEqual(sorted(os.listdir(self.directory)), ["link.csv", "there.csv"])
+
+    def test_a_link_at_the_name_of_a_bag_in_work_is_not_followed(self):
+        self.write("victim", "precious")
+        os.symlink("victim", self.path("out.bag.active"))
+        self.fail_with(1, ["out.bag.active cannot be written"], "simulate", "--torque", "0.2", "--duration", "0.02",
+                       "--out", "out.bag")
+        self.assertEqual(tool.read_bytes(self.path("victim")), b"precious")
 
     def test_a_full_disk_is_named_and_leaves_no_empty_file(self):
         self.fail_with(1, ["/dev/full cannot be written: No space left on device\n"], "insert", "--csv", "/dev/full",

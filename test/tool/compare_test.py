@@ -74,6 +74,15 @@ class Compare(tool.ToolTest):
         robot.write_bag(self.path("a.bag"), 3.0)
         self.succeed("compare", "a.bag", *OPTIONS, "--report", "report")
         self.fail_with(1, ["comparison.json exists; --force"], "compare", "a.bag", *OPTIONS, "--report", "report")
+        for name in ("course.csv", "teeth.png", "windows.csv"):
+            with self.subTest(name):
+                folder = "of_" + name
+                os.mkdir(self.path(folder))
+                self.write(os.path.join(folder, name), "precious")
+                self.fail_with(1, [f"holds files already, {name} among them", "--force"], "compare", "a.bag", *OPTIONS,
+                               "--report", folder)
+                self.assertEqual(tool.read_bytes(self.path(os.path.join(folder, name))), b"precious")
+                self.assertEqual(os.listdir(self.path(folder)), [name])
         self.fail_with(1, ["joints found: elbow_joint, wrist_1_joint"], "compare", "a.bag", "--joint", "shoulder",
                        "--report", "r1")
         self.fail_with(1, ["no messages on /arm", "/joint_states (sensor_msgs/JointState)"], "compare", "a.bag",

@@ -153,6 +153,16 @@ class Sweep(SweepTest):
         self.fail_with(1, ["none.yaml cannot be read"], "sweep", "none.yaml", "--out", "a")
         self.fail_with(2, ["I/N"], "sweep", "plan.yaml", "--out", "a", "--shard", "2/2")
 
+    def test_a_directory_with_files_of_something_else_is_left_as_it_is(self):
+        for name, said in (("index.csv", "index.csv is of something else"), ("plan.json", "plan.json"),
+                           ("runs/run_000000.h5", "holds files of something else")):
+            with self.subTest(name):
+                folder = self.path("of_" + os.path.basename(name))
+                os.makedirs(os.path.dirname(os.path.join(folder, name)))
+                self.write(os.path.join(folder, name), "precious")
+                self.fail_with(1, [said], "sweep", "plan.yaml", "--out", folder)
+                self.assertEqual(tool.read_bytes(os.path.join(folder, name)), b"precious")
+
     def test_two_sweeps_into_one_directory_do_not_spoil_it(self):
         for name, plan in [("hdf5", PLAN.replace("repeats: 3", "repeats: 8")),
                            ("bag", PLAN[:PLAN.index("  format:")].replace("repeats: 3", "repeats: 8")
