@@ -156,14 +156,15 @@ def identify(recording: Recording, *, joint: Optional[str] = None, arm: Optional
                   "force": force, "progress": progress}, overlays)
 
 
-def compare(recording: Recording, report: Path, *, joint: Optional[str] = None, arm: Optional[str] = None,
-            reference: Union[Path, Sequence[Path], None] = None, load: Optional[str] = None,
-            identified: Optional[Path] = None, topic: Optional[str] = None, time_scale: Optional[float] = None,
-            force: bool = False, overlays: Overlays = (), progress: Optional[Progress] = None) -> Document:
-    """Verdict on a recorded joint or arm beside its twin, with a page: the tool's compare (docs/compare.md).
+def compare(recording: Recording, report: Optional[Path] = None, *, joint: Optional[str] = None,
+            arm: Optional[str] = None, reference: Union[Path, Sequence[Path], None] = None,
+            load: Optional[str] = None, identified: Optional[Path] = None, topic: Optional[str] = None,
+            time_scale: Optional[float] = None, force: bool = False, overlays: Overlays = (),
+            progress: Optional[Progress] = None) -> Document:
+    """Verdict on a recorded joint or arm beside its twin: the tool's compare (docs/compare.md).
 
-    report: directory that gets report.html, its figures and its data. reference: earlier reports, in sound condition.
-    Others as of identify.
+    report: directory that gets report.html, its figures and its data; None: nothing is written. reference: earlier
+    reports, in sound condition. Others as of identify.
 
     Returns the report's data as a dict: of a joint 'verdict' (a dict: 'level', 'reason', 'text', 'friction_factor' and
     more), 'friction_ratio', 'motion' and more; of an arm 'level', 'text', 'joints' (one dict each). InputError,

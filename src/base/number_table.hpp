@@ -11,7 +11,7 @@
 
 #include "base/csv_rows.hpp"
 #include "base/joined.hpp"
-#include "base/number_text.hpp"
+#include "base/range_check.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 
 namespace hjt
@@ -77,10 +77,9 @@ public:
   /// @throws InputError naming line, column, value, unit and range.
   void requireRange(std::size_t column, double value, const Range& range, const std::string& unit) const
   {
-    if (!(value >= range.min && value <= range.max))
+    if (!isWithin(value, range))
     {
-      throw InputError(place() + ": column '" + names_[column] + "' = " + numberText(value) + " [" + unit +
-                       "] is out of range, allowed: " + rangeText(range) + " [" + unit + "]");
+      throw InputError(outOfRangeText(place() + ": column '" + names_[column] + "'", value, unit, range));
     }
   }
 

@@ -6,7 +6,6 @@
 #include <random>
 
 #include "base/number_table.hpp"
-#include "base/number_text.hpp"
 #include "gear/angle.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 
@@ -47,11 +46,7 @@ Eigen::VectorXd readDeviations(const std::string& path, int teeth)
     {
       throw InputError(table.place() + ": column 'tooth' must count from 0 to " + std::to_string(teeth - 1));
     }
-    if (std::abs(row[1]) > MAX_ERROR)
-    {
-      throw InputError(table.place() + ": column 'deviation' = " + numberText(row[1]) +
-                       " [m] is out of range, allowed: " + rangeText({ -MAX_ERROR, MAX_ERROR }) + " [m]");
-    }
+    table.requireRange(1, row[1], { -MAX_ERROR, MAX_ERROR }, "m");
     deviations[tooth] = row[1];
   }
   if (tooth != teeth)

@@ -9,8 +9,8 @@
 #include <limits>
 #include <optional>
 
-#include "base/number_text.hpp"
 #include "base/printable.hpp"
+#include "base/range_check.hpp"
 #include "messages/time.hpp"
 #include "statics/fatigue_law.hpp"
 #include "statics/inertia_error.hpp"
@@ -294,10 +294,9 @@ std::string readFault(const harmonic_joint_twin::Fault& message, const Parameter
     return "kind = '" + printable(message.kind) + "' is unknown, allowed: " + faultNames();
   }
   const GrowingFault growing{ { *kind, message.severity, message.place, 0.0 }, message.ramp };
-  if (!(growing.ramp >= 0.0 && growing.ramp <= GrowingFault::MAX_RAMP))
+  if (const Range range{ 0.0, GrowingFault::MAX_RAMP }; !isWithin(growing.ramp, range))
   {
-    return "ramp = " + numberText(growing.ramp) + " [s] is out of range, allowed: 0 ... " +
-           numberText(GrowingFault::MAX_RAMP) + " [s]";
+    return outOfRangeText("ramp", growing.ramp, "s", range);
   }
   steps = growing.steps();
   return faultErrors(growing.fault, parameters, "");

@@ -5,7 +5,7 @@
 #include <optional>
 #include <type_traits>
 
-#include "base/number_text.hpp"
+#include "base/range_check.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "params/choices.hpp"
 #include "params/configuration_files.hpp"
@@ -131,10 +131,9 @@ Fault makeFault(const std::string& kind, double severity, const std::optional<in
   {
     throw ParameterError("unknown kind of fault '" + kind + "', allowed: " + faultNames());
   }
-  if (!(severity >= 0.0 && severity <= 1.0))
+  if (const std::string errors = rangeErrors("severity", severity, "-", { 0.0, 1.0 }); !errors.empty())
   {
-    throw ParameterError("severity = " + numberText(severity) + " [-] of " + kind +
-                         " is out of range, allowed: 0 ... 1 [-]");
+    throw ParameterError(kind + ": " + errors);
   }
   return { *named, severity, place.value_or(firstPlace(*named)), onset };
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/number_text.hpp"
+#include "base/range_check.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/twin/twin.hpp"
 #include "python/bindings.hpp"
@@ -21,10 +22,9 @@ void requireInput(InputKind kind, double value, double load_torque_limit, const 
 {
   const auto refuse = [&](const char* unit, const Range& range)
   {
-    if (value < range.min || value > range.max)
+    if (!isWithin(value, range))
     {
-      throw InputError(name() + " = " + numberText(value) + " [" + unit +
-                       "] is out of range, allowed: " + rangeText(range));
+      throw InputError(outOfRangeText(name(), value, unit, range));
     }
   };
   if (!std::isfinite(value))
@@ -213,11 +213,8 @@ inline py::ssize_t requireSteps(const std::optional<py::ssize_t>& steps, py::ssi
   {
     throw InputError("steps is missing: give it, or an input as an array with a value for each step");
   }
-  if (*steps < 0 || every < 1)
-  {
-    throw InputError("steps = " + std::to_string(*steps) + ", every = " + std::to_string(every) +
-                     " [-] out of range, allowed: steps >= 0, every >= 1");
-  }
+  requireAtLeast("steps", *steps, 0);
+  requireAtLeast("every", every, 1);
   return *steps;
 }
 }  // namespace hjt

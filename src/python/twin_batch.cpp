@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/range_check.hpp"
 #include "python/thread_team.hpp"
 #include "python/twin_object.hpp"
 #include "surface/parallel_tasks.hpp"
@@ -38,10 +39,7 @@ public:
       throw InputError(alike_ ? "n is missing: how many twins there are to be" :
                                 "n is for one Parameters or one Twin, not for several");
     }
-    if (count.value_or(1) < 1)
-    {
-      throw InputError("n = " + std::to_string(*count) + " [-] is out of range, allowed: 1 ...");
-    }
+    requireAtLeast("n", count.value_or(1), 1);
     for (py::ssize_t i = 0; alike_ && i < *count; ++i)
     {
       items_.push_back(given);
@@ -142,10 +140,7 @@ private:
 
 std::size_t threadCount(const std::optional<int>& threads, std::size_t twins)
 {
-  if (threads.value_or(1) < 1)
-  {
-    throw InputError("threads = " + std::to_string(*threads) + " [-] is out of range, allowed: 1 ...");
-  }
+  requireAtLeast("threads", threads.value_or(1), 1);
   return std::min<std::size_t>(threads ? static_cast<unsigned>(*threads) : processors(), twins);
 }
 
@@ -171,10 +166,7 @@ public:
 
   StepRows step(const GivenInputs& given, py::ssize_t steps, const py::object& out)
   {
-    if (steps < 1)
-    {
-      throw InputError("steps = " + std::to_string(steps) + " [-] is out of range, allowed: 1 ...");
-    }
+    requireAtLeast("steps", steps, 1);
     RunShape shape{ RunShape::Axes::TWINS, loadTorqueLimit(), size(), steps };
     const RunInputs inputs(given, shape);
     StepRows rows = rowsFor({ size() }, out);

@@ -39,6 +39,17 @@ Parameters parametersOf(const ArmJoint& joint, double gain, const RecordingOptio
   return parameters;
 }
 
+/// Of a file, which is read for them once.
+RecordingOptions withStatements(RecordingOptions options)
+{
+  if (!options.rows && !options.stated)
+  {
+    options.stated =
+        std::make_shared<const RecordedStatements>(readStatements(motionSource(options), !options.arm.empty()));
+  }
+  return options;
+}
+
 /// One joint as an arm.
 ArmDescription armOf(const std::string& short_name)
 {
@@ -66,7 +77,7 @@ std::string wrongStamps(const MotionCount& count)
 }  // namespace
 
 ArmRecording::ArmRecording(const RecordingOptions& options)
-  : options_(options)
+  : options_(withStatements(options))
   , watch_(options.watch)
   , joint_namespace_(options.joint_namespace)
   , affixes_(options.affixes)
@@ -75,21 +86,21 @@ ArmRecording::ArmRecording(const RecordingOptions& options)
   , source_(motionSource(options))
 {
   stated_gains_.assign(arm_.joints.size(), std::numeric_limits<double>::quiet_NaN());
-  if (is_arm_ && isFile())
+  const RecordedStatements stated = options_.stated ? *options_.stated : RecordedStatements();
+  if (stated.gains.size() == arm_.joints.size())
   {
-    stated_gains_ = readStatedGains(source_, arm_.joints.size());
-    const std::optional<Payload> stated = readStatedPayload(source_);
-    if (stated && stated->mass > 0.0 && arm_.payload.mass == 0.0)
-    {
-      arm_.payload = *stated;
-      payload_text_ = "payload of " + roundedText(stated->mass, 3) + " kg, as the controller states";
-    }
+    stated_gains_ = stated.gains;
+  }
+  if (stated.payload && stated.payload->mass > 0.0 && arm_.payload.mass == 0.0)
+  {
+    arm_.payload = *stated.payload;
+    payload_text_ = "payload of " + roundedText(arm_.payload.mass, 3) + " kg, as the controller states";
   }
   for (std::size_t i = 0; i < arm_.joints.size(); ++i)
   {
     parameters_.push_back(is_arm_ ? parametersOf(arm_.joints[i], stated_gains_[i], options) : loadParameters(options));
   }
-  has_load_ = isFile() ? recordsLoad(source_) : options.rows_have_load;
+  has_load_ = isFile() ? stated.has_load : options.rows_have_load;
   uses_recorded_ = is_arm_ ? options.load == LOAD_RECORDED : has_load_;
   if (uses_recorded_ && !has_load_)
   {

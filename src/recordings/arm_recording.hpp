@@ -11,6 +11,7 @@
 #include "arm/arm_load.hpp"
 #include "arm/recording_fit.hpp"
 #include "recordings/recording_options.hpp"
+#include "tracking/joint_evidence.hpp"
 
 namespace hjt
 {
@@ -52,12 +53,16 @@ public:
   const Parameters& parameters(std::size_t joint) const { return parameters_[joint]; }
   const std::vector<Parameters>& parameters() const { return parameters_; }
   std::vector<double> gains() const;  ///< of the joints, torque per current [N.m/A]
-  /// Torque per current that an arm's recording states, see readStatedGains; it counts unless another was identified or
+  /// Torque per current that an arm's recording states, see RecordedStatements; it counts unless another was identified or
   /// set [N.m/A].
   const std::vector<double>& statedGains() const { return stated_gains_; }
   bool hasRecordedLoad() const { return has_load_; }
   /// The load is the recorded one.
   bool usesRecordedLoad() const { return uses_recorded_; }
+  LoadOrigin loadOrigin() const
+  {
+    return uses_recorded_ ? LoadOrigin::RECORDED : is_arm_ ? LoadOrigin::ARM : LoadOrigin::CONFIGURED;
+  }
 
   /// Calls `visit` for each time with a row of each joint, in memory that does not grow, and gives notice of what does
   /// not fit. Without any load the rows' is 0. @throws InputError.

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
 #include <utility>
+#include <vector>
 
 #include "tracking/verdict.hpp"
 
 namespace hjt
 {
-/// A joint of a recording beside its twin, and what is known of it: what `check` and `compare` have in common.
+/// A joint of a recording beside its twin, and what is known of it: what `check`, `compare` and `follow` have in common.
 class AssessedJoint
 {
 public:
@@ -37,5 +39,41 @@ private:
   const OwnReference own_;
   const bool is_identified_;
   bool has_controller_{};
+};
+
+/// The same without output files.
+class AssessedTwin : public AssessedJoint
+{
+public:
+  AssessedTwin(const Parameters& parameters, LoadOrigin load, bool is_identified)
+    : AssessedJoint(OwnReference(), is_identified), evidence_(parameters, load)
+  {
+  }
+  void update(const MotionSample& sample) override { evidence_.update(sample); }
+  const JointEvidence& evidence() const override { return evidence_; }
+
+private:
+  JointEvidence evidence_;
+};
+
+/// The joints beside their twins, made anew for each reading.
+class AssessedTwins
+{
+public:
+  std::vector<AssessedJoint*> make(const std::vector<Parameters>& parameters, LoadOrigin load, bool is_identified)
+  {
+    joints_.clear();
+    std::vector<AssessedJoint*> all;
+    for (const Parameters& of : parameters)
+    {
+      all.push_back(joints_.emplace_back(std::make_unique<AssessedTwin>(of, load, is_identified)).get());
+    }
+    return all;
+  }
+
+  AssessedTwin& operator[](std::size_t joint) const { return *joints_[joint]; }
+
+private:
+  std::vector<std::unique_ptr<AssessedTwin>> joints_;
 };
 }  // namespace hjt

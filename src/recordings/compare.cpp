@@ -274,9 +274,6 @@ void prepareReports(const ComparisonOptions& options, const ArmRecording& record
 std::vector<std::unique_ptr<JointComparison>> prepareJoints(const ComparisonOptions& options,
                                                             const ArmRecording& recording)
 {
-  const LoadOrigin load = recording.usesRecordedLoad() ? LoadOrigin::RECORDED :
-                          recording.isArm()            ? LoadOrigin::ARM :
-                                                         LoadOrigin::CONFIGURED;
   std::vector<std::unique_ptr<JointComparison>> joints;
   for (std::size_t i = 0; i < recording.joints().size(); ++i)
   {
@@ -286,9 +283,8 @@ std::vector<std::unique_ptr<JointComparison>> prepareJoints(const ComparisonOpti
     {
       references.push_back(directoryOf(recording, reference, i));
     }
-    joints.push_back(std::make_unique<JointComparison>(recording, i, load, directory,
-                                                       readSoundJoint(references, recording.parameters(i)),
-                                                       !options.identified.empty()));
+    joints.push_back(std::make_unique<JointComparison>(
+        recording, i, directory, readSoundJoint(references, recording.parameters(i)), !options.identified.empty()));
   }
   return joints;
 }

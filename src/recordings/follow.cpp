@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "output/text_table.hpp"
-#include "recordings/arm_recording.hpp"
+#include "recordings/arm_assessment.hpp"
 #include "recordings/tracked_bag.hpp"
 #include "tracking/stream_timing.hpp"
 
@@ -178,6 +178,23 @@ std::unique_ptr<TrackedBag> bagOf(const ArmRecording& recording, const FollowOpt
   return std::make_unique<TrackedBag>(options.bag, recording.source(0), joints);
 }
 
+/// As `compare` judges it; the load that the currents show is the recording's from then on.
+ArmAssessment assessFor(AssessedTwins& twins, ArmRecording& recording, const FollowOptions& options)
+{
+  AssessmentSettings settings;
+  settings.make_joints = [&]
+  { return twins.make(recording.parameters(), recording.loadOrigin(), !options.identified.empty()); };
+  settings.gives_notice = false;
+  settings.watch = options.watch;
+  RecordingFit fit(recording.parameters());
+  const ArmAssessment arm = assess(recording, settings, fit);
+  if (!arm.assumed.isConfigured())
+  {
+    options.watch.notice(arm.assumed.text());
+  }
+  return arm;
+}
+
 void noticeOfUnusedLoad(const ArmRecording& recording, const FollowOptions& options)
 {
   const MotionSource source = recording.source(0);
@@ -242,7 +259,7 @@ Report reportOfJoint(const MotionFindings& found, const FollowedJoint& joint)
 Followed follow(const FollowOptions& options)
 try
 {
-  const ArmRecording recording(options);
+  ArmRecording recording(options);
   noticeOfUnusedLoad(recording, options);
   if (recording.isArm() && !options.out.empty())
   {
@@ -250,6 +267,9 @@ try
   }
   requireWritable(options.bag, options.force, options.recording);
   const std::unique_ptr<TrackedBag> bag = bagOf(recording, options);
+  AssessedTwins twins;
+  const std::optional<ArmAssessment> assessed =
+      bag ? std::make_optional(assessFor(twins, recording, options)) : std::nullopt;
   std::vector<std::unique_ptr<Follower>> followers;
   std::vector<Tracker*> trackers;
   for (std::size_t i = 0; i < recording.joints().size(); ++i)
@@ -259,7 +279,7 @@ try
   }
   if (bag)
   {
-    bag->judge(trackers, !options.identified.empty());
+    bag->judge(trackers, *assessed);
   }
   ArmFrictionWatch friction(trackers, recording.parameters(0).comparison.repeat_tolerance);
   RecordingFit fit(recording.parameters());
@@ -274,7 +294,7 @@ try
         friction.look(rows.front().row.time);
         if (bag)
         {
-          bag->offerVerdicts(rows.front().row.time, recording.isArm() ? &fit : nullptr);
+          bag->offerVerdicts(rows.front().row.time);
         }
       },
       fit);

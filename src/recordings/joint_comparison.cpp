@@ -24,13 +24,13 @@ const std::vector<Column<JudgedWindow>> WINDOW_COLUMNS{
 };
 }  // namespace
 
-JointComparison::JointComparison(const ArmRecording& recording, std::size_t joint, LoadOrigin load,
-                                 const std::string& directory, SoundJoint sound, bool is_identified)
+JointComparison::JointComparison(const ArmRecording& recording, std::size_t joint, const std::string& directory,
+                                 SoundJoint sound, bool is_identified)
   : AssessedJoint(std::move(sound.own), is_identified)
   , source_(recording.source(joint))
   , is_file_(recording.isFile())
   , directory_(directory)
-  , comparison_(recording.parameters(joint), load, std::move(sound.baseline),
+  , comparison_(recording.parameters(joint), recording.loadOrigin(), std::move(sound.baseline),
                 [this](const JudgedWindow& window)
                 {
                   if (windows_)

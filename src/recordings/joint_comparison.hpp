@@ -24,8 +24,8 @@ class JointComparison : public AssessedJoint
 public:
   /// `directory`: of its report. `sound`: what earlier reports left of it. `is_identified`: the parameters are of this
   /// very joint.
-  JointComparison(const ArmRecording& recording, std::size_t joint, LoadOrigin load, const std::string& directory,
-                  SoundJoint sound, bool is_identified);
+  JointComparison(const ArmRecording& recording, std::size_t joint, const std::string& directory, SoundJoint sound,
+                  bool is_identified);
 
   void update(const MotionSample& sample) override { comparison_.update(sample); }
   const JointEvidence& evidence() const override { return comparison_.evidence(); }

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "bags/recorded_messages.hpp"
-#include "bags/recording_format.hpp"
 #include "recordings/motion_readers.hpp"
 #include "tracking/time_fit.hpp"
 
@@ -85,11 +84,6 @@ MotionCount readFiltered(const MotionSource& source, const std::vector<std::stri
   return count;
 }
 }  // namespace
-
-bool isCsv(const MotionSource& source)
-{
-  return formatOfRecording(source.path) == RecordingFormat::TABLE;
-}
 
 bool recordsLoad(const MotionSource& source)
 {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "bags/recording_format.hpp"
 #include "harmonic_joint_twin/base/stamp.hpp"
 #include "tracking/motion_differentiator.hpp"
 #include "tracking/reason.hpp"
@@ -22,6 +23,7 @@ constexpr int NO_COLUMNS = -1;
 struct MotionSource
 {
   std::string path;                      ///< bag, .db3, .mcap, their directory, or CSV
+  RecordingFormat format{};              ///< its
   std::string joint;                     ///< its name in the messages
   int csv_joint{};                       ///< its number in the columns of a CSV file
   std::string topic{ "/joint_states" };  ///< sensor_msgs/JointState
@@ -63,7 +65,10 @@ struct MotionFindings : MotionCount
   bool has_load{};          ///< the recording gives the load
 };
 
-bool isCsv(const MotionSource& source);
+inline bool isCsv(const MotionSource& source)
+{
+  return source.format == RecordingFormat::TABLE;
+}
 
 /// True if the recording gives the load; else it is zero in the rows. @throws InputError if the file cannot be read.
 bool recordsLoad(const MotionSource& source);

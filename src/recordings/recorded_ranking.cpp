@@ -44,6 +44,7 @@ std::vector<ArmFit> rankArms(const RecordingOptions& options, const std::vector<
   {
     own.arm = name;
     const ArmRecording recording(own);
+    own.stated = recording.options().stated;  // the same file
     if (!candidates.empty() && jointNames(recording.arm()) != jointNames(candidates.front().arm))
     {
       others.push_back(name);

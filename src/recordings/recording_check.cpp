@@ -63,53 +63,17 @@ void takeFit(const RecordingFit& fit, const std::vector<Parameters>& parameters,
   }
 }
 
-/// A joint beside its twin, without output files.
-class CheckedTwin : public AssessedJoint
+/// Samples that the differentiators of all joints have ready.
+void addReady(std::vector<MotionDifferentiator>& joints, bool at_end, const AssessedTwins& twins)
 {
-public:
-  CheckedTwin(const Parameters& parameters, LoadOrigin load)
-    : AssessedJoint(OwnReference(), false), evidence_(parameters, load)
+  for (std::size_t i = 0; i < joints.size(); ++i)
   {
-  }
-  void update(const MotionSample& sample) override { evidence_.update(sample); }
-  const JointEvidence& evidence() const override { return evidence_; }
-
-private:
-  JointEvidence evidence_;
-};
-
-/// The joints beside their twins, made anew for each reading.
-class CheckedTwins
-{
-public:
-  std::vector<AssessedJoint*> make(const std::vector<Parameters>& parameters, LoadOrigin load)
-  {
-    joints_.clear();
-    std::vector<AssessedJoint*> all;
-    for (const Parameters& of : parameters)
+    while (const std::optional<MotionSample> sample = joints[i].pop(at_end))
     {
-      all.push_back(joints_.emplace_back(std::make_unique<CheckedTwin>(of, load)).get());
-    }
-    return all;
-  }
-
-  /// Samples that the differentiators of all joints have ready.
-  void addReady(std::vector<MotionDifferentiator>& joints, bool at_end)
-  {
-    for (std::size_t i = 0; i < joints.size(); ++i)
-    {
-      while (const std::optional<MotionSample> sample = joints[i].pop(at_end))
-      {
-        joints_[i]->update(*sample);
-      }
+      twins[i].update(*sample);
     }
   }
-
-  const AssessedJoint& operator[](std::size_t joint) const { return *joints_[joint]; }
-
-private:
-  std::vector<std::unique_ptr<CheckedTwin>> joints_;
-};
+}
 
 void addJoint(const std::string& name, const std::string& in_messages, CheckedArm& arm)
 {
@@ -123,9 +87,10 @@ void readArm(const RecordingOptions& options, CheckedArm& arm)
   const RecordingOptions own = optionsFor(options, arm, arm.taken);
   ArmRecording recording(own);
   RecordingFit fit(recording.parameters());
-  CheckedTwins twins;
+  AssessedTwins twins;
   AssessmentSettings settings;
-  settings.make_joints = [&] { return twins.make(recording.parameters(), LoadOrigin::ARM); };
+  settings.make_joints = [&]
+  { return twins.make(recording.parameters(), recording.loadOrigin(), !options.identified.empty()); };
   settings.gives_notice = false;
   settings.looks_for_arm = arm.ranked.empty();
   settings.watch = options.watch;
@@ -159,7 +124,7 @@ Misfit misfitOfParts(const CheckedArm& arm)
 }
 
 /// Each joint after what the friction of all has in common.
-void judgeJoints(const CheckedTwins& twins, const RecordingFit& fit, const std::vector<Parameters>& parameters,
+void judgeJoints(const AssessedTwins& twins, const RecordingFit& fit, const std::vector<Parameters>& parameters,
                  CheckedArm& arm)
 {
   takeFit(fit, parameters, arm);
@@ -185,8 +150,8 @@ void readJoints(const RecordingOptions& options, CheckedArm& arm)
   const MotionDriven twin(parameters.front());
   StreamTiming timing;
   RecordingFit fit(parameters);
-  CheckedTwins twins;
-  twins.make(parameters, LoadOrigin::CONFIGURED);
+  AssessedTwins twins;
+  twins.make(parameters, LoadOrigin::CONFIGURED, false);
   std::vector<MotionDifferentiator> differentiators(names.size(), MotionDifferentiator(ArmLoad::HALF_WIDTH));
   std::vector<MotionDifferentiator> own(names.size());
   std::vector<MotionSample> samples(names.size());
@@ -207,7 +172,7 @@ void readJoints(const RecordingOptions& options, CheckedArm& arm)
         own[i].push(samples[i]);
       }
     }
-    twins.addReady(own, at_end);
+    addReady(own, at_end, twins);
   };
   static_cast<MotionCount&>(arm.found) = readArmMotion(
       motionSource(options), names,

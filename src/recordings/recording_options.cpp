@@ -32,6 +32,7 @@ MotionSource motionSource(const RecordingOptions& options)
 {
   MotionSource source;
   source.path = options.recording;
+  source.format = options.rows ? RecordingFormat::TABLE : formatOfRecording(source.path);
   source.topic = options.topic;
   source.load_topic = options.joint_namespace + "/" + topics::LOAD;
   source.joint = options.joint;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "recordings/recorded_motion.hpp"
+#include "recordings/stated_gains.hpp"
 #include "recordings/watch.hpp"
 
 #include "messages/joint_affixes.hpp"
@@ -35,6 +36,8 @@ struct RecordingOptions : ConfigurationOptions
   /// A recording at hand: a row of each joint at each time, currents in A, times from 0 on; null: it is a file.
   std::shared_ptr<const std::vector<std::vector<MotionRow>>> rows;
   bool rows_have_load{};
+  /// By the recording, besides its rows; null: not read yet.
+  std::shared_ptr<const RecordedStatements> stated;
   Watch watch;
 };
 

@@ -10,7 +10,7 @@
 #include "recordings/recorded_windows.hpp"
 
 #include "base/joined.hpp"
-#include "base/number_text.hpp"
+#include "base/range_check.hpp"
 #include "base/whole_file.hpp"
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
@@ -241,16 +241,9 @@ void requireRanges(const RemainingOptions& options)
   }
   for (const double value : hours)
   {
-    if (!(value >= 1e-6 && value <= 1e7))
-    {
-      throw InputError("hours = " + numberText(value) + " [h] is out of range, allowed: 1e-6 ... 1e7 [h]");
-    }
+    requireWithin("hours", value, "h", { 1e-6, 1e7 });
   }
-  if (const double limit = options.lost_motion_limit.value_or(1e-3); !(limit >= 1e-6 && limit <= 0.1))
-  {
-    throw InputError("lost_motion_limit = " + numberText(limit) +
-                     " [rad] is out of range, allowed: 1e-6 ... 0.1 [rad]");
-  }
+  requireWithin("lost_motion_limit", options.lost_motion_limit.value_or(1e-3), "rad", { 1e-6, 0.1 });
 }
 }  // namespace
 

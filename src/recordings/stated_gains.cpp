@@ -75,22 +75,16 @@ double agreedRatio(std::vector<double>& ratios, std::size_t rows)
              middle :
              std::numeric_limits<double>::quiet_NaN();
 }
-}  // namespace
 
-std::vector<double> readStatedGains(const MotionSource& source, std::size_t joints)
+std::vector<double> readStatedGains(const MotionSource& source)
 {
   constexpr int ROWS = 50000;             // minutes at any rate
   constexpr double LEAST_CURRENT = 0.01;  // its digits would count otherwise [A]
   constexpr double WIDEST = 100.0;        // beyond, the columns are not what they are named [N.m/A]
-  std::vector<double> gains(joints, std::numeric_limits<double>::quiet_NaN());
-  if (!isCsv(source) || joints != JOINTS)
-  {
-    return gains;
-  }
   NumberTable<COLUMNS> table(source.path, columnNames(), COLUMNS, COLUMNS, controllerColumns);
   if (!table.hasColumn(CURRENT) || !table.hasColumn(MOMENT))
   {
-    return gains;
+    return {};
   }
   table.allowCutOff();
   table.allowUneven();
@@ -114,6 +108,7 @@ std::vector<double> readStatedGains(const MotionSource& source, std::size_t join
       }
     }
   }
+  std::vector<double> gains(JOINTS);
   for (std::size_t joint = 0; joint < JOINTS; ++joint)
   {
     gains[joint] = agreedRatio(ratios[joint], at_rest);
@@ -125,10 +120,6 @@ std::optional<Payload> readStatedPayload(const MotionSource& source)
 {
   constexpr std::size_t VALUES = 4;
   using Row = std::array<double, VALUES>;
-  if (!isCsv(source))
-  {
-    return std::nullopt;
-  }
   NumberTable<VALUES> table(source.path, { "payload", "payload_cog_0", "payload_cog_1", "payload_cog_2" }, VALUES,
                             VALUES);
   if (!table.hasColumn(0))
@@ -154,5 +145,17 @@ std::optional<Payload> readStatedPayload(const MotionSource& source)
   }
   const Payload payload{ (*stated)[0], { (*stated)[1], (*stated)[2], (*stated)[3] } };
   return payloadErrors(payload).empty() ? std::make_optional(payload) : std::nullopt;
+}
+}  // namespace
+
+RecordedStatements readStatements(const MotionSource& source, bool of_arm)
+{
+  RecordedStatements stated{ recordsLoad(source), {}, {} };
+  if (of_arm && isCsv(source))
+  {
+    stated.gains = readStatedGains(source);
+    stated.payload = readStatedPayload(source);
+  }
+  return stated;
 }
 }  // namespace hjt

@@ -9,13 +9,18 @@
 
 namespace hjt
 {
-/// Torque per current that the controller of an arm counts with: the ratio of its columns `target_moment_N` and
-/// `target_current_N` while the whole arm is at rest, where its current holds no friction. One for each of `joints`
-/// joints [N.m/A]. NaN: not recorded, or the joint bears no load at rest. Reads the first minutes of a table; of
-/// messages, which hold no target currents, all are NaN. @throws InputError on an unreadable file.
-std::vector<double> readStatedGains(const MotionSource& source, std::size_t joints);
+/// What a recording says besides its rows; of messages the first alone.
+struct RecordedStatements
+{
+  bool has_load{};
+  /// Torque per current that the controller of an arm counts with: the ratio of its columns `target_moment_N` and
+  /// `target_current_N` while the whole arm is at rest, where its current holds no friction; of the first minutes. One
+  /// for each of six joints [N.m/A]. NaN: the joint bears no load at rest. Empty: not recorded.
+  std::vector<double> gains;
+  /// Columns payload [kg] and payload_cog_0 ... 2 [m]; none: not recorded, or another in some rows.
+  std::optional<Payload> payload;
+};
 
-/// The payload that a controller's table states, columns payload [kg] and payload_cog_0 ... 2 [m]; none: it has none,
-/// or another in some rows. @throws InputError.
-std::optional<Payload> readStatedPayload(const MotionSource& source);
+/// `of_arm`: else it is not asked for gains and payload. @throws InputError on an unreadable file.
+RecordedStatements readStatements(const MotionSource& source, bool of_arm);
 }  // namespace hjt

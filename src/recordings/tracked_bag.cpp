@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "bags/bag_file.hpp"
-#include "bags/recording_format.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "output/run_summary.hpp"
 
@@ -39,7 +38,7 @@ TrackedBag::TrackedBag(const std::string& path, const MotionSource& source, cons
   {
     start_ += SIMULATION_EPOCH;  // a controller counts from its own start
   }
-  else if (formatOfRecording(source.path) == RecordingFormat::BAG)
+  else if (source.format == RecordingFormat::BAG)
   {
     openForReading(source_, source.path);
     for (const Joint& joint : joints)
@@ -63,26 +62,29 @@ void TrackedBag::offer(std::size_t joint, const Comparison& comparison, const Tr
   outputs_[joint]->offer(stamp, comparison, tracker);
 }
 
-void TrackedBag::judge(const std::vector<Tracker*>& trackers, bool is_identified)
+void TrackedBag::judge(const std::vector<Tracker*>& trackers, const ArmAssessment& arm)
 {
   for (std::size_t i = 0; i < trackers.size(); ++i)
   {
-    verdicts_.push_back(std::make_unique<VerdictWatch>(*trackers[i], is_identified));
+    verdicts_.push_back(std::make_unique<VerdictWatch>(*trackers[i], arm.context(i)));
+    verdicts_.back()->setMisfit(arm.judged.misfits[i], true);
   }
 }
 
-void TrackedBag::offerVerdicts(double time, const RecordingFit* fit)
+void TrackedBag::offerVerdicts(double time)
 {
-  if (!verdict_periods_.begins(start_ + std::llround(1e9 * time)))
+  if (verdict_periods_.begins(start_ + std::llround(1e9 * time)))
   {
-    return;
+    judgeNow();
   }
-  const std::vector<Misfit> misfits = fit == nullptr ? std::vector<Misfit>(verdicts_.size()) : fit->whyNotJudged();
+}
+
+void TrackedBag::judgeNow()
+{
   std::vector<VerdictWatch*> verdicts;
-  for (std::size_t i = 0; i < verdicts_.size(); ++i)
+  for (const auto& verdict : verdicts_)
   {
-    verdicts_[i]->setMisfit(misfits[i], fit == nullptr || fit->isSettled());
-    verdicts.push_back(verdicts_[i].get());
+    verdicts.push_back(verdict.get());
   }
   judgeTogether(verdicts, joints_.front().parameters.comparison.repeat_tolerance);
   for (std::size_t i = 0; i < verdicts_.size(); ++i)
@@ -110,6 +112,7 @@ void TrackedBag::copyUntil(Stamp recorded)
 
 void TrackedBag::close()
 {
+  judgeNow();
   copyUntil(std::numeric_limits<Stamp>::max());
   writer_.close();
 }

@@ -9,9 +9,9 @@
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 
-#include "arm/recording_fit.hpp"
 #include "bags/recorded_topic.hpp"
 #include "messages/tracker_outputs.hpp"
+#include "recordings/arm_assessment.hpp"
 #include "recordings/recorded_motion.hpp"
 #include "tracking/verdict_watch.hpp"
 
@@ -37,20 +37,21 @@ public:
   /// A comparison of a joint, by its place in the list. Takes over what was recorded until the comparison's row.
   void offer(std::size_t joint, const Comparison& comparison, const Tracker& tracker);
 
-  /// The joints are judged too: `trackers` in the order of the list. `is_identified`: their friction is that of these
-  /// very joints.
-  void judge(const std::vector<Tracker*>& trackers, bool is_identified);
+  /// The joints are judged too: `trackers` in the order of the list. `arm`: the same recording as a whole, which they
+  /// are judged with.
+  void judge(const std::vector<Tracker*>& trackers, const ArmAssessment& arm);
 
-  /// After the comparisons of a row: a verdict of each joint about once a second, as the node's. `fit`: of an arm.
-  void offerVerdicts(double time, const RecordingFit* fit);
+  /// After the comparisons of a row: a verdict of each joint about once a second, of the rows so far.
+  void offerVerdicts(double time);
 
-  /// Takes over the rest. @throws InputError if not all could be written.
+  /// Takes over the rest, and the verdicts of all rows. @throws InputError if not all could be written.
   void close();
 
 private:
   static constexpr double VERDICT_RATE = 1.0;  // [Hz]
 
   void copyUntil(Stamp recorded);
+  void judgeNow();
 
   const std::string source_path_;
   rosbag::Bag source_;  // not open: the recording is no bag

@@ -9,8 +9,8 @@
 
 #include <ros/console.h>
 
-#include "base/number_text.hpp"
 #include "base/printable.hpp"
+#include "base/range_check.hpp"
 #include "messages/time.hpp"
 #include "messages/topics.hpp"
 #include "ros_io/arm_trajectory.hpp"
@@ -234,15 +234,12 @@ void ArmNode::receiveWrench(const geometry_msgs::WrenchStamped& message)
   constexpr double MOST = 1000.0;  // [N], [N.m]
   const ArmWrench wrench{ valuesOf(message.wrench.force), valuesOf(message.wrench.torque) };
   std::string errors;
-  for (const auto& vector : { wrench.force, wrench.moment })
+  for (std::size_t axis = 0; axis < wrench.force.size(); ++axis)
   {
-    for (const double value : vector)
+    for (const std::string& error : { rangeErrors("force", wrench.force[axis], "N", { -MOST, MOST }),
+                                      rangeErrors("torque", wrench.moment[axis], "N.m", { -MOST, MOST }) })
     {
-      // Written so that NaN fails.
-      if (!(std::abs(value) <= MOST))
-      {
-        errors = numberText(value) + " is out of range, allowed: -1000 ... 1000 [N], [N.m]";
-      }
+      errors = error.empty() ? errors : error;
     }
   }
   const std::string& frame = message.header.frame_id;
@@ -282,14 +279,12 @@ void ArmNode::receiveTemperature(const sensor_msgs::Temperature& message)
                                            << printable(message.header.frame_id) << "' is no joint of this arm");
     return;
   }
-  // Written so that NaN fails.
-  if (!(message.temperature >= MIN_TEMPERATURE && message.temperature <= MAX_TEMPERATURE))
+  if (const Range range{ MIN_TEMPERATURE, MAX_TEMPERATURE }; !isWithin(message.temperature, range))
   {
-    ROS_WARN_STREAM_THROTTLE(ARM_WARNING_PERIOD, "Refused a temperature on ~"
-                                                     << topics::JOINT_TEMPERATURES << ": "
-                                                     << numberText(message.temperature)
-                                                     << " [degC] is out of range, allowed: "
-                                                     << rangeText({ MIN_TEMPERATURE, MAX_TEMPERATURE }));
+    ROS_WARN_STREAM_THROTTLE(ARM_WARNING_PERIOD,
+                             "Refused a temperature on ~"
+                                 << topics::JOINT_TEMPERATURES << ": "
+                                 << outOfRangeText("temperature", message.temperature, "degC", range));
     return;
   }
   const Stamp stamp = stampOr(message.header.stamp, ros::Time::now());

@@ -58,7 +58,7 @@ JointTracker::JointTracker(ros::NodeHandle& node, const Parameters& parameters, 
   , current_per_effort_(hjt::currentPerEffort(parameters))
   // Built before the first row is read, so that the same rows give the same numbers.
   , tracker_(parameters, parameters.input.mode, nodeSurfaceSource(false))
-  , verdict_(tracker_, is_identified, sound.own)
+  , verdict_(tracker_, { sound.own, is_identified })
   , outputs_(node, parameters)
   , life_(node, parameters)
   , tasks_(name_, parameters.joint.hardware_id)

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/range_check.hpp"
 #include "gear/ratio.hpp"
-#include "statics/arguments.hpp"
 #include "statics/pitch_walk.hpp"
 
 namespace hjt

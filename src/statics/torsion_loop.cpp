@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "harmonic_joint_twin/statics/torsion_loop.hpp"
 
-#include "base/number_text.hpp"
+#include "base/range_check.hpp"
 #include "model/faults/joint_faults.hpp"
 #include "solver/output_balance.hpp"
 #include "solver/ring_equilibrium.hpp"
-#include "statics/arguments.hpp"
 #include "statics/static_solver.hpp"
 
 namespace hjt

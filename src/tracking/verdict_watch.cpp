@@ -14,7 +14,11 @@ void VerdictWatch::setMisfit(const Misfit& misfit, bool settled)
 
 JointContext VerdictWatch::context(double arm_friction, double arm_deviation, const Misfit& of_arm) const
 {
-  return { own_, is_identified_, false, arm_friction, misfit_.exists() ? misfit_ : of_arm, arm_deviation };
+  JointContext context = known_;
+  context.arm_friction = arm_friction;
+  context.misfit = misfit_.exists() ? misfit_ : of_arm;
+  context.arm_deviation = arm_deviation;
+  return context;
 }
 
 MeasuredFriction VerdictWatch::measuredFriction() const

@@ -16,12 +16,8 @@ namespace hjt
 class VerdictWatch
 {
 public:
-  /// `tracker`: must outlive this. `is_identified`: the friction of the parameters is that of this joint. `own`: of the
-  /// joint when it was sound.
-  VerdictWatch(Tracker& tracker, bool is_identified, OwnReference own = {})
-    : tracker_(tracker), is_identified_(is_identified), own_(std::move(own))
-  {
-  }
+  /// `tracker`: must outlive this. `known`: what its friction is held against.
+  VerdictWatch(Tracker& tracker, JointContext known) : tracker_(tracker), known_(std::move(known)) {}
 
   /// Misfit of the telemetry; none: it fits, or that is not yet `settled`.
   void setMisfit(const Misfit& misfit, bool settled);
@@ -56,8 +52,7 @@ private:
   void judge(double arm_friction, double arm_deviation, const Misfit& of_arm);
 
   Tracker& tracker_;
-  const bool is_identified_;
-  const OwnReference own_;
+  const JointContext known_;
   Misfit misfit_;
   bool settled_{ true };
   double last_row_{};  // [s]

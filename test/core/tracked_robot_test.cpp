@@ -89,7 +89,7 @@ TEST(VerdictWatch, JudgesNothingWhileSomethingTouchesTheArmOrDoesNotFit)
   const SwingingRobot robot(parameters, 60.0);
   Tracker tracker(parameters, InputMode::MOTION);
   tracker.pushLoad(0.0, 0.0);
-  VerdictWatch watch(tracker, true);
+  VerdictWatch watch(tracker, { {}, true });
   std::vector<Verdict> each_second;
   const auto row_of = [](double time) { return static_cast<std::size_t>(std::lround(time / PERIOD)); };
   for (std::size_t i = 0; i < robot.rows(); ++i)
@@ -129,7 +129,7 @@ TEST(VerdictWatch, AHandThatLeadsTheArmReplacesAVerdict)
   const SwingingRobot robot(parameters, 60.0);
   Tracker tracker(parameters, InputMode::MOTION);
   tracker.pushLoad(0.0, 0.0);
-  VerdictWatch watch(tracker, true);
+  VerdictWatch watch(tracker, { {}, true });
   ArmFriction arm;
   arm.factors = { 1.0 };
   arm.deviations = { UNWITNESSED };

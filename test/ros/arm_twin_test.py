@@ -169,7 +169,7 @@ class ArmTwin(unittest.TestCase):
             message.header.frame_id = joint
             self.temperature.publish(message)
         self.said("Left alone on ~joint_temperatures: frame_id = 'left_elbow_joint' is no joint of this arm")
-        self.said("Refused a temperature on ~joint_temperatures: 200.0 [degC] is out of range")
+        self.said("Refused a temperature on ~joint_temperatures: temperature = 200.0 [degC] is out of range")
         wait_until(lambda: health.messages() and health.messages()[-1].grease_temperature == 32.0, "the temperature")
 
     def test_6_a_fault_is_taken_live_and_raises_its_joints_current(self):

@@ -142,7 +142,7 @@ class Arm(ArmTest):
                 verdicts = [m.message for m in bag.read_messages(f"/{name}/joint_twin/verdict")]
                 self.assertEqual({m.joint for m in verdicts}, {tool.JOINT_NAMES[SHORT_NAMES.index(name)]})
                 self.assertEqual([m.level for m in verdicts], [m.NOT_JUDGED for m in verdicts])
-                self.assertEqual([m.reason for m in verdicts[1:]], [verdicts[0].EFFORT_CONSTANT] * 4)
+                self.assertEqual([m.reason for m in verdicts[1:]], [verdicts[0].EFFORT_CONSTANT] * 5)
                 for topic in ("encoders", "health", "stress"):
                     self.assertEqual(bag.get_message_count(f"/{name}/joint_twin/{topic}"), 50)
         self.succeed("follow", "arm.bag", "--joint", "elbow", "--bag", "elbow.bag")

@@ -13,8 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/number_text.hpp"
-#include "base/range.hpp"
+#include "base/range_check.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "identification/cross_validation.hpp"
 #include "output/json.hpp"
@@ -241,17 +240,6 @@ inline void requireColumns(const py::object& columns, const std::string& what)
     throw InputError(what + " = " + shortText(columns) +
                      " must be the name of a file or have columns by name: a structured array, a frame or a mapping of "
                      "arrays");
-  }
-}
-
-/// @throws InputError.
-inline void requireWithin(const std::string& name, double value, const char* unit, const Range& range)
-{
-  // Written so that NaN fails.
-  if (!(value >= range.min && value <= range.max))
-  {
-    throw InputError(name + " = " + numberText(value) + " [" + unit +
-                     "] is out of range, allowed: " + rangeText(range));
   }
 }
 

@@ -202,9 +202,9 @@ Answer identifyIn(const py::dict& arguments)
   given.take("train", options.train);
   given.take("judge", options.judge);
   given.take("folds", options.folds);
-  if (arguments.contains("folds") && (options.folds < 2 || options.folds > 100))
+  if (arguments.contains("folds"))
   {
-    throw InputError("folds = " + std::to_string(options.folds) + " is out of range, allowed: 2 ... 100");
+    requireWithin("folds", options.folds, "-", { 2.0, 100.0 });
   }
   return call(
       given, options, [](const IdentifyOptions& asked) { return identify(asked); },
