@@ -35,7 +35,7 @@ struct JointContext
   bool has_controller{};  ///< without `own` the friction is held against what the arm's controller expects
   /// Multiple of the reference's friction by what the joints of an arm have in common: temperature or gain, no fault.
   double arm_friction{ 1.0 };
-  Misfit misfit;  ///< of its rows
+  Misfit misfit{};  ///< of its rows
   /// Of `arm_friction`, standard deviation of its logarithm; 0: the joints of its group are its witnesses.
   double arm_deviation{ UNWITNESSED };
 };
