@@ -39,17 +39,6 @@ Parameters parametersOf(const ArmJoint& joint, double gain, const RecordingOptio
   return parameters;
 }
 
-/// Of a file, which is read for them once.
-RecordingOptions withStatements(RecordingOptions options)
-{
-  if (!options.rows && !options.stated)
-  {
-    options.stated =
-        std::make_shared<const RecordedStatements>(readStatements(motionSource(options), !options.arm.empty()));
-  }
-  return options;
-}
-
 /// One joint as an arm.
 ArmDescription armOf(const std::string& short_name)
 {
@@ -77,14 +66,22 @@ std::string wrongStamps(const MotionCount& count)
 }  // namespace
 
 ArmRecording::ArmRecording(const RecordingOptions& options)
-  : options_(withStatements(options))
+  : options_(options)
   , watch_(options.watch)
   , joint_namespace_(options.joint_namespace)
   , affixes_(options.affixes)
   , is_arm_(!options.arm.empty())
   , arm_(is_arm_ ? readArmDescription(findArm(options.arm, configDirectory(options))) : armOf(options.joint))
-  , source_(motionSource(options))
 {
+  if (!is_arm_)
+  {
+    parameters_.push_back(loadParameters(options));  // its errors come before those of the file
+  }
+  source_ = motionSource(options);
+  if (isFile() && !options.stated)
+  {
+    options_.stated = std::make_shared<const RecordedStatements>(readStatements(source_, is_arm_));
+  }
   stated_gains_.assign(arm_.joints.size(), std::numeric_limits<double>::quiet_NaN());
   const RecordedStatements stated = options_.stated ? *options_.stated : RecordedStatements();
   if (stated.gains.size() == arm_.joints.size())
@@ -96,9 +93,9 @@ ArmRecording::ArmRecording(const RecordingOptions& options)
     arm_.payload = *stated.payload;
     payload_text_ = "payload of " + roundedText(arm_.payload.mass, 3) + " kg, as the controller states";
   }
-  for (std::size_t i = 0; i < arm_.joints.size(); ++i)
+  for (std::size_t i = parameters_.size(); i < arm_.joints.size(); ++i)
   {
-    parameters_.push_back(is_arm_ ? parametersOf(arm_.joints[i], stated_gains_[i], options) : loadParameters(options));
+    parameters_.push_back(parametersOf(arm_.joints[i], stated_gains_[i], options));
   }
   has_load_ = isFile() ? stated.has_load : options.rows_have_load;
   uses_recorded_ = is_arm_ ? options.load == LOAD_RECORDED : has_load_;

@@ -92,7 +92,7 @@ private:
   MotionFindings readArm(const VisitRows& visit, RecordingFit& fit, double end) const;
   MotionFindings readSamplesBy(const Read& read, const VisitSample& visit) const;
 
-  const RecordingOptions options_;
+  RecordingOptions options_;
   Watch watch_;
   std::string joint_namespace_;
   JointAffixes affixes_;
