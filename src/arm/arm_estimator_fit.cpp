@@ -111,8 +111,8 @@ void ArmEstimator::addRows(std::size_t joint, const std::vector<bool>& states, P
   point.cost += COUNTED * (std::log(scale) + (error / scale).array().square().unaryExpr(&rarer).mean());
 }
 
-/// By Gauss and Newton, until a step is nothing beside the deviations a posteriori; what `start` names is hardly held in
-/// the first rounds.
+/// By Gauss and Newton, until a step is nothing beside the deviations a posteriori; what `start` names is hardly held
+/// in the first rounds.
 ArmEstimator::Point ArmEstimator::refine(const Prior& prior, const std::vector<bool>& states, Eigen::VectorXd at,
                                          int start) const
 {

@@ -53,8 +53,8 @@ public:
   const Parameters& parameters(std::size_t joint) const { return parameters_[joint]; }
   const std::vector<Parameters>& parameters() const { return parameters_; }
   std::vector<double> gains() const;  ///< of the joints, torque per current [N.m/A]
-  /// Torque per current that an arm's recording states, see RecordedStatements; it counts unless another was identified or
-  /// set [N.m/A].
+  /// Torque per current that an arm's recording states, see RecordedStatements; it counts unless another was identified
+  /// or set [N.m/A].
   const std::vector<double>& statedGains() const { return stated_gains_; }
   bool hasRecordedLoad() const { return has_load_; }
   /// The load is the recorded one.

@@ -9,7 +9,8 @@
 
 namespace hjt
 {
-/// A joint of a recording beside its twin, and what is known of it: what `check`, `compare` and `follow` have in common.
+/// A joint of a recording beside its twin, and what is known of it: what `check`, `compare` and `follow` have in
+/// common.
 class AssessedJoint
 {
 public:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Names and likely faults by clang-tidy (.clang-tidy) in the sources of src/, test/ and bench/ that the build compiles:
-those whose code changed in the working tree or within four hours before its commit, and a sixth of all, which the number
-of commits chooses. That sixth is read as the build compiles it, several sources at once: a third of the time. --all, or
-sources without git: every one, by itself.
+those whose code changed in the working tree or within four hours before its commit, and a sixth of all, which the
+number of commits chooses. That sixth is read as the build compiles it, several sources at once: a third of the time.
+--all, or sources without git: every one, by itself.
 
 usage: clang_tidy.py [--all] BUILD_FOLDER
 
@@ -95,8 +95,8 @@ def members(entry):
 
 
 def command(entry, path):
-    """That which compiles `path` as `entry` compiles its file, without the precompiled header: a source must include what
-    it uses."""
+    """That which compiles `path` as `entry` compiles its file, without the precompiled header: a source must include
+    what it uses."""
     compiled = os.path.normpath(os.path.join(entry["directory"], entry["file"]))
     arguments = entry.get("arguments") or shlex.split(entry["command"])
     arguments = [path if os.path.normpath(word) == compiled else word for word in arguments]
@@ -110,7 +110,7 @@ def command(entry, path):
 
 
 def commands(build, root):
-    """Compile commands of all sources, one each, and of all files that the build compiles, by the first source of each."""
+    """Compile commands of all sources, one each, and of all files that the build compiles, by the first of each."""
     with open(os.path.join(build, "compile_commands.json"), encoding="utf-8") as file:
         entries = json.load(file)
     of_sources, of_files = {}, {}
