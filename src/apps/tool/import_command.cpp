@@ -222,7 +222,7 @@ int import(const ImportOptions& options)
   const InterruptScope interrupts;
   BagWriter bag(options.out);
   const std::uint64_t rows = importRows(options, joint, ratio, table, bag);
-  if (rows == 0)
+  if (rows == 0 && interruptSignal() == 0)
   {
     throw InputError(options.csv + " has no rows; nothing was written");
   }
