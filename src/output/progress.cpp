@@ -17,6 +17,9 @@ using std::chrono::milliseconds;
 constexpr milliseconds BAR_PERIOD{ 200 };
 constexpr milliseconds FIRST_LINE{ 2000 };
 constexpr milliseconds LINE_PERIOD{ 5000 };
+// The clock is read once in so many calls, of a loop whose steps take less than a part of this.
+constexpr milliseconds LOOK_PERIOD{ 1 };
+constexpr unsigned MOST_CALLS_PER_LOOK = 64;
 constexpr int BAR_WIDTH = 40;
 }  // namespace
 
@@ -35,7 +38,14 @@ Progress::~Progress()
 
 void Progress::update(double done)
 {
+  if (++calls_ < calls_per_look_ && done < 1.0)
+  {
+    return;
+  }
   const auto now = Clock::now();
+  calls_per_look_ = now - last_look_ < LOOK_PERIOD ? std::min(2 * calls_per_look_, MOST_CALLS_PER_LOOK) : 1;
+  calls_ = 0;
+  last_look_ = now;
   if (now >= next_ || (bar_shown_ && done >= 1.0))
   {
     show(std::clamp(done, 0.0, 1.0), std::chrono::duration<double>(now - start_).count());

@@ -29,6 +29,9 @@ private:
   const bool terminal_;
   const Clock::time_point start_{ Clock::now() };
   Clock::time_point next_;
+  Clock::time_point last_look_{ start_ };
+  unsigned calls_{};  // since then
+  unsigned calls_per_look_{ 1 };
   bool bar_shown_{};
 };
 

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <utility>
 
 #include "arm/arm_configuration.hpp"
 
@@ -39,24 +41,27 @@ std::vector<ArmFit> rankArms(const RecordingOptions& options, const std::vector<
     own.assignments.emplace_back("telemetry.effort=current");  // as such rows are
   }
   std::vector<ArmCandidate> candidates;
-  std::vector<std::string> others;  // whose joints have other names: they are of other rows
+  std::unique_ptr<const ArmRecording> first;  // has the rows of all candidates
+  std::vector<std::string> others;            // whose joints have other names: they are of other rows
   for (const std::string& name : names)
   {
     own.arm = name;
-    const ArmRecording recording(own);
-    own.stated = recording.options().stated;  // the same file
-    if (!candidates.empty() && jointNames(recording.arm()) != jointNames(candidates.front().arm))
+    auto recording = std::make_unique<const ArmRecording>(own);
+    own.stated = recording->options().stated;  // the same file
+    if (!candidates.empty() && jointNames(recording->arm()) != jointNames(candidates.front().arm))
     {
       others.push_back(name);
       continue;
     }
-    candidates.push_back({ name, recording.arm(), recording.parameters(), costOfGains(recording, own) });
+    candidates.push_back({ name, recording->arm(), recording->parameters(), costOfGains(*recording, own) });
+    if (!first)
+    {
+      first = std::move(recording);
+    }
   }
-  own.arm = names.front();
-  const ArmRecording recording(own);
   ParameterMap given;
   addOverlays(own, given);
-  const auto play = [&](const VisitArmRows& visit) { recording.readEfforts(visit, ArmFit::ENOUGH); };
+  const auto play = [&](const VisitArmRows& visit) { first->readEfforts(visit, ArmFit::ENOUGH); };
   std::vector<ArmFit> fits = rankArms(candidates, play, given.count("telemetry.effort") > 0);
   if (!others.empty())
   {
