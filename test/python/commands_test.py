@@ -17,19 +17,17 @@ import unittest
 import unittest.mock
 import warnings
 
-import genpy
 import h5py
 import numpy as np
 import rosbag
-from sensor_msgs.msg import JointState
 
 import harmonic_joint_twin as hjt
 
 sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
 import comma_locale  # noqa: E402
+from ur_recording import write_bag, write_csv  # noqa: E402
 
 TOOL = sys.argv.pop(1)
-JOINTS = ["shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint", "wrist_1_joint", "wrist_2_joint", "wrist_3_joint"]
 ELBOW = ["joints/elbow.yaml", "recorded_load.yaml"]
 PERIOD = 0.008
 SILENT = {"time": [0.0, 0.1, 0.2], "motor_torque": [math.nan] * 3, "motor_angle_encoder": [0.0, 1.0, 2.0]}
@@ -52,20 +50,6 @@ def motion(seconds=20.0):
     times = np.arange(0.0, seconds, PERIOD)
     ends = np.array([0.6, -0.9, 1.1, -0.5, 0.4, 0.7])
     return times, 0.5 * (1.0 - np.cos(1.3 * times))[:, None] * ends
-
-
-def write_csv(path, times, angles, currents):
-    names = ["timestamp"] + [f"actual_q_{i}" for i in range(6)] + [f"actual_current_{i}" for i in range(6)]
-    np.savetxt(path, np.column_stack([times, angles, currents]), "%.17g", ",", header=",".join(names), comments="")
-
-
-def write_bag(path, times, angles, currents):
-    with rosbag.Bag(path, "w") as bag:
-        for at, position, effort in zip(times, angles, currents):
-            stamp = genpy.Time.from_sec(1000.0 + at)
-            state = JointState(name=JOINTS, position=list(position), effort=list(effort))
-            state.header.stamp = stamp
-            bag.write("/joint_states", state, stamp)
 
 
 class Recordings(unittest.TestCase):

@@ -14,18 +14,18 @@ import tempfile
 import unittest
 import warnings
 
-import genpy
 import numpy as np
 import rosbag
-from sensor_msgs.msg import JointState
 
 import harmonic_joint_twin as hjt
 from harmonic_joint_twin.msg import Verdict
 
+sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
+from ur_recording import write_bag, write_csv  # noqa: E402
+
 TOOL = sys.argv.pop(1)
 ARM = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "config", "arms", "ur5.yaml")
-JOINTS = {"base": "shoulder_pan_joint", "shoulder": "shoulder_lift_joint", "elbow": "elbow_joint",
-          "wrist_1": "wrist_1_joint", "wrist_2": "wrist_2_joint", "wrist_3": "wrist_3_joint"}
+JOINTS = ["base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3"]
 GAINS = np.array([10.7, 10.7, 10.7, 10.21, 11.9, 11.92])  # of config/arms/ur5.yaml [N.m/A]
 PERIOD, SECONDS = 1.0 / 64.0, 36.0  # stamps are the same in seconds and in whole nanoseconds
 NOISE = 0.03  # [A]
@@ -64,20 +64,6 @@ def recorded(arm, times, angles, degrees=25.0):
         return np.column_stack([np.interp(times, rows[joint]["time"], rows[joint][name]) for joint in JOINTS])
     noise = np.random.default_rng(7).normal(0.0, NOISE, angles.shape)
     return column("current_predicted") + noise, column("friction_torque") / GAINS
-
-
-def write_csv(path, times, angles, currents):
-    names = ["timestamp"] + [f"actual_q_{i}" for i in range(6)] + [f"actual_current_{i}" for i in range(6)]
-    np.savetxt(path, np.column_stack([times, angles, currents]), "%.17g", ",", header=",".join(names), comments="")
-
-
-def write_bag(path, times, angles, currents):
-    with rosbag.Bag(path, "w") as bag:
-        for at, position, effort in zip(times, angles, currents):
-            stamp = genpy.Time(1000) + genpy.Duration.from_sec(at)
-            state = JointState(name=list(JOINTS.values()), position=list(position), effort=list(effort))
-            state.header.stamp = stamp
-            bag.write("/joint_states", state, stamp)
 
 
 def last_verdicts(path):

@@ -7,6 +7,7 @@ import re
 import signal
 import socket
 import subprocess
+import sys
 import threading
 import time
 import unittest
@@ -20,6 +21,9 @@ import rosparam
 import rospkg
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+
+sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
+import processes  # noqa: E402
 
 PACKAGE = "harmonic_joint_twin"
 SLOWNESS = float(os.environ.get("HJT_PATIENCE", "1"))  # of the programs under test: sanitizers make them slow
@@ -50,9 +54,7 @@ def processor_time(node):
     """Of all threads of a node so far [s]."""
     uri = rosgraph.Master("/ros_support").lookupNode(node)
     pid = xmlrpc.client.ServerProxy(uri).getPid("/ros_support")[2]
-    with open(f"/proc/{pid}/stat", encoding="utf-8") as file:
-        fields = file.read().rsplit(")", 1)[1].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+    return processes.processor_time(pid)
 
 
 class Listener:

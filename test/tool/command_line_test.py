@@ -6,13 +6,15 @@ import os
 import re
 import signal
 import subprocess
+import sys
 import time
 
 import tool
 
+sys.path.append(os.path.join(tool.CHECKOUT, "test", "support"))
+from processes import processor_time  # noqa: E402
+
 PAIR = ["identify", "none.bag", "--joint", "1", "--train"]
-
-
 PARTS = ("actual_q", "actual_qd", "actual_current", "target_moment")
 
 
@@ -167,10 +169,10 @@ class Process(tool.ToolTest):
                 process = subprocess.Popen([self.executable, arguments[0], "long.csv", *arguments[1:]],
                                            cwd=self.directory, stdout=subprocess.DEVNULL)
                 self.addCleanup(process.kill)
-                while tool.processor_time(process.pid) < 0.25 * tool.SLOWER:  # it reads
+                while processor_time(process.pid) < 0.25 * tool.SLOWER:  # it reads
                     self.assertIsNone(process.poll())
                     time.sleep(0.01)
-                before = tool.processor_time(process.pid)
+                before = processor_time(process.pid)
                 process.send_signal(signal.SIGINT)
                 _, status, usage = os.wait4(process.pid, 0)
                 process.returncode = os.waitstatus_to_exitcode(status)

@@ -113,13 +113,6 @@ def peak_memory(process):
         return 0
 
 
-def processor_time(pid):
-    """Of a process that runs so far [s]."""
-    with open(f"/proc/{pid}/stat", encoding="ascii") as file:
-        fields = file.read().rsplit(")", 1)[1].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
-
-
 def read_columns(path):
     """The numbers of a table, by column."""
     with open(path, encoding="ascii") as file:
