@@ -334,6 +334,10 @@ LoadFit::Fit LoadFit::explained(const std::vector<bool>& counts)
   Fit best;
   for (const bool is_mounted : { false, true })
   {
+    if (is_mounted && best.cost <= leastCost() + OTHER_MOUNTING)
+    {
+      break;  // no mounting could be likelier
+    }
     const ArmEstimator::Estimate found = estimator.solve(is_mounted);
     const double below_zero = std::min(payload_.mass + found.payload[0], 0.0);
     double cost = found.rareness + misfitCost(found.left) + 0.5 * std::pow(below_zero / NO_MASS, 2);

@@ -190,11 +190,11 @@ class Arm(ArmTest):
         self.fail_with(1, ["arm crane", "arms"], "follow", "arm.csv", "--arm", "crane")
         self.fail_with(2, ["--joint"], "follow", "arm.csv", "--arm", "ur5", "--joint", "elbow")
 
-    def compare(self, recording, report, *more):
-        return self.succeed_json("compare", recording, "--arm", "ur5", "--report", report, *more)
+    def compare(self, recording, *more):
+        return self.succeed_json("compare", recording, "--arm", "ur5", *more)
 
     def test_friction_of_one_joint_is_that_joint_and_of_all_is_not(self):
-        sound = self.compare(self.robot_with_friction([]), "sound")
+        sound = self.compare(self.robot_with_friction([]), "--report", "sound")
         self.assertEqual(sound["level"], "OK", sound)
         self.assertEqual([joint["joint"] for joint in sound["joints"]], SHORT_NAMES)
         for name in SHORT_NAMES:
@@ -204,13 +204,13 @@ class Arm(ArmTest):
         for name in SHORT_NAMES:
             self.assertIn(f'href="{name}/report.html"', page)
 
-        one = self.compare(self.robot_with_friction(["shoulder"]), "one", "--reference", "sound")
+        one = self.compare(self.robot_with_friction(["shoulder"]), "--reference", "sound")
         self.assertEqual({joint["joint"]: joint["level"] for joint in one["joints"]},
                          {name: "WARN" if name == "shoulder" else "OK" for name in SHORT_NAMES}, one)
         self.assertEqual(one["level"], "WARN")
         self.assertIn("shoulder: ", one["text"])
 
-        every = self.compare(self.robot_with_friction(SHORT_NAMES), "every", "--reference", "sound")
+        every = self.compare(self.robot_with_friction(SHORT_NAMES), "--reference", "sound")
         self.assertEqual(every["level"], "OK", every)
         self.assertIn("temperature or gain", every["text"])
         self.assertAlmostEqual(every["friction_ratio"], 1.3, delta=0.05)
@@ -232,7 +232,7 @@ class Arm(ArmTest):
             if 10.0 <= float(row[0]) < 10.6:
                 row[column] = f"{float(row[column]) + 3.0}"  # some 32 N.m
         self.write("pushed.csv", "\n".join(",".join(row) for row in rows) + "\n")
-        pushed = self.compare("pushed.csv", "pushed")
+        pushed = self.compare("pushed.csv")
         self.assertEqual(self.levels(pushed), dict.fromkeys(SHORT_NAMES, "OK"), pushed)
         self.assertRegex(pushed["text"],
                          r"shoulder: Something touched the arm, or its payload changed: at 10\..* Judged by the rest\.")
@@ -242,10 +242,11 @@ class Arm(ArmTest):
         return {joint["joint"]: joint["level"] for joint in arm["joints"]}
 
     def test_a_reference_made_warm_does_not_make_a_cold_arm_faulty(self):
-        warm = self.compare(self.robot_with_friction([], degrees=40.0, is_recorded=True), "warm")
+        warm = self.compare(self.robot_with_friction([], degrees=40.0, is_recorded=True), "--report", "warm")
         self.assertEqual({(joint["temperature"], joint["temperature_source"]) for joint in warm["joints"]},
                          {(40.0, "received")})
-        cold = self.compare(self.robot_with_friction([], degrees=15.0, is_recorded=True), "cold", "--reference", "warm")
+        cold = self.compare(self.robot_with_friction([], degrees=15.0, is_recorded=True), "--report", "cold",
+                            "--reference", "warm")
         self.assertEqual(self.levels(cold), dict.fromkeys(SHORT_NAMES, "OK"), cold)
         self.assertEqual(cold["friction_ratio"], 1.0)
         self.assertIsNone(cold["temperature_estimate"])
@@ -257,20 +258,19 @@ class Arm(ArmTest):
         self.assertIn("At 15 degC (received), the reference at 40 degC", text)
         self.assertNotIn("Temperature: none is recorded", text)
 
-        sick = self.compare(self.robot_with_friction(["elbow"], degrees=15.0, is_recorded=True), "sick", "--reference",
-                            "warm")
+        sick = self.compare(self.robot_with_friction(["elbow"], degrees=15.0, is_recorded=True), "--reference", "warm")
         self.assertEqual(self.levels(sick), {name: "WARN" if name == "elbow" else "OK" for name in SHORT_NAMES}, sick)
 
     def test_without_temperatures_that_of_the_common_friction_is_estimated(self):
-        self.compare(self.robot_with_friction([], degrees=25.0), "usual")
-        cold = self.compare(self.robot_with_friction([], degrees=8.0), "cold", "--reference", "usual")
+        self.compare(self.robot_with_friction([], degrees=25.0), "--report", "usual")
+        cold = self.compare(self.robot_with_friction([], degrees=8.0), "--reference", "usual")
         self.assertEqual(self.levels(cold), dict.fromkeys(SHORT_NAMES, "OK"), cold)
         self.assertGreater(cold["friction_ratio"], 1.15)
         self.assertAlmostEqual(cold["temperature_estimate"], 8.0, delta=2.0)
         self.assertIn("degC in place of 25 degC", cold["text"])
         self.assertEqual({joint["temperature_source"] for joint in cold["joints"]}, {"configured"})
 
-        sick = self.compare(self.robot_with_friction(["base"], degrees=35.0), "sick", "--reference", "usual")
+        sick = self.compare(self.robot_with_friction(["base"], degrees=35.0), "--reference", "usual")
         self.assertEqual(self.levels(sick), {name: "WARN" if name == "base" else "OK" for name in SHORT_NAMES}, sick)
 
     def test_temperatures_follow_the_recording_and_bad_ones_are_never_used(self):
@@ -326,7 +326,7 @@ class Arm(ArmTest):
     @unittest.skipUnless(RECORDINGS, f"no recordings of a UR5 in {DIRECTORY}; name it in HJT_TELEMETRY_DIR")
     def test_no_sound_joint_of_a_ur5_is_called_faulty(self):
         for path in RECORDINGS[::3]:
-            arm = self.compare(path, "report", "--force")
+            arm = self.compare(path)
             print(f"{os.path.basename(path):22} {arm['level']:4} {arm['text']}")
             self.assertEqual(arm["level"], "OK", (path, arm))
 
@@ -336,7 +336,7 @@ class Arm(ArmTest):
             rows = [line.split(",") for line in file.read().splitlines()]
         kept = [i for i, name in enumerate(rows[0]) if not name.startswith("actual_qd_")]
         self.write("no2.csv", "".join(",".join(row[i] for i in kept) + "\n" for row in rows))
-        arm = self.compare("no2.csv", "report")
+        arm = self.compare("no2.csv")
         self.assertEqual(arm["level"], "OK", arm)
         for joint in arm["joints"][:3]:
             self.assertLess(joint["current_residual_rms"], 0.2 * joint["current_rms"] + 0.2, joint)

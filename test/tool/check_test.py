@@ -228,7 +228,7 @@ class Check(tool.ToolTest):
         self.assertTrue(mended["usable"])
         self.assertAlmostEqual(mended["period"], 0.016, places=6)
         self.assertIn("--time-scale 2", mended["next"][0])
-        arm = self.succeed_json("compare", "fast.csv", "--arm", "ur5", "--report", "report")
+        arm = self.succeed_json("compare", "fast.csv", "--arm", "ur5")
         self.assertEqual((arm["level"], {joint["level"] for joint in arm["joints"]}), ("NOT JUDGED", {"NOT JUDGED"}))
         self.assertIn("--time-scale 2", arm["text"])
         done = self.succeed("follow", "fast.csv", "--arm", "ur5")
@@ -252,7 +252,7 @@ class Check(tool.ToolTest):
         self.assertEqual([joint["verdict"]["reason"] for joint in found["joints"]], reasons)
         self.assertAlmostEqual(found["joints"][2]["velocity_lag"], 0.16, delta=0.01)
         self.lines("arm.csv")
-        arm = self.succeed_json("compare", "arm.csv", "--arm", "ur5", "--report", "report")
+        arm = self.succeed_json("compare", "arm.csv", "--arm", "ur5")
         levels = [joint["level"] for joint in arm["joints"]]
         self.assertEqual(levels[:3], ["NOT JUDGED"] * 3)
         self.assertEqual([joint["verdict"]["reason"] for joint in arm["joints"]], reasons)

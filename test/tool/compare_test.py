@@ -14,12 +14,13 @@ import tool
 
 OPTIONS = ["--joint", "elbow", "--config", "joints/elbow.yaml"]
 GAIN = ["--set", f"telemetry.torque_per_current={robot.GAIN}"]
+REPORT = ["--report", "report", "--force"]
 FIGURES = ["course", "friction", "spectrum", "teeth"]
 
 
 class Compare(tool.ToolTest):
     def compare(self, recording, *arguments):
-        return self.succeed_json("compare", recording, *OPTIONS, *GAIN, "--report", "report", "--force", *arguments)
+        return self.succeed_json("compare", recording, *OPTIONS, *GAIN, *arguments)
 
     def finding(self, report, title):
         return next(finding for finding in report["verdict"]["findings"] if title in finding["title"])
@@ -39,18 +40,18 @@ class Compare(tool.ToolTest):
 
     def test_a_matplotlibrc_in_the_folder_of_the_call_has_no_influence(self):
         robot.write_bag(self.path("a.bag"), 30.0)
-        self.compare("a.bag")
+        self.compare("a.bag", *REPORT)
         pictures = [f"report/{name}.png" for name in FIGURES]
         expected = [tool.read_bytes(self.path(name)) for name in pictures]
         for settings in (b"text.usetex: True\nbackend: module://other\nfont.size: 40\n", b"\xff\xfe"):
             with open(self.path("matplotlibrc"), "wb") as file:
                 file.write(settings)
-            self.compare("a.bag")
+            self.compare("a.bag", *REPORT)
             self.assertEqual([tool.read_bytes(self.path(name)) for name in pictures], expected, settings)
 
     def test_a_bag_of_a_stranger_gets_a_page_that_needs_nothing_else(self):
         robot.write_bag(self.path("a.bag"), 30.0)
-        report = self.compare("a.bag")
+        report = self.compare("a.bag", *REPORT)
         files = os.listdir(self.path("report"))
         for name in FIGURES:
             self.assertIn(f"{name}.png", files)
@@ -117,7 +118,7 @@ class Compare(tool.ToolTest):
         self.succeed("import", "a.csv", "--joint", 2, "--out", "in.bag")
         self.succeed("replay", "in.bag", "--out", "out.bag", "--config", "joints/elbow.yaml",
                      "--config", "recorded_load.yaml", "--set", "publish.contact_forces_rate=1")
-        report = self.compare("out.bag")
+        report = self.compare("out.bag", *REPORT)
         self.assertTrue(report["contents"]["topics"][-1]["found"])
         self.assertIn("/joint_twin/command", report["contents"]["not_used"])
         with open(self.path("report/twin_states.csv")) as file:
@@ -154,9 +155,9 @@ class Compare(tool.ToolTest):
 
     def test_json_needs_no_report_and_leaves_no_file(self):
         robot.write_bag(self.path("a.bag"), 30.0)
-        with_page = self.compare("a.bag")
+        with_page = self.compare("a.bag", *REPORT)
         before = set(os.listdir(self.directory))
-        alone = self.succeed_json("compare", "a.bag", *OPTIONS, *GAIN)
+        alone = self.compare("a.bag")
         self.assertEqual(alone, with_page)
         self.assertEqual(set(os.listdir(self.directory)), before)
 

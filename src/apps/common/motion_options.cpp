@@ -9,10 +9,17 @@
 
 namespace hjt
 {
+Watch readingWatch()
+{
+  return { showProgress, Watch().stopped,
+           [](const std::string& text) { std::cerr << "joint_twin: " << text << '\n'; } };
+}
+
 Watch consoleWatch()
 {
-  return { showProgress, [interrupts = std::make_shared<InterruptScope>()] { return interruptSignal() != 0; },
-           [](const std::string& text) { std::cerr << "joint_twin: " << text << '\n'; } };
+  Watch watch = readingWatch();
+  watch.stopped = [interrupts = std::make_shared<InterruptScope>()] { return interruptSignal() != 0; };
+  return watch;
 }
 
 void addRecording(Command& command, RecordingOptions& options)

@@ -16,7 +16,9 @@ struct Printed : Options
 
 using ArmOptions = Printed<RecordingOptions>;
 
-/// Progress and notices on stderr; signals that end the process otherwise stop the function, as long as it is kept.
+/// Progress and notices on stderr, of a command that writes no file: a signal ends its process at once.
+Watch readingWatch();
+/// As `readingWatch`; signals that end the process otherwise stop the function, as long as it is kept.
 Watch consoleWatch();
 
 /// Options but the joint: the recording itself, then how it is read.

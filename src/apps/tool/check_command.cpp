@@ -11,7 +11,6 @@
 #include "apps/common/motion_options.hpp"
 #include "apps/tool/next_commands.hpp"
 #include "output/exit_code.hpp"
-#include "output/interrupt.hpp"
 #include "output/json.hpp"
 #include "output/report.hpp"
 #include "output/text_table.hpp"
@@ -357,12 +356,8 @@ Json documentOf(const ArmOptions& options, const CheckedContents& contents, cons
 int check(const ArmOptions& given)
 {
   ArmOptions options = given;
-  options.watch = consoleWatch();
+  options.watch = readingWatch();
   const RecordingCheck check = checkRecording(options);
-  if (interruptSignal() != 0)
-  {
-    return EXIT_BY_SIGNAL + interruptSignal();
-  }
   if (options.json)
   {
     Json document = documentOf(options, check.contents, check.arms.front());
