@@ -96,15 +96,23 @@ bool MovingArm::step(Stamp until) noexcept
 /// At an instant of the control: what acts from there on.
 void MovingArm::control() noexcept
 {
-  if (stop_ || !controller_.isDue(twin_))
+  if (!controller_.isDue(twin_))
   {
     return;
   }
-  wantedAt(twin_.stamp(), set_point_);
-  watch();
+  if (!stop_)
+  {
+    wantedAt(twin_.stamp(), set_point_);
+    watch();
+  }
   if (!stop_)
   {
     controller_.control(twin_, set_point_);
+    return;
+  }
+  for (std::size_t i = 0; i < twin_.joints(); ++i)
+  {
+    twin_.drive(i).commandMotorTorque(twin_.stamp(), 0.0);
   }
 }
 
@@ -128,7 +136,6 @@ void MovingArm::watch() noexcept
   {
     const Stamp now = twin_.stamp();
     const Stamp release = motion_begin_ - toStampLength(0.5 * settling_ + leadIn());
-    twin_.drive(i).commandMotorTorque(now, 0.0);
     twin_.drive(i).commandBrake(now, true);
     if (release > now)
     {

@@ -266,6 +266,7 @@ TEST(MovingArm, StopsWhereItCannotFollow)
   {
     EXPECT_TRUE(arm.twin().drive(i).outputs().brake_engaged);
     EXPECT_EQ(arm.twin().drive(i).outputs().motor_velocity, 0.0);
+    EXPECT_EQ(arm.twin().drive(i).counters().command_timeouts, 0U);  // no torque is a command too
   }
   EXPECT_NEAR(arm.twin().motion()[1].position, -0.8, 0.1);
   ASSERT_TRUE(arm.reset(0));
