@@ -19,7 +19,6 @@ DELAY_FROM = {"no7", "no7_pushed"}  # recordings of the motion that the delay of
 LOOP_ROWS, BUILT_ROWS, PICTURE = "real_robot_loop.csv", "real_robot_built.csv", "images/real_robot/closed_loop.png"
 TRACKED = ["tracking_twin [mrad]", "tracking_recorded [mrad]"]
 LINES = ["current_line_twin [A]", "current_line_recorded [A]"]
-BARE_IN = "no9"            # recording that is run without the cup's friction too
 # Errors of the circular spline alone: a gear with errors on both members has no table.
 BUILT = ["--config", "as_built.yaml", "--set", "manufacture.flexspline_pitch_deviation=0.0", "--set",
          "manufacture.wave_generator_eccentricity=[0.0,0.0]"]
@@ -69,9 +68,9 @@ def progress(data):
 class ClosedLoop:
     """A run of `joint_twin arm` along the targets of a recording (ur5.Recording), or along `motion`."""
 
-    def __init__(self, runner, recording, identified, *more, arm="ur5", motion=None, name="loop"):
+    def __init__(self, runner, recording, identified, *more, arm="ur5", motion=None):
         self.recording = recording
-        out = f"{name}_{identified}_{recording.name}.csv"
+        out = f"loop_{identified}_{recording.name}.csv"
         self.report = runner.run("arm", motion or f"{recording.name}.csv", "--arm", arm, "--identified", identified,
                                  "--out", out, "--json", *more)
         self.data = read(runner.path(out))
@@ -137,39 +136,13 @@ def line_of(data, joint, values):
     return line_amplitude(data["timestamp"], data[f"target_qd_{joint}"], values)
 
 
-def lines_of(data, joints):
-    """Lines of the large joints' currents [A] and output angles [urad], as texts."""
-    currents = [line_of(data, number, data[f"actual_current_{number}"]) for number in range(joints)]
-    angles = [1e6 * line_of(data, number, data[f"actual_q_{number}"] - data[f"target_q_{number}"])
-              for number in range(joints)]
-    return cell(*angles, digits=0), cell(*currents)
-
-
-def bare_sentence(runner, recordings, loops):
-    """What the cup's friction does to the lines."""
-    recording = next((recording for recording in recordings if recording.name == BARE_IN), None)
-    if recording is None:
-        return ""
-    bare = ClosedLoop(runner, recording, "built", *BUILT, "--set", "cup.friction_torque=0.0", name="bare")
-    stop = bare.report["protective_stop"]
-    if stop:
-        return (f"Without the cup's friction (`--set cup.friction_torque=0.0`) the arm stops by itself in {BARE_IN}: "
-                f"{stop['joint']}, {stop['reason']}.")
-    (without, without_current), (with_it, with_current), (recorded, recorded_current) = (
-        lines_of(data, 3) for data in (bare.data, loops[BARE_IN].data, recording.data))
-    return (f"Without the cup's friction (`--set cup.friction_torque=0.0`) the outputs of base, shoulder and elbow "
-            f"swing in {BARE_IN} at this line by {without} µrad (with it {with_it}, recorded {recorded}), their "
-            f"currents by {without_current} A (with it {with_current}, recorded {recorded_current}).")
-
-
 def built_section(runner, recordings, fit, joints, train, docs):
     """Lines of the page: drives with errors of manufacture, the controller's gains identified on one recording."""
     runner.run("identify", f"{train}.csv", "--arm", "ur5", "--out", "built")
     gains = runner.run("identify", f"{GAINS_FROM}.csv", "--arm", "ur5", "--controller", "--out", "built", "--json")
-    rows, ratios, stops, loops = [], {name: [] for name in joints}, [], {}
+    rows, ratios = [], {name: [] for name in joints}
     for recording in recordings:
-        loop = loops[recording.name] = ClosedLoop(runner, recording, "built", *BUILT)
-        stops += [recording.name] if loop.report["protective_stop"] else []
+        loop = ClosedLoop(runner, recording, "built", *BUILT)
         for number, name in enumerate(joints):
             current, _, simple = moving_errors(recording, name, fit, loop, number)
             both = loop.data, recording.data
@@ -185,15 +158,13 @@ def built_section(runner, recordings, fit, joints, train, docs):
     found = ", ".join(f"{joint['joint']} {joint['speed']:.0f} N·m·s/rad, {joint['position']:.0f} 1/s"
                       for joint in gains["joints"] if not joint["refusal"])
     within = np.count_nonzero((known <= 2.0) & (known >= 0.5))
-    stopped = f" Stopped by itself: {', '.join(stops)}." if stops else ""
     return [f"""
 **With errors of manufacture and identified gains.** Circular splines of `config/as_built.yaml` (7″ at {LOOP_LINES} a
 turn; the flexsplines equal, so that each drive has a table), the controller's gains by `identify --controller` on
 {GAINS_FROM}: {found}. All figures: [{BUILT_ROWS}]({BUILT_ROWS}).
 
 The line of the current is within a factor of two of the recorded one in {within} of {len(known)}; median of twin over
-recorded: {float(np.median(known)):.2f}.{stopped} {bare_sentence(runner, recordings, loops)}
-What bounds it: [arm_twin.md](arm_twin.md#errors-of-manufacture).
+recorded: {float(np.median(known)):.2f}. What bounds it: [arm_twin.md](arm_twin.md#errors-of-manufacture).
 """]
 
 
