@@ -71,8 +71,8 @@ class ClosedLoop:
     def __init__(self, runner, recording, identified, *more, arm="ur5", motion=None):
         self.recording = recording
         out = f"loop_{identified}_{recording.name}.csv"
-        self.report = runner.run("arm", motion or f"{recording.name}.csv", "--arm", arm, "--identified", identified,
-                                 "--out", out, "--json", *more)
+        runner.run("arm", motion or f"{recording.name}.csv", "--arm", arm, "--identified", identified, "--out", out,
+                   "--json", *more)
         self.data = read(runner.path(out))
         recorded = recording.data
         self.stamps = recorded["timestamp"] - recorded["timestamp"][0]
@@ -89,8 +89,8 @@ class ClosedLoop:
                                                     self.data[f"actual_current_{joint}"])
 
 
-def cell(*values, digits=2):
-    return " / ".join("–" if np.isnan(value) else f"{value:.{digits}f}" for value in values)
+def cell(*values):
+    return " / ".join("–" if np.isnan(value) else f"{value:.2f}" for value in values)
 
 
 def residuals_of(recording, name, fit, loop, number):

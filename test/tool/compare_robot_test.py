@@ -55,8 +55,7 @@ class HiddenFault(tool.ToolTest):
         duty = [{"name": "turning", "speed": {"constant": 0.2618}, "bandwidth": 8.0, "load": {"constant": 60.0}}]
         windows = ["--set", "indicators.window_turns=25.0", "--set", "indicators.baseline_windows=40"]
         # The load is not in the telemetry, nor is it given to the twin.
-        self.compare(self.robot("sound", duration=250.0, duty=duty, weight=0.0), "--report", "r0",
-                     *windows)
+        self.compare(self.robot("sound", duration=250.0, duty=duty, weight=0.0), "--report", "r0", *windows)
         spall = self.robot("spall", ("bearing_outer_race", 0), duration=50.0, duty=duty, weight=0.0)
         report = self.compare(spall, *windows, "--reference", "r0")
         # A line that shows alone, in a motion like no signature's, is not put down to a cause with certainty.
