@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Names and likely faults by clang-tidy (.clang-tidy) in the sources of src/, test/ and bench/ that the build compiles:
 those whose code changed in the working tree or within four hours before its commit, and a sixth of all, which the
-number of commits chooses. That sixth is read as the build compiles it, several sources at once: a third of the time.
+number of commits chooses. That sixth is read as the build compiles it, several sources at once: a third of the time;
+so are three and more that changed of those compiled at once.
 --all, or sources without git: every one, by itself.
 
 usage: clang_tidy.py [--all] BUILD_FOLDER
@@ -31,6 +32,7 @@ FOLDERS = ("src", "test", "bench")
 TOOLS = ("clang-tidy-22", "clang-tidy")
 VERSIONS = (14, 22)  # that the sources are written for: the checks of others differ
 PARTS = 6  # of all that the build compiles, one of which a commit has checked
+TOGETHER = 3  # changed sources of one compiled file, from which on it is read as a whole
 CHANGED_BEFORE = 14400  # changed files: by how much their commit may be older than the last [s]
 KEPT_DAYS = 60  # what no run has asked for since then is removed
 
@@ -110,7 +112,8 @@ def command(entry, path):
 
 
 def commands(build, root):
-    """Compile commands of all sources, one each, and of all files that the build compiles, by the first of each."""
+    """Compile commands of all sources, one each; of all files that the build compiles, with the sources, by their
+    first."""
     with open(os.path.join(build, "compile_commands.json"), encoding="utf-8") as file:
         entries = json.load(file)
     of_sources, of_files = {}, {}
@@ -119,25 +122,30 @@ def commands(build, root):
         for path in sources:
             of_sources[path] = command(entry, path)
         if sources:
-            of_files[sources[0]] = command(entry, os.path.normpath(os.path.join(entry["directory"], entry["file"])))
+            compiled = os.path.normpath(os.path.join(entry["directory"], entry["file"]))
+            of_files[sources[0]] = command(entry, compiled), sources
     return of_sources, of_files
 
 
 def chosen(build, root, whole):
-    """Compile commands by what is said of each, and how many sources the build compiles."""
+    """Compile commands by what is said of each, and how many sources are left to other commits."""
     def named(path):
         return os.path.relpath(path, root)
 
     of_sources, of_files = commands(build, root)
     by_commit = None if whole else turn(root)
     if not by_commit:
-        return {named(path): of_sources[path] for path in sorted(of_sources)}, len(of_sources)
-    fresh, is_turn = by_commit
-    found = {named(path): entry for path, entry in sorted(of_sources.items()) if named(path) in fresh}
-    for path, entry in sorted(of_files.items()):
-        if is_turn(named(path)):
-            found[named(path) if entry["file"] == path else f"{named(path)} and what is compiled with it"] = entry
-    return found, len(of_sources)
+        return {named(path): of_sources[path] for path in sorted(of_sources)}, 0
+    names, is_turn = by_commit
+    fresh = {path for path in of_sources if named(path) in names}
+    found, left = {}, set(of_sources)
+    for first, (entry, sources) in sorted(of_files.items()):
+        if is_turn(named(first)) or len(fresh.intersection(sources)) >= TOGETHER:
+            found[named(first) + (" and what is compiled with it" if sources[1:] else "")] = entry
+            fresh.difference_update(sources)
+            left.difference_update(sources)
+    found.update((named(path), of_sources[path]) for path in sorted(fresh))
+    return found, len(left - fresh)
 
 
 def files_of_rule(rule, entry):
@@ -175,7 +183,7 @@ def check(build, root=project.ROOT, whole=False):
         project.skip(f"needs clang-tidy {wanted}, here is {' '.join(version.decode().split())}")
     file_hash.cache_clear()
     changed.cache_clear()
-    entries, known = chosen(build, root, whole)
+    entries, left = chosen(build, root, whole)
     common = text_hash(version) + file_hash(os.path.join(root, ".clang-tidy"))
     cache = cache_folder()
 
@@ -195,7 +203,7 @@ def check(build, root=project.ROOT, whole=False):
                 pass
         return ""
 
-    problems = [] if known else ["src: no compiled sources found"]
+    problems = [] if entries or left else ["src: no compiled sources found"]
     with tempfile.TemporaryDirectory() as database, concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         with open(os.path.join(database, "compile_commands.json"), "w", encoding="utf-8") as file:
             # clang-tidy takes no other keys than its own.
@@ -206,7 +214,7 @@ def check(build, root=project.ROOT, whole=False):
             print(f"{said}: {state}", flush=True)
             if found:
                 problems.append(found)
-    if len(entries) < known:
+    if left:
         print("Unchanged files are left to other commits")
     return problems
 

@@ -118,12 +118,19 @@ class ClangTidy(Tree):
         self.assertEqual(self.printed.getvalue(), "src/one.cpp: clean\nsrc/two.cpp: FAULTS\n")
         self.assertIn("vector", "".join(problems))
 
-    def test_unchanged_sources_of_a_unity_build_are_checked_at_once(self):
-        with unittest.mock.patch.object(clang_tidy, "turn", lambda root: ({"src/two.cpp"}, lambda path: True)):
+    def test_sources_of_a_unity_build_are_checked_at_once_in_their_turn(self):
+        turn = {"src/two.cpp"}, lambda path: True
+        with unittest.mock.patch.object(clang_tidy, "turn", lambda root: turn):
             problems = self.problems_of_a_unity_build("int Read();\n", "int two();\n")
-        self.assertEqual(self.printed.getvalue(),
-                         "src/two.cpp: clean\nsrc/one.cpp and what is compiled with it: FAULTS\n")
+        self.assertEqual(self.printed.getvalue(), "src/one.cpp and what is compiled with it: FAULTS\n")
         self.assertIn("Read", "".join(problems))
+
+    def test_a_few_changed_sources_of_a_unity_build_are_checked_alone(self):
+        turn = {"src/two.cpp"}, lambda path: False
+        with unittest.mock.patch.object(clang_tidy, "turn", lambda root: turn):
+            problems = self.problems_of_a_unity_build("int Read();\n", "int two();\n")
+        self.assertEqual(self.printed.getvalue(), "src/two.cpp: clean\nUnchanged files are left to other commits\n")
+        self.assertEqual(problems, [])
 
     def test_a_commit_has_its_changes_and_a_part_of_the_rest_checked(self):
         def commit(days):
