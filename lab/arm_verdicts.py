@@ -63,13 +63,13 @@ class Arm:
                      "--out", path, "--json", *more)
         return self.rows(path)
 
-    def rows(self, path):
+    def rows(self, path, arm=None):
         """Columns by name, and each joint's friction in its current, as its twin has it [A]."""
         with open(self.work / path, encoding="utf-8") as file:
             names = file.readline().strip().split(",")
         table = numpy.loadtxt(self.work / path, delimiter=",", skiprows=1)
         rows = dict(zip(names, table.T))
-        self.run("follow", path, "--arm", self.name, "--out", path + ".rows", "--force", "--json")
+        self.run("follow", path, "--arm", arm or self.name, "--out", path + ".rows", "--force", "--json")
         time, frictions = rows["timestamp"] - rows["timestamp"][0], []
         for joint in JOINTS:
             twin = numpy.genfromtxt(self.work / (path + ".rows") / f"{joint}.csv", delimiter=",", names=True)
@@ -95,6 +95,9 @@ class Arm:
                 rows[f"target_current_{i}"] = rows[f"target_current_{i}"] + friction
             else:
                 rows.pop(f"target_current_{i}")
+        self.table(path, rows)
+
+    def table(self, path, rows):
         with open(self.work / path, "w", encoding="utf-8", newline="") as file:
             table = csv.writer(file)
             table.writerow(rows)

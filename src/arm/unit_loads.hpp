@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -11,86 +10,69 @@
 
 namespace hjt
 {
-/// Torques at an arm's joints of unit payloads, and of unit gravity.
+/// Torques at an arm's joints of unit payloads, and of unit gravity: all from one walk along the links.
 class UnitLoads
 {
 public:
-  explicit UnitLoads(ArmDescription arm)
-  {
-    const std::array<double, 3> gravity = arm.gravity;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-    {
-      arm.gravity = {};
-      arm.gravity[axis] = 1.0;
-      weights_.emplace_back(arm);
-    }
-    arm.gravity = gravity;
-    for (ArmLink& link : arm.links)
-    {
-      links_mass_ += link.mass;
-      link.mass = 0.0;
-      link.inertia = {};
-    }
-    const auto add = [&](const std::array<double, 3>& centre)
-    {
-      arm.payload = { 1.0, centre };
-      loaded_.emplace_back(arm);
-    };
-    add({});
-    for (std::size_t axis = 0; axis < 3; ++axis)
-    {
-      std::array<double, 3> centre{};
-      for (const double side : { 1.0, -1.0 })
-      {
-        centre[axis] = side;
-        add(centre);
-      }
-    }
-  }
+  explicit UnitLoads(const ArmDescription& arm);
 
-  double linksMass() const { return links_mass_; }  ///< [kg]
+  double linksMass() const;  ///< without the payload [kg]
 
   /// Of mass and moments, and of gravity along each axis of the base's frame, at each joint, by column
   /// [N.m/kg], [N.m/(kg.m)], [N.m/(m/s^2)].
-  void torques(const std::vector<JointMotion>& motion, Eigen::MatrixXd& columns)
-  {
-    const auto at = [&](ArmDynamics& dynamics, std::vector<double>& torques)
-    {
-      torques.resize(motion.size());
-      dynamics.torques(motion, torques);
-    };
-    at(loaded_[0], first_);
-    columns.col(0) = Eigen::Map<const Eigen::VectorXd>(first_.data(), static_cast<Eigen::Index>(first_.size()));
-    // To both sides: what of a payload's inertia is quadratic in its centre cancels out.
-    for (std::size_t axis = 0; axis < 3; ++axis)
-    {
-      at(loaded_[1 + 2 * axis], first_);
-      at(loaded_[2 + 2 * axis], second_);
-      for (std::size_t i = 0; i < motion.size(); ++i)
-      {
-        columns(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(1 + axis)) = 0.5 * (first_[i] - second_[i]);
-      }
-    }
-    rest_.resize(motion.size());
-    for (std::size_t i = 0; i < motion.size(); ++i)
-    {
-      rest_[i] = { motion[i].position, 0.0, 0.0 };
-    }
-    for (std::size_t axis = 0; axis < 3; ++axis)
-    {
-      first_.resize(motion.size());
-      weights_[axis].torques(rest_, first_);
-      columns.col(static_cast<Eigen::Index>(4 + axis)) =
-          Eigen::Map<const Eigen::VectorXd>(first_.data(), static_cast<Eigen::Index>(first_.size()));
-    }
-  }
+  void torques(const std::vector<JointMotion>& motion, Eigen::MatrixXd& columns);
 
 private:
-  double links_mass_{};               // [kg]
-  std::vector<ArmDynamics> loaded_;   // of links without a mass
-  std::vector<ArmDynamics> weights_;  // of gravity along each axis
-  std::vector<JointMotion> rest_;
-  std::vector<double> first_;
-  std::vector<double> second_;
+  /// In the frames of an ArmLink.
+  struct Link
+  {
+    LinkMotion motion{};
+    Eigen::Vector3d axis;
+    Eigen::Vector3d origin;
+    Eigen::Vector3d position;
+    Eigen::Matrix3d rotation;
+    double mass{};
+    Eigen::Vector3d centre;
+  };
+
+  /// In the base's frame.
+  struct Joint
+  {
+    bool turns{};
+    Eigen::Vector3d axis;
+    Eigen::Vector3d origin;
+    double mass{};           // that it carries [kg]
+    Eigen::Vector3d moment;  // likewise, about the base [kg.m]
+
+    /// Torque, or force along the axis, that a force at a place and a moment take.
+    double effort(const Eigen::Vector3d& force, const Eigen::Vector3d& place, const Eigen::Vector3d& couple) const
+    {
+      return axis.dot(turns ? Eigen::Vector3d(couple + (place - origin).cross(force)) : force);
+    }
+  };
+
+  /// Of a link's frame, in the base's frame.
+  struct Motion
+  {
+    Eigen::Matrix3d orientation = Eigen::Matrix3d::Identity();
+    Eigen::Vector3d place = Eigen::Vector3d::Zero();
+    Eigen::Vector3d speed = Eigen::Vector3d::Zero();         // of turning [rad/s]
+    Eigen::Vector3d turning = Eigen::Vector3d::Zero();       // its derivative [rad/s^2]
+    Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();  // of the place [m/s^2]
+
+    /// Acceleration of what lies at `arm` from the place, less that of the place.
+    Eigen::Vector3d swing(const Eigen::Vector3d& arm) const
+    {
+      return turning.cross(arm) + speed.cross(speed.cross(arm));
+    }
+  };
+
+  void follow(const Link& link, const JointMotion& motion, Motion& at);
+  Motion walk(const std::vector<JointMotion>& motion);
+
+  std::vector<Link> links_;
+  std::vector<Joint> joints_;  // where the last walk found them
+  Payload payload_;
+  Eigen::Vector3d gravity_;
 };
 }  // namespace hjt

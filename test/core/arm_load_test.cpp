@@ -33,48 +33,99 @@ std::vector<MotionRow> rowsOf(double time, const Angles& angles)
   return rows;
 }
 
-/// A payload's torques are linear in its mass and moments, but for its inertia, which both sides of a centre share: to
-/// the rounding of torques of 10 kN.m, which 1000 kg take.
-TEST(UnitLoads, AreThoseOfAPayloadToTheRounding)
+/// Of unit loads, beside the recursion of ArmDynamics: to the rounding of torques of 10 kN.m, which 1000 kg take.
+class UnitLoadsOf : public testing::Test
 {
-  constexpr double MASS = 1000.0;                      // [kg]
-  constexpr double ROUNDING = 100.0 * 2.2e-16 * 10.0;  // of sums over six links, of torques a kg [N.m/kg]
-  ArmDescription arm = shipped("ur5");
-  arm.payload = {};
-  UnitLoads unit(arm);
-  ArmDynamics dynamics(arm);
-  EXPECT_NEAR(unit.linksMass(), dynamics.mass(), 1e-12);
-  std::vector<JointMotion> motion(arm.joints.size());
-  std::vector<double> torques(motion.size());
-  std::vector<double> others(motion.size());
-  Eigen::MatrixXd columns(static_cast<Eigen::Index>(motion.size()), 7);
-  for (int pose = 0; pose < 20; ++pose)
+protected:
+  static constexpr double MASS = 1000.0;                      // [kg]
+  static constexpr double ROUNDING = 100.0 * 2.2e-16 * 10.0;  // of sums over six links, of torques a kg [N.m/kg]
+
+  static std::vector<JointMotion> motionOfPose(int pose, bool at_rest)
   {
+    std::vector<JointMotion> motion(6);
     for (std::size_t i = 0; i < motion.size(); ++i)
     {
       const double turn = 1.0 + static_cast<double>(i) + 7.0 * pose;
-      motion[i] = { 3.0 * std::sin(turn), 2.0 * std::cos(2.0 * turn), 4.0 * std::sin(3.0 * turn) };
+      const double share = at_rest ? 0.0 : 1.0;
+      motion[i] = { 3.0 * std::sin(turn), 2.0 * share * std::cos(2.0 * turn), 4.0 * share * std::sin(3.0 * turn) };
     }
-    unit.torques(motion, columns);
-    for (Eigen::Index axis = -1; axis < 3; ++axis)
+    return motion;
+  }
+
+  /// Column by column: torques of `with` less those of `without`, by `share`.
+  static void expectColumn(const Eigen::MatrixXd& columns, Eigen::Index column, const std::vector<double>& with,
+                           const std::vector<double>& without, double share)
+  {
+    for (std::size_t i = 0; i < with.size(); ++i)
     {
-      std::array<double, 3> centre{};
-      std::array<double, 3> opposite{};
-      if (axis >= 0)
+      const double torque = columns(static_cast<Eigen::Index>(i), column);
+      EXPECT_NEAR(torque, (with[i] - without[i]) / share, ROUNDING * std::max(1.0, std::abs(torque)))
+          << "joint " << i << ", column " << column;
+    }
+  }
+
+  /// A payload's torques are linear in its mass and moments, but for its inertia, which both sides of a centre share.
+  static void expectPayloads(const ArmDescription& arm)
+  {
+    UnitLoads unit(arm);
+    ArmDynamics dynamics(arm);
+    Eigen::MatrixXd columns(6, 7);
+    for (int pose = 0; pose < 20; ++pose)
+    {
+      const std::vector<JointMotion> motion = motionOfPose(pose, false);
+      unit.torques(motion, columns);
+      const auto torques = [&](const Payload& payload)
       {
-        centre[static_cast<std::size_t>(axis)] = 1.0;
-        opposite[static_cast<std::size_t>(axis)] = -1.0;
+        std::vector<double> found(motion.size());
+        dynamics.setPayload(payload);
+        dynamics.torques(motion, found);
+        return found;
+      };
+      expectColumn(columns, 0, torques({ MASS, {} }), torques({}), MASS);
+      for (std::size_t axis = 0; axis < 3; ++axis)
+      {
+        std::array<double, 3> centre{};
+        std::array<double, 3> opposite{};
+        centre[axis] = 1.0;
+        opposite[axis] = -1.0;
+        expectColumn(columns, 1 + static_cast<Eigen::Index>(axis), torques({ MASS, centre }),
+                     torques({ MASS, opposite }), 2.0 * MASS);
       }
-      dynamics.setPayload({ MASS, centre });
+    }
+  }
+};
+
+TEST_F(UnitLoadsOf, PayloadsAreTheirsToTheRounding)
+{
+  expectPayloads(shipped("ur5"));
+  ArmDescription slides = shipped("ur5");
+  ArmLink& third = *std::find_if(slides.links.begin() + 2, slides.links.end(),
+                                 [](const ArmLink& link) { return link.motion == LinkMotion::TURNS; });
+  third.motion = LinkMotion::SLIDES;
+  slides.gravity = { 1.0, -3.0, -9.0 };
+  expectPayloads(slides);
+}
+
+TEST_F(UnitLoadsOf, GravityIsThatOfLinksAndPayload)
+{
+  constexpr double MOST = 1000.0;  // [m/s^2]
+  ArmDescription arm = shipped("ur5");
+  arm.payload = { 3.0, { 0.05, -0.02, 0.1 } };
+  UnitLoads unit(arm);
+  EXPECT_NEAR(unit.linksMass() + 3.0, ArmDynamics(arm).mass(), 1e-12);
+  Eigen::MatrixXd columns(6, 7);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+  {
+    arm.gravity = {};
+    arm.gravity[axis] = MOST;
+    ArmDynamics dynamics(arm);
+    for (int pose = 0; pose < 20; ++pose)
+    {
+      const std::vector<JointMotion> motion = motionOfPose(pose, true);
+      unit.torques(motion, columns);
+      std::vector<double> torques(motion.size());
       dynamics.torques(motion, torques);
-      dynamics.setPayload(axis < 0 ? Payload{} : Payload{ MASS, opposite });
-      dynamics.torques(motion, others);
-      const double share = axis < 0 ? MASS : 2.0 * MASS;
-      for (std::size_t i = 0; i < motion.size(); ++i)
-      {
-        const double column = columns(static_cast<Eigen::Index>(i), axis + 1);
-        EXPECT_NEAR(column, (torques[i] - others[i]) / share, ROUNDING * std::max(1.0, std::abs(column))) << axis;
-      }
+      expectColumn(columns, 4 + static_cast<Eigen::Index>(axis), torques, std::vector<double>(motion.size()), MOST);
     }
   }
 }
