@@ -43,6 +43,9 @@ public:
     size_ += COUNT;
   }
 
+  /// Of a term that is there [N] or [N.m].
+  void setStrength(int i, double strength) noexcept { values_(i, 0) = strength; }
+
   int size() const noexcept { return size_; }
   int packedSize() const noexcept { return packed(size_); }  ///< with the zeros
   FrictionTerm operator[](int i) const noexcept { return { values_(i, 0), { values_(i, 1), values_(i, 2) } }; }
@@ -83,7 +86,7 @@ private:
 struct JointFriction
 {
   /// Room for one term a tooth, the motor shaft's, the cup's and the output's.
-  explicit JointFriction(int teeth) : terms(teeth + 3), running(2 * teeth) {}
+  explicit JointFriction(int teeth) : terms(teeth + 3), running(2 * teeth), flank_load(teeth) {}
 
   void setZero() noexcept
   {
@@ -106,5 +109,11 @@ struct JointFriction
   double presliding{};  ///< dry friction at the motor shaft that is no term: it builds up over an angle [N.m]
   Eigen::Matrix2d viscous{ Eigen::Matrix2d::Zero() };  ///< torque by speed, positive semi-definite [N.m.s/rad]
   Eigen::VectorXd running;  ///< 2 N, rates of the ring's points by motor angle while the output follows [m/rad]
+  // Of the full ring, for other speeds at the same ring: what the strengths of the first terms, of shaft and flanks,
+  // are made of.
+  double contact_force{};      ///< of the wave generator, summed [N]
+  double ring_torque{};        ///< JointModel::ringTorque [N.m]
+  int flanks{};                ///< terms of flanks, behind the shaft's
+  Eigen::VectorXd flank_load;  ///< N, of these [N]
 };
 }  // namespace hjt

@@ -12,6 +12,8 @@ namespace hjt
 void MeshFriction::addTerms(const ToothMesh& mesh, const ToothMesh::Scratch& found, const RingRates& rates,
                             const Eigen::Vector2d& speeds, JointFriction& friction) const noexcept
 {
+  const int first = friction.terms.size();
+  friction.flanks = 0;
   for (const FlankContact& contact : found.flanks)
   {
     const double force = found.flank_force[contact.tooth];
@@ -26,7 +28,18 @@ void MeshFriction::addTerms(const ToothMesh& mesh, const ToothMesh::Scratch& fou
     {
       factor += tooth_factor_[contact.tooth + rates.shape.solved];  // it slides alike
     }
-    friction.terms.push_back({ factor * coefficient(slip.dot(speeds)) * std::abs(force), slip });
+    friction.flank_load[friction.flanks++] = factor * std::abs(force);
+    friction.terms.push_back({ 0.0, slip });
+  }
+  setStrengths(first, speeds, friction);
+}
+
+void MeshFriction::setStrengths(int first, const Eigen::Vector2d& speeds, JointFriction& friction) const noexcept
+{
+  for (int i = 0; i < friction.flanks; ++i)
+  {
+    const Eigen::Vector2d slip = friction.terms[first + i].slip;
+    friction.terms.setStrength(first + i, coefficient(slip.dot(speeds)) * friction.flank_load[i]);
   }
 }
 

@@ -56,6 +56,9 @@ public:
   void addTerms(const ToothMesh& mesh, const ToothMesh::Scratch& found, const RingRates& rates,
                 const Eigen::Vector2d& speeds, JointFriction& friction) const noexcept;
 
+  /// Strengths of the terms that `addTerms` added, the first of them `first`, at other speeds.
+  void setStrengths(int first, const Eigen::Vector2d& speeds, JointFriction& friction) const noexcept;
+
   /// Friction coefficient by the Stribeck curve, at a sliding speed along the flank [m/s], [-].
   double coefficient(double sliding_speed) const noexcept
   {

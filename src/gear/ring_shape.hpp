@@ -50,7 +50,13 @@ inline bool halvesAgree(const Eigen::VectorXd& values) noexcept
 inline void repeatHalfTurned(Eigen::VectorXd& vectors) noexcept
 {
   const Eigen::Index half = vectors.size() / 2;
-  vectors.tail(half) = -vectors.head(half);
+  const double* __restrict__ from = vectors.data();
+  double* __restrict__ to = vectors.data() + half;
+#pragma omp simd
+  for (Eigen::Index k = 0; k < half; ++k)
+  {
+    to[k] = -from[k];
+  }
 }
 
 /// Deformed ring: the tooth points, what follows from them for every element, and the space each tooth is paired with.

@@ -19,17 +19,15 @@ JointModel::JointModel(const Parameters& parameters)
 {
 }
 
-/// Dry friction at the motor's shaft, flanks apart.
-void JointModel::addShaft(const Running& running, double contact_force, double ring_torque,
-                          JointFriction& friction) const noexcept
+/// Dry friction at the motor's shaft, flanks apart; sets `presliding`.
+double JointModel::shaftStrength(const Running& running, double contact_force, double ring_torque,
+                                 JointFriction& friction) const noexcept
 {
   const double bearing_torque = bearing.torqueAtViscosity(running.speeds[0], contact_force, running.viscosity);
   const double sliding = motor.dryTorque(running.speeds[0]);
   const bool builds_up = motor.preslidingAngle() > 0.0;
   friction.presliding = builds_up ? sliding + bearing_torque + ring_torque : 0.0;
-  friction.terms.push_back(
-      { builds_up ? running.brake_torque : sliding + running.brake_torque + bearing_torque + ring_torque,
-        { 1.0, 0.0 } });
+  return builds_up ? running.brake_torque : sliding + running.brake_torque + bearing_torque + ring_torque;
 }
 
 void JointModel::addOutput(JointFriction& friction) const noexcept
@@ -47,7 +45,10 @@ void JointModel::friction(const RingForces& forces, const RingRates& rates, doub
   const auto& contact = forces.of<WaveGeneratorContact>();
   friction.setZero();
   friction.running = rates.by_motor + velocity_ratio * rates.by_output;
-  addShaft(running, contact.force.sum(), ringTorque(rates.shape, forces, friction.running), friction);
+  friction.contact_force = contact.force.sum();
+  friction.ring_torque = ringTorque(rates.shape, forces, friction.running);
+  friction.terms.push_back(
+      { shaftStrength(running, friction.contact_force, friction.ring_torque, friction), { 1.0, 0.0 } });
   mesh_friction.addTerms(ring.of<ToothMesh>(), forces.of<ToothMesh>(), rates, running.speeds, friction);
   if (cup_friction.isTerm())
   {
@@ -59,11 +60,18 @@ void JointModel::friction(const RingForces& forces, const RingRates& rates, doub
   damping.add(contact, rates, friction);
 }
 
+void JointModel::frictionAt(const Running& running, JointFriction& friction) const noexcept
+{
+  friction.terms.setStrength(0, shaftStrength(running, friction.contact_force, friction.ring_torque, friction));
+  mesh_friction.setStrengths(1, running.speeds, friction);
+}
+
 HJT_VECTOR_CLONES void JointModel::friction(const RingFrictionResponse& ring_response, const Eigen::Vector2d& cup_slip,
                                             const Running& running, JointFriction& friction) const noexcept
 {
   friction.terms.clear();
-  addShaft(running, ring_response.contact_force, ring_response.ring_torque, friction);
+  friction.terms.push_back(
+      { shaftStrength(running, ring_response.contact_force, ring_response.ring_torque, friction), { 1.0, 0.0 } });
   using Groups = RingFrictionResponse::Groups;
   const Groups sliding =
       ring_response.rms_slip_by_motor * running.speeds[0] + ring_response.rms_slip_by_output * running.speeds[1];

@@ -86,6 +86,9 @@ struct JointModel
   void friction(const RingForces& forces, const RingRates& rates, double velocity_ratio, const Running& running,
                 JointFriction& friction) const noexcept;
 
+  /// The same for other inputs at the same ring.
+  void frictionAt(const Running& running, JointFriction& friction) const noexcept;
+
   /// The same from a summary of the ring. `cup_slip`: mean rotation of the rim by motor and output angle [-].
   void friction(const RingFrictionResponse& ring_response, const Eigen::Vector2d& cup_slip, const Running& running,
                 JointFriction& friction) const noexcept;
@@ -105,7 +108,7 @@ struct JointModel
   Brake brake;
 
 private:
-  void addShaft(const Running& running, double contact_force, double ring_torque,
-                JointFriction& friction) const noexcept;
+  double shaftStrength(const Running& running, double contact_force, double ring_torque,
+                       JointFriction& friction) const noexcept;
 };
 }  // namespace hjt

@@ -141,6 +141,7 @@ void JointDynamics::note(const SolveStatus& solved) noexcept
 /// The full ring's equilibrium is the present one.
 void JointDynamics::takeRing() noexcept
 {
+  friction_is_of_ring_ = false;
   const Eigen::Matrix2d& k = ring_.stiffness();
   response_ = JointModel::summary(ring_.forces());
   response_.velocity_ratio = ring_.velocityRatio();
@@ -159,6 +160,7 @@ void JointDynamics::takeRing() noexcept
 /// Sets the internal state of the friction from the surface's response at the present angles.
 void JointDynamics::takeSurface() noexcept
 {
+  friction_is_of_ring_ = false;
   if (model_->cup_friction.hasState())
   {
     // The rim turns with the torque that it leans on the housing with.
@@ -251,8 +253,14 @@ void JointDynamics::updateFriction(const Eigen::Vector2d& speeds) noexcept
     model_->friction(ring_friction, cup_slip, running, friction_);
     return;
   }
+  if (friction_is_of_ring_)
+  {
+    model_->frictionAt(running, friction_);
+    return;
+  }
   const RingRates rates{ ring_.shape(), ring_.byWaveGenerator(), ring_.byOutput() };
   model_->friction(ring_.forces(), rates, velocityRatio(), running, friction_);
+  friction_is_of_ring_ = true;
 }
 
 /// That the brake holds the shaft with, at the present angle.

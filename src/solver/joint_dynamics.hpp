@@ -153,8 +153,9 @@ private:
   bool surface_agrees_{};  // at the present angles, while on the full ring
   DryFriction dry_;
   JointFriction friction_;
-  JointFriction sticking_;  // room for the part of it that does not slide
-  bool remembers_;          // friction does
+  bool friction_is_of_ring_{};  // of the present equilibrium of the full ring, at some speeds
+  JointFriction sticking_;      // room for the part of it that does not slide
+  bool remembers_;              // friction does
   Memory accepted_;
   Memory now_;                             // at the present ring
   Eigen::Vector2d cup_rates_{ 0.0, 0.0 };  // of the rim's mean rotation by motor and output angle, if that matters

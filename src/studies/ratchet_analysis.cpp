@@ -115,6 +115,10 @@ private:
       other = middle;
       other_excess = middle_excess;
     }
+    if (status.ok() && std::abs(excess()) > FORCE_TOLERANCE)
+    {
+      status.code = SolveCode::ITERATION_LIMIT;
+    }
     return status;
   }
 
