@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
 """docs/arm_twin.md as it is printed: the live twin of an arm, arm.launch beside it with the report of the sound arm,
-and a fault that comes while it moves; then its protective stop."""
+and a fault that comes while it moves; then its protective stop, and the live part of docs/beside_a_robot.md's first
+hour."""
 import os
 import signal
 import subprocess
@@ -22,7 +23,7 @@ from harmonic_joint_twin.msg import Timing
 from ros_support import (PACKAGE, PATIENCE, SLOWNESS, Diagnostics, Listener, executable, package_path,
                          processor_time, wait_until)
 
-PAGE = package_path("docs", "arm_twin.md")
+PAGE, FIRST_HOUR = (package_path("docs", page) for page in ("arm_twin.md", "beside_a_robot.md"))
 REPORT = "--report sound"  # end of the command that makes what the live node compares with
 NODE, BESIDE = "/arm_twin", "/joint_twin"
 JOINTS = ("base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3")
@@ -30,10 +31,14 @@ SICK = "elbow"
 MEASURED_OVER = 10.0  # processor time [s]
 
 
-def printed(program):
-    """The page's commands that begin with this word."""
-    with open(PAGE, encoding="utf-8") as page:
-        return [line.strip() for line in page if line.startswith(program + " ")]
+def read(path):
+    with open(path, encoding="utf-8") as file:
+        return file.read()
+
+
+def printed(program, path=PAGE):
+    """The page's commands that begin with these words."""
+    return [line.strip() for line in read(path).splitlines() if line.startswith(program + " ")]
 
 
 class ArmFault(unittest.TestCase):
@@ -45,13 +50,10 @@ class ArmFault(unittest.TestCase):
         path = os.path.dirname(executable("joint_twin")) + os.pathsep + os.environ["PATH"]
         cls.environment = dict(os.environ, PATH=path, PWD=cls.folder)
         for line in printed("joint_twin"):
-            subprocess.run(["bash", "-c", line], cwd=cls.folder, env=cls.environment, check=True)
+            cls.run_to_its_end(line)
             if line.endswith(REPORT):
                 break
-        for line in printed("roslaunch")[:2]:
-            launch = cls.start(line)
-            cls.addClassCleanup(launch.wait)
-            cls.addClassCleanup(launch.send_signal, signal.SIGINT)
+        _, cls.beside = [cls.launch(line) for line in printed("roslaunch")[:2]]
         cls.states = Listener("/joint_states", JointState)
         cls.log = Listener("/rosout", Log)
         cls.timing = Listener(f"{NODE}/timing", Timing)
@@ -59,8 +61,19 @@ class ArmFault(unittest.TestCase):
         cls.states.wait_for(10, 4.0 * PATIENCE)  # the first time it builds its tables
 
     @classmethod
-    def start(cls, line):
-        return subprocess.Popen(["bash", "-c", "exec " + line], cwd=cls.folder, env=cls.environment)
+    def start(cls, line, **more):
+        return subprocess.Popen(["bash", "-c", "exec " + line], cwd=cls.folder, env=cls.environment, **more)
+
+    @classmethod
+    def run_to_its_end(cls, line):
+        subprocess.run(["bash", "-c", line], cwd=cls.folder, env=cls.environment, check=True)
+
+    @classmethod
+    def launch(cls, line, **more):
+        launch = cls.start(line, **more)
+        cls.addClassCleanup(launch.wait)
+        cls.addClassCleanup(launch.send_signal, signal.SIGINT)
+        return launch
 
     def friction(self):
         """Level of that finding, by joint."""
@@ -72,6 +85,9 @@ class ArmFault(unittest.TestCase):
         except AssertionError as error:
             drives = {joint: self.diagnostics[joint].values("Drive") for joint in JOINTS}
             raise AssertionError(f"{error}: {drives}") from None
+
+    def wait_for_log(self, text):
+        wait_until(lambda: any(text in message.msg for message in self.log.messages()), text)
 
     def speeds(self):
         return [abs(speed) for speed in self.states.messages()[-1].velocity]
@@ -104,13 +120,10 @@ class ArmFault(unittest.TestCase):
         for publisher in (wrench, command):
             wait_until(lambda each=publisher: each.get_num_connections() == 1, publisher.name)
 
-        def said(text):
-            wait_until(lambda: any(text in message.msg for message in self.log.messages()), text)
-
         push = WrenchStamped()
         push.wrench.force.x = push.wrench.force.z = -1000.0  # more than any joint bears
         wrench.publish(push)
-        said("Protective stop: ")
+        self.wait_for_log("Protective stop: ")
         wrench.publish(WrenchStamped())
         self.states.clear()
 
@@ -122,9 +135,25 @@ class ArmFault(unittest.TestCase):
         last = self.states.messages()[-1]
         point = JointTrajectoryPoint(positions=list(last.position), time_from_start=rospy.Duration(2))
         command.publish(JointTrajectory(joint_names=last.name, points=[point]))
-        said("Refused a trajectory on ~command: protective stop; ~unlock_protective_stop ends it")
+        self.wait_for_log("Refused a trajectory on ~command: protective stop; ~unlock_protective_stop ends it")
         self.assertTrue(rospy.ServiceProxy(f"{NODE}/reset", Trigger)().success)
         wait_until(lambda: min(self.speeds()) > 0.05, "all six joints in motion again")
+
+    def test_4_the_first_hour_watches_with_the_drives_that_it_identified(self):
+        identify, = printed("joint_twin identify", FIRST_HOUR)
+        watch, = printed("roslaunch harmonic_joint_twin arm.launch", FIRST_HOUR)
+        self.run_to_its_end(identify)
+        self.beside.send_signal(signal.SIGINT)
+        self.beside.wait()
+        self.log.clear()
+        said = os.path.join(self.folder, "watch.log")
+        with open(said, "w", encoding="utf-8") as log:
+            beside = self.launch(watch, stdout=log)
+        for state in (f"{joint}/joint_twin: OK" for joint in JOINTS):
+            self.wait_for_log(state)
+        beside.send_signal(signal.SIGINT)  # flushes what it said
+        beside.wait()
+        self.assertIn(f"identified: {self.folder}/my_arm, reference: {self.folder}/sound", read(said))
 
 
 if __name__ == "__main__":
