@@ -87,7 +87,7 @@ class Arm(Fmu):
         self.assertEqual(unit.close(), "")
 
     def test_a_state_goes_into_another_process(self):
-        """On the table, where the forces on the teeth remember when they were asked for."""
+        """On the table, under its controller."""
         options = ["--arm", "ur5", "--set", "sensors.motor_noise=1.0e-4"]
         unit = self.unit(*options)
         self.stand(unit)
