@@ -124,15 +124,31 @@ public:
       readArm(values);
       return true;
     }
+    const std::size_t joint = jointOf(reference);
+    return parts_[joint].read(reference, moving_.twin().drive(joint), values);
+  }
+
+  bool marks(std::size_t reference) const override
+  {
+    if (reference < FIRST_DRIVE)
+    {
+      return false;
+    }
+    const std::size_t joint = jointOf(reference);
+    return parts_[joint].marks(reference, moving_.twin().drive(joint));
+  }
+
+private:
+  std::size_t jointOf(std::size_t reference) const
+  {
     std::size_t joint = 0;
     while (reference >= parts_[joint].end())
     {
       ++joint;
     }
-    return parts_[joint].read(reference, moving_.twin().drive(joint), values);
+    return joint;
   }
 
-private:
   void giveInputs(const Values& values, Stamp until)
   {
     ArmTwin& twin = moving_.twin();

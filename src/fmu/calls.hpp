@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cfenv>
+#include <cstring>
 #include <exception>
 #include <memory>
 #include <string>
@@ -221,6 +222,47 @@ inline Status freeState(Instance* instance, Instance::State** state) noexcept
                    require(state, "FMUState");
                    const std::unique_ptr<Instance::State> freed(*state);
                    *state = nullptr;
+                 });
+}
+
+inline Status serialisedSize(Instance* instance, const Instance::State* state, std::size_t* size) noexcept
+{
+  return guarded(instance,
+                 [&](Instance& self)
+                 {
+                   require(state, "FMUState");
+                   require(size, "size");
+                   *size = self.serialised(*state).size();
+                 });
+}
+
+inline Status serialise(Instance* instance, const Instance::State* state, unsigned char* bytes,
+                        std::size_t size) noexcept
+{
+  return guarded(instance,
+                 [&](Instance& self)
+                 {
+                   require(state, "FMUState");
+                   require(bytes, "serializedState");
+                   const std::string found = self.serialised(*state);
+                   if (size != found.size())
+                   {
+                     throw CallError("size = " + std::to_string(size) + " for a state of " +
+                                     std::to_string(found.size()) + " bytes");
+                   }
+                   std::memcpy(bytes, found.data(), size);
+                 });
+}
+
+inline Status deserialise(Instance* instance, const unsigned char* bytes, std::size_t size,
+                          Instance::State** state) noexcept
+{
+  return guarded(instance,
+                 [&](Instance& self)
+                 {
+                   require(bytes, "serializedState");
+                   require(state, "FMUState");
+                   *state = self.deserialised({ reinterpret_cast<const char*>(bytes), size }).release();
                  });
 }
 

@@ -131,13 +131,18 @@ bool DrivePart::read(std::size_t reference, Twin& twin, Values& values)
   {
     return readTeeth(twin, values);
   }
-  const ScalarOutput& output = scalarOutputs()[reference - first_ - FIRST_OUTPUT];
+  const ScalarOutput& output = scalar(reference);
   if (output.watches && !twin.watchesSignals())
   {
     twin.watchSignals(true);
   }
   values[reference].numbers[0] = output.of(twin, twin.outputs());
   return true;
+}
+
+bool DrivePart::marks(std::size_t reference, const Twin& twin) const
+{
+  return (*variables_)[reference].is_array ? !teeth_known_ : scalar(reference).watches && !twin.watchesSignals();
 }
 
 /// On the response surface this solves a ring of its own.

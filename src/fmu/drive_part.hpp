@@ -31,8 +31,10 @@ public:
 
   void moved() noexcept { teeth_known_ = false; }  ///< the twin has gone on
   bool read(std::size_t reference, Twin& twin, Values& values);
+  bool marks(std::size_t reference, const Twin& twin) const;  ///< see Simulation
 
 private:
+  const ScalarOutput& scalar(std::size_t reference) const { return scalarOutputs()[reference - first_ - FIRST_OUTPUT]; }
   bool readTeeth(Twin& twin, Values& values);
   void changeFaults(const Values& values, Parameters& parameters) const;
 

@@ -37,6 +37,7 @@ public:
   }
 
   bool read(std::size_t reference, Values& values) override { return part_.read(reference, twin_, values); }
+  bool marks(std::size_t reference) const override { return part_.marks(reference, twin_); }
 
 private:
   Twin twin_;

@@ -141,6 +141,20 @@ extern "C"
     return freeState(instance, state);
   }
 
+  Status fmi2SerializedFMUstateSize(Instance* instance, const Instance::State* state, std::size_t* size)
+  {
+    return serialisedSize(instance, state, size);
+  }
+  Status fmi2SerializeFMUstate(Instance* instance, const Instance::State* state, unsigned char* bytes, std::size_t size)
+  {
+    return serialise(instance, state, bytes, size);
+  }
+  Status fmi2DeSerializeFMUstate(Instance* instance, const unsigned char* bytes, std::size_t size,
+                                 Instance::State** state)
+  {
+    return deserialise(instance, bytes, size, state);
+  }
+
   Status fmi2DoStep(Instance* instance, double at, double length, int)
   {
     return guarded(instance, [&](Instance& self) { return doStep(self, at, length); });
@@ -166,9 +180,6 @@ extern "C"
   {                                 \
     return refuse(instance, #name); \
   }
-  HJT_REFUSED(fmi2SerializedFMUstateSize)
-  HJT_REFUSED(fmi2SerializeFMUstate)
-  HJT_REFUSED(fmi2DeSerializeFMUstate)
   HJT_REFUSED(fmi2GetDirectionalDerivative)
   HJT_REFUSED(fmi2SetRealInputDerivatives)
   HJT_REFUSED(fmi2GetRealOutputDerivatives)

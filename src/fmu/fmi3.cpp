@@ -147,6 +147,20 @@ extern "C"
     return freeState(instance, state);
   }
 
+  Status fmi3SerializedFMUStateSize(Instance* instance, const Instance::State* state, std::size_t* size)
+  {
+    return serialisedSize(instance, state, size);
+  }
+  Status fmi3SerializeFMUState(Instance* instance, const Instance::State* state, unsigned char* bytes, std::size_t size)
+  {
+    return serialise(instance, state, bytes, size);
+  }
+  Status fmi3DeserializeFMUState(Instance* instance, const unsigned char* bytes, std::size_t size,
+                                 Instance::State** state)
+  {
+    return deserialise(instance, bytes, size, state);
+  }
+
   Status fmi3DoStep(Instance* instance, double at, double length, bool, bool* event_needed, bool* terminate,
                     bool* early_return, double* last_time)
   {
@@ -200,9 +214,6 @@ extern "C"
   HJT_REFUSED(fmi3SetClock)
   HJT_REFUSED(fmi3GetNumberOfVariableDependencies)
   HJT_REFUSED(fmi3GetVariableDependencies)
-  HJT_REFUSED(fmi3SerializedFMUStateSize)
-  HJT_REFUSED(fmi3SerializeFMUState)
-  HJT_REFUSED(fmi3DeserializeFMUState)
   HJT_REFUSED(fmi3GetDirectionalDerivative)
   HJT_REFUSED(fmi3GetAdjointDerivative)
   HJT_REFUSED(fmi3GetOutputDerivatives)

@@ -5,16 +5,18 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <utility>
 
 #include "base/number_text.hpp"
+#include "base/text_hash.hpp"
+#include "fmu/bytes.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
 
 namespace hjt::fmu
 {
 namespace
 {
-constexpr double LARGEST_TIME = 1e9;  // [s]
-
 /// FMI 3.0 has a path; a URI is what FMI 2.0 had, and importers of both may give.
 std::string folderOf(std::string resources)
 {
@@ -40,6 +42,8 @@ std::size_t categoryOf(Status status) noexcept
   return status == Status::ERROR ? 1 : 0;
 }
 
+constexpr double NO_STOP = std::numeric_limits<double>::infinity();  // [s]
+
 std::string nameAndValue(const FmuVariable& variable, std::size_t element, double value)
 {
   return variable.name + (variable.is_array ? '[' + std::to_string(element + 1) + ']' : "") + " = " +
@@ -53,6 +57,7 @@ Instance::State::State(const State& other)
   , time(other.time)
   , stop(other.stop)
   , values(other.values)
+  , journal(other.journal)
   , unit(other.unit)
   , simulation(other.simulation ? other.simulation->copy() : nullptr)
 {
@@ -64,7 +69,7 @@ Instance::State& Instance::State::operator=(const State& other)
 }
 
 Instance::Instance(const std::string& resources, const std::string& token, bool logs, Log log)
-  : log_(std::move(log)), unit_(openUnit(folderOf(resources), token))
+  : log_(std::move(log)), token_(token), unit_(openUnit(folderOf(resources), token))
 {
   logs_.fill(logs);
   reset();
@@ -133,6 +138,7 @@ void Instance::terminate()
 void Instance::reset()
 {
   state_ = {};
+  state_.journal = Journal(unit_->variables());
   for (const FmuVariable& variable : unit_->variables())
   {
     state_.values.push_back(variable.start);
@@ -266,6 +272,10 @@ bool Instance::update(std::size_t reference)
   {
     requireMode(state_.mode != Mode::INSTANTIATED, "getting ", asked.name.c_str());
     start();
+    if (state_.simulation->marks(reference))
+    {
+      state_.journal.read(reference);
+    }
     if (!state_.simulation->read(reference, state_.values))
     {
       log(Status::WARNING, asked.name + ": no equilibrium of all teeth at " + numberText(state_.time) + " [s]");
@@ -275,13 +285,18 @@ bool Instance::update(std::size_t reference)
   return true;
 }
 
+Notice Instance::notice() const
+{
+  return [this](const std::string& what) { log(Status::OK, what); };
+}
+
 void Instance::start()
 {
   if (!state_.simulation)
   {
     state_.unit = unit_;
-    state_.simulation =
-        unit_->start(state_.values, state_.start, [this](const std::string& what) { log(Status::OK, what); });
+    state_.simulation = unit_->start(state_.values, state_.start, notice());
+    state_.journal.begin(state_.values);
   }
 }
 
@@ -307,8 +322,75 @@ bool Instance::step(double at, double length)
   {
     throw CallError(asked() + "the stop time is " + numberText(*state_.stop) + " [s]");
   }
+  state_.journal.step(state_.values, end);
   const bool converged = state_.simulation->step(state_.values, end);
   state_.time = end;
   return converged;
+}
+
+/// The outputs too: one that could not be read since is of the last instant that had it.
+std::string Instance::serialised(const State& state) const
+{
+  std::string body;
+  putText(body, token_);
+  putNumber(body, static_cast<int>(state.mode));
+  putNumber(body, state.start);
+  putNumber(body, state.time);
+  putNumber(body, state.stop.value_or(NO_STOP));
+  for (const Value& value : state.values)
+  {
+    for (const double number : value.numbers)
+    {
+      putNumber(body, number);
+    }
+    putText(body, value.text);
+  }
+  putNumber(body, state.simulation != nullptr ? 1 : 0);
+  if (state.simulation)
+  {
+    body += state.journal.bytes();
+  }
+  std::string bytes;
+  putNumber(bytes, textHash(body));
+  return bytes + body;
+}
+
+std::unique_ptr<Instance::State> Instance::deserialised(std::string_view bytes) const
+{
+  ByteReader whole(bytes);
+  const auto hash = whole.number<std::uint64_t>();
+  const std::string_view body = whole.rest();
+  if (hash != textHash(body))
+  {
+    throw InputError("a serialised state is cut or damaged");
+  }
+  ByteReader reader(body);
+  if (const std::string_view token = reader.text(); token != token_)
+  {
+    throw InputError("a serialised state is of the unit '" + std::string(token) + "', this one is '" + token_ + "'");
+  }
+  auto state = std::make_unique<State>();
+  state->mode = static_cast<Mode>(std::clamp(reader.number<int>(), 0, static_cast<int>(Mode::TERMINATED)));
+  state->start = reader.number<double>();
+  state->time = reader.number<double>();
+  const auto stop = reader.number<double>();
+  state->stop = stop < NO_STOP ? std::optional(stop) : std::nullopt;
+  for (const FmuVariable& variable : unit_->variables())
+  {
+    Value& value = state->values.emplace_back(variable.start);
+    for (double& number : value.numbers)
+    {
+      number = reader.number<double>();
+    }
+    value.text = reader.text();
+  }
+  state->journal = Journal(unit_->variables());
+  if (reader.number<int>() != 0)
+  {
+    state->unit = unit_;
+    state->simulation =
+        state->journal.replay(reader.rest(), *unit_, state->values, state->start, state->time, notice());
+  }
+  return state;
 }
 }  // namespace hjt::fmu

@@ -9,8 +9,10 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 #include "fmu/fmi.hpp"
+#include "fmu/journal.hpp"
 #include "fmu/unit.hpp"
 
 namespace hjt::fmu
@@ -85,11 +87,17 @@ public:
     double time{};  // [s]
     std::optional<double> stop;
     Values values;
+    Journal journal;                   // of the simulation
     std::shared_ptr<const Unit> unit;  // that the simulation refers to; a state may outlive the instance it was of
     std::unique_ptr<Simulation> simulation;
   };
   const State& state() const noexcept { return state_; }
   void takeUp(const State& state) { state_ = state; }
+
+  /// For another process with this unit, too. Guarded against damage, not against malice. @throws InputError.
+  std::string serialised(const State& state) const;
+  /// Does all that the state has behind it once more. @throws InputError.
+  std::unique_ptr<State> deserialised(std::string_view bytes) const;
 
 private:
   /// Elements of a variable that a reference means.
@@ -105,11 +113,13 @@ private:
   static void check(const FmuVariable& variable, std::size_t element, double value);
   void requireCount(Type type, const References& of) const;
   bool update(std::size_t reference);
+  Notice notice() const;
   void start();
   void changed(bool differs);
 
   std::array<bool, std::size(LOG_CATEGORIES)> logs_;
   Log log_;
+  std::string token_;
   std::shared_ptr<const Unit> unit_;
   State state_;
 };

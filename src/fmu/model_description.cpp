@@ -206,6 +206,7 @@ std::string modelDescription(const UnitDescription& unit, Version version)
          attribute("variableNamingConvention", "structured") + ">\n  <CoSimulation" +
          attribute("modelIdentifier", unit.library) +
          attribute(is_3 ? "canGetAndSetFMUState" : "canGetAndSetFMUstate", "true") +
+         attribute(is_3 ? "canSerializeFMUState" : "canSerializeFMUstate", "true") +
          attribute("canHandleVariableCommunicationStepSize", "true") +
          (is_3 ? attribute("fixedInternalStepSize", numberText(1.0 / unit.rate)) : "") + "/>\n  <UnitDefinitions>\n" +
          joined(units, "", unitDefinition) + "  </UnitDefinitions>\n" + "  <LogCategories>\n" +

@@ -18,6 +18,8 @@ using Notice = std::function<void(const std::string&)>;
 
 constexpr Stamp EPOCH = 1'000'000'000'000'000'000;  ///< stamp of time 0, as in `joint_twin simulate`
 
+constexpr double LARGEST_TIME = 1e9;  ///< either way [s]
+
 inline Stamp stampAt(double time)  ///< [s]
 {
   return EPOCH + static_cast<Stamp>(std::llround(1e9 * time));
@@ -38,6 +40,9 @@ public:
 
   /// Writes the value of an output. False: it is of the last instant that had one.
   virtual bool read(std::size_t reference, Values& values) = 0;
+
+  /// Whether a read of this output would change what comes.
+  virtual bool marks(std::size_t reference) const = 0;
 
 protected:
   Simulation() = default;

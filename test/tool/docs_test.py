@@ -18,7 +18,8 @@ TOLERANCE = 1e-4  # of a number: which vectors the processor has changes the las
 # Of statistics of windows with noise: the C library's last digits decide which count an encoder gives.
 NOISY, NOISY_TOLERANCE = ["docs/indicators.md", "docs/health.md"], 0.05
 ROUNDING = 1e-6  # smaller numbers are rounding of the solver, as the columns `residual`
-SHOWN = ["README.md", "docs/tool.md", "docs/own_gear.md", "docs/gear_study.md", "docs/indicators.md", "docs/health.md"]
+SHOWN = ["README.md", "docs/tool.md", "docs/own_gear.md", "docs/gear_study.md", "docs/indicators.md", "docs/health.md",
+         "docs/life.md"]
 RUN = ["README.md", "docs/tool.md", "docs/own_gear.md", "docs/faults.md"]
 BESIDE, RECORDINGS = "docs/beside_a_robot.md", "mkdir recordings && ln sound.bag later.bag recordings"
 ARM, ARM_EXAMPLE = "docs/arm_twin.md", "joint_twin checkup "  # page, and how its first try without a robot begins

@@ -129,9 +129,25 @@ class Fmu2(Fmu):
         for k in range(5, 10):
             self.assertEqual(unit.step(0.01 * k, 0.01), OK)
         self.assertEqual(unit.outputs(), ends)
+        self.check_serialised(unit, state)
         self.assertEqual(unit.call("FreeFMUstate", ctypes.byref(state)), OK)
         self.assertEqual(unit.call("Terminate"), OK)
         self.assertEqual(unit.said, [])
+
+    def check_serialised(self, unit, state):
+        size = ctypes.c_size_t()
+        self.assertEqual(unit.call("SerializedFMUstateSize", state, ctypes.byref(size)), OK)
+        data = (ctypes.c_ubyte * size.value)()
+        self.assertEqual(unit.call("SerializeFMUstate", state, data, size), OK)
+        copy = ctypes.c_void_p()
+        self.assertEqual(unit.call("DeSerializeFMUstate", data, size, ctypes.byref(copy)), OK)
+        ends = []
+        for each in state, copy:
+            self.assertEqual(unit.call("SetFMUstate", each), OK)
+            self.assertEqual(unit.step(0.05, 0.02), OK)
+            ends.append(unit.outputs())
+        self.assertEqual(ends[0], ends[1])
+        self.assertEqual(unit.call("FreeFMUstate", ctypes.byref(copy)), OK)
 
     def test_an_arm_gives_the_numbers_of_3_0(self):
         unit, other = self.unit2("--arm", "ur5"), self.unit("--arm", "ur5")

@@ -86,6 +86,28 @@ class Arm(Fmu):
         self.assertEqual(unit.call("terminate", 1), OK)
         self.assertEqual(unit.close(), "")
 
+    def test_a_state_goes_into_another_process(self):
+        """On the table, under its controller."""
+        options = ["--arm", "ur5", "--set", "sensors.motor_noise=1.0e-4"]
+        unit = self.unit(*options)
+        self.stand(unit)
+        for k in range(6):
+            self.follow(unit, k, k + 1)
+            unit.get("elbow.tooth_mesh_force")
+        unit.set("wrench_force", 0.0, 0.0, -40.0)
+        unit.set("payload_mass", 2.0)
+        self.follow(unit, 6, 12)
+        self.assertEqual(unit.call("keep", 0, 0), OK)
+        self.assertEqual(unit.call("save", 0, 0, self.path("a state")), OK)
+        other = self.unit(*options)
+        self.assertEqual(other.call("new", 0), OK)
+        self.assertEqual(other.call("load", 0, 0, self.path("a state")), OK)
+        self.assertEqual(other.call("restore", 0, 0), OK)
+        for one in unit, other:
+            self.follow(one, 12, 18)
+        self.assertEqual(other.outputs(), unit.outputs())
+        self.assertEqual(other.close(), "")
+
     def test_inputs_act_and_steps_may_have_any_length(self):
         unit = self.unit("--arm", "ur5")
         self.stand(unit)

@@ -8,6 +8,7 @@
 ///   new I [EVENTS] | free I | enter I START STOP | exit I | terminate I | reset I | step I TIME LENGTH [TIMES]
 ///   get I TYPE REFERENCE COUNT | set I TYPE REFERENCE COUNT VALUE ...    TYPE: Float64, Int32, Boolean, String
 ///   keep I S | restore I S | drop I S | call I NAME                       I, S: 0 ... 7; STOP: nan where there is none
+///   save I S FILE | load I S FILE: the state as bytes; save says where a byte more or less is not refused
 ///   allocations I: how often memory was asked for in steps so far | logging I ON CATEGORY
 ///
 /// Invalid operations of floating-point numbers trap in steps and at the end of the initialisation.
@@ -174,6 +175,42 @@ static Status callWithState(const char* command, void* instance, void** state)
   return call(instance, state);
 }
 
+static Status save(void* instance, void* state, const char* path)
+{
+  Status (*ask)(void*, void*, size_t*) = function("fmi3SerializedFMUStateSize");
+  Status (*call)(void*, void*, uint8_t*, size_t) = function("fmi3SerializeFMUState");
+  size_t size = 0;
+  Status status = ask(instance, state, &size);
+  uint8_t* bytes = malloc(size + 1);
+  FILE* file = status == 0 ? fopen(path, "wb") : NULL;
+  if (file != NULL)
+  {
+    if (call(instance, state, bytes, size - 1) == 0 || call(instance, state, bytes, size + 1) == 0)
+    {
+      printf("another size is taken ");
+    }
+    status = call(instance, state, bytes, size);
+    fwrite(bytes, 1, size, file);
+    fclose(file);
+  }
+  free(bytes);
+  return status;
+}
+
+static Status load(void* instance, void** state, const char* path)
+{
+  static uint8_t bytes[1 << 22];
+  Status (*call)(void*, const uint8_t*, size_t, void**) = function("fmi3DeserializeFMUState");
+  FILE* file = fopen(path, "rb");
+  const size_t size = fread(bytes, 1, sizeof bytes, file);
+  fclose(file);
+  uint8_t* exact = malloc(size);  // so that a memory checker sees what is read behind
+  memcpy(exact, bytes, size);
+  const Status status = call(instance, exact, size, state);
+  free(exact);
+  return status;
+}
+
 static Status enter(void* instance)
 {
   Status (*call)(void*, bool, double, double, bool, double) = function("fmi3EnterInitializationMode");
@@ -221,6 +258,12 @@ static Status run(const char* command, char** argv, void** instance, void** stat
   if (strcmp(command, "keep") == 0 || strcmp(command, "drop") == 0 || strcmp(command, "restore") == 0)
   {
     return callWithState(command, *instance, &states[(int)number()]);
+  }
+  if (strcmp(command, "save") == 0 || strcmp(command, "load") == 0)
+  {
+    void** state = &states[(int)number()];
+    const char* path = strtok(NULL, "\n");
+    return command[0] == 's' ? save(*instance, *state, path) : load(*instance, state, path);
   }
   return callNamed(command, *instance);
 }

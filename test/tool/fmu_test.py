@@ -4,6 +4,7 @@ importer."""
 import math
 import os
 import pathlib
+import random
 import re
 import shutil
 import subprocess
@@ -197,6 +198,94 @@ class States(Fmu):
         self.assertEqual(unit.call("step", 1, 0.05, 0.01), OK)
         self.assertEqual(unit.close(), "")
 
+    def test_a_state_goes_into_another_process(self):
+        """With what waits, was learned and was read on the way; from there on with the same bits."""
+        options = ["--set", "sensors.motor_noise=1e-4", "--set", "indicators.window_time=0.1"]
+        unit = self.unit(*options)
+        unit.start(begin=0.5, stop=2.0, motor_torque=0.4, thermal__model="two_nodes", cup__friction_torque=3.0)
+        self.assertEqual(unit.call("step", 0, 0.5, 0.0013, 100), OK)
+        unit.get("indicator_kinematic_error")
+        self.assertEqual(unit.call("step", 0, 0.63, 0.00001, 5000), OK)
+        unit.get("tooth_mesh_force")
+        unit.set("fault_tooth_wear", 0.4)
+        unit.set("temperature", 40.0)
+        self.assertEqual(unit.call("step", 0, 0.68, 0.00001, 5000), OK)
+        unit.set("load_torque", 15.0)  # set, and not yet in force
+        self.assertEqual(unit.call("keep", 0, 0), OK)
+        self.assertEqual(unit.call("save", 0, 0, self.path("a state")), OK)
+        other = self.unit(*options)
+        self.assertEqual(other.call("new", 0), OK)
+        self.assertEqual(other.call("load", 0, 0, self.path("a state")), OK)
+        self.assertEqual(other.call("restore", 0, 0), OK)
+        for one in unit, other:
+            self.assertEqual(one.get("load_torque"), [15.0])
+            self.assertEqual(one.set("motor.torque_limit", 1.0), ERROR)
+            self.assertEqual(one.call("step", 0, 0.73, 0.01, 20), OK)
+        self.assertEqual(other.outputs(), unit.outputs())
+        self.assertGreater(unit.get("indicator_windows")[0], 1.0)  # from the first read on
+        for one, name in (unit, "one"), (other, "two"):
+            self.assertEqual(one.call("keep", 0, 0), OK)
+            self.assertEqual(one.call("save", 0, 0, self.path(name)), OK)
+        self.assertEqual(pathlib.Path(self.path("two")).read_bytes(), pathlib.Path(self.path("one")).read_bytes())
+        self.assertEqual(other.call("step", 0, 0.93, 1.2), ERROR)  # behind the stop
+        unit.close()
+        self.assertIn("the stop time is 2.0 [s]", other.close())
+
+    def test_a_state_with_too_much_behind_it_is_not_serialised(self):
+        unit = self.unit()
+        unit.start(motor_torque=0.4)
+        self.assertEqual(unit.call("step", 0, 0.0, 1e-9, 6200000), OK)
+        self.assertEqual(unit.call("keep", 0, 0), OK)
+        self.assertEqual(unit.call("save", 0, 0, self.path("state")), ERROR)
+        self.assertIn("more than 64 MB", unit.close())
+
+    def test_a_state_of_no_start_yet_is_serialised(self):
+        unit = self.unit()
+        unit.start(1, motor__torque_limit=0.3, motor_torque=0.4)
+        self.assertEqual(unit.call("new", 0), OK)
+        unit.set("motor.torque_limit", 0.3)
+        unit.set("motor_torque", 0.4)
+        self.assertEqual(unit.call("keep", 0, 0), OK)
+        self.assertEqual(unit.call("save", 0, 0, self.path("state")), OK)
+        self.assertEqual(unit.call("reset", 0), OK)
+        self.assertEqual(unit.call("load", 0, 1, self.path("state")), OK)
+        self.assertEqual(unit.call("restore", 0, 1), OK)
+        self.assertEqual(unit.call("enter", 0, 0.0, "nan"), OK)
+        self.assertEqual(unit.call("exit", 0), OK)
+        for instance in 0, 1:
+            self.assertEqual(unit.call("step", instance, 0.0, 0.05), OK)
+        self.assertEqual(unit.outputs(0), unit.outputs(1))
+        unit.close()
+
+    def test_bytes_that_are_no_state_of_the_unit_are_refused(self):
+        unit = self.unit()
+        unit.start(motor_torque=0.4)
+        self.assertEqual(unit.call("step", 0, 0.0, 0.01, 5), OK)
+        self.assertEqual(unit.call("save", 0, 0, self.path("none")), ERROR)
+        self.assertEqual(unit.call("keep", 0, 0), OK)
+        self.assertEqual(unit.call("save", 0, 0, self.path("state")), OK)
+        whole = pathlib.Path(self.path("state")).read_bytes()
+        generator = random.Random(4)
+        wrong = [b"", whole[:7], whole[:8], whole[:-1], whole + b"\0", b"<xml/>" * 100]
+        for _ in range(40):
+            place = generator.randrange(len(whole))
+            wrong.append(whole[:place])
+            wrong.append(whole[:place] + bytes([whole[place] ^ 1 << generator.randrange(8)]) + whole[place + 1:])
+        before = unit.outputs()
+        for data in wrong:
+            pathlib.Path(self.path("wrong")).write_bytes(data)
+            self.assertEqual(unit.call("load", 0, 1, self.path("wrong")), ERROR, len(data))
+        self.assertEqual(unit.call("restore", 0, 1), ERROR)
+        self.assertEqual(unit.outputs(), before)
+        self.assertEqual(unit.call("load", 0, 1, self.path("state")), OK)
+        said = unit.close()
+        for part in "ends too early", "cut or damaged":
+            self.assertIn(part, said)
+        other = self.unit("--set", "motor.torque_limit=1.0")
+        self.assertEqual(other.call("new", 0), OK)
+        self.assertEqual(other.call("load", 0, 0, self.path("state")), ERROR)
+        self.assertIn("is of the unit", other.close())
+
     def test_a_reset_instance_is_as_new(self):
         unit = self.unit()
         unit.start(0)
@@ -222,7 +311,7 @@ class States(Fmu):
                  ("set", 0, "Float64", 99999, 1, 1.0), ("set", 0, "Float64", torque, 2, 1.0, 1.0),
                  ("set", 0, "Float64", torque, 1, "nan"), ("set", 0, "Int32", torque, 1, 1),
                  ("set", 0, "Float64", angle, 1, 1.0), ("set", 0, "Float64", 0, 1, 1.0),
-                 ("call", 0, "fmi3EnterEventMode"), ("call", 0, "fmi3SerializeFMUState"), ("call", 0, "fmi3SetTime"),
+                 ("call", 0, "fmi3EnterEventMode"), ("call", 0, "fmi3SetTime"),
                  ("exit", 5), ("step", 5, 0.0, 0.1), ("reset", 5), ("keep", 5, 0)]
         for words in wrong:
             self.assertEqual(unit.call(*words), ERROR, words)
