@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -18,7 +19,8 @@ namespace hjt
 class FileLock
 {
 public:
-  /// Makes the file if it is not there; a link is not followed. @throws InputError if that fails, or another holds it.
+  /// Makes the file if it is not there; a link is not followed. @throws InputError if that fails, what is there is no
+  /// regular file, or another holds it.
   explicit FileLock(const std::string& path)
     : descriptor_(open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666))
   {
@@ -26,12 +28,23 @@ public:
     {
       throw InputError(path + " cannot be written: " + std::strerror(errno));
     }
-    if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0)
+    struct stat status
     {
-      const int reason = errno;
+    };
+    std::string error;
+    if (fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode))
+    {
+      error = " cannot be written: it is no regular file";
+    }
+    else if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0)
+    {
+      error = errno == EWOULDBLOCK ? " is being written by another program" :
+                                     std::string(" cannot be locked: ") + std::strerror(errno);
+    }
+    if (!error.empty())
+    {
       close(descriptor_);
-      throw InputError(path + (reason == EWOULDBLOCK ? " is being written by another program" :
-                                                       std::string(" cannot be locked: ") + std::strerror(reason)));
+      throw InputError(path + error);
     }
   }
 

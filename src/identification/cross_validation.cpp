@@ -63,7 +63,8 @@ std::vector<MotionSample> samplesWithin(const std::vector<MotionSample>& all, co
 }
 
 JudgedErrors leaveOneOut(const Parameters& parameters, const std::vector<MotionSample>& all, const Span& train,
-                         int folds, bool load_recorded, const std::function<void()>& fitted)
+                         int folds, bool load_recorded, const std::function<void()>& fitted,
+                         const std::function<void()>& look)
 {
   JudgedErrors sum;
   const std::vector<double> ends = endsOfPieces(samplesWithin(all, train), train, folds);
@@ -71,7 +72,8 @@ JudgedErrors leaveOneOut(const Parameters& parameters, const std::vector<MotionS
   {
     const Span hole{ ends[fold], ends[fold + 1] };
     const JudgedPart left_out{ samplesWithin(all, { train.from, hole.to }), hole.from };
-    const JudgedErrors judged = identify(parameters, samplesWithin(all, train, hole), left_out, load_recorded).judged;
+    const JudgedErrors judged =
+        identify(parameters, samplesWithin(all, train, hole), left_out, load_recorded, look).judged;
     addError(judged.configured, sum.configured);
     addError(judged.without_ripple, sum.without_ripple);
     addError(judged.identified, sum.identified);

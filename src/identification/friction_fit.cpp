@@ -50,7 +50,7 @@ struct FrictionFit::Residual
 };
 
 FrictionFit::FrictionFit(const Parameters& parameters, const FrictionMap& friction,
-                         const std::vector<MotionSample>& samples)
+                         const std::vector<MotionSample>& samples, const std::function<void()>& look)
 {
   addBlocks(parameters, friction, samples);
   if (blocks_.size() < MIN_BLOCKS)
@@ -63,7 +63,7 @@ FrictionFit::FrictionFit(const Parameters& parameters, const FrictionMap& fricti
   values_ = start_;
   asked_.fill(true);
   asked_[STRIBECK] = false;
-  solve();
+  solve(look);
   for (std::size_t i = 0; i < STRIBECK; ++i)
   {
     if (share(i) > NARROWED)
@@ -74,13 +74,13 @@ FrictionFit::FrictionFit(const Parameters& parameters, const FrictionMap& fricti
       half_width_[i] = 0.0;
     }
   }
-  solve();
+  solve(look);
 
   // Reported beside the result, not used: on other motions of a recorded arm it made wrist_3 worse by a half.
   const Values found = values_;
   const Values width = half_width_;
   asked_[STRIBECK] = true;
-  solve();
+  solve(look);
   const bool is_there = values_[STRIBECK] > half_width_[STRIBECK];
   const double rise = is_there ? values_[STRIBECK] : 0.0;
   const double rise_width = is_there ? half_width_[STRIBECK] : 0.0;
@@ -174,13 +174,14 @@ Eigen::VectorXd FrictionFit::residuals() const
 }
 
 /// The values, then their deviation and correlation, by which they are fitted again.
-void FrictionFit::solve()
+void FrictionFit::solve(const std::function<void()>& look)
 {
   double correlation_rows = 1.0;
   Eigen::VectorXd errors = residuals();
   constexpr int ROUNDS = 3;
   for (int round = 0; round < ROUNDS; ++round)
   {
+    look();
     solveOnce(std::max(robustDeviation(errors), 1e-6), correlation_rows);
     errors = residuals();
     correlation_rows = correlationRows(errors);

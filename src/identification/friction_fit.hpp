@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -44,8 +45,9 @@ public:
   static constexpr double MOVING = 0.01;  ///< joint speed from which a row counts as moving [rad/s]
   static constexpr double BLOCK = 0.1;    ///< [s]
 
-  /// @throws InputError if the samples hardly move.
-  FrictionFit(const Parameters& parameters, const FrictionMap& friction, const std::vector<MotionSample>& samples);
+  /// `look` as in identify. @throws InputError if the samples hardly move.
+  FrictionFit(const Parameters& parameters, const FrictionMap& friction, const std::vector<MotionSample>& samples,
+              const std::function<void()>& look);
 
   double value(Quantity quantity) const { return values_[quantity]; }
   double halfWidth(Quantity quantity) const { return half_width_[quantity]; }  ///< of the 95 % interval; 0 if refused
@@ -63,7 +65,7 @@ private:
   void addBlocks(const Parameters& parameters, const FrictionMap& friction, const std::vector<MotionSample>& samples);
   void setKnown(const Parameters& parameters, const FrictionMap& friction);
   Eigen::VectorXd residuals() const;
-  void solve();
+  void solve(const std::function<void()>& look);
   void solveOnce(double deviation, double correlation_rows);
   void findHalfWidths(double weight);
   double share(std::size_t quantity) const;

@@ -65,8 +65,9 @@ private:
 };
 
 /// Error of the motion-driven twin with these parameters.
-CurrentError errorOf(const Parameters& parameters, const JudgedPart& judge)
+CurrentError errorOf(const Parameters& parameters, const JudgedPart& judge, const std::function<void()>& look)
 {
+  look();
   MotionDriven twin(parameters);
   ErrorSum sum;
   for (const MotionSample& sample : judge.samples)
@@ -236,9 +237,9 @@ public:
     }
   }
 
-  void run(Identification& result)
+  void run(Identification& result, const std::function<void()>& look)
   {
-    const IdentifiedValue angle = findAngle();
+    const IdentifiedValue angle = findAngle(look);
     result.values.push_back(angle);
     result.parameters.telemetry.presliding_angle = telemetry_.presliding_angle = angle.value;
     const Trial trial = fitted(std::log(angle.value));
@@ -305,7 +306,7 @@ private:
     return trial;
   }
 
-  IdentifiedValue findAngle() const
+  IdentifiedValue findAngle(const std::function<void()>& look) const
   {
     const double configured = telemetry_.presliding_angle;
     IdentifiedValue value{ "presliding angle",
@@ -322,6 +323,7 @@ private:
     std::array<Trial, POINTS> trials{};
     for (int i = 0; i < POINTS; ++i)
     {
+      look();
       trials[i] = fitted(lowest + step * i);
     }
     const auto best = std::min_element(trials.begin(), trials.end(),
@@ -356,21 +358,21 @@ private:
 }  // namespace
 
 Identification identify(const Parameters& parameters, const std::vector<MotionSample>& train, const JudgedPart& judge,
-                        bool load_recorded)
+                        bool load_recorded, const std::function<void()>& look)
 {
   Identification result;
   result.parameters = parameters;
-  storeFriction(FrictionFit(parameters, FrictionMap(parameters), train), load_recorded, result);
+  storeFriction(FrictionFit(parameters, FrictionMap(parameters), train, look), load_recorded, result);
 
   const RippleFit ripple(rippleRows(result.parameters, train), rowPeriod(train), parameters.telemetry,
-                         nominalRatio(parameters.gear));
+                         nominalRatio(parameters.gear), look);
   ripple.store(result.parameters.telemetry);
   for (std::size_t i = 0; i < TorqueRipple::LINES; ++i)
   {
     result.lines.push_back({ RIPPLE_KEYS[i], ripple.line(i), ripple.orders()[i], ripple.amplitude(i),
                              ripple.halfWidth(i), ripple.phase(i), ripple.refusal(i) });
   }
-  PreslidingFit(result.parameters, train).run(result);
+  PreslidingFit(result.parameters, train).run(result, look);
   const bool is_warmed = std::any_of(train.begin(), train.end(),
                                      [](const MotionSample& sample) { return std::isfinite(sample.temperature); });
   result.values.push_back(
@@ -381,9 +383,9 @@ Identification identify(const Parameters& parameters, const std::vector<MotionSa
                             parameters.cup.torsion_stiffness[0], parameters.cup.torsion_stiffness[0], 0.0,
                             "not identified; `joint_twin compare` measures it if both angles are recorded" });
 
-  result.judged.configured = errorOf(parameters, judge);
-  result.judged.without_ripple = errorOf(withoutRipple(result.parameters), judge);
-  result.judged.identified = errorOf(result.parameters, judge);
+  result.judged.configured = errorOf(parameters, judge, look);
+  result.judged.without_ripple = errorOf(withoutRipple(result.parameters), judge, look);
+  result.judged.identified = errorOf(result.parameters, judge, look);
   result.judged.gain_coulomb_viscous = simpleModelError(train, judge);
   return result;
 }

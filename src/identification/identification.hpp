@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -78,8 +79,9 @@ struct JudgedPart
 /// motion does not move its column, if others explain it, if its interval is too wide or if it leaves the range that it
 /// can have. `train` and `judge`: samples of one stream each, in the order of time. `load_recorded`: their load comes
 /// from the recording, which may hold a part of the motor's inertia; that part is identified then, else the rotor's
-/// inertia.
+/// inertia. `look` is called every few tenths of a second, at half an hour of rows; what it throws ends the fit.
 /// @throws InputError if the training part hardly moves.
-Identification identify(const Parameters& parameters, const std::vector<MotionSample>& train, const JudgedPart& judge,
-                        bool load_recorded);
+Identification identify(
+    const Parameters& parameters, const std::vector<MotionSample>& train, const JudgedPart& judge, bool load_recorded,
+    const std::function<void()>& look = [] {});
 }  // namespace hjt

@@ -42,7 +42,8 @@ struct Residual
 };
 }  // namespace
 
-RippleFit::RippleFit(std::vector<RippleRow> rows, double period, const TelemetryParameters& start, double ratio)
+RippleFit::RippleFit(std::vector<RippleRow> rows, double period, const TelemetryParameters& start, double ratio,
+                     const std::function<void()>& look)
   : orders_(TorqueRipple::orders(ratio)), fastest_(start.ripple_fastest)
 {
   std::vector<double> speeds;
@@ -66,9 +67,10 @@ RippleFit::RippleFit(std::vector<RippleRow> rows, double period, const Telemetry
   values_[DAMPING] = start.ripple_damping;
   values_[LAG] = start.ripple_lag;
   const Values configured = values_;
-  chooseResonance(rows);
+  chooseResonance(rows, look);
   while (anyLine())
   {
+    look();
     solve(rows);
     if (!refuseWorst())
     {
@@ -87,7 +89,7 @@ bool RippleFit::anyLine() const
 }
 
 /// The start: the best of a coarse grid, cos and sin of the lines fitted to each by one linear solve.
-void RippleFit::chooseResonance(const std::vector<RippleRow>& rows)
+void RippleFit::chooseResonance(const std::vector<RippleRow>& rows, const std::function<void()>& look)
 {
   using Lines = Eigen::Matrix<double, RESONANCE, 1>;
   const auto fitted = [&](Values values, double& gain)
@@ -118,6 +120,7 @@ void RippleFit::chooseResonance(const std::vector<RippleRow>& rows)
   {
     for (const double damping : { 0.1, 0.3, 0.6 })
     {
+      look();
       for (const double lag : { -0.004, 0.0, 0.004, 0.008, 0.012 })
       {
         values_[RESONANCE] = resonance;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -26,8 +27,9 @@ public:
   static constexpr double KNOWN = 0.95;  ///< of the rows
 
   /// `rows`: rows that move, every `period` [s] where no row is lost. `start`: what is configured, which the resonance
-  /// falls back to without a line.
-  RippleFit(std::vector<RippleRow> rows, double period, const TelemetryParameters& start, double ratio);
+  /// falls back to without a line. `look` as in identify.
+  RippleFit(std::vector<RippleRow> rows, double period, const TelemetryParameters& start, double ratio,
+            const std::function<void()>& look);
 
   const TorqueRipple::Orders& orders() const { return orders_; }
   std::array<double, 2> line(std::size_t line) const { return { values_[2 * line], values_[2 * line + 1] }; }
@@ -42,7 +44,7 @@ private:
   using Values = std::array<double, TorqueRipple::VALUES>;
 
   bool anyLine() const;
-  void chooseResonance(const std::vector<RippleRow>& rows);
+  void chooseResonance(const std::vector<RippleRow>& rows, const std::function<void()>& look);
   void solve(const std::vector<RippleRow>& rows);
   bool refuseWorst();
 

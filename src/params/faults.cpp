@@ -12,6 +12,7 @@
 #include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
+#include "params/severity_errors.hpp"
 
 namespace hjt
 {
@@ -133,12 +134,10 @@ bool isValid(const Fault& fault, const Parameters& parameters) noexcept
 
 std::string faultErrors(const Fault& fault, const Parameters& parameters, const std::string& key)
 {
-  std::string text;
+  std::string text = severityErrors(fault, key);
   const auto refuse = [&](bool good, const std::string& what)
   { text += good ? "" : (text.empty() ? "" : "\n") + key + what; };
   const std::string of = std::string(" of ") + describe(fault.kind).name;
-  refuse(fault.severity >= 0.0 && fault.severity <= 1.0,
-         "severity = " + numberText(fault.severity) + " [-]" + of + " is out of range, allowed: 0 ... 1 [-]");
   refuse(fault.place >= firstPlace(fault.kind) && fault.place <= lastPlace(fault.kind, parameters),
          "place = " + std::to_string(fault.place) + " [-]" + of +
              " is out of range, allowed: " + placeText(fault.kind, parameters));

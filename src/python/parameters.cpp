@@ -5,11 +5,11 @@
 #include <optional>
 #include <type_traits>
 
-#include "base/range_check.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "params/choices.hpp"
 #include "params/configuration_files.hpp"
 #include "params/field_rows.hpp"
+#include "params/severity_errors.hpp"
 #include "python/configuration.hpp"
 #include "python/overlays.hpp"
 
@@ -131,11 +131,12 @@ Fault makeFault(const std::string& kind, double severity, const std::optional<in
   {
     throw ParameterError("unknown kind of fault '" + kind + "', allowed: " + faultNames());
   }
-  if (const std::string errors = rangeErrors("severity", severity, "-", { 0.0, 1.0 }); !errors.empty())
+  const Fault fault{ *named, severity, place.value_or(firstPlace(*named)), onset };
+  if (const std::string errors = severityErrors(fault, ""); !errors.empty())
   {
-    throw ParameterError(kind + ": " + errors);
+    throw ParameterError(errors);
   }
-  return { *named, severity, place.value_or(firstPlace(*named)), onset };
+  return fault;
 }
 
 py::tuple partsOf(const Fault& fault)

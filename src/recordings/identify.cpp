@@ -148,12 +148,19 @@ void identifyJoint(const IdentifyOptions& options, const Parameters& parameters,
                    const std::vector<MotionSample>& samples, const std::function<void()>& fitted,
                    IdentifiedJoint& joint)
 {
+  const auto look = [&]
+  {
+    if (options.watch.stopped())
+    {
+      throw Stopped{};
+    }
+  };
   const JudgedPart judge{ samplesWithin(samples, { -HUGE_VAL, joint.judge.to }), joint.judge.from };
-  joint.found = identify(parameters, samplesWithin(samples, joint.train), judge, load_recorded);
+  joint.found = identify(parameters, samplesWithin(samples, joint.train), judge, load_recorded, look);
   fitted();
   const bool is_arm = !options.arm.empty();
   JudgedErrors& left_out = joint.left_out;
-  left_out = leaveOneOut(parameters, samples, joint.train, foldsOf(options), load_recorded, fitted);
+  left_out = leaveOneOut(parameters, samples, joint.train, foldsOf(options), load_recorded, fitted, look);
   if (is_arm && left_out.identified.moving > RIPPLE_GAIN * left_out.without_ripple.moving)
   {
     left_out.identified = left_out.without_ripple;
@@ -169,8 +176,9 @@ void identifyJoint(const IdentifyOptions& options, const Parameters& parameters,
   }
 }
 
-/// By the currents that the twins predict as configured.
-IdentifiedPayload payloadOf(const ArmRecording& recording, const std::vector<std::vector<MotionSample>>& samples)
+/// By the currents that the twins predict as configured; of no use if stopped.
+IdentifiedPayload payloadOf(const ArmRecording& recording, const std::vector<std::vector<MotionSample>>& samples,
+                            const Watch& watch)
 {
   LoadFit fit(recording.arm(), recording.parameters());
   std::vector<MotionDriven> twins(recording.parameters().begin(), recording.parameters().end());
@@ -182,6 +190,10 @@ IdentifiedPayload payloadOf(const ArmRecording& recording, const std::vector<std
   std::vector<MotionSample> row(samples.size());
   for (std::size_t k = 0; k < samples.front().size(); ++k)
   {
+    if (watch.stopped())
+    {
+      return {};
+    }
     for (std::size_t i = 0; i < samples.size(); ++i)
     {
       row[i] = samples[i][k];
@@ -222,14 +234,7 @@ std::vector<IdentifiedJoint> identifyJoints(const IdentifyOptions& options, cons
     IdentifiedJoint& joint = joints.emplace_back();
     joint.name = recording.joints()[i].short_name;
     std::size_t done = i * fits;
-    const auto fitted = [&]
-    {
-      progress(static_cast<double>(++done) / static_cast<double>(fits * samples.size()));
-      if (options.watch.stopped())
-      {
-        throw Stopped{};
-      }
-    };
+    const auto fitted = [&] { progress(static_cast<double>(++done) / static_cast<double>(fits * samples.size())); };
     try
     {
       chooseParts(options, duration, samples[i].empty() ? 0.0 : samples[i].back().time, joint);
@@ -272,6 +277,10 @@ Identified identify(const IdentifyOptions& options)
   identified.found =
       recording.readSamples([&](std::size_t i, const MotionSample& sample) { samples[i].push_back(sample); });
   identified.joints = identifyJoints(options, recording, identified.found.duration, samples);
+  if (recording.isArm() && !options.watch.stopped())
+  {
+    identified.payload = payloadOf(recording, samples, options.watch);
+  }
   if (options.watch.stopped())
   {
     return identified;
@@ -282,7 +291,6 @@ Identified identify(const IdentifyOptions& options)
     {
       noticeOfSimpleFit(joint, options.watch);
     }
-    identified.payload = payloadOf(recording, samples);
     identified.any = std::any_of(identified.joints.begin(), identified.joints.end(),
                                  [](const IdentifiedJoint& joint) { return joint.refusal.empty(); });
   }

@@ -196,6 +196,15 @@ TEST(Observer, OfAHealthyJointStaysWithinItsBand)
   }
 }
 
+/// Where friction builds up over an angle, it is as large once the motor turns.
+TEST(Observer, KnowsTheFrictionThatBuildsUpOverAnAngle)
+{
+  const Parameters joint = jointWith("motor.presliding_angle=3e-3");
+  const std::vector<Seen> seen = observe(joint, joint, 3.0, servo, { 0.008, Encoders::OUTPUT });
+  EXPECT_GT(shareInside(seen), 0.95);
+  EXPECT_NEAR(meanResistance(seen, 1.0, 3.0), 0.0, 0.005);
+}
+
 TEST(Observer, ShowsFrictionThatHasGrownAndDoesNotLearnItAway)
 {
   const Parameters healthy = shippedParameters(JOINT);

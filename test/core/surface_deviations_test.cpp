@@ -13,6 +13,7 @@
 #include "model/faults/joint_faults.hpp"
 #include "model/joint_model.hpp"
 #include "surface/deviation_builder.hpp"
+#include "surface/deviation_rings.hpp"
 #include "surface/faulty_surface.hpp"
 #include "surface/surface_cache.hpp"
 #include "surface/surface_ring.hpp"
@@ -133,6 +134,34 @@ TEST(SurfaceDeviations, AreMeasuredOneWayWhereTheOtherIsTheirMirrorImage)
   // among what refines it: a bound that a table of the other side's sign or place would exceed by far.
   EXPECT_LT(std::sqrt(misses[0] / sizes[0]), 5e-3);
   EXPECT_LT(std::sqrt(misses[1] / sizes[1]), 5e-2);
+}
+
+TEST(DeviationRings, MeasureTheGearAtThePitchAndTheColumnThatAreAskedFor)
+{
+  constexpr int COLUMNS = 4;
+  constexpr double V = -1e-3;         // [rad]
+  constexpr double TOLERANCE = 2e-4;  // of two rings, each solved to rounding [N.m]
+  const Parameters parameters = surfaceParameters();
+  DeviationRings rings(parameters, JointModel(parameters), brokenModel());
+  SurfaceRing alone(parameters, brokenModel());
+  ASSERT_TRUE(rings.insert() && alone.insert() && rings.leadTo(V, 1e-4));
+  const Strip equal = rings.measureEqual(COLUMNS);
+  ASSERT_EQ(equal.size(), static_cast<std::size_t>(COLUMNS));
+  double effect = 0.0;
+  for (std::size_t pitch = 0; pitch < 60; pitch += 3)  // the broken tooth is the one of pitch 40
+  {
+    for (std::size_t column = 0; column < equal.size(); ++column)
+    {
+      SurfaceNode node;
+      ASSERT_TRUE(rings.measureActual(pitch, column, node));
+      const double part = static_cast<double>(column) / COLUMNS;
+      ASSERT_TRUE(alone.moveTo((static_cast<double>(pitch) + part) * alone.pitch(), V));
+      constexpr auto TORQUE = SurfaceNode::ENERGY_BY_V;  // on the output, less its sign
+      EXPECT_NEAR(node[TORQUE], alone.measure()[TORQUE], TOLERANCE) << pitch << ' ' << column;
+      effect = std::max(effect, std::abs(node[TORQUE] - equal[column][TORQUE]));
+    }
+  }
+  EXPECT_GT(effect, 100.0 * TOLERANCE);  // of another place
 }
 
 /// What is small beside the surface's own tolerance is tabulated less finely, not left out.

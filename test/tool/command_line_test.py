@@ -172,18 +172,22 @@ class Process(tool.ToolTest):
                 while processor_time(process.pid) < 0.25 * tool.SLOWER:  # it reads
                     self.assertIsNone(process.poll())
                     time.sleep(0.01)
-                before = processor_time(process.pid)
-                process.send_signal(signal.SIGINT)
-                _, status, usage = os.wait4(process.pid, 0)
-                process.returncode = os.waitstatus_to_exitcode(status)
-                self.assertIn(process.returncode, (128 + signal.SIGINT, -signal.SIGINT))
-                self.assertLess(usage.ru_utime + usage.ru_stime - before, 1.0 * tool.SLOWER)
+                self.end_within_a_second(process)
 
-    def test_identify_says_beforehand_how_long_it_takes(self):
+    def end_within_a_second(self, process):
+        before = processor_time(process.pid)
+        process.send_signal(signal.SIGINT)
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        self.assertIn(process.returncode, (128 + signal.SIGINT, -signal.SIGINT))
+        self.assertLess(usage.ru_utime + usage.ru_stime - before, 1.0 * tool.SLOWER)
+
+    def test_identify_says_beforehand_how_long_it_takes_and_ends_within_a_fit(self):
         self.long_recording("long.csv")
         process = subprocess.Popen([self.executable, "identify", "long.csv", "--arm", "ur5", "--out", "out"],
                                    cwd=self.directory, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
         self.addCleanup(process.kill)
+        self.addCleanup(process.stderr.close)
         line = b""
         while b"identifying" not in line:
             line = process.stderr.readline()
@@ -191,9 +195,8 @@ class Process(tool.ToolTest):
         done, left = re.fullmatch(r"identifying: (\d+) %, (\d+) s left\n", line.decode()).groups()
         self.assertLess(int(done), 50)
         self.assertGreater(int(left), 0)
-        process.send_signal(signal.SIGINT)
-        process.communicate()
-        self.assertEqual((process.returncode, os.listdir(self.path("out"))), (128 + signal.SIGINT, []))
+        self.end_within_a_second(process)
+        self.assertEqual(os.listdir(self.path("out")), [])
 
     def test_output_that_cannot_be_written_is_a_failure(self):
         for arguments in [["stiffness", "--torques", "5", "--json"], ["faults"], ["--help"], ["check", "--help"],
@@ -264,11 +267,13 @@ class OutputFiles(tool.ToolTest):
         self.assertIn(tool.read_bytes(self.path("there.csv")).decode(), self.succeed(*insert, "/dev/stdout").stdout)
         self.assertEqual(sorted(os.listdir(self.directory)), ["link.csv", "there.csv"])
 
-    def test_a_link_at_the_name_of_a_bag_in_work_is_not_followed(self):
+    def test_a_link_or_a_pipe_at_the_name_of_a_bag_in_work_is_refused(self):
         self.write("victim", "precious")
-        os.symlink("victim", self.path("out.bag.active"))
-        self.fail_with(1, ["out.bag.active cannot be written"], "simulate", "--torque", "0.2", "--duration", "0.02",
-                       "--out", "out.bag")
+        os.symlink("victim", self.path("link.bag.active"))
+        os.mkfifo(self.path("pipe.bag.active"))
+        for name, reason in (("link", ""), ("pipe", ": it is no regular file")):
+            self.fail_with(1, [f"{name}.bag.active cannot be written{reason}"], "simulate", "--torque", "0.2",
+                           "--duration", "0.02", "--out", f"{name}.bag")
         self.assertEqual(tool.read_bytes(self.path("victim")), b"precious")
 
     def test_a_full_disk_is_named_and_leaves_no_empty_file(self):
