@@ -2,7 +2,7 @@
 """Judges forty made-up working days of three arms by `compare`, alone and beside a reference of another motion of the
 same drives, and writes truth and answer of each day into docs/compare.md.
 
-The arms run in closed loop; drives differ, and noise and eccentricity of the sensors are those of arm_verdicts. In every
+The arms run in closed loop; drives differ, and the sensors' noise and eccentricity are those of arm_verdicts. In every
 second day one joint's friction is raised by a half.
 """
 import argparse
@@ -17,8 +17,8 @@ import lab
 
 ARMS = {"ur5": 5.0, "ur10e": 12.5, "ur3e": 3.0}   # rated payload [kg], data sheets
 DAYS = ("sound", "carries 0.1 of the rated payload", "carries 0.3", "carries 0.8", "gripper of 0.3", "cold morning",
-        "cold morning, gripper of 0.3", "on a wall", "tool drags with 10 N", "pushed by hand, 60 N", "gripper from half time on",
-        "currents late by 0.15 s", "gain of one joint 1.25")
+        "cold morning, gripper of 0.3", "on a wall", "tool drags with 10 N", "pushed by hand, 60 N",
+        "gripper of 0.3 from half time on", "currents late by 0.15 s", "gain of one joint 1.25")
 WORN = 1.5                                        # of the friction of a worn joint
 MORNING = 12.0                                    # of the oil [degC]; 25 is configured
 CENTRE = (0.0, 0.02, 0.06)                        # of what is carried, in the frame of the flange [m]
@@ -46,20 +46,22 @@ class Day(arm_verdicts.Arm):
 
     def simulated(self):
         """As of `simulate`: columns by name, and each joint's friction in its current [A]."""
-        lines = f"like: {lab.CHECKOUT / 'config' / 'arms' / self.name}.yaml\n" + ("gravity: [0.0, -9.82, 0.0]\n" if self.kind == "on a wall" else "")
+        lines = f"like: {lab.CHECKOUT / 'config' / 'arms' / self.name}.yaml\n"
+        lines += "gravity: [0.0, -9.82, 0.0]\n" if self.kind == "on a wall" else ""
         (self.work / "truth.yaml").write_text(lines, encoding="utf-8")
         start, there = self.places()
-        arm = hjt.Arm(str(self.work / "truth.yaml"), start, overlays=["real_sensors.yaml"])
+        arm = hjt.Arm(self.work / "truth.yaml", start, overlays=["real_sensors.yaml"])
         if self.kind.startswith("cold"):
             arm.set_temperature(MORNING)
-        if self.kind.startswith(("gripper of", "cold")):
+        at_half_time = self.kind.endswith("half time on")
+        if self.kind.startswith(("gripper", "cold")) and not at_half_time:
             arm.set_payload(self.mass, centre=CENTRE)
         parts, tip = [], {}
         for leg in range(2 * CYCLES):
             onward = leg % 2 == 0
             if self.kind.startswith("carries"):
                 arm.set_payload(self.mass if onward else 0.0, centre=CENTRE)
-            if self.kind.startswith("gripper from") and leg == CYCLES:
+            if at_half_time and leg == CYCLES:
                 arm.set_payload(self.mass, centre=CENTRE)
             if onward in tip and self.kind.startswith("tool"):
                 arm.set_wrench(force=-10.0 * tip[onward])
@@ -95,7 +97,7 @@ class Day(arm_verdicts.Arm):
         changed = dict(rows)
         for i, friction in enumerate(frictions):
             current = (rows[f"actual_current_{i}"] + (factors[i] - 1.0) * friction) / gains[i]
-            changed[f"actual_current_{i}"] = numpy.concatenate([numpy.full(late, current[0]), current[:len(current) - late]])
+            changed[f"actual_current_{i}"] = numpy.append(numpy.full(late, current[0]), current[:len(current) - late])
             del changed[f"target_current_{i}"]
         self.table("day.csv", changed)
         self.program("reference.yaml", 9, arm_verdicts.SPEEDS)
