@@ -52,7 +52,6 @@ inline void repeatHalfTurned(Eigen::VectorXd& vectors) noexcept
   const Eigen::Index half = vectors.size() / 2;
   const double* __restrict__ from = vectors.data();
   double* __restrict__ to = vectors.data() + half;
-#pragma omp simd
   for (Eigen::Index k = 0; k < half; ++k)
   {
     to[k] = -from[k];
