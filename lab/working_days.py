@@ -124,7 +124,9 @@ def answer(day, named, unjudged, document):
     if document["gravity_tilt"] is not None:
         words.append(f"tilted by {numpy.degrees(document['gravity_tilt']):.0f}°")
     words += [f"not judged: {', '.join(name for name in arm_verdicts.JOINTS if name in unjudged)}"] if unjudged else []
-    wrong = named - set(day.worn)
+    wrong = bool(named - set(day.worn)) or (
+        document["payload_mass"] is not None
+        and abs(document["payload_mass"] - day.mass) > document["payload_half_width"])
     missed = set(day.worn) - named - unjudged
     open_ = set(day.worn) & unjudged if day.worn else unjudged
     state = "wrong" if wrong else "missed" if missed else "not judged" if open_ else "right"
