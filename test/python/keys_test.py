@@ -75,8 +75,8 @@ TEETH = "gear.teeth_flexspline", "gear.teeth_circular_spline"  # together, or th
 UNTRIED = "solver.max_iterations", "solver.max_step_cuts"  # they act where no equilibrium is found
 
 
-def drive(overlay, faults):
-    parameters = hjt.Parameters(overlay)
+def drive(overlays, faults):
+    parameters = hjt.Parameters(*overlays)
     parameters.faults = faults
     return parameters
 
@@ -84,7 +84,7 @@ def drive(overlay, faults):
 def result(analysis, parameters):
     """None where a fault cannot act in the analysis."""
     try:
-        return ANALYSES[analysis](parameters)
+        return analysis(parameters)
     except (hjt.InputError, hjt.NotConverged) as error:
         return None if "cannot act here" in str(error) else str(error)
 
@@ -95,10 +95,11 @@ def differ(one, other):
     return any(a.shape != b.shape or np.abs(a - b).max() > LEAST * np.abs(a).max() for a, b in zip(one, other))
 
 
-def acting():
-    """Patterns of keys and the analyses in which they act, of the page's table."""
+def acting(heading):
+    """Patterns of keys and the analyses in which they act, of the page's table below a heading."""
     with open(os.path.join(CHECKOUT, "docs", "parameters.md"), encoding="utf-8") as file:
-        table = re.search(r"\n(\| keys \|.*?)\n\n", file.read(), re.DOTALL).group(1).splitlines()
+        section = file.read().split("\n" + heading + "\n")[1]
+        table = re.search(r"\n(\| keys \|.*?)\n\n", section, re.DOTALL).group(1).splitlines()
     names = [re.findall(r"`(\w+)`", cell) for cell in table[0].strip("|").split("|")[1:]]
     for row in table[2:]:
         cells = row.strip("|").split("|")
@@ -107,6 +108,10 @@ def acting():
 
 
 class Keys(unittest.TestCase):
+    HEADING = "## What acts where"
+    ANALYSES = ANALYSES
+    DRIVES = [([overlay], faults) for overlay, faults in DRIVES + FAULTY]
+
     @classmethod
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
@@ -118,7 +123,7 @@ class Keys(unittest.TestCase):
                     os.path.join(cls.folder.name, "signatures.yaml"))
         cls.fields = {field.key: field for field in hjt.parameter_fields()}
         cls.acts = {}
-        for patterns, analyses in acting():
+        for patterns, analyses in acting(cls.HEADING):
             for pattern in patterns:
                 keys = fnmatch.filter(cls.fields, pattern)
                 assert keys, pattern
@@ -159,8 +164,8 @@ class Keys(unittest.TestCase):
 
     def test_act_where_the_page_says(self):
         missing = {key: set(analyses) for key, analyses in self.acts.items() if key not in UNTRIED}
-        for overlay, faults in DRIVES + FAULTY:
-            sound = drive(overlay, faults)
+        for overlays, faults in self.DRIVES:
+            sound = drive(overlays, faults)
             known = {}
             for key, analyses in missing.items():
                 if not analyses or (faults and not key.startswith(("fault_scale.", "cup.wall", "bearing."))):
@@ -168,23 +173,23 @@ class Keys(unittest.TestCase):
                 copy = self.changed(sound, key)
                 for analysis in sorted(analyses) if copy else ():
                     if analysis not in known:
-                        known[analysis] = result(analysis, sound)
-                    if known[analysis] is not None and differ(known[analysis], result(analysis, copy)):
+                        known[analysis] = result(self.ANALYSES[analysis], sound)
+                    if known[analysis] is not None and differ(known[analysis], result(self.ANALYSES[analysis], copy)):
                         analyses.remove(analysis)
         self.assertEqual({key: analyses for key, analyses in missing.items() if analyses}, {})
 
     def test_act_nowhere_else(self):
         """All the others changed at once."""
-        for overlay, faults in DRIVES + FAULTY:
-            sound = drive(overlay, faults)
-            for analysis in ANALYSES:
+        for overlays, faults in self.DRIVES:
+            sound = drive(overlays, faults)
+            for name, analysis in self.ANALYSES.items():
                 expected = result(analysis, sound)
                 other = sound
                 for key, analyses in self.acts.items():
-                    if expected is not None and analysis not in analyses:
+                    if expected is not None and name not in analyses:
                         other = self.changed(other, key) or other
                 self.assertFalse(expected is not None and differ(expected, result(analysis, other)),
-                                 (analysis, overlay, faults))
+                                 (name, overlays, faults))
 
 
 if __name__ == "__main__":
