@@ -14,6 +14,7 @@
 
 #include "apps/common/command.hpp"
 #include "output/exit_code.hpp"
+#include "output/interrupt.hpp"
 #include "output/output_file.hpp"
 
 #ifdef HJT_COMPLETE_TOOL
@@ -78,6 +79,11 @@ int main(int argc, char** argv)
   }
   catch (const std::exception& error)
   {
+    if (hjt::interruptSignal() != 0)  // then half of the work is no error of the user's
+    {
+      std::cerr << "joint_twin: interrupted\n";
+      return hjt::EXIT_BY_SIGNAL + hjt::interruptSignal();
+    }
     std::cerr << "joint_twin: " << error.what() << '\n';
     return hjt::EXIT_FAILED;
   }

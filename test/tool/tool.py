@@ -40,13 +40,13 @@ class ToolTest(unittest.TestCase):
 
     def run_tool(self, *arguments, environment=None):
         return subprocess.run([self.executable, *map(str, arguments)], cwd=self.directory, stdout=subprocess.PIPE,
-                              stderr=subprocess.PIPE, universal_newlines=True, timeout=300 * SLOWER, check=False,
+                              stderr=subprocess.PIPE, universal_newlines=True, timeout=900 * SLOWER, check=False,
                               env=dict(os.environ, **(environment or {})))
 
     def run_with_file_limit(self, limit, *arguments):
         """No file may grow beyond `limit` [byte]: writing fails as on a full disk."""
         return subprocess.run([self.executable, *map(str, arguments)], cwd=self.directory, stdout=subprocess.PIPE,
-                              stderr=subprocess.PIPE, universal_newlines=True, timeout=300 * SLOWER, check=False,
+                              stderr=subprocess.PIPE, universal_newlines=True, timeout=900 * SLOWER, check=False,
                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
 
     def succeed(self, *arguments):
