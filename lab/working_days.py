@@ -155,7 +155,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--tool", type=pathlib.Path, required=True, help=argparse.SUPPRESS)
     parser.add_argument("--docs", type=pathlib.Path, required=True, help="folder of compare.md")
-    parser.add_argument("--work", type=pathlib.Path, required=True, help="folder of the runs; simulated ones are kept")
+    parser.add_argument("--work", type=pathlib.Path, required=True, help="folder of the runs")
     parser.add_argument("--seed", type=int, default=1, help="of motions, frictions and worn joints [1]")
     parser.add_argument("--days", type=int, default=40, help="of 40, the first; the table is printed then [40]")
     parser.add_argument("--jobs", type=int, default=2, help="days at the same time [2]")
