@@ -50,12 +50,7 @@ inline bool halvesAgree(const Eigen::VectorXd& values) noexcept
 inline void repeatHalfTurned(Eigen::VectorXd& vectors) noexcept
 {
   const Eigen::Index half = vectors.size() / 2;
-  const double* __restrict__ from = vectors.data();
-  double* __restrict__ to = vectors.data() + half;
-  for (Eigen::Index k = 0; k < half; ++k)
-  {
-    to[k] = -from[k];
-  }
+  vectors.tail(half) = -vectors.head(half);
 }
 
 /// Deformed ring: the tooth points, what follows from them for every element, and the space each tooth is paired with.
