@@ -13,7 +13,7 @@ namespace hjt
 {
 namespace
 {
-constexpr double OTHER_MOUNTING = 10.0;  // logarithm of how much rarer it is
+constexpr double OTHER_CAUSE = 10.0;  // logarithm of how much rarer another mounting or a drag is
 constexpr double ROWS = 60.0;            // that count: errors of a model are not independent from row to row
 constexpr double FLOOR = 0.02;           // of the currents: that the twin of no real arm falls below [-]
 
@@ -119,7 +119,7 @@ void LoadFit::thin()
   }
 }
 
-/// `load`: torques of units of mass, moments and gravity [N.m].
+/// `load`: torques of units of mass, moments, gravity and drag [N.m].
 void LoadFit::addTo(Joint& joint, const MotionSample& sample, const MotionDriven& twin, const ArmEstimator::Load& load)
 {
   constexpr double COLDER = 10.0;     // [K]
@@ -283,13 +283,20 @@ ArmEstimator::Estimate LoadFit::estimate(const std::vector<bool>& counts)
   const ArmEstimator estimator(rowsOf(counts, MOST_ROWS), gravity_, repeats());
   const auto likelier = [&](bool may_change)
   {
-    ArmEstimator::Estimate mounted = estimator.solve(true, may_change);
-    ArmEstimator::Estimate upright = estimator.solve(false, may_change);
-    return mounted.cost + OTHER_MOUNTING < upright.cost ? mounted : upright;
+    ArmEstimator::Estimate mounted = estimator.solve({ true, may_change, false });
+    ArmEstimator::Estimate upright = estimator.solve({ false, may_change, false });
+    return mounted.cost + OTHER_CAUSE < upright.cost ? mounted : upright;
   };
-  const ArmEstimator::Estimate estimate = likelier(true);
+  ArmEstimator::Estimate estimate = likelier(true);
   const ArmEstimator::Known jump{ estimate.jump[0], estimate.jump_half_width[0] };
-  return estimate.states.empty() || jump.isBeyond(LEAST_JUMP) ? estimate : likelier(false);
+  if (!estimate.states.empty() && !jump.isBeyond(LEAST_JUMP))
+  {
+    estimate = likelier(false);
+  }
+  ArmEstimator::Estimate dragged = estimator.solve({ false, false, true });
+  const bool is_dragged = FoundDrag{ dragged.drag.value, dragged.drag.half_width }.exists() &&
+                          dragged.cost + OTHER_CAUSE < estimate.cost;
+  return is_dragged ? dragged : estimate;
 }
 
 FoundLoad LoadFit::solve(const std::vector<bool>& counts)
@@ -297,6 +304,7 @@ FoundLoad LoadFit::solve(const std::vector<bool>& counts)
   const ArmEstimator::Estimate estimate = this->estimate(counts);
   const double of_links = ofLinks(counts);
   FoundLoad found{ payloadOf(estimate.payload, estimate.payload_half_width, of_links), mountingOf(estimate) };
+  found.drag = { estimate.drag.value, estimate.drag.half_width };
   found.gain = estimate.gain.value;
   found.gain_half_width = estimate.gain.half_width;
   if (estimate.states.empty())
@@ -334,14 +342,14 @@ LoadFit::Fit LoadFit::explained(const std::vector<bool>& counts)
   Fit best;
   for (const bool is_mounted : { false, true })
   {
-    if (is_mounted && best.cost <= leastCost() + OTHER_MOUNTING)
+    if (is_mounted && best.cost <= leastCost() + OTHER_CAUSE)
     {
       break;  // no mounting could be likelier
     }
-    const ArmEstimator::Estimate found = estimator.solve(is_mounted);
+    const ArmEstimator::Estimate found = estimator.solve({ is_mounted, true, false });
     const double below_zero = std::min(payload_.mass + found.payload[0], 0.0);
     double cost = found.rareness + misfitCost(found.left) + 0.5 * std::pow(below_zero / NO_MASS, 2);
-    cost += is_mounted ? OTHER_MOUNTING : 0.0;
+    cost += is_mounted ? OTHER_CAUSE : 0.0;
     const double size = 1.0 + found.gain.value;
     const bool is_other = !(std::abs(std::log(size)) < CLEAR);
     cost += is_other ? OTHER_SIZE : 0.0;

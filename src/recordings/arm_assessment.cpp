@@ -125,6 +125,7 @@ ArmAssessment assess(ArmRecording& recording, const AssessmentSettings& settings
     law.counts().configure(other);
     recording.setPayload(other.payload, law.counts().course(configured.payload));
     recording.setGravity(other.gravity);
+    recording.setDrag(other.drag);
     arm = pass(recording, settings, false, false, fit);
     if (!law.isTrying())
     {
