@@ -205,15 +205,13 @@ std::vector<bool> ArmEstimator::likelier(const Point& by) const
   return states;
 }
 
-/// The payload may have two states, between which it changes from leg to leg; `states` stays empty where that is not
-/// clearly likelier. Begun by what one payload leaves, and by what the arm as configured leaves.
+/// The payload has two states, between which it changes from leg to leg; `states` stays empty where all legs are alike.
+/// Begun by what one payload leaves, and by what the arm as configured leaves.
 ArmEstimator::Point ArmEstimator::withJump(const Freedom& may, const Point& without, std::vector<bool>& states) const
 {
-  constexpr double CLEARLY = 10.0;  // where nothing changes, recordings of a UR5 and a UR10e show up to 8
   constexpr int TURNS = 6;
   const Prior prior = priorOf(may);
-  Point best = without;
-  double limit = without.cost - CLEARLY;
+  Point best;
   Point configured = without;
   configured.at.setZero();
   for (const Point* from : { &without, static_cast<const Point*>(&configured) })
@@ -223,10 +221,10 @@ ArmEstimator::Point ArmEstimator::withJump(const Freedom& may, const Point& with
     for (int turn = 0; turn < TURNS; ++turn)
     {
       now = turn == 0 ? this->best(prior, tried) : refine(prior, tried, now.at, HELD);
-      if (now.cost < limit)
+      const bool is_changing = std::find(tried.begin(), tried.end(), !tried.front()) != tried.end();
+      if (is_changing && now.cost < best.cost)
       {
         best = now;
-        limit = now.cost;
         states = tried;
       }
       std::vector<bool> next = likelier(now);
@@ -292,16 +290,21 @@ ArmEstimator::Estimate ArmEstimator::estimateOf(const Point& point, const std::v
   return found;
 }
 
-ArmEstimator::Estimate ArmEstimator::solve(const Freedom& may) const
+std::vector<ArmEstimator::Estimate> ArmEstimator::solve(const Freedom& may) const
 {
-  std::vector<bool> states;
   Freedom constant = may;
   constant.jump = false;
-  Point point = best(priorOf(constant), states);
+  const Point point = best(priorOf(constant), {});
+  std::vector<Estimate> found{ estimateOf(point, {}) };
+  std::vector<bool> states;
   if (may.jump && legs_ > 1)
   {
-    point = withJump(may, point, states);
+    const Point changing = withJump(may, point, states);
+    if (!states.empty())
+    {
+      found.push_back(estimateOf(changing, states));
+    }
   }
-  return estimateOf(point, states);
+  return found;
 }
 }  // namespace hjt

@@ -91,7 +91,8 @@ public:
     bool jump{ true };  ///< the payload changes between legs
     bool drag{};
   };
-  Estimate solve(const Freedom& may) const;
+  /// The likeliest with one payload, then, where it may change between legs and some have another, that with two.
+  std::vector<Estimate> solve(const Freedom& may) const;
 
 private:
   struct Prior;

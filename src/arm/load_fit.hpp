@@ -84,6 +84,16 @@ private:
     Open open{};
   };
 
+  /// What may explain the currents.
+  struct Hypothesis
+  {
+    ArmEstimator::Estimate found;
+    ArmEstimator::Freedom may;
+    double cost{};  ///< with those of its causes
+  };
+
+  std::vector<Hypothesis> hypotheses(const std::vector<bool>& counts);
+  static std::vector<FrictionDoubt> doubtsOf(const std::vector<Hypothesis>& all);
   void cutLegs(double time, double speed);
   std::vector<double> repeats() const;
   static void addTo(Joint& joint, const MotionSample& sample, const MotionDriven& twin, const ArmEstimator::Load& load);

@@ -115,6 +115,10 @@ void TrackerNode::lookAtLoad()
   }
   const bool was_trying = load_->isTrying();
   const bool is_other = load_->look(judgedJoints());
+  for (std::size_t i = 0; i < load_->doubts().size(); ++i)
+  {
+    joints_[i]->setDoubt(load_->doubts()[i]);
+  }
   const AssumedLoad& assumed = load_->assumed();
   if (is_other || was_trying)
   {
