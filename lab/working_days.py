@@ -130,10 +130,14 @@ def answer(day, named, unjudged, document):
         words.append(f"{document['payload_mass']:.1f} ± {document['payload_half_width']:.1f} kg")
     if document["gravity_tilt"] is not None:
         words.append(f"tilted by {numpy.degrees(document['gravity_tilt']):.0f}°")
+    if document["drag"] is not None:
+        words.append(f"drag of {document['drag']:.0f} ± {document['drag_half_width']:.0f} N")
     words += [f"not judged: {', '.join(name for name in arm_verdicts.JOINTS if name in unjudged)}"] if unjudged else []
     wrong = bool(named - set(day.worn)) or (
         document["payload_mass"] is not None
-        and abs(document["payload_mass"] - day.mass) > document["payload_half_width"])
+        and abs(document["payload_mass"] - day.mass) > document["payload_half_width"]) or (
+        document["drag"] is not None
+        and not (day.kind.startswith("tool") and abs(document["drag"] - DRAG) < document["drag_half_width"]))
     missed = set(day.worn) - named - unjudged
     open_ = set(day.worn) & unjudged if day.worn else unjudged
     state = "wrong" if wrong else "missed" if missed else "not judged" if open_ else "right"
