@@ -273,6 +273,11 @@ TEST_F(FrictionVerdict, ALoadThatBothWaysDoNotShareIsUncertain)
   EXPECT_GT(with, 1.3 * without);
 }
 
+TEST(OwnReference, IsAsUncertainAsTheMeanOfItsRecordings)
+{
+  EXPECT_DOUBLE_EQ(ownReference({ { {}, 0.03 }, { {}, 0.04 } }).friction_deviation, 0.025);
+}
+
 TEST_F(FrictionVerdict, ReferencesThatDifferWidenTheInterval)
 {
   const OwnReference agreeing = ownReference({ sound(0.99), sound(1.0), sound(1.01) });
