@@ -321,6 +321,36 @@ TEST(LoadFit, TakesNoFrictionForAPayloadByLegsWhereThatOfEachJointIsKnown)
   }
 }
 
+/// A friction that is raised clearly is in no doubt in its joint, and in all others another is.
+TEST(LoadFit, DoubtsAnotherFrictionWhereTheCurrentsOfAllJointsDoNotTellIt)
+{
+  EstimatorCase of;
+  of.is_own = true;
+  of.friction[ELBOW] = 1.4;
+  const FoundLoad found = fitOf(of, 1).solve(ALL);
+  ASSERT_EQ(found.doubts.size(), of.friction.size());
+  for (std::size_t i = 0; i < found.doubts.size(); ++i)
+  {
+    EXPECT_EQ(found.doubts[i].more.empty(), i == ELBOW) << i << ": " << found.doubts[i].more;
+    EXPECT_FALSE(found.doubts[i].less.empty()) << i;
+  }
+}
+
+/// Half a kilogram that only the shoulder's currents would show looks like its friction as well.
+TEST(LoadFit, DoubtsFrictionThatAPayloadByLegsExplainsAboutAsWell)
+{
+  EstimatorCase of;
+  of.is_own = true;
+  of.mass = 0.25;
+  of.in_turns = true;
+  const FoundLoad found = fitOf(of, 1).solve(ALL);
+  for (const FrictionDoubt& doubt : found.doubts)
+  {
+    EXPECT_FALSE(doubt.more.empty());
+    EXPECT_FALSE(doubt.less.empty());
+  }
+}
+
 TEST(LoadFit, LeavesOutAJointThatIsNotMeasured)
 {
   EstimatorCase of;

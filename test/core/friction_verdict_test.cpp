@@ -350,6 +350,21 @@ TEST_F(FrictionVerdict, AReferenceBetweenItsSpeedsIsInterpolated)
   EXPECT_THAT(FrictionPoints::common(points({ { 0.5, 12.0 } }), points({ { 0.2, 11.0 }, { -0.5, 13.0 } })), IsEmpty());
 }
 
+/// What all joints' currents leave open either way counts only where the friction departs that way.
+TEST_F(FrictionVerdict, IsNoneWhereTheCurrentsOfAllJointsDoubtIt)
+{
+  JointContext context;
+  EXPECT_EQ(judge(joint_.evidence(swing, 60.0, 2.0), context).level, VerdictLevel::WARN);
+  context.doubt.less = "it may be more";
+  EXPECT_EQ(judge(joint_.evidence(swing, 60.0, 2.0), context).level, VerdictLevel::WARN);
+  context.doubt.more = "it may be as expected";
+  const Verdict verdict = judge(joint_.evidence(swing, 60.0, 2.0), context);
+  EXPECT_EQ(verdict.level, VerdictLevel::NOT_JUDGED);
+  EXPECT_EQ(verdict.reason, Reason::LOAD_WRONG);
+  EXPECT_EQ(verdict.misfit, context.doubt.more);
+  EXPECT_EQ(judge(joint_.evidence(swing, 60.0, 1.0), context).level, VerdictLevel::OK);
+}
+
 TEST_F(FrictionVerdict, AReferenceThatWasNotJudgedIsNone)
 {
   JointContext context;
