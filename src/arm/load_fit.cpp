@@ -14,11 +14,11 @@ namespace hjt
 {
 namespace
 {
-// Logarithm of how much rarer another mounting, a payload that changes or a drag is; where nothing changes, recordings of
-// a UR5 and a UR10e show up to 8 for such a payload.
+// Logarithm of how much rarer another mounting, a payload that changes or a drag is; where nothing changes, recordings
+// of a UR5 and a UR10e show up to 8 for such a payload.
 constexpr double OTHER_CAUSE = 10.0;
-constexpr double ROWS = 60.0;            // that count: errors of a model are not independent from row to row
-constexpr double FLOOR = 0.02;           // of the currents: that the twin of no real arm falls below [-]
+constexpr double ROWS = 60.0;   // that count: errors of a model are not independent from row to row
+constexpr double FLOOR = 0.02;  // of the currents: that the twin of no real arm falls below [-]
 
 /// Of what is left of the currents, share.
 double misfitCost(double left)
@@ -323,9 +323,9 @@ std::vector<FrictionDoubt> LoadFit::doubtsOf(const std::vector<Hypothesis>& all)
   for (const auto& [found, may, cost] : all)
   {
     const std::string cause = (found.states.empty() ? std::string() : " with another payload in some legs") +
-                              (may.drag                                         ? " with a drag of the tool" :
-                               may.mounting && !found.gravity.isZero() ? " with another mounting" :
-                                                                                  "");
+                              (may.drag     ? " with a drag of the tool" :
+                               may.mounting ? " with another mounting" :
+                                              "");
     for (std::size_t i = 0; i < doubts.size(); ++i)
     {
       const ArmEstimator::Known& own = found.own[i];
@@ -362,7 +362,8 @@ FoundLoad LoadFit::solve(const std::vector<bool>& counts)
   // What one of both lacks to the configured payload is an error of the links, which the other has too.
   found.otherwise = found.payload;
   const bool is_known = !found.otherwise.differs();
-  const ArmEstimator::Carried other = is_known ? estimate.jump : ArmEstimator::Carried(estimate.payload + estimate.jump);
+  const ArmEstimator::Carried other =
+      is_known ? estimate.jump : ArmEstimator::Carried(estimate.payload + estimate.jump);
   found.payload = payloadOf(other, estimate.jump_half_width, of_links);
   found.payload.least_claim = 0.0;
   for (std::size_t leg = 0; leg < estimate.states.size(); ++leg)

@@ -20,7 +20,7 @@ struct ArmAssessment
   StreamTimingReport timing;
   JudgedJoints judged;
   std::optional<FoundLoad> load;
-  AssumedLoad assumed;  ///< that the joints are judged with
+  AssumedLoad assumed;                ///< that the joints are judged with
   std::vector<FrictionDoubt> doubts;  ///< of each joint; empty: none
 
   JointContext context(std::size_t joint) const
