@@ -47,8 +47,8 @@ struct JudgedJoints
 void addMisfit(const Misfit& misfit, std::vector<Misfit>& misfits);
 
 /// The law by which the load is another than configured, of a recording and live alike. What the currents show is
-/// tried: a mounting, a drag, and, where nothing but what a load makes too stands against a joint, a payload, since it explains
-/// no telemetry that does not fit. It stands where every joint fits with it, else it is taken back.
+/// tried: a mounting, a drag, and, where nothing but what a load makes too stands against a joint, a payload, since it
+/// explains no telemetry that does not fit. It stands where every joint fits with it, else it is taken back.
 class LoadLaw
 {
 public:
