@@ -336,21 +336,6 @@ TEST(LoadFit, DoubtsAnotherFrictionWhereTheCurrentsOfAllJointsDoNotTellIt)
   }
 }
 
-/// Half a kilogram that only the shoulder's currents would show looks like its friction as well.
-TEST(LoadFit, DoubtsFrictionThatAPayloadByLegsExplainsAboutAsWell)
-{
-  EstimatorCase of;
-  of.is_own = true;
-  of.mass = 0.25;
-  of.in_turns = true;
-  const FoundLoad found = fitOf(of, 1).solve(ALL);
-  for (const FrictionDoubt& doubt : found.doubts)
-  {
-    EXPECT_FALSE(doubt.more.empty());
-    EXPECT_FALSE(doubt.less.empty());
-  }
-}
-
 TEST(LoadFit, LeavesOutAJointThatIsNotMeasured)
 {
   EstimatorCase of;
