@@ -57,7 +57,7 @@ struct FoundDrag
 
   /// Its interval lies beyond what sound arms show.
   bool exists() const;
-  /// "a force of ... acts on the tool against its motion", a clause.
+  /// "the currents look like a force of ... on the tool against its motion: ...", a clause.
   std::string text() const;
 };
 
