@@ -90,6 +90,19 @@ class Recordings(keys_test.Keys):
             "indicators": command(hjt.indicators, run),
         }
 
+    def test_an_arm_has_its_own_load(self):
+        row = recorded(6.0)
+        arm = {"time": row["time"], **{name: np.tile(row[name], (6, 1)).T for name in ("position", "current")}}
+
+        def followed(**parameters):
+            return leaves(hjt.follow(arm, arm="ur5", overlays=[parameters]))
+        sound = followed()
+        for key, value in (("output.gravity_torque", 20.0), ("output.load_inertia", 2.0)):
+            self.assertEqual(repr(followed(**{key: value})), repr(sound), key)
+        self.assertNotEqual(repr(followed(**{"input.temperature": 40.0})), repr(sound))
+        with self.assertRaisesRegex(hjt.InputError, "load"):
+            followed(**{"telemetry.load": "model"})
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -52,9 +52,13 @@ std::optional<Span> spanOf(const std::vector<double>& pair)
 
 int runOfController(const PrintedIdentify& options)
 {
-  if (!options.train_pair.empty() || !options.judge_pair.empty())
+  if (!options.train_pair.empty() || !options.judge_pair.empty() || options.folds != 0)
   {
-    throw InputError("--controller takes all rows: neither --train nor --judge");
+    throw InputError("--controller takes all rows: none of --train, --judge and --folds");
+  }
+  if (options.load != LOAD_OF_ARM)
+  {
+    throw InputError("--controller takes target_moment of the recording: no --load");
   }
   const std::vector<IdentifiedController> joints = identifyController(options, options.out);
   const Report report = reportOf(joints);
