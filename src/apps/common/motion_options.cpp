@@ -33,7 +33,8 @@ void addRecording(Command& command, RecordingOptions& options)
 
 void addReadingOptions(Command& command, RecordingOptions& options, bool& json)
 {
-  command.add("--topic", options.topic, "of a bag's telemetry, sensor_msgs/JointState, effort as telemetry.effort says");
+  command.add("--topic", options.topic,
+              "of a bag's telemetry, sensor_msgs/JointState, effort as telemetry.effort says");
   command.add("--prefix", options.affixes.prefix,
               "before the arm's names of the joints in the messages, as left_; `joint_twin check` finds it");
   command.add("--suffix", options.affixes.suffix, "behind them");
