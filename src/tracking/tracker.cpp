@@ -164,6 +164,7 @@ void Tracker::restart() noexcept
   refused_ += smoother_.refused();
   smoother_ = MotionDifferentiator();
   restarted_ = true;
+  last_time_ = -HUGE_VAL;
   friction_.reset();
   temperature_received_ = false;
   outside_share_ = 0.0;

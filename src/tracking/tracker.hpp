@@ -175,7 +175,7 @@ private:
   bool restarted_{};
   bool fits_{ true };
   bool load_is_known_{ true };
-  double last_time_{};
+  double last_time_{ -HUGE_VAL };  // of the rows since the last restart [s]
   HeldValues loads_;
   TemperatureRecord temperatures_;
   FrictionScale friction_;

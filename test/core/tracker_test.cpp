@@ -136,6 +136,17 @@ TEST_P(TrackerInMode, CountsWhatItRefusedBeforeEveryRestart)
   EXPECT_EQ(tracker.counters().refused, 3u);
 }
 
+TEST_P(TrackerInMode, CountsNoRestartOfItsFirstRowNorAfterAReset)
+{
+  Tracker tracker(parametersWith({}), GetParam());
+  for (const double start : { -100.0, -200.0 })
+  {
+    tracker.push(rowAt(start));
+    tracker.reset();
+  }
+  EXPECT_EQ(tracker.counters().restarts, 0u);
+}
+
 TEST_P(TrackerInMode, AllocatesNothing)
 {
   Tracker tracker(parametersWith({}), GetParam());

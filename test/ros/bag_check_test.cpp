@@ -4,6 +4,7 @@
 
 #include <unistd.h>
 
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -11,7 +12,7 @@
 #include <random>
 #include <string>
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 #include <sensor_msgs/JointState.h>
@@ -56,6 +57,17 @@ const Parameters& parameters()
   return SHIPPED;
 }
 
+sensor_msgs::JointState stateOf(const ros::Time& stamp, double position)
+{
+  sensor_msgs::JointState message;
+  message.header.stamp = stamp;
+  message.name = { parameters().joint.name };
+  message.position = { position };
+  message.velocity = { 0.1 };
+  message.effort = { 0.5 };
+  return message;
+}
+
 /// Bytes of a small bag with several chunks: commands, telemetry and unstamped torques.
 std::string smallBag(rosbag::CompressionType compression)
 {
@@ -66,12 +78,7 @@ std::string smallBag(rosbag::CompressionType compression)
   for (int i = 0; i < 30; ++i)
   {
     const ros::Time stamp(1000, 1000000 * i + 1);
-    sensor_msgs::JointState message;
-    message.header.stamp = stamp;
-    message.name = { parameters().joint.name };
-    message.position = { 0.01 * i };
-    message.velocity = { 0.1 };
-    message.effort = { 0.5 };
+    const sensor_msgs::JointState message = stateOf(stamp, 0.01 * i);
     bag.write("/joint_twin/command", stamp, message);
     bag.write("/joint_states", stamp, message);
     std_msgs::Float64 torque;
@@ -208,6 +215,25 @@ TEST_P(BagCheck, NoDamageEndsTheProgram)
 INSTANTIATE_TEST_SUITE_P(Compressions, BagCheck,
                          ::testing::Values(rosbag::compression::Uncompressed, rosbag::compression::BZ2,
                                            rosbag::compression::LZ4));
+
+TEST(BagMotion, SaysHowManyJumpsOfAFoldedAngleItTookOut)
+{
+  const TemporaryFile file("folded.bag");
+  rosbag::Bag bag(file.path(), rosbag::bagmode::Write);
+  for (int i = 0; i < 1000; ++i)
+  {
+    const ros::Time stamp(1000, 1000000 * i + 1);
+    bag.write("/joint_states", stamp, stateOf(stamp, std::remainder(0.02 * i, 2.0 * M_PI)));
+  }
+  bag.close();
+  MotionSource source;
+  source.path = file.path();
+  source.joint = parameters().joint.name;
+  source.speeds = { 30.0 };
+  const MotionCount count = readMotion(
+      source, [](const MotionRow&) { return true; }, [](double) {});
+  EXPECT_THAT(count.remarks, ::testing::Contains("angles are folded into one turn: unwrapped, 3 jumps of 2 pi"));
+}
 
 TEST(BagDamage, IsNamedWithItsPlace)
 {

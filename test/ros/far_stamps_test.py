@@ -177,6 +177,17 @@ class FarStamps(unittest.TestCase):
         self.assertTrue(all(START <= m.header.stamp.to_sec() < START + 10 for m in comparisons.messages()))
         self.stop()
 
+    def test_a_robot_whose_clock_is_set_again_and_again(self):
+        measured, _ = self.start_beside_robot()
+        self.give_rows(measured, 250)  # for longer than stamps may go back
+        for times, days in enumerate((3, 6), 1):
+            self.behind = 86400.0 * days
+            for said in True, False:
+                wait_until(lambda said=said: self.give_rows(measured, 10) or said == (
+                    "Stamps jumped back" in self.diagnostics.statuses("Input")[-1].message), f"{times}: {said}")
+            self.diagnostics.wait_for("Input", "Restarts", times)
+        self.stop()
+
     def test_a_load_without_a_stamp_is_valid_for_the_rows_after_it(self):
         """Whatever the robot's clock shows: here it is an hour slow."""
         measured, comparisons = self.start_beside_robot()
