@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a fault of one drive does to the tool of a UR5 and to its currents, for scripts/arm_faults.
+"""What a fault of one drive does to the tool of a UR5 and to its currents.
 
 The arm goes through four poses and back, twice, and stops at each. A run is judged beside the sound one in the same
 motion. At rest: the last 0.2 s of a stop. ISO 9283: mean of the distances from their mean, and three of their standard

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Run time against error: runs `work_precision` over its problems; writes every run to out/benchmark and the summary
-docs/benchmark.md. Started by scripts/benchmark."""
+docs/benchmark.md."""
 import argparse
 import concurrent.futures
 import json

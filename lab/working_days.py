@@ -22,9 +22,20 @@ DAYS = ("sound", "carries 0.1 of the rated payload", "carries 0.3", "carries 0.8
 WORN = 1.5                                        # of the friction of a worn joint
 MORNING = 12.0                                    # of the oil [degC]; 25 is configured
 CENTRE = (0.0, 0.02, 0.06)                        # of what is carried, in the frame of the flange [m]
+DRAG = 10.0                                       # [N]
 CYCLES = 8                                        # from A to B and back
 RATE = arm_verdicts.RATE
 COLUMNS = ("target_q", "target_qd", "actual_q", "actual_qd", "actual_current", "target_current")
+
+
+def dragged(arm, length):
+    """Rows of a leg by tenths of a second, in each a force against the tip's motion in the one before."""
+    parts = []
+    for _ in range(int(numpy.ceil(10.0 * length))):
+        parts.append(arm.run(0.1, rate=RATE))
+        way = parts[-1]["actual_TCP_pose"][-1] - parts[-1]["actual_TCP_pose"][0]
+        arm.set_wrench(force=-DRAG * way / max(numpy.linalg.norm(way), 1e-4))
+    return parts
 
 
 class Day(arm_verdicts.Arm):
@@ -56,15 +67,13 @@ class Day(arm_verdicts.Arm):
         at_half_time = self.kind.endswith("half time on")
         if self.kind.startswith(("gripper", "cold")) and not at_half_time:
             arm.set_payload(self.mass, centre=CENTRE)
-        parts, tip = [], {}
+        parts = []
         for leg in range(2 * CYCLES):
             onward = leg % 2 == 0
             if self.kind.startswith("carries"):
                 arm.set_payload(self.mass if onward else 0.0, centre=CENTRE)
             if at_half_time and leg == CYCLES:
                 arm.set_payload(self.mass, centre=CENTRE)
-            if onward in tip and self.kind.startswith("tool"):
-                arm.set_wrench(force=-10.0 * tip[onward])
             if self.kind.startswith("pushed") and leg % 5 == 2:
                 arm.set_wrench(force=60.0 * self.generator.standard_normal(3) / 3.0 ** 0.5)
             program = self.work / "leg.yaml"
@@ -73,11 +82,9 @@ class Day(arm_verdicts.Arm):
                                f"  - {{to: {goal.tolist()}, speed: {arm_verdicts.SPEEDS[leg // 2 % 4]}}}\n",
                                encoding="utf-8")
             length = arm.move(str(program))
-            rows = arm.run(length, rate=RATE)
-            way = rows["actual_TCP_pose"][-1] - rows["actual_TCP_pose"][0]
-            tip[onward] = way / numpy.linalg.norm(way)
+            parts += dragged(arm, length) if self.kind.startswith("tool") else [arm.run(length, rate=RATE)]
             arm.set_wrench()
-            parts += [rows, arm.run(0.5, rate=RATE)]
+            parts.append(arm.run(0.5, rate=RATE))
         joined = {name: numpy.concatenate([part[name] for part in parts]) for name in COLUMNS}
         table = {"timestamp": numpy.arange(len(joined["actual_q"])) / RATE}
         table.update((f"{name}_{i}", values[:, i]) for name, values in joined.items() for i in range(6))
@@ -123,10 +130,14 @@ def answer(day, named, unjudged, document):
         words.append(f"{document['payload_mass']:.1f} ± {document['payload_half_width']:.1f} kg")
     if document["gravity_tilt"] is not None:
         words.append(f"tilted by {numpy.degrees(document['gravity_tilt']):.0f}°")
+    if document["drag"] is not None:
+        words.append(f"drag of {document['drag']:.0f} ± {document['drag_half_width']:.0f} N")
     words += [f"not judged: {', '.join(name for name in arm_verdicts.JOINTS if name in unjudged)}"] if unjudged else []
     wrong = bool(named - set(day.worn)) or (
         document["payload_mass"] is not None
-        and abs(document["payload_mass"] - day.mass) > document["payload_half_width"])
+        and abs(document["payload_mass"] - day.mass) > document["payload_half_width"]) or (
+        document["drag"] is not None
+        and not (day.kind.startswith("tool") and abs(document["drag"] - DRAG) < document["drag_half_width"]))
     missed = set(day.worn) - named - unjudged
     open_ = set(day.worn) & unjudged if day.worn else unjudged
     state = "wrong" if wrong else "missed" if missed else "not judged" if open_ else "right"

@@ -72,6 +72,7 @@ struct ArmDescription
   std::string tip;                  ///< link that carries the payload
   std::array<double, 3> gravity{};  ///< in the frame of the base [m/s^2]
   Payload payload;
+  double drag{};                 ///< of a force on the tip against its motion [N]
   double state_rate{ 125.0 };    ///< of the controller's states [Hz]
   std::vector<ArmJoint> joints;  ///< from the base on; at least one
   std::vector<ArmLink> links;    ///< from the base on to the tip, as readLinks finds them

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "arm/arm_dynamics.hpp"
 
+#include <cmath>
 #include <string>
 
 #include <kdl/chain.hpp>
@@ -60,6 +61,7 @@ struct ArmDynamics::Solver
   explicit Solver(const ArmDescription& arm)
     : chain(chainOf(arm))
     , gravity(vectorOf(arm.gravity))
+    , drag(arm.drag)
     , recursion(chain, gravity)
     , parameters(chain, gravity)
     , position(chain.getNrOfJoints())
@@ -75,6 +77,7 @@ struct ArmDynamics::Solver
   Solver(const Solver& other)
     : chain(other.chain)
     , gravity(other.gravity)
+    , drag(other.drag)
     , recursion(chain, gravity)
     , parameters(chain, gravity)
     , position(other.position)
@@ -111,8 +114,27 @@ struct ArmDynamics::Solver
     return pose;
   }
 
+  /// Of the tip [m/s].
+  KDL::Vector tipVelocity() const
+  {
+    KDL::Frame pose = KDL::Frame::Identity();
+    KDL::Twist twist = KDL::Twist::Zero();
+    unsigned joint = 0;
+    for (const KDL::Segment& segment : chain.segments)
+    {
+      const bool moves = segment.getJoint().getType() != KDL::Joint::None;
+      const double angle = moves ? position(joint) : 0.0;
+      const KDL::Frame next = pose * segment.pose(angle);
+      twist = twist.RefPoint(next.p - pose.p) + pose.M * segment.twist(angle, moves ? velocity(joint) : 0.0);
+      joint += moves ? 1 : 0;
+      pose = next;
+    }
+    return twist.vel;
+  }
+
   KDL::Chain chain;
   KDL::Vector gravity;
+  double drag;  // on the tip against its motion [N]
   KDL::ChainIdSolver_RNE recursion;
   KDL::ChainDynParam parameters;
   KDL::JntArray position;
@@ -162,7 +184,12 @@ void ArmDynamics::torques(const std::vector<JointMotion>& motion, std::vector<do
     solver.velocity(i) = motion[i].velocity;
     solver.acceleration(i) = motion[i].acceleration;
   }
-  const KDL::Wrench wrench(vectorOf(wrench_.force), vectorOf(wrench_.moment));
+  KDL::Wrench wrench(vectorOf(wrench_.force), vectorOf(wrench_.moment));
+  if (solver.drag != 0.0)
+  {
+    const KDL::Vector velocity = solver.tipVelocity();
+    wrench.force -= solver.drag / std::hypot(velocity.Norm(), DRAG_SPEED) * velocity;
+  }
   if (wrench != KDL::Wrench::Zero())
   {
     const KDL::Frame tip = solver.walk([](const KDL::Segment&, const KDL::Frame&) {});

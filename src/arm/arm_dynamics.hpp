@@ -34,6 +34,8 @@ struct ToolPose
   std::array<double, 4> orientation{};
 };
 
+inline constexpr double DRAG_SPEED = 0.01;  ///< of the tip, above which a drag has nearly all its force [m/s]
+
 /// Rigid-body dynamics of an arm: weight, inertia, Coriolis and coupling of all links and the payload, by KDL's
 /// recursive Newton-Euler. Links alone: the motors' inertia is that of the drives. After construction nothing but a
 /// copy throws or allocates.

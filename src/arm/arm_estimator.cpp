@@ -21,6 +21,7 @@ using namespace term;
 constexpr double MASS = 0.3;             // [kg]
 constexpr double MOMENT = 0.05;          // [kg.m]
 constexpr double TILT = 0.2;             // [m/s^2]
+constexpr double TOOL_DRAG = 2.0;        // [N]
 constexpr double JUMP_MASS = 1.0;        // [kg]
 constexpr double JUMP_MOMENT = 0.1;      // [kg.m]
 constexpr double ARM_GAIN = 0.01;        // [-]
@@ -60,15 +61,19 @@ ArmEstimator::ArmEstimator(Rows rows, const Eigen::Vector3d& gravity, std::vecto
   }
 }
 
-ArmEstimator::Prior ArmEstimator::priorOf(bool with_gravity, bool with_jump) const
+ArmEstimator::Prior ArmEstimator::priorOf(const Freedom& may) const
 {
   Prior prior{ Eigen::VectorXd::Constant(size_, NEVER), std::vector<bool>(static_cast<std::size_t>(size_)) };
   prior.width.head<PAYLOAD>() << MASS, MOMENT, MOMENT, MOMENT;
-  if (with_gravity)
+  if (may.mounting)
   {
     prior.width.segment<GRAVITY>(PAYLOAD).setConstant(TILT);
   }
-  if (with_jump)
+  if (may.drag)
+  {
+    prior.width[DRAG] = TOOL_DRAG;
+  }
+  if (may.jump)
   {
     prior.width.segment<PAYLOAD>(JUMP) << JUMP_MASS, JUMP_MOMENT, JUMP_MOMENT, JUMP_MOMENT;
   }
@@ -200,15 +205,13 @@ std::vector<bool> ArmEstimator::likelier(const Point& by) const
   return states;
 }
 
-/// The payload may have two states, between which it changes from leg to leg; `states` stays empty where that is not
-/// clearly likelier. Begun by what one payload leaves, and by what the arm as configured leaves.
-ArmEstimator::Point ArmEstimator::withJump(bool with_gravity, const Point& without, std::vector<bool>& states) const
+/// The payload has two states, between which it changes from leg to leg; `states` stays empty where all legs are alike.
+/// Begun by what one payload leaves, and by what the arm as configured leaves.
+ArmEstimator::Point ArmEstimator::withJump(const Freedom& may, const Point& without, std::vector<bool>& states) const
 {
-  constexpr double CLEARLY = 10.0;  // where nothing changes, recordings of a UR5 and a UR10e show up to 8
   constexpr int TURNS = 6;
-  const Prior prior = priorOf(with_gravity, true);
-  Point best = without;
-  double limit = without.cost - CLEARLY;
+  const Prior prior = priorOf(may);
+  Point best;
   Point configured = without;
   configured.at.setZero();
   for (const Point* from : { &without, static_cast<const Point*>(&configured) })
@@ -218,10 +221,10 @@ ArmEstimator::Point ArmEstimator::withJump(bool with_gravity, const Point& witho
     for (int turn = 0; turn < TURNS; ++turn)
     {
       now = turn == 0 ? this->best(prior, tried) : refine(prior, tried, now.at, HELD);
-      if (now.cost < limit)
+      const bool is_changing = std::find(tried.begin(), tried.end(), !tried.front()) != tried.end();
+      if (is_changing && now.cost < best.cost)
       {
         best = now;
-        limit = now.cost;
         states = tried;
       }
       std::vector<bool> next = likelier(now);
@@ -249,6 +252,7 @@ ArmEstimator::Estimate ArmEstimator::estimateOf(const Point& point, const std::v
   found.gravity_half_width = half_widths.segment<GRAVITY>(PAYLOAD);
   found.jump = point.at.segment<PAYLOAD>(JUMP);
   found.jump_half_width = half_widths.segment<PAYLOAD>(JUMP);
+  found.drag = known(Eigen::VectorXd::Unit(size_, DRAG));
   found.gain = known(Eigen::VectorXd::Unit(size_, GAIN));
   found.states = states;
   found.rareness = point.rareness;
@@ -286,14 +290,21 @@ ArmEstimator::Estimate ArmEstimator::estimateOf(const Point& point, const std::v
   return found;
 }
 
-ArmEstimator::Estimate ArmEstimator::solve(bool with_gravity, bool with_jump) const
+std::vector<ArmEstimator::Estimate> ArmEstimator::solve(const Freedom& may) const
 {
+  Freedom constant = may;
+  constant.jump = false;
+  const Point point = best(priorOf(constant), {});
+  std::vector<Estimate> found{ estimateOf(point, {}) };
   std::vector<bool> states;
-  Point point = best(priorOf(with_gravity, false), states);
-  if (with_jump && legs_ > 1)
+  if (may.jump && legs_ > 1)
   {
-    point = withJump(with_gravity, point, states);
+    const Point changing = withJump(may, point, states);
+    if (!states.empty())
+    {
+      found.push_back(estimateOf(changing, states));
+    }
   }
-  return estimateOf(point, states);
+  return found;
 }
 }  // namespace hjt

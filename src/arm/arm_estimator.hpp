@@ -12,7 +12,8 @@ namespace hjt
 ///
 ///   current = (1 + g + g_i) (predicted + L_i + F_i (friction + rise_i U_i) - friction + (c + c_i) cold
 ///             + l_i |T_i + L_i| + j_i inertia) + o_i
-///   L_i = Y_i . x + jump_i     x      mass and moments of a payload, and the change of gravity
+///   L_i = Y_i . x + jump_i     x      mass and moments of a payload, the change of gravity, and a drag: a force on the
+///                                     tip against its motion
 ///                              jump   of another payload, in the legs of state 1
 ///   F_i = 1 + f + f_group + f_i, of the twin's friction;  c, c_i  the same by temperature
 ///   U_i = |T_i + L_i| - |T_i|  T_i    load as configured
@@ -29,7 +30,8 @@ class ArmEstimator
 public:
   static constexpr int PAYLOAD = 4;  ///< mass and its three moments
   static constexpr int GRAVITY = 3;  ///< its change
-  static constexpr int LOAD = PAYLOAD + GRAVITY;
+  static constexpr int DRAG = PAYLOAD + GRAVITY;
+  static constexpr int LOAD = DRAG + 1;
   using Load = Eigen::Matrix<double, LOAD, 1>;
   using Carried = Eigen::Matrix<double, PAYLOAD, 1>;
 
@@ -45,7 +47,7 @@ public:
     double torque{};            ///< of the load as configured
     double inertia{};           ///< of the rotor
     double rise{};              ///< of the friction with the load, size by size [-]
-    Load load{ Load::Zero() };  ///< of units of mass, moments and gravity
+    Load load{ Load::Zero() };  ///< of units of mass, moments, gravity and drag
   };
   using Rows = std::vector<std::vector<Row>>;  ///< of each joint, from the base on
 
@@ -66,6 +68,7 @@ public:
     Carried jump_half_width{ Carried::Zero() };
     Eigen::Vector3d gravity{ Eigen::Vector3d::Zero() };  ///< beside the configured one
     Eigen::Vector3d gravity_half_width{ Eigen::Vector3d::Zero() };
+    Known drag;                    ///< beside the configured one [N]
     Known gain;                    ///< of the arm, beside 1
     std::vector<Known> gains;      ///< of each joint, beside the arm's
     std::vector<Known> frictions;  ///< of each joint, over the twin's, in its rows
@@ -81,20 +84,27 @@ public:
   /// empty: as joints of one type differ.
   ArmEstimator(Rows rows, const Eigen::Vector3d& gravity, std::vector<double> repeats = {});
 
-  /// By `with_gravity` the mounting may be another, by `with_jump` the payload may change between legs.
-  Estimate solve(bool with_gravity = true, bool with_jump = true) const;
+  /// What may be another than configured, beside a payload.
+  struct Freedom
+  {
+    bool mounting{ true };
+    bool jump{ true };  ///< the payload changes between legs
+    bool drag{};
+  };
+  /// The likeliest with one payload, then, where it may change between legs and some have another, that with two.
+  std::vector<Estimate> solve(const Freedom& may) const;
 
 private:
   struct Prior;
   struct Point;
 
-  Prior priorOf(bool with_gravity, bool with_jump) const;
+  Prior priorOf(const Freedom& may) const;
   double errorOf(std::size_t joint, std::size_t row, const std::vector<bool>& states, const Eigen::VectorXd& at,
                  Eigen::VectorXd* slope) const;
   Point refine(const Prior& prior, const std::vector<bool>& states, Eigen::VectorXd at, int start) const;
   double multiple() const;
   Point best(const Prior& prior, const std::vector<bool>& states) const;
-  Point withJump(bool with_gravity, const Point& without, std::vector<bool>& states) const;
+  Point withJump(const Freedom& may, const Point& without, std::vector<bool>& states) const;
   std::vector<bool> parted(const Point& by) const;
   std::vector<bool> likelier(const Point& by) const;
   Estimate estimateOf(const Point& point, const std::vector<bool>& states) const;

@@ -10,10 +10,6 @@
 
 namespace hjt
 {
-namespace
-{
-}  // namespace
-
 bool IdentifiedPayload::differs() const
 {
   return std::abs(mass - configured.mass) > std::max(mass_half_width, least_claim);
@@ -81,6 +77,18 @@ std::string IdentifiedMounting::text() const
   return "another mounting than configured: gravity looks tilted by " + fixedText(tilt() / DEGREE, 0) + " +- " +
          fixedText(std::max(half_width / DEGREE, LEAST), 0) + " deg: set gravity: [" + part(gravity[0]) + ", " +
          part(gravity[1]) + ", " + part(gravity[2]) + "] in the arm's file";
+}
+
+bool FoundDrag::exists() const
+{
+  constexpr double LEAST = 3.0;  // [N]
+  return force - half_width > LEAST;
+}
+
+std::string FoundDrag::text() const
+{
+  return "the currents look like a force of " + fixedText(force, 0) + " +- " + fixedText(half_width, 0) +
+         " N on the tool against its motion: a cable, a hose, or a tool that rubs";
 }
 
 Misfit FoundLoad::misfit() const

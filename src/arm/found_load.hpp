@@ -49,6 +49,18 @@ struct IdentifiedMounting
   std::string text() const;
 };
 
+/// A force on the tip against its motion, as of a cable or of a tool that rubs.
+struct FoundDrag
+{
+  double force{};       ///< [N]
+  double half_width{};  ///< of its 95 % interval [N]
+
+  /// Its interval lies beyond what sound arms show.
+  bool exists() const;
+  /// "the currents look like a force of ... on the tool against its motion: ...", a clause.
+  std::string text() const;
+};
+
 /// From a time on the arm carries the payload that was found, or what it carries else.
 struct PayloadChange
 {
@@ -64,6 +76,8 @@ struct FoundLoad
   IdentifiedPayload otherwise{};         ///< carried before, after and between, where `payload` is not
   std::vector<PayloadChange> changes{};  ///< in their order, the first at the begin of the rows; empty: none
   double since{ -HUGE_VAL };             ///< the rows that it is of [s]
+  FoundDrag drag{};
+  std::vector<FrictionDoubt> doubts;  ///< of each joint, by all that is not clearly less likely
 
   double gain{};             ///< of all currents beside 1, apart from load and friction [-]
   double gain_half_width{};  ///< of its 95 % interval [-]

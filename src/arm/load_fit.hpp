@@ -16,10 +16,10 @@
 
 namespace hjt
 {
-/// Payload and mounting of an arm from the currents of all joints while they move (ArmEstimator). A row of the fit is
-/// the mean over 0.1 s of one joint that moves one way with all its friction; of long recordings as many rows are kept
-/// as say what is said at all, evenly over the time. Between legs, from one standstill to the next or of 5 s, the
-/// payload may change. The interval of a mass holds the fit's and 2 % of the links' own masses.
+/// Payload, mounting and drag of an arm from the currents of all joints while they move (ArmEstimator). A row of the
+/// fit is the mean over 0.1 s of one joint that moves one way with all its friction; of long recordings as many rows
+/// are kept as say what is said at all, evenly over the time. Between legs, from one standstill to the next or of 5 s,
+/// the payload may change. The interval of a mass holds the fit's and 2 % of the links' own masses.
 class LoadFit
 {
 public:
@@ -84,6 +84,16 @@ private:
     Open open{};
   };
 
+  /// What may explain the currents.
+  struct Hypothesis
+  {
+    ArmEstimator::Estimate found;
+    ArmEstimator::Freedom may;
+    double cost{};  ///< with those of its causes
+  };
+
+  std::vector<Hypothesis> hypotheses(const std::vector<bool>& counts);
+  static std::vector<FrictionDoubt> doubtsOf(const std::vector<Hypothesis>& all);
   void cutLegs(double time, double speed);
   std::vector<double> repeats() const;
   static void addTo(Joint& joint, const MotionSample& sample, const MotionDriven& twin, const ArmEstimator::Load& load);

@@ -60,6 +60,7 @@ std::string massText(const IdentifiedPayload& found)
 std::string AssumedLoad::text() const
 {
   std::string text = mounting ? sentence(mounting->text()) + " " : std::string();
+  text += drag ? sentence(drag->text()) + " " : std::string();
   if (!changes.empty() && payload)
   {
     const auto parts = std::count_if(changes.begin(), changes.end(), [](const auto& part) { return part.is_found; });
@@ -79,6 +80,7 @@ void AssumedLoad::configure(ArmDescription& arm) const
 {
   arm.payload = payload ? payload->payload() : arm.payload;
   arm.gravity = mounting ? mounting->gravity : arm.gravity;
+  arm.drag = drag ? drag->force : arm.drag;
 }
 
 PayloadCourse AssumedLoad::course(const Payload& configured) const
@@ -144,7 +146,7 @@ std::optional<AssumedLoad> LoadLaw::other(const FoundLoad& found, const JudgedJo
   const bool changes = !found.changes.empty() || !std::isinf(found.since);
   const bool is_carried = changes || (found.payload.differs() && (found.payload.isOther() || is_put_down));
   const bool takes_payload = is_carried && mayBeOther(joints);
-  if (!is_mounted && !takes_payload)
+  if (!is_mounted && !found.drag.exists() && !takes_payload)
   {
     return std::nullopt;
   }
@@ -152,6 +154,10 @@ std::optional<AssumedLoad> LoadLaw::other(const FoundLoad& found, const JudgedJo
   if (is_mounted)
   {
     next.mounting = named(found.mounting, counts_.mounting);
+  }
+  if (found.drag.exists())
+  {
+    next.drag = { found.drag.force + (counts_.drag ? counts_.drag->force : 0.0), found.drag.half_width };
   }
   if (takes_payload)
   {

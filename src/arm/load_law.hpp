@@ -17,11 +17,12 @@ struct AssumedLoad
 {
   std::optional<IdentifiedPayload> payload;
   std::optional<IdentifiedMounting> mounting;
+  std::optional<FoundDrag> drag;
   std::optional<IdentifiedPayload> otherwise;  ///< where `payload` is not carried; none: the configured one
   std::vector<PayloadChange> changes{};        ///< as of FoundLoad
   double since{ -HUGE_VAL };                   ///< that the payload is carried [s]
 
-  bool isConfigured() const { return !payload && !mounting; }
+  bool isConfigured() const { return !payload && !mounting && !drag; }
   std::string text() const;                   ///< in sentences; empty: as configured, all the time
   void configure(ArmDescription& arm) const;  ///< of an arm with the configured load
   /// Payloads over time of an arm with the configured payload; empty: one all the time.
@@ -46,8 +47,8 @@ struct JudgedJoints
 void addMisfit(const Misfit& misfit, std::vector<Misfit>& misfits);
 
 /// The law by which the load is another than configured, of a recording and live alike. What the currents show is
-/// tried: a mounting, and, where nothing but what a load makes too stands against a joint, a payload, since it explains
-/// no telemetry that does not fit. It stands where every joint fits with it, else it is taken back.
+/// tried: a mounting, a drag, and, where nothing but what a load makes too stands against a joint, a payload, since it
+/// explains no telemetry that does not fit. It stands where every joint fits with it, else it is taken back.
 class LoadLaw
 {
 public:

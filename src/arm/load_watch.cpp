@@ -54,6 +54,7 @@ bool LoadWatch::look(const JudgedJoints& joints)
 {
   const bool was_trying = isTrying();
   const FoundLoad found = was_trying ? FoundLoad() : fit_->solve(joints.measured);
+  doubts_ = was_trying ? doubts_ : found.doubts;
   const bool alternates = found.changes.size() > 2 && found.changes.back().time > last_time_ - FIRST_LOOK;
   misfit_ = alternates ? Misfit{ Reason::LOAD_WRONG,
                                  "the payload changes from leg to leg, as in picking and placing: "

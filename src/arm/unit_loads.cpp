@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "arm/unit_loads.hpp"
 
+#include <cmath>
+
 #include <Eigen/Geometry>
 
 namespace hjt
@@ -42,9 +44,11 @@ void UnitLoads::follow(const Link& link, const JointMotion& motion, Motion& at)
   {
     const bool slides = link.motion == LinkMotion::SLIDES;
     const Eigen::Vector3d arm = at.orientation * link.position + (slides ? motion.position : 0.0) * axis;
+    at.velocity += at.speed.cross(arm);
     at.acceleration += at.swing(arm);
     if (slides)
     {
+      at.velocity += motion.velocity * axis;
       at.acceleration += 2.0 * motion.velocity * at.speed.cross(axis) + motion.acceleration * axis;
     }
     at.place += arm;
@@ -52,11 +56,13 @@ void UnitLoads::follow(const Link& link, const JointMotion& motion, Motion& at)
     return;
   }
   const Eigen::Vector3d origin = at.orientation * link.origin;
+  at.velocity += at.speed.cross(origin);
   at.acceleration += at.swing(origin);
   at.turning += motion.acceleration * axis + motion.velocity * at.speed.cross(axis);
   at.speed += motion.velocity * axis;
   at.orientation *= Eigen::AngleAxisd(motion.position, link.axis).toRotationMatrix();
   const Eigen::Vector3d arm = at.orientation * (link.position - link.origin);
+  at.velocity += at.speed.cross(arm);
   at.acceleration += at.swing(arm);
   at.place += origin + arm;
   at.orientation *= link.rotation;
@@ -96,6 +102,7 @@ void UnitLoads::torques(const std::vector<JointMotion>& motion, Eigen::MatrixXd&
 {
   const Motion tip = walk(motion);
   const Eigen::Vector3d of_mass = tip.acceleration - gravity_;
+  const Eigen::Vector3d along = tip.velocity / std::hypot(tip.velocity.norm(), DRAG_SPEED);
   for (std::size_t i = 0; i < joints_.size(); ++i)
   {
     const Joint& joint = joints_[i];
@@ -111,6 +118,7 @@ void UnitLoads::torques(const std::vector<JointMotion>& motion, Eigen::MatrixXd&
       columns(row, 4 + axis) = joint.turns ? joint.axis.dot((joint.moment - joint.mass * joint.origin).cross(up)) :
                                              joint.mass * joint.axis.dot(up);
     }
+    columns(row, 7) = joint.effort(along, tip.place, Eigen::Vector3d::Zero());
   }
 }
 }  // namespace hjt

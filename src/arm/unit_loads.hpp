@@ -10,7 +10,7 @@
 
 namespace hjt
 {
-/// Torques at an arm's joints of unit payloads, and of unit gravity: all from one walk along the links.
+/// Torques at an arm's joints of unit payloads, of unit gravity and of a unit drag: all from one walk along the links.
 class UnitLoads
 {
 public:
@@ -18,8 +18,8 @@ public:
 
   double linksMass() const;  ///< without the payload [kg]
 
-  /// Of mass and moments, and of gravity along each axis of the base's frame, at each joint, by column
-  /// [N.m/kg], [N.m/(kg.m)], [N.m/(m/s^2)].
+  /// Of mass and moments, of gravity along each axis of the base's frame, and of a force against the tip's motion, at
+  /// each joint, by column [N.m/kg], [N.m/(kg.m)], [N.m/(m/s^2)], [N.m/N].
   void torques(const std::vector<JointMotion>& motion, Eigen::MatrixXd& columns);
 
 private:
@@ -56,6 +56,7 @@ private:
   {
     Eigen::Matrix3d orientation = Eigen::Matrix3d::Identity();
     Eigen::Vector3d place = Eigen::Vector3d::Zero();
+    Eigen::Vector3d velocity = Eigen::Vector3d::Zero();      // of the place [m/s]
     Eigen::Vector3d speed = Eigen::Vector3d::Zero();         // of turning [rad/s]
     Eigen::Vector3d turning = Eigen::Vector3d::Zero();       // its derivative [rad/s^2]
     Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();  // of the place [m/s^2]

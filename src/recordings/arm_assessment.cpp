@@ -119,12 +119,14 @@ ArmAssessment assess(ArmRecording& recording, const AssessmentSettings& settings
   const bool shows_load = recording.isArm() && !recording.usesRecordedLoad();
   LoadLaw law;
   ArmAssessment arm = pass(recording, settings, shows_load, settings.gives_notice, fit);
+  const std::vector<FrictionDoubt> doubts = arm.load ? arm.load->doubts : std::vector<FrictionDoubt>();
   while (shows_load && !settings.watch.stopped() && law.take(arm.load.value_or(FoundLoad()), arm.judged))
   {
     ArmDescription other = configured;
     law.counts().configure(other);
     recording.setPayload(other.payload, law.counts().course(configured.payload));
     recording.setGravity(other.gravity);
+    recording.setDrag(other.drag);
     arm = pass(recording, settings, false, false, fit);
     if (!law.isTrying())
     {
@@ -132,6 +134,7 @@ ArmAssessment assess(ArmRecording& recording, const AssessmentSettings& settings
     }
   }
   arm.assumed = law.counts();
+  arm.doubts = doubts;
   if (shows_load && settings.looks_for_arm && recording.options().identified.empty() && !settings.watch.stopped())
   {
     nameOther(recording, arm.judged.misfits);

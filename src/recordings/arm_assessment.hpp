@@ -20,11 +20,15 @@ struct ArmAssessment
   StreamTimingReport timing;
   JudgedJoints judged;
   std::optional<FoundLoad> load;
-  AssumedLoad assumed;  ///< that the joints are judged with
+  AssumedLoad assumed;                ///< that the joints are judged with
+  std::vector<FrictionDoubt> doubts;  ///< of each joint; empty: none
 
   JointContext context(std::size_t joint) const
   {
-    return joints[joint]->context(judged.misfits[joint], judged.common.factors[joint], judged.common.deviations[joint]);
+    JointContext context =
+        joints[joint]->context(judged.misfits[joint], judged.common.factors[joint], judged.common.deviations[joint]);
+    context.doubt = doubts.empty() ? FrictionDoubt() : doubts[joint];
+    return context;
   }
 };
 

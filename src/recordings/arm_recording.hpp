@@ -47,6 +47,7 @@ public:
     course_ = std::move(course);
   }
   void setGravity(const std::array<double, 3>& gravity) { arm_.gravity = gravity; }
+  void setDrag(double force) { arm_.drag = force; }    ///< on the tip against its motion [N]
   MotionSource source(std::size_t joint) const;        ///< with that joint alone
   std::string twinNamespace(std::size_t joint) const;  ///< of its twin's topics, those of arm.launch
   /// `telemetry.inertia_in_load` is that of the load that is chosen.

@@ -240,6 +240,8 @@ Json documentOfArm(const ComparisonOptions& options, const ComparedRecording& co
            { "gravity", of(compared.assumed.mounting, &IdentifiedMounting::gravity) },
            { "gravity_tilt", of(compared.assumed.mounting, &IdentifiedMounting::tilt) },
            { "gravity_half_width", of(compared.assumed.mounting, &IdentifiedMounting::half_width) },
+           { "drag", of(compared.assumed.drag, &FoundDrag::force) },
+           { "drag_half_width", of(compared.assumed.drag, &FoundDrag::half_width) },
            { "joints", tableOf(compared).rows() } };
 }
 

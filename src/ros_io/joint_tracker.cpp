@@ -350,6 +350,7 @@ DiagnosticVerdict JointTracker::judgeTelemetry() const
         { verdict_.misfit().exists(),
           { D::OK, "Telemetry arrives; friction and faults are not judged: " + verdict_.misfit().clause } },
         { !stream_.mounting.empty(), { D::OK, "Telemetry arrives; " + stream_.mounting + "; judged with it" } },
+        { !stream_.drag.empty(), { D::OK, "Telemetry arrives; " + stream_.drag + "; judged with it" } },
         { !stream_.payload.empty(), { D::OK, "Telemetry arrives; " + stream_.payload + "; judged with it" } },
         { !tracker_.isLoadKnown(),
           { D::OK, "Telemetry arrives; the load is unknown: friction and faults are not judged" } } },

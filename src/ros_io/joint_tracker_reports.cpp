@@ -35,6 +35,7 @@ void JointTracker::reportTelemetry(DiagnosticStatusWrapper& status) const
   status.add("Stamps in bunches, left out", stream_.left_out.bunched);
   status.add("Jumps of angles by a turn, taken out", stream_.folds);
   status.add("Mounting that is not configured", stream_.mounting.empty() ? "none found" : stream_.mounting);
+  status.add("Drag of the tool", stream_.drag.empty() ? "none found" : stream_.drag);
   status.add("Payload that is not configured", stream_.payload.empty() ? "none found" : stream_.payload);
   status.add("Not finite, refused", refusals_.not_finite);
   status.add("Too large, refused", stream_.too_large.load());

@@ -24,6 +24,7 @@ struct TelemetryStream
   std::string found_names;             ///< in the last message that lacks a joint
   std::string lack;                    ///< missing parts of the messages since the last row, a clause; empty: none
   std::string mounting;                ///< that the currents show and is not configured, a clause; empty: none
+  std::string drag;                    ///< of the tool, likewise
   std::string payload;                 ///< that the currents show and is not configured, a clause; empty: none
   LeftOutRows left_out;                ///< by the filter
   std::uint64_t folds{};               ///< jumps by a turn that were taken out of the angles

@@ -115,10 +115,15 @@ void TrackerNode::lookAtLoad()
   }
   const bool was_trying = load_->isTrying();
   const bool is_other = load_->look(judgedJoints());
+  for (std::size_t i = 0; i < load_->doubts().size(); ++i)
+  {
+    joints_[i]->setDoubt(load_->doubts()[i]);
+  }
   const AssumedLoad& assumed = load_->assumed();
   if (is_other || was_trying)
   {
     stream_.mounting = assumed.mounting && !load_->isTrying() ? assumed.mounting->text() : "";
+    stream_.drag = assumed.drag && !load_->isTrying() ? assumed.drag->text() : "";
     stream_.payload = assumed.payload && !load_->isTrying() ? assumed.payload->text() + sinceText(assumed.since) : "";
   }
   if (is_other)
@@ -137,6 +142,7 @@ void TrackerNode::lookAtLoad()
   else if (was_trying)
   {
     ROS_WARN_STREAM((stream_.mounting.empty() ? "" : sentence(stream_.mounting) + " ")
+                    << (stream_.drag.empty() ? "" : sentence(stream_.drag) + " ")
                     << (stream_.payload.empty() ? "" : sentence(stream_.payload) + " ")
                     << "The joints are judged with it");
   }

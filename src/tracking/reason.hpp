@@ -58,4 +58,11 @@ struct Misfit
 
   bool exists() const { return !clause.empty(); }
 };
+
+/// Why the friction of a joint may be as expected where its own rows show more, or less; clauses, empty: it is not.
+struct FrictionDoubt
+{
+  std::string more;
+  std::string less;
+};
 }  // namespace hjt

@@ -22,6 +22,7 @@ public:
   /// Misfit of the telemetry; none: it fits, or that is not yet `settled`.
   void setMisfit(const Misfit& misfit, bool settled);
   const Misfit& misfit() const { return misfit_; }
+  void setDoubt(const FrictionDoubt& doubt) { known_.doubt = doubt; }
 
   /// As `joint_twin compare` measures it, of the rows that the verdict is of.
   MeasuredFriction measuredFriction() const;
@@ -52,7 +53,7 @@ private:
   void judge(double arm_friction, double arm_deviation, const Misfit& of_arm);
 
   Tracker& tracker_;
-  const JointContext known_;
+  JointContext known_;
   Misfit misfit_;
   bool settled_{ true };
   double last_row_{};  // [s]

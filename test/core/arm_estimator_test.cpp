@@ -29,6 +29,7 @@ struct EstimatorCase
   bool in_turns{};  // in every second leg alone
   double tilt{};    // of the mounting [rad]
   double push{};    // at the elbow, for 2 s [N.m]
+  double drag{};    // on the tip against its motion [N]
   bool is_own{};    // joints are held against their own friction, which repeats to 2.5 %
 };
 
@@ -105,6 +106,7 @@ LoadFit fitOf(const EstimatorCase& of, unsigned seed)
   const Arm& arm = ur5();
   ArmDescription bare = arm.description;
   bare.gravity = { 9.81 * std::sin(of.tilt), 0.0, -9.81 * std::cos(of.tilt) };
+  bare.drag = of.drag;
   ArmDescription loaded = bare;
   loaded.payload = { of.mass, { 0.0, 0.0, 0.08 } };
   ArmDynamics configured(arm.description);
@@ -184,6 +186,11 @@ TEST_P(ArmEstimatorTable, FindsTheTruth)
     EXPECT_EQ(found.payload.differs(), of.mass > 0.0) << found.payload.mass;
     EXPECT_EQ(!found.changes.empty(), of.in_turns || of.from > 0.0);
     EXPECT_EQ(found.mounting.differs(), of.tilt > 0.0);
+    EXPECT_EQ(found.drag.exists(), of.drag > 0.0);
+    if (of.drag > 0.0)
+    {
+      EXPECT_NEAR(found.drag.force, of.drag, found.drag.half_width);
+    }
     if (of.tilt > 0.0)
     {
       EXPECT_NEAR(found.mounting.tilt(), of.tilt, 0.05);
@@ -265,6 +272,14 @@ INSTANTIATE_TEST_SUITE_P(Cases, ArmEstimatorTable,
                                                 c.push = 25.0;
                                                 c.friction[ELBOW] = 1.6;
                                               }),
+                                         with("drag", [](EstimatorCase& c) { c.drag = 10.0; }),
+                                         with("drag_payload_elbow_friction",
+                                              [](EstimatorCase& c)
+                                              {
+                                                c.drag = 15.0;
+                                                c.mass = 1.8;
+                                                c.friction[ELBOW] = 1.6;
+                                              }),
                                          with("no_friction", [](EstimatorCase& c) { c.friction.fill(0.0); })),
                          [](const testing::TestParamInfo<EstimatorCase>& info) { return info.param.name; });
 
@@ -303,6 +318,21 @@ TEST(LoadFit, TakesNoFrictionForAPayloadByLegsWhereThatOfEachJointIsKnown)
   for (unsigned seed = 1; seed <= SEEDS; ++seed)
   {
     EXPECT_TRUE(fitOf(of, seed).solve(ALL).changes.empty()) << seed;
+  }
+}
+
+/// A friction that is raised clearly is in no doubt in its joint, and in all others another is.
+TEST(LoadFit, DoubtsAnotherFrictionWhereTheCurrentsOfAllJointsDoNotTellIt)
+{
+  EstimatorCase of;
+  of.is_own = true;
+  of.friction[ELBOW] = 1.4;
+  const FoundLoad found = fitOf(of, 1).solve(ALL);
+  ASSERT_EQ(found.doubts.size(), of.friction.size());
+  for (std::size_t i = 0; i < found.doubts.size(); ++i)
+  {
+    EXPECT_EQ(found.doubts[i].more.empty(), i == ELBOW) << i << ": " << found.doubts[i].more;
+    EXPECT_FALSE(found.doubts[i].less.empty()) << i;
   }
 }
 

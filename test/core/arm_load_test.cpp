@@ -69,7 +69,7 @@ protected:
   {
     UnitLoads unit(arm);
     ArmDynamics dynamics(arm);
-    Eigen::MatrixXd columns(6, 7);
+    Eigen::MatrixXd columns(6, 8);
     for (int pose = 0; pose < 20; ++pose)
     {
       const std::vector<JointMotion> motion = motionOfPose(pose, false);
@@ -113,7 +113,7 @@ TEST_F(UnitLoadsOf, GravityIsThatOfLinksAndPayload)
   arm.payload = { 3.0, { 0.05, -0.02, 0.1 } };
   UnitLoads unit(arm);
   EXPECT_NEAR(unit.linksMass() + 3.0, ArmDynamics(arm).mass(), 1e-12);
-  Eigen::MatrixXd columns(6, 7);
+  Eigen::MatrixXd columns(6, 8);
   for (std::size_t axis = 0; axis < 3; ++axis)
   {
     arm.gravity = {};
@@ -127,6 +127,52 @@ TEST_F(UnitLoadsOf, GravityIsThatOfLinksAndPayload)
       dynamics.torques(motion, torques);
       expectColumn(columns, 4 + static_cast<Eigen::Index>(axis), torques, std::vector<double>(motion.size()), MOST);
     }
+  }
+}
+
+/// The joints give the power that the drag takes: its force times the tip's speed, by differences of the tip's place.
+TEST_F(UnitLoadsOf, ADragTakesThePowerOfItsForce)
+{
+  constexpr double STEP = 1e-6;  // [s]
+  const ArmDescription arm = shipped("ur5");
+  UnitLoads unit(arm);
+  ArmDynamics dynamics(arm);
+  Eigen::MatrixXd columns(6, 8);
+  for (int pose = 0; pose < 20; ++pose)
+  {
+    const std::vector<JointMotion> motion = motionOfPose(pose, false);
+    unit.torques(motion, columns);
+    std::vector<JointMotion> later = motion;
+    std::vector<JointMotion> before = motion;
+    double power = 0.0;
+    for (std::size_t i = 0; i < motion.size(); ++i)
+    {
+      later[i].position += STEP * motion[i].velocity;
+      before[i].position -= STEP * motion[i].velocity;
+      power += columns(static_cast<Eigen::Index>(i), 7) * motion[i].velocity;
+    }
+    const Eigen::Vector3d there(dynamics.toolPose(later).position.data());
+    const double speed = (there - Eigen::Vector3d(dynamics.toolPose(before).position.data())).norm() / (2.0 * STEP);
+    EXPECT_NEAR(power, speed * speed / std::hypot(speed, DRAG_SPEED), 1e-7 * speed);
+  }
+}
+
+/// A drag of the description is so many times the unit's.
+TEST_F(UnitLoadsOf, ADragIsTheRecursionsToo)
+{
+  constexpr double FORCE = 1e4;  // [N]
+  const ArmDescription arm = shipped("ur5");
+  ArmDescription dragged = arm;
+  dragged.drag = FORCE;
+  UnitLoads unit(arm);
+  ArmDynamics without(arm);
+  ArmDynamics with(dragged);
+  Eigen::MatrixXd columns(6, 8);
+  for (int pose = 0; pose < 20; ++pose)
+  {
+    const std::vector<JointMotion> motion = motionOfPose(pose, false);
+    unit.torques(motion, columns);
+    expectColumn(columns, 7, torquesOf(with, motion), torquesOf(without, motion), FORCE);
   }
 }
 

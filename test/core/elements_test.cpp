@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "element_under_test.hpp"
 #include "elements/hertz_contact.hpp"
+#include "elements/ring_damping.hpp"
 #include "gear/angle.hpp"
 #include "random_ring.hpp"
 #include "test/core/elements_support.hpp"
@@ -45,6 +48,59 @@ TEST(RimTension, ACutSegmentPullsNoLonger)
   ring.draw(model, shape, position);
   expectGradientAndTangent(elementOf<RimTension>(model), shape, position);
   EXPECT_EQ(model.of<RimTension>().tension(shape, 7), 0.0);
+}
+
+/// Small differences of lengths and depths show the speeds in the dashpots. Half a ring takes what the whole one does.
+TEST(RingDamping, TakesThePowerOfItsDashpots)
+{
+  const Parameters parameters =
+      goldenParameters({ "ring.tension_damping=3.0", "ring.tooth_damping=0.5", "contact.damping=7.0" });
+  const RingModel model(parameters);
+  RandomRing ring(6);
+  RingShape half(model.rest.teeth());
+  DrivePosition position;
+  ring.draw(model, half, position);
+  const int n = half.teeth();
+  half.solved = n / 2;
+  half.updateGeometry();
+  std::array<Eigen::VectorXd, 2> by_angle{ Eigen::VectorXd(2 * n), Eigen::VectorXd(2 * n) };
+  for (Eigen::VectorXd& rates : by_angle)
+  {
+    std::generate_n(rates.data(), n, [&] { return ring.uniform(-1e-2, 1e-2); });
+    rates.tail(n) = -rates.head(n);
+  }
+  const auto at = [&](const Eigen::Vector2d& angles)
+  {
+    RingShape shape = half.whole();
+    shape.points += angles[0] * by_angle[0] + angles[1] * by_angle[1];
+    shape.updateGeometry();
+    RingForces forces(n);
+    model.forces(
+        shape,
+        { position.wave_generator_angle + angles[0], position.output_angle + angles[1], position.wave_amplitude },
+        forces);
+    return std::make_pair(shape.lengths, forces.of<WaveGeneratorContact>());
+  };
+  const RingDamping damping(parameters.ring, parameters.contact);
+  JointFriction by_half(n);
+  JointFriction by_whole(n);
+  const RingShape whole = half.whole();
+  const auto contact = at({ 0.0, 0.0 }).second;
+  damping.add(contact, { half, by_angle[0], by_angle[1] }, by_half);
+  damping.add(contact, { whole, by_angle[0], by_angle[1] }, by_whole);
+  constexpr double STEP = 1e-7;  // s
+  for (const Eigen::Vector2d& speeds : { Eigen::Vector2d(1.0, 0.0), { 0.0, 1.0 }, { 1.0, 1.0 } })
+  {
+    const auto before = at(-STEP * speeds);
+    const auto after = at(STEP * speeds);
+    const Eigen::VectorXd stretching = (after.first - before.first) / (2.0 * STEP);
+    const Eigen::VectorXd deepening = (after.second.depth - before.second.depth) / (2.0 * STEP);
+    const double power = 3.0 * stretching.squaredNorm() +
+                         0.5 * (speeds[0] * by_angle[0] + speeds[1] * by_angle[1]).squaredNorm() +
+                         7.0 * (contact.depth.array() > 0.0).select(deepening.array().square(), 0.0).sum();
+    EXPECT_NEAR(speeds.dot(by_half.viscous * speeds), power, DIFFERENCE_TOLERANCE * power);
+    EXPECT_NEAR(speeds.dot(by_whole.viscous * speeds), power, DIFFERENCE_TOLERANCE * power);
+  }
 }
 
 class RimBendingLaws : public testing::TestWithParam<std::string>

@@ -273,6 +273,11 @@ TEST_F(FrictionVerdict, ALoadThatBothWaysDoNotShareIsUncertain)
   EXPECT_GT(with, 1.3 * without);
 }
 
+TEST(OwnReference, IsAsUncertainAsTheMeanOfItsRecordings)
+{
+  EXPECT_DOUBLE_EQ(ownReference({ { {}, 0.03 }, { {}, 0.04 } }).friction_deviation, 0.025);
+}
+
 TEST_F(FrictionVerdict, ReferencesThatDifferWidenTheInterval)
 {
   const OwnReference agreeing = ownReference({ sound(0.99), sound(1.0), sound(1.01) });
@@ -343,6 +348,21 @@ TEST_F(FrictionVerdict, AReferenceBetweenItsSpeedsIsInterpolated)
   ASSERT_EQ(common.size(), 1U);
   EXPECT_NEAR(common[0].twin, 12.0, 0.05) << "half way between two that are as far";
   EXPECT_THAT(FrictionPoints::common(points({ { 0.5, 12.0 } }), points({ { 0.2, 11.0 }, { -0.5, 13.0 } })), IsEmpty());
+}
+
+/// What all joints' currents leave open either way counts only where the friction departs that way.
+TEST_F(FrictionVerdict, IsNoneWhereTheCurrentsOfAllJointsDoubtIt)
+{
+  JointContext context;
+  EXPECT_EQ(judge(joint_.evidence(swing, 60.0, 2.0), context).level, VerdictLevel::WARN);
+  context.doubt.less = "it may be more";
+  EXPECT_EQ(judge(joint_.evidence(swing, 60.0, 2.0), context).level, VerdictLevel::WARN);
+  context.doubt.more = "it may be as expected";
+  const Verdict verdict = judge(joint_.evidence(swing, 60.0, 2.0), context);
+  EXPECT_EQ(verdict.level, VerdictLevel::NOT_JUDGED);
+  EXPECT_EQ(verdict.reason, Reason::LOAD_WRONG);
+  EXPECT_EQ(verdict.misfit, context.doubt.more);
+  EXPECT_EQ(judge(joint_.evidence(swing, 60.0, 1.0), context).level, VerdictLevel::OK);
 }
 
 TEST_F(FrictionVerdict, AReferenceThatWasNotJudgedIsNone)

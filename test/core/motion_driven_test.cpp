@@ -16,8 +16,10 @@
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/twin/twin.hpp"
 #include "identification/identification.hpp"
+#include "model/joint_model.hpp"
 #include "tracking/friction_map.hpp"
 #include "tracking/motion_driven.hpp"
+#include "tracking/torque_driven.hpp"
 
 namespace hjt
 {
@@ -166,6 +168,31 @@ TEST(MotionDriven, TakesTheTorqueThatMadeTheMotion)
   ASSERT_GT(counted, 500);
   // Left: what torsion and swing of the output add, which the motion of the motor alone does not tell.
   EXPECT_LT(std::sqrt(error / signal), 0.04);
+}
+
+/// What the current gives and friction leaves is the momentum.
+TEST(TorqueDriven, TakesTheTorqueOfTheCurrentLessItsOffset)
+{
+  const Parameters parameters = shippedParameters({ "telemetry.torque_per_current=10.0", "telemetry.current_offset=0.4",
+                                                    "output.gravity_torque=0.0", "output.load_inertia=0.0" });
+  const double ratio = nominalRatio(parameters.gear);
+  const Eigen::Vector2d inertia = JointModel(parameters).inertia();
+  constexpr double STEP = 1e-3;
+  for (const double torque : { 60.0, -60.0 })
+  {
+    TorqueDriven twin(parameters);
+    MotionSample sample;
+    sample.current = 0.4 + torque / 10.0;
+    double momentum = 0.0;
+    TorqueDriven::Motion motion = twin.step(sample, 0.0);
+    for (int i = 1; i <= 100; ++i)
+    {
+      sample.time = STEP * i;
+      motion = twin.step(sample, 0.0);
+      momentum += (torque - motion.friction_torque) * STEP;
+    }
+    EXPECT_NEAR(motion.velocity * (ratio * ratio * inertia[0] + inertia[1]), momentum, 0.02 * std::abs(momentum));
+  }
 }
 
 TEST(Identification, ReportsTheStribeckRiseAndDoesNotTakeIt)

@@ -132,7 +132,7 @@ TEST(ResponseSurface, OfAGearThatIsNotItsMirrorImageIsMeasuredBothWays)
 
 TEST(ResponseSurface, NeedsOneTorqueLimit)
 {
-  EXPECT_EQ(buildWith({ "motor.torque_limit=0.0" }).failure_reason, "");
+  EXPECT_EQ(buildWith({ "motor.torque_limit=0.0", "output.load_torque_limit=20.0" }).failure_reason, "");
   EXPECT_THAT(buildWith({ "motor.torque_limit=0.0", "output.load_torque_limit=0.0" }).failure_reason,
               testing::HasSubstr("are both 0"));
 }

@@ -6,12 +6,14 @@
 #include <random>
 
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include "gear/angle.hpp"
 #include "gear/ratio.hpp"
 #include "model/joint_model.hpp"
 #include "ring_fixture.hpp"
 #include "solver/output_balance.hpp"
+#include "solver/ring_vectors.hpp"
 #include "test/core/ring_equilibrium_support.hpp"
 #include "test_parameters.hpp"
 
@@ -278,6 +280,31 @@ TEST_F(Ring, StoresTheWorkDoneOnIt)
   }
   EXPECT_NEAR(total, 0.0, 1e-5 * throughput);
   EXPECT_NEAR(ring_.forces().energy, start, 1e-9 * throughput);
+}
+
+TEST(RingVectors, AddASumThatIsTurned)
+{
+  constexpr int TEETH = 12;
+  constexpr int SOLVED = 6;
+  constexpr double ANGLE = 0.7;
+  const Eigen::MatrixX3d all = Eigen::MatrixX3d::Random(2 * TEETH, 3);
+  const Eigen::VectorXd a = all.col(0);
+  const Eigen::VectorXd b = all.col(1);
+  const Eigen::VectorXd c = all.col(2);
+  for (const int places : { 1, 4, 11 })
+  {
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(2 * TEETH);
+    ring_vectors::addTurned({ a, b, c }, { 1.0, 2.0, 3.0 }, { 4.0, 5.0, 6.0 }, places, std::cos(ANGLE), std::sin(ANGLE),
+                            sum, SOLVED);
+    for (int i = 0; i < SOLVED; ++i)
+    {
+      const int from = (i - places + TEETH) % TEETH;
+      const Eigen::Vector2d expected =
+          all.middleRows<2>(2 * i) * Eigen::Vector3d(1.0, 2.0, 3.0) +
+          Eigen::Rotation2Dd(ANGLE) * (all.middleRows<2>(2 * from) * Eigen::Vector3d(4.0, 5.0, 6.0));
+      EXPECT_LT((sum.segment<2>(2 * i) - expected).norm(), 1e-13) << places << ' ' << i;
+    }
+  }
 }
 
 TEST(RingWithoutCircularSpline, TakesTheShapeOfThinRingTheoryForASmallWave)

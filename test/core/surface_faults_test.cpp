@@ -184,7 +184,9 @@ TEST_P(SurfacesOfAGrowth, FollowTheFullRing)
   std::vector<Eigen::Array2d> ring;
   for (const char* scene : { "solver.scene=full_ring", "solver.scene=auto" })
   {
-    Parameters parameters = shippedParameters({ "input.command_timeout=10.0", scene });
+    // Its tables hold the torques that this motion brings and little more.
+    Parameters parameters = shippedParameters(
+        { "input.command_timeout=10.0", scene, "output.load_torque_limit=100.0", "motor.torque_limit=1.0" });
     GrowingFault growing{ parseFault(growth.fault, parameters), 1.0 };
     growing.fault.onset = 0.05;
     parameters.faults = growing.steps();

@@ -12,6 +12,7 @@
 #include "test/core/tracker_support.hpp"
 #include "tracking/joint_evidence.hpp"
 #include "tracking/stream_timing.hpp"
+#include "tracking/time_fit.hpp"
 #include "tracking/tracker.hpp"
 #include "tracking/verdict_watch.hpp"
 
@@ -280,6 +281,21 @@ TEST(DelayEstimate, TellsNothingOfSignalsThatAreUnlike)
     estimate.add(PERIOD * i, std::sin(2.1 * PERIOD * i), std::sin(9.0 * PERIOD * i));
   }
   EXPECT_FALSE(estimate.lag().has_value());
+}
+
+TEST(TimeFit, WeighsMotionByItsAge)
+{
+  constexpr double PIECES = 2000.0;  // TimeFit's MEMORY
+  constexpr double HALF = PIECES * TimeFit::PIECE;
+  constexpr double LAG = 0.02;
+  TimeFit fit;
+  for (int i = 0; 0.01 * i < 2.0 * HALF; ++i)
+  {
+    const double time = 0.01 * i;
+    fit.add(time, -5.0 * std::cos(time), 5.0 * std::sin(time - (time < HALF ? 0.0 : LAG)));
+  }
+  // The first half counts exp(-1) of the second.
+  EXPECT_NEAR(fit.lag().value, LAG / (1.0 + std::exp(-1.0)), 0.02 * LAG);
 }
 
 TEST(StreamTiming, TellsClocksOffsetAndJitter)

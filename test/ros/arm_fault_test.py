@@ -20,7 +20,7 @@ from std_srvs.srv import Trigger
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from harmonic_joint_twin.msg import Timing
-from ros_support import (PACKAGE, PATIENCE, SLOWNESS, Diagnostics, Listener, executable, package_path,
+from ros_support import (NO_PAGE, PACKAGE, PATIENCE, SLOWNESS, Diagnostics, Listener, executable, package_path,
                          processor_time, wait_until)
 
 PAGE, FIRST_HOUR = (package_path("docs", page) for page in ("arm_twin.md", "beside_a_robot.md"))
@@ -66,7 +66,7 @@ class ArmFault(unittest.TestCase):
 
     @classmethod
     def run_to_its_end(cls, line):
-        subprocess.run(["bash", "-c", line], cwd=cls.folder, env=cls.environment, check=True)
+        subprocess.run(["bash", "-c", line], cwd=cls.folder, env={**cls.environment, **NO_PAGE}, check=True)
 
     @classmethod
     def launch(cls, line, **more):

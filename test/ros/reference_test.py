@@ -23,7 +23,7 @@ import rostest
 from sensor_msgs.msg import JointState
 
 from harmonic_joint_twin.msg import Comparison, Verdict
-from ros_support import LAUNCH_TIMEOUT, PACKAGE, Launch, Listener, executable, package_path, wait_until
+from ros_support import LAUNCH_TIMEOUT, NO_PAGE, PACKAGE, Launch, Listener, executable, package_path, wait_until
 from ur5_test import JOINTS, PERIOD, WAIT_OF_ARM, angles, run_robot
 from verdict_test import MOVING, SECONDS
 
@@ -76,7 +76,8 @@ class Reference(unittest.TestCase):
 
     def compare(self, recording, *arguments):
         done = subprocess.run([executable("joint_twin"), "compare", recording, "--arm", "ur5", *arguments], check=True,
-                              stdout=subprocess.PIPE, text=True)
+                              stdout=subprocess.PIPE, text=True,
+                              env={**os.environ, **NO_PAGE})
         return {joint["joint"]: joint["verdict"] for joint in json.loads(done.stdout)["joints"]}
 
     def play(self, rows, name):

@@ -31,6 +31,8 @@ PATIENCE = 30.0 * SLOWNESS  # [s]
 # Skipped tests with their reasons: rosunit's results have no word of them. They go where the tests' own output goes.
 unittest.TestResult.addSkip = lambda result, test, reason: print(f"skipped: {reason}")
 LAUNCH_TIMEOUT = 4.0 * PATIENCE  # [s]
+# Environment in which `--report` writes its data and no page is drawn, which takes seconds for each joint.
+NO_PAGE = {"PYTHONPATH": os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support", "no_page")}
 OK, WARN, ERROR, STALE = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR, DiagnosticStatus.STALE
 
 

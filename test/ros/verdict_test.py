@@ -17,7 +17,7 @@ import rospy
 import rostest
 from sensor_msgs.msg import JointState
 
-from ros_support import OK, PACKAGE, STALE, WARN, Diagnostics, Listener, executable, wait_until
+from ros_support import NO_PAGE, OK, PACKAGE, STALE, WARN, Diagnostics, Listener, executable, wait_until
 from harmonic_joint_twin.msg import Comparison
 from harmonic_joint_twin.msg import Verdict as VerdictMessage
 from ur5_test import JOINTS, PERIOD, SICK, WAIT_OF_ARM, angles, run_robot
@@ -57,7 +57,8 @@ class Verdict(unittest.TestCase):
 
     def offline(self):
         subprocess.run([executable("joint_twin"), "compare", self.bag, "--arm", "ur5", "--report",
-                        os.path.join(self.directory, "report")], check=True, stdout=subprocess.DEVNULL)
+                        os.path.join(self.directory, "report")], check=True, stdout=subprocess.DEVNULL,
+                       env={**os.environ, **NO_PAGE})
         verdicts = {}
         for joint in JOINTS:
             with open(os.path.join(self.directory, "report", joint, "comparison.json")) as file:
@@ -82,17 +83,17 @@ class Verdict(unittest.TestCase):
             except AssertionError:
                 self.assertEqual(live(), expected, joint)  # shows both
             self.assertEqual(self.diagnostics[joint].values("Drive")["Verdict"], verdict["level"])
+            whole = verdict["evidence_values"][verdict["evidence_names"].index("rows")]
+            wait_until(lambda joint=joint, whole=whole: self.evidence(joint)["rows"] >= whole - WAIT_OF_ARM,
+                       "the verdict on all rows that were compared")
+            self.check_message(self.verdicts[joint].messages()[-1], verdict)
+            wait_until(lambda joint=joint: self.diagnostics[joint].level("Drive") == STALE, f"{joint} stopped")
             reported = {(status.level, status.message) for status in self.diagnostics[joint].statuses("Drive")
                         if status.level != STALE}
             if joint == SICK:
                 self.assertIn((LEVELS[verdict["level"]], verdict["text"].rstrip(".")), reported)
             else:
                 self.assertEqual({level for level, _ in reported}, {OK}, joint)
-            whole = verdict["evidence_values"][verdict["evidence_names"].index("rows")]
-            wait_until(lambda joint=joint, whole=whole: self.evidence(joint)["rows"] >= whole - WAIT_OF_ARM,
-                       "the verdict on all rows that were compared")
-            self.check_message(self.verdicts[joint].messages()[-1], verdict)
-            wait_until(lambda joint=joint: self.diagnostics[joint].level("Drive") == STALE, f"{joint} stopped")
             self.assertIn("Last: " + verdict["level"], self.diagnostics[joint].statuses("Drive")[-1].message)
             late = rospy.wait_for_message(f"/{joint}/joint_twin/verdict", VerdictMessage, timeout=10.0)
             self.assertEqual(late.header, self.verdicts[joint].messages()[-1].header, "latched")

@@ -190,8 +190,8 @@ class Arm(ArmTest):
         self.fail_with(1, ["arm crane", "arms"], "follow", "arm.csv", "--arm", "crane")
         self.fail_with(2, ["--joint"], "follow", "arm.csv", "--arm", "ur5", "--joint", "elbow")
 
-    def compare(self, recording, *more):
-        return self.succeed_json("compare", recording, "--arm", "ur5", *more)
+    def compare(self, recording, *more, environment=None):
+        return self.succeed_json("compare", recording, "--arm", "ur5", *more, environment=environment)
 
     def test_friction_of_one_joint_is_that_joint_and_of_all_is_not(self):
         sound = self.compare(self.robot_with_friction([]), "--report", "sound")
@@ -242,11 +242,12 @@ class Arm(ArmTest):
         return {joint["joint"]: joint["level"] for joint in arm["joints"]}
 
     def test_a_reference_made_warm_does_not_make_a_cold_arm_faulty(self):
-        warm = self.compare(self.robot_with_friction([], degrees=40.0, is_recorded=True), "--report", "warm")
+        warm = self.compare(self.robot_with_friction([], degrees=40.0, is_recorded=True), "--report", "warm",
+                            environment=tool.NO_PAGE)
         self.assertEqual({(joint["temperature"], joint["temperature_source"]) for joint in warm["joints"]},
                          {(40.0, "received")})
         cold = self.compare(self.robot_with_friction([], degrees=15.0, is_recorded=True), "--report", "cold",
-                            "--reference", "warm")
+                            "--reference", "warm", environment=tool.NO_PAGE)
         self.assertEqual(self.levels(cold), dict.fromkeys(SHORT_NAMES, "OK"), cold)
         self.assertEqual(cold["friction_ratio"], 1.0)
         self.assertIsNone(cold["temperature_estimate"])
@@ -262,7 +263,7 @@ class Arm(ArmTest):
         self.assertEqual(self.levels(sick), {name: "WARN" if name == "elbow" else "OK" for name in SHORT_NAMES}, sick)
 
     def test_without_temperatures_that_of_the_common_friction_is_estimated(self):
-        self.compare(self.robot_with_friction([], degrees=25.0), "--report", "usual")
+        self.compare(self.robot_with_friction([], degrees=25.0), "--report", "usual", environment=tool.NO_PAGE)
         cold = self.compare(self.robot_with_friction([], degrees=8.0), "--reference", "usual")
         self.assertEqual(self.levels(cold), dict.fromkeys(SHORT_NAMES, "OK"), cold)
         self.assertGreater(cold["friction_ratio"], 1.15)

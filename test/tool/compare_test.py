@@ -73,7 +73,7 @@ class Compare(tool.ToolTest):
 
     def test_nothing_is_overwritten_unasked_and_bad_input_is_named(self):
         robot.write_bag(self.path("a.bag"), 3.0)
-        self.succeed("compare", "a.bag", *OPTIONS, "--report", "report")
+        self.succeed("compare", "a.bag", *OPTIONS, "--report", "report", environment=tool.NO_PAGE)
         self.fail_with(1, ["comparison.json exists; --force"], "compare", "a.bag", *OPTIONS, "--report", "report")
         for name in ("course.csv", "teeth.png", "windows.csv"):
             with self.subTest(name):
@@ -168,7 +168,7 @@ class Compare(tool.ToolTest):
 
         for name, friction in (("low", 0.75), ("usual", 1.0), ("high", 1.25), ("again", 1.01), ("worn", 1.4)):
             robot.write_bag(self.path(f"{name}.bag"), 60.0, friction)
-            self.succeed("compare", f"{name}.bag", *OPTIONS, *GAIN, "--report", name)
+            self.succeed("compare", f"{name}.bag", *OPTIONS, *GAIN, "--report", name, environment=tool.NO_PAGE)
         one, level = factor_of("worn.bag", "usual")
         self.assertAlmostEqual(one["value"], 1.4, delta=0.02)
         self.assertEqual(one["reference"], "own")
@@ -185,7 +185,7 @@ class Compare(tool.ToolTest):
     def test_a_reference_that_was_not_judged_is_none(self):
         robot.write_bag(self.path("short.bag"), 2.0)
         robot.write_bag(self.path("a.bag"), 60.0, 1.3)
-        self.succeed("compare", "short.bag", *OPTIONS, *GAIN, "--report", "short")
+        self.succeed("compare", "short.bag", *OPTIONS, *GAIN, "--report", "short", environment=tool.NO_PAGE)
         found = self.compare("a.bag", "--reference", "short")
         self.assertEqual(found["friction_factor"]["reference"], "twin")
         self.assertIn("The reference did not judge this joint's friction", self.finding(found, "Friction")["text"])

@@ -24,6 +24,8 @@ JOINT_NAMES = ["shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint",
 SIMULATED_TOPICS = {"/joint_twin/joint_states", "/joint_twin/encoders", "/joint_twin/contact_forces",
                     "/joint_twin/health", "/joint_twin/stress", "/joint_twin/indicators", "/joint_twin/assessment"}
 START = 1000000000  # [s] ROS time at which the recordings made here begin
+# With it `--report` writes its data and another program's page is not drawn, which takes seconds for each joint.
+NO_PAGE = {"PYTHONPATH": os.path.join(CHECKOUT, "test", "support", "no_page")}
 SLOWER = float(os.environ.get("HJT_PATIENCE", "1"))  # factor on every time limit; above 1 under a sanitizer
 
 
@@ -49,14 +51,14 @@ class ToolTest(unittest.TestCase):
                               stderr=subprocess.PIPE, universal_newlines=True, timeout=900 * SLOWER, check=False,
                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
 
-    def succeed(self, *arguments):
-        done = self.run_tool(*arguments)
+    def succeed(self, *arguments, environment=None):
+        done = self.run_tool(*arguments, environment=environment)
         self.assertEqual(done.returncode, 0, done.stderr)
         return done
 
-    def succeed_json(self, *arguments):
+    def succeed_json(self, *arguments, environment=None):
         """The one JSON document on stdout; json.loads refuses anything beside it."""
-        return json.loads(self.succeed(*arguments, "--json").stdout)
+        return json.loads(self.succeed(*arguments, "--json", environment=environment).stdout)
 
     def fail_with(self, exit_code, parts, *arguments):
         """The tool must end with this code and say each of these parts on stderr, and nothing on stdout."""

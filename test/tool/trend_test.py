@@ -60,7 +60,7 @@ class Trend(tool.ToolTest):
 
     def test_each_recording_is_judged_as_compare_judges_it(self):
         folder = self.months([1.0, 1.7])
-        self.succeed("compare", f"{folder}/z.csv", *JOINT, "--report", "sound")
+        self.succeed("compare", f"{folder}/z.csv", *JOINT, "--report", "sound", environment=tool.NO_PAGE)
         for row in self.trend(folder, "--reference", "sound")["recordings"]:
             alone = self.succeed_json("compare", row["recording"], *JOINT, "--reference", "sound")
             self.assertEqual((row["level"], row["text"]), (alone["verdict"]["level"], alone["verdict"]["text"]))

@@ -343,6 +343,8 @@ Json documentOf(const ArmOptions& options, const CheckedContents& contents, cons
                { "gravity", of(arm.assumed.mounting, &IdentifiedMounting::gravity) },
                { "gravity_tilt", of(arm.assumed.mounting, &IdentifiedMounting::tilt) },
                { "gravity_half_width", of(arm.assumed.mounting, &IdentifiedMounting::half_width) },
+               { "drag", of(arm.assumed.drag, &FoundDrag::force) },
+               { "drag_half_width", of(arm.assumed.drag, &FoundDrag::half_width) },
                { "effort_factor", arm.effort.factor.value },
                { "effort_factor_uncertainty", arm.effort.factor.uncertainty },
                { "effort", arm.effort.is_known ? Json(effortKeyword(arm.effort.unit)) : Json() },
