@@ -245,7 +245,7 @@ SolveStatus RingEquilibrium::reach(const DrivePosition& target) noexcept
 
 SolveStatus RingEquilibrium::follow(const DrivePosition& target) noexcept
 {
-  constexpr double FOLLOWED = 1e3;  // times the tolerance
+  constexpr double FOLLOWED = 10.0;  // times the tolerance
   goal_ = { FOLLOWED * tolerance_, tolerance_, false };
   const SolveStatus status = moveTo(target);
   goal_ = { tolerance_, tolerance_, true };

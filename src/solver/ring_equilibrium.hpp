@@ -57,8 +57,8 @@ public:
   /// `moveTo`; where that fails `descend`, and where that fails too, or cannot help, `reinsert`.
   SolveStatus reach(const DrivePosition& target) noexcept;
 
-  /// The same near enough for `torques` to be right, a thousand times the tolerance: a step of a joint's motion. Rates
-  /// and stiffness may be those of a state nearby.
+  /// The same near enough for `torques` to be right, ten times the tolerance: a step of a joint's motion. Rates and
+  /// stiffness may be those of a state nearby.
   SolveStatus follow(const DrivePosition& target) noexcept;
 
   const RingModel& model() const noexcept { return *model_; }

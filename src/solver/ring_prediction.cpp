@@ -11,7 +11,7 @@ namespace hjt
 {
 namespace
 {
-constexpr std::size_t KEPT = 32;     // states over a pitch
+constexpr std::size_t KEPT = 256;    // states over a pitch
 constexpr double MAX_PITCHES = 1e9;  // counted as an int
 
 /// `number` less a multiple of `size`: 0 ... size - 1.
