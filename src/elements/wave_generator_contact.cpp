@@ -152,7 +152,8 @@ void WaveGeneratorContact::addSag(const DrivePosition& position, Scratch& scratc
 HJT_VECTOR_CLONES double WaveGeneratorContact::press(int solved, Scratch& scratch) const noexcept
 {
   const double smoothing = smoothing_;
-  const auto press_by = [&](const auto& law)
+  // Not inlined, it would be compiled for every processor alike.
+  const auto press_by = [&](const auto& law) __attribute__((always_inline))
   {
     const double* __restrict__ stiffness = stiffness_.data();
     const double* __restrict__ gap = gapOf(scratch);

@@ -107,7 +107,7 @@ void visitSolver(P& p, Visitor& visit)
   visit("solver.rate", "Hz", p.solver.rate, Range{ 100.0, 1e6 },
         ofOthers("steps per simulated second; must divide 1e9 ns evenly"));
   visit("solver.force_tolerance", "N", p.solver.force_tolerance, Range{ 1e-9, 1.0 },
-        ofOthers("largest out-of-balance force on any tooth"));
+        ofOthers("largest out-of-balance force on any tooth; ten times that in a step of motion"));
   visit("solver.max_iterations", "-", p.solver.max_iterations, Range{ 1, 1000 },
         ofOthers("Newton iterations per attempt"));
   visit("solver.max_step_cuts", "-", p.solver.max_step_cuts, Range{ 0, 30 },

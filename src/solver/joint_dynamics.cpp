@@ -143,7 +143,10 @@ void JointDynamics::takeRing() noexcept
 {
   friction_is_of_ring_ = false;
   const Eigen::Matrix2d& k = ring_.stiffness();
-  response_ = JointModel::summary(ring_.forces());
+  const Eigen::Vector2d torques = ring_.torques();
+  response_.energy = ring_.forces().energy;
+  response_.wave_generator_torque = torques[0];
+  response_.output_torque = torques[1];
   response_.velocity_ratio = ring_.velocityRatio();
   response_.output_stiffness = k(1, 1);
   response_.motor_stiffness = k(0, 0);
@@ -228,7 +231,7 @@ bool JointDynamics::surfaceAgrees() const noexcept
 
 SolveStatus JointDynamics::placeRing(double motor_angle, double output_angle) noexcept
 {
-  const SolveStatus result = ring_.reach({ motor_angle, output_angle, model_->ring.gear.wave_amplitude });
+  const SolveStatus result = ring_.follow({ motor_angle, output_angle, model_->ring.gear.wave_amplitude });
   status.iterations += result.iterations;
   status.cuts += result.cuts;
   status.jumps += result.jumps;

@@ -7,22 +7,23 @@
 
 namespace hjt
 {
-NewtonSolver::NewtonSolver(const RingModel& model, int max_iterations, double tolerance)
-  : max_iterations_(max_iterations), tolerance_(tolerance), start_points_(model.rest.points())
+NewtonSolver::NewtonSolver(const RingModel& model, int max_iterations)
+  : max_iterations_(max_iterations), start_points_(model.rest.points())
 {
 }
 
-SolveStatus NewtonSolver::solve(RingLinearisation& system, RingState& state, EnergyDescent* descent) noexcept
+SolveStatus NewtonSolver::solve(const EquilibriumGoal& goal, RingLinearisation& system, RingState& state,
+                                EnergyDescent* descent) noexcept
 {
   SolveStatus status;
   status.residual = system.residual();
-  if (status.residual <= tolerance_ && !system.slopesChanged())
+  if (status.residual <= goal.guess && !system.slopesChanged(state, goal.present_rates))
   {
     state.residual = status.residual;
     return status;  // the tangent of the last solve is good enough to have predicted this
   }
-  status.code = iterate(system, state, descent, status);
-  if (status.ok() && system.slopesChanged() && !system.refactor(state))
+  status.code = iterate(goal, system, state, descent, status);
+  if (status.ok() && system.slopesChanged(goal.present_rates) && !system.refactor(state))
   {
     status.code = SolveCode::SINGULAR;
   }
@@ -34,8 +35,8 @@ SolveStatus NewtonSolver::solve(RingLinearisation& system, RingState& state, Ene
   return status;
 }
 
-SolveCode NewtonSolver::iterate(RingLinearisation& system, RingState& state, EnergyDescent* descent,
-                                SolveStatus& status) noexcept
+SolveCode NewtonSolver::iterate(const EquilibriumGoal& goal, RingLinearisation& system, RingState& state,
+                                EnergyDescent* descent, SolveStatus& status) noexcept
 {
   constexpr double GOOD_CONTRACTION = 0.1;  // better than this, the factors serve another iteration
   constexpr int DESCENT = 5;                // times as many iterations: one for every few teeth that touch or let go
@@ -43,11 +44,13 @@ SolveCode NewtonSolver::iterate(RingLinearisation& system, RingState& state, Ene
   bool fresh = false;
   while (std::isfinite(status.residual))
   {
-    if (!fresh && !system.refactor(state))
+    const bool near = status.residual <= (status.iterations > 0 ? goal.residual : goal.guess);
+    const bool good_rates = fresh || (near && status.iterations > 0 && !goal.present_rates);
+    if (!good_rates && !system.refactor(state))
     {
       return SolveCode::SINGULAR;
     }
-    if (status.residual <= tolerance_)
+    if (near)
     {
       return SolveCode::CONVERGED;
     }
@@ -56,7 +59,8 @@ SolveCode NewtonSolver::iterate(RingLinearisation& system, RingState& state, Ene
       status.max_iterations = max_iterations_;
       return SolveCode::ITERATION_LIMIT;
     }
-    if (!(descent != nullptr ? descent->step(system, state) : searchLine(status.residual, system, state)))
+    if (!(descent != nullptr ? descent->step(system, state) :
+                               searchLine(status.residual, goal.residual, system, state)))
     {
       return SolveCode::NO_DESCENT;
     }
@@ -68,7 +72,7 @@ SolveCode NewtonSolver::iterate(RingLinearisation& system, RingState& state, Ene
 }
 
 /// One Newton step, shortened until the largest force falls (or is at the level of rounding).
-bool NewtonSolver::searchLine(double residual, RingLinearisation& system, RingState& state) noexcept
+bool NewtonSolver::searchLine(double residual, double enough, RingLinearisation& system, RingState& state) noexcept
 {
   constexpr int MAX_HALVINGS = 7;
   const Eigen::VectorXd& step = system.newtonStep();
@@ -80,7 +84,7 @@ bool NewtonSolver::searchLine(double residual, RingLinearisation& system, RingSt
     state.shape.updateGeometry();
     system.updateForces(state);
     const double trial = system.residual();
-    if (trial < (1.0 - 1e-4 * length) * residual || trial <= tolerance_)
+    if (trial < (1.0 - 1e-4 * length) * residual || trial <= enough)
     {
       return true;
     }

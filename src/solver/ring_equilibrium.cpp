@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "solver/ring_vectors.hpp"
+
 namespace hjt
 {
 namespace
@@ -29,7 +31,8 @@ RingEquilibrium::RingEquilibrium(const RingModel& model, const SolverParameters&
   , tolerance_(std::max(parameters.force_tolerance, rounding_))
   , max_step_cuts_(parameters.max_step_cuts)
   , prediction_(model)
-  , newton_(model, parameters.max_iterations, tolerance_)
+  , goal_{ tolerance_, tolerance_, true }
+  , newton_(model, parameters.max_iterations)
   , descent_(model, tolerance_)
   , round_(now_.shape.points)
 {
@@ -111,6 +114,7 @@ void RingEquilibrium::begin(const Eigen::VectorXd& points, const DrivePosition& 
   now_.by_wave_generator.setZero();
   now_.by_output.setZero();
   now_.stiffness.setZero();
+  now_.cup_stiffness = 0.0;
   system_.updateForces(now_);
   now_.residual = system_.residual();
 }
@@ -147,7 +151,7 @@ SolveStatus RingEquilibrium::reinsert(const DrivePosition& target) noexcept
 SolveStatus RingEquilibrium::updateModel() noexcept
 {
   followModel();
-  system_.forgetFactors();
+  now_.cup_stiffness = 0.0;
   prediction_.forget();
   system_.updateForces(now_);
   const DrivePosition target = now_.position;
@@ -159,6 +163,15 @@ SolveStatus RingEquilibrium::updateModel() noexcept
     status = reinsert(target).addEffort(status);
   }
   return status;
+}
+
+Eigen::Vector2d RingEquilibrium::torques() const noexcept
+{
+  const RingForces& sum = system_.forces();
+  const int teeth = now_.shape.solved;
+  const double copies = now_.shape.copies();
+  return { sum.wave_generator_torque + copies * ring_vectors::dot(sum.teeth, now_.by_wave_generator, teeth),
+           sum.output_torque + copies * ring_vectors::dot(sum.teeth, now_.by_output, teeth) };
 }
 
 bool RingEquilibrium::refreshSensitivities() noexcept
@@ -178,7 +191,7 @@ SolveStatus RingEquilibrium::moveTo(const DrivePosition& target) noexcept
     const SolveStatus followed = updateModel();
     return followed.ok() ? moveTo(target).addEffort(followed) : followed;
   }
-  if (target == now_.position && now_.residual <= tolerance_)
+  if (target == now_.position && now_.residual <= goal_.residual)
   {
     SolveStatus unmoved;
     unmoved.residual = now_.residual;
@@ -225,11 +238,24 @@ SolveStatus RingEquilibrium::descend(const DrivePosition& target) noexcept
   return status;
 }
 
-/// On balls, teeth that begin to touch have no stiffness yet: an equilibrium may be near where Newton's method fails. A
-/// ring inserted again beyond half a pitch of twist would stand in the next spaces.
 SolveStatus RingEquilibrium::reach(const DrivePosition& target) noexcept
 {
-  SolveStatus status = moveTo(target);
+  return reachAfter(moveTo(target), target);
+}
+
+SolveStatus RingEquilibrium::follow(const DrivePosition& target) noexcept
+{
+  constexpr double FOLLOWED = 10.0;  // times the tolerance
+  goal_ = { FOLLOWED * tolerance_, tolerance_, false };
+  const SolveStatus status = moveTo(target);
+  goal_ = { tolerance_, tolerance_, true };
+  return reachAfter(status, target);
+}
+
+/// On balls, teeth that begin to touch have no stiffness yet: an equilibrium may be near where Newton's method fails. A
+/// ring inserted again beyond half a pitch of twist would stand in the next spaces.
+SolveStatus RingEquilibrium::reachAfter(SolveStatus status, const DrivePosition& target) noexcept
+{
   if (status.ok() || !std::isfinite(target.wave_generator_angle) || !std::isfinite(target.output_angle))
   {
     return status;
@@ -288,13 +314,19 @@ SolveStatus RingEquilibrium::solvePredicted() noexcept
 {
   const int jumps = model_->meshed() ? model_->of<ToothMesh>().pairNearest(now_.position, now_.shape) : 0;
   system_.updateForces(now_);
+  goal_.guess = tolerance_;
   if (prediction_.fromKept())
   {
-    system_.forgetFactors();  // the rates are to be those of the present teeth
+    goal_.guess = goal_.residual;  // its error is not handed on to the next guess
+    now_.cup_stiffness = 0.0;      // the rates are not those of the present teeth
+    if (!goal_.present_rates)
+    {
+      prediction_.takeKeptRates(now_);
+    }
   }
-  SolveStatus status = newton_.solve(system_, now_, descending_ ? &descent_ : nullptr);
+  SolveStatus status = newton_.solve(goal_, system_, now_, descending_ ? &descent_ : nullptr);
   status.jumps = jumps;
-  if (status.ok())
+  if (status.ok() && (status.iterations > 0 || goal_.present_rates))
   {
     prediction_.keep(now_);
   }

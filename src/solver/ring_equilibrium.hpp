@@ -57,6 +57,10 @@ public:
   /// `moveTo`; where that fails `descend`, and where that fails too, or cannot help, `reinsert`.
   SolveStatus reach(const DrivePosition& target) noexcept;
 
+  /// The same near enough for `torques` to be right, ten times the tolerance: a step of a joint's motion. Rates and
+  /// stiffness may be those of a state nearby.
+  SolveStatus follow(const DrivePosition& target) noexcept;
+
   const RingModel& model() const noexcept { return *model_; }
   /// A copy refers to the same model, until it gets a copy of that.
   void setModel(const RingModel& copied) noexcept
@@ -72,6 +76,10 @@ public:
 
   /// Rounding of a coordinate as a force [N], the lower limit of any solve.
   double rounding() const noexcept { return rounding_; }
+
+  /// On wave generator and output, as in equilibrium to the first order: with what the forces that are left over would
+  /// do as the teeth give way to them [N.m].
+  Eigen::Vector2d torques() const noexcept;
 
   /// Rates of the tooth points by wave generator angle and by output angle, the ring staying in equilibrium [m/rad].
   /// Of the last factored tangent: with the teeth that touch now, at a shape at most a Newton step away.
@@ -90,6 +98,7 @@ public:
 
 private:
   SolveStatus insertWedged(const DrivePosition& target) noexcept;
+  SolveStatus reachAfter(SolveStatus status, const DrivePosition& target) noexcept;
   void beginRound(const DrivePosition& target) noexcept;
   void begin(const Eigen::VectorXd& points, const DrivePosition& position) noexcept;
   void followModel() noexcept;
@@ -110,6 +119,7 @@ private:
   double tolerance_;  // largest out-of-balance force of an equilibrium [N]
   int max_step_cuts_;
   RingPrediction prediction_;
+  EquilibriumGoal goal_;
   NewtonSolver newton_;
   EnergyDescent descent_;
   bool descending_{ false };  // down the energy, not by Newton's method

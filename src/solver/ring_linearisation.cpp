@@ -48,7 +48,6 @@ void RingLinearisation::shift(double stiffness) noexcept
 
 bool RingLinearisation::refactor(const RingState& state) noexcept
 {
-  factored_ = true;
   factored_meshed_ = forces_.of<ToothMesh>().meshed;
   factored_depth_ = forces_.of<WaveGeneratorContact>().depth;
   updateTangent(state);
@@ -56,14 +55,24 @@ bool RingLinearisation::refactor(const RingState& state) noexcept
   return factor();
 }
 
-bool RingLinearisation::slopesChanged() const noexcept
+bool RingLinearisation::slopesChanged(const RingState& state, bool all_teeth) const noexcept
 {
-  if (!factored_ || copiesOf(tangent_) * model_->of<CupTorsion>().stiffness(forces_.of<CupTorsion>().rotation) !=
-                        tangent_.cup_stiffness)
-  {
-    return true;
-  }
-  return forces_.of<ToothMesh>().meshed != factored_meshed_ ||
+  return cupStiffness() != state.cup_stiffness || touchChanged(all_teeth);
+}
+
+bool RingLinearisation::slopesChanged(bool all_teeth) const noexcept
+{
+  return copiesOf(tangent_) * cupStiffness() != tangent_.cup_stiffness || touchChanged(all_teeth);
+}
+
+double RingLinearisation::cupStiffness() const noexcept
+{
+  return model_->of<CupTorsion>().stiffness(forces_.of<CupTorsion>().rotation);
+}
+
+bool RingLinearisation::touchChanged(bool all_teeth) const noexcept
+{
+  return (all_teeth && forces_.of<ToothMesh>().meshed != factored_meshed_) ||
          (model_->of<WaveGeneratorContact>().hasKinks() &&
           ring_vectors::signsChanged(forces_.of<WaveGeneratorContact>().depth, factored_depth_, tangent_.solved) != 0);
 }
@@ -107,6 +116,7 @@ void RingLinearisation::moveSensitivities(RingState& state) noexcept
   }
   state.by_wave_generator.swap(by_wave_generator_);
   state.by_output.swap(by_output_);
+  state.cup_stiffness = tangent_.cup_stiffness / copies;
   rates_known_ = false;
   const auto work = [&](const Eigen::VectorXd& mixed, const Eigen::VectorXd& rates)
   { return copies * ring_vectors::dot(mixed, rates, tangent_.solved); };

@@ -27,11 +27,11 @@ public:
   /// Tangent and factors of a state whose forces are the present ones. False: it has no inverse.
   bool refactor(const RingState& state) noexcept;
 
-  /// Whether a tooth has begun or ceased to touch, or the cup has come to another slope, since `refactor`.
-  bool slopesChanged() const noexcept;
-
-  /// After an edit of the model: no factors are those of its tangent.
-  void forgetFactors() noexcept { factored_ = false; }
+  /// Whether the cup has come to another slope since the rates of `state` were found, or a tooth on a ball, or any of
+  /// `all_teeth`, has begun or ceased to touch since `refactor`.
+  bool slopesChanged(const RingState& state, bool all_teeth) const noexcept;
+  /// The same since `refactor` alone.
+  bool slopesChanged(bool all_teeth) const noexcept;
 
   /// Steps of the tooth points that the factored tangent answers the present forces with [m].
   void solve(Eigen::VectorXd& step) noexcept;
@@ -50,6 +50,8 @@ public:
   bool circular_spline_in{ true };
 
 private:
+  double cupStiffness() const noexcept;
+  bool touchChanged(bool all_teeth) const noexcept;
   CyclicSolver& solver() noexcept { return tangent_.solved < tangent_.teeth() ? half_solver_ : solver_; }
 
   const RingModel* model_;
@@ -58,7 +60,6 @@ private:
   RingTangent tangent_;
   RingForces forces_;
   // When the tangent was factored.
-  bool factored_{};
   std::vector<char> factored_meshed_;
   Eigen::VectorXd factored_depth_;  // of the wave generator's contact
   // Of the last factored tangent, once known.

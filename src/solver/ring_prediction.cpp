@@ -11,7 +11,7 @@ namespace hjt
 {
 namespace
 {
-constexpr std::size_t KEPT = 32;     // states over a pitch
+constexpr std::size_t KEPT = 256;    // states over a pitch
 constexpr double MAX_PITCHES = 1e9;  // counted as an int
 
 /// `number` less a multiple of `size`: 0 ... size - 1.
@@ -54,8 +54,7 @@ void RingPrediction::predict(const DrivePosition& target, RingState& state) noex
     share = size > 0.0 ? std::min(1.0, ring_vectors::dot(scratch_, guess_error_, teeth) / size) : 0.0;
     guess_error_.swap(scratch_);
   }
-  from_kept_ = guessFromKept(target, state);
-  if (!from_kept_)
+  if (!guessFromKept(target, state))
   {
     guess(target, state);
   }
@@ -72,6 +71,7 @@ void RingPrediction::predict(const DrivePosition& target, RingState& state) noex
 void RingPrediction::forget() noexcept
 {
   guessed_ = false;
+  from_ = {};
   guess_error_.setZero();
   for (Kept& kept : kept_)
   {
@@ -107,6 +107,8 @@ void RingPrediction::keep(const RingState& state) noexcept
   kept.points = state.shape.points.head(half);
   kept.by_wave_generator = state.by_wave_generator.head(half);
   kept.by_output = state.by_output.head(half);
+  kept.stiffness = state.stiffness;
+  kept.cup_stiffness = state.cup_stiffness;
   kept.space = state.shape.space;
 }
 
@@ -122,6 +124,7 @@ double RingPrediction::twistSince(const Kept& kept, const DrivePosition& positio
 bool RingPrediction::guessFromKept(const DrivePosition& target, RingState& state) noexcept
 {
   constexpr double NEAR_TWIST = 2e-5;  // rad
+  from_ = {};
   const double pitch = model_->rest.pitchAngle();
   const double pitches = target.wave_generator_angle / pitch;
   const double moved = std::abs(target.wave_generator_angle - state.position.wave_generator_angle) / pitch;
@@ -141,10 +144,28 @@ bool RingPrediction::guessFromKept(const DrivePosition& target, RingState& state
   const int places = wrapped(whole, 2 * half);
   const double sign = places < half ? 1.0 : -1.0;
   const double angle = whole * pitch;
-  ring_vectors::turnHalf({ kept.points, kept.by_wave_generator, kept.by_output }, { 1.0, (away - whole) * pitch, rest },
-                         places % half, sign * std::cos(angle), sign * std::sin(angle), state.shape.points, half);
+  from_ = { &kept, places % half, sign * std::cos(angle), sign * std::sin(angle) };
+  turnKept({ 1.0, (away - whole) * pitch, rest }, half, state.shape.points);
   turnSpaces(kept.space, whole, state.shape.space);
   return true;
+}
+
+void RingPrediction::turnKept(const ring_vectors::Combination::Factors& factors, int half,
+                              Eigen::VectorXd& result) const noexcept
+{
+  const Kept& kept = *from_.kept;
+  ring_vectors::turnHalf({ kept.points, kept.by_wave_generator, kept.by_output }, factors, from_.places, from_.cosine,
+                         from_.sine, result, half);
+}
+
+void RingPrediction::takeKeptRates(RingState& state) const noexcept
+{
+  turnKept({ 0.0, 1.0, 0.0 }, state.shape.solved, state.by_wave_generator);
+  turnKept({ 0.0, 0.0, 1.0 }, state.shape.solved, state.by_output);
+  repeatHalfTurned(state.by_wave_generator);
+  repeatHalfTurned(state.by_output);
+  state.stiffness = from_.kept->stiffness;
+  state.cup_stiffness = from_.kept->cup_stiffness;
 }
 
 void RingPrediction::guess(const DrivePosition& target, RingState& state) noexcept

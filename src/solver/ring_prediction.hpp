@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 
 #include "solver/ring_state.hpp"
+#include "solver/ring_vectors.hpp"
 
 namespace hjt
 {
@@ -31,7 +32,10 @@ public:
   void forget() noexcept;
 
   /// The last guess started from a state that was kept: the rates of `state` are not of its teeth.
-  bool fromKept() const noexcept { return from_kept_; }
+  bool fromKept() const noexcept { return from_.kept != nullptr; }
+
+  /// Gives `state` those of the kept state that the last guess started from, and its stiffness.
+  void takeKeptRates(RingState& state) const noexcept;
 
   /// Keeps a solved state for guesses to come.
   void keep(const RingState& state) noexcept;
@@ -47,11 +51,22 @@ private:
     Eigen::VectorXd points;  // of the first half of the teeth
     Eigen::VectorXd by_wave_generator;
     Eigen::VectorXd by_output;
+    Eigen::Matrix2d stiffness;
+    double cup_stiffness{};
     std::vector<int> space;  // of all
+  };
+  /// A kept state turned by whole pitches.
+  struct Source
+  {
+    const Kept* kept{};  // null: none
+    int places{};        // of the half ring's teeth
+    double cosine{};
+    double sine{};
   };
   Kept& keptAt(double pitches) noexcept;
   double twistSince(const Kept& kept, const DrivePosition& position) const noexcept;
   bool guessFromKept(const DrivePosition& target, RingState& state) noexcept;
+  void turnKept(const ring_vectors::Combination::Factors& factors, int half, Eigen::VectorXd& result) const noexcept;
   void guess(const DrivePosition& target, RingState& state) noexcept;
   void shift(int pitches, RingState& state) noexcept;
   void turn(const Eigen::VectorXd& values, int pitches, Eigen::VectorXd& turned) const noexcept;
@@ -62,7 +77,7 @@ private:
   double pitch_sin_;
   double pitch_output_angle_;  // the output's turn that renumbers the spaces along with one tooth pitch [rad]
   bool guessed_{ false };
-  bool from_kept_{ false };
+  Source from_;                  // of the last guess
   std::vector<Kept> kept_;       // over one pitch
   Eigen::VectorXd guess_;        // the last, not corrected
   Eigen::VectorXd guess_error_;  // of the one before

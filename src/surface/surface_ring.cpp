@@ -83,7 +83,7 @@ void groupFlanks(const FrictionTerms& terms, double velocity_ratio, double* grou
   }
 }
 
-/// Torques are then right to rounding: SurfaceRing::torques adds what the forces that are left over change in them.
+/// Torques are then right to rounding: RingEquilibrium::torques adds what the forces that are left over change in them.
 SolverParameters solverOf(const SurfaceParameters& parameters)
 {
   constexpr double TOLERANCE = 1e-4;  // N
@@ -176,7 +176,7 @@ Node SurfaceRing::measure()
   const Eigen::Matrix2d& k = ring_.stiffness();
   const double velocity_ratio = ring_.velocityRatio();
   const RingRates rates{ ring_.shape(), ring_.byWaveGenerator(), ring_.byOutput() };
-  const Eigen::Vector2d torque = torques();
+  const Eigen::Vector2d torque = ring_.torques();
   node[SurfaceNode::ENERGY] = forces.energy;
   node[SurfaceNode::ENERGY_BY_U] = -pitch_ * (torque[0] + torque[1] / ratio_);
   node[SurfaceNode::ENERGY_BY_V] = -torque[1];
@@ -217,14 +217,6 @@ void SurfaceRing::measureTeeth(float* values) const noexcept
     set(ToothResponse::X, i, shape.points[2 * i]);
     set(ToothResponse::Y, i, shape.points[2 * i + 1]);
   }
-}
-
-/// The forces that are left over, times what the teeth would move by: torques as in equilibrium, to the first order.
-Eigen::Vector2d SurfaceRing::torques() const
-{
-  const RingForces& forces = ring_.forces();
-  return { forces.wave_generator_torque + forces.teeth.dot(ring_.byWaveGenerator()),
-           forces.output_torque + forces.teeth.dot(ring_.byOutput()) };
 }
 
 double SurfaceRing::overload(const Node& node) const noexcept
@@ -324,7 +316,7 @@ int SurfaceRing::repetition()
       {
         return 0;
       }
-      sampled[i] = torques().cwiseProduct(Eigen::Vector2d(ratio_, 1.0));
+      sampled[i] = ring_.torques().cwiseProduct(Eigen::Vector2d(ratio_, 1.0));
     }
     for (std::size_t c = 0; c < candidates.size(); ++c)
     {

@@ -110,8 +110,6 @@ public:
   double overload(const SurfaceNode& node) const noexcept;
 
 private:
-  Eigen::Vector2d torques() const;  // on wave generator and output [N.m]
-
   JointModel model_;
   MeshFriction unit_friction_;
   RingEquilibrium ring_;

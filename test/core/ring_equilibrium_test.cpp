@@ -172,6 +172,39 @@ TEST_F(Ring, GivesTheSameStateByEveryPath)
   EXPECT_LT((points - cold.shape().points).lpNorm<Eigen::Infinity>(), 5e-12);
 }
 
+/// In random motion, shipped and with errors of manufacture, to what a table of the ring is trusted to.
+TEST(RingThatIsFollowed, HasTheTorquesOfTheEquilibrium)
+{
+  constexpr int STEPS = 1000;
+  constexpr int SPELL = 25;        // steps at one speed
+  constexpr double TABLED = 2e-6;  // of the output's angle at given torque [rad]
+  for (const std::vector<std::string>& errors :
+       { std::vector<std::string>{}, std::vector<std::string>{ "manufacture.flexspline_pitch_deviation=4.0e-6" } })
+  {
+    const Parameters parameters = shippedParameters(errors);
+    const RingModel model(parameters);
+    RingEquilibrium ring(model, parameters.solver);
+    const double w = parameters.gear.wave_amplitude;
+    ASSERT_TRUE(ring.insert({ 0.0, 0.0, w }).ok());
+    std::mt19937 random(58);
+    std::uniform_real_distribution<double> part(-1.0, 1.0);
+    Eigen::Vector2d step(0.0, 0.0);  // of the motor and of the twist [rad]
+    Eigen::Vector2d turned(0.0, 0.0);
+    for (int i = 0; i < STEPS; ++i)
+    {
+      if (i % SPELL == 0)
+      {
+        step = { part(random) * model.rest.pitchAngle(), part(random) * 2e-5 };
+      }
+      turned += step;
+      ASSERT_TRUE(ring.follow({ turned[0], turned[0] / nominalRatio(parameters.gear) + turned[1], w }).ok()) << i;
+      RingEquilibrium exact = ring;
+      ASSERT_TRUE(exact.moveTo(ring.position()).ok());
+      EXPECT_NEAR(ring.torques()[1], exact.torques()[1], TABLED * exact.stiffness()(1, 1)) << i;
+    }
+  }
+}
+
 TEST_F(Ring, SensitivitiesAreTheRatesOfTheMovingRing)
 {
   expectSensitivitiesToBeRates(false);
