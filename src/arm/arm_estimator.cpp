@@ -96,16 +96,13 @@ ArmEstimator::Prior ArmEstimator::priorOf(const Freedom& may) const
   return prior;
 }
 
-/// `slope`: by the terms of the arm, of the group and of the joint.
-double ArmEstimator::errorOf(std::size_t joint, std::size_t row, const std::vector<bool>& states,
-                             const Eigen::VectorXd& at, Eigen::VectorXd* slope) const
+/// `state`: of its leg; `slope`: as slopeOf.
+double ArmEstimator::errorOf(std::size_t joint, const Row& of, bool state, const Eigen::VectorXd& at, Slope* slope)
 {
-  const Row& of = rows_[joint][row];
   const int own = ownOf(joint);
   const double gain = 1.0 + at[GAIN] + at[own + OWN_GAIN];
-  const double state = !states.empty() && states[of.leg] ? 1.0 : 0.0;
   const auto carried = of.load.head<PAYLOAD>();
-  const double load = of.load.dot(at.head<LOAD>()) + state * carried.dot(at.segment<PAYLOAD>(JUMP));
+  const double load = of.load.dot(at.head<LOAD>()) + (state ? carried.dot(at.segment<PAYLOAD>(JUMP)) : 0.0);
   const double friction_factor = 1.0 + at[FRICTION] + at[groupOf(joint)] + at[own + OWN_FRICTION];
   const double way = std::copysign(1.0, of.friction);
   const double size = std::abs(of.torque + load);
@@ -118,9 +115,7 @@ double ArmEstimator::errorOf(std::size_t joint, std::size_t row, const std::vect
     const double by_load =
         1.0 + (friction_factor * of.rise + at[own + OWN_LOSS]) * way * std::copysign(1.0, of.torque + load);
     slope->head<LOAD>() = gain * by_load * of.load;
-    slope->segment<PAYLOAD>(JUMP) = state * gain * by_load * carried;
-    slope->segment<GROUP + 1 - GAIN>(GAIN) << inner, gain * friction, gain * of.cold, gain * friction;
-    slope->tail<PER_JOINT>() << inner, gain * friction, gain * of.cold, 1.0, gain * way * size, gain * of.inertia;
+    slope->tail<SLOPES - LOAD>() << inner, gain * friction, gain * of.cold, 1.0, gain * way * size, gain * of.inertia;
   }
   return of.current - gain * inner - at[own + OWN_OFFSET];
 }
@@ -166,11 +161,10 @@ std::vector<bool> ArmEstimator::parted(const Point& by) const
   for (std::size_t i = 0; i < rows_.size(); ++i)
   {
     const double weight = 1.0 / std::pow(std::max(by.deviations[i], NOISE), 2);
-    for (std::size_t k = 0; k < rows_[i].size(); ++k)
+    for (const Row& row : rows_[i])
     {
-      const Row& row = rows_[i][k];
       const auto leg = static_cast<Eigen::Index>(row.leg);
-      sums(leg, 0) += weight * row.load[0] * errorOf(i, k, {}, by.at, nullptr);
+      sums(leg, 0) += weight * row.load[0] * errorOf(i, row, false, by.at, nullptr);
       sums(leg, 1) += weight * row.load[0] * row.load[0];
     }
   }
@@ -190,13 +184,12 @@ std::vector<bool> ArmEstimator::likelier(const Point& by) const
   std::vector<double> costs(legs_);  // of state 1 beyond that of state 0
   for (const bool state : { false, true })
   {
-    const std::vector<bool> all(legs_, state);
     for (std::size_t i = 0; i < rows_.size(); ++i)
     {
-      for (std::size_t k = 0; k < rows_[i].size(); ++k)
+      for (const Row& row : rows_[i])
       {
-        const double t = errorOf(i, k, all, by.at, nullptr) / by.deviations[i];
-        costs[rows_[i][k].leg] += (state ? 1.0 : -1.0) * std::log1p(t * t / STUDENT);
+        const double t = errorOf(i, row, state, by.at, nullptr) / by.deviations[i];
+        costs[row.leg] += (state ? 1.0 : -1.0) * std::log1p(t * t / STUDENT);
       }
     }
   }
@@ -214,9 +207,10 @@ ArmEstimator::Point ArmEstimator::withJump(const Freedom& may, const Point& with
   Point best;
   Point configured = without;
   configured.at.setZero();
-  for (const Point* from : { &without, static_cast<const Point*>(&configured) })
+  std::vector<std::vector<bool>> begun{ parted(without), parted(configured) };
+  begun.resize(begun.front() == begun.back() ? 1 : 2);
+  for (std::vector<bool>& tried : begun)
   {
-    std::vector<bool> tried = parted(*from);
     Point now;
     for (int turn = 0; turn < TURNS; ++turn)
     {
@@ -265,13 +259,12 @@ ArmEstimator::Estimate ArmEstimator::estimateOf(const Point& point, const std::v
     double power = std::numeric_limits<double>::min();
     double cold = 0.0;
     double loss = 0.0;
-    for (std::size_t k = 0; k < rows_[i].size(); ++k)
+    for (const Row& row : rows_[i])
     {
-      const Row& row = rows_[i][k];
       power += row.friction * row.friction;
       cold += row.friction * row.cold;
       loss += std::abs(row.friction * row.torque);
-      left += std::pow(errorOf(i, k, states, point.at, nullptr), 2);
+      left += std::pow(errorOf(i, row, stateOf(row, states), point.at, nullptr), 2);
       all += row.current * row.current;
     }
     found.gains.push_back(known(Eigen::VectorXd::Unit(size_, own + OWN_GAIN)));

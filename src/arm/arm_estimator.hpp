@@ -87,8 +87,8 @@ public:
   /// What may be another than configured, beside a payload.
   struct Freedom
   {
-    bool mounting{ true };
-    bool jump{ true };  ///< the payload changes between legs
+    bool mounting{};
+    bool jump{};  ///< the payload changes between legs
     bool drag{};
   };
   /// The likeliest with one payload, then, where it may change between legs and some have another, that with two.
@@ -97,10 +97,14 @@ public:
 private:
   struct Prior;
   struct Point;
+  struct Work;
+  struct Products;
+  static constexpr int SLOPES = LOAD + 6;
+  using Slope = Eigen::Matrix<double, SLOPES, 1>;
 
   Prior priorOf(const Freedom& may) const;
-  double errorOf(std::size_t joint, std::size_t row, const std::vector<bool>& states, const Eigen::VectorXd& at,
-                 Eigen::VectorXd* slope) const;
+  static bool stateOf(const Row& row, const std::vector<bool>& states) { return !states.empty() && states[row.leg]; }
+  static double errorOf(std::size_t joint, const Row& row, bool state, const Eigen::VectorXd& at, Slope* slope);
   Point refine(const Prior& prior, const std::vector<bool>& states, Eigen::VectorXd at, int start) const;
   double multiple() const;
   Point best(const Prior& prior, const std::vector<bool>& states) const;
@@ -110,7 +114,8 @@ private:
   Estimate estimateOf(const Point& point, const std::vector<bool>& states) const;
 
   void addPrior(const Prior& prior, int start, Point& point, Eigen::VectorXd& right) const;
-  void addRows(std::size_t joint, const std::vector<bool>& states, Point& point, Eigen::VectorXd& right) const;
+  void addRows(std::size_t joint, const std::vector<bool>& states, Work& work, Point& point,
+               Eigen::VectorXd& right) const;
 
   Rows rows_;
   Eigen::Vector3d gravity_;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -63,52 +64,43 @@ void ArmEstimator::addPrior(const Prior& prior, int start, Point& point, Eigen::
   point.rareness += 0.5 * weight * error * error;
 }
 
-void ArmEstimator::addRows(std::size_t joint, const std::vector<bool>& states, Point& point,
+void ArmEstimator::addRows(std::size_t joint, const std::vector<bool>& states, Work& work, Point& point,
                            Eigen::VectorXd& right) const
 {
-  constexpr double FLOOR = 0.02;  // least residual of a real arm [A]
-  constexpr double COUNTED = 60.0;
-  const auto count = static_cast<Eigen::Index>(rows_[joint].size());
-  Eigen::VectorXd error(count);
-  for (Eigen::Index k = 0; k < count; ++k)
+  const std::vector<Row>& rows = rows_[joint];
+  Eigen::VectorXd& error = work.errors[joint];
+  error.resize(static_cast<Eigen::Index>(rows.size()));
+  work.slopes.resize(rows.size());
+  for (std::size_t k = 0; k < rows.size(); ++k)
   {
-    error[k] = errorOf(joint, static_cast<std::size_t>(k), states, point.at, nullptr);
+    error[static_cast<Eigen::Index>(k)] = errorOf(joint, rows[k], stateOf(rows[k], states), point.at, &work.slopes[k]);
   }
   const double deviation = std::max(robustDeviation(error), LEAST);
-  const double rows_a_tale = std::max({ 1.0, correlationRows(error), static_cast<double>(count) / INDEPENDENT });
+  const double rows_a_tale = std::max({ 1.0, correlationRows(error), static_cast<double>(rows.size()) / INDEPENDENT });
   const Eigen::ArrayXd squares = (error / deviation).array().square();
-  const Eigen::VectorXd roots =
-      ((STUDENT + 1.0) / (STUDENT + squares) / (deviation * deviation * rows_a_tale)).sqrt().matrix();
-  // A few rows at a time: those of all would be taken from the system and given back in each round.
-  constexpr Eigen::Index AT_ONCE = 32;
-  Eigen::VectorXd slope(USED);
-  Eigen::Matrix<double, USED, AT_ONCE> weighted;
-  Eigen::Matrix<double, USED, USED> half = Eigen::Matrix<double, USED, USED>::Zero();
-  Eigen::Matrix<double, USED, 1> sums = Eigen::Matrix<double, USED, 1>::Zero();
-  for (Eigen::Index first = 0; first < count; first += AT_ONCE)
+  const Eigen::ArrayXd weights = (STUDENT + 1.0) / (STUDENT + squares) / (deviation * deviation * rows_a_tale);
+  std::array<Products, 2> of_states;
+  for (std::size_t k = 0; k < rows.size(); ++k)
   {
-    weighted.setZero();
-    for (Eigen::Index k = first; k < std::min(count, first + AT_ONCE); ++k)
-    {
-      errorOf(joint, static_cast<std::size_t>(k), states, point.at, &slope);
-      weighted.col(k - first) = roots[k] * slope;
-      sums += roots[k] * error[k] * weighted.col(k - first);
-    }
-    half.selfadjointView<Eigen::Lower>().rankUpdate(weighted);
+    const auto row = static_cast<Eigen::Index>(k);
+    Products& products = of_states[stateOf(rows[k], states) ? 1 : 0];
+    const Slope weighted = weights[row] * work.slopes[k];
+    products.slopes.noalias() += weighted * work.slopes[k].transpose();
+    products.error += error[row] * weighted;
   }
-  const Eigen::Matrix<double, USED, USED> products = half.selfadjointView<Eigen::Lower>();
+  const Products all{ of_states[0].slopes + of_states[1].slopes, of_states[0].error + of_states[1].error };
   const auto term = [&](int k) { return k < GROUP ? k : k == GROUP ? groupOf(joint) : ownOf(joint) + k - GROUP - 1; };
+  const auto is_jump = [](int k) { return k >= JUMP && k < GAIN; };
   for (int k = 0; k < USED; ++k)
   {
-    right[term(k)] += sums[k];
+    right[term(k)] += (is_jump(k) ? of_states[1] : all).error[slopeOf(k)];
     for (int l = 0; l < USED; ++l)
     {
-      point.information(term(k), term(l)) += products(k, l);
+      point.information(term(k), term(l)) +=
+          (is_jump(k) || is_jump(l) ? of_states[1] : all).slopes(slopeOf(k), slopeOf(l));
     }
   }
   point.deviations[joint] = deviation;
-  const double scale = std::hypot(deviation, FLOOR);
-  point.cost += COUNTED * (std::log(scale) + (error / scale).array().square().unaryExpr(&rarer).mean());
 }
 
 /// By Gauss and Newton, until a step is nothing beside the deviations a posteriori; what `start` names is hardly held
@@ -119,21 +111,24 @@ ArmEstimator::Point ArmEstimator::refine(const Prior& prior, const std::vector<b
   constexpr int ROUNDS = 15;
   constexpr int LOOSE_ROUNDS = 5;
   constexpr double NOTHING = 1e-3;  // of a deviation
+  constexpr double FLOOR = 0.02;    // least residual of a real arm [A]
+  constexpr double COUNTED = 60.0;
   Point point;
   point.at = std::move(at);
   point.deviations.resize(rows_.size());
+  Work work;
+  work.errors.resize(rows_.size());
   for (int round = 0; round < ROUNDS; ++round)
   {
     point.information = Eigen::MatrixXd::Zero(size_, size_);
     Eigen::VectorXd right = Eigen::VectorXd::Zero(size_);
     point.rareness = 0.0;
     addPrior(prior, round < LOOSE_ROUNDS ? start : HELD, point, right);
-    point.cost = point.rareness;
     for (std::size_t i = 0; i < rows_.size(); ++i)
     {
       if (!rows_[i].empty())
       {
-        addRows(i, states, point, right);
+        addRows(i, states, work, point, right);
       }
     }
     const Eigen::VectorXd step = point.information.ldlt().solve(right);
@@ -142,6 +137,15 @@ ArmEstimator::Point ArmEstimator::refine(const Prior& prior, const std::vector<b
         (step.array().square() * point.information.diagonal().array()).maxCoeff() < NOTHING * NOTHING)
     {
       break;
+    }
+  }
+  point.cost = point.rareness;
+  for (std::size_t i = 0; i < rows_.size(); ++i)
+  {
+    if (!rows_[i].empty())
+    {
+      const double scale = std::hypot(point.deviations[i], FLOOR);
+      point.cost += COUNTED * (std::log(scale) + (work.errors[i] / scale).array().square().unaryExpr(&rarer).mean());
     }
   }
   return point;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <limits>
 #include <vector>
@@ -45,6 +46,16 @@ inline int ownOf(std::size_t joint)
 {
   return OWN + PER_JOINT * static_cast<int>(joint);
 }
+
+/// Of one joint's rows. The payload and its jump have one slope, and so have terms of the arm, the group and the joint:
+/// of its load; of the whole, friction, cold friction, an offset, loss and inertia.
+inline int slopeOf(int used)
+{
+  constexpr std::array<int, USED - GAIN> OF_OTHERS{ 0, 1, 2, 1, 0, 1, 2, 3, 4, 5 };
+  return used < JUMP ? used :
+         used < GAIN ? used - JUMP :
+                       ArmEstimator::LOAD + OF_OTHERS[static_cast<std::size_t>(used - GAIN)];
+}
 }  // namespace term
 
 /// Widths of all terms.
@@ -62,5 +73,19 @@ struct ArmEstimator::Point
   std::vector<double> deviations;  // of the rows of each joint [A]
   double rareness{};
   double cost{ std::numeric_limits<double>::infinity() };
+};
+
+/// Of one round.
+struct ArmEstimator::Work
+{
+  std::vector<Eigen::VectorXd> errors;  // of the rows of each joint [A]
+  std::vector<Slope> slopes;            // of those of one joint
+};
+
+/// Of the slopes of rows of one state, with each other and with the error.
+struct ArmEstimator::Products
+{
+  Eigen::Matrix<double, SLOPES, SLOPES> slopes = Eigen::Matrix<double, SLOPES, SLOPES>::Zero();
+  Slope error = Slope::Zero();
 };
 }  // namespace hjt

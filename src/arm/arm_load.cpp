@@ -11,21 +11,17 @@
 
 namespace hjt
 {
-ArmLoad::ArmLoad(const ArmDescription& arm, PayloadCourse course)
-  : dynamics_(arm)
-  , course_(std::move(course))
-  , times_(dynamics_.joints())
-  , slow_(dynamics_.joints(), MotionDifferentiator(HALF_WIDTH))
-  , fast_(dynamics_.joints())
-  , waiting_(ROOM, { std::vector<MotionSample>(dynamics_.joints()), std::vector<MotionSample>(dynamics_.joints()),
-                     std::vector<double>(dynamics_.joints()) })
-  , rows_(dynamics_.joints())
-  , motion_(dynamics_.joints())
-  , fast_torques_(dynamics_.joints())
+ArmRates::ArmRates(std::size_t joints)
+  : times_(joints)
+  , slow_(joints, MotionDifferentiator(HALF_WIDTH))
+  , fast_(joints)
+  , waiting_(ROOM,
+             { std::vector<MotionSample>(joints), std::vector<MotionSample>(joints), std::vector<double>(joints) })
+  , rows_(joints)
 {
 }
 
-void ArmLoad::reset() noexcept
+void ArmRates::reset() noexcept
 {
   std::fill(slow_.begin(), slow_.end(), MotionDifferentiator(HALF_WIDTH));
   std::fill(fast_.begin(), fast_.end(), MotionDifferentiator());
@@ -34,7 +30,7 @@ void ArmLoad::reset() noexcept
   last_time_ = -std::numeric_limits<double>::infinity();
 }
 
-bool ArmLoad::push(const std::vector<MotionRow>& rows) noexcept
+bool ArmRates::push(const std::vector<MotionRow>& rows) noexcept
 {
   const double time = rows.front().time;
   if (time < last_time_ - StreamTiming::RESTART)
@@ -67,7 +63,7 @@ bool ArmLoad::push(const std::vector<MotionRow>& rows) noexcept
 }
 
 /// The rows at hand, whose times are mended.
-void ArmLoad::pushFast() noexcept
+void ArmRates::pushFast() noexcept
 {
   const double stamp_error = times_.stampError(rows_);
   for (std::size_t i = 0; i < rows_.size(); ++i)
@@ -77,11 +73,10 @@ void ArmLoad::pushFast() noexcept
   }
 }
 
-/// The next sample of every joint, and the torques that their motion takes. False: one is not ready.
-bool ArmLoad::take(std::vector<MotionDifferentiator>& from, bool at_end, std::vector<MotionSample>& samples,
-                   std::vector<double>& torques) noexcept
+/// The next sample of every joint. False: one is not ready.
+bool ArmRates::take(std::vector<MotionDifferentiator>& from, bool at_end, std::vector<MotionSample>& samples) noexcept
 {
-  for (std::size_t i = 0; i < motion_.size(); ++i)
+  for (std::size_t i = 0; i < samples.size(); ++i)
   {
     const std::optional<MotionSample> sample = from[i].pop(at_end);
     if (!sample)
@@ -89,31 +84,16 @@ bool ArmLoad::take(std::vector<MotionDifferentiator>& from, bool at_end, std::ve
       return false;
     }
     samples[i] = *sample;
-    motion_[i] = { sample->position, sample->velocity, sample->acceleration };
   }
-  carry(samples.front().time);
-  dynamics_.torques(motion_, torques);
   return true;
 }
 
-/// Payload at that time; before the course begins, the first one.
-void ArmLoad::carry(double time) noexcept
-{
-  const auto next = std::find_if(course_.begin(), course_.end(), [time](const auto& from) { return from.time > time; });
-  const auto now = static_cast<std::size_t>(std::max<std::ptrdiff_t>(next - course_.begin(), 1) - 1);
-  if (!course_.empty() && now != carried_)
-  {
-    dynamics_.setPayload(course_[now].payload);
-    carried_ = now;
-  }
-}
-
-const ArmSample* ArmLoad::pop(bool at_end) noexcept
+ArmSample* ArmRates::pop(bool at_end) noexcept
 {
   while (end_waiting_ < first_waiting_ + ROOM)
   {
     ArmSample& slow = waiting_[end_waiting_ % ROOM];
-    if (!take(slow_, at_end, slow.joints, slow.torques))
+    if (!take(slow_, at_end, slow.joints))
     {
       break;
     }
@@ -129,16 +109,52 @@ const ArmSample* ArmLoad::pop(bool at_end) noexcept
     }
   }
   ArmSample& sample = waiting_[first_waiting_ % ROOM];
-  if (first_waiting_ == end_waiting_ || !take(fast_, at_end, sample.own, fast_torques_))
+  if (first_waiting_ == end_waiting_ || !take(fast_, at_end, sample.own))
   {
     return nullptr;
   }
   ++first_waiting_;
-  for (std::size_t i = 0; i < motion_.size(); ++i)
+  for (std::size_t i = 0; i < sample.own.size(); ++i)
   {
     sample.own[i].recorded_velocity = sample.joints[i].recorded_velocity;
-    sample.own[i].vibration = fast_torques_[i] - sample.torques[i];
   }
   return &sample;
+}
+
+LinkTorques::LinkTorques(const ArmDescription& arm, PayloadCourse course)
+  : links_(arm), course_(std::move(course)), motion_(ArmDynamics(arm).joints()), fast_torques_(motion_.size())
+{
+}
+
+/// Payload at that time; before the course begins, the first one.
+void LinkTorques::carry(double time) noexcept
+{
+  const auto next = std::find_if(course_.begin(), course_.end(), [time](const auto& from) { return from.time > time; });
+  const auto now = static_cast<std::size_t>(std::max<std::ptrdiff_t>(next - course_.begin(), 1) - 1);
+  if (!course_.empty() && now != carried_)
+  {
+    links_.setPayload(course_[now].payload);
+    carried_ = now;
+  }
+}
+
+void LinkTorques::find(const std::vector<MotionSample>& samples, std::vector<double>& torques) noexcept
+{
+  for (std::size_t i = 0; i < motion_.size(); ++i)
+  {
+    motion_[i] = { samples[i].position, samples[i].velocity, samples[i].acceleration };
+  }
+  links_.own(motion_, torques);
+}
+
+void LinkTorques::addTo(ArmSample& sample) noexcept
+{
+  carry(sample.joints.front().time);
+  find(sample.joints, sample.torques);
+  find(sample.own, fast_torques_);
+  for (std::size_t i = 0; i < motion_.size(); ++i)
+  {
+    sample.own[i].vibration = fast_torques_[i] - sample.torques[i];
+  }
 }
 }  // namespace hjt

@@ -34,18 +34,31 @@ class ArmTrial
 public:
   ArmTrial(const ArmCandidate& candidate, EffortUnit unit) : ArmTrial(candidate, withUnit(candidate.joints, unit)) {}
 
-  void push(const std::vector<MotionRow>& rows)
+  /// `sample`: with efforts for currents, and without torques. `counts`: else the motion alone.
+  void add(const ArmSample& sample, bool counts)
   {
-    rows_ = rows;
-    for (std::size_t i = 0; i < rows_.size(); ++i)
+    for (std::size_t i = 0; i < twins_.size(); ++i)
     {
-      rows_[i].current *= twins_[i].currentPerEffort();
+      twins_[i].move(sample.own[i]);
     }
-    load_.push(rows_);
-    forward(false);
+    if (!counts)
+    {
+      return;
+    }
+    sample_ = sample;
+    for (std::size_t i = 0; i < twins_.size(); ++i)
+    {
+      sample_.joints[i].current = sample_.own[i].current *= twins_[i].currentPerEffort();
+    }
+    torques_.addTo(sample_);
+    fit_.update(sample_.joints, sample_.torques);
+    for (std::size_t i = 0; i < twins_.size(); ++i)
+    {
+      sample_.own[i].load = sample_.torques[i];
+      twins_[i].bear(sample_.own[i]);
+    }
+    load_fit_.add(sample_.own, beside_);
   }
-
-  void end() { forward(true); }
 
   ArmFit fit()
   {
@@ -70,7 +83,7 @@ private:
     : name_(candidate.name)
     , unit_(joints.front().telemetry.effort)
     , cost_(candidate.cost)
-    , load_(candidate.arm)
+    , torques_(candidate.arm)
     , fit_(joints)
     , load_fit_(candidate.arm, joints)
     , twins_(joints.begin(), joints.end())
@@ -81,54 +94,44 @@ private:
     }
   }
 
-  void forward(bool at_end)
-  {
-    while (const ArmSample* sample = load_.pop(at_end))
-    {
-      fit_.update(sample->joints, sample->torques);
-      samples_ = sample->own;
-      for (std::size_t i = 0; i < samples_.size(); ++i)
-      {
-        samples_[i].load = sample->torques[i];
-        twins_[i].step(samples_[i]);
-      }
-      if (samples_.front().time >= last_time_ + ROW_PERIOD)
-      {
-        last_time_ = samples_.front().time;
-        load_fit_.add(samples_, beside_);
-      }
-    }
-  }
-
   std::string name_;
   EffortUnit unit_;
   double cost_;
-  ArmLoad load_;
+  LinkTorques torques_;
   RecordingFit fit_;
   LoadFit load_fit_;
   std::vector<MotionDriven> twins_;
-  std::vector<MotionRow> rows_;
-  std::vector<MotionSample> samples_;
+  ArmSample sample_;
   std::vector<const MotionDriven*> beside_;
-  double last_time_{ -HUGE_VAL };  // that counted [s]
 };
 
 using Trials = std::vector<std::unique_ptr<ArmTrial>>;
 
-void play(const PlayArmRows& rows, const Trials& trials)
+/// Their rates are the same for all.
+void play(const PlayArmRows& rows, const Trials& trials, std::size_t joints)
 {
+  ArmRates rates(joints);
+  double last_time = -HUGE_VAL;  // that counted [s]
+  const auto forward = [&](bool at_end)
+  {
+    while (const ArmSample* sample = rates.pop(at_end))
+    {
+      const double time = sample->own.front().time;
+      const bool counts = time >= last_time + ROW_PERIOD;
+      last_time = counts ? time : last_time;
+      for (const auto& trial : trials)
+      {
+        trial->add(*sample, counts);
+      }
+    }
+  };
   rows(
       [&](const std::vector<MotionRow>& of_one_time)
       {
-        for (const auto& trial : trials)
-        {
-          trial->push(of_one_time);
-        }
+        rates.push(of_one_time);
+        forward(false);
       });
-  for (const auto& trial : trials)
-  {
-    trial->end();
-  }
+  forward(true);
 }
 
 bool mayBeOther(const Misfit& misfit)
@@ -144,7 +147,7 @@ std::vector<ArmFit> rankArms(const std::vector<ArmCandidate>& candidates, const 
   {
     trials.push_back(std::make_unique<ArmTrial>(candidate, candidate.joints.front().telemetry.effort));
   }
-  play(rows, trials);
+  play(rows, trials, candidates.front().joints.size());
   Trials others;  // of another unit than configured
   for (std::size_t i = 0; i < candidates.size() && !unit_is_given; ++i)
   {
@@ -157,7 +160,7 @@ std::vector<ArmFit> rankArms(const std::vector<ArmCandidate>& candidates, const 
   }
   if (!others.empty())
   {
-    play(rows, others);
+    play(rows, others, candidates.front().joints.size());
   }
   std::vector<ArmFit> fits;
   auto other = others.begin();

@@ -127,30 +127,36 @@ void LoadFit::thin()
 }
 
 /// `load`: torques of units of mass, moments, gravity and drag [N.m].
-void LoadFit::addTo(Joint& joint, const MotionSample& sample, const MotionDriven& twin, const ArmEstimator::Load& load)
+void LoadFit::addTo(std::size_t number, const MotionSample& sample, const MotionDriven& twin,
+                    const ArmEstimator::Load& load)
 {
   constexpr double COLDER = 10.0;     // [K]
   constexpr double LEAST_LOAD = 0.1;  // [N.m]
+  Joint& joint = joints_[number];
   const double gain = joint.drive.gain;
   const double own = joint.drive.friction;
   const double temperature = sample.temperatureOr(joint.drive.temperature);
   const MotionPrediction now = twin.at(temperature);
+  ArmEstimator::Row& sum = joint.open.sum;
+  sum.current += sample.current;
+  sum.predicted += now.current + (own - 1.0) * now.friction_torque / gain;
+  sum.load += load / gain;
+  ++joint.open.count;
+  joint.loads += sample.load * sample.load;
+  joint.weights += load[0] * load[0];
+  if (blocks_[number] % stride_ != 0)
+  {
+    return;  // the block will not be kept
+  }
   const double of_mass = std::max(std::abs(load[0]), LEAST_LOAD);
   const double most = std::abs(sample.load) + of_mass;
   const double least = std::max(std::abs(sample.load) - of_mass, 0.0);
   const auto friction_at = [&](double size) { return std::abs(twin.frictionAt(sample.velocity, size, temperature)); };
-  ArmEstimator::Row& sum = joint.open.sum;
-  sum.current += sample.current;
-  sum.predicted += now.current + (own - 1.0) * now.friction_torque / gain;
   sum.friction += own * now.friction_torque / gain;
   sum.cold += own * (twin.at(temperature - COLDER).friction_torque - now.friction_torque) / gain;
   sum.torque += sample.load / gain;
   sum.inertia += joint.drive.rotor * sample.acceleration / gain;
   sum.rise += own * (friction_at(most) - friction_at(least)) / (most - least);
-  sum.load += load / gain;
-  ++joint.open.count;
-  joint.loads += sample.load * sample.load;
-  joint.weights += load[0] * load[0];
 }
 
 void LoadFit::add(const std::vector<MotionSample>& samples, const std::vector<const MotionDriven*>& twins)
@@ -193,7 +199,7 @@ void LoadFit::add(const std::vector<MotionSample>& samples, const std::vector<co
       block = { {}, 0, time, sample.velocity };
       block.sum.leg = legs_.size() - 1;
     }
-    addTo(joints_[i], sample, *twins[i], torques_.row(static_cast<Eigen::Index>(i)).transpose());
+    addTo(i, sample, *twins[i], torques_.row(static_cast<Eigen::Index>(i)).transpose());
   }
   thin();
 }

@@ -96,7 +96,7 @@ private:
   static std::vector<FrictionDoubt> doubtsOf(const std::vector<Hypothesis>& all);
   void cutLegs(double time, double speed);
   std::vector<double> repeats() const;
-  static void addTo(Joint& joint, const MotionSample& sample, const MotionDriven& twin, const ArmEstimator::Load& load);
+  void addTo(std::size_t number, const MotionSample& sample, const MotionDriven& twin, const ArmEstimator::Load& load);
   void close(std::size_t joint, double time);
   void thin();
   ArmEstimator::Rows rowsOf(const std::vector<bool>& counts, std::size_t most) const;

@@ -23,6 +23,7 @@ LoadWatch::LoadWatch(const ArmDescription& arm, const std::vector<Parameters>& j
 void LoadWatch::reset()
 {
   start(isTrying() ? TRIAL : FIRST_LOOK);
+  doubts_.clear();
 }
 
 void LoadWatch::start(double first_look)
@@ -35,17 +36,23 @@ void LoadWatch::start(double first_look)
 
 void LoadWatch::add(const ArmSample& sample)
 {
+  const double time = sample.joints.front().time;
+  const bool counts = time >= last_time_ + PERIOD;
   samples_ = sample.joints;
   for (std::size_t i = 0; i < samples_.size(); ++i)
   {
     samples_[i].load = sample.torques[i];
     samples_[i].after_gap = samples_[i].after_gap || is_new_;
-    twins_[i].step(samples_[i]);
+    twins_[i].move(samples_[i]);
+    if (counts)
+    {
+      twins_[i].bear(samples_[i]);
+    }
   }
   is_new_ = false;
-  if (samples_.front().time >= last_time_ + PERIOD)
+  if (counts)
   {
-    last_time_ = samples_.front().time;
+    last_time_ = time;
     fit_->add(samples_, beside_);
   }
 }

@@ -16,13 +16,16 @@ Eigen::Vector3d vectorOf(const std::array<double, 3>& values)
 }  // namespace
 
 UnitLoads::UnitLoads(const ArmDescription& arm)
-  : joints_(arm.joints.size()), payload_(arm.payload), gravity_(vectorOf(arm.gravity))
+  : joints_(arm.joints.size()), payload_(arm.payload), gravity_(vectorOf(arm.gravity)), drag_(arm.drag)
 {
   for (const ArmLink& link : arm.links)
   {
+    const std::array<double, 6>& i = link.inertia;
+    Eigen::Matrix3d inertia;
+    inertia << i[0], i[3], i[4], i[3], i[1], i[5], i[4], i[5], i[2];
     links_.push_back({ link.motion, vectorOf(link.axis), vectorOf(link.origin), vectorOf(link.position),
                        Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(link.rotation.data()), link.mass,
-                       vectorOf(link.centre) });
+                       vectorOf(link.centre), inertia });
   }
 }
 
@@ -68,39 +71,70 @@ void UnitLoads::follow(const Link& link, const JointMotion& motion, Motion& at)
   at.orientation *= link.rotation;
 }
 
-/// The tip's motion; leaves in each joint where it is and what it carries.
-UnitLoads::Motion UnitLoads::walk(const std::vector<JointMotion>& motion)
+/// The tip's motion; leaves in each joint where it is. `visit`: is given the motion of each body, the payload the last,
+/// and the number of joints before it.
+template <class Visit>
+UnitLoads::Motion UnitLoads::walk(const std::vector<JointMotion>& motion, const Visit& visit)
 {
   Motion at;
   std::size_t joint = 0;
-  const auto carry = [&](double mass, const Eigen::Vector3d& centre)
-  {
-    const Eigen::Vector3d moment = mass * (at.place + at.orientation * centre);
-    for (std::size_t i = 0; i < joint; ++i)
-    {
-      joints_[i].mass += mass;
-      joints_[i].moment += moment;
-    }
-  };
   for (const Link& link : links_)
   {
     const bool moves = link.motion != LinkMotion::FIXED;
     if (moves)
     {
-      joints_[joint] = { link.motion == LinkMotion::TURNS, at.orientation * link.axis,
-                         at.place + at.orientation * link.origin, 0.0, Eigen::Vector3d::Zero() };
+      joints_[joint] = {
+        link.motion == LinkMotion::TURNS, at.orientation * link.axis, at.place + at.orientation * link.origin, 0.0,
+        Eigen::Vector3d::Zero(),          Eigen::Vector3d::Zero()
+      };
     }
     follow(link, moves ? motion[joint] : JointMotion{}, at);
     joint += moves ? 1 : 0;
-    carry(link.mass, link.centre);
+    visit(at, joint, link.mass, link.centre, link.inertia);
   }
-  carry(payload_.mass, vectorOf(payload_.centre));
+  visit(at, joint, payload_.mass, vectorOf(payload_.centre), Eigen::Matrix3d::Zero());
   return at;
 }
 
-void UnitLoads::torques(const std::vector<JointMotion>& motion, Eigen::MatrixXd& columns)
+void UnitLoads::own(const std::vector<JointMotion>& motion, std::vector<double>& torques) noexcept
 {
-  const Motion tip = walk(motion);
+  const auto bear = [&](const Motion& at, std::size_t joints, double mass, const Eigen::Vector3d& centre,
+                        const Eigen::Matrix3d& inertia)
+  {
+    if (joints > 0)
+    {
+      const Eigen::Vector3d arm = at.orientation * centre;
+      const Eigen::Vector3d force = mass * (at.acceleration + at.swing(arm) - gravity_);
+      const Eigen::Matrix3d about = at.orientation * inertia * at.orientation.transpose();
+      joints_[joints - 1].force += force;
+      joints_[joints - 1].moment +=
+          (at.place + arm).cross(force) + about * at.turning + at.speed.cross(about * at.speed);
+    }
+  };
+  const Motion tip = walk(motion, bear);
+  Eigen::Vector3d force = drag_ / std::hypot(tip.velocity.norm(), DRAG_SPEED) * tip.velocity;
+  Eigen::Vector3d moment = tip.place.cross(force);
+  for (std::size_t i = joints_.size(); i-- > 0;)
+  {
+    force += joints_[i].force;
+    moment += joints_[i].moment;
+    torques[i] = joints_[i].effort(force, Eigen::Vector3d::Zero(), moment);
+  }
+}
+
+void UnitLoads::torques(const std::vector<JointMotion>& motion, Eigen::MatrixXd& columns) noexcept
+{
+  const auto carry = [&](const Motion& at, std::size_t joints, double mass, const Eigen::Vector3d& centre,
+                         const Eigen::Matrix3d& /*inertia*/)
+  {
+    const Eigen::Vector3d moment = mass * (at.place + at.orientation * centre);
+    for (std::size_t i = 0; i < joints; ++i)
+    {
+      joints_[i].mass += mass;
+      joints_[i].moment += moment;
+    }
+  };
+  const Motion tip = walk(motion, carry);
   const Eigen::Vector3d of_mass = tip.acceleration - gravity_;
   const Eigen::Vector3d along = tip.velocity / std::hypot(tip.velocity.norm(), DRAG_SPEED);
   for (std::size_t i = 0; i < joints_.size(); ++i)

@@ -10,7 +10,8 @@
 
 namespace hjt
 {
-/// Torques at an arm's joints of unit payloads, of unit gravity and of a unit drag: all from one walk along the links.
+/// Torques at an arm's joints of its links, or of unit payloads, of unit gravity and of a unit drag: each from one walk
+/// along the links, as ArmDynamics to the rounding and in less time. After construction nothing throws or allocates.
 class UnitLoads
 {
 public:
@@ -20,7 +21,12 @@ public:
 
   /// Of mass and moments, of gravity along each axis of the base's frame, and of a force against the tip's motion, at
   /// each joint, by column [N.m/kg], [N.m/(kg.m)], [N.m/(m/s^2)], [N.m/N].
-  void torques(const std::vector<JointMotion>& motion, Eigen::MatrixXd& columns);
+  void torques(const std::vector<JointMotion>& motion, Eigen::MatrixXd& columns) noexcept;
+
+  /// Of links, payload and drag themselves, at each joint [N.m].
+  void own(const std::vector<JointMotion>& motion, std::vector<double>& torques) noexcept;
+
+  void setPayload(const Payload& payload) noexcept { payload_ = payload; }  ///< in place of the description's
 
 private:
   /// In the frames of an ArmLink.
@@ -33,6 +39,7 @@ private:
     Eigen::Matrix3d rotation;
     double mass{};
     Eigen::Vector3d centre;
+    Eigen::Matrix3d inertia;
   };
 
   /// In the base's frame.
@@ -42,7 +49,8 @@ private:
     Eigen::Vector3d axis;
     Eigen::Vector3d origin;
     double mass{};           // that it carries [kg]
-    Eigen::Vector3d moment;  // likewise, about the base [kg.m]
+    Eigen::Vector3d moment;  // of it [kg.m], or of the force on it [N.m], about the base
+    Eigen::Vector3d force;   // on it [N]
 
     /// Torque, or force along the axis, that a force at a place and a moment take.
     double effort(const Eigen::Vector3d& force, const Eigen::Vector3d& place, const Eigen::Vector3d& couple) const
@@ -68,12 +76,14 @@ private:
     }
   };
 
-  void follow(const Link& link, const JointMotion& motion, Motion& at);
-  Motion walk(const std::vector<JointMotion>& motion);
+  static void follow(const Link& link, const JointMotion& motion, Motion& at);
+  template <class Visit>
+  Motion walk(const std::vector<JointMotion>& motion, const Visit& visit);
 
   std::vector<Link> links_;
   std::vector<Joint> joints_;  // where the last walk found them
   Payload payload_;
   Eigen::Vector3d gravity_;
+  double drag_;
 };
 }  // namespace hjt

@@ -172,21 +172,29 @@ void readFaults(const std::string& source, const YAML::Node& list, ParameterMap&
   }
 }
 
-void readDocument(const std::string& source, const YAML::Node& root, ParameterMap& map)
+/// What a file says.
+struct Document
+{
+  std::string text;
+  ParameterMap values;
+  bool has_faults{};  // a list of them, which may be empty
+};
+
+Document readDocument(const std::string& source, const YAML::Node& root)
 {
   if (!root.IsMap())
   {
     fail(source, "expected `section: {key: value}`");
   }
-  ParameterMap read;
+  Document read;
   for (const auto& entry : root)
   {
     const std::string origin = originOf(source, entry.first);
     const std::string section = keyText(entry.first, origin);
     if (section == FAULTS && entry.second.IsSequence())
     {
-      eraseFaults(map);
-      readFaults(source, entry.second, read);
+      read.has_faults = true;
+      readFaults(source, entry.second, read.values);
       continue;
     }
     if (!entry.second.IsMap() || section == FAULTS)
@@ -195,12 +203,29 @@ void readDocument(const std::string& source, const YAML::Node& root, ParameterMa
       fail(origin, section + value + " must be " +
                        (section == FAULTS ? std::string("a list of ") + FAULT_FORM : "keys and values"));
     }
-    readSection(source, section, entry.second, read);
+    readSection(source, section, entry.second, read.values);
   }
-  for (auto& [key, value] : read)
+  return read;
+}
+
+Document parsedDocument(const std::string& path, const std::string& text)
+{
+  std::vector<YAML::Node> documents;
+  try
   {
-    map[key] = std::move(value);
+    documents = YAML::LoadAll(text);
   }
+  catch (const YAML::Exception& error)
+  {
+    fail(path + ":" + std::to_string(error.mark.line + 1), error.msg);
+  }
+  if (documents.size() != 1)
+  {
+    fail(path, "expected one YAML document, found " + std::to_string(documents.size()));
+  }
+  Document read = readDocument(path, documents.front());
+  read.text = text;
+  return read;
 }
 }  // namespace
 
@@ -226,20 +251,21 @@ void readYamlFile(const std::string& path, ParameterMap& map)
   {
     fail(path, "cannot be read: " + reason);
   }
-  std::vector<YAML::Node> documents;
-  try
+  // An arm's joints, and all arms, read the same files.
+  thread_local std::map<std::string, Document> known;
+  Document& document = known[path];
+  if (document.text != *text)
   {
-    documents = YAML::LoadAll(*text);
+    document = parsedDocument(path, *text);
   }
-  catch (const YAML::Exception& error)
+  if (document.has_faults)
   {
-    fail(path + ":" + std::to_string(error.mark.line + 1), error.msg);
+    eraseFaults(map);
   }
-  if (documents.size() != 1)
+  for (const auto& [key, value] : document.values)
   {
-    fail(path, "expected one YAML document, found " + std::to_string(documents.size()));
+    map[key] = value;
   }
-  readDocument(path, documents.front(), map);
 }
 
 void readDefaultConfiguration(const std::string& directory, ParameterMap& map)

@@ -3,10 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <map>
 
 #include "base/number_text.hpp"
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
+#include "harmonic_joint_twin/params/parameter_map.hpp"
 #include "harmonic_joint_twin/statics/loss_analysis.hpp"
 #include "params/variants.hpp"
 
@@ -34,6 +37,26 @@ double largestLoad(const Parameters& parameters)
   }
   return largest;
 }
+
+/// Of a drive without errors. Joints of one arm, and of arms of one maker, have the same drives: known ones are kept.
+const std::vector<LossRow>& lossesOf(Parameters parameters, const std::vector<double>& loads)
+{
+  parameters.joint = {};
+  parameters.telemetry = {};  // of its use, not of the drive
+  parameters.comparison = {};
+  constexpr std::size_t MOST = 64;  // a fit asks for ever other drives
+  thread_local std::map<std::uint64_t, std::vector<LossRow>> known;
+  if (known.size() >= MOST)
+  {
+    known.clear();
+  }
+  std::vector<LossRow>& rows = known[parametersHash(parameters)];
+  if (rows.empty())
+  {
+    rows = analyseLosses(parameters, { SPEEDS.begin(), SPEEDS.end() }, loads, POSITIONS, {});
+  }
+  return rows;
+}
 }  // namespace
 
 FrictionMap::FrictionMap(const Parameters& parameters)
@@ -52,8 +75,7 @@ FrictionMap::FrictionMap(const Parameters& parameters)
   {
     loads.push_back(share * largest);
   }
-  const std::vector<double> speeds(hjt::SPEEDS.begin(), hjt::SPEEDS.end());
-  const std::vector<LossRow> rows = analyseLosses(withoutErrors(parameters), speeds, loads, POSITIONS, {});
+  const std::vector<LossRow>& rows = lossesOf(withoutErrors(parameters), loads);
   for (std::size_t i = 0; i < rows.size(); ++i)
   {
     const LossRow& row = rows[i];
@@ -79,7 +101,7 @@ FrictionMap::FrictionMap(const Parameters& parameters)
   }
 }
 
-FrictionShares FrictionMap::at(double motor_speed, double load, double temperature) const noexcept
+FrictionShares FrictionMap::atViscosity(double motor_speed, double load, double viscosity) const noexcept
 {
   const double speed = std::abs(motor_speed);
   const double size = std::clamp(std::abs(load), 0.0, lines_.back().load);
@@ -97,7 +119,7 @@ FrictionShares FrictionMap::at(double motor_speed, double load, double temperatu
 
   FrictionShares shares;
   shares.preload = preload_torque_;
-  shares.grease = bearing_.torque(speed, -race_preload_, temperature);
+  shares.grease = bearing_.torqueAtViscosity(speed, -race_preload_, viscosity);
   shares.flanks = (1.0 - v) * flanks(low) + v * flanks(high);
   shares.rest = (1.0 - v) * low.rest + v * high.rest;
   shares.stribeck = motor_.stribeckTorque(speed);

@@ -36,7 +36,14 @@ public:
 
   /// Friction at motor speed [rad/s], output load [N.m] and temperature [degC]; larger loads than tabled count as the
   /// largest.
-  FrictionShares at(double motor_speed, double load, double temperature) const noexcept;
+  FrictionShares at(double motor_speed, double load, double temperature) const noexcept
+  {
+    return atViscosity(motor_speed, load, viscosity(temperature));
+  }
+
+  /// The same where the viscosity [m^2/s] is known: it is the costly part, and the temperature hardly changes.
+  FrictionShares atViscosity(double motor_speed, double load, double viscosity) const noexcept;
+  double viscosity(double temperature) const noexcept { return bearing_.viscosity(temperature); }
 
 private:
   static constexpr std::size_t SPEEDS = 7;

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <Eigen/LU>
 
 namespace hjt
 {
@@ -76,7 +76,7 @@ MotionSample MotionDifferentiator::fit(std::uint64_t index) const noexcept
   {
     Eigen::Matrix3d normal;
     normal << rows, powers[0], powers[1], powers[0], powers[1], powers[2], powers[1], powers[2], powers[3];
-    const Eigen::Vector3d parabola = normal.ldlt().solve(Eigen::Vector3d(products[0], products[1], products[2]));
+    const Eigen::Vector3d parabola = normal.inverse() * Eigen::Vector3d(products[0], products[1], products[2]);
     sample.velocity = parabola[1] / half_width_;
     sample.acceleration = 2.0 * parabola[2] / (half_width_ * half_width_);
   }

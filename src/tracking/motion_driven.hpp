@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "elements/load.hpp"
 #include "elements/motor.hpp"
@@ -60,6 +63,13 @@ public:
 
   MotionPrediction step(const MotionSample& sample) noexcept
   {
+    move(sample);
+    return bear(sample);
+  }
+
+  /// The step without a prediction, whatever its load.
+  void move(const MotionSample& sample) noexcept
+  {
     if (!started_ || sample.after_gap)
     {
       presliding_.reset();
@@ -68,14 +78,40 @@ public:
     }
     presliding_.move(ratio_ * (sample.position - last_.position), sample.time - last_.time);
     last_ = sample;
-    return at(sample.temperatureOr(temperature_));
+    predicted_at_ = std::numeric_limits<double>::quiet_NaN();
+  }
+
+  /// The prediction for the last sample, now with its load and vibration.
+  MotionPrediction bear(const MotionSample& sample) noexcept
+  {
+    last_ = sample;
+    predicted_at_ = sample.temperatureOr(temperature_);
+    return predicted_ = predict(predicted_at_);
   }
 
   /// The prediction for the last sample, with the grease at a temperature [degC].
   MotionPrediction at(double temperature) const noexcept
   {
+    return temperature == predicted_at_ ? predicted_ : predict(temperature);
+  }
+
+  /// Of the joint's telemetry [A], [A/(N.m)].
+  double currentPerEffort() const noexcept { return current_per_effort_; }
+
+  /// Friction at the joint in steady motion at a speed [rad/s], load [N.m] and temperature [degC], >= 0 [N.m].
+  double frictionAt(double velocity, double load, double temperature) const noexcept
+  {
+    return ratio_ * friction_.atViscosity(ratio_ * velocity, load, viscosity(temperature)).sum();
+  }
+
+  /// Torque of the configured weight and inertia, for recordings without a load [N.m].
+  double modelledLoad(const MotionSample& sample) const noexcept { return ownTorque(load_, sample); }
+
+private:
+  MotionPrediction predict(double temperature) const noexcept
+  {
     const double share = presliding_.share();
-    const double friction = friction_.at(ratio_ * last_.velocity, last_.load, temperature).sum();
+    const double friction = friction_.atViscosity(ratio_ * last_.velocity, last_.load, viscosity(temperature)).sum();
     MotionPrediction prediction;
     prediction.friction_limit = ratio_ * friction;
     prediction.friction_torque = share * prediction.friction_limit;
@@ -86,19 +122,26 @@ public:
     return prediction;
   }
 
-  /// Of the joint's telemetry [A], [A/(N.m)].
-  double currentPerEffort() const noexcept { return current_per_effort_; }
-
-  /// Friction at the joint in steady motion at a speed [rad/s], load [N.m] and temperature [degC], >= 0 [N.m].
-  double frictionAt(double velocity, double load, double temperature) const noexcept
+  double viscosity(double temperature) const noexcept
   {
-    return ratio_ * friction_.at(ratio_ * velocity, load, temperature).sum();
+    if (known_[0].temperature != temperature)
+    {
+      std::swap(known_[0], known_[1]);
+    }
+    if (known_[0].temperature != temperature)
+    {
+      known_[0] = { temperature, friction_.viscosity(temperature) };
+    }
+    return known_[0].viscosity;
   }
 
-  /// Torque of the configured weight and inertia, for recordings without a load [N.m].
-  double modelledLoad(const MotionSample& sample) const noexcept { return ownTorque(load_, sample); }
+  /// Of the grease.
+  struct Viscosity
+  {
+    double temperature{ std::numeric_limits<double>::quiet_NaN() };
+    double viscosity{};
+  };
 
-private:
   FrictionMap friction_;
   Presliding presliding_;
   TorqueRipple ripple_;
@@ -109,6 +152,9 @@ private:
   double temperature_;  // of samples without one [degC]
   double current_per_effort_;
   MotionSample last_;
+  MotionPrediction predicted_;  // for it, at this temperature; NaN: not known
+  mutable std::array<Viscosity, 2> known_;
+  double predicted_at_{ std::numeric_limits<double>::quiet_NaN() };
   bool started_{};
 };
 }  // namespace hjt

@@ -52,6 +52,20 @@ protected:
     return motion;
   }
 
+  /// Twenty motions of an arm, with the torques of its unit loads.
+  static void inPoses(const ArmDescription& arm, bool at_rest,
+                      const std::function<void(const std::vector<JointMotion>&, const Eigen::MatrixXd&)>& visit)
+  {
+    UnitLoads unit(arm);
+    Eigen::MatrixXd columns(6, 8);
+    for (int pose = 0; pose < 20; ++pose)
+    {
+      const std::vector<JointMotion> motion = motionOfPose(pose, at_rest);
+      unit.torques(motion, columns);
+      visit(motion, columns);
+    }
+  }
+
   /// Column by column: torques of `with` less those of `without`, by `share`.
   static void expectColumn(const Eigen::MatrixXd& columns, Eigen::Index column, const std::vector<double>& with,
                            const std::vector<double>& without, double share)
@@ -67,13 +81,9 @@ protected:
   /// A payload's torques are linear in its mass and moments, but for its inertia, which both sides of a centre share.
   static void expectPayloads(const ArmDescription& arm)
   {
-    UnitLoads unit(arm);
     ArmDynamics dynamics(arm);
-    Eigen::MatrixXd columns(6, 8);
-    for (int pose = 0; pose < 20; ++pose)
+    const auto expect = [&](const std::vector<JointMotion>& motion, const Eigen::MatrixXd& columns)
     {
-      const std::vector<JointMotion> motion = motionOfPose(pose, false);
-      unit.torques(motion, columns);
       const auto torques = [&](const Payload& payload)
       {
         std::vector<double> found(motion.size());
@@ -91,9 +101,38 @@ protected:
         expectColumn(columns, 1 + static_cast<Eigen::Index>(axis), torques({ MASS, centre }),
                      torques({ MASS, opposite }), 2.0 * MASS);
       }
-    }
+    };
+    inPoses(arm, false, expect);
   }
 };
+
+/// Of links whose torques are some hundred N.m, with all that a description may have.
+TEST_F(UnitLoadsOf, TheArmsOwnAreTheRecursions)
+{
+  for (const LinkMotion third : { LinkMotion::TURNS, LinkMotion::SLIDES })
+  {
+    ArmDescription arm = shipped("ur5");
+    std::find_if(arm.links.begin() + 2, arm.links.end(),
+                 [](const ArmLink& link) { return link.motion == LinkMotion::TURNS; })
+        ->motion = third;
+    arm.gravity = { 1.0, -3.0, -9.0 };
+    arm.drag = 20.0;
+    UnitLoads unit(arm);
+    ArmDynamics dynamics(arm);
+    for (const Payload& payload : { Payload{}, Payload{ 3.0, { 0.05, -0.02, 0.1 } } })
+    {
+      unit.setPayload(payload);
+      dynamics.setPayload(payload);
+      for (int pose = 0; pose < 20; ++pose)
+      {
+        const std::vector<JointMotion> motion = motionOfPose(pose, false);
+        std::vector<double> found(motion.size());
+        unit.own(motion, found);
+        EXPECT_THAT(found, testing::Pointwise(testing::DoubleNear(1e-10), torquesOf(dynamics, motion)));
+      }
+    }
+  }
+}
 
 TEST_F(UnitLoadsOf, PayloadsAreTheirsToTheRounding)
 {
@@ -111,22 +150,18 @@ TEST_F(UnitLoadsOf, GravityIsThatOfLinksAndPayload)
   constexpr double MOST = 1000.0;  // [m/s^2]
   ArmDescription arm = shipped("ur5");
   arm.payload = { 3.0, { 0.05, -0.02, 0.1 } };
-  UnitLoads unit(arm);
-  EXPECT_NEAR(unit.linksMass() + 3.0, ArmDynamics(arm).mass(), 1e-12);
-  Eigen::MatrixXd columns(6, 8);
+  EXPECT_NEAR(UnitLoads(arm).linksMass() + 3.0, ArmDynamics(arm).mass(), 1e-12);
   for (std::size_t axis = 0; axis < 3; ++axis)
   {
     arm.gravity = {};
     arm.gravity[axis] = MOST;
     ArmDynamics dynamics(arm);
-    for (int pose = 0; pose < 20; ++pose)
-    {
-      const std::vector<JointMotion> motion = motionOfPose(pose, true);
-      unit.torques(motion, columns);
-      std::vector<double> torques(motion.size());
-      dynamics.torques(motion, torques);
-      expectColumn(columns, 4 + static_cast<Eigen::Index>(axis), torques, std::vector<double>(motion.size()), MOST);
-    }
+    inPoses(arm, true,
+            [&](const std::vector<JointMotion>& motion, const Eigen::MatrixXd& columns)
+            {
+              expectColumn(columns, 4 + static_cast<Eigen::Index>(axis), torquesOf(dynamics, motion),
+                           std::vector<double>(motion.size()), MOST);
+            });
   }
 }
 
@@ -135,13 +170,9 @@ TEST_F(UnitLoadsOf, ADragTakesThePowerOfItsForce)
 {
   constexpr double STEP = 1e-6;  // [s]
   const ArmDescription arm = shipped("ur5");
-  UnitLoads unit(arm);
   ArmDynamics dynamics(arm);
-  Eigen::MatrixXd columns(6, 8);
-  for (int pose = 0; pose < 20; ++pose)
+  const auto expect = [&](const std::vector<JointMotion>& motion, const Eigen::MatrixXd& columns)
   {
-    const std::vector<JointMotion> motion = motionOfPose(pose, false);
-    unit.torques(motion, columns);
     std::vector<JointMotion> later = motion;
     std::vector<JointMotion> before = motion;
     double power = 0.0;
@@ -154,7 +185,8 @@ TEST_F(UnitLoadsOf, ADragTakesThePowerOfItsForce)
     const Eigen::Vector3d there(dynamics.toolPose(later).position.data());
     const double speed = (there - Eigen::Vector3d(dynamics.toolPose(before).position.data())).norm() / (2.0 * STEP);
     EXPECT_NEAR(power, speed * speed / std::hypot(speed, DRAG_SPEED), 1e-7 * speed);
-  }
+  };
+  inPoses(arm, false, expect);
 }
 
 /// A drag of the description is so many times the unit's.
@@ -164,16 +196,11 @@ TEST_F(UnitLoadsOf, ADragIsTheRecursionsToo)
   const ArmDescription arm = shipped("ur5");
   ArmDescription dragged = arm;
   dragged.drag = FORCE;
-  UnitLoads unit(arm);
   ArmDynamics without(arm);
   ArmDynamics with(dragged);
-  Eigen::MatrixXd columns(6, 8);
-  for (int pose = 0; pose < 20; ++pose)
-  {
-    const std::vector<JointMotion> motion = motionOfPose(pose, false);
-    unit.torques(motion, columns);
-    expectColumn(columns, 7, torquesOf(with, motion), torquesOf(without, motion), FORCE);
-  }
+  inPoses(arm, false,
+          [&](const std::vector<JointMotion>& motion, const Eigen::MatrixXd& columns)
+          { expectColumn(columns, 7, torquesOf(with, motion), torquesOf(without, motion), FORCE); });
 }
 
 TEST(ArmLoad, FollowsASwingWithUnevenRowsAndAGap)
