@@ -11,8 +11,16 @@ namespace hjt
 {
 namespace
 {
-constexpr std::size_t KEPT = 256;    // states over a pitch
+constexpr int KEPT = 256;            // states over a pitch
 constexpr double MAX_PITCHES = 1e9;  // counted as an int
+
+constexpr int VECTORS = 3;  // of a kept state
+
+/// Of the kept state in whose part of the pitch it is.
+int placeOf(double pitches) noexcept
+{
+  return std::min(static_cast<int>((pitches - std::floor(pitches)) * KEPT), KEPT - 1);
+}
 
 /// `number` less a multiple of `size`: 0 ... size - 1.
 int wrapped(int number, int size) noexcept
@@ -21,20 +29,14 @@ int wrapped(int number, int size) noexcept
 }
 }  // namespace
 
-RingPrediction::Kept::Kept(const RingModel& model)
-  : points(model.rest.teeth())
-  , by_wave_generator(points)
-  , by_output(points)
-  , space(static_cast<std::size_t>(model.rest.teeth()))
-{
-}
-
 RingPrediction::RingPrediction(const RingModel& model)
   : model_(&model)
   , pitch_cos_(std::cos(model.rest.pitchAngle()))
   , pitch_sin_(std::sin(model.rest.pitchAngle()))
   , pitch_output_angle_(model.rest.pitchAngle() - TWO_PI / model.gear.teeth_circular_spline)
-  , kept_(KEPT, Kept(model))
+  , kept_(KEPT)
+  , kept_vectors_(model.rest.teeth(), VECTORS * KEPT)
+  , kept_spaces_(model.rest.teeth(), KEPT)
   , guess_(model.rest.points())
   , guess_error_(Eigen::VectorXd::Zero(2 * model.rest.teeth()))
   , scratch_(guess_)
@@ -79,12 +81,6 @@ void RingPrediction::forget() noexcept
   }
 }
 
-RingPrediction::Kept& RingPrediction::keptAt(double pitches) noexcept
-{
-  const double part = pitches - std::floor(pitches);
-  return kept_[std::min(static_cast<std::size_t>(part * KEPT), KEPT - 1)];
-}
-
 void RingPrediction::keep(const RingState& state) noexcept
 {
   const double pitches = state.position.wave_generator_angle / model_->rest.pitchAngle();
@@ -93,7 +89,8 @@ void RingPrediction::keep(const RingState& state) noexcept
     return;
   }
   constexpr double SAME_TWIST = 1e-7;  // rad
-  Kept& kept = keptAt(pitches);
+  const int place = placeOf(pitches);
+  Kept& kept = kept_[static_cast<std::size_t>(place)];
   if (kept.known &&
       std::abs(state.position.wave_generator_angle - kept.position.wave_generator_angle) * KEPT <
           model_->rest.pitchAngle() &&
@@ -101,15 +98,15 @@ void RingPrediction::keep(const RingState& state) noexcept
   {
     return;  // hardly moved
   }
-  const Eigen::Index half = kept.points.size();
   kept.known = true;
   kept.position = state.position;
-  kept.points = state.shape.points.head(half);
-  kept.by_wave_generator = state.by_wave_generator.head(half);
-  kept.by_output = state.by_output.head(half);
   kept.stiffness = state.stiffness;
   kept.cup_stiffness = state.cup_stiffness;
-  kept.space = state.shape.space;
+  auto vectors = kept_vectors_.middleCols<VECTORS>(static_cast<Eigen::Index>(VECTORS) * place);
+  vectors.col(0) = state.shape.points.head(vectors.rows());
+  vectors.col(1) = state.by_wave_generator.head(vectors.rows());
+  vectors.col(2) = state.by_output.head(vectors.rows());
+  std::copy(state.shape.space.begin(), state.shape.space.end(), kept_spaces_.col(place).data());
 }
 
 /// Of the output against the wave generator at the nominal ratio [rad].
@@ -132,7 +129,8 @@ bool RingPrediction::guessFromKept(const DrivePosition& target, RingState& state
   {
     return false;
   }
-  const Kept& kept = keptAt(pitches);
+  const int place = placeOf(pitches);
+  const Kept& kept = kept_[static_cast<std::size_t>(place)];
   if (!kept.known || !(std::abs(twistSince(kept, target)) < NEAR_TWIST))
   {
     return false;
@@ -144,17 +142,18 @@ bool RingPrediction::guessFromKept(const DrivePosition& target, RingState& state
   const int places = wrapped(whole, 2 * half);
   const double sign = places < half ? 1.0 : -1.0;
   const double angle = whole * pitch;
-  from_ = { &kept, places % half, sign * std::cos(angle), sign * std::sin(angle) };
+  from_ = { place, places % half, sign * std::cos(angle), sign * std::sin(angle) };
   turnKept({ 1.0, (away - whole) * pitch, rest }, half, state.shape.points);
-  turnSpaces(kept.space, whole, state.shape.space);
+  turnSpaces(kept_spaces_.col(place).data(), whole, state.shape.space);
   return true;
 }
 
 void RingPrediction::turnKept(const ring_vectors::Combination::Factors& factors, int half,
                               Eigen::VectorXd& result) const noexcept
 {
-  const Kept& kept = *from_.kept;
-  ring_vectors::turnHalf({ kept.points, kept.by_wave_generator, kept.by_output }, factors, from_.places, from_.cosine,
+  const Eigen::Index size = kept_vectors_.rows();
+  const double* vectors = kept_vectors_.data() + VECTORS * size * from_.kept;
+  ring_vectors::turnHalf({ vectors, vectors + size, vectors + 2 * size }, factors, from_.places, from_.cosine,
                          from_.sine, result, half);
 }
 
@@ -164,8 +163,9 @@ void RingPrediction::takeKeptRates(RingState& state) const noexcept
   turnKept({ 0.0, 0.0, 1.0 }, state.shape.solved, state.by_output);
   repeatHalfTurned(state.by_wave_generator);
   repeatHalfTurned(state.by_output);
-  state.stiffness = from_.kept->stiffness;
-  state.cup_stiffness = from_.kept->cup_stiffness;
+  const Kept& kept = kept_[static_cast<std::size_t>(from_.kept)];
+  state.stiffness = kept.stiffness;
+  state.cup_stiffness = kept.cup_stiffness;
 }
 
 void RingPrediction::guess(const DrivePosition& target, RingState& state) noexcept
@@ -186,7 +186,7 @@ void RingPrediction::guess(const DrivePosition& target, RingState& state) noexce
     const double start_slope = sense * u * (1.0 - u) * (1.0 - u);
     const double end_slope = -sense * u * u * (1.0 - u);
     const double rest = target.output_angle - state.position.output_angle - sense * u * pitch_output_angle_;
-    ring_vectors::addTurned({ state.shape.points, state.by_wave_generator, state.by_output },
+    ring_vectors::addTurned({ state.shape.points.data(), state.by_wave_generator.data(), state.by_output.data() },
                             { 1.0 - blend, start_slope * pitch, start_slope * pitch_output_angle_ + rest },
                             { blend, end_slope * pitch, end_slope * pitch_output_angle_ },
                             wrapped(sense, state.shape.teeth()), pitch_cos_, sense * pitch_sin_, scratch_,
@@ -194,7 +194,7 @@ void RingPrediction::guess(const DrivePosition& target, RingState& state) noexce
     state.shape.points.swap(scratch_);
     if (u > 0.5)
     {
-      turnSpaces(state.shape.space, sense, old_space_);  // the copy is the nearer one
+      turnSpaces(state.shape.space.data(), sense, old_space_);  // the copy is the nearer one
       state.shape.space.swap(old_space_);
     }
   }
@@ -215,7 +215,7 @@ void RingPrediction::shift(int pitches, RingState& state) noexcept
     turn(*values, pitches, scratch_);
     values->swap(scratch_);
   }
-  turnSpaces(state.shape.space, pitches, old_space_);
+  turnSpaces(state.shape.space.data(), pitches, old_space_);
   state.shape.space.swap(old_space_);
   state.position.wave_generator_angle += pitches * model_->rest.pitchAngle();
   state.position.output_angle += pitches * pitch_output_angle_;
@@ -229,12 +229,13 @@ void RingPrediction::turn(const Eigen::VectorXd& values, int pitches, Eigen::Vec
 }
 
 /// The spaces turned likewise.
-void RingPrediction::turnSpaces(const std::vector<int>& space, int pitches, std::vector<int>& turned) const noexcept
+void RingPrediction::turnSpaces(const int* space, int pitches, std::vector<int>& turned) const noexcept
 {
   const int spaces = model_->gear.teeth_circular_spline;
   const int places = wrapped(pitches, model_->rest.teeth());
   const int further = wrapped(pitches, spaces);
-  std::rotate_copy(space.begin(), space.end() - places, space.end(), turned.begin());
+  const std::ptrdiff_t teeth = model_->rest.teeth();
+  std::rotate_copy(space, space + teeth - places, space + teeth, turned.begin());
   for (int& one : turned)
   {
     one += one + further < spaces ? further : further - spaces;

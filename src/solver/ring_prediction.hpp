@@ -32,7 +32,7 @@ public:
   void forget() noexcept;
 
   /// The last guess started from a state that was kept: the rates of `state` are not of its teeth.
-  bool fromKept() const noexcept { return from_.kept != nullptr; }
+  bool fromKept() const noexcept { return from_.kept >= 0; }
 
   /// Gives `state` those of the kept state that the last guess started from, and its stiffness.
   void takeKeptRates(RingState& state) const noexcept;
@@ -41,44 +41,41 @@ public:
   void keep(const RingState& state) noexcept;
 
 private:
-  /// A solved state.
+  /// A solved state, but for its points, rates and spaces.
   struct Kept
   {
-    explicit Kept(const RingModel& model);
-
     bool known{ false };
     DrivePosition position;
-    Eigen::VectorXd points;  // of the first half of the teeth
-    Eigen::VectorXd by_wave_generator;
-    Eigen::VectorXd by_output;
     Eigen::Matrix2d stiffness;
     double cup_stiffness{};
-    std::vector<int> space;  // of all
   };
   /// A kept state turned by whole pitches.
   struct Source
   {
-    const Kept* kept{};  // null: none
-    int places{};        // of the half ring's teeth
+    int kept{ -1 };  // -1: none
+    int places{};    // of the half ring's teeth
     double cosine{};
     double sine{};
   };
-  Kept& keptAt(double pitches) noexcept;
   double twistSince(const Kept& kept, const DrivePosition& position) const noexcept;
   bool guessFromKept(const DrivePosition& target, RingState& state) noexcept;
   void turnKept(const ring_vectors::Combination::Factors& factors, int half, Eigen::VectorXd& result) const noexcept;
   void guess(const DrivePosition& target, RingState& state) noexcept;
   void shift(int pitches, RingState& state) noexcept;
   void turn(const Eigen::VectorXd& values, int pitches, Eigen::VectorXd& turned) const noexcept;
-  void turnSpaces(const std::vector<int>& space, int pitches, std::vector<int>& turned) const noexcept;
+  void turnSpaces(const int* space, int pitches, std::vector<int>& turned) const noexcept;
 
   const RingModel* model_;
   double pitch_cos_;
   double pitch_sin_;
   double pitch_output_angle_;  // the output's turn that renumbers the spaces along with one tooth pitch [rad]
   bool guessed_{ false };
-  Source from_;                  // of the last guess
-  std::vector<Kept> kept_;       // over one pitch
+  Source from_;             // of the last guess
+  std::vector<Kept> kept_;  // over one pitch
+  // Of a state that is known, else not set: points of the first half of the teeth and their rates by wave generator and
+  // by output, a column each; spaces of all teeth.
+  Eigen::MatrixXd kept_vectors_;
+  Eigen::MatrixXi kept_spaces_;
   Eigen::VectorXd guess_;        // the last, not corrected
   Eigen::VectorXd guess_error_;  // of the one before
   // Scratch, sized once.

@@ -88,9 +88,9 @@ HJT_VECTOR_CLONES void turnHalf(const Combination& vectors, const Combination::F
 {
   const auto part = [&](int begin, int end, int shift, double sign)
   {
-    const double* __restrict__ va = vectors.a.data();
-    const double* __restrict__ vb = vectors.b.data();
-    const double* __restrict__ vc = vectors.c.data();
+    const double* __restrict__ va = vectors.a;
+    const double* __restrict__ vb = vectors.b;
+    const double* __restrict__ vc = vectors.c;
     double* __restrict__ to = result.data() + 2 * static_cast<Eigen::Index>(shift);
     const double fa = factors.a;
     const double fb = factors.b;
@@ -117,9 +117,9 @@ HJT_VECTOR_CLONES void addTurned(const Combination& vectors, const Combination::
   const Eigen::Index n = result.size() / 2;
   const auto part = [&](Eigen::Index begin, Eigen::Index end, Eigen::Index shift)
   {
-    const double* __restrict__ va = vectors.a.data();
-    const double* __restrict__ vb = vectors.b.data();
-    const double* __restrict__ vc = vectors.c.data();
+    const double* __restrict__ va = vectors.a;
+    const double* __restrict__ vb = vectors.b;
+    const double* __restrict__ vc = vectors.c;
     double* __restrict__ to = result.data();
     const double ha = here.a;
     const double hb = here.b;

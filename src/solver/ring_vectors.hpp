@@ -27,9 +27,9 @@ void turn(const Eigen::VectorXd& values, int places, double c, double s, Eigen::
 /// A sum of three vectors with a factor each.
 struct Combination
 {
-  const Eigen::VectorXd& a;
-  const Eigen::VectorXd& b;
-  const Eigen::VectorXd& c;
+  const double* a;
+  const double* b;
+  const double* c;
 
   struct Factors
   {

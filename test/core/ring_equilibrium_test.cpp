@@ -294,8 +294,8 @@ TEST(RingVectors, AddASumThatIsTurned)
   for (const int places : { 1, 4, 11 })
   {
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(2 * TEETH);
-    ring_vectors::addTurned({ a, b, c }, { 1.0, 2.0, 3.0 }, { 4.0, 5.0, 6.0 }, places, std::cos(ANGLE), std::sin(ANGLE),
-                            sum, SOLVED);
+    ring_vectors::addTurned({ a.data(), b.data(), c.data() }, { 1.0, 2.0, 3.0 }, { 4.0, 5.0, 6.0 }, places,
+                            std::cos(ANGLE), std::sin(ANGLE), sum, SOLVED);
     for (int i = 0; i < SOLVED; ++i)
     {
       const int from = (i - places + TEETH) % TEETH;
