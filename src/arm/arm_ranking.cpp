@@ -34,17 +34,9 @@ class ArmTrial
 public:
   ArmTrial(const ArmCandidate& candidate, EffortUnit unit) : ArmTrial(candidate, withUnit(candidate.joints, unit)) {}
 
-  /// `sample`: with efforts for currents, and without torques. `counts`: else the motion alone.
+  /// `sample`: with efforts for currents, and without torques. `counts`: for the fit of the load.
   void add(const ArmSample& sample, bool counts)
   {
-    for (std::size_t i = 0; i < twins_.size(); ++i)
-    {
-      twins_[i].move(sample.own[i]);
-    }
-    if (!counts)
-    {
-      return;
-    }
     sample_ = sample;
     for (std::size_t i = 0; i < twins_.size(); ++i)
     {
@@ -54,10 +46,17 @@ public:
     fit_.update(sample_.joints, sample_.torques);
     for (std::size_t i = 0; i < twins_.size(); ++i)
     {
+      twins_[i].move(sample_.own[i]);
       sample_.own[i].load = sample_.torques[i];
-      twins_[i].bear(sample_.own[i]);
+      if (counts)
+      {
+        twins_[i].bear(sample_.own[i]);
+      }
     }
-    load_fit_.add(sample_.own, beside_);
+    if (counts)
+    {
+      load_fit_.add(sample_.own, beside_);
+    }
   }
 
   ArmFit fit()
