@@ -109,9 +109,9 @@ void visitSolver(P& p, Visitor& visit)
   visit("solver.force_tolerance", "N", p.solver.force_tolerance, Range{ 1e-9, 1.0 },
         ofOthers("largest out-of-balance force on any tooth; ten times that in a step of motion"));
   visit("solver.max_iterations", "-", p.solver.max_iterations, Range{ 1, 1000 },
-        ofOthers("Newton iterations per attempt"));
+        ofOthers("Newton iterations per attempt; 20 for a response surface"));
   visit("solver.max_step_cuts", "-", p.solver.max_step_cuts, Range{ 0, 30 },
-        ofOthers("halvings of a step that does not converge"));
+        ofOthers("halvings of a step that does not converge; 8 for a response surface"));
   visit("solver.stiction_velocity", "rad/s", p.solver.stiction_velocity, Range{ 1e-12, 1e3 },
         ofOthers("motor speed below which friction is regularised"));
   visit("solver.scene", p.solver.scene,

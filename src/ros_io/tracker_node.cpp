@@ -363,6 +363,7 @@ void TrackerNode::look()
 {
   const std::lock_guard<std::mutex> lock(mutex_);
   const ros::WallTime now = ros::WallTime::now();
+  lookAtArm();
   judge(now);
   for (const auto& joint : joints_)
   {

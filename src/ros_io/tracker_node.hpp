@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -61,6 +62,8 @@ private:
   void take(const ArmSample& sample);
   void follow(const std::vector<MotionRow>& rows);
   void watchArm(const std::vector<MotionRow>& rows);
+  void lookAtArm();
+  void tryOnArm(const std::function<void()>& act);
   void resetFit();
   void restart();
   void lookAtFriction(double time);
@@ -68,6 +71,7 @@ private:
   JudgedJoints judgedJoints() const;
   std::string sinceText(double since) const;
   void updateFit(const ArmSample& sample);
+  void lookAtFit();
   void judge(const ros::WallTime& now);
   void look();
   void missTelemetry();

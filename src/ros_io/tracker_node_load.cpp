@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -45,6 +46,12 @@ void TrackerNode::updateFit(const ArmSample& sample)
     return;
   }
   next_fit_ = time + FIT_PERIOD;
+  lookAtFit();
+}
+
+/// What fits and what does not, of the rows so far.
+void TrackerNode::lookAtFit()
+{
   const bool settled = fit_->isSettled() && (!load_ || load_->isSettled()) && (!arm_ || arm_->isSettled());
   std::vector<Misfit> misfits = fit_->whyNotJudged();
   if (arm_ && !arm_->other().empty())
@@ -61,7 +68,7 @@ void TrackerNode::updateFit(const ArmSample& sample)
   }
 }
 
-/// By the law of `joint_twin compare`.
+/// The rows that the ranking of arms is made of.
 void TrackerNode::watchArm(const std::vector<MotionRow>& rows)
 {
   if (!arm_)
@@ -73,15 +80,36 @@ void TrackerNode::watchArm(const std::vector<MotionRow>& rows)
   {
     efforts_[i].current /= joints_[i]->currentPerEffort();
   }
+  tryOnArm([this] { arm_->add(efforts_); });
+}
+
+/// By the law of `joint_twin compare`. Its answer counts when it comes, whether rows still come or not.
+void TrackerNode::lookAtArm()
+{
+  if (!arm_)
+  {
+    return;
+  }
   const std::string before = arm_->other();
+  bool is_answered = false;
+  tryOnArm([&] { is_answered = arm_->look(); });
+  if (arm_ && !is_answered)
+  {
+    return;
+  }
+  if (arm_ && arm_->other() != before)
+  {
+    ROS_WARN_STREAM((arm_->other().empty() ? "No other arm explains the currents clearly better any more" :
+                                             "Not judged: " + otherArmText(arm_->other())));
+  }
+  lookAtFit();
+}
+
+void TrackerNode::tryOnArm(const std::function<void()>& act)
+{
   try
   {
-    arm_->add(efforts_);
-    if (arm_->look() && arm_->other() != before)
-    {
-      ROS_WARN_STREAM((arm_->other().empty() ? "No other arm explains the currents clearly better any more" :
-                                               "Not judged: " + otherArmText(arm_->other())));
-    }
+    act();
   }
   catch (const std::exception& error)  // files of the arms, or no thread
   {

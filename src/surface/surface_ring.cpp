@@ -83,12 +83,14 @@ void groupFlanks(const FrictionTerms& terms, double velocity_ratio, double* grou
   }
 }
 
+/// The same for all drives: what stops a step of the joint in time does not stop a table, whose key does not hold it.
 /// Torques are then right to rounding: RingEquilibrium::torques adds what the forces that are left over change in them.
-SolverParameters solverOf(const SurfaceParameters& parameters)
+SolverParameters solverOfTables()
 {
-  constexpr double TOLERANCE = 1e-4;  // N
-  SolverParameters solver = parameters.solver;
-  solver.force_tolerance = TOLERANCE;
+  SolverParameters solver;
+  solver.force_tolerance = 1e-4;  // N
+  solver.max_iterations = 20;
+  solver.max_step_cuts = 8;
   return solver;
 }
 
@@ -108,7 +110,6 @@ SurfaceParameters::SurfaceParameters(const Parameters& of)
   , cup(of.cup)
   , motor(of.motor)
   , output(of.output)
-  , solver(of.solver)
   , input(of.input)
   , momentary_peak_torque(of.life.momentary_peak_torque)
 {
@@ -130,7 +131,7 @@ std::string tooManyPoints(const SurfaceParameters& parameters, std::size_t most)
 SurfaceRing::SurfaceRing(const SurfaceParameters& parameters, JointModel model)
   : model_(std::move(model))
   , unit_friction_(parameters.unit_friction, parameters.gear.teeth_flexspline)
-  , ring_(model_.ring, solverOf(parameters))
+  , ring_(model_.ring, solverOfTables())
   , friction_(parameters.gear.teeth_flexspline)
   , tooth_angles_(Eigen::VectorXd::LinSpaced(parameters.gear.teeth_flexspline, 0.0,
                                              (parameters.gear.teeth_flexspline - 1) * model_.ring.rest.pitchAngle()))

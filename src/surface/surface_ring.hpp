@@ -21,7 +21,6 @@ struct SurfaceParameters
   CupParameters cup;
   MotorParameters motor;
   OutputParameters output;
-  SolverParameters solver;
   InputParameters input;
   double momentary_peak_torque;  ///< [N.m]
 };

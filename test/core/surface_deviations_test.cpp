@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "solver/response_surface.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 #include <random>
+#include <string>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -12,9 +16,11 @@
 #include "gear/angle.hpp"
 #include "model/faults/joint_faults.hpp"
 #include "model/joint_model.hpp"
+#include "params/field_table.hpp"
 #include "surface/deviation_builder.hpp"
 #include "surface/deviation_rings.hpp"
 #include "surface/faulty_surface.hpp"
+#include "surface/parallel_tasks.hpp"
 #include "surface/surface_cache.hpp"
 #include "surface/surface_ring.hpp"
 #include "test/core/response_surface_support.hpp"
@@ -235,6 +241,59 @@ TEST(SurfaceDeviations, BitsDoNotDependOnTheNumberOfThreads)
     EXPECT_TRUE(one.pitches[i].nodes == three.pitches[i].nodes) << i;
   }
   EXPECT_GT(nodes, 0U);
+}
+
+/// Sets every number that no table depends on to another one within its range.
+struct SetOthers
+{
+  template <class Number>
+  void operator()(const std::string& /*key*/, const char* /*unit*/, Number& value, const Range& range,
+                  const Meaning& meaning) const
+  {
+    if (meaning.shapes == Shapes::OTHERS)
+    {
+      const double half = 0.5 * static_cast<double>(value);
+      value = static_cast<Number>(half == 0.0 ? std::min(1.0, range.max) : std::max(half, range.min));
+    }
+  }
+
+  template <std::size_t N>
+  void operator()(const std::string& /*key*/, const char* /*unit*/, std::array<double, N>& /*value*/,
+                  const Range& /*range*/, const Meaning& /*meaning*/) const
+  {
+  }
+
+  template <class Value>
+  void operator()(const std::string& /*key*/, Value& /*value*/, const Meaning& /*meaning*/) const
+  {
+  }
+};
+
+TEST(SurfaceDeviations, DependOnNoNumberThatTheKeyOfTheirFileDoesNotHold)
+{
+  const Parameters shipped = surfaceParameters();
+  Parameters others = shipped;
+  visitFields(others, SetOthers());
+  others.solver.max_iterations = 2;
+  ASSERT_EQ(describeSurfaceParameters(shipped, true), describeSurfaceParameters(others, true));
+  ASSERT_NE(shipped.motor.rotor_inertia, others.motor.rotor_inertia);
+  const auto built = [](const Parameters& parameters)
+  {
+    FaultList faults;
+    faults.set(parseFault(BROKEN_TOOTH, parameters), 0);
+    return buildDeviations(parameters, JointModel(parameters), JointFaults(parameters, faults).model(), 100, -1e-5,
+                           2e-5, {}, MAX_DEVIATION_POINTS, processors())
+        .table;
+  };
+  const DeviationTable one = built(shipped);
+  const DeviationTable other = built(others);
+  ASSERT_EQ(one.pitches.size(), 100U);
+  ASSERT_EQ(other.pitches.size(), 100U);
+  for (std::size_t i = 0; i < one.pitches.size(); ++i)
+  {
+    EXPECT_EQ(one.pitches[i].lines, other.pitches[i].lines);
+    EXPECT_TRUE(one.pitches[i].nodes == other.pitches[i].nodes) << i;
+  }
 }
 
 TEST(SurfaceDeviations, ComeFromTheCacheAsTheyWereBuilt)
