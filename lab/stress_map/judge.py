@@ -45,7 +45,7 @@ class Judged:
     seconds: float = 0.0
 
 
-def run(cell, step, advance=0.0):
+def run(cell, step):
     """(exit code, document or None, text on stderr) of a run in steps of `step` [s], `run.py`."""
     rate = 1e9 / round(step * 1e9)
     least = min(rate, 1000.0)
@@ -55,7 +55,7 @@ def run(cell, step, advance=0.0):
     faults = ([f"tooth_root_crack:1:{tooth}" for tooth in cell.missing] +
               [f"flexspline_crack:1:{tooth}" for tooth in cell.cut])
     asked = {"changes": changes, "faults": faults, "drive": cell.drive, "duration": DURATION,
-             "sample_period": max(step, SAMPLE_PERIOD), "advance": advance}
+             "sample_period": max(step, SAMPLE_PERIOD)}
     program = os.path.join(os.path.dirname(os.path.abspath(__file__)), "run.py")
     done = subprocess.run([sys.executable, program], input=json.dumps(asked), capture_output=True, text=True,
                           timeout=TIMEOUT, check=False)
@@ -111,7 +111,7 @@ def _judge(cell):
     finer, fine = converged_steps(cell.step, judged.phase * document["substeps"])
     runs = []
     for step in (finer, fine):
-        _, finer_run, why = run(cell, step, max(0.0, 0.5 * (cell.step - step)))
+        _, finer_run, why = run(cell, step)
         if finer_run is None:
             judged.verdict, judged.reason = CRASHED, f"the converged run was refused: {why}"
             return judged

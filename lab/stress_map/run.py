@@ -11,22 +11,22 @@ import harmonic_joint_twin as hjt
 SAMPLED = ("time", "motor_angle", "output_angle", "wave_generator_torque", "joint_torque")
 
 
-def inputs(drive, steps, step, advance):
-    """Motor torque, load and brake at each step [ns]; a row holds until the next. The drive begins `advance` sooner."""
+def inputs(drive, steps, step):
+    """Motor torque, load and brake from the begin of each step [ns] on; a row holds until the next."""
     times = np.array([round(row[0] * 1e9) for row in drive])
-    rows = np.searchsorted(times, np.arange(1, steps + 1) * step + advance, side="right") - 1
+    rows = np.searchsorted(times, np.arange(steps) * step, side="right") - 1
     return {name: np.array([row[column] for row in drive], dtype=float)[rows]
             for column, name in enumerate(("motor_torque", "load_torque", "brake"), start=1)}
 
 
-def course(changes, faults, drive, duration, sample_period, advance):
+def course(changes, faults, drive, duration, sample_period):
     """All that a verdict is made of. ParameterError."""
     parameters = hjt.Parameters(changes)
     parameters.faults = faults
     twin = hjt.Twin(parameters)
     step = twin.step_length
     steps = round(duration * 1e9) // step
-    rows = twin.run(**inputs(drive, steps, step, round(advance * 1e9)))
+    rows = twin.run(**inputs(drive, steps, step))
     turns = np.diff(rows["motor_angle"], prepend=0.0)
     work = (np.abs(rows["motor_torque"] * turns) +
             np.abs(rows["load_torque"] * np.diff(rows["output_angle"], prepend=0.0)))

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.interpolate import RegularGridInterpolator
 
 from bounds import AtMost, Between, Within
-from evidence import fitted, measured
+from evidence import MEASUREMENT, fitted, measured
 from page import BLUE, GREEN, GREY, ORANGE, number
 
 sys.path.append(os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "real"))
@@ -22,6 +22,19 @@ UR5E_SPEEDS = (0.01, 0.5, 1.5, 3.2)
 UR5E_LOSS = {"base": ((5.5, 5.9), (9.2, 9.6), (13.7, 14.5), (17.6, 20.0)),
              "shoulder": ((6.4, 6.8), (10.2, 10.8), (13.0, 16.2), (17.4, 22.0)),
              "elbow": ((5.0, 5.0), (8.5, 9.0), (13.1, 13.8), (18.0, 18.5))}
+
+# What the controller of a UR3e expects of its joints, target_current times gain less target_moment: a + b v by joint
+# [N.m], [N.m.s/rad], over 9 s at 25 Hz (ubc-systopia/dsn-2022-rad-artifact); by size with its temperature [degC] and
+# overlays. Joints of one size of a UR10e differ by SAME_SIZE.
+UR3E = {17: (((3.43, 3.49), (3.26, 3.36)), 35.0, ("size_17.yaml", "joints/size_2.yaml")),
+        14: (((1.57, 1.63),), 38.0, ("size_14.yaml",)),
+        11: (((0.83, 0.72), (0.58, 0.53), (0.76, 0.56)), 42.0, ("size_11.yaml", "joints/size_0.yaml"))}
+UR3E_SPEEDS = (0.1, 1.0)  # rad/s at the joint
+SAME_SIZE = 1.3
+UR3E_KNOWN = {(17, 1.0): "preload and viscosity are fitted to the catalogue's gear; what motor, seals and output bearing "
+                         "add by speed is not known",
+              (14, 0.1): "preload is fitted to the catalogue's starting torque, that of a new gear; a UR3e's elbow is "
+                         "expected to rub less"}
 
 GAIN = 10.7  # N.m at the joint per ampere of motor current, the controller's own ratio at rest
 SPEED_BINS = (0.05, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 1.0, 1.3)  # rad/s at the joint
@@ -53,6 +66,7 @@ UR10E_KNOWN = {"base": "fit and grease are the shoulder's and a UR5's; this base
 
 def build(page):
     ur5e(page)
+    ur3e(page)
     ur5(page)
     ur10e(page)
     load_loss(page)
@@ -103,6 +117,24 @@ gear's: seals, output bearing and motor are in it.
 
     page.figure("drives_ur5e", "Loss of UR5e joints without load; bars: the two robots of the factory test.", draw,
                 (6.4, 3.0))
+
+
+def ur3e(page):
+    page.heading("UR3e: what its controller expects")
+    page.text("""
+A UR3e's controller states the moment that it wants and the current that it wants it with; what is between them is the
+friction that it expects, by speed. Nothing of the sizes 17, 14 and 11 is fitted to a robot.
+""")
+    for size, (joints, temperature, overlays) in UR3E.items():
+        losses = joint_loss(page, UR3E_SPEEDS, [0.0], *overlay_arguments(overlays), "--set",
+                            f"input.temperature={temperature}")[0]
+        for speed, loss in zip(UR3E_SPEEDS, losses):
+            expected = [constant + by_speed * speed for constant, by_speed in joints]
+            page.check(f"drives.ur3e.{size}.{speed:g}", f"size {size}, friction at {speed:g} rad/s",
+                       "a UR3e's controller",
+                       Between(round(min(expected) / SAME_SIZE, 2), round(max(expected) * SAME_SIZE, 2)), loss, "N·m",
+                       f"at {temperature:g} °C; two joints of one size of a UR10e differ by {SAME_SIZE:g} times",
+                       known=UR3E_KNOWN.get((size, speed), ""), evidence=MEASUREMENT)
 
 
 def overlay_arguments(overlays):
