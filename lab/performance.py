@@ -9,8 +9,10 @@ import statistics
 import subprocess
 import sys
 
+import numpy as np
 import yaml
 
+import harmonic_joint_twin as hjt
 import lab
 from lab import plt
 
@@ -34,6 +36,11 @@ OPTIONS = {
     "run-out of the flexspline": ["manufacture.flexspline_eccentricity=[0.000005, 0]"],
 }
 ALTERNATIONS = 5
+TIME = np.arange(200) / 1000.0  # [s]
+LOAD = 10.0                     # [N.m]
+MOTIONS = {"0.35 N·m and back to 0, one way": 0.35 * np.sin(np.pi * TIME / TIME[-1]) ** 2,
+           "0.45 N·m there and back, 10 Hz": 0.45 * np.sin(2.0 * np.pi * 10.0 * TIME)}
+RATES, FINEST = (5000, 10000, 20000, 40000), 160000  # [Hz]
 STANDING = "standstill"
 
 
@@ -103,6 +110,26 @@ def table(measured):
     return lines
 
 
+def motor_angle(scene, rate, torque):
+    """At each millisecond [rad], the torque held in between."""
+    steps = rate // 1000
+    twin = hjt.Twin(hjt.Parameters({"solver.rate": float(rate), "solver.scene": scene,
+                                    "indicators.sample_rate": 1000.0}))
+    return twin.run(motor_torque=np.repeat(torque, steps), load_torque=LOAD, every=steps)["motor_angle"]
+
+
+def rate_rows():
+    """Largest error of the motor's angle [urad] by rate, on the full ring and on the response surface."""
+    for name, torque in MOTIONS.items():
+        cells = {rate: [] for rate in RATES}
+        for scene in ("full_ring", "auto"):
+            finest = motor_angle(scene, FINEST, torque)
+            for rate in RATES:
+                error = np.abs(motor_angle(scene, rate, torque) - finest).max()
+                cells[rate].append(f"{1e6 * error:.0f}")
+        yield f"| {name} | " + " | ".join(" / ".join(cell) for cell in cells.values()) + " |"
+
+
 def draw(measured, path):
     single = [row for row in measured if row["joints"] == 1]
     figure, axis = plt.subplots(figsize=(9, 4.8), constrained_layout=True)
@@ -143,6 +170,9 @@ def main():
         "| option | set | time of a step over the shipped gear's |", "|---|---|---|", *option_rows(options), "",
         f"`lab/run performance`: full ring, every array, the scenes that move; medians of {ALTERNATIONS} alternating "
         f"runs."])
+    lab.write(options.docs / "performance.md", "rates", [
+        "| `solver.rate` | " + " | ".join(f"{rate / 1000:g} kHz" for rate in RATES) + " |",
+        "|---" * (1 + len(RATES)) + "|", *rate_rows()])
     print(f"performance: wrote {options.docs / 'performance.md'}", file=sys.stderr)
 
 
