@@ -31,8 +31,8 @@ UR3E = {17: (((3.43, 3.49), (3.26, 3.36)), 35.0, ("size_17.yaml", "joints/size_2
         11: (((0.83, 0.72), (0.58, 0.53), (0.76, 0.56)), 42.0, ("size_11.yaml", "joints/size_0.yaml"))}
 UR3E_SPEEDS = (0.1, 1.0)  # rad/s at the joint
 SAME_SIZE = 1.3
-UR3E_KNOWN = {(17, 1.0): "preload and viscosity are fitted to the catalogue's gear; what motor, seals and output bearing "
-                         "add by speed is not known",
+UR3E_KNOWN = {(17, 1.0): "preload and viscosity are fitted to the catalogue's gear; what motor, seals and output "
+                         "bearing add by speed is not known",
               (14, 0.1): "preload is fitted to the catalogue's starting torque, that of a new gear; a UR3e's elbow is "
                          "expected to rub less"}
 

@@ -220,6 +220,12 @@ Report reportOf(const AssessedWindows& found)
            {} };
 }
 
+/// As people read a probability or a severity: digits beyond change with the last count of an encoder.
+double hundredths(double value)
+{
+  return std::round(100.0 * value) / 100.0;
+}
+
 void printSummary(const std::vector<WindowResult>& windows)
 {
   const WindowResult& last = windows.back();
@@ -251,13 +257,13 @@ void printSummary(const std::vector<WindowResult>& windows)
   if (assessment.level != HealthLevel::OK)
   {
     lines.push_back({ "", "most likely cause", causeName(assessment.cause) });
-    lines.push_back({ "", "confidence", assessment.confidence });
-    lines.push_back({ "", "severity", assessment.severity });
-    lines.push_back({ "", "its standard deviation", assessment.severity_deviation });
+    lines.push_back({ "", "confidence", hundredths(assessment.confidence) });
+    lines.push_back({ "", "severity", hundredths(assessment.severity) });
+    lines.push_back({ "", "its standard deviation", hundredths(assessment.severity_deviation) });
     for (std::size_t i = 0; i < assessment.alternative_count; ++i)
     {
       const Alternative& other = assessment.alternatives[i];
-      lines.push_back({ "", std::string("or ") + causeName(other.cause), other.confidence });
+      lines.push_back({ "", std::string("or ") + causeName(other.cause), hundredths(other.confidence) });
     }
   }
   for (std::size_t cause = 0; last.seen_from && cause < CAUSE_COUNT; ++cause)
