@@ -23,7 +23,8 @@ from verdict_cases import FIELDS, JOINTS, LEVELS, VerdictCases, verdicts_in  # n
 
 FASTER = 12.0  # played than stamped
 LATE = 0.5     # a row is judged when the ones behind it have come [s]
-FOUND = ("payload of", "tilted by")  # in the text of compare: what the node finds while rows come, and starts again with
+# In the text of compare: what the node finds while rows come, and starts again with.
+FOUND = ("payload of", "tilted by")
 CHANGES = "as in picking and placing"
 
 

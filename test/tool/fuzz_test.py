@@ -59,7 +59,8 @@ class Fuzz(tool.ToolTest):
         columns = swinging(4.0)
         with open(os.path.join(CONFIG, "ur5.urdf"), "rb") as file:
             urdf = file.read()
-        self.write("arm.yaml", open(os.path.join(CONFIG, "ur5.yaml"), encoding="utf-8").read())
+        with open(os.path.join(CONFIG, "ur5.yaml"), encoding="utf-8") as file:
+            self.write("arm.yaml", file.read())
         self.write("ur5.urdf", urdf.decode())
         kinds = [(write_csv(self.path("a.csv"), columns), ["check", "a.csv", "--arm", "ur5", "--json"]),
                  (write_bag(self.path("a.bag"), states(columns)), ["check", "a.bag", "--arm", "ur5", "--json"]),
