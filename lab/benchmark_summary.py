@@ -22,8 +22,8 @@ SUNDIALS (CVODE, IDA, ARKODE), RADAU5, Boost.odeint. They get the analytic spars
 and call the twin's own forces. Ours are `joint_twin dynamics --tolerance`: TR-BDF2 and ESDIRK4 with adaptive
 steps.
 """
-READING = """Above 1 ours are faster. *ours only*, *peer only*: the other does not reach that error. A dash: the
-references agree no better than that, or nobody reaches it. An error of the tooth forces below
+READING = """Above 1 ours are faster. *ours only*, *peer only*: the other does not reach that error. A dash:
+nobody reaches that error, or the references differ by more. An error of the tooth forces below
 1e-3 needs steps that resolve the vibration of single teeth, a fraction of a microsecond long; in those rows the peer is
 Runge-Kutta 4 with steps of equal length.
 

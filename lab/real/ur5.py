@@ -333,7 +333,7 @@ def verdict_section(runner, by_name, judged, docs):
 
 """ + f"""`joint_twin compare --arm ur5`, alone and with the report of {TRAIN} as `--reference` (of {TRAIN}: that of
 {other}). The arm is sound in all of them. The numbers are the friction as a multiple of
-the reference's, at the speeds of both, apart from what joints share; –: the motion does not show it.
+the reference's, at the speeds of both, without the factor that joints share. A dash: the motion does not show it.
 """, *table(["recording", "verdict alone", *JOINTS, "verdict with reference"], sound), *of_pairs, f"""
 Then {100.0 * RAISED:.0f} % of the identified friction of one joint, or of all, is added to the recorded current. It is
 right that the raised joint is named and no other; where all are raised, that none is named. A joint whose friction the

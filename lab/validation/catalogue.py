@@ -179,7 +179,8 @@ pitch, at rest; back-driving: the load at the output whose own pull overcomes th
     page.check("catalogue.starting", "starting torque, 20 °C", "same", Within(STARTING, relative=0.10),
                starts["starting_torque"], "N·m", "asked of the twin",
                evidence=fitted("bearing.race_preload to it (lab/run calibrate 25)"))
-    page.check("catalogue.back_driving", "back-driving torque, 20 °C", "same", Within(BACK_DRIVING, relative=0.15),
+    page.check("catalogue.back_driving", "back-driving torque, 20 °C", "catalogue (RT1-H-CS-25)",
+               Within(BACK_DRIVING, relative=0.15),
                starts["back_driving_torque"], "N·m", "asked of the twin; nothing is fitted to it",
                evidence=measured(FRICTION_SHARES))
     # What slips between race and rim, from the shape alone: the tilt of a ring bent to w0 cos 2 psi turns at

@@ -54,8 +54,9 @@ catalogue's band.
                    if size == 14 else "",
                    evidence=measured("no-load and starting torque of the same catalogue set the bearing's friction"))
         starts = page.tool("breakaway", *AT_20_DEGREES, *overlay)
-        page.check(f"family.back_driving.{size}", f"size {size}: back-driving torque, 20 °C", "same",
-                   Within(back_driving, relative=0.15), starts["back_driving_torque"], "N·m", "as for size 25",
+        page.check(f"family.back_driving.{size}", f"size {size}: back-driving torque, 20 °C",
+                   "catalogue (TPI 275)", Within(back_driving, relative=0.15), starts["back_driving_torque"], "N·m",
+                   "as for size 25",
                    evidence=measured("no-load and starting torque of the same catalogue set the bearing's friction"))
         rated = 0.77 * torque  # the standard series is rated at 1/1.3 of this one
         loop = page.tool("hysteresis", "--amplitude", rated, "--lost-motion-torque", 0.04 * rated, *overlay)
