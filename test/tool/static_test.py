@@ -11,26 +11,6 @@ import tool
 
 
 class CommandLine(tool.ToolTest):
-    def test_wrong_usage_ends_with_2(self):
-        for arguments in [[], ["fly"], ["insert", "--wings"], ["stiffness"], ["stiffness", "--torques", "5,many"],
-                          ["stiffness", "--torques", "nan"], ["stiffness", "--torques", "inf"],
-                          ["turn", "--load", "1", "--angle-range", "1"],
-                          ["turn", "--load", "1", "--angle-range", "1", "--steps", "0"],
-                          ["simulate", "--duration", "1", "--out", "a.bag"],
-                          ["simulate", "--torque", "1", "--out", "a.bag"],
-                          ["simulate", "--duration", "-1", "--torque", "1", "--out", "a.bag"],
-                          ["simulate", "--duration", "1", "--torque", "nan", "--out", "a.bag"],
-                          ["simulate", "--duration", "1", "--torque", "1", "--out", "a.txt"],
-                          ["import", "a.csv", "--joint", "6", "--out", "a.bag"],
-                          ["import", "a.csv", "--out", "a.bag"], ["replay", "a.bag"]]:
-            with self.subTest(arguments):
-                self.fail_with(2, [], *arguments)
-
-    def test_a_misspelt_subcommand_is_named(self):
-        self.fail_with(2, ["unknown subcommand 'compar'", "did you mean compare?"], "compar", "a.bag")
-        self.fail_with(2, ["unknown subcommand 'ag'", "did you mean age?"], "life", "ag")
-        self.fail_with(2, ["unknown subcommand 'xylophone'"], "xylophone")
-
     def test_the_list_of_faults_fits_a_terminal(self):
         lines = self.succeed("faults").stdout.splitlines()
         self.assertLessEqual(max(map(len, lines)), 100)
