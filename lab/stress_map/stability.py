@@ -104,8 +104,8 @@ def write(docs, complete, judged, table):
     lines += table(["verdict", "cells"], [[verdict, count[verdict]] for verdict in judge.VERDICTS])
     wrong = [f"{j.cell.name} (error {percent(j.error)})" for j in judged if j.verdict not in judge.GOOD]
     if wrong:
-        lines += ["", f"None of the three: {'; '.join(wrong)}. Their steps are as long as is allowed: the phase error "
-                  "of the leapfrog adds up over the run."]
+        lines += ["", f"Wrong without a report, or without a result: {'; '.join(wrong)}. Their steps are as long as is "
+                  "allowed: the phase error of the leapfrog adds up over the run."]
     lines += ["", "## Where it is accurate", "", boundary(judged), ""]
     images = os.path.join("images", "stability")
     for name, file in MAPS.items():
