@@ -96,6 +96,7 @@ struct SurfaceTable
   std::vector<double> lines;  ///< v of the lines, ascending [rad]
   SurfaceNodes nodes;         ///< (columns + 1) a line; the last is the first again
   ToothResponse teeth;        ///< over the same range, on lines of its own
+  GridChecks checks{};
 };
 
 /// Difference between a gear with unequal teeth and the ideal gear at the same angles, over one period of the pattern:
@@ -112,6 +113,7 @@ struct DeviationTable
   std::vector<Pitch> pitches;  ///< empty: no deviations
   bool swaps_lobes{};          ///< the gear is the same again with its lobes having changed places
   int shift{};                 ///< of the pattern against that of the table [teeth]; >= 0
+  GridChecks checks{};
 };
 
 /// Which of ascending values lies below a given one, in constant time.

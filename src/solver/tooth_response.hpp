@@ -8,6 +8,22 @@
 
 namespace hjt
 {
+/// How a table was tried against the ring where its grid was not refined any further: half way between columns, and half
+/// way between lines. A miss is the largest difference over its tolerance [-]. Plain data.
+struct GridChecks
+{
+  int made{};      ///< checks
+  int missed{};    ///< of these with a miss above 1: the grid is as fine there as it may be
+  double worst{};  ///< largest miss
+
+  void add(double miss) noexcept
+  {
+    ++made;
+    missed += miss > 1.0 ? 1 : 0;
+    worst = miss > worst ? miss : worst;
+  }
+};
+
 /// Forces and places of all teeth of the ring in equilibrium, for a gear of equal teeth: over u and v, as SurfaceTable.
 /// A pitch further on, each tooth is as the one before it was. Plain data: what is built, cached and read.
 struct ToothResponse
@@ -31,6 +47,7 @@ struct ToothResponse
   double ratio{};              ///< nominal [-]
   std::vector<double> lines;   ///< v of the lines, ascending [rad]; empty: there is no table
   SharedValues<float> values;  ///< a quantity's stored teeth, a node's quantities, columns + 1 nodes a line
+  GridChecks checks{};
 
   std::size_t nodeSize() const noexcept { return static_cast<std::size_t>(QUANTITIES) * static_cast<unsigned>(stored); }
 

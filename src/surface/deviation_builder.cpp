@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <mutex>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -220,10 +221,12 @@ private:
       for (std::size_t pitch = 0; pitch < pitches_; ++pitch)
       {
         int& columns = enough[pitch];
-        while (columns < MAX_COLUMNS && !check_.columnsSuffice(line.strips[pitch], columns, toleranceOf(line)))
+        const auto miss = [&] { return check_.missOfColumns(line.strips[pitch], columns, toleranceOf(line)); };
+        while (columns < MAX_COLUMNS && miss() > 1.0)
         {
           columns *= 2;
         }
+        checks_.add(miss());
       }
     }
     // The effect may move to the next pitch with the load.
@@ -301,10 +304,19 @@ private:
       return;
     }
     Set coarse(pitches_, 0);
-    for (std::size_t pitch = 0; pitch < pitches_ && halvings < MAX_HALVINGS; ++pitch)
+    for (std::size_t pitch = 0; pitch < pitches_; ++pitch)
     {
-      coarse[pitch] = wanted[pitch] && !check_.gives(below.line.strips[pitch], above.line.strips[pitch],
-                                                     above.v - below.v, line.strips[pitch], toleranceOf(line));
+      if (wanted[pitch])
+      {
+        const double miss = check_.missBetween(below.line.strips[pitch], above.line.strips[pitch], above.v - below.v,
+                                               line.strips[pitch], toleranceOf(line));
+        coarse[pitch] = miss > 1.0 && halvings < MAX_HALVINGS;
+        if (!coarse[pitch])
+        {
+          const std::lock_guard<std::mutex> lock(mutex_);
+          checks_.add(miss);
+        }
+      }
     }
     if (std::find(coarse.begin(), coarse.end(), 1) != coarse.end())
     {
@@ -337,7 +349,9 @@ private:
         pitch = {};
       }
     }
-    return tableOf(std::move(pitches), swapsLobes());
+    DeviationTable table = tableOf(std::move(pitches), swapsLobes());
+    table.checks = checks_;
+    return table;
   }
 
   bool swapsLobes() const { return static_cast<int>(pitches_) <= model_.ring.rest.teeth() / 2 + 1; }
@@ -387,6 +401,8 @@ private:
   std::atomic<int> solves_{ 0 };
   std::atomic<bool> failed_{ false };
   std::atomic<bool> too_many_{ false };
+  std::mutex mutex_;  // of the checks
+  GridChecks checks_;
 };
 }  // namespace
 

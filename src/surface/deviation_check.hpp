@@ -30,8 +30,8 @@ public:
     return std::max(torque[0], torque[1] * ring_.ratio()) > ROUNDING * ring_.torqueLimit();
   }
 
-  /// Whether every so manyth node of a strip gives those between, root mean square.
-  bool columnsSuffice(const Strip& strip, int columns, const Torques& tolerance) const
+  /// By how much every so manyth node of a strip misses those between, root mean square over the tolerance [-].
+  double missOfColumns(const Strip& strip, int columns, const Torques& tolerance) const
   {
     const std::size_t stride = (strip.size() - 1) / static_cast<std::size_t>(columns);
     Torques squares = Torques::Zero();
@@ -45,12 +45,13 @@ public:
             miss({ ends.data(), ends.data(), part, 0.0, static_cast<double>(columns), 1.0 }, strip[first + i]).square();
       }
     }
-    return (squares <= static_cast<double>(columns) * (static_cast<double>(stride) - 1.0) * tolerance.square()).all();
+    return largest(squares / (static_cast<double>(columns) * (static_cast<double>(stride) - 1.0)), tolerance);
   }
 
-  /// Whether two lines' strips of a pitch, `height` apart [rad], give that of the line half way between them, root mean
-  /// square. Single kinks, where a tooth begins to touch, no grid has.
-  bool gives(const Strip& below, const Strip& above, double height, const Strip& middle, const Torques& tolerance) const
+  /// By how much two lines' strips of a pitch, `height` apart [rad], miss that of the line half way between them, root
+  /// mean square over the tolerance [-]. Single kinks, where a tooth begins to touch, no grid has.
+  double missBetween(const Strip& below, const Strip& above, double height, const Strip& middle,
+                     const Torques& tolerance) const
   {
     const std::size_t columns = middle.size() - 1;
     Torques squares = Torques::Zero();
@@ -59,10 +60,15 @@ public:
       squares +=
           miss({ &below[i], &above[i], 0.0, 0.5, static_cast<double>(columns), 1.0 / height }, middle[i]).square();
     }
-    return (squares <= static_cast<double>(columns) * tolerance.square()).all();
+    return largest(squares / static_cast<double>(columns), tolerance);
   }
 
 private:
+  static double largest(const Torques& squares, const Torques& tolerance)
+  {
+    return (squares > 0.0).select(squares.sqrt() / tolerance, 0.0).maxCoeff();
+  }
+
   Torques torques(double by_u, double by_v) const { return { -by_v, by_v / ring_.ratio() - by_u / ring_.pitch() }; }
 
   /// By how much what lies in a cell misses the deviation measured there.

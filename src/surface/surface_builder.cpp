@@ -78,7 +78,7 @@ public:
     }
     if (good())
     {
-      result.table = { ring.pitch(), ring.ratio(), columns_, {}, {}, {} };
+      result.table = { ring.pitch(), ring.ratio(), columns_, {}, {}, {}, checks_ };
       fill(result.table);
       result.table.teeth = buildToothResponse(parameters_, model_, withinLimit(), step_, mirrored_, threads_, solves_);
     }
@@ -90,17 +90,22 @@ public:
 private:
   bool good() const { return failure_reason_.empty(); }
 
-  /// Fewest columns that give a line's torques half way between them.
-  int fewestColumns(LineRing& ring) const
+  /// Fewest columns that give a line's torques between them, at loads that the ring reaches.
+  int fewestColumns(LineRing& ring)
   {
     int columns = MIN_COLUMNS;
     for (const double load : { 0.1, 0.3, 1.0 })
     {
       const double v = -ring.ring().twist(load * limit_);
-      const Line finest = ring.measure(v, 2 * MAX_COLUMNS);
-      while (columns < MAX_COLUMNS && (finest.empty() || !LineCheck(ring.ring(), columns).columnsSuffice(v, finest)))
+      const Line finest = ring.leadTo(v, step_) ? ring.measure(v, 2 * MAX_COLUMNS) : Line{};
+      const auto miss = [&] { return LineCheck(ring.ring(), columns).missOfColumns(v, finest); };
+      while (!finest.empty() && columns < MAX_COLUMNS && miss() > 1.0)
       {
         columns *= 2;
+      }
+      if (!finest.empty())
+      {
+        checks_.add(miss());
       }
     }
     return columns;
@@ -226,16 +231,20 @@ private:
     if (line.empty())
     {
       fail("the ring found no equilibrium between two that it had been in");
+      return;
     }
-    else if (halvings < MAX_HALVINGS &&
-             !LineCheck(ring.ring(), columns_).agrees(below.v, below.line, above.v, above.line, middle, line))
+    const double miss = LineCheck(ring.ring(), columns_).miss(below.v, below.line, above.v, above.line, middle, line);
+    if (miss > 1.0 && halvings < MAX_HALVINGS)
     {
       refine(ring, below, { middle, line }, halvings + 1, found);
       if (!failed_)
       {
         refine(ring, { middle, line }, above, halvings + 1, found);
       }
+      return;
     }
+    const std::lock_guard<std::mutex> lock(mutex_);
+    checks_.add(miss);
   }
 
   /// A line of the table. Empty: no equilibrium, too many points, or another task has failed.
@@ -306,7 +315,8 @@ private:
   std::atomic<std::size_t> points_{ 0 };
   std::atomic<int> solves_{ 0 };
   std::atomic<bool> failed_{ false };
-  std::mutex mutex_;  // of the reason
+  std::mutex mutex_;  // of reason and checks
+  GridChecks checks_;
   std::string failure_reason_;
 };
 }  // namespace

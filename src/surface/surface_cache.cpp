@@ -69,6 +69,31 @@ void tell(const SurfaceSource& source, const std::string& what)
   }
 }
 
+void tellMisses(const std::string& what, const GridChecks& checks, const SurfaceSource& source)
+{
+  constexpr double MUCH = 10.0;  // times the tolerance
+  if (checks.worst > MUCH)
+  {
+    tell(source, what + ": " + std::to_string(checks.missed) + " of " + std::to_string(checks.made) +
+                     " checks between its nodes miss the tolerance, by up to " + roundedText(checks.worst, 2) +
+                     " times: the grid is as fine there as it may be (docs/response_surface.md)");
+  }
+}
+
+/// Where a new table misses much of what it was built to.
+void tellMisses(const SurfaceTable& table, const SurfaceSource& source)
+{
+  tellMisses("response surface", table.checks, source);
+  tellMisses("response surface, forces of teeth", table.teeth.checks, source);
+}
+
+void tellMisses(const DeviationTable& table, const SurfaceSource& source)
+{
+  tellMisses("response surface, teeth that differ", table.checks, source);
+}
+
+void tellMisses(const BallTable& /*table*/, const SurfaceSource& /*source*/) {}
+
 /// A table from the cache, or built and stored there. Empty: it could not be built, and the reason was reported.
 template <class Table, class Build>
 std::optional<Table> obtain(const std::string& kind, const std::string& key, const SurfaceSource& source, Build build)
@@ -93,6 +118,7 @@ std::optional<Table> obtain(const std::string& kind, const std::string& key, con
     tell(source, NO_SURFACE + built.failure_reason + FULL_RING_INSTEAD);
     return std::nullopt;
   }
+  tellMisses(built.table, source);
   if (kept)
   {
     const std::string problem = writeTable(path, key, built.table);

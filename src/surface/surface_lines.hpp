@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -55,7 +56,7 @@ private:
   SurfaceRing ring_;
 };
 
-/// Whether a line half way between two is what the table over those two gives there.
+/// By how much the table over two lines misses a line half way between them, over the tolerances [-].
 class LineCheck
 {
 public:
@@ -63,28 +64,30 @@ public:
 
   /// The torques at every column; the friction in the mean over the line. Where a tooth begins to touch, the rates of
   /// all teeth jump and with them the friction, at another place on every line: between two lines no grid has that.
-  bool agrees(double v_below, const SurfaceLine& below, double v_above, const SurfaceLine& above, double v,
+  double miss(double v_below, const SurfaceLine& below, double v_above, const SurfaceLine& above, double v,
               const SurfaceLine& line) const
   {
     const ResponseSurface surface = between(v_below, below, v_above, above);
-    double friction_misses = 0.0;  // over their tolerance [-]
+    double largest = 0.0;
+    double friction_misses = 0.0;
     for (int column = 0; column < columns_; ++column)
     {
       const double motor_angle = ring_.pitch() * column / columns_;
       const SurfaceNode& node = line[static_cast<std::size_t>(column)];
       ResponseSurface::Place place;
-      if (!surface.locate(motor_angle, v + motor_angle / ring_.ratio(), place) || !torquesAgree(surface, place, node))
+      if (!surface.locate(motor_angle, v + motor_angle / ring_.ratio(), place))
       {
-        return false;
+        return HUGE_VAL;
       }
+      largest = std::max(largest, missOfTorques(surface.response(place), node));
       friction_misses += std::abs(ring_.frictionTorque(ResponseSurface::bilinear(place)) - ring_.frictionTorque(node)) /
                          ring_.frictionTolerance(node);
     }
-    return friction_misses <= columns_;
+    return std::max(largest, friction_misses / columns_);
   }
 
-  /// Whether the columns of a line give its torques half way between them. `finer`: the line on a multiple of columns.
-  bool columnsSuffice(double v, const SurfaceLine& finer) const
+  /// By how much the columns of a line miss its torques between them. `finer`: the line on a multiple of columns.
+  double missOfColumns(double v, const SurfaceLine& finer) const
   {
     const std::size_t stride = (finer.size() - 1) / static_cast<std::size_t>(columns_);
     SurfaceLine line;
@@ -93,6 +96,7 @@ public:
       line.push_back(finer[i]);
     }
     const ResponseSurface surface = between(v, line, v + 1.0, line);
+    double largest = 0.0;
     for (std::size_t i = 0; i + 1 < finer.size(); ++i)
     {
       // With the same line twice the slope by v is flattened away: the part along u is what is tried here.
@@ -103,14 +107,11 @@ public:
         const RingResponse response = surface.response(place);
         const SurfaceNode& node = finer[i];
         const double slope = response.wave_generator_torque + response.output_torque / ring_.ratio();
-        if (std::abs(slope + node[SurfaceNode::ENERGY_BY_U] / ring_.pitch()) > ring_.motorTolerance(node) ||
-            std::abs(response.output_torque + node[SurfaceNode::ENERGY_BY_V]) > ring_.outputTolerance(node))
-        {
-          return false;
-        }
+        const double missed = std::abs(slope + node[SurfaceNode::ENERGY_BY_U] / ring_.pitch());
+        largest = std::max({ largest, missed / ring_.motorTolerance(node), missOfOutput(response, node) });
       }
     }
-    return true;
+    return largest;
   }
 
 private:
@@ -127,13 +128,17 @@ private:
     return ResponseSurface(std::move(table));
   }
 
-  bool torquesAgree(const ResponseSurface& surface, const ResponseSurface::Place& place, const SurfaceNode& node) const
+  double missOfOutput(const RingResponse& response, const SurfaceNode& node) const
   {
-    const RingResponse response = surface.response(place);
-    const double output_torque = -node[SurfaceNode::ENERGY_BY_V];
-    const double motor_torque = -node[SurfaceNode::ENERGY_BY_U] / ring_.pitch() - output_torque / ring_.ratio();
-    return std::abs(response.output_torque - output_torque) <= ring_.outputTolerance(node) &&
-           std::abs(response.wave_generator_torque - motor_torque) <= ring_.motorTolerance(node);
+    return std::abs(response.output_torque + node[SurfaceNode::ENERGY_BY_V]) / ring_.outputTolerance(node);
+  }
+
+  double missOfTorques(const RingResponse& response, const SurfaceNode& node) const
+  {
+    const double motor_torque =
+        -node[SurfaceNode::ENERGY_BY_U] / ring_.pitch() + node[SurfaceNode::ENERGY_BY_V] / ring_.ratio();
+    return std::max(missOfOutput(response, node),
+                    std::abs(response.wave_generator_torque - motor_torque) / ring_.motorTolerance(node));
   }
 
   const SurfaceRing& ring_;

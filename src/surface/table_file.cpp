@@ -33,10 +33,19 @@ void append(std::string& bytes, const T* values, std::size_t count)
   bytes.append(reinterpret_cast<const char*>(values), count * sizeof(T));
 }
 
+void append(std::string& bytes, const GridChecks& checks)
+{
+  const std::array<double, 3> numbers{ static_cast<double>(checks.made), static_cast<double>(checks.missed),
+                                       checks.worst };
+  append(bytes, numbers.data(), numbers.size());
+}
+
 /// The table's numbers as they lie in memory: the cache is for this machine.
 std::string body(const SurfaceTable& table)
 {
   std::string bytes;
+  append(bytes, table.checks);
+  append(bytes, table.teeth.checks);
   const std::array<double, 4> sizes{ table.pitch, table.ratio, static_cast<double>(table.columns),
                                      static_cast<double>(table.lines.size()) };
   append(bytes, sizes.data(), sizes.size());
@@ -54,6 +63,7 @@ std::string body(const SurfaceTable& table)
 std::string body(const DeviationTable& table)
 {
   std::string bytes;
+  append(bytes, table.checks);
   const std::array<double, 2> sizes{ static_cast<double>(table.pitches.size()), table.swaps_lobes ? 1.0 : 0.0 };
   append(bytes, sizes.data(), sizes.size());
   for (const DeviationTable::Pitch& pitch : table.pitches)
@@ -107,6 +117,13 @@ public:
     {
       std::memcpy(&value, start, sizeof(value));
     }
+  }
+
+  void checks(GridChecks& checks)
+  {
+    checks.made = static_cast<int>(size(0.0));
+    checks.missed = static_cast<int>(size(0.0));
+    number(checks.worst);
   }
 
   void numbers(std::vector<double>& values, std::size_t count)
@@ -165,6 +182,8 @@ bool ascending(const std::vector<double>& lines)
 
 bool parseBody(BodyReader& reader, SurfaceTable& table)
 {
+  reader.checks(table.checks);
+  reader.checks(table.teeth.checks);
   reader.number(table.pitch);
   reader.number(table.ratio);
   const std::size_t columns = reader.size(1.0);
@@ -192,6 +211,7 @@ bool parseBody(BodyReader& reader, SurfaceTable& table)
 
 bool parseBody(BodyReader& reader, DeviationTable& table)
 {
+  reader.checks(table.checks);
   table.pitches.resize(reader.size(2.0));
   table.swaps_lobes = reader.size(0.0) != 0;
   bool good = true;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <map>
+#include <mutex>
 #include <utility>
 
 #include "surface/parallel_tasks.hpp"
@@ -86,6 +87,7 @@ public:
     {
       addMirrorImages(lines, table);
     }
+    table.checks = checks_;
     fill(lines, table);
     return table;
   }
@@ -117,9 +119,10 @@ private:
     return line;
   }
 
-  /// Whether `middle` lies in the middle between two nodes, within the tolerance.
-  bool agrees(const float* below, const float* above, const float* middle) const
+  /// By how much the middle between two nodes misses `middle`, over the tolerance [-].
+  double miss(const float* below, const float* above, const float* middle) const
   {
+    double worst = 0.0;
     for (std::size_t quantity = 0; quantity < ToothResponse::X; ++quantity)
     {
       const std::size_t first = quantity * stored_;
@@ -129,13 +132,11 @@ private:
       const double tolerance = std::max(LEAST_TOOTH_FORCE, TOOTH_FORCE_SHARE * largest);
       for (std::size_t i = 0; i < stored_; ++i)
       {
-        if (std::abs(0.5 * (static_cast<double>(below[first + i]) + above[first + i]) - values[i]) > tolerance)
-        {
-          return false;
-        }
+        const double between = 0.5 * (static_cast<double>(below[first + i]) + above[first + i]);
+        worst = std::max(worst, std::abs(between - values[i]) / tolerance);
       }
     }
-    return true;
+    return worst;
   }
 
   void chooseColumns(LineRing& ring, double outermost)
@@ -145,22 +146,24 @@ private:
     {
       const double v = -share * outermost;
       const Values finest = measure(ring, v, 2 * MAX_COLUMNS);
-      const auto suffice = [&]
+      const auto worst = [&]
       {
         const int stride = 2 * MAX_COLUMNS / columns_;
         const auto node = [&](int i) { return &finest[static_cast<std::size_t>(i) * nodeSize()]; };
+        double largest = 0.0;
         for (int i = 0; i < 2 * MAX_COLUMNS; i += stride)
         {
-          if (!agrees(node(i), node(i + stride), node(i + stride / 2)))
-          {
-            return false;
-          }
+          largest = std::max(largest, miss(node(i), node(i + stride), node(i + stride / 2)));
         }
-        return true;
+        return largest;
       };
-      while (!finest.empty() && columns_ < MAX_COLUMNS && !suffice())
+      while (!finest.empty() && columns_ < MAX_COLUMNS && worst() > 1.0)
       {
         columns_ *= 2;
+      }
+      if (!finest.empty())
+      {
+        checks_.add(worst());
       }
     }
   }
@@ -175,17 +178,22 @@ private:
       failed_ = true;
       return;
     }
-    bool good = true;
-    for (std::size_t i = 0; good && i < line.size(); i += nodeSize())
+    double worst = 0.0;
+    for (std::size_t i = 0; i < line.size(); i += nodeSize())
     {
-      good = agrees(&below[i], &above[i], &line[i]);
+      worst = std::max(worst, miss(&below[i], &above[i], &line[i]));
     }
-    if (!good && halvings < MAX_HALVINGS)
+    if (worst > 1.0 && halvings < MAX_HALVINGS)
     {
       refine(ring, v_below, below, v, line, halvings + 1, found);
       refine(ring, v, line, v_above, above, halvings + 1, found);
     }
-    if (!good)
+    else
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      checks_.add(worst);
+    }
+    if (worst > 1.0)
     {
       found[v] = std::move(line);
     }
@@ -262,6 +270,8 @@ private:
   int columns_{ MIN_COLUMNS };
   std::atomic<std::size_t> values_{ 0 };
   std::atomic<bool> failed_{ false };
+  std::mutex mutex_;  // of the checks
+  GridChecks checks_;
 };
 }  // namespace
 

@@ -296,6 +296,25 @@ TEST(SurfaceDeviations, DependOnNoNumberThatTheKeyOfTheirFileDoesNotHold)
   }
 }
 
+/// Where a tooth begins to touch no grid is fine enough: how often that is stands in the table, and is said.
+TEST(SurfaceDeviations, TellHowOftenTheyMissTheirTolerance)
+{
+  const TemporaryFolder folder;
+  std::string said;
+  const SurfaceSource source{ folder.path().string(), {}, [&](const std::string& what) { said += what + '\n'; } };
+  const std::optional<SurfaceTables> built =
+      obtainSurface(surfaceParameters(), brokenModel(), "broken tooth 40 ", source);
+  ASSERT_TRUE(built);
+  const GridChecks& checks = built->deviations.checks;
+  EXPECT_GT(checks.made, 1000);
+  EXPECT_GT(checks.missed, 0);
+  EXPECT_LT(checks.missed, 0.02 * checks.made);
+  EXPECT_THAT(said, testing::HasSubstr("teeth that differ: " + std::to_string(checks.missed) + " of " +
+                                       std::to_string(checks.made) + " checks between its nodes miss the tolerance"));
+  EXPECT_LT(built->table.checks.worst, 10.0);
+  EXPECT_THAT(said, testing::Not(testing::HasSubstr("response surface: ")));
+}
+
 TEST(SurfaceDeviations, ComeFromTheCacheAsTheyWereBuilt)
 {
   const std::optional<SurfaceTables> built =
@@ -306,6 +325,8 @@ TEST(SurfaceDeviations, ComeFromTheCacheAsTheyWereBuilt)
   ASSERT_TRUE(built && kept);
   EXPECT_FALSE(building);
   ASSERT_EQ(built->deviations.pitches.size(), kept->deviations.pitches.size());
+  EXPECT_EQ(built->deviations.checks.missed, kept->deviations.checks.missed);
+  EXPECT_EQ(built->table.teeth.checks.worst, kept->table.teeth.checks.worst);
   for (std::size_t i = 0; i < kept->deviations.pitches.size(); ++i)
   {
     EXPECT_EQ(built->deviations.pitches[i].lines, kept->deviations.pitches[i].lines);
