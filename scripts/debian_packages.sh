@@ -17,7 +17,7 @@ ROS_DEBIAN_RUN=(
 )
 # To build.
 LIBRARIES=(
-  libboost-dev libboost-program-options-dev libceres-dev libconsole-bridge-dev libeigen3-dev libfmt-dev libhdf5-dev liblz4-dev
+  libboost-dev libboost-program-options-dev libconsole-bridge-dev libeigen3-dev libfmt-dev libhdf5-dev liblz4-dev
   liborocos-kdl-dev libsqlite3-dev libyaml-cpp-dev libzstd-dev nlohmann-json3-dev pybind11-dev python3-dev
 )
 ROS_DEBIAN=(

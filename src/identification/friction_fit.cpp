@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <ceres/ceres.h>
-#include <ceres/normal_prior.h>
 #include <Eigen/Cholesky>
 
 #include "arm/residual_statistics.hpp"
@@ -22,40 +20,16 @@ namespace
 constexpr double OUTLIER = 3.0;        // blocks that many deviations off count less
 constexpr double LEAST_GREASE = 0.05;  // least share of the configured viscosity
 constexpr double NARROWED = 0.5;       // deviation after the motion over that before
-constexpr std::size_t MIN_BLOCKS = 12;
-constexpr std::size_t MAX_BLOCKS = 20000;  // a longer recording is thinned out
-
-bool isFriction(std::size_t quantity)
-{
-  return quantity >= FrictionFit::PRELOAD;
-}
+constexpr Eigen::Index MIN_BLOCKS = 12;
 }  // namespace
-
-/// Residual of one block; each value is a parameter block.
-struct FrictionFit::Residual
-{
-  const Block& block;
-
-  template <class T>
-  bool operator()(T const* const* values, T* residual) const
-  {
-    T torque(block.known);
-    for (std::size_t i = INERTIA; i < QUANTITIES; ++i)
-    {
-      torque += *values[i] * block.column[i];
-    }
-    residual[0] = *values[GAIN] * torque + *values[OFFSET] - block.current;
-    return true;
-  }
-};
 
 FrictionFit::FrictionFit(const Parameters& parameters, const FrictionMap& friction,
                          const std::vector<MotionSample>& samples, const std::function<void()>& look)
 {
   addBlocks(parameters, friction, samples);
-  if (blocks_.size() < MIN_BLOCKS)
+  if (blocks_.rows() < MIN_BLOCKS)
   {
-    throw InputError("the joint hardly moves in the part to identify on: " + std::to_string(blocks_.size()) +
+    throw InputError("the joint hardly moves in the part to identify on: " + std::to_string(blocks_.rows()) +
                      " stretches of " + numberText(BLOCK) + " s are faster than " + numberText(MOVING) + " rad/s, " +
                      std::to_string(MIN_BLOCKS) + " are needed");
   }
@@ -68,7 +42,7 @@ FrictionFit::FrictionFit(const Parameters& parameters, const FrictionMap& fricti
   {
     if (share(i) > NARROWED)
     {
-      refusal_[i] = "the motion narrows what was known before to " + percentText(share(i)) + " only";
+      refusal_[i] = "the motion narrows what was known before to " + roundedText(100.0 * share(i), 2) + " % only";
       asked_[i] = false;
       values_[i] = start_[i];
       half_width_[i] = 0.0;
@@ -120,20 +94,22 @@ void FrictionFit::addBlocks(const Parameters& parameters, const FrictionMap& fri
   const double ratio = nominalRatio(parameters.gear);
   const double preload_torque = parameters.bearing.load_factor * parameters.bearing.pitch_diameter;  // [N.m/N]
   const auto moving = [](const MotionSample& sample) { return std::abs(sample.velocity) > MOVING; };
-  const auto add = [&](const MotionSample& sample, double weight, Block& block)
+  const auto add = [&](const MotionSample& sample, double weight, Row& block)
   {
     const double speed = ratio * sample.velocity;
     const double joint = weight * std::copysign(ratio, speed);
     const FrictionShares shares = friction.at(speed, sample.load, sample.temperatureOr(parameters.input.temperature));
-    block.current += weight * sample.current;
-    block.known += weight * (sample.load + sample.vibration) + joint * shares.rest;
-    block.column[INERTIA] += weight * ratio * ratio * sample.acceleration;
-    block.column[PRELOAD] += joint * preload_torque;
-    block.column[GREASE] += joint * shares.grease;
-    block.column[FLANKS] += joint * shares.flanks;
-    block.column[VISCOUS] += joint * std::abs(speed);
-    block.column[STRIBECK] += joint * std::exp(-std::pow(speed / parameters.motor.stribeck_velocity, 2));
+    block[QUANTITIES] += weight * sample.current;
+    block[GAIN] += weight * (sample.load + sample.vibration) + joint * shares.rest;
+    block[OFFSET] += weight;
+    block[INERTIA] += weight * ratio * ratio * sample.acceleration;
+    block[PRELOAD] += joint * preload_torque;
+    block[GREASE] += joint * shares.grease;
+    block[FLANKS] += joint * shares.flanks;
+    block[VISCOUS] += joint * std::abs(speed);
+    block[STRIBECK] += joint * std::exp(-std::pow(speed / parameters.motor.stribeck_velocity, 2));
   };
+  std::vector<Row> blocks;
   for (auto from = samples.begin(); from != samples.end();)
   {
     // As many rows as follow each other, move one way and fit into a block.
@@ -145,45 +121,52 @@ void FrictionFit::addBlocks(const Parameters& parameters, const FrictionMap& fri
     }
     if (moving(*from) && (to - 1)->time > from->time + 0.5 * BLOCK)
     {
-      Block block{};
+      Row block = Row::Zero();
       std::for_each(from, to,
                     [&](const MotionSample& sample) { add(sample, 1.0 / static_cast<double>(to - from), block); });
-      blocks_.push_back(block);
+      blocks.push_back(block);
     }
     from = to;
   }
-  const std::size_t stride = blocks_.size() / MAX_BLOCKS + 1;
-  for (std::size_t i = 1; stride * i < blocks_.size(); ++i)
+  blocks_.resize(static_cast<Eigen::Index>(blocks.size()), QUANTITIES + 1);
+  for (std::size_t i = 0; i < blocks.size(); ++i)
   {
-    blocks_[i] = blocks_[stride * i];
+    blocks_.row(static_cast<Eigen::Index>(i)) = blocks[i];
   }
-  blocks_.resize((blocks_.size() + stride - 1) / stride);
+  products_ = blocks_.transpose() * blocks_;
 }
 
-/// Of the blocks at the present values [A].
-Eigen::VectorXd FrictionFit::residuals() const
+FrictionFit::Row FrictionFit::factors(const Values& values)
 {
-  std::array<const double*, QUANTITIES> values{};
-  std::transform(values_.begin(), values_.end(), values.begin(), [](const double& value) { return &value; });
-  Eigen::VectorXd residuals(static_cast<Eigen::Index>(blocks_.size()));
-  for (std::size_t i = 0; i < blocks_.size(); ++i)
-  {
-    Residual{ blocks_[i] }(values.data(), &residuals[static_cast<Eigen::Index>(i)]);
-  }
-  return residuals;
+  Row factors;
+  factors << values[GAIN] * values, -1.0;
+  factors[GAIN] = values[GAIN];
+  factors[OFFSET] = values[OFFSET];
+  return factors;
+}
+
+/// Of the factors in the values.
+Eigen::Matrix<double, FrictionFit::QUANTITIES + 1, FrictionFit::QUANTITIES> FrictionFit::slopes(const Values& values)
+{
+  Eigen::Matrix<double, QUANTITIES + 1, QUANTITIES> slopes = Eigen::Matrix<double, QUANTITIES + 1, QUANTITIES>::Zero();
+  slopes.diagonal().setConstant(values[GAIN]);
+  slopes.col(GAIN).head<QUANTITIES>() = values;
+  slopes.row(OFFSET).setZero();
+  slopes(GAIN, GAIN) = slopes(OFFSET, OFFSET) = 1.0;
+  return slopes;
 }
 
 /// The values, then their deviation and correlation, by which they are fitted again.
 void FrictionFit::solve(const std::function<void()>& look)
 {
   double correlation_rows = 1.0;
-  Eigen::VectorXd errors = residuals();
+  Eigen::VectorXd errors = blocks_ * factors(values_);
   constexpr int ROUNDS = 3;
   for (int round = 0; round < ROUNDS; ++round)
   {
     look();
     solveOnce(std::max(robustDeviation(errors), 1e-6), correlation_rows);
-    errors = residuals();
+    errors = blocks_ * factors(values_);
     correlation_rows = correlationRows(errors);
   }
 }
@@ -191,71 +174,42 @@ void FrictionFit::solve(const std::function<void()>& look)
 /// @param deviation of the blocks, outliers left out [A]
 void FrictionFit::solveOnce(double deviation, double correlation_rows)
 {
-  ceres::Problem problem;
-  std::vector<double*> all;
-  for (std::size_t i = 0; i < QUANTITIES; ++i)
-  {
-    all.push_back(&values_[i]);
-    problem.AddParameterBlock(all.back(), 1);
-    if (!asked_[i])
-    {
-      problem.SetParameterBlockConstant(all.back());
-      continue;
-    }
-    problem.AddResidualBlock(
-        new ceres::NormalPrior(Eigen::Matrix<double, 1, 1>(1.0 / known_[i]), Eigen::Matrix<double, 1, 1>(start_[i])),
-        nullptr, all.back());
-    if (isFriction(i))
-    {
-      problem.SetParameterLowerBound(all.back(), 0, i == GREASE ? LEAST_GREASE : 0.0);
-    }
-  }
   const double weight = 1.0 / (deviation * deviation * correlation_rows);
-  for (const Block& block : blocks_)
+  const Values prior = known_.cwiseAbs2().cwiseInverse();  // its weight
+  Values lowest = values_;
+  Values highest = values_;
+  for (int i = 0; i < QUANTITIES; ++i)
   {
-    auto* cost = new ceres::DynamicAutoDiffCostFunction<Residual, QUANTITIES>(new Residual{ block });
-    std::for_each(all.begin(), all.end(), [&](double* /*value*/) { cost->AddParameterBlock(1); });
-    cost->SetNumResiduals(1);
-    problem.AddResidualBlock(
-        cost, new ceres::ScaledLoss(new ceres::HuberLoss(OUTLIER * deviation), weight, ceres::TAKE_OWNERSHIP), all);
+    if (asked_[i])
+    {
+      lowest[i] = i == GREASE ? LEAST_GREASE : i >= PRELOAD ? 0.0 : -HUGE_VAL;
+      highest[i] = HUGE_VAL;
+    }
   }
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_QR;
-  options.max_num_iterations = 100;
-  options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
-  findHalfWidths(weight);
-}
-
-/// From what was known before and what the blocks say of it, each with this weight.
-void FrictionFit::findHalfWidths(double weight)
-{
+  values_ = leastCost(values_, lowest, highest,
+                      [&](const Values& values)
+                      {
+                        const auto turned = slopes(values);
+                        const Values away = (values - start_).cwiseProduct(prior);
+                        NormalEquations data =
+                            huberEquations(blocks_ * factors(values), blocks_, products_, OUTLIER * deviation);
+                        NormalEquations all;
+                        all.cost = weight * data.cost + 0.5 * away.dot(values - start_);
+                        all.gradient = weight * turned.transpose() * data.gradient + away;
+                        all.normal = weight * turned.transpose() * data.normal * turned;
+                        all.normal.diagonal() += prior;
+                        return all;
+                      });
+  // From what was known before and what the blocks say of it, each with this weight.
+  Values scale = known_;
+  for (int i = 0; i < QUANTITIES; ++i)
+  {
+    scale[i] *= asked_[i] ? 1.0 : 0.0;
+  }
   using Normal = Eigen::Matrix<double, QUANTITIES, QUANTITIES>;
-  using Row = Eigen::Matrix<double, QUANTITIES, 1>;
-  const Row scale = Eigen::Map<const Row>(known_.data());
-  Normal information = Normal::Identity();
-  for (const Block& block : blocks_)
-  {
-    Row slope = values_[GAIN] * Eigen::Map<const Row>(block.column.data());
-    slope[OFFSET] = 1.0;
-    slope[GAIN] = block.known;
-    for (std::size_t i = INERTIA; i < QUANTITIES; ++i)
-    {
-      slope[GAIN] += values_[i] * block.column[i];
-    }
-    slope = slope.cwiseProduct(scale);
-    for (std::size_t i = 0; i < QUANTITIES; ++i)
-    {
-      slope[static_cast<Eigen::Index>(i)] *= asked_[i] ? 1.0 : 0.0;
-    }
-    information += weight * slope * slope.transpose();
-  }
-  const Row variance = information.ldlt().solve(Normal::Identity()).diagonal();
-  for (std::size_t i = 0; i < QUANTITIES; ++i)
-  {
-    half_width_[i] = asked_[i] ? NORMAL_95 * known_[i] * std::sqrt(variance[static_cast<Eigen::Index>(i)]) : 0.0;
-  }
+  const Eigen::Matrix<double, QUANTITIES + 1, QUANTITIES> scaled = slopes(values_) * scale.asDiagonal();
+  const Normal information = Normal::Identity() + weight * scaled.transpose() * products_ * scaled;
+  half_width_ = NORMAL_95 * scale.cwiseProduct(information.ldlt().solve(Normal::Identity()).diagonal().cwiseSqrt());
 }
 
 /// Of the deviation before that is left after the motion.

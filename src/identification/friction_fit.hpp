@@ -15,7 +15,7 @@
 namespace hjt
 {
 /// Gain, offset, inertia and friction of a joint from the rows that move: the most probable values after what is known
-/// before (maximum a posteriori, Ceres).
+/// before (maximum a posteriori).
 ///
 ///   current = (load + J n^2 a + s (rest + P preload + G grease + F flanks + V n |w|)) / gain + offset
 /// with the shares of FrictionMap, w the motor's speed, s its sign. Each row of the fit is the mean over BLOCK, in
@@ -40,7 +40,7 @@ public:
     STRIBECK,  ///< at the motor [N.m]
     QUANTITIES
   };
-  using Values = std::array<double, QUANTITIES>;
+  using Values = Eigen::Matrix<double, QUANTITIES, 1>;
 
   static constexpr double MOVING = 0.01;  ///< joint speed from which a row counts as moving [rad/s]
   static constexpr double BLOCK = 0.1;    ///< [s]
@@ -54,27 +54,24 @@ public:
   const std::string& refusal(Quantity quantity) const { return refusal_[quantity]; }  ///< empty: identified
 
 private:
-  struct Block
-  {
-    double current;
-    double known;   // torque at the joint that nothing is asked of [N.m]
-    Values column;  // torque at the joint by each quantity; gain and offset unused
-  };
-  struct Residual;
+  /// Of a block: the torque at the joint by each quantity, at GAIN the known one [N.m], at OFFSET 1, and the current
+  /// [A]. Times `factors` it is the residual.
+  using Row = Eigen::Matrix<double, QUANTITIES + 1, 1>;
 
+  static Row factors(const Values& values);
+  static Eigen::Matrix<double, QUANTITIES + 1, QUANTITIES> slopes(const Values& values);
   void addBlocks(const Parameters& parameters, const FrictionMap& friction, const std::vector<MotionSample>& samples);
   void setKnown(const Parameters& parameters, const FrictionMap& friction);
-  Eigen::VectorXd residuals() const;
   void solve(const std::function<void()>& look);
   void solveOnce(double deviation, double correlation_rows);
-  void findHalfWidths(double weight);
   double share(std::size_t quantity) const;
 
-  std::vector<Block> blocks_;
-  Values values_{};
-  Values start_{};       // as configured
-  Values known_{};       // its deviation
-  Values half_width_{};  // of the 95 % interval
+  Eigen::MatrixXd blocks_;    // a row each
+  Eigen::MatrixXd products_;  // transposed times blocks
+  Values values_ = Values::Zero();
+  Values start_ = Values::Zero();       // as configured
+  Values known_ = Values::Zero();       // its deviation
+  Values half_width_ = Values::Zero();  // of the 95 % interval
   std::array<bool, QUANTITIES> asked_{};
   std::array<std::string, QUANTITIES> refusal_;
 };

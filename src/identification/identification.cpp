@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include <Eigen/Cholesky>
 
@@ -64,21 +65,34 @@ private:
   double signal_{};
 };
 
-/// Error of the motion-driven twin with these parameters.
-CurrentError errorOf(const Parameters& parameters, const JudgedPart& judge, const std::function<void()>& look)
+Parameters withoutRipple(Parameters parameters)
+{
+  TelemetryParameters& p = parameters.telemetry;
+  p.ripple_circular_spline_2 = p.ripple_flexspline_2 = p.ripple_circular_spline_4 = p.ripple_flexspline_4 = {};
+  return parameters;
+}
+
+/// Errors of the motion-driven twin with these parameters: without ripple, with it.
+std::array<CurrentError, 2> errorsOf(const Parameters& parameters, const JudgedPart& judge,
+                                     const std::function<void()>& look)
 {
   look();
-  MotionDriven twin(parameters);
-  ErrorSum sum;
+  MotionDriven twin(withoutRipple(parameters));
+  const TorqueRipple ripple(parameters.telemetry, twin.ratio());
+  std::array<ErrorSum, 2> sums;
   for (const MotionSample& sample : judge.samples)
   {
-    const double predicted = twin.step(sample).current;
-    if (sample.time >= judge.from)
+    if (sample.time < judge.from)
     {
-      sum.add(sample, predicted);
+      twin.move(sample);
+      continue;
     }
+    const double predicted = twin.step(sample).current;
+    sums[0].add(sample, predicted);
+    sums[1].add(sample,
+                predicted + ripple.at(sample.position, sample.velocity) / parameters.telemetry.torque_per_current);
   }
-  return sum.result();
+  return { sums[0].result(), sums[1].result() };
 }
 
 /// The usual model: current by load, sign of the speed and speed, fitted to all rows.
@@ -179,13 +193,6 @@ void storeFriction(const FrictionFit& fit, bool load_recorded, Identification& r
       found(FrictionFit::STRIBECK), width(FrictionFit::STRIBECK));
 }
 
-Parameters withoutRipple(Parameters parameters)
-{
-  TelemetryParameters& p = parameters.telemetry;
-  p.ripple_circular_spline_2 = p.ripple_flexspline_2 = p.ripple_circular_spline_4 = p.ripple_flexspline_4 = {};
-  return parameters;
-}
-
 /// Median time between two rows [s].
 double rowPeriod(const std::vector<MotionSample>& samples)
 {
@@ -197,43 +204,54 @@ double rowPeriod(const std::vector<MotionSample>& samples)
   return upperMedian(steps.begin(), steps.end());
 }
 
-/// Measured torque less that of the motion-driven twin without ripple, in moving rows.
-std::vector<RippleRow> rippleRows(const Parameters& parameters, const std::vector<MotionSample>& samples)
+/// What the motion-driven twin without ripple lacks.
+struct Lacking
 {
+  std::vector<double> friction;   // the most that it could be, of each row [A]
+  std::vector<double> missing;    // measured current less predicted without friction, of each row [A]
+  std::vector<RippleRow> moving;  // measured torque less predicted
+};
+
+Lacking lackingOf(const Parameters& parameters, const std::vector<MotionSample>& samples)
+{
+  Lacking lacking;
   MotionDriven twin(withoutRipple(parameters));
-  std::vector<RippleRow> rows;
+  const double gain = parameters.telemetry.torque_per_current;
   for (const MotionSample& sample : samples)
   {
-    const double lacking = sample.current - twin.step(sample).current;
+    const MotionPrediction prediction = twin.step(sample);
+    const double current = sample.current - prediction.current;
+    lacking.friction.push_back(prediction.friction_limit / gain);
+    lacking.missing.push_back(current + prediction.friction_torque / gain);
     if (isMoving(sample))
     {
-      rows.push_back({ sample.position, sample.velocity, parameters.telemetry.torque_per_current * lacking });
+      lacking.moving.push_back({ sample.position, sample.velocity, gain * current });
     }
   }
-  const std::size_t stride = rows.size() / MAX_RIPPLE_ROWS + 1;
-  std::vector<RippleRow> kept;
-  for (std::size_t i = 0; i < rows.size(); i += stride)
+  const std::size_t stride = lacking.moving.size() / MAX_RIPPLE_ROWS + 1;
+  for (std::size_t i = 1; stride * i < lacking.moving.size(); ++i)
   {
-    kept.push_back(rows[i]);
+    lacking.moving[i] = lacking.moving[stride * i];
   }
-  return kept;
+  lacking.moving.resize((lacking.moving.size() + stride - 1) / stride);
+  return lacking;
 }
 
 /// Presliding angle and lasting share by the error over all rows, resting ones too: the other values are known by then.
 class PreslidingFit
 {
 public:
-  PreslidingFit(const Parameters& parameters, const std::vector<MotionSample>& samples)
-    : telemetry_(parameters.telemetry), ratio_(nominalRatio(parameters.gear)), samples_(samples)
+  PreslidingFit(const Parameters& parameters, const std::vector<MotionSample>& samples, Lacking lacking)
+    : telemetry_(parameters.telemetry)
+    , ratio_(nominalRatio(parameters.gear))
+    , samples_(samples)
+    , friction_(std::move(lacking.friction))
+    , missing_(std::move(lacking.missing))
   {
-    // Without mobilised friction, and with all of it: what a share of 1 adds, and what is missing at 0.
-    MotionDriven twin(parameters);
-    const double gain = parameters.telemetry.torque_per_current;
-    for (const MotionSample& sample : samples)
+    const TorqueRipple ripple(telemetry_, ratio_);
+    for (std::size_t i = 0; i < samples.size(); ++i)
     {
-      const MotionPrediction prediction = twin.step(sample);
-      friction_.push_back(prediction.friction_limit / gain);
-      missing_.push_back(sample.current - prediction.current + prediction.friction_torque / gain);
+      missing_[i] -= ripple.at(samples[i].position, samples[i].velocity) / telemetry_.torque_per_current;
     }
   }
 
@@ -241,16 +259,18 @@ public:
   {
     const IdentifiedValue angle = findAngle(look);
     result.values.push_back(angle);
-    result.parameters.telemetry.presliding_angle = telemetry_.presliding_angle = angle.value;
-    const Trial trial = fitted(std::log(angle.value));
+    result.parameters.telemetry.presliding_angle = angle.value;
+    const Trial trial = fitted(Eigen::ArrayXd::Constant(1, angle.value)).front();
+    const double half_width =
+        NORMAL_95 * std::sqrt(trial.squares / static_cast<double>(samples_.size()) * correlation(trial) / trial.size);
     IdentifiedValue share{ "share of the friction that lasts at rest",
                            "telemetry.lasting_share",
                            "-",
                            telemetry_.lasting_share,
                            trial.share,
-                           trial.half_width,
+                           half_width,
                            "" };
-    if (trial.half_width > WIDEST_SHARE || trial.share <= 0.0)
+    if (half_width > WIDEST_SHARE || trial.share <= 0.0)
     {
       share.value = share.configured;
       share.half_width = 0.0;
@@ -266,44 +286,69 @@ private:
 
   struct Trial
   {
-    double squares;
+    double angle;
     double share;
-    double half_width;
-    double correlation_rows;
+    double squares;  // of the error
+    double size;     // squares of what a share of 1 adds
   };
 
-  /// The best lasting share at one presliding angle: the error is linear in it.
-  Trial fitted(double log_angle) const
+  /// Gives for each row, at these angles, what a lasting share of 1 adds and what is missing at 0.
+  template <class Visit>
+  void walk(const Eigen::ArrayXd& angles, const Visit& visit) const
   {
-    TelemetryParameters telemetry = telemetry_;
-    telemetry.presliding_angle = std::exp(log_angle);
-    Presliding presliding(telemetry);
-    Eigen::VectorXd column(static_cast<Eigen::Index>(samples_.size()));
-    Eigen::VectorXd missing(column.size());
+    const Eigen::ArrayXd rates = -angles.inverse();
+    Eigen::ArrayXd contacts = Eigen::ArrayXd::Zero(angles.size());
+    double lasting = 0.0;
     for (std::size_t i = 0; i < samples_.size(); ++i)
     {
       if (i == 0 || samples_[i].after_gap)
       {
-        presliding.reset();
+        contacts.setZero();
+        lasting = 0.0;
       }
       else
       {
-        presliding.move(ratio_ * (samples_[i].position - samples_[i - 1].position),
-                        samples_[i].time - samples_[i - 1].time);
+        // As Presliding::move.
+        const double turn = ratio_ * (samples_[i].position - samples_[i - 1].position);
+        const double end = std::copysign(1.0, turn);
+        const double kept = std::exp((samples_[i - 1].time - samples_[i].time) / Presliding::RELAXATION);
+        contacts = end + (kept * contacts - end) * (std::abs(turn) * rates).exp();
+        lasting = mobilised(lasting, turn, Presliding::LASTING_ANGLE);
       }
-      const auto at = static_cast<Eigen::Index>(i);
-      column[at] = friction_[i] * (presliding.lasting() - presliding.contacts());
-      missing[at] = missing_[i] - friction_[i] * presliding.contacts();
+      visit(i, friction_[i] * (lasting - contacts), missing_[i] - friction_[i] * contacts);
     }
-    Trial trial{};
-    const double size = std::max(column.squaredNorm(), 1e-12);
-    trial.share = std::clamp(column.dot(missing) / size, 0.0, 1.0);
-    const Eigen::VectorXd residual = missing - trial.share * column;
-    trial.squares = residual.squaredNorm();
-    trial.correlation_rows = correlationRows(residual);
-    trial.half_width =
-        NORMAL_95 * std::sqrt(trial.squares / static_cast<double>(samples_.size()) * trial.correlation_rows / size);
-    return trial;
+  }
+
+  /// The best lasting share at each presliding angle: the error is linear in it.
+  std::vector<Trial> fitted(const Eigen::ArrayXd& angles) const
+  {
+    Eigen::ArrayXd columns = Eigen::ArrayXd::Zero(angles.size());
+    Eigen::ArrayXd products = columns;
+    Eigen::ArrayXd squares = columns;
+    walk(angles,
+         [&](std::size_t /*row*/, const auto& column, const auto& missing)
+         {
+           columns += column.square();
+           products += column * missing;
+           squares += missing.square();
+         });
+    std::vector<Trial> trials;
+    for (Eigen::Index k = 0; k < angles.size(); ++k)
+    {
+      const double size = std::max(columns[k], 1e-12);
+      const double share = std::clamp(products[k] / size, 0.0, 1.0);
+      trials.push_back({ angles[k], share, squares[k] - share * (2.0 * products[k] - share * columns[k]), size });
+    }
+    return trials;
+  }
+
+  /// Rows of the error that count as one.
+  double correlation(const Trial& trial) const
+  {
+    Eigen::VectorXd error(static_cast<Eigen::Index>(samples_.size()));
+    walk(Eigen::ArrayXd::Constant(1, trial.angle), [&](std::size_t row, const auto& column, const auto& missing)
+         { error[static_cast<Eigen::Index>(row)] = missing[0] - trial.share * column[0]; });
+    return correlationRows(error);
   }
 
   IdentifiedValue findAngle(const std::function<void()>& look) const
@@ -317,15 +362,10 @@ private:
                            0.0,
                            "no reversal of this motion shows it" };
     constexpr int POINTS = 17;
-    const double lowest = std::log(1e-4);
-    const double highest = std::log(0.3);
-    const double step = (highest - lowest) / (POINTS - 1);
-    std::array<Trial, POINTS> trials{};
-    for (int i = 0; i < POINTS; ++i)
-    {
-      look();
-      trials[i] = fitted(lowest + step * i);
-    }
+    const Eigen::ArrayXd logarithms = Eigen::ArrayXd::LinSpaced(POINTS, std::log(1e-4), std::log(0.3));
+    const double step = logarithms[1] - logarithms[0];
+    look();
+    const std::vector<Trial> trials = fitted(logarithms.exp());
     const auto best = std::min_element(trials.begin(), trials.end(),
                                        [](const Trial& a, const Trial& b) { return a.squares < b.squares; });
     if (best == trials.begin() || best == trials.end() - 1)
@@ -336,10 +376,9 @@ private:
     const double below = (best - 1)->squares;
     const double above = (best + 1)->squares;
     const double curvature = (above - 2.0 * best->squares + below) / (step * step);
-    const double log_angle =
-        lowest + step * static_cast<double>(best - trials.begin()) - 0.5 * (above - below) / step / curvature;
+    const double log_angle = std::log(best->angle) - 0.5 * (above - below) / step / curvature;
     const double variance = best->squares / static_cast<double>(samples_.size());
-    const double half_width = NORMAL_95 * std::sqrt(2.0 * variance * best->correlation_rows / curvature);
+    const double half_width = NORMAL_95 * std::sqrt(2.0 * variance * correlation(*best) / curvature);
     if (half_width < WIDEST)
     {
       value.value = std::exp(log_angle);
@@ -352,8 +391,8 @@ private:
   TelemetryParameters telemetry_;
   double ratio_;
   const std::vector<MotionSample>& samples_;
-  std::vector<double> friction_;  // [A]
-  std::vector<double> missing_;   // [A]
+  std::vector<double> friction_;  // as Lacking
+  std::vector<double> missing_;   // as Lacking, with the ripple
 };
 }  // namespace
 
@@ -364,7 +403,8 @@ Identification identify(const Parameters& parameters, const std::vector<MotionSa
   result.parameters = parameters;
   storeFriction(FrictionFit(parameters, FrictionMap(parameters), train, look), load_recorded, result);
 
-  const RippleFit ripple(rippleRows(result.parameters, train), rowPeriod(train), parameters.telemetry,
+  Lacking lacking = lackingOf(result.parameters, train);
+  const RippleFit ripple(std::move(lacking.moving), rowPeriod(train), parameters.telemetry,
                          nominalRatio(parameters.gear), look);
   ripple.store(result.parameters.telemetry);
   for (std::size_t i = 0; i < TorqueRipple::LINES; ++i)
@@ -372,7 +412,7 @@ Identification identify(const Parameters& parameters, const std::vector<MotionSa
     result.lines.push_back({ RIPPLE_KEYS[i], ripple.line(i), ripple.orders()[i], ripple.amplitude(i),
                              ripple.halfWidth(i), ripple.phase(i), ripple.refusal(i) });
   }
-  PreslidingFit(result.parameters, train).run(result, look);
+  PreslidingFit(result.parameters, train, std::move(lacking)).run(result, look);
   const bool is_warmed = std::any_of(train.begin(), train.end(),
                                      [](const MotionSample& sample) { return std::isfinite(sample.temperature); });
   result.values.push_back(
@@ -383,9 +423,10 @@ Identification identify(const Parameters& parameters, const std::vector<MotionSa
                             parameters.cup.torsion_stiffness[0], parameters.cup.torsion_stiffness[0], 0.0,
                             "not identified; `joint_twin compare` measures it if both angles are recorded" });
 
-  result.judged.configured = errorOf(parameters, judge, look);
-  result.judged.without_ripple = errorOf(withoutRipple(result.parameters), judge, look);
-  result.judged.identified = errorOf(result.parameters, judge, look);
+  result.judged.configured = errorsOf(parameters, judge, look)[1];
+  const std::array<CurrentError, 2> errors = errorsOf(result.parameters, judge, look);
+  result.judged.without_ripple = errors[0];
+  result.judged.identified = errors[1];
   result.judged.gain_coulomb_viscous = simpleModelError(train, judge);
   return result;
 }

@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <iterator>
+#include <utility>
 
-#include <ceres/ceres.h>
 #include <Eigen/Cholesky>
 
 #include "identification/regression.hpp"
@@ -15,63 +16,41 @@ namespace hjt
 namespace
 {
 constexpr double WIDEST = 0.5;  // half width of an interval over the amplitude
-constexpr std::size_t RESONANCE = TorqueRipple::RESONANCE;
-constexpr std::size_t DAMPING = RESONANCE + 1;
-constexpr std::size_t LAG = RESONANCE + 2;
-constexpr std::array<double, 2> RESONANCES{ 2.0, 100.0 };  // [Hz]
-constexpr std::array<double, 2> DAMPINGS{ 0.05, 1.0 };     // [-]
-constexpr std::array<double, 2> LAGS{ -0.02, 0.02 };       // [s]
-
-/// Residual of one row; each value is a parameter block.
-struct Residual
-{
-  const TorqueRipple::Orders& orders;
-  const RippleRow& row;
-
-  template <class T>
-  bool operator()(T const* const* values, T* residual) const
-  {
-    std::array<T, TorqueRipple::VALUES> all;
-    for (std::size_t i = 0; i < all.size(); ++i)
-    {
-      all[i] = *values[i];
-    }
-    residual[0] = TorqueRipple::torque(orders, row.position, row.velocity, all.data()) - row.torque;
-    return true;
-  }
-};
+// Resonance [Hz], damping [-] and lag [s].
+const Eigen::Vector3d LOWEST(2.0, 0.05, -0.02);
+const Eigen::Vector3d HIGHEST(100.0, 1.0, 0.02);
 }  // namespace
 
 RippleFit::RippleFit(std::vector<RippleRow> rows, double period, const TelemetryParameters& start, double ratio,
                      const std::function<void()>& look)
-  : orders_(TorqueRipple::orders(ratio)), fastest_(start.ripple_fastest)
+  : rows_(std::move(rows)), orders_(TorqueRipple::orders(ratio)), fastest_(start.ripple_fastest)
 {
   std::vector<double> speeds;
-  std::transform(rows.begin(), rows.end(), std::back_inserter(speeds),
+  std::transform(rows_.begin(), rows_.end(), std::back_inserter(speeds),
                  [](const RippleRow& row) { return std::abs(row.velocity); });
   if (!speeds.empty())
   {
     const auto fast = speeds.begin() + static_cast<std::ptrdiff_t>(KNOWN * static_cast<double>(speeds.size() - 1));
     std::nth_element(speeds.begin(), fast, speeds.end());
     fastest_ = std::min(*fast, M_PI / (period * orders_[1]) * (1.0 - 1e-12));
-    rows.erase(std::remove_if(rows.begin(), rows.end(),
-                              [&](const RippleRow& row) { return std::abs(row.velocity) > fastest_; }),
-               rows.end());
+    rows_.erase(std::remove_if(rows_.begin(), rows_.end(),
+                               [&](const RippleRow& row) { return std::abs(row.velocity) > fastest_; }),
+                rows_.end());
   }
+  torque_.resize(static_cast<Eigen::Index>(rows_.size()));
+  std::transform(rows_.begin(), rows_.end(), torque_.data(), [](const RippleRow& row) { return row.torque; });
   for (std::size_t i = 0; i < TorqueRipple::LINES; ++i)
   {
     present_[i] = orders_[i] * fastest_ * period <= M_PI;
     refusal_[i] = present_[i] ? "" : "the rows are too far apart for it";
   }
-  values_[RESONANCE] = start.ripple_resonance;
-  values_[DAMPING] = start.ripple_damping;
-  values_[LAG] = start.ripple_lag;
+  values_.tail<3>() << start.ripple_resonance, start.ripple_damping, start.ripple_lag;
   const Values configured = values_;
-  chooseResonance(rows, look);
+  chooseResonance(look);
   while (anyLine())
   {
     look();
-    solve(rows);
+    solve();
     if (!refuseWorst())
     {
       break;
@@ -88,34 +67,51 @@ bool RippleFit::anyLine() const
   return std::any_of(present_.begin(), present_.end(), [](bool present) { return present; });
 }
 
-/// The start: the best of a coarse grid, cos and sin of the lines fitted to each by one linear solve.
-void RippleFit::chooseResonance(const std::vector<RippleRow>& rows, const std::function<void()>& look)
+/// Of each row, as TorqueRipple has them, real and imaginary part of each line; 0 where it is not present.
+Eigen::MatrixXd RippleFit::waves(const double* response) const
 {
-  using Lines = Eigen::Matrix<double, RESONANCE, 1>;
-  const auto fitted = [&](Values values, double& gain)
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(torque_.size(), RESONANCE);
+  for (Eigen::Index i = 0; i < torque_.size(); ++i)
   {
-    Eigen::Matrix<double, RESONANCE, RESONANCE> normal = Eigen::Matrix<double, RESONANCE, RESONANCE>::Identity() * 1e-9;
-    Lines right = Lines::Zero();
-    for (const RippleRow& row : rows)
+    const RippleRow& row = rows_[i];
+    const TorqueRipple::Waves felt = TorqueRipple::waves(orders_, row.position, row.velocity, response);
+    for (std::size_t k = 0; k < felt.size(); ++k)
     {
-      Lines columns;
-      for (std::size_t i = 0; i < RESONANCE; ++i)
-      {
-        std::fill(values.begin(), values.begin() + RESONANCE, 0.0);
-        values[i] = present_[i / 2] ? 1.0 : 0.0;
-        columns[static_cast<Eigen::Index>(i)] =
-            TorqueRipple::torque(orders_, row.position, row.velocity, values.data());
-      }
-      normal += columns * columns.transpose();
-      right += columns * row.torque;
+      columns(i, 2 * k) = present_[k] ? felt[k].real() : 0.0;
+      columns(i, 2 * k + 1) = present_[k] ? felt[k].imag() : 0.0;
     }
-    const Lines lines = normal.ldlt().solve(right);
-    gain = lines.dot(right);
-    std::copy(lines.data(), lines.data() + RESONANCE, values.begin());
-    return values;
-  };
+  }
+  return columns;
+}
+
+/// Of the torque of each row in each value.
+Eigen::MatrixXd RippleFit::slopes(const Values& values) const
+{
+  const double* response = values.data() + RESONANCE;
+  Eigen::MatrixXd slopes = Eigen::MatrixXd::Zero(torque_.size(), VALUES);
+  slopes.leftCols(RESONANCE) = waves(response);
+  for (Eigen::Index i = 0; i < torque_.size(); ++i)
+  {
+    for (std::size_t k = 0; k < orders_.size(); ++k)
+    {
+      const double w = orders_[k] * rows_[i].velocity;
+      const std::complex<double> torque = std::complex<double>(values[2 * k], -values[2 * k + 1]) *
+                                          std::complex<double>(slopes(i, 2 * k), slopes(i, 2 * k + 1));
+      const std::complex<double> in_stiffness = -torque / TorqueRipple::stiffness(w, response);
+      const double natural = TWO_PI * response[0];
+      slopes(i, RESONANCE) +=
+          TWO_PI * (in_stiffness * std::complex<double>(2.0 * natural, 2.0 * response[1] * w)).real();
+      slopes(i, RESONANCE + 1) -= 2.0 * natural * w * in_stiffness.imag();
+      slopes(i, RESONANCE + 2) += w * torque.imag();
+    }
+  }
+  return slopes;
+}
+
+/// The start: the best of a coarse grid, cos and sin of the lines fitted to each by one linear solve.
+void RippleFit::chooseResonance(const std::function<void()>& look)
+{
   double most = -1.0;
-  Values best = values_;
   for (const double resonance : { 5.0, 8.0, 12.0, 16.0, 20.0, 25.0, 32.0, 45.0 })
   {
     for (const double damping : { 0.1, 0.3, 0.6 })
@@ -123,68 +119,39 @@ void RippleFit::chooseResonance(const std::vector<RippleRow>& rows, const std::f
       look();
       for (const double lag : { -0.004, 0.0, 0.004, 0.008, 0.012 })
       {
-        values_[RESONANCE] = resonance;
-        values_[DAMPING] = damping;
-        values_[LAG] = lag;
-        double gain{};
-        const Values trial = fitted(values_, gain);
-        if (gain > most)
+        const Eigen::Vector3d response(resonance, damping, lag);
+        const Eigen::MatrixXd columns = waves(response.data());
+        const Eigen::VectorXd right = columns.transpose() * torque_;
+        Eigen::MatrixXd normal = columns.transpose() * columns;
+        normal.diagonal().array() += 1e-9;
+        const Eigen::VectorXd lines = normal.ldlt().solve(right);
+        if (lines.dot(right) > most)
         {
-          most = gain;
-          best = trial;
+          most = lines.dot(right);
+          values_ << lines, response;
         }
       }
     }
   }
-  values_ = best;
 }
 
-void RippleFit::solve(const std::vector<RippleRow>& rows)
+void RippleFit::solve()
 {
-  ceres::Problem problem;
-  std::vector<double*> all;
-  std::vector<double*> asked;
-  for (std::size_t i = 0; i < values_.size(); ++i)
-  {
-    all.push_back(&values_[i]);
-    problem.AddParameterBlock(all.back(), 1);
-    if (i < RESONANCE && !present_[i / 2])
-    {
-      problem.SetParameterBlockConstant(all.back());
-    }
-    else
-    {
-      asked.push_back(all.back());
-    }
-  }
-  const auto bound = [&](std::size_t i, const std::array<double, 2>& range)
-  {
-    problem.SetParameterLowerBound(all[i], 0, range[0]);
-    problem.SetParameterUpperBound(all[i], 0, range[1]);
-    values_[i] = std::clamp(values_[i], range[0], range[1]);
-  };
-  bound(RESONANCE, RESONANCES);
-  bound(DAMPING, DAMPINGS);
-  bound(LAG, LAGS);
-  double squares = 0.0;
-  for (const RippleRow& row : rows)
-  {
-    squares += row.torque * row.torque;
-  }
-  const double outlier = 2.0 * std::sqrt(squares / static_cast<double>(rows.size())) + 1e-9;
-  for (const RippleRow& row : rows)
-  {
-    auto* cost = new ceres::DynamicAutoDiffCostFunction<Residual, TorqueRipple::VALUES>(new Residual{ orders_, row });
-    std::for_each(all.begin(), all.end(), [&](double* /*value*/) { cost->AddParameterBlock(1); });
-    cost->SetNumResiduals(1);
-    problem.AddResidualBlock(cost, new ceres::HuberLoss(outlier), all);
-  }
-  constexpr int MAX_ITERATIONS = 60;
-  const Eigen::VectorXd half_widths = hjt::solve(problem, asked, MAX_ITERATIONS);
-  for (std::size_t k = 0; k < asked.size(); ++k)
-  {
-    half_width_[asked[k] - values_.data()] = half_widths[static_cast<Eigen::Index>(k)];
-  }
+  Values lowest = Values::Constant(-HUGE_VAL);
+  Values highest = Values::Constant(HUGE_VAL);
+  lowest.tail<3>() = LOWEST;
+  highest.tail<3>() = HIGHEST;
+  const double outlier = 2.0 * torque_.norm() / std::sqrt(static_cast<double>(torque_.size())) + 1e-9;
+  const auto errors = [&](const Eigen::MatrixXd& columns, const Values& values) -> Eigen::VectorXd
+  { return columns.leftCols(RESONANCE) * values.head<RESONANCE>() - torque_; };
+  values_ = leastCost(values_, lowest, highest,
+                      [&](const Values& values)
+                      {
+                        const Eigen::MatrixXd columns = slopes(values);
+                        return huberEquations(errors(columns, values), columns, columns.transpose() * columns, outlier);
+                      });
+  const Eigen::MatrixXd columns = slopes(values_);
+  half_width_ = halfWidths(errors(columns, values_), columns);
 }
 
 /// True if a line was dropped, so that the rest must be refitted.
@@ -207,8 +174,8 @@ bool RippleFit::refuseWorst()
   }
   refusal_[line] = "lost in the residual";
   present_[line] = false;
-  std::fill_n(values_.begin() + static_cast<std::ptrdiff_t>(2 * line), 2, 0.0);
-  std::fill_n(half_width_.begin() + static_cast<std::ptrdiff_t>(2 * line), 2, 0.0);
+  values_.segment<2>(2 * line).setZero();
+  half_width_.segment<2>(2 * line).setZero();
   return true;
 }
 
@@ -229,7 +196,7 @@ double RippleFit::phase(std::size_t line) const
 
 void RippleFit::store(TelemetryParameters& p) const
 {
-  std::size_t at = 0;
+  Eigen::Index at = 0;
   for (auto* line :
        { &p.ripple_circular_spline_2, &p.ripple_flexspline_2, &p.ripple_circular_spline_4, &p.ripple_flexspline_4 })
   {
@@ -237,8 +204,8 @@ void RippleFit::store(TelemetryParameters& p) const
     at += 2;
   }
   p.ripple_resonance = values_[RESONANCE];
-  p.ripple_damping = values_[DAMPING];
-  p.ripple_lag = values_[LAG];
+  p.ripple_damping = values_[RESONANCE + 1];
+  p.ripple_lag = values_[RESONANCE + 2];
   p.ripple_fastest = fastest_;
 }
 }  // namespace hjt

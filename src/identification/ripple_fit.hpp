@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "tracking/torque_ripple.hpp"
 
 namespace hjt
@@ -18,9 +20,10 @@ struct RippleRow
   double torque;    ///< at the joint [N.m]
 };
 
-/// The lines of TorqueRipple in that torque, by least squares (Ceres), with the resonance of what the joint carries.
-/// A line that is lost in the residual is refused, and zero. Rows count up to the speed of KNOWN of them, and to that
-/// at which a wave of two a turn of the motor still has two rows. Four a turn are refused if they have fewer there.
+/// The lines of TorqueRipple in that torque, by least squares, outliers less (Huber), with the resonance of what the
+/// joint carries. A line that is lost in the residual is refused, and zero. Rows count up to the speed of KNOWN of
+/// them, and to that at which a wave of two a turn of the motor still has two rows. Four a turn are refused if they
+/// have fewer there.
 class RippleFit
 {
 public:
@@ -41,17 +44,23 @@ public:
   void store(TelemetryParameters& parameters) const;  ///< writes the lines and their resonance
 
 private:
-  using Values = std::array<double, TorqueRipple::VALUES>;
+  static constexpr std::size_t RESONANCE = 2 * TorqueRipple::LINES;  // where the response stands behind the lines
+  static constexpr std::size_t VALUES = RESONANCE + 3;
+  using Values = Eigen::Matrix<double, VALUES, 1>;
 
   bool anyLine() const;
-  void chooseResonance(const std::vector<RippleRow>& rows, const std::function<void()>& look);
-  void solve(const std::vector<RippleRow>& rows);
+  Eigen::MatrixXd waves(const double* response) const;
+  Eigen::MatrixXd slopes(const Values& values) const;
+  void chooseResonance(const std::function<void()>& look);
+  void solve();
   bool refuseWorst();
 
+  std::vector<RippleRow> rows_;
+  Eigen::VectorXd torque_;  // of the rows
   TorqueRipple::Orders orders_;
   double fastest_;  // [rad/s]
-  Values values_{};
-  Values half_width_{};
+  Values values_ = Values::Zero();
+  Values half_width_ = Values::Zero();
   std::array<bool, TorqueRipple::LINES> present_{};
   std::array<std::string, TorqueRipple::LINES> refusal_;
 };

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <complex>
 #include <cstddef>
 
 #include "gear/angle.hpp"
@@ -22,47 +23,65 @@ class TorqueRipple
 {
 public:
   static constexpr std::size_t LINES = 4;
-  static constexpr std::size_t RESONANCE = 2 * LINES;  ///< where the response stands behind cos and sin of the lines
-  static constexpr std::size_t VALUES = 2 * LINES + 3;
   using Orders = std::array<double, LINES>;
+  using Waves = std::array<std::complex<double>, LINES>;
 
-  TorqueRipple(const TelemetryParameters& parameters, double ratio);
+  TorqueRipple(const TelemetryParameters& p, double ratio)
+    : orders_(orders(ratio))
+    , lines_{ { { p.ripple_circular_spline_2[0], p.ripple_circular_spline_2[1] },
+                { p.ripple_flexspline_2[0], p.ripple_flexspline_2[1] },
+                { p.ripple_circular_spline_4[0], p.ripple_circular_spline_4[1] },
+                { p.ripple_flexspline_4[0], p.ripple_flexspline_4[1] } } }
+    , response_{ p.ripple_resonance, p.ripple_damping, p.ripple_lag }
+    , fastest_(lines_ == Waves() ? -1.0 : p.ripple_fastest)
+  {
+  }
 
   /// Ripple at the joint's angle [rad] and speed [rad/s], [N.m].
   double at(double position, double velocity) const noexcept
   {
-    return std::abs(velocity) > fastest_ ? 0.0 : torque(orders_, position, velocity, values_.data());
+    double sum = 0.0;
+    if (std::abs(velocity) <= fastest_)
+    {
+      const Waves felt = waves(orders_, position, velocity, response_.data());
+      for (std::size_t i = 0; i < LINES; ++i)
+      {
+        sum += (std::conj(lines_[i]) * felt[i]).real();
+      }
+    }
+    return sum;
   }
 
   /// Per turn of the joint: circular spline 2, flexspline 2, circular spline 4, flexspline 4.
   static Orders orders(double ratio) { return { 2.0 * ratio - 2.0, 2.0 * ratio, 4.0 * ratio - 4.0, 4.0 * ratio }; }
 
-  /// The same of cos and sin of each line [N.m], resonance [Hz], damping [-] and lag [s], for whatever numbers a fit
-  /// uses.
-  template <class T>
-  static T torque(const Orders& orders, double position, double velocity, const T* values)
+  /// w0^2 - w^2 + 2 i z w0 w; `response`: resonance [Hz], damping [-], lag [s].
+  static std::complex<double> stiffness(double w, const double* response) noexcept
   {
-    using std::cos;
-    using std::sin;
-    T sum(0.0);
-    const T natural = TWO_PI * values[RESONANCE];
+    const double natural = TWO_PI * response[0];
+    return { natural * natural - w * w, 2.0 * response[1] * natural * w };
+  }
+
+  /// What the gear feels of each line of 1 N.m: of its cosine the real part, of its sine the imaginary part.
+  static Waves waves(const Orders& orders, double position, double velocity, const double* response) noexcept
+  {
+    Waves turned;
+    Waves felt;
     for (std::size_t i = 0; i < LINES; ++i)
     {
       const double w = orders[i] * velocity;
-      const T c = natural * natural - w * w;
-      const T b = 2.0 * values[RESONANCE + 1] * natural * w;
-      const T size = -w * w / (c * c + b * b);
-      const T angle = orders[i] * position - w * values[RESONANCE + 2];
-      const T real = size * (c * cos(angle) + b * sin(angle));
-      const T imaginary = size * (c * sin(angle) - b * cos(angle));
-      sum += values[2 * i] * real + values[2 * i + 1] * imaginary;
+      const std::complex<double> inverse = std::conj(stiffness(w, response));
+      // The orders of the last two are twice those of the first two.
+      turned[i] = i < 2 ? std::polar(1.0, orders[i] * position - w * response[2]) : turned[i - 2] * turned[i - 2];
+      felt[i] = -w * w / std::norm(inverse) * inverse * turned[i];
     }
-    return sum;
+    return felt;
   }
 
 private:
   Orders orders_;
-  std::array<double, VALUES> values_;
-  double fastest_;  // [rad/s]
+  Waves lines_;                     // cos + i sin [N.m]
+  std::array<double, 3> response_;  // resonance [Hz], damping [-], lag [s]
+  double fastest_;                  // [rad/s]; below 0: there is no line
 };
 }  // namespace hjt

@@ -56,7 +56,6 @@ LIBRARIES = re.compile(r"<([a-z_0-9]+|(dlfcn|fcntl|malloc|sys/file|sys/mman|sys/
 OWN_LIBRARIES = {
     "live": re.compile(r"<(pthread|pwd|sched|sys/prctl|sys/resource)\.h>$"),
     "arm": re.compile(r"<(console_bridge|kdl|kdl_parser|urdf)/[\w/.-]+>$"),
-    "identification": re.compile(r"<ceres/[\w/.-]+>$"),
     "python": re.compile(r"<pybind11/\w+\.h>$"),
     "bench": re.compile(r"<(arkode|benchmark|cvode|ida|nlohmann|nvector|sundials|sunlinsol|sunmatrix|sunnonlinsol)/"
                         r"[\w/.-]+>$|<klu\.h>$"),

@@ -111,7 +111,7 @@ class Layering(Tree):
         for folder, header in [("gear", '"harmonic_joint_twin/params/parameters.hpp"'), ("gear", "<Eigen/Core>"),
                                ("gear", '"base/number_text.hpp"'), ("ros_io", '"harmonic_joint_twin/twin/twin.hpp"'),
                                ("ros_io", "<ros/ros.h>"), ("ros_io", '"harmonic_joint_twin/Health.h"'),
-                               ("identification", "<ceres/ceres.h>"), ("apps/tool", '"output/progress.hpp"')]:
+                               ("arm", "<kdl/frames.hpp>"), ("apps/tool", '"output/progress.hpp"')]:
             with self.subTest(folder=folder, header=header):
                 self.source(folder, header)
                 self.assert_clean(layering.check)
@@ -121,7 +121,7 @@ class Layering(Tree):
                                ("sensors", '"health/health_monitor.hpp"'), ("ros_io", '"studies/life_trials.hpp"'),
                                ("apps/common", '"apps/tool/commands.hpp"'), ("twin", '"harmonic_joint_twin/Health.h"'),
                                ("model", "<sensor_msgs/JointState.h>"), ("solver", '"newton.hpp"'),
-                               ("solver", '"stray/a.hpp"'), ("twin", "<ceres/ceres.h>")]:
+                               ("solver", '"stray/a.hpp"'), ("twin", "<kdl/frames.hpp>")]:
             with self.subTest(folder=folder, header=header):
                 self.source(folder, header)
                 self.assert_fault(layering.check, f"src/{folder}/one.cpp:2", header)

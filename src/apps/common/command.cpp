@@ -309,7 +309,6 @@ void CommandLine::addSubcommands()
     node.name = root_->name + " " + subcommand->name_;
     node.help = subcommand->help_;
     node.heading = HEADINGS[static_cast<std::size_t>(subcommand->subject_)];
-    node.is_built = subcommand->is_built_;
     addHelp(node);
     if (subcommand->declare_)
     {

@@ -73,12 +73,6 @@ enum class Subject
   DATA_SET
 };
 
-/// Why a build has not got a subcommand.
-struct NotBuilt
-{
-  const char* needs;  ///< name of the library that was missing
-};
-
 /// A subcommand of the tool. A static object of this type, at the end of the file that has its code, is all it takes to
 /// add one. "life age" is the subcommand `age` of the subcommand `life`.
 class Subcommand
@@ -90,13 +84,6 @@ public:
   Subcommand(Subject subject, const char* name, const char* help)
     : Subcommand(subject, name, help, std::function<Run(Command&)>())
   {
-  }
-
-  /// A subcommand that this build leaves out: it says so, whatever its arguments are.
-  Subcommand(Subject subject, const char* name, NotBuilt reason)
-    : Subcommand(subject, name, (std::string("not built: needs ") + reason.needs).c_str())
-  {
-    is_built_ = false;
   }
 
   template <class Options>
@@ -119,8 +106,7 @@ private:
   const Subject subject_;
   const std::string name_;
   const std::string help_;
-  const std::function<Run(Command&)> declare_;  // empty: has subcommands, or is not built
-  bool is_built_{ true };
+  const std::function<Run(Command&)> declare_;  // empty: has subcommands
 };
 
 /// The command line of a program.

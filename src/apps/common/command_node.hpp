@@ -46,7 +46,6 @@ struct CommandNode
   std::string help;
   std::string heading{};  ///< where the command that it belongs to lists it
   std::string version{};
-  bool is_built{ true };  ///< if not, `help` says what it needs
   std::list<DeclaredOption> options{};
   std::vector<std::vector<std::string>> alternatives{};  ///< one option of each group must be given
   std::list<CommandNode> subcommands{};

@@ -246,10 +246,6 @@ CommandNode& subcommand(CommandNode& command, const std::string& given)
 
 Request parseWords(CommandNode& command, const Words& words)
 {
-  if (!command.is_built)
-  {
-    throw UsageError(command.name + ": " + command.help);
-  }
   // The options of a command that has subcommands take no values.
   const auto end = std::find_if(words.begin(), words.end(),
                                 [&](const std::string& word)
