@@ -77,7 +77,7 @@ struct FoundLoad
   std::vector<PayloadChange> changes{};  ///< in their order, the first at the begin of the rows; empty: none
   double since{ -HUGE_VAL };             ///< the rows that it is of [s]
   FoundDrag drag{};
-  std::vector<FrictionDoubt> doubts{};  ///< of each joint, by all that is not clearly less likely
+  std::vector<FittedFriction> frictions{};  ///< of each joint
 
   double gain{};             ///< of all currents beside 1, apart from load and friction [-]
   double gain_half_width{};  ///< of its 95 % interval [-]

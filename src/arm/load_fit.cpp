@@ -322,33 +322,47 @@ ArmEstimator::Estimate LoadFit::estimate(const std::vector<bool>& counts)
   return hypotheses(counts).front().found;
 }
 
-/// Of each joint, the likeliest of `all` with which its friction is not more, or not less, than expected.
-std::vector<FrictionDoubt> LoadFit::doubtsOf(const std::vector<Hypothesis>& all)
+/// A joint's friction is another only where its own part and the whole are: the one nearer to the expected counts.
+std::vector<FittedFriction> LoadFit::frictionsOf(const std::vector<Hypothesis>& all)
 {
-  std::vector<FrictionDoubt> doubts(all.front().found.own.size());
+  std::vector<FittedFriction> frictions(all.front().found.own.size());
+  for (std::size_t i = 0; i < frictions.size(); ++i)
+  {
+    FittedFriction& friction = frictions[i];
+    friction = { 1.0, HUGE_VAL, 0.0 };
+    for (const Hypothesis& of : all)
+    {
+      const ArmEstimator::Known& whole = of.found.frictions[i];
+      const ArmEstimator::Known own{ 1.0 + of.found.own[i].value, of.found.own[i].half_width };
+      const ArmEstimator::Known& counts = std::abs(own.value - 1.0) < std::abs(whole.value - 1.0) ? own : whole;
+      friction.factor = &of == &all.front() ? counts.value : friction.factor;
+      friction.lower = std::min({ friction.lower, own.value - own.half_width, whole.value - whole.half_width });
+      friction.upper = std::max({ friction.upper, own.value + own.half_width, whole.value + whole.half_width });
+    }
+  }
   for (const auto& [found, may, cost] : all)
   {
     const std::string cause = (found.states.empty() ? std::string() : " with another payload in some legs") +
                               (may.drag     ? " with a drag of the tool" :
                                may.mounting ? " with another mounting" :
                                               "");
-    for (std::size_t i = 0; i < doubts.size(); ++i)
+    for (std::size_t i = 0; i < frictions.size(); ++i)
     {
       const ArmEstimator::Known& own = found.own[i];
       const std::string text = "in a fit of all joints' currents" + cause + " its friction is " +
                                fixedText(1.0 + own.value, 2) + " [" + fixedText(1.0 + own.value - own.half_width, 2) +
                                ", " + fixedText(1.0 + own.value + own.half_width, 2) + "] times the expected one";
-      if (doubts[i].more.empty() && own.value < own.half_width)
+      if (frictions[i].not_more.empty() && own.value < own.half_width)
       {
-        doubts[i].more = text;
+        frictions[i].not_more = text;
       }
-      if (doubts[i].less.empty() && own.value > -own.half_width)
+      if (frictions[i].not_less.empty() && own.value > -own.half_width)
       {
-        doubts[i].less = text;
+        frictions[i].not_less = text;
       }
     }
   }
-  return doubts;
+  return frictions;
 }
 
 FoundLoad LoadFit::solve(const std::vector<bool>& counts)
@@ -358,7 +372,7 @@ FoundLoad LoadFit::solve(const std::vector<bool>& counts)
   const double of_links = ofLinks(counts);
   FoundLoad found{ payloadOf(estimate.payload, estimate.payload_half_width, of_links), mountingOf(estimate) };
   found.drag = dragOf(estimate);
-  found.doubts = doubtsOf(all);
+  found.frictions = frictionsOf(all);
   found.gain = estimate.gain.value;
   found.gain_half_width = estimate.gain.half_width;
   if (estimate.states.empty())

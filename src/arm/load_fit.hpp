@@ -93,7 +93,7 @@ private:
   };
 
   std::vector<Hypothesis> hypotheses(const std::vector<bool>& counts);
-  static std::vector<FrictionDoubt> doubtsOf(const std::vector<Hypothesis>& all);
+  static std::vector<FittedFriction> frictionsOf(const std::vector<Hypothesis>& all);
   void cutLegs(double time, double speed);
   std::vector<double> repeats() const;
   void addTo(std::size_t number, const MotionSample& sample, const MotionDriven& twin, const ArmEstimator::Load& load);

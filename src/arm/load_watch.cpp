@@ -23,7 +23,7 @@ LoadWatch::LoadWatch(const ArmDescription& arm, const std::vector<Parameters>& j
 void LoadWatch::reset()
 {
   start(isTrying() ? TRIAL : FIRST_LOOK);
-  doubts_.clear();
+  frictions_.clear();
 }
 
 void LoadWatch::start(double first_look)
@@ -61,7 +61,7 @@ bool LoadWatch::look(const JudgedJoints& joints)
 {
   const bool was_trying = isTrying();
   const FoundLoad found = was_trying ? FoundLoad() : fit_->solve(joints.measured);
-  doubts_ = was_trying ? doubts_ : found.doubts;
+  frictions_ = was_trying ? frictions_ : found.frictions;
   const bool alternates = found.changes.size() > 2 && found.changes.back().time > last_time_ - FIRST_LOOK;
   misfit_ = alternates ? Misfit{ Reason::LOAD_WRONG,
                                  "the payload changes from leg to leg, as in picking and placing: "

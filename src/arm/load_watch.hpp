@@ -38,7 +38,7 @@ public:
   /// Why no joint can be judged: a payload that is taken up and put down again and again, or another gain of all.
   const Misfit& misfit() const { return misfit_; }
   /// Of each joint by the last look; empty: none yet.
-  const std::vector<FrictionDoubt>& doubts() const { return doubts_; }
+  const std::vector<FittedFriction>& frictions() const { return frictions_; }
   /// It has looked, and tries nothing: the load is what it counts as.
   bool isSettled() const { return has_looked_ && !isTrying(); }
   /// The arm with the payload and the mounting that count.
@@ -64,7 +64,7 @@ private:
   double next_look_{ FIRST_LOOK };
   bool has_looked_{};
   Misfit misfit_;
-  std::vector<FrictionDoubt> doubts_;
+  std::vector<FittedFriction> frictions_;
   bool is_new_{ true };  // the next row comes after a gap
 };
 }  // namespace hjt

@@ -119,7 +119,7 @@ ArmAssessment assess(ArmRecording& recording, const AssessmentSettings& settings
   const bool shows_load = recording.isArm() && !recording.usesRecordedLoad();
   LoadLaw law;
   ArmAssessment arm = pass(recording, settings, shows_load, settings.gives_notice, fit);
-  const std::vector<FrictionDoubt> doubts = arm.load ? arm.load->doubts : std::vector<FrictionDoubt>();
+  const std::vector<FittedFriction> frictions = arm.load ? arm.load->frictions : std::vector<FittedFriction>();
   while (shows_load && !settings.watch.stopped() && law.take(arm.load.value_or(FoundLoad()), arm.judged))
   {
     ArmDescription other = configured;
@@ -134,7 +134,7 @@ ArmAssessment assess(ArmRecording& recording, const AssessmentSettings& settings
     }
   }
   arm.assumed = law.counts();
-  arm.doubts = doubts;
+  arm.frictions = frictions;
   if (shows_load && settings.looks_for_arm && recording.options().identified.empty() && !settings.watch.stopped())
   {
     nameOther(recording, arm.judged.misfits);

@@ -20,14 +20,14 @@ struct ArmAssessment
   StreamTimingReport timing;
   JudgedJoints judged;
   std::optional<FoundLoad> load;
-  AssumedLoad assumed;                ///< that the joints are judged with
-  std::vector<FrictionDoubt> doubts;  ///< of each joint; empty: none
+  AssumedLoad assumed;                    ///< that the joints are judged with
+  std::vector<FittedFriction> frictions;  ///< of each joint, of the first pass; empty: none
 
   JointContext context(std::size_t joint) const
   {
     JointContext context =
         joints[joint]->context(judged.misfits[joint], judged.common.factors[joint], judged.common.deviations[joint]);
-    context.doubt = doubts.empty() ? FrictionDoubt() : doubts[joint];
+    context.fitted = frictions.empty() ? FittedFriction() : frictions[joint];
     return context;
   }
 };

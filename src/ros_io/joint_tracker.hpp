@@ -92,7 +92,7 @@ public:
 
   /// Misfit of its telemetry; none: it fits, or that is not yet `settled`.
   void setMisfit(const Misfit& misfit, bool settled);
-  void setDoubt(const FrictionDoubt& doubt) { verdict_.setDoubt(doubt); }
+  void setFitted(const FittedFriction& friction) { verdict_.setFitted(friction); }
 
   Tracker& tracker() { return tracker_; }
 

@@ -30,6 +30,10 @@ void TrackerNode::restart()
   if (load_)
   {
     load_->reset();
+    for (const auto& joint : joints_)
+    {
+      joint->setFitted({});
+    }
   }
   if (arm_)
   {
@@ -143,9 +147,9 @@ void TrackerNode::lookAtLoad()
   }
   const bool was_trying = load_->isTrying();
   const bool is_other = load_->look(judgedJoints());
-  for (std::size_t i = 0; i < load_->doubts().size(); ++i)
+  for (std::size_t i = 0; i < load_->frictions().size(); ++i)
   {
-    joints_[i]->setDoubt(load_->doubts()[i]);
+    joints_[i]->setFitted(load_->frictions()[i]);
   }
   const AssumedLoad& assumed = load_->assumed();
   if (is_other || was_trying)

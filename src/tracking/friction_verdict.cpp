@@ -291,17 +291,18 @@ Figure figureOf(FrictionReference reference)
                                                       Figure::FRICTION_OF_TWIN;
 }
 
-std::string frictionText(const FrictionFactor& factor, const JointEvidence& evidence, const JointContext& context,
-                         const Finding& finding, double less, double more)
+/// `verdict`: with the friction that was judged, and its bounds.
+std::string frictionText(const FrictionFactor& factor, bool is_fitted, const JointEvidence& evidence,
+                         const JointContext& context, const Finding& finding, const Verdict& verdict)
 {
   const double shared = context.arm_friction;
   std::string text =
-      "Friction is " +
-      factorText(JudgedFriction{ factor.value / shared, factor.low() / shared, factor.high() / shared, true }) +
-      " times " + referenceText(factor.reference) +
-      (shared == 1.0 ? "" : ", apart from the " + fixedText(shared, 2) + " times that the arm's joints share") +
-      " (an interval that reaches into " + fixedText(1.0 - less, 2) + " to " + fixedText(1.0 + more, 2) +
-      " counts as sound).";
+      "Friction is " + factorText(verdict.friction) + " times " + referenceText(factor.reference) +
+      (is_fitted     ? " in a fit of the currents of all joints, apart from what they share" :
+       shared == 1.0 ? "" :
+                       ", apart from the " + fixedText(shared, 2) + " times that the arm's joints share") +
+      " (an interval that reaches into " + fixedText(verdict[Figure::FRICTION_LOWEST], 2) + " to " +
+      fixedText(verdict[Figure::FRICTION_HIGHEST], 2) + " counts as sound).";
   if (finding.level != VerdictLevel::OK)
   {
     const auto name = [](const WeightedCause& cause) { return causeName(cause.cause); };
@@ -369,19 +370,29 @@ Finding judgeFriction(const JointEvidence& evidence, const JointContext& context
   const double less = is_to_twin ? of_kind : LESS_THAN_OWN;
   finding.level =
       levelOf(departure(factor, context.arm_friction, more, less), 1.0, evidence.parameters().indicators.error_factor);
-  const double value = factor.value / context.arm_friction;
-  if (finding.level != VerdictLevel::OK)
-  {
-    finding.reason = Reason::FRICTION;
-    verdict.may_be_gain = !GainEvidence(evidence).isExcluded();
-    nameCauses(evidence.assessor().signatures(), value > 1.0 ? 1.0 : -1.0, finding);
-  }
+  const double shared = context.arm_friction;
   verdict[figureOf(factor.reference)] = factor.value;
   verdict[Figure::FRICTION_SCATTER] = factor.scatter;
   verdict[Figure::FRICTION_LOWEST] = 1.0 - less;
   verdict[Figure::FRICTION_HIGHEST] = 1.0 + more;
-  verdict.friction = { value, factor.low() / context.arm_friction, factor.high() / context.arm_friction, true };
-  verdict.friction_text = frictionText(factor, evidence, context, finding, less, more);
+  verdict.friction = { factor.value / shared, factor.low() / shared, factor.high() / shared, true };
+  // Where others of the arm are held against themselves, the fit is of two kinds of joints.
+  const bool is_fitted =
+      is_to_twin && !context.own.is_unjudged && finding.level == VerdictLevel::OK && context.fitted.departs();
+  if (is_fitted)
+  {
+    finding.level = VerdictLevel::WARN;
+    verdict[Figure::FRICTION_LOWEST] = 1.0 - FittedFriction::BOUND;
+    verdict[Figure::FRICTION_HIGHEST] = 1.0 + FittedFriction::BOUND;
+    verdict.friction = { context.fitted.factor, context.fitted.lower, context.fitted.upper, true };
+  }
+  if (finding.level != VerdictLevel::OK)
+  {
+    finding.reason = Reason::FRICTION;
+    verdict.may_be_gain = !GainEvidence(evidence).isExcluded();
+    nameCauses(evidence.assessor().signatures(), verdict.friction.factor > 1.0 ? 1.0 : -1.0, finding);
+  }
+  verdict.friction_text = frictionText(factor, is_fitted, evidence, context, finding, verdict);
   return finding;
 }
 }  // namespace hjt

@@ -371,7 +371,7 @@ Verdict judge(const JointEvidence& evidence, const JointContext& context)
     const bool is_to_own = context.is_identified || !context.own.friction.empty();
     const GainEvidence gain(evidence);
     const Misfit misfit = departs || (!is_to_own && gain.isOfFriction()) ? gain.misfit() : Misfit();
-    const std::string& doubt = verdict.friction.factor > 1.0 ? context.doubt.more : context.doubt.less;
+    const std::string& doubt = verdict.friction.factor > 1.0 ? context.fitted.not_more : context.fitted.not_less;
     if (misfit.exists())
     {
       verdict.dismiss(misfit);

@@ -38,7 +38,7 @@ struct JointContext
   Misfit misfit{};  ///< of its rows
   /// Of `arm_friction`, standard deviation of its logarithm; 0: the joints of its group are its witnesses.
   double arm_deviation{ UNWITNESSED };
-  FrictionDoubt doubt{};
+  FittedFriction fitted{};
 };
 
 /// Numbers are those of Verdict.msg; the first three those of HealthLevel.

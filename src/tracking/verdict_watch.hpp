@@ -22,7 +22,7 @@ public:
   /// Misfit of the telemetry; none: it fits, or that is not yet `settled`.
   void setMisfit(const Misfit& misfit, bool settled);
   const Misfit& misfit() const { return misfit_; }
-  void setDoubt(const FrictionDoubt& doubt) { known_.doubt = doubt; }
+  void setFitted(const FittedFriction& friction) { known_.fitted = friction; }
 
   /// As `joint_twin compare` measures it, of the rows that the verdict is of.
   MeasuredFriction measuredFriction() const;

@@ -201,6 +201,7 @@ TEST_P(ArmEstimatorTable, FindsTheTruth)
       EXPECT_NEAR(gain, of.gain[i] * of.friction[i], 0.2 * std::max(of.friction[i], 1.0) * of.gain[i]) << i;
       const bool is_of_all = of.friction[0] == of.friction[i] && of.gain[0] == of.gain[i];
       EXPECT_FALSE(is_of_all && estimate.own[i].isBeyond(0.10)) << i << ": " << estimate.own[i].value;
+      EXPECT_FALSE(is_of_all && found.frictions[i].departs()) << i << ": " << found.frictions[i].factor;
       EXPECT_TRUE(is_of_all || of.gain[i] != 1.0 || of.friction[i] < 1.5 || estimate.own[i].isBeyond(0.10))
           << i << ": " << estimate.own[i].value;
     }
@@ -328,11 +329,12 @@ TEST(LoadFit, DoubtsAnotherFrictionWhereTheCurrentsOfAllJointsDoNotTellIt)
   of.is_own = true;
   of.friction[ELBOW] = 1.4;
   const FoundLoad found = fitOf(of, 1).solve(ALL);
-  ASSERT_EQ(found.doubts.size(), of.friction.size());
-  for (std::size_t i = 0; i < found.doubts.size(); ++i)
+  ASSERT_EQ(found.frictions.size(), of.friction.size());
+  for (std::size_t i = 0; i < found.frictions.size(); ++i)
   {
-    EXPECT_EQ(found.doubts[i].more.empty(), i == ELBOW) << i << ": " << found.doubts[i].more;
-    EXPECT_FALSE(found.doubts[i].less.empty()) << i;
+    EXPECT_EQ(found.frictions[i].departs(), i == ELBOW) << i << ": " << found.frictions[i].lower;
+    EXPECT_EQ(found.frictions[i].not_more.empty(), i == ELBOW) << i << ": " << found.frictions[i].not_more;
+    EXPECT_FALSE(found.frictions[i].not_less.empty()) << i;
   }
 }
 

@@ -355,14 +355,35 @@ TEST_F(FrictionVerdict, IsNoneWhereTheCurrentsOfAllJointsDoubtIt)
 {
   JointContext context;
   EXPECT_EQ(judge(joint_.evidence(swing, 60.0, 2.0), context).level, VerdictLevel::WARN);
-  context.doubt.less = "it may be more";
+  context.fitted.not_less = "it may be more";
   EXPECT_EQ(judge(joint_.evidence(swing, 60.0, 2.0), context).level, VerdictLevel::WARN);
-  context.doubt.more = "it may be as expected";
+  context.fitted.not_more = "it may be as expected";
   const Verdict verdict = judge(joint_.evidence(swing, 60.0, 2.0), context);
   EXPECT_EQ(verdict.level, VerdictLevel::NOT_JUDGED);
   EXPECT_EQ(verdict.reason, Reason::LOAD_WRONG);
-  EXPECT_EQ(verdict.misfit, context.doubt.more);
+  EXPECT_EQ(verdict.misfit, context.fitted.not_more);
   EXPECT_EQ(judge(joint_.evidence(swing, 60.0, 1.0), context).level, VerdictLevel::OK);
+}
+
+/// Within what drives of one type differ by, but not in the fit of all joints' currents.
+TEST_F(FrictionVerdict, IsWarnWhereTheFitOfAllJointsShowsIt)
+{
+  const JointEvidence& evidence = joint_.evidence(swing, 60.0, 1.2);
+  JointContext context;
+  context.fitted = { 1.3, 1.14, 1.46 };
+  EXPECT_EQ(judge(evidence, context).level, VerdictLevel::OK);
+  context.fitted.lower = 1.16;
+  const Verdict verdict = judge(evidence, context);
+  EXPECT_EQ(verdict.level, VerdictLevel::WARN);
+  EXPECT_EQ(verdict.friction.factor, 1.3);
+  EXPECT_THAT(verdict.friction_text, HasSubstr("1.30 [1.16, 1.46] times the twin's in a fit of the currents of all"));
+  EXPECT_THAT(verdict.friction_text, HasSubstr("0.85 to 1.15 counts as sound"));
+  context.fitted = { 0.7, 0.6, 0.84 };
+  EXPECT_EQ(judge(evidence, context).level, VerdictLevel::WARN);
+  context.own.is_unjudged = true;
+  EXPECT_EQ(judge(evidence, context).level, VerdictLevel::OK) << "the fit is of joints that have a reference";
+  context.own = ownReference({ { evidence.friction().points(), 0.01 } });
+  EXPECT_EQ(judge(evidence, context).level, VerdictLevel::OK) << "it is known better than its type";
 }
 
 TEST_F(FrictionVerdict, AReferenceThatWasNotJudgedIsNone)

@@ -233,10 +233,10 @@ TEST(LoadWatch, LeavesOutAJointWithoutEfforts)
   WatchedArm robot;
   robot.silent = ELBOW;
   EXPECT_FALSE(robot.moved({}, five));
-  EXPECT_FALSE(robot.watch.doubts().empty());
+  EXPECT_FALSE(robot.watch.frictions().empty());
 
   robot.watch.reset();
-  EXPECT_TRUE(robot.watch.doubts().empty()) << "they are of other rows";
+  EXPECT_TRUE(robot.watch.frictions().empty()) << "they are of other rows";
   EXPECT_TRUE(robot.moved(CARRIED, five));
   EXPECT_FALSE(robot.moved(CARRIED, five));
   ASSERT_TRUE(robot.watch.assumed().payload);
