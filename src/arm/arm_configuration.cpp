@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <numeric>
 #include <system_error>
-#include <utility>
 
 #include "base/joined.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"

@@ -3,9 +3,19 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
+#include <cstring>
+#include <mutex>
+
+#include <console_bridge/console.h>
+#include <urdf/model.h>
+#include <kdl/chain.hpp>
+#include <kdl/tree.hpp>
+#include <kdl_parser/kdl_parser.hpp>
 
 #include "arm/arm_file.hpp"
 #include "base/number_text.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
 #include "params/field_reader.hpp"
 
 namespace hjt
@@ -150,6 +160,249 @@ private:
   FieldReader& fields_;
   std::vector<std::pair<std::string, std::string>> short_names_;  // key and name of the joints so far
 };
+
+/// Of the '>' that ends a tag, not of one in an attribute.
+std::size_t endOfTag(const std::string& xml, std::size_t at)
+{
+  constexpr const char* ENDS = ">\"'";
+  at = xml.find_first_of(ENDS, at);
+  while (at != std::string::npos && xml[at] != '>')
+  {
+    const std::size_t closing = xml.find(xml[at], at + 1);
+    at = closing == std::string::npos ? closing : xml.find_first_of(ENDS, closing + 1);
+  }
+  return at;
+}
+
+/// Elements within elements, at most. A parser of XML may take a time that grows with the square of it.
+std::size_t depthOf(const std::string& xml)
+{
+  std::size_t depth = 0;
+  std::size_t deepest = 0;
+  for (std::size_t at = xml.find('<'); at != std::string::npos; at = xml.find('<', at))
+  {
+    const auto begins = [&](const char* text) { return xml.compare(at, std::strlen(text), text) == 0; };
+    const std::size_t last = begins("<!--")      ? xml.find("-->", at) :
+                             begins("<![CDATA[") ? xml.find("]]>", at) :
+                                                   endOfTag(xml, at);
+    if (begins("</"))
+    {
+      depth -= depth > 0 ? 1 : 0;
+    }
+    else if (!begins("<!") && !begins("<?") && last != std::string::npos && xml[last - 1] != '/')
+    {
+      deepest = std::max(deepest, ++depth);
+    }
+    at = std::min(last, xml.size() - 1) + 1;
+  }
+  return deepest;
+}
+
+/// Takes what the parser of URDF reports while it exists. The parser passes over numbers that it cannot read.
+class ParserErrors : public console_bridge::OutputHandler
+{
+public:
+  ParserErrors() : lock_(mutex()) { console_bridge::useOutputHandler(this); }
+  ~ParserErrors() override { console_bridge::restorePreviousOutputHandler(); }
+  ParserErrors(const ParserErrors&) = delete;
+  ParserErrors(ParserErrors&&) = delete;
+  ParserErrors& operator=(const ParserErrors&) = delete;
+  ParserErrors& operator=(ParserErrors&&) = delete;
+
+  void log(const std::string& text, console_bridge::LogLevel level, const char* /*file*/, int /*line*/) override
+  {
+    if (first_.empty() && level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR)
+    {
+      first_ = text;
+    }
+  }
+
+  const std::string& first() const { return first_; }  ///< empty: none
+
+private:
+  /// The handler is the process's.
+  static std::mutex& mutex()
+  {
+    static std::mutex of_handler;
+    return of_handler;
+  }
+
+  std::lock_guard<std::mutex> lock_;
+  std::string first_;
+};
+
+/// @throws ParameterError with the parser's first error.
+void parse(const ArmDescription& arm, urdf::Model& model, KDL::Tree& tree)
+{
+  std::string error;
+  bool is_read = false;
+  {
+    const ParserErrors errors;
+    is_read = model.initString(arm.urdf);
+    error = errors.first();
+  }
+  if (!is_read || !error.empty() || !kdl_parser::treeFromUrdfModel(model, tree))
+  {
+    throw ParameterError(arm.origin + ": its URDF cannot be read" + (error.empty() ? "" : ": " + error));
+  }
+}
+
+/// Each joint moves a mass, its own link's or one that is fixed to it: without any the loads and limits of all joints
+/// before are those of another arm. @throws ParameterError.
+void requireMasses(const ArmDescription& arm, const KDL::Chain& chain)
+{
+  const KDL::Segment* moved = nullptr;
+  double mass = 0.0;
+  const auto require_mass = [&]
+  {
+    if (moved != nullptr && mass == 0.0)
+    {
+      throw ParameterError(arm.origin + ": its URDF: link '" + moved->getName() + "', which joint '" +
+                           moved->getJoint().getName() +
+                           "' moves, has no mass: it needs <inertial> with <mass value=\"KILOGRAMS\"/> above 0");
+    }
+  };
+  for (const KDL::Segment& segment : chain.segments)
+  {
+    if (segment.getJoint().getType() != KDL::Joint::None)
+    {
+      require_mass();
+      moved = &segment;
+      mass = 0.0;
+    }
+    mass += segment.getInertia().getMass();
+  }
+  require_mass();
+}
+
+/// Range that the URDF allows; without limits a great many turns.
+Range angleRange(const urdf::Model& model, const std::string& joint)
+{
+  const auto found = model.getJoint(joint);
+  const bool is_limited =
+      found->type == urdf::Joint::REVOLUTE && found->limits && found->limits->lower < found->limits->upper;
+  return is_limited ? Range{ found->limits->lower, found->limits->upper } : ArmJoint{}.angles;
+}
+
+/// @throws ParameterError where the link that a joint carries, or its place, is none that a robot can have.
+void requirePlausible(const ArmDescription& arm, const KDL::Segment& segment)
+{
+  const KDL::Joint& joint = segment.getJoint();
+  const auto require = [&](bool good, const std::string& what)
+  {
+    if (!good)
+    {
+      throw ParameterError(arm.origin + ": its URDF: joint '" + joint.getName() + "' with link '" + segment.getName() +
+                           "': " + what);
+    }
+  };
+  // The comparisons are written so that NaN fails.
+  const auto require_range = [&](const char* what, double value, const char* unit, const Range& range)
+  {
+    require(value >= range.min && value <= range.max, std::string(what) + " = " + numberText(value) + " [" + unit +
+                                                          "] is out of range, allowed: " + rangeText(range) + " [" +
+                                                          unit + "]");
+  };
+  const KDL::Vector axis = joint.JointAxis();
+  require(joint.getType() == KDL::Joint::None || std::abs(KDL::dot(axis, axis) - 1.0) < 1e-6,
+          "its axis has no direction");
+  KDL::RigidBodyInertia body = segment.getInertia();  // RefPoint() is not const
+  const KDL::RotationalInertia inertia = body.RefPoint(body.getCOG()).getRotationalInertia();
+  require_range("mass", body.getMass(), "kg", Range{ 0.0, 1e4 });
+  for (int i = 0; i < 3; ++i)
+  {
+    require_range("origin", segment.pose(0.0).p(i), "m", Range{ -100.0, 100.0 });
+    require_range("centre of mass", body.getCOG()(i), "m", Range{ -100.0, 100.0 });
+    for (int k = 0; k < 3; ++k)
+    {
+      // Rounding makes a little less of none.
+      require_range("inertia", inertia.data[3 * i + k], "kg.m^2", Range{ i == k ? -1e-9 : -1e6, 1e6 });
+    }
+  }
+}
+
+/// Each checked; the joints get their ranges.
+KDL::Chain chainOf(ArmDescription& arm)
+{
+  constexpr std::size_t MAX_DEPTH = 100;
+  if (depthOf(arm.urdf) > MAX_DEPTH)
+  {
+    throw ParameterError(arm.origin + ": its URDF has more than " + std::to_string(MAX_DEPTH) +
+                         " elements within each other");
+  }
+  urdf::Model model;
+  KDL::Tree tree;
+  parse(arm, model, tree);
+  KDL::Chain chain;
+  if (!tree.getChain(arm.base, arm.tip, chain))
+  {
+    throw ParameterError(arm.origin + ": its URDF has no chain of links from '" + arm.base + "' to '" + arm.tip + "'");
+  }
+  std::size_t found = 0;
+  for (const KDL::Segment& segment : chain.segments)
+  {
+    requirePlausible(arm, segment);
+    const KDL::Joint& joint = segment.getJoint();
+    if (joint.getType() == KDL::Joint::None)
+    {
+      continue;
+    }
+    if (found >= arm.joints.size() || joint.getName() != arm.joints[found].name)
+    {
+      throw ParameterError(arm.origin + ": joint " + std::to_string(found) + " of the URDF's chain is '" +
+                           joint.getName() + "', not '" +
+                           (found < arm.joints.size() ? arm.joints[found].name : std::string("none")) + "'");
+    }
+    arm.joints[found++].angles = angleRange(model, joint.getName());
+  }
+  if (found < arm.joints.size())
+  {
+    throw ParameterError(arm.origin + ": the URDF's chain has no joint '" + arm.joints[found].name + "'");
+  }
+  requireMasses(arm, chain);
+  return chain;
+}
+
+std::array<double, 3> arrayOf(const KDL::Vector& vector)
+{
+  return { vector.x(), vector.y(), vector.z() };
+}
+
+ArmLink linkOf(const KDL::Segment& segment)
+{
+  const KDL::Joint& joint = segment.getJoint();
+  const KDL::Frame frame = segment.getFrameToTip();
+  KDL::RigidBodyInertia body = segment.getInertia();  // RefPoint() is not const
+  const KDL::RotationalInertia inertia = body.RefPoint(body.getCOG()).getRotationalInertia();
+  ArmLink link;
+  switch (joint.getType())
+  {
+    case KDL::Joint::None:
+      link.motion = LinkMotion::FIXED;
+      break;
+    case KDL::Joint::TransAxis:
+    case KDL::Joint::TransX:
+    case KDL::Joint::TransY:
+    case KDL::Joint::TransZ:
+      link.motion = LinkMotion::SLIDES;
+      break;
+    default:
+      link.motion = LinkMotion::TURNS;
+  }
+  if (link.motion != LinkMotion::FIXED)
+  {
+    link.axis = arrayOf(joint.JointAxis());
+    link.origin = arrayOf(joint.JointOrigin());
+  }
+  link.position = arrayOf(frame.p);
+  std::copy(std::begin(frame.M.data), std::end(frame.M.data), link.rotation.begin());
+  link.mass = body.getMass();
+  link.centre = arrayOf(body.getCOG());
+  link.inertia = {
+    inertia.data[0], inertia.data[4], inertia.data[8], inertia.data[1], inertia.data[2], inertia.data[5]
+  };
+  return link;
+}
 }  // namespace
 
 std::string payloadErrors(const Payload& payload)
@@ -219,5 +472,14 @@ void readGains(const std::string& path, ArmDescription& arm)
   }
   fields.refuseUnknownKeys();
   throwIfAny(fields.errors());
+}
+
+void readLinks(ArmDescription& arm)
+{
+  arm.links.clear();
+  for (const KDL::Segment& segment : chainOf(arm).segments)
+  {
+    arm.links.push_back(linkOf(segment));
+  }
 }
 }  // namespace hjt

@@ -2,20 +2,61 @@
 #include "arm/arm_estimator.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include <Eigen/Cholesky>
 
-#include "arm/arm_estimator_terms.hpp"
 #include "arm/residual_statistics.hpp"
 
 namespace hjt
 {
 namespace
 {
-using namespace term;
+// Terms of the arm, then of each joint.
+constexpr int JUMP = ArmEstimator::LOAD;
+constexpr int GAIN = JUMP + ArmEstimator::PAYLOAD;
+constexpr int FRICTION = GAIN + 1;
+constexpr int COLD = FRICTION + 1;
+constexpr int GROUP = COLD + 1;  // base to elbow, wrists
+constexpr int GROUPS = 2;
+constexpr int OWN = GROUP + GROUPS;
+constexpr int OWN_GAIN = 0;
+constexpr int OWN_FRICTION = 1;
+constexpr int OWN_COLD = 2;
+constexpr int OWN_OFFSET = 3;
+constexpr int OWN_LOSS = 4;
+constexpr int OWN_INERTIA = 5;
+constexpr int PER_JOINT = 6;
+constexpr int USED = GROUP + 1 + PER_JOINT;  // of one joint's rows
+
+constexpr double NEVER = 1e-6;   // width of the prior of a term that is left out
+constexpr double STUDENT = 4.0;  // degrees of freedom of what rows leave
+constexpr int STARTS = 4;
+constexpr int HELD = -1;  // a start with all priors at full weight
+
+int groupOf(std::size_t joint)
+{
+  constexpr std::size_t TO_ELBOW = 3;
+  return joint < TO_ELBOW ? GROUP : GROUP + 1;
+}
+
+int ownOf(std::size_t joint)
+{
+  return OWN + PER_JOINT * static_cast<int>(joint);
+}
+
+/// Of one joint's rows. The payload and its jump have one slope, and so have terms of the arm, the group and the joint:
+/// of its load; of the whole, friction, cold friction, an offset, loss and inertia.
+int slopeOf(int used)
+{
+  constexpr std::array<int, USED - GAIN> OF_OTHERS{ 0, 1, 2, 1, 0, 1, 2, 3, 4, 5 };
+  return used < JUMP ? used :
+         used < GAIN ? used - JUMP :
+                       ArmEstimator::LOAD + OF_OTHERS[static_cast<std::size_t>(used - GAIN)];
+}
 
 // Widths of the priors, chosen on recordings of UR5 and UR10e (docs/arm.md, Payload).
 constexpr double MASS = 0.3;             // [kg]
@@ -37,7 +78,58 @@ constexpr double JOINT_LOSS = 0.02;      // of the load [-]
 constexpr double JOINT_INERTIA = 0.3;    // of the rotor's [-]
 
 constexpr std::size_t FEWEST = 20;  // rows of a joint that counts
+
+constexpr double INDEPENDENT = 40.0;  // rows of a joint, at most
+constexpr double LEAST = 0.01;        // deviation of rows [A]
+
+/// How much rarer a row is, logarithm, by the square of its error in deviations.
+double rarer(double square)
+{
+  return 0.5 * (STUDENT + 1.0) * std::log1p(square / STUDENT);
+}
+
+/// What start it is tells the causes that are hardly held at first: the load; all; load and friction; friction.
+double looseness(int start, int term)
+{
+  constexpr double OF_LOAD = 0.01;
+  constexpr double OF_OTHERS = 0.05;
+  const bool is_load = term < GAIN;
+  const bool is_friction = term >= FRICTION && (term < OWN || (term - OWN) % PER_JOINT == OWN_FRICTION);
+  const bool is_loose = start == 1 || (is_load && (start == 0 || start == 2)) || (is_friction && start > 1);
+  return !is_loose ? 1.0 : is_load ? OF_LOAD : OF_OTHERS;
+}
 }  // namespace
+
+/// Widths of all terms.
+struct ArmEstimator::Prior
+{
+  Eigen::VectorXd width;
+  std::vector<bool> normal;  // else Cauchy's
+};
+
+/// Values of all terms, and how they came about.
+struct ArmEstimator::Point
+{
+  Eigen::VectorXd at;
+  Eigen::MatrixXd information;
+  std::vector<double> deviations;  // of the rows of each joint [A]
+  double rareness{};
+  double cost{ std::numeric_limits<double>::infinity() };
+};
+
+/// Of one round.
+struct ArmEstimator::Work
+{
+  std::vector<Eigen::VectorXd> errors;  // of the rows of each joint [A]
+  std::vector<Slope> slopes;            // of those of one joint
+};
+
+/// Of the slopes of rows of one state, with each other and with the error.
+struct ArmEstimator::Products
+{
+  Eigen::Matrix<double, SLOPES, SLOPES> slopes = Eigen::Matrix<double, SLOPES, SLOPES>::Zero();
+  Slope error = Slope::Zero();
+};
 
 bool ArmEstimator::Known::isBeyond(double least) const
 {
@@ -299,5 +391,120 @@ std::vector<ArmEstimator::Estimate> ArmEstimator::solve(const Freedom& may) cons
     }
   }
   return found;
+}
+
+void ArmEstimator::addPrior(const Prior& prior, int start, Point& point, Eigen::VectorXd& right) const
+{
+  for (int k = 0; k < size_; ++k)
+  {
+    const double t = point.at[k] / prior.width[k];
+    const bool is_normal = prior.normal[static_cast<std::size_t>(k)];
+    const double weight = (prior.width[k] > NEVER ? looseness(start, k) : 1.0) / (prior.width[k] * prior.width[k]) *
+                          (is_normal ? 1.0 : 2.0 / (1.0 + t * t));
+    point.information(k, k) += weight;
+    right[k] -= weight * point.at[k];
+    point.rareness += is_normal ? 0.5 * t * t : std::log1p(t * t);
+  }
+  // Gravity's size is known but for the masses of the links, which look like it. At first it may turn over; weightless
+  // as configured there is nothing to turn.
+  constexpr double LINKS = 0.02;  // uncertainty of the links' masses, as a share
+  const Eigen::Vector3d total = gravity_ + point.at.segment<GRAVITY>(PAYLOAD);
+  if (looseness(start, PAYLOAD) < 1.0 || !(prior.width[PAYLOAD] > NEVER) || gravity_.isZero() || total.isZero())
+  {
+    return;
+  }
+  const double weight = 1.0 / std::pow(LINKS * gravity_.norm(), 2);
+  const double error = gravity_.norm() - total.norm();
+  const Eigen::Vector3d way = total.normalized();
+  point.information.block<GRAVITY, GRAVITY>(PAYLOAD, PAYLOAD) += weight * way * way.transpose();
+  right.segment<GRAVITY>(PAYLOAD) += weight * error * way;
+  point.rareness += 0.5 * weight * error * error;
+}
+
+void ArmEstimator::addRows(std::size_t joint, const std::vector<bool>& states, Work& work, Point& point,
+                           Eigen::VectorXd& right) const
+{
+  const std::vector<Row>& rows = rows_[joint];
+  Eigen::VectorXd& error = work.errors[joint];
+  error.resize(static_cast<Eigen::Index>(rows.size()));
+  work.slopes.resize(rows.size());
+  for (std::size_t k = 0; k < rows.size(); ++k)
+  {
+    error[static_cast<Eigen::Index>(k)] = errorOf(joint, rows[k], stateOf(rows[k], states), point.at, &work.slopes[k]);
+  }
+  const double deviation = std::max(robustDeviation(error), LEAST);
+  const double rows_a_tale = std::max({ 1.0, correlationRows(error), static_cast<double>(rows.size()) / INDEPENDENT });
+  const Eigen::ArrayXd squares = (error / deviation).array().square();
+  const Eigen::ArrayXd weights = (STUDENT + 1.0) / (STUDENT + squares) / (deviation * deviation * rows_a_tale);
+  std::array<Products, 2> of_states;
+  for (std::size_t k = 0; k < rows.size(); ++k)
+  {
+    const auto row = static_cast<Eigen::Index>(k);
+    Products& products = of_states[stateOf(rows[k], states) ? 1 : 0];
+    const Slope weighted = weights[row] * work.slopes[k];
+    products.slopes.noalias() += weighted * work.slopes[k].transpose();
+    products.error += error[row] * weighted;
+  }
+  const Products all{ of_states[0].slopes + of_states[1].slopes, of_states[0].error + of_states[1].error };
+  const auto term = [&](int k) { return k < GROUP ? k : k == GROUP ? groupOf(joint) : ownOf(joint) + k - GROUP - 1; };
+  const auto is_jump = [](int k) { return k >= JUMP && k < GAIN; };
+  for (int k = 0; k < USED; ++k)
+  {
+    right[term(k)] += (is_jump(k) ? of_states[1] : all).error[slopeOf(k)];
+    for (int l = 0; l < USED; ++l)
+    {
+      point.information(term(k), term(l)) +=
+          (is_jump(k) || is_jump(l) ? of_states[1] : all).slopes(slopeOf(k), slopeOf(l));
+    }
+  }
+  point.deviations[joint] = deviation;
+}
+
+/// By Gauss and Newton, until a step is nothing beside the deviations a posteriori; what `start` names is hardly held
+/// in the first rounds.
+ArmEstimator::Point ArmEstimator::refine(const Prior& prior, const std::vector<bool>& states, Eigen::VectorXd at,
+                                         int start) const
+{
+  constexpr int ROUNDS = 15;
+  constexpr int LOOSE_ROUNDS = 5;
+  constexpr double NOTHING = 1e-3;  // of a deviation
+  constexpr double FLOOR = 0.02;    // least residual of a real arm [A]
+  constexpr double COUNTED = 60.0;
+  Point point;
+  point.at = std::move(at);
+  point.deviations.resize(rows_.size());
+  Work work;
+  work.errors.resize(rows_.size());
+  for (int round = 0; round < ROUNDS; ++round)
+  {
+    point.information = Eigen::MatrixXd::Zero(size_, size_);
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(size_);
+    point.rareness = 0.0;
+    addPrior(prior, round < LOOSE_ROUNDS ? start : HELD, point, right);
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+    {
+      if (!rows_[i].empty())
+      {
+        addRows(i, states, work, point, right);
+      }
+    }
+    const Eigen::VectorXd step = point.information.ldlt().solve(right);
+    point.at += step;
+    if (round >= LOOSE_ROUNDS &&
+        (step.array().square() * point.information.diagonal().array()).maxCoeff() < NOTHING * NOTHING)
+    {
+      break;
+    }
+  }
+  point.cost = point.rareness;
+  for (std::size_t i = 0; i < rows_.size(); ++i)
+  {
+    if (!rows_[i].empty())
+    {
+      const double scale = std::hypot(point.deviations[i], FLOOR);
+      point.cost += COUNTED * (std::log(scale) + (work.errors[i] / scale).array().square().unaryExpr(&rarer).mean());
+    }
+  }
+  return point;
 }
 }  // namespace hjt

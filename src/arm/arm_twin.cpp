@@ -6,7 +6,6 @@
 #include <limits>
 #include <random>
 #include <string>
-#include <utility>
 
 #include "base/number_text.hpp"
 #include "gear/angle.hpp"

@@ -10,7 +10,6 @@
 #include <Eigen/Core>
 
 #include "arm/arm_load.hpp"
-#include "arm/recording_units.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "tracking/current_lag.hpp"
 #include "tracking/ratio_fit.hpp"
@@ -19,6 +18,18 @@
 
 namespace hjt
 {
+/// Rows further apart tell no acceleration: 20 Hz at least, with jitter [s].
+constexpr double SLOW_ROWS = 0.06;
+
+/// By which stamps are multiplied that are in ms, us or ns, where rows so far apart [s] mean one of these; 1: they do
+/// not.
+double likelyTimeScale(double period);
+
+/// For people: "the motor's current in A".
+const char* effortUnitName(EffortUnit unit);
+/// In configuration.
+const char* effortKeyword(EffortUnit unit);
+
 /// Something in a recording of an arm that does not fit.
 struct RecordingFinding
 {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -28,9 +30,21 @@ public:
   explicit RowTimes(std::size_t joints) : last_(joints), agreements_(joints) {}
 
   /// Delay of the stamp of these rows, one of each joint [s]. The rows are later than those before.
-  double stampError(const std::vector<MotionRow>& rows) noexcept;
+  double stampError(const std::vector<MotionRow>& rows) noexcept
+  {
+    const double step = started_ ? rows.front().time - last_.front().time : HUGE_VAL;
+    error_ = step > MotionDifferentiator::MAX_GAP ? 0.0 : error_ + step - interval(rows);
+    std::copy(rows.begin(), rows.end(), last_.begin());
+    started_ = true;
+    return error_;
+  }
 
-  void reset() noexcept;
+  void reset() noexcept
+  {
+    std::fill(agreements_.begin(), agreements_.end(), Agreement{});
+    started_ = false;
+    error_ = 0.0;
+  }
 
 private:
   /// Of one joint: sums of v dq and v v d, forgotten over MEMORY. They begin in agreement.
@@ -42,7 +56,36 @@ private:
   static constexpr double MEMORY = 10.0;  // [s]
   static constexpr double START = 0.25;   // as after 1 s at 0.5 rad/s [rad^2/s]
 
-  double interval(const std::vector<MotionRow>& rows) noexcept;
+  /// Between the last rows and these, by the motion where it says more than the stamps [s].
+  double interval(const std::vector<MotionRow>& rows) noexcept
+  {
+    const double by_stamps = rows.front().time - last_.front().time;
+    double weight = 1.0 / (STAMP * STAMP);
+    double weighted = by_stamps * weight;
+    for (std::size_t i = 0; i < rows.size(); ++i)
+    {
+      const double velocity = 0.5 * (rows[i].recorded_velocity + last_[i].recorded_velocity);
+      if (!std::isfinite(velocity))
+      {
+        continue;
+      }
+      const double change = rows[i].position - last_[i].position;
+      Agreement& agreement = agreements_[i];
+      const double kept = 1.0 - by_stamps / MEMORY;
+      agreement.change = kept * agreement.change + velocity * change;
+      agreement.expected = kept * agreement.expected + velocity * velocity * by_stamps;
+      if (std::abs(agreement.change - agreement.expected) <= AGREES * agreement.expected)
+      {
+        weight += velocity * velocity / (ANGLE * ANGLE);
+        weighted += velocity * change / (ANGLE * ANGLE);
+      }
+    }
+    const double by_motion = weighted / weight;
+    const double difference = std::abs(by_motion - by_stamps);
+    constexpr double MOST = 4.0;  // a damaged angle
+    const bool is_usable = by_motion > by_stamps / MOST && by_motion < by_stamps * MOST;
+    return is_usable && difference > SIGNIFICANT * by_stamps ? by_motion : by_stamps;
+  }
 
   std::vector<MotionRow> last_;
   std::vector<Agreement> agreements_;

@@ -7,6 +7,7 @@
 
 #include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
+#include "params/configuration_files.hpp"
 
 namespace hjt
 {
@@ -35,6 +36,9 @@ ConfigurationOptions withOverlays(const PlanNode& root, const std::string& direc
   }
   return options;
 }
+
+constexpr const char* NOISE_SEED = "sensors.noise_seed";
+constexpr const char* SET = "set.";  // before what is drawn for each drive
 }  // namespace
 
 Plan::Plan(const std::string& path, const ConfigurationOptions& options)
@@ -230,5 +234,197 @@ OrderedJson Plan::snapshot() const
     base = arm_->configuration();
   }
   return { { "runs", runs_ }, { "plan", jsonOf(root_) }, { "tables", tables }, { "configuration", base } };
+}
+
+/// All that varies, with its value in a run; into the run too.
+PlanValues Plan::valuesOf(const Block& block, std::uint64_t number, RunSpec& spec) const
+{
+  std::uint64_t rest = lives_ ? 0 : number - block.first;
+  spec.repeat = rest % repeats_;
+  rest /= repeats_;
+  PlanValues values;
+  spec.variables.resize(block.variables.size());
+  for (std::size_t i = block.variables.size(); i-- > 0;)
+  {
+    const Variable& variable = *block.variables[i];
+    const bool of_drive = lives_ && variable.node().path.rfind(SET, 0) == 0;
+    const std::uint64_t draw = of_drive ? lives_->driveAt(number / blocks_.size()) : number;
+    const ParameterValue value = variable.value(seed_, draw, rest % variable.gridSize());
+    rest /= variable.gridSize();
+    values.set(variable.node(), value);
+    spec.variables[i] = { variable.node().path, value };
+  }
+  return values;
+}
+
+RunSpec Plan::run(std::uint64_t number) const
+{
+  const auto after = std::upper_bound(blocks_.begin(), blocks_.end(), number,
+                                      [](std::uint64_t run, const Block& block) { return run < block.first; });
+  const Block& block = lives_ ? blocks_[number % blocks_.size()] : *(after - 1);
+  RunSpec spec;
+  spec.run = number;
+  spec.fault_class = block.fault_class->first;
+  const PlanValues values = valuesOf(block, number, spec);
+  spec.duty_name = values.text(*block.duty, "name", "duty");
+  arm_ ? takeArm(block, values, spec) : takeDrive(block, values, spec);
+  constexpr Range DURATION{ 1e-3, 1e6 };
+  spec.duration = values.number(root_, "duration", "s", DURATION,
+                                arm_ ? std::make_optional(spec.arm->motionLength()) : std::nullopt);
+  if (spec.duration <= recording_.start)
+  {
+    const bool given = root_.find("duration") != nullptr;
+    (given ? *root_.find("duration") : *block.duty)
+        .refuse((given ? "[s] must be more than record.start = " : "its motion ends before record.start = ") +
+                numberText(recording_.start) + " [s]");
+  }
+  checkRates(spec.parameters);
+  return spec;
+}
+
+/// A class' list of faults.
+std::vector<RunFault> Plan::faultsOf(const PlanNode& list, const PlanValues& values) const
+{
+  std::vector<RunFault> faults;
+  for (const auto& [number, node] : list.entries)
+  {
+    const std::string joint = arm_ ? "joint: ..., " : "";
+    if (node.kind != PlanNode::Kind::MAP || node.entries.empty())
+    {
+      node.refuse("must be {" + joint + "kind: ..., severity: ..., place: ..., onset: ..., ramp: ...}");
+    }
+    std::vector<std::string> keys{ "kind", "severity", "place", "onset", "ramp" };
+    if (arm_)
+    {
+      keys.push_back("joint");
+    }
+    allowOnly(node, keys);
+    const std::optional<FaultKind> kind = faultNamed(values.text(node, "kind"));
+    if (!kind)
+    {
+      required(node, "kind").refuse("is no fault; there are " + faultNames());
+    }
+    RunFault growing;
+    growing.joint = arm_ ? arm_->jointOf(node, values) : 0;
+    growing.fault.kind = *kind;
+    growing.fault.severity = values.number(node, "severity", "-", { 0.0, 1.0 });
+    growing.fault.place = static_cast<int>(values.whole(node, "place", "-", { WHOLE_MEMBER, 4000 }, firstPlace(*kind)));
+    growing.fault.onset = values.number(node, "onset", "s", { 0.0, 1e9 }, 0.0);
+    growing.ramp = values.number(node, "ramp", "s", { 0.0, GrowingFault::MAX_RAMP }, 0.0);
+    faults.push_back(growing);
+  }
+  return faults;
+}
+
+/// Duty, faults and parameters of a run of one drive.
+void Plan::takeDrive(const Block& block, const PlanValues& values, RunSpec& spec) const
+{
+  spec.duty = duties_.read(*block.duty, values);
+  constexpr double LEAST_EASING = 0.1;  // a shorter one jerks like a step [s]
+  spec.duty.easing = 0.5 * recording_.start >= LEAST_EASING ? 0.5 * recording_.start : 0.0;
+  ParameterMap settings = settingsOf(values, spec.run);
+  const bool given = lives_ || root_.find("classes") != nullptr;
+  if (given)
+  {
+    const std::uint64_t check_up = spec.run / blocks_.size();
+    if (lives_)
+    {
+      for (const GrowingFault& fault : lives_->faultsAt(check_up))
+      {
+        spec.faults.push_back({ fault, 0 });
+      }
+    }
+    else
+    {
+      spec.faults = faultsOf(block.fault_class->second, values);
+    }
+    setFaults(spec.faults, 0, block.fault_class->second.origin, settings);
+    const Lives::Labels labels = lives_ ? lives_->labelsAt(check_up) : Lives::Labels();
+    spec.variables.insert(spec.variables.end(), labels.begin(), labels.end());
+  }
+  spec.parameters = parametersOf(settings, given);
+  if (!given)
+  {
+    spec.faults = configuredFaults(spec.parameters, 0);
+  }
+}
+
+/// Motion, faults and drives of a run of a whole arm.
+void Plan::takeArm(const Block& block, const PlanValues& values, RunSpec& spec) const
+{
+  const bool given = root_.find("classes") != nullptr;
+  const PlanNode& list = block.fault_class->second;
+  if (given)
+  {
+    spec.faults = faultsOf(list, values);
+  }
+  spec.arm = arm_->read(*block.duty, values, settingsOf(values, spec.run), given ? &spec.faults : nullptr, list.origin);
+  for (std::size_t joint = 0; !given && joint < spec.arm->drives.size(); ++joint)
+  {
+    const std::vector<RunFault> more = configuredFaults(spec.arm->drives[joint], joint);
+    spec.faults.insert(spec.faults.end(), more.begin(), more.end());
+  }
+  spec.parameters = spec.arm->drives.front();
+}
+
+ParameterMap Plan::settingsOf(const PlanValues& values, std::uint64_t number) const
+{
+  ParameterMap map;
+  bool seeded = false;
+  if (const PlanNode* settings = root_.find("set"))
+  {
+    for (const auto& [key, node] : settings->entries)
+    {
+      map[key] = { values.value(node).value, node.origin };
+      seeded = seeded || key == NOISE_SEED;
+    }
+  }
+  if (!seeded)
+  {
+    map[NOISE_SEED] = { static_cast<std::int64_t>(drawnWord(seed_, NOISE_SEED, number) >> 1), root_.origin };
+  }
+  return map;
+}
+
+/// The settings of one run over those of the first, which set the same keys. Where something is wrong all is read, for
+/// the text of the error.
+Parameters Plan::parametersOf(const ParameterMap& settings, bool faults_given) const
+{
+  const auto first_fault = settings.lower_bound(FAULTS);
+  const bool with_faults = first_fault != settings.end() && first_fault->first.rfind(FAULTS, 0) == 0;
+  if (first_ && (faults_given || !with_faults))
+  {
+    try
+    {
+      Parameters parameters = *first_;
+      parameters.faults = faults_given ? std::vector<Fault>() : parameters.faults;
+      changeParameters(parameters, settings);
+      return parameters;
+    }
+    catch (const ParameterError&)
+    {
+    }
+  }
+  ParameterMap map = base_;
+  if (faults_given)
+  {
+    eraseFaults(map);
+  }
+  putOver(settings, map);
+  return parseParameters(map);
+}
+
+void Plan::checkRates(const Parameters& parameters) const
+{
+  for (const RecordingGroup& group : recording_.groups)
+  {
+    const double steps = parameters.solver.rate / group.rate;
+    if (std::abs(steps - std::round(steps)) > 1e-9 * steps || steps < 0.5)
+    {
+      const PlanNode& groups = *root_.find("record")->find("groups");
+      required(*groups.find(group.name), "rate")
+          .refuse("[Hz] must divide solver.rate = " + numberText(parameters.solver.rate) + " [Hz]");
+    }
+  }
 }
 }  // namespace hjt

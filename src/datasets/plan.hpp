@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,7 +9,6 @@
 #include <vector>
 
 #include "datasets/arm_plan.hpp"
-#include "datasets/duty_reader.hpp"
 #include "datasets/lives.hpp"
 #include "datasets/plan_node.hpp"
 #include "datasets/plan_values.hpp"

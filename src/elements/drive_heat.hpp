@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cmath>
+
 #include <Eigen/Core>
+#include <Eigen/Eigenvalues>
 
 #include "harmonic_joint_twin/params/parameters.hpp"
 
@@ -21,10 +24,25 @@ class DriveHeat
 public:
   static constexpr double PERIOD = 0.1;  ///< over which the twin takes the mean of the losses [s]
 
-  explicit DriveHeat(const ThermalParameters& parameters);
+  explicit DriveHeat(const ThermalParameters& parameters)
+    : parameters_(parameters), root_(std::sqrt(parameters.grease_capacity), std::sqrt(parameters.housing_capacity))
+  {
+    const double inner = parameters.internal_conductance;
+    const double between = -inner / (root_[0] * root_[1]);
+    Eigen::Matrix2d relaxation;
+    relaxation << inner / parameters.grease_capacity, between, between,
+        (inner + parameters.ambient_conductance) / parameters.housing_capacity;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(relaxation);
+    rates_ = solver.eigenvalues().cwiseMax(0.0);
+    modes_ = solver.eigenvectors();
+  }
 
   /// Both nodes above the surroundings [degC] by the configured rise.
-  void reset(double ambient) noexcept;
+  void reset(double ambient) noexcept
+  {
+    grease_ = ambient + parameters_.grease_rise;
+    housing_ = ambient + parameters_.housing_rise;
+  }
 
   /// Losses of a step [J].
   struct Losses
@@ -34,15 +52,42 @@ public:
   };
 
   /// Both nodes `seconds` later, in surroundings of `ambient` [degC].
-  void advance(double seconds, const Losses& losses, double ambient) noexcept;
+  void advance(double seconds, const Losses& losses, double ambient) noexcept
+  {
+    const Eigen::Vector2d above(grease_ - ambient, housing_ - ambient);
+    const Eigen::Vector2d energy(losses.friction, losses.copper + parameters_.standby_power * seconds);
+    const Eigen::Vector2d start = modes_.transpose() * root_.cwiseProduct(above);
+    const Eigen::Vector2d fed = modes_.transpose() * energy.cwiseQuotient(root_);
+    Eigen::Vector2d end;
+    for (int i = 0; i < 2; ++i)
+    {
+      end[i] = std::exp(-rates_[i] * seconds) * start[i] + meanDecay(rates_[i], seconds) * fed[i];
+    }
+    const Eigen::Vector2d temperature = (modes_ * end).cwiseQuotient(root_);
+    grease_ = ambient + temperature[0];
+    housing_ = ambient + temperature[1];
+  }
 
   /// The same where the housing's temperature is measured [degC]: only the grease is free.
-  void advanceGrease(double seconds, double friction, double housing) noexcept;
+  void advanceGrease(double seconds, double friction, double housing) noexcept
+  {
+    const double rate = parameters_.internal_conductance / parameters_.grease_capacity;
+    grease_ = housing + std::exp(-rate * seconds) * (grease_ - housing) +
+              meanDecay(rate, seconds) * friction / parameters_.grease_capacity;
+    housing_ = housing;
+  }
 
   double grease() const noexcept { return grease_; }    ///< [degC]
   double housing() const noexcept { return housing_; }  ///< [degC]
 
 private:
+  // Mean of exp(-rate t) over a step from 0 on [-].
+  static double meanDecay(double rate, double seconds) noexcept
+  {
+    const double decay = rate * seconds;
+    return decay > 0.0 ? -std::expm1(-decay) / decay : 1.0;
+  }
+
   ThermalParameters parameters_;
   Eigen::Vector2d root_;   // of both capacities [sqrt(J/K)]
   Eigen::Vector2d rates_;  // of the modes [1/s]

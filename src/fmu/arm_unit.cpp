@@ -9,7 +9,6 @@
 #include "arm/arm_recorder.hpp"
 #include "arm/moving_arm.hpp"
 #include "base/whole_file.hpp"
-#include "fmu/arm_resource.hpp"
 #include "fmu/arm_variables.hpp"
 #include "fmu/drive_part.hpp"
 

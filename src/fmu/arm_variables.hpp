@@ -9,6 +9,15 @@
 
 namespace hjt::fmu
 {
+constexpr const char* ARM_FILE = "arm.yaml";  ///< among the resources; beside it a folder of each joint's drive
+
+/// Data of an arm's description for the closed loop: links as numbers, gravity, payload, limits and gains. The
+/// joints have gains.
+std::string armResource(const ArmDescription& arm);
+
+/// @throws ParameterError.
+ArmDescription readArmResource(const std::string& path);
+
 /// The variables of an arm after the time, by value reference; then its drives' (DriveReference), base first. Arrays
 /// have a value for each joint, or of x, y, z, unless stated.
 enum ArmReference : unsigned

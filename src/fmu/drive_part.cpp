@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <memory>
 
-#include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"
 #include "surface/surface_pool.hpp"
 

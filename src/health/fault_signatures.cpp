@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "health/indicator_table.hpp"
+#include "health/motion_likeness.hpp"
+#include "health/signature_terms.hpp"
 
 namespace hjt
 {
@@ -67,6 +70,49 @@ private:
   const Deviations& deviations_;
   FeatureScores& scores_;
 };
+
+constexpr double MISFIT_WEIGHT = 0.2;    // w_1: share of the evidence's weight that is left where no signature fits
+constexpr double MISFIT_SEVERITY = 0.5;  // share of the severity there: other drives soften up to three times as much
+
+/// Causes without signatures: anything of a strength S, and what is no wear of a gear.
+struct Unknown
+{
+  double strength;  // S
+  double drag;      // friction more at every speed alike, over the sound running torque: a brake
+  double noise;     // of the sensors more, as a share
+
+  double prior() const { return strength > 0.0 ? 1.0 : 0.1; }  // brakes and sensors fail less often than gears wear
+};
+constexpr std::array<Unknown, 12> UNKNOWNS{ { { 3.0, 0.0, 0.0 },
+                                              { 10.0, 0.0, 0.0 },
+                                              { 30.0, 0.0, 0.0 },
+                                              { 100.0, 0.0, 0.0 },
+                                              { 0.0, 0.05, 0.0 },
+                                              { 0.0, 0.15, 0.0 },
+                                              { 0.0, 0.4, 0.0 },
+                                              { 0.0, 1.0, 0.0 },
+                                              { 0.0, 0.0, 0.12 },
+                                              { 0.0, 0.0, 0.25 },
+                                              { 0.0, 0.0, 0.5 },
+                                              { 0.0, 0.0, 1.0 } } };
+
+/// Noise widens the spread of peaks from turn to turn and of every line.
+Signature signatureOf(const Unknown& unknown, const WindowResidual& residual) noexcept
+{
+  constexpr std::size_t FRICTION = indexOf(ScalarIndicator::RUNNING_TORQUE);
+  constexpr std::size_t PEAKS = indexOf(ScalarIndicator::KINEMATIC_ERROR);
+  Signature signature{ Cause::NONE, 0.0, ANY_MOTION, {} };
+  signature.change[FRICTION] = unknown.drag * residual.sound[FRICTION];
+  signature.change[indexOf(ScalarIndicator::COULOMB_TORQUE)] = signature.change[FRICTION];
+  signature.change[PEAKS] = unknown.noise * residual.sound[PEAKS];
+  return signature;
+}
+
+double strengthOf(const Unknown& unknown) noexcept
+{
+  const double noise = 1.0 + unknown.noise;
+  return std::sqrt(unknown.strength * unknown.strength + noise * noise - 1.0);
+}
 }  // namespace
 
 const char* causeName(Cause cause) noexcept
@@ -114,5 +160,128 @@ FeatureScores featureScores(const Deviations& deviations) noexcept
     }
   }
   return scores;
+}
+
+void CauseSearch::Sum::add(double weighted, double prior, double severity) noexcept
+{
+  const double weight = prior * std::exp(weighted);
+  priors += prior;
+  total += weight;
+  first += weight * severity;
+  second += weight * severity * severity;
+}
+
+CauseSearch::CauseSearch(std::shared_ptr<const SignatureSet> set)
+  : set_(std::move(set)), likelihoods_(set_->signatures.size() + UNKNOWNS.size())
+{
+  start();
+}
+
+void CauseSearch::start() noexcept
+{
+  next_ = 0;
+  misfit_ = 1.0;
+  sums_ = {};
+}
+
+void CauseSearch::advance(const WindowResidual& residual, const OperatingPoint& point, std::size_t count) noexcept
+{
+  const std::vector<Signature>& known = set_->signatures;
+  const std::size_t rows = likelihoods_.size();
+  const std::size_t end = std::min(next_ + count, signatures());
+  if (next_ < rows)
+  {
+    const SignatureTerms terms(*set_, residual);
+    for (; next_ < std::min(end, rows); ++next_)
+    {
+      if (next_ < known.size())
+      {
+        likelihoods_[next_] = terms.logLikelihood(known[next_], 0.0, likeness(known[next_].motion, point));
+        continue;
+      }
+      const Unknown& unknown = UNKNOWNS[next_ - known.size()];
+      likelihoods_[next_] = terms.logLikelihood(signatureOf(unknown, residual), strengthOf(unknown), 1.0);
+    }
+    if (next_ == rows)
+    {
+      const auto unknown = likelihoods_.begin() + static_cast<std::ptrdiff_t>(known.size());
+      const auto best = std::max_element(likelihoods_.begin(), unknown) - likelihoods_.begin();
+      misfit_ = known.empty() ? 1.0 : terms.misfit(known[static_cast<std::size_t>(best)]);
+      const double weight = set_->evidence_weight * (MISFIT_WEIGHT + (1.0 - MISFIT_WEIGHT) / misfit_);
+      const double largest = *std::max_element(likelihoods_.begin(), likelihoods_.end());
+      for (double& likelihood : likelihoods_)
+      {
+        likelihood = weight * (likelihood - largest);
+      }
+    }
+  }
+  for (; next_ < end; ++next_)
+  {
+    const std::size_t row = next_ - rows;
+    if (row < known.size())
+    {
+      const Signature& signature = known[row];
+      sums_[static_cast<std::size_t>(signature.cause)].add(
+          likelihoods_[row], OTHER_MOTION + likeness(signature.motion, point), signature.severity);
+    }
+    else
+    {
+      sums_[static_cast<std::size_t>(Cause::NONE)].add(likelihoods_[row], UNKNOWNS[row - known.size()].prior(), 0.0);
+    }
+  }
+}
+
+CausePosterior CauseSearch::posterior() const noexcept
+{
+  CausePosterior posterior;
+  double all = 0.0;
+  const double by_misfit = MISFIT_SEVERITY * (1.0 - 1.0 / misfit_);
+  for (std::size_t cause = 0; cause < CAUSE_COUNT; ++cause)
+  {
+    const Sum& sum = sums_[cause];
+    if (sum.total > 0.0)
+    {
+      posterior.probability[cause] = sum.total / sum.priors;
+      all += posterior.probability[cause];
+      posterior.severity[cause] = sum.first / sum.total;
+      const double mean = posterior.severity[cause];
+      const double square = std::max(sum.second / sum.total - mean * mean, 0.0);
+      posterior.severity_deviation[cause] =
+          std::sqrt(square + (set_->severity_error * set_->severity_error + by_misfit * by_misfit) * mean * mean);
+    }
+  }
+  for (double& probability : posterior.probability)
+  {
+    probability /= all;
+  }
+  return posterior;
+}
+
+std::size_t patternCount(const SignatureSet& set) noexcept
+{
+  std::array<bool, CAUSE_COUNT> known{};
+  for (const Signature& signature : set.signatures)
+  {
+    known[static_cast<std::size_t>(signature.cause)] = true;
+  }
+  return static_cast<std::size_t>(std::count(known.begin(), known.end(), true));
+}
+
+CausePatterns::CausePatterns(std::shared_ptr<const SignatureSet> set) : set_(std::move(set)), rows_(patternRows(*set_))
+{
+}
+
+PatternScore CausePatterns::strongest(const WindowResidual& residual, const OperatingPoint& point) const noexcept
+{
+  const SignatureTerms terms(*set_, residual);
+  PatternScore strongest;
+  for (std::size_t cause = 0; cause < CAUSE_COUNT; ++cause)
+  {
+    if (const double student = terms.along(terms.direction(rows_[cause], point)); student > strongest.student)
+    {
+      strongest = { static_cast<Cause>(cause), student };
+    }
+  }
+  return strongest;
 }
 }  // namespace hjt

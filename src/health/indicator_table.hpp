@@ -4,12 +4,26 @@
 #include <array>
 #include <cstddef>
 
-#include "base/table_order.hpp"
 #include "harmonic_joint_twin/health/fault_signatures.hpp"
 #include "harmonic_joint_twin/health/signal_indicators.hpp"
 
 namespace hjt
 {
+/// Whether the rows of a table stand in the order of the enumeration they are looked up by, none missing. For
+/// static_assert.
+template <class Rows, class Row, class Key>
+constexpr bool isInOrder(const Rows& rows, Key Row::*key)
+{
+  for (std::size_t i = 0; i < rows.size(); ++i)
+  {
+    if (static_cast<std::size_t>(rows[i].*key) != i)
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
 /// Of the smallest spread that a healthy indicator is taken to have.
 enum class FloorUnit
 {

@@ -1,26 +1,330 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <complex>
 #include <cstddef>
 #include <cstdint>
 
+#include <Eigen/Core>
+#include <Eigen/Dense>
+
+#include "gear/angle.hpp"
+#include "harmonic_joint_twin/health/indicator.hpp"
 #include "harmonic_joint_twin/health/signal_indicators.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "health/efficiency_estimate.hpp"
-#include "health/friction_estimate.hpp"
-#include "health/lag_estimate.hpp"
-#include "health/load_over_angle.hpp"
 #include "health/order_tracker.hpp"
-#include "health/ripple_filter.hpp"
+#include "health/running_regression.hpp"
 #include "health/signal_sample.hpp"
-#include "health/smoothed_torsion.hpp"
-#include "health/torque_balance.hpp"
 #include "health/torsion_loop_estimate.hpp"
 #include "health/turn_window.hpp"
 
 namespace hjt
 {
+/// Ripple of an angle: what three filters in a row do not follow of it.
+///
+/// Law:   r = (s t / (1 + s t))^3 x
+/// where  x  angle, given by its speed [rad];  t  TIME [s]
+/// A steady acceleration has no ripple; of a line at f the share (1 + 1 / (2 pi f t)^2)^-1.5 is left, 0.9 at 30 Hz.
+class RippleFilter
+{
+public:
+  explicit RippleFilter(double speed = 0.0) : smooth_speed_(speed) {}
+
+  /// `seconds` since the last one. Speed [rad/s].
+  void update(double speed, double seconds) noexcept
+  {
+    const double kept = std::exp(-seconds / TIME);
+    smooth_speed_ = kept * smooth_speed_ + (1.0 - kept) * speed;
+    acceleration_ = kept * acceleration_ + (1.0 - kept) * (speed - smooth_speed_) / TIME;
+    smooth_acceleration_ = kept * smooth_acceleration_ + (1.0 - kept) * acceleration_;
+  }
+
+  double ripple() const noexcept { return TIME * TIME * (acceleration_ - smooth_acceleration_); }  ///< [rad]
+
+private:
+  static constexpr double TIME = 0.02;  // [s]
+
+  double smooth_speed_;           // [rad/s]
+  double acceleration_{};         // [rad/s^2]
+  double smooth_acceleration_{};  // [rad/s^2]
+};
+
+/// What the motor's torque goes into, over one window: inertia, and friction that grows with the load.
+///
+/// Law:   F tau = J F a + C F sign(omega) + g_0 [ + g_c F cos(phi) + g_s F sin(phi) ],  F = 1 / (1 + s t)^2
+///        F tau = J F a + C F sign(omega) + g_0 + B F omega + l F(sign(omega) |T| / i)   where the motor moves
+/// where  tau            motor torque less the load's [N.m];  a, omega  motor acceleration [rad/s^2], speed [rad/s]
+///        C              friction: without its column what changes with the temperature or a fault would count as
+///                       inertia, for the friction turns round with the motion
+///        phi            output angle [rad]; g_c, g_s: weight, where the load is not known
+///        B              viscous friction;  T, i  load torque [N.m], ratio;  l  friction by load [-]: needs a load
+///                       that varies
+///        t              TIME [s]
+/// A motion of less than LEAST_ACCELERATION rms, or whose weight goes as its acceleration, has no inertia to see: it
+/// goes to 0.
+class TorqueBalance
+{
+public:
+  TorqueBalance() : regression_(COLUMNS, 1), friction_(COLUMNS, 1) {}
+
+  void reset() noexcept
+  {
+    restart();
+    started_ = false;
+  }
+
+  /// The next window.
+  void restart() noexcept
+  {
+    regression_.reset();
+    friction_.reset();
+  }
+
+  /// Every sample. `torque`: less the load's; `load`: at the motor, NaN: not known [N.m]; `seconds` since the last one.
+  void add(double torque, double load, double velocity, double output_angle, double seconds, bool moving) noexcept
+  {
+    const double direction = std::copysign(1.0, velocity);
+    Values values;
+    values << torque, velocity, direction, std::cos(output_angle), std::sin(output_angle),
+        direction * (std::isfinite(load) ? std::abs(load) : 0.0);
+    if (!started_)
+    {
+      started_ = true;
+      first_ = values;
+      second_ = values;
+    }
+    const double last_speed = second_[1];
+    const double kept = std::exp(-seconds / TIME);
+    first_ = kept * first_ + (1.0 - kept) * values;
+    second_ = kept * second_ + (1.0 - kept) * first_;
+    Eigen::Matrix<double, COLUMNS, 1> row;
+    row << (second_[1] - last_speed) / seconds, second_[2], 1.0, second_[3], second_[4];
+    const Eigen::Matrix<double, 1, 1> balance(second_[0]);
+    regression_.add(row, balance);
+    if (moving)
+    {
+      row.tail<2>() << second_[1], second_[5];
+      friction_.add(row, balance);
+    }
+  }
+
+  /// At the motor [kg.m^2].
+  double fit(bool load_known) noexcept
+  {
+    Eigen::Matrix<double, COLUMNS, 1> row = Eigen::Matrix<double, COLUMNS, 1>::Zero();
+    row[0] = LEAST_ACCELERATION * std::sqrt(regression_.rows());
+    regression_.add(row, Eigen::Matrix<double, 1, 1>(0.0));
+    return regression_.fit(load_known ? COLUMNS - 2 : COLUMNS) ? regression_.coefficient(0, 0) : 0.0;
+  }
+
+  /// [-]
+  Indicator loadFriction() noexcept
+  {
+    constexpr int LOAD = COLUMNS - 1;
+    const bool told = friction_.fit(COLUMNS) && friction_.mean(LOAD, LOAD) > 0.0;
+    return { told && friction_.inflation(LOAD) < MAX_INFLATION, friction_.coefficient(LOAD, 0) };
+  }
+
+private:
+  static constexpr int COLUMNS = 5;
+  static constexpr double MAX_INFLATION = 30.0;       // of the variance of the friction by load [-]
+  static constexpr double TIME = 0.02;                // [s]
+  static constexpr double LEAST_ACCELERATION = 20.0;  // rms, of the motor [rad/s^2]
+  using Values = Eigen::Matrix<double, COLUMNS + 1, 1>;
+
+  RunningRegression regression_;
+  RunningRegression friction_;
+  Values first_{ Values::Zero() };
+  Values second_{ Values::Zero() };
+  bool started_{};
+};
+
+/// Payload of a joint, from its load torque over its angle: a payload gives the same on any path.
+///
+/// Law:   T = c + s sin(phi) + k cos(phi),  least squares over the time
+/// where  T, phi  load torque [N.m], output angle [rad];  s, k  weight;  c  what does not depend on the angle
+/// An angle that varies by less than some 0.3 deg rms determines c alone: s and k go to 0.
+class LoadOverAngle
+{
+public:
+  using Coefficients = Eigen::Vector3d;  // c, s, k [N.m]
+
+  void add(double angle, double torque, double seconds) noexcept
+  {
+    const Eigen::Vector3d row(1.0, std::sin(angle), std::cos(angle));
+    normal_.noalias() += seconds * row * row.transpose();
+    right_.noalias() += seconds * torque * row;
+  }
+
+  /// NaN: nothing came.
+  Coefficients coefficients() const noexcept
+  {
+    constexpr double LEAST_SQUARE = 2.5e-5;  // of the sine and cosine about their means [-]
+    const double time = normal_(0, 0);
+    const Eigen::Vector2d mean = normal_.col(0).tail<2>() / time;
+    const double mean_torque = right_[0] / time;
+    Eigen::Matrix2d squares = normal_.bottomRightCorner<2, 2>() - time * mean * mean.transpose();
+    squares.diagonal().array() += LEAST_SQUARE * time;
+    const Eigen::Vector2d weight = squares.inverse() * (right_.tail<2>() - time * mean_torque * mean);
+    return { mean_torque - mean.dot(weight), weight[0], weight[1] };
+  }
+
+private:
+  Eigen::Matrix3d normal_{ Eigen::Matrix3d::Zero() };
+  Eigen::Vector3d right_{ Eigen::Vector3d::Zero() };
+};
+
+/// What a joint's controller cannot keep of its set points, over one window: ripple of the lag, and its lines.
+///
+/// Law:   r = RippleFilter of i (phi - phi_s),   R^2 = <r^2>,   A_o^2 = 4 <|c_o|^2>,   c_o = mean of r exp(j o theta)
+/// where  phi, phi_s  output angle, its set point [rad];  i  ratio;  theta  motor angle [rad];  o  order
+///        <>          mean over the travel;  c_o forgets in LINE_TRAVEL, so that a line counts whatever its phase does:
+///                    under a load that changes its sign, and from one move to the next
+/// Set points are smooth: of the motion itself nothing is left in r, which the ripple of the angle alone is full of.
+class LagEstimate
+{
+public:
+  static constexpr std::size_t LINES = 3;
+  static constexpr std::array<double, LINES> ORDERS{ 1.0, 2.0, 4.0 };
+
+  void reset() noexcept { *this = LagEstimate(); }
+
+  /// The next window.
+  void restart() noexcept
+  {
+    travel_ = 0.0;
+    square_ = 0.0;
+    lines_ = {};
+  }
+
+  /// Every sample. `lag`: at the motor [rad], NaN: no set point; `travel` of the motor, `seconds` since the last one;
+  /// `moving`: it counts.
+  void add(double lag, double motor_angle, double travel, double seconds, bool moving) noexcept
+  {
+    const bool is_first = age_ == 0.0;
+    if (!std::isfinite(lag))
+    {
+      if (!is_first)
+      {
+        reset();
+      }
+      return;
+    }
+    if (is_first)
+    {
+      last_ = lag;
+    }
+    filter_.update((lag - last_) / seconds, seconds);
+    last_ = lag;
+    age_ += seconds;
+    const double way = std::abs(travel);
+    const double kept = std::exp(-way / LINE_TRAVEL);
+    const double weight = moving && age_ > SETTLING_TIME ? way : 0.0;
+    const double ripple = filter_.ripple();
+    travel_ += weight;
+    square_ += weight * ripple * ripple;
+    for (std::size_t i = 0; i < LINES; ++i)
+    {
+      const bool seen = ORDERS[i] * way < USED_BAND * 0.5 * TWO_PI;
+      const std::complex<double> turned = seen ? std::polar(ripple, ORDERS[i] * motor_angle) : 0.0;
+      Line& line = lines_[i];
+      line.mean = kept * line.mean + (1.0 - kept) * turned;
+      line.travel += seen ? weight : 0.0;
+      line.square += seen ? weight * std::norm(line.mean) : 0.0;
+    }
+  }
+
+  Indicator ripple() const noexcept  ///< R [rad]
+  {
+    return { travel_ > LEAST_TRAVEL, std::sqrt(square_ / travel_) };
+  }
+
+  /// A_o [rad]
+  Indicator line(std::size_t order) const noexcept
+  {
+    const Line& line = lines_[order];
+    return { line.travel > SEEN_SHARE * std::max(travel_, LEAST_TRAVEL), 2.0 * std::sqrt(line.square / line.travel) };
+  }
+
+private:
+  static constexpr double LINE_TRAVEL = 2.0 * TWO_PI;    // [rad]
+  static constexpr double LEAST_TRAVEL = 10.0 * TWO_PI;  // in a window [rad]
+  static constexpr double SETTLING_TIME = 0.2;           // of the filter [s]
+  static constexpr double USED_BAND = 0.8;               // of half the samples a turn [-]
+  static constexpr double SEEN_SHARE = 0.5;              // of the travel, that a line could be seen in [-]
+
+  struct Line
+  {
+    std::complex<double> mean;
+    double travel{};  // [rad]
+    double square{};
+  };
+
+  RippleFilter filter_;
+  double last_{};  // lag [rad]
+  double age_{};   // [s]
+  double travel_{};
+  double square_{};
+  std::array<Line, LINES> lines_;
+};
+
+/// Coulomb and viscous friction at the motor shaft.
+///
+/// Law:   tau - T / i = C sign(omega) + B omega + g_c cos(phi) + g_s sin(phi) + g_0
+/// where  tau, T      motor torque, load estimate (0 if none) [N.m];  i  ratio [-]
+///        omega, phi  motor speed over about a turn [rad/s], output angle [rad]; the terms in phi take up the weight
+/// Recursive least squares over samples at near-constant speed, forgotten exponentially over travel.
+/// Valid while the motion separates the two: several speeds, each way.
+class FrictionEstimate
+{
+public:
+  /// `memory`: travel of the motor after which a sample counts 1/e [rad].
+  explicit FrictionEstimate(double memory) : memory_(memory), regression_(COLUMNS, 1) {}
+
+  void reset() noexcept
+  {
+    regression_.reset();
+    fitted_ = false;
+  }
+
+  /// `travel`: of the motor since the last sample [rad].
+  void add(double travel, double velocity, double output_angle, double torque) noexcept
+  {
+    regression_.forget(std::exp(-std::abs(travel) / memory_));
+    Eigen::Matrix<double, COLUMNS, 1> row;
+    row << std::copysign(1.0, velocity), velocity, std::cos(output_angle), std::sin(output_angle), 1.0;
+    regression_.add(row, Eigen::Matrix<double, 1, 1>(torque));
+  }
+
+  void fit() noexcept { fitted_ = regression_.fit(COLUMNS); }
+
+  Indicator coulomb() const noexcept { return value(0); }  ///< [N.m]
+  Indicator viscous() const noexcept { return value(1); }  ///< [N.m.s/rad]
+
+private:
+  static constexpr int COLUMNS = 5;
+  /// Speed and direction tell Coulomb from viscous friction only while their variance is inflated less than this [-]:
+  /// two speeds in the ratio 1 to 2, each way, give 10.
+  static constexpr double MAX_INFLATION = 30.0;
+
+  Indicator value(int column) const noexcept
+  {
+    if (!fitted_ || regression_.inflation(0) > MAX_INFLATION || regression_.inflation(1) > MAX_INFLATION)
+    {
+      return {};
+    }
+    return { true, regression_.coefficient(column, 0) };
+  }
+
+  double memory_;
+  bool fitted_{};
+  RunningRegression regression_;
+};
+
 /// Health indicators from a drive's own signals, window by window, in fixed memory. Allocates only at construction.
 ///
 /// A window ends after indicators.window_turns turns of the motor at steady speed, either way, or after

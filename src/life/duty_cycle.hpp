@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+#include <cmath>
 #include <string>
 #include <vector>
 
+#include "base/number_table.hpp"
 #include "gear/angle.hpp"
+#include "harmonic_joint_twin/params/parameters.hpp"
 
 namespace hjt
 {
@@ -26,11 +30,58 @@ struct DutyCycle
 
   /// CSV with the columns duration (1e-9 ... 1e10 s), motor_speed (-1e5 ... 1e5 rad/s), load_torque (-1e6 ... 1e6 N.m)
   /// and temperature (-40 ... 150 degC). @throws InputError naming line, column, value, unit and range.
-  static DutyCycle fromFile(const std::string& path);
+  static DutyCycle fromFile(const std::string& path)
+  {
+    // Beyond these no drive lives or works; sums over as many rows as a file may have stay finite.
+    constexpr Range ALLOWED[] = { { 1e-9, 1e10 }, { -1e5, 1e5 }, { -1e6, 1e6 }, { MIN_TEMPERATURE, MAX_TEMPERATURE } };
+    constexpr const char* UNITS[] = { "s", "rad/s", "N.m", "degC" };
+    NumberTable<4> table = tableOf(path);
+    DutyCycle duty;
+    for (std::array<double, 4> row{}; table.read(row);)
+    {
+      for (std::size_t i = 0; i < row.size(); ++i)
+      {
+        table.requireRange(i, row[i], ALLOWED[i], UNITS[i]);
+      }
+      duty.phases.push_back({ row[0], std::abs(row[1]), row[2], row[3] });
+    }
+    if (duty.turnsPerHour() == 0.0)
+    {
+      throw InputError(path + ": the motor never turns");
+    }
+    return duty;
+  }
 
   /// Whether the file can be read and its first line names these columns, whatever follows.
-  static bool isOne(const std::string& path);
+  static bool isOne(const std::string& path)
+  {
+    try
+    {
+      tableOf(path);
+      return true;
+    }
+    catch (const InputError&)
+    {
+      return false;
+    }
+  }
 
-  double turnsPerHour() const;
+  double turnsPerHour() const
+  {
+    double turns = 0.0;
+    double time = 0.0;
+    for (const DutyPhase& phase : phases)
+    {
+      turns += phase.turns();
+      time += phase.duration;
+    }
+    return time > 0.0 ? 3600.0 * turns / time : 0.0;
+  }
+
+private:
+  static NumberTable<4> tableOf(const std::string& path)
+  {
+    return NumberTable<4>(path, { "duration", "motor_speed", "load_torque", "temperature" });
+  }
 };
 }  // namespace hjt

@@ -4,15 +4,88 @@
 #include <array>
 #include <functional>
 #include <map>
+#include <vector>
 
+#include <Eigen/Core>
+
+#include "harmonic_joint_twin/params/parameters.hpp"
 #include "life/ageing_laws.hpp"
 #include "life/drive_age.hpp"
 #include "life/duty_cycle.hpp"
-#include "life/revolution_load_analysis.hpp"
 #include "model/faults/joint_faults.hpp"
+#include "solver/ring_equilibrium.hpp"
+#include "statics/flexspline_stress.hpp"
+#include "statics/pitch_walk.hpp"
 
 namespace hjt
 {
+/// How the outer race of the wave generator's bearing creeps round in the rim, and how far the two slip as it does.
+///
+/// The race rolls in the rim, pressed on at the lobes. Held, its surface would slip there at
+///   q_i = l psi_i' - r eps_i + f - g_i                  [m/rad, by the wave generator's angle]
+/// where  l      contact.slip_lever; psi_i' rate at which the chord at tooth i tilts, against the wave's turning [-]
+///        r, eps_i  bore radius [m]; strain of the rim there [-]: the race does not stretch
+///        f, g_i  raceFit; worn off rim and race [m]
+/// Nothing holds it: the friction of the balls on it is a hundredth of that on the rim. It creeps at the rate c at
+/// which friction loses least, where the forces of friction cancel: the median of q_i weighted by the normal forces.
+/// Two surfaces that roll wear by sum F_i |q_i - c|, whatever c is.
+class RaceCreep
+{
+public:
+  explicit RaceCreep(const Parameters& parameters);
+
+  /// By the wave generator's angle.
+  struct Rates
+  {
+    double advance{};  ///< of the race's surface in the rim, the wave generator's way; 0 without contact [m/rad]
+    double sliding{};  ///< normal force times slip, of the whole rim; friction coefficient left out [N.m/rad]
+  };
+
+  /// `running`: 2 N, rates of the ring's points by the motor angle, the output following [m/rad].
+  Rates at(const RingEquilibrium& ring, const Eigen::VectorXd& running);
+
+private:
+  struct Slip
+  {
+    double rate;   // [m/rad]
+    double force;  // [N]
+  };
+
+  double lever_;        // [m]
+  double radius_;       // [m]
+  double fit_;          // [m]
+  double rest_length_;  // of a segment [m]
+  std::vector<Slip> slips_;
+};
+
+/// Measures on the tooth model what turning does to the drive. One drive, any number of loads.
+class RevolutionLoadAnalysis
+{
+public:
+  /// `positions`: wave generator angles per tooth pitch, >= 1. @throws ParameterError if the parameters have no
+  /// equilibrium.
+  RevolutionLoadAnalysis(const Parameters& parameters, int positions)
+    : RevolutionLoadAnalysis(startingJoint(parameters), parameters.solver, FlexsplineStress(parameters),
+                             RaceCreep(parameters), positions)
+  {
+  }
+  /// The same of a joint of that drive with other faults.
+  RevolutionLoadAnalysis(const JointModel& joint, const SolverParameters& solver, const FlexsplineStress& stress,
+                         const RaceCreep& creep, int positions);
+
+  /// One turn of the wave generator under `load_torque` [N.m].
+  /// @throws ParameterError if the ring finds no equilibrium under it.
+  RevolutionLoad under(double load_torque);
+
+private:
+  int positions_;
+  PitchWalk walk_;
+  FlexsplineStress flexspline_stress_;
+  ToothStress tooth_stress_;
+  RaceCreep race_creep_;
+  Eigen::VectorXd running_;  // of the teeth, by the wave generator's angle
+};
+
 /// The bridge between seconds and years: what turning under a load does to the drive, measured on the tooth model at
 /// some stages of wear, bilinear between them.
 class RevolutionLoadMap

@@ -6,16 +6,41 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <mutex>
 #include <thread>
 #include <vector>
 
 #include "harmonic_joint_twin/twin/twin.hpp"
 #include "live/inbox.hpp"
 #include "live/latency_histogram.hpp"
-#include "live/try_lock_value.hpp"
 
 namespace hjt
 {
+/// A small value the loop shows to other threads. The writer never waits: it skips a write while somebody reads.
+template <class Value>
+class TryLockValue
+{
+public:
+  void tryWrite(const Value& value) noexcept
+  {
+    const std::unique_lock<std::mutex> lock(mutex_, std::try_to_lock);
+    if (lock.owns_lock())
+    {
+      value_ = value;
+    }
+  }
+
+  Value read() const
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return value_;
+  }
+
+private:
+  mutable std::mutex mutex_;
+  Value value_{};
+};
+
 enum class LoopState : std::uint8_t
 {
   WAITING_FOR_CLOCK,  ///< no time has been seen yet

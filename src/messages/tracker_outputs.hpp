@@ -4,15 +4,80 @@
 #include <cstdint>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
-#include "messages/measured_drive.hpp"
-#include "messages/stamp_periods.hpp"
+#include "messages/conversions.hpp"
 #include "messages/telemetry_messages.hpp"
+#include "messages/time.hpp"
 #include "messages/topics.hpp"
+#include "sensors/joint_sensors.hpp"
+#include "tracking/measured_gear.hpp"
+#include "tracking/tracker.hpp"
 
 namespace hjt
 {
+/// The drive of a measured joint, and what its messages hold: the gear at the measured angle under the joint's torque
+/// of the moment.
+class MeasuredDrive
+{
+public:
+  /// @throws ParameterError as MeasuredGear.
+  explicit MeasuredDrive(const Parameters& parameters);
+
+  /// To the row of a comparison; `fill` is of that one. False: no equilibrium, counted. Neither throws nor allocates.
+  bool moveTo(const Comparison& comparison) noexcept;
+  std::uint64_t failures() const noexcept { return failures_; }
+
+  /// Takes the torques of a row into those of the next Health; where none is wanted they are forgotten.
+  void note(const Comparison& comparison, bool is_wanted) noexcept;
+
+  void fill(Stamp stamp, harmonic_joint_twin::ContactForces& message) noexcept;
+  void fill(Stamp stamp, harmonic_joint_twin::Stress& message) noexcept;
+  /// The noise of the sensors is that of the sample in the stamp's period of publish.encoders_rate.
+  void fill(Stamp stamp, harmonic_joint_twin::Encoders& message) noexcept;
+  /// Values of one instant; those that take a turn of the drive are not valid.
+  void fill(Stamp stamp, harmonic_joint_twin::Health& message) noexcept;
+
+private:
+  double motorTorque(const Comparison& comparison) const noexcept;
+  double meshForceError() const noexcept;  // [N]
+
+  const GearParameters dimensions_;
+  const RingParameters ring_;
+  const StressParameters stress_;
+  const FatigueLaw fatigue_law_;
+  const TelemetryParameters telemetry_;
+  const Stamp encoders_period_;  // [ns]
+  const double ratio_;
+  MeasuredGear gear_;
+  JointSensors sensors_;
+  Comparison now_;
+  double motor_torque_{};  // [N.m]
+  SinceMessage since_;     // that of Health
+  std::uint64_t failures_{};
+};
+
+/// Periods of a topic, counted from the epoch: the same stamps begin the same periods, live and replayed.
+class StampPeriods
+{
+public:
+  explicit StampPeriods(double rate) : length_(toStampLength(1.0 / rate)) {}  ///< [Hz]
+
+  /// Whether a stamp is the first in its period.
+  bool begins(Stamp stamp)
+  {
+    const std::int64_t number = stamp / length_;
+    return std::exchange(number_, number) != number;
+  }
+
+  std::int64_t number() const { return number_; }  ///< of the last stamp's period
+
+private:
+  Stamp length_;  // [ns]
+  std::int64_t number_{};
+};
+
 /// Names of the topics of TrackerOutputs below `joint_namespace`.
 inline std::vector<std::string> trackerTopics(const std::string& joint_namespace)
 {

@@ -4,6 +4,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
+#include <chrono>
 #include <functional>
 #include <stdexcept>
 #include <string>
@@ -58,10 +59,33 @@ struct Interrupted
 class InterruptCheck
 {
 public:
-  InterruptCheck();
-  bool operator()();  ///< @returns whether it has looked
+  InterruptCheck() : next_(now() + PERIOD) {}
+
+  /// @returns whether it has looked.
+  bool operator()()
+  {
+    const double time = now();
+    if (time < next_)
+    {
+      return false;
+    }
+    next_ = time + PERIOD;
+    const py::gil_scoped_acquire acquire;
+    if (PyErr_CheckSignals() != 0)
+    {
+      throw Interrupted{};
+    }
+    return true;
+  }
 
 private:
+  static constexpr double PERIOD = 0.05;  // [s]
+
+  static double now()
+  {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  }
+
   double next_;  // [s]
 };
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <memory>
 #include <optional>
-#include <utility>
 
 #include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"

@@ -2,16 +2,87 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "arm/load_law.hpp"
 #include "recordings/arm_recording.hpp"
-#include "recordings/assessed_joint.hpp"
 #include "tracking/stream_timing.hpp"
+#include "tracking/verdict.hpp"
 
 namespace hjt
 {
+/// A joint of a recording beside its twin, and what is known of it: what `check`, `compare` and `follow` have in
+/// common.
+class AssessedJoint
+{
+public:
+  AssessedJoint(OwnReference own, bool is_identified) : own_(std::move(own)), is_identified_(is_identified) {}
+  virtual ~AssessedJoint() = default;
+  AssessedJoint(const AssessedJoint&) = delete;
+  AssessedJoint& operator=(const AssessedJoint&) = delete;
+
+  virtual void update(const MotionSample& sample) = 0;
+  virtual const JointEvidence& evidence() const = 0;
+
+  const OwnReference& own() const { return own_; }
+  bool hasReference() const { return is_identified_ || !own_.friction.empty(); }  ///< of its friction
+  /// Without a reference the friction is held against what the arm's controller expects.
+  void holdAgainstController() { has_controller_ = true; }
+
+  /// `factor`, `deviation`: what the joints of an arm have in common.
+  JointContext context(const Misfit& misfit, double factor = 1.0, double deviation = UNWITNESSED) const
+  {
+    return { own_, is_identified_, has_controller_, factor, misfit, deviation };
+  }
+  MeasuredFriction friction(const Misfit& misfit) const { return measuredFriction(evidence(), context(misfit)); }
+  /// Why it is not judged; SOUND: it is.
+  Reason frictionReason() const { return frictionFactor(evidence(), context({})).reason; }
+
+private:
+  const OwnReference own_;
+  const bool is_identified_;
+  bool has_controller_{};
+};
+
+/// The same without output files.
+class AssessedTwin : public AssessedJoint
+{
+public:
+  AssessedTwin(const Parameters& parameters, LoadOrigin load, bool is_identified)
+    : AssessedJoint(OwnReference(), is_identified), evidence_(parameters, load)
+  {
+  }
+  void update(const MotionSample& sample) override { evidence_.update(sample); }
+  const JointEvidence& evidence() const override { return evidence_; }
+
+private:
+  JointEvidence evidence_;
+};
+
+/// The joints beside their twins, made anew for each reading.
+class AssessedTwins
+{
+public:
+  std::vector<AssessedJoint*> make(const std::vector<Parameters>& parameters, LoadOrigin load, bool is_identified)
+  {
+    joints_.clear();
+    std::vector<AssessedJoint*> all;
+    for (const Parameters& of : parameters)
+    {
+      all.push_back(joints_.emplace_back(std::make_unique<AssessedTwin>(of, load, is_identified)).get());
+    }
+    return all;
+  }
+
+  AssessedTwin& operator[](std::size_t joint) const { return *joints_[joint]; }
+
+private:
+  std::vector<std::unique_ptr<AssessedTwin>> joints_;
+};
+
 /// The joints of a recording beside their twins after a pass through it.
 struct ArmAssessment
 {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "output/json.hpp"
 #include "recordings/recording_comparison.hpp"

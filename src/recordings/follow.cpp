@@ -3,12 +3,21 @@
 
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <memory>
 
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
+
+#include "bags/bag_file.hpp"
+#include "bags/recorded_topic.hpp"
+#include "messages/tracker_outputs.hpp"
+#include "output/run_summary.hpp"
 #include "output/text_table.hpp"
 #include "recordings/arm_assessment.hpp"
-#include "recordings/tracked_bag.hpp"
+#include "recordings/recorded_motion.hpp"
 #include "tracking/stream_timing.hpp"
+#include "tracking/verdict_watch.hpp"
 
 #include "base/rms.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
@@ -17,6 +26,149 @@ namespace hjt
 {
 namespace
 {
+/// A bag with the topics that the node publishes beside a robot, made offline from its recording. Where that is a bag
+/// of ROS 1 too, it holds all of its messages as they are.
+class TrackedBag
+{
+public:
+  /// One joint whose comparisons go into the bag.
+  struct Joint
+  {
+    std::string name;             ///< in the messages
+    std::string joint_namespace;  ///< its topics lie below, e.g. "/elbow/joint_twin"
+    const Parameters& parameters;
+  };
+
+  /// A CSV file's times count from SIMULATION_EPOCH.
+  /// @throws InputError if a file cannot be opened, or the recording holds a topic of the twin already.
+  TrackedBag(const std::string& path, const MotionSource& source, const std::vector<Joint>& joints)
+    : source_path_(source.path), writer_(path), joints_(joints)
+  {
+    if (source.time_scale != 1.0)
+    {
+      throw InputError("--bag keeps the times of the recording: --time-scale cannot change them");
+    }
+    std::vector<std::string> names;
+    for (const Joint& joint : joints)
+    {
+      names.push_back(joint.name);
+    }
+    const auto take_first = [this](const MotionRow& row)
+    {
+      delay_ = std::llround(1e9 * (row.received - row.time));
+      return false;
+    };
+    const auto no_progress = [](double) {};
+    start_ = (joints.size() == 1 ?
+                  readMotion(source, take_first, no_progress) :
+                  readArmMotion(
+                      source, names, [&](const std::vector<MotionRow>& rows) { return take_first(rows.front()); },
+                      no_progress))
+                 .start;
+    if (isCsv(source))
+    {
+      start_ += SIMULATION_EPOCH;  // a controller counts from its own start
+    }
+    else if (source.format == RecordingFormat::BAG)
+    {
+      openForReading(source_, source.path);
+      for (const Joint& joint : joints)
+      {
+        refuseTopics(source_, source.path, trackerTopics(joint.joint_namespace));
+      }
+      view_.addQuery(source_);
+      next_ = view_.begin();
+    }
+    for (const Joint& joint : joints)
+    {
+      const BagContext context{ writer_, joint.joint_namespace + "/", delay_ };
+      outputs_.push_back(std::make_unique<TrackerOutputs<RecordedTopic>>(context, joint.parameters));
+    }
+  }
+
+  /// A comparison of a joint, by its place in the list. Takes over what was recorded until the comparison's row.
+  void offer(std::size_t joint, const Comparison& comparison, const Tracker& tracker)
+  {
+    const Stamp stamp = start_ + std::llround(1e9 * comparison.time);
+    copyUntil(stamp + delay_);
+    outputs_[joint]->offer(stamp, comparison, tracker);
+  }
+
+  /// The joints are judged too: `trackers` in the order of the list. `arm`: the same recording as a whole, which they
+  /// are judged with.
+  void judge(const std::vector<Tracker*>& trackers, const ArmAssessment& arm)
+  {
+    for (std::size_t i = 0; i < trackers.size(); ++i)
+    {
+      verdicts_.push_back(std::make_unique<VerdictWatch>(*trackers[i], arm.context(i)));
+      verdicts_.back()->setMisfit(arm.judged.misfits[i], true);
+    }
+  }
+
+  /// After the comparisons of a row: a verdict of each joint about once a second, of the rows so far.
+  void offerVerdicts(double time)
+  {
+    if (verdict_periods_.begins(start_ + std::llround(1e9 * time)))
+    {
+      judgeNow();
+    }
+  }
+
+  /// Takes over the rest, and the verdicts of all rows. @throws InputError if not all could be written.
+  void close()
+  {
+    judgeNow();
+    copyUntil(std::numeric_limits<Stamp>::max());
+    writer_.close();
+  }
+
+private:
+  static constexpr double VERDICT_RATE = 1.0;  // [Hz]
+
+  void copyUntil(Stamp recorded)
+  {
+    try
+    {
+      while (next_ && *next_ != view_.end() && fromRosTime((*next_)->getTime()) <= recorded)
+      {
+        writer_.copy(**next_);
+        ++*next_;
+      }
+    }
+    catch (const rosbag::BagException& error)
+    {
+      throw InputError(source_path_ + " cannot be copied: " + error.what() + "; " + writer_.path() +
+                       " is readable and holds what came before");
+    }
+  }
+
+  void judgeNow()
+  {
+    std::vector<VerdictWatch*> verdicts;
+    for (const auto& verdict : verdicts_)
+    {
+      verdicts.push_back(verdict.get());
+    }
+    judgeTogether(verdicts, joints_.front().parameters.comparison.repeat_tolerance);
+    for (std::size_t i = 0; i < verdicts_.size(); ++i)
+    {
+      outputs_[i]->offer(start_ + std::llround(1e9 * verdicts_[i]->lastRow()), verdicts_[i]->now());
+    }
+  }
+
+  const std::string source_path_;
+  rosbag::Bag source_;  // not open: the recording is no bag
+  rosbag::View view_;   // of all of it
+  std::optional<rosbag::View::iterator> next_;
+  BagWriter writer_;
+  Stamp start_{};  // stamp of the first row [ns]
+  Stamp delay_{};  // of its recording behind that [ns]
+  const std::vector<Joint> joints_;
+  std::vector<std::unique_ptr<TrackerOutputs<RecordedTopic>>> outputs_;
+  std::vector<std::unique_ptr<VerdictWatch>> verdicts_;
+  StampPeriods verdict_periods_{ VERDICT_RATE };
+};
+
 /// As the fields of Comparison.msg.
 const std::vector<Column<Comparison>> COLUMNS{
   { "time", &Comparison::time },

@@ -10,7 +10,6 @@
 #include "output/text_table.hpp"
 #include "recordings/recorded_windows.hpp"
 
-#include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "health/baseline_file.hpp"
 #include "health/seen_from.hpp"

@@ -12,7 +12,6 @@
 
 #include "base/number_text.hpp"
 #include "health/signal_sample.hpp"
-#include "messages/time.hpp"
 
 namespace hjt
 {

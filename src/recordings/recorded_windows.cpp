@@ -13,7 +13,6 @@
 #include "bags/bag_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "messages/conversions.hpp"
-#include "messages/time.hpp"
 
 namespace hjt
 {

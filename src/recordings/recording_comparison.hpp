@@ -1,18 +1,140 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <complex>
+#include <cstddef>
 #include <functional>
 #include <utility>
 #include <vector>
 
+#include "gear/angle.hpp"
 #include "recordings/decimated.hpp"
-#include "recordings/residual_spectrum.hpp"
 
 #include "tracking/joint_evidence.hpp"
 
 namespace hjt
 {
+/// One line of a spectrum by turns of the motor, for each way of turning.
+struct SpectrumLine
+{
+  double order{};  ///< per turn of the motor [-]
+  double forward{};
+  double backward{};
+};
+
+/// The part of a residual that repeats with the joint's angle, in orders of the motor's turn.
+///
+/// The residual is averaged over narrow bins of the joint's angle, both ways apart; so memory does not grow, time needs
+/// not be even and what does not stay in place goes out. The amplitude at order o is |2 / n sum r exp(-i o theta)| over
+/// the bins that were visited; where these do not fill a turn of the joint, neighbouring orders leak into each other.
+class ResidualSpectrum
+{
+public:
+  static constexpr double MAX_ORDER = 16.0;
+
+  explicit ResidualSpectrum(double ratio) : ratio_(ratio)
+  {
+    bins_.fill(std::vector<Bin>(static_cast<std::size_t>(BINS_PER_MOTOR_TURN * std::ceil(ratio))));
+  }
+
+  /// `angle` and `speed` of the joint [rad], [rad/s].
+  void add(double angle, double speed, double residual)
+  {
+    std::vector<Bin>& bins = bins_[speed < 0.0 ? 0 : 1];
+    const double turns = angle / TWO_PI;
+    const double part = turns - std::floor(turns);
+    Bin& bin = bins[static_cast<std::size_t>(part * static_cast<double>(bins.size())) % bins.size()];
+    bin.sum += residual;
+    bin.rows += 1.0;
+  }
+
+  /// Lines at every whole order of the joint's turn; amplitudes in the residual's unit. Empty: the joint passed less
+  /// than a motor turn.
+  std::vector<SpectrumLine> lines() const
+  {
+    const int highest = static_cast<int>(MAX_ORDER * ratio_);
+    std::array<std::vector<double>, 2> found;
+    bool any = false;
+    for (std::size_t way = 0; way < 2; ++way)
+    {
+      const std::vector<Bin>& bins = bins_[way];
+      std::vector<Place> places;
+      double mean = 0.0;
+      for (std::size_t i = 0; i < bins.size(); ++i)
+      {
+        if (bins[i].rows > 0.0)
+        {
+          const double angle = TWO_PI * (static_cast<double>(i) + 0.5) / static_cast<double>(bins.size());
+          places.push_back({ angle, bins[i].sum / bins[i].rows });
+          mean += places.back().residual;
+        }
+      }
+      for (Place& place : places)
+      {
+        place.residual -= mean / static_cast<double>(places.size());
+      }
+      if (places.size() < BINS_PER_MOTOR_TURN)
+      {
+        places.clear();
+      }
+      any = any || !places.empty();
+      found[way] = amplitudes(places, highest);
+    }
+    std::vector<SpectrumLine> lines;
+    for (int order = 1; any && order <= highest; ++order)
+    {
+      const auto i = static_cast<std::size_t>(order - 1);
+      lines.push_back({ order / ratio_, found[1][i], found[0][i] });
+    }
+    return lines;
+  }
+
+private:
+  /// Mean residual at one angle of the joint.
+  struct Place
+  {
+    double angle;
+    double residual;
+  };
+
+  /// Amplitude of orders 1 ... highest of the joint's turn; each place's phasor is turned on from order to order.
+  static std::vector<double> amplitudes(const std::vector<Place>& places, int highest)
+  {
+    using Phasor = std::complex<double>;
+    std::vector<Phasor> phasors;
+    std::vector<Phasor> steps;
+    for (const Place& place : places)
+    {
+      phasors.emplace_back(place.residual);
+      steps.push_back(std::polar(1.0, -place.angle));
+    }
+    std::vector<double> result;
+    for (int order = 1; order <= highest; ++order)
+    {
+      Phasor sum;
+      for (std::size_t i = 0; i < phasors.size(); ++i)
+      {
+        phasors[i] *= steps[i];
+        sum += phasors[i];
+      }
+      result.push_back(phasors.empty() ? 0.0 : 2.0 * std::abs(sum) / static_cast<double>(phasors.size()));
+    }
+    return result;
+  }
+
+  static constexpr int BINS_PER_MOTOR_TURN = 128;
+  struct Bin
+  {
+    double sum{};
+    double rows{};
+  };
+
+  double ratio_;
+  std::array<std::vector<Bin>, 2> bins_;  // over one turn of the joint: backward, forward
+};
+
 /// One row, measured beside predicted.
 struct ComparedRow
 {

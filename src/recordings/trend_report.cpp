@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <type_traits>
 
 #include "base/date_text.hpp"
 #include "base/number_text.hpp"

@@ -3,35 +3,126 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <geometry_msgs/Inertia.h>
 #include <geometry_msgs/WrenchStamped.h>
 #include <ros/node_handle.h>
+#include <ros/publisher.h>
 #include <ros/service_server.h>
 #include <ros/wall_timer.h>
 #include <sensor_msgs/Temperature.h>
 #include <std_srvs/Trigger.h>
 #include <trajectory_msgs/JointTrajectory.h>
 
+#include "arm/arm_description.hpp"
 #include "arm/goal_watch.hpp"
 #include "arm/motion_limits.hpp"
-#include "live/handover.hpp"
 #include "live/inbox.hpp"
 #include "live/realtime.hpp"
-#include "live/try_lock_value.hpp"
 #include "live/twin_loop.hpp"
-#include "ros_io/arm_diagnostics.hpp"
 #include "ros_io/arm_publishers.hpp"
-#include "ros_io/driver_states.hpp"
+#include "ros_io/diagnostic_tasks.hpp"
 #include "ros_io/fault_subscriber.hpp"
+#include "ros_io/recent_events.hpp"
 #include "ros_io/timing_publisher.hpp"
+#include "ros_io/timing_task.hpp"
 
 namespace hjt
 {
+/// What the twin of an arm says of itself to /diagnostics: whether it moves, what its drives cannot bear, and whether
+/// it keeps up with the clock.
+class ArmDiagnostics
+{
+public:
+  /// Read once a look, from whoever spins.
+  struct Snapshot
+  {
+    LoopStatus loop;
+    std::vector<TwinCounters> drives;
+    std::string stop_reason;  ///< of a protective stop; empty: it moves
+    std::uint64_t dropped{};  ///< messages that could not be published
+  };
+  using Read = std::function<Snapshot()>;
+
+  ArmDiagnostics(ros::NodeHandle& node, const ArmDescription& arm, const Parameters& parameters,
+                 const RealtimeState& realtime, Read read);
+
+private:
+  void look();
+  std::string namesOf(const std::vector<RecentEvents>& events) const;
+  DiagnosticVerdict judge() const;
+  void report(diagnostic_updater::DiagnosticStatusWrapper& status) const;
+
+  const ArmDescription& arm_;
+  const Read read_;
+  Snapshot snapshot_;
+  std::vector<RecentEvents> failures_;   // of each joint
+  std::vector<RecentEvents> overloads_;  // likewise
+  TimingTask timing_;
+  DiagnosticTasks tasks_;
+  ros::WallTimer timer_;
+};
+
+/// The newest of some values from callbacks to a loop, which never waits and frees nothing.
+template <class Value>
+class Handover
+{
+public:
+  explicit Handover(Value unused) : value_(std::move(unused)) {}
+
+  /// From any thread, in place of one that was not taken.
+  void give(Value value)
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    value_ = std::move(value);
+    is_new_ = true;
+  }
+
+  /// From the loop: calls `use(Value&)` if there is a new one. What is in the value then is freed by the next `give`.
+  template <class Use>
+  void take(Use&& use) noexcept
+  {
+    const std::unique_lock<std::mutex> lock(mutex_, std::try_to_lock);
+    if (lock.owns_lock() && is_new_)
+    {
+      use(value_);
+      is_new_ = false;
+    }
+  }
+
+private:
+  std::mutex mutex_;
+  Value value_;
+  bool is_new_{};
+};
+
+/// State of the robot as ur_robot_driver publishes it, by its names, latched: robot and safety mode, whether it takes
+/// commands, the share of its speed. The modes are messages of ur_dashboard_msgs, which need not be there.
+class DriverStates
+{
+public:
+  /// `parent`: of the driver's names.
+  explicit DriverStates(const ros::NodeHandle& parent);
+
+  /// Publishes what has changed.
+  void show(bool protective_stop);
+
+private:
+  std::optional<bool> shown_;
+  ros::NodeHandle parent_;
+  ros::Publisher robot_mode_;
+  ros::Publisher safety_mode_;
+  ros::Publisher program_;
+  ros::Publisher speed_scaling_;
+};
+
 /// The live twin of a whole arm, in place of a robot: moves gently until somebody commands a trajectory, publishes
 /// what the robot's driver would, and takes faults of every joint.
 class ArmNode

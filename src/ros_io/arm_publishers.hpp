@@ -11,7 +11,6 @@
 #include <sensor_msgs/JointState.h>
 
 #include "arm/moving_arm.hpp"
-#include "ros_io/output_channel.hpp"
 #include "ros_io/output_publishers.hpp"
 #include "ros_io/publisher_thread.hpp"
 

@@ -6,9 +6,7 @@
 
 #include <ros/console.h>
 
-#include "base/number_text.hpp"
 #include "base/text_stream.hpp"
-#include "messages/time.hpp"
 
 namespace hjt
 {

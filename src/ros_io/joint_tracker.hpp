@@ -2,7 +2,9 @@
 #pragma once
 
 #include <atomic>
+#include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <deque>
 #include <memory>
 #include <mutex>
@@ -22,18 +24,89 @@
 #include <std_srvs/Trigger.h>
 
 #include "messages/telemetry_messages.hpp"
+#include "messages/time.hpp"
 #include "messages/tracker_outputs.hpp"
 #include "ros_io/diagnostics.hpp"
 #include "ros_io/input_topics.hpp"
 #include "ros_io/life_publisher.hpp"
 #include "ros_io/recent_events.hpp"
-#include "ros_io/telemetry_stream.hpp"
+#include "tracking/row_filter.hpp"
 #include "tracking/sound_joint.hpp"
+#include "tracking/stream_timing.hpp"
 #include "tracking/tracker.hpp"
 #include "tracking/verdict_watch.hpp"
 
 namespace hjt
 {
+/// Zero of a robot's telemetry, the stamp of its first row, and whether stamps are of the same clock.
+class TelemetryClock
+{
+public:
+  enum class Row
+  {
+    TAKEN,
+    FIRST,    ///< sets the zero
+    MOVED,    ///< the clock of the robot or this machine's was set: a new zero
+    REFUSED,  ///< far from where the rows before lead to; the next one like it counts as MOVED
+  };
+
+  Row take(Stamp stamp, Stamp received)
+  {
+    const Stamp offset = received - stamp;
+    const bool moved = zero_ && !agree(offset, offset_);
+    if (moved && !(refused_offset_ && agree(offset, *refused_offset_)))
+    {
+      refused_offset_ = offset;
+      return Row::REFUSED;
+    }
+    const bool first = !zero_;
+    refused_offset_.reset();
+    offset_ = offset;
+    if (first || moved)
+    {
+      zero_ = stamp;
+    }
+    return moved ? Row::MOVED : first ? Row::FIRST : Row::TAKEN;
+  }
+
+  bool hasStarted() const { return zero_.has_value(); }
+  double seconds(Stamp stamp) const { return toSeconds(stamp - *zero_); }
+  Stamp stamp(double seconds) const { return *zero_ + std::llround(1e9 * seconds); }
+
+  /// Time of this clock at a time of reception [ns].
+  Stamp at(Stamp received) const { return received - offset_; }
+  /// Whether a stamp received then can be of this clock.
+  bool isOf(Stamp stamp, Stamp received) const { return agree(received - stamp, offset_); }
+
+private:
+  static bool agree(Stamp a, Stamp b) { return std::abs(a - b) <= FAR_STAMP; }
+
+  std::optional<Stamp> zero_;            // [ns]
+  Stamp offset_{};                       // of the last row taken: reception less stamp [ns]
+  std::optional<Stamp> refused_offset_;  // of the last row, if its stamp was refused [ns]
+};
+
+/// The messages of one topic, which all joints of a robot share. Guarded by the node's mutex but for `too_large`.
+struct TelemetryStream
+{
+  std::string topic;
+  TelemetryClock clock;
+  StreamTiming timing;
+  Stamp last_received{};               ///< [ns]
+  std::uint64_t far_stamps{};          ///< messages refused for their stamp
+  std::uint64_t clock_changes{};       ///< restarts because all stamps had moved far
+  std::uint64_t other_temperatures{};  ///< received whose frame_id is none of the joints
+  std::string found_names;             ///< in the last message that lacks a joint
+  std::string lack;                    ///< missing parts of the messages since the last row, a clause; empty: none
+  std::string mounting;                ///< that the currents show and is not configured, a clause; empty: none
+  std::string drag;                    ///< of the tool, likewise
+  std::string payload;                 ///< that the currents show and is not configured, a clause; empty: none
+  LeftOutRows left_out;                ///< by the filter
+  std::uint64_t folds{};               ///< jumps by a turn that were taken out of the angles
+  std::uint64_t without_effort{};      ///< messages refused for efforts all zero
+  std::atomic<std::uint64_t> too_large{ 0 };
+};
+
 /// Sink of a topic that is published live.
 template <class Message>
 class PublishedTopic

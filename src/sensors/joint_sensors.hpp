@@ -9,14 +9,48 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/philox.hpp"
+#include "gear/angle.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "harmonic_joint_twin/sensors/encoder_readings.hpp"
 #include "sensors/absolute_encoder.hpp"
-#include "sensors/counter_noise.hpp"
 #include "sensors/incremental_encoder.hpp"
 
 namespace hjt
 {
+/// Pairs of independent standard normal numbers, each a function of seed, channel and index alone: whatever is asked
+/// for first, a reading has the same noise live, replayed, offline and on any number of threads.
+///
+/// Philox4x32-10 (Salmon, Moraes, Dror, Shaw: Parallel random numbers, as easy as 1, 2, 3. SC 2011), then Box and
+/// Muller.
+class CounterNoise
+{
+public:
+  explicit CounterNoise(std::uint32_t seed) : seed_(seed) {}
+
+  /// [-]
+  std::array<double, 2> normals(std::uint32_t channel, std::int64_t index) const noexcept
+  {
+    const auto counter = static_cast<std::uint64_t>(index);
+    const std::array<std::uint32_t, 4> words = philox(
+        { static_cast<std::uint32_t>(counter), static_cast<std::uint32_t>(counter >> 32), 0, 0 }, { seed_, channel });
+    const double radius = std::sqrt(-2.0 * std::log(unitInterval(words[0], words[1])));
+    const double angle = TWO_PI * unitInterval(words[2], words[3]);
+    return { radius * std::cos(angle), radius * std::sin(angle) };
+  }
+
+private:
+  /// Two words as a number in (0, 1).
+  static double unitInterval(std::uint32_t high, std::uint32_t low) noexcept
+  {
+    constexpr double STEP = 1.0 / 9007199254740992.0;  // 2^-53
+    const std::uint64_t word = (std::uint64_t{ high } << 32) | low;
+    return (static_cast<double>(word >> 11) + 0.5) * STEP;
+  }
+
+  std::uint32_t seed_;
+};
+
 /// The sensors of a joint: both encoders and the motor's current, which is read as a torque.
 ///
 /// Law:   a' = a + e sin a + e_2 sin 2 a + e_4 sin 4 a + s n

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "harmonic_joint_twin/twin/twin.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <vector>
 
 #include "harmonic_joint_twin/base/errors.hpp"
+#include "model/lobe_loads.hpp"
 #include "statics/flexspline_stress.hpp"
 #include "statics/gear_checks.hpp"
 #include "statics/inertia_error.hpp"
@@ -214,5 +217,353 @@ bool Twin::toothStress(ToothStress& stress) noexcept
   }
   FlexsplineStress(impl_->parameters).at(*ring, 0, stress);
   return true;
+}
+
+Twin::Impl::Impl(const Parameters& given, const SurfaceSource& surface_source)
+  : parameters(given)
+  , faults(given)
+  , waiting(given)
+  , stepper(given, model())
+  , observed_ring(model().ring, given.solver)
+  , step_length(static_cast<Stamp>(std::llround(1e9 / given.solver.rate)))
+  , sensors(given.sensors, 1.0 / given.solver.rate)
+  , monitor(given.health, given.gear)
+  , signals(given)
+  , assessor(given)
+  , steps_per_sample(std::llround(given.solver.rate / given.indicators.sample_rate))
+  , searched_per_step(static_cast<std::size_t>(
+        std::ceil(static_cast<double>(assessor.searchLength()) / (CAUSE_SEARCH_TIME * given.solver.rate))))
+  , steps_per_heat(std::max<Stamp>(std::llround(given.solver.rate * DriveHeat::PERIOD), 1))
+  , tooth_angles(Eigen::VectorXd::LinSpaced(given.gear.teeth_flexspline, 0.0,
+                                            (given.gear.teeth_flexspline - 1) * model().ring.rest.pitchAngle()))
+{
+  if (given.thermal.model == ThermalModel::TWO_NODES)
+  {
+    heat.emplace(given.thermal);
+  }
+  if (given.solver.scene == SceneKind::AUTO)
+  {
+    scheduleConfigured(0);
+    faults.apply(active);
+    prepareSurface(surface_source);
+  }
+  if (!reset(0))
+  {
+    throw ParameterError("the twin has no equilibrium to start from, with the faults it starts with (faults.*): " +
+                         explanationOf(stepper.status()));
+  }
+}
+
+std::unique_ptr<Twin::Impl> Twin::Impl::copyOf(const Impl& other)
+{
+  std::unique_ptr<Impl> copy(new Impl(other));
+  copy->stepper.setModel(copy->model());
+  copy->observed_ring.setModel(copy->model().ring);
+  return copy;
+}
+
+bool Twin::Impl::reset(Stamp stamp) noexcept
+{
+  static_cast<void>(stepper.useSurface(nullptr));  // the ring is inserted again
+  scheduleConfigured(stamp);
+  faults.apply(active);
+  useSurface();
+  const bool settled = stepper.reset(arm_torque);
+  observed_ring.restart();
+  queue.clear();
+  counters = {};
+  instant = stamp > 0 ? (stamp + step_length - 1) / step_length : stamp / step_length;
+  now = instant * step_length;
+  simulated_until = stamp;
+  in_force_since.fill(std::numeric_limits<Stamp>::min());
+  motor_torque = {};
+  command_clamped = false;
+  commanded = false;
+  load_torque = {};
+  load_clamped = false;
+  temperature = parameters.input.temperature;
+  resetHeat();
+  brake_engaged = parameters.brake.engaged_at_start;
+  brake_commanded = brake_engaged;
+  sensors.reset();
+  monitor.reset();
+  signals.reset();
+  assessor.reset();
+  last_doubtful = std::numeric_limits<Stamp>::min();
+  last_failed = settled ? last_doubtful : now;
+  converged = settled;
+  counters.solver_failures = settled ? 0 : 1;
+  observe();
+  return settled;
+}
+
+/// The configured faults: those from the start on are there, the others wait.
+void Twin::Impl::scheduleConfigured(Stamp stamp) noexcept
+{
+  active.clear();
+  waiting.clear();
+  for (const Fault& fault : parameters.faults)
+  {
+    if (fault.isActiveAtStart())
+    {
+      active.set(fault, stamp);
+    }
+    else
+    {
+      waiting.push(fault, stamp + delayOf(fault));
+    }
+  }
+}
+
+/// Faults whose time has come. @returns false if the ring found no equilibrium with them.
+bool Twin::Impl::takeFaults() noexcept
+{
+  const std::uint64_t version = active.version();
+  Fault fault;
+  Stamp stamp{};
+  while (waiting.pop(now, fault, stamp))
+  {
+    counters.faults.no_room += active.set(fault, stamp) ? 0 : 1;
+  }
+  if (active.version() == version)
+  {
+    return true;
+  }
+  bool good = stepper.useSurface(nullptr);
+  faults.apply(active);
+  good = stepper.updateModel() && good;
+  observed_ring.restart();
+  return useSurface() && good;
+}
+
+/// Takes the inputs of the step from `begin` to now, each acting from its stamp on.
+void Twin::Impl::takeInputs(Stamp begin) noexcept
+{
+  motor_torque.begin(begin);
+  load_torque.begin(begin);
+  timeOutCommand(begin);
+  if (!queue.isDue(now - 1))
+  {
+    return;
+  }
+  Input input;
+  while (queue.pop(now - 1, input))
+  {
+    Stamp& since = in_force_since[static_cast<std::size_t>(input.kind)];
+    if (input.stamp >= since)  // else late, and a newer one is in force
+    {
+      since = input.stamp;
+      takeInput(input, std::max(input.stamp, begin));
+    }
+  }
+  timeOutCommand(begin);  // one that came too late
+}
+
+void Twin::Impl::takeInput(const Input& input, Stamp at) noexcept
+{
+  switch (input.kind)
+  {
+    case InputKind::MOTOR_TORQUE:
+      motor_torque.set(model().motor.clamped(input.value), at);
+      command_clamped = motor_torque.value() != input.value;
+      commanded = true;
+      break;
+    case InputKind::LOAD_TORQUE:
+      load_torque.set(
+          std::clamp(input.value, -parameters.output.load_torque_limit, parameters.output.load_torque_limit), at);
+      load_clamped = load_torque.value() != input.value;
+      break;
+    case InputKind::BRAKE:
+      if (const bool wanted = input.value != 0.0; wanted != brake_commanded)
+      {
+        brake_commanded = wanted;
+        brake_moves = input.stamp + toStampLength(parameters.brake.delay);
+      }
+      break;
+    case InputKind::TEMPERATURE:
+      temperature = std::clamp(input.value, MIN_TEMPERATURE, MAX_TEMPERATURE);
+      break;
+  }
+}
+
+/// A command that is older than the timeout at the step's begin is zero.
+void Twin::Impl::timeOutCommand(Stamp begin) noexcept
+{
+  const Stamp since = in_force_since[static_cast<std::size_t>(InputKind::MOTOR_TORQUE)];
+  // The other way round, the age of a command from the earliest stamp does not fit into one.
+  if (commanded && since < begin - toStampLength(parameters.input.command_timeout))
+  {
+    commanded = false;
+    command_clamped = false;
+    ++counters.command_timeouts;
+    motor_torque.set(0.0, begin);
+  }
+}
+
+void Twin::Impl::step() noexcept
+{
+  const Stamp begin = now;
+  ++instant;
+  now += step_length;
+  simulated_until = now;
+  const bool followed = !waiting.isDue(now) || takeFaults();
+  takeInputs(begin);
+  moveBrake(begin);
+  const bool changed = takeSurface();
+  const JointInputs inputs{ motor_torque.mean(now), load_torque.mean(now), brake_engaged, greaseTemperature(),
+                            arm_torque };
+  converged = stepper.step(inputs) && followed && changed;
+  takeHeat(stepper.driveTorque());
+  ++counters.steps;
+  counters.torque_clamped += command_clamped ? 1 : 0;
+  counters.speed_limited += stepper.isSpeedLimited() ? 1 : 0;
+  counters.load_clamped += load_clamped ? 1 : 0;
+  const bool cut = stepper.status().cuts > 0;
+  const bool jumped = stepper.status().jumps > 0;
+  const bool coarse = stepper.isCoarse();
+  counters.overloads += std::abs(stepper.dynamics().response().output_torque) > parameters.output.torque_limit ? 1 : 0;
+  counters.solver_failures += converged ? 0 : 1;
+  counters.step_cuts += cut ? 1 : 0;
+  counters.jumps += jumped ? 1 : 0;
+  counters.coarse_steps += coarse ? 1 : 0;
+  last_failed = converged ? last_failed : now;
+  last_doubtful = cut || jumped || coarse ? now : last_doubtful;
+  observe();
+}
+
+/// Carries out the last command of the brake at the first instant at which its delay is over.
+void Twin::Impl::moveBrake(Stamp begin) noexcept
+{
+  if (brake_commanded != brake_engaged && begin >= brake_moves)
+  {
+    brake_engaged = brake_commanded;
+  }
+}
+
+double Twin::Impl::greaseTemperature() const noexcept
+{
+  return heat ? std::clamp(heat->grease(), MIN_TEMPERATURE, MAX_TEMPERATURE) : temperature;
+}
+
+double Twin::Impl::housingTemperature() const noexcept
+{
+  return heat ? heat->housing() : temperature;
+}
+
+void Twin::Impl::resetHeat() noexcept
+{
+  heat_stamp = now;
+  heat_booked = 0.0;
+  copper_heat = 0.0;
+  if (heat)
+  {
+    heat->reset(temperature);
+  }
+}
+
+/// Books the losses of a step; they warm the drive at the end of each period of the heat, counted from the epoch.
+void Twin::Impl::takeHeat(double motor_torque) noexcept
+{
+  if (!heat)
+  {
+    return;
+  }
+  copper_heat += parameters.motor.copper_loss * motor_torque * motor_torque / parameters.solver.rate;
+  if (instant % steps_per_heat == 0)
+  {
+    const double dissipated = stepper.dissipatedEnergy();
+    heat->advance(toSeconds(now - heat_stamp), { dissipated - heat_booked, copper_heat }, temperature);
+    heat_stamp = now;
+    heat_booked = dissipated;
+    copper_heat = 0.0;
+  }
+}
+
+JointOutputs Twin::Impl::outputs() const noexcept
+{
+  const RingResponse& ring = stepper.dynamics().response();
+  const Eigen::Vector2d& friction = stepper.frictionTorque();
+  JointOutputs outputs;
+  outputs.stamp = now;
+  outputs.motor_angle = stepper.motorAngle();
+  outputs.motor_velocity = stepper.speeds()[0];
+  outputs.output_angle = stepper.outputAngle();
+  outputs.output_velocity = stepper.speeds()[1];
+  outputs.motor_torque = stepper.dynamics().shaftTorque();
+  outputs.load_torque = load_torque.value() + arm_torque;
+  outputs.temperature = greaseTemperature();
+  outputs.housing_temperature = housingTemperature();
+  outputs.wave_generator_torque = -ring.wave_generator_torque;
+  outputs.joint_torque = ring.output_torque;
+  outputs.friction_torque = std::abs(friction[0] + ring.velocity_ratio * friction[1]);
+  outputs.torsional_stiffness = ring.output_stiffness;
+  outputs.energy_residual = stepper.energyResidual();
+  outputs.dissipated_energy = stepper.dissipatedEnergy();
+  outputs.released_energy = stepper.releasedEnergy();
+  outputs.brake_engaged = brake_engaged;
+  outputs.converged = converged;
+  outputs.iterations = static_cast<std::uint32_t>(stepper.status().iterations);
+  outputs.substeps = static_cast<std::uint32_t>(stepper.substeps());
+  outputs.residual = stepper.status().residual;
+  outputs.phase_advance = stepper.phaseAdvance();
+  return outputs;
+}
+
+/// Updates the observers of the joint, in every step: sensors and health.
+void Twin::Impl::observe() noexcept
+{
+  const JointDynamics& dynamics = stepper.dynamics();
+  sensors.update(instant, stepper.motorAngle(), stepper.outputAngle(), stepper.driveTorque());
+  monitor.update({ now, stepper.motorAngle(), stepper.speeds()[0], stepper.outputAngle(), stepper.speeds()[1],
+                   dynamics.shaftTorque(), dynamics.response().output_torque });
+  if (watching && instant % steps_per_sample == 0)
+  {
+    takeReadings();
+  }
+  assessor.advance(searched_per_step);
+}
+
+/// Signals known to a drive: readings, received load, temperature beside the motor.
+void Twin::Impl::takeReadings() noexcept
+{
+  const EncoderReadings readings = sensors.encoders();
+  SignalSample sample;
+  sample.stamp = now;
+  sample.motor_angle = readings.motor_angle;
+  sample.output_angle = readings.output_angle;
+  sample.motor_velocity = readings.motor_velocity;
+  sample.motor_torque = sensors.motorTorque();
+  sample.load_torque = load_torque.value() + arm_torque;
+  sample.temperature = housingTemperature();
+  if (signals.update(sample))
+  {
+    assessor.begin(signals.indicators());
+  }
+}
+
+SolverState Twin::Impl::solverState(Stamp since) const noexcept
+{
+  const Stamp after = since < now ? since : std::numeric_limits<Stamp>::min();
+  return last_failed > after ? SolverState::FAILED : last_doubtful > after ? SolverState::DEGRADED : SolverState::OK;
+}
+
+/// How the load is shared at the current instant.
+LobeLoads Twin::Impl::lobes() const noexcept
+{
+  const JointDynamics& dynamics = stepper.dynamics();
+  if (!dynamics.onSurface())
+  {
+    const RingForces& forces = dynamics.ring().forces();
+    return lobeLoads({ forces.of<ToothMesh>().flank_force, forces.of<WaveGeneratorContact>().force, tooth_angles,
+                       stepper.motorAngle() });
+  }
+  const auto value = [&](int which) { return ResponseSurface::value(dynamics.surfacePlace(), which); };
+  LobeLoads loads;
+  loads.teeth_loaded = static_cast<int>(std::lround(value(SurfaceNode::TEETH_LOADED)));
+  loads.mesh_force = ResponseSurface::lobeForces(dynamics.surfacePlace());
+  const double sum = loads.mesh_force[0] + loads.mesh_force[1];
+  loads.asymmetry = sum > 0.0 ? (loads.mesh_force[0] - loads.mesh_force[1]) / sum : 0.0;
+  loads.wave_generator_force = value(SurfaceNode::CONTACT_FORCE);
+  return loads;
 }
 }  // namespace hjt

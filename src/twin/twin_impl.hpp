@@ -5,7 +5,6 @@
 #include <cmath>
 #include <memory>
 #include <optional>
-#include <vector>
 
 #include "elements/drive_heat.hpp"
 #include "harmonic_joint_twin/twin/twin.hpp"
@@ -15,8 +14,7 @@
 #include "sensors/joint_sensors.hpp"
 #include "solver/joint_stepper.hpp"
 #include "twin/observed_ring.hpp"
-#include "twin/surface_stages.hpp"
-#include "twin/surface_worker.hpp"
+#include "twin/twin_surfaces.hpp"
 
 namespace hjt
 {

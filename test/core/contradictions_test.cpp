@@ -16,7 +16,7 @@ namespace hjt
 {
 namespace
 {
-/// One check of cross_checks.cpp: what breaks it and nothing else, what is said, and what just keeps to it.
+/// One check of parameter_map.cpp: what breaks it and nothing else, what is said, and what just keeps to it.
 struct Contradiction
 {
   std::vector<std::string> broken;

@@ -14,7 +14,7 @@
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "life/drive_ageing.hpp"
 #include "life/life_estimate.hpp"
-#include "life/revolution_load_analysis.hpp"
+#include "life/revolution_load_map.hpp"
 #include "studies/life_trials.hpp"
 #include "test/core/life_support.hpp"
 

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "life/wear_reading.hpp"
+#include "life/read_wear.hpp"
 #include "life/wear_trend.hpp"
 #include "test/core/life_support.hpp"
 

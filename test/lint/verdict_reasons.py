@@ -5,7 +5,7 @@ import re
 import project
 
 MESSAGE, REASON, LEVEL, NAMES = ("msg/Verdict.msg", "src/tracking/reason.hpp", "src/tracking/verdict.hpp",
-                                 "src/tracking/verdict_names.cpp")
+                                 "src/tracking/verdict_text.cpp")
 
 
 def enumeration(text, name):

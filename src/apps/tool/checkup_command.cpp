@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include <trajectory_msgs/JointTrajectory.h>
 
 #include "apps/common/configuration.hpp"
-#include "output/exit_code.hpp"
 #include "output/output_file.hpp"
 #include "output/report.hpp"
 #include "output/run_summary.hpp"

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <iostream>
 #include <map>
 #include <string>
 #include <vector>

@@ -11,7 +11,7 @@
 #include "output/report.hpp"
 
 #include "life/drive_ageing.hpp"
-#include "life/revolution_load_analysis.hpp"
+#include "life/revolution_load_map.hpp"
 #include "statics/fatigue_law.hpp"
 #include "studies/life_trials.hpp"
 

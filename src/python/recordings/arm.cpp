@@ -11,7 +11,6 @@
 #include "arm/arm_configuration.hpp"
 #include "arm/arm_recorder.hpp"
 #include "arm/set_points.hpp"
-#include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "output/run_summary.hpp"
 #include "python/in_use.hpp"

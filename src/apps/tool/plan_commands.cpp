@@ -1,0 +1,442 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "apps/common/configuration.hpp"
+#include "base/number_text.hpp"
+#include "base/temporary_directory.hpp"
+#include "base/whole_file.hpp"
+#include "datasets/file_seal.hpp"
+#include "datasets/plan.hpp"
+#include "datasets/run_file.hpp"
+#include "datasets/run_simulation.hpp"
+#include "datasets/sweep.hpp"
+#include "harmonic_joint_twin/surface/surface_source.hpp"
+#include "health/signature_file.hpp"
+#include "output/exit_code.hpp"
+#include "output/interrupt.hpp"
+#include "output/output_file.hpp"
+#include "output/progress.hpp"
+#include "output/report.hpp"
+#include "output/run_summary.hpp"
+#include "output/text_table.hpp"
+#include "params/field_table.hpp"
+#include "recordings/signatures.hpp"
+#include "surface/parallel_tasks.hpp"
+#include "surface/surface_cache.hpp"
+
+#include "harmonic_joint_twin/base/errors.hpp"
+
+namespace hjt
+{
+namespace
+{
+constexpr double SAMPLE = 1.0;  // length of a trial run by the clock [s]
+
+/// Notes which surfaces a twin asks for, and makes none.
+class AskedSurfaces : public SurfacePool
+{
+public:
+  AskedSurfaces() : SurfacePool(1) {}
+
+  Surface obtain(const std::string& key, const std::function<Surface()>& /*make*/) override
+  {
+    keys.insert(key);
+    return nullptr;
+  }
+
+  std::set<std::string> keys;
+};
+
+std::set<std::string> surfacesOf(const Parameters& parameters)
+{
+  const auto asked = std::make_shared<AskedSurfaces>();
+  try
+  {
+    const Twin twin(parameters, { "", {}, {}, asked });
+  }
+  catch (const ParameterError&)
+  {
+    // No equilibrium: a run that fails.
+  }
+  return asked->keys;
+}
+
+/// Surfaces that runs need and that are neither kept nor of runs before.
+class MissingSurfaces
+{
+public:
+  explicit MissingSurfaces(std::string directory) : directory_(std::move(directory)) {}
+
+  struct OfBlock
+  {
+    double count{};
+    std::uint64_t first_run;     ///< the first that needs a surface; if none does, the block's first
+    std::size_t of_first_run{};  ///< surfaces that this run needs
+  };
+
+  /// Every run is looked at for a few seconds; those after are like the ones before.
+  OfBlock of(const Plan& plan, const Plan::Block& block)
+  {
+    using Clock = std::chrono::steady_clock;
+    constexpr std::chrono::seconds PATIENCE{ 5 };
+    const Clock::time_point begin = Clock::now();
+    OfBlock missing{ 0.0, block.first };
+    std::uint64_t looked = 0;
+    for (; looked < block.size && Clock::now() - begin < PATIENCE; ++looked)
+    {
+      const std::uint64_t number = block.first + looked * block.apart;
+      const RunSpec spec = plan.run(number);
+      std::size_t of_run = 0;
+      for (const Parameters& parameters : spec.arm ? spec.arm->drives : std::vector{ spec.parameters })
+      {
+        if (parameters.solver.scene != SceneKind::AUTO || !drives_.insert(surfaceParametersHash(parameters)).second)
+        {
+          continue;
+        }
+        for (const std::string& key : surfacesOf(parameters))
+        {
+          of_run += known_.insert(key).second && !surfaceIsKept(key, directory_) ? 1 : 0;
+        }
+      }
+      if (of_run > 0 && missing.of_first_run == 0)
+      {
+        missing.first_run = number;
+        missing.of_first_run = of_run;
+      }
+      missing.count += static_cast<double>(of_run);
+    }
+    missing.count = std::round(missing.count * static_cast<double>(block.size) / static_cast<double>(looked));
+    return missing;
+  }
+
+private:
+  std::string directory_;
+  std::set<std::uint64_t> drives_;  // looked at, by what shapes their surfaces
+  std::set<std::string> known_;
+};
+
+/// Two digits, or the whole number.
+std::string rounded(double number)
+{
+  constexpr double THREE_DIGITS = 99.5;
+  return number < THREE_DIGITS ? roundedText(number, 2) : std::to_string(std::llround(number));
+}
+
+std::string shortTime(double seconds)
+{
+  constexpr double MINUTE = 60.0;
+  constexpr double HOUR = 3600.0;
+  constexpr double MANY = 100.0;  // larger values are shown in the next unit
+  return seconds < MANY          ? rounded(seconds) + " s" :
+         seconds < MANY * MINUTE ? rounded(seconds / MINUTE) + " min" :
+                                   rounded(seconds / HOUR) + " h";
+}
+
+/// Prints number, time and size of the plan's runs, tried on one of each class and duty cycle. Their response surfaces
+/// are built for it, and kept where the source keeps them. @throws InputError, ParameterError if one has no
+/// equilibrium.
+void printExpectation(const Plan& plan, unsigned jobs, const SurfaceSource& source)
+{
+  const SweepDirectory directory(plan, "");
+  std::atomic<std::uint64_t> simulated{};
+  RunSimulation simulation(plan, directory, source, simulated);
+  MissingSurfaces missing(source.cache_directory);
+  double run_time = 0.0;
+  double surface_time = 0.0;
+  double surfaces = 0.0;
+  double bytes = 0.0;
+  double length = 0.0;
+  for (const Plan::Block& block : plan.blocks())
+  {
+    const RunSpec spec = plan.run(block.first);
+    const MissingSurfaces::OfBlock needed = missing.of(plan, block);
+    const RunCost cost = simulation.sample(needed.first_run, SAMPLE);
+    // Those of the tried run are there from now on, unless none are kept.
+    const auto tried = static_cast<double>(needed.of_first_run);
+    const double to_build = needed.count - (source.cache_directory.empty() ? 0.0 : tried);
+    surfaces += to_build;
+    surface_time += tried > 0.0 ? to_build * cost.surfaces / tried : 0.0;
+    const auto runs = static_cast<double>(block.size);
+    run_time += runs * (cost.ends + spec.duration / cost.real_time_factor);
+    bytes += runs * dataSize(plan.recording(), spec);
+    length += runs * spec.duration;
+    std::cout << "runs " << block.first << " ... " << block.last() << ": class " << spec.fault_class << ", duty "
+              << spec.duty_name << ", " << rounded(cost.real_time_factor) << " times real time\n";
+  }
+  // A surface is built on all processors.
+  const double together = std::min<double>(
+      { static_cast<double>(jobs), static_cast<double>(processors()), static_cast<double>(plan.runs()) });
+  std::vector<NamedValue> values{ { "runs", std::to_string(plan.runs()), "" } };
+  if (plan.lives() != nullptr)
+  {
+    values.push_back({ "check-ups", std::to_string(plan.lives()->checkUps()), "" });
+  }
+  values.push_back({ "simulated, together", shortTime(length), "" });
+  values.push_back({ "response surfaces to build", std::to_string(std::llround(surfaces)), "" });
+  values.push_back(
+      { "expected time, " + std::to_string(jobs) + " jobs", shortTime(surface_time + run_time / together), "" });
+  values.push_back({ "numbers of all files", bytes > 0.0 ? rounded(bytes / 1e6) : "-", "MB" });
+  printValues(values);
+  std::cout << "The time is estimated from one run of each class and duty cycle, tried for at most " << SAMPLE
+            << " s, and from building its first response surface.\n";
+}
+
+void addJobsOption(Command& command, unsigned& jobs)
+{
+  jobs = std::max(1u, std::thread::hardware_concurrency());
+  command.add("--jobs", jobs, "runs at the same time").range(1, 4096);
+}
+
+/// Surfaces of the user's cache, each once in memory; each remark about them once.
+/// Those of drives with a wear of their own, which come but once, are not kept on the disk.
+SurfaceSource sharedSurfaces(const Plan& plan, unsigned jobs)
+{
+  struct Remarks
+  {
+    std::mutex mutex;
+    std::set<std::string> shown;
+    Progress building{ "building response surfaces" };
+  };
+  const auto remarks = std::make_shared<Remarks>();
+  const auto show = [remarks](double done)
+  {
+    const std::lock_guard<std::mutex> lock(remarks->mutex);
+    remarks->building.update(done);
+  };
+  const auto tell = [remarks](const std::string& what)
+  {
+    const std::lock_guard<std::mutex> lock(remarks->mutex);
+    if (remarks->shown.insert(what).second)
+    {
+      std::cerr << "warning: " << what << '\n';
+    }
+  };
+  return { plan.lives() != nullptr ? "" : surfaceCacheDirectory(), show, tell,
+           std::make_shared<SurfacePool>(jobs + 2) };
+}
+
+struct SweepCommandOptions : CommonOptions
+{
+  std::string plan;
+  std::string out;
+  unsigned jobs{};
+  std::string part;
+  std::uint64_t shard{};
+  std::uint64_t shards{ 1 };
+  bool dry_run{};
+  bool list{};
+};
+
+void printList(const Plan& plan, const SweepCommandOptions& options)
+{
+  const SweepDirectory directory(plan, options.out);
+  std::cout << directory.indexHeader() << '\n';
+  for (std::uint64_t run = options.shard; run < plan.runs(); run += options.shards)
+  {
+    OrderedJson record = directory.record(run);
+    if (!record.is_object())
+    {
+      record = recordOf(checkedRun(plan, run), directory.runFileName(run));
+      record["status"] = "pending";
+      record[FILE_HASH] = nullptr;
+    }
+    std::cout << directory.indexRow(record) << '\n';
+  }
+}
+
+void declare(Command& command, SweepCommandOptions& options)
+{
+  command.add("plan", options.plan, "what to run and record (docs/datasets.md)").required().type("PLAN.yaml");
+  command.add("--out", options.out, "directory of runs and index; runs that stand there finished are kept")
+      .required()
+      .type("DIR");
+  addJobsOption(command, options.jobs);
+  command.flag("--dry-run", options.dry_run, "check every run, tell time and size to expect, run nothing");
+  command.flag("--list", options.list, "print the index with every run of the plan, run nothing");
+  command.flag("--json", options.json,
+               "print the numbers of runs done, found and failed as one JSON document on stdout");
+  addConfigurationOptions(command, options);
+  command.add("--shard", options.part, "only every N-th run, from run I on: one of N processes, anywhere")
+      .type("I/N")
+      .check(
+          [&options](const std::string& text)
+          {
+            char slash = 0;
+            std::istringstream stream(text);
+            const bool read = static_cast<bool>(stream >> options.shard >> slash >> options.shards);
+            return read && stream.peek() == EOF && slash == '/' && options.shard < options.shards ?
+                       std::string() :
+                       "'" + text + "' must be I/N with 0 <= I < N";
+          });
+}
+
+void tellResult(const SweepCommandOptions& options, const Plan& plan, const SweepResult& result)
+{
+  const std::string index = options.out + "/index.csv";
+  if (options.json)
+  {
+    printReport(true, { { "index", "", index },
+                        { "runs", "", plan.runs() },
+                        { "done", "", result.done },
+                        { "present", "", result.present },
+                        { "failed", "", result.failed },
+                        { "damaged", "", result.damaged },
+                        { ROWS_WITHOUT_FORCES, "", result.rows_without_forces } });
+  }
+  else
+  {
+    std::cerr << "joint_twin: " << result.done << " runs done, " << result.present << " were there, " << result.failed
+              << " failed, " << result.damaged << " damaged ones done again; index: " << index << "\n";
+  }
+  warn(result.rows_without_forces,
+       "rows without forces on the teeth (NaN): no equilibrium was found for them; index.csv says in which runs");
+}
+
+int workOff(const SweepCommandOptions& options, const Plan& plan)
+{
+  if (options.list)
+  {
+    printList(plan, options);
+    return EXIT_DONE;
+  }
+  checkRuns(plan);
+  if (options.dry_run)
+  {
+    printExpectation(plan, options.jobs, sharedSurfaces(plan, 1));
+    return EXIT_DONE;
+  }
+  SweepDirectory directory(plan, options.out);
+  directory.open();
+  const InterruptScope interrupts;
+  const SweepResult result = runSweep(plan, directory, { options.out, options.jobs, options.shard, options.shards },
+                                      sharedSurfaces(plan, options.jobs));
+  tellResult(options, plan, result);
+  if (interruptSignal() != 0)
+  {
+    std::cerr << "joint_twin: interrupted; the same command resumes\n";
+    return EXIT_BY_SIGNAL + interruptSignal();
+  }
+  return result.failed > 0 ? EXIT_FAILED : EXIT_DONE;
+}
+
+int sweep(const SweepCommandOptions& options)
+{
+  return workOff(options, Plan(options.plan, options));
+}
+
+int sweepLives(const SweepCommandOptions& options)
+{
+  const Plan plan(options.plan, options);
+  if (plan.lives() == nullptr)
+  {
+    throw InputError(options.plan + " has no mapping 'lives'; run it with joint_twin sweep");
+  }
+  return workOff(options, plan);
+}
+
+const Subcommand SWEEP{ Subject::DATA_SET, "sweep", "run a plan of many runs: a labelled data set", declare, sweep };
+const Subcommand LIVES{ Subject::DATA_SET, "lives",
+                        "drives from new to their end, with a check-up every so often: a data set of run to failure",
+                        declare, sweepLives };
+
+struct SignaturesOptions : CommonOptions
+{
+  std::vector<std::string> plans;
+  std::string out;
+  std::string runs;
+  std::string add;
+  unsigned jobs{};
+};
+
+/// The runs of all plans; finished ones are kept. An interrupt ends it early.
+SweepResult workOff(const SignaturesOptions& options, const std::string& runs, SignatureRuns& found)
+{
+  SweepResult sum;
+  for (std::size_t i = 0; i < options.plans.size() && interruptSignal() == 0; ++i)
+  {
+    const Plan plan(options.plans[i], options);
+    const std::string path = runs + "/" + plan.name();
+    SweepDirectory directory(plan, path);
+    directory.open();
+    const SweepResult own = runSweep(plan, directory, { path, options.jobs, 0, 1 }, sharedSurfaces(plan, options.jobs));
+    sum.done += own.done;
+    sum.present += own.present;
+    sum.failed += own.failed;
+    if (interruptSignal() == 0)
+    {
+      found.add(plan, directory);
+    }
+  }
+  return sum;
+}
+
+int signatures(const SignaturesOptions& options)
+{
+  requireWritable(options.out, options.force);
+  const std::optional<std::string> kept =
+      options.add.empty() ? std::nullopt : std::make_optional(readFile(options.add));
+  for (const std::string& path : options.plans)
+  {
+    checkSignaturePlan(Plan(path, options));
+  }
+  const TemporaryDirectory temporary;
+  const InterruptScope interrupts;
+  SignatureRuns found([](const std::string& what) { std::cerr << "warning: " << what << '\n'; });
+  const SweepResult runs = workOff(options, options.runs.empty() ? temporary.path() : options.runs, found);
+  if (interruptSignal() != 0)
+  {
+    std::cerr << "joint_twin: interrupted"
+              << (options.runs.empty() ? "; with --runs finished runs are kept" : "; the same command resumes") << '\n';
+    return EXIT_BY_SIGNAL + interruptSignal();
+  }
+  const Parameters parameters = Plan(options.plans.front(), options).run(0).parameters;
+  const std::string own = found.text(std::filesystem::path(options.out).stem().string(),
+                                     *loadSignatures(parameters.indicators.signatures), parameters.life.rated_torque);
+  writeTextFile(options.out, kept ? withRowsOf(*kept, options.add, own) : own);
+  printReport(options.json, { { "output", "", options.out },
+                              { "done", "runs done", runs.done },
+                              { "present", "runs that were there", runs.present },
+                              { "failed", "runs that failed", runs.failed } });
+  const int written = reportWritten(options.out, options.json);
+  return runs.failed > 0 ? EXIT_FAILED : written;
+}
+
+void declare(Command& command, SignaturesOptions& options)
+{
+  command
+      .add("plans", options.plans,
+           "as of sweep, in bags: a class without faults, then classes of one fault each; several for motions or gears "
+           "of their own (docs/own_gear.md)")
+      .required()
+      .type("PLAN.yaml");
+  command.add("--out", options.out, "for parameter indicators.signatures").required().type("FILE.yaml");
+  command.add("--runs", options.runs, "directory of the runs; those that stand there finished are kept; default: none")
+      .type("DIR");
+  command.add("--add", options.add, "file of signatures that stay, those of the plans behind them; default: none")
+      .type("FILE.yaml");
+  addJobsOption(command, options.jobs);
+  addCommonOptions(command, options);
+}
+
+const Subcommand SIGNATURES{
+  Subject::DATA_SET, "signatures",
+  "what each fault changes in the health indicators of a gear, from runs with and without it", declare, signatures
+};
+}  // namespace
+}  // namespace hjt
