@@ -8,8 +8,8 @@
 
 namespace hjt
 {
-/// How a table was tried against the ring where its grid was not refined any further: half way between columns, and half
-/// way between lines. A miss is the largest difference over its tolerance [-]. Plain data.
+/// How a table was tried against the ring, up to the torque limit, where its grid was not refined any further: half way
+/// between columns, and half way between lines. A miss is the largest difference over its tolerance [-]. Plain data.
 struct GridChecks
 {
   int made{};      ///< checks

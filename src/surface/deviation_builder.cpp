@@ -226,7 +226,7 @@ private:
         {
           columns *= 2;
         }
-        checks_.add(miss());
+        note(line, miss());
       }
     }
     // The effect may move to the next pitch with the load.
@@ -313,8 +313,7 @@ private:
         coarse[pitch] = miss > 1.0 && halvings < MAX_HALVINGS;
         if (!coarse[pitch])
         {
-          const std::lock_guard<std::mutex> lock(mutex_);
-          checks_.add(miss);
+          note(line, miss);
         }
       }
     }
@@ -325,6 +324,16 @@ private:
       {
         refine(rings, below, { middle, line }, coarse, halvings + 1, found);
       }
+    }
+  }
+
+  /// Beyond the torque limit teeth may snap: nothing is promised there.
+  void note(const Line& line, double miss)
+  {
+    if (line.overload == 1.0)
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      checks_.add(miss);
     }
   }
 

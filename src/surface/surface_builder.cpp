@@ -105,7 +105,7 @@ private:
       }
       if (!finest.empty())
       {
-        checks_.add(miss());
+        note(finest, miss());
       }
     }
     return columns;
@@ -243,8 +243,17 @@ private:
       }
       return;
     }
-    const std::lock_guard<std::mutex> lock(mutex_);
-    checks_.add(miss);
+    note(line, miss);
+  }
+
+  /// Beyond the torque limit teeth may snap: nothing is promised there.
+  void note(const Line& line, double miss)
+  {
+    if (std::abs(line.front()[SurfaceNode::ENERGY_BY_V]) <= limit_)
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      checks_.add(miss);
+    }
   }
 
   /// A line of the table. Empty: no equilibrium, too many points, or another task has failed.

@@ -71,7 +71,7 @@ void tell(const SurfaceSource& source, const std::string& what)
 
 void tellMisses(const std::string& what, const GridChecks& checks, const SurfaceSource& source)
 {
-  constexpr double MUCH = 10.0;  // times the tolerance
+  constexpr double MUCH = 5.0;  // times the tolerance
   if (checks.worst > MUCH)
   {
     tell(source, what + ": " + std::to_string(checks.missed) + " of " + std::to_string(checks.made) +

@@ -311,7 +311,7 @@ TEST(SurfaceDeviations, TellHowOftenTheyMissTheirTolerance)
   EXPECT_LT(checks.missed, 0.02 * checks.made);
   EXPECT_THAT(said, testing::HasSubstr("teeth that differ: " + std::to_string(checks.missed) + " of " +
                                        std::to_string(checks.made) + " checks between its nodes miss the tolerance"));
-  EXPECT_LT(built->table.checks.worst, 10.0);
+  EXPECT_LT(built->table.checks.worst, 5.0);
   EXPECT_THAT(said, testing::Not(testing::HasSubstr("response surface: ")));
 }
 
