@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Judges forty made-up working days of three arms by `compare`, alone and beside a reference of another motion of the
-same drives, and writes truth and answer of each day into docs/compare.md.
+same drives, and writes truth and answer of each day into docs/working_days.csv, the counts into docs/compare.md.
 
 The arms run in closed loop; drives differ, and the sensors' noise and eccentricity are those of arm_verdicts. In every
 second day one joint's friction is raised by a half.
 """
 import argparse
 import concurrent.futures
+import csv
 import pathlib
 
 import numpy
@@ -26,6 +27,8 @@ CENTRE = (0.0, 0.02, 0.06)                        # of what is carried, in the f
 DRAG = 10.0                                       # [N]
 CYCLES = 8                                        # from A to B and back
 RATE = arm_verdicts.RATE
+HEAD = ("day", "arm", "truth", "alone", "state", "beside a reference", "state")  # of working_days.csv
+STATES = ("right", "missed", "not judged", "wrong")
 COLUMNS = ("target_q", "target_qd", "actual_q", "actual_qd", "actual_current", "target_current")
 
 
@@ -145,21 +148,26 @@ def answer(day, named, unjudged, document):
     return "; ".join(words) or "OK", state
 
 
-def table(days):
-    lines = ["| day | arm | truth | alone | | beside a reference | |", "|---|---|---|---|---|---|---|"]
-    counts = [{}, {}]
+def rows_of(days):
+    """Kind, arm, truth, then answer and state alone and beside a reference, of each day."""
+    rows = []
     for day, found in days:
         truth = [f"{joint} {WORN * day.drives[arm_verdicts.JOINTS.index(joint)]:.2f}" for joint in day.worn]
         truth += [f"{day.mass:.1f} kg"] if day.mass else []
-        cells = [day.kind, day.name, ", ".join(truth) or "-"]
-        for count, verdict in zip(counts, found):
-            said, state = answer(day, *verdict)
-            count[state] = count.get(state, 0) + 1
-            cells += [said, state]
-        lines.append(f"| {' | '.join(cells)} |")
-    for where, count in zip(("Alone", "Beside a reference"), counts):
-        said = ", ".join(f"{state} {count.get(state, 0)}" for state in ("right", "missed", "not judged", "wrong"))
-        lines += ["", f"{where}, of {len(days)} days: {said}."]
+        rows.append([day.kind, day.name, ", ".join(truth) or "-",
+                     *(cell for verdict in found for cell in answer(day, *verdict))])
+    return rows
+
+
+def table(rows):
+    """Days by kind and state."""
+    def counts(of, column):
+        return [str(sum(row[column] == state for row in of) or "") for state in STATES]
+
+    head = [f"{way}: {state}" for way in ("alone", "beside a reference") for state in STATES]
+    lines = ["| day | " + " | ".join(head) + " |", "|---" * (1 + len(head)) + "|"]
+    for kind, of in [*((kind, [row for row in rows if row[0] == kind]) for kind in DAYS), ("all", rows)]:
+        lines.append(f"| {kind} | {' | '.join(counts(of, 4) + counts(of, 6))} |")
     return lines
 
 
@@ -176,8 +184,12 @@ def main():
     chosen = [(number, list(ARMS)[number % 3], DAYS[number % len(DAYS)]) for number in range(options.days)]
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         days = list(pool.map(lambda day: judge(options, *day), chosen))
+    rows = rows_of(days)
     docs = options.docs if (options.days, options.seed) == (40, SEED) else None
-    lab.write_or_print(docs, "compare.md", "working_days", table(days))
+    if docs:
+        with open(docs / "working_days.csv", "w", encoding="utf-8", newline="") as file:
+            csv.writer(file, lineterminator="\n").writerows([HEAD, *rows])
+    lab.write_or_print(docs, "compare.md", "working_days", table(rows))
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 """A whole UR5, from /joint_states alone: identified on one recording, judged on the others."""
 import concurrent.futures
 import csv
+import itertools
 import os
 
 import numpy as np
@@ -16,6 +17,7 @@ RAISED_IN = ["no2", "no5", "no9"]
 SHOWN = "no2"          # in the figure of the currents
 RAISED_ROWS = "real_robot_raised.csv"  # beside the page
 RAISED = 0.2           # share of a joint's friction
+RAISED_ALONE = (0.3, 0.6)  # the same where there is no reference
 JOINTS = ["base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3"]
 LARGE = JOINTS[:3]
 LOADS = ["arm", "target_moment"]
@@ -156,8 +158,8 @@ def share_table(all_errors):
                  [[name, *cells(name, "arm"), *cells(name, "target_moment")] for name in all_errors])
 
 
-def write_raised(runner, recording, joints, path):
-    """The recording with more friction in these joints: RAISED times the identified twin's."""
+def write_raised(runner, recording, joints, path, share):
+    """The recording with more friction in these joints: `share` times the identified twin's."""
     with open(runner.path(f"{recording.name}.csv"), encoding="utf-8") as file:
         head, *lines = file.read().splitlines()
     names, cells = head.split(","), [line.split(",") for line in lines]
@@ -166,7 +168,7 @@ def write_raised(runner, recording, joints, path):
         rows = recording.rows["arm", joint]
         large = np.argmax(np.abs(rows["current_residual"]))
         gain = rows["residual_torque"][large] / rows["current_residual"][large]
-        more = RAISED * np.interp(time, rows["time"], rows["friction_torque"]) / gain
+        more = share * np.interp(time, rows["time"], rows["friction_torque"]) / gain
         column = names.index(f"actual_current_{JOINTS.index(joint)}")
         for row, current in zip(cells, more):
             row[column] = repr(float(row[column]) + current)
@@ -219,6 +221,25 @@ def named_text(verdicts):
     shown = [is_right(arm, raised) for arm, raised in verdicts if len(raised) == 1 and
              any(joint["joint"] == raised[0] and joint["friction_ratio"] is not None for joint in arm["joints"])]
     return f"Of {len(shown)} joints raised alone whose friction is shown, {sum(shown)} are named and no other."
+
+
+def raised_alone(runner, verdicts, recordings):
+    """A sentence on joints that were raised alone and compared without a reference."""
+    parts = []
+    for more in RAISED_ALONE:
+        runs = []
+        for recording, joint in itertools.product(recordings, JOINTS):
+            name = f"{recording.name}_{joint}_{more:.1f}"
+            write_raised(runner, recording, [joint], f"{name}.csv", more)
+            runs.append((verdicts.start(name, "", listed=False), joint))
+        answers = [({line["joint"] for line in run.result()["joints"] if is_alarm(line)},
+                    {line["joint"] for line in run.result()["joints"] if line["friction_ratio"] is not None}, joint)
+                   for run, joint in runs]
+        shown = sum(joint in seen for _, seen, joint in answers)
+        named = sum(joint in departing for departing, _, joint in answers)
+        others = sum(bool(departing - {joint}) for departing, _, joint in answers)
+        parts.append(f"with {100.0 * more:.0f} % more {named} of {shown} are named, and another joint in {others}")
+    return f"Without a reference, of joints whose friction is shown, {'; '.join(parts)}."
 
 
 def draw_current(path, recording):
@@ -315,7 +336,7 @@ def verdict_section(runner, by_name, judged, docs):
     for name in RAISED_IN:
         for what, joints in [*((joint, [joint]) for joint in JOINTS), ("all", JOINTS)]:
             if name in by_name:
-                write_raised(runner, by_name[name], joints, f"{name}_{what}.csv")
+                write_raised(runner, by_name[name], joints, f"{name}_{what}.csv", RAISED)
                 started[name, what] = (verdicts.start(f"{name}_{what}", "", "--reference", f"report_{TRAIN}",
                                                       listed=False), joints)
     sound = [[name, verdict_cell(alone[name].result()), *ratio_cells(beside[name].result()),
@@ -327,7 +348,8 @@ def verdict_section(runner, by_name, judged, docs):
     raised_lines, right = raised_rows(raised)
     write_rows(os.path.join(docs, RAISED_ROWS), raised_lines[0], raised_lines[1:])
     sentence = (f"Sound joints called WARN or worse: {false_alarms} of {2 * len(JOINTS) * len(alone)}. Raised friction "
-                f"judged right: {right} of {len(raised)}. {named_text(raised.values())}")
+                f"judged right: {right} of {len(raised)}. {named_text(raised.values())} "
+                f"{raised_alone(runner, verdicts, list(by_name.values()))}")
     lines = ["""
 ### Verdicts
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "arm/load_watch.hpp"
 
+#include <chrono>
+#include <system_error>
 #include <utility>
 
 namespace hjt
@@ -24,6 +26,7 @@ void LoadWatch::reset()
 {
   start(isTrying() ? TRIAL : FIRST_LOOK);
   frictions_.clear();
+  is_of_others_ = isLooking();
 }
 
 void LoadWatch::start(double first_look)
@@ -57,12 +60,50 @@ void LoadWatch::add(const ArmSample& sample)
   }
 }
 
+bool LoadWatch::isDue() const
+{
+  return isLooking() ? found_.wait_for(std::chrono::seconds(0)) == std::future_status::ready :
+                       fit_->moved() >= next_look_;
+}
+
+/// Of the rows so far; without a thread to spare the next look is as good.
+void LoadWatch::begin(std::vector<bool> measured)
+{
+  looked_at_ = last_time_;
+  try
+  {
+    found_ = std::async(std::launch::async,
+                        [fit = *fit_, measured = std::move(measured)]() mutable { return fit.solve(measured); });
+  }
+  catch (const std::system_error&)
+  {
+    next_look_ += FIRST_LOOK;
+  }
+}
+
 bool LoadWatch::look(const JudgedJoints& joints)
 {
+  if (isTrying())
+  {
+    return take({}, joints);
+  }
+  if (!isLooking())
+  {
+    begin(joints.measured);
+    return false;
+  }
+  const FoundLoad found = found_.get();
+  const bool counts = !is_of_others_;
+  is_of_others_ = false;
+  return counts && take(found, joints);
+}
+
+/// `found`: nothing while another load is tried.
+bool LoadWatch::take(const FoundLoad& found, const JudgedJoints& joints)
+{
   const bool was_trying = isTrying();
-  const FoundLoad found = was_trying ? FoundLoad() : fit_->solve(joints.measured);
   frictions_ = was_trying ? frictions_ : found.frictions;
-  const bool alternates = found.changes.size() > 2 && found.changes.back().time > last_time_ - FIRST_LOOK;
+  const bool alternates = found.changes.size() > 2 && found.changes.back().time > looked_at_ - FIRST_LOOK;
   misfit_ = alternates ? Misfit{ Reason::LOAD_WRONG,
                                  "the payload changes from leg to leg, as in picking and placing: "
                                  "record the motion and compare it, which judges each leg with its "

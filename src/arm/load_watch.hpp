@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <future>
 #include <optional>
 #include <vector>
 
@@ -15,8 +16,8 @@ namespace hjt
 {
 /// Payload and mounting that an arm's currents show while its rows come: looked for every 30 s of motion, after eight
 /// minutes all over again, and where the payload changes in that time in the rows since then. What is found is tried
-/// for 10 s of motion (LoadLaw); once it is taken back nothing is looked for in the next eight minutes. Not for a
-/// real-time loop: it allocates.
+/// for 10 s of motion (LoadLaw); once it is taken back nothing is looked for in the next eight minutes. A thread of its
+/// own looks, some tenths of a second. Not for a real-time loop: it allocates.
 class LoadWatch
 {
 public:
@@ -28,9 +29,10 @@ public:
   /// Starts again with the load that counts: other rows follow.
   void reset();
 
-  /// It is time to look.
-  bool isDue() const { return fit_->moved() >= next_look_; }
-  /// `joints`: beside their twins, with the load that counts. True: another counts from now on.
+  /// It is time to begin a look, or to take what one has found.
+  bool isDue() const;
+  bool isLooking() const { return found_.valid(); }
+  /// Where it is due. `joints`: beside their twins, with the load that counts. True: another counts from now on.
   bool look(const JudgedJoints& joints);
 
   const AssumedLoad& assumed() const { return law_.counts(); }
@@ -51,6 +53,8 @@ private:
   static constexpr double PERIOD = 0.02;      // of the rows that count, at least [s]
 
   void start(double first_look);
+  void begin(std::vector<bool> measured);
+  bool take(const FoundLoad& found, const JudgedJoints& joints);
 
   const ArmDescription given_;
   ArmDescription arm_;
@@ -65,6 +69,9 @@ private:
   bool has_looked_{};
   Misfit misfit_;
   std::vector<FittedFriction> frictions_;
-  bool is_new_{ true };  // the next row comes after a gap
+  bool is_new_{ true };           // the next row comes after a gap
+  double looked_at_{};            // time of the last row of the last look [s]
+  bool is_of_others_{};           // what is found is of rows of before
+  std::future<FoundLoad> found_;  // last: it is waited for before the rest goes
 };
 }  // namespace hjt

@@ -49,11 +49,16 @@ HJT_VECTOR_CLONES void RimBending::addMoments(const RingShape& shape, Scratch& s
       reference[2 * i + 1] = s * direction[2 * i - 2] + c * direction[2 * i - 1];
     }
   }
-  const auto along = [&](int i)
-  { return reference[2 * i] * direction[2 * i] + reference[2 * i + 1] * direction[2 * i + 1]; };
-  const auto across = [&](int i)
-  { return reference[2 * i] * direction[2 * i + 1] - reference[2 * i + 1] * direction[2 * i]; };
-  const auto bend = [&](int i, auto& rows, int k)
+  // Else what is inlined, and so vectorised, depends on the sources that are compiled beside this one.
+  const auto along = [&](int i) __attribute__((always_inline))
+  {
+    return reference[2 * i] * direction[2 * i] + reference[2 * i + 1] * direction[2 * i + 1];
+  };
+  const auto across = [&](int i) __attribute__((always_inline))
+  {
+    return reference[2 * i] * direction[2 * i + 1] - reference[2 * i + 1] * direction[2 * i];
+  };
+  const auto bend = [&](int i, auto& rows, int k) __attribute__((always_inline))
   {
     const double turn = smallAngle(across(i) / along(i));
     const double angle = turn - natural_angle[i];
@@ -86,7 +91,7 @@ HJT_VECTOR_CLONES void RimBending::addForces(const RingShape& shape, const Drive
   const double* moment = scratch.moment.data();
   double* segment = sum.segment.data();
   const double shared = law_ == BendingLaw::CURVATURE ? 1.0 : 0.0;
-  const auto turn_back = [&](int i, int j)
+  const auto turn_back = [&](int i, int j) __attribute__((always_inline))
   {
     const double scale = (moment[i] - shared * moment[j]) / length[i];
     segment[2 * i] = -scale * direction[2 * i + 1];
@@ -124,7 +129,7 @@ HJT_VECTOR_CLONES void RimBending::addTurnTangent(const RingShape& shape, const 
   double* __restrict__ xy = tangent.segment.xy.data();
   double* __restrict__ yy = tangent.segment.yy.data();
   const double shared = law_ == BendingLaw::CURVATURE ? 1.0 : 0.0;
-  const auto turn = [&](int i, int j)
+  const auto turn = [&](int i, int j) __attribute__((always_inline))
   {
     const double x = direction[2 * i];
     const double y = direction[2 * i + 1];
@@ -191,7 +196,7 @@ HJT_VECTOR_CLONES void RimBending::addCurvatureTangent(const RingShape& shape, R
   double* __restrict__ s_xy = tangent.second.xy.data();
   double* __restrict__ s_yx = tangent.second.yx.data();
   double* __restrict__ s_yy = tangent.second.yy.data();
-  const auto row = [&](int h, int i, int j)
+  const auto row = [&](int h, int i, int j) __attribute__((always_inline))
   {
     const double before_x = gx[i] + gx[h];
     const double before_y = gy[i] + gy[h];

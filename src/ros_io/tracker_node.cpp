@@ -370,6 +370,7 @@ void TrackerNode::look()
   const std::lock_guard<std::mutex> lock(mutex_);
   const ros::WallTime now = ros::WallTime::now();
   lookAtArm();
+  lookAtLoad();
   judge(now);
   for (const auto& joint : joints_)
   {
@@ -525,6 +526,10 @@ void TrackerNode::lookAtLoad()
   }
   const bool was_trying = load_->isTrying();
   const bool is_other = load_->look(judgedJoints());
+  if (load_->isLooking())
+  {
+    return;
+  }
   for (std::size_t i = 0; i < load_->frictions().size(); ++i)
   {
     joints_[i]->setFitted(load_->frictions()[i]);
@@ -556,5 +561,6 @@ void TrackerNode::lookAtLoad()
                     << (stream_.payload.empty() ? "" : sentence(stream_.payload) + " ")
                     << "The joints are judged with it");
   }
+  lookAtFit();
 }
 }  // namespace hjt
