@@ -118,7 +118,7 @@ bool EnergyDescent::pairsAgain(RingState& state) noexcept
 
 SolveStatus EnergyDescent::descend(RingLinearisation& system, RingState& state) noexcept
 {
-  constexpr int MAX_STEPS = 200;  // snaps of teeth take up to 34; a step of a twin that runs must end
+  constexpr int MAX_STEPS = 200;         // snaps of teeth take up to 34; a step of a twin that runs must end
   constexpr double FIRST_DAMPING = 1e6;  // N/m, added to every tooth's stiffness
   constexpr double MIN_DAMPING = 1e-3;
   constexpr double MAX_DAMPING = 1e16;

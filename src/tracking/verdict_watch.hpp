@@ -103,10 +103,10 @@ private:
     const bool is_in_place = confirmed_.isJudged() && !whyNotJudged() && !is_new;
     // Found of the rows, unlike that they are too few: it takes the place of a verdict as a worse one does.
     const bool is_other =
-        !verdict.fits &&
-        (verdict.reason == Reason::EFFORT_UNIT || verdict.reason == Reason::LESS_THAN_FAULTS ||
-         verdict.reason == Reason::NO_FRICTION || !of_arm.clause.empty() ||
-         (!verdict.misfit.empty() && (verdict.misfit == known_.fitted.not_more || verdict.misfit == known_.fitted.not_less)));
+        !verdict.fits && (verdict.reason == Reason::EFFORT_UNIT || verdict.reason == Reason::LESS_THAN_FAULTS ||
+                          verdict.reason == Reason::NO_FRICTION || !of_arm.clause.empty() ||
+                          (!verdict.misfit.empty() &&
+                           (verdict.misfit == known_.fitted.not_more || verdict.misfit == known_.fitted.not_less)));
     const bool is_open = is_in_place && !verdict.isJudged() && !is_other;
     const bool is_no_worse = !(is_in_place && is_other) && severityOf(verdict.level) <= severityOf(confirmed_.level);
     if (!is_open && (is_new || is_no_worse || reach.end - confirmed_at_ >= CONFIRMED_AFTER))
