@@ -7,11 +7,11 @@
 #include <cstdio>
 #include <optional>
 
+#include "base/number_text.hpp"
+#include "harmonic_joint_twin/base/stamp.hpp"
+#include "health/signal_sample.hpp"
 #include "output/output_file.hpp"
 #include "output/text_table.hpp"
-
-#include "base/number_text.hpp"
-#include "health/signal_sample.hpp"
 
 namespace hjt
 {
