@@ -322,13 +322,18 @@ ArmEstimator::Estimate LoadFit::estimate(const std::vector<bool>& counts)
   return hypotheses(counts).front().found;
 }
 
-/// A joint's friction is another only where its own part and the whole are: the one nearer to the expected counts.
+/// A joint's friction is another only where its own part and the whole are: the one nearer to the expected counts. With
+/// another mounting the twins' friction is that of a load which is none: no joint is named by the fit.
 std::vector<FittedFriction> LoadFit::frictionsOf(const std::vector<Hypothesis>& all)
 {
   std::vector<FittedFriction> frictions(all.front().found.own.size());
   for (std::size_t i = 0; i < frictions.size(); ++i)
   {
     FittedFriction& friction = frictions[i];
+    if (all.front().may.mounting)
+    {
+      continue;
+    }
     friction = { 1.0, HUGE_VAL, 0.0 };
     for (const Hypothesis& of : all)
     {
