@@ -65,7 +65,7 @@ public:
     , orders_(sorted(orders))
     , places_(placesOf(orders, orders_))
     , rotations_(orders_)
-    , row_(Eigen::VectorXd::Zero(COLUMNS))
+    , row_(Row::Zero())
     , targets_(Eigen::Vector3d::Zero())
     , regression_(COLUMNS, LINE_SIGNALS)
   {
@@ -76,16 +76,7 @@ public:
 
   void add(const LineSample& sample) noexcept
   {
-    row_.head<NUISANCES>() << 1.0, sample.direction, sample.speed, std::cos(sample.output_angle),
-        std::sin(sample.output_angle), sample.load, sample.load * std::abs(sample.load),
-        sample.load * sample.load * sample.load;
-    rotations_.at(sample.motor_angle, row_.data() + FIRST_LINE);
-    const double load = sample.load / rated_torque_;
-    const std::array factors{ load - mean_load_, sample.direction * load - mean_lagging_load_ };
-    for (int i = 0; i < LOADED_COLUMNS; ++i)
-    {
-      row_[NUISANCES + i] = factors[i < LOADED_COLUMNS / 2 ? 0 : 1] * row_[baseOf(i)];
-    }
+    fill(sample, row_);
     targets_ = { sample.kinematic_error, sample.motor_torque, sample.ripple };
     regression_.add(row_, targets_, sample.weight);
   }
@@ -136,6 +127,21 @@ public:
   /// Kinematic error of the last added sample less what the last fit makes of it [rad].
   double residual() const noexcept { return targets_[0] - row_.dot(regression_.coefficients(0)); }
 
+  /// Ripple of a sample less what the last fit makes of it but for the lines that `without` names [rad].
+  double rippleBeside(const LineSample& sample, const std::array<bool, FIRST_LOADED>& without) const noexcept
+  {
+    Row row;
+    fill(sample, row);
+    for (std::size_t line = 0; line < FIRST_LOADED; ++line)
+    {
+      if (without[line])
+      {
+        row.segment<2>(FIRST_LINE + 2 * static_cast<int>(places_[line])).setZero();
+      }
+    }
+    return sample.ripple - row.dot(regression_.coefficients(static_cast<int>(LineSignal::MOTOR_RIPPLE)));
+  }
+
 private:
   static constexpr double MAX_INFLATION = 4.0;  // of a line's variance by its neighbours [-]
   static constexpr double USED_BAND = 0.8;      // of half the samples a turn [-]
@@ -150,6 +156,7 @@ private:
   static constexpr int FIRST_LINE = NUISANCES + LOADED_COLUMNS;
   static constexpr int COLUMNS = FIRST_LINE + 2 * static_cast<int>(FIRST_LOADED);
 
+  using Row = Eigen::Matrix<double, COLUMNS, 1>;
   using Places = std::array<std::size_t, LINE_COUNT>;
   using PlainOrders = std::array<double, FIRST_LOADED>;
 
@@ -169,6 +176,20 @@ private:
         [&](double order)
         { return static_cast<std::size_t>(std::lower_bound(sorted.begin(), sorted.end(), order) - sorted.begin()); });
     return places;
+  }
+
+  void fill(const LineSample& sample, Row& row) const noexcept
+  {
+    row.head<NUISANCES>() << 1.0, sample.direction, sample.speed, std::cos(sample.output_angle),
+        std::sin(sample.output_angle), sample.load, sample.load * std::abs(sample.load),
+        sample.load * sample.load * sample.load;
+    rotations_.at(sample.motor_angle, row.data() + FIRST_LINE);
+    const double load = sample.load / rated_torque_;
+    const std::array factors{ load - mean_load_, sample.direction * load - mean_lagging_load_ };
+    for (int i = 0; i < LOADED_COLUMNS; ++i)
+    {
+      row[NUISANCES + i] = factors[i < LOADED_COLUMNS / 2 ? 0 : 1] * row[baseOf(i)];
+    }
   }
 
   /// Column of the line with the order of the loaded column `i`.
@@ -211,7 +232,7 @@ private:
   PlainOrders orders_;  // the highest stand last, so that what the samples cannot show is the tail of the columns
   Places places_;       // of the lines among them
   AngleMultiples<FIRST_LOADED> rotations_;
-  Eigen::VectorXd row_;
+  Row row_;
   Eigen::Vector3d targets_;
   RunningRegression regression_;
   int used_{};  // columns of the last fit

@@ -28,13 +28,14 @@ constexpr int MIN_RESIDUALS = 100;          // for moments of the fourth order
 constexpr double FRICTION_WINDOWS = 10.0;   // memory of the friction estimate
 }  // namespace
 
-SignalMonitor::SignalMonitor(const Parameters& parameters)
+SignalMonitor::SignalMonitor(const Parameters& parameters, Slip slip)
   : ratio_(nominalRatio(parameters.gear))
   , output_(parameters.output)
   , output_inertia_(parameters.output.circular_spline_inertia + parameters.output.load_inertia)
   , motor_inertia_(ratio_ * ratio_ * (parameters.motor.rotor_inertia + parameters.motor.wave_generator_inertia))
   , parameters_(parameters.indicators)
   , tracker_(trackedOrders(parameters.gear, parameters.bearing), parameters.life.rated_torque)
+  , slip_(slip == Slip::SOUGHT ? std::optional<BearingSlip>(parameters) : std::nullopt)
   , friction_(FRICTION_WINDOWS * TWO_PI * parameters.indicators.window_turns)
   , loop_(parameters.health, parameters.indicators)
   , turn_(parameters.gear)
@@ -44,7 +45,7 @@ SignalMonitor::SignalMonitor(const Parameters& parameters)
 
 void SignalMonitor::reset() noexcept
 {
-  tracker_.reset();
+  resetLines();
   friction_.reset();
   smoothed_.reset();
   loop_.restart();
@@ -240,6 +241,10 @@ void SignalMonitor::addLines(const LineSample& sample, double travel, std::int64
   {
     const Waiting& oldest = waiting_[first_waiting_];
     tracker_.add(oldest.sample);
+    if (slip_)
+    {
+      slip_->add(oldest.sample);
+    }
     if (tracked_ && window_.both_encoders && oldest.sample.weight > LEAST_WEIGHT)
     {
       addResidual(oldest.travel);
@@ -321,20 +326,14 @@ void SignalMonitor::complete(std::int64_t stamp) noexcept
     set(ScalarIndicator::RESIDUAL_KURTOSIS, window_.residual_fourth / window_.residuals / (mean_square * mean_square));
     set(ScalarIndicator::RESIDUAL_CREST, std::sqrt(window_.residual_largest / mean_square));
   }
-  if (window_.line_samples > 0 && tracker_.fit(window_.line_travel / window_.line_samples))
+  const double angle_step = window_.line_travel / window_.line_samples;
+  if (window_.line_samples > 0 && tracker_.fit(angle_step))
   {
     tracked_ = tracker_.complete();
-    fillLines(LineSignal::MOTOR_TORQUE);
-    if (window_.motor_encoder)
-    {
-      fillLines(LineSignal::MOTOR_RIPPLE);
-    }
-    if (window_.both_encoders)
-    {
-      fillLines(LineSignal::KINEMATIC_ERROR);
-    }
+    const double slip = slip_ && window_.motor_encoder ? slip_->find(tracker_) : 0.0;
+    slip > 0.0 ? fillLines(slip_->refit(slip, angle_step)) : fillLines(tracker_);
   }
-  tracker_.reset();
+  resetLines();
   loop_.reset();
   balance_.restart();
   lag_.restart();
@@ -351,11 +350,33 @@ void SignalMonitor::fillTorsion() noexcept
   set(ScalarIndicator::HYSTERESIS_AREA, loop_.loopArea());
 }
 
-void SignalMonitor::fillLines(LineSignal signal) noexcept
+void SignalMonitor::resetLines() noexcept
+{
+  tracker_.reset();
+  if (slip_)
+  {
+    slip_->reset();
+  }
+}
+
+void SignalMonitor::fillLines(const OrderTracker& tracker) noexcept
+{
+  fillLines(LineSignal::MOTOR_TORQUE, tracker);
+  if (window_.motor_encoder)
+  {
+    fillLines(LineSignal::MOTOR_RIPPLE, tracker);
+  }
+  if (window_.both_encoders)
+  {
+    fillLines(LineSignal::KINEMATIC_ERROR, tracker);
+  }
+}
+
+void SignalMonitor::fillLines(LineSignal signal, const OrderTracker& tracker) noexcept
 {
   for (std::size_t line = 0; line < LINE_COUNT && hasLine(signal, line); ++line)
   {
-    const LineFit fit = tracker_.line(signal, line);
+    const LineFit fit = tracker.line(signal, line);
     if (!fit.valid)
     {
       continue;

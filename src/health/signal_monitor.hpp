@@ -7,6 +7,7 @@
 #include <complex>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include <Eigen/Core>
 #include <Eigen/Dense>
@@ -16,6 +17,7 @@
 #include "harmonic_joint_twin/health/signal_indicators.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "health/efficiency_estimate.hpp"
+#include "health/bearing_slip.hpp"
 #include "health/order_tracker.hpp"
 #include "health/running_regression.hpp"
 #include "health/signal_sample.hpp"
@@ -336,7 +338,15 @@ private:
 class SignalMonitor
 {
 public:
-  explicit SignalMonitor(const Parameters& parameters);
+  /// Whether the bearing may slip: its slip is looked for in every window with a motor encoder (BearingSlip), which
+  /// allocates.
+  enum class Slip
+  {
+    NONE,
+    SOUGHT
+  };
+
+  explicit SignalMonitor(const Parameters& parameters, Slip slip = Slip::NONE);
 
   void reset() noexcept;
 
@@ -408,7 +418,9 @@ private:
   void addTurn(double motor_angle, double travel, double torsion) noexcept;
   void addResidual(double travel) noexcept;
   void complete(std::int64_t stamp) noexcept;
-  void fillLines(LineSignal signal) noexcept;
+  void resetLines() noexcept;
+  void fillLines(const OrderTracker& tracker) noexcept;
+  void fillLines(LineSignal signal, const OrderTracker& tracker) noexcept;
   void set(ScalarIndicator indicator, double value) noexcept { indicators_.values[indexOf(indicator)] = value; }
   void set(ScalarIndicator indicator, const Indicator& value) noexcept;
   void fillTorsion() noexcept;
@@ -419,6 +431,7 @@ private:
   const double motor_inertia_;   // of the motor and the wave generator, at the output [kg.m^2]
   const IndicatorParameters parameters_;
   OrderTracker tracker_;
+  std::optional<BearingSlip> slip_;
   FrictionEstimate friction_;
   SmoothedTorsion smoothed_;
   TorsionLoopEstimate loop_;

@@ -5,12 +5,12 @@
 
 namespace hjt
 {
-LineOrders trackedOrders(const GearParameters& gear, const BearingParameters& bearing)
+LineOrders trackedOrders(const GearParameters& gear, const BearingParameters& bearing, double slip)
 {
   constexpr double LOBES = 2.0;
   const double share = bearing.ball_diameter / bearing.pitch_diameter;
-  const double cage = 0.5 * (1.0 - share);
-  const double ball = 1.0 / share - share;
+  const double cage = 0.5 * (1.0 - slip) * (1.0 - share);
+  const double ball = (1.0 - slip) * (1.0 / share - share);
   const double outer = bearing.balls * cage;
   const double inner = bearing.balls * (1.0 - cage);
   const double cage_lobes = LOBES * (1.0 - cage);

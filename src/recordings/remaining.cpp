@@ -182,7 +182,7 @@ Condition readRecordings(const RemainingOptions& options, Assessor& assessor, Us
     {
       std::for_each(windows->begin(), windows->end(), judge);
     }
-    SignalMonitor monitor(parameters.values);
+    SignalMonitor monitor(parameters.values, SignalMonitor::Slip::SOUGHT);
     RecordedUse recorded(parameters.values, use);
     const auto take = [&](const SignalSample& sample)
     {

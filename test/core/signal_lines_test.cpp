@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <random>
 
 #include <gmock/gmock.h>
 
@@ -73,6 +74,73 @@ TEST(AngleMultiples, AreCosineAndSineOfEveryTrackedOrder)
       EXPECT_NEAR(rotations[2 * line], std::cos(orders[line] * angle), tolerance) << "order " << orders[line];
       EXPECT_NEAR(rotations[2 * line + 1], std::sin(orders[line] * angle), tolerance) << "order " << orders[line];
     }
+  }
+}
+
+TEST(TrackedOrders, OfABearingThatSlipsAreThoseOfSlowerCageAndBalls)
+{
+  constexpr double SLIP = 0.02;
+  const Parameters parameters = shippedParameters();
+  const LineOrders without = trackedOrders(parameters.gear, parameters.bearing);
+  const LineOrders with = trackedOrders(parameters.gear, parameters.bearing, SLIP);
+  const auto of = [](const LineOrders& orders, Line line) { return orders[index(line)]; };
+  EXPECT_NEAR(of(with, Line::OUTER), (1.0 - SLIP) * of(without, Line::OUTER), 1e-12);
+  EXPECT_NEAR(of(with, Line::BALL), (1.0 - SLIP) * of(without, Line::BALL), 1e-12);
+  EXPECT_NEAR(of(with, Line::OUTER) + of(with, Line::INNER), parameters.bearing.balls, 1e-12);
+  EXPECT_EQ(of(with, Line::WAVE_GENERATOR_2), of(without, Line::WAVE_GENERATOR_2));
+}
+
+/// Window of a joint in noise whose bearing slips, its outer race and its line two orders below at an amplitude [rad].
+class SlippingJoint
+{
+public:
+  SlippingJoint(SignalMonitor::Slip sought, double slip, double amplitude, unsigned seed)
+    : generator_(seed)
+    , orders_(trackedOrders(parameters().gear, parameters().bearing, slip))
+    , joint_(parameters(), sought)
+  {
+    joint_.quantised = false;
+    joint_.speed = [](double time) { return 100.0 + 20.0 * std::sin(3.0 * time); };
+    joint_.ripple = [this, amplitude](double angle, double, double)
+    {
+      return NOISE * normal_(generator_) + amplitude * (std::cos(orders_[index(Line::OUTER)] * angle + 1.0) +
+                                                        std::cos(orders_[index(Line::OUTER_BELOW)] * angle));
+    };
+  }
+  const SignalIndicators& window() { return joint_.nextWindow(); }
+
+private:
+  static constexpr double NOISE = 1e-4;  // [rad]
+  static Parameters parameters() { return shippedParameters({ "indicators.window_turns=42.0" }); }
+
+  std::mt19937 generator_;
+  std::normal_distribution<double> normal_;
+  LineOrders orders_;
+  Synthetic joint_;
+};
+
+TEST(BearingSlip, LinesOfABearingThatSlipsAreFoundWhereTheyAre)
+{
+  constexpr double AMPLITUDE = 2e-5;
+  for (const double slip : { 0.0, 0.004, 0.0131, 0.0257 })
+  {
+    const auto found = [&](SignalMonitor::Slip sought)
+    { return SlippingJoint(sought, slip, AMPLITUDE, 3).window().amplitude(LineSignal::MOTOR_RIPPLE, Line::OUTER); };
+    EXPECT_NEAR(found(SignalMonitor::Slip::SOUGHT), AMPLITUDE, 0.2 * AMPLITUDE) << slip;
+    EXPECT_TRUE(slip == 0.0 || found(SignalMonitor::Slip::NONE) < 0.5 * AMPLITUDE) << slip;
+  }
+}
+
+TEST(BearingSlip, NoneIsFoundInNoise)
+{
+  SlippingJoint sought(SignalMonitor::Slip::SOUGHT, 0.0, 0.0, 7);
+  SlippingJoint without(SignalMonitor::Slip::NONE, 0.0, 0.0, 7);
+  for (int window = 0; window < 100; ++window)
+  {
+    const SignalIndicators found = sought.window();
+    EXPECT_EQ(found.amplitude(LineSignal::MOTOR_RIPPLE, Line::OUTER),
+              without.window().amplitude(LineSignal::MOTOR_RIPPLE, Line::OUTER))
+        << window;
   }
 }
 

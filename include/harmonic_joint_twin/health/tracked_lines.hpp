@@ -62,10 +62,11 @@ constexpr std::size_t index(Line line)
 
 using LineOrders = std::array<double, LINE_COUNT>;  ///< [1/turn of the motor]
 
-/// Law:   cage   f_c = (1 - d / D) / 2                   outer race standing, inner race with the motor
-///        outer  Z f_c,   inner  Z (1 - f_c),   ball  twice D / (2 d) (1 - (d / D)^2)
+/// Law:   cage   f_c = (1 - s) (1 - d / D) / 2           outer race standing, inner race with the motor
+///        outer  Z f_c,   inner  Z (1 - f_c),   ball  twice (1 - s) D / (2 d) (1 - (d / D)^2)
 ///        lobe at a place of the cage  2 (1 - f_c),   of the circular spline  2 (1 - 1 / i)
-/// where  d, D, Z  ball diameter, pitch diameter [m], balls [-];  i  nominal ratio [-]
-/// Source: rolling-bearing kinematics without slip, contact angle 0 (e.g. Harris, Rolling Bearing Analysis, ch. 25).
-LineOrders trackedOrders(const GearParameters& gear, const BearingParameters& bearing);
+/// where  d, D, Z  ball diameter, pitch diameter [m], balls [-];  i  nominal ratio [-];  s  `slip` of cage and
+///        balls (bearing.cage_slip) [-]
+/// Source: rolling-bearing kinematics, contact angle 0 (e.g. Harris, Rolling Bearing Analysis, ch. 25).
+LineOrders trackedOrders(const GearParameters& gear, const BearingParameters& bearing, double slip = 0.0);
 }  // namespace hjt

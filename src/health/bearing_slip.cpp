@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "health/bearing_slip.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+#include <functional>
+
+#include "gear/angle.hpp"
+
+namespace hjt
+{
+/// Its order is `order` + `by_slip` s.
+struct BearingSlip::BearingLine
+{
+  std::size_t line{};
+  double order{};
+  double by_slip{};
+};
+
+namespace
+{
+using Complex = std::complex<double>;
+
+constexpr double BIN = TWO_PI / 8.0;  // of the motor angle, in which a line that slips stays in phase [rad]
+constexpr double NOISE_FROM = -BearingSlip::MOST;
+constexpr double NOISE_TO = 2.0 * BearingSlip::MOST;
+
+/// Squares of a line's Fourier sums by slip, in units of the noise about it. `sums`: of its bins without slip.
+std::vector<double> powersOf(const std::vector<Complex>& sums, double by_slip, double step, std::size_t steps)
+{
+  std::vector<Complex> turned(sums.size());
+  std::vector<Complex> turns(sums.size());
+  for (std::size_t bin = 0; bin < sums.size(); ++bin)
+  {
+    const double angle = BIN * static_cast<double>(bin);
+    turned[bin] = sums[bin] * std::polar(1.0, -by_slip * NOISE_FROM * angle);
+    turns[bin] = std::polar(1.0, -by_slip * step * angle);
+  }
+  std::vector<double> powers(steps);
+  for (double& power : powers)
+  {
+    Complex sum;
+    for (std::size_t bin = 0; bin < sums.size(); ++bin)
+    {
+      sum += turned[bin];
+      turned[bin] *= turns[bin];
+    }
+    power = std::norm(sum);
+  }
+  std::vector<double> sorted = powers;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(steps / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  const double noise = *middle / std::log(2.0);
+  for (double& power : powers)
+  {
+    power = noise > 0.0 ? power / noise : 0.0;
+  }
+  return powers;
+}
+}  // namespace
+
+BearingSlip::BearingSlip(const Parameters& parameters)
+  : gear_(parameters.gear), bearing_(parameters.bearing), rated_torque_(parameters.life.rated_torque)
+{
+}
+
+/// Those that slip moves far enough for the noise about them to be known.
+std::vector<BearingSlip::BearingLine> BearingSlip::linesOf(const OrderTracker& fitted) const
+{
+  constexpr double MOVES = 5.0;  // orders a slip of 1
+  const LineOrders without = trackedOrders(gear_, bearing_);
+  const LineOrders with = trackedOrders(gear_, bearing_, MOST);
+  std::vector<BearingLine> lines;
+  for (std::size_t line = 0; line < FIRST_LOADED; ++line)
+  {
+    const double by_slip = (with[line] - without[line]) / MOST;
+    if (std::abs(by_slip) > MOVES && fitted.line(LineSignal::MOTOR_RIPPLE, line).valid)
+    {
+      lines.push_back({ line, without[line], by_slip });
+    }
+  }
+  return lines;
+}
+
+double BearingSlip::find(const OrderTracker& fitted) const
+{
+  constexpr double CLEARLY = 25.0;
+  constexpr double FEWEST_TURNS = 10.0;  // fewer do not tell a line that slips from one that does not
+  constexpr double FINE = 0.25;          // steps of the slip, of what the fastest line resolves
+  const std::vector<BearingLine> lines = linesOf(fitted);
+  const auto [least, most] =
+      std::minmax_element(samples_.begin(), samples_.end(),
+                          [](const LineSample& a, const LineSample& b) { return a.motor_angle < b.motor_angle; });
+  const double range = samples_.empty() ? 0.0 : most->motor_angle - least->motor_angle;
+  if (lines.empty() || !(range > FEWEST_TURNS * TWO_PI))
+  {
+    return 0.0;
+  }
+  std::array<bool, FIRST_LOADED> kept{};
+  double fastest = 0.0;
+  for (const BearingLine& line : lines)
+  {
+    kept[line.line] = true;
+    fastest = std::max(fastest, std::abs(line.by_slip));
+  }
+  const double start = least->motor_angle;
+  std::vector<std::vector<Complex>> sums(lines.size(), std::vector<Complex>(static_cast<std::size_t>(range / BIN) + 1));
+  for (const LineSample& sample : samples_)
+  {
+    const double rest = sample.weight * fitted.rippleBeside(sample, kept);
+    const double angle = sample.motor_angle - start;
+    for (std::size_t k = 0; k < lines.size(); ++k)
+    {
+      sums[k][static_cast<std::size_t>(angle / BIN)] += std::polar(rest, -lines[k].order * angle);
+    }
+  }
+  const double zero_steps = std::ceil(-NOISE_FROM * fastest * range / (FINE * TWO_PI));
+  const double step = -NOISE_FROM / zero_steps;
+  const auto zero = static_cast<std::size_t>(zero_steps);
+  std::vector<double> all(static_cast<std::size_t>((NOISE_TO - NOISE_FROM) / step) + 1);
+  for (std::size_t k = 0; k < lines.size(); ++k)
+  {
+    const std::vector<double> powers = powersOf(sums[k], lines[k].by_slip, step, all.size());
+    std::transform(all.begin(), all.end(), powers.begin(), all.begin(), std::plus<>());
+  }
+  const auto first = all.begin() + static_cast<std::ptrdiff_t>(zero);
+  const auto best = std::max_element(first, first + static_cast<std::ptrdiff_t>(MOST / step) + 1);
+  return *best > *first + CLEARLY ? step * static_cast<double>(best - first) : 0.0;
+}
+
+OrderTracker BearingSlip::refit(double slip, double angle_step) const
+{
+  OrderTracker tracker(trackedOrders(gear_, bearing_, slip), rated_torque_);
+  for (const LineSample& sample : samples_)
+  {
+    tracker.add(sample);
+  }
+  tracker.fit(angle_step);
+  return tracker;
+}
+}  // namespace hjt

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "harmonic_joint_twin/health/tracked_lines.hpp"
+#include "health/order_tracker.hpp"
+
+namespace hjt
+{
+/// Slip of the wave generator's bearing over one window, by the lines of races and balls in the motor's ripple.
+///
+/// Law:   L(s) = sum_k |F_k(s)|^2 / n_k,   F_k(s) = sum w r exp(-j o_k(s) theta),   s* = argmax L(s), 0 <= s <= MOST
+/// where  r       ripple less all that the window's fit makes of it but for these lines [rad];  w  weight
+///        theta   motor angle [rad];  o_k(s)  orders with slip s (trackedOrders)
+///        n_k     of the noise about the line: median of |F_k|^2 over slips that no bearing has as well, over ln 2
+/// Without a line that slips L is the sum of squares of noise, whose largest value over s passes L(0) by CLEARLY in
+/// less than one window in 1000: s is then 0.
+/// Source: bearings slip by 1 to 2 % (Randall and Antoni, Mech. Syst. Signal Process. 25, 2011, 485-520).
+///
+/// Keeps every sample of a window: for recordings, not for a loop.
+class BearingSlip
+{
+public:
+  static constexpr double MOST = 0.03;  ///< [-]
+
+  explicit BearingSlip(const Parameters& parameters);
+
+  void reset() noexcept { samples_.clear(); }
+  void add(const LineSample& sample) { samples_.push_back(sample); }
+
+  /// `fitted`: to the samples, without slip. 0: none stands out [-].
+  double find(const OrderTracker& fitted) const;
+  /// All lines fitted to the samples at the orders of a bearing with that slip, `angle_step` as OrderTracker::fit.
+  OrderTracker refit(double slip, double angle_step) const;
+
+private:
+  struct BearingLine;
+  std::vector<BearingLine> linesOf(const OrderTracker& fitted) const;
+
+  GearParameters gear_;
+  BearingParameters bearing_;
+  double rated_torque_;  // [N.m]
+  std::vector<LineSample> samples_;
+};
+}  // namespace hjt
