@@ -33,6 +33,8 @@ TOOTH = 60
 SIZES = (8, 10, 12, 15, 16, 20, 40)             # windows of a reference
 WHOLE = ("interface_wear", "rear_section_crack", "lubricant_degradation", "flange_crack", "wave_generator_wear",
          "buckling")                            # of whole members: in the trial of small references
+WORN = ("tooth_wear", "interface_wear", "lubricant_degradation")  # that use makes together
+WORN_FROM, WORN_TO, WORN_DRIVES = 0.1, 0.5, 24  # severities of each; drives of a gear
 SHARE, FLOOR = 0.03, 0.22                       # of friction between recordings of one UR5: docs/compare.md [-], [N.m]
 WINDOW = {"indicators.window_time": 29.0, "indicators.window_turns": 1e5}
 OWN_SIGNALS = {"output_angle": "output_angle_encoder", "motor_torque": "motor_torque_reading",
@@ -81,6 +83,11 @@ def fault_classes():
             for name in hjt.fault_kinds()]
 
 
+def worn_class():
+    severity = f"severity: {{uniform: [{WORN_FROM}, {WORN_TO}]}}"
+    return f"  worn: [{', '.join(f'{{kind: {kind}, {severity}}}' for kind in WORN)}]"
+
+
 def wandering(index, folder, draw):
     """Copies of runs whose friction is that of another day: an indicator of friction is in proportion to it."""
     shutil.rmtree(folder, ignore_errors=True)
@@ -120,6 +127,7 @@ def trial(work, gear, seed):
     other = {beside: made(work, gear, f"payload_{beside}", seed + 3, OF_EACH,
                           settings=[f"  output.gravity_torque: {WEIGHT + beside}"]) for beside in BESIDE}
     faulty = made(work, gear, "faulty", seed + 4, 1, fault_classes())
+    worn = made(work, gear, "worn", seed + 5, WORN_DRIVES, [worn_class()])
     path = work / f"{gear.name}.yaml"
     assess = functools.partial(hjt.assess, reference=path, check_up=True)
 
@@ -141,6 +149,7 @@ def trial(work, gear, seed):
     draw = numpy.random.default_rng(seed)
     found["sound"] = assess(list(sound["file"]))
     found["friction"] = assess(wandering(sound, work / f"{gear.name}_wandering", draw))
+    found["worn"] = assess(list(worn["file"]))
     found["payloads"] = {beside: assess(list(index["file"])) for beside, index in other.items()}
     found["faulty"] = pandas.concat([faulty, assess(list(faulty["file"]))], axis=1)
     for rate in (125, RATE):
@@ -216,6 +225,18 @@ def faults_table(trials):
     return [*lines, "| cause right, in the set | " + " | ".join(right) + " |"]
 
 
+def worn_line(trials):
+    """Of drives whose teeth, interface and grease are worn together."""
+    verdicts = pandas.concat([found["worn"] for found in trials])
+    alarms = verdicts[verdicts["level"].isin(["WARN", "ERROR"])]
+    named = alarms["cause"].isin(WORN)
+    in_set = [any(kind in str(others).split(", ") for kind in WORN) for others in alarms["alternatives"]]
+    others = collections.Counter(alarms["cause"][~named]).most_common()
+    return (f"Teeth, interface and grease worn together, {WORN_FROM} to {WORN_TO} each: {len(alarms)} of {len(verdicts)} "
+            f"alarm, one of the three is named in {named.sum()}, one is in the set in {(named | in_set).sum()}"
+            + (f"; named instead: {', '.join(f'`{cause}` {count}' for cause, count in others)}." if others else "."))
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--work", type=pathlib.Path, required=True, help="folder for the recordings")
@@ -227,7 +248,7 @@ def main():
     hjt.checkup("ur5", work / "check_up.csv", joint="shoulder", force=True)
     trials = [trial(work, gear, 100 * place) for place, gear in enumerate(GEARS, 1)]
     lab.write_or_print(options.docs, "health.md", "repeats",
-                       [*repeats_table(trials), "", *sizes_table(trials), "", *faults_table(trials)])
+                       [*repeats_table(trials), "", *sizes_table(trials), "", *faults_table(trials), "", worn_line(trials)])
 
 
 if __name__ == "__main__":

@@ -74,6 +74,10 @@ private:
 constexpr double MISFIT_WEIGHT = 0.2;    // w_1: share of the evidence's weight that is left where no signature fits
 constexpr double MISFIT_SEVERITY = 0.5;  // share of the severity there: other drives soften up to three times as much
 
+constexpr std::array TOGETHER{ causeOf(FaultKind::TOOTH_WEAR), causeOf(FaultKind::INTERFACE_WEAR),
+                               causeOf(FaultKind::LUBRICANT_DEGRADATION) };  // wear by use (docs/life.md)
+constexpr double LESS = 0.4;  // severity of wear beside other, over that, where it is less
+
 /// Causes without signatures: anything of a strength S, and what is no wear of a gear.
 struct Unknown
 {
@@ -171,8 +175,61 @@ void CauseSearch::Sum::add(double weighted, double prior, double severity) noexc
   second += weight * severity * severity;
 }
 
+/// All signatures alone, then those that come together.
+std::vector<CauseSearch::Row> CauseSearch::rowsOf(const SignatureSet& set)
+{
+  std::vector<Row> rows;
+  std::array<double, CAUSE_COUNT> alone{};
+  std::array<double, CAUSE_COUNT> several{};
+  for (const Signature& signature : set.signatures)
+  {
+    rows.push_back({ { &signature } });
+    ++alone[static_cast<std::size_t>(signature.cause)];
+  }
+  const auto beside = [&](const Signature& first, Cause cause)
+  {
+    std::vector<const Signature*> found{ nullptr };
+    for (const Signature& other : set.signatures)
+    {
+      const double share = other.severity / first.severity;
+      const bool is_level = share == 1.0 || std::abs(share - LESS) < 0.05 * LESS;
+      if (other.cause == cause && is_level && other.motion.speed == first.motion.speed &&
+          other.motion.direction == first.motion.direction)
+      {
+        found.push_back(&other);
+      }
+    }
+    return found;
+  };
+  for (const Signature& first : set.signatures)
+  {
+    const auto own = std::find(TOGETHER.begin(), TOGETHER.end(), first.cause) - TOGETHER.begin();
+    if (own == static_cast<std::ptrdiff_t>(TOGETHER.size()))
+    {
+      continue;
+    }
+    for (const Signature* second : beside(first, TOGETHER[(own + 1) % TOGETHER.size()]))
+    {
+      for (const Signature* third : beside(first, TOGETHER[(own + 2) % TOGETHER.size()]))
+      {
+        if (second != nullptr || third != nullptr)
+        {
+          rows.push_back({ { &first, second, third } });
+          ++several[static_cast<std::size_t>(first.cause)];
+        }
+      }
+    }
+  }
+  for (auto row = rows.begin() + static_cast<std::ptrdiff_t>(set.signatures.size()); row != rows.end(); ++row)
+  {
+    const auto cause = static_cast<std::size_t>(row->parts.front()->cause);
+    row->prior = alone[cause] / several[cause];
+  }
+  return rows;
+}
+
 CauseSearch::CauseSearch(std::shared_ptr<const SignatureSet> set)
-  : set_(std::move(set)), likelihoods_(set_->signatures.size() + UNKNOWNS.size())
+  : set_(std::move(set)), rows_(rowsOf(*set_)), likelihoods_(rows_.size() + UNKNOWNS.size())
 {
   start();
 }
@@ -186,7 +243,7 @@ void CauseSearch::start() noexcept
 
 void CauseSearch::advance(const WindowResidual& residual, const OperatingPoint& point, std::size_t count) noexcept
 {
-  const std::vector<Signature>& known = set_->signatures;
+  const std::size_t known = rows_.size();
   const std::size_t rows = likelihoods_.size();
   const std::size_t end = std::min(next_ + count, signatures());
   if (next_ < rows)
@@ -194,19 +251,21 @@ void CauseSearch::advance(const WindowResidual& residual, const OperatingPoint& 
     const SignatureTerms terms(*set_, residual);
     for (; next_ < std::min(end, rows); ++next_)
     {
-      if (next_ < known.size())
+      if (next_ < known)
       {
-        likelihoods_[next_] = terms.logLikelihood(known[next_], 0.0, likeness(known[next_].motion, point));
+        const SignatureTerms::Parts& parts = rows_[next_].parts;
+        likelihoods_[next_] = terms.logLikelihood(parts, 0.0, likeness(parts.front()->motion, point));
         continue;
       }
-      const Unknown& unknown = UNKNOWNS[next_ - known.size()];
-      likelihoods_[next_] = terms.logLikelihood(signatureOf(unknown, residual), strengthOf(unknown), 1.0);
+      const Unknown& unknown = UNKNOWNS[next_ - known];
+      const Signature signature = signatureOf(unknown, residual);
+      likelihoods_[next_] = terms.logLikelihood({ &signature }, strengthOf(unknown), 1.0);
     }
     if (next_ == rows)
     {
-      const auto unknown = likelihoods_.begin() + static_cast<std::ptrdiff_t>(known.size());
+      const auto unknown = likelihoods_.begin() + static_cast<std::ptrdiff_t>(known);
       const auto best = std::max_element(likelihoods_.begin(), unknown) - likelihoods_.begin();
-      misfit_ = known.empty() ? 1.0 : terms.misfit(known[static_cast<std::size_t>(best)]);
+      misfit_ = known == 0 ? 1.0 : terms.misfit(rows_[static_cast<std::size_t>(best)].parts);
       const double weight = set_->evidence_weight * (MISFIT_WEIGHT + (1.0 - MISFIT_WEIGHT) / misfit_);
       const double largest = *std::max_element(likelihoods_.begin(), likelihoods_.end());
       for (double& likelihood : likelihoods_)
@@ -218,15 +277,15 @@ void CauseSearch::advance(const WindowResidual& residual, const OperatingPoint& 
   for (; next_ < end; ++next_)
   {
     const std::size_t row = next_ - rows;
-    if (row < known.size())
+    if (row < known)
     {
-      const Signature& signature = known[row];
-      sums_[static_cast<std::size_t>(signature.cause)].add(
-          likelihoods_[row], OTHER_MOTION + likeness(signature.motion, point), signature.severity);
+      const Signature& first = *rows_[row].parts.front();
+      const double prior = rows_[row].prior * (OTHER_MOTION + likeness(first.motion, point));
+      sums_[static_cast<std::size_t>(first.cause)].add(likelihoods_[row], prior, first.severity);
     }
     else
     {
-      sums_[static_cast<std::size_t>(Cause::NONE)].add(likelihoods_[row], UNKNOWNS[row - known.size()].prior(), 0.0);
+      sums_[static_cast<std::size_t>(Cause::NONE)].add(likelihoods_[row], UNKNOWNS[row - known].prior(), 0.0);
     }
   }
 }

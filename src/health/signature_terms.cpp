@@ -78,18 +78,23 @@ SignatureTerms::SignatureTerms(const SignatureSet& set, const WindowResidual& re
   }
 }
 
-double SignatureTerms::logLikelihood(const Signature& signature, double strength, double alike) const noexcept
+double SignatureTerms::logLikelihood(const Parts& parts, double strength, double alike) const noexcept
 {
   std::array<double, INDICATOR_COUNT> changes{};  // by the signature
   double length = 0.0;
   for (std::size_t i = 0; i < count_; ++i)
   {
     const Term& term = terms_[i];
-    changes[i] = changeBy(signature, term);
+    changes[i] = changeBy(parts, term);
     length += (term.has_phase ? 0.5 : 1.0) * changes[i] * changes[i] / term.own;
   }
   const double widening = 1.0 + strength * strength + set_.length_error * set_.length_error * length;
-  const double of_lines = set_.line_error * set_.line_error * signature.severity * signature.severity;
+  double severities = 0.0;  // squares
+  for (const Signature* part : parts)
+  {
+    severities += part != nullptr ? part->severity * part->severity : 0.0;
+  }
+  const double of_lines = set_.line_error * set_.line_error * severities;
   const double of_number =
       set_.number_error * set_.number_error + (1.0 - alike) * set_.motion_error * set_.motion_error;
   CausesSquare inner = CausesSquare::Identity();
@@ -122,7 +127,7 @@ double SignatureTerms::logLikelihood(const Signature& signature, double strength
          (log_determinant + (freedom_ + static_cast<double>(count_)) * std::log1p(std::max(square, 0.0) / freedom_));
 }
 
-double SignatureTerms::misfit(const Signature& signature) const noexcept
+double SignatureTerms::misfit(const Parts& parts) const noexcept
 {
   CausesSquare inner = CausesSquare::Identity();
   Causes projected = Causes::Zero();
@@ -130,7 +135,7 @@ double SignatureTerms::misfit(const Signature& signature) const noexcept
   for (std::size_t i = 0; i < count_; ++i)
   {
     const Term& term = terms_[i];
-    const double left = term.difference - (term.has_phase ? 0.0 : changeBy(signature, term));
+    const double left = term.difference - (term.has_phase ? 0.0 : changeBy(parts, term));
     const Causes weighted = term.common / term.own;
     inner.noalias() += weighted * term.common.transpose();
     projected += weighted * left;
@@ -157,6 +162,16 @@ double SignatureTerms::changeBy(const Signature& signature, const Term& term) co
 {
   const double change = shareOrChange(signature, term);
   return term.number < SCALAR_COUNT || term.has_phase || change == 0.0 ? change : amplitudeChange(term.sound, change);
+}
+
+double SignatureTerms::changeBy(const Parts& parts, const Term& term) const noexcept
+{
+  double change = 0.0;
+  for (const Signature* part : parts)
+  {
+    change += part != nullptr ? changeBy(*part, term) : 0.0;
+  }
+  return change;
 }
 
 SignatureTerms::Direction SignatureTerms::direction(const std::vector<std::size_t>& rows,

@@ -21,12 +21,15 @@ class SignatureTerms
 public:
   SignatureTerms(const SignatureSet& set, const WindowResidual& residual) noexcept;
 
-  /// Natural logarithm, less what is the same for all. `strength`: S of what is in no table, beside the change.
-  /// `alike`: its motion and the window's, 0 ... 1.
-  double logLikelihood(const Signature& signature, double strength, double alike) const noexcept;
+  /// Signatures that come together; null: no more.
+  using Parts = std::array<const Signature*, 3>;
 
-  /// Mean square of what the signature leaves of the differences, in a sound drive's spreads; 1 at least.
-  double misfit(const Signature& signature) const noexcept;
+  /// Natural logarithm, less what is the same for all. `strength`: S of what is in no table, beside the change.
+  /// `alike`: their motion and the window's, 0 ... 1.
+  double logLikelihood(const Parts& parts, double strength, double alike) const noexcept;
+
+  /// Mean square of what the signatures leave of the differences, in a sound drive's spreads; 1 at least.
+  double misfit(const Parts& parts) const noexcept;
 
   using Direction = std::array<double, INDICATOR_COUNT>;
 
@@ -62,6 +65,7 @@ private:
   void addDirection(const Signature& signature, double weight, Direction& direction) const noexcept;
   double shareOrChange(const Signature& signature, const Term& term) const noexcept;
   double changeBy(const Signature& signature, const Term& term) const noexcept;
+  double changeBy(const Parts& parts, const Term& term) const noexcept;
   void add(const WindowResidual& residual, std::size_t indicator, std::size_t number,
            std::optional<double> line_square = {}) noexcept;
 

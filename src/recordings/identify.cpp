@@ -118,14 +118,13 @@ constexpr int ARM_FOLDS = 5;
 /// kept.
 constexpr double RIPPLE_GAIN = 0.95;
 
-/// The parts to identify and to judge on, as given or by default.
-void chooseParts(const IdentifyOptions& options, double duration, double last, IdentifiedJoint& joint)
+/// @throws InputError for parts that no recording has.
+void requireParts(const IdentifyOptions& options)
 {
-  const bool is_arm = !options.arm.empty();
-  const double third = duration / 3.0;
-  const Span whole{ 0.0, last + PAST_THE_END };
-  joint.train = options.train.value_or(is_arm ? whole : Span{ 0.0, third });
-  joint.judge = options.judge.value_or(is_arm ? whole : Span{ third, duration + PAST_THE_END });
+  if (!options.arm.empty() && options.judge)
+  {
+    throw InputError("judge: of one joint alone; those of an arm are judged on pieces left out in turn (folds)");
+  }
   for (const std::optional<Span>& part : { options.train, options.judge })
   {
     if (part && !(part->from < part->to))
@@ -134,6 +133,16 @@ void chooseParts(const IdentifyOptions& options, double duration, double last, I
                        " s ends before it begins");
     }
   }
+}
+
+/// The parts to identify and to judge on, as given or by default.
+void chooseParts(const IdentifyOptions& options, double duration, double last, IdentifiedJoint& joint)
+{
+  const bool is_arm = !options.arm.empty();
+  const double third = duration / 3.0;
+  const Span whole{ 0.0, last + PAST_THE_END };
+  joint.train = options.train.value_or(is_arm ? whole : Span{ 0.0, third });
+  joint.judge = options.judge.value_or(is_arm ? whole : Span{ third, duration + PAST_THE_END });
 }
 
 /// Pieces that are left out in turn: those of an arm judge what was identified.
@@ -260,6 +269,7 @@ std::vector<IdentifiedJoint> identifyJoints(const IdentifyOptions& options, cons
 
 Identified identify(const IdentifyOptions& options)
 {
+  requireParts(options);
   const ArmRecording recording(options);
   if (!options.out.empty())
   {

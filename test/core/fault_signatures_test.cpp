@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <numeric>
 #include <random>
@@ -344,6 +345,41 @@ TEST(OperatingBin, StepsWithTheGearsTorqueAndTakesAnyNumber)
     EXPECT_LE(std::abs(bin.temperature), 1'000'000) << huge;
     EXPECT_LE(std::abs(bin.speed), 1100) << huge;
   }
+}
+/// The teeth most, the interface as much, the grease less: no one signature is like it.
+TEST_F(AgainstSignatures, WearThatComesTogetherIsNoOtherFault)
+{
+  const auto is = [](const Signature& signature, FaultKind kind, double severity)
+  { return signature.cause == causeOf(kind) && signature.severity == severity; };
+  const auto probabilityOf = [](const CausePosterior& posterior, FaultKind kind)
+  { return posterior.probability[static_cast<std::size_t>(causeOf(kind))]; };
+  int windows = 0;
+  for (const Signature& teeth : signatures_->signatures)
+  {
+    std::array<double, SIGNATURE_SIZE> change = teeth.change;
+    int parts = 0;
+    for (const Signature& other : signatures_->signatures)
+    {
+      const bool is_alike =
+          other.motion.speed == teeth.motion.speed && other.motion.direction == teeth.motion.direction;
+      if (is_alike && (is(other, FaultKind::INTERFACE_WEAR, 0.4) || is(other, FaultKind::LUBRICANT_DEGRADATION, 0.16)))
+      {
+        std::transform(change.begin(), change.end(), other.change.begin(), change.begin(), std::plus<>());
+        ++parts;
+      }
+    }
+    if (!is(teeth, FaultKind::TOOTH_WEAR, 0.4) || parts < 2)
+    {
+      continue;
+    }
+    ++windows;
+    const CausePosterior found = posterior(change, teeth.motion);
+    EXPECT_GT(probabilityOf(found, FaultKind::TOOTH_WEAR) + probabilityOf(found, FaultKind::INTERFACE_WEAR) +
+                  probabilityOf(found, FaultKind::LUBRICANT_DEGRADATION),
+              0.9)
+        << teeth.motion.speed;
+  }
+  EXPECT_GE(windows, 8);
 }
 }  // namespace
 }  // namespace hjt

@@ -160,6 +160,7 @@ class Arm(ArmTest):
         self.succeed("follow", "still.csv", "--arm", "ur5", "--out", "robot", *changes)
         predicted = np.array([self.columns(f"robot/{name}.csv")["current_predicted"] for name in SHORT_NAMES]).T
         self.write("robot.csv", arm_csv(predicted.tolist()))
+        self.fail_with(1, ["judge: of one joint alone"], "identify", "robot.csv", "--arm", "ur5", "--judge", "0,9")
         self.succeed("identify", "robot.csv", "--arm", "ur5", "--out", "found")
 
     def test_no_overlay_is_out_of_range(self):

@@ -227,6 +227,9 @@ struct CausePosterior
 ///                 least, and the less is known of the severity;  numbers compared
 ///        n, q     MotionKind of the window, of the signature: where a line meets a resonance of the drive, it is the
 ///                 larger part of every signature, elsewhere of none;  N = 0.2, Q = 0.3, w_0 = 0.001
+/// Teeth, interface and grease wear together: h is also the sum of the signatures of two or three of them in one motion,
+/// the others of the severity of the first or two fifths of it. It counts for the first, and all such sums together as
+/// much beforehand as its signatures alone.
 /// Stiffness changes as a compliance does: mu = c x^2 / x_h,  c  share by the signature, x  sound value of the window's
 /// motion, x_h  of SignatureSet::sound. An eccentric encoder adds the same to the compliance of every drive.
 /// Something of no signature: mu = 0, e S = 3, 10, 30, 100. With a tenth of the weight each, what is no fault of a
@@ -255,6 +258,16 @@ public:
   CausePosterior posterior() const noexcept;  ///< once it is done
 
 private:
+  static constexpr std::size_t PARTS = 3;
+
+  /// One signature of the set, or several that come together.
+  struct Row
+  {
+    std::array<const Signature*, PARTS> parts{};  // the first that it counts for; null: no more
+    double prior{ 1.0 };                          // beside that of a signature alone
+  };
+  static std::vector<Row> rowsOf(const SignatureSet& set);
+
   /// Over the signatures of one cause.
   struct Sum
   {
@@ -268,7 +281,8 @@ private:
   };
 
   std::shared_ptr<const SignatureSet> set_;
-  std::vector<double> likelihoods_;  // logarithms; of the set, then of what is in none; after the first pass times b
+  std::vector<Row> rows_;
+  std::vector<double> likelihoods_;  // logarithms; of the rows, then of what is in none; after the first pass times b
   double misfit_{ 1.0 };             // f, after the first pass
   std::array<Sum, CAUSE_COUNT> sums_{};
   std::size_t next_{};

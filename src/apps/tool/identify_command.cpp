@@ -95,7 +95,7 @@ void declare(Command& command, PrintedIdentify& options)
   command
       .add("--train", options.train_pair, "from,to: part to identify on; default: the first third, of an arm all [s]")
       .pair();
-  command.add("--judge", options.judge_pair, "from,to: part to test on; default: the rest, of an arm all [s]").pair();
+  command.add("--judge", options.judge_pair, "of one joint, from,to: part to test on; default: the rest [s]").pair();
   command
       .add("--folds", options.folds,
            "cuts the part to identify on into this many pieces and predicts each from the others; of an arm 5 by "
