@@ -22,6 +22,7 @@ public:
     : recording_(recording), twin_(spec.parameters, source), feeder_(spec.duty, twin_)
   {
     twin_.watchSignals(recording.format == RunFormat::BAG);  // a bag holds the indicators, from the start on
+    twin_.seekBearingSlip();
     twin_.reset(SIMULATION_EPOCH);
   }
 

@@ -95,7 +95,7 @@ double BearingSlip::find(const OrderTracker& fitted) const
       std::minmax_element(samples_.begin(), samples_.end(),
                           [](const LineSample& a, const LineSample& b) { return a.motor_angle < b.motor_angle; });
   const double range = samples_.empty() ? 0.0 : most->motor_angle - least->motor_angle;
-  if (lines.empty() || !(range > FEWEST_TURNS * TWO_PI))
+  if (lines.empty() || samples_.size() > MOST_SAMPLES || !(range > FEWEST_TURNS * TWO_PI))
   {
     return 0.0;
   }

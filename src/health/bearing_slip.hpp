@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <optional>
+#include <cstddef>
 #include <vector>
 
 #include "harmonic_joint_twin/health/tracked_lines.hpp"
@@ -19,7 +19,8 @@ namespace hjt
 /// less than one window in 1000: s is then 0.
 /// Source: bearings slip by 1 to 2 % (Randall and Antoni, Mech. Syst. Signal Process. 25, 2011, 485-520).
 ///
-/// Keeps every sample of a window: for recordings, not for a loop.
+/// Keeps every sample of a window: for recordings and data sets, not for a loop. A window of more than a million has no
+/// slip looked for.
 class BearingSlip
 {
 public:
@@ -28,7 +29,13 @@ public:
   explicit BearingSlip(const Parameters& parameters);
 
   void reset() noexcept { samples_.clear(); }
-  void add(const LineSample& sample) { samples_.push_back(sample); }
+  void add(const LineSample& sample)
+  {
+    if (samples_.size() <= MOST_SAMPLES)
+    {
+      samples_.push_back(sample);
+    }
+  }
 
   /// `fitted`: to the samples, without slip. 0: none stands out [-].
   double find(const OrderTracker& fitted) const;
@@ -36,6 +43,8 @@ public:
   OrderTracker refit(double slip, double angle_step) const;
 
 private:
+  static constexpr std::size_t MOST_SAMPLES = 1000000;
+
   struct BearingLine;
   std::vector<BearingLine> linesOf(const OrderTracker& fitted) const;
 

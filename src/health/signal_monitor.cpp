@@ -28,14 +28,13 @@ constexpr int MIN_RESIDUALS = 100;          // for moments of the fourth order
 constexpr double FRICTION_WINDOWS = 10.0;   // memory of the friction estimate
 }  // namespace
 
-SignalMonitor::SignalMonitor(const Parameters& parameters, Slip slip)
+SignalMonitor::SignalMonitor(const Parameters& parameters)
   : ratio_(nominalRatio(parameters.gear))
   , output_(parameters.output)
   , output_inertia_(parameters.output.circular_spline_inertia + parameters.output.load_inertia)
   , motor_inertia_(ratio_ * ratio_ * (parameters.motor.rotor_inertia + parameters.motor.wave_generator_inertia))
   , parameters_(parameters.indicators)
   , tracker_(trackedOrders(parameters.gear, parameters.bearing), parameters.life.rated_torque)
-  , slip_(slip == Slip::SOUGHT ? std::optional<BearingSlip>(parameters) : std::nullopt)
   , friction_(FRICTION_WINDOWS * TWO_PI * parameters.indicators.window_turns)
   , loop_(parameters.health, parameters.indicators)
   , turn_(parameters.gear)

@@ -16,8 +16,8 @@
 #include "harmonic_joint_twin/health/indicator.hpp"
 #include "harmonic_joint_twin/health/signal_indicators.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
-#include "health/efficiency_estimate.hpp"
 #include "health/bearing_slip.hpp"
+#include "health/efficiency_estimate.hpp"
 #include "health/order_tracker.hpp"
 #include "health/running_regression.hpp"
 #include "health/signal_sample.hpp"
@@ -338,15 +338,11 @@ private:
 class SignalMonitor
 {
 public:
-  /// Whether the bearing may slip: its slip is looked for in every window with a motor encoder (BearingSlip), which
-  /// allocates.
-  enum class Slip
-  {
-    NONE,
-    SOUGHT
-  };
+  explicit SignalMonitor(const Parameters& parameters);
 
-  explicit SignalMonitor(const Parameters& parameters, Slip slip = Slip::NONE);
+  /// Looks for the bearing's slip in every further window with a motor encoder (BearingSlip); allocates, as updates do
+  /// then.
+  void seekBearingSlip(const Parameters& parameters) { slip_.emplace(parameters); }
 
   void reset() noexcept;
 

@@ -69,7 +69,8 @@ void noticeSteps(std::vector<float> steps, const std::string& recording, const W
 std::vector<SignalIndicators> readWindows(const std::string& recording, const SignalOptions& options,
                                           const Parameters& parameters, const Watch& watch)
 {
-  SignalMonitor monitor(parameters, SignalMonitor::Slip::SOUGHT);
+  SignalMonitor monitor(parameters);
+  monitor.seekBearingSlip(parameters);
   std::vector<SignalIndicators> windows;
   std::vector<float> steps;  // between samples [s]
   std::int64_t last = 0;

@@ -182,7 +182,8 @@ Condition readRecordings(const RemainingOptions& options, Assessor& assessor, Us
     {
       std::for_each(windows->begin(), windows->end(), judge);
     }
-    SignalMonitor monitor(parameters.values, SignalMonitor::Slip::SOUGHT);
+    SignalMonitor monitor(parameters.values);
+    monitor.seekBearingSlip(parameters.values);
     RecordedUse recorded(parameters.values, use);
     const auto take = [&](const SignalSample& sample)
     {

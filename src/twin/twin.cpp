@@ -172,6 +172,11 @@ void Twin::watchSignals(bool on) noexcept
   impl_->watching = on;
 }
 
+void Twin::seekBearingSlip()
+{
+  impl_->signals.seekBearingSlip(impl_->parameters);
+}
+
 bool Twin::watchesSignals() const noexcept
 {
   return impl_->watching;

@@ -94,11 +94,13 @@ TEST(TrackedOrders, OfABearingThatSlipsAreThoseOfSlowerCageAndBalls)
 class SlippingJoint
 {
 public:
-  SlippingJoint(SignalMonitor::Slip sought, double slip, double amplitude, unsigned seed)
-    : generator_(seed)
-    , orders_(trackedOrders(parameters().gear, parameters().bearing, slip))
-    , joint_(parameters(), sought)
+  SlippingJoint(bool is_sought, double slip, double amplitude, unsigned seed)
+    : generator_(seed), orders_(trackedOrders(parameters().gear, parameters().bearing, slip)), joint_(parameters())
   {
+    if (is_sought)
+    {
+      joint_.monitor.seekBearingSlip(parameters());
+    }
     joint_.quantised = false;
     joint_.speed = [](double time) { return 100.0 + 20.0 * std::sin(3.0 * time); };
     joint_.ripple = [this, amplitude](double angle, double, double)
@@ -124,17 +126,17 @@ TEST(BearingSlip, LinesOfABearingThatSlipsAreFoundWhereTheyAre)
   constexpr double AMPLITUDE = 2e-5;
   for (const double slip : { 0.0, 0.004, 0.0131, 0.0257 })
   {
-    const auto found = [&](SignalMonitor::Slip sought)
-    { return SlippingJoint(sought, slip, AMPLITUDE, 3).window().amplitude(LineSignal::MOTOR_RIPPLE, Line::OUTER); };
-    EXPECT_NEAR(found(SignalMonitor::Slip::SOUGHT), AMPLITUDE, 0.2 * AMPLITUDE) << slip;
-    EXPECT_TRUE(slip == 0.0 || found(SignalMonitor::Slip::NONE) < 0.5 * AMPLITUDE) << slip;
+    const auto found = [&](bool is_sought)
+    { return SlippingJoint(is_sought, slip, AMPLITUDE, 3).window().amplitude(LineSignal::MOTOR_RIPPLE, Line::OUTER); };
+    EXPECT_NEAR(found(true), AMPLITUDE, 0.2 * AMPLITUDE) << slip;
+    EXPECT_TRUE(slip == 0.0 || found(false) < 0.5 * AMPLITUDE) << slip;
   }
 }
 
 TEST(BearingSlip, NoneIsFoundInNoise)
 {
-  SlippingJoint sought(SignalMonitor::Slip::SOUGHT, 0.0, 0.0, 7);
-  SlippingJoint without(SignalMonitor::Slip::NONE, 0.0, 0.0, 7);
+  SlippingJoint sought(true, 0.0, 0.0, 7);
+  SlippingJoint without(false, 0.0, 0.0, 7);
   for (int window = 0; window < 100; ++window)
   {
     const SignalIndicators found = sought.window();

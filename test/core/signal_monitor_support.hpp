@@ -34,9 +34,9 @@ constexpr std::int64_t SAMPLE = 500000;  // [ns]
 class Synthetic
 {
 public:
-  explicit Synthetic(const Parameters& parameters, SignalMonitor::Slip slip = SignalMonitor::Slip::NONE)
+  explicit Synthetic(const Parameters& parameters)
     : orders(trackedOrders(parameters.gear, parameters.bearing))
-    , monitor(parameters, slip)
+    , monitor(parameters)
     , motor_encoder_(parameters.sensors)
     , output_encoder_(parameters.sensors)
   {

@@ -172,7 +172,10 @@ public:
   /// Whether indicators and assessment are made of the sensors' readings; off at first. What was learned goes with
   /// `reset`.
   void watchSignals(bool on) noexcept;
-  bool watchesSignals() const noexcept;                       ///< as set by watchSignals
+  bool watchesSignals() const noexcept;  ///< as set by watchSignals
+  /// From the next window on, the indicators have the bearing's lines where it slips, as those of a recording. For runs
+  /// that are not in a loop: it keeps every sample of a window, and steps allocate.
+  void seekBearingSlip();
   const SignalIndicators& signalIndicators() const noexcept;  ///< of the last window
   /// Of the last window. If it is in alarm, from 50 ms after its end on: the search for its cause takes that long.
   const Assessment& assessment() const noexcept;
