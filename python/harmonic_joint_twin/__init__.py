@@ -2,9 +2,9 @@
 """Digital twin of a robot joint's harmonic drive, tooth by tooth: `import harmonic_joint_twin as hjt` (docs/python.md).
 
 Parameters, Twin, static analyses and Tracker come from the extension module _hjt, which is loaded when the first of
-them is used: programs that want the messages in harmonic_joint_twin.msg alone do without it. The tool's commands on
-recordings and data sets come from _commands, whose extension module _tool is loaded when the first of them runs; the
-whole arm as an object from _arm; what gives frames of pandas from _data_sets.
+them is used: programs that want the messages in harmonic_joint_twin.msg alone do without it. Functions on recordings
+and data sets come from _commands, whose extension module _recordings is loaded when the first of them runs; the whole
+arm as an object from _arm; what gives frames of pandas from _data_sets.
 """
 import importlib
 

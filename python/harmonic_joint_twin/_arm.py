@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any, Dict, List, Optional, Sequence
 
 import numpy as np
 
-from harmonic_joint_twin._commands import Overlays, Path, Progress, Recording, _several
+from harmonic_joint_twin._commands import Overlays, Path, Progress, Recording, _arguments
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -27,12 +27,9 @@ class Arm:
     def __init__(self, arm: Path, start: Optional[Sequence[float]] = None, *, payload: Optional[float] = None,
                  faults: Sequence[str] = (), identified: Optional[Path] = None, overlays: Overlays = (),
                  progress: Optional[Progress] = None) -> None:
+        given = {name: value for name, value in locals().items() if name != "self"}
         from harmonic_joint_twin import _recordings
-        options: Dict[str, Any] = {"arm": os.fspath(arm), "start": start, "payload": payload,
-                                   "faults": _several(faults), "progress": progress,
-                                   "identified": None if identified is None else os.fspath(identified)}
-        self._arm = _recordings.Arm({**{name: value for name, value in options.items() if value is not None},
-                                     "overlays": _several(overlays)})
+        self._arm = _recordings.Arm(_arguments(given))
 
     @property
     def joints(self) -> List[str]:

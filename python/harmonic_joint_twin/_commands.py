@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Functions on recordings and data sets, as the tool's commands: each returns what the command prints as JSON."""
-import json
 import os
 import sys
-import tempfile
 import warnings
 from typing import TYPE_CHECKING, Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, Union, cast
 
@@ -26,28 +24,6 @@ Recording = Union[Path, Arrays]
 __all__ = ["arm", "check", "checkup", "compare", "follow", "identify", "indicators", "lives", "remaining", "sweep",
            "trend"]
 
-_NOISE = "joint_twin: "  # before the tool's messages
-
-
-def _own_words(messages: str) -> str:
-    lines = (line[len(_NOISE):] if line.startswith(_NOISE) else line for line in messages.splitlines())
-    return "\n".join(line for line in lines if line.strip())
-
-
-def _text(value: Any) -> str:
-    if isinstance(value, (list, tuple)):
-        return ",".join(_text(entry) for entry in value)
-    return str(value)  # of a Path its path
-
-
-def _write_overlay(values: Mapping[str, Value], path: str) -> None:
-    sections: Dict[str, Dict[str, Value]] = {}
-    for key, value in values.items():
-        section, _, name = key.partition(".")
-        sections.setdefault(section, {})[name] = value
-    with open(path, "w", encoding="utf-8") as file:
-        json.dump(sections, file, default=lambda value: value.tolist())  # numpy's; JSON is YAML
-
 
 def _remark(notices: Sequence[str]) -> None:
     """Warns at the line outside of this package, once for all recordings that are not judged for one reason."""
@@ -65,49 +41,6 @@ def _remark(notices: Sequence[str]) -> None:
         warnings.warn(f"{NOT_JUDGED}{first}{more}: {reason}" if first else reason, RuntimeWarning, stacklevel=level + 1)
 
 
-def _run(command: str, positional: Sequence[Path], options: Mapping[str, Any], overlays: Overlays = ()) -> Document:
-    """Runs a command; options that are None or False are left out."""
-    from harmonic_joint_twin import _tool
-    with tempfile.TemporaryDirectory() as folder:
-        words: List[str] = ["joint_twin", command, *map(_text, positional), "--json"]
-        for name, value in options.items():
-            if value is not None and value is not False:
-                words += ["--" + name.replace("_", "-")] + ([] if value is True else [_text(value)])
-        for place, overlay in enumerate(_several(overlays)):
-            if isinstance(overlay, Mapping):
-                path = os.path.join(folder, f"overlays[{place}]")
-                _write_overlay(overlay, path)
-            else:
-                path = str(overlay)
-            words += ["--config", path]
-        code, document, messages = _tool.run(words)
-    words_of_tool = _own_words(messages)
-    if code == 2:
-        raise _hjt.InputError(words_of_tool)
-    if not document:
-        raise RuntimeError(words_of_tool)
-    _remark(words_of_tool.splitlines())
-    found = json.loads(document)
-    assert isinstance(found, dict)
-    return found
-
-
-def check(recording: Path, arm: Optional[str] = None, *, topic: Optional[str] = None,
-          time_scale: Optional[float] = None, overlays: Overlays = ()) -> Document:
-    """What of an arm's recording is usable and what does not fit: the tool's check (docs/arm.md).
-
-    recording: bag, or CSV of a UR controller. arm: name in config/arms, or a file; None: found by the joints' names.
-    topic: of the telemetry in a bag. time_scale: factor on the stamps [-]. overlays: files or dicts of parameters,
-    later wins.
-
-    Returns a dict: 'usable', 'arm', 'findings', 'joints' (one dict each), 'next' (commands) and more. InputError,
-    ParameterError.
-    """
-    if not isinstance(recording, (str, os.PathLike)):
-        raise _hjt.InputError("check reads a file; of arrays, identify, compare and follow say what is wrong")
-    return _run("check", [recording], {"arm": arm, "topic": topic, "time_scale": time_scale}, overlays)
-
-
 def _plain(value: Any) -> Any:
     return os.fspath(value) if isinstance(value, os.PathLike) else value
 
@@ -119,14 +52,37 @@ def _several(values: Any) -> List[Any]:
     return list(map(_plain, [values] if isinstance(values, (str, os.PathLike, Mapping)) else values))
 
 
-def _call(function: str, options: Mapping[str, Any], overlays: Overlays) -> Document:
-    """Calls a function of _recordings; options that are None are left out."""
+# Arguments for which one by itself may stand.
+LISTS = ("faults", "models", "overlays", "recordings", "reference")
+
+
+def _arguments(given: Mapping[str, Any]) -> Dict[str, Any]:
+    """Of a function, as _recordings takes them: those that are None are left out."""
+    return {name: _several(value) if name in LISTS else _plain(value) for name, value in given.items()
+            if value is not None}
+
+
+def _call(function: str, given: Mapping[str, Any]) -> Document:
+    """Calls a function of _recordings with the arguments of the one here."""
     from harmonic_joint_twin import _recordings
-    arguments = {name: _plain(value) for name, value in options.items() if value is not None}
-    found, notices = getattr(_recordings, function)({**arguments, "overlays": _several(overlays)})
+    found, notices = getattr(_recordings, function)(_arguments(given))
     _remark(notices)
     assert isinstance(found, dict)
     return found
+
+
+def check(recording: Recording, arm: Optional[str] = None, *, topic: Optional[str] = None,
+          time_scale: Optional[float] = None, overlays: Overlays = (), progress: Optional[Progress] = None) -> Document:
+    """What of an arm's recording is usable and what does not fit: the tool's check (docs/arm.md).
+
+    recording: as of identify, of all joints of an arm. arm: name in config/arms, or a file; None: found by the joints'
+    names, of columns by the currents. topic: of the telemetry in a bag. time_scale: factor on the stamps [-]. overlays:
+    files or dicts of parameters, later wins. progress: as of identify.
+
+    Returns a dict: 'usable', 'arm', 'findings', 'joints' (one dict each), 'next' (commands, none of columns) and more.
+    InputError, ParameterError.
+    """
+    return _call("check", locals())
 
 
 def identify(recording: Recording, *, joint: Optional[str] = None, arm: Optional[str] = None,
@@ -150,10 +106,7 @@ def identify(recording: Recording, *, joint: Optional[str] = None, arm: Optional
     ripple, 'judged' errors of the current [A]; of an arm 'joints' and 'payload'. What is not identifiable is warned of.
     InputError, ParameterError.
     """
-    return _call("identify",
-                 {"recording": recording, "joint": joint, "arm": arm, "out": out, "train": train, "judge": judge,
-                  "folds": folds, "load": load, "identified": identified, "topic": topic, "time_scale": time_scale,
-                  "force": force, "progress": progress}, overlays)
+    return _call("identify", locals())
 
 
 def compare(recording: Recording, report: Optional[Path] = None, *, joint: Optional[str] = None,
@@ -170,10 +123,7 @@ def compare(recording: Recording, report: Optional[Path] = None, *, joint: Optio
     more), 'friction_ratio', 'motion' and more; of an arm 'level', 'text', 'joints' (one dict each). InputError,
     ParameterError.
     """
-    return _call("compare",
-                 {"recording": recording, "report": report, "joint": joint, "arm": arm,
-                  "reference": _several(reference), "load": load, "identified": identified,
-                  "topic": topic, "time_scale": time_scale, "force": force, "progress": progress}, overlays)
+    return _call("compare", locals())
 
 
 def trend(recordings: Union[Path, Sequence[Path]], *, joint: Optional[str] = None, arm: Optional[str] = None,
@@ -189,11 +139,7 @@ def trend(recordings: Union[Path, Sequence[Path]], *, joint: Optional[str] = Non
     Returns a dict: 'level', 'text', 'joints' (one dict each: 'level', 'change', 'slope' and their intervals [-],
     'slope' in 1 / 1000 h or what 'slope_unit' says), 'recordings' (one dict each, by date). InputError, ParameterError.
     """
-    return _call("trend",
-                 {"recordings": _several(recordings), "joint": joint, "arm": arm,
-                  "reference": _several(reference), "out": out, "report": report, "load": load,
-                  "identified": identified, "topic": topic, "time_scale": time_scale, "force": force,
-                  "progress": progress}, overlays)
+    return _call("trend", locals())
 
 
 def follow(recording: Recording, *, joint: Optional[str] = None, arm: Optional[str] = None, mode: str = "motion",
@@ -209,10 +155,7 @@ def follow(recording: Recording, *, joint: Optional[str] = None, arm: Optional[s
     Returns the tool's summary as a dict, and as its 'comparison' a structured array of shape (compared rows,) with
     dtype COMPARISON_DTYPE, of an arm a dict of them by the joint's short name. InputError, ParameterError.
     """
-    return _call("follow",
-                 {"recording": recording, "joint": joint, "arm": arm, "mode": mode, "bag": bag, "load": load,
-                  "identified": identified, "topic": topic, "time_scale": time_scale, "force": force,
-                  "progress": progress}, overlays)
+    return _call("follow", locals())
 
 
 def arm(motion: Recording, arm: Path, *, faults: Sequence[str] = (), out: Optional[Path] = None,
@@ -234,9 +177,7 @@ def arm(motion: Recording, arm: Path, *, faults: Sequence[str] = (), out: Option
     'actual_current', shape (rows, joints), 'target_TCP_pose', 'actual_TCP_pose' (position [m]), shape (rows, 3).
     InputError, ParameterError.
     """
-    return _call("arm",
-                 {"motion": motion, "arm": arm, "faults": _several(faults), "out": out, "rate": rate,
-                  "identified": identified, "force": force, "progress": progress}, overlays)
+    return _call("arm", locals())
 
 
 # Columns that recordings of one joint are read from, where `columns` names no other.
@@ -275,7 +216,7 @@ def _names(columns: Optional[Mapping[str, str]]) -> Optional[Dict[str, str]]:
 
 
 def _signals(recordings: Any, columns: Optional[Mapping[str, str]]) -> Dict[str, Any]:
-    """Names of the recordings, and the columns of those at hand."""
+    """Names of the recordings, the columns of those at hand, and the names of these columns."""
     is_column = getattr(recordings, "ndim", 0) == 1 and getattr(recordings.dtype, "names", None) is None
     listed = recordings.tolist() if is_column else recordings  # of a frame, with paths
     several = listed if isinstance(listed, (list, tuple)) else [listed]
@@ -290,7 +231,7 @@ def _signals(recordings: Any, columns: Optional[Mapping[str, str]]) -> Dict[str,
             names.append(f"recordings[{place}]")
             used = (*SIGNALS, *(_names(columns) or {}).values())
             at_hand[names[-1]] = _columns(recording, names[-1], used)
-    return {"recordings": names, "at_hand": at_hand}
+    return {"recordings": names, "at_hand": at_hand, "columns": _names(columns)}
 
 
 def indicators(recordings: Union[Recording, Sequence[Recording]], *, models: Sequence[Path] = (),
@@ -313,11 +254,7 @@ def indicators(recordings: Union[Recording, Sequence[Recording]], *, models: Seq
     Returns a dict: 'windows' (one dict each: 'time', 'indicators', 'scores', 'assessment' ...), 'threshold',
     'assessment' of the last. Recordings that are not judged are warned of. InputError, ParameterError.
     """
-    return _call("indicators",
-                 {**_signals(recordings, columns), "models": _several(models), "joint": joint,
-                  "torque_scale": torque_scale, "columns": _names(columns), "baseline": baseline,
-                  "save_baseline": save_baseline, "out": out, "carry": carry, "force": force, "progress": progress},
-                 overlays)
+    return _call("indicators", {**locals(), **_signals(recordings, columns)})
 
 
 def remaining(recordings: Union[Recording, Sequence[Recording]], *,
@@ -340,12 +277,8 @@ def remaining(recordings: Union[Recording, Sequence[Recording]], *,
     none would, and 'blind_to', those faults in words. Laws of ageing are those of the configuration, never of a run.
     InputError, ParameterError.
     """
-    return _call("remaining",
-                 {**_signals(recordings, columns),
-                  "hours": hours if hours is None or np.ndim(hours) > 0 else [cast(float, hours)], "joint": joint,
-                  "torque_scale": torque_scale, "columns": _names(columns), "baseline": baseline, "duty": duty,
-                  "lost_motion_limit": lost_motion_limit, "use_record": use_record, "force": force,
-                  "progress": progress}, overlays)
+    hours = hours if hours is None or np.ndim(hours) > 0 else [cast(float, hours)]
+    return _call("remaining", {**locals(), **_signals(recordings, columns)})
 
 
 def checkup(arm: Path, out: Path, *, joint: Optional[str] = None, file_format: str = "csv",
@@ -358,32 +291,27 @@ def checkup(arm: Path, out: Path, *, joint: Optional[str] = None, file_format: s
     Returns a dict: 'duration' [s], 'moves', 'largest_speed' [rad/s], 'largest_torque' [N.m]. ParameterError,
     InputError.
     """
-    return _run("checkup", [], {"arm": arm, "out": out, "joint": joint, "format": file_format, "force": force})
-
-
-def _data_set(command: str, plan: Path, out: Path, jobs: Optional[int], shard: Optional[Tuple[int, int]],
-              overlays: Overlays) -> Document:
-    part = None if shard is None else f"{shard[0]}/{shard[1]}"
-    return _run(command, [plan], {"out": out, "jobs": jobs, "shard": part}, overlays)
+    return _call("checkup", locals())
 
 
 def sweep(plan: Path, out: Path, *, jobs: Optional[int] = None, shard: Optional[Tuple[int, int]] = None,
-          overlays: Overlays = ()) -> Document:
+          overlays: Overlays = (), progress: Optional[Progress] = None) -> Document:
     """Works off a plan of many runs, a labelled data set: the tool's sweep (docs/datasets.md).
 
     plan: YAML file. out: directory; runs that stand there finished are kept, so a call after Ctrl-C resumes. jobs: runs
-    at the same time; None: one for each processor. shard: (i, n), only every n-th run, from run i on.
+    at the same time; None: one for each processor. shard: (i, n), only every n-th run, from run i on. overlays,
+    progress: as of identify.
 
     Returns a dict: 'index' (path of index.csv, a line for each run with its file, HDF5 as a rule), 'runs', 'done',
     'present', 'failed', 'damaged'. InputError, ParameterError.
     """
-    return _data_set("sweep", plan, out, jobs, shard, overlays)
+    return _call("sweep", locals())
 
 
 def lives(plan: Path, out: Path, *, jobs: Optional[int] = None, shard: Optional[Tuple[int, int]] = None,
-          overlays: Overlays = ()) -> Document:
+          overlays: Overlays = (), progress: Optional[Progress] = None) -> Document:
     """Works off a plan of drives from new to their end, with a check-up every so often: the tool's lives.
 
     Arguments, result and errors as of sweep.
     """
-    return _data_set("lives", plan, out, jobs, shard, overlays)
+    return _call("lives", locals())

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "base/temporary_directory.hpp"
-#include "output/interrupt.hpp"
 #include "output/run_summary.hpp"
 
 #include "arm/arm_recorder.hpp"
@@ -13,8 +12,6 @@
 
 namespace hjt
 {
-using Json = OrderedJson;
-
 class RunSimulation::Drive : public Subject
 {
 public:
@@ -87,7 +84,7 @@ std::unique_ptr<RunSimulation::Subject> RunSimulation::begin(const RunSpec& spec
 bool RunSimulation::simulate(std::uint64_t number)
 {
   const RunSpec spec = plan_.run(number);
-  Json record = recordOf(spec, directory_.runFileName(number));
+  OrderedJson record = recordOf(spec, directory_.runFileName(number));
   const std::string path = directory_.runFile(number);
   std::unique_ptr<Subject> subject;
   try
@@ -139,7 +136,7 @@ RunCost RunSimulation::sample(std::uint64_t number, double seconds)
   return cost;
 }
 
-/// False: interrupted.
+/// False: stopped.
 bool RunSimulation::march(Subject& subject, const RunSpec& spec, RunFile& file, Clock::time_point until)
 {
   constexpr std::uint64_t STEPS_PER_LOOK = 1024;
@@ -163,8 +160,8 @@ bool RunSimulation::march(Subject& subject, const RunSpec& spec, RunFile& file, 
     subject.record(file);
     if (steps % STEPS_PER_LOOK == 0)
     {
-      simulated_ += look;
-      if (interruptSignal() != 0)
+      course_.simulated += look;
+      if (course_.stop)
       {
         return false;
       }

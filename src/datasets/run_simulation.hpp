@@ -21,19 +21,26 @@ struct RunCost
   double real_time_factor{};  ///< simulated over real time, one core [-]
 };
 
+/// How far runs are that are simulated by several threads.
+struct RunCourse
+{
+  std::atomic<std::uint64_t> simulated{};  ///< about, RunSimulation::WHOLE a run
+  std::atomic<bool> stop{};                ///< set by others: no run goes on
+};
+
 /// Simulates runs of a plan, one after the other.
 class RunSimulation
 {
 public:
-  static constexpr std::uint64_t WHOLE = 1'000'000;  ///< added to `simulated` over a run
+  static constexpr std::uint64_t WHOLE = 1'000'000;  ///< added to RunCourse::simulated over a run
 
   RunSimulation(const Plan& plan, const SweepDirectory& directory, const SurfaceSource& surface_source,
-                std::atomic<std::uint64_t>& simulated)
-    : plan_(plan), directory_(directory), surface_source_(surface_source), simulated_(simulated)
+                RunCourse& course)
+    : plan_(plan), directory_(directory), surface_source_(surface_source), course_(course)
   {
   }
 
-  /// A run through to its end, into its file. False: interrupted, and no file left.
+  /// A run through to its end, into its file. False: stopped, and no file left.
   /// @throws InputError if the file cannot be written.
   bool simulate(std::uint64_t number);
 
@@ -66,7 +73,7 @@ private:
   const Plan& plan_;
   const SweepDirectory& directory_;
   const SurfaceSource& surface_source_;
-  std::atomic<std::uint64_t>& simulated_;
+  RunCourse& course_;
   std::uint64_t on_surface_{};
 };
 }  // namespace hjt

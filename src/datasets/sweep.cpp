@@ -6,50 +6,92 @@
 #include <chrono>
 #include <exception>
 #include <filesystem>
-#include <iostream>
+#include <memory>
 #include <mutex>
+#include <set>
 #include <system_error>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "datasets/run_file.hpp"
 #include "datasets/run_simulation.hpp"
-#include "output/interrupt.hpp"
-#include "output/progress.hpp"
 
 #include "harmonic_joint_twin/base/errors.hpp"
+#include "surface/surface_pool.hpp"
 
 namespace hjt
 {
 namespace
 {
-using Json = OrderedJson;
+/// What the threads of a sweep tell, for the caller's own thread.
+class Told
+{
+public:
+  void notice(const std::string& text)
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (known_.insert(text).second)
+    {
+      notices_.push_back(text);
+    }
+  }
+
+  /// Since the last call.
+  std::vector<std::string> notices()
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return std::exchange(notices_, {});
+  }
+
+  std::atomic<double> built{};  ///< of a response surface, 0 ... 1
+
+private:
+  std::mutex mutex_;
+  std::set<std::string> known_;
+  std::vector<std::string> notices_;
+};
 
 /// The runs still to be done, taken one by one by as many threads as wanted.
 class Workers
 {
 public:
-  Workers(const Plan& plan, const SweepDirectory& directory, const SurfaceSource& source,
-          std::vector<std::uint64_t> todo)
-    : plan_(plan), directory_(directory), source_(source), todo_(std::move(todo))
+  Workers(const Plan& plan, const SweepDirectory& directory, std::vector<std::uint64_t> todo, unsigned jobs)
+    : plan_(plan)
+    , directory_(directory)
+    , source_(runSurfaces(plan, jobs))
+    , todo_(std::move(todo))
+    , jobs_(static_cast<unsigned>(std::min<std::size_t>(jobs, todo_.size())))
   {
+    source_.progress = [this](double done) { told_.built = done; };
+    source_.notice = [this](const std::string& text) { told_.notice(text); };
   }
 
-  void work(unsigned jobs)
+  void work(const Watch& watch)
   {
-    std::vector<std::thread> threads = start(jobs);
-    for (Progress progress("sweep"); running_ > 0;)
+    std::vector<std::thread> threads = start();
+    const auto building = watch.progress("building response surfaces");
+    const auto sweeping = watch.progress("sweep");
+    for (double built = 0.0; running_ > 0;)
     {
       std::this_thread::sleep_for(std::chrono::milliseconds(3));
-      if (simulated_ > 0)
+      tell(watch);
+      if (told_.built != built)
       {
-        progress.update(static_cast<double>(simulated_) / static_cast<double>(RunSimulation::WHOLE * todo_.size()));
+        built = told_.built;
+        building(built);
       }
+      if (course_.simulated > 0)
+      {
+        sweeping(static_cast<double>(course_.simulated) / static_cast<double>(RunSimulation::WHOLE * todo_.size()));
+      }
+      course_.stop = course_.stop || watch.stopped();
     }
     for (std::thread& thread : threads)
     {
       thread.join();
     }
+    tell(watch);
     if (error_)
     {
       std::rethrow_exception(error_);
@@ -59,14 +101,22 @@ public:
   std::uint64_t done() const { return done_; }
 
 private:
+  void tell(const Watch& watch)
+  {
+    for (const std::string& text : told_.notices())
+    {
+      watch.notice(text);
+    }
+  }
+
   /// As many threads as there are to be had. @throws InputError if there are none.
-  std::vector<std::thread> start(unsigned jobs)
+  std::vector<std::thread> start()
   {
     std::vector<std::thread> threads;
-    threads.reserve(jobs);
+    threads.reserve(jobs_);
     try
     {
-      while (threads.size() < jobs)
+      while (threads.size() < jobs_)
       {
         ++running_;
         threads.emplace_back([this] { workOne(); });
@@ -75,13 +125,13 @@ private:
     catch (const std::system_error& error)
     {
       --running_;
-      const std::string found = std::to_string(threads.size()) + " of " + std::to_string(jobs) +
+      const std::string found = std::to_string(threads.size()) + " of " + std::to_string(jobs_) +
                                 " threads (--jobs) could be started: " + error.what();
       if (threads.empty())
       {
         throw InputError(found);
       }
-      std::cerr << "warning: " << found << "; they do all the runs\n";
+      told_.notice(found + "; they do all the runs");
     }
     return threads;
   }
@@ -90,8 +140,8 @@ private:
   {
     try
     {
-      RunSimulation simulation(plan_, directory_, source_, simulated_);
-      while (interruptSignal() == 0 && !stop_)
+      RunSimulation simulation(plan_, directory_, source_, course_);
+      while (!course_.stop)
       {
         const std::size_t next = next_++;
         if (next >= todo_.size() || !simulation.simulate(todo_[next]))
@@ -105,23 +155,32 @@ private:
     {
       const std::lock_guard<std::mutex> lock(mutex_);
       error_ = error_ ? error_ : std::current_exception();
-      stop_ = true;
+      course_.stop = true;
     }
     --running_;
   }
 
   const Plan& plan_;
   const SweepDirectory& directory_;
-  const SurfaceSource& source_;
+  SurfaceSource source_;
   const std::vector<std::uint64_t> todo_;
-  std::atomic<std::uint64_t> simulated_{};  // about, RunSimulation::WHOLE a run
+  const unsigned jobs_;
+  Told told_;
+  RunCourse course_;  // of all todo
   std::atomic<std::size_t> next_{};
   std::atomic<std::uint64_t> done_{};
   std::atomic<unsigned> running_{};
-  std::atomic<bool> stop_{};
   std::mutex mutex_;
   std::exception_ptr error_;
 };
+
+SweepResult workOff(const Plan& plan, const SweepOptions& options)
+{
+  checkRuns(plan, options.watch);
+  SweepDirectory directory(plan, options.out);
+  directory.open();
+  return runSweep(plan, directory, options);
+}
 }  // namespace
 
 RunSpec checkedRun(const Plan& plan, std::uint64_t run)
@@ -137,18 +196,44 @@ RunSpec checkedRun(const Plan& plan, std::uint64_t run)
   }
 }
 
-void checkRuns(const Plan& plan)
+void checkRuns(const Plan& plan, const Watch& watch)
 {
-  for (std::uint64_t run = 0; run < plan.runs(); ++run)
+  for (std::uint64_t run = 0; run < plan.runs() && !watch.stopped(); ++run)
   {
     checkedRun(plan, run);
   }
 }
 
-SweepResult runSweep(const Plan& plan, SweepDirectory& directory, const SweepOptions& options,
-                     const SurfaceSource& surface_source)
+SurfaceSource runSurfaces(const Plan& plan, unsigned jobs)
+{
+  return { plan.lives() != nullptr ? "" : surfaceCacheDirectory(), {}, {}, std::make_shared<SurfacePool>(jobs + 2) };
+}
+
+void requireLives(const Plan& plan, const std::string& path)
+{
+  if (plan.lives() == nullptr)
+  {
+    throw InputError(path + " has no mapping 'lives'; run it with joint_twin sweep");
+  }
+}
+
+SweepResult sweep(const SweepOptions& options)
+{
+  return workOff(Plan(options.plan, options), options);
+}
+
+SweepResult sweepLives(const SweepOptions& options)
+{
+  const Plan plan(options.plan, options);
+  requireLives(plan, options.plan);
+  return workOff(plan, options);
+}
+
+SweepResult runSweep(const Plan& plan, SweepDirectory& directory, const SweepOptions& options)
 {
   SweepResult result;
+  result.index = directory.index();
+  result.runs = plan.runs();
   std::vector<std::uint64_t> todo;
   for (std::uint64_t run = options.shard; run < plan.runs(); run += options.shards)
   {
@@ -163,16 +248,16 @@ SweepResult runSweep(const Plan& plan, SweepDirectory& directory, const SweepOpt
     }
   }
   directory.claim(todo);  // all before any work: of two sweeps one goes on to its end
-  if (!todo.empty())
+  if (!todo.empty() && !options.watch.stopped())
   {
-    Workers workers(plan, directory, surface_source, todo);
-    workers.work(static_cast<unsigned>(std::min<std::size_t>(options.jobs, todo.size())));
+    Workers workers(plan, directory, todo, options.jobs);
+    workers.work(options.watch);
     result.done = workers.done();
   }
   directory.writeIndex();
   for (std::uint64_t run = options.shard; run < plan.runs(); run += options.shards)
   {
-    const Json record = directory.record(run);
+    const OrderedJson record = directory.record(run);
     if (record.is_object())
     {
       result.failed += record.at("status") != "ok" ? 1 : 0;
@@ -180,5 +265,16 @@ SweepResult runSweep(const Plan& plan, SweepDirectory& directory, const SweepOpt
     }
   }
   return result;
+}
+
+Json documentOf(const SweepResult& result)
+{
+  return { { "index", result.index },
+           { "runs", result.runs },
+           { "done", result.done },
+           { "present", result.present },
+           { "failed", result.failed },
+           { "damaged", result.damaged },
+           { ROWS_WITHOUT_FORCES, result.rows_without_forces } };
 }
 }  // namespace hjt

@@ -27,8 +27,6 @@ namespace hjt
 namespace
 {
 namespace fs = std::filesystem;
-using Json = OrderedJson;
-
 /// Version and hash of the code: runs made by another code are not added to.
 std::string softwareVersion()
 {
@@ -47,7 +45,7 @@ std::string hexadecimal(std::uint64_t number)
 }
 
 /// A cell of the index: texts in quotes, nothing for what is not there.
-std::string cell(const Json& value)
+std::string cell(const OrderedJson& value)
 {
   if (value.is_null())
   {
@@ -96,13 +94,15 @@ std::vector<std::string> faultKeys(const Plan& plan)
 }
 
 /// Row of the index for a run without a file.
-Json missingRun(std::uint64_t run)
+OrderedJson missingRun(std::uint64_t run)
 {
-  return { { "run", run }, { "status", "missing" }, { "faults", Json::array() }, { "variables", Json::object() } };
+  return {
+    { "run", run }, { "status", "missing" }, { "faults", OrderedJson::array() }, { "variables", OrderedJson::object() }
+  };
 }
 
 /// In what the document of a directory differs from that of a plan.
-std::string otherThan(const Json& found, const Json& wanted)
+std::string otherThan(const OrderedJson& found, const OrderedJson& wanted)
 {
   const std::array<std::pair<const char*, const char*>, 5> parts{ { { "format", "another format" },
                                                                     { "version", "another version of the software" },
@@ -111,7 +111,7 @@ std::string otherThan(const Json& found, const Json& wanted)
                                                                     { "configuration", "another configuration" } } };
   for (const auto& [key, what] : parts)
   {
-    if (!found.is_object() || found.value(key, Json()) != wanted.at(key))
+    if (!found.is_object() || found.value(key, OrderedJson()) != wanted.at(key))
     {
       return what;
     }
@@ -151,7 +151,7 @@ void SweepDirectory::open()
   {
     throw InputError(path_ + " cannot be made: " + error.message());
   }
-  Json document{ { "format", FORMAT }, { "version", softwareVersion() } };
+  OrderedJson document{ { "format", FORMAT }, { "version", softwareVersion() } };
   document.update(plan_.snapshot());
   const std::string text = document.dump(1) + '\n';
   // The plan is written before any run, perhaps by another shard at this moment: looked for in the opposite order.
@@ -166,7 +166,7 @@ void SweepDirectory::open()
   }
   lockByte(plan_file_, PLAN_LOCK, F_OFD_SETLKW, F_WRLCK);
   const std::string found = wholeFile(name, MAX_BINARY).value_or("");
-  if (found.empty() && fs::exists(path_ + "/index.csv"))
+  if (found.empty() && fs::exists(index()))
   {
     fs::remove(name, error);
     throw InputError(path_ + "/index.csv is of something else: there is no plan.json beside it; give another --out");
@@ -181,7 +181,7 @@ void SweepDirectory::open()
   }
   else if (found != text)
   {
-    throw InputError(name + " is of " + otherThan(Json::parse(found, nullptr, false), document) +
+    throw InputError(name + " is of " + otherThan(OrderedJson::parse(found, nullptr, false), document) +
                      "; give another --out");
   }
   lockByte(plan_file_, PLAN_LOCK, F_OFD_SETLK, F_UNLCK);
@@ -231,10 +231,10 @@ std::string SweepDirectory::runFile(std::uint64_t run) const
   return path_ + "/" + runFileName(run);
 }
 
-Json SweepDirectory::record(std::uint64_t run) const
+OrderedJson SweepDirectory::record(std::uint64_t run) const
 {
-  Json found = readRunRecord(plan_.recording().format, runFile(run));
-  return found.is_object() && found.value("run", Json()) == run ? found : Json();
+  OrderedJson found = readRunRecord(plan_.recording().format, runFile(run));
+  return found.is_object() && found.value("run", OrderedJson()) == run ? found : OrderedJson();
 }
 
 std::uint64_t SweepDirectory::finishedRuns() const
@@ -263,32 +263,37 @@ std::string SweepDirectory::indexHeader() const
   return header;
 }
 
-std::string SweepDirectory::indexRow(const Json& record) const
+std::string SweepDirectory::indexRow(const OrderedJson& record) const
 {
   std::string row = cell(record.at("run"));
   for (const char* key : { "file", FILE_HASH, "status", "class", "duty", "repeat", "duration" })
   {
-    row += "," + cell(record.value(key, Json()));
+    row += "," + cell(record.value(key, OrderedJson()));
   }
   for (const std::string& key : faultKeys(plan_))
   {
-    const auto text = [&key](const Json& fault)
+    const auto text = [&key](const OrderedJson& fault)
     { return fault.at(key).is_string() ? fault.at(key).get<std::string>() : cell(fault.at(key)); };
     row += "," + joined(record.at("faults"), ";", text);
   }
   for (const char* key : { "noise_seed", "parameters_hash", "version", ROWS_WITHOUT_FORCES, "error" })
   {
-    row += "," + cell(record.value(key, Json()));
+    row += "," + cell(record.value(key, OrderedJson()));
   }
   if (plan_.isOfArms())
   {
-    row += "," + cell(record.value(PROTECTIVE_STOP, Json()));
+    row += "," + cell(record.value(PROTECTIVE_STOP, OrderedJson()));
   }
   for (const std::string& name : plan_.variableNames())
   {
-    row += "," + cell(record.at("variables").value(name, Json()));
+    row += "," + cell(record.at("variables").value(name, OrderedJson()));
   }
   return row;
+}
+
+std::string SweepDirectory::index() const
+{
+  return path_ + "/index.csv";
 }
 
 void SweepDirectory::writeIndex() const
@@ -300,25 +305,25 @@ void SweepDirectory::writeIndex() const
     std::string text = indexHeader() + '\n';
     for (std::uint64_t run = 0; run < plan_.runs(); ++run)
     {
-      const Json found = record(run);
+      const OrderedJson found = record(run);
       text += indexRow(found.is_object() ? found : missingRun(run)) + '\n';
     }
-    writeTextFile(path_ + "/index.csv", text);
+    writeTextFile(index(), text);
   }
 }
 
-Json recordOf(const RunSpec& spec, const std::string& file)
+OrderedJson recordOf(const RunSpec& spec, const std::string& file)
 {
-  Json variables = Json::object();
+  OrderedJson variables = OrderedJson::object();
   for (const auto& [name, value] : spec.variables)
   {
     variables[name] = jsonOf(value);
   }
-  Json faults = Json::array();
+  OrderedJson faults = OrderedJson::array();
   for (const RunFault& growing : spec.faults)
   {
     const Fault& fault = growing.fault;
-    Json json = Json::object();
+    OrderedJson json = OrderedJson::object();
     if (spec.arm)
     {
       json["joint"] = spec.arm->arm.joints[growing.joint].short_name;

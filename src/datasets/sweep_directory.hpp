@@ -34,7 +34,8 @@ public:
   std::string runFileName(std::uint64_t run) const;  ///< from the directory on
   OrderedJson record(std::uint64_t run) const;       ///< none if the run is not finished
 
-  /// Writes index.csv from the runs' files.
+  std::string index() const;  ///< path of index.csv
+  /// Writes it from the runs' files.
   void writeIndex() const;
 
   /// One line of the index: of a finished run from its record, else with the status given. Without line end.

@@ -20,18 +20,9 @@ InterruptScope::InterruptScope() : is_outer_(!std::exchange(g_has_scope, true))
 {
   if (is_outer_)
   {
-    catchSignal(caught_[0], SIGINT, SA_RESETHAND);
-    catchSignal(caught_[1], SIGTERM, SA_RESETHAND);
-    catchSignal(caught_[2], SIGHUP, SA_RESETHAND);
-  }
-}
-
-InterruptScope::InterruptScope(Guest /*guest*/) : is_outer_(!std::exchange(g_has_scope, true))
-{
-  if (is_outer_)
-  {
-    g_signal = 0;
-    catchSignal(caught_[0], SIGINT, 0);
+    catchSignal(caught_[0], SIGINT);
+    catchSignal(caught_[1], SIGTERM);
+    catchSignal(caught_[2], SIGHUP);
   }
 }
 
@@ -47,13 +38,13 @@ InterruptScope::~InterruptScope()
   g_has_scope = g_has_scope && !is_outer_;
 }
 
-void InterruptScope::catchSignal(Caught& caught, int signal, int flags) const
+void InterruptScope::catchSignal(Caught& caught, int signal)
 {
   struct sigaction action
   {
   };
   action.sa_handler = [](int number) { g_signal = number; };
-  action.sa_flags = flags;
+  action.sa_flags = SA_RESETHAND;
   sigaction(signal, nullptr, &caught.before);
   if (signal != SIGHUP || caught.before.sa_handler != SIG_IGN)  // which it is below nohup
   {

@@ -6,7 +6,7 @@
 
 namespace hjt
 {
-/// The signal that came within an InterruptScope of this process, as a guest of this one, or 0.
+/// The signal that came within an InterruptScope, or 0.
 int interruptSignal();
 
 /// While it lives, SIGINT, SIGTERM and SIGHUP end loops that ask for `interruptSignal` instead of the process, so
@@ -14,13 +14,7 @@ int interruptSignal();
 class InterruptScope
 {
 public:
-  /// Of a process with handlers of its own: SIGINT alone, and it never ends the process.
-  struct Guest
-  {
-  };
-
   InterruptScope();
-  explicit InterruptScope(Guest guest);
   InterruptScope(const InterruptScope&) = delete;
   InterruptScope& operator=(const InterruptScope&) = delete;
   ~InterruptScope();
@@ -34,7 +28,7 @@ private:
     };
   };
 
-  void catchSignal(Caught& caught, int signal, int flags) const;
+  static void catchSignal(Caught& caught, int signal);
 
   const bool is_outer_;
   std::array<Caught, 3> caught_{};  // without a signal: not caught

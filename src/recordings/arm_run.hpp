@@ -12,7 +12,7 @@
 #include "base/range.hpp"
 #include "harmonic_joint_twin/twin/twin.hpp"
 #include "output/report.hpp"
-#include "recordings/watch.hpp"
+#include "output/watch.hpp"
 #include "twin/configuration_options.hpp"
 
 namespace hjt

@@ -2,6 +2,7 @@
 #include "recordings/recorded_arms.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <system_error>
@@ -38,6 +39,21 @@ CheckedContents readTableContents(const MotionSource& source)
     contents.temperature =
         name.compare(0, temperatures.size(), temperatures) == 0 ? temperatures + "N" : contents.temperature;
   }
+  return contents;
+}
+
+CheckedContents contentsOf(const std::vector<std::vector<MotionRow>>& rows)
+{
+  CheckedContents contents;
+  contents.is_csv = true;
+  const bool has_temperature =
+      std::any_of(rows.begin(), rows.end(),
+                  [](const std::vector<MotionRow>& joints)
+                  {
+                    return std::any_of(joints.begin(), joints.end(),
+                                       [](const MotionRow& row) { return std::isfinite(row.temperature); });
+                  });
+  contents.temperature = has_temperature ? "temperature" : "";
   return contents;
 }
 
@@ -162,7 +178,9 @@ std::vector<CheckedArm> armsOfConfiguration(const std::vector<fs::path>& files, 
     const ArmDescription description = readArmDescription(file.string());
     for (const JointAffixes& affixes : affixesOf(description, options, contents))
     {
-      if (!namesAll(contents, jointNames(description), affixes))
+      const bool has_all = options.rows ? options.rows->front().size() == description.joints.size() :
+                                          namesAll(contents, jointNames(description), affixes);
+      if (!has_all)
       {
         continue;
       }
@@ -217,7 +235,9 @@ void leaveOutIncomplete(const RecordingOptions& options, const CheckedContents& 
 
 CheckedContents readCheckedContents(const MotionSource& source)
 {
-  return isCsv(source) ? readTableContents(source) : readMessageContents(source);
+  return source.rows   ? contentsOf(*source.rows) :
+         isCsv(source) ? readTableContents(source) :
+                         readMessageContents(source);
 }
 
 std::vector<CheckedArm> findArms(const RecordingOptions& options, const CheckedContents& contents)
@@ -227,6 +247,11 @@ std::vector<CheckedArm> findArms(const RecordingOptions& options, const CheckedC
   if (!options.arm.empty())
   {
     arms = armsGiven(arms, options, contents);
+  }
+  if (arms.empty() && options.rows)
+  {
+    throw InputError(options.recording + " has " + std::to_string(options.rows->front().size()) +
+                     " joints, which no arm in config/arms has; give your own (docs/arm.md)");
   }
   if (arms.empty())
   {

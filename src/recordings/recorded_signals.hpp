@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "datasets/run_file.hpp"
-#include "recordings/watch.hpp"
+#include "output/watch.hpp"
 
 #include "health/signal_sample.hpp"
 #include "messages/topics.hpp"

@@ -293,6 +293,7 @@ bool RecordingCheck::isUsable() const
 RecordingCheck checkRecording(const RecordingOptions& options)
 {
   RecordingCheck check;
+  check.options = options;
   check.contents = readCheckedContents(motionSource(options));
   check.arms = findArms(options, check.contents);
   for (CheckedArm& arm : check.arms)

@@ -76,6 +76,7 @@ struct CheckedArm
 
 struct RecordingCheck
 {
+  RecordingOptions options;
   CheckedContents contents;
   std::vector<CheckedArm> arms;  ///< at least one
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "output/watch.hpp"
 #include "recordings/recorded_motion.hpp"
 #include "recordings/stated_gains.hpp"
-#include "recordings/watch.hpp"
 
 #include "messages/joint_affixes.hpp"
 #include "messages/topics.hpp"

@@ -248,16 +248,34 @@ class Commands(Recordings):
                 hjt.Arm("ur5", progress=fail)
         self.assertEqual(steps, ["building the response surface"] * 2)
 
-    def test_numbers_of_the_command_line_do_not_depend_on_the_locale(self):
-        from harmonic_joint_twin import _tool
+    def test_check_of_arrays_gives_what_their_file_gives_and_tells_its_progress(self):
+        self.record()
+        table = np.genfromtxt("arm.csv", delimiter=",", names=True)
+        columns = {"time": table["timestamp"],
+                   **{name: np.column_stack([table[f"actual_{part}_{i}"] for i in range(6)])
+                      for name, part in (("position", "q"), ("current", "current"))}}
+        steps = set()
+        of_file, of_arrays = hjt.check("arm.csv"), hjt.check(columns, progress=lambda step, done: steps.add(step))
+        self.assertEqual((of_arrays.pop("recording"), of_arrays.pop("next")), ("recording", []))
+        self.assertTrue(of_arrays["usable"])
+        # Arms behind the first may fit by another unit of effort, which is not open in arrays.
+        self.assertEqual(of_arrays.pop("ranking")[0], of_file["ranking"][0])
+        for name in of_arrays:
+            self.assertEqual(of_arrays[name], of_file[name], name)
+        self.assertIn("reading", steps)
+        with self.assertRaisesRegex(hjt.InputError, "recording has 1 joints, which no arm in config/arms has"):
+            hjt.check({name: column[:, 2] if column.ndim > 1 else column for name, column in columns.items()})
+
+    def test_numbers_do_not_depend_on_the_locale(self):
+        expected = hjt.checkup("ur5", "point.script", joint="base", file_format="urscript")
         with tempfile.TemporaryDirectory() as folder, unittest.mock.patch.dict(os.environ, LOCPATH=folder):
             comma_locale.make(folder)
             self.addCleanup(locale.setlocale, locale.LC_NUMERIC, locale.setlocale(locale.LC_NUMERIC))
             locale.setlocale(locale.LC_NUMERIC, "comma")
-            code, document, errors = _tool.run(["joint_twin", "stiffness", "--torques", "0.5", "--json"])
-        self.assertEqual(code, 0, errors)
-        self.assertEqual(document, subprocess.run([TOOL, "stiffness", "--torques", "0.5", "--json"],
-                                                  stdout=subprocess.PIPE, text=True, check=True).stdout)
+            found = hjt.checkup("ur5", "comma.script", joint="base", file_format="urscript")
+        self.assertEqual(found, {**expected, "output": "comma.script"})
+        with open("point.script", "rb") as point, open("comma.script", "rb") as comma:
+            self.assertEqual(point.read(), comma.read())
 
     def test_checkup_writes_its_motion(self):
         found = hjt.checkup("ur10e", "motion.csv", joint="wrist_1")
@@ -271,8 +289,10 @@ class Commands(Recordings):
             file.write(PLAN)
         found = hjt.sweep("plan.yaml", "data", jobs=2, shard=(0, 2))
         self.assertEqual((found["runs"], found["done"], found["present"], found["failed"]), (3, 2, 0, 0))
-        found = hjt.sweep("plan.yaml", "data")
+        told = []
+        found = hjt.sweep("plan.yaml", "data", progress=lambda step, done: told.append(step))
         self.assertEqual((found["done"], found["present"]), (1, 2))
+        self.assertTrue(set(told) <= {"building response surfaces", "sweep"}, told)
         with open(found["index"], newline="", encoding="utf-8") as file:
             lines = list(csv.DictReader(file))
         self.assertEqual([line["status"] for line in lines], ["ok"] * 3)
@@ -292,7 +312,7 @@ class Errors(Recordings):
                 (lambda: hjt.follow(None, joint="elbow"), hjt.InputError, "recording = None must be the name of"),
                 (lambda: hjt.follow({"time": ["now"], "position": [0.0]}, joint="elbow"), hjt.InputError,
                  "column 'time' must be numbers"),
-                (lambda: hjt.check({"time": [0.0]}), hjt.InputError, "check reads a file"),
+                (lambda: hjt.check({"time": [0.0]}), hjt.InputError, "'position' are needed"),
                 (lambda: hjt.follow({"time": [0.0], "position": np.array([0], "M8[s]")}, joint="elbow"), hjt.InputError,
                  "column 'position' must be numbers"),
                 (lambda: hjt.follow({"time": 0.0}, joint="elbow"), hjt.InputError, "'time' has 0 dimensions"),
@@ -313,7 +333,10 @@ class Errors(Recordings):
                 (lambda: hjt.remaining("a.csv", hours=0.0), hjt.InputError, "hours = 0"),
                 (lambda: hjt.checkup("ur5", "a.csv", joint="knee"), hjt.ParameterError, "has no joint 'knee'"),
                 (lambda: hjt.checkup("ur6", "a.csv"), hjt.ParameterError, "neither a file nor an arm"),
+                (lambda: hjt.checkup("ur5", "a.csv", file_format="txt"), hjt.InputError, "format = 'txt' must be csv"),
                 (lambda: hjt.sweep("no_plan.yaml", "data"), hjt.InputError, "no_plan.yaml"),
+                (lambda: hjt.sweep("no_plan.yaml", "data", jobs=0), hjt.InputError, "jobs = 0"),
+                (lambda: hjt.sweep("no_plan.yaml", "data", shard=(2, 2)), hjt.InputError, "shard = (2, 2) must be"),
                 (lambda: hjt.identify("none.csv", joint="elbow", overlays=[{"mesh.stifness": 1.0}]),
                  hjt.ParameterError, "did you mean mesh.stiffness"),
                 (lambda: hjt.identify("none.csv", joint="elbow", folds=1), hjt.InputError, "folds = 1")):
@@ -365,13 +388,23 @@ class Interrupts(Recordings):
             os.kill(os.getpid(), signal.SIGINT)
             time.sleep(1.0)
 
+    def test_an_error_of_progress_ends_a_sweep(self):
+        self.plan()
+
+        def fail(step, done):
+            raise ZeroDivisionError
+
+        with self.assertRaises(ZeroDivisionError):
+            hjt.sweep("plan.yaml", "data", overlays=[{"solver.scene": "full_ring"}], progress=fail)
+
     def test_ctrl_c_ends_a_reading(self):
         times, angles = motion(2000.0)
         columns = {"time": times, "position": angles, "current": np.zeros_like(angles)}
-        threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT)).start()
-        with self.assertRaises(KeyboardInterrupt):
-            for _ in range(100):
-                hjt.follow(columns, arm="ur5")
+        for function in (lambda: hjt.follow(columns, arm="ur5"), lambda: hjt.check(columns)):
+            threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT)).start()
+            with self.assertRaises(KeyboardInterrupt):
+                for _ in range(100):
+                    function()
 
     def test_other_threads_run_meanwhile(self):
         self.plan()
@@ -380,6 +413,7 @@ class Interrupts(Recordings):
 
         def tick():
             while not stop.wait(0.01):
+                hjt.checkup("ur5", "motion.csv", joint="base", force=True)
                 ticks.append(1)
 
         thread = threading.Thread(target=tick)

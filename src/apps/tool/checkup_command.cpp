@@ -1,164 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <algorithm>
-#include <cmath>
-#include <string>
-#include <vector>
-
-#include <trajectory_msgs/JointTrajectory.h>
-
-#include "apps/common/configuration.hpp"
-#include "output/output_file.hpp"
-#include "output/report.hpp"
+#include "apps/common/motion_options.hpp"
+#include "datasets/check_up_file.hpp"
 #include "output/run_summary.hpp"
-
-#include "arm/arm_configuration.hpp"
-#include "arm/check_up.hpp"
-#include "bags/bag_writer.hpp"
-#include "base/number_text.hpp"
-#include "base/text_stream.hpp"
-#include "base/whole_file.hpp"
-#include "harmonic_joint_twin/base/errors.hpp"
 
 namespace hjt
 {
 namespace
 {
-constexpr double PERIOD = 0.008;  // of a UR controller [s]
-/// From one joint's pose to the next.
-constexpr double TRANSFER_SPEED = 0.35;         // [rad/s]
-constexpr double TRANSFER_ACCELERATION = 0.35;  // [rad/s^2]
-constexpr const char* TOPIC = "/joint_trajectory";
+using PrintedCheckUp = Printed<CheckUpOptions>;
 
-struct CheckupOptions : CommonOptions
+int checkup(const PrintedCheckUp& options)
 {
-  std::string arm;
-  std::string joint;
-  std::string out;
-  std::string format{ "csv" };
-};
-
-std::vector<ArmMove> movesOf(const ArmDescription& arm, const std::string& name)
-{
-  std::vector<ArmMove> moves;
-  for (std::size_t i = 0; i < arm.joints.size(); ++i)
-  {
-    if (name.empty() || name == arm.joints[i].short_name || name == arm.joints[i].name)
-    {
-      const std::vector<ArmMove> own = checkUpMoves(arm, i);
-      moves.push_back({ own.back().target, TRANSFER_SPEED, TRANSFER_ACCELERATION });
-      moves.insert(moves.end(), own.begin(), own.end());
-    }
-  }
-  if (moves.empty())
-  {
-    throw ParameterError(arm.origin + " has no joint '" + name + "'");
-  }
-  return moves;
-}
-
-void writeCsv(const std::string& path, const ArmDescription& arm, const std::vector<ArmInstant>& instants)
-{
-  std::vector<std::string> columns{ "time" };
-  for (const ArmJoint& joint : arm.joints)
-  {
-    for (const char* quantity : { "_position", "_velocity", "_acceleration", "_torque" })
-    {
-      columns.push_back(joint.short_name + quantity);
-    }
-  }
-  CsvWriter file(path, columns);
-  for (const ArmInstant& instant : instants)
-  {
-    std::vector<double> row{ instant.time };
-    for (std::size_t i = 0; i < arm.joints.size(); ++i)
-    {
-      const JointMotion& joint = instant.joints[i];
-      row.insert(row.end(), { joint.position, joint.velocity, joint.acceleration, instant.torques[i] });
-    }
-    file.writeRow(row);
-  }
-  file.close();
-}
-
-void writeUrScript(const std::string& path, const std::vector<ArmMove>& moves)
-{
-  TextStream text;
-  text << "# Check-up. The arm goes to the first pose from wherever it stands: keep its surroundings clear.\n"
-          "def check_up():\n";
-  for (const ArmMove& move : moves)
-  {
-    text << "  movej([";
-    for (std::size_t i = 0; i < move.target.size(); ++i)
-    {
-      text << (i > 0 ? ", " : "") << numberText(move.target[i]);
-    }
-    text << "], a=" << numberText(move.acceleration) << ", v=" << numberText(move.speed) << ")\n";
-  }
-  text << "end\ncheck_up()\n";
-  writeTextFile(path, text.str());
-}
-
-void writeBag(const std::string& path, const ArmDescription& arm, const std::vector<ArmInstant>& instants)
-{
-  trajectory_msgs::JointTrajectory trajectory;
-  for (const ArmJoint& joint : arm.joints)
-  {
-    trajectory.joint_names.push_back(joint.name);
-  }
-  for (const ArmInstant& instant : instants)
-  {
-    trajectory_msgs::JointTrajectoryPoint point;
-    point.time_from_start = ros::Duration(instant.time);
-    for (const JointMotion& joint : instant.joints)
-    {
-      point.positions.push_back(joint.position);
-      point.velocities.push_back(joint.velocity);
-      point.accelerations.push_back(joint.acceleration);
-    }
-    trajectory.points.push_back(point);
-  }
-  BagWriter bag(path);
-  bag.write(TOPIC, SIMULATION_EPOCH, trajectory);  // stamp 0: begins when it comes
-  bag.close();
-}
-
-int checkup(const CheckupOptions& options)
-{
-  requireWritable(options.out, options.force);
-  const ArmDescription arm = readArmDescription(findArm(options.arm, configDirectory(options)));
-  const std::vector<ArmMove> moves = movesOf(arm, options.joint);
-  const std::vector<ArmInstant> instants = sampleMoves(arm, moves.front().target, moves, PERIOD);
-  if (options.format == "csv")
-  {
-    writeCsv(options.out, arm, instants);
-  }
-  else if (options.format == "urscript")
-  {
-    writeUrScript(options.out, moves);
-  }
-  else
-  {
-    writeBag(options.out, arm, instants);
-  }
-  double speed = 0.0;
-  double torque = 0.0;
-  for (const ArmInstant& instant : instants)
-  {
-    for (std::size_t i = 0; i < arm.joints.size(); ++i)
-    {
-      speed = std::max(speed, std::abs(instant.joints[i].velocity));
-      torque = std::max(torque, std::abs(instant.torques[i]));
-    }
-  }
-  printReport(options.json, { { "output", "", options.out },
-                              { "duration", "duration [s]", instants.back().time },
-                              { "moves", "moves", moves.size() },
-                              { "largest_speed", "largest speed of a joint [rad/s]", speed },
-                              { "largest_torque", "largest torque at an output [N.m]", torque } });
+  printReport(options.json, reportOf(writeCheckUp(options)).lines);
   return reportWritten(options.out, options.json);
 }
 
-void declare(Command& command, CheckupOptions& options)
+void declare(Command& command, PrintedCheckUp& options)
 {
   command.add("--arm", options.arm, "name in config/arms, or a file").required().type("NAME|FILE.yaml");
   command.add("--joint", options.joint, "that alone, as base or shoulder; default: all, one after the other")
@@ -168,8 +25,8 @@ void declare(Command& command, CheckupOptions& options)
       .add("--format", options.format,
            "csv: angles, rates and torques every 8 ms; urscript: a program; bag: trajectory_msgs/JointTrajectory on "
            "/joint_trajectory")
-      .choice({ "csv", "urscript", "bag" });
-  addCommonOptions(command, options);
+      .choice(CHECK_UP_FORMATS);
+  addCommonOptions(command, options, options.json, options.force);
 }
 
 const Subcommand CHECKUP{ Subject::JOINT, "checkup",

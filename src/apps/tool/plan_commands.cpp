@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
@@ -8,16 +7,14 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <set>
 #include <sstream>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
-#include "apps/common/configuration.hpp"
+#include "apps/common/motion_options.hpp"
 #include "base/number_text.hpp"
 #include "base/temporary_directory.hpp"
 #include "base/whole_file.hpp"
@@ -148,14 +145,28 @@ std::string shortTime(double seconds)
                                    rounded(seconds / HOUR) + " h";
 }
 
+void printWarning(const std::string& text)
+{
+  std::cerr << "warning: " << text << '\n';
+}
+
 /// Prints number, time and size of the plan's runs, tried on one of each class and duty cycle. Their response surfaces
 /// are built for it, and kept where the source keeps them. @throws InputError, ParameterError if one has no
 /// equilibrium.
-void printExpectation(const Plan& plan, unsigned jobs, const SurfaceSource& source)
+void printExpectation(const Plan& plan, unsigned jobs)
 {
+  SurfaceSource source = runSurfaces(plan, 1);
+  source.progress = showProgress("building response surfaces");
+  source.notice = [shown = std::set<std::string>()](const std::string& text) mutable
+  {
+    if (shown.insert(text).second)
+    {
+      printWarning(text);
+    }
+  };
   const SweepDirectory directory(plan, "");
-  std::atomic<std::uint64_t> simulated{};
-  RunSimulation simulation(plan, directory, source, simulated);
+  RunCourse course;
+  RunSimulation simulation(plan, directory, source, course);
   MissingSurfaces missing(source.cache_directory);
   double run_time = 0.0;
   double surface_time = 0.0;
@@ -199,46 +210,19 @@ void printExpectation(const Plan& plan, unsigned jobs, const SurfaceSource& sour
 
 void addJobsOption(Command& command, unsigned& jobs)
 {
-  jobs = std::max(1u, std::thread::hardware_concurrency());
-  command.add("--jobs", jobs, "runs at the same time").range(1, 4096);
+  command.add("--jobs", jobs, "runs at the same time").range(JOBS.min, JOBS.max);
 }
 
-/// Surfaces of the user's cache, each once in memory; each remark about them once.
-/// Those of drives with a wear of their own, which come but once, are not kept on the disk.
-SurfaceSource sharedSurfaces(const Plan& plan, unsigned jobs)
+Watch sweepWatch()
 {
-  struct Remarks
-  {
-    std::mutex mutex;
-    std::set<std::string> shown;
-    Progress building{ "building response surfaces" };
-  };
-  const auto remarks = std::make_shared<Remarks>();
-  const auto show = [remarks](double done)
-  {
-    const std::lock_guard<std::mutex> lock(remarks->mutex);
-    remarks->building.update(done);
-  };
-  const auto tell = [remarks](const std::string& what)
-  {
-    const std::lock_guard<std::mutex> lock(remarks->mutex);
-    if (remarks->shown.insert(what).second)
-    {
-      std::cerr << "warning: " << what << '\n';
-    }
-  };
-  return { plan.lives() != nullptr ? "" : surfaceCacheDirectory(), show, tell,
-           std::make_shared<SurfacePool>(jobs + 2) };
+  Watch watch = consoleWatch();
+  watch.notice = printWarning;
+  return watch;
 }
 
-struct SweepCommandOptions : CommonOptions
+struct SweepCommandOptions : Printed<SweepOptions>
 {
-  std::string plan;
-  std::string out;
-  unsigned jobs{};
   std::string part;
-  std::uint64_t shard{};
-  std::uint64_t shards{ 1 };
   bool dry_run{};
   bool list{};
 };
@@ -286,47 +270,43 @@ void declare(Command& command, SweepCommandOptions& options)
           });
 }
 
-void tellResult(const SweepCommandOptions& options, const Plan& plan, const SweepResult& result)
+void tellResult(const SweepCommandOptions& options, const SweepResult& result)
 {
-  const std::string index = options.out + "/index.csv";
   if (options.json)
   {
-    printReport(true, { { "index", "", index },
-                        { "runs", "", plan.runs() },
-                        { "done", "", result.done },
-                        { "present", "", result.present },
-                        { "failed", "", result.failed },
-                        { "damaged", "", result.damaged },
-                        { ROWS_WITHOUT_FORCES, "", result.rows_without_forces } });
+    std::cout << documentOf(result).dump() << '\n';
   }
   else
   {
     std::cerr << "joint_twin: " << result.done << " runs done, " << result.present << " were there, " << result.failed
-              << " failed, " << result.damaged << " damaged ones done again; index: " << index << "\n";
+              << " failed, " << result.damaged << " damaged ones done again; index: " << result.index << "\n";
   }
-  warn(result.rows_without_forces,
-       "rows without forces on the teeth (NaN): no equilibrium was found for them; index.csv says in which runs");
+  warn(result.rows_without_forces, WITHOUT_FORCES);
 }
 
-int workOff(const SweepCommandOptions& options, const Plan& plan)
+/// Of `work` or, where that is asked for, of the plan alone.
+int workOff(const SweepCommandOptions& given, SweepResult (*work)(const SweepOptions&))
 {
-  if (options.list)
+  if (given.list || given.dry_run)
   {
-    printList(plan, options);
+    const Plan plan(given.plan, given);
+    if (work == sweepLives)
+    {
+      requireLives(plan, given.plan);
+    }
+    if (given.list)
+    {
+      printList(plan, given);
+      return EXIT_DONE;
+    }
+    checkRuns(plan);
+    printExpectation(plan, given.jobs);
     return EXIT_DONE;
   }
-  checkRuns(plan);
-  if (options.dry_run)
-  {
-    printExpectation(plan, options.jobs, sharedSurfaces(plan, 1));
-    return EXIT_DONE;
-  }
-  SweepDirectory directory(plan, options.out);
-  directory.open();
-  const InterruptScope interrupts;
-  const SweepResult result = runSweep(plan, directory, { options.out, options.jobs, options.shard, options.shards },
-                                      sharedSurfaces(plan, options.jobs));
-  tellResult(options, plan, result);
+  SweepCommandOptions options = given;
+  options.watch = sweepWatch();
+  const SweepResult result = work(options);
+  tellResult(options, result);
   if (interruptSignal() != 0)
   {
     std::cerr << "joint_twin: interrupted; the same command resumes\n";
@@ -335,25 +315,20 @@ int workOff(const SweepCommandOptions& options, const Plan& plan)
   return result.failed > 0 ? EXIT_FAILED : EXIT_DONE;
 }
 
-int sweep(const SweepCommandOptions& options)
+int runPlan(const SweepCommandOptions& options)
 {
-  return workOff(options, Plan(options.plan, options));
+  return workOff(options, sweep);
 }
 
-int sweepLives(const SweepCommandOptions& options)
+int runLives(const SweepCommandOptions& options)
 {
-  const Plan plan(options.plan, options);
-  if (plan.lives() == nullptr)
-  {
-    throw InputError(options.plan + " has no mapping 'lives'; run it with joint_twin sweep");
-  }
-  return workOff(options, plan);
+  return workOff(options, sweepLives);
 }
 
-const Subcommand SWEEP{ Subject::DATA_SET, "sweep", "run a plan of many runs: a labelled data set", declare, sweep };
+const Subcommand SWEEP{ Subject::DATA_SET, "sweep", "run a plan of many runs: a labelled data set", declare, runPlan };
 const Subcommand LIVES{ Subject::DATA_SET, "lives",
                         "drives from new to their end, with a check-up every so often: a data set of run to failure",
-                        declare, sweepLives };
+                        declare, runLives };
 
 struct SignaturesOptions : CommonOptions
 {
@@ -361,24 +336,26 @@ struct SignaturesOptions : CommonOptions
   std::string out;
   std::string runs;
   std::string add;
-  unsigned jobs{};
+  unsigned jobs{ SweepOptions().jobs };
 };
 
 /// The runs of all plans; finished ones are kept. An interrupt ends it early.
-SweepResult workOff(const SignaturesOptions& options, const std::string& runs, SignatureRuns& found)
+SweepResult workOff(const SignaturesOptions& options, const std::string& runs, const Watch& watch, SignatureRuns& found)
 {
+  SweepOptions sweeping;
+  sweeping.jobs = options.jobs;
+  sweeping.watch = watch;
   SweepResult sum;
-  for (std::size_t i = 0; i < options.plans.size() && interruptSignal() == 0; ++i)
+  for (std::size_t i = 0; i < options.plans.size() && !watch.stopped(); ++i)
   {
     const Plan plan(options.plans[i], options);
-    const std::string path = runs + "/" + plan.name();
-    SweepDirectory directory(plan, path);
+    SweepDirectory directory(plan, runs + "/" + plan.name());
     directory.open();
-    const SweepResult own = runSweep(plan, directory, { path, options.jobs, 0, 1 }, sharedSurfaces(plan, options.jobs));
+    const SweepResult own = runSweep(plan, directory, sweeping);
     sum.done += own.done;
     sum.present += own.present;
     sum.failed += own.failed;
-    if (interruptSignal() == 0)
+    if (!watch.stopped())
     {
       found.add(plan, directory);
     }
@@ -396,9 +373,9 @@ int signatures(const SignaturesOptions& options)
     checkSignaturePlan(Plan(path, options));
   }
   const TemporaryDirectory temporary;
-  const InterruptScope interrupts;
-  SignatureRuns found([](const std::string& what) { std::cerr << "warning: " << what << '\n'; });
-  const SweepResult runs = workOff(options, options.runs.empty() ? temporary.path() : options.runs, found);
+  const Watch watch = sweepWatch();
+  SignatureRuns found(printWarning);
+  const SweepResult runs = workOff(options, options.runs.empty() ? temporary.path() : options.runs, watch, found);
   if (interruptSignal() != 0)
   {
     std::cerr << "joint_twin: interrupted"

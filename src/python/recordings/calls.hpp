@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <exception>
 #include <map>
 #include <optional>
@@ -13,13 +14,14 @@
 #include <utility>
 #include <vector>
 
+#include "base/joined.hpp"
 #include "base/range_check.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "identification/cross_validation.hpp"
 #include "output/json.hpp"
+#include "output/watch.hpp"
 #include "params/configuration_files.hpp"
 #include "python/overlays.hpp"
-#include "recordings/watch.hpp"
 #include "twin/configuration_options.hpp"
 
 // What the functions of the module _recordings share: options by name in, a document and the notices out.
@@ -75,6 +77,7 @@ constexpr const char* kindOf()
          std::is_same_v<Value, std::vector<std::string>>           ? "a list of texts" :
          std::is_same_v<Value, std::map<std::string, std::string>> ? "a mapping of texts to texts" :
          std::is_same_v<Value, std::array<double, 2>>              ? "a pair of numbers" :
+         std::is_same_v<Value, std::array<std::uint64_t, 2>>       ? "a pair of whole numbers" :
          std::is_same_v<Value, std::vector<double>>                ? "a list of numbers" :
                                                                      "of another type";
 }
@@ -169,17 +172,6 @@ public:
       throw py::error_already_set();
     }
     return std::move(notices_);
-  }
-
-  /// The notices so far, each after a line's end.
-  std::string remarks() const
-  {
-    std::string text;
-    for (const std::string& notice : notices_)
-    {
-      text += "\n" + notice;
-    }
-    return text;
   }
 
 private:
@@ -319,14 +311,15 @@ Answer call(const Given& given, Options& options, const Function& function, cons
     const std::vector<std::string> notices = watch.finish();
     return { document(result), notices };
   }
-  catch (const ParameterError&)
-  {
-    throw;
-  }
   catch (const InputError& error)
   {
+    const std::vector<std::string> notices = watch.finish();  // half of the work is no error of the user's
+    if (dynamic_cast<const ParameterError*>(&error) != nullptr || notices.empty())
+    {
+      throw;
+    }
     // What was remarked before it may be its reason.
-    throw InputError(error.what() + watch.remarks());
+    throw InputError(error.what() + ("\n" + joined(notices, "\n")));
   }
 }
 

@@ -1,19 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Functions on recordings within Python: the module _recordings, behind python/harmonic_joint_twin/_commands.py, which
-// has their signatures.
+// Functions on recordings and data sets within Python: the module _recordings, behind
+// python/harmonic_joint_twin/_commands.py, which has their signatures.
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "datasets/check_up_file.hpp"
+#include "datasets/sweep.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "params/choices.hpp"
 #include "python/comparison_row.hpp"
 #include "python/recordings/calls.hpp"
+#include "recordings/check_report.hpp"
 #include "recordings/compare.hpp"
 #include "recordings/follow.hpp"
 #include "recordings/identify.hpp"
@@ -87,10 +91,6 @@ void takeReading(const Given& given, RecordingOptions& options)
   given.take("topic", options.topic);
   given.take("time_scale", options.time_scale);
   given.take("force", options.force);
-  if (options.joint.empty() == options.arm.empty())
-  {
-    throw InputError("one of joint and arm is needed");
-  }
   if (options.load != LOAD_OF_ARM && options.load != LOAD_RECORDED)
   {
     throw InputError("load = '" + options.load + "' must be 'arm' or 'target_moment'");
@@ -101,10 +101,18 @@ void takeReading(const Given& given, RecordingOptions& options)
   }
 }
 
-/// The recording too.
-void takeRecording(const Given& given, RecordingOptions& options)
+/// And of what. @throws InputError likewise.
+void takeSubject(const Given& given, RecordingOptions& options)
 {
   takeReading(given, options);
+  if (options.joint.empty() == options.arm.empty())
+  {
+    throw InputError("one of joint and arm is needed");
+  }
+}
+
+void takeRecording(const Given& given, RecordingOptions& options)
+{
   const py::object recording = given["recording"];
   options.recording = py::isinstance<py::str>(recording) ? py::cast<std::string>(recording) : "recording";
   if (!py::isinstance<py::str>(recording))
@@ -154,6 +162,7 @@ Answer followIn(const py::dict& arguments)
 {
   const Given given(arguments);
   FollowOptions options;
+  takeSubject(given, options);
   takeRecording(given, options);
   given.take("bag", options.bag);
   std::string mode = "motion";
@@ -195,6 +204,7 @@ Answer identifyIn(const py::dict& arguments)
 {
   const Given given(arguments);
   IdentifyOptions options;
+  takeSubject(given, options);
   takeRecording(given, options);
   given.take("out", options.out);
   given.take("train", options.train);
@@ -209,10 +219,20 @@ Answer identifyIn(const py::dict& arguments)
       [](const Identified& found) { return toPython(documentOf(reportOf(found).whole())); });
 }
 
+Answer checkIn(const py::dict& arguments)
+{
+  const Given given(arguments);
+  RecordingOptions options;
+  takeReading(given, options);
+  takeRecording(given, options);
+  return call(given, options, checkRecording, [](const RecordingCheck& found) { return toPython(documentOf(found)); });
+}
+
 Answer compareIn(const py::dict& arguments)
 {
   const Given given(arguments);
   ComparisonOptions options;
+  takeSubject(given, options);
   takeRecording(given, options);
   given.take("report", options.report);
   given.take("reference", options.references);
@@ -223,7 +243,7 @@ Answer trendIn(const py::dict& arguments)
 {
   const Given given(arguments);
   TrendOptions options;
-  takeReading(given, options);
+  takeSubject(given, options);
   given.take("recordings", options.recordings);
   given.take("reference", options.references);
   given.take("out", options.out);
@@ -261,19 +281,66 @@ Answer remainingIn(const py::dict& arguments)
   given.take("use_record", options.use_record);
   return call(given, options, remaining, [](const Remaining& found) { return toPython(documentOf(reportOf(found))); });
 }
+
+Answer checkUpIn(const py::dict& arguments)
+{
+  const Given given(arguments);
+  CheckUpOptions options;
+  given.take("arm", options.arm);
+  given.take("joint", options.joint);
+  given.take("out", options.out);
+  given.take("file_format", options.format);
+  given.take("force", options.force);
+  const CheckUpMotion motion = withoutLock([&] { return writeCheckUp(options); });
+  return { toPython(documentOf(reportOf(motion))), {} };
+}
+
+template <SweepResult (*WORK)(const SweepOptions&)>
+Answer sweepIn(const py::dict& arguments)
+{
+  const Given given(arguments);
+  SweepOptions options;
+  takeConfiguration(given, options);
+  given.take("plan", options.plan);
+  given.take("out", options.out);
+  given.take("jobs", options.jobs);
+  requireWithin("jobs", options.jobs, "-", JOBS);
+  std::array<std::uint64_t, 2> shard{ options.shard, options.shards };
+  given.take("shard", shard);
+  if (shard[0] >= shard[1])
+  {
+    throw InputError("shard = " + shortText(given["shard"]) + " must be (i, n) with 0 <= i < n");
+  }
+  options.shard = shard[0];
+  options.shards = shard[1];
+  const auto work = [](const SweepOptions& asked)
+  {
+    const SweepResult found = WORK(asked);
+    if (found.rows_without_forces > 0)
+    {
+      asked.watch.notice(std::to_string(found.rows_without_forces) + " " + WITHOUT_FORCES);
+    }
+    return found;
+  };
+  return call(given, options, work, [](const SweepResult& found) { return toPython(documentOf(found)); });
+}
 }  // namespace
 }  // namespace hjt
 
 PYBIND11_MODULE(_recordings, module)
 {
-  module.doc() = "Functions on recordings: options by name in, a document and the notices out.";
+  module.doc() = "Functions on recordings and data sets: options by name in, a document and the notices out.";
   pybind11::module::import("harmonic_joint_twin._hjt");  // its errors and COMPARISON_DTYPE
   module.def("arm", &hjt::armIn, pybind11::arg("arguments"), "An arm in closed loop along its set points.");
   hjt::bindArm(module);
   module.def("follow", &hjt::followIn, pybind11::arg("arguments"), "Joints beside their twins, and their rows.");
   module.def("identify", &hjt::identifyIn, pybind11::arg("arguments"), "Gain, friction, inertia and ripple.");
+  module.def("check", &hjt::checkIn, pybind11::arg("arguments"), "What of an arm's recording is usable.");
   module.def("compare", &hjt::compareIn, pybind11::arg("arguments"), "Verdict and page.");
   module.def("trend", &hjt::trendIn, pybind11::arg("arguments"), "Friction over many recordings.");
   module.def("indicators", &hjt::indicatorsIn, pybind11::arg("arguments"), "Windows and their assessment.");
   module.def("remaining", &hjt::remainingIn, pybind11::arg("arguments"), "Use and remaining life.");
+  module.def("checkup", &hjt::checkUpIn, pybind11::arg("arguments"), "The motion in which faults are seen best.");
+  module.def("sweep", &hjt::sweepIn<hjt::sweep>, pybind11::arg("arguments"), "A plan of many runs.");
+  module.def("lives", &hjt::sweepIn<hjt::sweepLives>, pybind11::arg("arguments"), "A plan of lives.");
 }

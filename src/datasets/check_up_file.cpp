@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "datasets/check_up_file.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include <trajectory_msgs/JointTrajectory.h>
+
+#include "output/output_file.hpp"
+#include "output/run_summary.hpp"
+
+#include "arm/arm_configuration.hpp"
+#include "arm/check_up.hpp"
+#include "bags/bag_writer.hpp"
+#include "base/joined.hpp"
+#include "base/number_text.hpp"
+#include "base/text_stream.hpp"
+#include "base/whole_file.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+
+namespace hjt
+{
+namespace
+{
+constexpr double PERIOD = 0.008;  // of a UR controller [s]
+/// From one joint's pose to the next.
+constexpr double TRANSFER_SPEED = 0.35;         // [rad/s]
+constexpr double TRANSFER_ACCELERATION = 0.35;  // [rad/s^2]
+constexpr const char* TOPIC = "/joint_trajectory";
+
+std::vector<ArmMove> movesOf(const ArmDescription& arm, const std::string& name)
+{
+  std::vector<ArmMove> moves;
+  for (std::size_t i = 0; i < arm.joints.size(); ++i)
+  {
+    if (name.empty() || name == arm.joints[i].short_name || name == arm.joints[i].name)
+    {
+      const std::vector<ArmMove> own = checkUpMoves(arm, i);
+      moves.push_back({ own.back().target, TRANSFER_SPEED, TRANSFER_ACCELERATION });
+      moves.insert(moves.end(), own.begin(), own.end());
+    }
+  }
+  if (moves.empty())
+  {
+    throw ParameterError(arm.origin + " has no joint '" + name + "'");
+  }
+  return moves;
+}
+
+void writeMotionCsv(const std::string& path, const ArmDescription& arm, const std::vector<ArmInstant>& instants)
+{
+  std::vector<std::string> columns{ "time" };
+  for (const ArmJoint& joint : arm.joints)
+  {
+    for (const char* quantity : { "_position", "_velocity", "_acceleration", "_torque" })
+    {
+      columns.push_back(joint.short_name + quantity);
+    }
+  }
+  CsvWriter file(path, columns);
+  for (const ArmInstant& instant : instants)
+  {
+    std::vector<double> row{ instant.time };
+    for (std::size_t i = 0; i < arm.joints.size(); ++i)
+    {
+      const JointMotion& joint = instant.joints[i];
+      row.insert(row.end(), { joint.position, joint.velocity, joint.acceleration, instant.torques[i] });
+    }
+    file.writeRow(row);
+  }
+  file.close();
+}
+
+void writeUrScript(const std::string& path, const std::vector<ArmMove>& moves)
+{
+  TextStream text;
+  text << "# Check-up. The arm goes to the first pose from wherever it stands: keep its surroundings clear.\n"
+          "def check_up():\n";
+  for (const ArmMove& move : moves)
+  {
+    text << "  movej([";
+    for (std::size_t i = 0; i < move.target.size(); ++i)
+    {
+      text << (i > 0 ? ", " : "") << numberText(move.target[i]);
+    }
+    text << "], a=" << numberText(move.acceleration) << ", v=" << numberText(move.speed) << ")\n";
+  }
+  text << "end\ncheck_up()\n";
+  writeTextFile(path, text.str());
+}
+
+void writeTrajectory(const std::string& path, const ArmDescription& arm, const std::vector<ArmInstant>& instants)
+{
+  trajectory_msgs::JointTrajectory trajectory;
+  for (const ArmJoint& joint : arm.joints)
+  {
+    trajectory.joint_names.push_back(joint.name);
+  }
+  for (const ArmInstant& instant : instants)
+  {
+    trajectory_msgs::JointTrajectoryPoint point;
+    point.time_from_start = ros::Duration(instant.time);
+    for (const JointMotion& joint : instant.joints)
+    {
+      point.positions.push_back(joint.position);
+      point.velocities.push_back(joint.velocity);
+      point.accelerations.push_back(joint.acceleration);
+    }
+    trajectory.points.push_back(point);
+  }
+  BagWriter bag(path);
+  bag.write(TOPIC, SIMULATION_EPOCH, trajectory);  // stamp 0: begins when it comes
+  bag.close();
+}
+
+}  // namespace
+
+CheckUpMotion writeCheckUp(const CheckUpOptions& options)
+{
+  const auto format = std::find(CHECK_UP_FORMATS.begin(), CHECK_UP_FORMATS.end(), options.format);
+  if (format == CHECK_UP_FORMATS.end())
+  {
+    throw InputError("format = '" + options.format + "' must be " + joined(CHECK_UP_FORMATS, " or "));
+  }
+  requireWritable(options.out, options.force);
+  const ArmDescription arm = readArmDescription(findArm(options.arm, configDirectory(options)));
+  const std::vector<ArmMove> moves = movesOf(arm, options.joint);
+  const std::vector<ArmInstant> instants = sampleMoves(arm, moves.front().target, moves, PERIOD);
+  if (options.format == "csv")
+  {
+    writeMotionCsv(options.out, arm, instants);
+  }
+  else if (options.format == "urscript")
+  {
+    writeUrScript(options.out, moves);
+  }
+  else
+  {
+    writeTrajectory(options.out, arm, instants);
+  }
+  CheckUpMotion motion{ options.out, instants.back().time, moves.size() };
+  for (const ArmInstant& instant : instants)
+  {
+    for (std::size_t i = 0; i < arm.joints.size(); ++i)
+    {
+      motion.largest_speed = std::max(motion.largest_speed, std::abs(instant.joints[i].velocity));
+      motion.largest_torque = std::max(motion.largest_torque, std::abs(instant.torques[i]));
+    }
+  }
+  return motion;
+}
+
+Report reportOf(const CheckUpMotion& motion)
+{
+  return { { { "output", "", motion.output },
+             { "duration", "duration [s]", motion.duration },
+             { "moves", "moves", motion.moves },
+             { "largest_speed", "largest speed of a joint [rad/s]", motion.largest_speed },
+             { "largest_torque", "largest torque at an output [N.m]", motion.largest_torque } },
+           {} };
+}
+}  // namespace hjt
