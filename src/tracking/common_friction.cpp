@@ -4,10 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <utility>
 
 #include "base/median.hpp"
-#include "tracking/tracker.hpp"
 
 namespace hjt
 {
@@ -147,7 +145,8 @@ ArmFriction ofWholeArm(const std::vector<MeasuredFriction>& joints, double toler
   arm.factors.assign(joints.size(), 1.0);
   arm.deviations.assign(joints.size(), UNWITNESSED);
   const Left left(joints, tolerance);
-  if (left.known() < MIN_WITNESSES)
+  arm.is_known = left.known() >= MIN_WITNESSES;
+  if (!arm.is_known)
   {
     return arm;
   }
@@ -279,59 +278,5 @@ ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double t
                    "joints in another order, or gains, ratios or signs are others than configured" };
   }
   return arm;
-}
-
-ArmFrictionWatch::ArmFrictionWatch(std::vector<Tracker*> joints, double tolerance, std::vector<double> sound)
-  : joints_(std::move(joints)), tolerance_(tolerance), sound_(std::move(sound))
-{
-  sound_.resize(joints_.size(), 1.0);
-}
-
-void ArmFrictionWatch::reset()
-{
-  for (Tracker* joint : joints_)
-  {
-    joint->setTemperature(std::nullopt);
-  }
-  *this = ArmFrictionWatch(std::move(joints_), tolerance_, std::move(sound_));
-}
-
-bool ArmFrictionWatch::look(double time)
-{
-  if (time < next_look_ - 2.0 * PERIOD)  // a new recording
-  {
-    reset();
-  }
-  if (time < next_look_)
-  {
-    return false;
-  }
-  next_look_ = time + PERIOD;
-  std::vector<MeasuredFriction> joints;
-  std::size_t known = 0;
-  for (std::size_t i = 0; i < joints_.size(); ++i)
-  {
-    joints.push_back(joints_[i]->friction());
-    if (joints.back().ratio)
-    {
-      *joints.back().ratio /= sound_[i];
-      ++known;
-    }
-  }
-  const ArmFriction found = commonFriction(joints, tolerance_);
-  const bool differs = std::abs(found.median - found_.median) > CHANGE ||
-                       found.temperature.has_value() != found_.temperature.has_value();
-  steady_ = differs && known >= MIN_WITNESSES ? steady_ + 1 : 0;
-  if (steady_ < LOOKS)
-  {
-    return false;
-  }
-  steady_ = 0;
-  found_ = found;
-  for (Tracker* joint : joints_)
-  {
-    joint->setTemperature(found.temperature);
-  }
-  return true;
 }
 }  // namespace hjt

@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -11,8 +10,6 @@
 
 namespace hjt
 {
-class Tracker;
-
 /// By which the temperature of a drive, and what else the joints of an arm have in common, changes friction from day to
 /// day, where no other joints tell: standard deviation of the logarithm [-].
 constexpr double UNWITNESSED = 0.06;
@@ -59,6 +56,7 @@ struct ArmFriction
   double median{ 1.0 };               ///< of the joints; 1: they have nothing in common
   std::optional<double> temperature;  ///< that it means by the twins' law of friction; none: not within 0 ... 60 degC
   std::vector<JointGroup> groups;
+  bool is_known{};  ///< enough joints show their friction
   Misfit misfit;  ///< of all joints
 };
 
@@ -82,33 +80,4 @@ inline const Misfit& misfitOf(const Misfit& joint, const Misfit& arm)
   return !joint.exists() || (arm.exists() && is_sign) ? arm : joint;
 }
 
-/// The joints of an arm as each other's witnesses, while they move: what their friction has in common is temperature or
-/// gain. Where it means a temperature and none is received, the joints are predicted at that one. `look` allocates.
-class ArmFrictionWatch
-{
-public:
-  /// `tolerance`: as of commonFriction. `sound`: of each joint, its friction when it was sound over the twin's [-];
-  /// empty: 1. The joints must outlive this.
-  ArmFrictionWatch(std::vector<Tracker*> joints, double tolerance, std::vector<double> sound = {});
-
-  /// Forgets what was found; the joints go back to the configured temperature.
-  void reset();
-
-  /// After the rows of a time [s]; works every PERIOD. True: common factors of the joints has changed.
-  bool look(double time);
-
-  const ArmFriction& found() const { return found_; }
-
-private:
-  static constexpr double PERIOD = 1.0;   // [s]
-  static constexpr double CHANGE = 0.05;  // change of the median that starts a new estimate
-  static constexpr int LOOKS = 10;        // successive updates that have to show a change
-
-  std::vector<Tracker*> joints_;
-  double tolerance_;
-  std::vector<double> sound_;
-  double next_look_{ -std::numeric_limits<double>::infinity() };  // [s]
-  int steady_{};                                                  // successive updates that differ from the result
-  ArmFriction found_;
-};
 }  // namespace hjt
