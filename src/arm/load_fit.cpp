@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "arm/residual_statistics.hpp"
+#include "base/normal.hpp"
 #include "base/number_text.hpp"
 #include "elements/motor.hpp"
 #include "gear/ratio.hpp"

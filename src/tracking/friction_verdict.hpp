@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/normal.hpp"
 #include "tracking/joint_evidence.hpp"
 #include "tracking/reason.hpp"
 
@@ -53,11 +54,7 @@ struct FrictionFactor
   double high() const { return value * std::exp(halfWidth()); }
 
 private:
-  double halfWidth() const
-  {
-    constexpr double NORMAL_95 = 1.96;
-    return NORMAL_95 * deviation;
-  }
+  double halfWidth() const { return NORMAL_95 * deviation; }
 };
 
 /// "1.18 [1.05, 1.32]"

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "base/median.hpp"
+#include "base/normal.hpp"
 #include "tracking/motion_differentiator.hpp"
 
 namespace hjt
@@ -98,9 +99,8 @@ public:
     {
       values[i] = std::abs(values[i] - factor.value);
     }
-    constexpr double DEVIATION = 1.48;  // standard deviation over median magnitude of a normal distribution
     const double typical = upperMedian(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count));
-    factor.uncertainty = DEVIATION * typical / std::sqrt(static_cast<double>(count));
+    factor.uncertainty = typical / NORMAL_MEDIAN / std::sqrt(static_cast<double>(count));
     return factor;
   }
 
