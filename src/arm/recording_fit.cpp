@@ -139,7 +139,6 @@ void RecordingFit::reset() noexcept
   {
     joint.time.reset();
     joint.ratio.reset();
-    joint.load = LoadRegression();
     joint.lag.reset();
     joint.reach = JointReach();
     joint.moving_rows = 0;
@@ -189,10 +188,6 @@ void RecordingFit::update(const std::vector<MotionSample>& joints, const std::ve
     if (std::isfinite(torques[i]))
     {
       joint.lag.add(sample, torques[i] / joint.gain);
-    }
-    if (follows && joint_moves && std::isfinite(torques[i]))
-    {
-      joint.load.add(step, sample.velocity, sample.acceleration, torques[i] / joint.gain, sample.current);
     }
   }
   moving_ += follows && moves ? step : 0.0;
@@ -284,6 +279,71 @@ std::optional<RecordingFinding> RecordingFit::ofCurrents() const
                                " than the motion that draws them, in most joints: friction and load are not what they "
                                "look like",
                            Reason::STAMPS };
+}
+
+EffortFit RecordingFit::effort() const
+{
+  constexpr double WIDE = 2.0;                   // a payload or another gain make no more of it
+  constexpr double MAX_UNCERTAINTY = 1.0 / 3.0;  // share of the factor: beyond, the effort may not contain the load
+  EffortFit fit;
+  fit.unit = joints_.front().effort;
+  double weights = 0.0;
+  double sum = 0.0;
+  double squares = 0.0;
+  const auto units = choiceNames(EffortUnit());
+  std::vector<double> expected(units.size());
+  for (const Joint& joint : joints_)
+  {
+    // By the load, not by the uncertainty: a dead current would be the most certain one.
+    double weight = 0.0;
+    const FittedFactor slope = joint.lag.now().slope(weight);
+    if (!std::isfinite(slope.value) || joint.reach.least_current == joint.reach.most_current)
+    {
+      continue;
+    }
+    weights += weight;
+    sum += weight * slope.value;
+    squares += weight * weight * slope.uncertainty * slope.uncertainty;
+    for (std::size_t unit = 0; unit < units.size(); ++unit)
+    {
+      // If the effort is of this unit, its current is too large by as much as the configured unit's factor.
+      expected[unit] +=
+          weight * joint.current_per_effort[static_cast<std::size_t>(joint.effort)] / joint.current_per_effort[unit];
+    }
+  }
+  if (weights == 0.0 || std::sqrt(squares) > MAX_UNCERTAINTY * sum)
+  {
+    return fit;
+  }
+  fit.factor = { sum / weights, std::sqrt(squares) / weights };
+  const auto distance = [&](EffortUnit unit)
+  { return std::abs(std::log(fit.factor.value * weights / expected[static_cast<std::size_t>(unit)])); };
+  fit.is_known = distance(fit.unit) < std::log(WIDE);
+  for (const auto& [name, unit] : units)
+  {
+    if (!fit.is_known && distance(unit) < std::log(WIDE) && distance(unit) < distance(fit.unit) - std::log(WIDE))
+    {
+      fit.unit = unit;
+      fit.is_known = true;
+    }
+  }
+  return fit;
+}
+
+RecordingFit::LoadRest RecordingFit::loadRest(EffortUnit unit) const
+{
+  LoadRest sum;
+  double seconds = 0.0;
+  for (const Joint& joint : joints_)
+  {
+    const double scale = joint.current_per_effort[static_cast<std::size_t>(unit)] /
+                         joint.current_per_effort[static_cast<std::size_t>(joint.effort)];
+    const Eigen::Matrix2d left = joint.lag.now().left();
+    sum.current += scale * scale * left(1, 1);
+    sum.left += std::max(0.0, scale * scale * left(1, 1) - 2.0 * scale * left(0, 1) + left(0, 0));
+    seconds += joint.lag.now().seconds();
+  }
+  return { std::sqrt(sum.current / seconds), std::sqrt(sum.left / seconds) };
 }
 
 std::vector<RecordingFinding> RecordingFit::ofArm() const
