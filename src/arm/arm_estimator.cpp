@@ -474,7 +474,6 @@ ArmEstimator::Point ArmEstimator::refine(const Prior& prior, const std::vector<b
   constexpr int LOOSE_ROUNDS = 5;
   constexpr double NOTHING = 1e-3;  // of a deviation
   constexpr double FLOOR = 0.02;    // least residual of a real arm [A]
-  constexpr double COUNTED = 60.0;
   Point point;
   point.at = std::move(at);
   point.deviations.resize(rows_.size());

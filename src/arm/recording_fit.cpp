@@ -13,18 +13,17 @@
 #include "gear/ratio.hpp"
 #include "params/choices.hpp"
 #include "tracking/effort.hpp"
+#include "tracking/friction_verdict.hpp"
 
 namespace hjt
 {
 namespace
 {
-constexpr double MOVING_SLOPE = 0.02;  // beyond stiction and the noise of a slope [rad/s]
-constexpr double MOVED = 0.02;         // a joint whose range is less does not move [rad]
-constexpr double FASTEST = 10.0;       // no joint of an arm turns faster [rad/s]
-constexpr double FACTOR_OFF = 0.03;    // of angle over velocity: beyond the errors of encoders' scales
-constexpr double DEVIATIONS = 3.0;     // beyond these a difference is significant
-constexpr double WIDEST_FACTOR = 20;   // largest factor of stamps; beyond it another unit is likelier
-constexpr double LAG_OFF = 0.05;       // [s]
+constexpr double FASTEST = 10.0;      // no joint of an arm turns faster [rad/s]
+constexpr double FACTOR_OFF = 0.03;   // of angle over velocity: beyond the errors of encoders' scales
+constexpr double DEVIATIONS = 3.0;    // beyond these a difference is significant
+constexpr double WIDEST_FACTOR = 20;  // largest factor of stamps; beyond it another unit is likelier
+constexpr double LAG_OFF = 0.05;      // [s]
 constexpr std::uint64_t MIN_ROWS = 100;
 constexpr double UNCHANGED = 2.0;       // no current stays the same in motion for longer [s]
 constexpr double LEAST_SQUARE = 1e-12;  // least square of an uncertainty: simulated data may have none
@@ -176,7 +175,7 @@ void RecordingFit::update(const std::vector<MotionSample>& joints, const std::ve
     reach.most_speed = std::max(reach.most_speed, sample.velocity);
     reach.least_current = std::min(reach.least_current, sample.current);
     reach.most_current = std::max(reach.most_current, sample.current);
-    const bool joint_moves = std::abs(sample.velocity) > MOVING_SLOPE;
+    const bool joint_moves = std::abs(sample.velocity) > MotionDifferentiator::MOVING;
     moves = moves || joint_moves;
     joint.moving_rows += joint_moves ? 1 : 0;
     joint.fast_rows += std::abs(sample.velocity) > FASTEST ? 1 : 0;
@@ -461,7 +460,7 @@ std::vector<RecordingFinding> RecordingFit::ofJoint(std::size_t number) const
   {
     findings.push_back({ "no_velocity", "velocity taken from the angles", std::nullopt });
   }
-  if (joint.reach.most_angle - joint.reach.least_angle < MOVED)
+  if (joint.reach.most_angle - joint.reach.least_angle < LEAST_MOTION)
   {
     findings.push_back({ "at_rest", "does not move", std::nullopt });
   }

@@ -180,7 +180,6 @@ ArmFriction ofWholeArm(const std::vector<MeasuredFriction>& joints, double toler
 double scatterBeside(std::size_t joint, const JointGroup& group, const std::vector<MeasuredFriction>& joints,
                      const std::vector<double>& factors)
 {
-  constexpr double SOUND = 0.06;  // of one joint
   double count = 0.0;
   double sum = 0.0;
   double squares = 0.0;
@@ -195,24 +194,23 @@ double scatterBeside(std::size_t joint, const JointGroup& group, const std::vect
     }
   }
   const double variance = count > 1.0 ? (squares - sum * sum / count) / (count - 1.0) : 0.0;
-  return count > 1.0 ? std::sqrt(std::max(0.0, variance - SOUND * SOUND) / count) : 0.0;
+  return count > 1.0 ? std::sqrt(std::max(0.0, variance - UNWITNESSED * UNWITNESSED) / count) : 0.0;
 }
 
 /// Adds the common factor of a group to the arm's factors of the joints that share it.
 void take(const JointGroup& group, const std::vector<MeasuredFriction>& joints, ArmFriction& arm)
 {
-  constexpr double CHANCE = NO_WITNESS;  // share that three joints may have in common, as those of their type differ
   const auto begin = joints.begin() + static_cast<std::ptrdiff_t>(group.begin);
   const auto end = joints.begin() + static_cast<std::ptrdiff_t>(group.end);
   const bool are_own = std::all_of(begin, end, [](const MeasuredFriction& joint) { return joint.is_to_own; });
-  const double beyond = std::max(0.0, std::abs(group.median - 1.0) - (are_own ? 0.0 : CHANCE));
+  const double beyond = std::max(0.0, std::abs(group.median - 1.0) - (are_own ? 0.0 : NO_WITNESS));
   const double common = 1.0 + std::copysign(beyond, group.median - 1.0);
   const std::vector<double> of_arm = arm.factors;
   for (std::size_t i = group.begin; i < group.end && group.is_known; ++i)
   {
     const double left = joints[i].ratio ? *joints[i].ratio / of_arm[i] : common;
     arm.factors[i] *= common > 1.0 ? std::min(common, std::max(left, 1.0)) : common;
-    arm.deviations[i] = std::hypot(joints[i].is_to_own && !are_own ? CHANCE : 0.0,
+    arm.deviations[i] = std::hypot(joints[i].is_to_own && !are_own ? NO_WITNESS : 0.0,
                                    common < 1.0 ? scatterBeside(i, group, joints, of_arm) : 0.0);
   }
 }
@@ -232,8 +230,7 @@ bool hasFarMore(const std::vector<MeasuredFriction>& joints, const std::vector<d
 
 ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double tolerance)
 {
-  constexpr std::ptrdiff_t MIN_BELOW_FAULTS = 2;
-  constexpr std::ptrdiff_t MIN_LOAD_WRONG = 2;
+  constexpr std::ptrdiff_t SEVERAL = 2;
   ArmFriction arm = ofWholeArm(joints, tolerance);
   const bool is_other = hasFarMore(joints, arm.factors);
   arm.groups = groupsOf(joints, arm.factors, tolerance);
@@ -243,26 +240,26 @@ ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double t
   }
   const auto number = [&](bool MeasuredFriction::*flag)
   { return std::count_if(joints.begin(), joints.end(), [&](const MeasuredFriction& joint) { return joint.*flag; }); };
-  if (number(&MeasuredFriction::is_against) >= MIN_BELOW_FAULTS)
+  if (number(&MeasuredFriction::is_against) >= SEVERAL)
   {
     arm.misfit = { Reason::EFFORT_NOT_CURRENT,
                    "the efforts of several joints go against the currents that their motion takes: efforts or angles "
                    "are of the opposite sign" };
   }
-  else if (number(&MeasuredFriction::is_none) >= MIN_BELOW_FAULTS &&
+  else if (number(&MeasuredFriction::is_none) >= SEVERAL &&
            number(&MeasuredFriction::is_none) == number(&MeasuredFriction::is_below_faults))
   {
     arm.misfit = { Reason::NO_FRICTION,
                    "the effort of several joints holds no friction: it is a modelled or commanded torque, not a "
                    "measured one" };
   }
-  else if (number(&MeasuredFriction::is_below_faults) >= MIN_BELOW_FAULTS)
+  else if (number(&MeasuredFriction::is_below_faults) >= SEVERAL)
   {
     arm.misfit = { Reason::LESS_THAN_FAULTS,
                    "several joints show less friction than any fault leaves: the arm is led by hand or carried, or "
                    "gains, ratios or signs are others than configured" };
   }
-  else if (number(&MeasuredFriction::is_load_wrong) + number(&MeasuredFriction::is_below_faults) >= MIN_LOAD_WRONG)
+  else if (number(&MeasuredFriction::is_load_wrong) + number(&MeasuredFriction::is_below_faults) >= SEVERAL)
   {
     arm.misfit = {
       Reason::LOAD_WRONG,

@@ -13,7 +13,8 @@ namespace hjt
 /// By which the temperature of a drive, and what else the joints of an arm have in common, changes friction from day to
 /// day, where no other joints tell: standard deviation of the logarithm [-].
 constexpr double UNWITNESSED = 0.06;
-/// Of common factors of the joints, from which on they are no witnesses: standard deviation of the logarithm [-].
+/// Of common factors of the joints, from which on they are no witnesses: standard deviation of the logarithm, as much as
+/// three joints of their type may have in common by chance [-].
 constexpr double NO_WITNESS = 0.05;
 
 /// Joints that witness for each other, at least.
@@ -57,7 +58,7 @@ struct ArmFriction
   std::optional<double> temperature;  ///< that it means by the twins' law of friction; none: not within 0 ... 60 degC
   std::vector<JointGroup> groups;
   bool is_known{};  ///< enough joints show their friction
-  Misfit misfit;  ///< of all joints
+  Misfit misfit;    ///< of all joints
 };
 
 /// The joints are judged after what most of at least three agree on within `tolerance`: nothing; one factor that

@@ -28,7 +28,7 @@ double LoadRegression::leftByLoad() const
 
 FittedFactor LoadRegression::slope(double& content) const
 {
-  constexpr double CORRELATED = 0.5;  // rows nearer to each other tell the same [s]
+  constexpr double CORRELATED = 0.5;   // rows nearer to each other tell the same [s]
   constexpr double MIN_CONTENT = 0.1;  // least rms of the remaining load: errors of friction and inertia leave less [A]
   FittedFactor slope;
   if (seconds() < MIN_SECONDS)

@@ -46,7 +46,7 @@ private:
 
 /// That regression if the current came earlier or later than the motion. Fixed memory; nothing allocates.
 ///
-/// Rows count at most every 20 ms, the motion between them on lines. Of motion faster than 0.05 rad/s.
+/// Rows count at most every 20 ms, the motion between them on lines. Of motion faster than MotionDifferentiator::SLIDING.
 class CurrentLag
 {
 public:
@@ -92,7 +92,6 @@ public:
 
 private:
   static constexpr double PERIOD = 0.019;  // of rows that count [s]
-  static constexpr double MOVING = 0.05;   // [rad/s]
   static constexpr std::size_t ROOM = 64;  // rows: more than twice LONGEST at PERIOD
 
   struct Row
@@ -134,7 +133,7 @@ private:
       const double share = (time - low.time) / (high.time - low.time);
       const auto between = [&](double Row::*value) { return low.*value + share * (high.*value - low.*value); };
       const double velocity = between(&Row::velocity);
-      if (std::abs(velocity) > MOVING)
+      if (std::abs(velocity) > MotionDifferentiator::SLIDING)
       {
         regressions_[i].add(step, velocity, between(&Row::acceleration), between(&Row::load), now.current);
       }

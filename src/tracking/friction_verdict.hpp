@@ -85,6 +85,9 @@ OwnReference ownReference(const std::vector<SoundFriction>& recordings);
 /// WARN where the interval clears the bound. Factor, text and figures go into the verdict.
 Finding judgeFriction(const JointEvidence& evidence, const JointContext& context, Verdict& verdict);
 
+/// Faults that move the indicator that way, +1 or -1.
+void nameCauses(const JointEvidence& evidence, ScalarIndicator indicator, double way, Finding& finding);
+
 /// What to say of a load that is not the joint's.
 const char* wrongLoad(LoadOrigin load);
 }  // namespace hjt

@@ -131,7 +131,7 @@ double JointEvidence::addToReach(const MotionSample& sample) noexcept
 /// Rows after a contact too: to a current of another multiple, contact is what its load makes.
 void JointEvidence::addGain(const MotionSample& sample, double residual, double step) noexcept
 {
-  if (std::abs(sample.velocity) > MOVING && tellsFriction(predicted_))
+  if (std::abs(sample.velocity) > FrictionPoints::SLOWEST && predicted_.tellsFriction())
   {
     const double friction = predicted_.friction_torque / parameters_.telemetry.torque_per_current;
     const Eigen::Vector4d parts(1.0, friction, predicted_.current - friction, residual);
@@ -150,11 +150,11 @@ void JointEvidence::addRow(const MotionSample& sample, double residual) noexcept
   now_.products += terms * terms.transpose();
   ++now_.loads[static_cast<std::size_t>(std::abs(sample.load) / load_step_)];
   now_.temperatures += sample.temperatureOr(parameters_.input.temperature);
-  if (std::abs(sample.velocity) <= MOVING)
+  if (std::abs(sample.velocity) <= FrictionPoints::SLOWEST)
   {
     return;
   }
-  if (tellsFriction(predicted_))
+  if (predicted_.tellsFriction())
   {
     const double way = sample.velocity < 0.0 ? -1.0 : 1.0;
     const double measured = friction + gain * residual;
@@ -170,13 +170,6 @@ void JointEvidence::addRow(const MotionSample& sample, double residual) noexcept
     now_.torsion.add(sample.load, twin_torsion_, sample.motor_angle / ratio_ - sample.position, sample.position,
                      sample.velocity);
   }
-}
-
-bool JointEvidence::tellsFriction(const MotionPrediction& predicted) const noexcept
-{
-  constexpr double MAX_PRESLIDING = 0.05;  // share of the friction not mobilised [-]
-  return parameters_.telemetry.torque_per_current * predicted.band <
-         MAX_PRESLIDING * std::abs(predicted.friction_torque);
 }
 
 bool JointEvidence::watchSignals(const MotionSample& sample) noexcept

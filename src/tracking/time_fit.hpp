@@ -29,8 +29,7 @@ struct FittedFactor
 class TimeFit
 {
 public:
-  static constexpr double PIECE = 0.1;     ///< [s]
-  static constexpr double SLOWEST = 0.05;  ///< slower windows tell nothing [rad/s]
+  static constexpr double PIECE = 0.1;  ///< [s]
 
   void reset() noexcept { *this = TimeFit(); }
 
@@ -149,7 +148,7 @@ private:
     window_.integral += piece_.integral;
     ++pieces_;
     piece_ = {};
-    if (pieces_ % PIECES == 0 && window_.weight() > SLOWEST * window_.seconds)
+    if (pieces_ % PIECES == 0 && window_.weight() > MotionDifferentiator::SLIDING * window_.seconds)
     {
       kept_[windows_++ % KEPT] = window_;
     }

@@ -191,11 +191,10 @@ std::optional<double> Tracker::loadAt(double time) const noexcept
 /// A row of that time is next.
 void Tracker::begin(double time) noexcept
 {
-  constexpr double RESTART = StreamTiming::RESTART;
-  if (time < last_time_ - RESTART)
+  if (time < last_time_ - StreamTiming::RESTART)
   {
-    loads_.jumpBack(last_time_ - RESTART);
-    temperatures_.jumpBack(last_time_ - RESTART);
+    loads_.jumpBack(last_time_ - StreamTiming::RESTART);
+    temperatures_.jumpBack(last_time_ - StreamTiming::RESTART);
     restart();
     ++counters_.restarts;
   }

@@ -37,7 +37,7 @@ public:
   /// A row of both, later than the one before [s].
   void add(double time, double leading, double lagging) noexcept
   {
-    const bool first = end_ == begin_ || time > at(end_ - 1).time + MAX_GAP;
+    const bool first = end_ == begin_ || time > at(end_ - 1).time + MotionDifferentiator::MAX_GAP;
     const double step = first ? 0.0 : time - at(end_ - 1).time;
     if (first)
     {
@@ -103,7 +103,6 @@ public:
   }
 
 private:
-  static constexpr double MAX_GAP = 0.1;      // beyond it the stream restarts [s]
   static constexpr double MIN_SECONDS = 2.0;  // of signal before a delay is given
 
   static constexpr std::size_t ROOM = 512;
@@ -190,8 +189,7 @@ struct TrackerCounters
 class Tracker
 {
 public:
-  static constexpr double OUTSIDE_MEMORY = 30.0;          ///< a touch of the arm is shorter [s]
-  static constexpr std::size_t LOADS = HeldValues::ROOM;  ///< that are kept for rows to come
+  static constexpr double OUTSIDE_MEMORY = 30.0;  ///< a touch of the arm is shorter [s]
 
   /// @throws ParameterError where the parameters do not allow the mode; `mode` is not COMMANDS.
   Tracker(const Parameters& parameters, InputMode mode, const SurfaceSource& surface_source = {});

@@ -17,44 +17,6 @@ namespace
 /// Share of the largest load by which the load must vary to show anything that load alone shows.
 constexpr double MIN_LOADING = 0.035;
 
-/// Share of its sound value by which a fault of severity 1 must change an indicator to be named.
-constexpr double MIN_CHANGE = 0.02;
-
-/// One quantity as a multiple of the twin's.
-struct Ratio
-{
-  double to_twin;
-  double to_own;              ///< the same of the joint's own when it was sound; NaN: not known
-  double of_kind;             ///< share by which sound joints differ from the twin
-  ScalarIndicator indicator;  ///< that says the same
-  double when_larger;         ///< the indicator moves up: +1, down: -1
-  const SignatureSet& signatures;
-
-  bool isOwnKnown() const { return std::isfinite(to_own); }
-  double value() const { return isOwnKnown() ? to_own : to_twin; }
-  double tolerance(const EvidenceParameters& parameters) const
-  {
-    return isOwnKnown() ? parameters.comparison.repeat_tolerance : of_kind;
-  }
-};
-
-/// Against the joint's own when sound where that is known, else against the twin.
-void judgeRatio(const Ratio& ratio, const EvidenceParameters& parameters, Reason departs, Finding& finding)
-{
-  finding.level = levelOf(ratio.value() - 1.0, ratio.tolerance(parameters), parameters.indicators.error_factor);
-  finding.reason = finding.level == VerdictLevel::OK ? Reason::SOUND : departs;
-  if (finding.level == VerdictLevel::OK)
-  {
-    return;
-  }
-  const std::vector<Cause> causes = causesThatMove(
-      ratio.signatures, ratio.indicator, ratio.value() > 1.0 ? ratio.when_larger : -ratio.when_larger, MIN_CHANGE);
-  for (const Cause cause : causes)
-  {
-    finding.causes.push_back({ cause, 1.0 / static_cast<double>(causes.size()) });
-  }
-}
-
 bool movesBothWays(const std::vector<FrictionPoint>& points)
 {
   return points.front().speed < 0.0 && points.back().speed > 0.0;
@@ -150,18 +112,22 @@ Finding judgeTorsion(const JointEvidence& evidence, const OwnReference& own, Ver
   const double eccentricity = (parameters.sensors.output_eccentricity * turn +
                                parameters.sensors.motor_eccentricity / evidence.ratio() / std::sqrt(2.0)) /
                               twin;
-  const Ratio ratio{ compliance,
-                     compliance / own.compliance_ratio,
-                     parameters.comparison.compliance_tolerance + eccentricity,
-                     ScalarIndicator::TORSIONAL_STIFFNESS,
-                     -1.0,
-                     evidence.assessor().signatures() };
-  verdict[Figure::TORSION_OF_TWIN] = ratio.to_twin;
-  verdict[Figure::TORSION_OF_OWN] = ratio.to_own;
-  verdict[Figure::TORSION_TOLERANCE] = ratio.tolerance(parameters);
-  judgeRatio(ratio, parameters, Reason::TORSION, finding);
+  const double to_own = compliance / own.compliance_ratio;
+  const bool is_own_known = std::isfinite(to_own);
+  const double ratio = is_own_known ? to_own : compliance;
+  const ComparisonParameters& comparison = parameters.comparison;
+  const double tolerance = is_own_known ? comparison.repeat_tolerance : comparison.compliance_tolerance + eccentricity;
+  verdict[Figure::TORSION_OF_TWIN] = compliance;
+  verdict[Figure::TORSION_OF_OWN] = to_own;
+  verdict[Figure::TORSION_TOLERANCE] = tolerance;
+  finding.level = levelOf(ratio - 1.0, tolerance, parameters.indicators.error_factor);
+  finding.reason = finding.level == VerdictLevel::OK ? Reason::SOUND : Reason::TORSION;
+  if (finding.level != VerdictLevel::OK)
+  {
+    nameCauses(evidence, ScalarIndicator::TORSIONAL_STIFFNESS, ratio > 1.0 ? -1.0 : 1.0, finding);
+  }
   constexpr double MIN_TURN = 0.01;  // least turn of the joint
-  if (!ratio.isOwnKnown())
+  if (!is_own_known)
   {
     verdict[Figure::ENCODER_SHARE] = eccentricity;
     verdict[Figure::ENCODER_ECCENTRICITY] = parameters.sensors.output_eccentricity;
