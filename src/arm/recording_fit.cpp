@@ -372,8 +372,6 @@ std::vector<RecordingFinding> RecordingFit::ofArm() const
   {
     findings.push_back(std::move(*currents));
   }
-  constexpr double MILLI = 1000.0;
-  constexpr double WIDE = 2.0;
   const EffortFit found = effort();
   if (found.is_known && found.unit != joints_.front().effort)
   {
@@ -381,13 +379,6 @@ std::vector<RecordingFinding> RecordingFit::ofArm() const
                          std::string("effort looks like ") + effortUnitName(found.unit) + ", not " +
                              effortUnitName(joints_.front().effort) + ": set telemetry.effort: " +
                              effortKeyword(found.unit) + ", unless the arm is another than given",
-                         Reason::EFFORT_UNIT });
-  }
-  else if (std::isfinite(found.factor.value) && std::abs(std::log(found.factor.value / MILLI)) < std::log(WIDE))
-  {
-    findings.push_back({ "effort_unit",
-                         std::string("effort looks a thousand times too large for ") +
-                             effortUnitName(joints_.front().effort) + ": divide it by 1000",
                          Reason::EFFORT_UNIT });
   }
   else if (std::isfinite(found.factor.value) &&
