@@ -26,25 +26,26 @@ double LoadRegression::leftByLoad() const
                                    std::max(0.0, rest(1, 1) - by_load) / seconds();
 }
 
-FittedFactor LoadRegression::slope(double& content) const
+FittedFactor LoadRegression::slopeOf(const Eigen::Matrix2d& left, double seconds)
 {
   constexpr double CORRELATED = 0.5;   // rows nearer to each other tell the same [s]
   constexpr double MIN_CONTENT = 0.1;  // least rms of the remaining load: errors of friction and inertia leave less [A]
   FittedFactor slope;
-  if (seconds() < MIN_SECONDS)
+  if (seconds < MIN_SECONDS || !(left(0, 0) > MIN_CONTENT * MIN_CONTENT * seconds))
   {
     return slope;
   }
-  const Eigen::Matrix2d rest = left();
-  if (rest(0, 0) <= MIN_CONTENT * MIN_CONTENT * seconds())
-  {
-    return slope;
-  }
-  content = rest(0, 0);
-  slope.value = rest(0, 1) / rest(0, 0);
-  const double unexplained = std::max(0.0, rest(1, 1) - slope.value * rest(0, 1));
-  slope.uncertainty = std::sqrt(unexplained / rest(0, 0) * CORRELATED / seconds());
+  slope.value = left(0, 1) / left(0, 0);
+  const double unexplained = std::max(0.0, left(1, 1) - slope.value * left(0, 1));
+  slope.uncertainty = std::sqrt(unexplained / left(0, 0) * CORRELATED / seconds);
   return slope;
+}
+
+FittedFactor LoadRegression::slope(double& content) const
+{
+  const Eigen::Matrix2d rest = left();
+  content = rest(0, 0);
+  return slopeOf(rest, seconds());
 }
 
 namespace

@@ -36,6 +36,8 @@ public:
   /// Slope of the current over the load; NaN: it says too little of it. `content`: square of the load that the others
   /// do not explain, summed over time.
   FittedFactor slope(double& content) const;
+  /// The same by the sums of what `left` gives [A^2 s], over that time [s].
+  static FittedFactor slopeOf(const Eigen::Matrix2d& left, double seconds);
 
 private:
   static constexpr int OTHERS = 4;

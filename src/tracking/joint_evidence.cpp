@@ -9,6 +9,7 @@
 #include <Eigen/Cholesky>
 
 #include "gear/ratio.hpp"
+#include "tracking/current_lag.hpp"
 
 namespace hjt
 {
@@ -253,26 +254,12 @@ double JointEvidence::unexplainedRms() const
 
 FittedFactor JointEvidence::loadFactor() const
 {
-  constexpr double CORRELATED = 0.5;  // rows nearer to each other tell the same [s]
-  constexpr double LEAST = 0.1;       // least rms of the load that friction does not explain [A]
-  const double rows = now_.gains(0, 0);
-  FittedFactor factor;
-  if (now_.gains_time < 10.0 * CORRELATED)
-  {
-    return factor;
-  }
   const Eigen::Matrix2d others = now_.gains.topLeftCorner<2, 2>();
   const Eigen::Matrix2d with = now_.gains.topRightCorner<2, 2>();
   const Eigen::Matrix2d left =
       now_.gains.bottomRightCorner<2, 2>() - with.transpose() * Eigen::Matrix2d(others.ldlt().solve(with));
-  if (!(left(0, 0) > LEAST * LEAST * rows))
-  {
-    return factor;
-  }
-  const double slope = left(0, 1) / left(0, 0);
-  const double rest = std::max(0.0, left(1, 1) - slope * left(0, 1));
-  factor.value = 1.0 + slope;
-  factor.uncertainty = std::sqrt(rest / left(0, 0) * CORRELATED / now_.gains_time);
+  FittedFactor factor = LoadRegression::slopeOf(left * now_.gains_time / now_.gains(0, 0), now_.gains_time);
+  factor.value += 1.0;
   return factor;
 }
 
