@@ -59,12 +59,7 @@ std::optional<Reason> whyRowsDoNotFit(const JointEvidence& evidence)
   {
     return Reason::LOAD_WRONG;
   }
-  constexpr std::uint64_t MIN_BLOCKS = 3;  // of friction without contact
-  const MotionReach& reach = evidence.reach();
-  return reach.touched_rows > 0 && reach.most_angle - reach.least_angle > LEAST_MOTION &&
-                 evidence.friction().blocks().count() < MIN_BLOCKS ?
-             std::make_optional(Reason::CONTACT) :
-             std::nullopt;
+  return std::nullopt;
 }
 
 /// The same, with what is known of the whole recording.
@@ -316,8 +311,7 @@ Verdict judge(const JointEvidence& evidence, const JointContext& context)
                        judgeSignals(evidence, context, verdict) };
   if (const std::optional<Reason> why_not = whyItDoesNotFit(evidence, context))
   {
-    verdict.dismiss(
-        { *why_not, *why_not == Reason::CONTACT ? contactText(evidence.contact().largest()) : context.misfit.clause });
+    verdict.dismiss({ *why_not, context.misfit.clause });
   }
   else if (verdict.findings.front().level != VerdictLevel::NOT_JUDGED)
   {
