@@ -43,88 +43,26 @@ std::vector<JointGroup> groupsOf(const std::vector<MeasuredFriction>& joints, co
   return { groupOf(joints, factors, tolerance, 0, half), groupOf(joints, factors, tolerance, half, joints.size()) };
 }
 
-/// Remainder of the measured ratios after factors of the joints' friction.
-class Left
-{
-public:
-  Left(const std::vector<MeasuredFriction>& joints, double tolerance) : joints_(joints), tolerance_(tolerance)
-  {
-    for (std::size_t i = 0; i < joints.size(); ++i)
-    {
-      if (joints[i].ratio)
-      {
-        known_.push_back(i);
-      }
-    }
-  }
-
-  std::size_t known() const { return known_.size(); }
-
-  double median(const std::vector<double>& factors) const { return medianOf(ratios(factors)); }
-
-  /// How many joints have no friction of their own then.
-  std::size_t agreeing(const std::vector<double>& factors) const
-  {
-    const std::vector<double> left = ratios(factors);
-    return static_cast<std::size_t>(
-        std::count_if(left.begin(), left.end(), [this](double ratio) { return std::abs(ratio - 1.0) <= tolerance_; }));
-  }
-
-  /// Apart from what groups have in common.
-  double misfit(std::vector<double> factors) const
-  {
-    for (const JointGroup& group : groupsOf(joints_, factors, tolerance_))
-    {
-      for (std::size_t i = group.begin; i < group.end; ++i)
-      {
-        factors[i] *= group.median;
-      }
-    }
-    constexpr double TINY = 1e-3;  // least ratio, which may be zero
-    double sum = 0.0;
-    for (const double ratio : ratios(factors))
-    {
-      sum += std::abs(std::log(std::max(ratio, TINY)));
-    }
-    return sum;
-  }
-
-  /// By which the friction of all joints is another at a temperature.
-  std::vector<double> at(double temperature) const
-  {
-    std::vector<double> factors;
-    for (const MeasuredFriction& joint : joints_)
-    {
-      factors.push_back(joint.at(temperature) / joint.at(joint.temperature));
-    }
-    return factors;
-  }
-
-private:
-  std::vector<double> ratios(const std::vector<double>& factors) const
-  {
-    std::vector<double> left;
-    for (const std::size_t i : known_)
-    {
-      left.push_back(*joints_[i].ratio / factors[i]);
-    }
-    return left;
-  }
-
-  const std::vector<MeasuredFriction>& joints_;
-  const double tolerance_;
-  std::vector<std::size_t> known_;
-};
-
 /// The temperature at which the joints' median friction is the twins'; none if it is received, or beyond the range.
-std::optional<double> temperatureOf(const std::vector<MeasuredFriction>& joints, const Left& left)
+std::optional<double> temperatureOf(const std::vector<MeasuredFriction>& joints)
 {
   constexpr double COLDEST = 0.0;  // [degC]
   constexpr double WARMEST = 60.0;
   constexpr int HALVINGS = 20;
   double low = COLDEST;
   double high = WARMEST;
-  const auto is_colder = [&](double temperature) { return left.median(left.at(temperature)) > 1.0; };
+  const auto is_colder = [&](double temperature)
+  {
+    std::vector<double> left;
+    for (const MeasuredFriction& joint : joints)
+    {
+      if (joint.ratio)
+      {
+        left.push_back(*joint.ratio * joint.at(joint.temperature) / joint.at(temperature));
+      }
+    }
+    return medianOf(left) > 1.0;
+  };
   if (std::any_of(joints.begin(), joints.end(), [](const auto& joint) { return joint.temperature_received; }) ||
       is_colder(low) || !is_colder(high))
   {
@@ -140,37 +78,17 @@ std::optional<double> temperatureOf(const std::vector<MeasuredFriction>& joints,
 
 ArmFriction ofWholeArm(const std::vector<MeasuredFriction>& joints, double tolerance)
 {
-  constexpr double MAX_MISFIT = 0.67;  // left with a temperature: it also fits one faulty joint a little
   ArmFriction arm;
   arm.factors.assign(joints.size(), 1.0);
   arm.deviations.assign(joints.size(), UNWITNESSED);
-  const Left left(joints, tolerance);
-  arm.is_known = left.known() >= MIN_WITNESSES;
-  if (!arm.is_known)
+  const auto known = std::count_if(joints.begin(), joints.end(), [](const auto& joint) { return joint.ratio; });
+  arm.is_known = static_cast<std::size_t>(known) >= MIN_WITNESSES;
+  const JointGroup all = groupOf(joints, arm.factors, tolerance, 0, joints.size());
+  if (all.is_known && std::abs(all.median - 1.0) > tolerance)
   {
-    return arm;
-  }
-  const double median = left.median(arm.factors);
-  const std::vector<double> alike(joints.size(), median);
-  const std::optional<double> temperature = temperatureOf(joints, left);
-  const std::vector<double> at_temperature = temperature ? left.at(*temperature) : arm.factors;
-
-  const std::size_t most = left.known() / 2 + 1;
-  const bool is_factor = std::abs(median - 1.0) > tolerance && left.agreeing(alike) >= most;
-  const std::vector<double>& otherwise = is_factor ? alike : arm.factors;
-  const std::size_t agree = left.agreeing(otherwise);
-  if (temperature && agree < left.known() && left.agreeing(at_temperature) >= std::max(most, agree) &&
-      left.misfit(at_temperature) <= MAX_MISFIT * left.misfit(otherwise))
-  {
-    arm.factors = at_temperature;
-    arm.median = median;
-    arm.temperature = temperature;
-  }
-  else if (is_factor)
-  {
-    arm.factors = alike;
-    arm.median = median;
-    arm.temperature = temperature;
+    arm.factors.assign(joints.size(), all.median);
+    arm.median = all.median;
+    arm.temperature = temperatureOf(joints);
   }
   return arm;
 }

@@ -61,17 +61,15 @@ struct ArmFriction
   Misfit misfit;    ///< of all joints
 };
 
-/// The joints are judged after what most of at least three agree on within `tolerance`: nothing; one factor that
-/// differs from 1 by more than that; or, where no temperature was received, one temperature. The last is taken if not
-/// all agree on one of the others, as many agree on it, and it leaves clearly less unexplained than what the groups
-/// have in common. Factor and temperature are the median joint's, so that one faulty joint changes neither. What is
-/// left then and most of the three joints of a group agree on is the group's: three drives do not fail alike. Joints
-/// held against their type differ by more, and 5 % of it may be chance: of a joint that is held against its own while
-/// others are not, that is the deviation. More friction of the others makes no joint's less; less of the others makes
-/// it more by as much as they agree on: what they scatter by, beyond what sound joints do, is a deviation too. Two
-/// joints or more whose friction is below what any fault leaves: something else carries the arm. Two or more whose
-/// currents fit no load, or one and one of the former: its load is another. One of the former, and one with more than
-/// twice what is expected of it: they are in another order. In all these cases no joint is judged.
+/// The joints are judged after what most of at least three agree on within `tolerance`: nothing, or one factor that
+/// differs from 1 by more than that. Factor and temperature are the median joint's, so that one faulty joint changes
+/// neither. What is left then and most of the three joints of a group agree on is the group's: three drives do not fail
+/// alike. Joints held against their type differ by more, and 5 % of it may be chance: of a joint that is held against
+/// its own while others are not, that is the deviation. More friction of the others makes no joint's less; less of the
+/// others makes it more by as much as they agree on: what they scatter by, beyond what sound joints do, is a deviation
+/// too. Two joints or more whose friction is below what any fault leaves: something else carries the arm. Two or more
+/// whose currents fit no load, or one and one of the former: its load is another. One of the former, and one with more
+/// than twice what is expected of it: they are in another order. In all these cases no joint is judged.
 ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double tolerance);
 
 /// Why a joint is not judged: its own reason, or that of all joints. Signs of efforts tell more than another load.
@@ -80,5 +78,4 @@ inline const Misfit& misfitOf(const Misfit& joint, const Misfit& arm)
   const bool is_sign = joint.reason == Reason::LOAD_WRONG && arm.reason == Reason::EFFORT_NOT_CURRENT;
   return !joint.exists() || (arm.exists() && is_sign) ? arm : joint;
 }
-
 }  // namespace hjt
