@@ -15,22 +15,27 @@ namespace hjt
 {
 namespace
 {
-// Terms of the arm, then of each joint.
-constexpr int JUMP = ArmEstimator::LOAD;
-constexpr int GAIN = JUMP + ArmEstimator::PAYLOAD;
-constexpr int FRICTION = GAIN + 1;
-constexpr int COLD = FRICTION + 1;
-constexpr int GROUP = COLD + 1;  // base to elbow, wrists
-constexpr int GROUPS = 2;
-constexpr int OWN = GROUP + GROUPS;
-constexpr int OWN_GAIN = 0;
-constexpr int OWN_FRICTION = 1;
-constexpr int OWN_COLD = 2;
-constexpr int OWN_OFFSET = 3;
-constexpr int OWN_LOSS = 4;
-constexpr int OWN_INERTIA = 5;
-constexpr int PER_JOINT = 6;
-constexpr int USED = GROUP + 1 + PER_JOINT;  // of one joint's rows
+/// Terms of the arm, then of each joint; a group: base to elbow, wrists.
+enum Term : int
+{
+  JUMP = ArmEstimator::LOAD,
+  GAIN = JUMP + ArmEstimator::PAYLOAD,
+  FRICTION,
+  COLD,
+  GROUP,
+  OWN = GROUP + 2
+};
+enum OwnTerm : int
+{
+  OWN_GAIN,
+  OWN_FRICTION,
+  OWN_COLD,
+  OWN_OFFSET,
+  OWN_LOSS,
+  OWN_INERTIA,
+  PER_JOINT,
+  USED = GROUP + 1 + PER_JOINT  // of one joint's rows
+};
 
 constexpr double NEVER = 1e-6;   // width of the prior of a term that is left out
 constexpr double STUDENT = 4.0;  // degrees of freedom of what rows leave
@@ -40,7 +45,7 @@ constexpr int HELD = -1;  // a start with all priors at full weight
 int groupOf(std::size_t joint)
 {
   constexpr std::size_t TO_ELBOW = 3;
-  return joint < TO_ELBOW ? GROUP : GROUP + 1;
+  return GROUP + (joint < TO_ELBOW ? 0 : 1);
 }
 
 int ownOf(std::size_t joint)
@@ -488,7 +493,6 @@ ArmEstimator::Point ArmEstimator::refine(const Prior& prior, const std::vector<b
   constexpr int LOOSE_ROUNDS = 5;
   constexpr double NOTHING = 1e-3;  // of a deviation
   constexpr double FLOOR = 0.02;    // least residual of a real arm [A]
-  constexpr double COUNTED = 60.0;
   Point point;
   point.at = std::move(at);
   point.deviations.resize(rows_.size());

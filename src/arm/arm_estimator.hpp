@@ -28,8 +28,9 @@ namespace hjt
 class ArmEstimator
 {
 public:
-  static constexpr int PAYLOAD = 4;  ///< mass and its three moments
-  static constexpr int GRAVITY = 3;  ///< its change
+  static constexpr double COUNTED = 60.0;  ///< rows: errors of a model are not independent from row to row
+  static constexpr int PAYLOAD = 4;        ///< mass and its three moments
+  static constexpr int GRAVITY = 3;        ///< its change
   static constexpr int DRAG = PAYLOAD + GRAVITY;
   static constexpr int LOAD = DRAG + 1;
   using Load = Eigen::Matrix<double, LOAD, 1>;

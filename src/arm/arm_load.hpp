@@ -18,7 +18,7 @@ namespace hjt
 /// All joints of an arm at the time of one row.
 struct ArmSample
 {
-  std::vector<MotionSample> joints;  ///< rates within ArmLoad::HALF_WIDTH, for the load
+  std::vector<MotionSample> joints;  ///< rates within ArmRates::HALF_WIDTH, for the load
   /// The same with a joint's own rates, within MotionDifferentiator::HALF_WIDTH, stamp errors and vibration.
   std::vector<MotionSample> own;
   /// Of the links and the payload at the output of each joint, the motor's own inertia not in it, > 0 resists positive
@@ -101,8 +101,6 @@ private:
 class ArmLoad
 {
 public:
-  static constexpr double HALF_WIDTH = ArmRates::HALF_WIDTH;
-
   /// @throws ParameterError as ArmDynamics.
   explicit ArmLoad(const ArmDescription& arm, PayloadCourse course = {})
     : torques_(arm, std::move(course)), rates_(torques_.joints())

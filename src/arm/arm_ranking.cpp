@@ -16,8 +16,6 @@ namespace hjt
 {
 namespace
 {
-constexpr double ROW_PERIOD = 0.02;  // of the rows that count, at least [s]
-
 /// With efforts of that unit.
 std::vector<Parameters> withUnit(std::vector<Parameters> joints, EffortUnit unit)
 {
@@ -116,7 +114,7 @@ void play(const PlayArmRows& rows, const Trials& trials, std::size_t joints)
     while (const ArmSample* sample = rates.pop(at_end))
     {
       const double time = sample->own.front().time;
-      const bool counts = time >= last_time + ROW_PERIOD;
+      const bool counts = time >= last_time + LoadFit::PERIOD;
       last_time = counts ? time : last_time;
       for (const auto& trial : trials)
       {

@@ -53,8 +53,8 @@ void ArmWatch::ask()
   const bool is_last = moved_ >= ArmFit::ENOUGH;
   std::vector<std::vector<MotionRow>> rows;
   is_last ? rows.swap(rows_) : void(rows = rows_);
-  moved_ = is_last ? -REST : moved_;
-  next_look_ = is_last ? FIRST_LOOK : 2.0 * next_look_;
+  moved_ = is_last ? -LoadFit::LAST_LOOK : moved_;
+  next_look_ = is_last ? LoadFit::FIRST_LOOK : 2.0 * next_look_;
   is_stopped_ = false;
   answer_ = std::async(std::launch::async,
                        [this, rows = std::move(rows)]
@@ -109,7 +109,7 @@ void ArmWatch::reset()
   rows_.clear();
   moved_from_.clear();
   moved_ = 0.0;
-  next_look_ = FIRST_LOOK;
+  next_look_ = LoadFit::FIRST_LOOK;
   last_moved_ = last_time_ = -HUGE_VAL;
   other_.clear();
   is_settled_ = false;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "arm/arm_ranking.hpp"
+#include "arm/load_fit.hpp"
 
 namespace hjt
 {
@@ -45,9 +46,7 @@ public:
   bool isSettled() const { return is_settled_; }
 
 private:
-  static constexpr double FIRST_LOOK = 30.0;  // of motion [s]
-  static constexpr double REST = 480.0;       // likewise, until the next first look
-  static constexpr double PERIOD = 0.006;     // of the rows that are kept, at least [s]
+  static constexpr double PERIOD = 0.006;  // of the rows that are kept, at least [s]
 
   bool moves(const std::vector<MotionRow>& rows);
   void ask();
@@ -62,7 +61,7 @@ private:
   double last_moved_{ -HUGE_VAL };  // [s]
   double last_time_{ -HUGE_VAL };   // of a row that is kept [s]
   double moved_{};                  // since the last start, but for the rest [s]
-  double next_look_{ FIRST_LOOK };
+  double next_look_{ LoadFit::FIRST_LOOK };
   std::atomic<bool> is_stopped_{ false };  // pending questions are ignored
   std::future<std::string> answer_;        // last: it is waited for before the rest goes
 };

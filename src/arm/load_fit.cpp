@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "arm/residual_statistics.hpp"
+#include "base/normal.hpp"
 #include "base/number_text.hpp"
 #include "elements/motor.hpp"
 #include "gear/ratio.hpp"
@@ -17,13 +17,12 @@ namespace
 // Logarithm of how much rarer another mounting, a payload that changes or a drag is; where nothing changes, recordings
 // of a UR5 and a UR10e show up to 8 for such a payload.
 constexpr double OTHER_CAUSE = 10.0;
-constexpr double ROWS = 60.0;   // that count: errors of a model are not independent from row to row
 constexpr double FLOOR = 0.02;  // of the currents: that the twin of no real arm falls below [-]
 
 /// Of what is left of the currents, share.
 double misfitCost(double left)
 {
-  return ROWS * std::log(std::hypot(left, FLOOR));
+  return ArmEstimator::COUNTED * std::log(std::hypot(left, FLOOR));
 }
 FoundDrag dragOf(const ArmEstimator::Estimate& estimate)
 {
@@ -63,8 +62,7 @@ LoadFit::LoadFit(const ArmDescription& arm, const std::vector<Drive>& drives)
 /// A leg ends where all joints stand, and after 5 s.
 void LoadFit::cutLegs(double time, double speed)
 {
-  constexpr double STANDS = 0.02;  // [rad/s]
-  constexpr double STOP = 0.2;     // [s]
+  constexpr double STOP = 0.2;  // [s]
   constexpr double SHORTEST = 1.0;
   constexpr double LONGEST = 5.0;
   if (legs_.empty())
@@ -72,7 +70,7 @@ void LoadFit::cutLegs(double time, double speed)
     legs_.push_back(time);
     return;
   }
-  still_ = speed < STANDS ? still_ + std::clamp(time - last_time_, 0.0, BLOCK) : 0.0;
+  still_ = speed < MotionDifferentiator::MOVING ? still_ + std::clamp(time - last_time_, 0.0, BLOCK) : 0.0;
   const bool has_rows =
       std::any_of(rows_.begin(), rows_.end(),
                   [&](const auto& joint) { return !joint.empty() && joint.back().leg + 1 == legs_.size(); });
@@ -81,7 +79,7 @@ void LoadFit::cutLegs(double time, double speed)
   {
     legs_.push_back(time);
   }
-  else if (!has_rows && speed < STANDS)
+  else if (!has_rows && speed < MotionDifferentiator::MOVING)
   {
     legs_.back() = time;
   }
@@ -161,8 +159,6 @@ void LoadFit::addTo(std::size_t number, const MotionSample& sample, const Motion
 
 void LoadFit::add(const std::vector<MotionSample>& samples, const std::vector<const MotionDriven*>& twins)
 {
-  constexpr double MOVING = 0.05;     // [rad/s]
-  constexpr double MOBILISED = 0.05;  // of the friction that the motion leaves open, at most [-]
   const double time = samples.front().time;
   const double step = time - last_time_;
   double speed = 0.0;
@@ -173,7 +169,7 @@ void LoadFit::add(const std::vector<MotionSample>& samples, const std::vector<co
   }
   cutLegs(time, speed);
   last_time_ = time;
-  if (speed > MOVING)
+  if (speed > MotionDifferentiator::SLIDING)
   {
     moved_ += step > 0.0 && step < BLOCK ? step : 0.0;
     unit_.torques(motion_, torques_);
@@ -182,9 +178,8 @@ void LoadFit::add(const std::vector<MotionSample>& samples, const std::vector<co
   {
     const MotionSample& sample = samples[i];
     Open& block = joints_[i].open;
-    const MotionPrediction twin = twins[i]->at(sample.temperatureOr(joints_[i].drive.temperature));
-    const bool counts = std::abs(sample.velocity) > MOVING && std::isfinite(sample.current) &&
-                        joints_[i].drive.gain * twin.band < MOBILISED * std::abs(twin.friction_torque);
+    const bool counts = std::abs(sample.velocity) > MotionDifferentiator::SLIDING && std::isfinite(sample.current) &&
+                        twins[i]->at(sample.temperatureOr(joints_[i].drive.temperature)).tellsFriction();
     if (sample.after_gap || !counts || sample.velocity * block.velocity < 0.0 || time > block.begin + BLOCK ||
         block.sum.leg + 1 != legs_.size())
     {

@@ -23,6 +23,10 @@ namespace hjt
 class LoadFit
 {
 public:
+  static constexpr double PERIOD = 0.02;      ///< of the rows that count, at least [s]
+  static constexpr double FIRST_LOOK = 30.0;  ///< at rows that still come, of motion [s]
+  static constexpr double LAST_LOOK = 480.0;  ///< likewise: then all begins again [s]
+
   /// What it knows of a joint's drive.
   struct Drive
   {

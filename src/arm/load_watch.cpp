@@ -24,7 +24,7 @@ LoadWatch::LoadWatch(const ArmDescription& arm, const std::vector<Parameters>& j
 
 void LoadWatch::reset()
 {
-  start(isTrying() ? TRIAL : FIRST_LOOK);
+  start(isTrying() ? TRIAL : LoadFit::FIRST_LOOK);
   frictions_.clear();
   is_of_others_ = isLooking();
 }
@@ -40,7 +40,7 @@ void LoadWatch::start(double first_look)
 void LoadWatch::add(const ArmSample& sample)
 {
   const double time = sample.joints.front().time;
-  const bool counts = time >= last_time_ + PERIOD;
+  const bool counts = time >= last_time_ + LoadFit::PERIOD;
   samples_ = sample.joints;
   for (std::size_t i = 0; i < samples_.size(); ++i)
   {
@@ -77,7 +77,7 @@ void LoadWatch::begin(std::vector<bool> measured)
   }
   catch (const std::system_error&)
   {
-    next_look_ += FIRST_LOOK;
+    next_look_ += LoadFit::FIRST_LOOK;
   }
 }
 
@@ -103,7 +103,7 @@ bool LoadWatch::take(const FoundLoad& found, const JudgedJoints& joints)
 {
   const bool was_trying = isTrying();
   frictions_ = was_trying ? frictions_ : found.frictions;
-  const bool alternates = found.changes.size() > 2 && found.changes.back().time > looked_at_ - FIRST_LOOK;
+  const bool alternates = found.changes.size() > 2 && found.changes.back().time > looked_at_ - LoadFit::FIRST_LOOK;
   misfit_ = alternates ? Misfit{ Reason::LOAD_WRONG,
                                  "the payload changes from leg to leg, as in picking and placing: "
                                  "record the motion and compare it, which judges each leg with its "
@@ -116,10 +116,10 @@ bool LoadWatch::take(const FoundLoad& found, const JudgedJoints& joints)
     arm_ = given_;
     law_.counts().configure(arm_);
   }
-  next_look_ += FIRST_LOOK;
-  if (is_other || was_trying || next_look_ > LAST_LOOK)
+  next_look_ += LoadFit::FIRST_LOOK;
+  if (is_other || was_trying || next_look_ > LoadFit::LAST_LOOK)
   {
-    start(isTrying() ? TRIAL : was_trying && is_other ? LAST_LOOK : FIRST_LOOK);
+    start(isTrying() ? TRIAL : was_trying && is_other ? LoadFit::LAST_LOOK : LoadFit::FIRST_LOOK);
   }
   return is_other;
 }

@@ -47,10 +47,7 @@ public:
   const ArmDescription& arm() const { return arm_; }
 
 private:
-  static constexpr double FIRST_LOOK = 30.0;  // of motion [s]
-  static constexpr double TRIAL = 10.0;       // likewise
-  static constexpr double LAST_LOOK = 480.0;  // likewise
-  static constexpr double PERIOD = 0.02;      // of the rows that count, at least [s]
+  static constexpr double TRIAL = 10.0;  // of motion [s]
 
   void start(double first_look);
   void begin(std::vector<bool> measured);
@@ -65,7 +62,7 @@ private:
   std::vector<MotionSample> samples_;
   std::vector<const MotionDriven*> beside_;
   double last_time_{ -HUGE_VAL };  // that counted [s]
-  double next_look_{ FIRST_LOOK };
+  double next_look_{ LoadFit::FIRST_LOOK };
   bool has_looked_{};
   Misfit misfit_;
   std::vector<FittedFriction> frictions_;

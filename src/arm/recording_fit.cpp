@@ -13,18 +13,18 @@
 #include "gear/ratio.hpp"
 #include "params/choices.hpp"
 #include "tracking/effort.hpp"
+#include "tracking/friction_verdict.hpp"
 
 namespace hjt
 {
 namespace
 {
-constexpr double MOVING_SLOPE = 0.02;  // beyond stiction and the noise of a slope [rad/s]
-constexpr double MOVED = 0.02;         // a joint whose range is less does not move [rad]
-constexpr double FASTEST = 10.0;       // no joint of an arm turns faster [rad/s]
-constexpr double FACTOR_OFF = 0.03;    // of angle over velocity: beyond the errors of encoders' scales
-constexpr double DEVIATIONS = 3.0;     // beyond these a difference is significant
-constexpr double WIDEST_FACTOR = 20;   // largest factor of stamps; beyond it another unit is likelier
-constexpr double LAG_OFF = 0.05;       // [s]
+constexpr double FASTEST = 10.0;      // no joint of an arm turns faster [rad/s]
+constexpr double FACTOR_OFF = 0.03;   // of angle over velocity: beyond the errors of encoders' scales
+constexpr double DEVIATIONS = 3.0;    // beyond these a difference is significant
+constexpr double WIDE = 2.0;          // of a unit's factor: a payload or another gain make no more of it
+constexpr double WIDEST_FACTOR = 20;  // largest factor of stamps; beyond it another unit is likelier
+constexpr double LAG_OFF = 0.05;      // [s]
 constexpr std::uint64_t MIN_ROWS = 100;
 constexpr double UNCHANGED = 2.0;       // no current stays the same in motion for longer [s]
 constexpr double LEAST_SQUARE = 1e-12;  // least square of an uncertainty: simulated data may have none
@@ -139,7 +139,6 @@ void RecordingFit::reset() noexcept
   {
     joint.time.reset();
     joint.ratio.reset();
-    joint.load = LoadRegression();
     joint.lag.reset();
     joint.reach = JointReach();
     joint.moving_rows = 0;
@@ -177,7 +176,7 @@ void RecordingFit::update(const std::vector<MotionSample>& joints, const std::ve
     reach.most_speed = std::max(reach.most_speed, sample.velocity);
     reach.least_current = std::min(reach.least_current, sample.current);
     reach.most_current = std::max(reach.most_current, sample.current);
-    const bool joint_moves = std::abs(sample.velocity) > MOVING_SLOPE;
+    const bool joint_moves = std::abs(sample.velocity) > MotionDifferentiator::MOVING;
     moves = moves || joint_moves;
     joint.moving_rows += joint_moves ? 1 : 0;
     joint.fast_rows += std::abs(sample.velocity) > FASTEST ? 1 : 0;
@@ -189,10 +188,6 @@ void RecordingFit::update(const std::vector<MotionSample>& joints, const std::ve
     if (std::isfinite(torques[i]))
     {
       joint.lag.add(sample, torques[i] / joint.gain);
-    }
-    if (follows && joint_moves && std::isfinite(torques[i]))
-    {
-      joint.load.add(step, sample.velocity, sample.acceleration, torques[i] / joint.gain, sample.current);
     }
   }
   moving_ += follows && moves ? step : 0.0;
@@ -286,6 +281,70 @@ std::optional<RecordingFinding> RecordingFit::ofCurrents() const
                            Reason::STAMPS };
 }
 
+EffortFit RecordingFit::effort() const
+{
+  constexpr double MAX_UNCERTAINTY = 1.0 / 3.0;  // share of the factor: beyond, the effort may not contain the load
+  EffortFit fit;
+  fit.unit = joints_.front().effort;
+  double weights = 0.0;
+  double sum = 0.0;
+  double squares = 0.0;
+  const auto units = choiceNames(EffortUnit());
+  std::vector<double> expected(units.size());
+  for (const Joint& joint : joints_)
+  {
+    // By the load, not by the uncertainty: a dead current would be the most certain one.
+    double weight = 0.0;
+    const FittedFactor slope = joint.lag.now().slope(weight);
+    if (!std::isfinite(slope.value) || joint.reach.least_current == joint.reach.most_current)
+    {
+      continue;
+    }
+    weights += weight;
+    sum += weight * slope.value;
+    squares += weight * weight * slope.uncertainty * slope.uncertainty;
+    for (std::size_t unit = 0; unit < units.size(); ++unit)
+    {
+      // If the effort is of this unit, its current is too large by as much as the configured unit's factor.
+      expected[unit] +=
+          weight * joint.current_per_effort[static_cast<std::size_t>(joint.effort)] / joint.current_per_effort[unit];
+    }
+  }
+  if (weights == 0.0 || std::sqrt(squares) > MAX_UNCERTAINTY * sum)
+  {
+    return fit;
+  }
+  fit.factor = { sum / weights, std::sqrt(squares) / weights };
+  const auto distance = [&](EffortUnit unit)
+  { return std::abs(std::log(fit.factor.value * weights / expected[static_cast<std::size_t>(unit)])); };
+  fit.is_known = distance(fit.unit) < std::log(WIDE);
+  for (const auto& [name, unit] : units)
+  {
+    if (!fit.is_known && distance(unit) < std::log(WIDE) && distance(unit) < distance(fit.unit) - std::log(WIDE))
+    {
+      fit.unit = unit;
+      fit.is_known = true;
+    }
+  }
+  return fit;
+}
+
+RecordingFit::LoadRest RecordingFit::loadRest(EffortUnit unit) const
+{
+  LoadRest sum;
+  double seconds = 0.0;
+  for (const Joint& joint : joints_)
+  {
+    const double scale = joint.current_per_effort[static_cast<std::size_t>(unit)] /
+                         joint.current_per_effort[static_cast<std::size_t>(joint.effort)];
+    const Eigen::Matrix2d left = joint.lag.now().left();
+    sum.current += scale * scale * left(1, 1);
+    sum.left += std::max(0.0, scale * scale * left(1, 1) - 2.0 * scale * left(0, 1) + left(0, 0));
+    seconds += joint.lag.now().seconds();
+  }
+  return { std::sqrt(sum.current / seconds), std::sqrt(sum.left / seconds) };
+}
+
 std::vector<RecordingFinding> RecordingFit::ofArm() const
 {
   constexpr double MIN_SHARE = 0.1;  // least share of the moving rows: jolts where pieces are joined are fewer
@@ -314,7 +373,6 @@ std::vector<RecordingFinding> RecordingFit::ofArm() const
     findings.push_back(std::move(*currents));
   }
   constexpr double MILLI = 1000.0;
-  constexpr double WIDE = 2.0;
   const EffortFit found = effort();
   if (found.is_known && found.unit != joints_.front().effort)
   {
@@ -401,7 +459,7 @@ std::vector<RecordingFinding> RecordingFit::ofJoint(std::size_t number) const
   {
     findings.push_back({ "no_velocity", "velocity taken from the angles", std::nullopt });
   }
-  if (joint.reach.most_angle - joint.reach.least_angle < MOVED)
+  if (joint.reach.most_angle - joint.reach.least_angle < LEAST_MOTION)
   {
     findings.push_back({ "at_rest", "does not move", std::nullopt });
   }

@@ -112,25 +112,6 @@ private:
   bool isMeasured(std::size_t joint) const;
   std::optional<RecordingFinding> ofTimes() const;
   std::optional<RecordingFinding> ofCurrents() const;
-  /// Regression of the current on a constant, Coulomb and viscous friction, the acceleration, which draws the current
-  /// of the rotor's inertia, and the load.
-  class LoadRegression
-  {
-  public:
-    void add(double step, double velocity, double acceleration, double load, double current) noexcept;
-    /// Slope of the current over the load; NaN: it says too little of it. `content`: square of the load that the others
-    /// do not explain, summed over time.
-    FittedFactor slope(double& content) const;
-    /// Sums of load and current without constant, friction and acceleration [A^2 s].
-    Eigen::Matrix2d left() const;
-    double seconds() const { return sums_(0, 0); }
-
-  private:
-    static constexpr int OTHERS = 4;
-    static constexpr int TERMS = 6;
-    // of 1, sign, speed, acceleration, load, current
-    Eigen::Matrix<double, TERMS, TERMS> sums_{ Eigen::Matrix<double, TERMS, TERMS>::Zero() };
-  };
 
   struct Joint
   {
@@ -139,7 +120,6 @@ private:
     std::vector<double> current_per_effort;  // by unit [A], [A/(N.m)]
     TimeFit time;
     RatioFit ratio;
-    LoadRegression load;
     CurrentLag lag;
     JointReach reach;
     std::uint64_t moving_rows{};

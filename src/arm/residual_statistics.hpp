@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 
 #include "base/median.hpp"
+#include "base/normal.hpp"
 
 namespace hjt
 {
@@ -14,7 +15,6 @@ inline double robustDeviation(const Eigen::VectorXd& residuals)
 {
   const Eigen::VectorXd sizes = residuals.cwiseAbs();
   std::vector<double> sorted(sizes.data(), sizes.data() + sizes.size());
-  constexpr double NORMAL_MEDIAN = 0.6745;
   return upperMedian(sorted.begin(), sorted.end()) / NORMAL_MEDIAN;
 }
 
@@ -35,7 +35,4 @@ inline double correlationRows(const Eigen::VectorXd& residuals)
   }
   return length;
 }
-
-/// Half width of the 95 % interval of a normal distribution over its standard deviation.
-constexpr double NORMAL_95 = 1.96;
 }  // namespace hjt

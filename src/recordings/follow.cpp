@@ -26,6 +26,8 @@ namespace hjt
 {
 namespace
 {
+constexpr double VERDICT_RATE = 1.0;  // [Hz]
+
 /// A bag with the topics that the node publishes beside a robot, made offline from its recording. Where that is a bag
 /// of ROS 1 too, it holds all of its messages as they are.
 class TrackedBag
@@ -123,8 +125,6 @@ public:
   }
 
 private:
-  static constexpr double VERDICT_RATE = 1.0;  // [Hz]
-
   void copyUntil(Stamp recorded)
   {
     try
@@ -311,6 +311,39 @@ private:
   Rms load_error_;
 };
 
+/// The temperature that the friction of an arm's joints means, once a second.
+class CommonTemperature
+{
+public:
+  CommonTemperature(const std::vector<Tracker*>& trackers, double tolerance) : tolerance_(tolerance)
+  {
+    for (Tracker* tracker : trackers)
+    {
+      joints_.push_back(std::make_unique<VerdictWatch>(*tracker, JointContext()));
+      all_.push_back(joints_.back().get());
+    }
+  }
+
+  void look(double time)
+  {
+    if (all_.size() < MIN_WITNESSES || !periods_.begins(std::llround(1e9 * time)))
+    {
+      return;
+    }
+    const ArmFriction found = commonFriction(all_, tolerance_);
+    for (VerdictWatch* joint : all_)
+    {
+      joint->predictAt(found);
+    }
+  }
+
+private:
+  std::vector<std::unique_ptr<VerdictWatch>> joints_;
+  std::vector<VerdictWatch*> all_;
+  const double tolerance_;
+  StampPeriods periods_{ VERDICT_RATE };
+};
+
 /// Null: no bag is asked for.
 std::unique_ptr<TrackedBag> bagOf(const ArmRecording& recording, const FollowOptions& options)
 {
@@ -433,7 +466,7 @@ try
   {
     bag->judge(trackers, *assessed);
   }
-  ArmFrictionWatch friction(trackers, recording.parameters(0).comparison.repeat_tolerance);
+  CommonTemperature temperature(trackers, recording.parameters(0).comparison.repeat_tolerance);
   RecordingFit fit(recording.parameters());
   Followed followed{ recording.isArm(), options.load, {}, {} };
   followed.found = recording.read(
@@ -443,7 +476,7 @@ try
         {
           followers[i]->add(rows[i]);
         }
-        friction.look(rows.front().row.time);
+        temperature.look(rows.front().row.time);
         if (bag)
         {
           bag->offerVerdicts(rows.front().row.time);

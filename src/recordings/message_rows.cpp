@@ -15,8 +15,6 @@ namespace hjt
 {
 namespace
 {
-constexpr double FASTEST = 20.0;    // joint; faster ones are damaged angles [rad/s]
-constexpr double SLACK = 0.02;      // added to the time that a joint has for its way: messages come in bursts [s]
 constexpr double CLOCK_STEP = 1.0;  // largest difference of the delays of neighbouring messages [s]
 
 /// Whether a row is no measurement: the efforts of all these joints are exactly zero, or all values of one joint.
@@ -216,11 +214,11 @@ bool MessageRows::flush()
 
 bool MessageRows::agree(const StampedRows& a, const StampedRows& b) const
 {
-  const double time = std::abs(toSeconds(b.recorded - a.recorded)) + SLACK;
+  const double time = std::abs(toSeconds(b.recorded - a.recorded)) + RowFilter::SLACK;
   bool agrees = std::abs(b.delay() - a.delay()) < CLOCK_STEP;
   for (std::size_t i = 0; i < names_.size(); ++i)
   {
-    agrees = agrees && std::abs(b.rows[i].position - a.rows[i].position) < FASTEST * time;
+    agrees = agrees && std::abs(b.rows[i].position - a.rows[i].position) < MotionSource::FASTEST * time;
   }
   return agrees;
 }

@@ -152,7 +152,7 @@ void readJoints(const RecordingOptions& options, CheckedArm& arm)
   RecordingFit fit(parameters);
   AssessedTwins twins;
   twins.make(parameters, LoadOrigin::CONFIGURED, false);
-  std::vector<MotionDifferentiator> differentiators(names.size(), MotionDifferentiator(ArmLoad::HALF_WIDTH));
+  std::vector<MotionDifferentiator> differentiators(names.size(), MotionDifferentiator(ArmRates::HALF_WIDTH));
   std::vector<MotionDifferentiator> own(names.size());
   std::vector<MotionSample> samples(names.size());
   const std::vector<double> unknown(names.size(), std::nan(""));

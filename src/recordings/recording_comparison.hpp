@@ -171,7 +171,7 @@ public:
     {
       return;
     }
-    if (std::abs(sample.velocity) > JointEvidence::MOVING && evidence_.tellsFriction(row.predicted))
+    if (std::abs(sample.velocity) > FrictionPoints::SLOWEST && row.predicted.tellsFriction())
     {
       spectrum_.add(sample.position, sample.velocity, row.residual());
     }

@@ -182,7 +182,7 @@ void JointTracker::takeLoad(const LoadAt& load)
     return;
   }
   early_loads_.push_back(load);
-  if (early_loads_.size() > Tracker::LOADS)
+  if (early_loads_.size() > HeldValues::ROOM)
   {
     early_loads_.pop_front();
   }

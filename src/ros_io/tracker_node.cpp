@@ -13,9 +13,7 @@
 
 #include "base/date_text.hpp"
 #include "base/joined.hpp"
-#include "base/number_text.hpp"
 #include "base/printable.hpp"
-#include "base/text_stream.hpp"
 #include "messages/joint_affixes.hpp"
 #include "messages/topics.hpp"
 #include "ros_io/input_topics.hpp"
@@ -76,18 +74,6 @@ TrackerNode::TrackerNode(ros::NodeHandle& node, const Arm& arm)
   {
     addJoint(ros::NodeHandle(jointName(arm.description.joints[i])), arm.joints[i], arm.sound[i], arm.is_identified);
   }
-  std::vector<double> frictions;
-  for (const SoundJoint& joint : arm.sound)
-  {
-    const double friction = FrictionPoints::ratioOf(joint.own.friction);
-    frictions.push_back(friction > 0.0 ? friction : 1.0);
-  }
-  std::vector<Tracker*> trackers;
-  for (const auto& joint : joints_)
-  {
-    trackers.push_back(&joint->tracker());
-  }
-  friction_.emplace(std::move(trackers), repeat_tolerance_, std::move(frictions));
   if (std::all_of(joints_.begin(), joints_.end(), [](const auto& joint) { return joint->takesArmLoad(); }))
   {
     std::vector<LoadFit::Drive> drives(arm.joints.begin(), arm.joints.end());
@@ -283,7 +269,6 @@ void TrackerNode::take(const ArmSample& sample)
     }
     joints_[i]->compare(sample.own[i]);
   }
-  lookAtFriction(sample.joints.front().time);
   if (load_)
   {
     load_->add(sample);
@@ -296,31 +281,11 @@ void TrackerNode::resetFit()
   {
     fit_->reset();
     next_fit_ = -HUGE_VAL;
-    friction_->reset();
     for (const auto& joint : joints_)
     {
+      joint->tracker().setTemperature(std::nullopt);
       joint->setArmFriction(1.0);
     }
-  }
-}
-
-void TrackerNode::lookAtFriction(double time)
-{
-  if (!friction_->look(time))
-  {
-    return;
-  }
-  const ArmFriction& found = friction_->found();
-  TextStream text;
-  text << "Friction of the whole arm is " << roundedText(found.median, 3) << " times the expected";
-  if (found.temperature)
-  {
-    text << ": it is predicted at " << roundedText(*found.temperature, 2) << " degC now";
-  }
-  ROS_INFO_STREAM(text.str());
-  for (std::size_t i = 0; i < joints_.size(); ++i)
-  {
-    joints_[i]->setArmFriction(found.temperature ? 1.0 : found.factors[i]);
   }
 }
 
@@ -362,7 +327,12 @@ void TrackerNode::judge(const ros::WallTime& now)
   {
     verdicts.push_back(&joint->verdict());
   }
-  judgeTogether(verdicts, repeat_tolerance_);
+  const ArmFriction found = judgeTogether(verdicts, repeat_tolerance_);
+  for (std::size_t i = 0; i < joints_.size() && found.is_known; ++i)
+  {
+    verdicts[i]->predictAt(found);
+    joints_[i]->setArmFriction(found.temperature ? 1.0 : found.factors[i]);
+  }
 }
 
 void TrackerNode::look()

@@ -66,7 +66,6 @@ private:
   void tryOnArm(const std::function<void()>& act);
   void resetFit();
   void restart();
-  void lookAtFriction(double time);
   void lookAtLoad();
   JudgedJoints judgedJoints() const;
   std::string sinceText(double since) const;
@@ -85,7 +84,6 @@ private:
   std::optional<LoadWatch> load_;
   std::optional<ArmWatch> arm_;  // which it is
   std::vector<MotionRow> efforts_;
-  std::optional<ArmFrictionWatch> friction_;
   const double repeat_tolerance_;  // comparison.repeat_tolerance [-]
   ros::WallTime next_verdict_;
   double next_fit_{};            // when its findings are looked at [s]

@@ -4,10 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <utility>
 
 #include "base/median.hpp"
-#include "tracking/tracker.hpp"
 
 namespace hjt
 {
@@ -45,88 +43,26 @@ std::vector<JointGroup> groupsOf(const std::vector<MeasuredFriction>& joints, co
   return { groupOf(joints, factors, tolerance, 0, half), groupOf(joints, factors, tolerance, half, joints.size()) };
 }
 
-/// Remainder of the measured ratios after factors of the joints' friction.
-class Left
-{
-public:
-  Left(const std::vector<MeasuredFriction>& joints, double tolerance) : joints_(joints), tolerance_(tolerance)
-  {
-    for (std::size_t i = 0; i < joints.size(); ++i)
-    {
-      if (joints[i].ratio)
-      {
-        known_.push_back(i);
-      }
-    }
-  }
-
-  std::size_t known() const { return known_.size(); }
-
-  double median(const std::vector<double>& factors) const { return medianOf(ratios(factors)); }
-
-  /// How many joints have no friction of their own then.
-  std::size_t agreeing(const std::vector<double>& factors) const
-  {
-    const std::vector<double> left = ratios(factors);
-    return static_cast<std::size_t>(
-        std::count_if(left.begin(), left.end(), [this](double ratio) { return std::abs(ratio - 1.0) <= tolerance_; }));
-  }
-
-  /// Apart from what groups have in common.
-  double misfit(std::vector<double> factors) const
-  {
-    for (const JointGroup& group : groupsOf(joints_, factors, tolerance_))
-    {
-      for (std::size_t i = group.begin; i < group.end; ++i)
-      {
-        factors[i] *= group.median;
-      }
-    }
-    constexpr double TINY = 1e-3;  // least ratio, which may be zero
-    double sum = 0.0;
-    for (const double ratio : ratios(factors))
-    {
-      sum += std::abs(std::log(std::max(ratio, TINY)));
-    }
-    return sum;
-  }
-
-  /// By which the friction of all joints is another at a temperature.
-  std::vector<double> at(double temperature) const
-  {
-    std::vector<double> factors;
-    for (const MeasuredFriction& joint : joints_)
-    {
-      factors.push_back(joint.at(temperature) / joint.at(joint.temperature));
-    }
-    return factors;
-  }
-
-private:
-  std::vector<double> ratios(const std::vector<double>& factors) const
-  {
-    std::vector<double> left;
-    for (const std::size_t i : known_)
-    {
-      left.push_back(*joints_[i].ratio / factors[i]);
-    }
-    return left;
-  }
-
-  const std::vector<MeasuredFriction>& joints_;
-  const double tolerance_;
-  std::vector<std::size_t> known_;
-};
-
 /// The temperature at which the joints' median friction is the twins'; none if it is received, or beyond the range.
-std::optional<double> temperatureOf(const std::vector<MeasuredFriction>& joints, const Left& left)
+std::optional<double> temperatureOf(const std::vector<MeasuredFriction>& joints)
 {
   constexpr double COLDEST = 0.0;  // [degC]
   constexpr double WARMEST = 60.0;
   constexpr int HALVINGS = 20;
   double low = COLDEST;
   double high = WARMEST;
-  const auto is_colder = [&](double temperature) { return left.median(left.at(temperature)) > 1.0; };
+  const auto is_colder = [&](double temperature)
+  {
+    std::vector<double> left;
+    for (const MeasuredFriction& joint : joints)
+    {
+      if (joint.ratio)
+      {
+        left.push_back(*joint.ratio * joint.at(joint.temperature) / joint.at(temperature));
+      }
+    }
+    return medianOf(left) > 1.0;
+  };
   if (std::any_of(joints.begin(), joints.end(), [](const auto& joint) { return joint.temperature_received; }) ||
       is_colder(low) || !is_colder(high))
   {
@@ -142,36 +78,17 @@ std::optional<double> temperatureOf(const std::vector<MeasuredFriction>& joints,
 
 ArmFriction ofWholeArm(const std::vector<MeasuredFriction>& joints, double tolerance)
 {
-  constexpr double MAX_MISFIT = 0.67;  // left with a temperature: it also fits one faulty joint a little
   ArmFriction arm;
   arm.factors.assign(joints.size(), 1.0);
   arm.deviations.assign(joints.size(), UNWITNESSED);
-  const Left left(joints, tolerance);
-  if (left.known() < MIN_WITNESSES)
+  const auto known = std::count_if(joints.begin(), joints.end(), [](const auto& joint) { return joint.ratio; });
+  arm.is_known = static_cast<std::size_t>(known) >= MIN_WITNESSES;
+  const JointGroup all = groupOf(joints, arm.factors, tolerance, 0, joints.size());
+  if (all.is_known && std::abs(all.median - 1.0) > tolerance)
   {
-    return arm;
-  }
-  const double median = left.median(arm.factors);
-  const std::vector<double> alike(joints.size(), median);
-  const std::optional<double> temperature = temperatureOf(joints, left);
-  const std::vector<double> at_temperature = temperature ? left.at(*temperature) : arm.factors;
-
-  const std::size_t most = left.known() / 2 + 1;
-  const bool is_factor = std::abs(median - 1.0) > tolerance && left.agreeing(alike) >= most;
-  const std::vector<double>& otherwise = is_factor ? alike : arm.factors;
-  const std::size_t agree = left.agreeing(otherwise);
-  if (temperature && agree < left.known() && left.agreeing(at_temperature) >= std::max(most, agree) &&
-      left.misfit(at_temperature) <= MAX_MISFIT * left.misfit(otherwise))
-  {
-    arm.factors = at_temperature;
-    arm.median = median;
-    arm.temperature = temperature;
-  }
-  else if (is_factor)
-  {
-    arm.factors = alike;
-    arm.median = median;
-    arm.temperature = temperature;
+    arm.factors.assign(joints.size(), all.median);
+    arm.median = all.median;
+    arm.temperature = temperatureOf(joints);
   }
   return arm;
 }
@@ -181,7 +98,6 @@ ArmFriction ofWholeArm(const std::vector<MeasuredFriction>& joints, double toler
 double scatterBeside(std::size_t joint, const JointGroup& group, const std::vector<MeasuredFriction>& joints,
                      const std::vector<double>& factors)
 {
-  constexpr double SOUND = 0.06;  // of one joint
   double count = 0.0;
   double sum = 0.0;
   double squares = 0.0;
@@ -196,24 +112,23 @@ double scatterBeside(std::size_t joint, const JointGroup& group, const std::vect
     }
   }
   const double variance = count > 1.0 ? (squares - sum * sum / count) / (count - 1.0) : 0.0;
-  return count > 1.0 ? std::sqrt(std::max(0.0, variance - SOUND * SOUND) / count) : 0.0;
+  return count > 1.0 ? std::sqrt(std::max(0.0, variance - UNWITNESSED * UNWITNESSED) / count) : 0.0;
 }
 
 /// Adds the common factor of a group to the arm's factors of the joints that share it.
 void take(const JointGroup& group, const std::vector<MeasuredFriction>& joints, ArmFriction& arm)
 {
-  constexpr double CHANCE = NO_WITNESS;  // share that three joints may have in common, as those of their type differ
   const auto begin = joints.begin() + static_cast<std::ptrdiff_t>(group.begin);
   const auto end = joints.begin() + static_cast<std::ptrdiff_t>(group.end);
   const bool are_own = std::all_of(begin, end, [](const MeasuredFriction& joint) { return joint.is_to_own; });
-  const double beyond = std::max(0.0, std::abs(group.median - 1.0) - (are_own ? 0.0 : CHANCE));
+  const double beyond = std::max(0.0, std::abs(group.median - 1.0) - (are_own ? 0.0 : NO_WITNESS));
   const double common = 1.0 + std::copysign(beyond, group.median - 1.0);
   const std::vector<double> of_arm = arm.factors;
   for (std::size_t i = group.begin; i < group.end && group.is_known; ++i)
   {
     const double left = joints[i].ratio ? *joints[i].ratio / of_arm[i] : common;
     arm.factors[i] *= common > 1.0 ? std::min(common, std::max(left, 1.0)) : common;
-    arm.deviations[i] = std::hypot(joints[i].is_to_own && !are_own ? CHANCE : 0.0,
+    arm.deviations[i] = std::hypot(joints[i].is_to_own && !are_own ? NO_WITNESS : 0.0,
                                    common < 1.0 ? scatterBeside(i, group, joints, of_arm) : 0.0);
   }
 }
@@ -233,8 +148,7 @@ bool hasFarMore(const std::vector<MeasuredFriction>& joints, const std::vector<d
 
 ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double tolerance)
 {
-  constexpr std::ptrdiff_t MIN_BELOW_FAULTS = 2;
-  constexpr std::ptrdiff_t MIN_LOAD_WRONG = 2;
+  constexpr std::ptrdiff_t SEVERAL = 2;
   ArmFriction arm = ofWholeArm(joints, tolerance);
   const bool is_other = hasFarMore(joints, arm.factors);
   arm.groups = groupsOf(joints, arm.factors, tolerance);
@@ -244,26 +158,26 @@ ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double t
   }
   const auto number = [&](bool MeasuredFriction::*flag)
   { return std::count_if(joints.begin(), joints.end(), [&](const MeasuredFriction& joint) { return joint.*flag; }); };
-  if (number(&MeasuredFriction::is_against) >= MIN_BELOW_FAULTS)
+  if (number(&MeasuredFriction::is_against) >= SEVERAL)
   {
     arm.misfit = { Reason::EFFORT_NOT_CURRENT,
                    "the efforts of several joints go against the currents that their motion takes: efforts or angles "
                    "are of the opposite sign" };
   }
-  else if (number(&MeasuredFriction::is_none) >= MIN_BELOW_FAULTS &&
+  else if (number(&MeasuredFriction::is_none) >= SEVERAL &&
            number(&MeasuredFriction::is_none) == number(&MeasuredFriction::is_below_faults))
   {
     arm.misfit = { Reason::NO_FRICTION,
                    "the effort of several joints holds no friction: it is a modelled or commanded torque, not a "
                    "measured one" };
   }
-  else if (number(&MeasuredFriction::is_below_faults) >= MIN_BELOW_FAULTS)
+  else if (number(&MeasuredFriction::is_below_faults) >= SEVERAL)
   {
     arm.misfit = { Reason::LESS_THAN_FAULTS,
                    "several joints show less friction than any fault leaves: the arm is led by hand or carried, or "
                    "gains, ratios or signs are others than configured" };
   }
-  else if (number(&MeasuredFriction::is_load_wrong) + number(&MeasuredFriction::is_below_faults) >= MIN_LOAD_WRONG)
+  else if (number(&MeasuredFriction::is_load_wrong) + number(&MeasuredFriction::is_below_faults) >= SEVERAL)
   {
     arm.misfit = {
       Reason::LOAD_WRONG,
@@ -279,59 +193,5 @@ ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double t
                    "joints in another order, or gains, ratios or signs are others than configured" };
   }
   return arm;
-}
-
-ArmFrictionWatch::ArmFrictionWatch(std::vector<Tracker*> joints, double tolerance, std::vector<double> sound)
-  : joints_(std::move(joints)), tolerance_(tolerance), sound_(std::move(sound))
-{
-  sound_.resize(joints_.size(), 1.0);
-}
-
-void ArmFrictionWatch::reset()
-{
-  for (Tracker* joint : joints_)
-  {
-    joint->setTemperature(std::nullopt);
-  }
-  *this = ArmFrictionWatch(std::move(joints_), tolerance_, std::move(sound_));
-}
-
-bool ArmFrictionWatch::look(double time)
-{
-  if (time < next_look_ - 2.0 * PERIOD)  // a new recording
-  {
-    reset();
-  }
-  if (time < next_look_)
-  {
-    return false;
-  }
-  next_look_ = time + PERIOD;
-  std::vector<MeasuredFriction> joints;
-  std::size_t known = 0;
-  for (std::size_t i = 0; i < joints_.size(); ++i)
-  {
-    joints.push_back(joints_[i]->friction());
-    if (joints.back().ratio)
-    {
-      *joints.back().ratio /= sound_[i];
-      ++known;
-    }
-  }
-  const ArmFriction found = commonFriction(joints, tolerance_);
-  const bool differs = std::abs(found.median - found_.median) > CHANGE ||
-                       found.temperature.has_value() != found_.temperature.has_value();
-  steady_ = differs && known >= MIN_WITNESSES ? steady_ + 1 : 0;
-  if (steady_ < LOOKS)
-  {
-    return false;
-  }
-  steady_ = 0;
-  found_ = found;
-  for (Tracker* joint : joints_)
-  {
-    joint->setTemperature(found.temperature);
-  }
-  return true;
 }
 }  // namespace hjt

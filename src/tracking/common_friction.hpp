@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -11,12 +10,11 @@
 
 namespace hjt
 {
-class Tracker;
-
 /// By which the temperature of a drive, and what else the joints of an arm have in common, changes friction from day to
 /// day, where no other joints tell: standard deviation of the logarithm [-].
 constexpr double UNWITNESSED = 0.06;
-/// Of common factors of the joints, from which on they are no witnesses: standard deviation of the logarithm [-].
+/// Of common factors of the joints, from which on they are no witnesses: standard deviation of the logarithm, as much as
+/// three joints of their type may have in common by chance [-].
 constexpr double NO_WITNESS = 0.05;
 
 /// Joints that witness for each other, at least.
@@ -59,20 +57,19 @@ struct ArmFriction
   double median{ 1.0 };               ///< of the joints; 1: they have nothing in common
   std::optional<double> temperature;  ///< that it means by the twins' law of friction; none: not within 0 ... 60 degC
   std::vector<JointGroup> groups;
-  Misfit misfit;  ///< of all joints
+  bool is_known{};  ///< enough joints show their friction
+  Misfit misfit;    ///< of all joints
 };
 
-/// The joints are judged after what most of at least three agree on within `tolerance`: nothing; one factor that
-/// differs from 1 by more than that; or, where no temperature was received, one temperature. The last is taken if not
-/// all agree on one of the others, as many agree on it, and it leaves clearly less unexplained than what the groups
-/// have in common. Factor and temperature are the median joint's, so that one faulty joint changes neither. What is
-/// left then and most of the three joints of a group agree on is the group's: three drives do not fail alike. Joints
-/// held against their type differ by more, and 5 % of it may be chance: of a joint that is held against its own while
-/// others are not, that is the deviation. More friction of the others makes no joint's less; less of the others makes
-/// it more by as much as they agree on: what they scatter by, beyond what sound joints do, is a deviation too. Two
-/// joints or more whose friction is below what any fault leaves: something else carries the arm. Two or more whose
-/// currents fit no load, or one and one of the former: its load is another. One of the former, and one with more than
-/// twice what is expected of it: they are in another order. In all these cases no joint is judged.
+/// The joints are judged after what most of at least three agree on within `tolerance`: nothing, or one factor that
+/// differs from 1 by more than that. Factor and temperature are the median joint's, so that one faulty joint changes
+/// neither. What is left then and most of the three joints of a group agree on is the group's: three drives do not fail
+/// alike. Joints held against their type differ by more, and 5 % of it may be chance: of a joint that is held against
+/// its own while others are not, that is the deviation. More friction of the others makes no joint's less; less of the
+/// others makes it more by as much as they agree on: what they scatter by, beyond what sound joints do, is a deviation
+/// too. Two joints or more whose friction is below what any fault leaves: something else carries the arm. Two or more
+/// whose currents fit no load, or one and one of the former: its load is another. One of the former, and one with more
+/// than twice what is expected of it: they are in another order. In all these cases no joint is judged.
 ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double tolerance);
 
 /// Why a joint is not judged: its own reason, or that of all joints. Signs of efforts tell more than another load.
@@ -81,34 +78,4 @@ inline const Misfit& misfitOf(const Misfit& joint, const Misfit& arm)
   const bool is_sign = joint.reason == Reason::LOAD_WRONG && arm.reason == Reason::EFFORT_NOT_CURRENT;
   return !joint.exists() || (arm.exists() && is_sign) ? arm : joint;
 }
-
-/// The joints of an arm as each other's witnesses, while they move: what their friction has in common is temperature or
-/// gain. Where it means a temperature and none is received, the joints are predicted at that one. `look` allocates.
-class ArmFrictionWatch
-{
-public:
-  /// `tolerance`: as of commonFriction. `sound`: of each joint, its friction when it was sound over the twin's [-];
-  /// empty: 1. The joints must outlive this.
-  ArmFrictionWatch(std::vector<Tracker*> joints, double tolerance, std::vector<double> sound = {});
-
-  /// Forgets what was found; the joints go back to the configured temperature.
-  void reset();
-
-  /// After the rows of a time [s]; works every PERIOD. True: common factors of the joints has changed.
-  bool look(double time);
-
-  const ArmFriction& found() const { return found_; }
-
-private:
-  static constexpr double PERIOD = 1.0;   // [s]
-  static constexpr double CHANGE = 0.05;  // change of the median that starts a new estimate
-  static constexpr int LOOKS = 10;        // successive updates that have to show a change
-
-  std::vector<Tracker*> joints_;
-  double tolerance_;
-  std::vector<double> sound_;
-  double next_look_{ -std::numeric_limits<double>::infinity() };  // [s]
-  int steady_{};                                                  // successive updates that differ from the result
-  ArmFriction found_;
-};
 }  // namespace hjt

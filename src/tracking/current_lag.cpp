@@ -7,19 +7,45 @@
 
 namespace hjt
 {
-double CurrentLag::leftAt(const Sums& sums)
+Eigen::Matrix2d LoadRegression::left() const
 {
-  constexpr int OTHERS = TERMS - 1;
   constexpr double RIDGE = 1e-9;  // of the mean square: motion one way only leaves constant and friction alike
-  if (sums(0, 0) < MIN_ROWS)
-  {
-    return std::numeric_limits<double>::quiet_NaN();
-  }
   const Eigen::Matrix<double, OTHERS, OTHERS> others =
-      sums.topLeftCorner<OTHERS, OTHERS>() +
-      Eigen::Matrix<double, OTHERS, OTHERS>(RIDGE * sums.diagonal().head<OTHERS>().asDiagonal());
-  const Eigen::Matrix<double, OTHERS, 1> with = sums.topRightCorner<OTHERS, 1>();
-  return std::max(0.0, sums(OTHERS, OTHERS) - with.dot(others.ldlt().solve(with))) / sums(0, 0);
+      sums_.topLeftCorner<OTHERS, OTHERS>() +
+      Eigen::Matrix<double, OTHERS, OTHERS>(RIDGE * sums_.diagonal().head<OTHERS>().asDiagonal());
+  const Eigen::Matrix<double, OTHERS, 2> both = sums_.topRightCorner<OTHERS, 2>();
+  return sums_.bottomRightCorner<2, 2>() -
+         both.transpose() * Eigen::Matrix<double, OTHERS, 2>(others.ldlt().solve(both));
+}
+
+double LoadRegression::leftByLoad() const
+{
+  const Eigen::Matrix2d rest = left();
+  const double by_load = rest(0, 0) > 0.0 ? rest(0, 1) * rest(0, 1) / rest(0, 0) : 0.0;
+  return seconds() < MIN_SECONDS ? std::numeric_limits<double>::quiet_NaN() :
+                                   std::max(0.0, rest(1, 1) - by_load) / seconds();
+}
+
+FittedFactor LoadRegression::slopeOf(const Eigen::Matrix2d& left, double seconds)
+{
+  constexpr double CORRELATED = 0.5;   // rows nearer to each other tell the same [s]
+  constexpr double MIN_CONTENT = 0.1;  // least rms of the remaining load: errors of friction and inertia leave less [A]
+  FittedFactor slope;
+  if (seconds < MIN_SECONDS || !(left(0, 0) > MIN_CONTENT * MIN_CONTENT * seconds))
+  {
+    return slope;
+  }
+  slope.value = left(0, 1) / left(0, 0);
+  const double unexplained = std::max(0.0, left(1, 1) - slope.value * left(0, 1));
+  slope.uncertainty = std::sqrt(unexplained / left(0, 0) * CORRELATED / seconds);
+  return slope;
+}
+
+FittedFactor LoadRegression::slope(double& content) const
+{
+  const Eigen::Matrix2d rest = left();
+  content = rest(0, 0);
+  return slopeOf(rest, seconds());
 }
 
 namespace

@@ -11,14 +11,44 @@
 #include <Eigen/Core>
 
 #include "tracking/motion_differentiator.hpp"
+#include "tracking/time_fit.hpp"
 
 namespace hjt
 {
-/// Part of a joint's current that a constant, Coulomb and viscous friction, acceleration and load explain, if it
-/// came earlier or later than the motion. Fixed memory; nothing allocates.
+/// Regression of a joint's current on a constant, Coulomb and viscous friction, the acceleration, which draws the
+/// current of the rotor's inertia, and the load, of the last two minutes of motion.
+class LoadRegression
+{
+public:
+  void add(double step, double velocity, double acceleration, double load, double current) noexcept
+  {
+    constexpr double MEMORY = 120.0;  // of motion [s]
+    Eigen::Matrix<double, OTHERS + 2, 1> row;
+    row << 1.0, std::copysign(1.0, velocity), velocity, acceleration, load, current;
+    sums_ = (1.0 - step / MEMORY) * sums_ + step * row * row.transpose();
+  }
+
+  double seconds() const { return sums_(0, 0); }
+  /// Sums of load and current without constant, friction and acceleration [A^2 s].
+  Eigen::Matrix2d left() const;
+  /// Mean square of the current that the load leaves too [A^2]; NaN: too little motion.
+  double leftByLoad() const;
+  /// Slope of the current over the load; NaN: it says too little of it. `content`: square of the load that the others
+  /// do not explain, summed over time.
+  FittedFactor slope(double& content) const;
+  /// The same by the sums of what `left` gives [A^2 s], over that time [s].
+  static FittedFactor slopeOf(const Eigen::Matrix2d& left, double seconds);
+
+private:
+  static constexpr int OTHERS = 4;
+  static constexpr double MIN_SECONDS = 5.0;
+  // of 1, sign, speed, acceleration, load, current
+  Eigen::Matrix<double, OTHERS + 2, OTHERS + 2> sums_ = Eigen::Matrix<double, OTHERS + 2, OTHERS + 2>::Zero();
+};
+
+/// That regression if the current came earlier or later than the motion. Fixed memory; nothing allocates.
 ///
-/// Rows count at most every 20 ms, the motion between them on lines. Of motion faster than 0.05 rad/s, the last two
-/// minutes.
+/// Rows count at most every 20 ms, the motion between them on lines. Of motion faster than MotionDifferentiator::SLIDING.
 class CurrentLag
 {
 public:
@@ -54,19 +84,17 @@ public:
     std::array<double, LAGS> left;
     for (std::size_t i = 0; i < LAGS; ++i)
     {
-      left[i] = leftAt(sums_[i]);
+      left[i] = regressions_[i].leftByLoad();
     }
     return left;
   }
 
+  /// As it came.
+  const LoadRegression& now() const { return regressions_[LAGS / 2]; }
+
 private:
-  static constexpr double PERIOD = 0.019;    // of rows that count [s]
-  static constexpr double MOVING = 0.05;     // [rad/s]
-  static constexpr double MEMORY = 6000.0;   // rows
-  static constexpr double MIN_ROWS = 250.0;  // that count
-  static constexpr std::size_t ROOM = 64;    // rows: more than twice LONGEST at PERIOD
-  static constexpr int TERMS = 6;            // 1, sign, speed, acceleration, load, current
-  using Sums = Eigen::Matrix<double, TERMS, TERMS>;
+  static constexpr double PERIOD = 0.019;  // of rows that count [s]
+  static constexpr std::size_t ROOM = 64;  // rows: more than twice LONGEST at PERIOD
 
   struct Row
   {
@@ -93,6 +121,7 @@ private:
     {
       return;
     }
+    const double step = now.time - at(middle - 1).time;
     std::uint64_t above = end_ - 1;
     for (std::size_t i = 0; i < LAGS; ++i)  // lags in descending order
     {
@@ -106,27 +135,17 @@ private:
       const double share = (time - low.time) / (high.time - low.time);
       const auto between = [&](double Row::*value) { return low.*value + share * (high.*value - low.*value); };
       const double velocity = between(&Row::velocity);
-      if (std::abs(velocity) > MOVING)
+      if (std::abs(velocity) > MotionDifferentiator::SLIDING)
       {
-        Eigen::Matrix<double, TERMS, 1> terms;
-        terms << 1.0, std::copysign(1.0, velocity), velocity, between(&Row::acceleration), between(&Row::load),
-            now.current;
-        sums_[i] = (1.0 - 1.0 / MEMORY) * sums_[i] + terms * terms.transpose();
+        regressions_[i].add(step, velocity, between(&Row::acceleration), between(&Row::load), now.current);
       }
     }
   }
 
-  static double leftAt(const Sums& sums);
-
   std::array<Row, ROOM> rows_{};
   std::uint64_t begin_{};  // first row without a gap
   std::uint64_t end_{};
-  std::array<Sums, LAGS> sums_{ []
-                                {
-                                  std::array<Sums, LAGS> none;
-                                  none.fill(Sums::Zero());
-                                  return none;
-                                }() };
+  std::array<LoadRegression, LAGS> regressions_{};
 };
 
 /// By how much the currents of an arm come later than its motion, as most of its joints agree [s]; 0: not by enough to

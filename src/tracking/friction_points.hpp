@@ -119,6 +119,7 @@ class FrictionPoints
 {
 public:
   static constexpr std::uint64_t MIN_ROWS = 30;  ///< points with fewer are not given
+  static constexpr double SLOWEST = 0.01;        ///< of rows that count [rad/s]
 
   /// `time` [s]; `speed` with its sign [rad/s]; friction at the joint, against the motion > 0 [N.m]; `load` with its
   /// sign [N.m].
@@ -293,7 +294,6 @@ private:
     double twin{};
     double load{};
   };
-  static constexpr double SLOWEST = 0.01;  // [rad/s]
   static constexpr double BINS_PER_DECADE = 10.0;
   static constexpr std::size_t BINS = 30;  // up to 10 rad/s
 

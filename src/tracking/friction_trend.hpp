@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/normal.hpp"
 #include "tracking/friction_verdict.hpp"
 
 namespace hjt
@@ -47,11 +48,7 @@ struct FrictionTrend
   bool departs() const { return changeLow() > 1.0 + MORE_THAN_OWN || changeHigh() < 1.0 - LESS_THAN_OWN; }
 
 private:
-  double halfWidth() const
-  {
-    constexpr double NORMAL_95 = 1.96;
-    return NORMAL_95 * deviation;
-  }
+  double halfWidth() const { return NORMAL_95 * deviation; }
 };
 
 /// Not known: fewer than MIN_RECORDINGS, or no time between them.

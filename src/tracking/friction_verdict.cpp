@@ -326,17 +326,20 @@ std::string frictionText(const FrictionFactor& factor, bool is_fitted, const Joi
   return text + " Measured at " + std::to_string(points.size()) + " speeds from " + fixedText(points.front().speed, 2) +
          " to " + fixedText(points.back().speed, 2) + " rad/s.";
 }
+}  // namespace
 
-void nameCauses(const SignatureSet& signatures, double way, Finding& finding)
+void nameCauses(const JointEvidence& evidence, ScalarIndicator indicator, double way, Finding& finding)
 {
   constexpr double MIN_CHANGE = 0.02;  // share by which a fault of severity 1 must change it to be named
-  const std::vector<Cause> causes = causesThatMove(signatures, ScalarIndicator::RUNNING_TORQUE, way, MIN_CHANGE);
-  for (const Cause cause : causes)
+  for (const Cause cause : causesThatMove(evidence.assessor().signatures(), indicator, way, MIN_CHANGE))
   {
-    finding.causes.push_back({ cause, 1.0 / static_cast<double>(causes.size()) });
+    finding.causes.push_back({ cause, 0.0 });
+  }
+  for (WeightedCause& cause : finding.causes)
+  {
+    cause.weight = 1.0 / static_cast<double>(finding.causes.size());
   }
 }
-}  // namespace
 
 Finding judgeFriction(const JointEvidence& evidence, const JointContext& context, Verdict& verdict)
 {
@@ -391,7 +394,7 @@ Finding judgeFriction(const JointEvidence& evidence, const JointContext& context
   {
     finding.reason = Reason::FRICTION;
     verdict.may_be_gain = !GainEvidence(evidence).isExcluded();
-    nameCauses(evidence.assessor().signatures(), verdict.friction.factor > 1.0 ? 1.0 : -1.0, finding);
+    nameCauses(evidence, ScalarIndicator::RUNNING_TORQUE, verdict.friction.factor > 1.0 ? 1.0 : -1.0, finding);
   }
   verdict.friction_text = frictionText(factor, is_fitted, evidence, context, finding, verdict);
   return finding;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/normal.hpp"
 #include "tracking/joint_evidence.hpp"
 #include "tracking/reason.hpp"
 
@@ -53,11 +54,7 @@ struct FrictionFactor
   double high() const { return value * std::exp(halfWidth()); }
 
 private:
-  double halfWidth() const
-  {
-    constexpr double NORMAL_95 = 1.96;
-    return NORMAL_95 * deviation;
-  }
+  double halfWidth() const { return NORMAL_95 * deviation; }
 };
 
 /// "1.18 [1.05, 1.32]"
@@ -87,6 +84,9 @@ OwnReference ownReference(const std::vector<SoundFriction>& recordings);
 
 /// WARN where the interval clears the bound. Factor, text and figures go into the verdict.
 Finding judgeFriction(const JointEvidence& evidence, const JointContext& context, Verdict& verdict);
+
+/// Faults that move the indicator that way, +1 or -1.
+void nameCauses(const JointEvidence& evidence, ScalarIndicator indicator, double way, Finding& finding);
 
 /// What to say of a load that is not the joint's.
 const char* wrongLoad(LoadOrigin load);

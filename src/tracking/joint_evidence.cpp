@@ -9,6 +9,7 @@
 #include <Eigen/Cholesky>
 
 #include "gear/ratio.hpp"
+#include "tracking/current_lag.hpp"
 
 namespace hjt
 {
@@ -131,7 +132,7 @@ double JointEvidence::addToReach(const MotionSample& sample) noexcept
 /// Rows after a contact too: to a current of another multiple, contact is what its load makes.
 void JointEvidence::addGain(const MotionSample& sample, double residual, double step) noexcept
 {
-  if (std::abs(sample.velocity) > MOVING && tellsFriction(predicted_))
+  if (std::abs(sample.velocity) > FrictionPoints::SLOWEST && predicted_.tellsFriction())
   {
     const double friction = predicted_.friction_torque / parameters_.telemetry.torque_per_current;
     const Eigen::Vector4d parts(1.0, friction, predicted_.current - friction, residual);
@@ -150,11 +151,11 @@ void JointEvidence::addRow(const MotionSample& sample, double residual) noexcept
   now_.products += terms * terms.transpose();
   ++now_.loads[static_cast<std::size_t>(std::abs(sample.load) / load_step_)];
   now_.temperatures += sample.temperatureOr(parameters_.input.temperature);
-  if (std::abs(sample.velocity) <= MOVING)
+  if (std::abs(sample.velocity) <= FrictionPoints::SLOWEST)
   {
     return;
   }
-  if (tellsFriction(predicted_))
+  if (predicted_.tellsFriction())
   {
     const double way = sample.velocity < 0.0 ? -1.0 : 1.0;
     const double measured = friction + gain * residual;
@@ -170,13 +171,6 @@ void JointEvidence::addRow(const MotionSample& sample, double residual) noexcept
     now_.torsion.add(sample.load, twin_torsion_, sample.motor_angle / ratio_ - sample.position, sample.position,
                      sample.velocity);
   }
-}
-
-bool JointEvidence::tellsFriction(const MotionPrediction& predicted) const noexcept
-{
-  constexpr double MAX_PRESLIDING = 0.05;  // share of the friction not mobilised [-]
-  return parameters_.telemetry.torque_per_current * predicted.band <
-         MAX_PRESLIDING * std::abs(predicted.friction_torque);
 }
 
 bool JointEvidence::watchSignals(const MotionSample& sample) noexcept
@@ -260,26 +254,12 @@ double JointEvidence::unexplainedRms() const
 
 FittedFactor JointEvidence::loadFactor() const
 {
-  constexpr double CORRELATED = 0.5;  // rows nearer to each other tell the same [s]
-  constexpr double LEAST = 0.1;       // least rms of the load that friction does not explain [A]
-  const double rows = now_.gains(0, 0);
-  FittedFactor factor;
-  if (now_.gains_time < 10.0 * CORRELATED)
-  {
-    return factor;
-  }
   const Eigen::Matrix2d others = now_.gains.topLeftCorner<2, 2>();
   const Eigen::Matrix2d with = now_.gains.topRightCorner<2, 2>();
   const Eigen::Matrix2d left =
       now_.gains.bottomRightCorner<2, 2>() - with.transpose() * Eigen::Matrix2d(others.ldlt().solve(with));
-  if (!(left(0, 0) > LEAST * LEAST * rows))
-  {
-    return factor;
-  }
-  const double slope = left(0, 1) / left(0, 0);
-  const double rest = std::max(0.0, left(1, 1) - slope * left(0, 1));
-  factor.value = 1.0 + slope;
-  factor.uncertainty = std::sqrt(rest / left(0, 0) * CORRELATED / now_.gains_time);
+  FittedFactor factor = LoadRegression::slopeOf(left * now_.gains_time / now_.gains(0, 0), now_.gains_time);
+  factor.value += 1.0;
   return factor;
 }
 

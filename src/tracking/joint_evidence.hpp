@@ -232,7 +232,6 @@ public:
   /// `residual_torque`: measured less predicted, at the joint [N.m]. `is_held`: by stiction.
   void update(const MotionSample& sample, double residual_torque, double friction_torque, bool is_held) noexcept
   {
-    constexpr double MOVING = 0.02;  // beyond the noise of a slope [rad/s]
     constexpr double MEAN = 0.1;     // [s]
     constexpr double SETTLED = 0.3;  // of motion one way: then presliding and the start are over [s]
     constexpr double LASTING = 0.1;  // [s]
@@ -242,7 +241,8 @@ public:
     constexpr double OF_LARGEST = 0.02;
     const double step = sample.after_gap ? 0.0 : std::max(0.0, sample.time - time_);
     time_ = sample.time;
-    const int way = std::abs(sample.velocity) > MOVING && !is_held ? (sample.velocity > 0.0 ? 1 : -1) : 0;
+    const int way =
+        std::abs(sample.velocity) > MotionDifferentiator::MOVING && !is_held ? (sample.velocity > 0.0 ? 1 : -1) : 0;
     if (way == 0 || way != way_ || step <= 0.0 || step > SETTLED)
     {
       way_ = way;
@@ -379,8 +379,6 @@ struct EvidenceParameters
 class JointEvidence
 {
 public:
-  static constexpr double MOVING = 0.01;  ///< [rad/s]
-
   /// @throws ParameterError if the ring finds no equilibrium under load.
   JointEvidence(const Parameters& parameters, LoadOrigin load);
 
@@ -418,8 +416,6 @@ public:
   double ratio() const { return ratio_; }
   const MotionDriven& twin() const { return twin_; }
   const MotionPrediction& predicted() const { return predicted_; }  ///< at the row that was taken last
-  /// The friction is all mobilised.
-  bool tellsFriction(const MotionPrediction& predicted) const noexcept;
   const MotionReach& reach() const { return now_.reach; }
   const FrictionPoints& friction() const { return now_.friction; }
   /// The same beside the friction that the controller expects, in the twin's place: with its target current in place of

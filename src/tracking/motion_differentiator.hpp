@@ -52,6 +52,8 @@ public:
   static constexpr double HALF_WIDTH = 0.036;  ///< best for the currents of a UR5 (docs/arm.md) [s]
   static constexpr double MAX_GAP = 0.1;       ///< longer ones cut the stream [s]
   static constexpr double MIN_STEP = 0.5e-3;   ///< rows that follow sooner tell nothing new [s]
+  static constexpr double MOVING = 0.02;       ///< slower ones are the noise of a slope [rad/s]
+  static constexpr double SLIDING = 0.05;      ///< slower ones tell little of friction and load [rad/s]
 
   /// @param half_width up to 0.12 [s]
   explicit MotionDifferentiator(double half_width = HALF_WIDTH) noexcept : half_width_(half_width) {}

@@ -68,6 +68,13 @@ struct MotionPrediction
   double friction_torque{};  ///< of the whole, at the joint, with its sign [N.m]
   double friction_limit{};   ///< the most that it could be at this speed and load [N.m]
   double band{};             ///< half width of the current's band that the motion leaves open [A]
+
+  /// Nearly all of it is mobilised: the current tells it.
+  bool tellsFriction() const
+  {
+    constexpr double LEFT = 0.05;  // of the friction, at most [-]
+    return friction_limit - std::abs(friction_torque) < LEFT * std::abs(friction_torque);
+  }
 };
 
 /// The twin driven by a measured motion: motor torque and current out. No ring is solved: friction comes from a table

@@ -44,6 +44,8 @@ inline double greatestSpeed(const Parameters& parameters) noexcept
 class RowFilter
 {
 public:
+  static constexpr double SLACK = 0.02;  ///< added to a row's time: messages come in bursts [s]
+
   using Rows = std::vector<MotionRow>;
 
   /// @param speeds the joints' greatest [rad/s]
@@ -106,7 +108,6 @@ public:
 
 private:
   static constexpr std::size_t ROOM = 16;       // rows that are held back, at most
-  static constexpr double SLACK = 0.02;         // added to a row's time: messages come in bursts [s]
   static constexpr double MARGIN = 1.2;         // factor on the greatest speed [-]
   static constexpr double MOVING = 0.01;        // [rad/s]
   static constexpr double BUNCHED = 0.25;       // of the mean step

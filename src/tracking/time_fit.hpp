@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "base/median.hpp"
+#include "base/normal.hpp"
 #include "tracking/motion_differentiator.hpp"
 
 namespace hjt
@@ -28,8 +29,7 @@ struct FittedFactor
 class TimeFit
 {
 public:
-  static constexpr double PIECE = 0.1;     ///< [s]
-  static constexpr double SLOWEST = 0.05;  ///< slower windows tell nothing [rad/s]
+  static constexpr double PIECE = 0.1;  ///< [s]
 
   void reset() noexcept { *this = TimeFit(); }
 
@@ -98,9 +98,8 @@ public:
     {
       values[i] = std::abs(values[i] - factor.value);
     }
-    constexpr double DEVIATION = 1.48;  // standard deviation over median magnitude of a normal distribution
     const double typical = upperMedian(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count));
-    factor.uncertainty = DEVIATION * typical / std::sqrt(static_cast<double>(count));
+    factor.uncertainty = typical / NORMAL_MEDIAN / std::sqrt(static_cast<double>(count));
     return factor;
   }
 
@@ -149,7 +148,7 @@ private:
     window_.integral += piece_.integral;
     ++pieces_;
     piece_ = {};
-    if (pieces_ % PIECES == 0 && window_.weight() > SLOWEST * window_.seconds)
+    if (pieces_ % PIECES == 0 && window_.weight() > MotionDifferentiator::SLIDING * window_.seconds)
     {
       kept_[windows_++ % KEPT] = window_;
     }

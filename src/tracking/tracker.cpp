@@ -6,7 +6,6 @@
 #include <string>
 
 #include "base/number_text.hpp"
-#include "elements/presliding.hpp"
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "tracking/motion_driven.hpp"
@@ -70,10 +69,6 @@ public:
     now.sticking = predicted.band > telemetry_.current_deviation;
     now.friction_torque = predicted.friction_torque;
     now.joint_torque = sample.load + sample.vibration + telemetry_.torque_per_current * now.current.residual();
-  }
-  double frictionAt(double velocity, double load, double temperature) const noexcept override
-  {
-    return twin_.frictionAt(velocity, load, temperature);
   }
 
 private:
@@ -165,8 +160,6 @@ void Tracker::restart() noexcept
   smoother_ = MotionDifferentiator();
   restarted_ = true;
   last_time_ = -HUGE_VAL;
-  friction_.reset();
-  temperature_received_ = false;
   outside_share_ = 0.0;
   lag_.reset();
   evidence_.reset();
@@ -177,7 +170,6 @@ void Tracker::setFits(bool fits) noexcept
   if (fits_ && !fits)
   {
     evidence_.resetSignals();
-    friction_.reset();
   }
   fits_ = fits;
 }
@@ -199,11 +191,10 @@ std::optional<double> Tracker::loadAt(double time) const noexcept
 /// A row of that time is next.
 void Tracker::begin(double time) noexcept
 {
-  constexpr double RESTART = StreamTiming::RESTART;
-  if (time < last_time_ - RESTART)
+  if (time < last_time_ - StreamTiming::RESTART)
   {
-    loads_.jumpBack(last_time_ - RESTART);
-    temperatures_.jumpBack(last_time_ - RESTART);
+    loads_.jumpBack(last_time_ - StreamTiming::RESTART);
+    temperatures_.jumpBack(last_time_ - StreamTiming::RESTART);
     restart();
     ++counters_.restarts;
   }
@@ -250,7 +241,6 @@ Comparison Tracker::comparisonOf(MotionSample& sample) noexcept
   }
   const double received_temperature = sample.temperature;
   const bool is_temperature_received = std::isfinite(received_temperature);
-  temperature_received_ = temperature_received_ || is_temperature_received;
   temperature_ = grease_.at(sample);
   const double prediction_temperature =
       is_temperature_received ? temperature_ : estimated_temperature_.value_or(temperature_);
@@ -300,29 +290,7 @@ Comparison Tracker::comparisonOf(MotionSample& sample) noexcept
   return now;
 }
 
-MeasuredFriction Tracker::friction() const
-{
-  return { friction_.ratio(), temperature_, temperature_received_, [this](double temperature) {
-            return follower_->frictionAt(friction_.speed(), friction_.load(), temperature);
-          } };
-}
-
-/// In steady motion.
-void Tracker::addFriction(double step, const MotionSample& sample, const Comparison& now) noexcept
-{
-  const double limit = follower_->frictionAt(sample.velocity, sample.load, now.temperature);
-  if (limit == 0.0 || std::abs(now.friction_torque) < SLIDING_SHARE * limit)
-  {
-    return;
-  }
-  const double expected =
-      now.friction_torque * (now.temperature == temperature_ ?
-                                 1.0 :
-                                 follower_->frictionAt(sample.velocity, sample.load, temperature_) / limit);
-  friction_.add(step, expected, now.friction_torque + now.residual_torque, sample.velocity, sample.load);
-}
-
-/// Evidence, friction, and the share of rows outside.
+/// Evidence, and the share of rows outside.
 void Tracker::watch(const MotionSample& sample, const Comparison& now, bool load_is_known) noexcept
 {
   if (load_is_known)
@@ -331,10 +299,6 @@ void Tracker::watch(const MotionSample& sample, const Comparison& now, bool load
   }
   const double step =
       now.after_gap || evidence_.isTouched() ? 0.0 : std::clamp(now.time - last_compared_, 0.0, OUTSIDE_MEMORY);
-  if (load_is_known && fits_ && !now.sticking)
-  {
-    addFriction(step, sample, now);
-  }
   outside_share_ += (1.0 - std::exp(-step / OUTSIDE_MEMORY)) * ((now.isOutside() ? 1.0 : 0.0) - outside_share_);
   last_compared_ = now.time;
 }

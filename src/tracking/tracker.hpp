@@ -13,7 +13,6 @@
 
 #include "elements/load.hpp"
 #include "surface/surface_cache.hpp"
-#include "tracking/common_friction.hpp"
 #include "tracking/grease_temperature.hpp"
 #include "tracking/held_values.hpp"
 #include "tracking/joint_evidence.hpp"
@@ -21,66 +20,6 @@
 
 namespace hjt
 {
-/// Measured friction of a joint as a multiple of the expected one, over the last minutes of motion: slope of the
-/// measured on the expected one, with its sign, beside a constant, which an offset of current or load makes. Fixed
-/// memory; nothing allocates or throws.
-class FrictionScale
-{
-public:
-  void reset() noexcept { *this = FrictionScale(); }
-
-  /// Torques at the joint, with the sign of the motion [N.m]; `step` since the last row [s].
-  void add(double step, double expected, double measured, double velocity, double load) noexcept
-  {
-    constexpr double MEMORY = 120.0;  // of motion [s]
-    const double keep = 1.0 - std::min(1.0, step / MEMORY);
-    const auto sum = [&](double& total, double value) { total = keep * total + step * value; };
-    sum(time_, 1.0);
-    sum(x_, expected);
-    sum(y_, measured);
-    sum(xx_, expected * expected);
-    sum(xy_, expected * measured);
-    sum(yy_, measured * measured);
-    sum(speed_, std::abs(velocity));
-    sum(load_, std::abs(load));
-  }
-
-  /// None: not known to MAX_UNCERTAINTY.
-  std::optional<double> ratio() const noexcept
-  {
-    constexpr double MIN_TIME = 10.0;         // [s]
-    constexpr double CORRELATED = 0.5;        // rows closer than this are correlated [s]
-    constexpr double MAX_UNCERTAINTY = 0.05;  // a third of what joints may differ by
-    if (time_ < MIN_TIME)
-    {
-      return std::nullopt;
-    }
-    const double xx = xx_ - x_ * x_ / time_;
-    if (!(xx > 1e-9 * xx_))  // one way only, at one speed
-    {
-      return std::nullopt;
-    }
-    const double xy = xy_ - x_ * y_ / time_;
-    const double yy = yy_ - y_ * y_ / time_;
-    const double rest = std::max(0.0, yy - xy * xy / xx);
-    const double uncertainty = std::sqrt(rest / xx * CORRELATED / time_);
-    return uncertainty < MAX_UNCERTAINTY ? std::make_optional(xy / xx) : std::nullopt;
-  }
-
-  double speed() const noexcept { return time_ > 0.0 ? speed_ / time_ : 0.0; }  ///< mean magnitude [rad/s]
-  double load() const noexcept { return time_ > 0.0 ? load_ / time_ : 0.0; }    ///< mean magnitude [N.m]
-
-private:
-  double time_{};  // sums over time, of 1 and so on
-  double x_{};
-  double y_{};
-  double xx_{};
-  double xy_{};
-  double yy_{};
-  double speed_{};
-  double load_{};
-};
-
 /// By how much one signal of a stream lags behind another: where their cross-correlation is largest.
 ///
 /// Both pass the same high-pass; products are summed for lags on a grid up to LONGEST to either side and forgotten over
@@ -98,7 +37,7 @@ public:
   /// A row of both, later than the one before [s].
   void add(double time, double leading, double lagging) noexcept
   {
-    const bool first = end_ == begin_ || time > at(end_ - 1).time + MAX_GAP;
+    const bool first = end_ == begin_ || time > at(end_ - 1).time + MotionDifferentiator::MAX_GAP;
     const double step = first ? 0.0 : time - at(end_ - 1).time;
     if (first)
     {
@@ -164,7 +103,6 @@ public:
   }
 
 private:
-  static constexpr double MAX_GAP = 0.1;      // beyond it the stream restarts [s]
   static constexpr double MIN_SECONDS = 2.0;  // of signal before a delay is given
 
   static constexpr std::size_t ROOM = 512;
@@ -251,8 +189,7 @@ struct TrackerCounters
 class Tracker
 {
 public:
-  static constexpr double OUTSIDE_MEMORY = 30.0;          ///< a touch of the arm is shorter [s]
-  static constexpr std::size_t LOADS = HeldValues::ROOM;  ///< that are kept for rows to come
+  static constexpr double OUTSIDE_MEMORY = 30.0;  ///< a touch of the arm is shorter [s]
 
   /// @throws ParameterError where the parameters do not allow the mode; `mode` is not COMMANDS.
   Tracker(const Parameters& parameters, InputMode mode, const SurfaceSource& surface_source = {});
@@ -303,9 +240,6 @@ public:
   /// The verdict is of what follows.
   void forgetEvidence() noexcept { evidence_.forget(); }
 
-  /// Of the last minutes of motion, over the twin's without an estimated temperature. Mode MOTION only.
-  MeasuredFriction friction() const;
-
   /// Delay of the measured signal relative to its prediction: current (motion) or speed (torque); the observer has none
   /// [s].
   std::optional<double> lag() const noexcept { return lag_.lag(); }
@@ -322,11 +256,6 @@ public:
     virtual ~Follower() = default;
     virtual void follow(const MotionSample& sample, double external, Comparison& now) noexcept = 0;
     virtual std::uint64_t solverFailures() const noexcept { return 0; }
-    /// Of a healthy joint in steady motion at a temperature, >= 0 [N.m]; 0: not known.
-    virtual double frictionAt(double /*velocity*/, double /*load*/, double /*temperature*/) const noexcept
-    {
-      return 0.0;
-    }
   };
 
 private:
@@ -334,7 +263,6 @@ private:
   void begin(double time) noexcept;
   Comparison comparisonOf(MotionSample& sample) noexcept;
   std::optional<double> loadAt(double time) const noexcept;
-  void addFriction(double step, const MotionSample& sample, const Comparison& now) noexcept;
   void watch(const MotionSample& sample, const Comparison& now, bool load_is_known) noexcept;
 
   InputMode mode_;
@@ -354,8 +282,6 @@ private:
   double last_time_{ -HUGE_VAL };  // of the rows since the last restart [s]
   HeldValues loads_;
   TemperatureRecord temperatures_;
-  FrictionScale friction_;
-  bool temperature_received_{};  // ever
   double outside_share_{};
   double last_compared_{};  // [s]
   DelayEstimate lag_;

@@ -17,44 +17,6 @@ namespace
 /// Share of the largest load by which the load must vary to show anything that load alone shows.
 constexpr double MIN_LOADING = 0.035;
 
-/// Share of its sound value by which a fault of severity 1 must change an indicator to be named.
-constexpr double MIN_CHANGE = 0.02;
-
-/// One quantity as a multiple of the twin's.
-struct Ratio
-{
-  double to_twin;
-  double to_own;              ///< the same of the joint's own when it was sound; NaN: not known
-  double of_kind;             ///< share by which sound joints differ from the twin
-  ScalarIndicator indicator;  ///< that says the same
-  double when_larger;         ///< the indicator moves up: +1, down: -1
-  const SignatureSet& signatures;
-
-  bool isOwnKnown() const { return std::isfinite(to_own); }
-  double value() const { return isOwnKnown() ? to_own : to_twin; }
-  double tolerance(const EvidenceParameters& parameters) const
-  {
-    return isOwnKnown() ? parameters.comparison.repeat_tolerance : of_kind;
-  }
-};
-
-/// Against the joint's own when sound where that is known, else against the twin.
-void judgeRatio(const Ratio& ratio, const EvidenceParameters& parameters, Reason departs, Finding& finding)
-{
-  finding.level = levelOf(ratio.value() - 1.0, ratio.tolerance(parameters), parameters.indicators.error_factor);
-  finding.reason = finding.level == VerdictLevel::OK ? Reason::SOUND : departs;
-  if (finding.level == VerdictLevel::OK)
-  {
-    return;
-  }
-  const std::vector<Cause> causes = causesThatMove(
-      ratio.signatures, ratio.indicator, ratio.value() > 1.0 ? ratio.when_larger : -ratio.when_larger, MIN_CHANGE);
-  for (const Cause cause : causes)
-  {
-    finding.causes.push_back({ cause, 1.0 / static_cast<double>(causes.size()) });
-  }
-}
-
 bool movesBothWays(const std::vector<FrictionPoint>& points)
 {
   return points.front().speed < 0.0 && points.back().speed > 0.0;
@@ -64,13 +26,6 @@ bool isAtRest(const JointEvidence& evidence)
 {
   const MotionReach& reach = evidence.reach();
   return evidence.friction().points().empty() && reach.most_angle - reach.least_angle < LEAST_MOTION;
-}
-
-/// Mean product of measured and predicted current [A^2].
-double agreement(const JointEvidence& evidence)
-{
-  return 0.5 * (std::pow(evidence.currentRms(), 2) + std::pow(evidence.predictedRms(), 2) -
-                std::pow(evidence.residualRms(), 2));
 }
 
 /// Why the recorded current says nothing about the drive: not that of its motor, or of another load; none: it fits.
@@ -92,13 +47,10 @@ std::optional<Reason> whyRowsDoNotFit(const JointEvidence& evidence)
   {
     return Reason::EFFORT_NOT_CURRENT;
   }
-  if (predicted > noticeable && measured > 0.5 * predicted && -agreement(evidence) > AGREES * measured * predicted)
-  {
-    return Reason::EFFORT_NOT_CURRENT;  // of the opposite sign
-  }
   // Spikes, noise and a load from outside are large as well, but not a multiple of the prediction.
   if (measured > noticeable && measured > MAX_RATIO * predicted && evidence.residualSpread() > SPREAD * predicted &&
-      agreement(evidence) > AGREES * measured * predicted)
+      0.5 * (measured * measured + predicted * predicted - std::pow(evidence.residualRms(), 2)) >
+          AGREES * measured * predicted)
   {
     return Reason::EFFORT_TOO_LARGE;
   }
@@ -107,12 +59,7 @@ std::optional<Reason> whyRowsDoNotFit(const JointEvidence& evidence)
   {
     return Reason::LOAD_WRONG;
   }
-  constexpr std::uint64_t MIN_BLOCKS = 3;  // of friction without contact
-  const MotionReach& reach = evidence.reach();
-  return reach.touched_rows > 0 && reach.most_angle - reach.least_angle > LEAST_MOTION &&
-                 evidence.friction().blocks().count() < MIN_BLOCKS ?
-             std::make_optional(Reason::CONTACT) :
-             std::nullopt;
+  return std::nullopt;
 }
 
 /// The same, with what is known of the whole recording.
@@ -150,18 +97,22 @@ Finding judgeTorsion(const JointEvidence& evidence, const OwnReference& own, Ver
   const double eccentricity = (parameters.sensors.output_eccentricity * turn +
                                parameters.sensors.motor_eccentricity / evidence.ratio() / std::sqrt(2.0)) /
                               twin;
-  const Ratio ratio{ compliance,
-                     compliance / own.compliance_ratio,
-                     parameters.comparison.compliance_tolerance + eccentricity,
-                     ScalarIndicator::TORSIONAL_STIFFNESS,
-                     -1.0,
-                     evidence.assessor().signatures() };
-  verdict[Figure::TORSION_OF_TWIN] = ratio.to_twin;
-  verdict[Figure::TORSION_OF_OWN] = ratio.to_own;
-  verdict[Figure::TORSION_TOLERANCE] = ratio.tolerance(parameters);
-  judgeRatio(ratio, parameters, Reason::TORSION, finding);
+  const double to_own = compliance / own.compliance_ratio;
+  const bool is_own_known = std::isfinite(to_own);
+  const double ratio = is_own_known ? to_own : compliance;
+  const ComparisonParameters& comparison = parameters.comparison;
+  const double tolerance = is_own_known ? comparison.repeat_tolerance : comparison.compliance_tolerance + eccentricity;
+  verdict[Figure::TORSION_OF_TWIN] = compliance;
+  verdict[Figure::TORSION_OF_OWN] = to_own;
+  verdict[Figure::TORSION_TOLERANCE] = tolerance;
+  finding.level = levelOf(ratio - 1.0, tolerance, parameters.indicators.error_factor);
+  finding.reason = finding.level == VerdictLevel::OK ? Reason::SOUND : Reason::TORSION;
+  if (finding.level != VerdictLevel::OK)
+  {
+    nameCauses(evidence, ScalarIndicator::TORSIONAL_STIFFNESS, ratio > 1.0 ? -1.0 : 1.0, finding);
+  }
   constexpr double MIN_TURN = 0.01;  // least turn of the joint
-  if (!ratio.isOwnKnown())
+  if (!is_own_known)
   {
     verdict[Figure::ENCODER_SHARE] = eccentricity;
     verdict[Figure::ENCODER_ECCENTRICITY] = parameters.sensors.output_eccentricity;
@@ -321,8 +272,7 @@ MeasuredFriction measuredFriction(const JointEvidence& evidence, const JointCont
            [&evidence](double temperature) { return evidence.twinFrictionAt(temperature); },
            !context.misfit.exists() && factor.is_below_faults,
            !context.misfit.exists() && factor.reason == Reason::NO_FRICTION,
-           factor.reason == Reason::EFFORT_NOT_CURRENT ||
-               (whyRowsDoNotFit(evidence) == Reason::EFFORT_NOT_CURRENT && factor.value < 0.0),
+           factor.reason == Reason::EFFORT_NOT_CURRENT,
            !context.misfit.exists() &&
                (whyItDoesNotFit(evidence, context) == Reason::LOAD_WRONG || factor.reason == Reason::LOAD_WRONG),
            !context.own.friction.empty() };
@@ -361,8 +311,7 @@ Verdict judge(const JointEvidence& evidence, const JointContext& context)
                        judgeSignals(evidence, context, verdict) };
   if (const std::optional<Reason> why_not = whyItDoesNotFit(evidence, context))
   {
-    verdict.dismiss(
-        { *why_not, *why_not == Reason::CONTACT ? contactText(evidence.contact().largest()) : context.misfit.clause });
+    verdict.dismiss({ *why_not, context.misfit.clause });
   }
   else if (verdict.findings.front().level != VerdictLevel::NOT_JUDGED)
   {

@@ -30,11 +30,6 @@ std::string wrongEffortText(double current, double predicted, Reason reason)
 {
   if (reason == Reason::EFFORT_NOT_CURRENT)
   {
-    if (current > 0.5 * predicted)
-    {
-      return "The recorded effort goes against the current that this motion takes: effort or angle of this joint is "
-             "of the opposite sign, or its load is another than configured (mounting, payload).";
-    }
     return "The recorded effort is " + fixedText(current, 2) + " A rms where this motion takes some " +
            fixedText(predicted, 2) + " A: it is not the motor's current.";
   }
@@ -111,24 +106,14 @@ std::string causeNames(const Finding& finding, const char* separator)
   return joined(finding.causes, separator, [](const WeightedCause& cause) { return causeName(cause.cause); });
 }
 
-/// A ratio as it was judged.
-struct RatioText
+std::string torsionText(const Verdict& verdict, const Finding& finding)
 {
-  const char* what;
-  double to_twin;
-  double to_own;  // NaN: not known
-  double of_arm;
-  double tolerance;
-  const char* besides;  // other causes
-};
-
-std::string ratioText(const Verdict& verdict, const RatioText& ratio, const Finding& finding)
-{
-  const bool known = std::isfinite(ratio.to_own);
-  const double value = (known ? ratio.to_own : ratio.to_twin) / ratio.of_arm;
+  const double to_own = verdict[Figure::TORSION_OF_OWN];
+  const bool known = std::isfinite(to_own);
+  const double value = known ? to_own : verdict[Figure::TORSION_OF_TWIN];
   // As many digits as it takes to see on which side of the bound the value lies.
-  const double lowest = std::max(0.0, 1.0 - ratio.tolerance);
-  const double highest = 1.0 + ratio.tolerance;
+  const double lowest = std::max(0.0, 1.0 - verdict[Figure::TORSION_TOLERANCE]);
+  const double highest = 1.0 + verdict[Figure::TORSION_TOLERANCE];
   int digits = 2;
   while (
       digits < 6 && finding.level != VerdictLevel::OK &&
@@ -136,30 +121,16 @@ std::string ratioText(const Verdict& verdict, const RatioText& ratio, const Find
   {
     ++digits;
   }
-  const std::string sound = fixedText(lowest, digits) + " to " + fixedText(highest, digits) + " counts as sound";
-  std::string text =
-      std::string(ratio.what) + " is " + fixedText(ratio.to_twin, digits) + " times the twin's" +
-      (known ? " and " + fixedText(ratio.to_own, digits) + " times this joint's own when it was sound" : "") +
-      (ratio.of_arm == 1.0 ? "" :
-                             ", " + fixedText(value, digits) + " times once the " + fixedText(ratio.of_arm, digits) +
-                                 " times of the whole arm are taken out") +
-      " (" + sound + ").";
+  std::string text = "Torsion is " + fixedText(verdict[Figure::TORSION_OF_TWIN], digits) + " times the twin's" +
+                     (known ? " and " + fixedText(to_own, digits) + " times this joint's own when it was sound" : "") +
+                     " (" + fixedText(lowest, digits) + " to " + fixedText(highest, digits) + " counts as sound).";
   if (finding.level != VerdictLevel::OK)
   {
     text += (!verdict.has_signatures ? std::string() :
              finding.causes.empty()  ? std::string(" No fault in the list has this effect.") :
                                        " Possible faults: " + causeNames(finding, ", ") + ".") +
-            " Other causes: " + ratio.besides + ".";
+            " Other causes: a wrong load, eccentric encoders.";
   }
-  return text;
-}
-
-std::string torsionText(const Verdict& verdict, const Finding& finding)
-{
-  std::string text = ratioText(verdict,
-                               { "Torsion", verdict[Figure::TORSION_OF_TWIN], verdict[Figure::TORSION_OF_OWN], 1.0,
-                                 verdict[Figure::TORSION_TOLERANCE], "a wrong load, eccentric encoders" },
-                               finding);
   const double alike = verdict[Figure::ENCODER_ERROR];
   const double share = verdict[Figure::ENCODER_SHARE];
   if (std::isfinite(alike) && finding.level != VerdictLevel::OK)

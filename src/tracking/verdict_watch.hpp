@@ -36,6 +36,15 @@ public:
     return hjt::measuredFriction(tracker_.evidence(), context(1.0, UNWITNESSED, {}));
   }
 
+  /// Rows without a received temperature are predicted at what the friction of the joints means, if that is known.
+  void predictAt(const ArmFriction& arm)
+  {
+    if (arm.is_known)
+    {
+      tracker_.setTemperature(arm.temperature);
+    }
+  }
+
   /// Makes the verdict again, alone.
   void judge() { judge(1.0, UNWITNESSED, {}); }
   /// Makes it after common factors of the joints of `measuredFriction`. `joint`: its number.
@@ -129,19 +138,25 @@ private:
   double confirmed_at_{};  // time up to which no worse verdict was found [s]
 };
 
-/// Each joint after what the friction of all has in common within `tolerance`, as `joint_twin compare` judges a
-/// recording.
-inline void judgeTogether(const std::vector<VerdictWatch*>& joints, double tolerance)
+/// What the friction of the joints has in common within `tolerance`.
+inline ArmFriction commonFriction(const std::vector<VerdictWatch*>& joints, double tolerance)
 {
   std::vector<MeasuredFriction> frictions;
   for (const VerdictWatch* joint : joints)
   {
     frictions.push_back(joint->measuredFriction());
   }
-  const ArmFriction arm = commonFriction(frictions, tolerance);
+  return commonFriction(frictions, tolerance);
+}
+
+/// Each joint after that, as `joint_twin compare` judges a recording.
+inline ArmFriction judgeTogether(const std::vector<VerdictWatch*>& joints, double tolerance)
+{
+  const ArmFriction arm = commonFriction(joints, tolerance);
   for (std::size_t i = 0; i < joints.size(); ++i)
   {
     joints[i]->judge(arm, i);
   }
+  return arm;
 }
 }  // namespace hjt

@@ -187,52 +187,42 @@ TEST(JointEvidence, TellsTheLoadsOfTheMotion)
   EXPECT_NEAR(evidence.typicalLoad(), 8.0, 1.0);
 }
 
-TEST(ArmFrictionWatch, PredictsAtTheTemperatureThatAllJointsShowUnlessTheyWereSoWhenSound)
+TEST(VerdictWatch, PredictsAtTheTemperatureThatAllJointsShow)
 {
-  struct Case
-  {
-    int raised;                 // joints
-    std::vector<double> sound;  // their friction when sound
-    bool is_cold;
-  };
   const Parameters parameters = parametersWith(KNOWN_LOAD);
   const SwingingRobot robot(parameters, 120.0);
-  for (const Case& one : { Case{ 1, {}, false }, Case{ 3, {}, true }, Case{ 3, { 1.4, 1.4, 1.4 }, false } })
+  for (const std::size_t raised : { 1, 3 })
   {
     std::vector<std::unique_ptr<Tracker>> joints;
-    std::vector<Tracker*> watched;
+    std::vector<std::unique_ptr<VerdictWatch>> watches;
+    std::vector<VerdictWatch*> watched;
     for (int joint = 0; joint < 3; ++joint)
     {
       joints.push_back(std::make_unique<Tracker>(parameters, InputMode::MOTION));
       joints.back()->pushLoad(0.0, 0.0);
-      watched.push_back(joints.back().get());
+      watches.push_back(std::make_unique<VerdictWatch>(*joints.back(), JointContext()));
+      watched.push_back(watches.back().get());
     }
-    ArmFrictionWatch watch(watched, parameters.comparison.repeat_tolerance, one.sound);
     for (std::size_t i = 0; i < robot.rows(); ++i)
     {
       const double friction = robot.predicted(i).friction_torque / parameters.telemetry.torque_per_current;
-      for (int joint = 0; joint < 3; ++joint)
+      for (std::size_t joint = 0; joint < 3; ++joint)
       {
-        robot.push(*joints[static_cast<std::size_t>(joint)], i, joint < one.raised ? 0.4 * friction : 0.0);
+        robot.push(*joints[joint], i, joint < raised ? 0.4 * friction : 0.0);
       }
-      watch.look(PERIOD * static_cast<double>(i));
     }
+    const ArmFriction found = commonFriction(watched, parameters.comparison.repeat_tolerance);
+    EXPECT_TRUE(found.is_known);
+    watched.front()->predictAt(found);
+    watched.front()->predictAt(ArmFriction());  // nothing is known: it stays
     joints.front()->push(rowAt(PERIOD * static_cast<double>(robot.rows())));
     const std::vector<Comparison> last = takeAll(*joints.front(), true);
     ASSERT_THAT(last, SizeIs(Gt(0)));
     EXPECT_FALSE(last.back().temperature_received);
-    if (!one.is_cold)
-    {
-      EXPECT_EQ(watch.found().median, 1.0);
-      EXPECT_EQ(last.back().temperature, parameters.input.temperature);
-    }
-    else
-    {
-      EXPECT_NEAR(watch.found().median, 1.4, 0.02);
-      ASSERT_TRUE(watch.found().temperature.has_value());
-      EXPECT_LT(*watch.found().temperature, parameters.input.temperature - 3.0);
-      EXPECT_EQ(last.back().temperature, *watch.found().temperature);
-    }
+    ASSERT_EQ(found.temperature.has_value(), raised == 3);
+    EXPECT_NEAR(found.median, found.temperature ? 1.4 : 1.0, 0.02);
+    EXPECT_EQ(last.back().temperature, found.temperature.value_or(parameters.input.temperature));
+    EXPECT_LT(found.temperature.value_or(0.0), parameters.input.temperature - 3.0);
   }
 }
 
