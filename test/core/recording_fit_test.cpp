@@ -307,6 +307,13 @@ TEST(RecordingFit, UnitOfTheEffortIsFound)
   EXPECT_THAT(kinds(wrong.fit().ofArm()), ElementsAre("effort_unit"));
 }
 
+TEST(RecordingFit, EffortsInMilliamperesAreNamed)
+{
+  const RecordingFit fit = Robot([](std::size_t, Given& given) { given.effort *= 1000.0; }).fit();
+  EXPECT_THAT(kinds(fit.ofArm()), ElementsAre("effort_unit"));
+  EXPECT_THAT(fit.whyNotJudged()[0].clause, testing::HasSubstr("divide it by 1000"));
+}
+
 TEST(RecordingFit, AnotherGainIsNoOtherUnit)
 {
   expectNothing(Robot([](std::size_t, Given& given) { given.effort *= 1.6; }).fit());
