@@ -28,6 +28,19 @@ constexpr double BIN = TWO_PI / 8.0;  // of the motor angle, in which a line tha
 constexpr double NOISE_FROM = -BearingSlip::MOST;
 constexpr double NOISE_TO = 2.0 * BearingSlip::MOST;
 
+/// Standard deviation of the speed, way of turning apart, over its mean.
+double speedSpread(const std::vector<LineSample>& samples)
+{
+  double sum = 0.0;
+  double squares = 0.0;
+  for (const LineSample& sample : samples)
+  {
+    sum += std::abs(sample.speed);
+    squares += sample.speed * sample.speed;
+  }
+  return std::sqrt(std::max(0.0, squares * static_cast<double>(samples.size()) / (sum * sum) - 1.0));
+}
+
 /// Squares of a line's Fourier sums by slip, in units of the noise about it. `sums`: of its bins without slip.
 std::vector<double> powersOf(const std::vector<Complex>& sums, double by_slip, double step, std::size_t steps)
 {
@@ -89,13 +102,15 @@ double BearingSlip::find(const OrderTracker& fitted) const
 {
   constexpr double CLEARLY = 25.0;
   constexpr double FEWEST_TURNS = 10.0;  // fewer do not tell a line that slips from one that does not
+  constexpr double EVEN = 0.1;           // spread of a speed at which folded lines are sharp
   constexpr double FINE = 0.25;          // steps of the slip, of what the fastest line resolves
   const std::vector<BearingLine> lines = linesOf(fitted);
   const auto [least, most] =
       std::minmax_element(samples_.begin(), samples_.end(),
                           [](const LineSample& a, const LineSample& b) { return a.motor_angle < b.motor_angle; });
   const double range = samples_.empty() ? 0.0 : most->motor_angle - least->motor_angle;
-  if (lines.empty() || samples_.size() > MOST_SAMPLES || !(range > FEWEST_TURNS * TWO_PI))
+  if (lines.empty() || samples_.size() > MOST_SAMPLES || !(range > FEWEST_TURNS * TWO_PI) ||
+      speedSpread(samples_) < EVEN)
   {
     return 0.0;
   }
