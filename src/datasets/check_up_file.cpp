@@ -2,10 +2,7 @@
 #include "datasets/check_up_file.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <functional>
-#include <utility>
 #include <vector>
 
 #include <trajectory_msgs/JointTrajectory.h>
@@ -121,8 +118,7 @@ void writeTrajectory(const std::string& path, const ArmDescription& arm, const s
 
 CheckUpMotion writeCheckUp(const CheckUpOptions& options)
 {
-  const auto format = std::find(CHECK_UP_FORMATS.begin(), CHECK_UP_FORMATS.end(), options.format);
-  if (format == CHECK_UP_FORMATS.end())
+  if (std::find(CHECK_UP_FORMATS.begin(), CHECK_UP_FORMATS.end(), options.format) == CHECK_UP_FORMATS.end())
   {
     throw InputError("format = '" + options.format + "' must be " + joined(CHECK_UP_FORMATS, " or "));
   }
