@@ -28,6 +28,13 @@ bool isAtRest(const JointEvidence& evidence)
   return evidence.friction().points().empty() && reach.most_angle - reach.least_angle < LEAST_MOTION;
 }
 
+/// Mean product of measured and predicted current [A^2].
+double agreement(const JointEvidence& evidence)
+{
+  return 0.5 * (std::pow(evidence.currentRms(), 2) + std::pow(evidence.predictedRms(), 2) -
+                std::pow(evidence.residualRms(), 2));
+}
+
 /// Why the recorded current says nothing about the drive: not that of its motor, or of another load; none: it fits.
 std::optional<Reason> whyRowsDoNotFit(const JointEvidence& evidence)
 {
@@ -47,10 +54,13 @@ std::optional<Reason> whyRowsDoNotFit(const JointEvidence& evidence)
   {
     return Reason::EFFORT_NOT_CURRENT;
   }
+  if (predicted > noticeable && measured > 0.5 * predicted && -agreement(evidence) > AGREES * measured * predicted)
+  {
+    return Reason::EFFORT_NOT_CURRENT;  // of the opposite sign
+  }
   // Spikes, noise and a load from outside are large as well, but not a multiple of the prediction.
   if (measured > noticeable && measured > MAX_RATIO * predicted && evidence.residualSpread() > SPREAD * predicted &&
-      0.5 * (measured * measured + predicted * predicted - std::pow(evidence.residualRms(), 2)) >
-          AGREES * measured * predicted)
+      agreement(evidence) > AGREES * measured * predicted)
   {
     return Reason::EFFORT_TOO_LARGE;
   }
@@ -272,7 +282,8 @@ MeasuredFriction measuredFriction(const JointEvidence& evidence, const JointCont
            [&evidence](double temperature) { return evidence.twinFrictionAt(temperature); },
            !context.misfit.exists() && factor.is_below_faults,
            !context.misfit.exists() && factor.reason == Reason::NO_FRICTION,
-           factor.reason == Reason::EFFORT_NOT_CURRENT,
+           factor.reason == Reason::EFFORT_NOT_CURRENT ||
+               (whyRowsDoNotFit(evidence) == Reason::EFFORT_NOT_CURRENT && factor.value < 0.0),
            !context.misfit.exists() &&
                (whyItDoesNotFit(evidence, context) == Reason::LOAD_WRONG || factor.reason == Reason::LOAD_WRONG),
            !context.own.friction.empty() };

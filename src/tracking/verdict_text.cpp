@@ -30,6 +30,11 @@ std::string wrongEffortText(double current, double predicted, Reason reason)
 {
   if (reason == Reason::EFFORT_NOT_CURRENT)
   {
+    if (current > 0.5 * predicted)
+    {
+      return "The recorded effort goes against the current that this motion takes: effort or angle of this joint is "
+             "of the opposite sign, or its load is another than configured (mounting, payload).";
+    }
     return "The recorded effort is " + fixedText(current, 2) + " A rms where this motion takes some " +
            fixedText(predicted, 2) + " A: it is not the motor's current.";
   }
