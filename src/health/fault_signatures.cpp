@@ -169,7 +169,6 @@ FeatureScores featureScores(const Deviations& deviations) noexcept
 void CauseSearch::Sum::add(double weighted, double prior, double severity) noexcept
 {
   const double weight = prior * std::exp(weighted);
-  priors += prior;
   total += weight;
   first += weight * severity;
   second += weight * severity * severity;
@@ -281,11 +280,15 @@ void CauseSearch::advance(const WindowResidual& residual, const OperatingPoint& 
     {
       const Signature& first = *rows_[row].parts.front();
       const double prior = rows_[row].prior * (OTHER_MOTION + likeness(first.motion, point));
-      sums_[static_cast<std::size_t>(first.cause)].add(likelihoods_[row], prior, first.severity);
+      Sum& sum = sums_[static_cast<std::size_t>(first.cause)];
+      sum.add(likelihoods_[row], prior, first.severity);
+      sum.priors += row < set_->signatures.size() ? prior : 0.0;  // what comes together adds to what comes alone
     }
     else
     {
-      sums_[static_cast<std::size_t>(Cause::NONE)].add(likelihoods_[row], UNKNOWNS[row - known].prior(), 0.0);
+      Sum& sum = sums_[static_cast<std::size_t>(Cause::NONE)];
+      sum.add(likelihoods_[row], UNKNOWNS[row - known].prior(), 0.0);
+      sum.priors += UNKNOWNS[row - known].prior();
     }
   }
 }
