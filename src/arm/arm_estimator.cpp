@@ -233,40 +233,21 @@ double ArmEstimator::multiple() const
   return both / squares;
 }
 
-/// With no more rows of a joint than say where the starts lead.
-ArmEstimator ArmEstimator::thinned() const
-{
-  constexpr std::size_t ENOUGH = 150;
-  ArmEstimator few(*this);
-  for (std::vector<Row>& joint : few.rows_)
-  {
-    const std::size_t every = joint.size() / ENOUGH + 1;
-    std::size_t kept = 0;
-    for (std::size_t row = 0; row < joint.size(); row += every)
-    {
-      joint[kept++] = joint[row];
-    }
-    joint.resize(kept);
-  }
-  return few;
-}
-
-/// From the likeliest of those that the starts lead to, and that all currents are another multiple: they are not one.
+/// The likeliest of those that the starts lead to, and that all currents are another multiple: they are not one.
 ArmEstimator::Point ArmEstimator::best(const Prior& prior, const std::vector<bool>& states) const
 {
-  const ArmEstimator few = thinned();
   Point best;
   for (int start = 0; start <= STARTS; ++start)
   {
     Eigen::VectorXd at = Eigen::VectorXd::Zero(size_);
     at[GAIN] = start < STARTS ? 0.0 : multiple() - 1.0;
-    Point other = few.refine(prior, states, std::move(at), start < STARTS ? start : HELD);
+    Point other = refine(prior, states, std::move(at), start < STARTS ? start : HELD);
     if (other.cost < best.cost)
     {
       best = std::move(other);
     }
   }
-  return refine(prior, states, std::move(best.at), HELD);
+  return best;
 }
 
 /// Legs whose own mass, beside that of a point, is in the upper half of all.
@@ -513,7 +494,7 @@ ArmEstimator::Point ArmEstimator::refine(const Prior& prior, const std::vector<b
     }
     const Eigen::VectorXd step = point.information.ldlt().solve(right);
     point.at += step;
-    if (round >= (start == HELD ? 0 : LOOSE_ROUNDS) &&
+    if (round >= LOOSE_ROUNDS &&
         (step.array().square() * point.information.diagonal().array()).maxCoeff() < NOTHING * NOTHING)
     {
       break;

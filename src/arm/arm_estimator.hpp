@@ -108,7 +108,6 @@ private:
   static double errorOf(std::size_t joint, const Row& row, bool state, const Eigen::VectorXd& at, Slope* slope);
   Point refine(const Prior& prior, const std::vector<bool>& states, Eigen::VectorXd at, int start) const;
   double multiple() const;
-  ArmEstimator thinned() const;
   Point best(const Prior& prior, const std::vector<bool>& states) const;
   Point withJump(const Freedom& may, const Point& without, std::vector<bool>& states) const;
   std::vector<bool> parted(const Point& by) const;
