@@ -232,8 +232,8 @@ def worn_line(trials):
     named = alarms["cause"].isin(WORN)
     in_set = [any(kind in str(others).split(", ") for kind in WORN) for others in alarms["alternatives"]]
     others = collections.Counter(alarms["cause"][~named]).most_common()
-    return (f"Teeth, interface and grease worn together, {WORN_FROM} to {WORN_TO} each: {len(alarms)} of {len(verdicts)} "
-            f"alarm, one of the three is named in {named.sum()}, one is in the set in {(named | in_set).sum()}"
+    return (f"Teeth, interface and grease worn together, {WORN_FROM} to {WORN_TO} each: {len(alarms)} of "
+            f"{len(verdicts)} alarm, one of the three is named in {named.sum()}, one is in the set in {(named | in_set).sum()}"
             + (f"; named instead: {', '.join(f'`{cause}` {count}' for cause, count in others)}." if others else "."))
 
 
@@ -248,7 +248,8 @@ def main():
     hjt.checkup("ur5", work / "check_up.csv", joint="shoulder", force=True)
     trials = [trial(work, gear, 100 * place) for place, gear in enumerate(GEARS, 1)]
     lab.write_or_print(options.docs, "health.md", "repeats",
-                       [*repeats_table(trials), "", *sizes_table(trials), "", *faults_table(trials), "", worn_line(trials)])
+                       [*repeats_table(trials), "", *sizes_table(trials), "", *faults_table(trials), "",
+                        worn_line(trials)])
 
 
 if __name__ == "__main__":

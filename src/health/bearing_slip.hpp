@@ -19,8 +19,8 @@ namespace hjt
 /// less than one window in 1000: s is then 0.
 /// Source: bearings slip by 1 to 2 % (Randall and Antoni, Mech. Syst. Signal Process. 25, 2011, 485-520).
 ///
-/// At an even speed none is looked for: sampling folds the lines of the teeth to sharp ones at any order there, two apart
-/// as those of a race are.
+/// At an even speed none is looked for: sampling folds the lines of the teeth to sharp ones at any order there, two
+/// apart as those of a race are.
 ///
 /// Keeps every sample of a window: for recordings and data sets, not for a loop. A window of more than a million has no
 /// slip looked for.

@@ -13,8 +13,8 @@ namespace hjt
 /// By which the temperature of a drive, and what else the joints of an arm have in common, changes friction from day to
 /// day, where no other joints tell: standard deviation of the logarithm [-].
 constexpr double UNWITNESSED = 0.06;
-/// Of common factors of the joints, from which on they are no witnesses: standard deviation of the logarithm, as much as
-/// three joints of their type may have in common by chance [-].
+/// Of common factors of the joints, from which on they are no witnesses: standard deviation of the logarithm, as much
+/// as three joints of their type may have in common by chance [-].
 constexpr double NO_WITNESS = 0.05;
 
 /// Joints that witness for each other, at least.

@@ -48,7 +48,8 @@ private:
 
 /// That regression if the current came earlier or later than the motion. Fixed memory; nothing allocates.
 ///
-/// Rows count at most every 20 ms, the motion between them on lines. Of motion faster than MotionDifferentiator::SLIDING.
+/// Rows count at most every 20 ms, the motion between them on lines. Of motion faster than
+/// MotionDifferentiator::SLIDING.
 class CurrentLag
 {
 public:

@@ -227,9 +227,9 @@ struct CausePosterior
 ///                 least, and the less is known of the severity;  numbers compared
 ///        n, q     MotionKind of the window, of the signature: where a line meets a resonance of the drive, it is the
 ///                 larger part of every signature, elsewhere of none;  N = 0.2, Q = 0.3, w_0 = 0.001
-/// Teeth, interface and grease wear together: h is also the sum of the signatures of two or three of them in one motion,
-/// the others of the severity of the first or two fifths of it. It counts for the first, and all such sums together as
-/// much beforehand as its signatures alone.
+/// Teeth, interface and grease wear together: h is also the sum of the signatures of two or three of them in one
+/// motion, the others of the severity of the first or two fifths of it. It counts for the first, and all such sums
+/// together as much beforehand as its signatures alone, and beside these.
 /// Stiffness changes as a compliance does: mu = c x^2 / x_h,  c  share by the signature, x  sound value of the window's
 /// motion, x_h  of SignatureSet::sound. An eccentric encoder adds the same to the compliance of every drive.
 /// Something of no signature: mu = 0, e S = 3, 10, 30, 100. With a tenth of the weight each, what is no fault of a
