@@ -233,7 +233,8 @@ def worn_line(trials):
     in_set = [any(kind in str(others).split(", ") for kind in WORN) for others in alarms["alternatives"]]
     others = collections.Counter(alarms["cause"][~named]).most_common()
     return (f"Teeth, interface and grease worn together, {WORN_FROM} to {WORN_TO} each: {len(alarms)} of "
-            f"{len(verdicts)} alarm, one of the three is named in {named.sum()}, one is in the set in {(named | in_set).sum()}"
+            f"{len(verdicts)} alarm, one of the three is named in {named.sum()}, one is in the set in "
+            f"{(named | in_set).sum()}"
             + (f"; named instead: {', '.join(f'`{cause}` {count}' for cause, count in others)}." if others else "."))
 
 

@@ -26,6 +26,8 @@ UNKNOWNS = numpy.array([(3.0, 0, 0, 1), (10.0, 0, 0, 1), (30.0, 0, 0, 1), (100.0
                         (0, 0, 0.12, 0.1), (0, 0, 0.25, 0.1), (0, 0, 0.5, 0.1), (0, 0, 1.0, 0.1)])
 SPEED_RANGE, DIRECTION_RANGE, OTHER_MOTION = 0.2, 0.3, 1e-3
 MISFIT_WEIGHT, MISFIT_SEVERITY = 0.2, 0.5
+TOGETHER = ("tooth_wear", "interface_wear", "lubricant_degradation")  # come together, alike or less by LESS
+LESS = 0.4
 
 WITHIN = 0.683            # of a normal quantity, one standard deviation
 
@@ -85,6 +87,29 @@ def likeness(kinds, kind):
     return numpy.exp(-0.5 * square)
 
 
+def together(table):
+    """(rows that come together, the first that they count for; weight of each beforehand)."""
+    rows = collections.defaultdict(list)
+    for row, (cause, kind) in enumerate(zip(table.causes, map(tuple, table.kinds))):
+        rows[cause, kind].append(row)
+    sums = []
+    for first, cause in enumerate(table.causes):
+        if cause not in TOGETHER:
+            continue
+        own, several = TOGETHER.index(cause), []
+        for step in (1, 2):
+            other = TOGETHER[(own + step) % len(TOGETHER)]
+            several.append([None] + [
+                row for row in rows[other, tuple(table.kinds[first])]
+                if table.severities[row] == table.severities[first]
+                or abs(table.severities[row] / table.severities[first] - LESS) < 0.05 * LESS])
+        sums += [[row for row in (first, *parts) if row is not None] for parts in itertools.product(*several)
+                 if any(part is not None for part in parts)]
+    alone = collections.Counter(table.causes)
+    of_sums = collections.Counter(table.causes[parts[0]] for parts in sums)
+    return sums, numpy.array([alone[table.causes[parts[0]]] / of_sums[table.causes[parts[0]]] for parts in sums])
+
+
 class Hypotheses:
     """What a window says of every row of the table and of what is in none; the law is in fault_signatures.hpp."""
 
@@ -95,23 +120,31 @@ class Hypotheses:
         self.common = numpy.array(common).T
         self.freedom = window["freedom"]
         self.table = table
-        self.causes = numpy.array(table.causes)
+        sums, beforehand = together(table)
+        first = [parts[0] for parts in sums]
+        self.alone = len(table.severities)
+        self.causes = numpy.array([*table.causes, *(table.causes[row] for row in first)])
         share = {cause: [layout.names[i] in shares(cause) for i in number] for cause in set(table.causes)}
         known = numpy.array([table.sound[layout.names[i]] if layout.names[i] in STIFFNESSES else 0.0 for i in number])
         unit = numpy.where(known > 0.0, sound ** 2 / numpy.where(known > 0.0, known, 1.0), sound)
         change = table.changes[:, number] * numpy.where([share[cause] for cause in table.causes], unit, 1.0)
         free = [not has_phase and layout.names[i] in layout.lines for i, has_phase in zip(number, phase)]
         change = numpy.where(free, amplitude_change(sound, change), change)
-        self.rows = len(table.severities)
+        change = numpy.vstack([change, *(change[parts].sum(axis=0) for parts in sums)])
+        self.rows = len(change)
         alike = likeness(table.kinds, kind_of(window))
-        self.prior = OTHER_MOTION + alike
+        alike = numpy.append(alike, alike[first])
+        self.prior = (OTHER_MOTION + alike) * numpy.append(numpy.ones(self.alone), beforehand)
         self.unlike = numpy.pad(1.0 - alike, (0, len(UNKNOWNS)))
         sounds = {name: (window["residual"][name] or [0.0])[0] for name in ("running_torque", "kinematic_error")}
         drag, noise = UNKNOWNS[:, 1] * sounds["running_torque"], UNKNOWNS[:, 2] * sounds["kinematic_error"]
         unknown = {"running_torque": drag, "coulomb_torque": drag, "kinematic_error": noise}
         none = numpy.zeros(len(UNKNOWNS))
         self.change = numpy.vstack([change, numpy.array([unknown.get(layout.names[i], none) for i in number]).T])
-        self.severity = numpy.pad(table.severities, (0, len(UNKNOWNS)))
+        severities = numpy.asarray(table.severities)
+        self.first = numpy.append(severities, severities[first])  # of what a row counts for
+        all_of = numpy.append(severities, [math.hypot(*severities[parts]) for parts in sums])
+        self.severity = numpy.pad(all_of, (0, len(UNKNOWNS)))
         self.square = numpy.sum(numpy.where(phase, 0.5, 1.0) * self.change ** 2 / self.own, axis=1)
         self.left = difference - numpy.where(phase, 0.0, self.change)
 
@@ -147,11 +180,12 @@ class Hypotheses:
         names = list(dict.fromkeys(self.table.causes))
         weights = numpy.exp(weight * (found - found.max()))
         faults = self.prior * weights[:self.rows]
-        means = {cause: numpy.sum(faults[self.causes == cause]) / numpy.sum(self.prior[self.causes == cause])
+        alone = self.causes[:self.alone]
+        means = {cause: numpy.sum(faults[self.causes == cause]) / numpy.sum(self.prior[:self.alone][alone == cause])
                  for cause in names}
         severity, variance = {}, {}
         for cause in names:
-            own, shares_of_own = self.table.severities[self.causes == cause], faults[self.causes == cause] + 1e-300
+            own, shares_of_own = self.first[self.causes == cause], faults[self.causes == cause] + 1e-300
             severity[cause] = numpy.average(own, weights=shares_of_own)
             variance[cause] = (numpy.average((own - severity[cause]) ** 2, weights=shares_of_own)
                                + (MISFIT_SEVERITY * (1.0 - 1.0 / misfit) * severity[cause]) ** 2)

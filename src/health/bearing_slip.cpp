@@ -25,6 +25,7 @@ namespace
 using Complex = std::complex<double>;
 
 constexpr double BIN = TWO_PI / 8.0;  // of the motor angle, in which a line that slips stays in phase [rad]
+constexpr std::array SIGNALS{ LineSignal::MOTOR_RIPPLE, LineSignal::KINEMATIC_ERROR };
 constexpr double NOISE_FROM = -BearingSlip::MOST;
 constexpr double NOISE_TO = 2.0 * BearingSlip::MOST;
 
@@ -122,28 +123,40 @@ double BearingSlip::find(const OrderTracker& fitted) const
     fastest = std::max(fastest, std::abs(line.by_slip));
   }
   const double start = least->motor_angle;
-  std::vector<std::vector<Complex>> sums(lines.size(), std::vector<Complex>(static_cast<std::size_t>(range / BIN) + 1));
+  const std::vector<Complex> none(static_cast<std::size_t>(range / BIN) + 1);
+  std::array<std::vector<std::vector<Complex>>, SIGNALS.size()> sums;
+  sums.fill(std::vector<std::vector<Complex>>(lines.size(), none));
   for (const LineSample& sample : samples_)
   {
-    const double rest = sample.weight * fitted.rippleBeside(sample, kept);
     const double angle = sample.motor_angle - start;
-    for (std::size_t k = 0; k < lines.size(); ++k)
+    for (std::size_t i = 0; i < SIGNALS.size(); ++i)
     {
-      sums[k][static_cast<std::size_t>(angle / BIN)] += std::polar(rest, -lines[k].order * angle);
+      const double rest = sample.weight * fitted.beside(SIGNALS[i], sample, kept);
+      for (std::size_t k = 0; k < lines.size(); ++k)
+      {
+        sums[i][k][static_cast<std::size_t>(angle / BIN)] += std::polar(1.0, -lines[k].order * angle) * rest;
+      }
     }
   }
   const double zero_steps = std::ceil(-NOISE_FROM * fastest * range / (FINE * TWO_PI));
   const double step = -NOISE_FROM / zero_steps;
   const auto zero = static_cast<std::size_t>(zero_steps);
-  std::vector<double> all(static_cast<std::size_t>((NOISE_TO - NOISE_FROM) / step) + 1);
-  for (std::size_t k = 0; k < lines.size(); ++k)
+  std::array<std::vector<double>, SIGNALS.size()> all;  // by slip
+  for (std::size_t i = 0; i < SIGNALS.size(); ++i)
   {
-    const std::vector<double> powers = powersOf(sums[k], lines[k].by_slip, step, all.size());
-    std::transform(all.begin(), all.end(), powers.begin(), all.begin(), std::plus<>());
+    all[i].resize(static_cast<std::size_t>((NOISE_TO - NOISE_FROM) / step) + 1);
+    for (std::size_t k = 0; k < lines.size(); ++k)
+    {
+      const std::vector<double> powers = powersOf(sums[i][k], lines[k].by_slip, step, all[i].size());
+      std::transform(all[i].begin(), all[i].end(), powers.begin(), all[i].begin(), std::plus<>());
+    }
   }
-  const auto first = all.begin() + static_cast<std::ptrdiff_t>(zero);
+  const auto& [ripple, error] = all;
+  const auto first = ripple.begin() + static_cast<std::ptrdiff_t>(zero);
   const auto best = std::max_element(first, first + static_cast<std::ptrdiff_t>(MOST / step) + 1);
-  return *best > *first + CLEARLY ? step * static_cast<double>(best - first) : 0.0;
+  const auto place = static_cast<std::size_t>(best - ripple.begin());
+  const bool is_found = *best > *first + CLEARLY && error[zero] < error[place] + CLEARLY;
+  return is_found ? step * static_cast<double>(best - first) : 0.0;
 }
 
 OrderTracker BearingSlip::refit(double slip, double angle_step) const

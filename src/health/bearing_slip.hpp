@@ -12,9 +12,11 @@ namespace hjt
 /// Slip of the wave generator's bearing over one window, by the lines of races and balls in the motor's ripple.
 ///
 /// Law:   L(s) = sum_k |F_k(s)|^2 / n_k,   F_k(s) = sum w r exp(-j o_k(s) theta),   s* = argmax L(s), 0 <= s <= MOST
-/// where  r       ripple less all that the window's fit makes of it but for these lines [rad];  w  weight
+/// where  k       over lines;  w  weight
+///        r       ripple less all that the window's fit makes of it but for these lines [rad]
 ///        theta   motor angle [rad];  o_k(s)  orders with slip s (trackedOrders)
 ///        n_k     of the noise about the line: median of |F_k|^2 over slips that no bearing has as well, over ln 2
+/// s is 0 too where L of the kinematic error is larger by CLEARLY without slip.
 /// Without a line that slips L is the sum of squares of noise, whose largest value over s passes L(0) by CLEARLY in
 /// less than one window in 1000: s is then 0.
 /// Source: bearings slip by 1 to 2 % (Randall and Antoni, Mech. Syst. Signal Process. 25, 2011, 485-520).

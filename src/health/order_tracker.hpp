@@ -77,7 +77,7 @@ public:
   void add(const LineSample& sample) noexcept
   {
     fill(sample, row_);
-    targets_ = { sample.kinematic_error, sample.motor_torque, sample.ripple };
+    targets_ = targetsOf(sample);
     regression_.add(row_, targets_, sample.weight);
   }
 
@@ -127,8 +127,9 @@ public:
   /// Kinematic error of the last added sample less what the last fit makes of it [rad].
   double residual() const noexcept { return targets_[0] - row_.dot(regression_.coefficients(0)); }
 
-  /// Ripple of a sample less what the last fit makes of it but for the lines that `without` names [rad].
-  double rippleBeside(const LineSample& sample, const std::array<bool, FIRST_LOADED>& without) const noexcept
+  /// A sample's signal less what the last fit makes of it but for the lines that `without` names.
+  double beside(LineSignal signal, const LineSample& sample,
+                const std::array<bool, FIRST_LOADED>& without) const noexcept
   {
     Row row;
     fill(sample, row);
@@ -139,7 +140,8 @@ public:
         row.segment<2>(FIRST_LINE + 2 * static_cast<int>(places_[line])).setZero();
       }
     }
-    return sample.ripple - row.dot(regression_.coefficients(static_cast<int>(LineSignal::MOTOR_RIPPLE)));
+    const auto target = static_cast<int>(signal);
+    return targetsOf(sample)[target] - row.dot(regression_.coefficients(target));
   }
 
 private:
@@ -176,6 +178,12 @@ private:
         [&](double order)
         { return static_cast<std::size_t>(std::lower_bound(sorted.begin(), sorted.end(), order) - sorted.begin()); });
     return places;
+  }
+
+  /// By LineSignal.
+  static Eigen::Vector3d targetsOf(const LineSample& sample) noexcept
+  {
+    return { sample.kinematic_error, sample.motor_torque, sample.ripple };
   }
 
   void fill(const LineSample& sample, Row& row) const noexcept
