@@ -103,6 +103,7 @@ double BearingSlip::find(const OrderTracker& fitted) const
 {
   constexpr double CLEARLY = 25.0;
   constexpr double FEWEST_TURNS = 10.0;  // fewer do not tell a line that slips from one that does not
+  constexpr double MOST_TURNS = 500.0;   // time and memory grow with them; a damaged angle has any number
   constexpr double EVEN = 0.1;           // spread of a speed at which folded lines are sharp
   constexpr double FINE = 0.25;          // steps of the slip, of what the fastest line resolves
   const std::vector<BearingLine> lines = linesOf(fitted);
@@ -110,8 +111,8 @@ double BearingSlip::find(const OrderTracker& fitted) const
       std::minmax_element(samples_.begin(), samples_.end(),
                           [](const LineSample& a, const LineSample& b) { return a.motor_angle < b.motor_angle; });
   const double range = samples_.empty() ? 0.0 : most->motor_angle - least->motor_angle;
-  if (lines.empty() || samples_.size() > MOST_SAMPLES || !(range > FEWEST_TURNS * TWO_PI) ||
-      speedSpread(samples_) < EVEN)
+  const bool is_searched = range > FEWEST_TURNS * TWO_PI && range < MOST_TURNS * TWO_PI;
+  if (lines.empty() || samples_.size() > MOST_SAMPLES || !is_searched || speedSpread(samples_) < EVEN)
   {
     return 0.0;
   }

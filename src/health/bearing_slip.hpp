@@ -24,8 +24,8 @@ namespace hjt
 /// At an even speed none is looked for: sampling folds the lines of the teeth to sharp ones at any order there, two
 /// apart as those of a race are.
 ///
-/// Keeps every sample of a window: for recordings and data sets, not for a loop. A window of more than a million has no
-/// slip looked for.
+/// Keeps every sample of a window: for recordings and data sets, not for a loop. A window of more than a million, or of
+/// places more than 500 turns apart, has no slip looked for.
 class BearingSlip
 {
 public:
