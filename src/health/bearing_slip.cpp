@@ -130,12 +130,14 @@ double BearingSlip::find(const OrderTracker& fitted) const
   for (const LineSample& sample : samples_)
   {
     const double angle = sample.motor_angle - start;
-    for (std::size_t i = 0; i < SIGNALS.size(); ++i)
+    const auto bin = static_cast<std::size_t>(angle / BIN);
+    const Eigen::Vector3d rest = sample.weight * fitted.beside(sample, kept);
+    for (std::size_t k = 0; k < lines.size(); ++k)
     {
-      const double rest = sample.weight * fitted.beside(SIGNALS[i], sample, kept);
-      for (std::size_t k = 0; k < lines.size(); ++k)
+      const Complex turned = std::polar(1.0, -lines[k].order * angle);
+      for (std::size_t i = 0; i < SIGNALS.size(); ++i)
       {
-        sums[i][k][static_cast<std::size_t>(angle / BIN)] += std::polar(1.0, -lines[k].order * angle) * rest;
+        sums[i][k][bin] += turned * rest[static_cast<Eigen::Index>(SIGNALS[i])];
       }
     }
   }

@@ -207,9 +207,10 @@ std::vector<CauseSearch::Row> CauseSearch::rowsOf(const SignatureSet& set)
     {
       continue;
     }
+    const std::vector<const Signature*> thirds = beside(first, TOGETHER[(own + 2) % TOGETHER.size()]);
     for (const Signature* second : beside(first, TOGETHER[(own + 1) % TOGETHER.size()]))
     {
-      for (const Signature* third : beside(first, TOGETHER[(own + 2) % TOGETHER.size()]))
+      for (const Signature* third : thirds)
       {
         if (second != nullptr || third != nullptr)
         {
@@ -252,7 +253,7 @@ void CauseSearch::advance(const WindowResidual& residual, const OperatingPoint& 
     {
       if (next_ < known)
       {
-        const SignatureTerms::Parts& parts = rows_[next_].parts;
+        const SignatureParts& parts = rows_[next_].parts;
         likelihoods_[next_] = terms.logLikelihood(parts, 0.0, likeness(parts.front()->motion, point));
         continue;
       }

@@ -127,9 +127,8 @@ public:
   /// Kinematic error of the last added sample less what the last fit makes of it [rad].
   double residual() const noexcept { return targets_[0] - row_.dot(regression_.coefficients(0)); }
 
-  /// A sample's signal less what the last fit makes of it but for the lines that `without` names.
-  double beside(LineSignal signal, const LineSample& sample,
-                const std::array<bool, FIRST_LOADED>& without) const noexcept
+  /// A sample's signals, by LineSignal, less what the last fit makes of them but for the lines that `without` names.
+  Eigen::Vector3d beside(const LineSample& sample, const std::array<bool, FIRST_LOADED>& without) const noexcept
   {
     Row row;
     fill(sample, row);
@@ -140,8 +139,12 @@ public:
         row.segment<2>(FIRST_LINE + 2 * static_cast<int>(places_[line])).setZero();
       }
     }
-    const auto target = static_cast<int>(signal);
-    return targetsOf(sample)[target] - row.dot(regression_.coefficients(target));
+    Eigen::Vector3d beside = targetsOf(sample);
+    for (int target = 0; target < beside.size(); ++target)
+    {
+      beside[target] -= row.dot(regression_.coefficients(target));
+    }
+    return beside;
   }
 
 private:

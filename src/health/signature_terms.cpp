@@ -78,7 +78,7 @@ SignatureTerms::SignatureTerms(const SignatureSet& set, const WindowResidual& re
   }
 }
 
-double SignatureTerms::logLikelihood(const Parts& parts, double strength, double alike) const noexcept
+double SignatureTerms::logLikelihood(const SignatureParts& parts, double strength, double alike) const noexcept
 {
   std::array<double, INDICATOR_COUNT> changes{};  // by the signature
   double length = 0.0;
@@ -127,7 +127,7 @@ double SignatureTerms::logLikelihood(const Parts& parts, double strength, double
          (log_determinant + (freedom_ + static_cast<double>(count_)) * std::log1p(std::max(square, 0.0) / freedom_));
 }
 
-double SignatureTerms::misfit(const Parts& parts) const noexcept
+double SignatureTerms::misfit(const SignatureParts& parts) const noexcept
 {
   CausesSquare inner = CausesSquare::Identity();
   Causes projected = Causes::Zero();
@@ -164,7 +164,7 @@ double SignatureTerms::changeBy(const Signature& signature, const Term& term) co
   return term.number < SCALAR_COUNT || term.has_phase || change == 0.0 ? change : amplitudeChange(term.sound, change);
 }
 
-double SignatureTerms::changeBy(const Parts& parts, const Term& term) const noexcept
+double SignatureTerms::changeBy(const SignatureParts& parts, const Term& term) const noexcept
 {
   double change = 0.0;
   for (const Signature* part : parts)

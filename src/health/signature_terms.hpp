@@ -21,15 +21,12 @@ class SignatureTerms
 public:
   SignatureTerms(const SignatureSet& set, const WindowResidual& residual) noexcept;
 
-  /// Signatures that come together; null: no more.
-  using Parts = std::array<const Signature*, 3>;
-
   /// Natural logarithm, less what is the same for all. `strength`: S of what is in no table, beside the change.
   /// `alike`: their motion and the window's, 0 ... 1.
-  double logLikelihood(const Parts& parts, double strength, double alike) const noexcept;
+  double logLikelihood(const SignatureParts& parts, double strength, double alike) const noexcept;
 
   /// Mean square of what the signatures leave of the differences, in a sound drive's spreads; 1 at least.
-  double misfit(const Parts& parts) const noexcept;
+  double misfit(const SignatureParts& parts) const noexcept;
 
   using Direction = std::array<double, INDICATOR_COUNT>;
 
@@ -65,7 +62,7 @@ private:
   void addDirection(const Signature& signature, double weight, Direction& direction) const noexcept;
   double shareOrChange(const Signature& signature, const Term& term) const noexcept;
   double changeBy(const Signature& signature, const Term& term) const noexcept;
-  double changeBy(const Parts& parts, const Term& term) const noexcept;
+  double changeBy(const SignatureParts& parts, const Term& term) const noexcept;
   void add(const WindowResidual& residual, std::size_t indicator, std::size_t number,
            std::optional<double> line_square = {}) noexcept;
 

@@ -148,6 +148,9 @@ struct Signature
   std::array<double, SIGNATURE_SIZE> change{};  ///< units of the indicators; of what isShare [-]
 };
 
+/// One signature, or several that come together, of which the first counts; null: none.
+using SignatureParts = std::array<const Signature*, 3>;
+
 /// The signatures of a gear and how far they hold: what a file says that parameter indicators.signatures names. Without
 /// a file: no signatures, and nothing is known of a carried reference.
 struct SignatureSet
@@ -258,13 +261,10 @@ public:
   CausePosterior posterior() const noexcept;  ///< once it is done
 
 private:
-  static constexpr std::size_t PARTS = 3;
-
-  /// One signature of the set, or several that come together.
   struct Row
   {
-    std::array<const Signature*, PARTS> parts{};  // the first that it counts for; null: no more
-    double prior{ 1.0 };                          // beside that of a signature alone
+    SignatureParts parts{};
+    double prior{ 1.0 };  // beside that of a signature alone
   };
   static std::vector<Row> rowsOf(const SignatureSet& set);
 
