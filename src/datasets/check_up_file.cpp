@@ -113,7 +113,6 @@ void writeTrajectory(const std::string& path, const ArmDescription& arm, const s
   bag.write(TOPIC, SIMULATION_EPOCH, trajectory);  // stamp 0: begins when it comes
   bag.close();
 }
-
 }  // namespace
 
 CheckUpMotion writeCheckUp(const CheckUpOptions& options)
