@@ -187,7 +187,7 @@ TEST(JointEvidence, TellsTheLoadsOfTheMotion)
   EXPECT_NEAR(evidence.typicalLoad(), 8.0, 1.0);
 }
 
-TEST(VerdictWatch, PredictsAtTheTemperatureThatAllJointsShow)
+TEST(VerdictWatch, PredictsAtTheTemperatureThatAllJointsShowUnlessTheyWereSoWhenSound)
 {
   const Parameters parameters = parametersWith(KNOWN_LOAD);
   const SwingingRobot robot(parameters, 120.0);
@@ -223,6 +223,16 @@ TEST(VerdictWatch, PredictsAtTheTemperatureThatAllJointsShow)
     EXPECT_NEAR(found.median, found.temperature ? 1.4 : 1.0, 0.02);
     EXPECT_EQ(last.back().temperature, found.temperature.value_or(parameters.input.temperature));
     EXPECT_LT(found.temperature.value_or(0.0), parameters.input.temperature - 3.0);
+    for (std::size_t joint = 0; joint < 3; ++joint)
+    {
+      JointContext known;
+      known.own.friction = joints[joint]->evidence().friction().points();
+      watches[joint] = std::make_unique<VerdictWatch>(*joints[joint], known);
+      watched[joint] = watches[joint].get();
+    }
+    const ArmFriction to_own = commonFriction(watched, parameters.comparison.repeat_tolerance);
+    EXPECT_EQ(to_own.median, 1.0);
+    EXPECT_FALSE(to_own.temperature.has_value());
   }
 }
 
