@@ -25,7 +25,7 @@ namespace
 using Complex = std::complex<double>;
 
 constexpr double BIN = TWO_PI / 8.0;  // of the motor angle, in which a line that slips stays in phase [rad]
-constexpr std::array SIGNALS{ LineSignal::MOTOR_RIPPLE, LineSignal::KINEMATIC_ERROR };
+constexpr std::array SEARCHED{ LineSignal::MOTOR_RIPPLE, LineSignal::KINEMATIC_ERROR };
 constexpr double NOISE_FROM = -BearingSlip::MOST;
 constexpr double NOISE_TO = 2.0 * BearingSlip::MOST;
 
@@ -125,7 +125,7 @@ double BearingSlip::find(const OrderTracker& fitted) const
   }
   const double start = least->motor_angle;
   const std::vector<Complex> none(static_cast<std::size_t>(range / BIN) + 1);
-  std::array<std::vector<std::vector<Complex>>, SIGNALS.size()> sums;
+  std::array<std::vector<std::vector<Complex>>, SEARCHED.size()> sums;
   sums.fill(std::vector<std::vector<Complex>>(lines.size(), none));
   for (const LineSample& sample : samples_)
   {
@@ -135,17 +135,17 @@ double BearingSlip::find(const OrderTracker& fitted) const
     for (std::size_t k = 0; k < lines.size(); ++k)
     {
       const Complex turned = std::polar(1.0, -lines[k].order * angle);
-      for (std::size_t i = 0; i < SIGNALS.size(); ++i)
+      for (std::size_t i = 0; i < SEARCHED.size(); ++i)
       {
-        sums[i][k][bin] += turned * rest[static_cast<Eigen::Index>(SIGNALS[i])];
+        sums[i][k][bin] += turned * rest[static_cast<Eigen::Index>(SEARCHED[i])];
       }
     }
   }
   const double zero_steps = std::ceil(-NOISE_FROM * fastest * range / (FINE * TWO_PI));
   const double step = -NOISE_FROM / zero_steps;
   const auto zero = static_cast<std::size_t>(zero_steps);
-  std::array<std::vector<double>, SIGNALS.size()> all;  // by slip
-  for (std::size_t i = 0; i < SIGNALS.size(); ++i)
+  std::array<std::vector<double>, SEARCHED.size()> all;  // by slip
+  for (std::size_t i = 0; i < SEARCHED.size(); ++i)
   {
     all[i].resize(static_cast<std::size_t>((NOISE_TO - NOISE_FROM) / step) + 1);
     for (std::size_t k = 0; k < lines.size(); ++k)
