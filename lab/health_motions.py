@@ -191,11 +191,12 @@ def shares_of(title, own):
     alarmed = [one for one in own if one.window["assessment"]["level"] != "OK"]
     text = ", ".join(f"at {severity:g} " + share(*(sum(one.severity == severity for one in chosen)
                                                    for chosen in (alarmed, own))) for severity in SEVERITIES)
-    missed = [one.kind for one in own if one.window["assessment"]["level"] == "OK"]
-    kinds = ", ".join(f"`{kind}` {missed.count(kind)}" for kind in KINDS if kind in missed)
+    missed = [(one.kind, one.severity) for one in own if one.window["assessment"]["level"] == "OK"]
+    kinds = ", ".join(f"`{kind}` " + " and ".join(str(missed.count((kind, severity))) for severity in SEVERITIES)
+                      for kind in KINDS)
     sound = [[one for one in chosen if one.kind == "healthy"] for chosen in (alarmed, own)]
     not_judged = sum(one.window["assessment"]["state"] not in COMPARED for one in own)
-    return (f"- {title}: found {text}; missed {kinds or 'none'}; false alarms {share(*map(len, sound))}; "
+    return (f"- {title}: found {text}; missed {kinds}; false alarms {share(*map(len, sound))}; "
             f"{not_judged} windows of {len(own)} at an operating point without a reference.")
 
 

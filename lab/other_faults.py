@@ -51,12 +51,14 @@ def stuck():
 
 
 def row_of(words, size, unit, verdicts):
-    alarms = verdicts[verdicts.level != "OK"]
+    alarms = verdicts[verdicts.level.isin(["WARN", "ERROR"])]
+    judged = int(verdicts.level.isin(["OK", "WARN", "ERROR"]).sum())
     causes = collections.Counter(alarms.cause).most_common()
     named = ", ".join(f"`{cause}` {count}" for cause, count in causes) or "-"
     shown = ", ".join(f"`{name}`" for name, _ in collections.Counter(alarms.indicator).most_common(2)) or "-"
     surest = f"{alarms.confidence.mean():.2f}, {alarms.severity.mean():.2f}" if len(alarms) else "-"
-    return f"| {words} | {size:g} {unit} | {len(alarms)} of {len(verdicts)} | {named} | {surest} | {shown} |"
+    return (f"| {words} | {size:g} {unit} | {len(alarms)} of {judged} | {len(verdicts) - judged} | {named} | {surest} "
+            f"| {shown} |")
 
 
 def main():
@@ -71,7 +73,8 @@ def main():
     runs = [run for _, run in hjt.load(options.work / "set", "signals").groupby("run")]
     reference = options.work / "reference.yaml"
     hjt.reference(runs[:REFERENCE], reference, overlays=OVERLAYS, force=True)
-    lines = ["| fault | size | alarms | taken for | confidence, severity | shows in |", "|---|---|---|---|---|---|"]
+    lines = ["| fault | size | alarms, of those judged | not judged | taken for | confidence, severity | shows in |",
+             "|---|---|---|---|---|---|---|"]
     sound = hjt.assess(runs[REFERENCE:], reference, check_up=True, overlays=OVERLAYS)
     lines.append(row_of("none", 0.0, "", sound))
     for fault in FAULTS:
