@@ -85,7 +85,7 @@ constexpr double JOINT_INERTIA = 0.3;    // of the rotor's [-]
 constexpr std::size_t FEWEST = 20;  // rows of a joint that counts
 
 constexpr double INDEPENDENT = 40.0;  // rows of a joint, at most
-constexpr double LEAST = 0.01;        // deviation of rows [A]
+constexpr double LEAST = 0.02;        // deviation of the rows of a real arm [A]
 
 /// How much rarer a row is, logarithm, by the square of its error in deviations.
 double rarer(double square)
@@ -122,11 +122,11 @@ struct ArmEstimator::Point
   double cost{ std::numeric_limits<double>::infinity() };
 };
 
-/// Of one round.
+/// Of the rows of one joint.
 struct ArmEstimator::Work
 {
-  std::vector<Eigen::VectorXd> errors;  // of the rows of each joint [A]
-  std::vector<Slope> slopes;            // of those of one joint
+  Eigen::VectorXd error;  // [A]
+  std::vector<Slope> slopes;
 };
 
 /// Of the slopes of rows of one state, with each other and with the error.
@@ -241,7 +241,7 @@ ArmEstimator::Point ArmEstimator::best(const Prior& prior, const std::vector<boo
   {
     Eigen::VectorXd at = Eigen::VectorXd::Zero(size_);
     at[GAIN] = start < STARTS ? 0.0 : multiple() - 1.0;
-    Point other = refine(prior, states, std::move(at), start < STARTS ? start : HELD);
+    Point other = refine(prior, states, std::move(at), start < STARTS ? start : HELD, best);
     if (other.cost < best.cost)
     {
       best = std::move(other);
@@ -311,7 +311,7 @@ ArmEstimator::Point ArmEstimator::withJump(const Freedom& may, const Point& with
     Point now;
     for (int turn = 0; turn < TURNS; ++turn)
     {
-      now = turn == 0 ? this->best(prior, tried) : refine(prior, tried, now.at, HELD);
+      now = turn == 0 ? this->best(prior, tried) : refine(prior, tried, now.at, HELD, {});
       const bool is_changing = std::find(tried.begin(), tried.end(), !tried.front()) != tried.end();
       if (is_changing && now.cost < best.cost)
       {
@@ -430,17 +430,25 @@ void ArmEstimator::addRows(std::size_t joint, const std::vector<bool>& states, W
                            Eigen::VectorXd& right) const
 {
   const std::vector<Row>& rows = rows_[joint];
-  Eigen::VectorXd& error = work.errors[joint];
+  Eigen::VectorXd& error = work.error;
   error.resize(static_cast<Eigen::Index>(rows.size()));
   work.slopes.resize(rows.size());
   for (std::size_t k = 0; k < rows.size(); ++k)
   {
     error[static_cast<Eigen::Index>(k)] = errorOf(joint, rows[k], stateOf(rows[k], states), point.at, &work.slopes[k]);
   }
-  const double deviation = std::max(robustDeviation(error), LEAST);
-  const double rows_a_tale = std::max({ 1.0, correlationRows(error), static_cast<double>(rows.size()) / INDEPENDENT });
-  const Eigen::ArrayXd squares = (error / deviation).array().square();
-  const Eigen::ArrayXd weights = (STUDENT + 1.0) / (STUDENT + squares) / (deviation * deviation * rows_a_tale);
+  double& deviation = point.deviations[joint];
+  if (!(deviation > 0.0))
+  {
+    deviation = std::max(robustDeviation(error), LEAST);
+  }
+  // By the weights of the last deviation a likelier one.
+  Eigen::ArrayXd squares = (error / deviation).array().square();
+  deviation = std::max(deviation * std::sqrt((squares * (STUDENT + 1.0) / (STUDENT + squares)).mean()), LEAST);
+  squares = (error / deviation).array().square();
+  const double told = std::min(1.0, INDEPENDENT / static_cast<double>(rows.size()));
+  const Eigen::ArrayXd weights = told * (STUDENT + 1.0) / (STUDENT + squares) / (deviation * deviation);
+  point.cost += told * (static_cast<double>(rows.size()) * std::log(deviation) + squares.unaryExpr(&rarer).sum());
   std::array<Products, 2> of_states;
   for (std::size_t k = 0; k < rows.size(); ++k)
   {
@@ -462,28 +470,38 @@ void ArmEstimator::addRows(std::size_t joint, const std::vector<bool>& states, W
           (is_jump(k) || is_jump(l) ? of_states[1] : all).slopes(slopeOf(k), slopeOf(l));
     }
   }
-  point.deviations[joint] = deviation;
 }
 
-/// By Gauss and Newton, until a step is nothing beside the deviations a posteriori; what `start` names is hardly held
-/// in the first rounds.
-ArmEstimator::Point ArmEstimator::refine(const Prior& prior, const std::vector<bool>& states, Eigen::VectorXd at,
-                                         int start) const
+/// Whether it is led to `other`.
+bool ArmEstimator::isNear(const Point& point, const Point& other)
 {
-  constexpr int ROUNDS = 15;
+  constexpr double NEAR = 0.1;  // of the deviations a posteriori
+  return other.at.size() == point.at.size() &&
+         ((point.at - other.at).array().square() * point.information.diagonal().array()).maxCoeff() < NEAR * NEAR;
+}
+
+/// By Gauss and Newton, until the logarithm of the likelihood changes no more, or near `best`, where another start has
+/// led; what `start` names is hardly held in the first rounds. Weights of rows, deviations and priors follow the values
+/// (expectation and maximisation), so that a round by itself makes the values no less likely.
+ArmEstimator::Point ArmEstimator::refine(const Prior& prior, const std::vector<bool>& states, Eigen::VectorXd at,
+                                         int start, const Point& best) const
+{
+  constexpr int ROUNDS = 60;
   constexpr int LOOSE_ROUNDS = 5;
-  constexpr double NOTHING = 1e-3;  // of a deviation
-  constexpr double FLOOR = 0.02;    // least residual of a real arm [A]
+  constexpr double NOTHING = 1e-3;
+  constexpr double MOST = 0.8;  // ratio of a step to the last one
   Point point;
   point.at = std::move(at);
   point.deviations.resize(rows_.size());
   Work work;
-  work.errors.resize(rows_.size());
+  double cost = point.cost;
+  Eigen::VectorXd last_step = Eigen::VectorXd::Zero(size_);
+  bool is_single = false;
   for (int round = 0; round < ROUNDS; ++round)
   {
     point.information = Eigen::MatrixXd::Zero(size_, size_);
     Eigen::VectorXd right = Eigen::VectorXd::Zero(size_);
-    point.rareness = 0.0;
+    point.rareness = point.cost = 0.0;
     addPrior(prior, round < LOOSE_ROUNDS ? start : HELD, point, right);
     for (std::size_t i = 0; i < rows_.size(); ++i)
     {
@@ -492,22 +510,20 @@ ArmEstimator::Point ArmEstimator::refine(const Prior& prior, const std::vector<b
         addRows(i, states, work, point, right);
       }
     }
-    const Eigen::VectorXd step = point.information.ldlt().solve(right);
-    point.at += step;
-    if (round >= LOOSE_ROUNDS &&
-        (step.array().square() * point.information.diagonal().array()).maxCoeff() < NOTHING * NOTHING)
+    point.cost += point.rareness;
+    if (round > LOOSE_ROUNDS && (std::abs(cost - point.cost) < NOTHING || isNear(point, best)))
     {
       break;
     }
-  }
-  point.cost = point.rareness;
-  for (std::size_t i = 0; i < rows_.size(); ++i)
-  {
-    if (!rows_[i].empty())
-    {
-      const double scale = std::hypot(point.deviations[i], FLOOR);
-      point.cost += COUNTED * (std::log(scale) + (work.errors[i] / scale).array().square().unaryExpr(&rarer).mean());
-    }
+    cost = point.cost;
+    // Steps shrink by much the same ratio from round to round: every second one goes as far as all to come would.
+    const Eigen::VectorXd step = point.information.ldlt().solve(right);
+    const Eigen::VectorXd weighted = point.information.diagonal().cwiseProduct(last_step);
+    const double size = last_step.dot(weighted);
+    const double ratio = size > 0.0 ? std::clamp(step.dot(weighted) / size, 0.0, MOST) : 0.0;
+    is_single = round <= LOOSE_ROUNDS || !is_single;
+    point.at += is_single ? step : Eigen::VectorXd(step / (1.0 - ratio));
+    last_step = step;
   }
   return point;
 }

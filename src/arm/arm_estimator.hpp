@@ -28,9 +28,8 @@ namespace hjt
 class ArmEstimator
 {
 public:
-  static constexpr double COUNTED = 60.0;  ///< rows: errors of a model are not independent from row to row
-  static constexpr int PAYLOAD = 4;        ///< mass and its three moments
-  static constexpr int GRAVITY = 3;        ///< its change
+  static constexpr int PAYLOAD = 4;  ///< mass and its three moments
+  static constexpr int GRAVITY = 3;  ///< its change
   static constexpr int DRAG = PAYLOAD + GRAVITY;
   static constexpr int LOAD = DRAG + 1;
   using Load = Eigen::Matrix<double, LOAD, 1>;
@@ -106,7 +105,9 @@ private:
   Prior priorOf(const Freedom& may) const;
   static bool stateOf(const Row& row, const std::vector<bool>& states) { return !states.empty() && states[row.leg]; }
   static double errorOf(std::size_t joint, const Row& row, bool state, const Eigen::VectorXd& at, Slope* slope);
-  Point refine(const Prior& prior, const std::vector<bool>& states, Eigen::VectorXd at, int start) const;
+  Point refine(const Prior& prior, const std::vector<bool>& states, Eigen::VectorXd at, int start,
+               const Point& best) const;
+  static bool isNear(const Point& point, const Point& other);
   double multiple() const;
   Point best(const Prior& prior, const std::vector<bool>& states) const;
   Point withJump(const Freedom& may, const Point& without, std::vector<bool>& states) const;

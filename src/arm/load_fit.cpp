@@ -22,7 +22,8 @@ constexpr double FLOOR = 0.02;  // of the currents: that the twin of no real arm
 /// Of what is left of the currents, share.
 double misfitCost(double left)
 {
-  return ArmEstimator::COUNTED * std::log(std::hypot(left, FLOOR));
+  constexpr double COUNTED = 60.0;  // rows: errors of a model are not independent from row to row
+  return COUNTED * std::log(std::hypot(left, FLOOR));
 }
 FoundDrag dragOf(const ArmEstimator::Estimate& estimate)
 {
@@ -89,7 +90,7 @@ void LoadFit::close(std::size_t joint, double time)
 {
   Open& block = joints_[joint].open;
   if (block.count > 0 && time > block.begin + 0.5 * BLOCK && block.sum.load.allFinite() &&
-      std::isfinite(block.sum.current) && std::isfinite(block.sum.predicted) && blocks_[joint]++ % stride_ == 0)
+      std::isfinite(block.sum.current) && std::isfinite(block.sum.predicted) && isDrawn(blocks_[joint]++, share_))
   {
     ArmEstimator::Row& row = rows_[joint].emplace_back(block.sum);
     const double share = 1.0 / static_cast<double>(block.count);
@@ -104,6 +105,14 @@ void LoadFit::close(std::size_t joint, double time)
   block.count = 0;
 }
 
+/// By the golden ratio: every nth would take one part of a motion that repeats, of one direction perhaps.
+bool LoadFit::isDrawn(std::size_t number, double share)
+{
+  constexpr double GOLDEN = 0.6180339887498949;
+  const double turns = GOLDEN * static_cast<double>(number);
+  return turns - std::floor(turns) < share;
+}
+
 /// Half of the rows go where there are more than enough.
 void LoadFit::thin()
 {
@@ -112,16 +121,21 @@ void LoadFit::thin()
   {
     return;
   }
-  stride_ *= 2;
-  for (std::vector<ArmEstimator::Row>& joint : rows_)
+  for (std::size_t i = 0; i < rows_.size(); ++i)
   {
+    std::size_t row = 0;
     std::size_t kept = 0;
-    for (std::size_t row = 0; row < joint.size(); row += 2)
+    for (std::size_t block = 0; block < blocks_[i]; ++block)
     {
-      joint[kept++] = joint[row];
+      if (isDrawn(block, 0.5 * share_))
+      {
+        rows_[i][kept++] = rows_[i][row];
+      }
+      row += isDrawn(block, share_) ? 1 : 0;
     }
-    joint.resize(kept);
+    rows_[i].resize(kept);
   }
+  share_ *= 0.5;
 }
 
 /// `load`: torques of units of mass, moments, gravity and drag [N.m].
@@ -142,7 +156,7 @@ void LoadFit::addTo(std::size_t number, const MotionSample& sample, const Motion
   ++joint.open.count;
   joint.loads += sample.load * sample.load;
   joint.weights += load[0] * load[0];
-  if (blocks_[number] % stride_ != 0)
+  if (!isDrawn(blocks_[number], share_))
   {
     return;  // the block will not be kept
   }
@@ -205,10 +219,13 @@ ArmEstimator::Rows LoadFit::rowsOf(const std::vector<bool>& counts, std::size_t 
   ArmEstimator::Rows rows(rows_.size());
   for (std::size_t i = 0; i < rows.size(); ++i)
   {
-    const std::size_t every = rows_[i].size() / most + 1;
-    for (std::size_t k = 0; counts[i] && k < rows_[i].size(); k += every)
+    const double share = static_cast<double>(most) / static_cast<double>(rows_[i].size());
+    for (std::size_t k = 0; counts[i] && k < rows_[i].size(); ++k)
     {
-      rows[i].push_back(rows_[i][k]);
+      if (isDrawn(k, share))
+      {
+        rows[i].push_back(rows_[i][k]);
+      }
     }
   }
   return rows;

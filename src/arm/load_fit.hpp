@@ -68,6 +68,9 @@ public:
   Fit explained(const std::vector<bool>& counts);
   /// The least cost of any arm: of one that explains all with no cause that is rare.
   static double leastCost();
+  /// Of numbered rows the same share of all their parts, those of a motion that repeats too; those of a smaller share
+  /// are among those of a larger one.
+  static bool isDrawn(std::size_t number, double share);
   double moved() const { return moved_; }  ///< time in which a joint moved [s]
 
 private:
@@ -120,7 +123,7 @@ private:
   double still_{};            // for how long [s]
   double moved_{};            // [s]
   double last_time_{};
-  std::size_t stride_{ 1 };  // of the blocks one is kept
+  double share_{ 1.0 };  // of the blocks that are kept
   std::vector<std::size_t> blocks_;
 };
 }  // namespace hjt

@@ -284,6 +284,28 @@ INSTANTIATE_TEST_SUITE_P(Cases, ArmEstimatorTable,
                                          with("no_friction", [](EstimatorCase& c) { c.friction.fill(0.0); })),
                          [](const testing::TestParamInfo<EstimatorCase>& info) { return info.param.name; });
 
+/// Every second row of a motion to and fro would be that of one direction.
+TEST(LoadFit, DrawsRowsOfAllPartsOfAMotionThatRepeats)
+{
+  constexpr std::size_t REPEATS = 2000;
+  for (const double share : { 0.5, 0.25, 0.125 })
+  {
+    for (std::size_t period = 2; period <= 40; ++period)
+    {
+      for (std::size_t part = 0; part < period; ++part)
+      {
+        std::size_t drawn = 0;
+        for (std::size_t number = part; number < REPEATS * period; number += period)
+        {
+          drawn += LoadFit::isDrawn(number, share) ? 1 : 0;
+          EXPECT_TRUE(LoadFit::isDrawn(number, share) || !LoadFit::isDrawn(number, 0.5 * share));
+        }
+        EXPECT_NEAR(static_cast<double>(drawn), share * REPEATS, 0.2 * share * REPEATS) << period << ", " << part;
+      }
+    }
+  }
+}
+
 TEST(LoadFit, NamesAGainOfAllJoints)
 {
   EstimatorCase of;
