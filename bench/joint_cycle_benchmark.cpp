@@ -251,7 +251,7 @@ int main(int argc, char** argv)
       "Time of the twin's whole cycle: every per-tooth array filled at every step; and on the response surface, only\n"
       "encoders and health asked for, twenty times as long.\n"
       "Exit code 1 if a cycle allocates, if the solver fails or if it is slower than asked for.");
-  hjt::Command root = line.root();
+  hjt::OptionTable& root = line.root();
   root.add("--set", assignments, "one parameter over the default configuration: section.key=value; repeatable");
   root.add("--duration", duration, "simulated time measured, per scene [s]").range(1e-3, 1e4);
   root.add("--least-speed", least_speed, "times real time that every scene must reach, by processor time")

@@ -157,7 +157,7 @@ int main(int argc, char** argv)
   hjt::CommandLine line(
       "work_precision",
       "Run time against error of solvers on the ring; one JSON line per solver and setting on stdout.");
-  hjt::Command root = line.root();
+  hjt::OptionTable& root = line.root();
   root.add("problem", name, "problem to solve").required().choice(names);
   root.add("--reference", file, "file of the reference solution").required();
   root.flag("--make-reference", reference, "write that file, by two methods, instead of reading it");

@@ -71,13 +71,15 @@ def _call(function: str, given: Mapping[str, Any]) -> Document:
     return found
 
 
-def check(recording: Recording, arm: Optional[str] = None, *, topic: Optional[str] = None,
-          time_scale: Optional[float] = None, overlays: Overlays = (), progress: Optional[Progress] = None) -> Document:
+def check(recording: Recording, arm: Optional[str] = None, *, topic: Optional[str] = None, prefix: Optional[str] = None,
+          suffix: Optional[str] = None, time_scale: Optional[float] = None, overlays: Overlays = (),
+          progress: Optional[Progress] = None) -> Document:
     """What of an arm's recording is usable and what does not fit: the tool's check (docs/arm.md).
 
     recording: as of identify, of all joints of an arm. arm: name in config/arms, or a file; None: found by the joints'
-    names, of columns by the currents. topic: of the telemetry in a bag. time_scale: factor on the stamps [-]. overlays:
-    files or dicts of parameters, later wins. progress: as of identify.
+    names, of columns by the currents. topic: of the telemetry in a bag. prefix, suffix: around the arm's
+    names of the joints in the messages. time_scale: factor on the stamps [-]. overlays: files or dicts of parameters,
+    later wins. progress: as of identify.
 
     Returns a dict: 'usable', 'arm', 'findings', 'joints' (one dict each), 'next' (commands, none of columns) and more.
     InputError, ParameterError.
@@ -88,8 +90,9 @@ def check(recording: Recording, arm: Optional[str] = None, *, topic: Optional[st
 def identify(recording: Recording, *, joint: Optional[str] = None, arm: Optional[str] = None,
              out: Optional[Path] = None, train: Optional[Tuple[float, float]] = None,
              judge: Optional[Tuple[float, float]] = None, folds: Optional[int] = None, load: Optional[str] = None,
-             identified: Optional[Path] = None, topic: Optional[str] = None, time_scale: Optional[float] = None,
-             force: bool = False, overlays: Overlays = (), progress: Optional[Progress] = None) -> Document:
+             identified: Optional[Path] = None, topic: Optional[str] = None, prefix: Optional[str] = None,
+             suffix: Optional[str] = None, time_scale: Optional[float] = None, force: bool = False,
+             overlays: Overlays = (), progress: Optional[Progress] = None) -> Document:
     """Gain, friction, inertia and ripple of a joint, or of all joints of an arm, from a recording: the tool's identify.
 
     recording: bag, CSV of a UR controller, or columns: a structured array or a mapping of arrays with 'time' [s] or
@@ -99,8 +102,8 @@ def identify(recording: Recording, *, joint: Optional[str] = None, arm: Optional
     joint or arm: one of them. out: the overlay to write, of an arm a directory. train, judge: (from, to), the parts to
     identify and to judge on [s]; None: the first third and the rest, of an arm all. folds: pieces to leave out in turn,
     2 ... 100. load (arm): 'arm', from the motion of all joints, or 'target_moment', as recorded. identified: directory
-    of an arm's overlays. topic, time_scale, overlays: as of check. force: overwrite. progress: called with the name of
-    the step and 0 ... 1.
+    of an arm's overlays. topic, prefix, suffix, time_scale, overlays: as of check. force: overwrite. progress: called
+    with the name of the step and 0 ... 1.
 
     Returns a dict: of a joint 'values' (name, key, unit, configured, value, half_width: 95 %, refusal), 'lines' of the
     ripple, 'judged' errors of the current [A]; of an arm 'joints' and 'payload'. What is not identifiable is warned of.
@@ -110,10 +113,10 @@ def identify(recording: Recording, *, joint: Optional[str] = None, arm: Optional
 
 
 def compare(recording: Recording, report: Optional[Path] = None, *, joint: Optional[str] = None,
-            arm: Optional[str] = None, reference: Union[Path, Sequence[Path], None] = None,
-            load: Optional[str] = None, identified: Optional[Path] = None, topic: Optional[str] = None,
-            time_scale: Optional[float] = None, force: bool = False, overlays: Overlays = (),
-            progress: Optional[Progress] = None) -> Document:
+            arm: Optional[str] = None, reference: Union[Path, Sequence[Path], None] = None, load: Optional[str] = None,
+            identified: Optional[Path] = None, topic: Optional[str] = None, prefix: Optional[str] = None,
+            suffix: Optional[str] = None, time_scale: Optional[float] = None, force: bool = False,
+            overlays: Overlays = (), progress: Optional[Progress] = None) -> Document:
     """Verdict on a recorded joint or arm beside its twin: the tool's compare (docs/compare.md).
 
     report: directory that gets report.html, its figures and its data; None: nothing is written. reference: earlier
@@ -129,8 +132,9 @@ def compare(recording: Recording, report: Optional[Path] = None, *, joint: Optio
 def trend(recordings: Union[Path, Sequence[Path]], *, joint: Optional[str] = None, arm: Optional[str] = None,
           reference: Union[Path, Sequence[Path], None] = None, out: Optional[Path] = None,
           report: Optional[Path] = None, load: Optional[str] = None, identified: Optional[Path] = None,
-          topic: Optional[str] = None, time_scale: Optional[float] = None, force: bool = False,
-          overlays: Overlays = (), progress: Optional[Progress] = None) -> Document:
+          topic: Optional[str] = None, prefix: Optional[str] = None, suffix: Optional[str] = None,
+          time_scale: Optional[float] = None, force: bool = False, overlays: Overlays = (),
+          progress: Optional[Progress] = None) -> Document:
     """Friction of a joint, or of all joints of an arm, over the recordings of months: the tool's trend.
 
     recordings: files, or folders of them. out: CSV file with a row for each recording. report: directory that gets
@@ -144,8 +148,9 @@ def trend(recordings: Union[Path, Sequence[Path]], *, joint: Optional[str] = Non
 
 def follow(recording: Recording, *, joint: Optional[str] = None, arm: Optional[str] = None, mode: str = "motion",
            bag: Optional[Path] = None, load: Optional[str] = None, identified: Optional[Path] = None,
-           topic: Optional[str] = None, time_scale: Optional[float] = None, force: bool = False,
-           overlays: Overlays = (), progress: Optional[Progress] = None) -> Document:
+           topic: Optional[str] = None, prefix: Optional[str] = None, suffix: Optional[str] = None,
+           time_scale: Optional[float] = None, force: bool = False, overlays: Overlays = (),
+           progress: Optional[Progress] = None) -> Document:
     """A healthy joint, or arm, beside a recording: the tool's follow.
 
     mode: 'motion' predicts the current of the recorded motion, 'torque' the motion of the recorded current, 'observer'
@@ -294,6 +299,10 @@ def checkup(arm: Path, out: Path, *, joint: Optional[str] = None, file_format: s
     return _call("checkup", locals())
 
 
+def _shard(shard: Optional[Tuple[int, int]]) -> Optional[str]:
+    return None if shard is None else "/".join(map(str, shard))
+
+
 def sweep(plan: Path, out: Path, *, jobs: Optional[int] = None, shard: Optional[Tuple[int, int]] = None,
           overlays: Overlays = (), progress: Optional[Progress] = None) -> Document:
     """Works off a plan of many runs, a labelled data set: the tool's sweep (docs/datasets.md).
@@ -305,7 +314,7 @@ def sweep(plan: Path, out: Path, *, jobs: Optional[int] = None, shard: Optional[
     Returns a dict: 'index' (path of index.csv, a line for each run with its file, HDF5 as a rule), 'runs', 'done',
     'present', 'failed', 'damaged'. InputError, ParameterError.
     """
-    return _call("sweep", locals())
+    return _call("sweep", {**locals(), "shard": _shard(shard)})
 
 
 def lives(plan: Path, out: Path, *, jobs: Optional[int] = None, shard: Optional[Tuple[int, int]] = None,
@@ -314,4 +323,4 @@ def lives(plan: Path, out: Path, *, jobs: Optional[int] = None, shard: Optional[
 
     Arguments, result and errors as of sweep.
     """
-    return _call("lives", locals())
+    return _call("lives", {**locals(), "shard": _shard(shard)})

@@ -4,6 +4,7 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple
 import numpy as np
 from numpy.typing import NDArray
 
+OPTIONS: Dict[str, List[str]]
 _Answer = Tuple[Dict[str, Any], List[str]]
 
 def arm(arguments: Dict[str, Any]) -> _Answer: ...

@@ -176,7 +176,7 @@ int main(int argc, char** argv)
   bool force = false;
   hjt::CommandLine line("replay_recorder",
                         "Records the topics of a bag being played together with everything the twin publishes");
-  hjt::Command root = line.root();
+  hjt::OptionTable& root = line.root();
   root.add("played", played_bag, "the bag being played").required().existingFile();
   root.add("--output", output_bag, "the bag to write; empty: PLAYED_twin.bag in the folder of the one played");
   root.add("--joint-namespace", twin_namespace, "ROS namespace of the twin's topics");

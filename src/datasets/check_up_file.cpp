@@ -115,12 +115,22 @@ void writeTrajectory(const std::string& path, const ArmDescription& arm, const s
 }
 }  // namespace
 
+void addOptions(OptionTable& table, CheckUpOptions& options)
+{
+  table.add("--arm", options.arm, "name in config/arms, or a file").required().type("NAME|FILE.yaml");
+  table.add("--joint", options.joint, "that alone, as base or shoulder; default: all, one after the other")
+      .type("NAME");
+  table.add("--out", options.out, "the motion").required().type("FILE");
+  table
+      .add("--format", options.format,
+           "csv: angles, rates and torques every 8 ms; urscript: a program; bag: trajectory_msgs/JointTrajectory on "
+           "/joint_trajectory")
+      .choice({ "csv", "urscript", "bag" });
+  addOptions(table, options, options.force);
+}
+
 CheckUpMotion writeCheckUp(const CheckUpOptions& options)
 {
-  if (std::find(CHECK_UP_FORMATS.begin(), CHECK_UP_FORMATS.end(), options.format) == CHECK_UP_FORMATS.end())
-  {
-    throw InputError("format = '" + options.format + "' must be " + joined(CHECK_UP_FORMATS, " or "));
-  }
   requireWritable(options.out, options.force);
   const ArmDescription arm = readArmDescription(findArm(options.arm, configDirectory(options)));
   const std::vector<ArmMove> moves = movesOf(arm, options.joint);

@@ -10,16 +10,16 @@
 
 namespace hjt
 {
-inline const std::vector<std::string> CHECK_UP_FORMATS{ "csv", "urscript", "bag" };
-
 struct CheckUpOptions : ConfigurationOptions
 {
   std::string arm;              ///< name in config/arms, or a file
   std::string joint;            ///< that alone; empty: all, one after the other
   std::string out;              ///< file
-  std::string format{ "csv" };  ///< one of CHECK_UP_FORMATS
+  std::string format{ "csv" };  ///< csv, urscript or bag
   bool force{};                 ///< overwrite the file
 };
+
+void addOptions(OptionTable& table, CheckUpOptions& options);
 
 /// The motion that was written.
 struct CheckUpMotion

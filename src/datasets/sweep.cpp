@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <memory>
 #include <mutex>
 #include <set>
+#include <sstream>
+#include <string>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -182,6 +185,37 @@ SweepResult workOff(const Plan& plan, const SweepOptions& options)
   return runSweep(plan, directory, options);
 }
 }  // namespace
+
+void addOptions(OptionTable& table, SweepOptions& options)
+{
+  table.add("plan", options.plan, "what to run and record (docs/datasets.md)").required().type("PLAN.yaml");
+  table.add("--out", options.out, "directory of runs and index; runs that stand there finished are kept")
+      .required()
+      .type("DIR");
+  addJobsOption(table, options.jobs);
+  // Its check has read it.
+  table
+      .add(
+          "--shard", Option::Kind::TEXT, [](const std::string& /*text*/) {},
+          "only every N-th run, from run I on: one of N processes, anywhere")
+      .type("I/N")
+      .check(
+          [&options](const std::string& text)
+          {
+            char slash = 0;
+            std::istringstream stream(text);
+            const bool read = static_cast<bool>(stream >> options.shard >> slash >> options.shards);
+            return read && stream.peek() == EOF && slash == '/' && options.shard < options.shards ?
+                       std::string() :
+                       "'" + text + "' must be I/N with 0 <= I < N";
+          });
+  addOptions(table, static_cast<ConfigurationOptions&>(options));
+}
+
+void addJobsOption(OptionTable& table, unsigned& jobs)
+{
+  table.add("--jobs", jobs, "runs at the same time").range(JOBS.min, JOBS.max);
+}
 
 RunSpec checkedRun(const Plan& plan, std::uint64_t run)
 {

@@ -28,6 +28,9 @@ struct SweepOptions : ConfigurationOptions
   Watch watch;  ///< finished runs stay where it stops
 };
 
+void addOptions(OptionTable& table, SweepOptions& options);
+void addJobsOption(OptionTable& table, unsigned& jobs);
+
 struct SweepResult
 {
   std::string index;                    ///< file with a row for each run

@@ -149,6 +149,30 @@ void move(const ArmRunOptions& options, const ArmMotion& motion, MovingArm& movi
 }
 }  // namespace
 
+void addOptions(OptionTable& table, ArmRunOptions& options)
+{
+  table
+      .add("motion", options.motion,
+           "set points: timestamp, target_q_0 ... and, if there, target_qd_0 ..., target_qdd_0 ... of a controller's "
+           "recording, or as `joint_twin checkup` writes them; or a program of moves")
+      .required()
+      .type("FILE.csv|FILE.yaml");
+  table.add("--arm", options.arm, "name in config/arms, or a file").required().type("NAME|FILE.yaml");
+  table.add("--identified", options.identified, "overlays of the joints, as `joint_twin identify --arm` writes them")
+      .type("DIR")
+      .existingDirectory();
+  table
+      .add("--out", options.out,
+           "targets and actual angles, speeds, currents in a controller's columns, and the tool's position [m]; .bag: "
+           "/joint_states as the arm's driver publishes it; .h5: as a run of `joint_twin sweep`")
+      .type("FILE.csv|FILE.bag|FILE.h5");
+  table.add("--rate", options.rate, "of the rows [Hz]; default: that of the arm's states")
+      .range(ROW_RATE.min, ROW_RATE.max);
+  table.add("--fault", options.faults, "in a joint from its onset [s] on; may be given again")
+      .type("JOINT:KIND:SEVERITY[:PLACE[:ONSET]]");
+  addOptions(table, options, options.force);
+}
+
 ArmRun runArm(const ArmRunOptions& options)
 try
 {

@@ -34,6 +34,8 @@ struct ArmRunOptions : ConfigurationOptions
   Watch watch;
 };
 
+void addOptions(OptionTable& table, ArmRunOptions& options);
+
 /// Errors of a joint, actual less target.
 struct ArmRunJoint
 {

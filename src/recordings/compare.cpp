@@ -450,6 +450,26 @@ ComparedRecording compareInto(const ComparisonOptions& options)
 }
 }  // namespace
 
+void addOptions(OptionTable& table, ComparisonOptions& options)
+{
+  addRecordingOption(table, options);
+  addJointOptions(table, options);
+  table
+      .add("--report", options.report,
+           "directory of the page, its figures and data; of an arm a directory for each joint; without it none is made")
+      .type("DIR");
+  addReferenceOption(table, options);
+}
+
+void addReferenceOption(OptionTable& table, ComparisonOptions& options)
+{
+  table
+      .add("--reference", options.references, "earlier reports of this joint or arm in sound condition, for comparison")
+      .follow()
+      .type("DIR")
+      .existingDirectory();
+}
+
 ComparedRecording compare(const ComparisonOptions& options)
 {
   ComparedRecording compared = compareInto(options);

@@ -24,6 +24,10 @@ struct ComparisonOptions : RecordingOptions
   std::vector<std::string> references;  ///< earlier reports of this joint or arm in sound condition; empty: none
 };
 
+void addOptions(OptionTable& table, ComparisonOptions& options);
+/// Earlier reports to judge by.
+void addReferenceOption(OptionTable& table, ComparisonOptions& options);
+
 /// A joint beside its twin.
 struct ComparedJoint
 {

@@ -441,6 +441,25 @@ Report reportOfJoint(const MotionFindings& found, const FollowedJoint& joint)
 }
 }  // namespace
 
+void addOptions(OptionTable& table, FollowOptions& options)
+{
+  addRecordingOption(table, options);
+  addJointOptions(table, options);
+  const auto take = [&options](const std::string& text) {
+    options.mode = text == "torque" ? InputMode::TORQUE : text == "observer" ? InputMode::OBSERVER : InputMode::MOTION;
+  };
+  table.add("--mode", Option::Kind::TEXT, take, "input of the twin: the recorded current, motion, or both")
+      .choice({ "motion", "observer", "torque" })
+      .default_text = "motion";
+  table.add("--out", options.out, "every row, measured and predicted; of an arm a directory, a file for each joint")
+      .type("FILE.csv|DIR");
+  table
+      .add("--bag", options.bag,
+           "the topics of the node beside a robot, with the forces on every tooth; of a bag its own messages too")
+      .type("OUT.bag")
+      .endsIn({ ".bag" });
+}
+
 Followed follow(const FollowOptions& options)
 try
 {

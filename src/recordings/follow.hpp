@@ -24,6 +24,8 @@ struct FollowOptions : RecordingOptions
   std::function<void(std::size_t, const Comparison&)> take{ [](std::size_t, const Comparison&) {} };
 };
 
+void addOptions(OptionTable& table, FollowOptions& options);
+
 /// A joint beside its healthy twin; errors as root mean squares, measured less predicted.
 struct FollowedJoint
 {

@@ -265,7 +265,32 @@ std::vector<IdentifiedJoint> identifyJoints(const IdentifyOptions& options, cons
   }
   return joints;
 }
+
+Option& addSpan(OptionTable& table, const char* name, std::optional<Span>& span, const std::string& help)
+{
+  const auto take = [&span](const std::string& text)
+  {
+    const double time = decimalNumber(text).value();
+    span = { span ? span->to : time, time };
+  };
+  return table.add(name, Option::Kind::NUMBER, take, help).pair();
+}
 }  // namespace
+
+void addOptions(OptionTable& table, IdentifyOptions& options)
+{
+  addRecordingOption(table, options);
+  addJointOptions(table, options);
+  table.add("--out", options.out, "the overlay; of an arm a directory, an overlay for each joint")
+      .type("FILE.yaml|DIR");
+  addSpan(table, "--train", options.train, "from,to: part to identify on; default: the first third, of an arm all [s]");
+  addSpan(table, "--judge", options.judge, "of one joint, from,to: part to test on; default: the rest [s]");
+  table
+      .add("--folds", options.folds,
+           "cuts the part to identify on into this many pieces and predicts each from the others; of an arm 5 by "
+           "default")
+      .range(2, 100);
+}
 
 Identified identify(const IdentifyOptions& options)
 {

@@ -21,6 +21,8 @@ struct IdentifyOptions : RecordingOptions
   int folds{};                ///< pieces to predict each from the others, 2 ... 100; 0: none, of an arm 5
 };
 
+void addOptions(OptionTable& table, IdentifyOptions& options);
+
 /// Identified parameters of a joint, and the parts of the recording for training and judging.
 struct IdentifiedJoint
 {

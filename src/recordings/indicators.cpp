@@ -251,6 +251,30 @@ Parameters parametersOf(const IndicatorsOptions& options)
 }
 }  // namespace
 
+void addOptions(OptionTable& table, IndicatorsOptions& options)
+{
+  addSignalOptions(table, options);
+  table
+      .add("--model", options.models,
+           "the twin's own recording of the same run, whose indicators are subtracted; once for each recording, in "
+           "their order")
+      .type("FILE.csv|FILE.bag|FILE.h5")
+      .check(wrongSignalFile);
+  table.flag("--windows", options.windows,
+             "the recordings are bags with NAMESPACE/indicators: windows that were published, not signals");
+  table.add("--baseline", options.baseline, "healthy reference; default: learned from the first windows")
+      .type("FILE.yaml");
+  table
+      .flag("--carry", options.carry,
+            "the reference is of another motion to and fro, best a check-up; the recordings of --model carry it to "
+            "this one")
+      .needs("--baseline")
+      .needs("--model");
+  table.add("--save-baseline", options.save_baseline, "writes the reference that was learned").type("FILE.yaml");
+  table.add("--out", options.out, "CSV with a row per window").type("FILE.csv");
+  addOptions(table, options, options.force);
+}
+
 AssessedWindows indicators(const IndicatorsOptions& options)
 {
   const Parameters parameters = parametersOf(options);

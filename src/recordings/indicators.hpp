@@ -19,6 +19,8 @@ struct IndicatorsOptions : SignalOptions
   bool windows{};                   ///< the recordings hold the windows' indicators, not the signals
 };
 
+void addOptions(OptionTable& table, IndicatorsOptions& options);
+
 /// Health indicators of recordings and their assessment, from encoders and torque or current; writes the files that are
 /// asked for. A recording that cannot be read is named and left out.
 /// @throws ParameterError, InputError: none can be read, too short for a window, or not one model for each.

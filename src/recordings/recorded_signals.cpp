@@ -103,19 +103,23 @@ using Names = std::array<std::string, COLUMNS>;
 struct ColumnChoice
 {
   const char* option;
+  const char* meaning;
   std::string SignalSource::*given;
   const char* name;
   const char* otherwise{};  // where `name` is missing
 };
 constexpr std::array<ColumnChoice, COLUMNS> CHOICES{
-  { { "--time", &SignalSource::time, "time" },
-    { "--motor-torque", &SignalSource::motor_torque, "motor_torque_reading", "motor_torque" },
-    { "--motor-angle", &SignalSource::motor_angle, "motor_angle_encoder" },
-    { "--output-angle", &SignalSource::output_angle, "output_angle_encoder" },
-    { "--motor-velocity", &SignalSource::motor_velocity, "motor_velocity_encoder" },
-    { "--load-torque", &SignalSource::load_torque, "load_torque" },
-    { "--temperature", &SignalSource::temperature, "housing_temperature", "temperature" },
-    { "--target-angle", &SignalSource::target_angle, "target_angle" } }
+  { { "--time", "time [s]", &SignalSource::time, "time" },
+    { "--motor-torque", "motor torque, or current with --torque-scale", &SignalSource::motor_torque,
+      "motor_torque_reading", "motor_torque" },
+    { "--motor-angle", "motor encoder [rad]", &SignalSource::motor_angle, "motor_angle_encoder" },
+    { "--output-angle", "output encoder [rad]", &SignalSource::output_angle, "output_angle_encoder" },
+    { "--motor-velocity", "motor speed, else differences of the angle [rad/s]", &SignalSource::motor_velocity,
+      "motor_velocity_encoder" },
+    { "--load-torque", "load torque at the output, > 0 resists positive motion [N.m]", &SignalSource::load_torque,
+      "load_torque" },
+    { "--temperature", "temperature [degC]", &SignalSource::temperature, "housing_temperature", "temperature" },
+    { "--target-angle", "set point of the output angle [rad]", &SignalSource::target_angle, "target_angle" } }
 };
 
 bool contains(const std::vector<std::string>& names, const std::string& name)
@@ -348,6 +352,36 @@ void nameColumn(SignalSource& source, const std::string& signal, const std::stri
   }
   throw InputError("columns: '" + signal + "' is no signal" + didYouMean(signal, signals) + "; there are " +
                    joined(signals, ", "));
+}
+
+void addSignalOptions(OptionTable& table, SignalOptions& options)
+{
+  table
+      .add("recordings", options.recordings,
+           "one recording, or several of the same joint; a run of a data set (HDF5) is read with the parameters in its "
+           "file, over them those of --config and --set")
+      .required()
+      .type("IN.csv|IN.bag|IN.h5")
+      .check([&options](const std::string& path)
+             { return options.at_hand.count(path) > 0 ? std::string() : wrongSignalFile(path); });
+  table.add("--joint", options.joint,
+            "bag: a robot's joint on /joint_states, effort in A, by telemetry.torque_per_current: base, shoulder, "
+            "elbow, wrist_1 ..., or its name in the messages; default: the twin's own");
+  for (const ColumnChoice& choice : CHOICES)
+  {
+    const std::string otherwise = choice.otherwise == nullptr ? "" : std::string(", else ") + choice.otherwise;
+    const std::string help = std::string("CSV, HDF5: ") + choice.meaning + "; default: " + choice.name + otherwise;
+    table.add(choice.option, options.source.*choice.given, help).type("COLUMN");
+  }
+  table.add("--torque-scale", options.torque_scale,
+            "motor torque per unit of the recorded signal [N.m]; default: 1, and with --joint "
+            "telemetry.torque_per_current / ratio [N.m/A]");
+  table
+      .add("--states-topic", options.states_topic,
+           "bag: JointState messages; default: NAMESPACE/joint_states, and with --joint /joint_states")
+      .type("TOPIC");
+  table.add("--load-topic", options.load_topic, "bag: load torque; default: NAMESPACE/load").type("TOPIC");
+  addNamespaceOption(table, options.joint_namespace);
 }
 
 void readSignals(const std::string& recording, const SignalOptions& options, const Parameters& parameters,

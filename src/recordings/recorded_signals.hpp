@@ -59,6 +59,8 @@ struct SignalOptions : ConfigurationOptions
   Watch watch;
 };
 
+void addSignalOptions(OptionTable& table, SignalOptions& options);
+
 /// Gives every sample of a recording at hand, a CSV file, a run of a data set (HDF5) or a bag to `take`, in order of
 /// time, until that returns false.
 /// At hand, CSV, HDF5: a column that is neither there nor named is not measured; time, torque and one angle must be. At

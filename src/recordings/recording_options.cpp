@@ -2,6 +2,7 @@
 #include "recordings/recording_options.hpp"
 
 #include <array>
+#include <regex>
 
 namespace hjt
 {
@@ -14,7 +15,79 @@ constexpr std::array<std::array<const char*, 2>, 6> UR_JOINTS{ { { "base", "shou
                                                                  { "wrist_1", "wrist_1_joint" },
                                                                  { "wrist_2", "wrist_2_joint" },
                                                                  { "wrist_3", "wrist_3_joint" } } };
+
+void addReadingOptions(OptionTable& table, RecordingOptions& options)
+{
+  table.add("--topic", options.topic, "of a bag's telemetry, sensor_msgs/JointState, effort as telemetry.effort says");
+  table.add("--prefix", options.affixes.prefix,
+            "before the arm's names of the joints in the messages, as left_; `joint_twin check` finds it");
+  table.add("--suffix", options.affixes.suffix, "behind them");
+  table
+      .add("--time-scale", options.time_scale,
+           "multiplies the times of the rows where the stamps are wrong; `joint_twin check` finds it")
+      .positive();
+  addNamespaceOption(table, options.joint_namespace);
+  addOptions(table, options, options.force);
+}
+
+void addArmOption(OptionTable& table, RecordingOptions& options)
+{
+  table
+      .add("--arm", options.arm,
+           "all joints of an arm in place of one: ur3, ur3e, ur5, ur5e (ur7e), ur8long, ur10, ur10e (ur12e), ur15, "
+           "ur16e, ur18, or a file as config/arms/ur5.yaml")
+      .type("NAME|FILE.yaml");
+}
 }  // namespace
+
+void addRecordingOption(OptionTable& table, RecordingOptions& options)
+{
+  table
+      .add("recording", options.recording,
+           "a bag, a .db3 or .mcap file of ROS 2 or their directory, or a UR controller's CSV recording")
+      .required()
+      .type("IN.bag|IN.db3|IN.mcap|DIR|IN.csv");
+}
+
+void addOptions(OptionTable& table, RecordingOptions& options)
+{
+  addRecordingOption(table, options);
+  addArmOption(table, options);
+  addReadingOptions(table, options);
+}
+
+void addJointOptions(OptionTable& table, RecordingOptions& options)
+{
+  table.add("--joint", options.joint,
+            "base, shoulder, elbow, wrist_1 ..., its number from 0, or its name in the messages");
+  addReadingOptions(table, options);
+  addArmOption(table, options);
+  table
+      .add("--load", options.load,
+           "load of an arm's joints: of its links and payload by rigid-body dynamics, or as recorded")
+      .choice({ LOAD_OF_ARM, LOAD_RECORDED })
+      .needs("--arm");
+  table
+      .add("--identified", options.identified,
+           "overlays of an arm's joints, as `joint_twin identify --arm` writes them, over the arm's own")
+      .type("DIR")
+      .existingDirectory()
+      .needs("--arm");
+  table.oneOf({ "--joint", "--arm" });
+}
+
+void addNamespaceOption(OptionTable& table, std::string& joint_namespace)
+{
+  table.add("--joint-namespace", joint_namespace, "ROS namespace of the twin's topics")
+      .type("NAME")
+      .check(
+          [](const std::string& name)
+          {
+            return std::regex_match(name, std::regex("(/[A-Za-z][A-Za-z0-9_]*)+")) ?
+                       std::string() :
+                       "'" + name + "' is not a global ROS name such as /joint_twin";
+          });
+}
 
 std::optional<UrJoint> findUrJoint(const std::string& name)
 {

@@ -41,6 +41,13 @@ struct RecordingOptions : ConfigurationOptions
   Watch watch;
 };
 
+/// Those of `check`, which finds the arm by itself.
+void addOptions(OptionTable& table, RecordingOptions& options);
+/// The recording alone; `--joint` or `--arm` and what goes with them, and how it is read.
+void addRecordingOption(OptionTable& table, RecordingOptions& options);
+void addJointOptions(OptionTable& table, RecordingOptions& options);
+void addNamespaceOption(OptionTable& table, std::string& joint_namespace);
+
 /// A joint of UR's robots: its place in the columns of a controller's recording.
 struct UrJoint
 {

@@ -248,6 +248,32 @@ void requireRanges(const RemainingOptions& options)
 }
 }  // namespace
 
+void addOptions(OptionTable& table, RemainingOptions& options)
+{
+  addSignalOptions(table, options);
+  table.add("--hours", options.hours,
+            "hours of use behind the drive, all as in the recordings [h]; default: those of the recordings. A list, "
+            "ascending: "
+            "the hours at which each recording was made");
+  table
+      .add("--baseline", options.baseline,
+           "reference of the new drive, from `indicators`: verdicts and readings by it tell of wear")
+      .type("FILE.yaml");
+  table
+      .add("--duty", options.duty,
+           "use so far, as a duty cycle that `life age` reads; the recordings are then assessed only")
+      .type("FILE.csv")
+      .existingFile()
+      .needs("--baseline");
+  table
+      .add("--lost-motion-limit", options.lost_motion_limit,
+           "lost motion at which the drive is at its end, beside the limits of wear [rad]; 1e-6 ... 0.1")
+      .needs("--baseline");
+  table.add("--use-record", options.use_record, "writes the use as a duty cycle, for `life` and life.use_record")
+      .type("FILE.csv");
+  addOptions(table, options, options.force);
+}
+
 Remaining remaining(const RemainingOptions& options)
 {
   requireRanges(options);

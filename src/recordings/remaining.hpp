@@ -24,6 +24,8 @@ struct RemainingOptions : SignalOptions
   std::string use_record;                   ///< where to write the use as a duty cycle; empty: nowhere
 };
 
+void addOptions(OptionTable& table, RemainingOptions& options);
+
 struct Remaining
 {
   LifeEstimate estimate;

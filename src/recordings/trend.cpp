@@ -329,6 +329,19 @@ void requireFiles(const TrendOptions& options)
 }
 }  // namespace
 
+void addOptions(OptionTable& table, TrendOptions& options)
+{
+  table
+      .add("recordings", options.recordings,
+           "recordings as of compare, or folders of them, of one joint or arm over months")
+      .required()
+      .type("IN|DIR");
+  addJointOptions(table, options);
+  table.add("--out", options.out, "CSV with a row for each recording").type("FILE.csv");
+  table.add("--report", options.report, "directory of a page with the figure, and its data").type("DIR");
+  addReferenceOption(table, options);
+}
+
 Trend trend(const TrendOptions& options)
 {
   requireFiles(options);

@@ -19,6 +19,8 @@ struct TrendOptions : ComparisonOptions
   std::string out;                      ///< CSV file with a row for each recording; empty: none
 };
 
+void addOptions(OptionTable& table, TrendOptions& options);
+
 /// A recording and what `compare` makes of it.
 struct DatedRecording
 {

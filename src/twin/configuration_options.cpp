@@ -8,6 +8,33 @@ namespace hjt
 {
 namespace fs = std::filesystem;
 
+void addOptions(OptionTable& table, ConfigurationOptions& options)
+{
+  table.add("--config", options.configs, "YAML overlay over the default configuration; repeatable, later wins")
+      .type("FILE")
+      .group(COMMON_GROUP);
+  table.add("--set", options.assignments, "one parameter, over all files; repeatable, later wins")
+      .type("section.key=value")
+      .group(COMMON_GROUP);
+  table.add("--config-dir", options.config_dir, "directory of the default configuration [or HJT_CONFIG_DIR]")
+      .type("DIR")
+      .group(COMMON_GROUP);
+}
+
+void addOptions(OptionTable& table, ConfigurationOptions& options, bool& force)
+{
+  addOptions(table, options);
+  table.flag("--force", force, "overwrite existing output files").group(COMMON_GROUP);
+}
+
+void addFaultOption(OptionTable& table, ConfigurationOptions& options)
+{
+  table
+      .add("--fault", options.faults,
+           "a fault of the gear in addition to the configured ones, see `joint_twin faults`; repeatable")
+      .type("KIND:SEVERITY[:PLACE[:ONSET]]");
+}
+
 fs::path configDirectory(const ConfigurationOptions& options)
 {
   return configurationDirectory(options.config_dir);

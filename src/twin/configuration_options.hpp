@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "harmonic_joint_twin/params/parameter_map.hpp"
+#include "twin/option_table.hpp"
 
 namespace hjt
 {
@@ -21,6 +22,16 @@ struct ConfigurationOptions
   /// Nothing lies over the default configuration but faults.
   bool isDefault() const { return configs.empty() && assignments.empty() && values.empty(); }
 };
+
+constexpr const char* COMMON_GROUP = "Common options";
+
+/// Its files and assignments; Python has `overlays` in their place.
+void addOptions(OptionTable& table, ConfigurationOptions& options);
+/// The same, and whether files are overwritten.
+void addOptions(OptionTable& table, ConfigurationOptions& options, bool& force);
+
+/// `--fault`, for what marches or analyses the joint.
+void addFaultOption(OptionTable& table, ConfigurationOptions& options);
 
 /// Folder of the default configuration. @throws ParameterError if there is none.
 std::filesystem::path configDirectory(const ConfigurationOptions& options);

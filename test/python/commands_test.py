@@ -333,13 +333,20 @@ class Errors(Recordings):
                 (lambda: hjt.remaining("a.csv", hours=0.0), hjt.InputError, "hours = 0"),
                 (lambda: hjt.checkup("ur5", "a.csv", joint="knee"), hjt.ParameterError, "has no joint 'knee'"),
                 (lambda: hjt.checkup("ur6", "a.csv"), hjt.ParameterError, "neither a file nor an arm"),
-                (lambda: hjt.checkup("ur5", "a.csv", file_format="txt"), hjt.InputError, "format = 'txt' must be csv"),
+                (lambda: hjt.checkup("ur5", "a.csv", file_format="txt"), hjt.InputError, "file_format = 'txt': txt not in {csv,"),
                 (lambda: hjt.sweep("no_plan.yaml", "data"), hjt.InputError, "no_plan.yaml"),
                 (lambda: hjt.sweep("no_plan.yaml", "data", jobs=0), hjt.InputError, "jobs = 0"),
-                (lambda: hjt.sweep("no_plan.yaml", "data", shard=(2, 2)), hjt.InputError, "shard = (2, 2) must be"),
+                (lambda: hjt.sweep("no_plan.yaml", "data", shard=(2, 2)), hjt.InputError, "'2/2' must be I/N with"),
                 (lambda: hjt.identify("none.csv", joint="elbow", overlays=[{"mesh.stifness": 1.0}]),
                  hjt.ParameterError, "did you mean mesh.stiffness"),
-                (lambda: hjt.identify("none.csv", joint="elbow", folds=1), hjt.InputError, "folds = 1")):
+                (lambda: hjt.identify("none.csv", joint="elbow", folds=1), hjt.InputError, "folds = 1"),
+                (lambda: hjt.follow("a.csv", joint="elbow", time_scale=0), hjt.InputError, "time_scale = 0: '0.0' is not"),
+                (lambda: hjt.follow("a.csv", joint="elbow", load="target_moment"), hjt.InputError, "load requires arm"),
+                (lambda: hjt.compare("a.csv", arm="ur5", identified="none"), hjt.InputError, "does not exist: none"),
+                (lambda: hjt.indicators("a.csv", carry=True), hjt.InputError, "carry requires baseline"),
+                (lambda: hjt.remaining("a.csv", lost_motion_limit=0.01), hjt.InputError, "requires baseline"),
+                (lambda: hjt.sweep("no_plan.yaml", "data", jobs=2.5), hjt.InputError,
+                 "jobs = 2.5 must be a whole number")):
             with self.assertRaises(error) as caught:
                 call()
             self.assertIn(words, str(caught.exception))

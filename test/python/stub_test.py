@@ -3,16 +3,22 @@
 """The type stubs tell what the module has: every name, every argument and its default. Argument: the tool."""
 import ast
 import importlib.util
+import inspect
 import os
 import re
 import sys
 import unittest
 
 import harmonic_joint_twin
-from harmonic_joint_twin import _hjt
+from harmonic_joint_twin import _hjt, _recordings
 
 TOOL = sys.argv.pop(1)
 STUB = os.path.join(os.path.dirname(harmonic_joint_twin.__file__), "_hjt.pyi")
+# Arguments of Python, and the options of the command line that they stand for.
+INSTEAD = {"overlays": {"config", "set", "config_dir"}, "progress": set(),
+           "columns": {"time", "motor_torque", "motor_angle", "output_angle", "motor_velocity", "load_torque",
+                       "temperature", "target_angle"}}
+TOOLS_ALONE = {"joint_namespace", "states_topic", "load_topic", "windows"}
 SOURCES = [os.path.join(os.path.dirname(STUB), name) for name in ("_commands.py", "_data_sets.py")]
 
 
@@ -81,6 +87,13 @@ class Stub(unittest.TestCase):
                 for member, function in stub_body(item).items():
                     if isinstance(function, ast.FunctionDef) and not member.startswith("__"):
                         self.compare(f"{name}.{member}", function, getattr(real, member))
+
+    def test_functions_take_the_options_of_their_tables(self):
+        for function, options in _recordings.OPTIONS.items():
+            taken = set(inspect.signature(getattr(harmonic_joint_twin, function)).parameters)
+            self.assertEqual(taken - set(options), taken & set(INSTEAD), function)
+            self.assertLessEqual(set(options) - taken, set().union(TOOLS_ALONE, *INSTEAD.values()) |
+                                 ({"out"} if function == "follow" else set()), function)
 
     def test_everything_has_a_docstring(self):
         for name in public(dir(_hjt)):

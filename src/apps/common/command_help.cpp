@@ -25,13 +25,13 @@ void printRow(std::ostream& text, const std::string& label, const std::string& h
   text << help << '\n';
 }
 
-std::string label(const DeclaredOption& option)
+std::string label(const Option& option)
 {
-  std::string text = (option.short_name.empty() ? "" : option.short_name + ",") + option.name;
+  std::string text = std::string(option.name == "--help" ? "-h," : "") + option.name;
   if (option.most > 0)
   {
-    text += " " + typeText(option) + (option.default_text.empty() ? "" : "=" + option.default_text);
-    if (option.most == DeclaredOption::ANY)
+    text += " " + option.value_type + option.allowed + (option.default_text.empty() ? "" : "=" + option.default_text);
+    if (option.most == Option::ANY)
     {
       text += " ...";
     }
@@ -39,7 +39,7 @@ std::string label(const DeclaredOption& option)
     {
       text += " x " + std::to_string(option.least);
     }
-    text += option.required ? " REQUIRED" : "";
+    text += option.is_required ? " REQUIRED" : "";
   }
   text += option.needed.empty() ? "" : " Needs:";
   for (const std::string& needed : option.needed)
@@ -52,12 +52,12 @@ std::string label(const DeclaredOption& option)
 void printUsage(std::ostream& text, const CommandNode& command)
 {
   text << "Usage: " << command.name << " [OPTIONS]";
-  for (const DeclaredOption& option : command.options)
+  for (const Option& option : command.table.options)
   {
     if (option.isArgument())
     {
-      const std::string name = option.name + (option.most == DeclaredOption::ANY ? "..." : "");
-      text << ' ' << (option.required ? name : "[" + name + "]");
+      const std::string name = option.name + (option.most == Option::ANY ? "..." : "");
+      text << ' ' << (option.is_required ? name : "[" + name + "]");
     }
   }
   text << (command.subcommands.empty() ? "\n" : " SUBCOMMAND\n");
@@ -69,20 +69,20 @@ void printOptions(std::ostream& text, const CommandNode& command)
   std::vector<std::string> groups;
   for (const bool arguments : { true, false })
   {
-    for (const DeclaredOption& option : command.options)
+    for (const Option& option : command.table.options)
     {
-      if (option.isArgument() == arguments && std::find(groups.begin(), groups.end(), option.group) == groups.end())
+      if (option.isArgument() == arguments && std::find(groups.begin(), groups.end(), option.heading) == groups.end())
       {
-        groups.push_back(option.group);
+        groups.push_back(option.heading);
       }
     }
   }
   for (const std::string& group : groups)
   {
     text << '\n' << group << ":\n";
-    for (const DeclaredOption& option : command.options)
+    for (const Option& option : command.table.options)
     {
-      if (option.group == group)
+      if (option.heading == group)
       {
         printRow(text, label(option), option.help);
       }

@@ -11,6 +11,7 @@
 
 #include "base/edit_distance.hpp"
 #include "base/joined.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
 
 namespace hjt
 {
@@ -25,30 +26,28 @@ using Words = std::vector<std::string>;
   throw UsageError(reason + "\nRun with --help for more information.");
 }
 
-template <class Command>
-auto findOption(Command& command, const std::string& name)
+/// Arguments have no names on the command line.
+Option* findOption(CommandNode& command, const std::string& name)
 {
-  const auto found =
-      std::find_if(command.options.begin(), command.options.end(),
-                   [&](const DeclaredOption& option) { return !option.isArgument() && option.name == name; });
-  return found == command.options.end() ? nullptr : &*found;
+  Option* option = command.table.find(name);
+  return option == nullptr || option->isArgument() ? nullptr : option;
 }
 
-DeclaredOption* nextArgument(CommandNode& command)
+Option* nextArgument(CommandNode& command)
 {
-  const auto found = std::find_if(command.options.begin(), command.options.end(),
-                                  [](const DeclaredOption& option)
-                                  { return option.isArgument() && option.values.size() < option.most; });
-  return found == command.options.end() ? nullptr : &*found;
+  const auto found =
+      std::find_if(command.table.options.begin(), command.table.options.end(),
+                   [](const Option& option) { return option.isArgument() && option.values.size() < option.most; });
+  return found == command.table.options.end() ? nullptr : &*found;
 }
 
 bool isGiven(CommandNode& command, const std::string& name)
 {
-  const DeclaredOption* option = findOption(command, name);
+  const Option* option = findOption(command, name);
   return option != nullptr && option->given;
 }
 
-void addValues(DeclaredOption& option, const std::string& text)
+void addValues(Option& option, const std::string& text)
 {
   std::size_t begin = 0;
   for (std::size_t comma = text.find(','); option.commas && comma != std::string::npos; comma = text.find(',', begin))
@@ -59,9 +58,10 @@ void addValues(DeclaredOption& option, const std::string& text)
   option.values.push_back(text.substr(begin));
 }
 
-[[noreturn]] void refuseMissing(const DeclaredOption& option)
+[[noreturn]] void refuseMissing(const Option& option)
 {
-  refuse(option.name + ": " + std::to_string(option.least) + " required " + typeText(option) + " missing");
+  refuse(option.name + ": " + std::to_string(option.least) + " required " + option.value_type + option.allowed +
+         " missing");
 }
 
 /// Words that may be the values behind an option's name: at most so many.
@@ -79,20 +79,20 @@ private:
   const unsigned most_;
 };
 
-const po::value_semantic* valuesOf(const DeclaredOption& option)
+const po::value_semantic* valuesOf(const Option& option)
 {
   if (option.most == 0)
   {
     return po::bool_switch();
   }
-  return new Values(option.commas || option.follow ? option.most : 1);
+  return new Values(option.commas || option.follows ? option.most : 1);
 }
 
 /// Options with their values as Boost tells them apart. Whole names only; negative numbers are values.
-std::vector<po::option> split(const CommandNode& command, const Words& words)
+std::vector<po::option> split(CommandNode& command, const Words& words)
 {
   po::options_description known;
-  for (const DeclaredOption& option : command.options)
+  for (const Option& option : command.table.options)
   {
     if (!option.isArgument())
     {
@@ -112,7 +112,7 @@ std::vector<po::option> split(const CommandNode& command, const Words& words)
   catch (const po::error_with_option_name& error)
   {
     const std::string name = error.get_option_name();
-    const DeclaredOption* option = findOption(command, name);
+    const Option* option = findOption(command, name);
     if (option == nullptr)
     {
       refuse(error.what());
@@ -130,7 +130,7 @@ Words distribute(CommandNode& command, Words words)
 {
   std::replace(words.begin(), std::find(words.begin(), words.end(), "--"), std::string("-h"), std::string("--help"));
   Words unexpected;
-  const auto give = [&unexpected](DeclaredOption* option, const std::string& value)
+  const auto give = [&unexpected](Option* option, const std::string& value)
   {
     if (option == nullptr)
     {
@@ -142,7 +142,7 @@ Words distribute(CommandNode& command, Words words)
   };
   for (const po::option& found : split(command, words))
   {
-    DeclaredOption* option = findOption(command, "--" + found.string_key);
+    Option* option = findOption(command, "--" + found.string_key);
     if (option == nullptr)
     {
       const bool is_argument = found.position_key >= 0;
@@ -165,63 +165,6 @@ Words distribute(CommandNode& command, Words words)
     }
   }
   return unexpected;
-}
-
-void store(const DeclaredOption& option)
-{
-  for (const std::string& value : option.values)
-  {
-    for (const auto& check : option.checks)
-    {
-      if (const std::string wrong = check(value); !wrong.empty())
-      {
-        refuse(option.name + ": " + wrong);
-      }
-    }
-  }
-  const std::size_t count = option.values.size();
-  if (count < option.least || count > option.most)
-  {
-    refuse(option.name + ": At " +
-           (count < option.least ? "least " + std::to_string(option.least) : "Most " + std::to_string(option.most)) +
-           " required but received " + std::to_string(count));
-  }
-  for (const std::string& value : option.values)
-  {
-    option.take(value);
-  }
-  if (option.flag != nullptr)
-  {
-    *option.flag = true;
-  }
-}
-
-void checkTogether(CommandNode& command)
-{
-  for (const DeclaredOption& option : command.options)
-  {
-    if (option.required && !option.given)
-    {
-      refuse(option.name + " is required");
-    }
-    for (const std::string& needed : option.needed)
-    {
-      if (option.given && !isGiven(command, needed))
-      {
-        refuse(option.name + " requires " + needed);
-      }
-    }
-  }
-  for (const std::vector<std::string>& names : command.alternatives)
-  {
-    const auto given =
-        std::count_if(names.begin(), names.end(), [&](const std::string& name) { return isGiven(command, name); });
-    if (given != 1)
-    {
-      refuse("Exactly 1 option from [" + joined(names, ",") + "] is required" +
-             (given > 1 ? " and " + std::to_string(given) + " were given" : ""));
-    }
-  }
 }
 
 CommandNode& subcommand(CommandNode& command, const std::string& given)
@@ -259,14 +202,14 @@ Request parseWords(CommandNode& command, const Words& words)
   {
     return { &command, command.version + "\n" };
   }
-  for (const DeclaredOption& option : command.options)
+  try
   {
-    if (option.given)
-    {
-      store(option);
-    }
+    command.table.take();
   }
-  checkTogether(command);
+  catch (const InputError& error)
+  {
+    refuse(error.what());
+  }
   if (!unexpected.empty())
   {
     refuse((unexpected.size() > 1 ? "The following arguments were not expected: " :

@@ -4,7 +4,6 @@
 #include <string>
 
 #include "apps/common/command.hpp"
-#include "messages/topics.hpp"
 #include "statics/analysed_faults.hpp"
 
 #include "twin/configuration_options.hpp"
@@ -18,16 +17,8 @@ struct CommonOptions : ConfigurationOptions
   bool force{};
 };
 
-/// `--fault`, for the commands that march or analyse the joint.
-void addFaultOption(Command& command, ConfigurationOptions& options);
-
-/// Options about the configuration alone.
-void addConfigurationOptions(Command& command, ConfigurationOptions& options);
-
-void addCommonOptions(Command& command, CommonOptions& options);
-void addCommonOptions(Command& command, ConfigurationOptions& options, bool& json, bool& force);
-
-void addNamespaceOption(Command& command, std::string& joint_namespace);
+void addJsonOption(OptionTable& table, bool& json);
+void addCommonOptions(OptionTable& table, CommonOptions& options);
 
 /// A warning on stderr for each value of the gear that does not go with the others.
 void printGearWarnings(const Parameters& parameters);

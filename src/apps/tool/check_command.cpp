@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/common/motion_options.hpp"
+#include "apps/common/library_command.hpp"
 #include "output/exit_code.hpp"
 #include "output/text_table.hpp"
 #include "recordings/check_report.hpp"
@@ -275,12 +275,12 @@ void printArm(const RecordingCheck& check, const CheckedArm& arm)
   }
 }
 
-int check(const ArmOptions& given)
+int check(const Printed<RecordingOptions>& given)
 {
-  ArmOptions options = given;
+  RecordingOptions options = given;
   options.watch = readingWatch();
   const RecordingCheck check = checkRecording(options);
-  if (options.json)
+  if (given.json)
   {
     std::cout << documentOf(check).dump() << '\n';
   }
@@ -295,15 +295,8 @@ int check(const ArmOptions& given)
   return check.isUsable() ? EXIT_DONE : EXIT_FAILED;
 }
 
-void declare(Command& command, ArmOptions& options)
-{
-  addRecording(command, options);
-  addArmOption(command, options);
-  addReadingOptions(command, options, options.json);
-}
-
 const Subcommand CHECK{ Subject::RECORDING, "check",
-                        "what of an arm's recording is usable, what does not fit, and the command to run next", declare,
-                        check };
+                        "what of an arm's recording is usable, what does not fit, and the command to run next",
+                        declarePrinted<RecordingOptions>, check };
 }  // namespace
 }  // namespace hjt

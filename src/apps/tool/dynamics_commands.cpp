@@ -42,19 +42,19 @@ void requireEstimate(const std::string& method, double tolerance)
   }
 }
 
-void declareMethod(Command& command, std::string& method, double& step, double& tolerance)
+void declareMethod(OptionTable& table, std::string& method, double& step, double& tolerance)
 {
   std::vector<std::string> names;
   for (const auto& [name, known] : METHODS)
   {
     names.push_back(name);
   }
-  command
+  table
       .add("--method", method,
            "rk4: explicit of order 4 (Boost.odeint); implicit_euler, tr_bdf2, esdirk4: implicit of order 1, 2, 4")
       .choice(names);
-  command.add("--step", step, "of time [s]").positive();
-  command
+  table.add("--step", step, "of time [s]").positive();
+  table
       .add("--tolerance", tolerance,
            "error of a tooth's position by one step [m]: the steps are chosen by it, --step is the longest")
       .positive();
@@ -122,15 +122,15 @@ int transient(const TransientOptions& options)
   return EXIT_DONE;
 }
 
-void declareTransient(Command& command, TransientOptions& options)
+void declareTransient(OptionTable& table, TransientOptions& options)
 {
   TransientSetup& setup = options.setup;
-  declareMethod(command, options.method, setup.step, setup.tolerance);
-  command.add("--duration", setup.duration, "simulated time [s]").positive();
-  command.add("--window", setup.window_start, "from here to the end the largest force is summed up [s]").positive();
-  command.add("--sample", setup.sample_period, "time between two rows of the series [s]").positive();
-  command.add("--csv", options.csv, "write the series").type("FILE");
-  addCommonOptions(command, options);
+  declareMethod(table, options.method, setup.step, setup.tolerance);
+  table.add("--duration", setup.duration, "simulated time [s]").positive();
+  table.add("--window", setup.window_start, "from here to the end the largest force is summed up [s]").positive();
+  table.add("--sample", setup.sample_period, "time between two rows of the series [s]").positive();
+  table.add("--csv", options.csv, "write the series").type("FILE");
+  addCommonOptions(table, options);
 }
 
 const Subcommand TRANSIENT{ Subject::STUDY, "transient",
@@ -209,16 +209,16 @@ int dynamics(const DynamicsOptions& options)
   return EXIT_DONE;
 }
 
-void declareDynamics(Command& command, DynamicsOptions& options)
+void declareDynamics(OptionTable& table, DynamicsOptions& options)
 {
   QuasiStaticSetup& setup = options.setup;
-  command.add("--speed", setup.speed, "of the wave generator [rad/s]");
-  command.add("--load", setup.load, "on the circular spline [N.m]");
-  declareMethod(command, options.method, setup.step, setup.tolerance);
-  command.add("--settle", setup.settle_time, "time before the comparison starts [s]").atLeast(0.0);
-  command.add("--duration", setup.duration, "time over which is compared [s]").positive();
-  command.add("--every", setup.compare_period, "time between two comparisons [s]").positive();
-  addCommonOptions(command, options);
+  table.add("--speed", setup.speed, "of the wave generator [rad/s]");
+  table.add("--load", setup.load, "on the circular spline [N.m]");
+  declareMethod(table, options.method, setup.step, setup.tolerance);
+  table.add("--settle", setup.settle_time, "time before the comparison starts [s]").range(0.0, 1e9);
+  table.add("--duration", setup.duration, "time over which is compared [s]").positive();
+  table.add("--every", setup.compare_period, "time between two comparisons [s]").positive();
+  addCommonOptions(table, options);
 }
 
 const Subcommand DYNAMICS{

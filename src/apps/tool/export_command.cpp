@@ -259,22 +259,22 @@ int exportJoint(const ExportOptions& options)
   return EXIT_DONE;
 }
 
-void declare(Command& command, ExportOptions& options)
+void declare(OptionTable& table, ExportOptions& options)
 {
-  command
+  table
       .add("--format", options.format,
            "urdf, sdf, mjcf: a joint with its damping and friction, to stdout; fmu, fmu2: the twin itself as a "
            "co-simulation unit of FMI 3.0 or 2.0, to --out")
       .required()
       .choice({ "urdf", "sdf", "mjcf", "fmu", "fmu2" });
-  command.add("--out", options.out, "file of the unit").type("FILE.fmu");
-  command.add("--arm", options.arm, "the unit is this whole arm, its drives, links and controller")
+  table.add("--out", options.out, "file of the unit").type("FILE.fmu");
+  table.add("--arm", options.arm, "the unit is this whole arm, its drives, links and controller")
       .type("NAME|FILE.yaml");
-  command.add("--identified", options.identified, "overlays of its joints, as `joint_twin identify --arm` writes them")
+  table.add("--identified", options.identified, "overlays of its joints, as `joint_twin identify --arm` writes them")
       .type("DIR")
       .existingDirectory();
-  command.flag("--force", options.force, "overwrite an existing file");
-  addConfigurationOptions(command, options);
+  table.flag("--force", options.force, "overwrite an existing file");
+  addOptions(table, options);
 }
 
 const Subcommand EXPORT{ Subject::JOINT, "export",

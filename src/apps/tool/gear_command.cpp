@@ -169,24 +169,24 @@ std::string invalidRatio(const std::string& text)
   return ratio && *ratio >= 30.0 && *ratio <= 320.0 ? "" : "a ratio is a whole number, 30 ... 320";
 }
 
-void declare(Command& command, GearOptions& options)
+void declare(OptionTable& table, GearOptions& options)
 {
-  command.add("--size", options.request.size, "of the gear, as catalogues count: 11, 14, 17, 20, 25, 32 ...")
+  table.add("--size", options.request.size, "of the gear, as catalogues count: 11, 14, 17, 20, 25, 32 ...")
       .range(5, 100);
-  command.add("--ratio", options.request.ratio, "with the circular spline held: half the flexspline's teeth")
+  table.add("--ratio", options.request.ratio, "with the circular spline held: half the flexspline's teeth")
       .check(invalidRatio);
-  command.add("--bore-radius", options.request.bore_radius, "inner radius of the flexspline [m]").positive();
-  command.add("--rim-thickness", options.request.rim_thickness, "of the flexspline under the teeth [m]").positive();
-  command.add("--face-width", options.request.face_width, "length of the teeth [m]").positive();
-  command.add("--stiffness", options.request.stiffness, "K1,K2,K3 of your catalogue [N.m/rad]; else those known here");
-  command.add("--breakpoints", options.request.breakpoints, "T1,T2 of your catalogue [N.m]");
-  command.add("--ratings", options.request.ratings,
-              "torques of your catalogue: rated, average, repeated peak, momentary peak [N.m]");
-  command.add("--starting-torque", options.request.starting_torque, "of your catalogue, 20 degC [N.m]").positive();
-  command.add("--no-load-torque", options.request.no_load_torque, "of your catalogue, 2000 rpm, 20 degC [N.m]")
+  table.add("--bore-radius", options.request.bore_radius, "inner radius of the flexspline [m]").positive();
+  table.add("--rim-thickness", options.request.rim_thickness, "of the flexspline under the teeth [m]").positive();
+  table.add("--face-width", options.request.face_width, "length of the teeth [m]").positive();
+  table.add("--stiffness", options.request.stiffness, "K1,K2,K3 of your catalogue [N.m/rad]; else those known here");
+  table.add("--breakpoints", options.request.breakpoints, "T1,T2 of your catalogue [N.m]");
+  table.add("--ratings", options.request.ratings,
+            "torques of your catalogue: rated, average, repeated peak, momentary peak [N.m]");
+  table.add("--starting-torque", options.request.starting_torque, "of your catalogue, 20 degC [N.m]").positive();
+  table.add("--no-load-torque", options.request.no_load_torque, "of your catalogue, 2000 rpm, 20 degC [N.m]")
       .positive();
-  command.add("--out", options.out, "overlay to write, for --config").type("FILE").required();
-  addCommonOptions(command, options);
+  table.add("--out", options.out, "overlay to write, for --config").type("FILE").required();
+  addCommonOptions(table, options);
 }
 
 const Subcommand GEAR{ Subject::GEAR, "gear", "a whole gear by its size and ratio, as a configuration overlay", declare,

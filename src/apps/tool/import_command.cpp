@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "apps/common/motion_options.hpp"
+#include "apps/common/configuration.hpp"
 #include "output/interrupt.hpp"
 #include "output/output_file.hpp"
 #include "output/progress.hpp"
@@ -233,10 +233,10 @@ int import(const ImportOptions& options)
   return reportWritten(options.out, options.json);
 }
 
-void declare(Command& command, ImportOptions& options)
+void declare(OptionTable& table, ImportOptions& options)
 {
-  command.add("csv", options.csv, "the recording").required().type("FILE.csv");
-  command.add("--joint", options.joint, "base, shoulder, elbow, wrist_1 ..., or its number from 0")
+  table.add("csv", options.csv, "the recording").required().type("FILE.csv");
+  table.add("--joint", options.joint, "base, shoulder, elbow, wrist_1 ..., or its number from 0")
       .required()
       .check(
           [](const std::string& name)
@@ -246,12 +246,12 @@ void declare(Command& command, ImportOptions& options)
                                            "' is no joint: base, shoulder, elbow, wrist_1, wrist_2, wrist_3, or "
                                            "0 ... 5";
           });
-  command.add("--out", options.out, "the bag").required().type("FILE.bag").bag();
-  command.add("--gain", options.gain, "torque at the joint per current [N.m/A]");
-  command.add("--ratio", options.ratio, "of the recorded gear [-]; default: that of the configured one").positive();
-  command.add("--start-time", options.start_time, "ROS time of timestamp 0 [s]").range(0.0, 4e9);
-  addNamespaceOption(command, options.joint_namespace);
-  addCommonOptions(command, options);
+  table.add("--out", options.out, "the bag").required().type("FILE.bag").endsIn({ ".bag" });
+  table.add("--gain", options.gain, "torque at the joint per current [N.m/A]");
+  table.add("--ratio", options.ratio, "of the recorded gear [-]; default: that of the configured one").positive();
+  table.add("--start-time", options.start_time, "ROS time of timestamp 0 [s]").range(0.0, 4e9);
+  addNamespaceOption(table, options.joint_namespace);
+  addCommonOptions(table, options);
 }
 
 const Subcommand IMPORT{ Subject::RECORDING, "import",

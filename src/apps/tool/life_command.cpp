@@ -185,12 +185,12 @@ int fatigue(const FatigueOptions& options)
   return EXIT_DONE;
 }
 
-void declareFatigue(Command& command, FatigueOptions& options)
+void declareFatigue(OptionTable& table, FatigueOptions& options)
 {
-  command.add("--torques", options.torques,
-              "loads at the output [N.m]; default: rated, repeated and momentary peak torque of the catalogue");
-  command.add("--positions", options.positions, "wave generator angles per tooth pitch").range(1, 100000);
-  addCommonOptions(command, options);
+  table.add("--torques", options.torques,
+            "loads at the output [N.m]; default: rated, repeated and momentary peak torque of the catalogue");
+  table.add("--positions", options.positions, "wave generator angles per tooth pitch").range(1, 100000);
+  addCommonOptions(table, options);
 }
 
 const Subcommand FATIGUE{ Subject::STUDY, "life fatigue",
@@ -315,40 +315,39 @@ int trials(const TrialsOptions& options)
   return EXIT_DONE;
 }
 
-void declareLife(Command& command, LifeOptions& options)
+void declareLife(OptionTable& table, LifeOptions& options)
 {
-  command
+  table
       .add("DUTY", options.duty,
            "CSV file of a duty cycle, repeated: duration [s], motor_speed [rad/s], load_torque [N.m], "
            "temperature [degC]")
       .required()
       .existingFile();
-  command.add("--hours", options.hours, "longest use [h]").range(1e-3, 1e9);
-  command.add("--positions", options.positions, "wave generator angles per tooth pitch that are averaged over")
+  table.add("--hours", options.hours, "longest use [h]").range(1e-3, 1e9);
+  table.add("--positions", options.positions, "wave generator angles per tooth pitch that are averaged over")
       .range(1, 100000);
-  command.flag("--grease-changes", options.grease_changes, "the grease is changed whenever it is due");
-  command.add("--csv", options.csv, "file to write the rows to");
-  addCommonOptions(command, options);
+  table.flag("--grease-changes", options.grease_changes, "the grease is changed whenever it is due");
+  table.add("--csv", options.csv, "file to write the rows to");
+  addCommonOptions(table, options);
 }
 
-void declareAge(Command& command, AgeOptions& options)
+void declareAge(OptionTable& table, AgeOptions& options)
 {
-  declareLife(command, options);
-  command.add("--every", options.every, "hours between rows").range(1e-3, 1e9);
-  command.flag("--check", options.check,
-               "also measure how far the map between the stages of wear is off (some seconds)");
+  declareLife(table, options);
+  table.add("--every", options.every, "hours between rows").range(1e-3, 1e9);
+  table.flag("--check", options.check, "also measure how far the map between the stages of wear is off (some seconds)");
 }
 
 const Subcommand AGE{ Subject::STUDY, "life age", "the nominal drive, from new to the end of its use", declareAge,
                       age };
 
-void declareTrials(Command& command, TrialsOptions& options)
+void declareTrials(OptionTable& table, TrialsOptions& options)
 {
-  declareLife(command, options);
+  declareLife(table, options);
   LifeTrialOptions& trial = options.trials;
-  command.add("--lives", trial.lives, "drives").range(1, 1000000);
-  command.add("--seed", trial.seed, "of all that is drawn");
-  command.add("--every", trial.every, "hours of use between two assessments").range(1e-3, 1e9);
+  table.add("--lives", trial.lives, "drives").range(1, 1000000);
+  table.add("--seed", trial.seed, "of all that is drawn");
+  table.add("--every", trial.every, "hours of use between two assessments").range(1e-3, 1e9);
 }
 
 const Subcommand TRIALS{

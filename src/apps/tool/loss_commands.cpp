@@ -21,12 +21,12 @@ struct PitchOptions : CommonOptions
   int positions{ 16 };  // wave generator angles per tooth pitch
 };
 
-void declarePitch(Command& command, PitchOptions& options)
+void declarePitch(OptionTable& table, PitchOptions& options)
 {
-  command.add("--positions", options.positions, "wave generator angles per tooth pitch that are averaged over")
+  table.add("--positions", options.positions, "wave generator angles per tooth pitch that are averaged over")
       .range(1, 100000);
-  addFaultOption(command, options);
-  addCommonOptions(command, options);
+  addFaultOption(table, options);
+  addCommonOptions(table, options);
 }
 
 struct LossesOptions : PitchOptions
@@ -70,11 +70,11 @@ int losses(const LossesOptions& options)
   return EXIT_DONE;
 }
 
-void declareLosses(Command& command, LossesOptions& options)
+void declareLosses(OptionTable& table, LossesOptions& options)
 {
-  command.add("--speeds", options.speeds, "motor speeds, e.g. 50,209.4 [rad/s]").required();
-  command.add("--loads", options.loads, "loads on the circular spline, e.g. 0,20,87 [N.m]").required();
-  declarePitch(command, options);
+  table.add("--speeds", options.speeds, "motor speeds, e.g. 50,209.4 [rad/s]").required();
+  table.add("--loads", options.loads, "loads on the circular spline, e.g. 0,20,87 [N.m]").required();
+  declarePitch(table, options);
 }
 
 const Subcommand LOSSES{ Subject::GEAR, "losses", "friction and efficiency of steady turning, by speed and load",
@@ -127,17 +127,17 @@ int hysteresis(const HysteresisOptions& options)
   return EXIT_DONE;
 }
 
-void declareHysteresis(Command& command, HysteresisOptions& options)
+void declareHysteresis(OptionTable& table, HysteresisOptions& options)
 {
-  command.add("--amplitude", options.amplitude, "largest load [N.m]").required().positive();
-  command
+  table.add("--amplitude", options.amplitude, "largest load [N.m]").required().positive();
+  table
       .add("--lost-motion-torque", options.lost_motion_torque,
            "lost motion is taken between plus and minus this load, e.g. 4 % of the rated one [N.m]")
       .required()
       .positive();
-  command.add("--steps", options.steps, "angles of one sweep").range(2, 1000000);
-  addFaultOption(command, options);
-  addCommonOptions(command, options);
+  table.add("--steps", options.steps, "angles of one sweep").range(2, 1000000);
+  addFaultOption(table, options);
+  addCommonOptions(table, options);
 }
 
 const Subcommand HYSTERESIS{ Subject::GEAR, "hysteresis",

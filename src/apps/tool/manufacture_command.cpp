@@ -85,12 +85,12 @@ int manufacture(const ManufactureOptions& options)
   return EXIT_DONE;
 }
 
-void declare(Command& command, ManufactureOptions& options)
+void declare(OptionTable& table, ManufactureOptions& options)
 {
-  command.add("--flexspline-csv", options.flexspline_csv, "write the flexspline's pitch deviations").type("FILE");
-  command.add("--circular-spline-csv", options.circular_spline_csv, "write the circular spline's pitch deviations")
+  table.add("--flexspline-csv", options.flexspline_csv, "write the flexspline's pitch deviations").type("FILE");
+  table.add("--circular-spline-csv", options.circular_spline_csv, "write the circular spline's pitch deviations")
       .type("FILE");
-  addCommonOptions(command, options);
+  addCommonOptions(table, options);
 }
 
 const Subcommand MANUFACTURE{ Subject::GEAR, "manufacture", "errors of manufacture of every tooth and space [m]",

@@ -64,10 +64,10 @@ int describe(const ParametersOptions& options)
   return EXIT_DONE;
 }
 
-void declare(Command& command, ParametersOptions& options)
+void declare(OptionTable& table, ParametersOptions& options)
 {
-  command.flag("--markdown", options.markdown, "the table of keys, ranges and meanings instead");
-  addCommonOptions(command, options);
+  table.flag("--markdown", options.markdown, "the table of keys, ranges and meanings instead");
+  addCommonOptions(table, options);
 }
 
 const Subcommand PARAMETERS{ Subject::DATA_SET, "parameters", "all parameters in force, with unit and meaning", declare,

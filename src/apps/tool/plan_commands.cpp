@@ -3,18 +3,16 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
 #include <set>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "apps/common/motion_options.hpp"
+#include "apps/common/library_command.hpp"
 #include "base/number_text.hpp"
 #include "base/temporary_directory.hpp"
 #include "base/whole_file.hpp"
@@ -208,11 +206,6 @@ void printExpectation(const Plan& plan, unsigned jobs)
             << " s, and from building its first response surface.\n";
 }
 
-void addJobsOption(Command& command, unsigned& jobs)
-{
-  command.add("--jobs", jobs, "runs at the same time").range(JOBS.min, JOBS.max);
-}
-
 Watch sweepWatch()
 {
   Watch watch = consoleWatch();
@@ -222,7 +215,6 @@ Watch sweepWatch()
 
 struct SweepCommandOptions : Printed<SweepOptions>
 {
-  std::string part;
   bool dry_run{};
   bool list{};
 };
@@ -244,30 +236,12 @@ void printList(const Plan& plan, const SweepCommandOptions& options)
   }
 }
 
-void declare(Command& command, SweepCommandOptions& options)
+void declare(OptionTable& table, SweepCommandOptions& options)
 {
-  command.add("plan", options.plan, "what to run and record (docs/datasets.md)").required().type("PLAN.yaml");
-  command.add("--out", options.out, "directory of runs and index; runs that stand there finished are kept")
-      .required()
-      .type("DIR");
-  addJobsOption(command, options.jobs);
-  command.flag("--dry-run", options.dry_run, "check every run, tell time and size to expect, run nothing");
-  command.flag("--list", options.list, "print the index with every run of the plan, run nothing");
-  command.flag("--json", options.json,
-               "print the numbers of runs done, found and failed as one JSON document on stdout");
-  addConfigurationOptions(command, options);
-  command.add("--shard", options.part, "only every N-th run, from run I on: one of N processes, anywhere")
-      .type("I/N")
-      .check(
-          [&options](const std::string& text)
-          {
-            char slash = 0;
-            std::istringstream stream(text);
-            const bool read = static_cast<bool>(stream >> options.shard >> slash >> options.shards);
-            return read && stream.peek() == EOF && slash == '/' && options.shard < options.shards ?
-                       std::string() :
-                       "'" + text + "' must be I/N with 0 <= I < N";
-          });
+  addOptions(table, static_cast<SweepOptions&>(options));
+  table.flag("--dry-run", options.dry_run, "check every run, tell time and size to expect, run nothing");
+  table.flag("--list", options.list, "print the index with every run of the plan, run nothing");
+  table.flag("--json", options.json, "print the numbers of runs done, found and failed as one JSON document on stdout");
 }
 
 void tellResult(const SweepCommandOptions& options, const SweepResult& result)
@@ -394,21 +368,21 @@ int signatures(const SignaturesOptions& options)
   return runs.failed > 0 ? EXIT_FAILED : written;
 }
 
-void declare(Command& command, SignaturesOptions& options)
+void declare(OptionTable& table, SignaturesOptions& options)
 {
-  command
+  table
       .add("plans", options.plans,
            "as of sweep, in bags: a class without faults, then classes of one fault each; several for motions or gears "
            "of their own (docs/own_gear.md)")
       .required()
       .type("PLAN.yaml");
-  command.add("--out", options.out, "for parameter indicators.signatures").required().type("FILE.yaml");
-  command.add("--runs", options.runs, "directory of the runs; those that stand there finished are kept; default: none")
+  table.add("--out", options.out, "for parameter indicators.signatures").required().type("FILE.yaml");
+  table.add("--runs", options.runs, "directory of the runs; those that stand there finished are kept; default: none")
       .type("DIR");
-  command.add("--add", options.add, "file of signatures that stay, those of the plans behind them; default: none")
+  table.add("--add", options.add, "file of signatures that stay, those of the plans behind them; default: none")
       .type("FILE.yaml");
-  addJobsOption(command, options.jobs);
-  addCommonOptions(command, options);
+  addJobsOption(table, options.jobs);
+  addCommonOptions(table, options);
 }
 
 const Subcommand SIGNATURES{

@@ -75,18 +75,18 @@ int ratchet(const RatchetOptions& options)
   return EXIT_DONE;
 }
 
-void declare(Command& command, RatchetOptions& options)
+void declare(OptionTable& table, RatchetOptions& options)
 {
-  command
+  table
       .add("--lobe-stiffness", options.lobe_stiffness,
            "radial stiffness of each lobe with plug and circular spline in its housing, some 1e8 at size 25 "
            "(docs/model.md, Jump) [N/m]; default rigid, which makes the largest torque an upper bound")
       .range(1e3, 1e15);
-  command.add("--angle", options.angle, "wave generator angle [rad]");
-  command.add("--angle-step", options.angle_step, "step of the output angle [rad]").range(1e-6, 1e-2);
-  command.add("--torque-limit", options.torque_limit, "ends the search if nothing has jumped [N.m]").range(1.0, 1e6);
-  addFaultOption(command, options);
-  addCommonOptions(command, options);
+  table.add("--angle", options.angle, "wave generator angle [rad]");
+  table.add("--angle-step", options.angle_step, "step of the output angle [rad]").range(1e-6, 1e-2);
+  table.add("--torque-limit", options.torque_limit, "ends the search if nothing has jumped [N.m]").range(1.0, 1e6);
+  addFaultOption(table, options);
+  addCommonOptions(table, options);
 }
 
 const Subcommand RATCHET{

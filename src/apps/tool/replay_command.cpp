@@ -13,6 +13,7 @@
 #include "output/progress.hpp"
 #include "output/run_summary.hpp"
 #include "output/text_table.hpp"
+#include "recordings/recording_options.hpp"
 
 #include "bags/bag_file.hpp"
 #include "bags/bag_inputs.hpp"
@@ -213,15 +214,18 @@ int replay(const ReplayOptions& options)
   return summary.report(twin, options.json);
 }
 
-void declare(Command& command, ReplayOptions& options)
+void declare(OptionTable& table, ReplayOptions& options)
 {
-  command.add("bag", options.bag, "the recording").required().type("IN.bag");
-  command.add("--out", options.out, "the bag with the simulated topics added").required().type("OUT.bag").bag();
-  command.flag("--without-command", options.without_command,
-               "replay a bag without motor torque: its load torques and faults alone");
-  addNamespaceOption(command, options.joint_namespace);
-  addFaultOption(command, options);
-  addCommonOptions(command, options);
+  table.add("bag", options.bag, "the recording").required().type("IN.bag");
+  table.add("--out", options.out, "the bag with the simulated topics added")
+      .required()
+      .type("OUT.bag")
+      .endsIn({ ".bag" });
+  table.flag("--without-command", options.without_command,
+             "replay a bag without motor torque: its load torques and faults alone");
+  addNamespaceOption(table, options.joint_namespace);
+  addFaultOption(table, options);
+  addCommonOptions(table, options);
 }
 
 const Subcommand REPLAY{ Subject::RECORDING, "replay",

@@ -15,6 +15,7 @@
 #include "output/progress.hpp"
 #include "output/run_summary.hpp"
 #include "output/text_table.hpp"
+#include "recordings/recording_options.hpp"
 
 #include "bags/bag_recorder.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
@@ -254,24 +255,24 @@ int simulate(const SimulateOptions& options)
   return summary.report(twin, options.json);
 }
 
-void declare(Command& command, SimulateOptions& options)
+void declare(OptionTable& table, SimulateOptions& options)
 {
-  command.add("--duration", options.duration, "simulated time [s]; default: up to the profile's last row").positive();
-  command.add("--torque", options.torque, "constant motor torque [N.m]").needs("--duration");
-  command
+  table.add("--duration", options.duration, "simulated time [s]; default: up to the profile's last row").positive();
+  table.add("--torque", options.torque, "constant motor torque [N.m]").needs("--duration");
+  table
       .add("--profile", options.profile,
            "CSV with columns time [s], motor_torque [N.m] and, if wanted, load_torque [N.m], brake (0 or 1); each row "
            "holds until the next")
       .type("FILE.csv");
-  command.oneOf({ "--torque", "--profile" });
-  command.add("--load", options.load, "constant external torque at the output; > 0 resists positive motion [N.m]");
-  command.add("--out", options.out, "bag with the node's topics, or CSV with a row per joint_states")
+  table.oneOf({ "--torque", "--profile" });
+  table.add("--load", options.load, "constant external torque at the output; > 0 resists positive motion [N.m]");
+  table.add("--out", options.out, "bag with the node's topics, or CSV with a row per joint_states")
       .required()
       .type("FILE.bag|FILE.csv")
-      .bagOrCsv();
-  addNamespaceOption(command, options.joint_namespace);
-  addFaultOption(command, options);
-  addCommonOptions(command, options);
+      .endsIn({ ".bag", ".csv" });
+  addNamespaceOption(table, options.joint_namespace);
+  addFaultOption(table, options);
+  addCommonOptions(table, options);
 }
 
 const Subcommand SIMULATE{ Subject::JOINT, "simulate", "run the twin under a given torque", declare, simulate };

@@ -108,11 +108,11 @@ int insert(const InsertOptions& options)
   return EXIT_DONE;
 }
 
-void declareInsert(Command& command, InsertOptions& options)
+void declareInsert(OptionTable& table, InsertOptions& options)
 {
-  command.add("--csv", options.csv, "write positions and forces of every tooth").type("FILE");
-  addFaultOption(command, options);
-  addCommonOptions(command, options);
+  table.add("--csv", options.csv, "write positions and forces of every tooth").type("FILE");
+  addFaultOption(table, options);
+  addCommonOptions(table, options);
 }
 
 const Subcommand INSERT{ Subject::GEAR, "insert",
@@ -219,18 +219,18 @@ int stiffness(const StiffnessOptions& options)
   return EXIT_DONE;
 }
 
-void declareStiffness(Command& command, StiffnessOptions& options)
+void declareStiffness(OptionTable& table, StiffnessOptions& options)
 {
-  command
+  table
       .add("--torques", options.torques,
            "loads on the circular spline, e.g. 5,14,48 [N.m]; > 0 turns the output towards negative angles, as a load "
            "that resists positive motion does")
       .required();
-  command.add("--angle", options.angle, "wave generator angle [rad]");
-  command.add("--csv", options.csv, "write positions and forces of every tooth at every torque").type("FILE");
-  addFaultOption(command, options);
-  addCommonOptions(command, options);
-  command
+  table.add("--angle", options.angle, "wave generator angle [rad]");
+  table.add("--csv", options.csv, "write positions and forces of every tooth at every torque").type("FILE");
+  addFaultOption(table, options);
+  addCommonOptions(table, options);
+  table
       .flag("--teeth", options.teeth,
             "every tooth's forces [N], nominal stresses [Pa], place in its space [m], tilt [rad] and gap to the nearer "
             "flank [m]; with --json")
@@ -272,13 +272,13 @@ int turn(const TurnOptions& options)
   return EXIT_DONE;
 }
 
-void declareTurn(Command& command, TurnOptions& options)
+void declareTurn(OptionTable& table, TurnOptions& options)
 {
-  command.add("--load", options.load, "load on the circular spline [N.m]").required();
-  command.add("--angle-range", options.angle_range, "wave generator turns from 0 to this [rad]").required();
-  command.add("--steps", options.steps, "steps of equal size").required().range(1, 1e8);
-  addFaultOption(command, options);
-  addCommonOptions(command, options);
+  table.add("--load", options.load, "load on the circular spline [N.m]").required();
+  table.add("--angle-range", options.angle_range, "wave generator turns from 0 to this [rad]").required();
+  table.add("--steps", options.steps, "steps of equal size").required().range(1, 1e8);
+  addFaultOption(table, options);
+  addCommonOptions(table, options);
 }
 
 const Subcommand TURN{ Subject::GEAR, "turn", "quasi-static turning at constant load, friction left out", declareTurn,

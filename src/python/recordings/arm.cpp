@@ -11,6 +11,7 @@
 #include "arm/arm_configuration.hpp"
 #include "arm/arm_recorder.hpp"
 #include "arm/set_points.hpp"
+#include "base/range_check.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "output/run_summary.hpp"
 #include "python/in_use.hpp"
@@ -121,22 +122,25 @@ public:
   {
     const Given given(arguments);
     ConfigurationOptions options;
-    takeConfiguration(given, options);
+    takeOverlays(given, options);
     std::string arm;
     std::string identified;
-    std::vector<std::string> faults;
-    given.take("arm", arm);
-    given.take("identified", identified);
-    given.take("faults", faults);
+    std::optional<double> payload;
+    std::vector<double> start;
+    OptionTable table;
+    table.add("arm", arm, "name in config/arms, or a file");
+    table.add("identified", identified, "directory of overlays").existingDirectory();
+    table.add("--fault", options.faults, "JOINT:KIND:SEVERITY[:PLACE[:ONSET]]");
+    table.add("payload", payload, "mass [kg]");
+    table.add("start", start, "angles [rad]");
+    given.take(table);
     arm_ = readArmDescription(findArm(arm, configDirectory(options)));
-    given.take("payload", arm_.payload.mass);
+    arm_.payload.mass = payload.value_or(arm_.payload.mass);
     requirePayload(arm_.payload);
     addIdentifiedGains(identified, arm_);
-    const std::vector<Parameters> drives = armDrives(arm_, options, identified, faults);
-    std::vector<double> start(arm_.joints.size());
-    given.take("start", start);
-    if (start.size() != arm_.joints.size() ||
-        !std::all_of(start.begin(), start.end(), [](double angle) { return std::isfinite(angle); }))
+    const std::vector<Parameters> drives = armDrives(arm_, options, identified, options.faults);
+    start.resize(start.empty() ? arm_.joints.size() : start.size());
+    if (start.size() != arm_.joints.size())
     {
       throw InputError("start: " + std::to_string(arm_.joints.size()) + " finite angles are needed [rad]");
     }
@@ -342,23 +346,12 @@ Answer armIn(const py::dict& arguments)
 {
   const Given given(arguments);
   ArmRunOptions options;
-  takeConfiguration(given, options);
-  given.take("arm", options.arm);
-  given.take("identified", options.identified);
-  given.take("faults", options.faults);
-  given.take("out", options.out);
-  given.take("rate", options.rate);
-  given.take("force", options.force);
-  const py::object motion = given["motion"];
-  if (py::isinstance<py::str>(motion))
+  const py::object columns = given.columns("motion");
+  takeOptions(given, options);
+  if (columns)
   {
-    options.motion = py::cast<std::string>(motion);
+    options.set_points = setPointsOf(columns);
   }
-  else
-  {
-    options.set_points = setPointsOf(motion);
-  }
-  requireRate(options.rate);
   RowArrays rows;
   options.take = [&](double time, const ArmRow& row) { rows.add(time, row); };
   return call(given, options, runArm,

@@ -3,26 +3,23 @@
 
 #include <pybind11/stl.h>
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <exception>
 #include <map>
-#include <optional>
 #include <string>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "base/joined.hpp"
-#include "base/range_check.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
-#include "identification/cross_validation.hpp"
 #include "output/json.hpp"
 #include "output/watch.hpp"
 #include "params/configuration_files.hpp"
 #include "python/overlays.hpp"
 #include "twin/configuration_options.hpp"
+#include "twin/option_table.hpp"
 
 // What the functions of the module _recordings share: options by name in, a document and the notices out.
 namespace hjt
@@ -66,22 +63,6 @@ inline py::object toPython(const Json& json)
   return json.visit(ToPython());
 }
 
-/// What an option of this type must be.
-template <class Value>
-constexpr const char* kindOf()
-{
-  return std::is_same_v<Value, bool>                               ? "True or False" :
-         std::is_integral_v<Value>                                 ? "a whole number" :
-         std::is_arithmetic_v<Value>                               ? "a number" :
-         std::is_same_v<Value, std::string>                        ? "a text" :
-         std::is_same_v<Value, std::vector<std::string>>           ? "a list of texts" :
-         std::is_same_v<Value, std::map<std::string, std::string>> ? "a mapping of texts to texts" :
-         std::is_same_v<Value, std::array<double, 2>>              ? "a pair of numbers" :
-         std::is_same_v<Value, std::array<std::uint64_t, 2>>       ? "a pair of whole numbers" :
-         std::is_same_v<Value, std::vector<double>>                ? "a list of numbers" :
-                                                                     "of another type";
-}
-
 /// As Python writes it, not too long.
 inline std::string shortText(const py::handle& value)
 {
@@ -91,26 +72,53 @@ inline std::string shortText(const py::handle& value)
   return py::cast<std::string>(begin) + (begin.equal(text) ? "" : "...");
 }
 
+/// What is given for an option of this kind must be.
+inline const char* kindText(const Option& option)
+{
+  const bool is_number = option.kind == Option::Kind::NUMBER;
+  return option.kind == Option::Kind::FLAG  ? "True or False" :
+         option.kind == Option::Kind::WHOLE ? "a whole number" :
+         option.most == 1                   ? (is_number ? "a number" : "a text") :
+         option.most == 2                   ? "a pair of numbers" :
+                                              (is_number ? "a list of numbers" : "a list of texts");
+}
+
 /// A function's options by their names.
 class Given
 {
 public:
   explicit Given(const py::dict& values) : values_(values) {}
 
-  template <class Value>
-  void take(const char* name, Value& field) const
+  /// Fills the fields of the options; names are as on the command line, but as Python writes them.
+  /// @throws InputError.
+  void take(OptionTable table) const
   {
-    if (values_.contains(name))
+    for (Option& option : table.options)
     {
-      take(name, py::object(values_[name]), field);
+      option.name = nameOf(option.name);
+      std::transform(option.needed.begin(), option.needed.end(), option.needed.begin(), nameOf);
+      if (values_.contains(option.name))
+      {
+        give(option, py::object(values_[py::str(option.name)]));
+      }
     }
+    for (std::vector<std::string>& names : table.alternatives)
+    {
+      std::transform(names.begin(), names.end(), names.begin(), nameOf);
+    }
+    table.take();
   }
 
-  void take(const char* name, std::optional<Span>& field) const
+  /// Columns in place of a file's name, which is then the argument's; null: it is a file.
+  py::object columns(const char* name) const
   {
-    std::optional<std::array<double, 2>> pair;
-    take<std::optional<std::array<double, 2>>>(name, pair);
-    field = pair ? std::make_optional(Span{ (*pair)[0], (*pair)[1] }) : std::nullopt;
+    const py::object given = (*this)[name];
+    if (py::isinstance<py::str>(given))
+    {
+      return {};
+    }
+    values_[name] = name;
+    return given;
   }
 
   py::object operator[](const char* name) const
@@ -118,24 +126,51 @@ public:
     return values_.contains(name) ? py::object(values_[name]) : py::none();
   }
 
-private:
-  template <class Value>
-  static void take(const char* name, const py::object& value, Value& field)
+  /// "--time-scale" is time_scale.
+  static std::string nameOf(const std::string& option)
   {
+    static const std::map<std::string, std::string> OTHERS{ { "--fault", "faults" },
+                                                            { "--format", "file_format" },
+                                                            { "--model", "models" } };
+    const auto other = OTHERS.find(option);
+    std::string name = other != OTHERS.end() ? other->second : option.substr(option.find_first_not_of('-'));
+    std::replace(name.begin(), name.end(), '-', '_');
+    return name;
+  }
+
+private:
+  static std::string textOf(const Option& option, const py::object& value)
+  {
+    return option.kind == Option::Kind::TEXT  ? py::cast<std::string>(value) :
+           option.kind == Option::Kind::WHOLE ? std::to_string(py::cast<std::int64_t>(value)) :
+                                                py::cast<std::string>(py::repr(py::float_(py::cast<double>(value))));
+  }
+
+  static void give(Option& option, const py::object& value)
+  {
+    option.shown = option.name + " = " + shortText(value);
     try
     {
-      field = py::cast<Value>(value);
+      if (option.kind == Option::Kind::FLAG)
+      {
+        option.given = py::cast<bool>(value);
+        return;
+      }
+      const bool is_one = option.most == 1;
+      for (const py::object& each : is_one ? std::vector{ value } : py::cast<std::vector<py::object>>(value))
+      {
+        option.values.push_back(textOf(option, each));
+      }
+      option.given = !option.values.empty();
     }
     catch (const py::cast_error&)
     {
-      throw InputError(std::string(name) + " = " + shortText(value) + " must be " + kindOf<Value>());
+      throw InputError(option.shown + " must be " + kindText(option));
     }
-  }
-
-  template <class Value>
-  static void take(const char* name, const py::object& value, std::optional<Value>& field)
-  {
-    take(name, value, field.emplace());
+    if (option.most == 2 && option.values.size() != 2)
+    {
+      throw InputError(option.shown + " must be " + kindText(option));
+    }
   }
 
   py::dict values_;
@@ -213,12 +248,40 @@ private:
   std::vector<std::string> notices_;
 };
 
-inline void takeConfiguration(const Given& given, ConfigurationOptions& options)
+/// @throws InputError, ParameterError.
+inline void takeOverlays(const Given& given, ConfigurationOptions& options)
 {
-  for (const auto& overlay : given["overlays"])
+  const py::object overlays = given["overlays"];
+  for (const auto& overlay : overlays.is_none() ? py::list() : py::list(overlays))
   {
     readOverlay(overlay, configurationDirectory("").string(), options.values);
   }
+}
+
+/// Options by the names that a function of the library declares, and `overlays` over the configuration.
+/// @throws InputError, ParameterError.
+template <class Options>
+void takeOptions(const Given& given, Options& options)
+{
+  takeOverlays(given, options);
+  OptionTable table;
+  addOptions(table, options);
+  given.take(table);
+}
+
+/// Names of the options, for those who compare signatures.
+template <class Options>
+void listOptions(const py::module& module, const char* function)
+{
+  Options options;
+  OptionTable table;
+  addOptions(table, options);
+  py::list names;
+  for (const Option& option : table.options)
+  {
+    names.append(Given::nameOf(option.name));
+  }
+  module.attr("OPTIONS")[function] = names;
 }
 
 using Values = py::array_t<double, py::array::c_style | py::array::forcecast>;
