@@ -10,6 +10,7 @@
 #include <limits>
 #include <utility>
 
+#include "datasets/drive_split.hpp"
 #include "datasets/file_seal.hpp"
 #include "datasets/hdf5_tools.hpp"
 
@@ -202,15 +203,11 @@ public:
       const auto lock = lockLibrary();
       for (const char* key : { "run", "class", "duty", "status", "error", "version", ROWS_WITHOUT_FORCES })
       {
-        const auto& value = record.at(key);
-        if (value.is_number())
-        {
-          writeNumber(file_.get(), key, value.get<double>());
-        }
-        else
-        {
-          writeText(file_.get(), key, value.get<std::string>());
-        }
+        writeAttribute(key, record.at(key));
+      }
+      for (const char* key : { DriveSplit::DRIVE, DriveSplit::SPLIT })
+      {
+        writeAttribute(key, record.at("variables").value(key, OrderedJson()));
       }
       if (indicators_)
       {
@@ -247,6 +244,19 @@ private:
     bool per_tooth{};
     std::vector<ColumnData> columns{};
   };
+
+  /// A text or a number of the record; what is not there is left out.
+  void writeAttribute(const char* key, const OrderedJson& value)
+  {
+    if (value.is_number())
+    {
+      writeNumber(file_.get(), key, value.get<double>());
+    }
+    else if (value.is_string())
+    {
+      writeText(file_.get(), key, value.get<std::string>());
+    }
+  }
 
   /// Of an arm a group with those of each drive under its joint's name.
   void writeParameters(const RunSpec& spec)

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <filesystem>
 
 #include <boost/random/mersenne_twister.hpp>
@@ -24,19 +23,18 @@ constexpr std::array SPALLED{ FaultKind::BEARING_OUTER_RACE, FaultKind::BEARING_
 }  // namespace
 
 Lives::Lives(const PlanNode& node, const Parameters& nominal, const std::string& directory, std::uint32_t seed)
-  : fatigue_law_(nominal.life, nominal.stress)
+  : split_(node)
+  , fatigue_law_(nominal.life, nominal.stress)
   , fault_scale_(nominal.fault_scale)
   , rim_thickness_(nominal.gear.rim_thickness)
 {
   constexpr double LONGEST = 100'000.0;    // [h]
-  constexpr double TEST_SHARE = 0.25;      // [-]
   constexpr double GREASE_SEVERITY = 0.3;  // [-]
   allowOnly(node, { "drives", "every", "longest", "duties", "grease_changes", "grease_severity", "test" });
   const PlanValues values;
-  const std::int64_t drives = values.whole(node, "drives", "-", { 1, 1e6 });
+  const std::int64_t drives = values.whole(node, "drives", "-", { 1, DriveSplit::MAX_DRIVES });
   const double every = values.number(node, "every", "h", { 1e-3, 1e9 });
   const double longest = values.number(node, "longest", "h", { 1e-3, 1e9 }, LONGEST);
-  const double test = values.number(node, "test", "-", { 0.0, 1.0 }, TEST_SHARE);
   grease_severity_ = values.number(node, "grease_severity", "-", { 0.0, 1.0 }, GREASE_SEVERITY);
   const bool grease_changes = node.find("grease_changes") == nullptr || values.flag(node, "grease_changes");
   RevolutionLoadMap load_map(nominal, POSITIONS);
@@ -63,8 +61,6 @@ Lives::Lives(const PlanNode& node, const Parameters& nominal, const std::string&
     drive.spall.kind = SPALLED[static_cast<std::size_t>(drawn("spall", SPALLED.size()))];
     drive.spall.place = drawn("spall_place", places(drive.spall.kind));
     drive.crack_place = drawn("crack_place", places(FaultKind::FLEXSPLINE_CRACK));
-    const auto tested = [&](std::uint64_t n) { return std::floor(static_cast<double>(n) * test + 1e-9); };
-    drive.test = tested(i + 1) > tested(i);
     const auto visit = [&](double hours, const DriveAge& age)
     {
       if (check_ups_.size() > MAX_CHECK_UPS)
@@ -148,7 +144,7 @@ Lives::Labels Lives::labelsAt(std::uint64_t check_up) const
   const Drive& drive = drives_[now.drive];
   const UnitVariation& nature = drive.variation;
   const std::vector<decltype(ParameterValue::value)> values{ static_cast<std::int64_t>(now.drive),
-                                                             std::string(drive.test ? "test" : "train"),
+                                                             std::string(split_.nameOf(now.drive)),
                                                              duties_[drive.duty].first,
                                                              now.hours,
                                                              drive.life.hours - now.hours,

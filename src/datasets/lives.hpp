@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "datasets/drive_split.hpp"
 #include "datasets/plan_node.hpp"
 #include "output/ordered_json.hpp"
 
@@ -46,7 +47,6 @@ private:
     std::size_t duty{};
     Fault spall;  // kind and place of its bearing's
     int crack_place{};
-    bool test{};
     DriveAgeing::Life life;
   };
   struct CheckUp
@@ -59,6 +59,7 @@ private:
   void readDuties(const PlanNode& files, const std::string& directory);
   double stressAt(const RevolutionLoadMap& load_map, const DutyCycle& duty, const DriveAge& age) const;
 
+  DriveSplit split_;
   FatigueLaw fatigue_law_;
   FaultScaleParameters fault_scale_;
   double rim_thickness_;  // [m]

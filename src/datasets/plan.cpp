@@ -38,14 +38,26 @@ ConfigurationOptions withOverlays(const PlanNode& root, const std::string& direc
 }
 
 constexpr const char* NOISE_SEED = "sensors.noise_seed";
-constexpr const char* SET = "set.";  // before what is drawn for each drive
+constexpr const char* LIVES_SET = "set.";  // before what is drawn for each drive
+constexpr const char* DRIVES_SET = "drives.set.";
+
+void refuseGrids(const std::vector<const Variable*>& variables, const std::string& where)
+{
+  for (const Variable* variable : variables)
+  {
+    if (variable->gridSize() > 1)
+    {
+      variable->node().refuse("cannot be a grid " + where + ": give a distribution or one value");
+    }
+  }
+}
 }  // namespace
 
 Plan::Plan(const std::string& path, const ConfigurationOptions& options)
   : directory_(std::filesystem::path(path).parent_path().string()), root_(readPlanFile(path))
 {
   const bool of_arms = root_.find("arm") != nullptr;
-  std::vector<std::string> keys{ "name",    "seed",  "duration", "overlays", "set",
+  std::vector<std::string> keys{ "name",    "seed",  "duration", "overlays", "set",   "drives",
                                  "repeats", "lives", "duty",     "classes",  "record" };
   if (of_arms)
   {
@@ -71,6 +83,11 @@ Plan::Plan(const std::string& path, const ConfigurationOptions& options)
   if (runs_ == 0)
   {
     root_.find("duty")->refuse("must have at least one duty cycle");
+  }
+  for (Block& block : blocks_)
+  {
+    block.period = period_;
+    block.size = runs_ / period_ * block.together;
   }
   try
   {
@@ -107,6 +124,7 @@ void Plan::collect(const PlanNode& node, std::vector<const Variable*>& into)
 
 void Plan::makeBlocks()
 {
+  const std::uint64_t drives = root_.find("drives") != nullptr ? readDrives() : 1;
   std::vector<const PlanNode::Entry*> classes;
   if (root_.find("classes") != nullptr)
   {
@@ -126,25 +144,59 @@ void Plan::makeBlocks()
     {
       addBlock(*fault_class, duty);
       Block& block = blocks_.back();
-      block.first = runs_;
       double size = static_cast<double>(repeats_);
       for (const Variable* variable : block.variables)
       {
         size *= static_cast<double>(variable->gridSize());
-        block.size *= variable->gridSize();
+        block.together *= variable->gridSize();
       }
-      if (static_cast<double>(runs_) + size > MAX_RUNS)
+      if ((static_cast<double>(period_) + size) * static_cast<double>(drives) > MAX_RUNS)
       {
         root_.refuse("has more than " + numberText(MAX_RUNS) + " runs");
       }
-      runs_ += block.size;
+      period_ += block.together;
     }
   }
+  runs_ = drives * period_;
+}
+
+/// @returns how many.
+std::uint64_t Plan::readDrives()
+{
+  const PlanNode& node = required(root_, "drives", Kind::MAP);
+  allowOnly(node, { "number", "test", "set" });
+  const auto number =
+      static_cast<std::uint64_t>(PlanValues().whole(node, "number", "-", { 2, DriveSplit::MAX_DRIVES }));
+  split_.emplace(node);
+  const std::uint64_t tests = split_->testsOf(number);
+  if (tests == 0 || tests == number)
+  {
+    node.refuse("with test = " + numberText(split_->share()) + " [-] leaves no drive of " + std::to_string(number) +
+                (tests == 0 ? " for the test" : " to learn from") +
+                ", allowed: " + numberText(1.0 / static_cast<double>(number)) + " ... below 1 [-]");
+  }
+  const PlanNode& settings = required(node, "set", Kind::MAP);
+  const PlanNode* common = root_.find("set");
+  for (const auto& [key, setting] : settings.entries)
+  {
+    if (common != nullptr && common->find(key) != nullptr)
+    {
+      setting.refuse("stands in set too: give it in one of them");
+    }
+  }
+  std::vector<const Variable*> drawn;
+  collect(settings, drawn);
+  refuseGrids(drawn, "over drives");
+  if (drawn.empty())
+  {
+    settings.refuse("must draw at least one parameter: else all drives are the same");
+  }
+  return number;
 }
 
 void Plan::addBlock(const PlanNode::Entry& fault_class, const PlanNode& duty)
 {
-  Block block{ &fault_class, &duty, {}, 0, repeats_ };
+  Block block{ &fault_class, &duty, {}, period_, repeats_ };
   if (!arm_ || root_.find("duration") != nullptr)
   {
     collect(required(root_, "duration"), block.variables);
@@ -153,6 +205,10 @@ void Plan::addBlock(const PlanNode::Entry& fault_class, const PlanNode& duty)
   {
     collect(required(root_, "set", Kind::MAP), block.variables);
   }
+  if (split_)
+  {
+    collect(*root_.find("drives")->find("set"), block.variables);
+  }
   collect(duty, block.variables);
   collect(fault_class.second, block.variables);
   blocks_.push_back(block);
@@ -160,11 +216,12 @@ void Plan::addBlock(const PlanNode::Entry& fault_class, const PlanNode& duty)
 
 void Plan::makeLives()
 {
-  for (const char* other : { "classes", "repeats" })
+  for (const char* other : { "classes", "repeats", "drives" })
   {
     if (root_.find(other) != nullptr)
     {
-      root_.find(other)->refuse("is not allowed in a plan of lives: the faults follow from the drive's wear there");
+      root_.find(other)->refuse(
+          "is not allowed in a plan of lives: lives.drives are its drives, their wear its faults");
     }
   }
   // The laws of ageing take the drive that is the same in all lives.
@@ -182,23 +239,13 @@ void Plan::makeLives()
   eraseFaults(nominal);
   lives_ =
       std::make_unique<const Lives>(required(root_, "lives", Kind::MAP), parseParameters(nominal), directory_, seed_);
-  const std::vector<PlanNode::Entry>& duties = root_.find("duty")->entries;
-  for (const auto& [key, duty] : duties)
+  for (const auto& [key, duty] : root_.find("duty")->entries)
   {
     addBlock(LIFE, duty);
-    Block& block = blocks_.back();
-    block.first = blocks_.size() - 1;
-    block.size = lives_->checkUps();
-    block.apart = duties.size();
-    for (const Variable* variable : block.variables)
-    {
-      if (variable->gridSize() > 1)
-      {
-        variable->node().refuse("cannot be a grid in a plan of lives: give a distribution or one value");
-      }
-    }
+    refuseGrids(blocks_.back().variables, "in a plan of lives");
+    ++period_;
   }
-  runs_ = lives_->checkUps() * duties.size();
+  runs_ = lives_->checkUps() * period_;
 }
 
 std::vector<std::string> Plan::variableNames() const
@@ -212,6 +259,10 @@ std::vector<std::string> Plan::variableNames() const
   {
     const std::vector<std::string> labels = Lives::labelNames();
     names.insert(names.end(), labels.begin(), labels.end());
+  }
+  if (split_)
+  {
+    names.insert(names.end(), { DriveSplit::DRIVE, DriveSplit::SPLIT });
   }
   return names;
 }
@@ -239,17 +290,18 @@ OrderedJson Plan::snapshot() const
 /// All that varies, with its value in a run; into the run too.
 PlanValues Plan::valuesOf(const Block& block, std::uint64_t number, RunSpec& spec) const
 {
-  std::uint64_t rest = lives_ ? 0 : number - block.first;
+  std::uint64_t rest = number % period_ - block.first;
   spec.repeat = rest % repeats_;
   rest /= repeats_;
+  const std::uint64_t drive = lives_ ? lives_->driveAt(number / period_) : number / period_;
+  const char* const of_drives = lives_ ? LIVES_SET : DRIVES_SET;
   PlanValues values;
   spec.variables.resize(block.variables.size());
   for (std::size_t i = block.variables.size(); i-- > 0;)
   {
     const Variable& variable = *block.variables[i];
-    const bool of_drive = lives_ && variable.node().path.rfind(SET, 0) == 0;
-    const std::uint64_t draw = of_drive ? lives_->driveAt(number / blocks_.size()) : number;
-    const ParameterValue value = variable.value(seed_, draw, rest % variable.gridSize());
+    const bool of_drive = variable.node().path.rfind(of_drives, 0) == 0;
+    const ParameterValue value = variable.value(seed_, of_drive ? drive : number, rest % variable.gridSize());
     rest /= variable.gridSize();
     values.set(variable.node(), value);
     spec.variables[i] = { variable.node().path, value };
@@ -257,15 +309,30 @@ PlanValues Plan::valuesOf(const Block& block, std::uint64_t number, RunSpec& spe
   return values;
 }
 
+/// What is known of a run's drive besides what varies.
+Lives::Labels Plan::labelsOf(std::uint64_t number) const
+{
+  const std::uint64_t period = number / period_;
+  if (lives_)
+  {
+    return lives_->labelsAt(period);
+  }
+  return split_ ? Lives::Labels{ { DriveSplit::DRIVE, { static_cast<std::int64_t>(period), "" } },
+                                 { DriveSplit::SPLIT, { std::string(split_->nameOf(period)), "" } } } :
+                  Lives::Labels();
+}
+
 RunSpec Plan::run(std::uint64_t number) const
 {
-  const auto after = std::upper_bound(blocks_.begin(), blocks_.end(), number,
+  const auto after = std::upper_bound(blocks_.begin(), blocks_.end(), number % period_,
                                       [](std::uint64_t run, const Block& block) { return run < block.first; });
-  const Block& block = lives_ ? blocks_[number % blocks_.size()] : *(after - 1);
+  const Block& block = *(after - 1);
   RunSpec spec;
   spec.run = number;
   spec.fault_class = block.fault_class->first;
   const PlanValues values = valuesOf(block, number, spec);
+  const Lives::Labels labels = labelsOf(number);
+  spec.variables.insert(spec.variables.end(), labels.begin(), labels.end());
   spec.duty_name = values.text(*block.duty, "name", "duty");
   arm_ ? takeArm(block, values, spec) : takeDrive(block, values, spec);
   constexpr Range DURATION{ 1e-3, 1e6 };
@@ -326,10 +393,9 @@ void Plan::takeDrive(const Block& block, const PlanValues& values, RunSpec& spec
   const bool given = lives_ || root_.find("classes") != nullptr;
   if (given)
   {
-    const std::uint64_t check_up = spec.run / blocks_.size();
     if (lives_)
     {
-      for (const GrowingFault& fault : lives_->faultsAt(check_up))
+      for (const GrowingFault& fault : lives_->faultsAt(spec.run / period_))
       {
         spec.faults.push_back({ fault, 0 });
       }
@@ -339,8 +405,6 @@ void Plan::takeDrive(const Block& block, const PlanValues& values, RunSpec& spec
       spec.faults = faultsOf(block.fault_class->second, values);
     }
     setFaults(spec.faults, 0, block.fault_class->second.origin, settings);
-    const Lives::Labels labels = lives_ ? lives_->labelsAt(check_up) : Lives::Labels();
-    spec.variables.insert(spec.variables.end(), labels.begin(), labels.end());
   }
   spec.parameters = parametersOf(settings, given);
   if (!given)
@@ -370,16 +434,16 @@ void Plan::takeArm(const Block& block, const PlanValues& values, RunSpec& spec) 
 ParameterMap Plan::settingsOf(const PlanValues& values, std::uint64_t number) const
 {
   ParameterMap map;
-  bool seeded = false;
-  if (const PlanNode* settings = root_.find("set"))
+  for (const PlanNode* above : { &root_, root_.find("drives") })
   {
-    for (const auto& [key, node] : settings->entries)
+    const PlanNode* settings = above != nullptr ? above->find("set") : nullptr;
+    for (std::size_t i = 0; settings != nullptr && i < settings->entries.size(); ++i)
     {
+      const auto& [key, node] = settings->entries[i];
       map[key] = { values.value(node).value, node.origin };
-      seeded = seeded || key == NOISE_SEED;
     }
   }
-  if (!seeded)
+  if (map.count(NOISE_SEED) == 0)
   {
     map[NOISE_SEED] = { static_cast<std::int64_t>(drawnWord(seed_, NOISE_SEED, number) >> 1), root_.origin };
   }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "datasets/arm_plan.hpp"
+#include "datasets/drive_split.hpp"
 #include "datasets/lives.hpp"
 #include "datasets/plan_node.hpp"
 #include "datasets/plan_values.hpp"
@@ -40,9 +41,9 @@ struct RunSpec
 /// A plan of many runs: what is fixed, laid out on grids and drawn.
 ///
 /// Runs are numbered class by class, within it duty cycle by duty cycle, within that grid by grid, the last one
-/// fastest, then the repeats. A plan of lives: life by life, check-up by check-up, duty cycle by duty cycle; what `set`
-/// draws is drawn for each drive. A plan of whole arms: duty cycles are motions, and `set` is that of all drives. After
-/// construction all members may be called from any thread.
+/// fastest, then the repeats; a plan with `drives` drive by drive, all that of each. A plan of lives: life by life,
+/// check-up by check-up, duty cycle by duty cycle; what `set` draws is drawn for each drive. A plan of whole arms: duty
+/// cycles are motions, and `set` is that of all drives. After construction all members may be called from any thread.
 class Plan
 {
 public:
@@ -64,11 +65,12 @@ public:
     const PlanNode::Entry* fault_class;
     const PlanNode* duty;
     std::vector<const Variable*> variables;
-    std::uint64_t first;  ///< run
-    std::uint64_t size;
-    std::uint64_t apart{ 1 };  ///< from one run to the next
+    std::uint64_t first;     ///< run
+    std::uint64_t together;  ///< one after the other in each period
+    std::uint64_t period{};  ///< that of the plan
+    std::uint64_t size{};    ///< of all periods
 
-    std::uint64_t last() const { return first + (size - 1) * apart; }
+    std::uint64_t run(std::uint64_t i) const { return first + i / together * period + i % together; }
   };
   const std::vector<Block>& blocks() const { return blocks_; }
 
@@ -86,8 +88,10 @@ private:
   void collect(const PlanNode& node, std::vector<const Variable*>& into);
   void makeBlocks();
   void addBlock(const PlanNode::Entry& fault_class, const PlanNode& duty);
+  std::uint64_t readDrives();
   void makeLives();
   PlanValues valuesOf(const Block& block, std::uint64_t number, RunSpec& spec) const;
+  Lives::Labels labelsOf(std::uint64_t number) const;
   ParameterMap settingsOf(const PlanValues& values, std::uint64_t number) const;
   Parameters parametersOf(const ParameterMap& settings, bool faults_given) const;
   std::vector<RunFault> faultsOf(const PlanNode& list, const PlanValues& values) const;
@@ -102,9 +106,11 @@ private:
   std::uint32_t seed_{};
   std::uint64_t repeats_{};
   std::uint64_t runs_{};
+  std::uint64_t period_{};  // runs of a drive, of a check-up of lives, or all
   Recording recording_;
   DutyReader duties_;
   std::unique_ptr<const Lives> lives_;
+  std::optional<DriveSplit> split_;  // of a plan with drives
   std::optional<ArmPlan> arm_;
   std::vector<std::unique_ptr<const Variable>> variables_;
   std::vector<Block> blocks_;

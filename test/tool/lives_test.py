@@ -169,6 +169,8 @@ class Lives(tool.ToolTest):
                  ["bad.yaml:10: lives.every = 0.005 [h] makes more than 1000000 check-ups in the first 1 of 5 drives"]),
                 ("[rated.csv]", "[none.csv]", ["none.csv cannot be read"]),
                 ("duty:\n", "classes: {a: []}\nduty:\n", ["classes is not allowed in a plan of lives"]),
+                ("duty:\n", "drives: {number: 2}\nduty:\n",
+                 ["drives is not allowed in a plan of lives: lives.drives are its drives"]),
                 ("{log_uniform: [2.0e-4, 8.0e-4]}", "{grid: [2.0e-4, 8.0e-4]}", ["give a distribution or one value"])]:
             with self.subTest(new):
                 self.assertIn(old, PLAN)

@@ -90,6 +90,18 @@ class SweepArm(SweepTest):
             file.write("0.5," + ",".join(["0"] * 6) + "\n")
         self.fail_with(1, ["other tables of the plan"], "sweep", "plan.yaml", "--out", "a")
 
+    def test_a_drive_of_the_plan_is_an_arm(self):
+        drives = "drives: {number: 2, test: 0.5, set: {input.temperature: {uniform: [15.0, 35.0]}}}\nduty:"
+        self.write("plan.yaml", ONE_RUN.replace("duty:", drives))
+        self.sweep("a")
+        rows = self.index("a")
+        self.assertEqual([(row["drive"], row["split"]) for row in rows], [("0", "train"), ("1", "test")])
+        self.assertNotEqual(*(row["drives.set.input.temperature"] for row in rows))
+        for row in rows:
+            with h5py.File(self.path("a/" + row["file"]), "r") as file:
+                for text in file["parameters"].values():
+                    self.assertIn(f"input.temperature: {row['drives.set.input.temperature']}", text[()].decode())
+
     def test_the_tool_writes_the_same_run(self):
         self.write("plan.yaml", ONE_RUN.replace("duration: 0.3\n", "").replace("start: 0.1", "start: 0.0"))
         self.sweep("a")

@@ -30,6 +30,8 @@ record:
     teeth: {rate: 100.0, type: float64, columns: [mesh_force, joint_torque]}
 """
 RUNS = 6
+DRIVES = "drives: {number: 4, set: {bearing.viscosity: {log_uniform: [1.0e-4, 2.0e-4]}}}\n"
+OF_DRIVES = PLAN.replace("repeats: 3", DRIVES + "repeats: 3")
 
 
 def tree(directory):

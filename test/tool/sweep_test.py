@@ -11,7 +11,7 @@ import subprocess
 import h5py
 
 import tool
-from sweep_case import PLAN, RUNS, SweepTest, tree
+from sweep_case import DRIVES, OF_DRIVES, PLAN, RUNS, SweepTest, tree
 
 
 class Sweep(SweepTest):
@@ -74,6 +74,62 @@ class Sweep(SweepTest):
         self.assertEqual(drawn(more), first)
         self.assertFalse(set(drawn(PLAN.replace("seed: 7", "seed: 8"))) & set(first))
         self.assertFalse(os.path.exists(self.path("unused")))
+
+    def test_a_drive_has_the_same_values_in_all_its_runs_whatever_these_are(self):
+        def drives(plan):
+            self.write("other.yaml", plan)
+            found = {}
+            for row in csv.DictReader(self.sweep("unused", "--list", plan="other.yaml").stdout.splitlines()):
+                found.setdefault(int(row["drive"]), []).append(row)
+            for runs in found.values():
+                self.assertEqual(len({(row["drives.set.bearing.viscosity"], row["split"]) for row in runs}), 1)
+            return found, {drive: (runs[0]["drives.set.bearing.viscosity"], runs[0]["split"])
+                           for drive, runs in found.items()}
+        runs, first = drives(OF_DRIVES)
+        self.assertEqual(list(first), [0, 1, 2, 3])
+        self.assertEqual([split for _, split in first.values()], ["train"] * 3 + ["test"])
+        self.assertEqual(len({viscosity for viscosity, _ in first.values()}), 4)
+        for number, of_drive in runs.items():
+            self.assertEqual([int(row["run"]) for row in of_drive], list(range(RUNS * number, RUNS * (number + 1))))
+            self.assertEqual([(float(row["set.input.temperature"]), row["repeat"]) for row in of_drive],
+                             [(degrees, repeat) for degrees in (10.0, 40.0) for repeat in "012"])
+        for name in ("set.output.load_inertia", "noise_seed"):
+            self.assertEqual(len({row[name] for of_drive in runs.values() for row in of_drive}), 4 * RUNS)
+        faults = "classes:\n  healthy: []\n  old: [{kind: lubricant_degradation, severity: {uniform: [0.1, 0.4]}}]\n"
+        runs, others = drives(OF_DRIVES.replace("repeats: 3", faults + "repeats: 1"))
+        self.assertEqual(others, first)
+        self.assertEqual([[row["class"] for row in of_drive] for of_drive in runs.values()],
+                         4 * [["healthy", "healthy", "old", "old"]])
+        _, more = drives(OF_DRIVES.replace("number: 4", "number: 9"))
+        self.assertEqual({drive: more[drive] for drive in first}, first)
+        self.assertEqual([drive for drive, (_, split) in more.items() if split == "test"], [3, 7])
+        _, others = drives(OF_DRIVES.replace("seed: 7", "seed: 8"))
+        self.assertFalse(set(others.values()) & set(first.values()))
+
+    def test_drives_give_the_same_bytes_in_shards_and_files_that_name_them(self):
+        self.write("plan.yaml", OF_DRIVES)
+        self.sweep("one", "--jobs", 1)
+        for shard in ("2/3", "0/3", "1/3"):
+            self.sweep("shards", "--jobs", 2, "--shard", shard)
+        self.assertEqual(tree(self.path("shards")), tree(self.path("one")))
+        rows = self.index("one")
+        self.assertEqual(len(rows), 4 * RUNS)
+        for row in rows:
+            with h5py.File(self.path("one/" + row["file"]), "r") as file:
+                self.assertEqual((file.attrs["drive"], file.attrs["split"]), (int(row["drive"]), row["split"]))
+                self.assertIn(f"bearing.viscosity: {row['drives.set.bearing.viscosity']}",
+                              file["parameters"][()].decode())
+        self.assertIn("runs 0 ... 23: class healthy", self.sweep("unused", "--dry-run").stdout)
+
+    def test_the_runs_of_a_drive_share_its_response_surface(self):
+        drawn = DRIVES.replace("4, set", "2, test: 0.5, set").replace(
+            "bearing.viscosity: {log_uniform: [1.0e-4, 2.0e-4]}", "contact.fit: {uniform: [2.0e-6, 4.0e-6]}")
+        scene = "set:\n  solver.scene: auto\n"
+        self.write("plan.yaml", PLAN.replace("set:\n", scene).replace("repeats", drawn + "repeats"))
+        cache = {"XDG_CACHE_HOME": self.path("cache")}
+        done = self.succeed_json("sweep", "plan.yaml", "--out", "a", environment=cache)
+        self.assertEqual((done["done"], done["failed"]), (2 * RUNS, 0))
+        self.assertEqual(len(os.listdir(self.path("cache/harmonic_joint_twin"))), 2)
 
     def test_a_run_without_equilibrium_is_recorded_and_the_others_go_on(self):
         # A rim that gives way under flat flanks, and a solver that may not iterate: teeth jump below 600 N.m.
@@ -152,6 +208,25 @@ class Sweep(SweepTest):
                 self.assertFalse(os.path.exists(self.path("a")))
         self.fail_with(1, ["none.yaml cannot be read"], "sweep", "none.yaml", "--out", "a")
         self.fail_with(2, ["I/N"], "sweep", "plan.yaml", "--out", "a", "--shard", "2/2")
+
+    def test_bad_drives_are_refused(self):
+        for old, new, part in [
+                ("number: 4", "number: 1", "drives.number = 1 [-] is out of range, allowed: 2 ... 1.0e+6"),
+                ("number: 4", "number: 3",
+                 "drives with test = 0.25 [-] leaves no drive of 3 for the test, allowed: 0.333333"),
+                ("number: 4", "number: 4, test: 1.0", "leaves no drive of 4 to learn from, allowed: 0.25 ... below 1"),
+                ("number: 4", "number: 4, test: 1.1", "drives.test = 1.1 [-] is out of range, allowed: 0 ... 1"),
+                ("number: 4", "number: 4, tests: 0.5", "drives.tests = 0.5 is unknown; allowed: number, test, set"),
+                ("bearing.viscosity", "bearing.viscosit", "unknown parameter bearing.viscosit"),
+                ("[1.0e-4, 2.0e-4]", "[1.0e+4, 2.0e+4]", "bearing.viscosity = "),
+                ("bearing.viscosity", "input.temperature", "drives.set.input.temperature stands in set too"),
+                ("log_uniform", "grid", "drives.set.bearing.viscosity cannot be a grid over drives"),
+                ("{log_uniform: [1.0e-4, 2.0e-4]}", "1.0e-4", "drives.set must draw at least one parameter")]:
+            with self.subTest(new):
+                self.assertIn(old, DRIVES)
+                self.write("plan.yaml", OF_DRIVES.replace(old, new))
+                self.fail_with(1, ["plan.yaml:9: ", part], "sweep", "plan.yaml", "--out", "a")
+                self.assertFalse(os.path.exists(self.path("a")))
 
     def test_a_directory_with_files_of_something_else_is_left_as_it_is(self):
         for name, said in (("index.csv", "index.csv is of something else"), ("plan.json", "plan.json"),
@@ -246,7 +321,7 @@ class Sweep(SweepTest):
         self.assertFalse(os.path.exists(self.path("a")))
 
     def test_the_shipped_plans_are_right(self):
-        for name in ["small.yaml", "temperature_grid.yaml", "fault_grid.yaml"]:
+        for name in ["small.yaml", "temperature_grid.yaml", "fault_grid.yaml", "drives.yaml"]:
             rows = self.sweep("unused", "--list", plan=os.path.join(tool.CHECKOUT, "plans", name)).stdout.splitlines()
             self.assertGreater(len(rows), 2)
 

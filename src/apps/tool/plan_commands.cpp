@@ -95,7 +95,7 @@ public:
     std::uint64_t looked = 0;
     for (; looked < block.size && Clock::now() - begin < PATIENCE; ++looked)
     {
-      const std::uint64_t number = block.first + looked * block.apart;
+      const std::uint64_t number = block.run(looked);
       const RunSpec spec = plan.run(number);
       std::size_t of_run = 0;
       for (const Parameters& parameters : spec.arm ? spec.arm->drives : std::vector{ spec.parameters })
@@ -185,8 +185,8 @@ void printExpectation(const Plan& plan, unsigned jobs)
     run_time += runs * (cost.ends + spec.duration / cost.real_time_factor);
     bytes += runs * dataSize(plan.recording(), spec);
     length += runs * spec.duration;
-    std::cout << "runs " << block.first << " ... " << block.last() << ": class " << spec.fault_class << ", duty "
-              << spec.duty_name << ", " << rounded(cost.real_time_factor) << " times real time\n";
+    std::cout << "runs " << block.first << " ... " << block.run(block.size - 1) << ": class " << spec.fault_class
+              << ", duty " << spec.duty_name << ", " << rounded(cost.real_time_factor) << " times real time\n";
   }
   // A surface is built on all processors.
   const double together = std::min<double>(
