@@ -292,7 +292,7 @@ def write_card(folder: Path, *, licence: str, authors: str, title: Optional[str]
     """The card of a data set: README.md, as Hugging Face and Zenodo take it, and SHA256SUMS, for sha256sum -c.
 
     folder: of the data set, complete. licence: its identifier by SPDX. authors: to be cited. title: None: the plan's
-    name. text: what is to be said of it, Markdown.
+    name, of a plan without one the folder's. text: what is to be said of it, Markdown.
 
     Returns a dict: 'card' and 'sums', paths, and 'files', how many. InputError.
     """
@@ -303,15 +303,18 @@ def write_card(folder: Path, *, licence: str, authors: str, title: Optional[str]
     if len(index) != document["runs"]:
         raise _hjt.InputError(f"{place}: {len(index)} of {document['runs']} runs are there; a card is of a complete "
                               "set")
-    name, version = title or document["plan"]["name"], document["version"]
+    name, version = title or document["plan"].get("name", os.path.basename(os.path.abspath(place))), document["version"]
     counts = index["class"].value_counts(sort=False)
     is_life = "life.drive" in index
+    of_drive = "life." if is_life else ""
+    has_drives = of_drive + "drive" in index
     files = sorted(os.path.relpath(os.path.join(at, one), place) for at, _, several in os.walk(place) for one in several
                    if one not in ("README.md", "SHA256SUMS"))
     lines = ["---", f"pretty_name: {json.dumps(name)}", f"license: {licence.lower()}", "tags: [simulated, prognostics, "
              "harmonic drive]", "---", f"# {name}", "", *([text, ""] if text else []),
              f"Simulated recordings of a robot joint's harmonic drive: {len(index)} runs"
-             + (f" of {index['life.drive'].nunique()} drives from new to their end" if is_life else "") + ".", "",
+             + (f" of {index[of_drive + 'drive'].nunique()} drives" if has_drives else "")
+             + (" from new to their end" if is_life else "") + ".", "",
              "| class | runs |", "|---|---|", *(f"| {each} | {count} |" for each, count in counts.items()), "",
              "## How it was made", "",
              f"By harmonic_joint_twin {version}, `joint_twin {'lives' if is_life else 'sweep'}`, from the plan in "
@@ -320,8 +323,8 @@ def write_card(folder: Path, *, licence: str, authors: str, title: Optional[str]
              "## What is in it", "",
              "`index.csv` has a row for each run: file, class, faults, seeds, drawn variables. All of its columns are "
              "labels or settings; so are `severity` and `window_severity` of the files. Runs are in the order of "
-             "their classes: shuffle them, and split by run"
-             + (", or as `life.split` says, by drive" if is_life else "") + ".", "",
+             "their classes: shuffle them, and split by "
+             + (f"drive, as `{of_drive}split` says" if has_drives else "run") + ".", "",
              *(_columns_of(index["file"][0]) if index["file"][0].endswith(".h5") else ["Bags of ROS."]), "",
              "## Licence and citation", "", f"{licence}. {authors}: {name}. Made with harmonic_joint_twin {version}.",
              "",

@@ -1,7 +1,10 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Data sets and verdicts as frames. Argument: the tool."""
+import contextlib
+import io
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -21,6 +24,7 @@ except ImportError as error:
 import harmonic_joint_twin as hjt
 
 TOOL = sys.argv.pop(1)
+CHECKOUT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
 SOUND, WORN = 12, 2
 PLAN = """
 seed: 5
@@ -114,6 +118,36 @@ class DataSets(unittest.TestCase):
             with self.assertRaisesRegex(hjt.InputError, "1 of 2 runs are there; a card is of a complete set"):
                 hjt.write_card("published", licence="CC-BY-4.0", authors="A. Author")
         self.assertIn("published is unfinished: 1 of 2 runs are missing", str(said[0].message))
+
+    def test_a_set_of_drives_is_split_by_them(self):
+        drives = "drives: {number: 2, test: 0.5, set: {bearing.viscosity: {log_uniform: [1.0e-4, 2.0e-4]}}}\nduty:"
+        with open("drives.yaml", "w", encoding="utf-8") as file:
+            file.write((PLAN % (2, "healthy: []")).replace("duty:", drives))
+        hjt.sweep("drives.yaml", "drives")
+        windows = hjt.load("drives")
+        self.assertEqual(list(zip(windows.drive, windows.split)), 2 * [(0, "train")] + 2 * [(1, "test")])
+        self.assertEqual(list(windows.groupby("drive")["drives.set.bearing.viscosity"].nunique()), [1, 1])
+        self.assertLess({"drive", "split", "drives.set.bearing.viscosity"}, set(windows.attrs["labels"]))
+        pandas.testing.assert_frame_equal(hjt.load("drives", columns=["split", "running_torque"]),
+                                          windows[["file", "split", "running_torque"]])
+        with open(hjt.write_card("drives", licence="CC0-1.0", authors="A. Author")["card"], encoding="utf-8") as file:
+            card = file.read()
+        self.assertIn("harmonic drive: 4 runs of 2 drives.", card)
+        self.assertIn("split by drive, as `split` says.", card)
+
+    def test_the_page_judges_detectors_on_drives_that_they_have_not_seen(self):
+        with open(os.path.join(CHECKOUT, "docs", "datasets.md"), encoding="utf-8") as file:
+            example = re.search(r"```python\n([^`]*for name in [^`]*)```", file.read())[1]
+        hjt.sweep(os.path.join(CHECKOUT, "plans", "drives.yaml"), "drives_of_the_page")
+        printed = io.StringIO()
+        with contextlib.redirect_stdout(printed):
+            exec(example.replace('"drives"', '"drives_of_the_page"', 1), {})  # pylint: disable=exec-used
+        rows = [line.split() for line in printed.getvalue().splitlines()]
+        shown = [line.split()[1:] for line in example.splitlines() if line.startswith("# ")]
+        self.assertEqual([row[0] for row in rows], [row[0] for row in shown])
+        for row, expected in zip(rows, shown):
+            # A count of the encoders, which the C library's last digits decide, may turn a run or two about.
+            np.testing.assert_allclose(np.array(row[1:], float), np.array(expected[1:], float), atol=0.01)
 
     def test_an_arm_comes_with_a_column_for_each_joint(self):
         with open("moves.yaml", "w", encoding="utf-8") as file:
