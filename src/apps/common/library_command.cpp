@@ -20,5 +20,4 @@ Watch consoleWatch()
   watch.stopped = [interrupts = std::make_shared<InterruptScope>()] { return interruptSignal() != 0; };
   return watch;
 }
-
 }  // namespace hjt

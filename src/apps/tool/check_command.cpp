@@ -277,7 +277,7 @@ void printArm(const RecordingCheck& check, const CheckedArm& arm)
 
 int check(const Printed<RecordingOptions>& given)
 {
-  RecordingOptions options = given;
+  Printed<RecordingOptions> options = given;
   options.watch = readingWatch();
   const RecordingCheck check = checkRecording(options);
   if (given.json)
