@@ -139,7 +139,10 @@ public:
     requirePayload(arm_.payload);
     addIdentifiedGains(identified, arm_);
     const std::vector<Parameters> drives = armDrives(arm_, options, identified, options.faults);
-    start.resize(start.empty() ? arm_.joints.size() : start.size());
+    if (given["start"].is_none())
+    {
+      start.resize(arm_.joints.size());
+    }
     if (start.size() != arm_.joints.size())
     {
       throw InputError("start: " + std::to_string(arm_.joints.size()) + " finite angles are needed [rad]");
