@@ -195,6 +195,7 @@ class Commands(Recordings):
                            (lambda: arm.run(-1.0), "duration"), (lambda: arm.run(0.1, rate=1e-300), "rate = 1.0?e-300"),
                            (lambda: arm.set_wrench((0.0, 0.0, 2000.0)), "1000"),
                            (lambda: hjt.Arm("ur5", [0.0]), "6 finite angles"),
+                           (lambda: hjt.Arm("ur5", []), "6 finite angles"),
                            (lambda: hjt.Arm("ur5", [0.0, 1e300] + 4 * [0.0]), "angle = 1.0e.300 .rad. is out of range"),
                            (lambda: arm.move({"time": [0.0, 1.0], "position": [6 * [0.0], 6 * [1e300]]}),
                             "speed = 1.0e.300 .rad/s. is out of range"),
