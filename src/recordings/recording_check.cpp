@@ -12,6 +12,7 @@
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "recordings/recorded_arms.hpp"
 #include "recordings/recorded_ranking.hpp"
+#include "recordings/stated_gains.hpp"
 #include "tracking/effort.hpp"
 #include "tracking/joint_evidence.hpp"
 #include "tracking/verdict.hpp"
@@ -296,11 +297,16 @@ RecordingCheck checkRecording(const RecordingOptions& options)
   check.options = options;
   check.contents = readCheckedContents(motionSource(options));
   check.arms = findArms(options, check.contents);
+  RecordingOptions own = options;
+  if (!options.rows && !check.arms.empty())
+  {
+    own.stated = std::make_shared<const RecordedStatements>(readStatements(motionSource(options), true));
+  }
   for (CheckedArm& arm : check.arms)
   {
     if (arm.taken.empty() && !arm.fitting.empty())
     {
-      arm.ranked = rankArms(optionsFor(options, arm, ""), arm.fitting);
+      arm.ranked = rankArms(optionsFor(own, arm, ""), arm.fitting);
       arm.taken = choice(arm);
     }
     if (arm.taken.empty() && !arm.joints_at_hand.empty())
@@ -309,8 +315,8 @@ RecordingCheck checkRecording(const RecordingOptions& options)
     }
     else if (!arm.taken.empty())
     {
-      readArm(options, arm);
-      tryRemedies(options, arm);
+      readArm(own, arm);
+      tryRemedies(own, arm);
     }
   }
   return check;
