@@ -14,6 +14,7 @@
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "python/comparison_row.hpp"
 #include "python/recordings/calls.hpp"
+#include "recordings/arm_run.hpp"
 #include "recordings/check_report.hpp"
 #include "recordings/compare.hpp"
 #include "recordings/follow.hpp"
