@@ -167,6 +167,10 @@ private:
     {
       throw InputError(option.shown + " must be " + kindText(option));
     }
+    if (option.is_required && !option.given)
+    {
+      throw InputError(option.name + ": there is none");
+    }
     if (option.most == 2 && option.values.size() != 2)
     {
       throw InputError(option.shown + " must be " + kindText(option));
