@@ -18,21 +18,7 @@ inline double robustDeviation(const Eigen::VectorXd& residuals)
   return upperMedian(sorted.begin(), sorted.end()) / NORMAL_MEDIAN;
 }
 
-/// 1 + 2 sum of the correlations until they first turn negative.
-inline double correlationRows(const Eigen::VectorXd& residuals)
-{
-  const Eigen::Index rows = residuals.size();
-  const double power = residuals.squaredNorm();
-  double length = 1.0;
-  for (Eigen::Index lag = 1; lag < rows / 4 && power > 0.0; ++lag)
-  {
-    const double correlation = residuals.head(rows - lag).dot(residuals.tail(rows - lag)) / power;
-    if (correlation <= 0.0)
-    {
-      break;
-    }
-    length += 2.0 * correlation;
-  }
-  return length;
-}
+/// 1 + 2 sum of the correlations until they first turn negative: rows that tell as much as one. Takes as long as a
+/// Fourier transform of the rows.
+double correlationRows(const Eigen::VectorXd& residuals);
 }  // namespace hjt
