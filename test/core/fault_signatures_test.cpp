@@ -351,7 +351,7 @@ TEST_F(AgainstSignatures, WearThatComesTogetherIsNoOtherFault)
 {
   const auto is = [](const Signature& signature, FaultKind kind, double severity)
   { return signature.cause == causeOf(kind) && signature.severity == severity; };
-  const auto probabilityOf = [](const CausePosterior& posterior, FaultKind kind)
+  const auto probability_of = [](const CausePosterior& posterior, FaultKind kind)
   { return posterior.probability[static_cast<std::size_t>(causeOf(kind))]; };
   int windows = 0;
   for (const Signature& teeth : signatures_->signatures)
@@ -374,8 +374,8 @@ TEST_F(AgainstSignatures, WearThatComesTogetherIsNoOtherFault)
     }
     ++windows;
     const CausePosterior found = posterior(change, teeth.motion);
-    EXPECT_GT(probabilityOf(found, FaultKind::TOOTH_WEAR) + probabilityOf(found, FaultKind::INTERFACE_WEAR) +
-                  probabilityOf(found, FaultKind::LUBRICANT_DEGRADATION),
+    EXPECT_GT(probability_of(found, FaultKind::TOOTH_WEAR) + probability_of(found, FaultKind::INTERFACE_WEAR) +
+                  probability_of(found, FaultKind::LUBRICANT_DEGRADATION),
               0.9)
         << teeth.motion.speed;
   }
