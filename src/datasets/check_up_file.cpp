@@ -13,7 +13,6 @@
 #include "arm/arm_configuration.hpp"
 #include "arm/check_up.hpp"
 #include "bags/bag_writer.hpp"
-#include "base/joined.hpp"
 #include "base/number_text.hpp"
 #include "base/text_stream.hpp"
 #include "base/whole_file.hpp"

@@ -9,11 +9,13 @@
 #include <filesystem>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <string>
 #include <system_error>
 #include <thread>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -27,6 +29,17 @@ namespace hjt
 {
 namespace
 {
+/// Of "I/N" with 0 <= I < N; none: another text.
+std::optional<std::pair<std::uint64_t, std::uint64_t>> shardOf(const std::string& text)
+{
+  std::pair<std::uint64_t, std::uint64_t> shard;
+  char slash = 0;
+  std::istringstream stream(text);
+  const bool read = static_cast<bool>(stream >> shard.first >> slash >> shard.second);
+  return read && stream.peek() == EOF && slash == '/' && shard.first < shard.second ? std::make_optional(shard) :
+                                                                                      std::nullopt;
+}
+
 /// What the threads of a sweep tell, for the caller's own thread.
 class Told
 {
@@ -193,22 +206,14 @@ void addOptions(OptionTable& table, SweepOptions& options)
       .required()
       .type("DIR");
   addJobsOption(table, options.jobs);
-  // Its check has read it.
   table
       .add(
-          "--shard", Option::Kind::TEXT, [](const std::string& /*text*/) {},
+          "--shard", Option::Kind::TEXT,
+          [&options](const std::string& text) { std::tie(options.shard, options.shards) = shardOf(text).value(); },
           "only every N-th run, from run I on: one of N processes, anywhere")
       .type("I/N")
-      .check(
-          [&options](const std::string& text)
-          {
-            char slash = 0;
-            std::istringstream stream(text);
-            const bool read = static_cast<bool>(stream >> options.shard >> slash >> options.shards);
-            return read && stream.peek() == EOF && slash == '/' && options.shard < options.shards ?
-                       std::string() :
-                       "'" + text + "' must be I/N with 0 <= I < N";
-          });
+      .check([](const std::string& text)
+             { return shardOf(text) ? std::string() : "'" + text + "' must be I/N with 0 <= I < N"; });
   addOptions(table, static_cast<ConfigurationOptions&>(options));
 }
 

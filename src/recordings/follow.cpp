@@ -14,6 +14,7 @@
 #include "messages/tracker_outputs.hpp"
 #include "output/run_summary.hpp"
 #include "output/text_table.hpp"
+#include "params/choices.hpp"
 #include "recordings/arm_assessment.hpp"
 #include "recordings/recorded_motion.hpp"
 #include "tracking/stream_timing.hpp"
@@ -445,8 +446,12 @@ void addOptions(OptionTable& table, FollowOptions& options)
 {
   addRecordingOption(table, options);
   addJointOptions(table, options);
-  const auto take = [&options](const std::string& text) {
-    options.mode = text == "torque" ? InputMode::TORQUE : text == "observer" ? InputMode::OBSERVER : InputMode::MOTION;
+  const auto take = [&options](const std::string& text)
+  {
+    for (const auto& [name, mode] : choiceNames(InputMode{}))
+    {
+      options.mode = text == name ? mode : options.mode;
+    }
   };
   table.add("--mode", Option::Kind::TEXT, take, "input of the twin: the recorded current, motion, or both")
       .choice({ "motion", "observer", "torque" })

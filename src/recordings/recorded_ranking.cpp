@@ -47,7 +47,6 @@ std::vector<ArmFit> rankArms(const RecordingOptions& options, const std::vector<
   {
     own.arm = name;
     auto recording = std::make_unique<const ArmRecording>(own);
-    own.stated = recording->options().stated;  // the same file
     if (!candidates.empty() && jointNames(recording->arm()) != jointNames(candidates.front().arm))
     {
       others.push_back(name);

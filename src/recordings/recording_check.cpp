@@ -295,12 +295,13 @@ RecordingCheck checkRecording(const RecordingOptions& options)
 {
   RecordingCheck check;
   check.options = options;
-  check.contents = readCheckedContents(motionSource(options));
+  const MotionSource source = motionSource(options);
+  check.contents = readCheckedContents(source);
   check.arms = findArms(options, check.contents);
   RecordingOptions own = options;
   if (!options.rows && !check.arms.empty())
   {
-    own.stated = std::make_shared<const RecordedStatements>(readStatements(motionSource(options), true));
+    own.stated = std::make_shared<const RecordedStatements>(readStatements(source, true));
   }
   for (CheckedArm& arm : check.arms)
   {

@@ -253,8 +253,7 @@ void addOptions(OptionTable& table, RemainingOptions& options)
   addSignalOptions(table, options);
   table.add("--hours", options.hours,
             "hours of use behind the drive, all as in the recordings [h]; default: those of the recordings. A list, "
-            "ascending: "
-            "the hours at which each recording was made");
+            "ascending: the hours at which each recording was made");
   table
       .add("--baseline", options.baseline,
            "reference of the new drive, from `indicators`: verdicts and readings by it tell of wear")
