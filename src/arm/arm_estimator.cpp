@@ -117,6 +117,7 @@ struct ArmEstimator::Point
 {
   Eigen::VectorXd at;
   Eigen::MatrixXd information;
+  Eigen::VectorXd of_prior;        // the part of it, of each term
   std::vector<double> deviations;  // of the rows of each joint [A]
   double rareness{};
   double cost{ std::numeric_limits<double>::infinity() };
@@ -371,6 +372,9 @@ ArmEstimator::Estimate ArmEstimator::estimateOf(const Point& point, const std::v
     terms[own + OWN_COLD] = cold / power;
     terms[own + OWN_LOSS] = loss / power;
     found.own.push_back(known(terms));
+    const int friction = own + OWN_FRICTION;
+    const double of_rows = 1.0 / covariance(friction, friction) - point.of_prior[friction];
+    found.own.back().of_rows = NORMAL_95 / std::sqrt(std::max(0.0, of_rows));
     terms[FRICTION] = 1.0;
     terms[COLD] = cold / power;
     found.frictions.push_back(known(terms));
@@ -503,6 +507,7 @@ ArmEstimator::Point ArmEstimator::refine(const Prior& prior, const std::vector<b
     Eigen::VectorXd right = Eigen::VectorXd::Zero(size_);
     point.rareness = point.cost = 0.0;
     addPrior(prior, round < LOOSE_ROUNDS ? start : HELD, point, right);
+    point.of_prior = point.information.diagonal();
     for (std::size_t i = 0; i < rows_.size(); ++i)
     {
       if (!rows_[i].empty())

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -56,6 +57,7 @@ public:
   {
     double value{};
     double half_width{};
+    double of_rows{ HUGE_VAL };  ///< likewise, by the rows alone
 
     bool isBeyond(double least) const;  ///< the interval, from `least` either way
   };

@@ -17,6 +17,7 @@ namespace
 // Logarithm of how much rarer another mounting, a payload that changes or a drag is; where nothing changes, recordings
 // of a UR5 and a UR10e show up to 8 for such a payload.
 constexpr double OTHER_CAUSE = 10.0;
+constexpr double TOLD = 1.0;    // half width of a friction by the rows alone, that says something of it [-]
 constexpr double FLOOR = 0.02;  // of the currents: that the twin of no real arm falls below [-]
 
 /// Of what is left of the currents, share.
@@ -346,7 +347,7 @@ std::vector<FittedFriction> LoadFit::frictionsOf(const std::vector<Hypothesis>& 
     {
       continue;
     }
-    friction = { 1.0, HUGE_VAL, 0.0 };
+    friction = { 1.0, HUGE_VAL, 0.0, 0.0 };
     for (const Hypothesis& of : all)
     {
       const ArmEstimator::Known& whole = of.found.frictions[i];
@@ -355,6 +356,7 @@ std::vector<FittedFriction> LoadFit::frictionsOf(const std::vector<Hypothesis>& 
       friction.factor = &of == &all.front() ? counts.value : friction.factor;
       friction.lower = std::min({ friction.lower, own.value - own.half_width, whole.value - whole.half_width });
       friction.upper = std::max({ friction.upper, own.value + own.half_width, whole.value + whole.half_width });
+      friction.of_rows = std::max(friction.of_rows, of.found.own[i].of_rows);
     }
   }
   for (const auto& [found, may, cost] : all)
@@ -366,6 +368,10 @@ std::vector<FittedFriction> LoadFit::frictionsOf(const std::vector<Hypothesis>& 
     for (std::size_t i = 0; i < frictions.size(); ++i)
     {
       const ArmEstimator::Known& own = found.own[i];
+      if (!(own.of_rows < TOLD))
+      {
+        continue;
+      }
       const std::string text = "in a fit of all joints' currents" + cause + " its friction is " +
                                fixedText(1.0 + own.value, 2) + " [" + fixedText(1.0 + own.value - own.half_width, 2) +
                                ", " + fixedText(1.0 + own.value + own.half_width, 2) + "] times the expected one";

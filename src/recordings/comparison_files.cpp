@@ -226,10 +226,12 @@ Json verdictFields(const Verdict& verdict)
 
 namespace
 {
-/// Standard deviation of the friction by its scatter, as a share; NaN: it was not judged.
+/// Standard deviation of the friction by its scatter, as a share; NaN: it was not judged by the joint's own rows, which
+/// are no reference then.
 double frictionDeviation(const ComparisonRecord& record)
 {
-  return record.is_friction_judged ? record.friction.scatter : std::numeric_limits<double>::quiet_NaN();
+  return record.is_friction_judged && record.friction.isJudged() ? record.friction.scatter :
+                                                                   std::numeric_limits<double>::quiet_NaN();
 }
 
 /// Friction factor after division by the arm's common factor; null: not judged.

@@ -135,6 +135,13 @@ Gap whyImpossible(const FrictionFactor& factor, const std::vector<FrictionPoint>
   return { Reason::SOUND, "" };
 }
 
+/// The joint's own rows do not show its friction; those of the whole arm may.
+bool isUnshown(Reason reason)
+{
+  return reason == Reason::NO_STEADY_MOTION || reason == Reason::NO_REFERENCE || reason == Reason::ONE_DIRECTION ||
+         reason == Reason::ONE_SPEED || reason == Reason::TOO_SHORT || reason == Reason::FRICTION_SCATTER;
+}
+
 /// Of the ratio to the mean of the reference's recordings. `stated`: of one recording to another; it counts like as
 /// many recordings as STATED_COUNT beside the difference of those that there are.
 double repeatDeviation(double stated, const OwnReference& own)
@@ -317,14 +324,16 @@ std::string frictionText(const FrictionFactor& factor, bool is_fitted, const Joi
   {
     text += " The reference did not judge this joint's friction; the twin is taken in its place.";
   }
-  const std::vector<FrictionPoint> points = evidence.friction().points();
   text += " At " + fixedText(evidence.temperature(), 0) + " degC (" + temperatureSource(evidence) + ")";
   text += std::isfinite(context.own.temperature) ?
               ", the reference at " + fixedText(context.own.temperature, 0) +
                   " degC; the twin's law of friction makes up for the difference." :
               ".";
-  return text + " Measured at " + std::to_string(points.size()) + " speeds from " + fixedText(points.front().speed, 2) +
-         " to " + fixedText(points.back().speed, 2) + " rad/s.";
+  const std::vector<FrictionPoint> points = evidence.friction().points();
+  return points.empty() ?
+             text :
+             text + " Measured at " + std::to_string(points.size()) + " speeds from " +
+                 fixedText(points.front().speed, 2) + " to " + fixedText(points.back().speed, 2) + " rad/s.";
 }
 }  // namespace
 
@@ -354,9 +363,13 @@ Finding judgeFriction(const JointEvidence& evidence, const JointContext& context
   }
   verdict[Figure::FRICTION_OF_ARM] = context.arm_friction;
   const FrictionFactor factor = frictionFactor(evidence, context);
+  const double of_kind = evidence.parameters().comparison.friction_tolerance;
+  // Where others of the arm are held against themselves, the fit is of two kinds of joints.
+  const FittedFriction fitted = context.own.is_unjudged ? FittedFriction() : context.fitted;
+  bool is_fitted = isUnshown(factor.reason) && (fitted.departs() || fitted.isWithin(of_kind));
   verdict.friction_text = factor.why_not;
   finding.reason = factor.reason;
-  if (!factor.isJudged())
+  if (!factor.isJudged() && !is_fitted)
   {
     return finding;
   }
@@ -368,28 +381,29 @@ Finding judgeFriction(const JointEvidence& evidence, const JointContext& context
                             "the configured ones.";
     return finding;
   }
-  const double of_kind = evidence.parameters().comparison.friction_tolerance;
   const bool is_to_twin = factor.reference == FrictionReference::TWIN;
-  const double more = is_to_twin ? of_kind : MORE_THAN_OWN;
-  const double less = is_to_twin ? of_kind : LESS_THAN_OWN;
-  finding.level =
-      levelOf(departure(factor, context.arm_friction, more, less), 1.0, evidence.parameters().indicators.error_factor);
+  double more = is_to_twin ? of_kind : MORE_THAN_OWN;
+  double less = is_to_twin ? of_kind : LESS_THAN_OWN;
   const double shared = context.arm_friction;
-  verdict[figureOf(factor.reference)] = factor.value;
-  verdict[Figure::FRICTION_SCATTER] = factor.scatter;
-  verdict[Figure::FRICTION_LOWEST] = 1.0 - less;
-  verdict[Figure::FRICTION_HIGHEST] = 1.0 + more;
   verdict.friction = { factor.value / shared, factor.low() / shared, factor.high() / shared, true };
-  // Where others of the arm are held against themselves, the fit is of two kinds of joints.
-  const bool is_fitted =
-      is_to_twin && !context.own.is_unjudged && finding.level == VerdictLevel::OK && context.fitted.departs();
+  finding.level = VerdictLevel::OK;
+  finding.reason = Reason::SOUND;
+  if (factor.isJudged())
+  {
+    finding.level = levelOf(departure(factor, shared, more, less), 1.0, evidence.parameters().indicators.error_factor);
+    verdict[figureOf(factor.reference)] = factor.value;
+    verdict[Figure::FRICTION_SCATTER] = factor.scatter;
+    const bool is_better = is_to_twin || fitted.upper * factor.low() < fitted.lower * factor.high();
+    is_fitted = finding.level == VerdictLevel::OK && fitted.departs() && is_better;
+  }
   if (is_fitted)
   {
-    finding.level = VerdictLevel::WARN;
-    verdict[Figure::FRICTION_LOWEST] = 1.0 - FittedFriction::BOUND;
-    verdict[Figure::FRICTION_HIGHEST] = 1.0 + FittedFriction::BOUND;
-    verdict.friction = { context.fitted.factor, context.fitted.lower, context.fitted.upper, true };
+    finding.level = fitted.departs() ? VerdictLevel::WARN : VerdictLevel::OK;
+    more = less = fitted.departs() ? FittedFriction::BOUND : of_kind;
+    verdict.friction = { fitted.factor, fitted.lower, fitted.upper, true };
   }
+  verdict[Figure::FRICTION_LOWEST] = 1.0 - less;
+  verdict[Figure::FRICTION_HIGHEST] = 1.0 + more;
   if (finding.level != VerdictLevel::OK)
   {
     finding.reason = Reason::FRICTION;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -66,7 +67,8 @@ struct FittedFriction
 {
   double factor{ 1.0 };
   double lower{ 0.0 };
-  double upper{ HUGE_VAL };  ///< 0 and this: there is no fit
+  double upper{ HUGE_VAL };    ///< 0 and this: there is no fit
+  double of_rows{ HUGE_VAL };  ///< half width of the interval by the rows alone, without what is expected of joints
   /// Why it may be as expected where the joint's own rows show more, or less; clauses, empty: it is not.
   std::string not_more{};
   std::string not_less{};
@@ -74,5 +76,10 @@ struct FittedFriction
   /// Of sound arms a UR5 and a UR10e show up to 0.07, a joint beside one of 60 % more friction 0.11.
   static constexpr double BOUND = 0.15;
   bool departs() const { return lower > 1.0 + BOUND || upper < 1.0 - BOUND; }
+  /// So it is, by the rows alone too.
+  bool isWithin(double tolerance) const
+  {
+    return std::max(upper, factor + of_rows) < 1.0 + tolerance && std::min(lower, factor - of_rows) > 1.0 - tolerance;
+  }
 };
 }  // namespace hjt

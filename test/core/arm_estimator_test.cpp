@@ -360,6 +360,20 @@ TEST(LoadFit, DoubtsAnotherFrictionWhereTheCurrentsOfAllJointsDoNotTellIt)
   }
 }
 
+/// Where no rows are of a joint, what its friction is said to be is what is expected of it: that doubts nothing.
+TEST(LoadFit, SaysHowMuchOfAFrictionTheRowsTell)
+{
+  const EstimatorCase of;
+  std::vector<bool> counts = ALL;
+  counts[ELBOW] = false;
+  const FoundLoad found = fitOf(of, 1).solve(counts);
+  for (std::size_t i = 0; i < found.frictions.size(); ++i)
+  {
+    EXPECT_EQ(found.frictions[i].isWithin(0.3), i != ELBOW) << i << ": " << found.frictions[i].of_rows;
+    EXPECT_EQ(found.frictions[i].not_more.empty() && found.frictions[i].not_less.empty(), i == ELBOW) << i;
+  }
+}
+
 TEST(LoadFit, LeavesOutAJointThatIsNotMeasured)
 {
   EstimatorCase of;

@@ -383,7 +383,30 @@ TEST_F(FrictionVerdict, IsWarnWhereTheFitOfAllJointsShowsIt)
   context.own.is_unjudged = true;
   EXPECT_EQ(judge(evidence, context).level, VerdictLevel::OK) << "the fit is of joints that have a reference";
   context.own = ownReference({ { evidence.friction().points(), 0.01 } });
-  EXPECT_EQ(judge(evidence, context).level, VerdictLevel::OK) << "it is known better than its type";
+  EXPECT_EQ(judge(evidence, context).level, VerdictLevel::OK) << "its own rows show it better";
+  context.own = ownReference({ { evidence.friction().points(), 0.3 } });
+  EXPECT_EQ(judge(evidence, context).level, VerdictLevel::WARN) << "they do not";
+}
+
+TEST_F(FrictionVerdict, IsThatOfTheFitOfAllJointsWhereTheJointsOwnRowsDoNotShowIt)
+{
+  JointContext context = witnessed(ownReference({ sound(1.0, between(0.02)) }));
+  const JointEvidence& evidence = joint_.evidence(between(1.5), 60.0, 1.0);
+  context.fitted = { 1.02, 0.94, 1.1, 0.12 };
+  const Verdict sound = judge(evidence, context);
+  EXPECT_EQ(sound.level, VerdictLevel::OK);
+  EXPECT_EQ(sound.friction.lower, 0.94);
+  EXPECT_TRUE(std::isnan(sound[Figure::FRICTION_OF_OWN]));
+  EXPECT_THAT(sound.friction_text, HasSubstr("1.02 [0.94, 1.10] times this joint's own when it was sound in a fit"));
+  context.fitted.of_rows = 0.4;
+  EXPECT_EQ(judge(evidence, context).reason, Reason::NO_REFERENCE) << "that is what is expected, not what rows show";
+  context.fitted = { 1.4, 1.25, 1.55, 0.15 };
+  const Verdict worn = judge(evidence, context);
+  EXPECT_EQ(worn.level, VerdictLevel::WARN);
+  EXPECT_THAT(causesOf(worn), Not(IsEmpty()));
+  context.own = OwnReference();
+  context.fitted = { 1.02, 0.94, 1.1, 0.12 };
+  EXPECT_EQ(judge(joint_.evidence(swing, 60.0, 0.0), context).level, VerdictLevel::NOT_JUDGED) << "no friction at all";
 }
 
 TEST_F(FrictionVerdict, AReferenceThatWasNotJudgedIsNone)
