@@ -330,6 +330,42 @@ ArmEstimator::Point ArmEstimator::withJump(const Freedom& may, const Point& with
   return best;
 }
 
+std::vector<ArmEstimator::Push> ArmEstimator::pushesOf(const Point& point, const std::vector<bool>& states) const
+{
+  constexpr double USUAL_MASS = 3.0;  // deviations a priori [kg]
+  constexpr double USUAL = 50.0;      // [N]
+  struct Leg
+  {
+    Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  };
+  std::vector<Leg> legs(legs_);
+  for (Leg& leg : legs)
+  {
+    leg.information.diagonal() = Eigen::Array3d(USUAL_MASS, USUAL, USUAL).square().inverse();
+  }
+  for (std::size_t i = 0; i < rows_.size(); ++i)
+  {
+    const double told = std::min(1.0, INDEPENDENT / static_cast<double>(rows_[i].size()));
+    const double weight = told / std::pow(point.deviations[i], 2);
+    for (const Row& row : rows_[i])
+    {
+      const Eigen::Vector3d slope(row.load[0], row.across[0], row.across[1]);
+      Leg& leg = legs[row.leg];
+      leg.information += weight * slope * slope.transpose();
+      leg.right += weight * errorOf(i, row, stateOf(row, states), point.at, nullptr) * slope;
+    }
+  }
+  std::vector<Push> pushes;
+  for (const Leg& leg : legs)
+  {
+    const Eigen::Vector3d found = leg.information.ldlt().solve(leg.right);
+    const double across = found.tail<2>().norm();
+    pushes.push_back({ std::hypot(gravity_.norm() * found[0], across), across });
+  }
+  return pushes;
+}
+
 ArmEstimator::Estimate ArmEstimator::estimateOf(const Point& point, const std::vector<bool>& states) const
 {
   const Eigen::MatrixXd covariance = point.information.ldlt().solve(Eigen::MatrixXd::Identity(size_, size_));
@@ -347,6 +383,7 @@ ArmEstimator::Estimate ArmEstimator::estimateOf(const Point& point, const std::v
   found.drag = known(Eigen::VectorXd::Unit(size_, DRAG));
   found.gain = known(Eigen::VectorXd::Unit(size_, GAIN));
   found.states = states;
+  found.pushes = pushesOf(point, states);
   found.rareness = point.rareness;
   found.cost = point.cost;
   double left = 0.0;

@@ -43,12 +43,13 @@ public:
     std::size_t leg{};
     double current{};
     double predicted{};
-    double friction{};          ///< of the twin
-    double cold{};              ///< the same 10 K colder, less that
-    double torque{};            ///< of the load as configured
-    double inertia{};           ///< of the rotor
-    double rise{};              ///< of the friction with the load, size by size [-]
-    Load load{ Load::Zero() };  ///< of units of mass, moments, gravity and drag
+    double friction{};                                  ///< of the twin
+    double cold{};                                      ///< the same 10 K colder, less that
+    double torque{};                                    ///< of the load as configured
+    double inertia{};                                   ///< of the rotor
+    double rise{};                                      ///< of the friction with the load, size by size [-]
+    Load load{ Load::Zero() };                          ///< of units of mass, moments, gravity and drag
+    Eigen::Vector2d across{ Eigen::Vector2d::Zero() };  ///< of unit forces on the tip across gravity
   };
   using Rows = std::vector<std::vector<Row>>;  ///< of each joint, from the base on
 
@@ -60,6 +61,13 @@ public:
     double of_rows{ HUGE_VAL };  ///< likewise, by the rows alone
 
     bool isBeyond(double least) const;  ///< the interval, from `least` either way
+  };
+
+  /// A force on the tip that explains what the rows of a leg leave.
+  struct Push
+  {
+    double size{};    ///< [N]
+    double across{};  ///< the part of it across gravity, where no payload weighs [N]
   };
 
   struct Estimate
@@ -76,6 +84,7 @@ public:
     std::vector<Known> frictions;  ///< of each joint, over the twin's, in its rows
     std::vector<Known> own;        ///< of each joint beside the arm's: the part that is a fault's
     std::vector<bool> states;      ///< of each leg; empty: one payload
+    std::vector<Push> pushes;      ///< of each leg
     double left{ 1.0 };            ///< of the currents, share, rms [-]
     double rareness{};             ///< of what is found, logarithm
     double cost{};                 ///< logarithm of a likelihood a posteriori
@@ -115,6 +124,7 @@ private:
   Point withJump(const Freedom& may, const Point& without, std::vector<bool>& states) const;
   std::vector<bool> parted(const Point& by) const;
   std::vector<bool> likelier(const Point& by) const;
+  std::vector<Push> pushesOf(const Point& point, const std::vector<bool>& states) const;
   Estimate estimateOf(const Point& point, const std::vector<bool>& states) const;
 
   void addPrior(const Prior& prior, int start, Point& point, Eigen::VectorXd& right) const;

@@ -100,10 +100,13 @@ private:
   };
 
   std::vector<Hypothesis> hypotheses(const std::vector<bool>& counts);
+  std::vector<Hypothesis> likeliest(const std::vector<bool>& counts) const;
+  bool isPushed(std::size_t leg) const { return leg < pushed_.size() && pushed_[leg]; }
   static std::vector<FittedFriction> frictionsOf(const std::vector<Hypothesis>& all);
   void cutLegs(double time, double speed);
   std::vector<double> repeats() const;
-  void addTo(std::size_t number, const MotionSample& sample, const MotionDriven& twin, const ArmEstimator::Load& load);
+  void addTo(std::size_t number, const MotionSample& sample, const MotionDriven& twin,
+             const UnitLoads::Torques& torques);
   void close(std::size_t joint, double time);
   void thin();
   ArmEstimator::Rows rowsOf(const std::vector<bool>& counts, std::size_t most) const;
@@ -120,6 +123,7 @@ private:
   std::vector<Joint> joints_;
   ArmEstimator::Rows rows_;
   std::vector<double> legs_;  // begin of each [s]
+  std::vector<bool> pushed_;  // legs that do not count; empty: none
   double still_{};            // for how long [s]
   double moved_{};            // [s]
   double last_time_{};

@@ -18,6 +18,9 @@ Eigen::Vector3d vectorOf(const std::array<double, 3>& values)
 UnitLoads::UnitLoads(const ArmDescription& arm)
   : joints_(arm.joints.size()), payload_(arm.payload), gravity_(vectorOf(arm.gravity)), drag_(arm.drag)
 {
+  const Eigen::Vector3d down = gravity_.isZero() ? Eigen::Vector3d(Eigen::Vector3d::UnitZ()) : gravity_;
+  across_.col(0) = down.unitOrthogonal();
+  across_.col(1) = down.cross(across_.col(0)).normalized();
   for (const ArmLink& link : arm.links)
   {
     const std::array<double, 6>& i = link.inertia;
@@ -153,6 +156,10 @@ void UnitLoads::torques(const std::vector<JointMotion>& motion, Eigen::MatrixXd&
                                              joint.mass * joint.axis.dot(up);
     }
     columns(row, 7) = joint.effort(along, tip.place, Eigen::Vector3d::Zero());
+    for (Eigen::Index way = 0; way < 2; ++way)
+    {
+      columns(row, 8 + way) = -joint.effort(across_.col(way), tip.place, Eigen::Vector3d::Zero());
+    }
   }
 }
 }  // namespace hjt

@@ -15,12 +15,16 @@ namespace hjt
 class UnitLoads
 {
 public:
+  static constexpr int COLUMNS = 10;
+  using Torques = Eigen::Matrix<double, COLUMNS, 1>;  ///< of a joint
+
   explicit UnitLoads(const ArmDescription& arm);
 
   double linksMass() const;  ///< without the payload [kg]
 
-  /// Of mass and moments, of gravity along each axis of the base's frame, and of a force against the tip's motion, at
-  /// each joint, by column [N.m/kg], [N.m/(kg.m)], [N.m/(m/s^2)], [N.m/N].
+  /// Of mass and moments, of gravity along each axis of the base's frame, of a force against the tip's motion, and of
+  /// forces on the tip along two directions across gravity, at each joint, by column [N.m/kg], [N.m/(kg.m)],
+  /// [N.m/(m/s^2)], [N.m/N], [N.m/N].
   void torques(const std::vector<JointMotion>& motion, Eigen::MatrixXd& columns) noexcept;
 
   /// Of links, payload and drag themselves, at each joint [N.m].
@@ -84,6 +88,7 @@ private:
   std::vector<Joint> joints_;  // where the last walk found them
   Payload payload_;
   Eigen::Vector3d gravity_;
+  Eigen::Matrix<double, 3, 2> across_;  // directions across gravity, where no payload weighs
   double drag_;
 };
 }  // namespace hjt

@@ -29,6 +29,7 @@ struct EstimatorCase
   bool in_turns{};  // in every second leg alone
   double tilt{};    // of the mounting [rad]
   double push{};    // at the elbow, for 2 s [N.m]
+  double hand{};    // on the tip along x and half of it down in every fifth leg, the other way each time [N]
   double drag{};    // on the tip against its motion [N]
   bool is_own{};    // joints are held against their own friction, which repeats to 2.5 %
 };
@@ -98,6 +99,20 @@ std::vector<LoadFit::Drive> drivesOf(const Arm& arm, bool are_own)
   return drives;
 }
 
+/// Torques that a force of 1 N on the tip takes, along x and half of it down, while the arm stands as it does [N.m].
+std::vector<double> torquesOfHand(const ArmDescription& arm, std::vector<JointMotion> motion)
+{
+  ArmDescription lies = arm;
+  lies.gravity = { 1.0, 0.0, -0.5 };
+  Eigen::MatrixXd columns(6, UnitLoads::COLUMNS);
+  for (JointMotion& joint : motion)
+  {
+    joint.velocity = joint.acceleration = 0.0;
+  }
+  UnitLoads(lies).torques(motion, columns);
+  return { columns.col(0).data(), columns.col(0).data() + columns.rows() };
+}
+
 /// The rows of a case: friction of joints differs by 5 %, gains by 2 %, offsets by 0.02 A, currents by noise of 0.05 A.
 LoadFit fitOf(const EstimatorCase& of, unsigned seed)
 {
@@ -140,6 +155,9 @@ LoadFit fitOf(const EstimatorCase& of, unsigned seed)
     const bool is_carried = time >= of.from && (!of.in_turns || std::fmod(std::floor(time / LEG), 2.0) == 0.0);
     const std::vector<double> torques = torquesOf(is_carried ? carrying : without, motion);
     const std::vector<double> expected = torquesOf(configured, motion);
+    const auto leg = static_cast<int>(time / LEG);
+    const double hand = leg % 5 != 2 ? 0.0 : leg % 2 == 0 ? of.hand : -of.hand;
+    const std::vector<double> pushed = torquesOfHand(bare, motion);
     for (std::size_t i = 0; i < 6; ++i)
     {
       MotionSample sample;
@@ -148,7 +166,7 @@ LoadFit fitOf(const EstimatorCase& of, unsigned seed)
       sample.position = motion[i].position;
       sample.velocity = motion[i].velocity;
       sample.acceleration = motion[i].acceleration;
-      sample.load = torques[i] + (i == ELBOW && time > 25.0 && time < 27.0 ? of.push : 0.0);
+      sample.load = torques[i] + hand * pushed[i] + (i == ELBOW && time > 25.0 && time < 27.0 ? of.push : 0.0);
       const MotionPrediction truth = true_twins[i].step(sample);
       const double friction = truth.friction_torque / arm.joints[i].telemetry.torque_per_current;
       sample.current =
@@ -271,6 +289,20 @@ INSTANTIATE_TEST_SUITE_P(Cases, ArmEstimatorTable,
                                               [](EstimatorCase& c)
                                               {
                                                 c.push = 25.0;
+                                                c.friction[ELBOW] = 1.6;
+                                              }),
+                                         with("hand", [](EstimatorCase& c) { c.hand = 50.0; }),
+                                         with("hand_in_turns",
+                                              [](EstimatorCase& c)
+                                              {
+                                                c.hand = 50.0;
+                                                c.mass = 2.0;
+                                                c.in_turns = true;
+                                              }),
+                                         with("hand_elbow_friction",
+                                              [](EstimatorCase& c)
+                                              {
+                                                c.hand = 50.0;
                                                 c.friction[ELBOW] = 1.6;
                                               }),
                                          with("drag", [](EstimatorCase& c) { c.drag = 10.0; }),

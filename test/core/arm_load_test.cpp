@@ -57,7 +57,7 @@ protected:
                       const std::function<void(const std::vector<JointMotion>&, const Eigen::MatrixXd&)>& visit)
   {
     UnitLoads unit(arm);
-    Eigen::MatrixXd columns(6, 8);
+    Eigen::MatrixXd columns(6, UnitLoads::COLUMNS);
     for (int pose = 0; pose < 20; ++pose)
     {
       const std::vector<JointMotion> motion = motionOfPose(pose, at_rest);
@@ -163,6 +163,29 @@ TEST_F(UnitLoadsOf, GravityIsThatOfLinksAndPayload)
                            std::vector<double>(motion.size()), MOST);
             });
   }
+}
+
+/// A force across gravity is the weight of a kilogram where gravity lies across, whichever way both directions point.
+TEST_F(UnitLoadsOf, ForcesAcrossGravityAreWeightsThatLieAcross)
+{
+  const ArmDescription arm = shipped("ur5");
+  ArmDescription across = arm;
+  std::array<Eigen::MatrixXd, 2> weights{ Eigen::MatrixXd(6, UnitLoads::COLUMNS),
+                                          Eigen::MatrixXd(6, UnitLoads::COLUMNS) };
+  const auto expect = [&](const std::vector<JointMotion>& motion, const Eigen::MatrixXd& columns)
+  {
+    for (std::size_t axis = 0; axis < 2; ++axis)
+    {
+      across.gravity = {};
+      across.gravity[axis] = 1.0;
+      UnitLoads(across).torques(motion, weights[axis]);
+    }
+    const Eigen::MatrixXd forces = columns.rightCols<2>() * columns.rightCols<2>().transpose();
+    const Eigen::MatrixXd expected =
+        weights[0].col(0) * weights[0].col(0).transpose() + weights[1].col(0) * weights[1].col(0).transpose();
+    EXPECT_TRUE(forces.isApprox(expected, 1e-12)) << forces << "\n" << expected;
+  };
+  inPoses(arm, true, expect);
 }
 
 /// The joints give the power that the drag takes: its force times the tip's speed, by differences of the tip's place.
