@@ -70,8 +70,8 @@ def write(docs, complete, pages, titles):
     lines += markdown_table(["section", "rows", "hold"],
                             counts((titles[page.section], page.rows) for page in pages if page.rows))
     lines += ["", "## What a row is worth", "",
-              "Rows that hold are evidence of different weight. Each states its class where it is judged, and what was "
-              "fitted to what; [validation.csv](validation.csv) has both. Only the first class compares the twin with "
+              "Rows that hold are evidence of different weight. Each row states its class of evidence, and what was "
+              "fitted to what, in [validation.csv](validation.csv). Only the first class compares the twin with "
               "something that it was not made from. Limits that only a broken gear would miss and bands that contain "
               "the value are shown as values and not counted. The rows of the thesis' chapters 6 and 7 are "
               "run on its gear "
