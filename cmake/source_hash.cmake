@@ -3,7 +3,7 @@
 #
 #   add_source_hash(TARGET FUNCTION FOLDER...)
 #
-# gives TARGET the function `const char* hjt::FUNCTION()`, declared in base/source_hash.hpp: 16 hexadecimal digits of all
+# gives TARGET the function `const char* hjt::FUNCTION()`, declared in base/hash.hpp: 16 hexadecimal digits of all
 # sources and headers below the folders, the compiler and its options. Run as a script, this file writes the function.
 if(CMAKE_SCRIPT_MODE_FILE)
   file(STRINGS ${LIST} ENTRIES)
@@ -15,7 +15,7 @@ if(CMAKE_SCRIPT_MODE_FILE)
   string(SHA256 HASH "${TEXT}")
   string(SUBSTRING ${HASH} 0 16 HASH)
   set(CODE "// Written by cmake/source_hash.cmake.
-#include \"base/source_hash.hpp\"
+#include \"base/hash.hpp\"
 
 const char* hjt::${FUNCTION}()
 {

@@ -5,7 +5,7 @@
 
 #include <Eigen/SparseCore>
 
-#include "studies/tangent_entries.hpp"
+#include "studies/dynamic_ring.hpp"
 
 namespace hjt
 {

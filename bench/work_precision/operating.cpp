@@ -19,9 +19,8 @@
 #include "bench/work_precision/follow.hpp"
 #include "bench/work_precision/operating_journey.hpp"
 #include "harmonic_joint_twin/surface/surface_source.hpp"
-#include "sensors/absolute_encoder.hpp"
-#include "sensors/incremental_encoder.hpp"
-#include "solver/leapfrog.hpp"
+#include "sensors/joint_sensors.hpp"
+#include "solver/joint_stepper.hpp"
 #include "surface/faulty_surface.hpp"
 #include "test/core/test_parameters.hpp"
 

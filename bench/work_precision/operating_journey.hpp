@@ -6,7 +6,7 @@
 
 #include "bench/work_precision/follow.hpp"
 #include "bench/work_precision/operating.hpp"
-#include "twin/observed_ring.hpp"
+#include "twin/tooth_forces.hpp"
 
 namespace hjt
 {

@@ -4,7 +4,7 @@
 
 #include "bench/work_precision/follow.hpp"
 #include "bench/work_precision/solvers.hpp"
-#include "studies/ring_method.hpp"
+#include "studies/ring_stepper.hpp"
 
 namespace hjt
 {

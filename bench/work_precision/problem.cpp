@@ -9,9 +9,9 @@
 #include <time.h>
 
 #include "gear/ratio.hpp"
-#include "solver/output_balance.hpp"
+#include "solver/ring_equilibrium.hpp"
 #include "statics/static_solver.hpp"
-#include "studies/travelling_ring.hpp"
+#include "studies/ring_stepper.hpp"
 #include "test/core/test_parameters.hpp"
 
 namespace hjt

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bench/work_precision/problem.hpp"
-#include "studies/ring_method.hpp"
+#include "studies/ring_stepper.hpp"
 
 namespace hjt
 {

@@ -12,8 +12,8 @@
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"
 #include "ros_io/drive_markers.hpp"
+#include "ros_io/node_environment.hpp"
 #include "ros_io/parameter_server.hpp"
-#include "ros_io/shutdown_signals.hpp"
 
 namespace
 {

@@ -13,9 +13,8 @@
 #endif
 
 #include "apps/common/command.hpp"
-#include "output/exit_code.hpp"
-#include "output/interrupt.hpp"
 #include "output/output_file.hpp"
+#include "output/process_end.hpp"
 
 #ifdef HJT_COMPLETE_TOOL
 namespace hjt

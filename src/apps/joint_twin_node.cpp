@@ -8,23 +8,165 @@
 #include <variant>
 #include <vector>
 
+#include <ros/init.h>
+#include <ros/master.h>
 #include <ros/names.h>
+#include <ros/node_handle.h>
 #include <ros/ros.h>
+#include <ros/service_server.h>
+#include <ros/this_node.h>
+#include <ros/time.h>
+#include <std_srvs/SetBool.h>
+#include <std_srvs/Trigger.h>
 
 #include "arm/arm_configuration.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"
+#include "harmonic_joint_twin/twin/twin.hpp"
+#include "live/realtime.hpp"
+#include "live/thread_exchange.hpp"
+#include "live/twin_loop.hpp"
 #include "messages/joint_affixes.hpp"
 #include "messages/topics.hpp"
 #include "params/configuration_files.hpp"
-#include "ros_io/arm_action.hpp"
-#include "ros_io/joint_name.hpp"
-#include "ros_io/master_watch.hpp"
+#include "ros_io/arm_node.hpp"
+#include "ros_io/diagnostics.hpp"
+#include "ros_io/input_subscribers.hpp"
+#include "ros_io/life_publisher.hpp"
+#include "ros_io/node_environment.hpp"
+#include "ros_io/output_publishers.hpp"
 #include "ros_io/parameter_server.hpp"
-#include "ros_io/shutdown_signals.hpp"
 #include "ros_io/tracker_node.hpp"
-#include "ros_io/twin_node.hpp"
-#include "statics/gear_checks.hpp"
+#include "statics/gear_rules.hpp"
+
+namespace hjt
+{
+namespace
+{
+/// Whether `topic` of the publishers in a master's state has this node.
+bool hasThisNode(XmlRpc::XmlRpcValue& publishers, const std::string& topic)
+{
+  for (int i = 0; i < publishers.size(); ++i)
+  {
+    XmlRpc::XmlRpcValue& nodes = publishers[i][1];
+    for (int n = 0; static_cast<std::string&>(publishers[i][0]) == topic && n < nodes.size(); ++n)
+    {
+      if (static_cast<std::string&>(nodes[n]) == ros::this_node::getName())
+      {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+/// Whether the master that answers has all topics of this node: one that came while the node started has the last of
+/// them alone. None that answers is no reason to doubt: connections go on without it.
+bool isKnownToMaster()
+{
+  XmlRpc::XmlRpcValue arguments;
+  arguments[0] = ros::this_node::getName();
+  XmlRpc::XmlRpcValue response;
+  XmlRpc::XmlRpcValue state;
+  if (!ros::master::execute("getSystemState", arguments, response, state, false))
+  {
+    return true;
+  }
+  ros::V_string topics;
+  ros::this_node::getAdvertisedTopics(topics);
+  return std::all_of(topics.begin(), topics.end(),
+                     [&](const std::string& topic) { return hasThisNode(state[0], topic); });
+}
+
+/// Until the node is told to end: true. False: another master has come, which knows nothing of the node, so that nobody
+/// can find its topics. It would have to be given its parameters and registrations again; a new start does that.
+bool waitForShutdownOrNewMaster()
+{
+  constexpr int LOOKS = 100;  // of which one at the master
+  constexpr int MISSES = 2;   // in a row: one alone may be a master that is just starting or ending
+  const ros::WallDuration period(0.05);
+  int misses = 0;
+  for (int look = 1; ros::ok() && misses < MISSES; ++look)
+  {
+    period.sleep();
+    if (look % LOOKS == 0)
+    {
+      misses = isKnownToMaster() ? 0 : misses + 1;
+    }
+  }
+  return !ros::ok();
+}
+
+/// The live twin: wires a `Twin` to the topics and services of a node. Translates only; computes nothing.
+///
+/// Threads: the loop advances the twin; a publisher sends what it filled; another ages the drive; the callbacks,
+/// diagnostics and services run in whoever spins, at least two threads, since a reset waits for the loop.
+class TwinNode
+{
+public:
+  /// Starts at once. @throws ParameterError.
+  TwinNode(ros::NodeHandle& node, const Parameters& parameters)
+    : twin_(watchedTwin(parameters))
+    , advanced_(twin_)
+    , publishers_(node, twin_)
+    , life_(node, parameters)
+    , loop_(
+          advanced_, parameters, inbox_, rosNow, rosClockKind(),
+          [this]
+          {
+            publishers_.offer(twin_);
+            const JointOutputs& joint = twin_.outputs();
+            life_.offer(joint.stamp, joint.motor_velocity, joint.joint_torque, joint.temperature, twin_.assessment());
+          },
+          [this](Stamp instant) { return publishers_.finishCycle(instant); })
+    , realtime_(requestRealtime(parameters.realtime, loop_))
+    , subscribers_(node, twin_, inbox_)
+    , timing_publisher_(node, parameters, loop_)
+    , diagnostics_(node, parameters, loop_, realtime_, inbox_, subscribers_, publishers_)
+    , reset_service_(node.advertiseService("reset", &TwinNode::reset, this))
+    , brake_service_(node.advertiseService("brake", &TwinNode::setBrake, this))
+  {
+  }
+
+private:
+  static Twin watchedTwin(const Parameters& parameters)
+  {
+    // In simulated time the twin waits for its surface, so that a replay gives the same bits every time.
+    Twin twin(parameters, nodeSurfaceSource(!ros::Time::isSimTime()));
+    twin.watchSignals(true);
+    return twin;
+  }
+
+  bool reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response)
+  {
+    response.success = loop_.reset();
+    response.message = response.success ? "the twin restarts at the current instant" : "the loop does not answer";
+    return true;
+  }
+
+  bool setBrake(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response)
+  {
+    inbox_.push(Input{ rosNow(), InputKind::BRAKE, request.data ? 1.0 : 0.0 });
+    response.success = true;
+    response.message = request.data ? "brake engages" : "brake releases";
+    return true;
+  }
+
+  Twin twin_;
+  AdvancedTwin advanced_;
+  Inbox inbox_;
+  OutputPublishers publishers_;
+  LifePublisher life_;
+  TwinLoop loop_;
+  RealtimeState realtime_;
+  InputSubscribers subscribers_;
+  TimingPublisher timing_publisher_;
+  Diagnostics diagnostics_;
+  ros::ServiceServer reset_service_;
+  ros::ServiceServer brake_service_;
+};
+}  // namespace
+}  // namespace hjt
 
 namespace
 {

@@ -20,10 +20,10 @@
 #include "bags/bag_file.hpp"
 #include "bags/bag_inputs.hpp"
 #include "bags/bag_writer.hpp"
-#include "base/joined.hpp"
+#include "base/text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
-#include "output/exit_code.hpp"
-#include "ros_io/shutdown_signals.hpp"
+#include "output/process_end.hpp"
+#include "ros_io/node_environment.hpp"
 
 namespace
 {

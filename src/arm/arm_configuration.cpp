@@ -5,7 +5,7 @@
 #include <numeric>
 #include <system_error>
 
-#include "base/joined.hpp"
+#include "base/text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "params/configuration_files.hpp"
 

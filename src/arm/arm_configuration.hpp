@@ -10,7 +10,7 @@
 #include "arm/arm_description.hpp"
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"
-#include "twin/configuration_options.hpp"
+#include "twin/options.hpp"
 
 namespace hjt
 {

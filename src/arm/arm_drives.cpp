@@ -4,7 +4,7 @@
 #include "arm/arm_configuration.hpp"
 #include "arm/arm_twin.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
-#include "twin/configuration_options.hpp"
+#include "twin/options.hpp"
 
 namespace hjt
 {

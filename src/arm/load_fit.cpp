@@ -4,9 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/median.hpp"
-#include "base/normal.hpp"
 #include "base/number_text.hpp"
+#include "base/statistics.hpp"
 #include "elements/motor.hpp"
 #include "gear/ratio.hpp"
 #include "tracking/friction_verdict.hpp"

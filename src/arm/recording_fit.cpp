@@ -7,8 +7,8 @@
 #include <optional>
 #include <utility>
 
-#include "base/median.hpp"
 #include "base/number_text.hpp"
+#include "base/statistics.hpp"
 #include "gear/angle.hpp"
 #include "gear/ratio.hpp"
 #include "params/choices.hpp"

@@ -5,8 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "base/median.hpp"
-#include "base/normal.hpp"
+#include "base/statistics.hpp"
 
 namespace hjt
 {

@@ -13,9 +13,9 @@
 #include "arm/arm_dynamics.hpp"
 #include "arm/arm_file.hpp"
 #include "arm/check_up.hpp"
-#include "base/csv_rows.hpp"
-#include "base/median.hpp"
+#include "base/csv_table.hpp"
 #include "base/number_text.hpp"
+#include "base/statistics.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "params/field_reader.hpp"
 

@@ -7,7 +7,7 @@
 #include <rosbag/view.h>
 #include <std_msgs/Float64.h>
 
-#include "bags/checked_message.hpp"
+#include "bags/message_decoder.hpp"
 #include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "messages/channels.hpp"

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "bags/bag_writer.hpp"
-#include "bags/recorded_topic.hpp"
 #include "messages/channels.hpp"
 
 namespace hjt

@@ -12,13 +12,14 @@
 #include <vector>
 
 #include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <ros/datatypes.h>
 #include <ros/message_traits.h>
 #include <ros/serialization.h>
 #include <rosbag/message_instance.h>
-#include <sys/file.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "messages/time.hpp"
@@ -162,5 +163,35 @@ private:
   std::map<boost::shared_ptr<ros::M_string>, std::uint32_t> copied_headers_;  // the same, found faster
   std::vector<std::uint8_t> scratch_;
   std::uint64_t messages_{};
+};
+
+/// Where messages go in a bag.
+struct BagContext
+{
+  BagWriter& bag;
+  std::string prefix;  ///< of the topics' names
+  Stamp delay{};       ///< of the time of recording behind the messages' stamps [ns]
+};
+
+/// Sink of one topic in a bag.
+template <class Message>
+class RecordedTopic
+{
+public:
+  RecordedTopic(const BagContext& context, const char* name, Message first)
+    : bag_(context.bag), topic_(context.prefix + name), delay_(context.delay), message_(std::move(first))
+  {
+  }
+
+  bool isWanted() const { return true; }
+
+  Message& message() { return message_; }
+  void send() { bag_.write(topic_, fromRosTime(message_.header.stamp) + delay_, message_); }
+
+private:
+  BagWriter& bag_;
+  std::string topic_;
+  Stamp delay_;
+  Message message_;
 };
 }  // namespace hjt

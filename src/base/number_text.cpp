@@ -13,6 +13,8 @@
 #include <cstring>
 #include <limits>
 
+#include <yaml-cpp/yaml.h>
+
 namespace hjt
 {
 namespace
@@ -134,20 +136,6 @@ std::string fixedText(double value, int digits)
   return text;
 }
 
-std::string rangeText(const Range& range)
-{
-  const auto bound = [](double value)
-  {
-    const bool whole = value == std::floor(value) && std::abs(value) < 1e6;
-    return whole ? std::to_string(static_cast<long long>(value)) : numberText(value);
-  };
-  if (range.max == std::numeric_limits<double>::max())
-  {
-    return ">= " + bound(range.min);
-  }
-  return bound(range.min) + " ... " + bound(range.max);
-}
-
 std::optional<double> decimalNumber(const std::string& text)
 {
   return text.size() == std::strlen(text.c_str()) ? decimalNumber(text.c_str()) : std::nullopt;
@@ -204,5 +192,17 @@ std::optional<double> nonFiniteNumber(const std::string& text)
   }
   const bool is_nan = text == ".nan" || text == ".NaN" || text == ".NAN";
   return is_nan ? std::optional(std::nan("")) : std::nullopt;
+}
+
+double yamlNumber(const YAML::Node& node)
+{
+  const std::string text = node.IsScalar() ? node.Scalar() : "";
+  const std::optional<double> decimal = decimalNumber(text);
+  const std::optional<double> number = decimal ? decimal : nonFiniteNumber(text);
+  if (!number)
+  {
+    throw YAML::TypedBadConversion<double>(node.Mark());
+  }
+  return *number;
 }
 }  // namespace hjt

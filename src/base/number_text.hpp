@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <locale>
 #include <optional>
+#include <sstream>
 #include <string>
 
-#include "base/range.hpp"
+namespace YAML
+{
+class Node;
+}
 
 namespace hjt
 {
@@ -17,9 +22,6 @@ std::string roundedText(double value, int digits);
 /// The number with so many digits behind the decimal point.
 std::string fixedText(double value, int digits);
 
-/// "8 ... 4000", or ">= 0.001" where there is no upper end.
-std::string rangeText(const Range& range);
-
 /// The number of a text in decimal digits as Python or C++ write it (5, -.5, 1e-06, 1.0E+3); nothing if it is another
 /// text.
 std::optional<double> decimalNumber(const std::string& text);
@@ -27,4 +29,14 @@ std::optional<double> decimalNumber(const char* text);
 
 /// Infinity or not a number as YAML spells them (.inf, -.Inf, .NAN); nothing if it is another text.
 std::optional<double> nonFiniteNumber(const std::string& text);
+
+/// A number of a YAML file; yaml-cpp's own as<double>() follows the program's locale. @throws YAML::Exception.
+double yamlNumber(const YAML::Node& node);
+
+/// A text to write to. Its numbers have a decimal point and no separators, whatever locale the program has set.
+class TextStream : public std::ostringstream
+{
+public:
+  TextStream() { imbue(std::locale::classic()); }
+};
 }  // namespace hjt

@@ -1,6 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+
+#include "base/number_text.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+
 namespace hjt
 {
 /// Closed interval a value must lie in.
@@ -9,4 +17,57 @@ struct Range
   double min;
   double max;
 };
+
+/// "8 ... 4000", or ">= 0.001" where there is no upper end.
+inline std::string rangeText(const Range& range)
+{
+  const auto bound = [](double value)
+  {
+    const bool whole = value == std::floor(value) && std::abs(value) < 1e6;
+    return whole ? std::to_string(static_cast<long long>(value)) : numberText(value);
+  };
+  if (range.max == std::numeric_limits<double>::max())
+  {
+    return ">= " + bound(range.min);
+  }
+  return bound(range.min) + " ... " + bound(range.max);
+}
+
+/// NaN lies in no range.
+inline bool isWithin(double value, const Range& range)
+{
+  return value >= range.min && value <= range.max;
+}
+
+/// An argument that counts something. @throws InputError.
+inline void requireAtLeast(const char* name, std::int64_t value, std::int64_t least)
+{
+  if (value < least)
+  {
+    throw InputError(std::string(name) + " = " + std::to_string(value) +
+                     " [-] is out of range, allowed: >= " + std::to_string(least));
+  }
+}
+
+/// "NAME = VALUE [UNIT] is out of range, allowed: RANGE [UNIT]".
+inline std::string outOfRangeText(const std::string& name, double value, const std::string& unit, const Range& range)
+{
+  const std::string in_unit = " [" + unit + "]";
+  return name + " = " + numberText(value) + in_unit + " is out of range, allowed: " + rangeText(range) + in_unit;
+}
+
+/// Empty where the value lies within.
+inline std::string rangeErrors(const std::string& name, double value, const std::string& unit, const Range& range)
+{
+  return isWithin(value, range) ? std::string() : outOfRangeText(name, value, unit, range);
+}
+
+/// @throws InputError with that text.
+inline void requireWithin(const std::string& name, double value, const std::string& unit, const Range& range)
+{
+  if (!isWithin(value, range))
+  {
+    throw InputError(outOfRangeText(name, value, unit, range));
+  }
+}
 }  // namespace hjt

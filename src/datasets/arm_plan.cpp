@@ -4,11 +4,9 @@
 #include <filesystem>
 #include <iostream>
 
-#include "datasets/variable.hpp"
-
 #include "arm/arm_configuration.hpp"
 #include "arm/set_points.hpp"
-#include "base/text_hash.hpp"
+#include "base/hash.hpp"
 #include "base/whole_file.hpp"
 #include "params/configuration_files.hpp"
 

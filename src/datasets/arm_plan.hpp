@@ -6,14 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "datasets/plan_node.hpp"
 #include "datasets/plan_values.hpp"
 #include "output/ordered_json.hpp"
 
 #include "arm/arm_description.hpp"
 #include "arm/arm_motion.hpp"
-#include "twin/configuration_options.hpp"
 #include "twin/growing_fault.hpp"
+#include "twin/options.hpp"
 
 namespace hjt
 {

@@ -3,18 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include <trajectory_msgs/JointTrajectory.h>
 
 #include "output/output_file.hpp"
-#include "output/run_summary.hpp"
+#include "output/process_end.hpp"
 
 #include "arm/arm_configuration.hpp"
 #include "arm/check_up.hpp"
 #include "bags/bag_writer.hpp"
 #include "base/number_text.hpp"
-#include "base/text_stream.hpp"
 #include "base/whole_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "output/report.hpp"
-#include "twin/configuration_options.hpp"
+#include "twin/options.hpp"
 
 namespace hjt
 {

@@ -10,7 +10,7 @@
 #include <cstdio>
 #include <string_view>
 
-#include "base/text_hash.hpp"
+#include "base/hash.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 
 namespace hjt

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// In place of the other hdf5_*.cpp where HDF5 is missing.
-#include "datasets/hdf5_files.hpp"
+// In place of hdf5_files.cpp where HDF5 is missing.
+#include "datasets/run_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 
 namespace hjt

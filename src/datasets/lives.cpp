@@ -7,10 +7,7 @@
 
 #include <boost/random/mersenne_twister.hpp>
 
-#include "datasets/plan_values.hpp"
-#include "datasets/variable.hpp"
-
-#include "statics/fatigue_law.hpp"
+#include "statics/flexspline_stress.hpp"
 
 namespace hjt
 {

@@ -9,17 +9,14 @@
 #include <vector>
 
 #include "datasets/arm_plan.hpp"
-#include "datasets/drive_split.hpp"
 #include "datasets/lives.hpp"
-#include "datasets/plan_node.hpp"
 #include "datasets/plan_values.hpp"
 #include "datasets/recording.hpp"
 #include "datasets/run_duty.hpp"
-#include "datasets/variable.hpp"
 #include "output/ordered_json.hpp"
 
 #include "harmonic_joint_twin/params/parameter_map.hpp"
-#include "twin/configuration_options.hpp"
+#include "twin/options.hpp"
 
 namespace hjt
 {

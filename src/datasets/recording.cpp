@@ -3,8 +3,7 @@
 
 #include <algorithm>
 
-#include "base/joined.hpp"
-#include "datasets/plan_values.hpp"
+#include "base/text.hpp"
 
 namespace hjt
 {

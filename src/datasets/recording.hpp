@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "arm/arm_recorder.hpp"
-#include "datasets/plan_node.hpp"
+#include "datasets/plan_values.hpp"
 #include "harmonic_joint_twin/twin/twin.hpp"
 
 namespace hjt

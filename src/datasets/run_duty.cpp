@@ -3,11 +3,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <filesystem>
 
-#include "base/number_table.hpp"
-#include "datasets/variable.hpp"
+#include "base/csv_table.hpp"
 
 #include "base/number_text.hpp"
 

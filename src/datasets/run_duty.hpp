@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "datasets/plan_node.hpp"
 #include "datasets/plan_values.hpp"
 #include "output/ordered_json.hpp"
 #include "params/field_table.hpp"

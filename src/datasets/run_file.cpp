@@ -17,11 +17,10 @@
 #include "base/publish_period.hpp"
 #include "base/whole_file.hpp"
 #include "datasets/file_seal.hpp"
-#include "datasets/hdf5_files.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "messages/time.hpp"
 #include "messages/topics.hpp"
-#include "output/run_summary.hpp"
+#include "output/process_end.hpp"
 
 #include "arm/moving_arm.hpp"
 #include "base/number_text.hpp"

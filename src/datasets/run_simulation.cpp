@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/temporary_directory.hpp"
-#include "output/run_summary.hpp"
+#include "output/process_end.hpp"
 
 #include "arm/arm_recorder.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "datasets/sweep.hpp"
 
-#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdio>
@@ -12,9 +11,7 @@
 #include <optional>
 #include <set>
 #include <sstream>
-#include <string>
 #include <system_error>
-#include <thread>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -23,7 +20,7 @@
 #include "datasets/run_simulation.hpp"
 
 #include "harmonic_joint_twin/base/errors.hpp"
-#include "surface/surface_pool.hpp"
+#include "surface/surface_cache.hpp"
 
 namespace hjt
 {

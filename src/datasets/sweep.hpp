@@ -10,8 +10,8 @@
 
 #include "base/range.hpp"
 #include "output/json.hpp"
-#include "output/watch.hpp"
-#include "twin/configuration_options.hpp"
+#include "output/progress.hpp"
+#include "twin/options.hpp"
 
 namespace hjt
 {

@@ -14,11 +14,9 @@
 #include "datasets/file_seal.hpp"
 #include "datasets/run_file.hpp"
 
-#include "base/joined.hpp"
+#include "base/hash.hpp"
 #include "base/number_text.hpp"
-#include "base/source_hash.hpp"
-#include "base/text_hash.hpp"
-#include "base/text_stream.hpp"
+#include "base/text.hpp"
 #include "base/whole_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 

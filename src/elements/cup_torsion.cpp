@@ -4,8 +4,7 @@
 #include <cmath>
 
 #include "gear/angle.hpp"
-#include "gear/block_sums.hpp"
-#include "gear/vector_clones.hpp"
+#include "gear/vector_loops.hpp"
 
 namespace hjt
 {

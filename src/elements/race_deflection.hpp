@@ -10,6 +10,15 @@
 
 namespace hjt
 {
+/// Radius of the bearing's outer race over that of the rim's bore, both free and round: the fit and what the wave
+/// generator's excess of temperature adds to it. > 0 interference [m].
+inline double raceFit(const Parameters& parameters) noexcept
+{
+  constexpr double EXPANSION = 11.5e-6;  // of steel [1/K]
+  return parameters.contact.fit +
+         EXPANSION * parameters.gear.flexspline_inner_radius * parameters.contact.temperature_difference;
+}
+
 /// By how much the outer race of the wave generator's bearing sags under the rim because balls do not carry.
 ///
 /// Ball k:   psi_k = 2 pi k / Z + (1 - s) (1 - d/D)/2 theta     its place in the housing, the outer race standing [rad]

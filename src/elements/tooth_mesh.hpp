@@ -6,12 +6,10 @@
 
 #include <Eigen/Core>
 
-#include "elements/force_sum.hpp"
-#include "elements/ring_tangent.hpp"
+#include "elements/ring_sums.hpp"
 #include "gear/manufacture_errors.hpp"
 #include "gear/ring_shape.hpp"
 #include "gear/tooth_profile.hpp"
-#include "gear/tooth_ring.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
 
 namespace hjt

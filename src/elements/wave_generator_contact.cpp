@@ -3,12 +3,9 @@
 
 #include <cmath>
 
-#include "elements/contact_ramp.hpp"
-#include "elements/hertz_contact.hpp"
-#include "elements/race_fit.hpp"
+#include "elements/contact_laws.hpp"
 #include "gear/angle.hpp"
-#include "gear/block_sums.hpp"
-#include "gear/vector_clones.hpp"
+#include "gear/vector_loops.hpp"
 
 namespace hjt
 {

@@ -5,8 +5,8 @@
 
 #include "arm/arm_file.hpp"
 #include "arm/arm_recorder.hpp"
-#include "base/joined.hpp"
 #include "base/number_text.hpp"
+#include "base/text.hpp"
 #include "params/field_reader.hpp"
 
 namespace hjt::fmu

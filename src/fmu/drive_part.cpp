@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "harmonic_joint_twin/params/parameter_map.hpp"
-#include "surface/surface_pool.hpp"
+#include "surface/surface_cache.hpp"
 
 namespace hjt::fmu
 {

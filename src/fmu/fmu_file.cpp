@@ -11,10 +11,9 @@
 #include <utility>
 
 #include "arm/arm_controller.hpp"
-#include "base/joined.hpp"
 #include "base/number_text.hpp"
+#include "base/text.hpp"
 #include "base/whole_file.hpp"
-#include "base/xml_text.hpp"
 #include "fmu/arm_variables.hpp"
 #include "fmu/variables.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"

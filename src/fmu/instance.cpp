@@ -8,9 +8,8 @@
 #include <limits>
 #include <utility>
 
+#include "base/hash.hpp"
 #include "base/number_text.hpp"
-#include "base/text_hash.hpp"
-#include "fmu/bytes.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 
 namespace hjt::fmu

@@ -2,11 +2,7 @@
 #include "fmu/journal.hpp"
 
 #include <cmath>
-#include <cstdint>
-#include <cstring>
 #include <utility>
-
-#include "fmu/bytes.hpp"
 
 namespace hjt::fmu
 {

@@ -13,8 +13,8 @@
 #include "params/choices.hpp"
 #include "params/field_table.hpp"
 
-#include "base/text_hash.hpp"
-#include "base/text_stream.hpp"
+#include "base/hash.hpp"
+#include "base/number_text.hpp"
 #include "gear/ratio.hpp"
 
 namespace hjt::fmu

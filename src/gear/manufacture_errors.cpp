@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <random>
 
-#include "base/number_table.hpp"
+#include "base/csv_table.hpp"
 #include "gear/angle.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 

@@ -4,10 +4,143 @@
 #include <cmath>
 #include <limits>
 
-#include "gear/flank_shapes.hpp"
+#include "gear/angle.hpp"
 
 namespace hjt
 {
+namespace
+{
+double involuteFunction(double angle)
+{
+  return std::tan(angle) - angle;
+}
+
+/// Half thickness at a radius of a gear cut with involutes; radial below the base circle. `reference`: radius of the
+/// pressure angle, where tooth and space are equally wide. [m]
+double involuteHalfWidth(double radius, double reference, double pressure_angle, int teeth)
+{
+  const double at_radius = std::acos(std::min(1.0, reference * std::cos(pressure_angle) / radius));
+  const double half_angle = PI / (2 * teeth) + involuteFunction(pressure_angle) - involuteFunction(at_radius);
+  return radius * std::sin(half_angle);
+}
+
+/// Fall of a double arc's half thickness between mid-height and the height `y` above it, both ways alike [m].
+class DoubleArc
+{
+public:
+  DoubleArc(const MeshParameters& mesh, const GearParameters& gear, const EngagementPath& path)
+    : half_tangent_(0.5 * mesh.tangent_length), sine_(std::sin(mesh.tangent_angle))
+  {
+    const double arc_height = 0.5 * gear.tooth_height_flexspline - half_tangent_;
+    const double tip_sine = std::sin(std::atan(path.slope(path.entry())));
+    // A tangent steeper than the path, or as long as the tooth, leaves no arc: the flank is straight.
+    curvature_ = arc_height > 0.0 ? std::max(0.0, tip_sine - sine_) / arc_height : 0.0;
+  }
+
+  double fall(double y) const
+  {
+    const double straight = std::min(std::abs(y), half_tangent_);
+    const double beyond = std::abs(y) - straight;
+    const double sine = sine_ + curvature_ * beyond;
+    const double cosine = std::sqrt(1.0 - sine * sine);
+    const double tangent_cosine = std::sqrt(1.0 - sine_ * sine_);
+    const double fall = straight * sine_ / tangent_cosine + beyond * (sine + sine_) / (cosine + tangent_cosine);
+    return std::copysign(fall, y);
+  }
+
+private:
+  double half_tangent_;
+  double sine_;
+  double curvature_;
+};
+}  // namespace
+
+EngagementPath::EngagementPath(const GearParameters& gear)
+  : amplitude_(gear.wave_amplitude)
+  , travel_((gear.flexspline_inner_radius + gear.toothMidHeight()) *
+            (gear.teeth_circular_spline - gear.teeth_flexspline) / gear.teeth_circular_spline)
+  , entry_(gear.engagementDepth())
+{
+}
+
+double EngagementPath::tau(double drop) const noexcept
+{
+  return std::acos(std::clamp(1.0 - drop / amplitude_, -1.0, 1.0));
+}
+
+double EngagementPath::across(double drop) const noexcept
+{
+  const double at = tau(drop);
+  return 0.5 * travel_ * (at - std::sin(at));
+}
+
+double EngagementPath::slope(double drop) const noexcept
+{
+  return 0.5 * travel_ / amplitude_ * std::tan(0.5 * tau(drop));
+}
+
+FlankShapes::FlankShapes(const MeshParameters& mesh, const GearParameters& gear, int intervals, int beyond)
+  : step(EngagementPath(gear).entry() / intervals)
+  , tooth(static_cast<Eigen::Index>(gear.tooth_height_flexspline / step) + 1)
+  , space(intervals + beyond + 1)
+{
+  const EngagementPath path(gear);
+  const double tip = 0.5 * gear.tooth_height_flexspline;
+  const double slope = std::tan(mesh.flank_angle);
+  const auto sample = [this](auto&& tooth_at, auto&& space_at)
+  {
+    for (Eigen::Index j = 0; j < tooth.size(); ++j)
+    {
+      tooth[j] = tooth_at(step * static_cast<double>(j));
+    }
+    for (Eigen::Index k = 0; k < space.size(); ++k)
+    {
+      space[k] = space_at(step * static_cast<double>(k));
+    }
+  };
+  switch (mesh.profile)
+  {
+    case ProfileKind::TRAPEZOID:
+      sample([&](double down) { return down * slope; }, [&](double out) { return -out * slope; });
+      break;
+    case ProfileKind::INVOLUTE:
+    {
+      const double reference = gear.flexspline_inner_radius + gear.toothMidHeight();
+      const double ratio = static_cast<double>(gear.teeth_circular_spline) / gear.teeth_flexspline;
+      sample([&](double down)
+             { return involuteHalfWidth(reference + tip - down, reference, mesh.flank_angle, gear.teeth_flexspline); },
+             [&](double out)
+             {
+               return involuteHalfWidth(gear.tip_radius_circular_spline + out, ratio * reference, mesh.flank_angle,
+                                        gear.teeth_circular_spline);
+             });
+      break;
+    }
+    case ProfileKind::CYCLOID:
+      sample([&](double down) { return -0.5 * path.across(std::max(0.0, path.entry() - 2.0 * down)); },
+             [&](double out) { return 0.5 * path.across(std::max(0.0, path.entry() - 2.0 * out)); });
+      break;
+    case ProfileKind::DOUBLE_ARC:
+    {
+      const DoubleArc arc(mesh, gear, path);
+      sample([&](double down) { return -arc.fall(tip - down); },
+             [](double) { return -std::numeric_limits<double>::infinity(); });
+      // The space is the envelope of the tooth along its path; where not even the tip comes, as wide as the tip.
+      space.tail(beyond).setConstant(tooth[0]);
+      for (int drop = 0; drop <= intervals; ++drop)
+      {
+        const double across = path.across(drop * step);
+        for (Eigen::Index j = 0; j < tooth.size() && j <= intervals - drop; ++j)
+        {
+          const Eigen::Index k = intervals - drop - j;
+          space[k] = std::max(space[k], tooth[j] + across);
+        }
+      }
+      break;
+    }
+  }
+}
+
 namespace
 {
 constexpr int ENGAGEMENT_INTERVALS = 128;  // of the table, from entry to full engagement

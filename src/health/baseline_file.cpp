@@ -10,9 +10,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include "base/number_text.hpp"
-#include "base/text_stream.hpp"
 #include "base/whole_file.hpp"
-#include "base/yaml_number.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "health/deviation_laws.hpp"
 #include "health/reference_fit.hpp"

@@ -7,7 +7,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "gear/vector_clones.hpp"
+#include "gear/vector_loops.hpp"
 
 namespace hjt
 {

@@ -13,9 +13,9 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include "base/edit_distance.hpp"
 #include "base/number_text.hpp"
 #include "base/range.hpp"
+#include "base/text.hpp"
 #include "base/whole_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "params/configuration_files.hpp"

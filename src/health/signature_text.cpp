@@ -4,7 +4,6 @@
 #include <string>
 
 #include "base/number_text.hpp"
-#include "base/text_stream.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "health/signature_file.hpp"
 

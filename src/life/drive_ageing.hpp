@@ -6,10 +6,9 @@
 #include <optional>
 
 #include "life/ageing_laws.hpp"
-#include "life/drive_age.hpp"
 #include "life/duty_cycle.hpp"
 #include "life/revolution_load_map.hpp"
-#include "statics/fatigue_law.hpp"
+#include "statics/flexspline_stress.hpp"
 
 namespace hjt
 {

@@ -6,11 +6,10 @@
 #include <cstddef>
 
 #include "life/drive_ageing.hpp"
-#include "life/nominal_use.hpp"
+#include "life/duty_cycle.hpp"
 #include "life/read_wear.hpp"
 #include "life/remaining_life.hpp"
 #include "life/revolution_load_map.hpp"
-#include "life/usage_history.hpp"
 
 namespace hjt
 {

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "life/remaining_life.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #include <boost/random/sobol.hpp>
 
 #include "gear/angle.hpp"
-#include "life/assessment_errors.hpp"
+#include "life/read_wear.hpp"
 
 namespace hjt
 {

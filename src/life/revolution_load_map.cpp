@@ -7,7 +7,7 @@
 
 #include "base/number_text.hpp"
 #include "base/range.hpp"
-#include "elements/race_fit.hpp"
+#include "elements/race_deflection.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "statics/gear_rules.hpp"
 

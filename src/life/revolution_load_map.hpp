@@ -10,12 +10,11 @@
 
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "life/ageing_laws.hpp"
-#include "life/drive_age.hpp"
 #include "life/duty_cycle.hpp"
 #include "model/faults/joint_faults.hpp"
 #include "solver/ring_equilibrium.hpp"
 #include "statics/flexspline_stress.hpp"
-#include "statics/pitch_walk.hpp"
+#include "statics/static_solver.hpp"
 
 namespace hjt
 {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "messages/conversions.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -10,10 +9,9 @@
 #include <optional>
 
 #include "base/number_text.hpp"
-#include "base/printable.hpp"
-#include "base/range_check.hpp"
+#include "base/range.hpp"
+#include "base/text.hpp"
 #include "messages/time.hpp"
-#include "statics/fatigue_law.hpp"
 #include "statics/inertia_error.hpp"
 #include "twin/growing_fault.hpp"
 

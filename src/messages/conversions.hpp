@@ -18,7 +18,7 @@
 #include "harmonic_joint_twin/Indicators.h"
 #include "harmonic_joint_twin/Stress.h"
 #include "harmonic_joint_twin/twin/twin.hpp"
-#include "statics/fatigue_law.hpp"
+#include "statics/flexspline_stress.hpp"
 #include "tracking/measured_gear.hpp"
 
 namespace hjt

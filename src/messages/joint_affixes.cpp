@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "base/joined.hpp"
+#include "base/text.hpp"
 
 namespace hjt
 {

@@ -2,7 +2,10 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <ctime>
+#include <string>
 
 #include <ros/time.h>
 
@@ -33,5 +36,16 @@ inline Stamp fromRosTime(const ros::Time& time)
 inline Stamp stampOr(const ros::Time& header_stamp, const ros::Time& received)
 {
   return fromRosTime(header_stamp.isZero() ? received : header_stamp);
+}
+
+/// Of a date [ns], in UTC. @param format of strftime, 31 letters at most
+inline std::string dateText(Stamp date, const char* format)
+{
+  constexpr Stamp SECOND = 1'000'000'000;
+  const auto seconds = static_cast<std::time_t>(date / SECOND);
+  std::tm parts{};
+  gmtime_r(&seconds, &parts);
+  std::array<char, 32> text{};
+  return { text.data(), std::strftime(text.data(), text.size(), format, &parts) };
 }
 }  // namespace hjt

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "model/joint_model.hpp"
 
-#include "gear/vector_clones.hpp"
+#include "gear/vector_loops.hpp"
 
 namespace hjt
 {

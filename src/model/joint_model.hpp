@@ -3,16 +3,11 @@
 
 #include <Eigen/Core>
 
-#include "elements/bearing_friction.hpp"
-#include "elements/brake.hpp"
-#include "elements/cup_friction.hpp"
-#include "elements/joint_friction.hpp"
+#include "elements/friction_laws.hpp"
 #include "elements/load.hpp"
 #include "elements/motor.hpp"
-#include "elements/ring_damping.hpp"
 #include "elements/ring_friction.hpp"
 #include "model/ring_model.hpp"
-#include "model/ring_response.hpp"
 
 namespace hjt
 {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "output/ordered_json.hpp"
-#include "output/text_table.hpp"
+#include "output/report.hpp"
 
 namespace hjt
 {

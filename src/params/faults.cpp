@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "harmonic_joint_twin/params/faults.hpp"
-#include "base/joined.hpp"
+#include "base/text.hpp"
 
 #include <algorithm>
 #include <array>

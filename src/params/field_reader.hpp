@@ -11,9 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "base/edit_distance.hpp"
-#include "base/joined.hpp"
 #include "base/number_text.hpp"
+#include "base/text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"
 #include "params/choices.hpp"

@@ -6,8 +6,8 @@
 #include <tuple>
 #include <type_traits>
 
-#include "base/joined.hpp"
 #include "base/number_text.hpp"
+#include "base/text.hpp"
 #include "params/field_reader.hpp"
 #include "params/field_table.hpp"
 

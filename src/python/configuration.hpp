@@ -9,6 +9,15 @@
 
 namespace hjt
 {
+constexpr const char* ORIGIN = "Python";  ///< of values, for error texts
+
+/// Puts keys and values into the map, unchecked. @throws ParameterError where one is no value.
+void put(const py::dict& values, ParameterMap& map);
+
+/// Reads one overlay, a file as given or beside `directory`, or a dict, over the map, unchecked.
+/// @throws ParameterError, Python's TypeError.
+void readOverlay(const py::handle& what, const std::string& directory, ParameterMap& map);
+
 /// All parameters, and the map that they were read from: what is set is checked with all the others, and an error
 /// leaves everything as it was.
 class Configuration

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "python/overlays.hpp"
+#include "python/configuration.hpp"
 
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "params/configuration_files.hpp"

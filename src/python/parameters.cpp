@@ -8,10 +8,9 @@
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "params/choices.hpp"
 #include "params/configuration_files.hpp"
-#include "params/field_rows.hpp"
+#include "params/field_table.hpp"
 #include "params/severity_errors.hpp"
 #include "python/configuration.hpp"
-#include "python/overlays.hpp"
 
 namespace hjt
 {

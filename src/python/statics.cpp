@@ -13,10 +13,9 @@
 #include "harmonic_joint_twin/twin/twin.hpp"
 #include "python/bindings.hpp"
 #include "python/configuration.hpp"
-#include "statics/analysed_faults.hpp"
-#include "statics/fatigue_law.hpp"
-#include "statics/gear_checks.hpp"
+#include "statics/flexspline_stress.hpp"
 #include "statics/gear_design.hpp"
+#include "statics/gear_rules.hpp"
 
 namespace hjt
 {

@@ -10,7 +10,7 @@
 
 #include "harmonic_joint_twin/surface/surface_source.hpp"
 #include "python/bindings.hpp"
-#include "surface/surface_pool.hpp"
+#include "surface/surface_cache.hpp"
 
 namespace hjt
 {

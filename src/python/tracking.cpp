@@ -6,9 +6,9 @@
 
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "params/choices.hpp"
+#include "python/bindings.hpp"
 #include "python/comparison_row.hpp"
 #include "python/configuration.hpp"
-#include "python/in_use.hpp"
 #include "python/surface_source.hpp"
 #include "tracking/tracker.hpp"
 

@@ -18,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/range_check.hpp"
+#include "base/range.hpp"
 #include "python/twin_object.hpp"
 #include "surface/parallel_tasks.hpp"
 

@@ -12,12 +12,11 @@
 #include <pybind11/stl.h>
 
 #include "base/number_text.hpp"
-#include "base/range_check.hpp"
+#include "base/range.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/twin/twin.hpp"
 #include "python/bindings.hpp"
 #include "python/configuration.hpp"
-#include "python/in_use.hpp"
 #include "python/surface_source.hpp"
 
 namespace hjt

@@ -8,17 +8,17 @@
 #include <utility>
 
 #include "output/output_file.hpp"
-#include "output/run_summary.hpp"
+#include "output/process_end.hpp"
 #include "recordings/arm_rows.hpp"
 
 #include "arm/arm_configuration.hpp"
 #include "arm/moving_arm.hpp"
 #include "arm/set_points.hpp"
-#include "bags/recording_format.hpp"
-#include "base/joined.hpp"
+#include "bags/recorded_messages.hpp"
 #include "base/number_text.hpp"
 #include "base/publish_period.hpp"
-#include "base/rms.hpp"
+#include "base/statistics.hpp"
+#include "base/text.hpp"
 
 namespace hjt
 {

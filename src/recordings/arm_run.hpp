@@ -11,9 +11,9 @@
 #include "arm/arm_recorder.hpp"
 #include "base/range.hpp"
 #include "harmonic_joint_twin/twin/twin.hpp"
+#include "output/progress.hpp"
 #include "output/report.hpp"
-#include "output/watch.hpp"
-#include "twin/configuration_options.hpp"
+#include "twin/options.hpp"
 
 namespace hjt
 {

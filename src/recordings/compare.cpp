@@ -13,15 +13,15 @@
 
 #include "messages/conversions.hpp"
 #include "output/output_file.hpp"
-#include "output/text_table.hpp"
+#include "output/report.hpp"
 #include "recordings/arm_recording.hpp"
 #include "recordings/comparison_files.hpp"
 #include "recordings/recording_comparison.hpp"
 #include "recordings/report_page.hpp"
 #include "tracking/sound_joint.hpp"
 
-#include "base/joined.hpp"
 #include "base/number_text.hpp"
+#include "base/text.hpp"
 #include "base/whole_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "messages/topics.hpp"

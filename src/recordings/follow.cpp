@@ -10,17 +10,17 @@
 #include <rosbag/view.h>
 
 #include "bags/bag_file.hpp"
-#include "bags/recorded_topic.hpp"
-#include "messages/tracker_outputs.hpp"
-#include "output/run_summary.hpp"
-#include "output/text_table.hpp"
+#include "bags/bag_writer.hpp"
+#include "messages/tracker_messages.hpp"
+#include "output/process_end.hpp"
+#include "output/report.hpp"
 #include "params/choices.hpp"
 #include "recordings/arm_assessment.hpp"
 #include "recordings/recorded_motion.hpp"
 #include "tracking/stream_timing.hpp"
 #include "tracking/verdict_watch.hpp"
 
-#include "base/rms.hpp"
+#include "base/statistics.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 
 namespace hjt

@@ -7,7 +7,7 @@
 #include <functional>
 #include <map>
 
-#include "output/text_table.hpp"
+#include "output/report.hpp"
 #include "recordings/arm_recording.hpp"
 
 #include "base/number_text.hpp"

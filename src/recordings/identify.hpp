@@ -9,7 +9,7 @@
 #include "recordings/recording_options.hpp"
 
 #include "arm/load_fit.hpp"
-#include "identification/cross_validation.hpp"
+#include "identification/identification.hpp"
 
 namespace hjt
 {

@@ -9,10 +9,10 @@
 
 #include "arm/arm_configuration.hpp"
 #include "arm/arm_controller.hpp"
-#include "bags/recording_format.hpp"
-#include "base/csv_rows.hpp"
-#include "base/median.hpp"
+#include "bags/recorded_messages.hpp"
+#include "base/csv_table.hpp"
 #include "base/number_text.hpp"
+#include "base/statistics.hpp"
 #include "base/whole_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "output/output_file.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
 
-#include "output/text_table.hpp"
+#include "output/report.hpp"
 #include "recordings/identify.hpp"
 
 #include "base/number_text.hpp"

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "output/output_file.hpp"
-#include "output/text_table.hpp"
+#include "output/report.hpp"
 #include "recordings/recorded_windows.hpp"
 
 #include "harmonic_joint_twin/base/errors.hpp"

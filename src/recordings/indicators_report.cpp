@@ -11,7 +11,7 @@
 #include "harmonic_joint_twin/base/stamp.hpp"
 #include "health/signal_sample.hpp"
 #include "output/output_file.hpp"
-#include "output/text_table.hpp"
+#include "output/report.hpp"
 
 namespace hjt
 {

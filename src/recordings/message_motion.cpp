@@ -8,8 +8,8 @@
 #include <set>
 
 #include "bags/recorded_messages.hpp"
-#include "base/joined.hpp"
 #include "base/number_text.hpp"
+#include "base/text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "messages/joint_affixes.hpp"
 #include "recordings/message_rows.hpp"

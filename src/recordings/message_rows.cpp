@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "messages/joint_affixes.hpp"
-#include "messages/telemetry_messages.hpp"
+#include "messages/tracker_messages.hpp"
 #include "recordings/recording_options.hpp"
 #include "tracking/plausible.hpp"
 

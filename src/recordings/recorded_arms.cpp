@@ -9,7 +9,7 @@
 
 #include "arm/arm_configuration.hpp"
 #include "bags/recorded_messages.hpp"
-#include "base/csv_rows.hpp"
+#include "base/csv_table.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "recordings/controller_columns.hpp"
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "bags/recording_format.hpp"
+#include "bags/recorded_messages.hpp"
 #include "harmonic_joint_twin/base/stamp.hpp"
 #include "tracking/motion_differentiator.hpp"
 #include "tracking/reason.hpp"

@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "datasets/run_file.hpp"
-#include "output/watch.hpp"
+#include "output/progress.hpp"
 
 #include "health/signal_sample.hpp"
 #include "messages/topics.hpp"
-#include "twin/configuration_options.hpp"
+#include "twin/options.hpp"
 
 namespace hjt
 {

@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "arm/arm_configuration.hpp"
-#include "base/joined.hpp"
 #include "base/number_text.hpp"
+#include "base/text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "recordings/recorded_arms.hpp"
 #include "recordings/recorded_ranking.hpp"

@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "output/watch.hpp"
+#include "output/progress.hpp"
 #include "recordings/recorded_motion.hpp"
 #include "recordings/stated_gains.hpp"
 
 #include "messages/joint_affixes.hpp"
 #include "messages/topics.hpp"
-#include "twin/configuration_options.hpp"
+#include "twin/options.hpp"
 
 namespace hjt
 {

@@ -9,14 +9,14 @@
 #include "recordings/indicators_report.hpp"
 #include "recordings/recorded_windows.hpp"
 
-#include "base/joined.hpp"
-#include "base/range_check.hpp"
+#include "base/range.hpp"
+#include "base/text.hpp"
 #include "base/whole_file.hpp"
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "health/baseline_file.hpp"
 #include "health/signal_monitor.hpp"
-#include "life/usage_history.hpp"
+#include "life/duty_cycle.hpp"
 
 namespace hjt
 {

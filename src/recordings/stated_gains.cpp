@@ -7,8 +7,8 @@
 #include <limits>
 #include <string>
 
-#include "base/median.hpp"
-#include "base/number_table.hpp"
+#include "base/csv_table.hpp"
+#include "base/statistics.hpp"
 #include "recordings/controller_columns.hpp"
 
 namespace hjt

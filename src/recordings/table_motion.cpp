@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "base/joined.hpp"
-#include "base/number_table.hpp"
+#include "base/csv_table.hpp"
+#include "base/text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "recordings/controller_columns.hpp"
 #include "recordings/motion_readers.hpp"

@@ -11,8 +11,8 @@
 #include "recordings/report_page.hpp"
 #include "recordings/trend_report.hpp"
 
-#include "base/joined.hpp"
 #include "base/number_text.hpp"
+#include "base/text.hpp"
 #include "base/whole_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "base/date_text.hpp"
 #include "base/number_text.hpp"
+#include "messages/time.hpp"
 
 namespace hjt
 {

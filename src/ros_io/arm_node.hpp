@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -12,11 +13,13 @@
 #include <vector>
 
 #include <geometry_msgs/Inertia.h>
+#include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/WrenchStamped.h>
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
 #include <ros/service_server.h>
 #include <ros/wall_timer.h>
+#include <sensor_msgs/JointState.h>
 #include <sensor_msgs/Temperature.h>
 #include <std_srvs/Trigger.h>
 #include <trajectory_msgs/JointTrajectory.h>
@@ -24,18 +27,50 @@
 #include "arm/arm_description.hpp"
 #include "arm/goal_watch.hpp"
 #include "arm/motion_limits.hpp"
-#include "live/inbox.hpp"
+#include "arm/moving_arm.hpp"
 #include "live/realtime.hpp"
+#include "live/thread_exchange.hpp"
 #include "live/twin_loop.hpp"
-#include "ros_io/arm_publishers.hpp"
 #include "ros_io/diagnostic_tasks.hpp"
-#include "ros_io/fault_subscriber.hpp"
-#include "ros_io/recent_events.hpp"
-#include "ros_io/timing_publisher.hpp"
-#include "ros_io/timing_task.hpp"
+#include "ros_io/input_subscribers.hpp"
+#include "ros_io/output_publishers.hpp"
 
 namespace hjt
 {
+/// What the twin of an arm publishes: joint_states as the robot's driver does, the tool's pose and the wanted one, and
+/// of each drive what the twin of a joint publishes, below its own name.
+class ArmPublishers
+{
+public:
+  ArmPublishers(ros::NodeHandle& node, const ArmDescription& arm, const ArmTwin& twin);
+
+  /// Loop: fills the messages due at the present instant that somebody hears. No allocation, no lock.
+  void offer(MovingArm& arm) noexcept;
+
+  /// Loop: as OutputPublishers::finishCycle.
+  Stamp finishCycle(Stamp instant) noexcept;
+
+  /// Messages that could not be published.
+  std::uint64_t dropped() const noexcept;
+
+private:
+  using Pose = geometry_msgs::PoseStamped;
+
+  bool isHeard() const noexcept;
+  void drain();
+
+  ros::NodeHandle parent_;
+  std::vector<std::size_t> order_;  // joints in that of the driver's messages
+  Stamp period_;                    // [ns]
+  ArmDynamics dynamics_;
+  std::vector<JointMotion> wanted_;
+  std::vector<std::unique_ptr<OutputPublishers>> drives_;
+  OutputChannel<sensor_msgs::JointState> states_;
+  OutputChannel<Pose> tool_;
+  OutputChannel<Pose> wanted_tool_;
+  PublisherThread thread_;  // last: it uses the rest
+};
+
 /// What the twin of an arm says of itself to /diagnostics: whether it moves, what its drives cannot bear, and whether
 /// it keeps up with the clock.
 class ArmDiagnostics
@@ -216,5 +251,23 @@ private:
   DriverStates driver_states_;
   bool told_of_stop_{};
   ros::WallTimer stop_timer_;
+};
+
+/// Offers the action FollowJointTrajectory below the controller's name, `~controller`, as the arm's driver does, for as
+/// long as what it returns lives. Where control_msgs was not found nothing, and the log says so.
+std::shared_ptr<void> offerArmAction(ros::NodeHandle& node, ArmNode& arm);
+
+/// The live twin of an arm with its action.
+class ArmWithAction
+{
+public:
+  ArmWithAction(ros::NodeHandle& node, const ArmDescription& arm, const std::vector<Parameters>& drives)
+    : arm_(node, arm, drives), action_(offerArmAction(node, arm_))
+  {
+  }
+
+private:
+  ArmNode arm_;
+  std::shared_ptr<void> action_;
 };
 }  // namespace hjt

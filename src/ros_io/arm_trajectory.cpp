@@ -7,9 +7,8 @@
 #include <iterator>
 
 #include "arm/set_points.hpp"
-#include "base/joined.hpp"
 #include "base/number_text.hpp"
-#include "base/printable.hpp"
+#include "base/text.hpp"
 
 namespace hjt
 {

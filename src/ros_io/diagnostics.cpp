@@ -6,7 +6,7 @@
 
 #include <ros/console.h>
 
-#include "base/text_stream.hpp"
+#include "base/number_text.hpp"
 
 namespace hjt
 {

@@ -9,14 +9,12 @@
 #include <ros/wall_timer.h>
 
 #include "harmonic_joint_twin/params/parameters.hpp"
-#include "live/inbox.hpp"
 #include "live/realtime.hpp"
+#include "live/thread_exchange.hpp"
 #include "live/twin_loop.hpp"
 #include "ros_io/diagnostic_tasks.hpp"
 #include "ros_io/input_subscribers.hpp"
 #include "ros_io/output_publishers.hpp"
-#include "ros_io/recent_events.hpp"
-#include "ros_io/timing_task.hpp"
 
 namespace hjt
 {

@@ -3,26 +3,132 @@
 
 #include <array>
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
+#include <vector>
 
 #include <ros/console.h>
 #include <ros/message_event.h>
 #include <ros/node_handle.h>
 #include <ros/subscriber.h>
+#include <ros/subscription_callback_helper.h>
 #include <sensor_msgs/JointState.h>
 #include <std_msgs/Float64.h>
 
-#include "live/inbox.hpp"
+#include "harmonic_joint_twin/Fault.h"
+#include "harmonic_joint_twin/twin/twin.hpp"
+#include "live/thread_exchange.hpp"
 #include "messages/conversions.hpp"
 #include "messages/time.hpp"
 #include "messages/topics.hpp"
-#include "ros_io/fault_subscriber.hpp"
-#include "ros_io/input_topics.hpp"
-#include "ros_io/warning_period.hpp"
 
 namespace hjt
 {
+/// Between two warnings of the same kind [s].
+constexpr double WARNING_PERIOD = 5.0;
+
+/// Subscribes topics that anybody may publish on. A message of more than MAX_BYTES bytes is counted and not read: what
+/// it would hold in memory is a multiple of its length.
+struct InputTopics
+{
+  /// Of the JointState of 1000 joints, twice over [bytes].
+  static constexpr std::size_t MAX_BYTES = 128 * 1024;
+  /// Seconds of messages at 1 kHz: a fast bag brings chunks, and a twin that catches up takes them later; none may be
+  /// lost.
+  static constexpr std::uint32_t QUEUE_SIZE = 4096;
+
+  ros::NodeHandle& node;
+  std::atomic<std::uint64_t>& too_large;
+
+  template <class Message>
+  ros::Subscriber subscribe(const char* topic,
+                            const std::function<void(const ros::MessageEvent<const Message>&)>& receive) const
+  {
+    ros::SubscribeOptions options;
+    options.topic = topic;
+    options.queue_size = QUEUE_SIZE;
+    options.md5sum = ros::message_traits::md5sum<Message>();
+    options.datatype = ros::message_traits::datatype<Message>();
+    options.helper = boost::make_shared<Reader<Message>>(receive, too_large);
+    // Small messages at a high rate: without the delay that the transport would gather them with.
+    options.transport_hints = ros::TransportHints().tcpNoDelay();
+    return node.subscribe(options);
+  }
+
+private:
+  template <class Message>
+  class Reader : public ros::SubscriptionCallbackHelperT<const ros::MessageEvent<const Message>&>
+  {
+  public:
+    using Base = ros::SubscriptionCallbackHelperT<const ros::MessageEvent<const Message>&>;
+
+    Reader(const std::function<void(const ros::MessageEvent<const Message>&)>& receive,
+           std::atomic<std::uint64_t>& too_large)
+      : Base(receive), too_large_(too_large)
+    {
+    }
+
+    ros::VoidConstPtr deserialize(const ros::SubscriptionCallbackHelperDeserializeParams& message) override
+    {
+      if (message.length > MAX_BYTES)
+      {
+        ++too_large_;
+        return {};
+      }
+      return Base::deserialize(message);
+    }
+
+  private:
+    std::atomic<std::uint64_t>& too_large_;
+  };
+};
+
+/// Puts the faults that come on ~inject_fault into the inbox; one that is not valid is refused, with a warning.
+class FaultSubscriber
+{
+public:
+  /// `twin`: whose faults they are; `joint`: its number in the inbox.
+  FaultSubscriber(const InputTopics& inputs, const Twin& twin, Inbox& inbox, std::size_t joint = 0)
+    : twin_(twin)
+    , inbox_(inbox)
+    , joint_(joint)
+    , subscriber_(inputs.subscribe<harmonic_joint_twin::Fault>(
+          topics::INJECT_FAULT, [this](const auto& event) { receive(*event.getMessage()); }))
+  {
+  }
+
+  std::uint64_t refused() const noexcept { return refused_; }  ///< since start
+
+private:
+  void receive(const harmonic_joint_twin::Fault& message)
+  {
+    // Faults come one by one, and each warning has a reason of its own [s].
+    constexpr double WARNING_PERIOD = 1.0;
+    std::vector<Fault> steps;
+    const std::string errors = readFault(message, twin_.parameters(), steps);
+    if (!errors.empty())
+    {
+      ++refused_;
+      ROS_WARN_STREAM_THROTTLE(WARNING_PERIOD, "Refused a message on ~" << topics::INJECT_FAULT << ", " << refused_
+                                                                        << " so far: " << errors);
+      return;
+    }
+    const Stamp stamp = stampOr(message.header.stamp, ros::Time::now());
+    for (const Fault& fault : steps)
+    {
+      inbox_.push(StampedFault{ stamp, fault }, joint_);
+    }
+  }
+
+  const Twin& twin_;
+  Inbox& inbox_;
+  const std::size_t joint_;
+  std::atomic<std::uint64_t> refused_{ 0 };
+  ros::Subscriber subscriber_;
+};
+
 /// Messages that held no torque or fault for this joint, since start.
 struct MessageCounters
 {

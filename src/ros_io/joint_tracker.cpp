@@ -2,15 +2,12 @@
 #include "ros_io/joint_tracker.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include <ros/console.h>
 
 #include "gear/ratio.hpp"
-#include "messages/time.hpp"
 #include "messages/topics.hpp"
-#include "ros_io/node_surface_source.hpp"
-#include "ros_io/warning_period.hpp"
+#include "ros_io/node_environment.hpp"
 #include "tracking/effort.hpp"
 
 namespace hjt

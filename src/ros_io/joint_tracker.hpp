@@ -23,13 +23,12 @@
 #include <std_msgs/Float64.h>
 #include <std_srvs/Trigger.h>
 
-#include "messages/telemetry_messages.hpp"
 #include "messages/time.hpp"
-#include "messages/tracker_outputs.hpp"
+#include "messages/tracker_messages.hpp"
+#include "ros_io/diagnostic_tasks.hpp"
 #include "ros_io/diagnostics.hpp"
-#include "ros_io/input_topics.hpp"
+#include "ros_io/input_subscribers.hpp"
 #include "ros_io/life_publisher.hpp"
-#include "ros_io/recent_events.hpp"
 #include "tracking/row_filter.hpp"
 #include "tracking/sound_joint.hpp"
 #include "tracking/stream_timing.hpp"

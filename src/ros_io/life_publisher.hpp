@@ -13,7 +13,7 @@
 #include "harmonic_joint_twin/RemainingLife.h"
 #include "harmonic_joint_twin/twin/input_queue.hpp"
 #include "life/life_estimate.hpp"
-#include "live/slot_ring.hpp"
+#include "live/thread_exchange.hpp"
 
 namespace hjt
 {

@@ -4,22 +4,95 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <chrono>
+#include <condition_variable>
 #include <cstdint>
+#include <exception>
+#include <functional>
 #include <limits>
 #include <mutex>
 #include <string>
+#include <thread>
+#include <utility>
 
+#include <ros/console.h>
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
+#include <ros/wall_timer.h>
 
-#include "base/text_stream.hpp"
+#include "base/number_text.hpp"
+#include "harmonic_joint_twin/Timing.h"
+#include "harmonic_joint_twin/params/parameters.hpp"
 #include "harmonic_joint_twin/twin/twin.hpp"
-#include "live/slot_ring.hpp"
+#include "live/thread_exchange.hpp"
+#include "live/twin_loop.hpp"
 #include "messages/channels.hpp"
-#include "ros_io/publisher_thread.hpp"
+#include "messages/time.hpp"
+#include "messages/topics.hpp"
 
 namespace hjt
 {
+/// Sends what a loop has filled: serialising and sending allocate and lock, so they have a thread of their own.
+class PublisherThread
+{
+public:
+  /// `drain`: sends all that waits, called from the thread; `is_heard`: whether anybody listens.
+  PublisherThread(std::function<void()> drain, std::function<bool()> is_heard)
+    : drain_(std::move(drain)), is_heard_(std::move(is_heard)), thread_([this] { run(); })
+  {
+  }
+
+  /// Stops the thread after what is filled by now.
+  ~PublisherThread()
+  {
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      stopping_ = true;
+    }
+    wake_up_.notify_one();
+    thread_.join();
+  }
+
+  /// Loop: has what is filled sent. No allocation, no lock that anybody holds for long.
+  void wakeUp() noexcept { wake_up_.notify_one(); }
+
+private:
+  // How long a message waits at most if the loop's wake-up was missed: it does not wait for the mutex.
+  static constexpr std::chrono::milliseconds DRAIN_PERIOD{ 20 };
+  // The same for a change of the faults while there are no subscribers.
+  static constexpr std::chrono::milliseconds IDLE_PERIOD{ 100 };
+
+  void run()
+  {
+    std::unique_lock<std::mutex> lock(mutex_);
+    for (bool stopping = false; !stopping;)
+    {
+      if (!stopping_)
+      {
+        wake_up_.wait_for(lock, is_heard_() ? DRAIN_PERIOD : IDLE_PERIOD);
+      }
+      stopping = stopping_;
+      lock.unlock();
+      try
+      {
+        drain_();
+      }
+      catch (const std::exception& error)  // the thread's border: the next round goes on
+      {
+        ROS_WARN_STREAM_THROTTLE(60.0, "Messages of the twin are not published: " << error.what());
+      }
+      lock.lock();
+    }
+  }
+
+  std::function<void()> drain_;
+  std::function<bool()> is_heard_;
+  std::mutex mutex_;
+  std::condition_variable wake_up_;
+  bool stopping_{};  // under mutex_
+  std::thread thread_;
+};
+
 struct ChannelCounters
 {
   const char* name{};
@@ -189,5 +262,57 @@ private:
   mutable std::mutex text_mutex_;
   std::string active_faults_;
   PublisherThread thread_;  // last: it uses the rest
+};
+
+/// Publishes how the loop keeps up, once a second by the wall clock, to those who listen.
+class TimingPublisher
+{
+public:
+  TimingPublisher(ros::NodeHandle& node, const Parameters& parameters, const TwinLoop& loop)
+    : loop_(loop), publisher_(node.advertise<harmonic_joint_twin::Timing>(topics::TIMING, QUEUE_LENGTH))
+  {
+    message_.header.frame_id = parameters.joint.name;
+    message_.deadline = parameters.realtime.deadline;
+    for (std::size_t bin = 0; bin < LatencyHistogram::BIN_COUNT; ++bin)
+    {
+      message_.bin_end.push_back(toSeconds(LatencyHistogram::binEnd(bin)));
+    }
+    timer_ = node.createWallTimer(ros::WallDuration(PERIOD), [this](const ros::WallTimerEvent&) { publish(); });
+  }
+
+private:
+  static constexpr double PERIOD = 1.0;  // by the wall clock [s]
+  static constexpr std::uint32_t QUEUE_LENGTH = 10;
+
+  void publish()
+  {
+    if (publisher_.getNumSubscribers() == 0)
+    {
+      return;
+    }
+    const LoopTiming timing = loop_.status().timing;
+    message_.header.stamp = ros::Time::now();
+    message_.duration = toSeconds(timing.elapsed);
+    message_.real_time_factor = timing.realTimeFactor();
+    message_.load = timing.load();
+    message_.longest_cycle = toSeconds(timing.longest_cycle);
+    message_.missed_deadlines = timing.missed_deadlines;
+    message_.wake_up_median = toSeconds(timing.wake_up.quantile(0.5));
+    message_.wake_up_p99 = toSeconds(timing.wake_up.quantile(0.99));
+    message_.wake_up_p999 = toSeconds(timing.wake_up.quantile(0.999));
+    message_.wake_up_max = toSeconds(timing.wake_up.largest());
+    message_.lateness_median = toSeconds(timing.lateness.quantile(0.5));
+    message_.lateness_p99 = toSeconds(timing.lateness.quantile(0.99));
+    message_.lateness_p999 = toSeconds(timing.lateness.quantile(0.999));
+    message_.lateness_max = toSeconds(timing.lateness.largest());
+    message_.wake_up_count.assign(timing.wake_up.bins().begin(), timing.wake_up.bins().end());
+    message_.lateness_count.assign(timing.lateness.bins().begin(), timing.lateness.bins().end());
+    publisher_.publish(message_);
+  }
+
+  const TwinLoop& loop_;
+  harmonic_joint_twin::Timing message_;
+  ros::Publisher publisher_;
+  ros::WallTimer timer_;
 };
 }  // namespace hjt

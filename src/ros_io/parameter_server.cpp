@@ -4,16 +4,14 @@
 #include <algorithm>
 #include <cstdint>
 #include <optional>
-#include <string>
 #include <type_traits>
 #include <variant>
-#include <vector>
 
 #include <ros/names.h>
 #include <ros/param.h>
 #include <xmlrpcpp/XmlRpcValue.h>
 
-#include "base/joined.hpp"
+#include "base/text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 
 namespace hjt

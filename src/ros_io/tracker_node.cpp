@@ -11,14 +11,12 @@
 #include <ros/message_traits.h>
 #include <ros/this_node.h>
 
-#include "base/date_text.hpp"
-#include "base/joined.hpp"
-#include "base/printable.hpp"
+#include "base/text.hpp"
 #include "messages/joint_affixes.hpp"
+#include "messages/time.hpp"
 #include "messages/topics.hpp"
-#include "ros_io/input_topics.hpp"
-#include "ros_io/joint_name.hpp"
-#include "ros_io/warning_period.hpp"
+#include "ros_io/input_subscribers.hpp"
+#include "ros_io/node_environment.hpp"
 #include "tracking/verdict.hpp"
 
 namespace hjt

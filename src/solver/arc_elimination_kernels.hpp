@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The elimination itself. Included once for each kind of processor, in a file compiled for it; hence all in an unnamed
-// namespace, and nothing of any library: the linker must not mix the kinds.
 #pragma once
 
-#include "solver/arc_lanes.hpp"
+// The elimination itself, its number type and the matrix that it leaves. Included once for each kind of processor, in a
+// file compiled for it; hence all in an unnamed namespace, and nothing of any library: the linker must not mix the
+// kinds.
+
+#include "solver/arc_elimination.hpp"
 
 namespace hjt
 {
@@ -11,6 +13,82 @@ namespace arcs
 {
 namespace
 {
+/// One number for each arc; the compiler takes as many instructions as the processor's vectors need.
+typedef double Lanes __attribute__((vector_size(32), may_alias));
+
+typedef long long Choice __attribute__((vector_size(32)));
+
+inline Lanes* lanes(double* values)
+{
+  return reinterpret_cast<Lanes*>(values);
+}
+
+inline const Lanes* lanes(const double* values)
+{
+  return reinterpret_cast<const Lanes*>(values);
+}
+
+inline bool factorSchur(double* matrix, SchurFactors& factors)
+{
+  constexpr int LANES = SCHUR / COUNT;  // a row
+  bool positive = true;
+#pragma GCC unroll 16
+  for (int k = 0; k < SCHUR; ++k)
+  {
+    const double* row = matrix + SCHUR * k;
+    const double pivot = row[k];
+    const double inverse = 1.0 / pivot;
+    positive = positive && pivot > 0.0 && inverse > 0.0;  // and not infinite
+    factors.inverse_pivots[k] = inverse;
+    for (int i = 0; i < SCHUR; ++i)
+    {
+      const double share = i > k ? row[i] * inverse : 0.0;
+      factors.upper[k][i] = share;
+      factors.lower[i][k] = share;
+    }
+    for (int i = k + 1; i < SCHUR; ++i)
+    {
+      const double share = factors.upper[k][i];
+#pragma GCC unroll 16
+      for (int v = i / COUNT; v < LANES; ++v)
+      {
+        lanes(matrix + SCHUR * i)[v] -= share * lanes(row)[v];
+      }
+    }
+  }
+  return positive;
+}
+
+inline void solveSchur(const SchurFactors& factors, double* b)
+{
+  constexpr int LANES = SCHUR / COUNT;
+#pragma GCC unroll 16
+  for (int k = 0; k < SCHUR; ++k)
+  {
+    const double value = b[k];
+#pragma GCC unroll 16
+    for (int v = k / COUNT; v < LANES; ++v)
+    {
+      lanes(b)[v] -= value * lanes(factors.upper[k])[v];
+    }
+  }
+#pragma GCC unroll 16
+  for (int v = 0; v < LANES; ++v)
+  {
+    lanes(b)[v] *= lanes(factors.inverse_pivots)[v];
+  }
+#pragma GCC unroll 16
+  for (int k = SCHUR - 1; k > 0; --k)
+  {
+    const double value = b[k];
+#pragma GCC unroll 16
+    for (int v = 0; v <= k / COUNT; ++v)
+    {
+      lanes(b)[v] -= value * lanes(factors.lower[k])[v];
+    }
+  }
+}
+
 /// values[stride * tooth] of each lane's tooth.
 inline Lanes gather(const Layout& layout, const double* values, int stride = 1)
 {

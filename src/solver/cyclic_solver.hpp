@@ -7,7 +7,7 @@
 #include <Eigen/Core>
 #include <Eigen/LU>
 
-#include "elements/ring_tangent.hpp"
+#include "elements/ring_sums.hpp"
 #include "solver/arc_elimination.hpp"
 
 namespace hjt

@@ -6,8 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "gear/block_sums.hpp"
-#include "gear/vector_clones.hpp"
+#include "gear/vector_loops.hpp"
 
 namespace hjt
 {

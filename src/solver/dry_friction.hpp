@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "elements/joint_friction.hpp"
+#include "elements/friction_laws.hpp"
 
 namespace hjt
 {

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "solver/joint_dynamics.hpp"
 
-#include <cmath>
-
-#include "elements/presliding.hpp"
-#include "solver/output_balance.hpp"
+#include "elements/friction_laws.hpp"
 
 namespace hjt
 {

@@ -3,9 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
-#include "gear/vector_clones.hpp"
+#include "gear/vector_loops.hpp"
 
 namespace hjt
 {

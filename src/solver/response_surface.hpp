@@ -11,11 +11,8 @@
 
 #include <Eigen/Core>
 
-#include "model/ring_response.hpp"
-#include "solver/ball_drops.hpp"
-#include "solver/shared_values.hpp"
-#include "solver/surface_energy.hpp"
-#include "solver/tooth_response.hpp"
+#include "model/ring_model.hpp"
+#include "solver/surface_tables.hpp"
 
 namespace hjt
 {

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "gear/angle.hpp"
-#include "solver/ring_vectors.hpp"
 
 namespace hjt
 {

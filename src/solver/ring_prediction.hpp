@@ -6,7 +6,6 @@
 #include <Eigen/Core>
 
 #include "solver/ring_state.hpp"
-#include "solver/ring_vectors.hpp"
 
 namespace hjt
 {

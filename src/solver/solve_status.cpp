@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-#include "base/text_stream.hpp"
+#include "base/number_text.hpp"
 
 namespace hjt
 {

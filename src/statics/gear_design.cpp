@@ -12,7 +12,6 @@
 #include "harmonic_joint_twin/statics/loss_analysis.hpp"
 #include "harmonic_joint_twin/statics/static_analysis.hpp"
 #include "params/variants.hpp"
-#include "statics/gear_checks.hpp"
 #include "statics/gear_rules.hpp"
 
 namespace hjt

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Rules between the parameters of a gear: docs/gear_study.md derives it.
+
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "gear/angle.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
 
-// Rules between the parameters of a gear: docs/gear_study.md derives it.
 namespace hjt
 {
 /// w0 at which the teeth roll in their spaces without jamming [m]: a tooth at mid-height z above the bore moves by
@@ -44,4 +47,23 @@ inline double rimBendingStiffness(const Parameters& parameters) noexcept
   return parameters.life.elastic_modulus * parameters.life.face_width * std::pow(gear.rim_thickness, 3) /
          (12.0 * segmentLength(gear) * (1.0 - parameters.stress.tooth_base));
 }
+
+/// How much of the joint an analysis has.
+enum class Analysis
+{
+  INSERTION,     ///< the ring on the wave generator, without circular spline and friction
+  RING,          ///< the whole ring without friction
+  WITH_FRICTION  ///< all of the joint
+};
+
+/// An analysis has the faults that the joint starts with, and no time for others to set in.
+/// @throws ParameterError for a configured fault that cannot act in it.
+void requireFaultsAct(const Parameters& parameters, Analysis analysis);
+
+/// Why the gear cannot turn, sound and as drawn: its teeth jam without load. Empty if they do not.
+std::string jamOf(const Parameters& parameters);
+
+/// Inconsistent values, one text each: key, value, and what it should be near; a jam comes alone. They take a few
+/// equilibria, some 10 ms.
+std::vector<std::string> gearWarnings(const Parameters& parameters);
 }  // namespace hjt

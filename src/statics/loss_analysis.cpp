@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/range_check.hpp"
+#include "base/range.hpp"
 #include "gear/ratio.hpp"
-#include "statics/pitch_walk.hpp"
+#include "statics/static_solver.hpp"
 
 namespace hjt
 {

@@ -7,11 +7,11 @@
 #include <iterator>
 #include <numeric>
 
-#include "base/range_check.hpp"
+#include "base/range.hpp"
 #include "gear/angle.hpp"
 #include "gear/ratio.hpp"
 #include "model/faults/joint_faults.hpp"
-#include "solver/output_balance.hpp"
+#include "solver/ring_equilibrium.hpp"
 #include "statics/flexspline_stress.hpp"
 #include "statics/static_solver.hpp"
 

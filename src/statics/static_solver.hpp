@@ -3,7 +3,10 @@
 
 #include <algorithm>
 
+#include "gear/angle.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
+#include "model/faults/joint_faults.hpp"
+#include "solver/ring_equilibrium.hpp"
 
 namespace hjt
 {
@@ -14,4 +17,50 @@ inline SolverParameters staticSolver(SolverParameters parameters)
   parameters.force_tolerance = std::min(parameters.force_tolerance, STATIC_TOLERANCE);
   return parameters;
 }
+
+/// The joint, with the faults it starts with, led quasi-statically through one tooth pitch of the wave generator at
+/// constant load. With all teeth alike that is the whole turn: what one tooth goes through in a turn, all teeth go
+/// through side by side in a pitch.
+class PitchWalk
+{
+public:
+  /// `positions`: wave generator angles per tooth pitch, >= 1.
+  PitchWalk(const Parameters& parameters, int positions)
+    : PitchWalk(startingJoint(parameters), parameters.solver, positions)
+  {
+  }
+  PitchWalk(JointModel model, const SolverParameters& solver, int positions)
+    : model_(std::move(model))
+    , ring_(model_.ring, staticSolver(solver))
+    , pitch_(TWO_PI / model_.ring.gear.teeth_flexspline)
+    , positions_(positions)
+    , status_(ring_.insert({ 0.0, 0.0, model_.ring.gear.wave_amplitude }))
+  {
+  }
+
+  /// Calls `visit(output speed over motor speed)` with the ring in equilibrium at each position. On failure it stops.
+  template <class Visit>
+  void under(double load, Visit&& visit)
+  {
+    for (int i = 0; i < positions_ && status_.ok(); ++i)
+    {
+      status_ = balanceOutput(ring_, pitch_ * i / positions_, load);
+      if (status_.ok())
+      {
+        visit(ring_.velocityRatio());
+      }
+    }
+  }
+
+  const JointModel& model() const { return model_; }
+  const RingEquilibrium& ring() const { return ring_; }
+  const SolveStatus& status() const { return status_; }
+
+private:
+  JointModel model_;
+  RingEquilibrium ring_;
+  double pitch_;
+  int positions_;
+  SolveStatus status_;
+};
 }  // namespace hjt

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "base/number_text.hpp"
-#include "elements/cup_friction.hpp"
 #include "elements/cup_torsion.hpp"
+#include "elements/friction_laws.hpp"
 #include "gear/ratio.hpp"
-#include "gear/tooth_ring.hpp"
+#include "gear/ring_shape.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "harmonic_joint_twin/solver/solve_status.hpp"

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "harmonic_joint_twin/statics/torsion_loop.hpp"
 
-#include "base/range_check.hpp"
+#include "base/range.hpp"
 #include "model/faults/joint_faults.hpp"
-#include "solver/output_balance.hpp"
 #include "solver/ring_equilibrium.hpp"
 #include "statics/static_solver.hpp"
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "studies/dynamic_ring.hpp"
 
-#include "studies/tangent_entries.hpp"
-
 namespace hjt
 {
 namespace

@@ -10,7 +10,6 @@
 #include <boost/random/normal_distribution.hpp>
 #include <boost/random/uniform_01.hpp>
 
-#include "life/assessment_errors.hpp"
 #include "life/read_wear.hpp"
 
 namespace hjt

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "life/drive_ageing.hpp"
-#include "life/nominal_use.hpp"
 #include "life/remaining_life.hpp"
 
 namespace hjt

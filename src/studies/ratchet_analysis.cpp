@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "model/faults/joint_faults.hpp"
-#include "solver/output_balance.hpp"
+#include "solver/ring_equilibrium.hpp"
 
 namespace hjt
 {

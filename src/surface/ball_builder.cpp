@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "surface/ball_builder.hpp"
+#include "surface/surface_builder.hpp"
 
 #include <algorithm>
 #include <array>

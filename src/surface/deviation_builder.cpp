@@ -1,26 +1,170 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "surface/deviation_builder.hpp"
+#include "surface/surface_builder.hpp"
 
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <cstddef>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <mutex>
 #include <optional>
 #include <utility>
 #include <vector>
 
-#include "surface/deviation_check.hpp"
-#include "surface/deviation_mirror.hpp"
 #include "surface/deviation_rings.hpp"
-#include "surface/open_pitch.hpp"
+#include "surface/surface_ring.hpp"
 
 namespace hjt
 {
 namespace
 {
+/// A pitch whose edges are yet to be joined.
+struct OpenPitch
+{
+  int columns{};
+  std::vector<double> lines;
+  std::vector<SurfaceNode> nodes;
+};
+
+void levelEdge(OpenPitch& pitch, std::size_t column, const std::vector<double>& common)
+{
+  const std::size_t stride = static_cast<std::size_t>(pitch.columns) + 1;
+  std::size_t kept = 0;  // the last line in common
+  for (std::size_t i = 0, in_common = 0; i < pitch.lines.size(); ++i)
+  {
+    if (in_common == common.size() || pitch.lines[i] != common[in_common])
+    {
+      continue;
+    }
+    const std::array<SurfaceNode, 2> low{ pitch.nodes[kept * stride + column], {} };
+    const std::array<SurfaceNode, 2> high{ pitch.nodes[i * stride + column], {} };
+    const double height = pitch.lines[i] - pitch.lines[kept];
+    for (std::size_t between = kept + 1; between < i; ++between)
+    {
+      const SurfaceCell cell(low.data(), high.data(), 0.0, (pitch.lines[between] - pitch.lines[kept]) / height,
+                             static_cast<double>(pitch.columns), 1.0 / height);
+      const SurfaceEnergy energy = cell.energy();
+      SurfaceNode& node = pitch.nodes[between * stride + column];
+      for (int value = SurfaceNode::BILINEAR; value < SurfaceNode::VALUES; ++value)
+      {
+        node.set(value, cell.value(value));
+      }
+      node.set(SurfaceNode::ENERGY, energy.value);
+      node.set(SurfaceNode::ENERGY_BY_U, energy.by_u);
+      node.set(SurfaceNode::ENERGY_BY_V, energy.by_v);
+      node.set(SurfaceNode::ENERGY_BY_UV, energy.by_uv);
+    }
+    kept = i;
+    ++in_common;
+  }
+}
+
+/// Makes the end of a pitch and the start of the next one the same function of v: on lines that only one of them has,
+/// what lies between those that both have.
+void joinPitches(OpenPitch& before, OpenPitch& after)
+{
+  std::vector<double> common;
+  std::set_intersection(before.lines.begin(), before.lines.end(), after.lines.begin(), after.lines.end(),
+                        std::back_inserter(common));
+  if (common.empty())
+  {
+    return;
+  }
+  levelEdge(before, static_cast<std::size_t>(before.columns), common);
+  levelEdge(after, 0, common);
+}
+
+/// The table of all pitches, the last one joined to the first.
+DeviationTable tableOf(std::vector<OpenPitch> pitches, bool swaps_lobes)
+{
+  for (std::size_t number = 0; number < pitches.size(); ++number)
+  {
+    joinPitches(pitches[number], pitches[number + 1 < pitches.size() ? number + 1 : 0]);
+  }
+  DeviationTable table;
+  table.swaps_lobes = swaps_lobes;
+  for (OpenPitch& pitch : pitches)
+  {
+    table.pitches.push_back({ pitch.columns, std::move(pitch.lines), SurfaceNodes(std::move(pitch.nodes)) });
+  }
+  return table;
+}
+
+/// Whether a grid of deviations gives what the ring has between its nodes.
+class DeviationCheck
+{
+public:
+  using Torques = Eigen::Array2d;  ///< on output and motor [N.m]
+
+  /// `ring` knows its limits and is not solved.
+  explicit DeviationCheck(const SurfaceRing& ring) : ring_(ring) {}
+
+  Torques torques(const SurfaceNode& deviation) const
+  {
+    return torques(deviation[SurfaceNode::ENERGY_BY_U], deviation[SurfaceNode::ENERGY_BY_V]);
+  }
+
+  bool departs(const SurfaceNode& node) const
+  {
+    constexpr double ROUNDING = 1e-8;  // of the torque limit; the rings are solved to a tenth of that
+    const Torques torque = torques(node).abs();
+    return std::max(torque[0], torque[1] * ring_.ratio()) > ROUNDING * ring_.torqueLimit();
+  }
+
+  /// By how much every so manyth node of a strip misses those between, root mean square over the tolerance [-].
+  double missOfColumns(const Strip& strip, int columns, const Torques& tolerance) const
+  {
+    const std::size_t stride = (strip.size() - 1) / static_cast<std::size_t>(columns);
+    Torques squares = Torques::Zero();
+    for (std::size_t first = 0; first + 1 < strip.size(); first += stride)
+    {
+      const std::array<SurfaceNode, 2> ends{ strip[first], strip[first + stride] };
+      for (std::size_t i = 1; i < stride; ++i)
+      {
+        const double part = static_cast<double>(i) / static_cast<double>(stride);
+        squares +=
+            miss({ ends.data(), ends.data(), part, 0.0, static_cast<double>(columns), 1.0 }, strip[first + i]).square();
+      }
+    }
+    return largest(squares / (static_cast<double>(columns) * (static_cast<double>(stride) - 1.0)), tolerance);
+  }
+
+  /// By how much two lines' strips of a pitch, `height` apart [rad], miss that of the line half way between them, root
+  /// mean square over the tolerance [-]. Single kinks, where a tooth begins to touch, no grid has.
+  double missBetween(const Strip& below, const Strip& above, double height, const Strip& middle,
+                     const Torques& tolerance) const
+  {
+    const std::size_t columns = middle.size() - 1;
+    Torques squares = Torques::Zero();
+    for (std::size_t i = 0; i < columns; ++i)
+    {
+      squares +=
+          miss({ &below[i], &above[i], 0.0, 0.5, static_cast<double>(columns), 1.0 / height }, middle[i]).square();
+    }
+    return largest(squares / static_cast<double>(columns), tolerance);
+  }
+
+private:
+  static double largest(const Torques& squares, const Torques& tolerance)
+  {
+    return (squares > 0.0).select(squares.sqrt() / tolerance, 0.0).maxCoeff();
+  }
+
+  Torques torques(double by_u, double by_v) const { return { -by_v, by_v / ring_.ratio() - by_u / ring_.pitch() }; }
+
+  /// By how much what lies in a cell misses the deviation measured there.
+  Torques miss(const SurfaceCell& cell, const SurfaceNode& measured) const
+  {
+    const SurfaceEnergy energy = cell.energy();
+    return torques(energy.by_u, energy.by_v) - torques(measured);
+  }
+
+  const SurfaceRing& ring_;
+};
+
 using Node = SurfaceNode;
 using Line = DeviationLine;
 using Lines = std::map<double, Line>;  // by their v [rad]

@@ -4,7 +4,6 @@
 #include <string>
 
 #include "base/number_text.hpp"
-#include "base/text_stream.hpp"
 #include "model/faults/joint_faults.hpp"
 #include "params/variants.hpp"
 

@@ -2,17 +2,13 @@
 #include "surface/surface_builder.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <iterator>
 #include <map>
 #include <mutex>
-#include <vector>
 
-#include "base/text_stream.hpp"
-#include "surface/parallel_tasks.hpp"
+#include "base/number_text.hpp"
 #include "surface/surface_lines.hpp"
-#include "surface/tooth_response_builder.hpp"
 
 namespace hjt
 {

@@ -1,29 +1,82 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "surface/table_file.hpp"
 
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <cstring>
 #include <functional>
 #include <memory>
-#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
-#include "base/text_hash.hpp"
+#include "base/hash.hpp"
 #include "base/whole_file.hpp"
 #include "gear/angle.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
-#include "surface/mapped_file.hpp"
 
 namespace hjt
 {
 namespace
 {
+/// A file in memory, read-only and shared: all processes that map it have one copy. It stays as long as the object,
+/// also where the file's name is removed or given to another file.
+class MappedFile
+{
+public:
+  /// Only a regular file of this user that others cannot write, neither empty nor larger than `most` bytes; else null.
+  /// Opening it does not wait, as it would for the writer of a FIFO. The file counts as used now.
+  static std::shared_ptr<const MappedFile> ofOwn(const std::string& path, std::size_t most);
+
+  ~MappedFile();
+
+  MappedFile(const MappedFile&) = delete;
+  MappedFile& operator=(const MappedFile&) = delete;
+
+  /// Begins at a multiple of a page.
+  std::string_view bytes() const noexcept { return { static_cast<const char*>(start_), size_ }; }
+
+private:
+  MappedFile(void* start, std::size_t size) noexcept : start_(start), size_(size) {}
+
+  void* start_;
+  std::size_t size_;
+};
+
+std::shared_ptr<const MappedFile> MappedFile::ofOwn(const std::string& path, std::size_t most)
+{
+  const int descriptor = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOFOLLOW | O_CLOEXEC);
+  if (descriptor < 0)
+  {
+    return nullptr;
+  }
+  struct stat status = {};
+  void* start = MAP_FAILED;
+  std::size_t size = 0;
+  if (fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode) && status.st_uid == geteuid() &&
+      (status.st_mode & (S_IWGRP | S_IWOTH)) == 0 && status.st_size > 0 &&
+      static_cast<std::size_t>(status.st_size) <= most)
+  {
+    size = static_cast<std::size_t>(status.st_size);
+    start = mmap(nullptr, size, PROT_READ, MAP_SHARED, descriptor, 0);
+    futimens(descriptor, nullptr);  // without effect on a disk that is only read
+  }
+  close(descriptor);
+  return start == MAP_FAILED ? nullptr : std::shared_ptr<const MappedFile>(new MappedFile(start, size));
+}
+
+MappedFile::~MappedFile()
+{
+  munmap(start_, size_);
+}
+
 /// Upper limit of a table's file; the shipped gear's has 8 MB [bytes].
 constexpr std::size_t MAX_FILE = std::size_t{ 1 } << 30;
 

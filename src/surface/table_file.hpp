@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "solver/ball_drops.hpp"
 #include "solver/response_surface.hpp"
+#include "solver/surface_tables.hpp"
 
 namespace hjt
 {
@@ -15,8 +15,8 @@ namespace hjt
 std::uint64_t tableChecksum(std::string_view bytes);
 
 /// A table from its file: the header, the numbers as they lie in memory, and the checksum of both. The nodes stay in
-/// the file. `header`: its length is a multiple of the size of a number. False if the file is not that of ofOwn in
-/// mapped_file.hpp, begins otherwise, or is damaged.
+/// the file. `header`: its length is a multiple of the size of a number. False if the file is not this
+/// user's own, begins otherwise, or is damaged.
 bool readTable(const std::string& path, const std::string& header, SurfaceTable& table);
 bool readTable(const std::string& path, const std::string& header, DeviationTable& table);
 bool readTable(const std::string& path, const std::string& header, BallTable& table);

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "base/median.hpp"
+#include "base/statistics.hpp"
 
 namespace hjt
 {

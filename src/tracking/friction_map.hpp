@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "elements/bearing_friction.hpp"
+#include "elements/friction_laws.hpp"
 #include "elements/motor.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
 

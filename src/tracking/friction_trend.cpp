@@ -5,7 +5,7 @@
 
 #include <Eigen/Dense>
 
-#include "base/median.hpp"
+#include "base/statistics.hpp"
 #include "tracking/common_friction.hpp"
 
 namespace hjt

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "base/normal.hpp"
+#include "base/statistics.hpp"
 #include "tracking/friction_verdict.hpp"
 
 namespace hjt

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "base/joined.hpp"
 #include "base/number_text.hpp"
+#include "base/text.hpp"
 #include "tracking/verdict.hpp"
 #include "tracking/wrong_gain.hpp"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "base/normal.hpp"
+#include "base/statistics.hpp"
 #include "tracking/joint_evidence.hpp"
 #include "tracking/reason.hpp"
 

@@ -8,7 +8,7 @@
 #include "model/faults/joint_faults.hpp"
 #include "model/lobe_loads.hpp"
 #include "params/variants.hpp"
-#include "solver/output_balance.hpp"
+#include "solver/ring_equilibrium.hpp"
 #include "statics/static_solver.hpp"
 #include "twin/tooth_forces.hpp"
 

@@ -6,9 +6,9 @@
 #include <limits>
 #include <utility>
 
+#include "elements/friction_laws.hpp"
 #include "elements/load.hpp"
 #include "elements/motor.hpp"
-#include "elements/presliding.hpp"
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "tracking/effort.hpp"

@@ -6,8 +6,8 @@
 
 #include <unsupported/Eigen/MatrixFunctions>
 
+#include "elements/friction_laws.hpp"
 #include "elements/motor.hpp"
-#include "elements/presliding.hpp"
 #include "gear/ratio.hpp"
 
 namespace hjt

@@ -7,8 +7,10 @@
 #include <filesystem>
 #include <limits>
 
-#include "base/number_table.hpp"
-#include "base/yaml_number.hpp"
+#include <yaml-cpp/yaml.h>
+
+#include "base/csv_table.hpp"
+#include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "health/baseline_file.hpp"
 #include "tracking/friction_verdict.hpp"

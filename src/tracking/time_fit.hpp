@@ -8,8 +8,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "base/median.hpp"
-#include "base/normal.hpp"
+#include "base/statistics.hpp"
 #include "tracking/motion_differentiator.hpp"
 
 namespace hjt

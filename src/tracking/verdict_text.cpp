@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <string>
 
-#include "base/joined.hpp"
 #include "base/number_text.hpp"
+#include "base/text.hpp"
 #include "tracking/verdict.hpp"
 
 namespace hjt

@@ -9,7 +9,7 @@
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "model/lobe_loads.hpp"
 #include "statics/flexspline_stress.hpp"
-#include "statics/gear_checks.hpp"
+#include "statics/gear_rules.hpp"
 #include "statics/inertia_error.hpp"
 #include "twin/tooth_forces.hpp"
 #include "twin/twin_impl.hpp"

@@ -13,7 +13,7 @@
 #include "model/faults/joint_faults.hpp"
 #include "sensors/joint_sensors.hpp"
 #include "solver/joint_stepper.hpp"
-#include "twin/observed_ring.hpp"
+#include "twin/tooth_forces.hpp"
 #include "twin/twin_surfaces.hpp"
 
 namespace hjt

@@ -14,7 +14,7 @@
 #include "arm/arm_load.hpp"
 #include "arm/load_fit.hpp"
 #include "arm/unit_loads.hpp"
-#include "base/number_table.hpp"
+#include "base/csv_table.hpp"
 #include "test/core/arm_support.hpp"
 #include "test/support/allocation_count.hpp"
 

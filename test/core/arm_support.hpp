@@ -13,10 +13,10 @@
 #include "arm/arm_dynamics.hpp"
 #include "arm/arm_load.hpp"
 #include "arm/load_fit.hpp"
-#include "base/number_table.hpp"
+#include "base/csv_table.hpp"
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
-#include "statics/gear_checks.hpp"
+#include "statics/gear_rules.hpp"
 #include "test/support/allocation_count.hpp"
 
 namespace hjt

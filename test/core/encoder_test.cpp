@@ -12,8 +12,6 @@
 
 #include "base/philox.hpp"
 #include "gear/angle.hpp"
-#include "sensors/absolute_encoder.hpp"
-#include "sensors/incremental_encoder.hpp"
 #include "sensors/joint_sensors.hpp"
 #include "test/support/allocation_count.hpp"
 

@@ -8,8 +8,8 @@
 
 #include <gtest/gtest.h>
 
-#include "elements/bearing_friction.hpp"
 #include "elements/drive_heat.hpp"
+#include "elements/friction_laws.hpp"
 #include "gear/ratio.hpp"
 #include "test/support/allocation_count.hpp"
 #include "test_parameters.hpp"

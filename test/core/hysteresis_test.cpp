@@ -10,8 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "elements/cup_friction.hpp"
-#include "elements/presliding.hpp"
+#include "elements/friction_laws.hpp"
 #include "elements/ring_friction.hpp"
 #include "gear/angle.hpp"
 #include "gear/ratio.hpp"

@@ -11,7 +11,7 @@
 #include "gear/angle.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "solver/joint_stepper.hpp"
-#include "solver/output_balance.hpp"
+#include "solver/ring_equilibrium.hpp"
 #include "test/core/joint_dynamics_support.hpp"
 #include "test_parameters.hpp"
 

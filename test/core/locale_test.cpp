@@ -12,11 +12,10 @@
 #include <string>
 
 #include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
 
-#include "base/number_table.hpp"
+#include "base/csv_table.hpp"
 #include "base/number_text.hpp"
-#include "base/text_stream.hpp"
-#include "base/yaml_number.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"
 #include "test/support/temporary_folder.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "elements/bearing_friction.hpp"
+#include "elements/friction_laws.hpp"
 #include "gear/angle.hpp"
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/statics/loss_analysis.hpp"

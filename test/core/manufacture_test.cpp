@@ -10,7 +10,7 @@
 #include "gear/angle.hpp"
 #include "gear/manufacture_errors.hpp"
 #include "random_ring.hpp"
-#include "solver/output_balance.hpp"
+#include "solver/ring_equilibrium.hpp"
 #include "test/core/complaint.hpp"
 #include "test/support/temporary_folder.hpp"
 #include "test_parameters.hpp"

@@ -8,7 +8,7 @@
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "model/faults/joint_faults.hpp"
-#include "solver/output_balance.hpp"
+#include "solver/ring_equilibrium.hpp"
 #include "statics/static_solver.hpp"
 #include "test/support/allocation_count.hpp"
 #include "test_parameters.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "solver/output_balance.hpp"
+#include "solver/ring_equilibrium.hpp"
 
 #include <cmath>
 

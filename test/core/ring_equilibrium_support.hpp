@@ -11,7 +11,6 @@
 #include "gear/ratio.hpp"
 #include "model/joint_model.hpp"
 #include "ring_fixture.hpp"
-#include "solver/output_balance.hpp"
 #include "test_parameters.hpp"
 
 namespace hjt

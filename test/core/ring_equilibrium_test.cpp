@@ -12,8 +12,7 @@
 #include "gear/ratio.hpp"
 #include "model/joint_model.hpp"
 #include "ring_fixture.hpp"
-#include "solver/output_balance.hpp"
-#include "solver/ring_vectors.hpp"
+#include "solver/ring_state.hpp"
 #include "test/core/ring_equilibrium_support.hpp"
 #include "test_parameters.hpp"
 

@@ -6,10 +6,9 @@
 
 #include <Eigen/Core>
 
-#include "elements/ring_tangent.hpp"
+#include "elements/ring_sums.hpp"
 #include "gear/ring_shape.hpp"
-#include "gear/tooth_ring.hpp"
-#include "model/ring_forces.hpp"
+#include "model/ring_model.hpp"
 #include "solver/ring_equilibrium.hpp"
 
 namespace hjt

@@ -11,7 +11,6 @@
 #include "gear/ratio.hpp"
 #include "model/joint_model.hpp"
 #include "ring_fixture.hpp"
-#include "solver/output_balance.hpp"
 #include "test/core/ring_equilibrium_support.hpp"
 #include "test_parameters.hpp"
 

@@ -14,8 +14,7 @@
 #include "harmonic_joint_twin/twin/twin.hpp"
 #include "health/angle_multiples.hpp"
 #include "health/signature_file.hpp"
-#include "sensors/absolute_encoder.hpp"
-#include "sensors/incremental_encoder.hpp"
+#include "sensors/joint_sensors.hpp"
 #include "test/core/test_parameters.hpp"
 #include "test/support/allocation_count.hpp"
 

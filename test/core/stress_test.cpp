@@ -11,8 +11,7 @@
 #include "gear/angle.hpp"
 #include "harmonic_joint_twin/statics/static_analysis.hpp"
 #include "model/faults/joint_faults.hpp"
-#include "solver/output_balance.hpp"
-#include "statics/fatigue_law.hpp"
+#include "solver/ring_equilibrium.hpp"
 #include "statics/flexspline_stress.hpp"
 #include "statics/static_solver.hpp"
 

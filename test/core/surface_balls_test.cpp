@@ -13,8 +13,8 @@
 
 #include "model/faults/joint_faults.hpp"
 #include "model/joint_model.hpp"
-#include "surface/ball_builder.hpp"
 #include "surface/faulty_surface.hpp"
+#include "surface/surface_builder.hpp"
 #include "surface/surface_ring.hpp"
 #include "test/core/response_surface_support.hpp"
 

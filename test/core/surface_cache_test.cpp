@@ -21,13 +21,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "base/source_hash.hpp"
+#include "base/hash.hpp"
 #include "gear/angle.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/twin/twin.hpp"
 #include "model/joint_model.hpp"
 #include "params/field_table.hpp"
-#include "surface/cache_folder.hpp"
 #include "surface/faulty_surface.hpp"
 #include "surface/surface_builder.hpp"
 #include "surface/surface_cache.hpp"

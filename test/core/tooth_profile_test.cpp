@@ -5,7 +5,6 @@
 
 #include <gtest/gtest.h>
 
-#include "gear/flank_shapes.hpp"
 #include "gear/tooth_profile.hpp"
 #include "test_parameters.hpp"
 

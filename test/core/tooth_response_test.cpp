@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "solver/tooth_response.hpp"
+#include "solver/surface_tables.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,7 +14,6 @@
 
 #include "model/joint_model.hpp"
 #include "surface/surface_builder.hpp"
-#include "surface/tooth_response_builder.hpp"
 #include "test/core/response_surface_support.hpp"
 #include "test_parameters.hpp"
 #include "twin/tooth_forces.hpp"

@@ -13,7 +13,7 @@
 
 #include "harmonic_joint_twin/surface/surface_source.hpp"
 #include "harmonic_joint_twin/twin/twin.hpp"
-#include "surface/surface_pool.hpp"
+#include "surface/surface_cache.hpp"
 #include "test_parameters.hpp"
 #include "twin_runs.hpp"
 

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "element_under_test.hpp"
-#include "elements/hertz_contact.hpp"
+#include "elements/contact_laws.hpp"
 #include "gear/angle.hpp"
 #include "random_ring.hpp"
 #include "test/core/elements_support.hpp"

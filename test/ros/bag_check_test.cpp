@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Damaged bags are refused or read; nothing ends the program.
-#include "bags/bag_check.hpp"
+#include "bags/bag_file.hpp"
 
 #include <unistd.h>
 
@@ -18,7 +18,6 @@
 #include <sensor_msgs/JointState.h>
 #include <std_msgs/Float64.h>
 
-#include "bags/bag_file.hpp"
 #include "bags/bag_inputs.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "recordings/recorded_motion.hpp"

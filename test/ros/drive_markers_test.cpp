@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "gear/angle.hpp"
-#include "gear/tooth_ring.hpp"
+#include "gear/ring_shape.hpp"
 #include "test/core/test_parameters.hpp"
 
 namespace hjt

@@ -5,8 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "live/latency_histogram.hpp"
-#include "live/slot_ring.hpp"
+#include "live/thread_exchange.hpp"
 #include "messages/conversions.hpp"
 #include "messages/time.hpp"
 #include "test/core/test_parameters.hpp"

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "twin/option_table.hpp"
+#include "twin/options.hpp"
 
 namespace hjt
 {

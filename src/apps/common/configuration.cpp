@@ -3,7 +3,7 @@
 
 #include <iostream>
 
-#include "statics/gear_checks.hpp"
+#include "output/process_end.hpp"
 
 namespace hjt
 {
@@ -38,5 +38,11 @@ Parameters loadAnalysed(const ConfigurationOptions& options, Analysis analysis)
   Parameters parameters = loadGear(options);
   requireFaultsAct(parameters, analysis);
   return parameters;
+}
+
+int notConverged(const std::string& what, const SolveStatus& status)
+{
+  std::cerr << "joint_twin: no equilibrium found for " << what << ": " << explanationOf(status) << '\n';
+  return EXIT_FAILED;
 }
 }  // namespace hjt

@@ -4,9 +4,10 @@
 #include <string>
 
 #include "apps/common/command.hpp"
-#include "statics/analysed_faults.hpp"
+#include "harmonic_joint_twin/solver/solve_status.hpp"
+#include "statics/gear_rules.hpp"
 
-#include "twin/configuration_options.hpp"
+#include "twin/options.hpp"
 
 namespace hjt
 {
@@ -28,4 +29,7 @@ Parameters loadGear(const ConfigurationOptions& options);
 
 /// The same for an analysis, with the faults that it honours. @throws ParameterError if one cannot act in it.
 Parameters loadAnalysed(const ConfigurationOptions& options, Analysis analysis);
+
+/// Reports that no equilibrium was found for `what`, and why. @returns the exit code.
+int notConverged(const std::string& what, const SolveStatus& status);
 }  // namespace hjt

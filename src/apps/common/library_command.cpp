@@ -4,8 +4,6 @@
 #include <iostream>
 #include <memory>
 
-#include "output/progress.hpp"
-
 namespace hjt
 {
 Watch readingWatch()
@@ -19,5 +17,12 @@ Watch consoleWatch()
   Watch watch = readingWatch();
   watch.stopped = [interrupts = std::make_shared<InterruptScope>()] { return interruptSignal() != 0; };
   return watch;
+}
+
+SurfaceSource surfaceSource()
+{
+  const auto progress = std::make_shared<Progress>("building the response surface");
+  return { surfaceCacheDirectory(), [progress](double done) { progress->update(done); },
+           [](const std::string& what) { std::cerr << "warning: " << what << '\n'; } };
 }
 }  // namespace hjt

@@ -2,9 +2,8 @@
 #pragma once
 
 #include "apps/common/configuration.hpp"
-#include "output/exit_code.hpp"
-#include "output/interrupt.hpp"
-#include "output/watch.hpp"
+#include "output/process_end.hpp"
+#include "output/progress.hpp"
 
 namespace hjt
 {
@@ -27,6 +26,9 @@ void declarePrinted(OptionTable& table, Printed<Options>& options)
 Watch readingWatch();
 /// As `readingWatch`; signals that end the process otherwise stop the function, as long as it is kept.
 Watch consoleWatch();
+
+/// Response surfaces from the user's cache; building shows its progress and what is amiss on stderr.
+SurfaceSource surfaceSource();
 
 /// Gives the result of FUNCTION to PRINT, which gives the exit code. A signal ends FUNCTION; PARTS: what it has by then
 /// is printed too.

@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "apps/common/library_command.hpp"
-#include "output/exit_code.hpp"
-#include "output/text_table.hpp"
+#include "output/process_end.hpp"
+#include "output/report.hpp"
 #include "recordings/check_report.hpp"
 #include "recordings/recording_check.hpp"
 
-#include "base/joined.hpp"
 #include "base/number_text.hpp"
+#include "base/text.hpp"
 
 namespace hjt
 {

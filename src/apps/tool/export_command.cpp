@@ -11,14 +11,13 @@
 #include <Eigen/Dense>
 
 #include "apps/common/configuration.hpp"
-#include "apps/common/not_converged.hpp"
-#include "output/exit_code.hpp"
 #include "output/output_file.hpp"
+#include "output/process_end.hpp"
 
 #include "arm/arm_configuration.hpp"
 #include "base/number_text.hpp"
+#include "base/text.hpp"
 #include "base/whole_file.hpp"
-#include "base/xml_text.hpp"
 #include "elements/motor.hpp"
 #include "fmu/fmu_file.hpp"
 #include "gear/ratio.hpp"

@@ -8,18 +8,16 @@
 #include <string>
 
 #include "apps/common/configuration.hpp"
-#include "output/interrupt.hpp"
 #include "output/output_file.hpp"
+#include "output/process_end.hpp"
 #include "output/progress.hpp"
 #include "output/report.hpp"
-#include "output/run_summary.hpp"
-#include "output/text_table.hpp"
 
 #include <sensor_msgs/JointState.h>
 #include <sensor_msgs/Temperature.h>
 
 #include "bags/bag_writer.hpp"
-#include "base/number_table.hpp"
+#include "base/csv_table.hpp"
 #include "gear/ratio.hpp"
 #include "messages/conversions.hpp"
 #include "messages/topics.hpp"

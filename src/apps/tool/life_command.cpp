@@ -6,13 +6,13 @@
 #include <vector>
 
 #include "apps/common/configuration.hpp"
-#include "output/exit_code.hpp"
+#include "output/process_end.hpp"
 #include "output/progress.hpp"
 #include "output/report.hpp"
 
 #include "life/drive_ageing.hpp"
 #include "life/revolution_load_map.hpp"
-#include "statics/fatigue_law.hpp"
+#include "statics/flexspline_stress.hpp"
 #include "studies/life_trials.hpp"
 
 namespace hjt

@@ -11,10 +11,10 @@
 #include "arm/arm_configuration.hpp"
 #include "arm/arm_recorder.hpp"
 #include "arm/set_points.hpp"
-#include "base/range_check.hpp"
+#include "base/range.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
-#include "output/run_summary.hpp"
-#include "python/in_use.hpp"
+#include "output/process_end.hpp"
+#include "python/bindings.hpp"
 #include "python/recordings/calls.hpp"
 #include "recordings/arm_run.hpp"
 

@@ -12,14 +12,13 @@
 #include <utility>
 #include <vector>
 
-#include "base/joined.hpp"
+#include "base/text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "output/json.hpp"
-#include "output/watch.hpp"
+#include "output/progress.hpp"
 #include "params/configuration_files.hpp"
-#include "python/overlays.hpp"
-#include "twin/configuration_options.hpp"
-#include "twin/option_table.hpp"
+#include "python/configuration.hpp"
+#include "twin/options.hpp"
 
 // What the functions of the module _recordings share: options by name in, a document and the notices out.
 namespace hjt

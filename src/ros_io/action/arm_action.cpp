@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ros_io/arm_action.hpp"
+#include "ros_io/arm_node.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 #include <control_msgs/FollowJointTrajectoryAction.h>
 
 #include "base/number_text.hpp"
-#include "base/printable.hpp"
+#include "base/text.hpp"
 #include "messages/time.hpp"
 #include "messages/topics.hpp"
 #include "ros_io/arm_trajectory.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ros/console.h>
 
-#include "ros_io/arm_action.hpp"
+#include "ros_io/arm_node.hpp"
 
 namespace hjt
 {

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace hjt
+{
+// Of a normal distribution, over its standard deviation.
+constexpr double NORMAL_95 = 1.96;        ///< half width of the 95 % interval
+constexpr double NORMAL_MEDIAN = 0.6745;  ///< median size
+
+/// Of at least one value, the upper of two in the middle. Reorders them, allocates nothing.
+template <typename Iterator>
+auto upperMedian(Iterator first, Iterator last)
+{
+  const Iterator middle = first + (last - first) / 2;
+  std::nth_element(first, middle, last);
+  return *middle;
+}
+
+/// Of at least one value, the mean of two in the middle.
+inline double medianOf(std::vector<double> values)
+{
+  std::sort(values.begin(), values.end());
+  const std::size_t half = values.size() / 2;
+  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+}
+
+/// Root mean square of what is added.
+class Rms
+{
+public:
+  void add(double value)
+  {
+    squares_ += value * value;
+    ++count_;
+  }
+  double value() const { return count_ > 0 ? std::sqrt(squares_ / static_cast<double>(count_)) : 0.0; }
+
+private:
+  double squares_{};
+  std::uint64_t count_{};
+};
+}  // namespace hjt

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+#include <vector>
+
+namespace hjt
+{
+/// Joins `text(item)` of all items, with `separator` between two.
+template <class Items, class Text>
+std::string joined(const Items& items, const char* separator, const Text& text)
+{
+  std::string all;
+  const char* before = "";
+  for (const auto& item : items)
+  {
+    all.append(before).append(text(item));
+    before = separator;
+  }
+  return all;
+}
+
+/// Texts, `separator` between two.
+template <class Texts>
+std::string joined(const Texts& texts, const char* separator = ", ")
+{
+  return joined(texts, separator, [](const std::string& text) { return text; });
+}
+
+/// Single edits (insert, delete, replace) between two texts (Levenshtein).
+inline std::size_t editDistance(const std::string& from, const std::string& to)
+{
+  std::vector<std::size_t> row(to.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{ 0 });
+  for (std::size_t i = 1; i <= from.size(); ++i)
+  {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= to.size(); ++j)
+    {
+      const std::size_t replaced = diagonal + (from[i - 1] == to[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({ replaced, row[j] + 1, row[j - 1] + 1 });
+    }
+  }
+  return row.back();
+}
+
+/// The name that is nearest to an unknown one; empty if none is near.
+inline std::string nearestName(const std::string& unknown, const std::vector<std::string>& known)
+{
+  std::string nearest;
+  std::size_t distance = std::max<std::size_t>(2, unknown.size() / 3) + 1;
+  for (const std::string& name : known)
+  {
+    if (const std::size_t edits = editDistance(unknown, name); edits < distance)
+    {
+      distance = edits;
+      nearest = name;
+    }
+  }
+  return nearest;
+}
+
+/// " (did you mean speed?)" with the nearest name; nothing if none is near.
+inline std::string didYouMean(const std::string& unknown, const std::vector<std::string>& known)
+{
+  const std::string nearest = nearestName(unknown, known);
+  return nearest.empty() ? "" : " (did you mean " + nearest + "?)";
+}
+
+/// Text from outside for a line of a log: control characters become '?', what is beyond `longest` bytes "...".
+inline std::string printable(std::string text, std::size_t longest = 60)
+{
+  if (text.size() > longest)
+  {
+    text.resize(longest);
+    text += "...";
+  }
+  const auto is_control = [](unsigned char character) { return character < ' ' || character == 0x7f; };
+  std::replace_if(text.begin(), text.end(), is_control, '?');
+  return text;
+}
+
+/// A text as it stands between the tags, or in an attribute, of XML.
+inline std::string xmlText(const std::string& text)
+{
+  std::string escaped;
+  for (const char letter : text)
+  {
+    switch (letter)
+    {
+      case '&':
+        escaped += "&amp;";
+        break;
+      case '<':
+        escaped += "&lt;";
+        break;
+      case '>':
+        escaped += "&gt;";
+        break;
+      case '"':
+        escaped += "&quot;";
+        break;
+      default:
+        escaped += letter;
+    }
+  }
+  return escaped;
+}
+}  // namespace hjt

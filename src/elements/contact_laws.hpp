@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cmath>
+
+namespace hjt
+{
+/// Unilateral contact per unit stiffness: energy, force and tangent over the depth.
+///
+/// width = 0, the exact law:  force = <depth>+
+/// width > 0, a C1 ramp:      force = depth^2 / (2 width)  for depth < width,  depth - width/2  beyond
+struct ContactRamp
+{
+  double energy{};   ///< [m^2]
+  double force{};    ///< [m]
+  double tangent{};  ///< [-]
+
+  ContactRamp(double depth, double width) noexcept
+  {
+    // Both branches are computed and one is taken: loops over the teeth then vectorise.
+    const double part = depth / width;
+    const double full_force = depth - 0.5 * width;
+    const double full_energy = 0.5 * full_force * full_force + width * width / 24.0;
+    const double part_force = 0.5 * depth * part;
+    const double part_energy = depth * depth * part / 6.0;
+    const bool touching = depth > 0.0;
+    const bool full = depth >= width;
+    force = touching ? (full ? full_force : part_force) : 0.0;
+    energy = touching ? (full ? full_energy : part_energy) : 0.0;
+    tangent = touching ? (full ? 1.0 : part) : 0.0;
+  }
+};
+
+/// Point contact after Hertz per unit stiffness: energy, force and tangent over the depth. Beside a contact that opens
+/// the tangent goes to zero without a jump.
+struct HertzContact
+{
+  double energy{};   ///< [m^2.5]
+  double force{};    ///< [m^1.5]
+  double tangent{};  ///< [m^0.5]
+
+  explicit HertzContact(double depth) noexcept
+  {
+    const double pressed = depth > 0.0 ? depth : 0.0;
+    const double root = std::sqrt(pressed);
+    force = pressed * root;
+    energy = 0.4 * pressed * force;
+    tangent = 1.5 * root;
+  }
+};
+
+/// Of a ball of steel between two races, K in Q = K depth^1.5 [N/m^1.5]; depth: by how much the races approach each
+/// other. Palmgren, for ball bearings with the usual osculation: depth = 4.36e-4 Q^(2/3) d^(-1/3), in mm and N, d the
+/// ball's diameter [m].
+inline double hertzStiffness(double ball_diameter) noexcept
+{
+  constexpr double PALMGREN = 4.36e-4;                                         // mm^(4/3) / N^(2/3)
+  constexpr double MILLIMETRES = 1e3;                                          // per metre
+  const double per_force = PALMGREN / std::cbrt(MILLIMETRES * ball_diameter);  // depth over Q^(2/3) [mm/N^(2/3)]
+  const double depth_scale = MILLIMETRES / per_force;
+  return depth_scale * std::sqrt(depth_scale);
+}
+}  // namespace hjt

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <csignal>
+#include <string>
+
+#include <ros/console.h>
+#include <ros/init.h>
+#include <ros/names.h>
+#include <ros/this_node.h>
+
+#include "arm/arm_description.hpp"
+#include "harmonic_joint_twin/surface/surface_source.hpp"
+#include "live/realtime.hpp"
+#include "live/twin_loop.hpp"
+#include "messages/time.hpp"
+
+namespace hjt
+{
+/// By the clock of ROS [ns].
+inline Stamp rosNow()
+{
+  return fromRosTime(ros::Time::now());
+}
+
+/// Whether the clock is the system's or somebody's on /clock, which is settled once the node runs.
+inline ClockKind rosClockKind()
+{
+  return ros::Time::isSimTime() ? ClockKind::STEPPED : ClockKind::RUNNING;
+}
+
+/// Requests the parameters below `realtime` from the system; refusals are logged.
+inline RealtimeState requestRealtime(const RealtimeParameters& parameters, TwinLoop& loop)
+{
+  RealtimeState state = applyRealtime(parameters, loop.thread());
+  for (const std::string& refusal : state.refusals)
+  {
+    ROS_WARN_STREAM(refusal);
+  }
+  return state;
+}
+
+/// The user's cache of response surfaces, with progress and notices in the node's log. `background`: see SurfaceSource.
+inline SurfaceSource nodeSurfaceSource(bool background)
+{
+  return { surfaceCacheDirectory(),
+           [](double done) { ROS_INFO_THROTTLE(2.0, "building the response surface: %.0f %%", 100.0 * done); },
+           [](const std::string& what) { ROS_WARN_STREAM(what); },
+           {},
+           background };
+}
+
+/// SIGTERM and SIGHUP end a node as SIGINT does, which is all that roscpp catches. A SIGHUP that is ignored, as below
+/// nohup, stays ignored. SIGXFSZ is ignored: beyond a limit of size, writing fails as on a full disk. Call after
+/// ros::init.
+inline void shutDownOnSignals()
+{
+  const auto request = [](int) { ros::requestShutdown(); };
+  std::signal(SIGTERM, request);
+  std::signal(SIGXFSZ, SIG_IGN);
+  if (std::signal(SIGHUP, request) == SIG_IGN)
+  {
+    std::signal(SIGHUP, SIG_IGN);
+  }
+}
+
+/// Name of a joint of an arm in the graph: NAMESPACE/SHORT_NAME/NODE. Its topics lie below.
+inline std::string jointName(const ArmJoint& joint)
+{
+  const std::string& name = ros::this_node::getName();
+  const std::string node = name.substr(name.rfind('/') + 1);
+  return ros::names::append(ros::names::parentNamespace(name), joint.short_name + "/" + node);
+}
+}  // namespace hjt

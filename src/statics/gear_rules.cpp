@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "statics/gear_rules.hpp"
+
+#include <cmath>
+#include <string>
+
+#include "base/number_text.hpp"
+#include "harmonic_joint_twin/base/errors.hpp"
+#include "harmonic_joint_twin/statics/loss_analysis.hpp"
+#include "harmonic_joint_twin/statics/static_analysis.hpp"
+#include "model/faults/joint_faults.hpp"
+#include "params/variants.hpp"
+
+namespace hjt
+{
+namespace
+{
+/// The effect of a fault that an analysis lacks; nullptr if it has part of the effect.
+const char* missingFor(const Fault& fault, const Parameters& parameters, Analysis analysis)
+{
+  const unsigned changed = partsOf(fault, parameters.gear);
+  switch (analysis)
+  {
+    case Analysis::INSERTION:
+      return (changed & (RIM_PART | GENERATOR_PART)) != 0 ? nullptr : "the circular spline, load and friction";
+    case Analysis::RING:
+      return (changed & ~FRICTION_PART) != 0 ? nullptr : "friction";
+    case Analysis::WITH_FRICTION:
+      break;
+  }
+  return nullptr;
+}
+}  // namespace
+
+void requireFaultsAct(const Parameters& parameters, Analysis analysis)
+{
+  for (const Fault& fault : parameters.faults)
+  {
+    const std::string name = std::string("faults: ") + describe(fault.kind).name;
+    if (fault.severity > 0.0 && fault.onset > 0.0)
+    {
+      throw ParameterError(name + " sets in at " + numberText(fault.onset) +
+                           " s, but this analysis has no time: give it onset 0 or leave it out");
+    }
+    const char* missing = missingFor(fault, parameters, analysis);
+    if (missing != nullptr)
+    {
+      throw ParameterError(name + " cannot act here: this analysis leaves out " + missing);
+    }
+  }
+}
+
+namespace
+{
+constexpr int EFFICIENCY_POSITIONS = 4;  // in a tooth pitch, for the efficiency
+
+std::string shortNumber(double value)
+{
+  return roundedText(value, 5);
+}
+
+/// The drive that is checked: nothing on it that is meant to be wrong.
+Parameters soundGear(const Parameters& parameters)
+{
+  Parameters sound = withoutHeat(withoutWeight(withoutErrors(parameters)));
+  sound.faults.clear();
+  sound.contact.law = ContactLaw::NORMAL;
+  return sound;
+}
+
+/// Adds a warning where a value is further from what it should be near than by a factor.
+class Nearness
+{
+public:
+  explicit Nearness(std::vector<std::string>& warnings) : warnings_(warnings) {}
+
+  void check(const std::string& key, double value, const std::string& unit, double expected, double factor,
+             const std::string& reason)
+  {
+    if (value > factor * expected || expected > factor * value)
+    {
+      warnings_.push_back(key + " = " + shortNumber(value) + " [" + unit + "] should be near " + shortNumber(expected) +
+                          " [" + unit + "]: " + reason);
+    }
+  }
+
+private:
+  std::vector<std::string>& warnings_;
+};
+/// Of a sound gear and its fit.
+std::string jamText(const Parameters& sound, const FitCheck& fit)
+{
+  if (!fit.jams())
+  {
+    return "";
+  }
+  const GearParameters& gear = sound.gear;
+  return "the teeth jam without load: " + std::to_string(fit.teeth_loaded) + " of " +
+         std::to_string(gear.teeth_flexspline) + " loaded, " + shortNumber(fit.wave_generator_force) +
+         " N on the wave generator, " + shortNumber(fit.wave_generator_force_insertion) +
+         " N without the circular spline. gear.wave_amplitude = " + shortNumber(gear.wave_amplitude) +
+         " [m] should be near " + shortNumber(fittingWaveAmplitude(gear)) +
+         " [m], gear.tip_radius_circular_spline = " + shortNumber(gear.tip_radius_circular_spline) + " [m] near " +
+         shortNumber(fittingTipRadius(gear)) +
+         " [m] for this number of teeth, radius, rim and tooth height; mesh.flank_clearance = " +
+         shortNumber(sound.mesh.flank_clearance) + " [m]";
+}
+}  // namespace
+
+std::string jamOf(const Parameters& parameters)
+{
+  const Parameters sound = soundGear(parameters);
+  return jamText(sound, checkFit(sound));
+}
+
+std::vector<std::string> gearWarnings(const Parameters& parameters)
+{
+  const Parameters sound = soundGear(parameters);
+  const FitCheck fit = checkFit(sound);
+  if (fit.jams())
+  {
+    return { jamText(sound, fit) };
+  }
+  const GearParameters& gear = sound.gear;
+  std::vector<std::string> warnings;
+  Nearness near(warnings);
+  near.check("gear.wave_amplitude", gear.wave_amplitude, "m", fittingWaveAmplitude(gear), 1.03,
+             "the teeth roll in their spaces then");
+  near.check("gear.tip_radius_circular_spline", gear.tip_radius_circular_spline, "m", fittingTipRadius(gear),
+             1.0 + 0.25 * gear.tooth_height_flexspline / fittingTipRadius(gear),
+             "bore radius, rim and tooth height; the teeth engage to the depth of the wave then");
+  near.check("ring.bending_stiffness", sound.ring.bending_stiffness, "N.m/rad", rimBendingStiffness(sound), 2.0,
+             "that of gear.rim_thickness, life.face_width and the number of teeth");
+  near.check("ring.tension_stiffness", sound.ring.tension_stiffness, "N/m", 2.5 * rimTensionStiffness(sound), 2.5,
+             "2.5 times the section of the rim under the teeth, which bear a part");
+  if (!fit.status.ok())
+  {
+    warnings.push_back("no equilibrium without load: " + explanationOf(fit.status));
+    return warnings;
+  }
+  if (fit.teeth_loaded == 0)
+  {
+    warnings.push_back("mesh.flank_clearance = " + shortNumber(sound.mesh.flank_clearance) +
+                       " [m] leaves no tooth in contact without load: the output is free by that much. A preloaded "
+                       "gear has some 5 % of its teeth in contact");
+  }
+  if (const LossRow row =
+          analyseLosses(sound, { sound.life.rated_speed }, { sound.life.rated_torque }, EFFICIENCY_POSITIONS, nullptr)
+              .front();
+      row.status.ok() && (row.gear_efficiency < 0.55 || row.gear_efficiency > 0.92))
+  {
+    warnings.push_back("efficiency of the gear at life.rated_torque = " + shortNumber(sound.life.rated_torque) +
+                       " [N.m]: " + shortNumber(row.gear_efficiency) +
+                       " [-], out of the 0.55 ... 0.92 of such gears: look at bearing.race_preload, "
+                       "bearing.viscosity, mesh.friction_kinetic and the rated torque");
+  }
+  return warnings;
+}
+}  // namespace hjt
