@@ -330,8 +330,9 @@ def report(bench, trials, occurrence, sound, faulty, missing):
             "fewer than eight windows of the reference.", "", *health_runs.split_table(("judged by", trials)), "",
             *kind_table(bench.kinds, faulty), "",
             f"Calibration error {error:.3f}: stated confidence less share of right causes, mean over the alarms by "
-            f"class of confidence. Of all alarms {share(map(right, filter(alarmed, faulty)))} have the right cause; were "
-            f"the kinds as frequent as the FMECA rates them, {100.0 * by_occurrence(faulty, occurrence):.0f} %.", "",
+            f"class of confidence. Of all alarms {share(map(right, filter(alarmed, faulty)))} have the right cause; "
+            f"were the kinds as frequent as the FMECA rates them, {100.0 * by_occurrence(faulty, occurrence):.0f} %.",
+            "",
             "![Score of every run over the threshold](images/health/seen.png)", "",
             "![Fault against the assessed cause](images/health/confusion.png)", "",
             "![Share of right causes against the stated confidence](images/health/reliability.png)", "",

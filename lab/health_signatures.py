@@ -27,8 +27,8 @@ UNKNOWNS = numpy.array([(3.0, 0, 0), (10.0, 0, 0), (30.0, 0, 0), (100.0, 0, 0),
 TOGETHER = ("tooth_wear", "interface_wear", "lubricant_degradation")  # come together, alike or less by LESS
 LESS = 0.4
 
-# A row each; `kinds` of motion: speed [rad/s] and direction, magnitudes, 0 of any. `sound`: values by name. `priors`: by
-# cause, 1 of those that are not in it.
+# A row each; `kinds` of motion: speed [rad/s] and direction, magnitudes, 0 of any. `sound`: values by name. `priors`:
+# by cause, 1 of those that are not in it.
 Table = collections.namedtuple("Table", "causes motions severities kinds changes sound priors")
 # Of the law in fault_signatures.hpp, by its letters: r m l b_0 w_1, which are fitted, then N Q w_0 and the weight of
 # what is no fault of a gear, as in the source.
@@ -248,8 +248,8 @@ def report(alarms, errors):
 
 
 def severity_errors(alarms, errors):
-    """(severity, severity_misfit): shares of the estimate by which it is off on another gear, and more where no signature
-    fits; of greatest likelihood of the true severities, taken as normal, where the cause is right."""
+    """(severity, severity_misfit): shares of the estimate by which it is off on another gear, and more where no
+    signature fits; of greatest likelihood of the true severities, taken as normal, where the cause is right."""
     found = []
     for alarm in alarms:
         probability, severity, variance, misfit = alarm.hypotheses.posterior(errors)
@@ -273,7 +273,8 @@ def constants_table(alarms, errors):
     """What each constant is worth: change of the mean log probability of the true cause without it and with other ones;
     without m no motion is unlike, without w_1 the weight may fall to nothing."""
     least = loss(alarms, errors)
-    lines = [f"Mean log probability {-least:.3f} in {len(alarms)} alarms.", "", "| constant | value | without it | half | twice |", "|---|---|---|---|---|"]
+    lines = [f"Mean log probability {-least:.3f} in {len(alarms)} alarms.", "",
+             "| constant | value | without it | half | twice |", "|---|---|---|---|---|"]
     for name, value in errors._asdict().items():
         without = {"weight": 1.0, "speed": 1e9, "direction": 1e9}.get(name, 1e-9)
         cells = [f"{least - loss(alarms, errors._replace(**{name: other})):+.3f}"
