@@ -12,6 +12,7 @@ import numpy
 
 import fault_figures
 import health_carried
+import health_file
 import health_motions
 import health_runs
 import health_signatures
@@ -314,7 +315,14 @@ def slip_table(bench, trials):
     return lines
 
 
-def report(bench, trials, sound, faulty, missing):
+def by_occurrence(faulty, occurrence):
+    """Share of alarms with the right cause, where the kinds come as often as they are rated; the others as the mean."""
+    found = list(filter(alarmed, faulty))
+    mean = numpy.mean(list(occurrence.values()))
+    return numpy.average(list(map(right, found)), weights=[occurrence.get(run.kind, mean) for run in found])
+
+
+def report(bench, trials, occurrence, sound, faulty, missing):
     rows, error = reliability(faulty)
     groups = by_motion([run for run in sound if run.motion != CHECK_UP])
     return [f"{len(sound)} sound and {len(faulty)} faulty runs; grease anywhere in {GREASE[0]:g} to "
@@ -322,7 +330,9 @@ def report(bench, trials, sound, faulty, missing):
             "fewer than eight windows of the reference.", "", *health_runs.split_table(("judged by", trials)), "",
             *kind_table(bench.kinds, faulty), "",
             f"Calibration error {error:.3f}: stated confidence less share of right causes, mean over the alarms by "
-            "class of confidence.", "",
+            f"class of confidence. Of all alarms {share(map(right, filter(alarmed, faulty)))} have the right cause; "
+            f"were the kinds as frequent as the FMECA rates them, {100.0 * by_occurrence(faulty, occurrence):.0f} %.",
+            "",
             "![Score of every run over the threshold](images/health/seen.png)", "",
             "![Fault against the assessed cause](images/health/confusion.png)", "",
             "![Share of right causes against the stated confidence](images/health/reliability.png)", "",
@@ -358,8 +368,9 @@ def main():
                                 options.quick)
         print(f"evaluate_health: wrote {file}", file=sys.stderr)
         return
+    occurrence = health_file.read(file)["occurrence"]
     if options.quick:
-        print("\n".join(report(bench, QUICK, *collect(bench, QUICK))))
+        print("\n".join(report(bench, QUICK, occurrence, *collect(bench, QUICK))))
         return
     if options.motions:
         lab.write(page, "motions", health_motions.judged_table(bench))
@@ -374,7 +385,7 @@ def main():
     draw_scores(bench.kinds, sound, faulty, images / "seen.png")
     draw_confusion(bench.kinds, faulty, images / "confusion.png")
     draw_reliability(reliability(faulty)[0], images / "reliability.png")
-    lab.write(page, "health", report(bench, JUDGED, sound, faulty, missing))
+    lab.write(page, "health", report(bench, JUDGED, occurrence, sound, faulty, missing))
     lab.write(page, "slip", slip_table(bench, [trial for trial in JUDGED if trial.gear.alike]))
     lab.write(page, "carried", carried_report(bench, JUDGED, faulty))
     print(f"evaluate_health: wrote {page}", file=sys.stderr)

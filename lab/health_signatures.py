@@ -20,22 +20,21 @@ STIFFNESSES = SHARES[:2]  # change as a compliance does: an eccentric encoder ad
 SHARES_OF_GREASE = SHARES + ["running_torque", "coulomb_torque", "viscous_friction"]
 NEIGHBOURS = ["wave_generator_2", "circular_spline_2"]
 # As in the source.
-# Strength; drag, over the running torque; noise; weight beforehand.
-UNKNOWNS = numpy.array([(3.0, 0, 0, 1), (10.0, 0, 0, 1), (30.0, 0, 0, 1), (100.0, 0, 0, 1),
-                        (0, 0.05, 0, 0.1), (0, 0.15, 0, 0.1), (0, 0.4, 0, 0.1), (0, 1.0, 0, 0.1),
-                        (0, 0, 0.12, 0.1), (0, 0, 0.25, 0.1), (0, 0, 0.5, 0.1), (0, 0, 1.0, 0.1)])
-SPEED_RANGE, DIRECTION_RANGE, OTHER_MOTION = 0.2, 0.3, 1e-3
-MISFIT_WEIGHT, MISFIT_SEVERITY = 0.2, 0.5
+# Strength; drag, over the running torque; noise.
+UNKNOWNS = numpy.array([(3.0, 0, 0), (10.0, 0, 0), (30.0, 0, 0), (100.0, 0, 0),
+                        (0, 0.05, 0), (0, 0.15, 0), (0, 0.4, 0), (0, 1.0, 0),
+                        (0, 0, 0.12), (0, 0, 0.25), (0, 0, 0.5), (0, 0, 1.0)])
 TOGETHER = ("tooth_wear", "interface_wear", "lubricant_degradation")  # come together, alike or less by LESS
 LESS = 0.4
 
-WITHIN = 0.683            # of a normal quantity, one standard deviation
-
-# A row each; `kinds` of motion: speed [rad/s] and direction, magnitudes, 0 of any. `sound`: values by name.
-Table = collections.namedtuple("Table", "causes motions severities kinds changes sound")
-# Of the law in fault_signatures.hpp, by its letters: r m e l b_0.
-Errors = collections.namedtuple("Errors", "number motion length line weight")
-START = Errors(0.3, 0.25, 0.0015, 0.5, 0.6)         # of the search
+# A row each; `kinds` of motion: speed [rad/s] and direction, magnitudes, 0 of any. `sound`: values by name. `priors`:
+# by cause, 1 of those that are not in it.
+Table = collections.namedtuple("Table", "causes motions severities kinds changes sound priors")
+# Of the law in fault_signatures.hpp, by its letters: r m l b_0 w_1, which are fitted, then N Q w_0 and the weight of
+# what is no fault of a gear, as in the source.
+Errors = collections.namedtuple("Errors", "number motion line weight misfit speed direction other no_fault")
+IN_FILE = Errors._fields[:5]
+START = Errors(0.3, 0.25, 0.5, 0.6, 0.2, 0.2, 0.3, 1e-3, 0.1)  # of the search
 
 
 def amplitude_change(sound, change):
@@ -79,12 +78,11 @@ def kind_of(window):
     return window["speed"], abs(window["direction"])
 
 
-def likeness(kinds, kind):
-    """How far the motion of each row and the window's are alike, 0 to 1."""
+def unlikeness(kinds, kind):
+    """(of the speed's logarithm, of the direction): what the motion of each row and the window's differ by."""
     speeds, directions = kinds.T
-    square = (numpy.log(kind[0] / numpy.where(speeds > 0.0, speeds, kind[0])) / SPEED_RANGE) ** 2
-    square += numpy.where(speeds > 0.0, (kind[1] - directions) / DIRECTION_RANGE, 0.0) ** 2
-    return numpy.exp(-0.5 * square)
+    return (numpy.log(kind[0] / numpy.where(speeds > 0.0, speeds, kind[0])),
+            numpy.where(speeds > 0.0, kind[1] - directions, 0.0))
 
 
 def together(table):
@@ -132,10 +130,8 @@ class Hypotheses:
         change = numpy.where(free, amplitude_change(sound, change), change)
         change = numpy.vstack([change, *(change[parts].sum(axis=0) for parts in sums)])
         self.rows = len(change)
-        alike = likeness(table.kinds, kind_of(window))
-        alike = numpy.append(alike, alike[first])
-        self.prior = (OTHER_MOTION + alike) * numpy.append(numpy.ones(self.alone), beforehand)
-        self.unlike = numpy.pad(1.0 - alike, (0, len(UNKNOWNS)))
+        self.apart = [numpy.append(own, own[first]) for own in unlikeness(table.kinds, kind_of(window))]
+        self.beforehand = numpy.append(numpy.ones(self.alone), beforehand)
         sounds = {name: (window["residual"][name] or [0.0])[0] for name in ("running_torque", "kinematic_error")}
         drag, noise = UNKNOWNS[:, 1] * sounds["running_torque"], UNKNOWNS[:, 2] * sounds["kinematic_error"]
         unknown = {"running_torque": drag, "coulomb_torque": drag, "kinematic_error": noise}
@@ -145,14 +141,18 @@ class Hypotheses:
         self.first = numpy.append(severities, severities[first])  # of what a row counts for
         all_of = numpy.append(severities, [math.hypot(*severities[parts]) for parts in sums])
         self.severity = numpy.pad(all_of, (0, len(UNKNOWNS)))
-        self.square = numpy.sum(numpy.where(phase, 0.5, 1.0) * self.change ** 2 / self.own, axis=1)
         self.left = difference - numpy.where(phase, 0.0, self.change)
 
+    def alike(self, errors):
+        """How far the motion of each row and the window's are alike, 0 to 1."""
+        return numpy.exp(-0.5 * (self.apart[0] / errors.speed) ** 2 - 0.5 * (self.apart[1] / errors.direction) ** 2)
+
     def log_likelihoods(self, errors):
-        strength = self.square * errors.length ** 2
-        strength[self.rows:] += UNKNOWNS[:, 0] ** 2 + (1.0 + UNKNOWNS[:, 2]) ** 2 - 1.0
+        strength = numpy.zeros(len(self.change))
+        strength[self.rows:] = UNKNOWNS[:, 0] ** 2 + (1.0 + UNKNOWNS[:, 2]) ** 2 - 1.0
         variance = self.own * (1.0 + strength[:, None])
-        of_number = errors.number ** 2 + self.unlike[:, None] * errors.motion ** 2
+        unlike = numpy.pad(1.0 - self.alike(errors), (0, len(UNKNOWNS)))
+        of_number = errors.number ** 2 + unlike[:, None] * errors.motion ** 2
         variance += numpy.where(self.phase, 0.5, of_number) * self.change ** 2
         variance += (errors.line * self.severity[:, None]) ** 2 * self.line
         weighted = self.common / variance[:, :, None]
@@ -173,25 +173,27 @@ class Hypotheses:
         return max(square / len(left), 1.0)
 
     def posterior(self, errors):
-        """(probability, severity, its variance) by cause."""
+        """(probability, severity, its variance by the signatures, that by the misfit over its square) by cause."""
         found = self.log_likelihoods(errors)
         misfit = self.misfit(numpy.argmax(found[:self.rows]))
-        weight = errors.weight * (MISFIT_WEIGHT + (1.0 - MISFIT_WEIGHT) / misfit)
+        weight = errors.weight * (errors.misfit + (1.0 - errors.misfit) / misfit)
         names = list(dict.fromkeys(self.table.causes))
         weights = numpy.exp(weight * (found - found.max()))
-        faults = self.prior * weights[:self.rows]
+        prior = self.beforehand * (errors.other + self.alike(errors))
+        faults = prior * weights[:self.rows]
         alone = self.causes[:self.alone]
-        means = {cause: numpy.sum(faults[self.causes == cause]) / numpy.sum(self.prior[:self.alone][alone == cause])
+        means = {cause: numpy.sum(faults[self.causes == cause]) / numpy.sum(prior[:self.alone][alone == cause])
                  for cause in names}
         severity, variance = {}, {}
         for cause in names:
             own, shares_of_own = self.first[self.causes == cause], faults[self.causes == cause] + 1e-300
             severity[cause] = numpy.average(own, weights=shares_of_own)
-            variance[cause] = (numpy.average((own - severity[cause]) ** 2, weights=shares_of_own)
-                               + (MISFIT_SEVERITY * (1.0 - 1.0 / misfit) * severity[cause]) ** 2)
-        means["none"] = numpy.average(weights[self.rows:], weights=UNKNOWNS[:, 3])
+            variance[cause] = numpy.average((own - severity[cause]) ** 2, weights=shares_of_own)
+        means["none"] = numpy.average(weights[self.rows:], weights=numpy.where(UNKNOWNS[:, 0] > 0.0, 1.0,
+                                                                               errors.no_fault))
+        means = {cause: mean * self.table.priors.get(cause, 1.0) for cause, mean in means.items()}
         total = sum(means.values())
-        return {cause: mean / total for cause, mean in means.items()}, severity, variance
+        return {cause: mean / total for cause, mean in means.items()}, severity, variance, (1.0 - 1.0 / misfit) ** 2
 
 
 def calibration_windows(bench, trials):
@@ -226,7 +228,7 @@ def fitted_errors(alarms):
     """Of least loss: one after the other, larger or smaller by a factor as long as that helps."""
     errors, least = START, loss(alarms, START)
     for factor in (1.6, 1.25):
-        for name, step in itertools.product(Errors._fields, (factor, 1.0 / factor)):
+        for name, step in itertools.product(IN_FILE, (factor, 1.0 / factor)):
             while True:
                 tried = errors._replace(**{name: float(f"{getattr(errors, name) * step:.3g}")})
                 found = loss(alarms, tried)
@@ -245,16 +247,40 @@ def report(alarms, errors):
           f"{len(alarms)} alarms, mean confidence {confidence:.3f}")
 
 
-def severity_error(alarms, errors):
-    """Of the estimate, as a share of it, so that WITHIN of the estimates with the right cause are no farther off than
-    their stated deviation."""
-    shares_off = []
+def severity_errors(alarms, errors):
+    """(severity, severity_misfit): shares of the estimate by which it is off on another gear, and more where no
+    signature fits; of greatest likelihood of the true severities, taken as normal, where the cause is right."""
+    found = []
     for alarm in alarms:
-        probability, severity, variance = alarm.hypotheses.posterior(errors)
+        probability, severity, variance, misfit = alarm.hypotheses.posterior(errors)
         if max(probability, key=probability.get) == alarm.kind:
-            square = (severity[alarm.kind] - alarm.severity) ** 2 - variance[alarm.kind]
-            shares_off.append(math.sqrt(max(square, 0.0)) / severity[alarm.kind])
-    return numpy.quantile(shares_off, WITHIN)
+            estimate = severity[alarm.kind]
+            found.append((estimate - alarm.severity, variance[alarm.kind], estimate ** 2, misfit))
+    off, by_rows, square, misfit = numpy.array(found).T
+
+    def loss_of(shares_of):
+        variance = by_rows + square * (shares_of[0] ** 2 + misfit * shares_of[1] ** 2)
+        return numpy.mean(numpy.log(variance) + off ** 2 / variance)
+
+    best = min(itertools.product(numpy.arange(0.05, 0.5, 0.025), numpy.arange(0.0, 1.5, 0.1)), key=loss_of)
+    deviation = numpy.sqrt(by_rows + square * (best[0] ** 2 + misfit * best[1] ** 2))
+    print(f"evaluate_health: severities of {len(off)} right causes: off by {math.sqrt(numpy.mean(off ** 2)):.2f} rms, "
+          f"{100.0 * numpy.mean(abs(off) <= deviation):.0f} % by no more than stated")
+    return dict(zip(("severity", "severity_misfit"), (round(float(share), 3) for share in best)))
+
+
+def constants_table(alarms, errors):
+    """What each constant is worth: change of the mean log probability of the true cause without it and with other ones;
+    without m no motion is unlike, without w_1 the weight may fall to nothing."""
+    least = loss(alarms, errors)
+    lines = [f"Mean log probability {-least:.3f} in {len(alarms)} alarms.", "",
+             "| constant | value | without it | half | twice |", "|---|---|---|---|---|"]
+    for name, value in errors._asdict().items():
+        without = {"weight": 1.0, "speed": 1e9, "direction": 1e9}.get(name, 1e-9)
+        cells = [f"{least - loss(alarms, errors._replace(**{name: other})):+.3f}"
+                 for other in (without, 0.5 * value, 2.0 * value)]
+        lines.append(f"| `{name}` | {value:g} | " + " | ".join(cells) + " |")
+    return lines
 
 
 def write(bench, path, page, trials, errors_alone):
@@ -267,9 +293,12 @@ def write(bench, path, page, trials, errors_alone):
     windows = calibration_windows(bench, trials)
     layout = Layout(windows[0][2]["indicators"])
     alarms = alarms_of(layout, windows, table)
+    report(alarms, START)
     errors = fitted_errors(alarms)
     report(alarms, errors)
-    health_file.replace(path, "errors", {**errors._asdict(), "severity": round(severity_error(alarms, errors), 2)})
+    health_file.replace(path, "errors", {**{name: getattr(errors, name) for name in IN_FILE},
+                                         **severity_errors(alarms, errors)})
+    lab.write(page, "constants", constants_table(alarms, errors))
     write_table(layout, health_file.read(path)["sound"], table, page, trials)
 
 
@@ -281,6 +310,12 @@ def with_severities_between(rows):
             severity = math.sqrt(one[3] * after[3])
             share = (severity - one[3]) / (after[3] - one[3])
             yield (*one[:3], severity, [first + share * (last - first) for first, last in zip(one[4], after[4])])
+
+
+def priors(occurrence):
+    """As in fault_signatures.cpp."""
+    mean = numpy.mean(list(occurrence.values()))
+    return {cause: 0.5 * (1.0 + rating / mean) for cause, rating in occurrence.items()}
 
 
 def of_robots(content, cause, severity):
@@ -299,8 +334,8 @@ def read(path):
             for row in content["signatures"]]
     causes, motions, *numbers = zip(*with_severities_between(rows))
     kinds, severities, found = (numpy.array(own, float) for own in numbers)
-    return (Table(causes, motions, severities, kinds, found, content["sound"]),
-            Errors(*(content["errors"][name] for name in Errors._fields)))
+    return (Table(causes, motions, severities, kinds, found, content["sound"], priors(content["occurrence"])),
+            START._replace(**{name: content["errors"][name] for name in IN_FILE}))
 
 
 def write_table(layout, sound, table, page, trials):

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 Frame = Any  # pandas.DataFrame; pandas has no types
 
-__all__ = ["assess", "drive_fault", "load", "reference", "write_card", "write_cmapss"]
+__all__ = ["as_factorynet", "assess", "drive_fault", "load", "reference", "write_card", "write_cmapss"]
 
 # A check-up is one window, judged by itself: docs/health.md.
 CHECK_UP = {"indicators.evidence_windows": 1, "indicators.false_alarm_rate": 1e-3}
@@ -24,6 +24,15 @@ ALL_WINDOWS = {"indicators.baseline_windows": 10000}
 DIRECTION_ROWS = 5  # over which the motor's direction is taken: a count of its noise is none
 # Of a group's columns those that tell the truth; the index's are labels or settings, all of them.
 TRUTH = ("severity", "window_severity")
+# FactoryNet's columns, those of an arm without the joint's number behind both: schema.json, version 1.0, of
+# huggingface.co/datasets/Forgis/factorynet-hackathon; setpoint_acc, _current, _torque and _cartesian as its UR3e has.
+FACTORYNET = {"time": "timestamp", "class": "fault_label", "speed_reference": "setpoint_vel_0",
+              "output_angle_encoder": "feedback_pos_0", "output_velocity_encoder": "feedback_vel_0",
+              "motor_torque_reading": "effort_torque_0", "housing_temperature": "ctx_temp_0"}
+FACTORYNET_ARM = {"target_q": "setpoint_pos", "target_qd": "setpoint_vel", "target_qdd": "setpoint_acc",
+                  "target_current": "setpoint_current", "target_moment": "setpoint_torque",
+                  "target_TCP_pose": "setpoint_pos_cartesian", "actual_q": "feedback_pos", "actual_qd": "feedback_vel",
+                  "actual_current": "effort_current", "actual_TCP_pose": "feedback_pos_cartesian"}
 
 
 def _group(file: str, group: str, is_arm: bool, wanted: Optional[Sequence[str]]) -> Dict[str, "NDArray[Any]"]:
@@ -261,6 +270,32 @@ def write_cmapss(folder: Path, out: Path, *, duty: Optional[str] = None, seed: i
                         ("RUL", cut.groupby("unit", as_index=False).last()[["unit", "RUL"]])):
         table.to_csv(os.path.join(out, name + ".csv"), index=False)
     return {"train": int(train["unit"].nunique()), "test": int(cut["unit"].nunique()), "indicators": names}
+
+
+def as_factorynet(samples: Frame) -> Frame:
+    """Samples of a data set with the columns of FactoryNet, for programs that learn from it (docs/datasets.md).
+
+    samples: of load(folder, group), of a joint or an arm, with 'file' and 'time', a set point and a torque or current.
+
+    Returns a pandas.DataFrame: 'episode_id', the name of the run's file, 'timestamp' [s], 'setpoint_', 'effort_',
+    'feedback_' and 'ctx_' columns with the number of the joint, from the base on, 'fault_label', the class. What
+    FactoryNet has no name for is left out. InputError.
+    """
+    names = {}
+    for name in samples:
+        stem, _, joint = name.rpartition("_")
+        if name in FACTORYNET:
+            names[name] = FACTORYNET[name]
+        elif joint.isdigit() and stem in FACTORYNET_ARM:
+            names[name] = f"{FACTORYNET_ARM[stem]}_{joint}"
+    for needed in ("timestamp", "setpoint_", "effort_"):
+        if not any(name.startswith(needed) for name in names.values()):
+            raise _hjt.InputError(f"no column of these is one of FactoryNet's {needed}, which an episode needs: "
+                                  f"{', '.join(samples)}")
+    frame = samples[list(names)].rename(columns=names)
+    frame.attrs = {}
+    frame.insert(0, "episode_id", [os.path.splitext(os.path.basename(file))[0] for file in samples["file"]])
+    return frame
 
 
 def _columns_of(file: str) -> List[str]:

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <numeric>
 #include <utility>
 
 #include "health/indicator_table.hpp"
@@ -70,9 +72,6 @@ private:
   const Deviations& deviations_;
   FeatureScores& scores_;
 };
-
-constexpr double MISFIT_WEIGHT = 0.2;    // w_1: share of the evidence's weight that is left where no signature fits
-constexpr double MISFIT_SEVERITY = 0.5;  // share of the severity there: other drives soften up to three times as much
 
 constexpr std::array TOGETHER{ causeOf(FaultKind::TOOTH_WEAR), causeOf(FaultKind::INTERFACE_WEAR),
                                causeOf(FaultKind::LUBRICANT_DEGRADATION) };  // wear by use (docs/life.md)
@@ -229,9 +228,25 @@ std::vector<CauseSearch::Row> CauseSearch::rowsOf(const SignatureSet& set)
 }
 
 CauseSearch::CauseSearch(std::shared_ptr<const SignatureSet> set)
-  : set_(std::move(set)), rows_(rowsOf(*set_)), likelihoods_(rows_.size() + UNKNOWNS.size())
+  : set_(std::move(set))
+  , rows_(rowsOf(*set_))
+  , beforehand_(priorsOf(*set_))
+  , likelihoods_(rows_.size() + UNKNOWNS.size())
 {
   start();
+}
+
+/// Whether a drive's faults occur as they are rated is as likely as that all occur alike.
+std::array<double, CAUSE_COUNT> CauseSearch::priorsOf(const SignatureSet& set)
+{
+  const std::array<double, CAUSE_COUNT>& rated = set.occurrence;
+  const auto unrated = std::count(rated.begin(), rated.end(), 0.0);
+  const double mean =
+      std::accumulate(rated.begin(), rated.end(), 0.0) / static_cast<double>(std::ptrdiff_t{ CAUSE_COUNT } - unrated);
+  std::array<double, CAUSE_COUNT> priors{};
+  std::transform(rated.begin(), rated.end(), priors.begin(),
+                 [mean](double rating) { return rating > 0.0 ? 0.5 * (1.0 + rating / mean) : 1.0; });
+  return priors;
 }
 
 void CauseSearch::start() noexcept
@@ -266,7 +281,7 @@ void CauseSearch::advance(const WindowResidual& residual, const OperatingPoint& 
       const auto unknown = likelihoods_.begin() + static_cast<std::ptrdiff_t>(known);
       const auto best = std::max_element(likelihoods_.begin(), unknown) - likelihoods_.begin();
       misfit_ = known == 0 ? 1.0 : terms.misfit(rows_[static_cast<std::size_t>(best)].parts);
-      const double weight = set_->evidence_weight * (MISFIT_WEIGHT + (1.0 - MISFIT_WEIGHT) / misfit_);
+      const double weight = set_->evidence_weight * (set_->misfit_weight + (1.0 - set_->misfit_weight) / misfit_);
       const double largest = *std::max_element(likelihoods_.begin(), likelihoods_.end());
       for (double& likelihood : likelihoods_)
       {
@@ -298,13 +313,13 @@ CausePosterior CauseSearch::posterior() const noexcept
 {
   CausePosterior posterior;
   double all = 0.0;
-  const double by_misfit = MISFIT_SEVERITY * (1.0 - 1.0 / misfit_);
+  const double by_misfit = set_->severity_misfit * (1.0 - 1.0 / misfit_);
   for (std::size_t cause = 0; cause < CAUSE_COUNT; ++cause)
   {
     const Sum& sum = sums_[cause];
     if (sum.total > 0.0)
     {
-      posterior.probability[cause] = sum.total / sum.priors;
+      posterior.probability[cause] = beforehand_[cause] * sum.total / sum.priors;
       all += posterior.probability[cause];
       posterior.severity[cause] = sum.first / sum.total;
       const double mean = posterior.severity[cause];

@@ -107,6 +107,7 @@ private:
       readIndicators(section(file, "indicators"));
       readSound(section(file, "sound"));
       readCarried(section(file, "carried"));
+      readOccurrence(section(file, "occurrence"));
       readOfRobots(file["robots"]);
     }
     catch (const YAML::Exception& error)
@@ -209,6 +210,16 @@ private:
     }
   }
 
+  void readOccurrence(const YAML::Node& occurrence)
+  {
+    for (const auto& entry : occurrence)
+    {
+      const Cause cause = causeNamed(entry.first.Scalar(), lineOf(entry.first));
+      set_.occurrence[static_cast<std::size_t>(cause)] =
+          number(entry.second, "occurrence." + entry.first.Scalar(), { 1.0, 10.0 });
+    }
+  }
+
   void readOfRobots(const YAML::Node& robots)
   {
     for (const YAML::Node& row : robots)
@@ -304,7 +315,7 @@ private:
         return static_cast<Cause>(cause);
       }
     }
-    fail(line, "signatures: no such cause: " + name + didYouMean(name, known));
+    fail(line, "no such cause: " + name + didYouMean(name, known));
   }
 
   const std::string path_;

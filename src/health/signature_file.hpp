@@ -20,12 +20,14 @@ struct SignatureErrorRow
   const char* key;
   double SignatureSet::*value;
 };
-constexpr std::array<SignatureErrorRow, 6> SIGNATURE_ERRORS{ { { "number", &SignatureSet::number_error },
+constexpr std::array<SignatureErrorRow, 7> SIGNATURE_ERRORS{ { { "number", &SignatureSet::number_error },
                                                                { "motion", &SignatureSet::motion_error },
-                                                               { "length", &SignatureSet::length_error },
                                                                { "line", &SignatureSet::line_error },
                                                                { "weight", &SignatureSet::evidence_weight },
-                                                               { "severity", &SignatureSet::severity_error } } };
+                                                               { "misfit", &SignatureSet::misfit_weight },
+                                                               { "severity", &SignatureSet::severity_error },
+                                                               { "severity_misfit",
+                                                                 &SignatureSet::severity_misfit } } };
 
 /// Of each number of a signature, index of the indicator that it speaks of.
 std::array<std::size_t, SIGNATURE_SIZE> indicatorsOfNumbers();

@@ -81,14 +81,11 @@ SignatureTerms::SignatureTerms(const SignatureSet& set, const WindowResidual& re
 double SignatureTerms::logLikelihood(const SignatureParts& parts, double strength, double alike) const noexcept
 {
   std::array<double, INDICATOR_COUNT> changes{};  // by the signature
-  double length = 0.0;
   for (std::size_t i = 0; i < count_; ++i)
   {
-    const Term& term = terms_[i];
-    changes[i] = changeBy(parts, term);
-    length += (term.has_phase ? 0.5 : 1.0) * changes[i] * changes[i] / term.own;
+    changes[i] = changeBy(parts, terms_[i]);
   }
-  const double widening = 1.0 + strength * strength + set_.length_error * set_.length_error * length;
+  const double widening = 1.0 + strength * strength;
   double severities = 0.0;  // squares
   for (const Signature* part : parts)
   {

@@ -19,8 +19,8 @@ constexpr const char* HEAD = R"(# SPDX-License-Identifier: BSD-3-Clause
 format: )";
 constexpr const char* ERRORS = R"(
 # Errors by the law of docs/indicators.md [-]: of each number of a signature on another gear, and in a motion of another
-# kind; of its length; share of the sound drive's lines that a fault of severity 1 changes, weight of the evidence, of
-# the severity.
+# kind; share of the sound drive's lines that a fault of severity 1 changes; weight of the evidence, and the share of it
+# that is left where no signature fits; of the severity, and more where no signature fits.
 errors:
 )";
 constexpr const char* INDICATORS = R"(
@@ -35,6 +35,11 @@ constexpr const char* CARRIED = R"(
 # What the indicators of a sound drive less a model's differ by from one motion to another: [deviation in the
 # indicator's unit, share of what drive and model differ by, degrees of freedom]. Not known of what is missing here.
 carried:
+)";
+constexpr const char* OCCURRENCE = R"(
+# How often a cause occurs, 1 ... 10 [-]: FMECA of C. Costantino, Politecnico di Torino, 2021, Table 3.7. What is
+# missing here is not rated.
+occurrence:
 )";
 constexpr const char* ROBOTS = R"(
 # What faults change in friction by load and lag of a robot in closed loop, of any gear in any motion: [cause, severity,
@@ -74,6 +79,18 @@ void writeRow(const Signature& signature, const std::string& motion, const Signa
   }
   text << '\n';
 }
+
+void writeOccurrence(const SignatureSet& set, TextStream& text)
+{
+  text << OCCURRENCE;
+  for (std::size_t i = 0; i < CAUSE_COUNT; ++i)
+  {
+    if (set.occurrence[i] > 0.0)
+    {
+      text << "  " << causeName(static_cast<Cause>(i)) << ": " << numberText(set.occurrence[i]) << '\n';
+    }
+  }
+}
 }  // namespace
 
 std::string signatureText(const SignatureSet& set, const std::vector<std::string>& motions)
@@ -112,6 +129,7 @@ std::string signatureText(const SignatureSet& set, const std::vector<std::string
            << ", " << numberText(error.freedom) << "]\n";
     }
   }
+  writeOccurrence(set, text);
   if (!set.of_robots.empty())
   {
     text << ROBOTS;

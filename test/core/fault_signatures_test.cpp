@@ -171,6 +171,28 @@ TEST_F(AgainstSignatures, OfAMotionLikeTheWindowsCountMore)
   EXPECT_GT(alike, other);
 }
 
+TEST_F(AgainstSignatures, OfCausesThatLookAlikeTheMoreFrequentIsTheMoreLikely)
+{
+  constexpr std::array CAUSES{ causeOf(FaultKind::PITTING), causeOf(FaultKind::BUCKLING),
+                               Cause::CIRCULAR_SPLINE_TOOTH };
+  auto set = std::make_shared<SignatureSet>(*signatures_);
+  set->signatures.assign(CAUSES.size(), signatures_->signatures.front());
+  for (std::size_t i = 0; i < CAUSES.size(); ++i)
+  {
+    set->signatures[i].cause = CAUSES[i];
+  }
+  set->occurrence = {};
+  set->occurrence[static_cast<std::size_t>(CAUSES[0])] = 9.0;
+  set->occurrence[static_cast<std::size_t>(CAUSES[1])] = 1.0;
+  CauseSearch search(set);
+  const Signature& signature = set->signatures.front();
+  search.advance(windowOf(signature.change), pointOf(signature.motion), search.signatures());
+  const std::array<double, CAUSE_COUNT> found = search.posterior().probability;
+  const double unrated = found[static_cast<std::size_t>(CAUSES[2])];
+  EXPECT_NEAR(found[static_cast<std::size_t>(CAUSES[0])] / unrated, 0.5 * (1.0 + 9.0 / 5.0), 1e-9);
+  EXPECT_NEAR(found[static_cast<std::size_t>(CAUSES[1])] / unrated, 0.5 * (1.0 + 1.0 / 5.0), 1e-9);
+}
+
 TEST_F(AgainstSignatures, WhatTheBestOneLeavesTakesFromConfidenceAndSeverity)
 {
   double less_sure = 0.0;

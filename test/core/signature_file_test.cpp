@@ -22,7 +22,7 @@ namespace
 {
 constexpr const char* SMALL = R"(format: 3
 gear: mine
-errors: {number: 0.1, motion: 0.4, length: 0.01, line: 0.5, weight: 0.2, severity: 0.3}
+errors: {number: 0.1, motion: 0.4, line: 0.5, weight: 0.2, misfit: 0.1, severity: 0.3, severity_misfit: 0.6}
 indicators:
   torsional_stiffness: N.m/rad
   torque_ball: N.m
@@ -30,6 +30,7 @@ sound:
   torsional_stiffness: 2000.0
 carried:
   torque_ball_above: [0.1, 0.2, 3.0]
+occurrence: {pitting: 6.0}
 signatures: |
   pitting check_up 80 0.02 0.5 -0.25 3e-7
   circular_spline_tooth any 0 0 1.0 0 1e-2
@@ -51,8 +52,11 @@ TEST(SignatureFile, IsTakenNumberByNumber)
   const SignatureSet set = parseSignatures(SMALL, "mine.yaml");
   EXPECT_EQ(set.gear, "mine");
   EXPECT_EQ(set.motion_error, 0.4);
-  EXPECT_EQ(set.length_error, 0.01);
+  EXPECT_EQ(set.misfit_weight, 0.1);
   EXPECT_EQ(set.severity_error, 0.3);
+  EXPECT_EQ(set.severity_misfit, 0.6);
+  EXPECT_EQ(set.occurrence[static_cast<std::size_t>(causeOf(FaultKind::PITTING))], 6.0);
+  EXPECT_EQ(set.occurrence[static_cast<std::size_t>(causeOf(FaultKind::BUCKLING))], 0.0);
   constexpr std::size_t STIFFNESS = indexOf(ScalarIndicator::TORSIONAL_STIFFNESS);
   constexpr std::size_t BALL = signatureNumber(LineSignal::MOTOR_TORQUE, index(Line::BALL));
   EXPECT_EQ(std::count(set.fitted.begin(), set.fitted.end(), true), 2);
@@ -111,12 +115,12 @@ TEST(SignatureFile, SaysWhereItIsDamaged)
               says(":6: indicators.torque_ball: unit rad, expected N.m"));
   EXPECT_THAT(refusal(replaced("[0.1, 0.2, 3.0]", "[0.1, 0.2]")),
               says(":10: carried.torque_ball_above: expected [deviation, share, degrees of freedom]"));
-  EXPECT_THAT(refusal(replaced("pitting", "pittin")),
-              says(":12: signatures: no such cause: pittin (did you mean pitting?)"));
+  EXPECT_THAT(refusal(replaced("pitting", "pittin")), says(":11: no such cause: pittin (did you mean pitting?)"));
+  EXPECT_THAT(refusal(replaced("6.0", "60.0")), says(":11: occurrence.pitting: 60.0, expected 1 ... 10"));
   EXPECT_THAT(refusal(replaced("0.5 -0.25", "1.5 -0.25")),
-              says(":12: signatures: severity [-] = 1.5, expected 0 ... 1"));
-  EXPECT_THAT(refusal(replaced("1e-2", "")), says(":13: signatures: 6 words, expected 7"));
-  EXPECT_THAT(refusal(replaced("1e-2", "nan")), says(":13: signatures: change = nan"));
+              says(":13: signatures: severity [-] = 1.5, expected 0 ... 1"));
+  EXPECT_THAT(refusal(replaced("1e-2", "")), says(":14: signatures: 6 words, expected 7"));
+  EXPECT_THAT(refusal(replaced("1e-2", "nan")), says(":14: signatures: change = nan"));
   EXPECT_THAT(refusal(replaced("signatures: |\n", "signatures:\n")), testing::Not(""));
   EXPECT_THAT(refusal("- 1\n"), says(": no file of signatures"));
 }

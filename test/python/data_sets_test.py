@@ -156,7 +156,7 @@ class DataSets(unittest.TestCase):
         with open("arm.yaml", "w", encoding="utf-8") as file:
             file.write("arm: ur5\nduration: 0.6\nset: {solver.scene: full_ring}\nduty: [{motion: moves.yaml}]\n"
                        "classes: {worn: [{joint: elbow, kind: interface_wear, severity: 0.5}]}\nrecord: {start: 0.5, "
-                       "groups: {states: {rate: 100.0, columns: [actual_q, actual_current]}}}\n")
+                       "groups: {states: {rate: 100.0, columns: [target_q, actual_q, actual_current]}}}\n")
         hjt.sweep("arm.yaml", "arm")
         states = hjt.load("arm", "states")
         self.assertEqual(len(states), 10)
@@ -164,6 +164,15 @@ class DataSets(unittest.TestCase):
         self.assertEqual(states.severity_1.max(), 0.0)
         self.assertLess((states.actual_q_2 - 1.0).abs().max(), 0.03)
         self.assertEqual(states.fault_joint[0], "elbow")
+        episode = hjt.as_factorynet(states)
+        self.assertEqual(set(episode), {"episode_id", "timestamp", "fault_label"} | {
+            f"{name}_{i}" for name in ("setpoint_pos", "feedback_pos", "effort_current") for i in range(6)})
+        self.assertEqual([*episode.iloc[0][["episode_id", "fault_label"]]], ["run_000000000", "worn"])
+        for name, own in (("timestamp", "time"), ("setpoint_pos_2", "target_q_2"), ("effort_current_5",
+                                                                                    "actual_current_5")):
+            np.testing.assert_array_equal(episode[name], states[own])
+        with self.assertRaisesRegex(hjt.InputError, "FactoryNet's setpoint_, which an episode needs"):
+            hjt.as_factorynet(hjt.load("old", "signals"))
 
     def test_a_folder_is_judged_by_a_reference(self):
         self.assertEqual(len(self.learned), SOUND)

@@ -160,10 +160,11 @@ struct SignatureSet
   std::string gear;                       ///< whose, for people
   double number_error{};                  ///< r of CauseSearch [-]
   double motion_error{};                  ///< m [-]
-  double length_error{};                  ///< e [-]
   double line_error{};                    ///< l [-]
   double evidence_weight{};               ///< b_0 [-]
+  double misfit_weight{};                 ///< w_1 [-]
   double severity_error{};                ///< of the severity by the signatures, as a share of it [-]
+  double severity_misfit{};               ///< the same where no signature fits, beside it [-]
   std::vector<Signature> signatures;      ///< those of robots in their own numbers
   std::vector<RobotSignature> of_robots;  ///< by cause, severities rise
   std::array<bool, SIGNATURE_SIZE>
@@ -171,6 +172,7 @@ struct SignatureSet
   std::array<double, SCALAR_COUNT>
       sound{};  ///< of the sound drive in the check-up, units of the indicators; NaN: not known
   std::array<CarriedError, INDICATOR_COUNT> carried{};
+  std::array<double, CAUSE_COUNT> occurrence{};  ///< rating of how often a cause occurs; 0: not rated [-]
 };
 
 /// Causes that move an indicator at severity 1 by `share` of its sound value or more; `sign`: +1 up, -1 down.
@@ -214,20 +216,22 @@ struct CausePosterior
 
 /// Likelihood of the window's differences d from the reference under every signature.
 ///
-/// Law:   d ~ t_v(mu, D_h + F F'),   P(h | d) ~ P(h) p(d | h)^b,   P(h) the same for every cause, within it ~ w_0 + a
+/// Law:   d ~ t_v(mu, D_h + F F'),   P(h | d) ~ P(h) p(d | h)^b,   P(h) ~ 1 + O / O_m by cause, within it ~ w_0 + a
 ///        a = exp(-(ln(n / n_h) / N)^2 / 2 - ((q - q_h) / Q)^2 / 2), 1 in ANY_MOTION
-///        D_h,ii = D_ii (1 + (e S)^2) + (r^2 + m^2 (1 - a)) mu_i^2 + (l s A_i)^2 / 2,   S^2 = sum_i mu_i^2 / D_ii
+///        D_h,ii = D_ii (1 + S^2) + (r^2 + m^2 (1 - a)) mu_i^2 + (l s A_i)^2 / 2
 ///        b = b_0 (w_1 + (1 - w_1) / f),   f = max(1, (d - mu)' (D + F F')^-1 (d - mu) / N) of the most likely h
 /// where  mu       change by the signature; of the two parts of a line with a phase: mean 0, variance half its square
 ///        D, F, v  WindowResidual
-///        r, e     error of a signature in proportion to each number, and to its length: other gears, places
+///        O, O_m   rated occurrence of the cause, mean of those that are rated: of the others, and of none, O = O_m
+///        r        error of a signature in proportion to each number: other gears, places
+///        S        strength of something of no signature, 0 of a signature
 ///        m, a     error of each number in a motion of another kind;  how far the motions are alike
 ///        A, s     amplitude of the line that the sound drive has there, 0 of what is no line with a phase; severity
 ///        l        share of such a line that a fault of severity 1 changes: errors of manufacture differ. Also of
 ///                 the lost motion, without the 2: how far wear opens the teeth depends on how tight they were
 ///        b        weight of the evidence: what a signature is off by is not independent from number to number
-///        f, N     misfit: the more even the best signature leaves, the less the evidence says, w_1 = 0.2 of it at
-///                 least, and the less is known of the severity;  numbers compared
+///        f, N     misfit: the more even the best signature leaves, the less the evidence says, w_1 of it at least,
+///                 and the less is known of the severity;  numbers compared
 ///        n, q     MotionKind of the window, of the signature: where a line meets a resonance of the drive, it is the
 ///                 larger part of every signature, elsewhere of none;  N = 0.2, Q = 0.3, w_0 = 0.001
 /// Teeth, interface and grease wear together: h is also the sum of the signatures of two or three of them in one
@@ -235,9 +239,9 @@ struct CausePosterior
 /// together as much beforehand as its signatures alone, and beside these.
 /// Stiffness changes as a compliance does: mu = c x^2 / x_h,  c  share by the signature, x  sound value of the window's
 /// motion, x_h  of SignatureSet::sound. An eccentric encoder adds the same to the compliance of every drive.
-/// Something of no signature: mu = 0, e S = 3, 10, 30, 100. With a tenth of the weight each, what is no fault of a
-/// gear: a brake that drags, mu of running and Coulomb torque 0.05, 0.15, 0.4, 1 of the sound running torque, e S = 0;
-/// noise g = 0.12, 0.25, 0.5, 1 more, 1 + (e S)^2 = (1 + g)^2, mu of the kinematic error g of the sound one.
+/// Something of no signature: mu = 0, S = 3, 10, 30, 100. With a tenth of the weight each, what is no fault of a
+/// gear: a brake that drags, mu of running and Coulomb torque 0.05, 0.15, 0.4, 1 of the sound running torque, S = 0;
+/// noise g = 0.12, 0.25, 0.5, 1 more, 1 + S^2 = (1 + g)^2, mu of the kinematic error g of the sound one.
 /// Indicators that the signatures were not fitted for count for nothing.
 ///
 /// A search takes a pass over all signatures for their likelihoods and one for the sums over them, in as many parts as
@@ -267,6 +271,7 @@ private:
     double prior{ 1.0 };  // beside that of a signature alone
   };
   static std::vector<Row> rowsOf(const SignatureSet& set);
+  static std::array<double, CAUSE_COUNT> priorsOf(const SignatureSet& set);
 
   /// Over the signatures of one cause.
   struct Sum
@@ -282,6 +287,7 @@ private:
 
   std::shared_ptr<const SignatureSet> set_;
   std::vector<Row> rows_;
+  std::array<double, CAUSE_COUNT> beforehand_;  // (1 + O / O_m) / 2
   std::vector<double> likelihoods_;  // logarithms; of the rows, then of what is in none; after the first pass times b
   double misfit_{ 1.0 };             // f, after the first pass
   std::array<Sum, CAUSE_COUNT> sums_{};
