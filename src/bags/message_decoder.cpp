@@ -96,7 +96,7 @@ public:
     header.frame_id = text();
   }
 
-  /// To the last byte; CDR may be padded.
+  /// Whether the message was read to its last byte. CDR may end with padding.
   bool done() const { return fits_ && bytes_.size() - at_ < (is_cdr_ ? sizeof(double) : 1); }
 
 private:

@@ -65,7 +65,8 @@ SurfaceSource runSurfaces(const Plan& plan, unsigned jobs);
 /// @throws InputError unless it is a plan of lives.
 void requireLives(const Plan& plan, const std::string& path);
 
-/// A run of the plan before any has started. @throws InputError as `Plan::run`, with the number of the run.
+/// Checks one run of the plan before any run starts, and returns it. @throws InputError as `Plan::run`, with the number
+/// of the run.
 RunSpec checkedRun(const Plan& plan, std::uint64_t run);
 
 /// All of them, until the watch stops.

@@ -171,7 +171,7 @@ struct Referred
   std::size_t reference;
 };
 
-/// As the version has them: FMI 2.0 a scalar for each element of an array.
+/// The variables as the version declares them: FMI 2.0 has a scalar for each element of an array.
 std::vector<Referred> referred(const std::vector<FmuVariable>& all, Version version)
 {
   std::vector<Referred> found;

@@ -45,8 +45,8 @@ constexpr double ALIKE_FREEDOM = 3.0;
 ///         s_0^2 is 0.69 of this one, a geometric mean, with ALIKE_FREEDOM: 2 exp(psi(v_0 / 2)) / v_0.
 std::array<double, INDICATOR_COUNT> varianceOfAlike(const ReferenceBin& bin) noexcept;
 
-/// Standard error of each line over the least one of its signal's lines in the same window: what the motion makes of
-/// it, whatever the noise [-]. 0: not known.
+/// Standard error of each line, divided by the least standard error of its signal's lines in the same window [-]. The
+/// quotient depends on the motion, not on the noise. 0: not known.
 std::array<double, INDICATOR_COUNT> relativeErrors(const SignalIndicators& indicators) noexcept;
 
 /// Takes a window up into the sums of its class; `here`: its place there. Does not allocate.

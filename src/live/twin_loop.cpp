@@ -225,8 +225,8 @@ void TwinLoop::forgetInputs(Inputs& inputs) noexcept
   waiting_ = 0;
 }
 
-/// Those that arrived in this cycle: a stamp of zero, from before there was a time, becomes now; one far from the clock
-/// is refused.
+/// Stamps the inputs that arrived in this cycle. A stamp of zero, given before there was a time, becomes now. An input
+/// whose stamp is far from the clock is refused.
 void TwinLoop::stampInputs(Inputs& inputs) noexcept
 {
   const auto fresh = inputs.begin() + static_cast<std::ptrdiff_t>(waiting_);

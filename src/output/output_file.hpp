@@ -21,8 +21,9 @@ void prepareReport(const std::string& folder, const std::string& data, bool forc
 /// Brings what was printed to where it goes. @throws InputError if not all could be written.
 void finishStandardOutput();
 
-/// A CSV file of numbers; every number can be read back exactly. Written as `PATH.NUMBER.part`, it has its name from
-/// `close` on; a device, a pipe and standard output are written to. Without `close` the rows stay in the `.part`.
+/// Writes a CSV file of numbers, each of which can be read back exactly. The file is named `PATH.NUMBER.part` until
+/// `close` gives it its name; without `close` the rows stay in the `.part`. A device, a pipe and standard output are
+/// written directly.
 class CsvWriter
 {
 public:

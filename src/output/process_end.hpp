@@ -48,7 +48,7 @@ private:
   static void catchSignal(Caught& caught, int signal);
 
   const bool is_outer_;
-  std::array<Caught, 3> caught_{};  // without a signal: not caught
+  std::array<Caught, 3> caught_{};  // an entry with signal 0 catches nothing
 };
 
 /// Start of the simulated time where no recording gives one, so that stamps are valid ROS times: 2001-09-09 01:46:40

@@ -198,8 +198,8 @@ void visitIndicators(P& p, Visitor& visit)
   visit("indicators.error_factor", "-", p.indicators.error_factor, Range{ 1.0, 1e3 },
         ofOthers("a deviation of this many times the threshold is an error, not a warning"));
   visit("indicators.signatures", p.indicators.signatures,
-        ofOthers("none, or the file of what faults change in the indicators of this gear: beside the default "
-                 "configuration or a path"));
+        ofOthers("file with the signatures of this gear's faults: a name beside the default configuration, or a "
+                 "path; none: no causes are named"));
 }
 
 template <class P, class Visitor>

@@ -173,7 +173,8 @@ void bindIndicators(py::module& module)
 
 void bindAssessment(py::module& module)
 {
-  auto evidence = py::class_<Evidence>(module, "Evidence", "An indicator that speaks for a level.");
+  auto evidence =
+      py::class_<Evidence>(module, "Evidence", "An indicator whose deviation supports the level of an Assessment.");
   evidence
       .def_property_readonly(
           "indicator", [](const Evidence& self) { return indicatorName(self.indicator); }, "its name")

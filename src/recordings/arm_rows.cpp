@@ -38,7 +38,7 @@ void ArmRows::take(Stamp stamp, double time, ArmRecorder& recorder, const ArmRow
     end_ = stamp;
     on_surface_ += stamp > begin_ && allOnSurface(moving_.twin()) ? 1 : 0;
     failed_ = countersOf(moving_.twin()).solver_failures > 0;
-    if (!failed_)  // else it ends here, as a run of a data set
+    if (!failed_)  // a failed twin ends the file here, as it ends a run of a data set
     {
       file_->record(stamp, recorder);
     }

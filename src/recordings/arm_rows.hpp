@@ -14,7 +14,8 @@
 
 namespace hjt
 {
-/// The rows of an arm's motion in a file: CSV; `.bag`, what its driver would publish; `.h5`, as a run of a data set.
+/// Writes the rows of an arm's motion to a file. A CSV file has one row for each; a `.bag` has the messages that the
+/// arm's driver would publish; an `.h5` file is like a run of a data set.
 class ArmRows
 {
 public:

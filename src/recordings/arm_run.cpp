@@ -153,8 +153,8 @@ void addOptions(OptionTable& table, ArmRunOptions& options)
 {
   table
       .add("motion", options.motion,
-           "set points: timestamp, target_q_0 ... and, if there, target_qd_0 ..., target_qdd_0 ... of a controller's "
-           "recording, or as `joint_twin checkup` writes them; or a program of moves")
+           "a table of set points from a controller's recording or from `joint_twin checkup`: columns timestamp, "
+           "target_q_0 ..., optional target_qd_0 ..., target_qdd_0 ...; or a YAML program of moves")
       .required()
       .type("FILE.csv|FILE.yaml");
   table.add("--arm", options.arm, "name in config/arms, or a file").required().type("NAME|FILE.yaml");

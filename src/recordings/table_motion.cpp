@@ -341,7 +341,8 @@ std::string missingText(const std::map<std::string, std::uint64_t>& missing, con
 
 std::string silentText(const std::vector<std::string>& joints)
 {
-  return "never a number: the effort of " + joined(joints) + ", which counts as 0: not judged, the others are";
+  return "the effort of " + joined(joints) +
+         " is never a number: it counts as 0 and its joint is not judged; the other joints are";
 }
 
 MotionCount readTableMotion(const MotionSource& source, const std::vector<int>& numbers, const VisitRows& visit,

@@ -95,7 +95,7 @@ struct GridChecks
 /// A pitch further on, each tooth is as the one before it was. Plain data: what is built, cached and read.
 struct ToothResponse
 {
-  /// Of a tooth, in the order in which they lie.
+  /// What is stored of each tooth, in the order of storage.
   enum Quantity : unsigned char
   {
     WAVE_GENERATOR_FORCE,  ///< [N]

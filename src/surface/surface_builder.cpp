@@ -161,8 +161,8 @@ private:
     if (good() && least < limit_)
     {
       TextStream text;
-      text << "the ring finds no equilibrium beyond " << least << " N.m at the output, less than the " << limit_
-           << " N.m that load or motor can bring";
+      text << "no equilibrium of the teeth is found above " << least
+           << " N.m at the output, but load or motor can bring " << limit_ << " N.m";
       failure_reason_ = text.str();
     }
     coarse_ = { coarse_.begin() + static_cast<std::ptrdiff_t>(first),

@@ -343,7 +343,7 @@ std::optional<BallTable> obtainBallTable(const Parameters& parameters, const Joi
                            });
 }
 
-/// See SurfaceRing. Solved for only where it is not known beforehand.
+/// SurfaceRing::repetition. The ring is solved for it only if the teeth may differ; else it is 1.
 int repetition(const Parameters& parameters, const JointModel& model, const std::string& faults)
 {
   const bool alike = faults.empty() && teethAreAlike(parameters) && !model.ring.of<WaveGeneratorContact>().hasKinks();

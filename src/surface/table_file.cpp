@@ -31,8 +31,9 @@ namespace
 class MappedFile
 {
 public:
-  /// Only a regular file of this user that others cannot write, neither empty nor larger than `most` bytes; else null.
-  /// Opening it does not wait, as it would for the writer of a FIFO. The file counts as used now.
+  /// Maps a regular file that belongs to this user and that others cannot write. Null for any other file, and for one
+  /// that is empty or larger than `most` bytes. Never waits, not even for the writer of a FIFO. Sets the times of the
+  /// file to now, so that it counts as used.
   static std::shared_ptr<const MappedFile> ofOwn(const std::string& path, std::size_t most);
 
   ~MappedFile();

@@ -106,7 +106,7 @@ JointEvidence::Row JointEvidence::judge(const MotionSample& sample, bool fits) n
   return fits && watchSignals(sample) ? Row::WINDOW : Row::COUNTED;
 }
 
-/// The time since the row before; 0: that is none, or before a gap [s].
+/// Adds a row to the reach. Returns the time since the row before [s]; 0 for the first row and after a gap.
 double JointEvidence::addToReach(const MotionSample& sample) noexcept
 {
   MotionReach& reach = now_.reach;

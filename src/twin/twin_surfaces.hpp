@@ -22,7 +22,8 @@ public:
   /// Starts the thread with a first request.
   SurfaceWorker(const Parameters& parameters, const FaultList& faults, const SurfaceSource& source);
 
-  /// The same surface, or a thread of its own in search of it; to be called where `request` is.
+  /// Shares the other's surface if it is ready; else the new thread obtains it. Call it from the thread that calls
+  /// `request`.
   SurfaceWorker(const SurfaceWorker& other);
 
   /// Gives up what is not finished.

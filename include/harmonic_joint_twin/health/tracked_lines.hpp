@@ -30,7 +30,7 @@ enum class Line : std::size_t
   BALL_FAR_BELOW,  ///< less twice these
   BALL_ABOVE,
   OUTER,            ///< balls over a place of the outer race
-  OUTER_BELOW,      ///< less and plus two: the lobes load that place
+  OUTER_BELOW,      ///< OUTER less two, OUTER_ABOVE plus two: the two lobes load that place in turn
   OUTER_FAR_BELOW,  ///< less four
   OUTER_ABOVE,
   INNER,  ///< balls over a place of the inner race, which stands still against the lobes: no lines beside it
