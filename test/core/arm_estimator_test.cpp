@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <random>
 #include <string>
 #include <vector>
@@ -99,9 +100,12 @@ std::vector<LoadFit::Drive> drivesOf(const Arm& arm, bool are_own)
   return drives;
 }
 
-/// Torques that a force of 1 N on the tip takes, along x and half of it down, while the arm stands as it does [N.m].
-std::vector<double> torquesOfHand(const ArmDescription& arm, std::vector<JointMotion> motion)
+/// Torques that the hand's force takes, while the arm stands as it does, and the push at the elbow [N.m].
+std::vector<double> torquesOfHand(const EstimatorCase& of, const ArmDescription& arm, std::vector<JointMotion> motion,
+                                  double time)
 {
+  const auto leg = static_cast<int>(time / LEG);
+  const double force = leg % 5 != 2 ? 0.0 : leg % 2 == 0 ? of.hand : -of.hand;
   ArmDescription lies = arm;
   lies.gravity = { 1.0, 0.0, -0.5 };
   Eigen::MatrixXd columns(6, UnitLoads::COLUMNS);
@@ -110,7 +114,9 @@ std::vector<double> torquesOfHand(const ArmDescription& arm, std::vector<JointMo
     joint.velocity = joint.acceleration = 0.0;
   }
   UnitLoads(lies).torques(motion, columns);
-  return { columns.col(0).data(), columns.col(0).data() + columns.rows() };
+  Eigen::VectorXd torques = force * columns.col(0);
+  torques[ELBOW] += time > 25.0 && time < 27.0 ? of.push : 0.0;
+  return { torques.data(), torques.data() + torques.size() };
 }
 
 /// The rows of a case: friction of joints differs by 5 %, gains by 2 %, offsets by 0.02 A, currents by noise of 0.05 A.
@@ -130,10 +136,8 @@ LoadFit fitOf(const EstimatorCase& of, unsigned seed)
   std::vector<MotionDriven> true_twins = arm.twins;
   std::vector<MotionDriven> twins = arm.twins;
   std::vector<const MotionDriven*> beside;
-  for (const MotionDriven& twin : twins)
-  {
-    beside.push_back(&twin);
-  }
+  std::transform(twins.begin(), twins.end(), std::back_inserter(beside),
+                 [](const MotionDriven& twin) { return &twin; });
   std::mt19937 engine(seed);
   std::normal_distribution<double> normal;
   std::array<std::array<double, 3>, 6> own{};
@@ -155,9 +159,7 @@ LoadFit fitOf(const EstimatorCase& of, unsigned seed)
     const bool is_carried = time >= of.from && (!of.in_turns || std::fmod(std::floor(time / LEG), 2.0) == 0.0);
     const std::vector<double> torques = torquesOf(is_carried ? carrying : without, motion);
     const std::vector<double> expected = torquesOf(configured, motion);
-    const auto leg = static_cast<int>(time / LEG);
-    const double hand = leg % 5 != 2 ? 0.0 : leg % 2 == 0 ? of.hand : -of.hand;
-    const std::vector<double> pushed = torquesOfHand(bare, motion);
+    const std::vector<double> pushed = torquesOfHand(of, bare, motion, time);
     for (std::size_t i = 0; i < 6; ++i)
     {
       MotionSample sample;
@@ -166,7 +168,7 @@ LoadFit fitOf(const EstimatorCase& of, unsigned seed)
       sample.position = motion[i].position;
       sample.velocity = motion[i].velocity;
       sample.acceleration = motion[i].acceleration;
-      sample.load = torques[i] + hand * pushed[i] + (i == ELBOW && time > 25.0 && time < 27.0 ? of.push : 0.0);
+      sample.load = torques[i] + pushed[i];
       const MotionPrediction truth = true_twins[i].step(sample);
       const double friction = truth.friction_torque / arm.joints[i].telemetry.torque_per_current;
       sample.current =
