@@ -6,7 +6,7 @@
 #include <sstream>
 #include <string>
 
-namespace YAML
+namespace YAML  // NOLINT(readability-identifier-naming): of yaml-cpp
 {
 class Node;
 }
