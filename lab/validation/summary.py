@@ -29,7 +29,7 @@ lab/run validate                                     # every row, in a few minut
 lab/run validate --set contact.stiffness=1.1e+8      # the effect of another parameter
 ```
 
-The complete table, with the runs, their commands, all figures and the errors found in the thesis, is
+The complete table, with the commands of all runs and the errors found in the thesis, is
 `out/validation/validation.md`. The exit code is 0 if every row holds or is one of those below that are known not to;
 else the rows that fail are named. The values of all rows are in [validation.csv](validation.csv). The recordings of
 real drives are not part of the project: without them the sections *Real drives* and *Heat* cannot be recomputed.
