@@ -52,9 +52,9 @@ there:
 - The operating model of the peers has no friction of the cup, which no solver of smooth equations can have."""
 
 
-CHOICE = """Which to choose: the full ring where every tooth is wanted at every step, or where the gear has no table;
-the table for the live node and for all runs offline; the table at measured angles where there is a recording to
-follow. Tooth forces are solved for the hundred samples alone, in about 3 ms."""
+CHOICE = """Choose the full ring if you want every tooth at every step, or if the gear has no table. Choose the table
+for the live node and for runs offline. Choose the table at measured angles if you follow a recording. The runs solve
+the tooth forces for the hundred samples alone, which takes about 3 ms."""
 
 
 QUANTITIES = {"angle": "angles", "position": "tooth positions", "force": "tooth forces"}
@@ -200,11 +200,10 @@ def section(problem, reference, rows, images):
     """Lines of the page, unfinished runs, and the ratios by quantity and level."""
     draw(rows, reference["title"], os.path.join(images, problem + ".png"))
     lines = ["## " + reference["title"], "",
-             f"Reference: {reference['methods'][0]}; {reference['methods'][1]} is {reference['apart']['force']:.1e} "
-             f"from it in "
-             f"the forces, {reference['apart']['position']:.1e} in the positions, {reference['apart']['angle']:.1e} in "
-             f"the angles: "
-             "errors below that mean nothing, and the tables end there.", "",
+             f"The reference is {reference['methods'][0]}. A second reference, {reference['methods'][1]}, differs from "
+             f"it by {reference['apart']['force']:.1e} in the forces, {reference['apart']['position']:.1e} in the "
+             f"positions and {reference['apart']['angle']:.1e} in the angles. Smaller errors mean nothing: the tables "
+             "end there.", "",
              f"![{reference['title']}](images/benchmark/{problem}.png)", ""]
     ratios = {}
     for quantity in shown(rows):
@@ -246,11 +245,9 @@ def parts(tool):
     least, most = min(teeth), max(teeth)
     slope = math.log(teeth[most] / teeth[least]) / math.log(most / least)
     return ["## Insertion from cold, and cost against teeth", "",
-            f"Equilibrium of the wave generator inserted into the round ring: {cold:.2g} ms (wanted: 1 ms at most). A "
-            f"Newton "
-            f"iteration of the dynamic ring, that is forces, tangent, factors and solution, goes with the number of "
-            f"teeth to "
-            f"the power {slope:.2f} (wanted: 1.05 at most).", "",
+            f"The solver finds the equilibrium of the wave generator in the round ring in {cold:.2g} ms (target: at "
+            f"most 1 ms). A Newton iteration of the dynamic ring computes forces, tangent, factors and solution. Its "
+            f"time grows with the number of teeth to the power {slope:.2f} (target: at most 1.05).", "",
             *table(["teeth", "iteration [us]"],
                    [[count, f"{1e-3 * time:.3g}"] for count, time in sorted(teeth.items())])]
 

@@ -5,27 +5,29 @@ import shutil
 
 HEAD = """# Run time against error
 
-Written by `lab/run benchmark`; do not edit. Time that the twin's solvers and other programs need to reach a
-given error with the same equations of motion: the dynamic ring of [model.md](model.md) (804 states: every tooth's
-mass, wave generator, circular spline), the operating model, and the levels of detail to choose from.
+`lab/run benchmark` writes this page; do not edit it. The page compares how long the twin's solvers and other programs
+take to reach a given error. All solve the same equations of motion. The problems are the dynamic ring of
+[model.md](model.md) (804 states: every tooth's mass, wave generator, circular spline), the operating model, and the
+levels of detail that a user can choose from.
 
 ```sh
 lab/run benchmark                    # ten minutes: installs the peers, measures; the complete page in out/benchmark
 lab/run benchmark --reuse            # writes the pages again from what was measured
 ```
 
-The complete page has a figure, the quickest solver for each error and every run of each problem, and what was given up.
+The complete page has a figure for each problem, the quickest solver for each error, every run, and the runs that were
+given up.
 
-**Error**: root mean square over the samples, over the standard deviation of the reference, of all angles, tooth
-positions or tooth forces. **Time**: of the processor, of one thread, median of the runs; the solvers take turns. Peers:
-SUNDIALS (CVODE, IDA, ARKODE), RADAU5, Boost.odeint. They get the analytic sparse Jacobian with SuiteSparse's KLU
-and call the twin's own forces. Ours are `joint_twin dynamics --tolerance`: TR-BDF2 and ESDIRK4 with adaptive
-steps.
+The **error** of a run is the root mean square of its differences from the reference over all samples. It is divided by
+the standard deviation of the reference. Angles, tooth positions and tooth forces have an error each. The **time** is
+processor time of one thread, the median of the runs; the solvers take turns. The **peers** are SUNDIALS (CVODE, IDA,
+ARKODE), RADAU5 and Boost.odeint. They get the analytic sparse Jacobian with SuiteSparse's KLU and call the twin's own
+forces. **Our solvers** are TR-BDF2 and ESDIRK4 with adaptive steps (`joint_twin dynamics --tolerance`).
 """
-READING = """Above 1 ours are faster. *ours only*, *peer only*: the other does not reach that error. A dash:
-nobody reaches that error, or the references differ by more. An error of the tooth forces below
-1e-3 needs steps that resolve the vibration of single teeth, a fraction of a microsecond long; in those rows the peer is
-Runge-Kutta 4 with steps of equal length.
+READING = """Above 1 our solver is faster. *ours only* and *peer only* say that the other side does not reach that
+error. A dash says that no solver reaches that error, or that the two references differ by more than the error. For
+tooth forces an error below 1e-3 needs steps of a fraction of a microsecond, which resolve the vibration of single
+teeth. The best peer for such errors is Runge-Kutta 4 with steps of equal length.
 
 ![Working drive under a load step: time against error of all solvers](images/benchmark/drive.png)
 """
