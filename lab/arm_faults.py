@@ -135,7 +135,8 @@ def table(kinds, found, sound):
     lines = [f"The sound arm leaves its path by at most {sound['path_max']:.2f} mm, {sound['path_rms']:.2f} mm rms. "
              f"Its repeatability is {sound['repeatability']:.3f} mm (ISO 9283; the maker states "
              f"{MAKERS_REPEATABILITY:g}). The table has faults of severity {SEVERITIES[1]:g}. Each figure "
-             "is that of the joint in which the fault changes it most. [arm_faults.csv](arm_faults.csv) has all joints and severities.", "",
+             "is that of the joint in which the fault changes it most. [arm_faults.csv](arm_faults.csv) has all joints "
+             "and severities.", "",
              "| fault | off the path at most [mm] | moved at rest [mm] | repeats within [mm] "
              "| current of the joint [%] "
              "| hidden in |", "|---|---|---|---|---|---|"]

@@ -357,8 +357,8 @@ def main():
     found = bounds(bench, kinds, nuisances, noise)
     pairs = "; ".join(f"`{one}` and `{other}` {cosine:.2f}" for one, other, cosine in alike(kinds, found))
     lines = [*table(kinds, found), "",
-             f"Faults that change the signals alike (cosine of their changes without the nuisances): {pairs or 'none'}.",
-             "",
+             f"Faults that change the signals alike (cosine of their changes without the nuisances): "
+             f"{pairs or 'none'}.", "",
              f"The bound was checked on {CHECK_SEEDS} sound and {CHECK_SEEDS} faulty runs with noise, "
              f"`{CHECKED[0]}` of severity {CHECKED[1]}:",
              "", "| resolution of the encoders | d′ predicted | d′ of the matched filter | found at 5 % false alarms "
