@@ -4,10 +4,13 @@ import collections
 import csv
 import math
 import os
-import shutil
+import sys
 
 import cells
 import judge
+
+sys.path.append(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+from lab import BLUE, GREY, ORANGE, RED, STYLE, plt  # noqa: E402  (its folder is known now)
 
 HEAD = """# Stability
 
@@ -16,7 +19,7 @@ program changes one factor at a time, then two at a time, then all at random. Ev
 twin. The program compares each run with a converged run of the same cell.
 
 ```sh
-lab/run stress                # every cell: the complete tables and maps in out/stability
+lab/run stress                # every cell: all results in out/stability/cells.csv
 lab/run stress --seeds 200    # more random cells; the seed makes a cell again
 ```
 
@@ -50,12 +53,37 @@ tenth of the cell's. The **drift** is the largest energy residual, divided by th
 | refused | the natural mode advances more than 2.48 rad a step, or the insertion finds no equilibrium | a step is divided into 31 substeps of 0.08 rad at most |
 """  # noqa: E501
 
-MAPS = {"map: step and stiffness": "map__step_and_stiffness",
-        "map: step and speed, five teeth missing": "map__step_and_speed__five_teeth_missing"}
+COLOURS = {judge.ACCURATE: BLUE, judge.DEGRADED: ORANGE, judge.REFUSED: GREY}
+# File and axes of the maps.
+MAPS = {"map: step and stiffness": ("map__step_and_stiffness", "step [s]", "all stiffness times [-]"),
+        "map: step and speed, five teeth missing": ("map__step_and_speed__five_teeth_missing", "step [s]",
+                                                    "speed limit [rpm],\n12 N·m at the motor")}
 
 
 def percent(value):
     return "–" if math.isnan(value) else f"{100.0 * value:.2g} %"
+
+
+def draw_map(path, judged, across, up):
+    """A square a cell, its error in the square."""
+    with plt.rc_context(STYLE):
+        figure, axes = plt.subplots(figsize=(7.0, 2.6), constrained_layout=True)
+        columns = sorted({j.cell.labels[0] for j in judged})
+        rows = sorted({j.cell.labels[1] for j in judged})
+        for j in judged:
+            x, y = columns.index(j.cell.labels[0]), rows.index(j.cell.labels[1])
+            axes.fill([x - 0.47, x + 0.47, x + 0.47, x - 0.47], [y - 0.44, y - 0.44, y + 0.44, y + 0.44],
+                      color=COLOURS.get(j.verdict, RED), linewidth=0)
+            axes.text(x, y, "" if math.isnan(j.error) else percent(j.error), ha="center", va="center", fontsize=6.5,
+                      color="white")
+        axes.set_xticks(range(len(columns)), [f"{value:g}" for value in columns])
+        axes.set_yticks(range(len(rows)), [f"{value:g}" for value in rows])
+        axes.set(xlim=(-0.5, len(columns) - 0.5), ylim=(-0.5, len(rows) - 0.5), xlabel=across, ylabel=up)
+        axes.grid(False)
+        axes.tick_params(length=0)
+        axes.spines[:].set_visible(False)
+        figure.savefig(path, metadata={"Software": None})
+        plt.close(figure)
 
 
 def by_group(judged):
@@ -97,8 +125,8 @@ def group_rows(groups):
     return rows
 
 
-def write(docs, complete, judged, table):
-    """docs/stability.md and .csv; maps come from the folder of the complete page. `table`: makes lines of a table."""
+def write(docs, judged, table):
+    """docs/stability.md, its maps and .csv. `table`: makes lines of a table."""
     groups = by_group(judged)
     count = collections.Counter(j.verdict for j in judged)
     lines = [HEAD.format(accuracy=100.0 * judge.ACCURACY, timeout=judge.TIMEOUT)]
@@ -108,13 +136,10 @@ def write(docs, complete, judged, table):
         lines += ["", f"Cells that are wrong without a report, or without a result: {'; '.join(wrong)}. Their steps "
                   "are as long as the twin allows. The phase error of the leapfrog adds up over such a run."]
     lines += ["", "## Where it is accurate", "", boundary(judged), ""]
-    images = os.path.join("images", "stability")
-    for name, file in MAPS.items():
-        if os.path.exists(os.path.join(complete, images, file + ".png")):
-            os.makedirs(os.path.join(docs, images), exist_ok=True)
-            shutil.copyfile(os.path.join(complete, images, file + ".png"), os.path.join(docs, images, file + ".png"))
-            lines += [f"![{name[5:].capitalize()}: the error in each square (blue: accurate; orange: degraded, "
-                      f"reported; grey: refused)]({images}/{file}.png)", ""]
+    for name, (file, across, up) in MAPS.items():
+        draw_map(os.path.join(docs, "images", "stability", file + ".png"), groups[name], across, up)
+        lines += [f"![{name[5:].capitalize()}: the error in each square (blue: accurate; orange: degraded, "
+                  f"reported; grey: refused)](images/stability/{file}.png)", ""]
     lines += [MEANING.format(duration=cells.DURATION, torque=judge.LEAST_TORQUE, angle=1e3 * judge.LEAST_ANGLE)]
     lines += ["The cells are counted by group in [stability.csv](stability.csv), with the largest error of the "
               "accurate cells of each group."]
