@@ -59,8 +59,8 @@ OWN_LOADS, OWN_SPEEDS = (20.0, 50.0, 100.0), (0.1, 0.5, 1.0)  # N.m, rad/s at th
 
 DIRECTION_GAP = 0.09e-3  # rad, between the directions of motion without load
 # Why a joint's friction does not hold.
-UR10E_KNOWN = {"base": "fit and grease are the shoulder's and a UR5's; this base rubs 1.3 times as much as the "
-               "shoulder at every speed, of which the arm's tilting moment makes little: drives of one size differ"}
+UR10E_KNOWN = {"base": "the twin takes the shoulder's fit and a UR5's grease; this base has 1.3 times the friction of "
+               "the shoulder at every speed, and the tilting moment explains little of it: drives of one size differ"}
 TILTED = ("ur10e_20_02_12-40sec_12harm.csv", "ur10e_20_02_19_14harm50sec.csv", "ur10e_20_02_19_14harm50secLoad.csv")
 INDEPENDENT = 40  # rows of a joint, at most: errors of a model are no noise
 

@@ -30,9 +30,9 @@ lab/run validate --set contact.stiffness=1.1e+8      # the effect of another par
 ```
 
 The complete table is in `out/validation/validation.md`, with the commands of all runs and the errors found in the
-thesis. [validation.csv](validation.csv) has the values of all rows. The exit code is 0 if no row fails except those that
-are known not to hold (below). Otherwise the program names the rows that fail. The recordings of real drives are not part
-of the project. Without them the sections *Real drives* and *Heat* cannot be recomputed.
+thesis. [validation.csv](validation.csv) has the values of all rows. The exit code is 0 if no row fails except those
+that are known not to hold (below). Otherwise the program names the rows that fail. The recordings of real drives are
+not part of the project. Without them the sections *Real drives* and *Heat* cannot be recomputed.
 """
 
 

@@ -46,7 +46,8 @@ same, and the shipped angle is free.
                "thesis 3.2.2 [51], 4 [83]",
                Within(16.0, absolute=1.0), from_gap, "°",
                "one paper, which has 16° in one place and 17° in another",
-               known="plane teeth against whole gears, whose teeth lean along their width, too", evidence=MEASUREMENT)
+               known="the model has plane teeth; the teeth of a whole gear also lean along their width",
+               evidence=MEASUREMENT)
     page.check("teeth.interference_free", "flank forces at no load and no clearance, 16°",
                "thesis 4 [83]: free from 16°", AtMost(0.0),
                forces[angles.index(16)], "N", "no contact is no force", evidence=SELF_CONSISTENT)
