@@ -163,8 +163,8 @@ def main():
     draw(measured, options.docs / "images" / "cycle.png")
     lab.write(options.docs / "performance.md", "cycle", [
         *table(measured), "", "![Time of one step in every scene, and the target](images/cycle.png)", "",
-        f"`lab/run performance` simulates {options.duration:g} s of each scene, and twenty times that on the surface. The "
-        f"load average before the run was {load:.1f}."])
+        f"`lab/run performance` simulates {options.duration:g} s of each scene, and twenty times that on the surface. "
+        f"The load average before the run was {load:.1f}."])
     lab.write(options.docs / "performance.md", "options", [
         "| option | set | time of a step over the shipped gear's |", "|---|---|---|", *option_rows(options), "",
         f"`lab/run performance` measures the full ring with every array, in the scenes that move. The figures are "

@@ -94,7 +94,8 @@ was identified on every second stripe of {STRIPE:g}° of the sweep and tested on
 
 ![Torsion against torque](images/real_robot/torsion.png)
 """, *table(["rms difference of the recorded torsion from", "stripes that were fitted [mrad]",
-             "stripes between [mrad]"], [[name, f"{1e3 * a:.2f}", f"{1e3 * b:.2f}"] for name, (a, b) in self.errors.items()]),
+             "stripes between [mrad]"],
+            [[name, f"{1e3 * a:.2f}", f"{1e3 * b:.2f}"] for name, (a, b) in self.errors.items()]),
                 *table(["stiffness [10³ N·m/rad]", "catalogue", "identified"], rows), f"""
 *Weakness:* a fit to the negative angles alone gives a factor of {self.halves[0]:.2f}, a fit to the positive
 angles {self.halves[1]:.2f}. These differ by more than the interval, which is therefore too narrow. A factor that was
