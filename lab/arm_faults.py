@@ -132,11 +132,11 @@ def hidden(cell, sound):
 
 def table(kinds, found, sound):
     """The joint in which a fault of severity 1 changes a figure most, and where the controller hides it."""
-    lines = [f"The sound arm is off its path by {sound['path_max']:.2f} mm at most, {sound['path_rms']:.2f} mm rms, "
-             f"and repeats within {sound['repeatability']:.3f} mm (ISO 9283; the maker says "
-             f"{MAKERS_REPEATABILITY:g}). With a",
-             f"fault of severity {SEVERITIES[1]:g}, in the joint where it changes that figure most (all joints and "
-             "severities: [arm_faults.csv](arm_faults.csv)):", "",
+    lines = [f"The sound arm leaves its path by at most {sound['path_max']:.2f} mm, {sound['path_rms']:.2f} mm rms. "
+             f"Its repeatability is {sound['repeatability']:.3f} mm (ISO 9283; the maker states "
+             f"{MAKERS_REPEATABILITY:g}). The table has faults of severity {SEVERITIES[1]:g}. Each figure "
+             "is that of the joint in which the fault changes it most. [arm_faults.csv](arm_faults.csv) has all joints "
+             "and severities.", "",
              "| fault | off the path at most [mm] | moved at rest [mm] | repeats within [mm] "
              "| current of the joint [%] "
              "| hidden in |", "|---|---|---|---|---|---|"]

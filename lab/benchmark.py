@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Run time against error: runs `work_precision` over its problems; writes every run to out/benchmark and the summary
-docs/benchmark.md."""
+"""Run time against error: runs `work_precision` over its problems; writes every run to out/benchmark/runs.csv and the
+page docs/benchmark.md."""
 import argparse
 import concurrent.futures
+import csv
 import json
 import math
 import os
@@ -10,7 +11,6 @@ import platform
 import subprocess
 import sys
 
-import benchmark_summary
 from benchmark_runs import Progress, measure
 from lab import plt
 
@@ -36,25 +36,38 @@ STYLES = {
     "ARKODE, DIRK 3, KLU": ("#E69F00", "-", "o", 1.2), "ARKODE, DIRK 5, KLU": ("#E69F00", "--", "s", 1.2),
     "RADAU5, dense": ("#999999", "-", "D", 1.2),
 }
-INTRODUCTION = """# Run time against error, every run
+HEAD = """# Run time against error
 
-Written by `lab/run benchmark`; docs/benchmark.md has the terms. Down and to the left is better. Beyond what stands
-there:
+`lab/run benchmark` writes this page; do not edit it. The page compares how long the twin's solvers and other programs
+take to reach a given error. All solve the same equations of motion. The problems are the dynamic ring of
+[model.md](model.md) (804 states: every tooth's mass, wave generator, circular spline), the operating model, and the
+levels of detail that a user can choose from.
 
-- KLU refactors in a fixed pattern; the cup's matrix of rank one, which would fill it, is put back by Sherman and
-  Morrison's formula. RADAU5 has no sparse solver and factors densely, using the fact that half of the states are the
-  derivatives of the others.
-- The peers' tolerances are absolute, in units of 5 um, 0.1 m/s, 1 mrad and 10 rad/s; ours is the error of a tooth's
-  position by one step. Teeth and spaces are paired after every step of every solver.
-- The thesis' method, implicit Euler at 10 us, is drawn but is neither ours nor a peer.
-- Where the curves of the forces are vertical, the error is the vibration of single teeth: a limit of the problem, not
-  of the solver.
-- The operating model of the peers has no friction of the cup, which no solver of smooth equations can have."""
+```sh
+lab/run benchmark                    # ten minutes: installs the peers, measures; every run in out/benchmark/runs.csv
+lab/run benchmark --reuse            # writes the pages again from what was measured
+```
+
+The **error** of a run is the root mean square of its differences from the reference over all samples. It is divided by
+the standard deviation of the reference. Angles, tooth positions and tooth forces have an error each. The **time** is
+processor time of one thread, the median of the runs; the solvers take turns. The **peers** are SUNDIALS (CVODE, IDA,
+ARKODE), RADAU5 and Boost.odeint. They get the analytic sparse Jacobian with SuiteSparse's KLU and call the twin's own
+forces. Their tolerances are absolute, in units of 5 µm, 0.1 m/s, 1 mrad and 10 rad/s. Their operating model has no
+friction of the cup, which no solver of smooth equations can have. **Our solvers** are TR-BDF2 and ESDIRK4 with adaptive
+steps (`joint_twin dynamics --tolerance`).
+"""
+READING = """Above 1 our solver is faster. *ours only* and *peer only* say that the other side does not reach that
+error. A dash says that no solver reaches that error, or that the two references differ by more than the error. For
+tooth forces an error below 1e-3 needs steps of a fraction of a microsecond, which resolve the vibration of single
+teeth. The best peer for such errors is Runge-Kutta 4 with steps of equal length.
+
+![Working drive under a load step: time against error of all solvers](images/benchmark/drive.png)
+"""
 
 
-CHOICE = """Which to choose: the full ring where every tooth is wanted at every step, or where the gear has no table;
-the table for the live node and for all runs offline; the table at measured angles where there is a recording to
-follow. Tooth forces are solved for the hundred samples alone, in about 3 ms."""
+CHOICE = """Choose the full ring if you want every tooth at every step, or if the gear has no table. Choose the table
+for the live node and for runs offline. Choose the table at measured angles if you follow a recording. The runs solve
+the tooth forces for the hundred samples alone, which takes about 3 ms."""
 
 
 QUANTITIES = {"angle": "angles", "position": "tooth positions", "force": "tooth forces"}
@@ -106,27 +119,16 @@ def table(header, rows):
     return [table_row(line) for line in lines] + [""]
 
 
-def envelope(rows, quantity, apart):
-    """Table of the quickest that keeps each error, down to what the references are `apart`; ratios of peers to ours by
-    level."""
-    lines = []
+def ratios_of(rows, quantity, apart):
+    """Time of the quickest peer over that of our quickest, by error, down to what the references are `apart`."""
     ratios = {}
-    for level in LEVELS:
-        best = {name: fastest(family(rows, name), quantity, level) for name in ("ours", "peers")}
-        if level < apart or not any(best.values()):
-            continue
-        cells = [f"{level:.0e}"]
-        for name in ("ours", "peers"):
-            row = best[name]
-            cells.append(f"{1e3 * row['processor_time']:.3g} ms ({row['solver'].replace(OURS, '')}, {row['setting']})"
-                         if row else "not reached")
-        both = best["ours"] and best["peers"]
-        ratio = best["peers"]["processor_time"] / best["ours"]["processor_time"] if both else None
-        cells.append(f"{ratio:.2g}" if both else "-")
-        ratios[level] = ratio or ("ours only" if best["ours"] else "peer only" if best["peers"] else None)
-        lines.append(cells)
-    header = [f"error of {QUANTITIES[quantity]}", "ours", "best peer", "peer / ours"]
-    return table(header, lines), ratios
+    for level in (level for level in LEVELS if level >= apart):
+        ours, peer = (fastest(family(rows, name), quantity, level) for name in ("ours", "peers"))
+        if ours and peer:
+            ratios[level] = rounded(peer["processor_time"] / ours["processor_time"], 2)
+        elif ours or peer:
+            ratios[level] = "ours only" if ours else "peer only"
+    return ratios
 
 
 def choice(rows, quantity, apart):
@@ -143,14 +145,19 @@ def choice(rows, quantity, apart):
     return table(header, lines)
 
 
-def run_table(rows):
-    header = ["solver", "setting", "time [ms]", "least ... most", "runs", "angles", "positions", "forces",
-              "forces at the end", "steps", "right-hand sides", "factorisations", "rejections"]
-    return table(header, [[row["solver"], row["setting"], f"{1e3 * row['processor_time']:.3g}",
-                           f"{1e3 * row['least']:.3g} ... {1e3 * row['most']:.3g}", row["runs"],
-                           *(shown_error(row["series_error"][quantity]) for quantity in QUANTITIES),
-                           shown_error(row["end_error"]["force"]), row["steps"], row["force_evaluations"],
-                           row["factorisations"], row["rejections"]] for row in finished(rows)])
+def write_runs(path, measured):
+    """Every run of every problem, a row each."""
+    with open(path, "w", encoding="utf-8", newline="") as file:
+        table = csv.writer(file, lineterminator="\n")
+        table.writerow(["problem", "solver", "setting", "time_ms", "least_ms", "most_ms", "runs", "angle_error",
+                        "position_error", "force_error", "force_error_at_end", "steps", "force_evaluations",
+                        "factorisations", "rejections", "failure"])
+        table.writerows([problem, row["solver"], row["setting"],
+                         *(f"{1e3 * row[key]:.4g}" for key in ("processor_time", "least", "most")), row["runs"],
+                         *(f"{row['series_error'][quantity]:.2g}" for quantity in QUANTITIES),
+                         f"{row['end_error']['force']:.2g}", row["steps"], row["force_evaluations"],
+                         row["factorisations"], row["rejections"], row["failure"]]
+                        for problem, (_, rows) in measured.items() for row in rows)
 
 
 def draw(rows, title, file):
@@ -175,15 +182,6 @@ def draw(rows, title, file):
     plt.close(figure)
 
 
-def failures(rows):
-    """One line a solver: runs that did not finish."""
-    lost = {}
-    for row in rows:
-        if row["failure"]:
-            lost.setdefault(row["solver"], []).append(f"{row['setting']} ({row['failure']})")
-    return [f"- {solver}: " + ", ".join(settings) for solver, settings in lost.items()]
-
-
 def installed_version(package):
     done = subprocess.run(["dpkg-query", "-W", "-f", "${Version}", package], capture_output=True, text=True,
                           check=False)
@@ -196,40 +194,26 @@ def processor():
                     platform.machine())
 
 
-def section(problem, reference, rows, images):
-    """Lines of the page, unfinished runs, and the ratios by quantity and level."""
-    draw(rows, reference["title"], os.path.join(images, problem + ".png"))
+def levels_of(reference, rows):
+    """Lines on the levels of detail."""
     lines = ["## " + reference["title"], "",
-             f"Reference: {reference['methods'][0]}; {reference['methods'][1]} is {reference['apart']['force']:.1e} "
-             f"from it in "
-             f"the forces, {reference['apart']['position']:.1e} in the positions, {reference['apart']['angle']:.1e} in "
-             f"the angles: "
-             "errors below that mean nothing, and the tables end there.", "",
-             f"![{reference['title']}](images/benchmark/{problem}.png)", ""]
-    ratios = {}
+             f"The reference is {reference['methods'][0]}. A second reference, {reference['methods'][1]}, differs from "
+             f"it by {reference['apart']['force']:.1e} in the forces, {reference['apart']['position']:.1e} in the "
+             f"positions and {reference['apart']['angle']:.1e} in the angles. Smaller errors mean nothing: the tables "
+             "end there.", "",
+             f"![{reference['title']}](images/benchmark/levels.png)", "", CHOICE, ""]
     for quantity in shown(rows):
-        if family(rows, "peers"):
-            body, ratios[quantity] = envelope(rows, quantity, reference["apart"][quantity])
-        else:
-            body = choice(rows, quantity, reference["apart"][quantity])
-            lines += [CHOICE, ""] if quantity == "angle" else []
-        lines += body
-    lines += ["<details><summary>every run</summary>", ""] + run_table(rows) + ["</details>", ""]
-    lost = failures(rows)
-    return lines, [f"**{reference['title']}**", "", *lost, ""] if lost else [], ratios
+        lines += choice(rows, quantity, reference["apart"][quantity])
+    return lines
 
 
 def table_row(cells):
     return "| " + " | ".join(str(cell) for cell in cells) + " |"
 
 
-def cell(ratio):
-    return "-" if ratio is None else ratio if isinstance(ratio, str) else rounded(ratio, 2)
-
-
 def ratio_table(sections):
     header = ["best peer's time over ours, at an error of", *(f"{level:.0e}" for level in LEVELS)]
-    return table(header, [[f"{title}: {QUANTITIES[quantity]}", *(cell(by_level.get(level)) for level in LEVELS)]
+    return table(header, [[f"{title}: {QUANTITIES[quantity]}", *(by_level.get(level, "-") for level in LEVELS)]
                           for title, ratios in sections for quantity, by_level in ratios.items()])
 
 
@@ -246,21 +230,41 @@ def parts(tool):
     least, most = min(teeth), max(teeth)
     slope = math.log(teeth[most] / teeth[least]) / math.log(most / least)
     return ["## Insertion from cold, and cost against teeth", "",
-            f"Equilibrium of the wave generator inserted into the round ring: {cold:.2g} ms (wanted: 1 ms at most). A "
-            f"Newton "
-            f"iteration of the dynamic ring, that is forces, tangent, factors and solution, goes with the number of "
-            f"teeth to "
-            f"the power {slope:.2f} (wanted: 1.05 at most).", "",
+            f"The solver finds the equilibrium of the wave generator in the round ring in {cold:.2g} ms (target: at "
+            f"most 1 ms). A Newton iteration of the dynamic ring computes forces, tangent, factors and solution. Its "
+            f"time grows with the number of teeth to the power {slope:.2f} (target: at most 1.05).", "",
             *table(["teeth", "iteration [us]"],
                    [[count, f"{1e-3 * time:.3g}"] for count, time in sorted(teeth.items())])]
+
+
+def write_page(options, measured):
+    """docs/benchmark.md and its figures."""
+    ratios = [(reference["title"], {quantity: ratios_of(rows, quantity, reference["apart"][quantity])
+                                    for quantity in shown(rows)})
+              for reference, rows in measured.values() if family(rows, "peers")]
+    for name in ("drive", "levels"):
+        draw(measured[name][1], measured[name][0]["title"],
+             os.path.join(options.docs, "images", "benchmark", name + ".png"))
+    solvers = {row["solver"] for _, rows in measured.values() for row in rows}
+    absent = [f"{peer} ({package})" for peer, package in OPTIONAL.items()
+              if not any(solver.startswith(peer) for solver in solvers)]
+    machine = (f"{processor()}; {', '.join(installed_version(package) for package in PACKAGES)}. Each setting ran "
+               f"{options.runs} times, a slow one less often. A run was given up after {options.limit:g} s of "
+               "processor time, one of an explicit solver or of RADAU5 after twice that.")
+    lines = [HEAD, "## Best peer against ours", "", *ratio_table(ratios), READING, *levels_of(*measured["levels"]),
+             *parts(options.parts), "---", "", machine]
+    if absent:
+        lines.append(f"Not installed: {', '.join(absent)}.")
+    with open(os.path.join(options.docs, "benchmark.md"), "w", encoding="utf-8") as out:
+        out.write("\n".join(lines).rstrip() + "\n")
 
 
 def main():
     parser = argparse.ArgumentParser(prog="lab/run benchmark", description=__doc__)
     parser.add_argument("--tool", required=True, help=argparse.SUPPRESS)
     parser.add_argument("--parts", required=True, help=argparse.SUPPRESS)
-    parser.add_argument("--docs", required=True, help="folder of the summary (default: docs)")
-    parser.add_argument("--out", required=True, help="folder of the complete page (default: out/benchmark)")
+    parser.add_argument("--docs", required=True, help="folder of the page (default: docs)")
+    parser.add_argument("--out", required=True, help="folder of runs.csv (default: out/benchmark)")
     parser.add_argument("--work", required=True, help="folder of references and results (default: build/benchmark)")
     parser.add_argument("--problems", default=",".join(PROBLEMS), help="which, by commas (default: all)")
     parser.add_argument("--runs", type=int, default=10,
@@ -274,41 +278,17 @@ def main():
     options = parser.parse_args()
     if options.quick:
         options.runs = min(options.runs, 3)
-    images = os.path.join(options.out, "images", "benchmark")
-    os.makedirs(images, exist_ok=True)
+    os.makedirs(options.out, exist_ok=True)
     os.makedirs(options.work, exist_ok=True)
     problems = options.problems.split(",")
     progress = Progress(problems)
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         measured = dict(zip(problems, pool.map(lambda problem: measure(problem, options, progress), problems)))
-    body, lost, ratios, solvers, levels = [], [], [], set(), []
-    for problem in problems:
-        reference, rows = measured[problem]
-        lines, missing, by_quantity = section(problem, reference, rows, images)
-        body += lines
-        if problem == "levels":
-            levels = lines[:lines.index("<details><summary>every run</summary>")]
-        lost += missing
-        if by_quantity:
-            ratios.append((reference["title"], by_quantity))
-        solvers |= {row["solver"] for row in rows}
-    absent = [f"{peer} ({package})" for peer, package in OPTIONAL.items()
-              if not any(solver.startswith(peer) for solver in solvers)]
-    teeth = parts(options.parts)
-    machine = (f"{processor()}; {', '.join(installed_version(package) for package in PACKAGES)}. At most "
-               f"{options.runs} runs of each, fewer of those that take longer.")
-    lines = [INTRODUCTION, "", "## All in one table", "", *ratio_table(ratios), *body, *teeth, "## Omissions", ""]
-    if absent:
-        lines += [f"Not installed where this was measured: {', '.join(absent)}.", ""]
-    lines += [f"Given up after {options.limit:g} s of processor time, explicit ones and RADAU5 after twice that "
-              f"(tighter "
-              "settings of a solver that gave up early or twice with it), or failed:", "", *lost, "---", "", machine]
-    page = os.path.join(options.out, "benchmark.md")
-    with open(page, "w", encoding="utf-8") as out:
-        out.write("\n".join(lines).rstrip() + "\n")
-    print(f"wrote {page}", file=sys.stderr)
+    runs = os.path.join(options.out, "runs.csv")
+    write_runs(runs, measured)
+    print(f"wrote {runs}", file=sys.stderr)
     if problems == PROBLEMS:
-        benchmark_summary.write(options.docs, options.out, ratio_table(ratios), levels, teeth, machine)
+        write_page(options, measured)
 
 
 if __name__ == "__main__":

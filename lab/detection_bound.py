@@ -355,9 +355,12 @@ def main():
     day = [(row, run) for row, run in nuisances if row["duty"] == "check_up"]
     exact, noise = measured_noise(bench, day)
     found = bounds(bench, kinds, nuisances, noise)
-    lines = [*table(kinds, found), "", "Alike (cosine of the changes, nuisances out): " + ("; ".join(
-        f"`{one}` and `{other}` {cosine:.2f}" for one, other, cosine in alike(kinds, found)) or "none") + ".", "",
-             f"By brute force, `{CHECKED[0]}` at {CHECKED[1]}, {CHECK_SEEDS} sound and as many faulty runs with noise:",
+    pairs = "; ".join(f"`{one}` and `{other}` {cosine:.2f}" for one, other, cosine in alike(kinds, found))
+    lines = [*table(kinds, found), "",
+             f"Faults that change the signals alike (cosine of their changes without the nuisances): "
+             f"{pairs or 'none'}.", "",
+             f"The bound was checked on {CHECK_SEEDS} sound and {CHECK_SEEDS} faulty runs with noise, "
+             f"`{CHECKED[0]}` of severity {CHECKED[1]}:",
              "", "| resolution of the encoders | d′ predicted | d′ of the matched filter | found at 5 % false alarms "
              "| predicted |",
              "|---|---|---|---|---|"]

@@ -143,8 +143,8 @@ def check_up_line(sound):
     runs = [run for run in sound if run.motion == CHECK_UP]
     found = sum(map(alarmed, runs))
     gears = len({run.gear.name for run in runs})
-    return (f"- Check-ups of {gears} sound gears: {found} alarm{'s' * (found != 1)} in {len(runs)}: a rate of at most "
-            f"{100.0 * poisson_bound(found) / len(runs):.2g} %, with 95 % confidence.")
+    return (f"- {len(runs)} check-ups of {gears} sound gears gave {found} alarm{'s' * (found != 1)}. With 95 % "
+            f"confidence the rate of false alarms is at most {100.0 * poisson_bound(found) / len(runs):.2g} %.")
 
 
 def series(bench, gears):
@@ -288,7 +288,7 @@ def carried_report(bench, trials, own):
         cells = [share(alarmed(run) for run in runs if run.severity == severity) for severity in severities]
         cells += [share(map(right, sure)), share(map(in_set, sure)), f"{reliability(runs)[1]:.2f}", never_found(runs)]
         lines.append(f"| {name} | " + " | ".join(cells) + " |")
-    return [*lines, "", "Sound drives:", "", *sound_table(list(sound.items()), False)]
+    return [*lines, "", "Sound drives, compared in the same way:", "", *sound_table(list(sound.items()), False)]
 
 
 def slip_table(bench, trials):
@@ -325,13 +325,14 @@ def by_occurrence(faulty, occurrence):
 def report(bench, trials, occurrence, sound, faulty, missing):
     rows, error = reliability(faulty)
     groups = by_motion([run for run in sound if run.motion != CHECK_UP])
-    return [f"{len(sound)} sound and {len(faulty)} faulty runs; grease anywhere in {GREASE[0]:g} to "
-            f"{GREASE[1]:g} °C. {len(missing)} more were not judged, whose operating point has "
-            "fewer than eight windows of the reference.", "", *health_runs.split_table(("judged by", trials)), "",
+    return [f"The evaluation has {len(sound)} sound and {len(faulty)} faulty runs, with grease between {GREASE[0]:g} "
+            f"and {GREASE[1]:g} °C. {len(missing)} further runs were not judged, because the reference has fewer than "
+            "eight windows at their operating point.", "", *health_runs.split_table(("judged by", trials)), "",
             *kind_table(bench.kinds, faulty), "",
-            f"Calibration error {error:.3f}: stated confidence less share of right causes, mean over the alarms by "
-            f"class of confidence. Of all alarms {share(map(right, filter(alarmed, faulty)))} have the right cause; "
-            f"were the kinds as frequent as the FMECA rates them, {100.0 * by_occurrence(faulty, occurrence):.0f} %.",
+            f"The calibration error is {error:.3f}: the mean difference between the stated confidence and the share of "
+            f"right causes, by class of confidence. The named cause is right in "
+            f"{share(map(right, filter(alarmed, faulty)))} alarms. If faults were as frequent as the FMECA rates them, "
+            f"it would be right in {100.0 * by_occurrence(faulty, occurrence):.0f} %.",
             "",
             "![Score of every run over the threshold](images/health/seen.png)", "",
             "![Fault against the assessed cause](images/health/confusion.png)", "",

@@ -189,15 +189,16 @@ def share(found, of):
 def shares_of(title, own):
     """A line on what was found of one source."""
     alarmed = [one for one in own if one.window["assessment"]["level"] != "OK"]
-    text = ", ".join(f"at {severity:g} " + share(*(sum(one.severity == severity for one in chosen)
-                                                   for chosen in (alarmed, own))) for severity in SEVERITIES)
+    text = " and ".join(share(*(sum(one.severity == severity for one in chosen) for chosen in (alarmed, own)))
+                        + f" of severity {severity:g}" for severity in SEVERITIES)
     missed = [(one.kind, one.severity) for one in own if one.window["assessment"]["level"] == "OK"]
     kinds = ", ".join(f"`{kind}` " + " and ".join(str(missed.count((kind, severity))) for severity in SEVERITIES)
                       for kind in KINDS)
     sound = [[one for one in chosen if one.kind == "healthy"] for chosen in (alarmed, own)]
     not_judged = sum(one.window["assessment"]["state"] not in COMPARED for one in own)
-    return (f"- {title}: found {text}; missed {kinds}; false alarms {share(*map(len, sound))}; "
-            f"{not_judged} windows of {len(own)} at an operating point without a reference.")
+    return (f"- {title}: the assessment finds the faults in {text}. Missed of each kind, by severity: {kinds}. False "
+            f"alarms: {share(*map(len, sound))}. Windows not judged, at an operating point without a reference: "
+            f"{not_judged} of {len(own)}.")
 
 
 def row_of(name, own):
@@ -250,10 +251,10 @@ def causes_of(title, own):
               for one, verdict, is_right in zip(alarms, verdicts, right) if is_right]
     off = math.sqrt(numpy.mean([error ** 2 for error, _ in errors])) if errors else math.nan
     within = 100.0 * numpy.mean([abs(error) <= stated for error, stated in errors]) if errors else math.nan
-    return (f"- {title}: {share(sum(right), len(alarms))} causes are right at a mean confidence of "
-            f"{confidence.mean():.2f}, calibration error {calibration_error(right, confidence):.2f}; the true cause is "
-            f"in the set in {share(in_set, len(alarms))}. Severities with the right cause are off by {off:.2f} rms, "
-            f"{within:.0f} % by no more than stated.")
+    return (f"- {title}: the named cause is right in {share(sum(right), len(alarms))}, at a mean confidence of "
+            f"{confidence.mean():.2f} and a calibration error of {calibration_error(right, confidence):.2f}. The set "
+            f"of causes holds the true cause in {share(in_set, len(alarms))}. Where the cause is right, the severity "
+            f"is off by {off:.2f} rms, and {within:.0f} % of the severities lie within the stated deviation.")
 
 
 def judged_table(bench):

@@ -232,10 +232,10 @@ def worn_line(trials):
     named = alarms["cause"].isin(WORN)
     in_set = [any(kind in str(others).split(", ") for kind in WORN) for others in alarms["alternatives"]]
     others = collections.Counter(alarms["cause"][~named]).most_common()
-    return (f"Teeth, interface and grease worn together, {WORN_FROM} to {WORN_TO} each: {len(alarms)} of "
-            f"{len(verdicts)} alarm, one of the three is named in {named.sum()}, one is in the set in "
-            f"{(named | in_set).sum()}"
-            + (f"; named instead: {', '.join(f'`{cause}` {count}' for cause, count in others)}." if others else "."))
+    return (f"{len(verdicts)} drives have teeth, interface and grease worn together, each by {WORN_FROM} to {WORN_TO}. "
+            f"{len(alarms)} of them alarm. {named.sum()} verdicts name one of the three causes, and "
+            f"{(named | in_set).sum()} have one in their set."
+            + (f" Named instead: {', '.join(f'`{cause}` {count}' for cause, count in others)}." if others else ""))
 
 
 def main():

@@ -273,7 +273,7 @@ def constants_table(alarms, errors):
     """What each constant is worth: change of the mean log probability of the true cause without it and with other ones;
     without m no motion is unlike, without w_1 the weight may fall to nothing."""
     least = loss(alarms, errors)
-    lines = [f"Mean log probability {-least:.3f} in {len(alarms)} alarms.", "",
+    lines = [f"The mean log probability of the true cause is {-least:.3f} in {len(alarms)} alarms.", "",
              "| constant | value | without it | half | twice |", "|---|---|---|---|---|"]
     for name, value in errors._asdict().items():
         without = {"weight": 1.0, "speed": 1e9, "direction": 1e9}.get(name, 1e-9)

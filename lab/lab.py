@@ -41,7 +41,7 @@ def apart(folder, name, lines):
             row += not table
             continue
         file, shown = files.pop(0)
-        cells = [[cell.strip().strip("`") for cell in line.strip("|").split("|")] for line in table]
+        cells = [[cell.strip().replace("`", "") for cell in line.strip("|").split("|")] for line in table]
         with open(folder / file, "w", encoding="utf-8", newline="") as out:
             csv.writer(out, lineterminator="\n").writerows(cells[:1] + cells[2:])
         found += table[:2] + [line for line in table[2:] if re.search(shown, line)] + [""] if shown else []

@@ -336,7 +336,7 @@ def main():
     lab.write(options.docs / "life.md", "read", lives_judged.tables(lives_judged.judged(options)))
     lab.write(options.docs / "life.md", "life", [
         *age_table(ages), "",
-        "`joint_twin life fatigue`, the new drive at the catalogue's torques:", "",
+        "`joint_twin life fatigue` of the new drive at the catalogue's torques:", "",
         *fatigue_table(options), "",
         "![S-N curve, the catalogue's torques (dots and arrows, at the cycles it allows) and the phases of the duties "
         "over their lives](images/life_fatigue.png)", "",

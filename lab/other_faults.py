@@ -83,8 +83,8 @@ def main():
                       for run in runs[REFERENCE:]]
             verdicts = hjt.assess(faulty, reference, check_up=True, overlays=OVERLAYS)
             lines.append(row_of(fault.words, size, fault.unit, verdicts))
-    lines += ["", f"Stuck brake: at its limit of torque the motor turns {stuck():.2g} rad in 2 s: no window, not "
-              "judged."]
+    lines += ["", f"A stuck brake is not judged: at its torque limit the motor turns {stuck():.2g} rad in 2 s, so no "
+              "window is complete."]
     lab.write_or_print(options.docs, "faults.md", "others", lines)
 
 

@@ -163,13 +163,12 @@ def main():
     draw(measured, options.docs / "images" / "cycle.png")
     lab.write(options.docs / "performance.md", "cycle", [
         *table(measured), "", "![Time of one step in every scene, and the target](images/cycle.png)", "",
-        f"`lab/run performance`: {options.duration:g} s simulated a scene, twenty times that on the surface; load "
-        f"average before it "
-        f"{load:.1f}."])
+        f"`lab/run performance` simulates {options.duration:g} s of each scene, and twenty times that on the surface. "
+        f"The load average before the run was {load:.1f}."])
     lab.write(options.docs / "performance.md", "options", [
         "| option | set | time of a step over the shipped gear's |", "|---|---|---|", *option_rows(options), "",
-        f"`lab/run performance`: full ring, every array, the scenes that move; medians of {ALTERNATIONS} alternating "
-        f"runs."])
+        f"`lab/run performance` measures the full ring with every array, in the scenes that move. The figures are "
+        f"medians of {ALTERNATIONS} alternating runs."])
     lab.write(options.docs / "performance.md", "rates", [
         "| `solver.rate` | " + " | ".join(f"{rate / 1000:g} kHz" for rate in RATES) + " |",
         "|---" * (1 + len(RATES)) + "|", *rate_rows()])

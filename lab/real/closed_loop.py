@@ -160,13 +160,14 @@ def built_section(runner, recordings, fit, joints, train, docs):
                       for joint in gains["joints"] if not joint["refusal"])
     within = np.count_nonzero((known <= 2.0) & (known >= 0.5))
     return [f"""
-**With errors of manufacture and identified gains.** Circular splines of `config/as_built.yaml` (7″ at {LOOP_LINES} a
-turn; the flexsplines equal, so that each drive has a table), the controller's gains by `identify --controller` on
-{GAINS_FROM}: {found}. All figures: [{BUILT_ROWS}]({BUILT_ROWS}).
+**With errors of manufacture and identified gains.** These drives have the circular splines of `config/as_built.yaml`
+(7″ at {LOOP_LINES} a turn) and equal flexsplines, so that each drive has a table. `identify --controller` found the
+controller's gains on {GAINS_FROM}: {found}. [{BUILT_ROWS}]({BUILT_ROWS}) has all figures.
 
-The line of the current is within a factor of two of the recorded one in {within} of {len(known)}; median of twin over
-recorded: {float(np.median(known)):.2f}. The error of the current in moving rows over the simple fit's: median
-{float(np.nanmedian(errors)):.2f}. What bounds it: [arm_twin.md](arm_twin.md#errors-of-manufacture).
+The current has a ripple at {LOOP_LINES} periods a turn. The twin's amplitude is within a factor of two of the recorded
+one in {within} of {len(known)} cases; the median of twin over recorded is {float(np.median(known)):.2f}. The error of
+the current in moving rows is {float(np.nanmedian(errors)):.2f} of the simple fit's in the median.
+[arm_twin.md](arm_twin.md#errors-of-manufacture) says what limits it.
 """]
 
 
@@ -199,24 +200,24 @@ def section(runner, recordings, fit, joints, shown, docs, train):
     return [f"""
 ### In closed loop
 
-`joint_twin arm` along the targets of each recording, drives identified on the recording of the other sections, the
-controller's gains typical: the twin gets neither angles nor currents. [{LOOP_ROWS}]({LOOP_ROWS}) has for each
-recording and joint the tracking error (actual less target angle, rms about its mean), the rms error of the current in
-moving rows (closed loop, prescribed motion by `follow`, simple fit), and the amplitude of the current at {LOOP_LINES}
-lines a turn, where a steady motion shows it.
+`joint_twin arm` follows the targets of each recording. The drives are those identified on {train}, the controller's
+gains are typical ones. The twin gets neither the measured angles nor the currents. [{LOOP_ROWS}]({LOOP_ROWS}) has for
+each recording and joint: the tracking error (actual less target angle, rms about its mean); the rms error of the
+current in moving rows for the closed loop, for the prescribed motion (`follow`) and for the simple fit; and the
+amplitude of the current at {LOOP_LINES} periods a turn, where a steady motion shows it.
 
-The delay of the set points is that of no6. In the motions that it is not, the tracking error is within a factor of 1.5
-of the recorded one, neither larger nor smaller, in {both_ways(tracked, 1.5)} of {len(tracked)} (recording, joint),
-within a factor of two in {both_ways(tracked, 2.0)}; its correlation in time with the recorded one is
-{np.median(alike):.2f} in the median, least {np.min(alike):.2f}. The current in moving rows is
-within {WANTED:g} of the simple fit's error in {np.count_nonzero(currents <= WANTED)} of {len(currents)}, and below
-it in {np.count_nonzero(currents < 1.0)}.
+The delay of the set points was taken from no6. The other motions give {len(tracked)} cases, one for each recording and
+joint. In {both_ways(tracked, 1.5)} of them the tracking error of the twin is within a factor of 1.5 of the recorded
+one, in {both_ways(tracked, 2.0)} within a factor of two. The correlation in time of both tracking errors is
+{np.median(alike):.2f} in the median and {np.min(alike):.2f} at least. The error of the current in moving rows is
+within {WANTED:g} of the simple fit's in {np.count_nonzero(currents <= WANTED)} of {len(currents)} cases, and below the
+simple fit's in {np.count_nonzero(currents < 1.0)}.
 
-Ripple bounds the current. Below {SLOW:g} Hz the error in closed loop is {loop_slow:.2f} of the fit's, above it
-{loop_fast:.2f} (medians; with the motion prescribed {told_slow:.2f} and {told_fast:.2f}). These drives have no errors
-of manufacture, so they make no ripple; a twin on the prescribed motion has that of the robot. In {bound} of
-{len(currents)}
-what the fit leaves above {SLOW:g} Hz alone is more than {WANTED:g} of its error.
+Ripple limits how well the current is predicted. Below {SLOW:g} Hz the error of the closed loop is {loop_slow:.2f} of
+the fit's in the median, above {SLOW:g} Hz {loop_fast:.2f}. With the motion prescribed the medians are {told_slow:.2f}
+and {told_fast:.2f}. These drives have no errors of manufacture, so they make no ripple; a prescribed motion contains
+the ripple of the robot. In {bound} of {len(currents)} cases the fit's error above {SLOW:g} Hz alone is more than
+{WANTED:g} of its whole error.
 """, *built_section(runner, recordings, fit, joints, train, docs), f"""
 ![Tracking error of three joints in {shown}, recorded and in closed loop]({PICTURE})
 """]

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Holds the twin against recordings of real robots and writes docs/real_robot.md. Started by scripts/compare_real."""
+"""Holds the twin against recordings of real robots and writes docs/real_robot.md. Started by `lab/run compare_real`."""
 import argparse
 import os
 import re
@@ -15,19 +15,17 @@ from runs import Runner
 
 HEAD = """# Beside a real robot
 
-Written by `lab/run compare_real`; do not edit.
+`lab/run compare_real` writes this page; do not edit it.
 
-How to use it: this page shows how far the twin differs from a robot that is sound. A difference has to be larger than
-that before it means something. The page also counts the right verdicts on recordings of sound joints and of raised
-friction.
+How to use it: this page shows how far the twin differs from a sound robot. A smaller difference on your robot means
+nothing. The page also counts the right verdicts on recordings of sound joints and of raised friction.
 
-How far to trust it: one UR5, one UR10e and one drive of another maker, all sound. The recordings are not part of
-this project. The
-shipped friction of the UR5 and the shares of the verdict's interval come from these recordings: another arm may
-repeat less well.
+How far to trust it: the recordings come from one UR5, one UR10e and one drive of another maker, all sound. They are
+not part of this project. The shipped friction of the UR5 and the widths of the verdict's interval come from these
+recordings. Another arm may repeat less well.
 
-Method: the twins are identified on one recording and judged on the others. The commands behind the figures:
-[real_robot_runs.txt](real_robot_runs.txt).
+Method: the twins are identified on one recording and judged on the others. [real_robot_runs.txt](real_robot_runs.txt)
+has the commands behind the figures.
 """
 WIDTH = 150  # of a line of the page
 

@@ -22,11 +22,12 @@ def pairs_text(arms, groups):
                 own = [joint["friction_ratio"] * joint["friction_shared"] for joint in joints]
                 together += list(np.log(own))
                 left += list(np.log(own) - np.median(np.log(own)))
-        spreads.append(f"{group[0]} to {group[-1]}: {100.0 * rms(np.array(together)):.1f} %, apart from the median of "
-                       f"the three {100.0 * rms(np.array(left)):.1f} %")
+        spreads.append(f"The friction of {group[0]} to {group[-1]} differs by {100.0 * rms(np.array(together)):.1f} "
+                       f"% rms, "
+                       f"and by {100.0 * rms(np.array(left)):.1f} % relative to the median of these joints.")
     return f"""
-Each recording beside each other one as its reference, {len(arms)} pairs: {alarms} of {len(judged)} judged joints are
-WARN or worse. By how much their friction differs, rms, where all three joints of a group are judged:
-{"; ".join(spreads)}.
-The shares of the [interval](compare.md#interval-of-the-friction) were taken from these pairs: they test no other arm.
+Each recording was also judged beside each other one as its reference, in {len(arms)} pairs. Of {len(judged)} judged
+joints {alarms} are WARN or worse. In some pairs all three joints of a group are judged: {" ".join(spreads)} The widths
+of the [interval](compare.md#interval-of-the-friction) were taken from these pairs, so the pairs are no test for
+another arm.
 """

@@ -86,21 +86,22 @@ class Torsion:
                  f"{1e-3 * value / self.scale:.1f} ± {1e-3 * value * self.width / self.scale ** 2:.1f}"]
                 for load, value in self.stiffness.items()]
         return [f"""
-**Torsion.** Motor angle over 101 less output angle, less the same without load, against the motor's torque at the joint
-less
-{self.friction:.1f} N·m, the twin's friction at this speed. The blue curve is the catalogue's gear; of the
-recording it takes the origin, which the zeros of the encoders leave open. The red one has its compliance times
-{self.scale:.3f} ± {self.width:.3f}, identified on every second {STRIPE:g}° of the sweep and tested on those between.
+**Torsion.** The figure shows the torsion: motor angle / 101 less output angle, less the same without load. Its
+abscissa is the motor's torque at the joint less {self.friction:.1f} N·m, the twin's friction at this speed. The blue
+curve is the catalogue's gear. Only its origin comes from the recording, because the zeros of the encoders are
+arbitrary. The red curve has the catalogue's compliance times {self.scale:.3f} ± {self.width:.3f} (95 %). This factor
+was identified on every second stripe of {STRIPE:g}° of the sweep and tested on the stripes between.
 
 ![Torsion against torque](images/real_robot/torsion.png)
-""", *table(["torsion, rms of recording less", "stripes that the fit saw [mrad]", "those between [mrad]"],
+""", *table(["rms difference of the recorded torsion from", "stripes that were fitted [mrad]",
+             "stripes between [mrad]"],
             [[name, f"{1e3 * a:.2f}", f"{1e3 * b:.2f}"] for name, (a, b) in self.errors.items()]),
                 *table(["stiffness [10³ N·m/rad]", "catalogue", "identified"], rows), f"""
-*Weakness:* fitted to the halves of the sweep separately, the factor is {self.halves[0]:.2f} at
-negative and {self.halves[1]:.2f} at positive angles. They differ by more than the interval, which
-is therefore too narrow. Identified on one half and tested on the other, it is worse there than the catalogue. The rest
-is slow waves of the transmission error, which load and mounting change; one sweep cannot separate them from torsion.
-The catalogue's curve lies between the two.
+*Weakness:* a fit to the negative angles alone gives a factor of {self.halves[0]:.2f}, a fit to the positive
+angles {self.halves[1]:.2f}. These differ by more than the interval, which is therefore too narrow. A factor that was
+identified on one half is worse on the other half than the catalogue. What remains is slow waves of the transmission
+error, which depend on load and mounting. One sweep cannot separate such waves from torsion. The catalogue's curve lies
+between both fits.
 """]
 
 
@@ -154,33 +155,34 @@ class TransmissionError:
                                        for lines in self.recorded.values()), f"{1e6 * self.lines[line]:.1f}"]
                 for line, name in LINES.items()]
         return [f"""
-**Transmission error without load.** The lines of the published error, for each direction, and of the twin's kinematic
-error at 5 N·m. Two numbers are fitted: a total cumulative pitch deviation of the circular spline of
-{1e6 * self.pitch['circular_spline']:.1f} µm to the line at 200, one of the flexspline of
-{1e6 * self.pitch['flexspline']:.1f} µm to the one at 202, which the scatter of the points nearly hides. ISO 1328 allows
-17 µm in grade 5 and 12 µm in grade 4 at this size. The lines at 400 and 404 result from the same errors. As in the
-UR5's current, the circular spline's line is the larger one.
+**Transmission error without load.** The figure has the spectral lines of the published error, for each direction, and
+of the twin's kinematic error at 5 N·m. Two numbers are fitted. The line at 200 gives a total cumulative pitch
+deviation of the circular spline of {1e6 * self.pitch['circular_spline']:.1f} µm. The line at 202 gives one of the
+flexspline of {1e6 * self.pitch['flexspline']:.1f} µm; the scatter of the points nearly hides this line. ISO 1328
+allows 17 µm in grade 5 and 12 µm in grade 4 at this size. The lines at 400 and 404 result from the same pitch
+deviations. The circular spline's line is the larger one, as in the current of the UR5.
 
 ![Lines of the transmission error](images/real_robot/transmission_error.png)
 """, *table(["lines a turn [µrad]", *(f"recorded, {name}" for name in self.recorded), "twin"], rows), """
-The twin here has no line once a motor turn (101), because only pitch errors were fitted: two lobes share the load, and
-the lead of one cancels the lag of the other. A wave generator off its axis and run-out of the flexspline together make
-one: 10 µm each make 10 µrad (`manufacture.wave_generator_eccentricity`, `manufacture.flexspline_eccentricity`), 7
-µrad at 67 N·m. An eccentric motor encoder makes one too, 11 µrad at the output for 1.1 mrad at the motor, and does not
-fall with load; without load the recording cannot tell the two apart. Once and twice a turn of the output it has 0.6 and
-0.35 mrad, more than the total allowed for such a gear (1 minute of arc): the output encoder is eccentric.
+The twin has no line at 101, once a motor turn, because only pitch deviations were fitted. The two lobes share the
+load, and the lead of one cancels the lag of the other. Other errors can make this line. A wave generator off its axis
+together with run-out of the flexspline, 10 µm each, makes 10 µrad without load and 7 µrad at 67 N·m
+(`manufacture.wave_generator_eccentricity`, `manufacture.flexspline_eccentricity`). An eccentric motor encoder of 1.1
+mrad makes 11 µrad at the output, whatever the load. A recording without load cannot tell these two errors apart. The
+recorded error has 0.6 mrad once and 0.35 mrad twice a turn of the output. This is more than such a gear may have in
+all (1 minute of arc), so the output encoder is eccentric.
 
-*Limits of this recording:* the drive's size is inferred from its ratio and torque; the sweep is one way and 7 s long;
-the torque is computed from current; the error without load was read off a published figure, whose points scatter by
-0.03 mrad.
+*Limits of this recording:* the drive's size is inferred from its ratio and torque. The sweep goes one way and takes 7
+s. The torque is computed from the current. The error without load was read off a published figure, whose points
+scatter by 0.03 mrad.
 """]
 
 
 def section(runner, telemetry, _docs, images):
     """Lines of the page."""
     heading = ["## A 101:1 drive with both encoders", """
-Elbow of a NEURA LARA 8 (A. Lucious, 2024), not a UR: the only public record of this ratio with an encoder at motor and
-output.
+The drive is the elbow of a NEURA LARA 8 (A. Lucious, 2024), not of a UR. It is the only public recording of this ratio
+with encoders at motor and output.
 """]
     paths = [os.path.join(telemetry, name) for name in (LOADED, UNLOADED)]
     missing = [path for path in paths if not os.path.isfile(path)]

@@ -60,17 +60,18 @@ def section(runner, telemetry, _docs, _images):
         rows.append([name + (" (identified on)" if name == TRAIN else ""), *cells])
     shares = np.array(shares)
     return [*heading, f"""
-Recordings of 2020 at 100 Hz (S. Mamedov, *dynamic_calibration*). They hold no target angles: `joint_twin arm` gets
-the measured ones, smoothed by polynomials of degree {DEGREE} over {WINDOW} rows. So the motion is told but for its
-ripple, and there is no tracking error to compare. Drives identified on {TRAIN} alone, gains typical.
-In each cell: error of the current in moving rows, rms, closed loop / `follow` / simple fit with the recorded moment
-[A]; amplitude of the current at 200 lines a turn, twin / recorded [A], –: no steady motion of a frequency that the rows
-resolve. None of them knows the payload of 2.805 kg in ...Load; the fit has it in the moment only as far as the
-controller does.
+The recordings are of 2020, at 100 Hz (S. Mamedov, *dynamic_calibration*). They hold no target angles. So `joint_twin
+arm` follows the measured angles, smoothed by polynomials of degree {DEGREE} over {WINDOW} rows. The twin thus knows
+the motion without its ripple, and no tracking error can be compared. The drives are identified on {TRAIN} alone, and
+the controller's gains are typical ones. Each cell has two parts. The first is the rms error of the current in moving
+rows [A]: of the closed loop, of `follow`, and of the simple fit with the recorded moment. The second is the amplitude
+of the current at 200 periods a turn [A], of the twin and of the recording. A dash says that the recording has no
+steady motion whose ripple its rows resolve. No twin knows the payload of 2.805 kg of the last recording. The fit knows
+it as far as the controller's moment contains it.
 
-Of what was not identified on, the current in moving rows is within {WANTED:g} of the simple fit's error in
-{np.count_nonzero(shares <= WANTED)} of {len(shares)} (recording, joint), and below it in
-{np.count_nonzero(shares < 1.0)}; median {float(np.median(shares)):.2f}, and {float(np.median(beside_told)):.2f} of
-`follow`'s. The loop does not bound it:
-its error is that of `follow`. Both lack errors of manufacture, so their lines are a fraction of the recorded ones.
+The recordings that the drives were not identified on give {len(shares)} cases, one for each recording and joint. The
+error of the current in moving rows is within {WANTED:g} of the simple fit's in {np.count_nonzero(shares <= WANTED)} of
+them and below the simple fit's in {np.count_nonzero(shares < 1.0)}. The median is {float(np.median(shares)):.2f} of
+the fit's error and {float(np.median(beside_told)):.2f} of `follow`'s, so the closed loop is not what limits it. The
+drives of both have no errors of manufacture. So their ripple is a fraction of the recorded one.
 """, *table(["recording", *JOINTS], rows)]

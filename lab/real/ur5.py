@@ -220,7 +220,8 @@ def named_text(verdicts):
     """Of joints that were raised alone and whose friction is shown."""
     shown = [is_right(arm, raised) for arm, raised in verdicts if len(raised) == 1 and
              any(joint["joint"] == raised[0] and joint["friction_ratio"] is not None for joint in arm["joints"])]
-    return f"Of {len(shown)} joints raised alone whose friction is shown, {sum(shown)} are named and no other."
+    return (f"In {len(shown)} runs the friction of one joint is raised and the motion shows that joint's friction. The "
+            f"verdict names this joint and no other in {sum(shown)} of them.")
 
 
 def raised_alone(runner, verdicts, recordings):
@@ -238,8 +239,9 @@ def raised_alone(runner, verdicts, recordings):
         shown = sum(joint in seen for _, seen, joint in answers)
         named = sum(joint in departing for departing, _, joint in answers)
         others = sum(bool(departing - {joint}) for departing, _, joint in answers)
-        parts.append(f"with {100.0 * more:.0f} % more {named} of {shown} are named, and another joint in {others}")
-    return f"Without a reference, of joints whose friction is shown, {'; '.join(parts)}."
+        parts.append(f"With {100.0 * more:.0f} % more friction it names {named} of {shown} raised joints; in "
+                     f"{others} runs it names another joint.")
+    return f"Without a reference the verdict sees less. {' '.join(parts)}"
 
 
 def draw_current(path, recording):
@@ -310,9 +312,11 @@ def section(runner, telemetry, docs, images):
     draw_means(os.path.join(images, "means.png"), judged_errors)
     means, means_of, worst_means = met(judged_errors, "means", WANTED_MEANS)
     moving, moving_of, worst_moving = met(judged_errors, "moving", WANTED_MOVING)
-    summary = [f"In recordings that were not identified on, the twin's error in means over 0.1 s is at most "
-               f"{WANTED_MEANS:g} of the fit's for {means} of {means_of} large joints (worst {worst_means:.2f}), that "
-               f"in moving rows at most {WANTED_MOVING:g} for {moving} of {moving_of} (worst {worst_moving:.2f}).",
+    summary = [f"The twin's error of the current is compared with that of a simple fit, for the large joints of the "
+               f"recordings that the twins were not identified on. In means over 0.1 s the twin's error is at most "
+               f"{WANTED_MEANS:g} of the fit's in {means} of {means_of} cases (worst {worst_means:.2f}). In moving "
+               f"rows it is at most {WANTED_MOVING:g} of the fit's in {moving} of {moving_of} cases (worst "
+               f"{worst_moving:.2f}).",
                judged_right]
     write_errors(os.path.join(docs, "real_robot_current.csv"), {**judged_errors, TRAIN: all_errors[TRAIN]})
     print("\n".join([*share_table(all_errors), *map(",".join, raised_lines), *summary]))
@@ -347,45 +351,48 @@ def verdict_section(runner, by_name, judged, docs):
     of_pairs = [pairs_text([run.result() for run in pairs.values()], (LARGE, JOINTS[3:]))]
     raised_lines, right = raised_rows(raised)
     write_rows(os.path.join(docs, RAISED_ROWS), raised_lines[0], raised_lines[1:])
-    sentence = (f"Sound joints called WARN or worse: {false_alarms} of {2 * len(JOINTS) * len(alone)}. Raised friction "
-                f"judged right: {right} of {len(raised)}. {named_text(raised.values())} "
+    sentence = (f"Of {2 * len(JOINTS) * len(alone)} verdicts on sound joints {false_alarms} are WARN or worse. Of "
+                f"{len(raised)} recordings with raised friction {right} are judged right. "
+                f"{named_text(raised.values())} "
                 f"{raised_alone(runner, verdicts, list(by_name.values()))}")
     lines = ["""
 ### Verdicts
 
-""" + f"""`joint_twin compare --arm ur5`, alone and with the report of {TRAIN} as `--reference` (of {TRAIN}: that of
-{other}). The arm is sound in all of them. The numbers are the friction as a multiple of
-the reference's, at the speeds of both, without the factor that joints share. A dash: the motion does not show it.
+""" + f"""`joint_twin compare --arm ur5` judges each recording alone and with the report of {TRAIN} as
+`--reference` ({TRAIN} itself with that of {other}). The arm is sound in all recordings. The numbers are the friction
+as a multiple of the reference's friction, at the speeds that both recordings have, without the factor that joints
+share. A dash says that the motion does not show the friction of the joint.
 """, *table(["recording", "verdict alone", *JOINTS, "verdict with reference"], sound), *of_pairs, f"""
-Then {100.0 * RAISED:.0f} % of the identified friction of one joint, or of all, is added to the recorded current. It is
-right that the raised joint is named and no other; where all are raised, that none is named. A joint whose friction the
-recording does not show cannot be named. All runs: [{RAISED_ROWS}]({RAISED_ROWS}).
+Then {100.0 * RAISED:.0f} % of the identified friction of one joint, or of all joints, is added to the recorded current.
+A verdict is right if it names the raised joint and no other. Where the friction of all joints is raised, a verdict is
+right if it names no single joint. A joint whose friction the motion does not show cannot be named.
+[{RAISED_ROWS}]({RAISED_ROWS}) has all runs.
 """, """
 ### Limits of these recordings
 
-The arm has no encoder on the other side of the gear, so no torsion; temperature and payload are not recorded. Some rows
-of no5 and no7 are missing, up to 0.4 s.
+The arm has no encoder behind the gear, so the torsion is not recorded. Temperature and payload are not recorded either.
+Some rows of no5 and no7 are missing, for up to 0.4 s.
 """]
     return lines, raised_lines, sentence
 
 
 def introduction(summary, recordings):
     return [f"""
-CB series, six joints (K. Kufieta, *Force Estimation in Robotic Manipulators*, NTNU 2014). The twins get what a driver's
-`/joint_states` has: angles and currents of the six joints. The load of each joint follows from the angles of all
-([arm.md](arm.md)). All six are identified on {TRAIN} alone (`joint_twin identify --arm`) and judged on the others.
+The arm is a UR5 of the CB series with six joints (K. Kufieta, *Force Estimation in Robotic Manipulators*, NTNU 2014).
+The twins get what a driver's `/joint_states` holds: angles and currents of the six joints. The load of each joint
+follows from the angles of all joints ([arm.md](arm.md)). All six twins are identified on {TRAIN} alone (`joint_twin
+identify --arm`) and judged on the other recordings.
 
 {summary[0]}
 {summary[1]}
 
-The recordings have {rows_of(recordings)}.
-no2 was logged at 62.5 Hz; its rows are taken as they are, and a mean over {MEAN:g} s has half as many. In no5_pushed a
-person pushes the arm: contact is no fault, but no twin predicts it. no7 is the motion of no6 on another day.
+The recordings have {rows_of(recordings)}. no2 was logged at 62.5 Hz, so a mean over {MEAN:g} s has half as many rows.
+In no5_pushed a person pushes the arm; no twin predicts such a contact. no7 repeats the motion of no6 on another day.
 
 ### Load
 
-The load of the arm is compared with the controller's `target_moment` [N·m]: rms of the difference, of the range of the
-moment, and in per cent where the range is 1 N·m or more.
+The table compares the load that the arm's links give with the controller's `target_moment` [N·m]. It has the rms of the
+difference and the range of the moment. The per cent are of the range, where the range is 1 N·m or more.
 """]
 
 
@@ -393,20 +400,20 @@ def current_section(all_errors):
     return [f"""
 ### Error of the predicted current
 
-The table has the twin's error over that of a simple fit: of the means over {MEAN:g} s around each moving row, and of
-all moving rows (faster than {MOVING:g} rad/s). *Load arm*: from `/joint_states` alone; *load target_moment*:
-identified and predicted with the
-recorded moment. *Fit*: gain, Coulomb and viscous friction with the recorded moment, least squares over all rows of
-{TRAIN}, which the twins are identified on. Wanted: {WANTED_MEANS:g} and {WANTED_MOVING:g}. The errors of all joints,
-moving and resting: [real_robot_current.csv](real_robot_current.csv) [A, rms].
+The table has the twin's error divided by that of a simple fit. The first number of a cell is for means over {MEAN:g} s
+around each moving row, the second for all moving rows (faster than {MOVING:g} rad/s). With *load arm* the twin gets
+`/joint_states` alone. With *load target_moment* the twin is identified and predicts with the recorded moment. The
+*fit* has gain, Coulomb friction and viscous friction, with the recorded moment: least squares over all rows of
+{TRAIN}. The targets are {WANTED_MEANS:g} and {WANTED_MOVING:g}. [real_robot_current.csv](real_robot_current.csv) has
+the errors of all joints, moving and resting [A, rms].
 """, *share_table(all_errors), """
 ![Error of means over 0.1 s](images/real_robot/means.png)
 
-The rest of the error in moving rows is ripple at the lines of the teeth, 200 a turn of each joint, which the arm
-carries into every joint's current.
+What remains of the error in moving rows is ripple with 200 periods a turn of each joint, the frequency of the teeth.
+The arm carries this ripple into the current of every joint.
 
-At rest stiction holds the joint, and any current within a band gives the same angle: two encoder counts, 9.4 µrad, are
-a quarter of the presliding angle and so some 0.3 A. The prediction there is a band, not a value.
+At rest stiction holds the joint: any current within a band gives the same angle. Two encoder counts, 9.4 µrad, are a
+quarter of the presliding angle, and correspond to some 0.3 A. So the twin predicts a band at rest, not a value.
 
 ![Current of the three large joints, measured and predicted](images/real_robot/current.png)
 

@@ -4,39 +4,43 @@ import collections
 import csv
 import math
 import os
-import shutil
+import sys
 
 import cells
 import judge
 
+sys.path.append(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+from lab import BLUE, GREY, ORANGE, RED, STYLE, plt  # noqa: E402  (its folder is known now)
+
 HEAD = """# Stability
 
-Written by `lab/run stress`; do not edit. Behaviour of the twin far from its usual range: one factor at a time, two at a
-time, all at once at random. Every cell is a run of the Python module's twin, compared with
-converged runs of the same cell.
+`lab/run stress` writes this page; do not edit it. The page shows how the twin behaves far from its usual range. The
+program changes one factor at a time, then two at a time, then all at random. Every cell is a run of the Python module's
+twin. The program compares each run with a converged run of the same cell.
 
 ```sh
-lab/run stress                # every cell: the complete tables and maps in out/stability
+lab/run stress                # every cell: all results in out/stability/cells.csv
 lab/run stress --seeds 200    # more random cells; the seed makes a cell again
 ```
 
-The exit code is 0 only if every cell is one of
+The exit code is 0 only if every cell has one of three verdicts:
 
 - **accurate**: the solver reported nothing, and torque and angles stay within {accuracy:.0f} % of the converged run;
-- **degraded, reported**: `~health` has `solver_state` DEGRADED or FAILED, and a counter gives the cause. The result may
-  be good or not;
+- **degraded, reported**: `~health` has `solver_state` DEGRADED or FAILED, and a counter gives the cause. Such a result
+  may still be accurate;
 - **refused with a reason**: the twin does not start, and a message states the reason.
 
-A NaN, a run of more than {timeout:.0f} s or a wrong result without a report makes it 1.
+The exit code is 1 if a run gives a NaN, takes more than {timeout:.0f} s, or is wrong without a report.
 """
 
 MEANING = """## What is compared
 
-The **error** is the largest difference to the converged run over {duration:g} s, of the joint torque, the output's angle and
-the motor's, each over its scale: the largest torque (at least {torque:g} N·m, where the first slope of the cup ends) and the
-travel (at least the {angle:.2f} mrad that belong to it). The **converged run** is the same cell at a step that resolves a
-period of the joint's fastest natural mode 600 times, at most a tenth of the cell's. The **drift** is the largest energy
-residual over the work of motor and load.
+The **error** is the largest difference from the converged run within {duration:g} s. Three signals are compared: the
+joint torque, the output angle and the motor angle. Each difference is divided by a scale. The scale of the torque is
+the largest torque, and at least {torque:g} N·m, where the first slope of the cup ends. The scale of an angle is the
+travel, and at least {angle:.2f} mrad, the torsion at {torque:g} N·m. The **converged run** computes the same cell
+with a shorter step: a period of the joint's fastest natural mode has at least 600 steps, and the step is at most a
+tenth of the cell's. The **drift** is the largest energy residual, divided by the work of motor and load.
 
 ## What the solver reports
 
@@ -49,12 +53,37 @@ residual over the work of motor and load.
 | refused | the natural mode advances more than 2.48 rad a step, or the insertion finds no equilibrium | a step is divided into 31 substeps of 0.08 rad at most |
 """  # noqa: E501
 
-MAPS = {"map: step and stiffness": "map__step_and_stiffness",
-        "map: step and speed, five teeth missing": "map__step_and_speed__five_teeth_missing"}
+COLOURS = {judge.ACCURATE: BLUE, judge.DEGRADED: ORANGE, judge.REFUSED: GREY}
+# File and axes of the maps.
+MAPS = {"map: step and stiffness": ("map__step_and_stiffness", "step [s]", "all stiffness times [-]"),
+        "map: step and speed, five teeth missing": ("map__step_and_speed__five_teeth_missing", "step [s]",
+                                                    "speed limit [rpm],\n12 N·m at the motor")}
 
 
 def percent(value):
     return "–" if math.isnan(value) else f"{100.0 * value:.2g} %"
+
+
+def draw_map(path, judged, across, up):
+    """A square a cell, its error in the square."""
+    with plt.rc_context(STYLE):
+        figure, axes = plt.subplots(figsize=(7.0, 2.6), constrained_layout=True)
+        columns = sorted({j.cell.labels[0] for j in judged})
+        rows = sorted({j.cell.labels[1] for j in judged})
+        for j in judged:
+            x, y = columns.index(j.cell.labels[0]), rows.index(j.cell.labels[1])
+            axes.fill([x - 0.47, x + 0.47, x + 0.47, x - 0.47], [y - 0.44, y - 0.44, y + 0.44, y + 0.44],
+                      color=COLOURS.get(j.verdict, RED), linewidth=0)
+            axes.text(x, y, "" if math.isnan(j.error) else percent(j.error), ha="center", va="center", fontsize=6.5,
+                      color="white")
+        axes.set_xticks(range(len(columns)), [f"{value:g}" for value in columns])
+        axes.set_yticks(range(len(rows)), [f"{value:g}" for value in rows])
+        axes.set(xlim=(-0.5, len(columns) - 0.5), ylim=(-0.5, len(rows) - 0.5), xlabel=across, ylabel=up)
+        axes.grid(False)
+        axes.tick_params(length=0)
+        axes.spines[:].set_visible(False)
+        figure.savefig(path, metadata={"Software": None})
+        plt.close(figure)
 
 
 def by_group(judged):
@@ -76,12 +105,12 @@ def boundary(judged):
     if not quiet:
         return "No cell is accurate."
     return (f"With the shipped parameters the longest accurate step is {steps('step, load steps of 100 N.m')} under "
-            f"load steps and {steps('step, reversal at 3030 rpm')} under reversals with 12 N·m at the motor, four "
-            f"times what it can give. Over all {len(quiet)} cells in which the solver reported nothing the largest "
-            f"error is {percent(max(j.error for j in quiet))}, the largest energy drift "
+            f"load steps. Under reversals it is {steps('step, reversal at 3030 rpm')}; there the motor gives 12 N·m, "
+            f"four times its limit. The solver reported nothing in {len(quiet)} cells. Their largest error is "
+            f"{percent(max(j.error for j in quiet))}, and their largest energy drift "
             f"{percent(max(j.drift for j in quiet))}. Of the {len(flagged)} degraded cells "
-            f"{sum(j.error <= judge.ACCURACY for j in flagged)} were within the "
-            f"accuracy all the same: the solver warns early rather than late.")
+            f"{sum(j.error <= judge.ACCURACY for j in flagged)} are accurate all the same: the solver warns early "
+            f"rather than late.")
 
 
 def group_rows(groups):
@@ -96,27 +125,24 @@ def group_rows(groups):
     return rows
 
 
-def write(docs, complete, judged, table):
-    """docs/stability.md and .csv; maps come from the folder of the complete page. `table`: makes lines of a table."""
+def write(docs, judged, table):
+    """docs/stability.md, its maps and .csv. `table`: makes lines of a table."""
     groups = by_group(judged)
     count = collections.Counter(j.verdict for j in judged)
     lines = [HEAD.format(accuracy=100.0 * judge.ACCURACY, timeout=judge.TIMEOUT)]
     lines += table(["verdict", "cells"], [[verdict, count[verdict]] for verdict in judge.VERDICTS])
     wrong = [f"{j.cell.name} (error {percent(j.error)})" for j in judged if j.verdict not in judge.GOOD]
     if wrong:
-        lines += ["", f"Wrong without a report, or without a result: {'; '.join(wrong)}. Their steps are as long as is "
-                  "allowed: the phase error of the leapfrog adds up over the run."]
+        lines += ["", f"Cells that are wrong without a report, or without a result: {'; '.join(wrong)}. Their steps "
+                  "are as long as the twin allows. The phase error of the leapfrog adds up over such a run."]
     lines += ["", "## Where it is accurate", "", boundary(judged), ""]
-    images = os.path.join("images", "stability")
-    for name, file in MAPS.items():
-        if os.path.exists(os.path.join(complete, images, file + ".png")):
-            os.makedirs(os.path.join(docs, images), exist_ok=True)
-            shutil.copyfile(os.path.join(complete, images, file + ".png"), os.path.join(docs, images, file + ".png"))
-            lines += [f"![{name[5:].capitalize()}: the error in each square (blue: accurate; orange: degraded, "
-                      f"reported; grey: refused)]({images}/{file}.png)", ""]
+    for name, (file, across, up) in MAPS.items():
+        draw_map(os.path.join(docs, "images", "stability", file + ".png"), groups[name], across, up)
+        lines += [f"![{name[5:].capitalize()}: the error in each square (blue: accurate; orange: degraded, "
+                  f"reported; grey: refused)](images/stability/{file}.png)", ""]
     lines += [MEANING.format(duration=cells.DURATION, torque=judge.LEAST_TORQUE, angle=1e3 * judge.LEAST_ANGLE)]
-    lines += ["Groups of cells (one factor, two factors, edges, random), with the largest error of the accurate: "
-              "[stability.csv](stability.csv)."]
+    lines += ["The cells are counted by group in [stability.csv](stability.csv), with the largest error of the "
+              "accurate cells of each group."]
     with open(os.path.join(docs, "stability.md"), "w", encoding="utf-8") as file:
         file.write("\n".join(lines).rstrip() + "\n")
     with open(os.path.join(docs, "stability.csv"), "w", encoding="utf-8", newline="") as file:

@@ -112,21 +112,6 @@ is set by a real drive, see *Real drives*; the catalogue gives a limit.
     page.value("catalogue.hysteresis", loop["hysteresis"] / ARCMIN, "arcmin")
     page.value("catalogue.lost_motion", loop["lost_motion"] / ARCMIN, "arcmin")
 
-    def draw(figure):
-        whole, near = figure.subplots(1, 2)
-        torque = [point["torque"] for point in loop["points"]]
-        angle = [point["output_angle"] / ARCMIN for point in loop["points"]]
-        for axes, title in ((whole, "Torsion loop [arcmin]"), (near, "The same near no load")):
-            axes.plot(torque, angle, color=BLUE)
-            axes.set(title=title, xlabel="load [N·m]")
-        near.set(xlim=(-5.0, 5.0), ylim=(-0.8, 0.8))
-        lost = 0.04 * RATED_TORQUE
-        near.axvline(-lost, color=GREY, lw=0.8, ls="--")
-        near.axvline(lost, color=GREY, lw=0.8, ls="--", label="± 4 % of rated")
-        near.legend(loc="upper left")
-
-    page.figure("catalogue_hysteresis", "Torsion loop of the locked gear over ± 67 N·m.", draw)
-
 
 def loops(page):
     page.heading("Torsion loops by amplitude")
@@ -306,23 +291,6 @@ the twin with the same law evaluated here: they show that the law is what runs, 
                    Within(viscosity, relative=0.03), walther(bearing, degree), "mm²/s",
                    "its law starts from the thesis' 80 mm²/s at 25 °C; these two give 77.5 there",
                    evidence=fitted("bearing.viscosity_slope is made of these two figures"))
-    if page.fast:
-        return
-    sweep = np.linspace(0.0, 80.0, 17)
-    speeds = [RPM_2000 * rpm / 2000.0 for rpm in (100.0, 500.0, 1000.0, 2000.0, 3500.0)]
-    rows = [losses(page, speeds, [0.0], "--set", f"input.temperature={degree:.1f}") for degree in sweep]
-
-    def draw(figure):
-        axes = figure.subplots()
-        axes.set_title("No-load running torque of the gear [mN·m] against temperature [°C]")
-        for k, colour in zip(range(len(speeds)), (GREY, GREEN, BLUE, ORANGE, RED)):
-            axes.plot(sweep, [1000.0 * row[k]["gear_loss"] for row in rows], color=colour,
-                      label=f"{speeds[k] * 30.0 / math.pi:.0f} rpm")
-        axes.plot([20.0], [195.0], "o", color="black", label="catalogue, 2000 rpm")
-        axes.legend(ncol=2)
-
-    page.figure("catalogue_temperature", "No-load running torque over the grease's range of temperature.", draw,
-                (6.4, 3.0))
 
 
 def dials(page):

@@ -8,7 +8,7 @@ from scipy.interpolate import RegularGridInterpolator
 
 from bounds import AtMost, Between, Within
 from evidence import MEASUREMENT, fitted, measured
-from page import BLUE, GREEN, GREY, ORANGE, number
+from page import BLUE, GREEN, ORANGE, number
 
 sys.path.append(os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "real"))
 import two_encoders  # noqa: E402  (its folder is known now)
@@ -59,8 +59,8 @@ OWN_LOADS, OWN_SPEEDS = (20.0, 50.0, 100.0), (0.1, 0.5, 1.0)  # N.m, rad/s at th
 
 DIRECTION_GAP = 0.09e-3  # rad, between the directions of motion without load
 # Why a joint's friction does not hold.
-UR10E_KNOWN = {"base": "fit and grease are the shoulder's and a UR5's; this base rubs 1.3 times as much as the "
-               "shoulder at every speed, of which the arm's tilting moment makes little: drives of one size differ"}
+UR10E_KNOWN = {"base": "the twin takes the shoulder's fit and a UR5's grease; this base has 1.3 times the friction of "
+               "the shoulder at every speed, and the tilting moment explains little of it: drives of one size differ"}
 TILTED = ("ur10e_20_02_12-40sec_12harm.csv", "ur10e_20_02_19_14harm50sec.csv", "ur10e_20_02_19_14harm50secLoad.csv")
 INDEPENDENT = 40  # rows of a joint, at most: errors of a model are no noise
 
@@ -316,34 +316,19 @@ the controller's rigid-body model, in bins of speed. Again one viscosity for thr
     if not path:
         return
     data = np.genfromtxt(path, delimiter=",", names=True)
-    maps, twins = {}, {}
     for joint, name in enumerate(JOINTS):
-        maps[name] = friction_map(data, joint)
-        speeds, loads = maps[name][:, 0], maps[name][:, 1]
-        twins[name] = np.diag(joint_loss(page, speeds, loads, "--config", f"joints/{name}.yaml"))
-        error = np.sqrt(np.mean((twins[name] - maps[name][:, 2]) ** 2))
-        page.check(f"drives.ur5.{name}", f"{name}, friction over speed, rms error", "recording", AtMost(1.0), error,
-                   "N·m",
+        speeds, loads, friction, scatter = friction_map(data, joint).T
+        twin = np.diag(joint_loss(page, speeds, loads, "--config", f"joints/{name}.yaml"))
+        page.check(f"drives.ur5.{name}", f"{name}, friction over speed, rms error", "recording", AtMost(1.0),
+                   np.sqrt(np.mean((twin - friction) ** 2)), "N·m",
                    f"a seventh of the friction at the slowest; within a bin the recording scatters by "
-                   f"{maps[name][:, 3].mean():.1f} N·m",
+                   f"{scatter.mean():.1f} N·m",
                    evidence=fitted("preload and viscosity of joints/*.yaml to this recording"))
     page.text("""
 *Limits of this recording:* the rigid-body torque is the controller's, so errors of its masses and of the
 payload look like friction (the shoulder has the largest weight and the largest residual); no temperature; no encoder
 at the motor, so no torsion and no kinematic error apart from ripples of the current.
 """)
-
-    def draw(figure):
-        for axes, name in zip(figure.subplots(1, 3, sharey=True), JOINTS):
-            speed, _, friction, scatter = maps[name].T
-            axes.errorbar(speed, friction, yerr=scatter, fmt="o", ms=4, color=GREY, elinewidth=0.8, label="recording")
-            axes.plot(speed, twins[name], color=COLOURS[name], label="twin")
-            axes.set(title=f"{name} [N·m]", xlabel="joint speed [rad/s]")
-            axes.legend(loc="lower right")
-
-    page.figure("drives_ur5",
-                "Friction of a UR5's size 3 joints by speed; bars: scatter within a bin, which holds acceleration "
-                "and ripple.", draw)
 
 
 def both_encoders(page):

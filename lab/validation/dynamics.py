@@ -7,7 +7,7 @@ import numpy as np
 
 from bounds import AtLeast, AtMost, Between, Within
 from evidence import IDENTITY, SELF_CONSISTENT
-from page import BLUE, GREEN, GREY, ORANGE, PURPLE, RED
+from page import BLUE, GREEN, ORANGE, PURPLE, RED
 
 THESIS = ("--config", "config/thesis_insertion.yaml")
 NORMAL = THESIS + ("--set", "contact.law=normal")  # the contact law with a potential: only there energy can balance
@@ -19,7 +19,7 @@ CLAIM = "model.md, *Dynamic ring*: the ring is quasi-static to well below 1 %"
 # On the bearing's balls, a seventeenth as stiff as the springs of Table 6.1, modes of the rim come into reach of the
 # tooth frequency: the forces and places of single teeth ring at full speed under load.
 RINGS = {"317rad_100Nm_contact_force", "317rad_100Nm_mesh_force", "sweep_position", "sweep_mesh_force"}
-RINGING = "teeth come into mesh 200 times a turn; where that frequency meets a mode of the ring, it rings"
+RINGING = "the ring vibrates where the tooth frequency, 200 a turn, meets one of its natural modes"
 LABELS = {"rk4": "Runge-Kutta 4, explicit", "esdirk4": "ESDIRK 4, structured", "tr_bdf2": "TR-BDF2, structured",
           "implicit_euler": "implicit Euler"}
 
@@ -86,12 +86,6 @@ times the kinetic energy at the same speed of growth, and the same dashpots need
 solver damped the vibration.
 """)
     cost_table(page, settled, reference)
-    page.figure("insertion_transient",
-                "Largest force of the wave generator on a tooth. Left: band between lowest and highest "
-                "value within each 0.25 ms. Right: the same motion over half a millisecond; the structured method "
-                "follows "
-                "the reference, implicit Euler shows the static force.",
-                lambda fig: draw_transient(fig, reference, structured, euler, settled), size=(8.0, 3.4))
 
 
 def numerical_damping(page):
@@ -148,36 +142,6 @@ converge to one curve.
 """)
 
 
-def draw_transient(fig, reference, structured, euler, settled):
-    left, right = fig.subplots(1, 2, gridspec_kw={"width_ratios": [1.5, 1.0]})
-    for run, color, label in ((reference, GREY, "Runge-Kutta 4, 0.25 µs"), (structured, BLUE, "ESDIRK 4, 5 µs")):
-        times, low, high = band(run, 25)
-        left.fill_between(times, low, high, color=color, alpha=0.35, linewidth=0.0, label=label)
-    times = [1e3 * time for time in euler["series"]["time"]]
-    left.plot(times, euler["series"]["force_max"], color=RED, label="implicit Euler, 10 µs")
-    left.axhline(settled, color="black", linestyle=":", linewidth=0.9, label=f"static, {settled:.1f} N")
-    left.set(xlabel="time [ms]", ylabel="largest $F_{WG}$ [N]", title="0 … 50 ms", ylim=(0, 900), xlim=(0, 50))
-    left.legend(loc="lower right")
-    for run, color, style, label in ((reference, GREY, "-", "Runge-Kutta 4"), (structured, BLUE, "--", "ESDIRK 4"),
-                                     (euler, RED, "-", "implicit Euler")):
-        series = [(1e3 * time, force) for time, force in zip(run["series"]["time"], run["series"]["force_max"])
-                  if 0.04 <= time <= 0.0405]
-        right.plot(*zip(*series), style, color=color, label=label)
-    right.axhline(settled, color="black", linestyle=":", linewidth=0.9)
-    right.set(xlabel="time [ms]", title="40.0 … 40.5 ms")
-
-
-def band(run, width):
-    series = run["series"]
-    times, lows, highs = [], [], []
-    for begin in range(0, len(series["time"]) - width, width):
-        part = slice(begin, begin + width)
-        times.append(1e3 * series["time"][begin + width // 2])
-        lows.append(min(series["force_lowest"][part]))
-        highs.append(max(series["force_highest"][part]))
-    return times, lows, highs
-
-
 # --- Full speed -------------------------------------------------------------------------------------------------------
 
 QUANTITIES = (("position", "tooth points"), ("torsion", "output angle (torsion)"), ("output_torque", "output torque"),
@@ -230,10 +194,6 @@ quantity. Most of the torsion's error is no error of the ring: the kinematic err
 of 0.5 kg·m² does not follow. With the fifty-fold masses of the thesis the claim fails for the forces: the inertia
 force of a tooth, 4 ω² w0 m, is then 1.3 N at full speed, of some 8 N of contact.
 """)
-    page.figure("dynamic_tooth_forces",
-                "Forces on every tooth at 317 rad/s and 20 N·m, real masses, at one instant: dynamic ring "
-                "and ring in equilibrium at the same angles, and their difference.",
-                lambda fig: draw_teeth(fig, ours["teeth"]), size=(8.0, 4.2))
     sweep(page)
 
 
@@ -346,15 +306,3 @@ def draw_sweep(fig, runs):
         axes.legend(loc="lower right")
     left.set(ylabel="error, rms [%]", title="all quantities, 20 N·m")
     right.set(title="flank force")
-
-
-def draw_teeth(fig, teeth):
-    axes = fig.subplots(2, 2, sharex=True, gridspec_kw={"height_ratios": [2.0, 1.0]})
-    for column, (key, label) in enumerate((("contact_force", "$F_{WG}$"), ("mesh_force", "flank force"))):
-        dynamic, static = teeth[key], teeth[key + "_quasi_static"]
-        axes[0][column].plot(static, color=GREY, linewidth=2.5, alpha=0.6, label="in equilibrium")
-        axes[0][column].plot(dynamic, ".", color=BLUE, markersize=2.5, label="dynamic")
-        axes[0][column].set(ylabel=f"{label} [N]", title=f"{label} on each tooth")
-        axes[0][column].legend()
-        axes[1][column].plot([d - s for d, s in zip(dynamic, static)], color=RED)
-        axes[1][column].set(xlabel="tooth", ylabel="difference [N]")

@@ -28,10 +28,10 @@ IDENTITY = Evidence("identity")
 SELF_CONSISTENT = Evidence("self-consistent")
 
 CLASSES = {
-    "independent measurement": "measured or published elsewhere, nothing fitted to it",
-    "fitted": "a parameter was fitted to it, or to figures of the same runs",
+    "independent measurement": "measured or published elsewhere; nothing was fitted to the figure",
+    "fitted": "a parameter was fitted to this figure, or to figures of the same runs",
     "program of the thesis": "numbers of the thesis' own program, on its gear",
-    "second program of this project": "the same laws, written a second time: that the code solves what it states",
-    "identity": "what holds in any model of its kind: balances, symmetries, conservation, closed forms",
-    "self-consistent": "one way of computing it beside another way of the same model",
+    "second program of this project": "an independent program of the same laws: shows that the code solves them",
+    "identity": "balances, symmetries, conservation laws and closed forms, which hold in any such model",
+    "self-consistent": "two ways of computing the same quantity of the model",
 }

@@ -23,7 +23,7 @@ efficiency, back-driving torque, hysteresis and the torsion between the fitted t
 with another grease: with its viscosity fitted to the no-load torque the efficiency is 0.1 point out of the
 catalogue's band.
 """)
-    shown, efficiency = [], {}
+    shown = []
     for size, ratios in RATIOS.items():
         for ratio in ratios:
             if page.fast and ratio != EFFICIENCY_RATIO:
@@ -34,7 +34,6 @@ catalogue's band.
             twists = [row for row in figures if row["name"].startswith("torsion")]
             worst = max(abs(row["gear"] / row["catalogue"] - 1.0) for row in twists)
             rated = by_name["efficiency at the rated torque"]["gear"]
-            efficiency.setdefault(size, []).append((ratio, rated))
             page.check(f"family.torsion.{size}.{ratio}", f"size {size}, ratio {ratio}: largest error of the torsion",
                        "catalogue: K1 to K3", AtMost(2.0), 100.0 * worst, "%",
                        "three torques are fitted, the rated one is not; as for size 25",
@@ -63,12 +62,3 @@ catalogue's band.
         page.value(f"family.hysteresis.{size}", loop["hysteresis"] / ARCMIN, "arcmin")
     page.table(["size", "ratio", "starting [mN·m]", "no load, 2000 rpm [mN·m]", "back-driving [N·m]",
                 "efficiency, rated [%]", "teeth in mesh, no load [%]", "teeth in mesh, rated [%]"], shown)
-
-    def draw(figure):
-        axes = figure.subplots()
-        for size, points in efficiency.items():
-            axes.plot(*zip(*points), marker="o", color=COLOURS[size], label=f"size {size}")
-        axes.set(title="Efficiency at the rated torque [%], 2000 rpm, 20 °C", xlabel="ratio")
-        axes.legend(ncol=2)
-
-    page.figure("family", "Efficiency of the family at the rated torque, against the ratio.", draw)

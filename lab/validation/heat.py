@@ -9,7 +9,6 @@ from scipy.optimize import curve_fit
 from bounds import AtMost, Between, Within
 from evidence import MEASUREMENT, fitted, measured
 from drives import recording
-from page import BLUE, GREY, ORANGE
 
 JOINTS = ("base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3")
 LARGE = JOINTS[:3]
@@ -101,23 +100,17 @@ conductance and mean power, starts the second part at the temperature found ther
     capacities = page.tool("parameters")["thermal"]
     capacity = capacities["grease_capacity"] + capacities["housing_capacity"]
     before = np.arange(len(time)) < split
-    runs = {}
     for k, joint in enumerate(JOINTS[:1] if page.fast else JOINTS):
         known = np.isfinite(temperatures[:, k])
         found, _ = curve_fit(exponential, time[known & before], temperatures[known & before, k], (40.0, 10.0, 2000.0))
-        end, rise, constant = found
+        end, _, constant = found
         conductance = capacity / constant
-        parts = []
-        for begin, start in ((0.0, end - rise), (pause, temperatures[split, k])):
-            moment, degrees = stand(page, f"warm_up_{joint}_{len(parts)}", 4600,
-                                    f"thermal.ambient_conductance={conductance:.6f}",
-                                    f"thermal.standby_power={(end - AMBIENT) * conductance:.6f}",
-                                    f"thermal.housing_rise={start - AMBIENT:.6f}",
-                                    f"thermal.grease_rise={start - AMBIENT:.6f}")
-            parts.append((begin + moment, degrees))
-        runs[joint] = parts
+        start = temperatures[split, k] - AMBIENT
+        moment, degrees = stand(page, f"warm_up_{joint}", 4600, f"thermal.ambient_conductance={conductance:.6f}",
+                                f"thermal.standby_power={(end - AMBIENT) * conductance:.6f}",
+                                f"thermal.housing_rise={start:.6f}", f"thermal.grease_rise={start:.6f}")
         judged = known & ~before
-        error = np.sqrt(np.mean((np.interp(time, *parts[1]) - temperatures[:, k])[judged] ** 2))
+        error = np.sqrt(np.mean((np.interp(time - pause, moment, degrees) - temperatures[:, k])[judged] ** 2))
         page.check(f"heat.ur3.{joint}", f"{joint}: temperature in the second part, rms error", "recording",
                    AtMost(0.5), error, "K", "0.5 K make 1.5 % of the friction that grows with speed",
                    known="" if joint in LARGE else
@@ -131,21 +124,6 @@ surroundings of one temperature does not have.
     if page.fast:
         return
     friction_of_wrist(page, time, currents[:, 3], temperatures[:, 3], speeds[:, 3])
-
-    def draw(figure):
-        for axes, names in zip(figure.subplots(1, 2, sharey=True), (LARGE, JOINTS[3:])):
-            for joint, colour in zip(names, (BLUE, ORANGE, GREY)):
-                for part, shift in ((before, 0.0), (~before, pause - 3600.0)):
-                    axes.plot((time[part] - shift) / 60.0, temperatures[part, JOINTS.index(joint)], color=colour,
-                              alpha=0.4, lw=3)
-                (first, degrees), (second, later) = runs[joint]
-                shown = first <= time[split - 1]
-                axes.plot(first[shown] / 60.0, degrees[shown], color=colour, label=joint)
-                axes.plot((second - pause + 3600.0) / 60.0, later, color=colour)
-            axes.set(xlabel="time [min], the pause cut out", title="Temperature beside the motor [°C]")
-            axes.legend(loc="lower right")
-
-    page.figure("heat_ur3", "Warm-up of a UR3: recorded (wide) and the twin, fitted to the first part.", draw)
 
 
 def friction_of_wrist(page, time, current, temperature, speed):

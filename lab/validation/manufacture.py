@@ -7,7 +7,6 @@ import numpy as np
 
 from bounds import AtLeast, AtMost, Between, Within
 from evidence import IDENTITY, SELF_CONSISTENT, fitted
-from page import BLUE, GREEN, GREY, ORANGE, RED
 
 ARCSEC = math.pi / 180.0 / 3600.0  # [rad]
 JOINT_TURN = 101  # motor turns
@@ -181,32 +180,6 @@ def pitch_errors(page):
         page.check(f"manufacture.averaged_{line}", f"line at {line} of the shipped gear over that on straight flanks",
                    "more teeth in mesh average", Between(0.6, 1.0), shipped.line(line) / both.line(line), "",
                    "an average cannot add; 0.6 is that over a lobe of 45° to either side", evidence=IDENTITY)
-    draw_pitch_errors(page, (flexspline, spline, both))
-
-
-def draw_pitch_errors(page, turns):
-    def draw(figure):
-        axes = figure.subplots(3, 2, sharex="col", gridspec_kw={"width_ratios": [1.15, 1.0]})
-        for (left, right), turn, title, color in zip(axes, turns,
-                                                     ("flexspline only", "circular spline only", "both"),
-                                                     (BLUE, ORANGE, GREEN)):
-            shape, swell = turn.band([CIRCULAR_SPLINE, CIRCULAR_SPLINE + 1, FLEXSPLINE])
-            left.plot(turn.angle[:-1], shape, color=color, linewidth=0.4)
-            left.plot(turn.angle[:-1], swell, color="black", linewidth=1.2)
-            left.set(title=f"{title}: order 2 of the motor", ylabel="error [″]", ylim=(-17, 17), xlim=(0, 1))
-            right.vlines(np.arange(195, 210), 0.0, turn.lines[195:210], color=color, linewidth=3)
-            for number in (CIRCULAR_SPLINE, FLEXSPLINE):
-                height = turn.line(number)
-                right.annotate(f"{height:.2g}″" if height > 0.01 else "0", (number, height), ha="center", va="bottom",
-                               fontsize=8, xytext=(0, 2), textcoords="offset points")
-            right.set(title="its lines", ylabel="amplitude [″]", ylim=(0, 10), xlim=(197, 205))
-        axes[2, 0].set_xlabel("turn of the joint")
-        axes[2, 1].set_xlabel("lines a joint turn")
-
-    page.figure("manufacture_pitch",
-                "Pitch errors of Fp = 8 µm. Left: order 2 of the motor in the output over a joint turn, "
-                "with its envelope; right: its lines. Flexspline 202, circular spline 200, both: the beat.", draw,
-                (8.0, 5.4))
 
 
 def sampling(page):
@@ -258,27 +231,6 @@ def as_built(page):
     page.check("manufacture.reproducible", "the same seeds again: largest difference of the error", "0", Within(0.0),
                np.abs(twice.error - turn.error).max(), "″", "to the bit", evidence=IDENTITY)
 
-    def draw(figure):
-        left, right = figure.subplots(1, 2, gridspec_kw={"width_ratios": [1.3, 1.0]})
-        left.plot(unloaded.angle, unloaded.error - unloaded.error.mean(), color=BLUE, linewidth=0.4)
-        for limit in (-30.0, 30.0):
-            left.axhline(limit, color=RED, linestyle="--", linewidth=1.0)
-        left.text(0.01, 31.0, "catalogue: 1 arcmin from peak to peak", color=RED, fontsize=8, va="bottom")
-        left.set(title="error over a joint turn, no load", xlabel="turn of the joint", ylabel="error [″]", xlim=(0, 1),
-                 ylim=(-40, 40))
-        for member, color, shift, title in [(100, ORANGE, -0.08, "circular spline"), (101, BLUE, 0.08, "flexspline")]:
-            numbers = np.arange(member, 1050, member)
-            right.vlines(numbers / JOINT_TURN + shift, 0.0, turn.lines[numbers], color=color, linewidth=4, label=title)
-        right.plot([2, 2, 2, 4], [13.0, 6.9, 2.8, 3.1], "o", color="black", markersize=5, fillstyle="none",
-                   label="measured on three drives")
-        right.legend(loc="upper right")
-        right.set(title="its lines, load 5 N·m", xlabel="order of the motor", ylabel="amplitude [″]", xlim=(0, 10.5),
-                  ylim=(0, 14))
-
-    page.figure("manufacture_as_built",
-                "The gear of config/as_built.yaml: kinematic error over one joint turn, and its lines compared with "
-                "those of drives with both encoders (orders 100k/101 and k are drawn side by side).", draw)
-
 
 def eccentricities(page):
     page.heading("Eccentricity and roundness")
@@ -320,27 +272,6 @@ def eccentricities(page):
                "rounding of the equilibrium", evidence=SELF_CONSISTENT)
     page.check("manufacture.odd_teeth_with", "WG eccentric as well: line at 101", "appears",
                AtLeast(0.5 * with_teeth.line(202)), with_teeth.line(101), "″", "its half", evidence=SELF_CONSISTENT)
-
-    def draw(figure):
-        axes = figure.subplots(3, 2, sharex=True)
-        for axis, (title, turn) in zip(axes.flat, cases.items()):
-            low = turn.low_lines()[:450]
-            top = max(low.max(), 1.0)
-            axis.vlines(np.arange(450), 0.0, low, color=BLUE if low.max() > 0.01 else GREY, linewidth=2.0)
-            for number in np.flatnonzero(low > 0.08 * top):
-                axis.annotate(str(number), (number, low[number]), ha="center", va="bottom", fontsize=8, xytext=(0, 1),
-                              textcoords="offset points")
-            if low.max() < 0.01:
-                axis.text(225, 0.5, "no line below the tooth pass", ha="center", color=GREY, fontsize=8)
-            axis.set(title=title, ylim=(0.0, 1.25 * top), xlim=(0, 450))
-        for axis in axes[:, 0]:
-            axis.set_ylabel("amplitude [″]")
-        for axis in axes[2]:
-            axis.set_xlabel("lines a joint turn")
-
-    page.figure("manufacture_eccentricity",
-                "Lines in the kinematic error from errors of centre and roundness, load 5 N·m. WG wave generator, CS "
-                "circular spline, FS flexspline.", draw, (8.0, 5.2))
 
 
 def tables(page):

@@ -3,7 +3,6 @@
 from bounds import Within
 from evidence import SELF_CONSISTENT, fitted
 from catalogue import ARCMIN, AT_20_DEGREES, RPM_2000, catalogue_angle, losses
-from page import BLUE, ORANGE
 
 SIZE_14 = ("--config", "size_14.yaml")
 STIFFNESSES, BREAKPOINTS = (4.7e3, 6.1e3, 7.1e3), (2.0, 6.9)  # whole gear, N.m/rad and N.m
@@ -50,22 +49,3 @@ grease). Efficiency, hysteresis and lost motion are not fitted.
                Within(EFFICIENCY, absolute=0.03), running[1]["gear_efficiency"], "", "the catalogue's own tolerance",
                evidence=fitted("bearing.race_preload and viscosity of size 14 to starting and running torque and "
                                "efficiency"))
-
-    def draw(figure):
-        left, right = figure.subplots(1, 2)
-        torques = [0.5 * k for k in range(1, 57)]
-        curve = page.tool("stiffness", "--torques", ",".join(map(str, torques)), *SIZE_14)["rows"]
-        left.plot(torques, [catalogue_angle(torque, STIFFNESSES, BREAKPOINTS) / ARCMIN for torque in torques],
-                  color=ORANGE,
-                  lw=4, alpha=0.5, label="catalogue")
-        left.plot(torques, [-row["output_angle"] / ARCMIN for row in curve], color=BLUE, label="twin")
-        left.set_title("Torsion [arcmin]")
-        efficient = losses(page, [RPM_2000], torques, *AT_20_DEGREES, *SIZE_14)
-        right.plot(torques, [100.0 * row["gear_efficiency"] for row in efficient], color=BLUE, label="twin")
-        right.errorbar([EFFICIENCY_TORQUE], [100.0 * EFFICIENCY], yerr=3.0, fmt="o", color=ORANGE, label="catalogue")
-        right.set_title("Efficiency [%], 2000 rpm, 20 °C")
-        for axes in (left, right):
-            axes.set_xlabel("load [N·m]")
-            axes.legend(loc="lower right")
-
-    page.figure("size14", "Size 14: torsion and efficiency against load.", draw)

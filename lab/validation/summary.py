@@ -18,21 +18,21 @@ FIGURES = ["catalogue_torsion", "catalogue_efficiency", "drives_ur5e", "quasi_st
 
 HEAD = """# Validation
 
-Written by `lab/run validate`; do not edit. Results of the twin beside the thesis it grew from (C. Costantino, *Sviluppo
-di un modello multibody di un harmonic drive a fini diagnostici e prognostici*, Politecnico di Torino, 2021), two
-makers' catalogues (Harmonic Drive HFUS-25 for stiffness and ratings, Schaeffler RT1-H-CS-25 for friction and
-efficiency) and recordings of real drives. Each row has a source, an expected value, the
-twin's value and a tolerance with its reason.
+`lab/run validate` writes this page; do not edit it. The page compares the twin with three kinds of sources: the thesis
+that the twin grew from (C. Costantino, *Sviluppo di un modello multibody di un harmonic drive a fini diagnostici e
+prognostici*, Politecnico di Torino, 2021), two makers' catalogues (Harmonic Drive HFUS-25 for stiffness and ratings,
+Schaeffler RT1-H-CS-25 for friction and efficiency), and recordings of real drives. Each row has a source, an expected
+value, the twin's value, and a tolerance with its reason.
 
 ```sh
 lab/run validate                                     # every row, in a few minutes: the complete table in out/validation
 lab/run validate --set contact.stiffness=1.1e+8      # the effect of another parameter
 ```
 
-The complete table, with the runs, their commands, all figures and the errors found in the thesis, is
-`out/validation/validation.md`. The exit code is 0 if every row holds or is one of those below that are known not to;
-else the rows that fail are named. The values of all rows are in [validation.csv](validation.csv). The recordings of
-real drives are not part of the project: without them the sections *Real drives* and *Heat* cannot be recomputed.
+The complete table is in `out/validation/validation.md`, with the commands of all runs and the errors found in the
+thesis. [validation.csv](validation.csv) has the values of all rows. The exit code is 0 if no row fails except those
+that are known not to hold (below). Otherwise the program names the rows that fail. The recordings of real drives are
+not part of the project. Without them the sections *Real drives* and *Heat* cannot be recomputed.
 """
 
 
@@ -70,13 +70,13 @@ def write(docs, complete, pages, titles):
     lines += markdown_table(["section", "rows", "hold"],
                             counts((titles[page.section], page.rows) for page in pages if page.rows))
     lines += ["", "## What a row is worth", "",
-              "Rows that hold are evidence of different weight. Each row states its class of evidence, and what was "
-              "fitted to what, in [validation.csv](validation.csv). Only the first class compares the twin with "
-              "something that it was not made from. Limits that only a broken gear would miss and bands that contain "
-              "the value are shown as values and not counted. The rows of the thesis' chapters 6 and 7 are "
-              "run on its gear "
-              "(`config/golden.yaml`), not on the shipped one. Its claim that the number of loaded teeth grows with "
-              "the load does not hold everywhere as shipped: [gear_study.md](gear_study.md).", ""]
+              "Rows that hold are evidence of different weight. [validation.csv](validation.csv) states the class of "
+              "evidence of each row, and which parameter was fitted to which figure. Only the first class compares the "
+              "twin with something that it was not made from. A quantity that only a broken gear would miss is shown "
+              "as a value and is not counted. The rows of the thesis' chapters 6 and 7 are run on the gear of the "
+              "thesis (`config/golden.yaml`), not on the shipped gear. The thesis claims that the number of loaded "
+              "teeth grows with the load. On the shipped gear this does not hold everywhere: "
+              "[gear_study.md](gear_study.md).", ""]
     lines += markdown_table(["class", "rows", "hold"], counts(classes))
     lines += ["", "## What does not hold", ""] + missing(rows)
     lines += ["", "## Some of the independent measurements that hold", ""]

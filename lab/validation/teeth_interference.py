@@ -4,7 +4,6 @@ import math
 
 from bounds import AtLeast, AtMost, Within
 from evidence import MEASUREMENT, SELF_CONSISTENT
-from page import BLUE, ORANGE
 from teeth_profiles import chord
 from teeth_runs import golden, loaded
 
@@ -35,19 +34,6 @@ def interference(page, path):
         forces.append(sum(abs(force) for force in row["teeth"]["mesh_force"]))
         gaps.append(1e6 * tilted_gap(row["teeth"], height))
 
-    def draw(figure):
-        left, right = figure.subplots(1, 2)
-        left.plot(angles, forces, "o-", color=BLUE, markersize=3)
-        left.set(xlabel="flank angle [°]", ylabel="sum of flank forces [N]", title="No load, no clearance: forces")
-        right.plot(angles, gaps, "o-", color=BLUE, markersize=3)
-        right.axhline(0.0, color="k", linewidth=0.8)
-        right.set(xlabel="flank angle [°]", ylabel="smallest gap [µm]", title="Gap of the tilted flank at entry")
-        for axis in (left, right):
-            axis.axvspan(16, 17, color=ORANGE, alpha=0.3, linewidth=0)
-
-    page.figure("teeth_interference",
-                "Straight flanks against the flank angle, flank clearance zero. Band: the smallest angles free of "
-                "interference in the thesis, 16° and 17°.", draw)
     from_forces = crossing(angles, [1.0 - force for force in forces])
     from_gap = crossing(angles, gaps)
     page.text(f"""
@@ -60,7 +46,8 @@ same, and the shipped angle is free.
                "thesis 3.2.2 [51], 4 [83]",
                Within(16.0, absolute=1.0), from_gap, "°",
                "one paper, which has 16° in one place and 17° in another",
-               known="plane teeth against whole gears, whose teeth lean along their width, too", evidence=MEASUREMENT)
+               known="the model has plane teeth; the teeth of a whole gear also lean along their width",
+               evidence=MEASUREMENT)
     page.check("teeth.interference_free", "flank forces at no load and no clearance, 16°",
                "thesis 4 [83]: free from 16°", AtMost(0.0),
                forces[angles.index(16)], "N", "no contact is no force", evidence=SELF_CONSISTENT)

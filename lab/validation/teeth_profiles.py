@@ -11,8 +11,7 @@ def profiles(page):
     """Gives the path of a tooth: drops and half clearances that touch it [m], its slopes as angles [rad]."""
     page.heading("Four profiles")
     mesh = page.tool("parameters", *golden())["mesh"]
-    shapes = {name: page.tool("profile", *golden("mesh.profile=" + name)) for name in PROFILES}
-    cycloid = shapes["cycloid"]["clearance"]
+    cycloid = page.tool("profile", *golden("mesh.profile=cycloid"))["clearance"]
     path = {"drop": cycloid["drop"], "across": cycloid["path"], "angle": cycloid["flank_angle"]}
     page.text(f"""
 Profiles and supports are compared on the gear as the thesis computes it (`config/golden.yaml`): a spring under each
@@ -36,34 +35,6 @@ clearance meets the path. All have the same clearance at full engagement. Free d
   touch here.
 """)
 
-    def draw_shapes(figure):
-        axes = figure.subplots(1, 4, sharey=True)
-        half_width = 0.2036e-3  # of a tooth at mid-height: base 0.56 mm less the 17 degree flank (thesis, Table 3.4)
-        for axis, (name, (label, colour)) in zip(axes, PROFILES.items()):
-            draw_engaged(axis, shapes[name], half_width, colour)
-            axis.set(title=label, xlabel="across [mm]", xlim=(-0.32, 0.32), ylim=(-0.52, 0.06))
-        axes[0].set_ylabel("from tooth tip [mm]")
-
-    page.figure("teeth_shapes", "Tooth of the flexspline (filled) in its space of the circular spline at full "
-                "engagement, true to scale; "
-                "thickness of the tooth from Table 3.4.", draw_shapes, size=(8.0, 2.6))
-
-    def draw_clearance(figure):
-        left, right = figure.subplots(1, 2)
-        for name, (label, colour) in PROFILES.items():
-            data = shapes[name]["clearance"]
-            drop = [1e3 * value for value in data["drop"]]
-            left.plot(drop, [1e6 * value for value in data["half_clearance"]], color=colour, label=label)
-            right.plot(drop, [math.degrees(value) for value in data["flank_angle"]], color=colour, label=label)
-        left.plot(drop, [1e6 * value for value in data["path"]], "k:", label="path of the tooth")
-        left.set(xlabel="drop from full engagement [mm]", ylabel="half clearance [µm]", title="Clearance and path")
-        right.set(xlabel="drop from full engagement [mm]", ylabel="angle from tooth axis [°]",
-                  title="Flank angle in contact")
-        left.legend()
-
-    page.figure("teeth_clearance",
-                "Half clearance of the four profiles beside the path of a tooth on the ideal ring. Above the dots: a "
-                "gap; below: interference.", draw_clearance)
     return path
 
 
@@ -80,26 +51,6 @@ def published_tangent():
     return math.degrees(math.atan2(e1 + e2, across) + math.acos((r1 + r2) / math.hypot(across, e1 + e2)))
 
 
-def draw_engaged(axis, shape, half_width, colour):
-    tip_drop = shape["clearance"]["drop"][-1]  # at full engagement the tip is this far above the circular spline's tip
-    below = shape["tooth"]["below_tip"]
-    thickness = shape["tooth"]["half_thickness"]
-    middle = min(range(len(below)), key=lambda j: abs(below[j] - 0.25e-3))
-    tooth_x = [1e3 * (value - thickness[middle] + half_width) for value in thickness]
-    tooth_y = [-1e3 * value for value in below]
-    axis.fill_betweenx(tooth_y, [-x for x in tooth_x], tooth_x, color=colour, alpha=0.35, linewidth=0)
-    # The space is known up to a constant: the gap at full engagement, here none.
-    space = {round(1e6 * (tip_drop - above)): width for above, width in
-             zip(shape["space"]["above_tip"], shape["space"]["half_width"])}
-    gap = min(space[depth] - value for depth,
-              value in zip((round(1e6 * b) for b in below), thickness) if depth in space)
-    depths = sorted(space)
-    space_x = [1e3 * (space[depth] - gap - thickness[middle] + half_width) for depth in depths]
-    for side in (-1, 1):
-        axis.plot([side * x for x in space_x], [-1e-3 * depth for depth in depths], color="k", linewidth=1.2)
-    axis.set_aspect("equal")
-
-
 def clearance_at_rest(page, rows, path):
     """Gap of every engaged tooth at no load, the ring in equilibrium."""
 
@@ -109,21 +60,9 @@ def clearance_at_rest(page, rows, path):
         _, depth = lobe(teeth["depth"])
         return [(angle, 1e6 * g) for angle, g, d in zip(angles, gap, depth) if d > 20e-6]
 
-    def draw(figure):
-        axis = figure.subplots()
-        for name, (label, colour) in PROFILES.items():
-            axis.plot(*zip(*engaged(name)), color=colour, label=label)
-        axis.axhline(0.0, color="k", linewidth=0.8)
-        axis.set(xlabel="angle from the major axis [°]", ylabel="gap to the nearer flank [µm]")
-        axis.legend(ncol=4, loc="upper center")
-        axis.set_ylim(-3, 32)
-
-    page.figure("teeth_gap", "No load, the ring in equilibrium: gap of each engaged tooth to its nearer flank; below "
-                "zero it is pressed.",
-                draw, size=(8.0, 2.8))
     gaps = {name: [gap for _, gap in engaged(name)] for name in PROFILES}
     page.table(["profile", "teeth pressed at no load", "smallest gap [µm]", "largest gap [µm]"],
-               [[PROFILES[name][0], rows[name][0]["teeth_loaded"], f"{min(gaps[name]):.2f}", f"{max(gaps[name]):.2f}"]
+               [[PROFILES[name], rows[name][0]["teeth_loaded"], f"{min(gaps[name]):.2f}", f"{max(gaps[name]):.2f}"]
                 for name in PROFILES])
     mesh, gear = page.tool("parameters", *golden())["mesh"], page.tool("parameters", *golden())["gear"]
     steep = next(drop for drop, angle in zip(path["drop"], path["angle"]) if angle > mesh["tangent_angle"])
@@ -142,7 +81,7 @@ the path at a gap of a few micrometres, which its own concave root has cut at fu
                evidence=SELF_CONSISTENT)
     for name in ("trapezoid", "involute", "double_arc"):
         page.check(f"teeth.no_interference_{name}",
-                   f"{PROFILES[name][0]}: smallest gap at no load beyond 10° from the major axis",
+                   f"{PROFILES[name]}: smallest gap at no load beyond 10° from the major axis",
                    "no interference of a sound profile (thesis, 3.2.2)", AtLeast(0.0),
                    min(gap for angle, gap in engaged(name) if abs(angle) > 10.0), "µm",
                    "pressed only near the axis, by the preload of 1 µm", evidence=SELF_CONSISTENT)

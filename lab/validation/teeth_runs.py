@@ -1,9 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs of the locked drive that several parts of the section on teeth look at."""
-from page import BLUE, GREEN, GREY, ORANGE
-
-PROFILES = {"trapezoid": ("trapezoid", GREY), "involute": ("involute", BLUE), "cycloid": ("cycloid", ORANGE),
-            "double_arc": ("double arc", GREEN)}
+PROFILES = {"trapezoid": "trapezoid", "involute": "involute", "cycloid": "cycloid", "double_arc": "double arc"}
 TEETH = 200
 LOADS = [0, 7, 14, 30, 48, 67, 87, 108, 130, 150, 200, 250, 284, 350, 400, 450, 500]  # N.m
 

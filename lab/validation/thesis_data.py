@@ -67,7 +67,6 @@ class Ring:
         radius, w0 = gear["flexspline_inner_radius"], gear["wave_amplitude"]
         self.teeth = teeth
         self.a, self.b = radius + w0, radius - w0
-        self.angle = angle
         self.psi0 = PITCH * np.arange(TEETH_FS)
         self.x0, self.y0 = radius * np.cos(self.psi0), radius * np.sin(self.psi0)
         self.x, self.y = teeth["tooth_x"], teeth["tooth_y"]

@@ -7,9 +7,8 @@ import numpy as np
 from bounds import AtMost, Within
 from evidence import IDENTITY, OWN_PROGRAM, THESIS_PROGRAM
 from independent_drive import IndependentDrive
-from page import BLUE, GREEN, GREY, ORANGE, RED
-from thesis_data import (MEASURED, OPERATION, PITCH, RATIO, TEETH_FS, locked, locked_table, parameters,
-                         read_columns, thesis_insertion, turn)
+from thesis_data import (MEASURED, OPERATION, RATIO, TEETH_FS, locked, locked_table, parameters, read_columns,
+                         thesis_insertion, turn)
 from thesis_insertion import CHAPTER_5, independent_ring
 
 TABLE_7_1 = (31.0e3, 50.0e3, 57.0e3)  # slopes of the cup [N.m/rad]
@@ -17,7 +16,6 @@ MOTOR_TORQUE, LOAD = 0.6, 20.0  # N.m, of the run with friction
 # Bearing as Table 3.2 has it; the thesis leaves hysteresis of the cup out; c_WG so that the speed settles.
 FRICTION = ("--set", "bearing.viscosity=80.0e-6", "--set", "bearing.race_preload=0.0", "--set",
             "cup.friction_torque=0.0", "--set", "motor.viscous_friction=1.0e-3")
-SHADES = ("#9ecae1", "#4292c6", "#08519c", "#041f4a")
 
 
 def engagement_margin(rho, flank_angle, tooth_height=MEASURED.circular_spline_tooth_height):
@@ -44,14 +42,6 @@ gives each tooth the whole cup's stiffness against its own angle; the twin lets 
     first = cup["torsion_stiffness"][0]
     wave = float(np.max(np.abs(rings[0].teeth["angle_deviation"])))
     per_tooth = first * wave
-    page.figure(
-        "thesis_torsion",
-        "Thesis 7.1, fig. 7.1. Left: angle of each tooth from rest; the load moves the whole curve. Middle: increase "
-        "by the load; nearly the same on every tooth, most at the lobes (teeth 0 and 100), where the mesh pulls. "
-        "Right: "
-        "torque of the cup over the mean rotation, dots: runs, line: Table 7.1.",
-        lambda figure: draw_torsion(figure, rows, rings, cup),
-        size=(8.8, 2.9))
     page.table([
         "load [N·m]", "circular spline turns [mrad]", "rim turns (mean) [mrad]", "share of the cup [%]",
         "cup's torque [N·m]"
@@ -90,72 +80,17 @@ def rotation(page):
 The ellipse turns, the teeth stay: each is pushed out and let in twice a turn. The thesis turns the ellipse's equation
 (7.15–7.23); so does the twin, with the closest point in place of the ray through the tooth.
 """)
-    positions = 24
-    angles = [math.pi * k / positions for k in range(positions + 1)]
-    rings = [locked(page, f"turned_{k}", (0.0,), angle)[1][0] for k, angle in enumerate(angles)]
-    page.figure(
-        "thesis_rotation",
-        "Thesis 7.2, fig. 7.5. Left: the force pattern goes round with the wave generator; its peaks come from the "
-        "teeth's 1 µm of interference at the lobes. Right: paths of every tenth tooth over half a turn of the wave "
-        "generator, enlarged 20 times, red: at 0°. Each tooth goes round a closed curve; the flexspline does not turn.",
-        lambda figure: draw_rotation(figure, rings),
-        size=(8.0, 3.3))
-    quarter, start = rings[positions // 4], rings[0]
+    start, quarter, half = (locked(page, f"turned_{k}", (0.0,), math.pi * k / 24)[1][0] for k in (0, 6, 24))
     shift = TEETH_FS // 8  # teeth in 45 degrees
     force = start.teeth["wave_generator_force"]
     page.check("thesis.rotation_pattern", "forces at 45° against those at 0°, 25 teeth on: largest difference",
                "thesis 7.2, symmetry", AtMost(1e-5),
                np.max(np.abs(np.roll(force, shift) - quarter.teeth["wave_generator_force"])), "N",
                "25 whole pitches, renumbered; 1e8 N/m times rounding of the positions", evidence=IDENTITY)
-    back = np.max(np.hypot(rings[-1].x - start.x, rings[-1].y - start.y))
+    back = np.max(np.hypot(half.x - start.x, half.y - start.y))
     page.check("thesis.rotation_return", "largest distance of a tooth from where it was, half a turn later",
                "thesis 7.2: teeth oscillate", AtMost(1e-12), back, "m",
                "rounding; solved from the round ring at each angle, the cup holds the mean", evidence=IDENTITY)
-
-
-def draw_torsion(figure, rows, rings, cup):
-    left, middle, right = figure.subplots(1, 3)
-    shown = [i for i, row in enumerate(rows) if row["torque"] in (0.0, 14.0, 48.0, 150.0)]
-    rest = rings[0].teeth["angle_deviation"]
-    for i, colour in zip(shown, SHADES):
-        deviation = rings[i].teeth["angle_deviation"]
-        left.plot(1e3 * deviation, color=colour, label=f"{rows[i]['torque']:g} N·m")
-        middle.plot(1e3 * (deviation - rest), color=colour)
-    for axes in (left, middle):
-        axes.set(xlabel="tooth", xlim=(0, TEETH_FS), xticks=range(0, TEETH_FS + 1, 50))
-    left.set(ylabel="ψ − ψ0 [mrad]", title="angle from rest", ylim=(-9.5, 12))
-    left.legend(ncol=2, loc="upper center", fontsize=7)
-    middle.set(ylabel="[mrad]", title="added by the load")
-    turns = np.linspace(0.0, 3.2e-3, 100)
-    right.plot(1e3 * turns, [cup_torque(cup, value) for value in turns], color=GREY, linewidth=1)
-    right.plot([-1e3 * row["cup_rotation"] for row in rows], [row["housing_torque"] for row in rows],
-               "o",
-               color=BLUE,
-               markersize=4)
-    right.set(xlabel="mean rotation [mrad]", ylabel="cup's torque [N·m]", title="eq. 7.1")
-
-
-def draw_rotation(figure, rings):
-    grid = figure.add_gridspec(1, 2, width_ratios=(1.25, 1))
-    left, right = figure.add_subplot(grid[0]), figure.add_subplot(grid[1])
-    for k, colour in zip((0, 4, 8), (BLUE, ORANGE, GREEN)):
-        left.plot(rings[k].teeth["wave_generator_force"], color=colour, label=f"{math.degrees(rings[k].angle):.0f}°")
-    left.set(xlabel="tooth",
-             ylabel="F_WG,FS [N]",
-             xlim=(0, TEETH_FS),
-             title="force at three angles of the wave generator")
-    left.legend(title="angle", loc="upper right")
-    x, y = np.array([ring.x for ring in rings]), np.array([ring.y for ring in rings])
-    for tooth in range(0, TEETH_FS, 10):
-        mid_x, mid_y = rings[0].x0[tooth], rings[0].y0[tooth]
-        right.plot(1e3 * (mid_x + 20.0 * (x[:, tooth] - mid_x)),
-                   1e3 * (mid_y + 20.0 * (y[:, tooth] - mid_y)),
-                   color=BLUE,
-                   linewidth=1)
-        right.plot(1e3 * mid_x, 1e3 * mid_y, ".", color=GREY, markersize=2)
-        start = 1e3 * np.array([mid_x + 20.0 * (x[0, tooth] - mid_x), mid_y + 20.0 * (y[0, tooth] - mid_y)])
-        right.plot(*start, ".", color=RED, markersize=4)
-    right.set(aspect="equal", xlabel="x [mm]", ylabel="y [mm]", title="paths of the teeth, ×20")
 
 
 def equilibrium(page):
@@ -174,14 +109,6 @@ makes the speed settle.
     step = run["time"][1] - run["time"][0]
     acceleration = np.gradient(run["motor_velocity"], step)
     left = run["motor_torque"] - run["wave_generator_torque"] - run["friction_torque"]
-    page.figure(
-        "thesis_equilibrium",
-        "Thesis 7.3, eq. 7.29. Left: the first 80 ms, instant by instant; the joint oscillates on the torsion of the "
-        "cup, and the torque exchanged with the flexspline accelerates the motor. Right: the whole run-up in means "
-        "over "
-        "50 ms, stacked; dotted: speed.",
-        lambda figure: draw_equilibrium(figure, run, inertia * acceleration, step),
-        size=(8.8, 3.0))
     page.check("thesis.equilibrium_sum", "∫(T_in − T_FS − T_f) dt against J ω at the end", "thesis eq. 7.29–7.30",
                Within(1.0, absolute=2e-3),
                float(np.sum(left)) * step / (inertia * run["motor_velocity"][-1]), "",
@@ -210,38 +137,6 @@ the bearing's load-dependent friction, which would have to drive it.
 """)
 
 
-def draw_equilibrium(figure, run, inertial, step):
-    left, right = figure.subplots(1, 2)
-    parts = (("friction", ORANGE, run["friction_torque"]), ("flexspline", BLUE, run["wave_generator_torque"]),
-             ("acceleration", GREEN, inertial))
-    first = run["time"] < 0.08
-    for name, colour, values in parts:
-        left.plot(1e3 * run["time"][first], values[first], color=colour, label=name)
-    left.plot(1e3 * run["time"][first],
-              sum(values for _, _, values in parts)[first],
-              "--",
-              color="black",
-              label="sum = T_in")
-    left.set(xlabel="time [ms]",
-             ylabel="torque at the motor [N·m]",
-             ylim=(-0.35, 0.95),
-             title="T_in = J dω/dt + T_FS + T_f")
-    left.legend(ncol=4, loc="upper center", fontsize=7, handlelength=1.2, columnspacing=1.0)
-    width = round(0.05 / step)
-    mean = [
-        values[:len(values) // width * width].reshape(-1, width).mean(axis=1)
-        for values in (run["time"], *(values for _, _, values in parts))
-    ]
-    right.stackplot(mean[0], *mean[1:], colors=[colour for _, colour, _ in parts], alpha=0.7, linewidth=0)
-    right.axhline(MOTOR_TORQUE, color="black", linestyle="--", linewidth=1)
-    right.set(xlabel="time [s]", ylabel="[N·m]", ylim=(0, 0.7), title="means over 50 ms")
-    speed = right.twinx()
-    speed.plot(run["time"], run["motor_velocity"], ":", color="black")
-    speed.set(ylabel="ω_WG [rad/s]", ylim=(0, 1.3 * np.max(run["motor_velocity"])))
-    speed.grid(False)
-    speed.spines["right"].set_visible(True)
-
-
 def engagement(page):
     page.heading("Chapter 7.4: engagement along the ring")
     rows, rings = locked_table(page)
@@ -255,14 +150,6 @@ Eq. 7.35 calls a tooth engaged when its tip passes the circular spline's base ci
 {math.degrees(twin_angle):.0f}° every tooth passes it, those on the minor axis too: from {math.degrees(steepest):.1f}°
 upwards the condition is always true. In the twin a tooth engages when its flank touches.
 """)
-    page.figure(
-        "thesis_engagement",
-        "Thesis 7.4, fig. 7.8 and 7.9. Left: force on each tooth's flank around one end of the major axis; at no load "
-        "the pair touches on both flanks. Middle: eq. 7.36, margin of each tooth for three flank angles; above zero "
-        "counts as engaged. Right: share of teeth engaged by eq. 7.35, and teeth that carry in the twin, against the "
-        "literature's 25 to 35 %.",
-        lambda figure: draw_engagement(figure, rows, rings),
-        size=(9.0, 3.0))
     page.check("thesis.condition_735",
                "share of teeth engaged by eq. 7.35 at the twin's flank angle",
                "the tips on the minor axis pass the base circle too",
@@ -275,36 +162,6 @@ upwards the condition is always true. In the twin a tooth engages when its flank
                "thesis 7.4, 7.1: contact grows with load", Within(0.0),
                sum(after < before for before, after in zip(carrying, carrying[1:])), "",
                "a count", evidence=THESIS_PROGRAM)
-
-
-def draw_engagement(figure, rows, rings):
-    left, middle, right = figure.subplots(1, 3)
-    teeth = np.arange(-14, 15)
-    for i, colour in zip((0, 2, 3, 5), SHADES):
-        left.plot(teeth,
-                  rings[i].teeth["mesh_force"][teeth],
-                  ".-",
-                  color=colour,
-                  markersize=3,
-                  label=f"{rows[i]['torque']:g} N·m")
-    left.set(xlabel="tooth", ylabel="F_t, > 0: leading flank [N]", title="force on the flanks")
-    left.legend(fontsize=7)
-    free = rings[0]
-    for degrees, colour in ((3, GREEN), (8, ORANGE), (17, RED)):
-        middle.plot(1e3 * engagement_margin(free.rho, math.radians(degrees)), color=colour, label=f"{degrees}°")
-    middle.axhline(0.0, color="black", linewidth=0.8)
-    middle.set(xlabel="tooth", ylabel="margin [mm]", xlim=(0, TEETH_FS), title="eq. 7.36", ylim=(-0.6, 2.4))
-    middle.legend(ncol=3, loc="upper center")
-    angles = np.linspace(0.0, 20.0, 201)
-    right.plot(angles, [100.0 * share_engaged(free.rho, math.radians(angle)) for angle in angles],
-               color=BLUE,
-               label="eq. 7.35")
-    right.axhspan(25, 35, color=GREY, alpha=0.3, linewidth=0)
-    right.text(19.5, 37, "literature", ha="right", fontsize=8, color=GREY)
-    for i, colour in zip((2, 3, 5), SHADES[1:]):
-        right.plot([17.0], [100.0 * rows[i]["teeth_loaded"] / TEETH_FS], "o", color=colour, markersize=4)
-    right.text(16.3, 12, "twin, 14 … 150 N·m", ha="right", fontsize=8, va="center")
-    right.set(xlabel="flank angle [°]", ylabel="teeth engaged [%]", title="eq. 7.35 and the twin")
 
 
 def coupling(page):
@@ -345,13 +202,6 @@ that by up to 0.4 % (5 N·m), in the mean over a pitch by nothing.
                "one radius for all teeth, 32.15 mm; they carry between 31.95 and 32.15 mm", evidence=IDENTITY)
     run, steps = turn(page)
     error = run["output_angle"] - run["wave_generator_angle"] / RATIO
-    page.figure(
-        "thesis_ratio",
-        "Thesis 7.5: the ratio as a control value. Left: output angle less motor angle/101 over three tooth pitches, "
-        "20 N·m, no friction: a wave that repeats with every pitch, no drift. Right: torque of the wave generator by "
-        "load/101.",
-        lambda figure: draw_ratio(figure, run, error, steps),
-        size=(8.6, 2.6))
     page.check("thesis.drift_pitch", "drift of the ratio over a tooth pitch, largest over a turn",
                "tooth numbers", AtMost(1e-12), np.max(np.abs(error[steps:] - error[:-steps])), "rad",
                "rounding", evidence=IDENTITY)
@@ -377,19 +227,6 @@ def independent_loads(loads):
         found[load] = (1e3 * drive.output, RATIO * drive.wave_generator_torque() / load, np.count_nonzero(force),
                        np.max(np.abs(force)), np.sum(pressed))
     return found
-
-
-def draw_ratio(figure, run, error, steps):
-    left, right = figure.subplots(1, 2)
-    shown = slice(0, 3 * steps + 1)
-    pitches = run["wave_generator_angle"][shown] / PITCH
-    wave = np.degrees(error - np.mean(error)) * 3600.0
-    left.plot(pitches, wave[shown], color=BLUE)
-    left.set(xlabel="motor angle [tooth pitches]", ylabel="[″]", title="kinematic error of the perfect gear")
-    right.plot(pitches, -RATIO * run["wave_generator_torque"][shown] / LOAD, color=ORANGE)
-    right.axhline(1.0, color="black", linewidth=0.8)
-    right.ticklabel_format(axis="y", useOffset=False)
-    right.set(xlabel="motor angle [tooth pitches]", ylabel="101 T_WG / T [-]", title="torque ratio within a pitch")
 
 
 def build(page):

@@ -8,7 +8,6 @@ import numpy as np
 
 from bounds import AtLeast, AtMost, Within, number
 from evidence import IDENTITY
-from page import BLUE, GREEN, GREY, ORANGE, RED
 from thesis_data import MEASURED, TEETH_CS, TEETH_FS, parameters, turn
 
 
@@ -159,11 +158,6 @@ b_R =
                Within(1.6, absolute=1e-9), ratio, "", "0.8/0.5, two exact figures", evidence=IDENTITY)
     page.check("thesis.backup_ratio_advised", "backup ratio against the advised least", "thesis 3.4.2", AtLeast(1.3),
                ratio, "", "the advice itself", evidence=IDENTITY)
-    page.figure("thesis_gear",
-                "Left: the coefficients of the elliptical ring (thesis fig. 3.10), dots at this wave generator. Right: "
-                "direction of a crack by backup ratio (thesis 3.4.2), and this gear.",
-                lambda figure: draw_gear(figure, ratio),
-                size=(8.0, 2.6))
     with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "fmeca.csv"), encoding="utf-8") as file:
         modes = list(csv.DictReader(file))
     page.text(
@@ -183,30 +177,6 @@ b_R =
 
 def product(mode):
     return int(mode["severity"]) * int(mode["occurrence"]) * int(mode["detection"])
-
-
-def draw_gear(figure, backup_ratio):
-    left, right = figure.subplots(1, 2)
-    ratios = np.linspace(0.05, 1.0, 60)
-    values = np.array([ring_coefficients(ratio) for ratio in ratios])
-    here = MEASURED.minor_semi_axis / MEASURED.major_semi_axis
-    for k, (name, colour) in enumerate((("c1", BLUE), ("c2", ORANGE))):
-        left.plot(ratios, values[:, k], color=colour, label=name)
-        left.plot([here], [ring_coefficients(here)[k]], "o", color=colour, markersize=4)
-    left.plot(ratios, values.sum(axis=1), color=GREEN, label="c3 = c1 + c2")
-    left.plot([here], [sum(ring_coefficients(here))], "o", color=GREEN, markersize=4)
-    left.set(xlabel="b/a [-]", ylabel="coefficient [-]", title="Fig. 3.10: ring of an ellipse", ylim=(0, 1.05))
-    left.legend()
-    for low, high, colour, text in ((0.0, 0.4, RED, "into\nthe rim:\ngear lost"), (0.4, 1.0, ORANGE, "either way"),
-                                    (1.0, 2.3, GREEN, "into the tooth: gear runs on")):
-        right.axvspan(low, high, color=colour, alpha=0.25, linewidth=0)
-        right.text(0.5 * (low + high), 0.8, text, ha="center", va="center", fontsize=8)
-    right.axvline(1.3, ymax=0.55, color=GREY, linestyle=":")
-    right.text(1.29, 0.1, "advised", ha="right", fontsize=8, color=GREY)
-    right.axvline(backup_ratio, ymax=0.55, color=BLUE, linewidth=2)
-    right.text(backup_ratio + 0.03, 0.1, f"HFUS-25: {backup_ratio:.1f}", fontsize=8, color=BLUE)
-    right.set(xlim=(0, 2.3), ylim=(0, 1), yticks=[], xlabel="backup ratio [-]", title="3.4.2: direction of a crack")
-    right.grid(False)
 
 
 def build(page):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Thesis, chapter 6: the insertion of the wave generator, every figure drawn again."""
+"""Thesis, chapter 6: the insertion of the wave generator."""
 import functools
 import math
 
@@ -8,7 +8,6 @@ import numpy as np
 from bounds import AtMost, Within, number
 from evidence import IDENTITY, OWN_PROGRAM, THESIS_PROGRAM
 from independent_ring import IndependentRing
-from page import BLUE, GREEN, GREY, ORANGE, PURPLE, RED
 from thesis_data import INSERTION, MEASURED, OPERATION, TEETH_FS, insertion, thesis_insertion
 
 # Table 6.3: literature [86] for the largest force on a ball, the last extrapolated by the thesis. [mm], [N]
@@ -150,21 +149,7 @@ tooth and {per_ball:.0f} N on a ball.
 """)
 
 
-def shape_figures(page, ring):
-    page.figure(
-        "thesis_shape",
-        "Thesis fig. 6.2 and 6.3. Positions after insertion, and their change; in the polar plots the displacement is "
-        "enlarged 15 times, dashed: before. The rim bulges along the major axis (0°) by nearly w0 and draws in along "
-        "the minor one by less: it is stretched.",
-        lambda figure: draw_shape(figure, ring),
-        size=(8.6, 5.6))
-    page.figure(
-        "thesis_gap",
-        "Thesis fig. 6.4 and 6.7. Left: gap between the equilibrium and the polar estimate (a cos ψ, b sin ψ), nearly "
-        "nil at the major axis; elsewhere teeth also move along the rim, and at the minor axis they do not follow the "
-        "ellipse inwards. Right: overlap of tooth and wave generator; only where it is positive is there force.",
-        lambda figure: draw_gap(figure, ring),
-        size=(8.6, 2.8))
+def contact_angle(page, ring):
     angles = np.degrees(ring.psi0)
     contact = ring.teeth["wave_generator_force"] > 0.0
     page.text(
@@ -172,15 +157,8 @@ def shape_figures(page, ring):
         "fall off quickly beyond about 30°.")
 
 
-def force_figures(page, ring):
+def growth_rows(page, ring):
     per_tooth, per_ball = growth(page)
-    page.figure(
-        "thesis_force",
-        "Thesis fig. 6.5 and Table 6.3. Left and middle: force of the wave generator on each tooth. Right: growth with "
-        "w0; the literature's forces are on one ball of a bearing, the thesis' on one tooth, so the twin is shown both "
-        "ways.",
-        lambda figure: draw_force(figure, ring, per_tooth, per_ball),
-        size=(8.6, 3.0))
     page.table(
         ["w0 [mm]", "literature [86], force on a ball [N]", "twin, force on a tooth [N]", "twin, force on a ball [N]"],
         [[number(w0), number(literature), f"{tooth:.1f}", f"{ball:.0f}"]
@@ -198,20 +176,8 @@ growth with w0 can be compared: both are nearly proportional.
                evidence=THESIS_PROGRAM)
 
 
-def rim_figures(page, ring):
+def rim_rows(page, ring):
     _, working_ring = insertion(page, "insertion_operation", *OPERATION)
-    page.figure(
-        "thesis_neighbours",
-        "Thesis fig. 6.8. Forces between neighbouring teeth, largest at the minor axis, and the distances they come "
-        "from: the rim is so stiff that a stretch of 0.5 to 1.6 µm carries kilonewtons.",
-        lambda figure: draw_neighbours(figure, ring),
-        size=(8.6, 2.8))
-    page.figure(
-        "thesis_bending",
-        "Thesis fig. 6.10 and 6.11. Bending force of the segment from tooth i to i+1: its components on the two teeth "
-        "are equal and opposite, nil at the axes and largest between them.",
-        lambda figure: draw_bending(figure, ring),
-        size=(8.6, 5.4))
     middle = [24, 25]  # the segments on either side of tooth 25, which lies at 45 degrees in the round ring
     fx, fy = -ring.bending * np.sin(ring.slope), ring.bending * np.cos(ring.slope)
     ratio = float(np.sum(np.abs(fx[middle])) / np.sum(np.abs(fy[middle])))
@@ -243,118 +209,6 @@ mm. The distances themselves add up to +{100 * perimeter_growth(ring):.3f} %. Th
 """)
 
 
-def tooth_axis(axes, label):
-    axes.set(xlabel="tooth", ylabel=label, xlim=(0, TEETH_FS), xticks=range(0, TEETH_FS + 1, 50))
-
-
-def around(ring, values):
-    """A closed curve for a polar plot."""
-    return np.append(ring.psi0, ring.psi0[0]), np.append(values, values[0])
-
-
-def draw_shape(figure, ring):
-    grid = figure.add_gridspec(2, 2, width_ratios=(1.5, 1))
-    place, change = figure.add_subplot(grid[0, 0]), figure.add_subplot(grid[1, 0])
-    shape, amount = figure.add_subplot(grid[0, 1], projection="polar"), figure.add_subplot(grid[1, 1],
-                                                                                           projection="polar")
-    for axes, scale, pairs, title in ((place, 1e3, ((ring.x, "x"), (ring.y, "y")), "Fig. 6.2: position"),
-                                      (change, 1e3, ((ring.x - ring.x0, "x − x0"), (ring.y - ring.y0, "y − y0")),
-                                       "Fig. 6.3: change of position")):
-        for (values, label), colour in zip(pairs, (BLUE, ORANGE)):
-            axes.plot(scale * values, color=colour, label=label)
-        tooth_axis(axes, "[mm]")
-        axes.set_title(title)
-        axes.legend(ncol=2, loc="upper center")
-    radius = 1e3 * math.hypot(ring.x0[0], ring.y0[0])
-    shape.plot(*around(ring, np.full(TEETH_FS, radius)), "--", color=GREY, linewidth=1)
-    shape.plot(*around(ring, radius + 15.0 * (1e3 * ring.rho - radius)), color=BLUE)
-    shape.set(ylim=(0, 38), yticks=[10, 20, 30], title="Fig. 6.2: shape, ×15 [mm]")
-    for values, colour, label in ((ring.x - ring.x0, BLUE, "|x − x0|"), (ring.y - ring.y0, ORANGE, "|y − y0|")):
-        amount.plot(*around(ring, 1e3 * np.abs(values)), color=colour, label=label)
-    amount.set(yticks=[0.1, 0.2, 0.3], title="Fig. 6.3: change [mm]")
-
-
-def draw_gap(figure, ring):
-    left, right = figure.subplots(1, 2)
-    for values, colour, label in zip(largest_gap(ring), (BLUE, ORANGE), ("x − x_p", "y − y_p")):
-        left.plot(1e3 * values, color=colour, label=label)
-    tooth_axis(left, "[mm]")
-    left.set(title="Fig. 6.4: gap to the polar estimate", ylim=(-0.21, 0.17))
-    left.legend(ncol=2, loc="lower center")
-    overlap = 1e6 * ring.overlap()
-    right.fill_between(range(TEETH_FS),
-                       0.0,
-                       np.maximum(overlap, 0.0),
-                       color=RED,
-                       alpha=0.4,
-                       linewidth=0,
-                       label="contact")
-    right.plot(overlap, color=BLUE)
-    right.set_ylim(-130, 15)
-    tooth_axis(right, "[µm]")
-    right.set_title("Fig. 6.7: overlap of tooth and wave generator")
-    right.legend(loc="lower center")
-
-
-def draw_force(figure, ring, per_tooth, per_ball):
-    grid = figure.add_gridspec(1, 3, width_ratios=(1.2, 0.9, 1.3))
-    left, polar, right = figure.add_subplot(grid[0]), figure.add_subplot(
-        grid[1], projection="polar"), figure.add_subplot(grid[2])
-    force = ring.teeth["wave_generator_force"]
-    left.plot(force, color=BLUE)
-    tooth_axis(left, "[N]")
-    left.set_title("Fig. 6.5: F_WG,FS")
-    polar.plot(*around(ring, force), color=BLUE)
-    polar.set(yticks=[200, 400], title="Fig. 6.5: polar [N]")
-    w0, literature = np.array(LITERATURE).T
-    right.plot(w0, literature, "s", color=GREY, label="literature, per ball", markersize=4)
-    right.plot(w0, per_tooth, "o-", color=BLUE, label="twin, per tooth", markersize=3.5)
-    right.plot(w0, per_ball, "o-", color=ORANGE, label="twin, per ball", markersize=3.5)
-    right.set(yscale="log",
-              xlabel="w0 [mm]",
-              ylabel="largest force [N]",
-              title="Table 6.3: growth with w0",
-              ylim=(300, 60000))
-    right.legend(loc="upper left")
-
-
-def draw_neighbours(figure, ring):
-    left, right = figure.subplots(1, 2)
-    left.plot(1e-3 * ring.teeth["rim_tension"], color=BLUE, label="F to tooth i+1")
-    left.plot(1e-3 * np.roll(ring.teeth["rim_tension"], 1), "--", color=ORANGE, label="F to tooth i−1")
-    tooth_axis(left, "[kN]")
-    left.set(title="Fig. 6.8: forces between neighbours", ylim=(0, 10))
-    left.legend(ncol=2, loc="upper center")
-    right.plot(1e6 * ring.distance, color=BLUE, label="after insertion")
-    right.axhline(1e6 * ring.rest_distance, color=GREY, linestyle="--", label="before")
-    tooth_axis(right, "δ [µm]")
-    right.ticklabel_format(axis="y", useOffset=False)
-    right.set(title="Fig. 6.8: distance of neighbours", ylim=(962.4, 964.7))
-    right.legend(ncol=2, loc="lower center")
-
-
-def draw_bending(figure, ring):
-    grid = figure.add_gridspec(2, 2, width_ratios=(1.5, 1))
-    fx, fy = -1e-3 * ring.bending * np.sin(ring.slope), 1e-3 * ring.bending * np.cos(ring.slope)
-    parts = ((fx, BLUE, "-", "x on tooth i"), (fy, ORANGE, "-", "y on tooth i"), (-fx, GREEN, "--", "x on tooth i+1"),
-             (-fy, PURPLE, "--", "y on tooth i+1"))
-    components, whole = figure.add_subplot(grid[0, 0]), figure.add_subplot(grid[1, 0])
-    polar, whole_polar = figure.add_subplot(grid[0, 1], projection="polar"), figure.add_subplot(grid[1, 1],
-                                                                                                projection="polar")
-    for values, colour, line, label in parts:
-        components.plot(values, line, color=colour, label=label)
-        polar.plot(*around(ring, np.abs(values)), line, color=colour)
-    tooth_axis(components, "[kN]")
-    components.set(title="Fig. 6.10: components of the bending force", ylim=(-6.5, 8.5))
-    components.legend(ncol=2, loc="upper center", fontsize=7)
-    polar.set(yticks=[2, 4], title="Fig. 6.10: sizes [kN]")
-    whole.plot(1e-3 * np.abs(ring.bending), color=BLUE)
-    tooth_axis(whole, "[kN]")
-    whole.set_title("Fig. 6.11: resultant")
-    whole_polar.plot(*around(ring, 1e-3 * np.abs(ring.bending)), color=BLUE)
-    whole_polar.set(yticks=[2, 4, 6], title="Fig. 6.11: polar [kN]")
-
-
 def build(page):
     page.heading("Chapter 6: insertion of the wave generator")
     page.text("""
@@ -366,6 +220,6 @@ minor one.
     numbers, ring = thesis_insertion(page)
     thesis_rows(page, numbers, ring)
     independent_rows(page, ring)
-    shape_figures(page, ring)
-    force_figures(page, ring)
-    rim_figures(page, ring)
+    contact_angle(page, ring)
+    growth_rows(page, ring)
+    rim_rows(page, ring)

@@ -82,7 +82,7 @@ def report(pages):
 def parse(arguments):
     parser = argparse.ArgumentParser(
         prog="validate", description="Holds the twin against thesis, catalogue and real drives. Writes all "
-        "rows with their figures to out/validation and, where nothing is left out or changed, the summary "
+        "rows to out/validation and, where nothing is left out or changed, the summary "
         "docs/validation.md. Exit code 0 if every row holds or is known not to, 1 if another fails or a run did.")
     parser.add_argument("--tool", required=True, help=argparse.SUPPRESS)
     parser.add_argument("--docs", required=True, help=argparse.SUPPRESS)
@@ -94,7 +94,7 @@ def parse(arguments):
                         help="overlay for every run, after its own: a deliberately wrong parameter, say")
     parser.add_argument("--set", action="append", default=[], metavar="section.key=value",
                         help="one parameter for every run, after its own")
-    parser.add_argument("--out", metavar="DIR", help="folder of all rows and figures (default: out/validation of the "
+    parser.add_argument("--out", metavar="DIR", help="folder of all rows (default: out/validation of the "
                         "checkout; needed to write them with --section, --fast, --config or --set)")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), metavar="N", help="sections at a time")
     options = parser.parse_args(arguments)
