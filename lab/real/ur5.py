@@ -281,7 +281,7 @@ def draw_means(path, all_errors):
 
 
 def rows_of(recordings):
-    return ", ".join(f"{recording.name} {len(recording.data)} rows of {1e3 * recording.period():.0f} ms"
+    return ", ".join(f"{recording.name} ({len(recording.data)} rows, one in {1e3 * recording.period():.0f} ms)"
                      for recording in recordings)
 
 
@@ -386,13 +386,14 @@ identify --arm`) and judged on the other recordings.
 {summary[0]}
 {summary[1]}
 
-The recordings have {rows_of(recordings)}. no2 was logged at 62.5 Hz, so a mean over {MEAN:g} s has half as many rows.
+The recordings are {rows_of(recordings)}. no2 was logged at 62.5 Hz, so a mean over {MEAN:g} s has half as many rows.
 In no5_pushed a person pushes the arm; no twin predicts such a contact. no7 repeats the motion of no6 on another day.
 
 ### Load
 
-The table compares the load that the arm's links give with the controller's `target_moment` [N·m]. It has the rms of the
-difference and the range of the moment. The per cent are of the range, where the range is 1 N·m or more.
+The table compares the load that follows from the arm's links with the controller's `target_moment` [N·m]. Each cell has
+the rms difference of both and the range of the moment. Where the range is 1 N·m or more, the cell also has the
+difference in per cent of the range.
 """]
 
 
