@@ -29,7 +29,7 @@ DRAG = 10.0                                       # [N]
 CYCLES = 8                                        # from A to B and back
 RATE = arm_verdicts.RATE
 WAYS = ("without a reference", "with a reference")
-HEAD = ("day", "arm", "truth", *(f"{what} {way}" for way in WAYS for what in ("answer", "result")))  # of working_days.csv
+HEAD = ("day", "arm", "truth", *(f"{what} {way}" for way in WAYS for what in ("answer", "result")))  # of the CSV
 STATES = ("right", "missed", "not judged", "wrong")
 COLUMNS = ("target_q", "target_qd", "actual_q", "actual_qd", "actual_current", "target_current")
 
