@@ -59,7 +59,7 @@ def write_table(path, rows):
 def speed_table(rows):
     names = {0: "six drives on response surfaces", 1: "five on surfaces, the elbow on its full ring",
              3: "three wrists on surfaces, three large joints on full rings", 6: "six full rings"}
-    return ["| | times real time | processor time of a step [µs] |", "|---|---|---|",
+    return ["| drives of the arm | speed [times real time] | processor time of a step [µs] |", "|---|---|---|",
             *(f"| {names[int(row['rings'])]} | {1.0 / row['cost']:.{0 if row['cost'] < 0.1 else 1}f} | "
               f"{1e6 * row['cost'] / RATE:.1f} |" for row in rows)]
 

@@ -132,14 +132,15 @@ def hidden(cell, sound):
 
 def table(kinds, found, sound):
     """The joint in which a fault of severity 1 changes a figure most, and where the controller hides it."""
-    lines = [f"The sound arm leaves its path by at most {sound['path_max']:.2f} mm, {sound['path_rms']:.2f} mm rms. "
-             f"Its repeatability is {sound['repeatability']:.3f} mm (ISO 9283; the maker states "
-             f"{MAKERS_REPEATABILITY:g}). The table has faults of severity {SEVERITIES[1]:g}. Each figure "
-             "is that of the joint in which the fault changes it most. [arm_faults.csv](arm_faults.csv) has all joints "
+    lines = [f"The tool of the sound arm leaves its path by at most {sound['path_max']:.2f} mm, "
+             f"{sound['path_rms']:.2f} mm rms. The repeatability of the sound arm is "
+             f"{sound['repeatability']:.3f} mm (ISO 9283; the maker states {MAKERS_REPEATABILITY:g} mm). "
+             f"The table has faults of severity {SEVERITIES[1]:g}. Each figure belongs to the joint, named in "
+             "the cell, in which the fault changes the figure most. [arm_faults.csv](arm_faults.csv) has all joints "
              "and severities.", "",
-             "| fault | off the path at most [mm] | moved at rest [mm] | repeats within [mm] "
-             "| current of the joint [%] "
-             "| hidden in |", "|---|---|---|---|---|---|"]
+             "| fault | largest distance of the tool from its path [mm], joint | shift of the tool at rest [mm], joint "
+             "| repeatability [mm], joint | change of the joint's current [%], joint "
+             "| joints that hide the fault |", "|---|---|---|---|---|---|"]
     for kind in kinds:
         cells = {joint: found[kind, joint, SEVERITIES[1]] for joint in JOINTS}
         cells = {joint: cell for joint, cell in cells.items() if not math.isnan(cell["current"])}

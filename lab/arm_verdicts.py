@@ -179,8 +179,9 @@ def judge(options, name):
 
 
 def table(found):
-    lines = ["| recording | reference | faulty joints, or all where none is | named right | missed | not judged "
-             "| another named | payload found [kg], arms |", "|---|---|---|---|---|---|---|---|"]
+    lines = ["| recording | reference | faulty joints (all joints if the recording has no fault) | faulty joints named "
+             "| faulty joints missed | joints not judged | sound joints named | found payload [kg], in how many arms |",
+             "|---|---|---|---|---|---|---|---|"]
     for what, reference in dict.fromkeys((case[1], case[2]) for case in found):
         cases = [case for case in found if case[1:3] == (what, reference)]
         faulty = sum(len(case[3]) for case in cases)
@@ -189,7 +190,7 @@ def table(found):
         of_sound = sum(len(case[5] - set(case[3])) for case in cases)
         others = sum(len(case[4] - set(case[3])) for case in cases)
         masses = [case[6]["payload_mass"] for case in cases if case[6]["payload_mass"] is not None]
-        payload = f"{min(masses):.1f} to {max(masses):.1f}, {len(masses)} of {len(cases)}" if masses else "-"
+        payload = f"{min(masses):.1f} to {max(masses):.1f} in {len(masses)} of {len(cases)} arms" if masses else "-"
         count = f"{right} | {faulty - right - unjudged} | {unjudged}" if faulty else f"- | - | {of_sound}"
         lines.append(f"| {what} | {'yes' if reference else 'no'} | {faulty or len(cases) * len(JOINTS)} | {count} "
                      f"| {others} | {payload} |")

@@ -17,9 +17,10 @@ import harmonic_joint_twin as hjt
 import lab
 
 ARMS = {"ur5": 5.0, "ur10e": 12.5, "ur3e": 3.0}   # rated payload [kg], data sheets
-DAYS = ("sound", "carries 0.1 of the rated payload", "carries 0.3", "carries 0.8", "gripper of 0.3", "cold morning",
-        "cold morning, gripper of 0.3", "on a wall", "tool drags with 10 N", "pushed by hand, 60 N",
-        "gripper of 0.3 from half time on", "currents late by 0.15 s", "gain of one joint 1.25")
+DAYS = ("sound", *(f"carries {share} of the rated payload" for share in ("0.1", "0.3", "0.8")),
+        "gripper of 0.3 of the rated payload", "cold morning", "cold morning, gripper of 0.3 of the rated payload",
+        "on a wall", "tool drags with 10 N", "pushed by hand, 60 N",
+        "gripper of 0.3 of the rated payload from half time on", "currents late by 0.15 s", "gain of one joint 1.25")
 SEED = 1                                          # of the page
 WORN = 1.5                                        # of the friction of a worn joint
 MORNING = 12.0                                    # of the oil [degC]; 25 is configured
@@ -27,7 +28,8 @@ CENTRE = (0.0, 0.02, 0.06)                        # of what is carried, in the f
 DRAG = 10.0                                       # [N]
 CYCLES = 8                                        # from A to B and back
 RATE = arm_verdicts.RATE
-HEAD = ("day", "arm", "truth", "alone", "state", "beside a reference", "state")  # of working_days.csv
+WAYS = ("without a reference", "with a reference")
+HEAD = ("day", "arm", "truth", *(f"{what} {way}" for way in WAYS for what in ("answer", "result")))  # of the CSV
 STATES = ("right", "missed", "not judged", "wrong")
 COLUMNS = ("target_q", "target_qd", "actual_q", "actual_qd", "actual_current", "target_current")
 
@@ -164,7 +166,7 @@ def table(rows):
     def counts(of, column):
         return [str(sum(row[column] == state for row in of) or "") for state in STATES]
 
-    head = [f"{way}: {state}" for way in ("alone", "beside a reference") for state in STATES]
+    head = [f"{state}, {way}" for way in WAYS for state in STATES]
     lines = ["| day | " + " | ".join(head) + " |", "|---" * (1 + len(head)) + "|"]
     for kind, of in [*((kind, [row for row in rows if row[0] == kind]) for kind in DAYS), ("all", rows)]:
         lines.append(f"| {kind} | {' | '.join(counts(of, 4) + counts(of, 6))} |")
