@@ -89,10 +89,6 @@ class ClosedLoop:
                                                     self.data[f"actual_current_{joint}"])
 
 
-def cell(*values):
-    return " / ".join("–" if np.isnan(value) else f"{value:.2f}" for value in values)
-
-
 def residuals_of(recording, name, fit, loop, number):
     """Of a joint's current: closed loop, told the motion, simple fit [A]."""
     return (loop.residual(name, number), recording.rows["arm", name]["current_residual"],
