@@ -36,11 +36,11 @@ def header(page):
     table = [cells(line) for line in page.splitlines() if line.startswith(("| kind ", "| `", "| all "))]
     head = table[0]
     rows = {row[0].strip("`"): row for row in reversed(table[1:])}  # the first one named all
-    found = [place for place, name in enumerate(head) if name.startswith(("check-up, ", "at work, "))]
-    severity = max(float(head[place].split(", ")[1]) for place in found)  # the only one that causes are judged at
+    found = [place for place, name in enumerate(head) if name.startswith("found ")]
+    severity = max(float(head[place].split()[-1]) for place in found)  # the only one that causes are judged at
     right, in_set, size, stated = (next(place for place, name in enumerate(head) if name.startswith(words))
-                                   for words in ("cause right", "or in the set", "severity", "its stated"))
-    check_ups = re.search(r"(\d+) alarms? in (\d+): a rate", page)
+                                   for words in ("named cause right", "true cause in", "severity less", "stated"))
+    check_ups = re.search(r"(\d+) check-ups of \d+ sound gears gave (\d+) alarm", page)
     rest = page.split(check_ups.group(0))[1].splitlines()
     runs = [cells(line) for line in rest if re.match(r"\| (?!all )[^|]+ \| \d", line)]
     lines = []
@@ -53,8 +53,8 @@ def header(page):
     mean, spread = map(float, rows["all"][size].split(" ± "))
     causes, alarms = total(rows[kind][right] for kind in KINDS)
     values = {"ALARMS": alarms, "RIGHT_CAUSES": causes, "IN_SETS": total(rows[kind][in_set] for kind in KINDS)[0],
-              "SOUND_RUNS": int(check_ups.group(2)) + sum(int(row[1]) for row in runs),
-              "SOUND_ALARMS": int(check_ups.group(1)) + sum(int(row[5]) for row in runs)}
+              "SOUND_RUNS": int(check_ups.group(1)) + sum(int(row[1]) for row in runs),
+              "SOUND_ALARMS": int(check_ups.group(2)) + sum(int(row[5]) for row in runs)}
     lines += [f"constexpr double {name} = {value}.0;" for name, value in values.items()]
     estimate, deviation = severity + mean, float(rows["all"][stated])
     lines += [f"constexpr double ESTIMATE_SPREAD = {spread / estimate:.2f};   // over the estimate, of all kinds",

@@ -19,7 +19,7 @@ APART = {
     "arm_faults": [("arm_faults_worst.csv", "interface|lubricant|tooth_wear|wave|pitting|ratcheting")],
     "bound": [("health_bound.csv", None)],
     "cycle": [("performance.csv", "100 rad/s|reversing")],
-    "motions": [("health_motions.csv", "all of them|another model|a further model")],
+    "motions": [("health_motions.csv", "three gears|another model|a further model")],
     "others": [("faults_others.csv", r"\| none|0\.02 N|\b1 counts|1 mrad|\b5 %")],
     "read": [("life_read.csv", "all check-ups|line through lost motion")],
     "series": [("health_series.csv", r"^\| all ")],
