@@ -191,8 +191,18 @@ def missed(own):
     return [(one.kind, one.severity) for one in own if one.window["assessment"]["level"] == "OK"]
 
 
+def missed_table(found):
+    """Missed faults of all gears, by kind, source and severity."""
+    columns = [(name, severity) for name in found for severity in SEVERITIES]
+    lines = ["| missed faults, all five gears | "
+             + " | ".join(f"{name}, severity {severity:g}" for name, severity in columns) + " |",
+             "|" + (len(columns) + 1) * "---|"]
+    return lines + [f"| `{kind}` | " + " | ".join(str(missed(found[name]).count((kind, severity)))
+                                                  for name, severity in columns) + " |" for kind in KINDS]
+
+
 def shares_table(found):
-    """What was found of all gears, by source; then what was missed of each kind."""
+    """What was found of all gears, by source."""
     lines = ["| source, all five gears | " + " | ".join(f"found, severity {severity:g}" for severity in SEVERITIES)
              + " | false alarms | windows not judged |", "|" + (len(SEVERITIES) + 3) * "---|"]
     for name, own in found.items():
@@ -202,12 +212,7 @@ def shares_table(found):
         cells.append(share(*(sum(one.kind == "healthy" for one in chosen) for chosen in (alarmed, own))))
         not_judged = sum(one.window["assessment"]["state"] not in COMPARED for one in own)
         lines.append(f"| {name} | " + " | ".join(cells) + f" | {not_judged} of {len(own)} |")
-    columns = [(name, severity) for name in found for severity in SEVERITIES]
-    lines += ["", "| missed faults, all five gears | "
-              + " | ".join(f"{name}, severity {severity:g}" for name, severity in columns) + " |",
-              "|" + (len(columns) + 1) * "---|"]
-    return lines + [f"| `{kind}` | " + " | ".join(str(missed(found[name]).count((kind, severity)))
-                                                  for name, severity in columns) + " |" for kind in KINDS]
+    return lines
 
 
 def row_of(name, own):
@@ -274,7 +279,8 @@ def causes_row(title, own):
 def judged_table(bench):
     found = {name: all_judged(bench, JUDGED_GEARS, source) for name, source in SOURCES.items()}
     everything = [one for own in found.values() for one in own]
-    return [*table(found), "", *shares_table(found), "", "| gears, all sources | " + " | ".join(CAUSE_COLUMNS) + " |",
+    return [*table(found), "", *missed_table(found), "", *shares_table(found), "",
+            "| gears, all sources | " + " | ".join(CAUSE_COLUMNS) + " |",
             "|" + (len(CAUSE_COLUMNS) + 1) * "---|",
             causes_row("three gears", [one for one in everything if one.gear not in OTHER_MODELS]),
             *(causes_row(model.name, [one for one in everything if one.gear == model]) for model in OTHER_MODELS)]

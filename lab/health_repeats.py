@@ -239,8 +239,8 @@ def worn_line(trials):
     others = collections.Counter(alarms["cause"][~named]).most_common()
     return (f"{len(verdicts)} drives have teeth, interface and grease worn together, each with a severity of "
             f"{WORN_FROM} to {WORN_TO}. {len(alarms)} of these drives alarm. {named.sum()} verdicts "
-            f"name one of the three causes, and {(named | in_set).sum()} verdicts have one of the three causes in their "
-            "set."
+            f"name one of the three causes, and {(named | in_set).sum()} verdicts have one of the three causes in "
+            "their set."
             + (f" The wrong causes are {', '.join(f'`{cause}` ({count})' for cause, count in others)}." if others
                else ""))
 
@@ -256,7 +256,7 @@ def main():
     hjt.checkup("ur5", work / "check_up.csv", joint="shoulder", force=True)
     trials = [trial(work, gear, 100 * place) for place, gear in enumerate(GEARS, 1)]
     lab.write_or_print(options.docs, "health.md", "repeats",
-                       [*repeats_table(trials), "", *sizes_table(trials), "", *faults_table(trials), "",
+                       [*sizes_table(trials), "", *repeats_table(trials), "", *faults_table(trials), "",
                         worn_line(trials)])
 
 

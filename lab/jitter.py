@@ -182,8 +182,8 @@ def section(results, options, load):
     return [*table(results), "",
             f"`lab/run jitter --duration {options.duration:g}` measured this on {os.cpu_count()} cores of a shared "
             f"virtual machine ({processor()}, Linux {os.uname().release}), whose host serves others too. The load "
-            f"average before the first case was {load:.1f}. So *quiet* means only that the program ran no processor hog. "
-            "A thread of SCHED_FIFO precedes everything inside the machine, but not its host.", "",
+            f"average before the first case was {load:.1f}. So *quiet* means only that the program ran no processor "
+            "hog. A thread of SCHED_FIFO precedes everything inside the machine, but not its host.", "",
             "![Histograms of wake-up jitter and of lateness](images/jitter.png)"]
 
 
