@@ -344,9 +344,9 @@ def main():
     print("life: lives with signals", file=sys.stderr)
     lab.write(options.docs / "life.md", "read", lives_judged.tables(lives_judged.judged(options)))
     lab.write(options.docs / "life.md", "life", [
-        *age_table(ages), "",
-        "`joint_twin life fatigue` of the new drive at the catalogue's torques:", "",
+        "`joint_twin life fatigue` gives the fatigue of the new drive at the catalogue's torques:", "",
         *fatigue_table(options), "",
+        *age_table(ages), "",
         "![S-N curve, the catalogue's torques (dots and arrows, at the cycles it allows) and the phases of the duties "
         "over their lives](images/life_fatigue.png)", "",
         "![Wear, grease and bearing over the turns of the motor, three duties](images/life_ageing.png)", "",
