@@ -256,7 +256,7 @@ def main():
     hjt.checkup("ur5", work / "check_up.csv", joint="shoulder", force=True)
     trials = [trial(work, gear, 100 * place) for place, gear in enumerate(GEARS, 1)]
     lab.write_or_print(options.docs, "health.md", "repeats",
-                       [*sizes_table(trials), "", *repeats_table(trials), "", *faults_table(trials), "",
+                       [*sizes_table(trials), "", *faults_table(trials), "", *repeats_table(trials), "",
                         worn_line(trials)])
 
 

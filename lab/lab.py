@@ -18,13 +18,15 @@ from drawing import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, STYLE, plt  # noqa: 
 APART = {
     "arm_faults": [("arm_faults_worst.csv", "interface|lubricant|tooth_wear|wave|pitting|ratcheting")],
     "bound": [("health_bound.csv", None)],
+    "constants": [("signature_effects.csv", None)],
     "cycle": [("performance.csv", "100 rad/s|reversing")],
     "health": [("health_runs.csv", None)],
     "life": [("life_fatigue.csv", None)],
     "motions": [("health_motions.csv", "three gears|another model|a further model"), ("health_missed.csv", None)],
     "others": [("faults_others.csv", r"\| none|0\.02 N|\b1 counts|1 mrad|\b5 %")],
-    "repeats": [("health_references.csv", None)],
+    "repeats": [("health_references.csv", None), ("health_repeats.csv", None)],
     "read": [("life_read.csv", "all check-ups|line through lost motion")],
+    "risk": [("faults_risk.csv", None)],
     "series": [("health_series.csv", r"^\| all ")],
     "signatures": [("signatures_runs.csv", None), ("signatures.csv", None)],
 }
