@@ -302,8 +302,10 @@ def carried_report(bench, trials, own):
         cells = [share(alarmed(run) for run in runs if run.severity == severity) for severity in severities]
         cells += [share(map(right, sure)), share(map(in_set, sure)), f"{reliability(runs)[1]:.2f}", never_found(runs)]
         lines.append(f"| {name} | " + " | ".join(cells) + " |")
-    return [*lines, "", "Sound drives judged by the same carried references:", "",
-            *sound_table(list(sound.items()), False)]
+    runs = [run for own in sound.values() for run in own]
+    hours = sum(len(run.windows) * run.motion.window for run in runs) / 3600.0
+    return [f"Sound drives judged by carried references gave {sum(map(alarms, runs))} alarms in {hours:.1f} h.", "",
+            *sound_table(list(sound.items()), False), "", *lines]
 
 
 def slip_table(bench, trials):

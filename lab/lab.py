@@ -18,6 +18,7 @@ from drawing import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, STYLE, plt  # noqa: 
 APART = {
     "arm_faults": [("arm_faults_worst.csv", "interface|lubricant|tooth_wear|wave|pitting|ratcheting")],
     "bound": [("health_bound.csv", None)],
+    "carried": [("health_carried.csv", None)],
     "constants": [("signature_effects.csv", None)],
     "cycle": [("performance.csv", "100 rad/s|reversing")],
     "health": [("health_runs.csv", None)],
@@ -27,6 +28,7 @@ APART = {
     "repeats": [("health_references.csv", None), ("health_repeats.csv", None)],
     "read": [("life_read.csv", "all check-ups|line through lost motion")],
     "risk": [("faults_risk.csv", None)],
+    "seen": [("health_robots.csv", r"\b[12], |, [12]\b|\| (none|named|true)")],
     "series": [("health_series.csv", r"^\| all ")],
     "signatures": [("signatures_runs.csv", None), ("signatures.csv", None)],
 }

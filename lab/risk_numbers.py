@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Scores the failure modes of the thesis' Table 3.7 again: how well each is detected is what docs/health.md found with
-the signals of two robots. Writes the table into docs/faults.md."""
+"""Scores the failure modes of the thesis' Table 3.7 again: how well each is detected is what docs/health_robots.csv says
+of the signals of two robots. Writes the table of docs/faults.md."""
 import argparse
 import csv
 
@@ -28,13 +28,6 @@ def detection(seen):
     return 2 if slight == 2 else {2: 5, 1: 8, 0: 10}[full]
 
 
-def seen_table(text):
-    """Cells of the first columns of the table by kind."""
-    lines = text.split("<!-- seen:begin -->")[1].split("<!-- seen:end -->")[0].splitlines()
-    rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines if line.startswith("| `")]
-    return {row[0].strip("`"): row[1:1 + len(ROBOTS)] for row in rows}
-
-
 def places(numbers):
     """Rank of each, the largest first; equal ones share theirs."""
     return [1 + sum(other > number for other in numbers) for number in numbers]
@@ -42,7 +35,8 @@ def places(numbers):
 
 def main():
     argparse.ArgumentParser(description=__doc__).parse_args()
-    seen = seen_table((lab.CHECKOUT / "docs" / "health.md").read_text(encoding="utf-8"))
+    with open(lab.CHECKOUT / "docs" / "health_robots.csv", encoding="utf-8", newline="") as file:
+        seen = {row[0]: row[1:1 + len(ROBOTS)] for row in csv.reader(file)}
     with open(lab.CHECKOUT / "lab" / "validation" / "fmeca.csv", encoding="utf-8") as file:
         modes = list(csv.DictReader(file))
     scores = [[int(mode["detection"])] + [detection(cell) for cell in seen[KINDS[mode["mode"]]]] for mode in modes]
