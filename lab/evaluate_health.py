@@ -351,8 +351,8 @@ def report(bench, trials, occurrence, sound, faulty, missing):
             f"{share(map(right, filter(alarmed, faulty)))} alarms. If faults were as frequent as the FMECA rates them, "
             f"the named cause would be right in {100.0 * by_occurrence(faulty, occurrence):.0f} % of the alarms.",
             "",
-            "![Score of every run over the threshold](images/health/seen.png)", "",
-            "![Fault against the assessed cause](images/health/confusion.png)", "",
+            "![Score of every run over the threshold](images/health/seen.png)",
+            "![Fault against the assessed cause](images/health/confusion.png)",
             "![Share of right causes against the stated confidence](images/health/reliability.png)", "",
             "### Sound drives", "", check_up_line(sound), "", *sound_table(groups)]
 

@@ -35,7 +35,8 @@ APART = {
 
 
 def apart(folder, name, lines):
-    """`lines`, their tables written to the files that APART gives; a link to the file stands below each."""
+    """`lines`, their tables written to the files that APART gives; a link to the file stands below each, or
+    one line of links below several."""
     files = list(APART.get(name, []))
     found, row = [], 0
     while row < len(lines):
@@ -52,7 +53,10 @@ def apart(folder, name, lines):
         with open(folder / file, "w", encoding="utf-8", newline="") as out:
             csv.writer(out, lineterminator="\n").writerows(cells[:1] + cells[2:])
         found += table[:2] + [line for line in table[2:] if re.search(shown, line)] + [""] if shown else []
-        found.append(f"All rows: [{file}]({file}).")
+        if len(found) > 1 and found[-2].startswith("All rows: ") and not found[-1]:
+            found[-2:] = [f"{found[-2][:-1]}, [{file}]({file})."]
+        else:
+            found.append(f"All rows: [{file}]({file}).")
     return found
 
 

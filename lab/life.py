@@ -348,7 +348,7 @@ def main():
         *fatigue_table(options), "",
         *age_table(ages), "",
         "![S-N curve, the catalogue's torques (dots and arrows, at the cycles it allows) and the phases of the duties "
-        "over their lives](images/life_fatigue.png)", "",
+        "over their lives](images/life_fatigue.png)",
         "![Wear, grease and bearing over the turns of the motor, three duties](images/life_ageing.png)", "",
         *trial_table(results), "",
         *tenth_table(results), "",

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Scores the failure modes of the thesis' Table 3.7 again: how well each is detected is what docs/health_robots.csv says
-of the signals of two robots. Writes the table of docs/faults.md."""
+"""Scores the failure modes of the thesis' Table 3.7 again: how well each is detected is what docs/health_robots.csv
+says of the signals of two robots. Writes the table of docs/faults.md."""
 import argparse
 import csv
 
