@@ -271,9 +271,9 @@ def table(kinds, found, robots):
         cells = [", ".join(str(each[kind, size]) for size in sizes) for each in found.values()]
         return f"| {words} | " + " | ".join(cells) + f" | {most(kind)} |"
 
-    rows = [f"| fault; cells: of {robots} robots those that alarm at severity "
-            f"{', '.join(f'{severity:g}' for severity in SEVERITIES)}, or at the stated sizes | " + " | ".join(found)
-            + " | indicators with the largest deviation |", "|---|" + "---|" * (len(found) + 1)]
+    rows = [f"| fault (each cell: how many of {robots} robots alarm at severity "
+            f"{' and at '.join(f'{severity:g}' for severity in SEVERITIES)}, or at the stated sizes) | "
+            + " | ".join(found) + " | indicators with the largest deviation |", "|---|" + "---|" * (len(found) + 1)]
     rows += [row(f"`{kind}`", kind, SEVERITIES) for kind in kinds]
     rows += [row(f"{other.words}, {', '.join(f'{size:g}' for size in other.sizes)} {other.unit}", other.kind,
                  other.sizes) for other in OTHERS]

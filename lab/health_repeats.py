@@ -181,7 +181,7 @@ def share(numbers):
 def repeats_table(trials):
     rows = [("friction and payload as in the reference", [found["sound"] for found in trials]),
             (f"friction of another day: {100 * SHARE:g} % and {FLOOR} N·m", [found["friction"] for found in trials]),
-            *((f"weight of the payload {beside:g} N·m more than in the reference, and known",
+            *((f"payload {beside:g} N·m heavier than in the reference, with its weight in the parameters",
                [found["payloads"][beside] for found in trials])
               for beside in BESIDE)]
     return ["| check-ups of sound drives | judged | alarms |", "|---|---|---|",
@@ -202,8 +202,8 @@ def sizes_table(trials):
 def faults_table(trials):
     tables = {"both encoders, current": "faulty", "output angle, current, 125 Hz": "faulty, 125",
               f"output angle, current, {RATE} Hz": f"faulty, {RATE}"}
-    lines = [f"| fault; cells: of {len(trials)} gears those that alarm at severity "
-             f"{', '.join(f'{severity:g}' for severity in SEVERITIES)} | " + " | ".join(tables) + " |",
+    lines = [f"| fault (each cell: how many of {len(trials)} gears alarm at severity "
+             f"{', '.join(f'{severity:g}' for severity in SEVERITIES)}) | " + " | ".join(tables) + " |",
              "|---|" + "---|" * len(tables)]
 
     def cell(kind, name):
