@@ -343,8 +343,8 @@ def report(bench, trials, occurrence, sound, faulty, missing):
     rows, error = reliability(faulty)
     groups = by_motion([run for run in sound if run.motion != CHECK_UP])
     return [f"The evaluation has {len(sound)} sound and {len(faulty)} faulty runs, with grease between {GREASE[0]:g} "
-            f"and {GREASE[1]:g} °C. For {len(missing)} further runs the reference has fewer than the eight windows that a "
-            "verdict needs.", "",
+            f"and {GREASE[1]:g} °C. For {len(missing)} further runs the reference has fewer than the eight "
+            "windows that a verdict needs.", "",
             *health_runs.split_table(("evaluation", trials)), "",
             *kind_table(bench.kinds, faulty), "",
             f"The calibration error is {error:.3f}. The named cause is right in "

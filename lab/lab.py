@@ -22,7 +22,7 @@ APART = {
     "constants": [("signature_effects.csv", None)],
     "cycle": [("performance.csv", "100 rad/s|reversing")],
     "health": [("health_runs.csv", None)],
-    "life": [("life_fatigue.csv", None)],
+    "life": [("life_fatigue.csv", None), ("life_scores.csv", None)],
     "motions": [("health_motions.csv", "three gears|another model|a further model"), ("health_missed.csv", None)],
     "others": [("faults_others.csv", r"\| none|0\.02 N|\b1 counts|1 mrad|\b5 %")],
     "repeats": [("health_references.csv", None), ("health_repeats.csv", None)],

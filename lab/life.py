@@ -344,15 +344,16 @@ def main():
     print("life: lives with signals", file=sys.stderr)
     lab.write(options.docs / "life.md", "read", lives_judged.tables(lives_judged.judged(options)))
     lab.write(options.docs / "life.md", "life", [
-        "`joint_twin life fatigue` gives the fatigue of the new drive at the catalogue's torques:", "",
+        "Fatigue of the new drive at the catalogue's torques (`joint_twin life fatigue`), and scores of the forecasts:",
+        "",
         *fatigue_table(options), "",
+        *score_table(results), "",
         *age_table(ages), "",
         "![S-N curve, the catalogue's torques (dots and arrows, at the cycles it allows) and the phases of the duties "
         "over their lives](images/life_fatigue.png)",
         "![Wear, grease and bearing over the turns of the motor, three duties](images/life_ageing.png)", "",
         *trial_table(results), "",
         *tenth_table(results), "",
-        *score_table(results), "",
         "![Forecasts of three lives each, calibration, accuracy and coverage against the "
         "share of life gone](images/life_forecast.png)"])
     print(f"life: wrote {options.docs / 'life.md'}", file=sys.stderr)
