@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes what the table of docs/health.md says of the wear that ends a life into src/life/assessment_counts.hpp: how
-often it is found, and how good cause and severity are."""
+"""Writes what docs/health.md and its table of kinds say of the wear that ends a life into
+src/life/assessment_counts.hpp: how often it is found, and how good cause and severity are."""
 import argparse
+import csv
 import pathlib
 import re
 
 PROJECT = pathlib.Path(__file__).resolve().parent.parent
-PAGE, HEADER = "docs/health.md", "src/life/assessment_counts.hpp"
+PAGE, TABLE, HEADER = "docs/health.md", "docs/health_kinds.csv", "src/life/assessment_counts.hpp"
 KINDS = ("tooth_wear", "interface_wear", "lubricant_degradation")
 HEAD = """// SPDX-License-Identifier: BSD-3-Clause
 // Written by lab/run assessment_counts from docs/health.md.
@@ -30,12 +31,11 @@ def cells(line):
     return [cell.strip() for cell in line.strip().strip("|").split("|")]
 
 
-def header(page):
-    """The text of the header by that of the page."""
+def header(page, table):
+    """The text of the header by those of the page and of its table of kinds."""
     page = page.split("<!-- health:begin -->")[1].split("<!-- health:end -->")[0]
-    table = [cells(line) for line in page.splitlines() if line.startswith(("| kind ", "| `", "| all "))]
-    head = table[0]
-    rows = {row[0].strip("`"): row for row in reversed(table[1:])}  # the first one named all
+    head, *kinds = csv.reader(table.splitlines())
+    rows = {row[0]: row for row in kinds}
     found = [place for place, name in enumerate(head) if name.startswith("found ")]
     severity = max(float(head[place].split()[-1]) for place in found)  # the only one that causes are judged at
     right, in_set, size, stated = (next(place for place, name in enumerate(head) if name.startswith(words))
@@ -64,7 +64,7 @@ def header(page):
 
 def main():
     argparse.ArgumentParser(description=__doc__).parse_args()
-    text = header((PROJECT / PAGE).read_text(encoding="utf-8"))
+    text = header(*((PROJECT / file).read_text(encoding="utf-8") for file in (PAGE, TABLE)))
     (PROJECT / HEADER).write_text(text, encoding="utf-8")
 
 

@@ -359,7 +359,7 @@ def main():
     pairs = "; ".join(f"`{one}` and `{other}`, with a cosine of {cosine:.2f} between their changes"
                       for one, other, cosine in alike(kinds, found))
     lines = [*table(kinds, found), "",
-             f"Faults that change the signals nearly alike: {pairs or 'none'}.", "",
+             f"These faults change the signals nearly alike: {pairs or 'none'}.", "",
              f"{CHECK_SEEDS} sound and {CHECK_SEEDS} faulty runs with noise check the bound for `{CHECKED[0]}` of "
              f"severity {CHECKED[1]}:",
              "", "| resolution of the encoders | d′ predicted | d′ of the matched filter | found at 5 % false alarms "

@@ -270,16 +270,19 @@ def fatigue_table(options):
     return lines
 
 
-def trial_table(results):
-    """How lives ended; then the coverage of the 80 % interval by the end."""
+def ends_table(results):
     lines = ["| drives | lives | " + " | ".join(f"ended by {end}" for end in ENDS) + " |",
              "|---" * (len(ENDS) + 2) + "|"]
     for name, (result, _) in results.items():
         ends = " | ".join(str(result[end.replace(" ", "_")]) for end in ENDS)
         lines.append(f"| {name} | {result['lives']} | {ends} |")
-    lines += ["", "| truth in the 80 % interval [%] | forecasts | all lives | "
-              + " | ".join(f"lives ended by {end}" for end in ("flank wear", "interface wear", "bearing", "fatigue"))
-              + " |", "|---" * 7 + "|"]
+    return lines
+
+
+def coverage_table(results):
+    lines = ["| truth in the 80 % interval [%] | forecasts | all lives | "
+             + " | ".join(f"lives ended by {end}" for end in ("flank wear", "interface wear", "bearing", "fatigue"))
+             + " |", "|---" * 7 + "|"]
     for name, (_, rows) in results.items():
         causes = " | ".join(held(rows, chosen) for chosen in (rows["end"] >= 0, rows["end"] == 0, rows["end"] == 1,
                                                               rows["end"] == 3, rows["end"] >= 4))
@@ -344,16 +347,17 @@ def main():
     print("life: lives with signals", file=sys.stderr)
     lab.write(options.docs / "life.md", "read", lives_judged.tables(lives_judged.judged(options)))
     lab.write(options.docs / "life.md", "life", [
-        "Fatigue of the new drive at the catalogue's torques (`joint_twin life fatigue`), and scores of the forecasts:",
-        "",
+        "The files have the fatigue of the new drive at the catalogue's torques (`joint_twin life fatigue`), the scores "
+        "of the forecasts, the coverage by tenths of the life, and the ends of the lives.", "",
         *fatigue_table(options), "",
         *score_table(results), "",
+        *tenth_table(results), "",
+        *ends_table(results), "",
         *age_table(ages), "",
         "![S-N curve, the catalogue's torques (dots and arrows, at the cycles it allows) and the phases of the duties "
         "over their lives](images/life_fatigue.png)",
         "![Wear, grease and bearing over the turns of the motor, three duties](images/life_ageing.png)", "",
-        *trial_table(results), "",
-        *tenth_table(results), "",
+        *coverage_table(results), "",
         "![Forecasts of three lives each, calibration, accuracy and coverage against the "
         "share of life gone](images/life_forecast.png)"])
     print(f"life: wrote {options.docs / 'life.md'}", file=sys.stderr)
