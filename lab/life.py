@@ -347,8 +347,8 @@ def main():
     print("life: lives with signals", file=sys.stderr)
     lab.write(options.docs / "life.md", "read", lives_judged.tables(lives_judged.judged(options)))
     lab.write(options.docs / "life.md", "life", [
-        "The files have the fatigue of the new drive at the catalogue's torques (`joint_twin life fatigue`), the scores "
-        "of the forecasts, the coverage by tenths of the life, and the ends of the lives.", "",
+        "The CSV files give the fatigue of the new drive at the catalogue's torques (`joint_twin life fatigue`), the "
+        "scores of the forecasts, the coverage by tenths of the life, and the ends of the lives.", "",
         *fatigue_table(options), "",
         *score_table(results), "",
         *tenth_table(results), "",
