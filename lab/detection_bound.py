@@ -271,8 +271,9 @@ def weakest(severity):
 
 def table(kinds, found):
     """Bound by kind: d' with each set of sensors in each motion, then what follows in the check-up."""
-    lines = ["| kind | " + " | ".join(f"d′, {name}" for name in SENSORS) + " | the same, no reference of the drive "
-             "| at work | σ(s) | weakest s |", "|---|" + "---|" * (len(SENSORS) + 4)]
+    lines = ["| kind | " + " | ".join(f"d′, {name}" for name in SENSORS)
+             + " | d′, both encoders, no reference of the drive | d′, both encoders, at work "
+             "| σ(s), both encoders | weakest s, both encoders |", "|---|" + "---|" * (len(SENSORS) + 4)]
     for kind in kinds:
         own = {(bound.motion, bound.sensors): bound for bound in found if bound.kind == kind}
         best = own.get(("check_up", SENSORS[1]))
@@ -355,14 +356,14 @@ def main():
     day = [(row, run) for row, run in nuisances if row["duty"] == "check_up"]
     exact, noise = measured_noise(bench, day)
     found = bounds(bench, kinds, nuisances, noise)
-    pairs = "; ".join(f"`{one}` and `{other}` {cosine:.2f}" for one, other, cosine in alike(kinds, found))
+    pairs = "; ".join(f"`{one}` and `{other}`, with a cosine of {cosine:.2f} between their changes"
+                      for one, other, cosine in alike(kinds, found))
     lines = [*table(kinds, found), "",
-             f"Faults that change the signals alike (cosine of their changes without the nuisances): "
-             f"{pairs or 'none'}.", "",
-             f"The bound was checked on {CHECK_SEEDS} sound and {CHECK_SEEDS} faulty runs with noise, "
-             f"`{CHECKED[0]}` of severity {CHECKED[1]}:",
+             f"These faults change the signals nearly alike: {pairs or 'none'}.", "",
+             f"{CHECK_SEEDS} sound and {CHECK_SEEDS} faulty runs with noise check the bound for `{CHECKED[0]}` of "
+             f"severity {CHECKED[1]}:",
              "", "| resolution of the encoders | d′ predicted | d′ of the matched filter | found at 5 % false alarms "
-             "| predicted |",
+             "| found at 5 % false alarms, predicted |",
              "|---|---|---|---|---|"]
     for name, what, settings in (("check_white", "as white noise", WHITE), ("check_counts", "counts", [])):
         predicted, measured, sound, faulty = check(bench, day, exact, noise, name, settings)

@@ -114,8 +114,14 @@ def tail(blocks, hours):
             1000.0 * poisson_bound(len(beyond)) / hours * math.exp(-(1.0 - TAIL) / (mean * degrees / low)))
 
 
-SOUND_COLUMNS = ["runs", "windows", "not judged", "hours", "alarms", "95 % bound of alarms in 1000 h", "largest score",
-                 "scores beyond 1 in 1000 h by the tail", "95 % bound of them"]
+SOUND_COLUMNS = ["runs", "windows judged", "windows not judged", "hours judged", "alarms",
+                 "alarms in 1000 h, 95 % upper bound", "largest score over threshold",
+                 "scores above threshold in 1000 h, estimate", "scores above threshold in 1000 h, 95 % upper bound"]
+
+
+def rounded(number, digits):
+    """To so many digits, without an exponent."""
+    return f"{float(f'{number:.{digits}g}'):g}"
 
 
 def sound_row(runs):
@@ -128,12 +134,13 @@ def sound_row(runs):
     blocks = largest_of_blocks(judged)
     expected, bound = tail(blocks, hours)
     return (f"{len(judged)} | {windows} | {missing} | {hours:.1f} | {found} | "
-            f"{1000.0 * poisson_bound(found) / hours:.3g} | {max(blocks):.2f} | {expected:.2g} | {bound:.2g}")
+            f"{rounded(1000.0 * poisson_bound(found) / hours, 3)} | {max(blocks):.2f} | {rounded(expected, 2)} | "
+            f"{rounded(bound, 2)}")
 
 
 def sound_table(groups, with_all=True):
     """Of (name, runs); the last row is of all."""
-    lines = ["| | " + " | ".join(SOUND_COLUMNS) + " |", "|---|" + "---|" * len(SOUND_COLUMNS)]
+    lines = ["| sound drives | " + " | ".join(SOUND_COLUMNS) + " |", "|---|" + "---|" * len(SOUND_COLUMNS)]
     for name, runs in [*groups, *[("all", [run for _, runs in groups for run in runs])][:with_all]]:
         lines.append(f"| {name} | {sound_row(runs)} |")
     return lines
@@ -162,14 +169,20 @@ def severities_of(faulty):
     return sorted({run.severity for run in faulty})
 
 
+def found_in(check_up, severity):
+    """Name of a column."""
+    return f"found {'in check-ups' if check_up else 'at work'}, severity {severity:g}"
+
+
 def kind_table(kinds, faulty):
     """What was found of each kind, and as what."""
     severities = severities_of(faulty)
     places = [(at_work, severity) for at_work in (False, True) for severity in severities]
-    lines = ["| kind | " + " | ".join(f"{'at work' if at_work else 'check-up'}, {severity:g}"
-                                      for at_work, severity in places)
-             + f" | cause right, of alarms, severity {SURE} on | or in the set | named instead | severity: estimate "
-             "less true, mean ± spread | its stated deviation |", "|---" * (len(places) + 6) + "|"]
+    lines = ["| kind of fault | " + " | ".join(found_in(not at_work, severity) for at_work, severity in places)
+             + f" | named cause right, of alarms from severity {SURE} on | true cause in the set, of these alarms "
+             "| wrong causes named | severity less true severity, mean ± spread "
+             "| stated deviation of the severity, mean |",
+             "|---" * (len(places) + 6) + "|"]
     for name in [*[kind["kind"] for kind in kinds], "all"]:
         own = [run for run in faulty if name in (run.kind, "all")]
         cells = [share(alarmed(run) for run in own if run.severity == severity and (run.motion != CHECK_UP) == at_work)
@@ -274,21 +287,25 @@ def never_found(runs):
 
 def carried_report(bench, trials, own):
     """Motions to and fro of trials without references of their own; `own`: faulty runs compared with such."""
-    columns = {"own": [run for run in own if run.motion.moves]}
+    columns = {"of the same motion": [run for run in own if run.motion.moves]}
     sound = {}
     for model in health_runs.MODELS:
         name = f"carried, {CARRIED_BY[model.name]}"
         sound[name], columns[name], _ = collect(bench, trials, model)
-    severities = severities_of(columns["own"])
-    lines = ["| reference | " + " | ".join(f"found, {severity:g}" for severity in severities)
-             + f" | cause right, severity {SURE} on | or in the set | calibration error | never found |",
+    severities = severities_of(columns["of the same motion"])
+    lines = ["| reference | " + " | ".join(f"found, severity {severity:g}" for severity in severities)
+             + f" | named cause right, of alarms from severity {SURE} on | true cause in the set, of these alarms "
+             "| calibration error | never found |",
              "|---" * (len(severities) + 5) + "|"]
     for name, runs in columns.items():
         sure = [run for run in runs if alarmed(run) and run.severity >= SURE]
         cells = [share(alarmed(run) for run in runs if run.severity == severity) for severity in severities]
         cells += [share(map(right, sure)), share(map(in_set, sure)), f"{reliability(runs)[1]:.2f}", never_found(runs)]
         lines.append(f"| {name} | " + " | ".join(cells) + " |")
-    return [*lines, "", "Sound drives, compared in the same way:", "", *sound_table(list(sound.items()), False)]
+    runs = [run for own in sound.values() for run in own]
+    hours = sum(len(run.windows) * run.motion.window for run in runs) / 3600.0
+    return [f"Sound drives judged by carried references gave {sum(map(alarms, runs))} alarms in {hours:.1f} h.", "",
+            *sound_table(list(sound.items()), False), "", *lines]
 
 
 def slip_table(bench, trials):
@@ -302,9 +319,9 @@ def slip_table(bench, trials):
             bags = bench.faulty(trial._replace(gear=gear), motion, DRAWN, kinds)
             runs[slip] += bench.judge(bags, trial.gear, motion)
     columns = list(itertools.product((True, False), severities_of(runs[SLIPS[0]])))
-    lines = ["| slip | " + " | ".join(f"{'check-up' if check_up else 'at work'}, {severity:g}"
-                                      for check_up, severity in columns)
-             + " | cause right, of alarms | or in the set |", "|---" * (len(columns) + 3) + "|"]
+    lines = ["| slip | " + " | ".join(found_in(*column) for column in columns)
+             + " | named cause right, of alarms | true cause in the set, of alarms |",
+             "|---" * (len(columns) + 3) + "|"]
     for slip, own in runs.items():
         own = [run for run in own if run.windows]
         found = [run for run in own if alarmed(run)]
@@ -326,16 +343,16 @@ def report(bench, trials, occurrence, sound, faulty, missing):
     rows, error = reliability(faulty)
     groups = by_motion([run for run in sound if run.motion != CHECK_UP])
     return [f"The evaluation has {len(sound)} sound and {len(faulty)} faulty runs, with grease between {GREASE[0]:g} "
-            f"and {GREASE[1]:g} °C. {len(missing)} further runs were not judged, because the reference has fewer than "
-            "eight windows at their operating point.", "", *health_runs.split_table(("judged by", trials)), "",
+            f"and {GREASE[1]:g} °C. For {len(missing)} further runs the reference has fewer than the eight "
+            "windows that a verdict needs.", "",
+            *health_runs.split_table(("evaluation", trials)), "",
             *kind_table(bench.kinds, faulty), "",
-            f"The calibration error is {error:.3f}: the mean difference between the stated confidence and the share of "
-            f"right causes, by class of confidence. The named cause is right in "
+            f"The calibration error is {error:.3f}. The named cause is right in "
             f"{share(map(right, filter(alarmed, faulty)))} alarms. If faults were as frequent as the FMECA rates them, "
-            f"it would be right in {100.0 * by_occurrence(faulty, occurrence):.0f} %.",
+            f"the named cause would be right in {100.0 * by_occurrence(faulty, occurrence):.0f} % of the alarms.",
             "",
-            "![Score of every run over the threshold](images/health/seen.png)", "",
-            "![Fault against the assessed cause](images/health/confusion.png)", "",
+            "![Score of every run over the threshold](images/health/seen.png)",
+            "![Fault against the assessed cause](images/health/confusion.png)",
             "![Share of right causes against the stated confidence](images/health/reliability.png)", "",
             "### Sound drives", "", check_up_line(sound), "", *sound_table(groups)]
 

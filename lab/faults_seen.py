@@ -30,7 +30,7 @@ SEVERITIES = (0.3, 1.0)
 TEMPERATURES = (20.0, 30.0)      # of the drives, unknown to the judge [degC]
 STRAY = 0.03                     # of each pose from one recording to the next [rad]
 MOVE, STOP, MOVES = (0.7, 1.4), 0.2, 10  # [s], [s]
-SENSORS = {"UR5: angle, set point, current, 125 Hz": 125, "UR5e: the same, 500 Hz": 500}  # [Hz]
+SENSORS = {"UR5: 125 Hz": 125, "UR5e: 500 Hz": 500}  # [Hz]
 ROBOTS, FITTED = (990, 991), (870, 871)  # that are judged; that config/signatures/size_25.yaml is fitted to
 # Sensors of a UR5 as its recordings show them: angles to 4e-6 rad, noise at rest of one count. The torque noise of
 # real_sensors.yaml, 0.01 N.m, is 0.09 A: between what rows differ by at rest, 0.01 to 0.08 A, and in motion, 0.12 to
@@ -268,17 +268,19 @@ def table(kinds, found, robots):
         return ", ".join(f"`{name}`" for name, _ in names.most_common(2)) or "-"
 
     def row(words, kind, sizes):
-        cells = [" ".join(str(each[kind, size]) for size in sizes) for each in found.values()]
+        cells = [", ".join(str(each[kind, size]) for size in sizes) for each in found.values()]
         return f"| {words} | " + " | ".join(cells) + f" | {most(kind)} |"
 
-    rows = ["| | " + " | ".join(found) + " | furthest off |", "|---|" + "---|" * (len(found) + 1)]
+    rows = [f"| fault (each cell: how many of {robots} robots alarm at severity "
+            f"{' and at '.join(f'{severity:g}' for severity in SEVERITIES)}, or at the stated sizes) | "
+            + " | ".join(found) + " | indicators with the largest deviation |", "|---|" + "---|" * (len(found) + 1)]
     rows += [row(f"`{kind}`", kind, SEVERITIES) for kind in kinds]
     rows += [row(f"{other.words}, {', '.join(f'{size:g}' for size in other.sizes)} {other.unit}", other.kind,
                  other.sizes) for other in OTHERS]
-    rows.append(f"| sound, false alarms of {robots * JUDGED} | "
+    rows.append(f"| none: false alarms in {robots * JUDGED} recordings | "
                 + " | ".join(str(each["sound"]) for each in found.values()) + " | |")
-    rows.append("| cause right, in the set | " + " | ".join(
-        f"{each['right']}, {each['in set']} of {each['alarms']}" for each in found.values()) + " | |")
+    rows += [f"| {words}, of alarms | " + " | ".join(f"{each[key]} of {each['alarms']}" for each in found.values())
+             + " | |" for words, key in (("named cause right", "right"), ("true cause in the set", "in set"))]
     return rows
 
 

@@ -26,7 +26,7 @@ STATES = [option for pair in (("--config", "joints/shoulder.yaml"), ("--config",
 CLASSES = [0.0, 0.5, 0.7, 0.85, 0.95, 1.0]  # of the confidence
 # `twin`: its indicators on the same path are subtracted.
 Source = collections.namedtuple("Source", "options twin", defaults=[False])
-SOURCES = {"windows of the drive": Source(["--windows"]), "the twin beside": Source(["--windows"], True),
+SOURCES = {"all signals": Source(["--windows"]), "twin subtracted": Source(["--windows"], True),
            "joint states alone": Source(STATES)}
 
 
@@ -186,19 +186,33 @@ def share(found, of):
     return f"{found} of {of} ({100.0 * low:.0f} to {100.0 * high:.0f} %)"
 
 
-def shares_of(title, own):
-    """A line on what was found of one source."""
-    alarmed = [one for one in own if one.window["assessment"]["level"] != "OK"]
-    text = " and ".join(share(*(sum(one.severity == severity for one in chosen) for chosen in (alarmed, own)))
-                        + f" of severity {severity:g}" for severity in SEVERITIES)
-    missed = [(one.kind, one.severity) for one in own if one.window["assessment"]["level"] == "OK"]
-    kinds = ", ".join(f"`{kind}` " + " and ".join(str(missed.count((kind, severity))) for severity in SEVERITIES)
-                      for kind in KINDS)
-    sound = [[one for one in chosen if one.kind == "healthy"] for chosen in (alarmed, own)]
-    not_judged = sum(one.window["assessment"]["state"] not in COMPARED for one in own)
-    return (f"- {title}: the assessment finds the faults in {text}. Missed of each kind, by severity: {kinds}. False "
-            f"alarms: {share(*map(len, sound))}. Windows not judged, at an operating point without a reference: "
-            f"{not_judged} of {len(own)}.")
+def missed(own):
+    """(kind, severity) of the faults without an alarm."""
+    return [(one.kind, one.severity) for one in own if one.window["assessment"]["level"] == "OK"]
+
+
+def missed_table(found):
+    """Missed faults of all gears, by kind, source and severity."""
+    columns = [(name, severity) for name in found for severity in SEVERITIES]
+    lines = ["| missed faults, all five gears | "
+             + " | ".join(f"{name}, severity {severity:g}" for name, severity in columns) + " |",
+             "|" + (len(columns) + 1) * "---|"]
+    return lines + [f"| `{kind}` | " + " | ".join(str(missed(found[name]).count((kind, severity)))
+                                                  for name, severity in columns) + " |" for kind in KINDS]
+
+
+def shares_table(found):
+    """What was found of all gears, by source."""
+    lines = ["| source, all five gears | " + " | ".join(f"found, severity {severity:g}" for severity in SEVERITIES)
+             + " | false alarms | windows not judged |", "|" + (len(SEVERITIES) + 3) * "---|"]
+    for name, own in found.items():
+        alarmed = [one for one in own if one.window["assessment"]["level"] != "OK"]
+        cells = [share(*(sum(one.severity == severity for one in chosen) for chosen in (alarmed, own)))
+                 for severity in SEVERITIES]
+        cells.append(share(*(sum(one.kind == "healthy" for one in chosen) for chosen in (alarmed, own))))
+        not_judged = sum(one.window["assessment"]["state"] not in COMPARED for one in own)
+        lines.append(f"| {name} | " + " | ".join(cells) + f" | {not_judged} of {len(own)} |")
+    return lines
 
 
 def row_of(name, own):
@@ -222,13 +236,15 @@ def row_of(name, own):
 
 def table(found):
     """`found`: what was judged, by source."""
-    lines = ["| | area: score | Mahalanobis | largest deviation | false alarms | "
-             + " | ".join(f"found, {severity:g}" for severity in SEVERITIES)
-             + " | cause right, of alarms | or in the set | mean confidence |", "|" + 10 * "---|"]
+    lines = ["| gears or motion, source | area of the score | area of the Mahalanobis distance "
+             "| area of the largest deviation | false alarms | "
+             + " | ".join(f"found, severity {severity:g}" for severity in SEVERITIES)
+             + " | named cause right, of alarms | true cause in the set, of alarms | mean confidence |",
+             "|" + 10 * "---|"]
     for name, own in found.items():
         drawn_ones = [one for one in own if one.gear not in OTHER_MODELS]
         rows = [(motion.name, [one for one in drawn_ones if one.motion == motion.name]) for motion in MOTIONS]
-        rows += [("all of them", drawn_ones)]
+        rows += [("three gears", drawn_ones)]
         rows += [(model.name, [one for one in own if one.gear == model]) for model in OTHER_MODELS]
         lines += [row_of(f"{title}, {name}", chosen) for title, chosen in rows]
     return lines
@@ -240,8 +256,13 @@ def calibration_error(right, confidence):
     return sum(abs(numpy.sum(right[of == one] - confidence[of == one])) for one in set(of)) / len(right)
 
 
-def causes_of(title, own):
-    """A line on the causes that alarms of both sources name, and on their severities."""
+CAUSE_COLUMNS = ["named cause right, of alarms", "mean confidence", "calibration error",
+                 "true cause in the set, of alarms", "error of the severity, rms",
+                 "severities within the stated deviation"]
+
+
+def causes_row(title, own):
+    """CAUSE_COLUMNS of the alarms of all sources; severities where the cause is right."""
     alarms = [one for one in own if one.kind != "healthy" and one.window["assessment"]["level"] != "OK"]
     verdicts = [one.window["assessment"] for one in alarms]
     right = numpy.array([verdict["cause"] == one.kind for one, verdict in zip(alarms, verdicts)])
@@ -251,18 +272,15 @@ def causes_of(title, own):
               for one, verdict, is_right in zip(alarms, verdicts, right) if is_right]
     off = math.sqrt(numpy.mean([error ** 2 for error, _ in errors])) if errors else math.nan
     within = 100.0 * numpy.mean([abs(error) <= stated for error, stated in errors]) if errors else math.nan
-    return (f"- {title}: the named cause is right in {share(sum(right), len(alarms))}, at a mean confidence of "
-            f"{confidence.mean():.2f} and a calibration error of {calibration_error(right, confidence):.2f}. The set "
-            f"of causes holds the true cause in {share(in_set, len(alarms))}. Where the cause is right, the severity "
-            f"is off by {off:.2f} rms, and {within:.0f} % of the severities lie within the stated deviation.")
+    return (f"| {title} | {share(sum(right), len(alarms))} | {confidence.mean():.2f} | "
+            f"{calibration_error(right, confidence):.2f} | {share(in_set, len(alarms))} | {off:.2f} | {within:.0f} % |")
 
 
 def judged_table(bench):
     found = {name: all_judged(bench, JUDGED_GEARS, source) for name, source in SOURCES.items()}
     everything = [one for own in found.values() for one in own]
-    drawn_ones = [one for one in everything if one.gear not in OTHER_MODELS]
-    return [*table(found), "", *(shares_of(f"All gears, {name}", own) for name, own in found.items()),
-            causes_of("Drawn gears" if len({one.gear.name for one in drawn_ones}) > 1 else
-                      drawn_ones[0].gear.name.capitalize(), drawn_ones),
-            *(causes_of(model.name.capitalize(), [one for one in everything if one.gear == model])
-              for model in OTHER_MODELS)]
+    return [*table(found), "", *missed_table(found), "", *shares_table(found), "",
+            "| gears, all sources | " + " | ".join(CAUSE_COLUMNS) + " |",
+            "|" + (len(CAUSE_COLUMNS) + 1) * "---|",
+            causes_row("three gears", [one for one in everything if one.gear not in OTHER_MODELS]),
+            *(causes_row(model.name, [one for one in everything if one.gear == model]) for model in OTHER_MODELS)]

@@ -179,9 +179,10 @@ def share(numbers):
 
 
 def repeats_table(trials):
-    rows = [("sound, as the reference", [found["sound"] for found in trials]),
+    rows = [("friction and payload as in the reference", [found["sound"] for found in trials]),
             (f"friction of another day: {100 * SHARE:g} % and {FLOOR} N·m", [found["friction"] for found in trials]),
-            *((f"payload + {beside:g} N·m, told", [found["payloads"][beside] for found in trials])
+            *((f"payload {beside:g} N·m heavier than in the reference, with its weight in the parameters",
+               [found["payloads"][beside] for found in trials])
               for beside in BESIDE)]
     return ["| check-ups of sound drives | judged | alarms |", "|---|---|---|",
             *(f"| {name} | {share([(judged_of(one), len(one)) for one in several])} | {sum(map(alarmed, several))} |"
@@ -189,7 +190,7 @@ def repeats_table(trials):
 
 
 def sizes_table(trials):
-    lines = ["| check-ups in the reference | found | of those that `seen_from` says would show | false alarms |",
+    lines = ["| check-ups in the reference | faults found | found, of faults at or above `seen_from` | false alarms |",
              "|---|---|---|---|"]
     for size in SIZES:
         counts = sum((found["sizes"][size] for found in trials), collections.Counter())
@@ -199,9 +200,11 @@ def sizes_table(trials):
 
 
 def faults_table(trials):
-    tables = {"both encoders, current": "faulty", "angle, current, 125 Hz": "faulty, 125",
-              f"the same, {RATE} Hz": f"faulty, {RATE}"}
-    lines = ["| | " + " | ".join(tables) + " |", "|---|" + "---|" * len(tables)]
+    tables = {"both encoders, current": "faulty", "output angle, current, 125 Hz": "faulty, 125",
+              f"output angle, current, {RATE} Hz": f"faulty, {RATE}"}
+    lines = [f"| fault (each cell: how many of {len(trials)} gears alarm at severity "
+             f"{', '.join(f'{severity:g}' for severity in SEVERITIES)}) | " + " | ".join(tables) + " |",
+             "|---|" + "---|" * len(tables)]
 
     def cell(kind, name):
         parts = []
@@ -209,20 +212,22 @@ def faults_table(trials):
             several = [found[name][(found[name]["class"] == kind) & (found[name]["fault_severity"] == severity)]
                        for found in trials]
             parts.append(str(sum(map(alarmed, several))))
-        return " ".join(parts)
+        return ", ".join(parts)
 
     lines += [f"| `{kind}` | " + " | ".join(cell(kind, name) for name in tables.values()) + " |"
               for kind in hjt.fault_kinds()]
     alarms = [sum(alarmed(found["sound" + name[len("faulty"):]]) for found in trials) for name in tables.values()]
-    lines.append(f"| sound, false alarms of {SOUND * len(trials)} | " + " | ".join(map(str, alarms)) + " |")
-    right = []
+    lines.append(f"| none: false alarms in {SOUND * len(trials)} check-ups | " + " | ".join(map(str, alarms)) + " |")
+    right, in_sets = [], []
     for name in tables.values():
         all_of = pandas.concat([found[name] for found in trials])
         all_of = all_of[all_of["level"].isin(["WARN", "ERROR"])]
         in_set = sum(kind in [cause, *str(others).split(", ")] for kind, cause, others in
                      zip(all_of["class"], all_of["cause"], all_of["alternatives"]))
-        right.append(f"{sum(all_of['class'] == all_of['cause'])}, {in_set} of {len(all_of)}")
-    return [*lines, "| cause right, in the set | " + " | ".join(right) + " |"]
+        right.append(f"{sum(all_of['class'] == all_of['cause'])} of {len(all_of)}")
+        in_sets.append(f"{in_set} of {len(all_of)}")
+    return [*lines, "| named cause right, of alarms | " + " | ".join(right) + " |",
+            "| true cause in the set, of alarms | " + " | ".join(in_sets) + " |"]
 
 
 def worn_line(trials):
@@ -232,10 +237,12 @@ def worn_line(trials):
     named = alarms["cause"].isin(WORN)
     in_set = [any(kind in str(others).split(", ") for kind in WORN) for others in alarms["alternatives"]]
     others = collections.Counter(alarms["cause"][~named]).most_common()
-    return (f"{len(verdicts)} drives have teeth, interface and grease worn together, each by {WORN_FROM} to {WORN_TO}. "
-            f"{len(alarms)} of them alarm. {named.sum()} verdicts name one of the three causes, and "
-            f"{(named | in_set).sum()} have one in their set."
-            + (f" Named instead: {', '.join(f'`{cause}` {count}' for cause, count in others)}." if others else ""))
+    return (f"{len(verdicts)} drives have teeth, interface and grease worn together, each with a severity of "
+            f"{WORN_FROM} to {WORN_TO}. {len(alarms)} of these drives alarm. {named.sum()} verdicts "
+            f"name one of the three causes, and {(named | in_set).sum()} verdicts have one of the three causes in "
+            "their set."
+            + (f" The wrong causes are {', '.join(f'`{cause}` ({count})' for cause, count in others)}." if others
+               else ""))
 
 
 def main():
@@ -249,7 +256,7 @@ def main():
     hjt.checkup("ur5", work / "check_up.csv", joint="shoulder", force=True)
     trials = [trial(work, gear, 100 * place) for place, gear in enumerate(GEARS, 1)]
     lab.write_or_print(options.docs, "health.md", "repeats",
-                       [*repeats_table(trials), "", *sizes_table(trials), "", *faults_table(trials), "",
+                       [*sizes_table(trials), "", *faults_table(trials), "", *repeats_table(trials), "",
                         worn_line(trials)])
 
 

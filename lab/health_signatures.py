@@ -274,7 +274,8 @@ def constants_table(alarms, errors):
     without m no motion is unlike, without w_1 the weight may fall to nothing."""
     least = loss(alarms, errors)
     lines = [f"The mean log probability of the true cause is {-least:.3f} in {len(alarms)} alarms.", "",
-             "| constant | value | without it | half | twice |", "|---|---|---|---|---|"]
+             "| constant | value | change without the constant | change with half its value "
+             "| change with twice its value |", "|---|---|---|---|---|"]
     for name, value in errors._asdict().items():
         without = {"weight": 1.0, "speed": 1e9, "direction": 1e9}.get(name, 1e-9)
         cells = [f"{least - loss(alarms, errors._replace(**{name: other})):+.3f}"

@@ -18,17 +18,26 @@ from drawing import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, STYLE, plt  # noqa: 
 APART = {
     "arm_faults": [("arm_faults_worst.csv", "interface|lubricant|tooth_wear|wave|pitting|ratcheting")],
     "bound": [("health_bound.csv", None)],
+    "carried": [("health_carried.csv", None)],
+    "constants": [("signature_effects.csv", None)],
     "cycle": [("performance.csv", "100 rad/s|reversing")],
-    "motions": [("health_motions.csv", "all of them|another model|a further model")],
+    "health": [("health_runs.csv", None), ("health_kinds.csv", r"^\| all ")],
+    "life": [("life_fatigue.csv", None), ("life_scores.csv", None), ("life_tenths.csv", None),
+             ("life_ends.csv", None)],
+    "motions": [("health_motions.csv", "three gears|another model|a further model"), ("health_missed.csv", None)],
     "others": [("faults_others.csv", r"\| none|0\.02 N|\b1 counts|1 mrad|\b5 %")],
-    "read": [("life_read.csv", "all check-ups|line through lost motion")],
+    "repeats": [("health_references.csv", None), ("health_repeats.csv", None)],
+    "read": [("life_read.csv", "all check-ups")],
+    "risk": [("faults_risk.csv", None)],
+    "seen": [("health_robots.csv", r"\b[12], |, [12]\b|\| (none|named|true)")],
     "series": [("health_series.csv", r"^\| all ")],
     "signatures": [("signatures_runs.csv", None), ("signatures.csv", None)],
 }
 
 
 def apart(folder, name, lines):
-    """`lines`, their tables written to the files that APART gives; a link to the file stands below each."""
+    """`lines`, their tables written to the files that APART gives; a link to the file stands below each, or
+    one line of links below several."""
     files = list(APART.get(name, []))
     found, row = [], 0
     while row < len(lines):
@@ -45,7 +54,10 @@ def apart(folder, name, lines):
         with open(folder / file, "w", encoding="utf-8", newline="") as out:
             csv.writer(out, lineterminator="\n").writerows(cells[:1] + cells[2:])
         found += table[:2] + [line for line in table[2:] if re.search(shown, line)] + [""] if shown else []
-        found.append(f"All rows: [{file}]({file}).")
+        if len(found) > 1 and found[-2].startswith("All rows: ") and not found[-1]:
+            found[-2:] = [f"{found[-2][:-1]}, [{file}]({file})."]
+        else:
+            found.append(f"All rows: [{file}]({file}).")
     return found
 
 

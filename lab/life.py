@@ -240,9 +240,10 @@ def held(rows, chosen):
 
 
 def age_table(ages):
-    lines = ["| duty | turns an hour | first limit | after [h] | flank wear [µm] | interface wear [µm] | tooth "
-             "space: amplitude, mean [MPa] | without mean, at the notch | error of the map [-] |",
-             "|---|---|---|---|---|---|---|---|---|"]
+    lines = ["| duty cycle | turns of the motor in an hour | limit reached first | hours until this limit "
+             "| flank wear at this limit [µm] | interface wear at this limit [µm] | amplitude in the tooth space [MPa] "
+             "| mean stress in the tooth space [MPa] | equivalent amplitude at the notch [MPa] "
+             "| error of the interpolation [-] |", "|---" * 10 + "|"]
     for name, (result, _) in ages.items():
         worst = max((phase["fatigue"][0] for phase in result["phases"]), key=lambda row: row["equivalent"])
         lines.append(f"| {DUTIES[name]} | {result['turns'] / result['hours']:.3g} | {result['end']} | "
@@ -255,33 +256,43 @@ def age_table(ages):
 
 def fatigue_table(options):
     def shown(value):
-        return "no end" if value is None else f"{value:.2g}"
+        return "unlimited" if value is None else f"{value:.2g}"
 
     rows = json.loads(run(options, "fatigue", "--json"))["rows"]
-    lines = ["| load [N.m] | place | amplitude, mean, shear [MPa] | without mean, at the notch | cycles of half of all "
-             "| of the weakest 1 % | catalogue allows |", "|---|---|---|---|---|---|---|"]
+    lines = ["| load [N.m] | place | amplitude [MPa] | mean stress [MPa] | shear [MPa] "
+             "| equivalent amplitude at the notch [MPa] | cycles that half of the drives survive "
+             "| cycles that 99 % of the drives survive | cycles that the catalogue allows |", "|---" * 9 + "|"]
     for row in rows:
-        lines.append(f"| {row['torque']:g} | {row['place']} | {1e-6 * row['amplitude']:.0f}, {1e-6 * row['mean']:.0f}, "
+        lines.append(f"| {row['torque']:g} | {row['place']} | {1e-6 * row['amplitude']:.0f} | "
+                     f"{1e-6 * row['mean']:.0f} | "
                      f"{1e-6 * row['shear']:.0f} | {1e-6 * row['equivalent']:.0f} | {shown(row['cycles'])} | "
                      f"{shown(row['cycles_weak'])} | {shown(row['allowed'])} |")
     return lines
 
 
-def trial_table(results):
-    lines = ["| drives | lives | ended by " + ", ".join(ENDS) + " | forecasts | 80 % interval held the truth [%] "
-             "| lives ended by flank wear | interface wear | bearing | fatigue |", "|---" * 9 + "|"]
-    for name, (result, rows) in results.items():
-        ends = ", ".join(str(result[end.replace(" ", "_")]) for end in ENDS)
-        causes = " | ".join(held(rows, chosen) for chosen in (rows["end"] == 0, rows["end"] == 1, rows["end"] == 3,
-                                                              rows["end"] >= 4))
-        lines.append(f"| {name} | {result['lives']} | {ends} | {len(rows)} | {held(rows, rows['end'] >= 0)} "
-                     f"| {causes} |")
+def ends_table(results):
+    lines = ["| drives | lives | " + " | ".join(f"ended by {end}" for end in ENDS) + " |",
+             "|---" * (len(ENDS) + 2) + "|"]
+    for name, (result, _) in results.items():
+        ends = " | ".join(str(result[end.replace(" ", "_")]) for end in ENDS)
+        lines.append(f"| {name} | {result['lives']} | {ends} |")
+    return lines
+
+
+def coverage_table(results):
+    lines = ["| truth in the 80 % interval [%] | forecasts | all lives | "
+             + " | ".join(f"lives ended by {end}" for end in ("flank wear", "interface wear", "bearing", "fatigue"))
+             + " |", "|---" * 7 + "|"]
+    for name, (_, rows) in results.items():
+        causes = " | ".join(held(rows, chosen) for chosen in (rows["end"] >= 0, rows["end"] == 0, rows["end"] == 1,
+                                                              rows["end"] == 3, rows["end"] >= 4))
+        lines.append(f"| {name} | {len(rows)} | {causes} |")
     return lines
 
 
 def tenth_table(results):
-    lines = ["| held [%], by tenth of the life as the forecast has it | "
-             + " | ".join(str(tenth + 1) for tenth in range(10)) + " |", "|---" * 11 + "|"]
+    lines = ["| truth in the 80 % interval [%], by tenth of the forecast life | "
+             + " | ".join(f"tenth {tenth + 1}" for tenth in range(10)) + " |", "|---" * 11 + "|"]
     for name, (_, rows) in results.items():
         covered = " | ".join(held(rows, tenth) for tenth in tenths(rows, of_forecast(rows)))
         lines.append(f"| {name} | {covered} |")
@@ -289,10 +300,11 @@ def tenth_table(results):
 
 
 def score_table(results):
-    lines = ["| drives | forecast | CRPS [h] | of the second half of lives ended by wear "
-             "| median within 30 % of the truth [%] | lives ended by wear: at half, at 80 % of the life "
-             "| horizon of these | 80 % interval held [%] |",
-             "|---" * 8 + "|"]
+    lines = ["| drives | forecast | mean CRPS [h] | mean CRPS, second half of lives ended by wear [h] "
+             "| median within 30 % of the truth [%] "
+             "| median within 30 % of the truth, at half of lives ended by wear [%] "
+             "| median within 30 % of the truth, at 80 % of lives ended by wear [%] | horizon, lives ended by wear [-] "
+             "| truth in the 80 % interval [%] |", "|---" * 9 + "|"]
     for name, (_, rows) in results.items():
         found = [(words, rows[prefix + "crps"], *(rows[prefix + q] for q in ("q10", "q50", "q90")))
                  for words, prefix in (("use alone", "prior_"), ("last assessment", ""),
@@ -300,8 +312,8 @@ def score_table(results):
         truth, share, worn = rows["remaining"], of_life(rows), rows["end"] <= 1
         for words, score, low, median, high in found:
             good = accurate(rows, median)
-            at = ", ".join(f"{100 * numpy.mean(good[worn & (numpy.abs(share - part) < 0.05)]):.0f}"
-                           for part in (0.5, 0.8))
+            at = " | ".join(f"{100 * numpy.mean(good[worn & (numpy.abs(share - part) < 0.05)]):.0f}"
+                            for part in (0.5, 0.8))
             left = lives_judged.horizon(rows["life"][worn], good[worn], share[worn])
             lines.append(f"| {name} | {words} | {numpy.mean(score):.0f} "
                          f"| {numpy.mean(score[worn & (share > 0.5)]):.0f} "
@@ -335,15 +347,17 @@ def main():
     print("life: lives with signals", file=sys.stderr)
     lab.write(options.docs / "life.md", "read", lives_judged.tables(lives_judged.judged(options)))
     lab.write(options.docs / "life.md", "life", [
-        *age_table(ages), "",
-        "`joint_twin life fatigue` of the new drive at the catalogue's torques:", "",
+        "The CSV files give the fatigue of the new drive at the catalogue's torques (`joint_twin life fatigue`), the "
+        "scores of the forecasts, the coverage by tenths of the life, and the ends of the lives.", "",
         *fatigue_table(options), "",
-        "![S-N curve, the catalogue's torques (dots and arrows, at the cycles it allows) and the phases of the duties "
-        "over their lives](images/life_fatigue.png)", "",
-        "![Wear, grease and bearing over the turns of the motor, three duties](images/life_ageing.png)", "",
-        *trial_table(results), "",
-        *tenth_table(results), "",
         *score_table(results), "",
+        *tenth_table(results), "",
+        *ends_table(results), "",
+        *age_table(ages), "",
+        "![S-N curve, the catalogue's torques (dots and arrows, at the cycles it allows) and the phases of the duties "
+        "over their lives](images/life_fatigue.png)",
+        "![Wear, grease and bearing over the turns of the motor, three duties](images/life_ageing.png)", "",
+        *coverage_table(results), "",
         "![Forecasts of three lives each, calibration, accuracy and coverage against the "
         "share of life gone](images/life_forecast.png)"])
     print(f"life: wrote {options.docs / 'life.md'}", file=sys.stderr)

@@ -174,14 +174,16 @@ def horizon(lives, accurate, share):
 
 
 def tables(rows):
-    lines = ["| end | lives, check-ups | forecast | error of the median [h]: median, mean | CRPS [h] | median within "
-             "30 % of the truth [%]: first, second half of the life | horizon | 80 % interval held [%]: first, second "
-             "half |",
-             "|---" * 8 + "|"]
+    parts = [f"{number} half of the life [%]" for number in ("first", "second")]
+    columns = ["end of the lives", "lives", "check-ups", "forecast", "error of the median forecast, median [h]",
+               "error of the median forecast, mean [h]", "mean CRPS [h]",
+               *(f"median within 30 % of the truth, {part}" for part in parts), "horizon [-]",
+               *(f"truth in the 80 % interval, {part}" for part in parts)]
+    lines = ["| " + " | ".join(columns) + " |", "|---" * len(columns) + "|"]
 
     def halves(of, cause):
         parts = [of[gone(cause) < 0.5], of[gone(cause) >= 0.5]]
-        return ", ".join(f"{100.0 * part.mean():.0f}" if len(part) else "-" for part in parts)
+        return " | ".join(f"{100.0 * part.mean():.0f}" if len(part) else "-" for part in parts)
 
     for end, cause in rows.groupby("cause"):
         for name, words in FORECASTS.items():
@@ -189,10 +191,10 @@ def tables(rows):
                 continue
             error = (cause[name + "_q50"] - cause.truth).abs()
             score = cause[name + "_crps"].mean() if name + "_crps" in cause else error.mean()
-            cover = halves(held(cause, name), cause) if name + "_q10" in cause else ""
+            cover = halves(held(cause, name), cause) if name + "_q10" in cause else " | "
             left = horizon(cause.drive.to_numpy(), good(cause, name).to_numpy(), gone(cause).to_numpy())
-            lines.append(f"| {end} | {cause.drive.nunique()}, {len(cause)} | {words} "
-                         f"| {error.median():.0f}, {error.mean():.0f} | {score:.0f} "
+            lines.append(f"| {end} | {cause.drive.nunique()} | {len(cause)} | {words} "
+                         f"| {error.median():.0f} | {error.mean():.0f} | {score:.0f} "
                          f"| {halves(good(cause, name), cause)} | {left:.2f} | {cover} |")
     return lines
 

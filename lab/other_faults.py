@@ -56,9 +56,9 @@ def row_of(words, size, unit, verdicts):
     causes = collections.Counter(alarms.cause).most_common()
     named = ", ".join(f"`{cause}` {count}" for cause, count in causes) or "-"
     shown = ", ".join(f"`{name}`" for name, _ in collections.Counter(alarms.indicator).most_common(2)) or "-"
-    surest = f"{alarms.confidence.mean():.2f}, {alarms.severity.mean():.2f}" if len(alarms) else "-"
-    return (f"| {words} | {size:g} {unit} | {len(alarms)} of {judged} | {len(verdicts) - judged} | {named} | {surest} "
-            f"| {shown} |")
+    means = [f"{alarms[name].mean():.2f}" if len(alarms) else "-" for name in ("confidence", "severity")]
+    return (f"| {words} | {size:g} {unit} | {len(alarms)} of {judged} | {len(verdicts) - judged} | {named} | "
+            f"{' | '.join(means)} | {shown} |")
 
 
 def main():
@@ -73,8 +73,8 @@ def main():
     runs = [run for _, run in hjt.load(options.work / "set", "signals").groupby("run")]
     reference = options.work / "reference.yaml"
     hjt.reference(runs[:REFERENCE], reference, overlays=OVERLAYS, force=True)
-    lines = ["| fault | size | alarms, of those judged | not judged | taken for | confidence, severity | shows in |",
-             "|---|---|---|---|---|---|---|"]
+    lines = ["| fault outside the gear | size | alarms, of runs judged | runs not judged | named causes, alarms "
+             "| mean confidence | mean severity | indicators with the largest deviation |", "|---" * 8 + "|"]
     sound = hjt.assess(runs[REFERENCE:], reference, check_up=True, overlays=OVERLAYS)
     lines.append(row_of("none", 0.0, "", sound))
     for fault in FAULTS:
@@ -83,8 +83,8 @@ def main():
                       for run in runs[REFERENCE:]]
             verdicts = hjt.assess(faulty, reference, check_up=True, overlays=OVERLAYS)
             lines.append(row_of(fault.words, size, fault.unit, verdicts))
-    lines += ["", f"A stuck brake is not judged: at its torque limit the motor turns {stuck():.2g} rad in 2 s, so no "
-              "window is complete."]
+    lines += ["", "The assessment cannot judge a joint with a stuck brake. At its torque limit the motor turns "
+              f"{stuck():.2g} rad in 2 s, so that no window is completed."]
     lab.write_or_print(options.docs, "faults.md", "others", lines)
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Scores the failure modes of the thesis' Table 3.7 again: how well each is detected is what docs/health.md found with
-three sets of sensors. Writes the table into docs/faults.md."""
+"""Scores the failure modes of the thesis' Table 3.7 again: how well each is detected is what docs/health_robots.csv
+says of the signals of two robots. Writes the table of docs/faults.md."""
 import argparse
 import csv
 
@@ -19,23 +19,13 @@ KINDS = {  # by their order in the thesis' table
     "Crack in the flexspline": "flexspline_crack",
     "Buckling": "buckling",
     "Ratcheting": "ratcheting"}
-SENSORS = ("UR5", "UR5e", "motor encoder")
+ROBOTS = ("UR5", "UR5e")
 
 
 def detection(seen):
-    """D by what is seen: 1 sure ... 10 not at all."""
-    if seen.startswith("from 0.3"):
-        return 2
-    if seen.startswith("from 1"):
-        return 5
-    return 8 if seen.startswith("1 of 2") else 10
-
-
-def seen_table(text):
-    """Cells of the first columns of the table by kind."""
-    lines = text.split("<!-- seen:begin -->")[1].split("<!-- seen:end -->")[0].splitlines()
-    rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines if line.startswith("| `")]
-    return {row[0].strip("`"): row[1:1 + len(SENSORS)] for row in rows}
+    """D by the alarms of two robots at severity 0.3 and at 1, "2, 2": 1 sure ... 10 not at all."""
+    slight, full = map(int, seen.split(", "))
+    return 2 if slight == 2 else {2: 5, 1: 8, 0: 10}[full]
 
 
 def places(numbers):
@@ -45,15 +35,17 @@ def places(numbers):
 
 def main():
     argparse.ArgumentParser(description=__doc__).parse_args()
-    seen = seen_table((lab.CHECKOUT / "docs" / "health.md").read_text(encoding="utf-8"))
+    with open(lab.CHECKOUT / "docs" / "health_robots.csv", encoding="utf-8", newline="") as file:
+        seen = {row[0]: row[1:1 + len(ROBOTS)] for row in csv.reader(file)}
     with open(lab.CHECKOUT / "lab" / "validation" / "fmeca.csv", encoding="utf-8") as file:
         modes = list(csv.DictReader(file))
     scores = [[int(mode["detection"])] + [detection(cell) for cell in seen[KINDS[mode["mode"]]]] for mode in modes]
     risks = [[int(mode["severity"]) * int(mode["occurrence"]) * score for score in row]
              for mode, row in zip(modes, scores)]
     ranks = list(zip(*map(places, zip(*risks))))
-    lines = ["| mode | S | O | thesis: D, RPN (rank) | " + " | ".join(SENSORS) + " |",
-             "|---" * (4 + len(SENSORS)) + "|"]
+    lines = ["| failure mode | S | O | "
+             + " | ".join(f"{source}: D, RPN (rank)" for source in ("thesis", *ROBOTS)) + " |",
+             "|---" * (4 + len(ROBOTS)) + "|"]
     for mode, score, risk, rank in sorted(zip(modes, scores, risks, ranks), key=lambda row: row[3][0]):
         cells = [f"{d}, {number} ({place})" for d, number, place in zip(score, risk, rank)]
         lines.append(f"| {mode['mode']} | {mode['severity']} | {mode['occurrence']} | " + " | ".join(cells) + " |")

@@ -37,9 +37,10 @@ class NumberLocale(Tree):
 
 class LifeCounts(Tree):
     def test_a_header_of_another_page_is_named(self):
-        page = project.text(project.ROOT, "docs/health.md")
-        header = life_counts.script.header(page)
-        self.write("docs/health.md", page)
+        files = {file: project.text(project.ROOT, file) for file in ("docs/health.md", "docs/health_kinds.csv")}
+        header = life_counts.script.header(*files.values())
+        for file, text in files.items():
+            self.write(file, text)
         self.write("src/life/assessment_counts.hpp", header)
         self.assert_clean(life_counts.check)
         self.write("src/life/assessment_counts.hpp", header.replace("SOUND_RUNS = 1", "SOUND_RUNS = 2"))
