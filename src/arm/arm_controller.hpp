@@ -5,8 +5,8 @@
 #include <limits>
 #include <vector>
 
+#include "arm/arm_description.hpp"
 #include "arm/arm_twin.hpp"
-#include "arm/joint_gains.hpp"
 
 namespace hjt
 {

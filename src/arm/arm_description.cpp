@@ -13,7 +13,6 @@
 #include <kdl/tree.hpp>
 #include <kdl_parser/kdl_parser.hpp>
 
-#include "arm/arm_file.hpp"
 #include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "params/field_reader.hpp"

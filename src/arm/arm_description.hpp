@@ -7,12 +7,21 @@
 #include <string>
 #include <vector>
 
-#include "arm/joint_gains.hpp"
 #include "base/range.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"
 
 namespace hjt
 {
+/// Control of one joint, all seen from the joint.
+struct JointGains
+{
+  double position{};       ///< speed wanted for an error of the angle [1/s]
+  double speed{};          ///< torque for an error of the speed [N.m.s/rad]
+  double integral_time{};  ///< of the speed control [s]
+  double coulomb{};        ///< friction that is fed forward: constant [N.m]
+  double viscous{};        ///< and by speed [N.m.s/rad]
+};
+
 /// One joint of an arm and the drive in it.
 struct ArmJoint
 {
@@ -89,4 +98,27 @@ void readLinks(ArmDescription& arm);
 
 /// A controller's gains, SHORT_NAME.position ... of the joints that the file names. @throws ParameterError alike.
 void readGains(const std::string& path, ArmDescription& arm);
+
+/// From a time on that payload is carried.
+struct PayloadFrom
+{
+  double time{};  ///< [s]
+  Payload payload;
+};
+
+/// Payloads of an arm in order of time; empty: the configured one.
+using PayloadCourse = std::vector<PayloadFrom>;
+
+/// The text of a file of at most MAX_TEXT bytes (base/whole_file.hpp). `place`: where it is named, for the error text.
+/// @throws ParameterError if it is no regular file, larger, empty, or cannot be read.
+std::string textOf(const std::string& path, const std::string& place = "");
+
+/// `name` in the folder of the file `path`; `name` if it is absolute.
+std::string beside(const std::string& path, const std::string& name);
+
+/// Contents of an arm's YAML file, under keys joined by dots: "payload.mass", "joints.0.name". A list of numbers is one
+/// value; elements of another have keys of their own. Keys that the file does not give are those of the file that it is
+/// `like`, and so on; "description" is beside the file that gives it.
+/// @throws ParameterError naming file and line.
+ParameterMap readArmFile(const std::string& path);
 }  // namespace hjt

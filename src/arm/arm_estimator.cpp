@@ -9,7 +9,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "arm/residual_statistics.hpp"
+#include "base/statistics.hpp"
 
 namespace hjt
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "arm/arm_file.hpp"
+#include "arm/arm_description.hpp"
 
 #include <filesystem>
 #include <optional>

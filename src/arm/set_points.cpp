@@ -10,12 +10,13 @@
 #include <tuple>
 #include <utility>
 
-#include "arm/arm_dynamics.hpp"
-#include "arm/arm_file.hpp"
-#include "arm/check_up.hpp"
+#include "arm/arm_controller.hpp"
+#include "arm/arm_description.hpp"
+#include "arm/arm_motion.hpp"
 #include "base/csv_table.hpp"
 #include "base/number_text.hpp"
 #include "base/statistics.hpp"
+#include "gear/ratio.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "params/field_reader.hpp"
 
@@ -468,5 +469,56 @@ std::vector<ArmSetPoint> readSetPoints(const std::string& path, const ArmDescrip
   fillRates(points, has_velocity, has_acceleration);
   requireMotion(points, arm, path);
   return points;
+}
+
+MotionLimits::MotionLimits(const ArmDescription& arm, const std::vector<Parameters>& drives)
+  : dynamics_(arm), torques_(drives.size())
+{
+  for (std::size_t i = 0; i < drives.size(); ++i)
+  {
+    joints_.push_back({ arm.joints[i].name, arm.joints[i].torque_limit,
+                        nominalRatio(drives[i].gear) * drives[i].motor.torque_limit,
+                        ArmController::motorInertia(drives[i]) });
+  }
+}
+
+std::string MotionLimits::errors(const std::vector<ArmSetPoint>& points)
+{
+  std::vector<JointMotion> motion(joints_.size());
+  for (std::size_t k = 1; k < points.size(); ++k)
+  {
+    ArmMotion piece({ points[k - 1], points[k] }, ArmAccelerations::OF_CUBICS);
+    const double length = points[k].time - points[k - 1].time;
+    // The acceleration of a cubic is greatest at its ends, which belong to the set points' neighbours too.
+    for (const double share : { 1e-6, 0.5, 1.0 - 1e-6 })
+    {
+      piece.at(points[k - 1].time + share * length, motion);
+      if (std::string error = errorsAt(motion, points[k].time); !error.empty())
+      {
+        return error;
+      }
+    }
+  }
+  return {};
+}
+
+std::string MotionLimits::errorsAt(const std::vector<JointMotion>& motion, double before)
+{
+  dynamics_.torques(motion, torques_);
+  for (std::size_t i = 0; i < joints_.size(); ++i)
+  {
+    const Joint& joint = joints_[i];
+    const double motor = std::abs(torques_[i] + joint.motor_inertia * motion[i].acceleration);
+    // Written so that NaN fails.
+    const bool links_can = joint.torque_limit == 0.0 || std::abs(torques_[i]) <= joint.torque_limit;
+    if (!links_can || !(motor <= joint.motor_limit))
+    {
+      return joint.name + " would need " + roundedText(links_can ? motor : std::abs(torques_[i]), 3) +
+             (links_can ? " N.m of its motor" : " N.m") + " before " + roundedText(before, 4) + " s, at " +
+             roundedText(motion[i].acceleration, 3) + " rad/s^2; " + (links_can ? "it has " : "its limit is ") +
+             roundedText(links_can ? joint.motor_limit : joint.torque_limit, 4);
+    }
+  }
+  return {};
 }
 }  // namespace hjt

@@ -4,10 +4,12 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
-#include "arm/load_law.hpp"
+#include "arm/arm_ranking.hpp"
+#include "arm/found_load.hpp"
 #include "recordings/arm_recording.hpp"
 #include "tracking/stream_timing.hpp"
 #include "tracking/verdict.hpp"
@@ -116,4 +118,8 @@ struct AssessmentSettings
 /// Reads the recording, and again with the payload and the mounting that its currents show, where these explain them:
 /// they are the recording's then. `fit` is that of the last pass. @throws ParameterError, InputError.
 ArmAssessment assess(ArmRecording& recording, const AssessmentSettings& settings, RecordingFit& fit);
+
+/// Of the arms of these names, the best first: how each explains the first two minutes, the gains that the recording
+/// states too. @throws InputError, ParameterError.
+std::vector<ArmFit> rankArms(const RecordingOptions& options, const std::vector<std::string>& names);
 }  // namespace hjt

@@ -10,7 +10,7 @@
 #include "elements/load.hpp"
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
-#include "recordings/stated_gains.hpp"
+#include "recordings/controller_table.hpp"
 #include "tracking/effort.hpp"
 #include "tracking/motion_driven.hpp"
 #include "tracking/ratio_fit.hpp"

@@ -4,14 +4,16 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
 #include <optional>
+#include <string>
 #include <utility>
-
-#include "output/output_file.hpp"
-#include "output/process_end.hpp"
-#include "recordings/arm_rows.hpp"
+#include <vector>
 
 #include "arm/arm_configuration.hpp"
+#include "arm/arm_recorder.hpp"
 #include "arm/moving_arm.hpp"
 #include "arm/set_points.hpp"
 #include "bags/recorded_messages.hpp"
@@ -19,11 +21,107 @@
 #include "base/publish_period.hpp"
 #include "base/statistics.hpp"
 #include "base/text.hpp"
+#include "datasets/run_file.hpp"
+#include "datasets/sweep_directory.hpp"
+#include "output/output_file.hpp"
+#include "output/process_end.hpp"
 
 namespace hjt
 {
 namespace
 {
+/// Writes the rows of an arm's motion to a file. A CSV file has one row for each; a `.bag` has the messages that the
+/// arm's driver would publish; an `.h5` file is like a run of a data set.
+class ArmRows
+{
+public:
+  /// `spec`: the run, ArmSpec::arm.state_rate that of the rows, which divides solver.rate. `path`: empty, none.
+  /// `moving`: at the first row; stays there as long as this. @throws InputError.
+  ArmRows(const std::string& path, const RunSpec& spec, const MovingArm& moving);
+
+  /// After every step of the motion; `row`: none, no row is due. @throws InputError.
+  void take(Stamp stamp, double time, ArmRecorder& recorder, const ArmRow* row);
+
+  void close();  ///< @throws InputError
+
+  /// Whether it is a run's file: without `close` nothing is left of it.
+  bool isRun() const { return file_ != nullptr; }
+
+private:
+  const MovingArm& moving_;
+  Stamp begin_;  // of the rows
+  Stamp end_;    // of a run
+  bool failed_{};
+  std::uint64_t on_surface_{};
+  std::string path_;
+  RunSpec spec_;
+  std::unique_ptr<RunFile> file_;
+  std::optional<CsvWriter> csv_;
+  std::vector<double> values_;
+};
+
+ArmRows::ArmRows(const std::string& path, const RunSpec& spec, const MovingArm& moving)
+  : moving_(moving), begin_(moving.twin().stamp()), end_(begin_), path_(path), spec_(spec)
+{
+  const std::string ending = std::filesystem::path(path).extension().string();
+  if (ending == runFileExtension(RunFormat::BAG) || ending == runFileExtension(RunFormat::HDF5))
+  {
+    Recording recording;
+    recording.format = ending == runFileExtension(RunFormat::BAG) ? RunFormat::BAG : RunFormat::HDF5;
+    RecordingGroup group{ "states", spec.arm->arm.state_rate, false, {} };
+    for (const RunColumn& column : armColumns())
+    {
+      group.columns.push_back(&column);
+    }
+    recording.groups.push_back(group);
+    file_ = makeRunFile(recording, spec, &moving.twin().drive(0), path);
+  }
+  else if (!path.empty())
+  {
+    std::vector<std::string> columns = armColumnNames(moving.twin().joints());
+    columns.insert(columns.begin(), "timestamp");
+    csv_.emplace(path, columns);
+  }
+}
+
+void ArmRows::take(Stamp stamp, double time, ArmRecorder& recorder, const ArmRow* row)
+{
+  if (file_ && !failed_)
+  {
+    end_ = stamp;
+    on_surface_ += stamp > begin_ && allOnSurface(moving_.twin()) ? 1 : 0;
+    failed_ = countersOf(moving_.twin()).solver_failures > 0;
+    if (!failed_)  // a failed twin ends the file here, as it ends a run of a data set
+    {
+      file_->record(stamp, recorder);
+    }
+  }
+  if (csv_ && row != nullptr)
+  {
+    values_.assign(1, time);
+    for (const std::vector<double>& numbers : *row)
+    {
+      values_.insert(values_.end(), numbers.begin(), numbers.end());
+    }
+    csv_->writeRow(values_);
+  }
+}
+
+void ArmRows::close()
+{
+  if (file_)
+  {
+    OrderedJson record = recordOf(spec_, path_);
+    addOutcome(countersOf(moving_.twin()), on_surface_, toSeconds(end_ - begin_), record);
+    addProtectiveStop(spec_.arm->arm, moving_, record);
+    file_->finish(record);
+  }
+  if (csv_)
+  {
+    csv_->close();
+  }
+}
+
 /// The rate of the rows as the arm's: the next one to that wanted that divides the solver's.
 void takeRate(const ArmRunOptions& options, double solver_rate, ArmDescription& arm)
 {

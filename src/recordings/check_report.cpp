@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "recordings/check_report.hpp"
+#include "recordings/recording_check.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -8,7 +8,7 @@
 
 #include "base/number_text.hpp"
 #include "output/report.hpp"
-#include "recordings/comparison_files.hpp"
+#include "recordings/recording_comparison.hpp"
 
 namespace hjt
 {

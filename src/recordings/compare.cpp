@@ -2,29 +2,28 @@
 #include "recordings/compare.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <optional>
-#include <string>
 #include <utility>
-#include <vector>
 
-#include "messages/conversions.hpp"
-#include "output/output_file.hpp"
-#include "output/report.hpp"
-#include "recordings/arm_recording.hpp"
-#include "recordings/comparison_files.hpp"
-#include "recordings/recording_comparison.hpp"
-#include "recordings/report_page.hpp"
-#include "tracking/sound_joint.hpp"
+#include <spawn.h>
+#include <sys/wait.h>
 
 #include "base/number_text.hpp"
 #include "base/text.hpp"
 #include "base/whole_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
+#include "messages/conversions.hpp"
 #include "messages/topics.hpp"
+#include "output/output_file.hpp"
+#include "params/configuration_files.hpp"
+#include "recordings/arm_recording.hpp"
+#include "tracking/sound_joint.hpp"
 
 namespace hjt
 {
@@ -123,8 +122,6 @@ private:
   std::optional<TableFile<JudgedWindow>> windows_;  // likewise
   RecordingComparison comparison_;
 };
-
-namespace fs = std::filesystem;
 
 void refuseReferenceAsReport(const ComparisonOptions& options)
 {
@@ -468,6 +465,31 @@ void addReferenceOption(OptionTable& table, ComparisonOptions& options)
       .follow()
       .type("DIR")
       .existingDirectory();
+}
+
+void makePage(const std::string& directory)
+{
+  constexpr const char* PYTHON = "/usr/bin/python3";
+  std::string script = (packageDirectory() / "scripts/comparison_page.py").string();
+  std::string python = PYTHON;
+  std::string argument = directory;
+  std::array<char*, 4> arguments{ python.data(), script.data(), argument.data(), nullptr };
+  pid_t child{};
+  const int refused = posix_spawn(&child, PYTHON, nullptr, nullptr, arguments.data(), environ);
+  int status = 0;
+  if (refused == 0)
+  {
+    while (waitpid(child, &status, 0) < 0 && errno == EINTR)
+    {
+    }
+  }
+  if (refused != 0 || status != 0)
+  {
+    throw InputError("the page was not made" +
+                     (refused != 0 ? ": " + std::string(PYTHON) + ": " + std::strerror(refused) : std::string()) +
+                     "; the data are in " + directory + ", and `" + python + " " + script + " " + directory +
+                     "` makes the page of them");
+  }
 }
 
 ComparedRecording compare(const ComparisonOptions& options)

@@ -8,9 +8,8 @@
 
 #include "output/report.hpp"
 #include "recordings/arm_assessment.hpp"
-#include "recordings/recording_contents.hpp"
+#include "recordings/recording_comparison.hpp"
 #include "recordings/recording_options.hpp"
-
 #include "tracking/common_friction.hpp"
 #include "tracking/verdict.hpp"
 
@@ -66,4 +65,9 @@ ComparedRecording compare(const ComparisonOptions& options);
 
 /// A row for each joint.
 Table tableOf(const ComparedRecording& compared);
+
+constexpr const char* REPORT_PAGE = "report.html";
+
+/// Runs the script that makes page and pictures of the data in a directory. @throws InputError if it does not end well.
+void makePage(const std::string& directory);
 }  // namespace hjt

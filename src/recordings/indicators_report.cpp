@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "recordings/indicators_report.hpp"
+#include "recordings/indicators.hpp"
 
 #include <algorithm>
 #include <array>

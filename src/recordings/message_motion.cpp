@@ -14,7 +14,6 @@
 #include "messages/joint_affixes.hpp"
 #include "recordings/message_rows.hpp"
 #include "recordings/motion_readers.hpp"
-#include "recordings/row_time.hpp"
 
 namespace hjt
 {

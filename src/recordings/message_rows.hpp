@@ -11,8 +11,8 @@
 
 #include "bags/recorded_messages.hpp"
 #include "messages/conversions.hpp"
+#include "recordings/motion_readers.hpp"
 #include "recordings/recorded_motion.hpp"
-#include "recordings/source_watch.hpp"
 #include "tracking/held_values.hpp"
 #include "tracking/unfolded_angle.hpp"
 

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "arm/arm_ranking.hpp"
+#include "output/json.hpp"
 #include "recordings/arm_assessment.hpp"
 #include "recordings/arm_recording.hpp"
-
 #include "tracking/stream_timing.hpp"
 #include "tracking/verdict.hpp"
 
@@ -86,4 +86,9 @@ struct RecordingCheck
 /// Reads the recording with every arm whose joints it names, and judges the joints with the best, or with that of the
 /// options, as `joint_twin compare` does. Remedies are tried in memory. @throws InputError, ParameterError.
 RecordingCheck checkRecording(const RecordingOptions& options);
+
+/// Commands to run next, ready to paste: with nothing that was not tried. None of arrays.
+std::vector<std::string> nextCommands(const RecordingCheck& check, const CheckedArm& arm);
+
+Json documentOf(const RecordingCheck& check);
 }  // namespace hjt

@@ -5,17 +5,57 @@
 #include <cmath>
 #include <complex>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "gear/angle.hpp"
-#include "recordings/decimated.hpp"
-
+#include "output/json.hpp"
+#include "recordings/recorded_motion.hpp"
 #include "tracking/joint_evidence.hpp"
+#include "tracking/verdict.hpp"
 
 namespace hjt
 {
+/// Every nth of a stream of any length, at least MAX_ROWS / 2 of it once there are as many, never more than MAX_ROWS.
+template <class Row>
+class Decimated
+{
+public:
+  static constexpr std::size_t MAX_ROWS = 16000;
+
+  void add(const Row& row)
+  {
+    if (seen_++ % stride_ == 0)
+    {
+      rows_.push_back(row);
+      if (rows_.size() == MAX_ROWS)
+      {
+        halve();
+      }
+    }
+  }
+
+  const std::vector<Row>& rows() const { return rows_; }
+
+private:
+  void halve()
+  {
+    for (std::size_t i = 0; i < MAX_ROWS / 2; ++i)
+    {
+      rows_[i] = rows_[2 * i];
+    }
+    rows_.resize(MAX_ROWS / 2);
+    stride_ *= 2;
+  }
+
+  std::vector<Row> rows_;
+  std::uint64_t seen_{};
+  std::uint64_t stride_{ 1 };
+};
+
 /// One line of a spectrum by turns of the motor, for each way of turning.
 struct SpectrumLine
 {
@@ -192,4 +232,63 @@ private:
   ResidualSpectrum spectrum_;
   const std::function<void(const JudgedWindow&)> watch_;
 };
+
+/// A topic or column that a comparison can use.
+struct ContentLine
+{
+  std::string name;
+  std::string gives;
+  std::uint64_t messages{};  ///< rows of a CSV file; of temperatures: rows that have one
+  bool found{};
+};
+
+/// Contents of a recording.
+struct RecordingContents
+{
+  std::vector<ContentLine> lines;
+  std::vector<std::string> joints;        ///< named in the telemetry's first message
+  std::vector<std::string> other_topics;  ///< that a comparison does not use
+};
+
+/// One instant of the twin that ran when the bag was made.
+struct TwinState
+{
+  double time{};           ///< since the first row of the telemetry [s]
+  double position{};       ///< of the joint [rad]
+  double velocity{};       ///< [rad/s]
+  double motor_current{};  ///< [A]
+};
+
+/// `twin_topic`: the joint states of a twin that was recorded beside the robot. `count`: of the reading;
+/// `temperature_rows`: those with a received temperature.
+/// @throws InputError if the file cannot be read.
+RecordingContents readContents(const MotionSource& source, const std::string& twin_topic, const MotionCount& count,
+                               std::uint64_t motor_rows, std::uint64_t temperature_rows, bool has_load);
+
+/// The twin's recorded states; none where the recording has no such topic, or it is the telemetry itself.
+Decimated<TwinState> readTwinStates(const MotionSource& source, const std::string& twin_topic, double start);
+
+/// All that a report is made of.
+struct ComparisonRecord
+{
+  std::string recording;
+  std::string joint;
+  std::string made_with;  ///< name and version of the program
+  MotionFindings found;
+  FrictionFactor friction;
+  bool is_friction_judged{};
+  RecordingContents contents;
+  Decimated<TwinState> twin_states;
+  Verdict verdict;
+};
+
+/// The fields of Verdict.msg; level and reason by name.
+Json verdictFields(const Verdict& verdict);
+
+/// Writes COMPARISON_FILE, BASELINE_FILE and tables beside them, as CSV: course, friction, friction_twin, spectrum,
+/// teeth, health, and where the recording has them torsion, torsion_twin, twin_states. Solves the ring under the loads
+/// of the recording. Gives what COMPARISON_FILE holds; with an empty `directory` that alone, and nothing is written.
+/// @throws InputError if a file cannot be written.
+Json writeComparison(const std::string& directory, const RecordingComparison& comparison, const Parameters& parameters,
+                     const ComparisonRecord& record);
 }  // namespace hjt

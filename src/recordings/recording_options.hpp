@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "output/progress.hpp"
+#include "recordings/controller_table.hpp"
 #include "recordings/recorded_motion.hpp"
-#include "recordings/stated_gains.hpp"
 
 #include "messages/joint_affixes.hpp"
 #include "messages/topics.hpp"

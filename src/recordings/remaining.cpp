@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "output/output_file.hpp"
-#include "recordings/indicators_report.hpp"
+#include "recordings/indicators.hpp"
 #include "recordings/recorded_windows.hpp"
 
 #include "base/range.hpp"

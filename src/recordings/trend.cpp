@@ -8,8 +8,7 @@
 #include <utility>
 
 #include "output/output_file.hpp"
-#include "recordings/report_page.hpp"
-#include "recordings/trend_report.hpp"
+#include "recordings/compare.hpp"
 
 #include "base/number_text.hpp"
 #include "base/text.hpp"

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "recordings/compare.hpp"
-
 #include "harmonic_joint_twin/base/stamp.hpp"
+#include "output/report.hpp"
+#include "recordings/compare.hpp"
 #include "tracking/friction_trend.hpp"
 
 namespace hjt
@@ -73,4 +73,21 @@ Trend trend(const TrendOptions& options);
 /// "2026-01-31 08:15" or "2026-01-31T08:15:00Z", UTC.
 std::string dateText(Stamp date);
 std::string isoDate(Stamp date);
+
+constexpr const char* TREND_FILE = "trend.json";
+
+/// By which a slope is multiplied for people: 1000 h, or without dates from one recording to the next.
+double trendUnit(const Trend& trend);
+const char* trendUnitText(const Trend& trend);  ///< "per 1000 h"
+
+Json documentOf(const Trend& trend);
+
+/// A row for each recording, texts in quotes, nothing where a number is not known.
+std::string csvOf(const Trend& trend);
+
+/// A row for each recording, a column for each joint.
+Table recordingsOf(const Trend& trend);
+
+/// A row for each joint.
+Table jointsOf(const Trend& trend);
 }  // namespace hjt

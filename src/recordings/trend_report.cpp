@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "recordings/trend_report.hpp"
+#include "recordings/trend.hpp"
 
 #include <algorithm>
 #include <cmath>

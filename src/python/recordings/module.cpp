@@ -15,13 +15,13 @@
 #include "python/comparison_row.hpp"
 #include "python/recordings/calls.hpp"
 #include "recordings/arm_run.hpp"
-#include "recordings/check_report.hpp"
 #include "recordings/compare.hpp"
 #include "recordings/follow.hpp"
 #include "recordings/identify.hpp"
 #include "recordings/indicators.hpp"
+#include "recordings/recording_check.hpp"
 #include "recordings/remaining.hpp"
-#include "recordings/trend_report.hpp"
+#include "recordings/trend.hpp"
 
 namespace hjt
 {
