@@ -28,14 +28,14 @@ namespace hjt
 class RowTimes
 {
 public:
-  static constexpr double ANGLE = 1e-4;        ///< deviation of an angle's change from its velocity's integral [rad]
-  static constexpr double STAMP = 4e-3;        ///< deviation of a stamp's interval [s]
-  static constexpr double SIGNIFICANT = 0.35;  ///< of the interval by the stamps
-  static constexpr double AGREES = 0.1;        ///< [-]
+  static constexpr double ANGLE = 1e-4;  ///< standard deviation of an angle's change from its velocity's integral [rad]
+  static constexpr double STAMP = 4e-3;  ///< standard deviation of a stamp's interval [s]
+  static constexpr double SIGNIFICANT = 0.35;  ///< share of the interval by the stamps
+  static constexpr double AGREES = 0.1;        ///< share by which velocities and angles may differ [-]
 
   explicit RowTimes(std::size_t joints) : last_(joints), agreements_(joints) {}
 
-  /// Delay of the stamp of these rows, one of each joint [s]. The rows are later than those before.
+  /// Returns how late the stamp of these rows is [s]. There is one row of each joint, later than the rows before.
   double stampError(const std::vector<MotionRow>& rows) noexcept
   {
     const double step = started_ ? rows.front().time - last_.front().time : HUGE_VAL;
@@ -53,7 +53,7 @@ public:
   }
 
 private:
-  /// Of one joint: sums of v dq and v v d, forgotten over MEMORY. They begin in agreement.
+  /// Sums of v dq and of v v d of one joint, which are forgotten over MEMORY. Both sums begin in agreement.
   struct Agreement
   {
     double change{ START };
@@ -62,7 +62,7 @@ private:
   static constexpr double MEMORY = 10.0;  // [s]
   static constexpr double START = 0.25;   // as after 1 s at 0.5 rad/s [rad^2/s]
 
-  /// Between the last rows and these, by the motion where it says more than the stamps [s].
+  /// Time between the last rows and these, by the motion where the motion is surer than the stamps [s].
   double interval(const std::vector<MotionRow>& rows) noexcept
   {
     const double by_stamps = rows.front().time - last_.front().time;
@@ -102,15 +102,15 @@ private:
 /// All joints of an arm at the time of one row.
 struct ArmSample
 {
-  std::vector<MotionSample> joints;  ///< rates within ArmRates::HALF_WIDTH, for the load
-  /// The same with a joint's own rates, within MotionDifferentiator::HALF_WIDTH, stamp errors and vibration.
+  std::vector<MotionSample> joints;  ///< samples with rates within ArmRates::HALF_WIDTH, for the load
+  /// Samples with a joint's own rates, within MotionDifferentiator::HALF_WIDTH, with stamp errors and vibration.
   std::vector<MotionSample> own;
-  /// Of the links and the payload at the output of each joint, the motor's own inertia not in it, > 0 resists positive
-  /// motion [N.m].
+  /// Torque of links and payload at the output of each joint, without the motor's own inertia. A positive torque
+  /// resists positive motion [N.m].
   std::vector<double> torques;
 };
 
-/// Rates of all joints of an arm from a stream of their angles, rows of one time each: what is the same of every arm.
+/// Rates of all joints of an arm from a stream of rows of their angles. They do not depend on which arm it is.
 ///
 /// They are the slopes of parabolas through the angles within HALF_WIDTH of a row, so they need no recorded velocity
 /// and have no phase, and a row comes out at most HALF_WIDTH late. Velocities mend the rows' times (RowTimes): for load
@@ -119,7 +119,8 @@ struct ArmSample
 class ArmRates
 {
 public:
-  /// Wider than that of a joint's own rates: the load is that of the commanded motion, without vibration [s].
+  /// Half width of the rates for the load. It is wider than that of a joint's own rates, because the load is that of
+  /// the commanded motion without vibration [s].
   static constexpr double HALF_WIDTH = 0.1;
 
   explicit ArmRates(std::size_t joints);
@@ -127,12 +128,12 @@ public:
   /// Starts a new stream.
   void reset() noexcept;
 
-  /// One row for each joint, all of one time. False: the row is not later than the one before, or one that no joint can
-  /// have, and is left out.
+  /// Takes one row for each joint, all of one time. Returns false for rows that it leaves out: rows that are not later
+  /// than those before, or that no joint can have.
   bool push(const std::vector<MotionRow>& rows) noexcept;
 
-  /// The next sample that is ready, without its torques and vibration; none: nullptr. Valid until the next call. With
-  /// `at_end` also those that wait for later rows.
+  /// The next sample that is ready, without torques and vibration, or nullptr. It is valid until the next call. With
+  /// `at_end` also samples are ready that wait for later rows.
   ArmSample* pop(bool at_end = false) noexcept;
 
 private:
@@ -143,27 +144,27 @@ private:
   void pushFast() noexcept;
 
   RowTimes times_;
-  // One a joint, all with rows of the same times, for load and vibration.
+  // Differentiators of each joint, for load (slow) and vibration (fast); all have rows of the same times.
   std::vector<MotionDifferentiator> slow_;
   std::vector<MotionDifferentiator> fast_;
-  std::vector<ArmSample> waiting_;  // with slow rates, from first_waiting_ to end_waiting_, round and round
+  std::vector<ArmSample> waiting_;  // ring of samples with slow rates, from first_waiting_ to end_waiting_
   std::uint64_t first_waiting_{};
   std::uint64_t end_waiting_{};
   std::vector<MotionRow> rows_;
-  bool has_velocities_{};  // of the first row
+  bool has_velocities_{};  // the first row has velocities of all joints
   double last_time_{ -std::numeric_limits<double>::infinity() };
 };
 
-/// Torques at the joints of an arm in the motion of a sample. What the faster rates, within a joint's own half width,
-/// take beyond the load is the torque of the arm's vibration: mostly the answer to the drives' ripple. After
-/// construction nothing throws; nothing allocates.
+/// Torques at the joints of an arm in the motion of a sample. The rates within a joint's own half width take more
+/// torque than the load: the difference is the torque of the arm's vibration, mostly its answer to the drives' ripple.
+/// After construction nothing throws or allocates.
 class LinkTorques
 {
 public:
   /// @throws ParameterError as ArmDynamics.
   explicit LinkTorques(const ArmDescription& arm, PayloadCourse course = {});
 
-  /// `sample` with its torques and vibration.
+  /// Adds torques and vibration to `sample`.
   void addTo(ArmSample& sample) noexcept;
 
   std::size_t joints() const noexcept { return motion_.size(); }
@@ -176,7 +177,7 @@ private:
 
   UnitLoads links_;
   const PayloadCourse course_;
-  std::size_t carried_{ NONE };  // of the course
+  std::size_t carried_{ NONE };  // place of the present payload in the course
   std::vector<JointMotion> motion_;
   std::vector<double> fast_torques_;
 };

@@ -331,11 +331,9 @@ ArmMotion gentleMotion(const ArmDescription& arm)
       std::all_of(arm.joints.begin(), arm.joints.end(),
                   [](const ArmJoint& joint) { return joint.speed_limit > 0.0 && joint.torque_limit > 0.0; });
   const std::vector<double>& middle = arm.joints[std::min<std::size_t>(1, joints - 1)].check_up;
-  std::vector<ArmSetPoint> points;
   if (!is_known || middle.empty())
   {
-    points.push_back({ 0.0, std::vector<JointMotion>(joints) });
-    return ArmMotion(points);
+    return ArmMotion(std::vector<ArmSetPoint>{ { 0.0, std::vector<JointMotion>(joints) } });
   }
   std::vector<ArmMove> moves;
   for (const double speed : SPEEDS)
@@ -349,11 +347,8 @@ ArmMotion gentleMotion(const ArmDescription& arm)
       }
     }
   }
-  for (ArmInstant& instant : sampleMoves(arm, middle, moves, PERIOD))
-  {
-    points.push_back({ instant.time, std::move(instant.joints) });
-  }
-  return ArmMotion(std::move(points), ArmAccelerations::GIVEN, true);
+  const std::vector<ArmInstant> instants = sampleMoves(arm, middle, moves, PERIOD);
+  return ArmMotion(std::vector<ArmSetPoint>(instants.begin(), instants.end()), ArmAccelerations::GIVEN, true);
 }
 
 std::vector<ArmMove> checkUpMoves(const ArmDescription& arm, std::size_t joint)

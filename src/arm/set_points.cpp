@@ -128,11 +128,8 @@ std::vector<ArmSetPoint> readArmProgram(const std::string& path, const ArmDescri
 {
   ProgramReader reader(path, arm.joints.size());
   const ArmPose start = reader.start();
-  std::vector<ArmSetPoint> points;
-  for (ArmInstant& instant : sampleMoves(arm, start, reader.moves(), PERIOD))
-  {
-    points.push_back({ instant.time, std::move(instant.joints) });
-  }
+  const std::vector<ArmInstant> instants = sampleMoves(arm, start, reader.moves(), PERIOD);
+  std::vector<ArmSetPoint> points(instants.begin(), instants.end());
   requireMotion(points, arm, path);
   return points;
 }
@@ -446,16 +443,7 @@ std::vector<ArmSetPoint> readSetPoints(const std::string& path, const ArmDescrip
     throw InputError(path + ": no column " + missing);
   }
   std::vector<ArmSetPoint> points;
-  const auto number = [&](int column)
-  {
-    const std::optional<double> value = decimalNumber(rows.text(static_cast<std::size_t>(column)));
-    if (!value || !std::isfinite(*value))
-    {
-      throw InputError(rows.place() + ": column '" + header[static_cast<std::size_t>(column)] +
-                       "' is no finite number");
-    }
-    return *value;
-  };
+  const auto number = [&](int column) { return rows.number(static_cast<std::size_t>(column)); };
   while (rows.next())
   {
     ArmSetPoint point{ number(time), {} };

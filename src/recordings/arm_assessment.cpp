@@ -33,10 +33,10 @@ double costOfGains(const ArmRecording& recording, const RecordingOptions& option
 }
 
 /// Where no joint has a reference of its own, and the controller's is that of sound joints.
-void holdAgainstController(const std::vector<AssessedJoint*>& joints)
+void holdAgainstController(const std::vector<std::unique_ptr<AssessedJoint>>& joints)
 {
   std::vector<const JointEvidence*> evidences;
-  for (const AssessedJoint* joint : joints)
+  for (const auto& joint : joints)
   {
     if (joint->hasReference())
     {
@@ -46,7 +46,7 @@ void holdAgainstController(const std::vector<AssessedJoint*>& joints)
   }
   if (controllerIsReference(evidences))
   {
-    for (AssessedJoint* joint : joints)
+    for (const auto& joint : joints)
     {
       joint->holdAgainstController();
     }
@@ -55,7 +55,7 @@ void holdAgainstController(const std::vector<AssessedJoint*>& joints)
 
 /// With the friction that each is held against.
 std::vector<LoadFit::Drive> drivesOf(const std::vector<Parameters>& parameters,
-                                     const std::vector<AssessedJoint*>& joints)
+                                     const std::vector<std::unique_ptr<AssessedJoint>>& joints)
 {
   std::vector<LoadFit::Drive> drives(parameters.begin(), parameters.end());
   for (std::size_t i = 0; i < drives.size(); ++i)
@@ -70,14 +70,20 @@ ArmAssessment pass(const ArmRecording& recording, const AssessmentSettings& sett
                    bool gives_notice, RecordingFit& fit)
 {
   ArmAssessment arm;
-  arm.joints = settings.make_joints();
+  for (std::size_t i = 0; i < recording.joints().size(); ++i)
+  {
+    arm.joints.push_back(settings.make_joint ?
+                             settings.make_joint(i) :
+                             std::make_unique<AssessedJoint>(recording.parameters(i), recording.loadOrigin(),
+                                                             SoundJoint(), !recording.options().identified.empty()));
+  }
   std::optional<LoadFit> load;
   std::vector<MotionSample> samples(arm.joints.size());
   std::vector<const MotionDriven*> twins;
   if (looks_for_load)
   {
     load.emplace(recording.arm(), drivesOf(recording.parameters(), arm.joints));
-    for (const AssessedJoint* joint : arm.joints)
+    for (const auto& joint : arm.joints)
     {
       twins.push_back(&joint->evidence().twin());
     }
@@ -105,7 +111,7 @@ ArmAssessment pass(const ArmRecording& recording, const AssessmentSettings& sett
     recording.noticeOf(arm.found);
   }
   std::vector<Misfit> misfits = recording.isArm() ? fit.whyNotJudged() : std::vector<Misfit>{ arm.found.misfit };
-  if (load && !settings.watch.stopped())
+  if (load && !recording.options().watch.stopped())
   {
     arm.load = load->solve(fit.measured());
     addMisfit(arm.load->misfit(), misfits);
@@ -171,7 +177,15 @@ std::vector<ArmFit> rankArms(const RecordingOptions& options, const std::vector<
   }
   ParameterMap given;
   addOverlays(own, given);
-  const auto play = [&](const VisitArmRows& visit) { first->readEfforts(visit, ArmFit::ENOUGH); };
+  const auto play = [&](const VisitArmRows& visit)
+  {
+    first->readRows(
+        [&](const std::vector<MotionRow>& rows)
+        {
+          visit(rows);
+          return rows.front().time < ArmFit::ENOUGH;
+        });
+  };
   std::vector<ArmFit> fits = rankArms(candidates, play, given.count("telemetry.effort") > 0);
   if (!others.empty())
   {
@@ -189,13 +203,12 @@ ArmAssessment assess(ArmRecording& recording, const AssessmentSettings& settings
   LoadLaw law;
   ArmAssessment arm = pass(recording, settings, shows_load, settings.gives_notice, fit);
   const std::vector<FittedFriction> frictions = arm.load ? arm.load->frictions : std::vector<FittedFriction>();
-  while (shows_load && !settings.watch.stopped() && law.take(arm.load.value_or(FoundLoad()), arm.judged))
+  while (shows_load && !recording.options().watch.stopped() && law.take(arm.load.value_or(FoundLoad()), arm.judged))
   {
     ArmDescription other = configured;
     law.counts().configure(other);
-    recording.setPayload(other.payload, law.counts().course(configured.payload));
-    recording.setGravity(other.gravity);
-    recording.setDrag(other.drag);
+    recording.setLoad(std::move(other), law.counts().course(configured.payload));
+    arm.joints.clear();  // closes the files that the next pass opens
     arm = pass(recording, settings, false, false, fit);
     if (!law.isTrying())
     {
@@ -204,7 +217,8 @@ ArmAssessment assess(ArmRecording& recording, const AssessmentSettings& settings
   }
   arm.assumed = law.counts();
   arm.frictions = frictions;
-  if (shows_load && settings.looks_for_arm && recording.options().identified.empty() && !settings.watch.stopped())
+  if (shows_load && settings.looks_for_arm && recording.options().identified.empty() &&
+      !recording.options().watch.stopped())
   {
     nameOther(recording, arm.judged.misfits);
   }

@@ -67,9 +67,6 @@ std::string wrongStamps(const MotionCount& count)
 
 ArmRecording::ArmRecording(const RecordingOptions& options)
   : options_(options)
-  , watch_(options.watch)
-  , joint_namespace_(options.joint_namespace)
-  , affixes_(options.affixes)
   , is_arm_(!options.arm.empty())
   , arm_(is_arm_ ? readArmDescription(findArm(options.arm, configDirectory(options))) : armOf(options.joint))
 {
@@ -115,21 +112,11 @@ ArmRecording::ArmRecording(const RecordingOptions& options)
   }
 }
 
-std::vector<double> ArmRecording::gains() const
-{
-  std::vector<double> gains;
-  for (const Parameters& parameters : parameters_)
-  {
-    gains.push_back(parameters.telemetry.torque_per_current);
-  }
-  return gains;
-}
-
 MotionSource ArmRecording::source(std::size_t joint) const
 {
   const Parameters& parameters = parameters_[joint];
   MotionSource source = source_;
-  source.joint = is_arm_ ? affixes_(arm_.joints[joint].name) : source_.joint;
+  source.joint = is_arm_ ? options_.affixes(arm_.joints[joint].name) : source_.joint;
   source.csv_joint = is_arm_ ? static_cast<int>(joint) : source_.csv_joint;
   source.speeds = { source_.speeds[joint] };
   source.current_per_effort = currentPerEffort(parameters);
@@ -139,45 +126,26 @@ MotionSource ArmRecording::source(std::size_t joint) const
 
 std::string ArmRecording::twinNamespace(std::size_t joint) const
 {
-  return (is_arm_ ? "/" + arm_.joints[joint].short_name : std::string()) + joint_namespace_;
+  return (is_arm_ ? "/" + arm_.joints[joint].short_name : std::string()) + options_.joint_namespace;
 }
 
-MotionFindings ArmRecording::read(const VisitRows& visit) const
+MotionFindings ArmRecording::read(const VisitRows& visit, RecordingFit& fit) const
 {
-  RecordingFit fit(parameters_);
-  const MotionFindings found = read(visit, fit);
-  noticeOf(fit);
-  noticeOf(found);
-  return found;
-}
-
-MotionFindings ArmRecording::read(const VisitRows& visit, RecordingFit& fit, double end) const
-{
-  return is_arm_ ? readArm(visit, fit, end) : readJoint(visit, end);
-}
-
-MotionFindings ArmRecording::readSamples(const VisitSample& visit) const
-{
-  return readSamplesBy([this](const VisitRows& rows) { return read(rows); }, visit);
+  return is_arm_ ? readArm(visit, fit) : readJoint(visit);
 }
 
 MotionFindings ArmRecording::readSamples(const VisitSample& visit, RecordingFit& fit) const
 {
-  return readSamplesBy([&](const VisitRows& rows) { return read(rows, fit); }, visit);
-}
-
-MotionFindings ArmRecording::readSamplesBy(const Read& read, const VisitSample& visit) const
-{
   if (is_arm_)
   {
-    return read(
-        [&](const std::vector<ArmJointRow>& rows)
-        {
-          for (std::size_t i = 0; i < rows.size(); ++i)
-          {
-            visit(i, rows[i].row);
-          }
-        });
+    const auto visit_all = [&](const std::vector<ArmJointRow>& rows)
+    {
+      for (std::size_t i = 0; i < rows.size(); ++i)
+      {
+        visit(i, rows[i].row);
+      }
+    };
+    return readArm(visit_all, fit);
   }
   MotionDifferentiator differentiator;
   const Load load(parameters_.front().output);
@@ -189,7 +157,7 @@ MotionFindings ArmRecording::readSamplesBy(const Read& read, const VisitSample& 
       visit(0, *sample);
     }
   };
-  MotionFindings found = read(
+  MotionFindings found = readJoint(
       [&](const std::vector<ArmJointRow>& rows)
       {
         differentiator.push(rows.front().row);
@@ -200,27 +168,42 @@ MotionFindings ArmRecording::readSamplesBy(const Read& read, const VisitSample& 
   found.gaps = differentiator.gaps();
   if (found.corrupt > 0 || found.refused > 0 || found.gaps > 0)
   {
-    watch_.notice(source_.path + ": " + std::to_string(found.corrupt) + " messages unreadable or impossible, " +
-                  std::to_string(found.refused) + " rows repeated or out of order, " + std::to_string(found.gaps) +
-                  " gaps over " + roundedText(MotionDifferentiator::MAX_GAP, 3) + " s");
+    options_.watch.notice(source_.path + ": " + std::to_string(found.corrupt) + " messages unreadable or impossible, " +
+                          std::to_string(found.refused) + " rows repeated or out of order, " +
+                          std::to_string(found.gaps) + " gaps over " + roundedText(MotionDifferentiator::MAX_GAP, 3) +
+                          " s");
   }
   return found;
 }
 
-MotionFindings ArmRecording::readJoint(const VisitRows& visit, double end) const
+MotionCount ArmRecording::readRows(const VisitMotionRows& visit) const
+{
+  std::vector<std::string> names;
+  for (const ArmJoint& joint : arm_.joints)
+  {
+    names.push_back(is_arm_ ? options_.affixes(joint.name) : source_.joint);
+  }
+  return readMotion(
+      is_arm_ ? source_ : source(0), names,
+      [&](const std::vector<MotionRow>& rows) { return visit(rows) && !options_.watch.stopped(); },
+      options_.watch.progress("reading"));
+}
+
+MotionFindings ArmRecording::readJoint(const VisitRows& visit) const
 {
   RatioFit ratio(nominalRatio(parameters_.front().gear));
   std::vector<ArmJointRow> rows(1);
   MotionFindings found;
   found.has_load = has_load_;
-  const auto take = [&](const MotionRow& row)
+  const auto take = [&](const std::vector<MotionRow>& motion)
   {
+    const MotionRow& row = motion.front();
     rows.front() = { { row }, row.load, 0.0 };
     ratio.add(row);
     visit(rows);
-    return !watch_.stopped() && row.time < end;
+    return true;
   };
-  static_cast<MotionCount&>(found) = readMotion(source(0), take, watch_.progress("reading"));
+  static_cast<MotionCount&>(found) = readRows(take);
   if (!found.misfit.exists())
   {
     found.misfit = { Reason::GEAR_RATIO, ratio.text() };
@@ -228,27 +211,7 @@ MotionFindings ArmRecording::readJoint(const VisitRows& visit, double end) const
   return found;
 }
 
-MotionCount ArmRecording::readArmRows(const std::function<bool(const std::vector<MotionRow>&)>& visit) const
-{
-  std::vector<std::string> names;
-  for (const ArmJoint& joint : arm_.joints)
-  {
-    names.push_back(affixes_(joint.name));
-  }
-  return readArmMotion(source_, names, visit, watch_.progress("reading"));
-}
-
-void ArmRecording::readEfforts(const VisitMotion& visit, double end) const
-{
-  readArmRows(
-      [&](const std::vector<MotionRow>& rows)
-      {
-        visit(rows);
-        return !watch_.stopped() && rows.front().time < end;
-      });
-}
-
-MotionFindings ArmRecording::readArm(const VisitRows& visit, RecordingFit& fit, double end) const
+MotionFindings ArmRecording::readArm(const VisitRows& visit, RecordingFit& fit) const
 {
   ArmLoad load(arm_, course_);
   std::vector<ArmJointRow> rows(arm_.joints.size());
@@ -283,13 +246,10 @@ MotionFindings ArmRecording::readArm(const VisitRows& visit, RecordingFit& fit, 
     }
     findings.refused += load.push(in_current) ? 0 : 1;
     forward(false);
-    return !watch_.stopped() && motion.front().time < end;
+    return true;
   };
-  static_cast<MotionCount&>(findings) = readArmRows(take);
-  if (!payload_text_.empty())
-  {
-    findings.remarks.push_back(payload_text_);
-  }
+  static_cast<MotionCount&>(findings) = readRows(take);
+  findings.remark(payload_text_);
   forward(true);
   findings.velocity_ratio = fit.stampFactor().value;
   fit.refuse(findings.misfit);
@@ -304,7 +264,7 @@ void ArmRecording::noticeOf(const RecordingFit& fit) const
     {
       if (finding.stops && finding.kind != "stamps")
       {
-        watch_.notice(of + finding.text);
+        options_.watch.notice(of + finding.text);
       }
     }
   };
@@ -322,15 +282,15 @@ void ArmRecording::noticeOf(const MotionFindings& found) const
 {
   if (const std::string text = wrongStamps(found); !text.empty())
   {
-    watch_.notice(text);
+    options_.watch.notice(text);
   }
   for (const std::string& remark : found.remarks)
   {
-    watch_.notice(source_.path + ": " + remark);
+    options_.watch.notice(source_.path + ": " + remark);
   }
   if (!is_arm_ && found.misfit.exists())  // an arm's is of its fit
   {
-    watch_.notice(source_.path + ": " + found.misfit.clause);
+    options_.watch.notice(source_.path + ": " + found.misfit.clause);
   }
 }
 }  // namespace hjt

@@ -29,7 +29,6 @@ class ArmRecording
 {
 public:
   using VisitRows = std::function<void(const std::vector<ArmJointRow>&)>;
-  using VisitMotion = std::function<void(const std::vector<MotionRow>&)>;
   using VisitSample = std::function<void(std::size_t, const MotionSample&)>;
 
   /// @throws ParameterError, InputError: unreadable, or without the load that is chosen.
@@ -40,20 +39,17 @@ public:
   bool isFile() const { return !options_.rows; }
   const ArmDescription& arm() const { return arm_; }  ///< for a single joint: that joint alone
   const std::vector<ArmJoint>& joints() const { return arm_.joints; }
-  /// In place of the configured one.
-  void setPayload(const Payload& payload, PayloadCourse course = {})
+  /// The same arm under another load, in place of the configured one.
+  void setLoad(ArmDescription arm, PayloadCourse course)
   {
-    arm_.payload = payload;
+    arm_ = std::move(arm);
     course_ = std::move(course);
   }
-  void setGravity(const std::array<double, 3>& gravity) { arm_.gravity = gravity; }
-  void setDrag(double force) { arm_.drag = force; }    ///< on the tip against its motion [N]
   MotionSource source(std::size_t joint) const;        ///< with that joint alone
   std::string twinNamespace(std::size_t joint) const;  ///< of its twin's topics, those of arm.launch
   /// `telemetry.inertia_in_load` is that of the load that is chosen.
   const Parameters& parameters(std::size_t joint) const { return parameters_[joint]; }
   const std::vector<Parameters>& parameters() const { return parameters_; }
-  std::vector<double> gains() const;  ///< of the joints, torque per current [N.m/A]
   /// Torque per current that an arm's recording states, see RecordedStatements; it counts unless another was identified
   /// or set [N.m/A].
   const std::vector<double>& statedGains() const { return stated_gains_; }
@@ -65,38 +61,27 @@ public:
     return uses_recorded_ ? LoadOrigin::RECORDED : is_arm_ ? LoadOrigin::ARM : LoadOrigin::CONFIGURED;
   }
 
-  /// Calls `visit` for each time with a row of each joint, in memory that does not grow, and gives notice of what does
-  /// not fit. Without any load the rows' is 0. @throws InputError.
-  MotionFindings read(const VisitRows& visit) const;
-  /// The same without notices, up to `end` [s]; `fit` receives all rows of an arm.
-  MotionFindings read(const VisitRows& visit, RecordingFit& fit, double end = HUGE_VAL) const;
+  /// Calls `visit` for each time with a row of each joint, in memory that does not grow; `fit` receives all rows of an
+  /// arm. Without any load the rows' is 0. @throws InputError.
+  MotionFindings read(const VisitRows& visit, RecordingFit& fit) const;
 
-  /// Rows of an arm up to `end` [s], `current` the effort as recorded. @throws InputError.
-  void readEfforts(const VisitMotion& visit, double end) const;
+  /// The rows as they are recorded: of an arm `current` is the effort. @throws InputError.
+  MotionCount readRows(const VisitMotionRows& visit) const;
+
+  /// Calls `visit` with the samples of each joint, their rates and loads filled in; a joint without any load carries
+  /// what it is configured to. @throws InputError.
+  MotionFindings readSamples(const VisitSample& visit, RecordingFit& fit) const;
 
   /// Gives notice of what does not fit in an arm: why a joint cannot be judged. Wrong stamps are said of the whole.
   void noticeOf(const RecordingFit& fit) const;
   /// And of the whole recording.
   void noticeOf(const MotionFindings& found) const;
 
-  /// Calls `visit` with the samples of each joint, their rates and loads filled in; a joint without any load carries
-  /// what it is configured to. @throws InputError.
-  MotionFindings readSamples(const VisitSample& visit) const;
-  /// The same without notices of an arm.
-  MotionFindings readSamples(const VisitSample& visit, RecordingFit& fit) const;
-
 private:
-  using Read = std::function<MotionFindings(const VisitRows&)>;
-
-  MotionCount readArmRows(const std::function<bool(const std::vector<MotionRow>&)>& visit) const;
-  MotionFindings readJoint(const VisitRows& visit, double end) const;
-  MotionFindings readArm(const VisitRows& visit, RecordingFit& fit, double end) const;
-  MotionFindings readSamplesBy(const Read& read, const VisitSample& visit) const;
+  MotionFindings readJoint(const VisitRows& visit) const;
+  MotionFindings readArm(const VisitRows& visit, RecordingFit& fit) const;
 
   RecordingOptions options_;
-  Watch watch_;
-  std::string joint_namespace_;
-  JointAffixes affixes_;
   bool is_arm_;
   ArmDescription arm_;
   PayloadCourse course_;

@@ -37,12 +37,69 @@ class ArmRows
 public:
   /// `spec`: the run, ArmSpec::arm.state_rate that of the rows, which divides solver.rate. `path`: empty, none.
   /// `moving`: at the first row; stays there as long as this. @throws InputError.
-  ArmRows(const std::string& path, const RunSpec& spec, const MovingArm& moving);
+  ArmRows(const std::string& path, const RunSpec& spec, const MovingArm& moving)
+    : moving_(moving), begin_(moving.twin().stamp()), end_(begin_), path_(path), spec_(spec)
+  {
+    const std::string ending = std::filesystem::path(path).extension().string();
+    if (ending == runFileExtension(RunFormat::BAG) || ending == runFileExtension(RunFormat::HDF5))
+    {
+      Recording recording;
+      recording.format = ending == runFileExtension(RunFormat::BAG) ? RunFormat::BAG : RunFormat::HDF5;
+      RecordingGroup group{ "states", spec.arm->arm.state_rate, false, {} };
+      for (const RunColumn& column : armColumns())
+      {
+        group.columns.push_back(&column);
+      }
+      recording.groups.push_back(group);
+      file_ = makeRunFile(recording, spec, &moving.twin().drive(0), path);
+    }
+    else if (!path.empty())
+    {
+      std::vector<std::string> columns = armColumnNames(moving.twin().joints());
+      columns.insert(columns.begin(), "timestamp");
+      csv_.emplace(path, columns);
+    }
+  }
 
   /// After every step of the motion; `row`: none, no row is due. @throws InputError.
-  void take(Stamp stamp, double time, ArmRecorder& recorder, const ArmRow* row);
+  void take(Stamp stamp, double time, ArmRecorder& recorder, const ArmRow* row)
+  {
+    if (file_ && !failed_)
+    {
+      end_ = stamp;
+      on_surface_ += stamp > begin_ && allOnSurface(moving_.twin()) ? 1 : 0;
+      failed_ = countersOf(moving_.twin()).solver_failures > 0;
+      if (!failed_)  // a failed twin ends the file here, as it ends a run of a data set
+      {
+        file_->record(stamp, recorder);
+      }
+    }
+    if (csv_ && row != nullptr)
+    {
+      values_.assign(1, time);
+      for (const std::vector<double>& numbers : *row)
+      {
+        values_.insert(values_.end(), numbers.begin(), numbers.end());
+      }
+      csv_->writeRow(values_);
+    }
+  }
 
-  void close();  ///< @throws InputError
+  /// @throws InputError.
+  void close()
+  {
+    if (file_)
+    {
+      OrderedJson record = recordOf(spec_, path_);
+      addOutcome(countersOf(moving_.twin()), on_surface_, toSeconds(end_ - begin_), record);
+      addProtectiveStop(spec_.arm->arm, moving_, record);
+      file_->finish(record);
+    }
+    if (csv_)
+    {
+      csv_->close();
+    }
+  }
 
   /// Whether it is a run's file: without `close` nothing is left of it.
   bool isRun() const { return file_ != nullptr; }
@@ -52,199 +109,88 @@ private:
   Stamp begin_;  // of the rows
   Stamp end_;    // of a run
   bool failed_{};
-  std::uint64_t on_surface_{};
-  std::string path_;
-  RunSpec spec_;
-  std::unique_ptr<RunFile> file_;
-  std::optional<CsvWriter> csv_;
-  std::vector<double> values_;
-};
 
-ArmRows::ArmRows(const std::string& path, const RunSpec& spec, const MovingArm& moving)
-  : moving_(moving), begin_(moving.twin().stamp()), end_(begin_), path_(path), spec_(spec)
-{
-  const std::string ending = std::filesystem::path(path).extension().string();
-  if (ending == runFileExtension(RunFormat::BAG) || ending == runFileExtension(RunFormat::HDF5))
+  /// The rate of the rows as the arm's: the next one to that wanted that divides the solver's.
+  void takeRate(const ArmRunOptions& options, double solver_rate, ArmDescription& arm)
   {
-    Recording recording;
-    recording.format = ending == runFileExtension(RunFormat::BAG) ? RunFormat::BAG : RunFormat::HDF5;
-    RecordingGroup group{ "states", spec.arm->arm.state_rate, false, {} };
-    for (const RunColumn& column : armColumns())
+    const double wanted = options.rate.value_or(arm.state_rate);
+    arm.state_rate = solver_rate / static_cast<double>(publishSteps(wanted, solver_rate));
+    if (std::abs(arm.state_rate / wanted - 1.0) > 1e-9)
     {
-      group.columns.push_back(&column);
-    }
-    recording.groups.push_back(group);
-    file_ = makeRunFile(recording, spec, &moving.twin().drive(0), path);
-  }
-  else if (!path.empty())
-  {
-    std::vector<std::string> columns = armColumnNames(moving.twin().joints());
-    columns.insert(columns.begin(), "timestamp");
-    csv_.emplace(path, columns);
-  }
-}
-
-void ArmRows::take(Stamp stamp, double time, ArmRecorder& recorder, const ArmRow* row)
-{
-  if (file_ && !failed_)
-  {
-    end_ = stamp;
-    on_surface_ += stamp > begin_ && allOnSurface(moving_.twin()) ? 1 : 0;
-    failed_ = countersOf(moving_.twin()).solver_failures > 0;
-    if (!failed_)  // a failed twin ends the file here, as it ends a run of a data set
-    {
-      file_->record(stamp, recorder);
-    }
-  }
-  if (csv_ && row != nullptr)
-  {
-    values_.assign(1, time);
-    for (const std::vector<double>& numbers : *row)
-    {
-      values_.insert(values_.end(), numbers.begin(), numbers.end());
-    }
-    csv_->writeRow(values_);
-  }
-}
-
-void ArmRows::close()
-{
-  if (file_)
-  {
-    OrderedJson record = recordOf(spec_, path_);
-    addOutcome(countersOf(moving_.twin()), on_surface_, toSeconds(end_ - begin_), record);
-    addProtectiveStop(spec_.arm->arm, moving_, record);
-    file_->finish(record);
-  }
-  if (csv_)
-  {
-    csv_->close();
-  }
-}
-
-/// The rate of the rows as the arm's: the next one to that wanted that divides the solver's.
-void takeRate(const ArmRunOptions& options, double solver_rate, ArmDescription& arm)
-{
-  const double wanted = options.rate.value_or(arm.state_rate);
-  arm.state_rate = solver_rate / static_cast<double>(publishSteps(wanted, solver_rate));
-  if (std::abs(arm.state_rate / wanted - 1.0) > 1e-9)
-  {
-    options.watch.notice("rows at " + roundedText(arm.state_rate, 6) + " Hz in place of " + numberText(wanted) +
-                         " Hz, which does not divide solver.rate = " + numberText(solver_rate) + " Hz");
-  }
-}
-
-/// Adds up the errors of a moving arm.
-class Errors
-{
-public:
-  explicit Errors(const ArmDescription& arm) : joints_(arm.joints.size())
-  {
-    for (std::size_t i = 0; i < joints_.size(); ++i)
-    {
-      joints_[i].name = arm.joints[i].short_name;
+      options.watch.notice("rows at " + roundedText(arm.state_rate, 6) + " Hz in place of " + numberText(wanted) +
+                           " Hz, which does not divide solver.rate = " + numberText(solver_rate) + " Hz");
     }
   }
 
-  void add(const ArmRow& row, const ArmTwin& twin)
+  /// Adds the errors of a moving arm at a row.
+  void addErrors(const ArmRow& row, const ArmTwin& twin, ArmRun& run)
   {
-    for (std::size_t i = 0; i < joints_.size(); ++i)
+    for (std::size_t i = 0; i < run.joints.size(); ++i)
     {
-      JointErrors& joint = joints_[i];
-      const double error = twin.motion()[i].position - row[TARGET_POSITION][i];
-      joint.angle.add(error);
-      joint.largest_angle = std::max(joint.largest_angle, std::abs(error));
-      joint.current.add(row[ACTUAL_CURRENT][i]);
+      run.joints[i].angle_error.add(twin.motion()[i].position - row[TARGET_POSITION][i]);
+      run.joints[i].current.add(row[ACTUAL_CURRENT][i]);
     }
     const std::vector<double>& wanted = row[TARGET_TOOL];
     const std::vector<double>& tool = row[ACTUAL_TOOL];
-    const double error = std::hypot(tool[0] - wanted[0], tool[1] - wanted[1], tool[2] - wanted[2]);
-    tool_.add(error);
-    tool_largest_ = std::max(tool_largest_, error);
+    run.tool_error.add(std::hypot(tool[0] - wanted[0], tool[1] - wanted[1], tool[2] - wanted[2]));
   }
 
-  ArmRun finish() const
+  /// The run for a file that has labels.
+  RunSpec specOf(const ArmRunOptions& options, ArmDescription arm, std::vector<Parameters> drives,
+                 const ArmMotion& motion)
   {
-    ArmRun run;
-    run.tool_error_rms = tool_.value();
-    run.tool_error_max = tool_largest_;
-    for (const JointErrors& joint : joints_)
+    RunSpec spec;
+    spec.fault_class = options.faults.empty() ? "healthy" : joined(options.faults, ";");
+    spec.duty_name = options.motion.empty() ? "motion" : options.motion;
+    spec.duration = motion.end() - motion.begin();
+    for (std::size_t joint = 0; joint < drives.size(); ++joint)
     {
-      run.joints.push_back({ joint.name, joint.angle.value(), joint.largest_angle, joint.current.value() });
+      const std::vector<RunFault> more = configuredFaults(drives[joint], joint);
+      spec.faults.insert(spec.faults.end(), more.begin(), more.end());
     }
-    return run;
+    spec.parameters = drives.front();
+    spec.arm = ArmSpec{ std::move(arm), std::move(drives), nullptr };
+    return spec;
   }
 
-private:
-  struct JointErrors
+  /// Moves it to the end of its motion, recording every row.
+  void move(const ArmRunOptions& options, const ArmMotion& motion, MovingArm& moving, const RunSpec& spec, ArmRun& run)
   {
-    std::string name;
-    Rms angle;               // [rad]
-    double largest_angle{};  // [rad]
-    Rms current;             // [A]
-  };
-
-  std::vector<JointErrors> joints_;
-  Rms tool_;               // [m]
-  double tool_largest_{};  // [m]
-};
-
-/// The run for a file that has labels.
-RunSpec specOf(const ArmRunOptions& options, ArmDescription arm, std::vector<Parameters> drives,
-               const ArmMotion& motion)
-{
-  RunSpec spec;
-  spec.fault_class = options.faults.empty() ? "healthy" : joined(options.faults, ";");
-  spec.duty_name = options.motion.empty() ? "motion" : options.motion;
-  spec.duration = motion.end() - motion.begin();
-  for (std::size_t joint = 0; joint < drives.size(); ++joint)
-  {
-    const std::vector<RunFault> more = configuredFaults(drives[joint], joint);
-    spec.faults.insert(spec.faults.end(), more.begin(), more.end());
-  }
-  spec.parameters = drives.front();
-  spec.arm = ArmSpec{ std::move(arm), std::move(drives), nullptr };
-  return spec;
-}
-
-/// Moves it to the end of its motion, recording every row.
-void move(const ArmRunOptions& options, const ArmMotion& motion, MovingArm& moving, const RunSpec& spec, Errors& errors)
-{
-  ArmTwin& twin = moving.twin();
-  ArmRecorder recorder(spec.arm->arm, moving);
-  std::optional<ArmRows> rows;
-  const Stamp end = moving.motionBegin() + toStampLength(motion.end() - motion.begin());
-  const auto row_steps = publishSteps(spec.arm->arm.state_rate, spec.parameters.solver.rate);
-  const auto progress = options.watch.progress("moving the arm");
-  std::int64_t steps = 0;
-  while (!options.watch.stopped() && moving.step(end))
-  {
-    if (twin.stamp() >= moving.motionBegin())
+    ArmTwin& twin = moving.twin();
+    ArmRecorder recorder(spec.arm->arm, moving);
+    std::optional<ArmRows> rows;
+    const Stamp end = moving.motionBegin() + toStampLength(motion.end() - motion.begin());
+    const auto row_steps = publishSteps(spec.arm->arm.state_rate, spec.parameters.solver.rate);
+    const auto progress = options.watch.progress("moving the arm");
+    std::int64_t steps = 0;
+    while (!options.watch.stopped() && moving.step(end))
     {
-      if (!rows)
+      if (twin.stamp() >= moving.motionBegin())
       {
-        rows.emplace(options.out, spec, moving);
+        if (!rows)
+        {
+          rows.emplace(options.out, spec, moving);
+        }
+        const double time = motion.begin() + toSeconds(twin.stamp() - moving.motionBegin());
+        const ArmRow* row = steps++ % row_steps == 0 ? &recorder.row() : nullptr;
+        if (row != nullptr)
+        {
+          addErrors(*row, twin, run);
+          options.take(time, *row);
+        }
+        rows->take(twin.stamp(), time, recorder, row);
       }
-      const double time = motion.begin() + toSeconds(twin.stamp() - moving.motionBegin());
-      const ArmRow* row = steps++ % row_steps == 0 ? &recorder.row() : nullptr;
-      if (row != nullptr)
-      {
-        errors.add(*row, twin);
-        options.take(time, *row);
-      }
-      rows->take(twin.stamp(), time, recorder, row);
+      progress(static_cast<double>(twin.stamp() - SIMULATION_EPOCH) / static_cast<double>(end - SIMULATION_EPOCH));
     }
-    progress(static_cast<double>(twin.stamp() - SIMULATION_EPOCH) / static_cast<double>(end - SIMULATION_EPOCH));
+    if (rows && rows->isRun() && options.watch.stopped())
+    {
+      throw Stopped{};  // an incomplete run gets no file
+    }
+    if (rows)
+    {
+      rows->close();
+    }
   }
-  if (rows && rows->isRun() && options.watch.stopped())
-  {
-    throw Stopped{};  // an incomplete run gets no file
-  }
-  if (rows)
-  {
-    rows->close();
-  }
-}
 }  // namespace
 
 void addOptions(OptionTable& table, ArmRunOptions& options)
@@ -294,11 +240,14 @@ try
   const std::vector<Parameters> drives = armDrives(arm, options, options.identified, options.faults);
   takeRate(options, drives.front().solver.rate, arm);
   MovingArm moving(arm, drives, motion, surfaceSource(options.watch));
-  Errors errors(arm);
+  ArmRun run;
+  for (const ArmJoint& joint : arm.joints)
+  {
+    run.joints.push_back({ joint.short_name, {}, {} });
+  }
   moving.reset(SIMULATION_EPOCH);
   const auto started = std::chrono::steady_clock::now();
-  move(options, motion, moving, specOf(options, arm, drives, motion), errors);
-  ArmRun run = errors.finish();
+  move(options, motion, moving, specOf(options, arm, drives, motion), run);
   run.wall_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   run.duration = toSeconds(moving.twin().stamp() - SIMULATION_EPOCH);
   run.energy_residual = moving.twin().energyResidual();
@@ -320,10 +269,10 @@ Report reportOf(const ArmRun& run)
 {
   const std::vector<Column<ArmRunJoint>> columns{
     { "joint", &ArmRunJoint::name, "joint" },
-    { "angle_error_rms", [](const ArmRunJoint& joint) { return 1e3 * joint.angle_error_rms; },
+    { "angle_error_rms", [](const ArmRunJoint& joint) { return 1e3 * joint.angle_error.rms(); },
       "angle error, rms [mrad]" },
-    { "angle_error_max", [](const ArmRunJoint& joint) { return 1e3 * joint.angle_error_max; }, "largest [mrad]" },
-    { "current_rms", &ArmRunJoint::current_rms, "current, rms [A]" }
+    { "angle_error_max", [](const ArmRunJoint& joint) { return 1e3 * joint.angle_error.largest(); }, "largest [mrad]" },
+    { "current_rms", [](const ArmRunJoint& joint) { return joint.current.value(); }, "current, rms [A]" }
   };
   const std::string stop =
       run.stop ? run.stop->joint + " " + run.stop->reason + " at " + roundedText(run.stop->time, 4) + " s" : "none";
@@ -334,8 +283,8 @@ Report reportOf(const ArmRun& run)
                    Json{ { "joint", run.stop->joint }, { "reason", run.stop->reason }, { "time", run.stop->time } } :
                    Json() },
              { "real_time_factor", "times real time", run.duration / run.wall_time },
-             { "tool_error_rms", "tool position error, rms [mm]", 1e3 * run.tool_error_rms },
-             { "tool_error_max", "largest [mm]", 1e3 * run.tool_error_max },
+             { "tool_error_rms", "tool position error, rms [mm]", 1e3 * run.tool_error.rms() },
+             { "tool_error_max", "largest [mm]", 1e3 * run.tool_error.largest() },
              { "energy_residual", "error of the arm's energy [J]", run.energy_residual },
              { "feedback_limited", "", run.feedback_limited },
              { "solver_failures", "", run.counters.solver_failures },

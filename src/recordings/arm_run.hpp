@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -10,6 +12,7 @@
 #include "arm/arm_motion.hpp"
 #include "arm/arm_recorder.hpp"
 #include "base/range.hpp"
+#include "base/statistics.hpp"
 #include "harmonic_joint_twin/twin/twin.hpp"
 #include "output/progress.hpp"
 #include "output/report.hpp"
@@ -36,13 +39,28 @@ struct ArmRunOptions : ConfigurationOptions
 
 void addOptions(OptionTable& table, ArmRunOptions& options);
 
-/// Errors of a joint, actual less target.
+/// Errors at the rows of a motion.
+class RunErrors
+{
+public:
+  void add(double error)
+  {
+    rms_.add(error);
+    largest_ = std::max(largest_, std::abs(error));
+  }
+  double rms() const { return rms_.value(); }
+  double largest() const { return largest_; }
+
+private:
+  Rms rms_;
+  double largest_{};
+};
+
 struct ArmRunJoint
 {
-  std::string name;          ///< short
-  double angle_error_rms{};  ///< [rad]
-  double angle_error_max{};  ///< [rad]
-  double current_rms{};      ///< [A]
+  std::string name;       ///< short
+  RunErrors angle_error;  ///< actual less target [rad]
+  Rms current;            ///< [A]
 };
 
 /// A protective stop.
@@ -57,8 +75,7 @@ struct ArmRun
 {
   double duration{};                 ///< simulated, with the start in the brakes [s]
   double wall_time{};                ///< without building tables [s]
-  double tool_error_rms{};           ///< of its position [m]
-  double tool_error_max{};           ///< [m]
+  RunErrors tool_error;              ///< of its position [m]
   double energy_residual{};          ///< of the coupling [J]
   std::vector<ArmRunJoint> joints;   ///< from the base on; none: stopped before the first step
   std::optional<ArmRunStop> stop;    ///< none: it came to its end

@@ -18,11 +18,10 @@
 #include "base/text.hpp"
 #include "base/whole_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
-#include "messages/conversions.hpp"
-#include "messages/topics.hpp"
 #include "output/output_file.hpp"
 #include "params/configuration_files.hpp"
 #include "recordings/arm_recording.hpp"
+#include "recordings/recording_comparison.hpp"
 #include "tracking/sound_joint.hpp"
 
 namespace hjt
@@ -30,98 +29,6 @@ namespace hjt
 namespace
 {
 namespace fs = std::filesystem;
-
-const std::vector<Column<JudgedWindow>> WINDOW_COLUMNS{
-  { "time", [](const JudgedWindow& window) { return 1e-9 * static_cast<double>(window.indicators.stamp); } },
-  { "speed", [](const JudgedWindow& window) { return window.indicators.point.speed; } },
-  { "load", [](const JudgedWindow& window) { return window.indicators.point.load; } },
-  { "level", [](const JudgedWindow& window) { return static_cast<int>(window.assessment.level); } },
-  { "cause", [](const JudgedWindow& window) { return static_cast<int>(window.assessment.cause); } },
-  { "confidence", [](const JudgedWindow& window) { return window.assessment.confidence; } },
-  { "largest_score", [](const JudgedWindow& window) { return window.assessment.largest_score; } }
-};
-
-constexpr const char* MADE_WITH = "joint_twin " HJT_VERSION;
-
-/// A joint that is being compared, its source, and the directory of its report.
-class JointComparison : public AssessedJoint
-{
-public:
-  /// `directory`: of its report. `sound`: what earlier reports left of it. `is_identified`: the parameters are of this
-  /// very joint.
-  JointComparison(const ArmRecording& recording, std::size_t joint, const std::string& directory, SoundJoint sound,
-                  bool is_identified)
-    : AssessedJoint(std::move(sound.own), is_identified)
-    , source_(recording.source(joint))
-    , is_file_(recording.isFile())
-    , directory_(directory)
-    , comparison_(recording.parameters(joint), recording.loadOrigin(), std::move(sound.baseline),
-                  [this](const JudgedWindow& window)
-                  {
-                    if (windows_)
-                    {
-                      windows_->write(window);
-                    }
-                  })
-  {
-    if (!directory_.empty())
-    {
-      windows_.emplace((fs::path(directory) / "windows.csv").string(), WINDOW_COLUMNS);
-    }
-  }
-
-  void update(const MotionSample& sample) override { comparison_.update(sample); }
-  const JointEvidence& evidence() const override { return comparison_.evidence(); }
-
-  /// Judges, and writes the data of the page. `parameters`: of this joint. `twin_topic`: of a twin that was recorded
-  /// beside the robot.
-  /// @throws InputError.
-  ComparedJoint write(const Parameters& parameters, const MotionFindings& found, const JointContext& context,
-                      const std::string& twin_topic)
-  {
-    if (windows_)
-    {
-      windows_->close();
-    }
-    ComparisonRecord record;
-    record.recording = source_.path;
-    record.joint = source_.joint;
-    record.made_with = MADE_WITH;
-    record.found = found;
-    const MotionReach& reach = evidence().reach();
-    if (is_file_)
-    {
-      record.contents =
-          readContents(source_, twin_topic, found, reach.motor_rows, reach.temperature_rows, found.has_load);
-      if (!directory_.empty())  // of the page alone
-      {
-        record.twin_states = readTwinStates(source_, twin_topic, toSeconds(found.start));
-      }
-    }
-    record.verdict = judge(evidence(), context);
-    record.friction = frictionFactor(evidence(), context);
-    record.is_friction_judged = record.verdict.findings.front().level != VerdictLevel::NOT_JUDGED;
-    ComparedJoint compared;
-    compared.friction = record.is_friction_judged ? std::make_optional(record.friction) : std::nullopt;
-    compared.contact = reach.touched_rows > 0 ? sentence(contactText(evidence().contact().largest())) : std::string();
-    compared.document = writeComparison(directory_, comparison_, parameters, record);
-    compared.temperature = evidence().temperature();
-    compared.temperature_source = temperatureSource(evidence());
-    compared.rows = reach.rows;
-    compared.current_rms = evidence().currentRms();
-    compared.residual_rms = evidence().residualRms();
-    compared.contents = std::move(record.contents);
-    compared.verdict = std::move(record.verdict);
-    return compared;
-  }
-
-private:
-  const MotionSource source_;
-  const bool is_file_;
-  const std::string directory_;                     // empty: no file is written
-  std::optional<TableFile<JudgedWindow>> windows_;  // likewise
-  RecordingComparison comparison_;
-};
 
 void refuseReferenceAsReport(const ComparisonOptions& options)
 {
@@ -368,22 +275,16 @@ void prepareReports(const ComparisonOptions& options, const ArmRecording& record
   }
 }
 
-std::vector<std::unique_ptr<JointComparison>> prepareJoints(const ComparisonOptions& options,
-                                                            const ArmRecording& recording)
+std::unique_ptr<RecordingComparison> prepareJoint(const ComparisonOptions& options, const ArmRecording& recording,
+                                                  std::size_t joint)
 {
-  std::vector<std::unique_ptr<JointComparison>> joints;
-  for (std::size_t i = 0; i < recording.joints().size(); ++i)
+  std::vector<std::string> references;
+  for (const std::string& reference : options.references)
   {
-    const std::string directory = directoryOf(recording, options.report, i);
-    std::vector<std::string> references;
-    for (const std::string& reference : options.references)
-    {
-      references.push_back(directoryOf(recording, reference, i));
-    }
-    joints.push_back(std::make_unique<JointComparison>(
-        recording, i, directory, readSoundJoint(references, recording.parameters(i)), !options.identified.empty()));
+    references.push_back(directoryOf(recording, reference, joint));
   }
-  return joints;
+  return std::make_unique<RecordingComparison>(recording, joint, directoryOf(recording, options.report, joint),
+                                               readSoundJoint(references, recording.parameters(joint)));
 }
 
 /// With its data in `options.report`, if that is given.
@@ -393,21 +294,16 @@ ComparedRecording compareInto(const ComparisonOptions& options)
   ArmRecording recording(options);
   prepareReports(options, recording);
   ComparedRecording compared;
-  std::vector<std::unique_ptr<JointComparison>> joints;
+  std::vector<RecordingComparison*> joints(recording.joints().size());  // of the last pass
   AssessmentSettings settings;
-  settings.make_joints = [&]
+  settings.make_joint = [&](std::size_t i)
   {
-    joints.clear();  // closes the files that the next pass opens
-    joints = prepareJoints(options, recording);
-    std::vector<AssessedJoint*> all;
-    for (const auto& joint : joints)
-    {
-      all.push_back(joint.get());
-    }
-    return all;
+    std::unique_ptr<RecordingComparison> joint = prepareJoint(options, recording, i);
+    joints[i] = joint.get();
+    return joint;
   };
   settings.beside_controller = options.beside_controller;
-  settings.watch = options.watch;
+  settings.gives_notice = true;
   RecordingFit fit(recording.parameters());
   const ArmAssessment arm = assess(recording, settings, fit);
   compared.is_arm = recording.isArm();
@@ -420,8 +316,7 @@ ComparedRecording compareInto(const ComparisonOptions& options)
   }
   for (std::size_t i = 0; i < joints.size(); ++i)
   {
-    ComparedJoint& joint = compared.joints.emplace_back(joints[i]->write(
-        recording.parameters(i), arm.found, arm.context(i), recording.twinNamespace(i) + "/" + topics::JOINT_STATES));
+    ComparedJoint& joint = compared.joints.emplace_back(joints[i]->write(arm.found, arm.context(i)));
     joint.name = recording.joints()[i].short_name;
   }
   if (recording.isArm())

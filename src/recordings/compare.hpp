@@ -8,7 +8,6 @@
 
 #include "output/report.hpp"
 #include "recordings/arm_assessment.hpp"
-#include "recordings/recording_comparison.hpp"
 #include "recordings/recording_options.hpp"
 #include "tracking/common_friction.hpp"
 #include "tracking/verdict.hpp"
@@ -26,6 +25,23 @@ struct ComparisonOptions : RecordingOptions
 void addOptions(OptionTable& table, ComparisonOptions& options);
 /// Earlier reports to judge by.
 void addReferenceOption(OptionTable& table, ComparisonOptions& options);
+
+/// A topic or column that a comparison can use.
+struct ContentLine
+{
+  std::string name;
+  std::string gives;
+  std::uint64_t messages{};  ///< rows of a CSV file; of temperatures: rows that have one
+  bool found{};
+};
+
+/// Contents of a recording.
+struct RecordingContents
+{
+  std::vector<ContentLine> lines;
+  std::vector<std::string> joints;        ///< named in the telemetry's first message
+  std::vector<std::string> other_topics;  ///< that a comparison does not use
+};
 
 /// A joint beside its twin.
 struct ComparedJoint

@@ -34,58 +34,39 @@ constexpr double VERDICT_RATE = 1.0;  // [Hz]
 class TrackedBag
 {
 public:
-  /// One joint whose comparisons go into the bag.
-  struct Joint
-  {
-    std::string name;             ///< in the messages
-    std::string joint_namespace;  ///< its topics lie below, e.g. "/elbow/joint_twin"
-    const Parameters& parameters;
-  };
-
-  /// A CSV file's times count from SIMULATION_EPOCH.
+  /// A CSV file's times count from SIMULATION_EPOCH. `recording`: stays there as long as this.
   /// @throws InputError if a file cannot be opened, or the recording holds a topic of the twin already.
-  TrackedBag(const std::string& path, const MotionSource& source, const std::vector<Joint>& joints)
-    : source_path_(source.path), writer_(path), joints_(joints)
+  TrackedBag(const std::string& path, const ArmRecording& recording) : recording_(recording), writer_(path)
   {
+    const MotionSource source = recording.source(0);
     if (source.time_scale != 1.0)
     {
       throw InputError("--bag keeps the times of the recording: --time-scale cannot change them");
     }
-    std::vector<std::string> names;
-    for (const Joint& joint : joints)
+    const auto take_first = [this](const std::vector<MotionRow>& rows)
     {
-      names.push_back(joint.name);
-    }
-    const auto take_first = [this](const MotionRow& row)
-    {
-      delay_ = std::llround(1e9 * (row.received - row.time));
+      delay_ = std::llround(1e9 * (rows.front().received - rows.front().time));
       return false;
     };
-    const auto no_progress = [](double) {};
-    start_ = (joints.size() == 1 ?
-                  readMotion(source, take_first, no_progress) :
-                  readArmMotion(
-                      source, names, [&](const std::vector<MotionRow>& rows) { return take_first(rows.front()); },
-                      no_progress))
-                 .start;
-    if (isCsv(source))
-    {
-      start_ += SIMULATION_EPOCH;  // a controller counts from its own start
-    }
-    else if (source.format == RecordingFormat::BAG)
+    start_ = recording.readRows(take_first).start + (isCsv(source) ? SIMULATION_EPOCH : 0);
+    if (source.format == RecordingFormat::BAG)
     {
       openForReading(source_, source.path);
-      for (const Joint& joint : joints)
+    }
+    for (std::size_t i = 0; i < recording.joints().size(); ++i)
+    {
+      const std::string joint_namespace = recording.twinNamespace(i);  // its topics lie below
+      if (source.format == RecordingFormat::BAG)
       {
-        refuseTopics(source_, source.path, trackerTopics(joint.joint_namespace));
+        refuseTopics(source_, source.path, trackerTopics(joint_namespace));
       }
+      const BagContext context{ writer_, joint_namespace + "/", delay_ };
+      outputs_.push_back(std::make_unique<TrackerOutputs<RecordedTopic>>(context, recording.parameters(i)));
+    }
+    if (source.format == RecordingFormat::BAG)
+    {
       view_.addQuery(source_);
       next_ = view_.begin();
-    }
-    for (const Joint& joint : joints)
-    {
-      const BagContext context{ writer_, joint.joint_namespace + "/", delay_ };
-      outputs_.push_back(std::make_unique<TrackerOutputs<RecordedTopic>>(context, joint.parameters));
     }
   }
 
@@ -138,7 +119,7 @@ private:
     }
     catch (const rosbag::BagException& error)
     {
-      throw InputError(source_path_ + " cannot be copied: " + error.what() + "; " + writer_.path() +
+      throw InputError(recording_.options().recording + " cannot be copied: " + error.what() + "; " + writer_.path() +
                        " is readable and holds what came before");
     }
   }
@@ -150,21 +131,20 @@ private:
     {
       verdicts.push_back(verdict.get());
     }
-    judgeTogether(verdicts, joints_.front().parameters.comparison.repeat_tolerance);
+    judgeTogether(verdicts, recording_.parameters(0).comparison.repeat_tolerance);
     for (std::size_t i = 0; i < verdicts_.size(); ++i)
     {
       outputs_[i]->offer(start_ + std::llround(1e9 * verdicts_[i]->lastRow()), verdicts_[i]->now());
     }
   }
 
-  const std::string source_path_;
+  const ArmRecording& recording_;
   rosbag::Bag source_;  // not open: the recording is no bag
   rosbag::View view_;   // of all of it
   std::optional<rosbag::View::iterator> next_;
   BagWriter writer_;
   Stamp start_{};  // stamp of the first row [ns]
   Stamp delay_{};  // of its recording behind that [ns]
-  const std::vector<Joint> joints_;
   std::vector<std::unique_ptr<TrackerOutputs<RecordedTopic>>> outputs_;
   std::vector<std::unique_ptr<VerdictWatch>> verdicts_;
   StampPeriods verdict_periods_{ VERDICT_RATE };
@@ -202,33 +182,28 @@ class Follower
 public:
   /// `bag`: gets the comparisons as those of joint `number`, if there is one.
   Follower(const ArmRecording& recording, const FollowOptions& options, TrackedBag* bag, std::size_t number)
-    : options_(options)
-    , is_arm_(recording.isArm())
-    , has_load_(recording.isArm() || recording.hasRecordedLoad())
+    : recording_(recording)
+    , options_(options)
     , has_arm_load_(recording.isArm() && !recording.usesRecordedLoad())
-    , has_load_error_(has_arm_load_ && recording.hasRecordedLoad())
     , bag_(bag)
     , number_(number)
     , tracker_(recording.parameters(number), options.mode, surfaceSource(options.watch))
   {
     if (!options.out.empty())
     {
-      csv_.emplace(pathOf(recording), COLUMNS);
+      csv_.emplace(path(), COLUMNS);
     }
   }
 
   void add(const ArmJointRow& joint)
   {
-    if (has_load_error_)
-    {
-      load_error_.add(joint.row.load + joint.motor_part - joint.recorded_load);
-    }
-    if (has_load_)
+    load_error_.add(joint.row.load + joint.motor_part - joint.recorded_load);
+    if (recording_.isArm() || recording_.hasRecordedLoad())
     {
       tracker_.pushLoad(joint.row.time, joint.row.load);
     }
     timing_.add(joint.row.time, joint.row.received);
-    if (is_arm_)
+    if (recording_.isArm())
     {
       take(tracker_.compare(joint.row), joint.motor_part);
       return;
@@ -237,14 +212,14 @@ public:
     takeAll(false);
   }
 
-  FollowedJoint finish(const std::string& name)
+  FollowedJoint finish()
   {
     takeAll(true);
     if (csv_)
     {
       csv_->close();
     }
-    return { name,
+    return { recording_.joints()[number_].short_name,
              tracker_.counters(),
              timing_.report(),
              tracker_.lag(),
@@ -252,17 +227,17 @@ public:
              residual_.value(),
              velocity_.value(),
              position_.value(),
-             has_load_error_ ? std::make_optional(load_error_.value()) : std::nullopt };
+             has_arm_load_ && recording_.hasRecordedLoad() ? std::make_optional(load_error_.value()) : std::nullopt };
   }
 
   Tracker& tracker() { return tracker_; }
 
 private:
-  std::string pathOf(const ArmRecording& recording) const
+  std::string path() const
   {
     const std::filesystem::path out = options_.out;
     const std::string path =
-        recording.isArm() ? (out / (recording.joints()[number_].short_name + ".csv")).string() : options_.out;
+        recording_.isArm() ? (out / (recording_.joints()[number_].short_name + ".csv")).string() : options_.out;
     requireWritable(path, options_.force, options_.recording);
     return path;
   }
@@ -295,11 +270,9 @@ private:
     }
   }
 
+  const ArmRecording& recording_;
   const FollowOptions& options_;
-  const bool is_arm_;
-  const bool has_load_;
   const bool has_arm_load_;
-  const bool has_load_error_;
   TrackedBag* bag_;
   std::size_t number_;  // of the joint
   Tracker tracker_;
@@ -356,24 +329,14 @@ std::unique_ptr<TrackedBag> bagOf(const ArmRecording& recording, const FollowOpt
   {
     throw InputError("bag = '" + options.bag + "' needs a recording in a file, whose times it keeps");
   }
-  std::vector<TrackedBag::Joint> joints;
-  for (std::size_t i = 0; i < recording.joints().size(); ++i)
-  {
-    joints.push_back({ recording.joints()[i].name, recording.twinNamespace(i), recording.parameters(i) });
-  }
-  return std::make_unique<TrackedBag>(options.bag, recording.source(0), joints);
+  return std::make_unique<TrackedBag>(options.bag, recording);
 }
 
 /// As `compare` judges it; the load that the currents show is the recording's from then on.
-ArmAssessment assessFor(AssessedTwins& twins, ArmRecording& recording, const FollowOptions& options)
+ArmAssessment assessFor(ArmRecording& recording, const FollowOptions& options)
 {
-  AssessmentSettings settings;
-  settings.make_joints = [&]
-  { return twins.make(recording.parameters(), recording.loadOrigin(), !options.identified.empty()); };
-  settings.gives_notice = false;
-  settings.watch = options.watch;
   RecordingFit fit(recording.parameters());
-  const ArmAssessment arm = assess(recording, settings, fit);
+  ArmAssessment arm = assess(recording, {}, fit);
   if (!arm.assumed.isConfigured())
   {
     options.watch.notice(arm.assumed.text());
@@ -476,9 +439,7 @@ try
   }
   requireWritable(options.bag, options.force, options.recording);
   const std::unique_ptr<TrackedBag> bag = bagOf(recording, options);
-  AssessedTwins twins;
-  const std::optional<ArmAssessment> assessed =
-      bag ? std::make_optional(assessFor(twins, recording, options)) : std::nullopt;
+  const std::optional<ArmAssessment> assessed = bag ? std::make_optional(assessFor(recording, options)) : std::nullopt;
   std::vector<std::unique_ptr<Follower>> followers;
   std::vector<Tracker*> trackers;
   for (std::size_t i = 0; i < recording.joints().size(); ++i)
@@ -509,9 +470,9 @@ try
       fit);
   recording.noticeOf(fit);
   recording.noticeOf(followed.found);
-  for (std::size_t i = 0; i < followers.size(); ++i)
+  for (const auto& follower : followers)
   {
-    followed.joints.push_back(followers[i]->finish(recording.joints()[i].short_name));
+    followed.joints.push_back(follower->finish());
   }
   if (bag)
   {

@@ -440,8 +440,11 @@ Identified identify(const IdentifyOptions& options)
   }
   std::vector<std::vector<MotionSample>> samples(recording.joints().size());
   Identified identified{ recording.isArm(), options.load, {}, {}, {}, false };
+  RecordingFit fit(recording.parameters());
   identified.found =
-      recording.readSamples([&](std::size_t i, const MotionSample& sample) { samples[i].push_back(sample); });
+      recording.readSamples([&](std::size_t i, const MotionSample& sample) { samples[i].push_back(sample); }, fit);
+  recording.noticeOf(fit);
+  recording.noticeOf(identified.found);
   identified.joints = identifyJoints(options, recording, identified.found.duration, samples);
   if (recording.isArm() && !options.watch.stopped())
   {

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <optional>
 
 #include "arm/arm_configuration.hpp"
 #include "arm/arm_controller.hpp"
@@ -84,15 +83,6 @@ Recorded readController(const std::string& path, std::size_t joints)
     std::transform(QUANTITIES.begin(), QUANTITIES.end(), columns[i].begin(),
                    [&](const char* name) { return column(name + std::to_string(i)); });
   }
-  const auto number = [&](std::size_t place)
-  {
-    const std::optional<double> value = decimalNumber(rows.text(place));
-    if (!value || !std::isfinite(*value))
-    {
-      throw InputError(rows.place() + ": column '" + header[place] + "' is no finite number");
-    }
-    return *value;
-  };
   Recorded recorded;
   recorded.joints.resize(joints);
   recorded.angles.resize(joints);
@@ -100,7 +90,7 @@ Recorded readController(const std::string& path, std::size_t joints)
   double before = 0.0;
   while (rows.next())
   {
-    const double now = number(time);
+    const double now = rows.number(time);
     if (!recorded.joints.front().empty())
     {
       steps.push_back(now - before);
@@ -109,7 +99,8 @@ Recorded readController(const std::string& path, std::size_t joints)
     for (std::size_t i = 0; i < joints; ++i)
     {
       std::array<double, QUANTITIES.size()> value{};
-      std::transform(columns[i].begin(), columns[i].end(), value.begin(), number);
+      std::transform(columns[i].begin(), columns[i].end(), value.begin(),
+                     [&](std::size_t place) { return rows.number(place); });
       recorded.joints[i].push_back(
           { value[0] - value[4], value[1] - value[5], value[1], value[3], value[2], value[6] });
       recorded.angles[i].push_back(value[4]);

@@ -329,16 +329,6 @@ void MessageRows::readLoad(const sensor_msgs::JointState& message, Stamp stamp)
   }
 }
 
-std::uint64_t MessageRows::folds() const
-{
-  std::uint64_t folds = 0;
-  for (const UnfoldedAngle& angle : angles_)
-  {
-    folds += angle.folds();
-  }
-  return folds;
-}
-
 std::uint64_t MessageRows::refusedTemperatures() const
 {
   std::uint64_t refused = 0;

@@ -65,7 +65,7 @@ public:
   /// Messages in which angle or effort of a joint is no number, by joint.
   const std::map<std::string, std::uint64_t>& missing() const { return missing_; }
   bool hasShortEfforts() const { return has_short_efforts_; }
-  std::uint64_t folds() const;
+  const std::vector<UnfoldedAngle>& angles() const { return angles_; }
   std::uint64_t refusedTemperatures() const;
   /// Of the rows as they came, true or not.
   const SourceWatch& sources() const { return sources_; }

@@ -55,6 +55,15 @@ struct MotionCount
   double velocity_ratio{ std::numeric_limits<double>::quiet_NaN() };
   std::vector<std::string> remarks;  ///< repaired or omitted data, clauses without a full stop
   Misfit misfit;                     ///< with this nothing can be judged; none: nothing stands against it
+
+  /// Empty: none.
+  void remark(const std::string& text)
+  {
+    if (!text.empty())
+    {
+      remarks.push_back(text);
+    }
+  }
 };
 
 /// Motion that was read, and the reasons why it cannot be judged.
@@ -73,7 +82,12 @@ inline bool isCsv(const MotionSource& source)
 /// True if the recording gives the load; else it is zero in the rows. @throws InputError if the file cannot be read.
 bool recordsLoad(const MotionSource& source);
 
-/// Reads a recording row by row, in memory that does not grow with it beyond the bag's own index.
+/// A row of each joint, all of one time. False: the visitor has had enough.
+using VisitMotionRows = std::function<bool(const std::vector<MotionRow>& rows)>;
+
+/// Reads a recording row by row, in memory that does not grow with it beyond the bag's own index. `visit` gets a row
+/// for each of `names`, all of one time: of the source's joint alone, or of all joints of an arm, for which the source
+/// names recording and topics.
 ///
 /// All kinds go through RowFilter, which leaves out what was not measured or cannot be true.
 /// Times start at the first row; a loop's rounds follow each other (RowTime). Angles folded into one turn are made
@@ -82,20 +96,14 @@ bool recordsLoad(const MotionSource& source);
 /// from its stamp on. Left out and counted: a row that agrees neither with the one before nor with the one after, its
 /// angle beyond what any joint can reach in the time or its stamp more than a second off theirs; one with all efforts
 /// zero where others have some; one without a stamp where others have one. `misfit` where two sources give the same
-/// joint. Table: columns timestamp, actual_q_N, actual_current_N, target_moment_N, as `joint_twin import`, and
-/// joint_temperatures_N [degC]. Temperatures of messages are sensor_msgs/Temperature of any topic whose frame_id is the
-/// joint; a row has the latest one that is not too old (TemperatureRecord). `visit` returns false to stop. `progress`:
-/// 0 ... 1.
-/// @throws InputError if the file, the topic or the joint is not there; it names those that are.
-MotionCount readMotion(const MotionSource& source, const std::function<bool(const MotionRow&)>& visit,
+/// joint. Rows that hold not all of the joints are left out and counted as corrupt, but where no message holds all of
+/// them, each row of the first joint gets the angles and currents of the others from between their neighbours in time.
+/// Temperatures of messages are sensor_msgs/Temperature of any topic whose frame_id is the joint; a row has the latest
+/// one that is not too old (TemperatureRecord).
+/// Table: columns timestamp, actual_q_N, actual_current_N, target_moment_N, as `joint_twin import`, and
+/// joint_temperatures_N [degC]; of an arm those of joints 0 to 5, in the order of the names.
+/// `progress`: 0 ... 1.
+/// @throws InputError if the file, the topic or a joint is not there; it names those that are, or that are missing.
+MotionCount readMotion(const MotionSource& source, const std::vector<std::string>& names, const VisitMotionRows& visit,
                        const std::function<void(double)>& progress);
-
-/// The same for all joints of an arm: `visit` gets a row for each of `names`, all of one time. `source` names recording
-/// and topics; its joint counts for nothing. CSV: the columns of joints 0 to 5, in the order of the names. Rows that
-/// hold not all of the joints are left out and counted as corrupt, but where no message holds all of them, each row of
-/// the first joint gets the angles and currents of the others from between their neighbours in time.
-/// @throws InputError likewise; it names the joints that are missing.
-MotionCount readArmMotion(const MotionSource& source, const std::vector<std::string>& names,
-                          const std::function<bool(const std::vector<MotionRow>&)>& visit,
-                          const std::function<void(double)>& progress);
 }  // namespace hjt

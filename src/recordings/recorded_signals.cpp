@@ -102,22 +102,35 @@ struct ColumnChoice
 {
   const char* option;
   const char* meaning;
-  std::string SignalSource::*given;
+  double SignalSample::*field;  // none: the time's
   const char* name;
   const char* otherwise{};  // where `name` is missing
 };
 constexpr std::array<ColumnChoice, COLUMNS> CHOICES{
-  { { "--time", "time [s]", &SignalSource::time, "time" },
-    { "--motor-torque", "motor torque, or current with --torque-scale", &SignalSource::motor_torque,
+  { { "--time", "time [s]", nullptr, "time" },
+    { "--motor-torque", "motor torque, or current with --torque-scale", &SignalSample::motor_torque,
       "motor_torque_reading", "motor_torque" },
-    { "--motor-angle", "motor encoder [rad]", &SignalSource::motor_angle, "motor_angle_encoder" },
-    { "--output-angle", "output encoder [rad]", &SignalSource::output_angle, "output_angle_encoder" },
-    { "--motor-velocity", "motor speed, else differences of the angle [rad/s]", &SignalSource::motor_velocity,
+    { "--motor-angle", "motor encoder [rad]", &SignalSample::motor_angle, "motor_angle_encoder" },
+    { "--output-angle", "output encoder [rad]", &SignalSample::output_angle, "output_angle_encoder" },
+    { "--motor-velocity", "motor speed, else differences of the angle [rad/s]", &SignalSample::motor_velocity,
       "motor_velocity_encoder" },
-    { "--load-torque", "load torque at the output, > 0 resists positive motion [N.m]", &SignalSource::load_torque,
+    { "--load-torque", "load torque at the output, > 0 resists positive motion [N.m]", &SignalSample::load_torque,
       "load_torque" },
-    { "--temperature", "temperature [degC]", &SignalSource::temperature, "housing_temperature", "temperature" },
-    { "--target-angle", "set point of the output angle [rad]", &SignalSource::target_angle, "target_angle" } }
+    { "--temperature", "temperature [degC]", &SignalSample::temperature, "housing_temperature", "temperature" },
+    { "--target-angle", "set point of the output angle [rad]", &SignalSample::target_angle, "target_angle" } }
+};
+
+/// Columns or topics of a recording with the signals of the joint.
+struct SignalSource
+{
+  Names columns;
+  // Topics of a bag.
+  std::string states_topic;
+  std::string load_topic;
+  bool load_topic_given{};        // then it must be there
+  std::string joint;              // its name in both
+  double torque_scale{ 1.0 };     // motor torque per unit of the recorded signal
+  double velocity_window{ 0.0 };  // over which a data set's drive takes its motor speed, if that is not recorded [s]
 };
 
 bool contains(const std::vector<std::string>& names, const std::string& name)
@@ -127,13 +140,13 @@ bool contains(const std::vector<std::string>& names, const std::string& name)
 
 /// The columns of a file in the order of the signals. `place`: file and line. @throws InputError if one that was named
 /// is not there, or none of the angles.
-Names columnsOf(const std::string& place, const std::vector<std::string>& there, const SignalSource& source)
+Names columnsOf(const std::string& place, const std::vector<std::string>& there, const Names& columns)
 {
   Names names;
   for (std::size_t i = 0; i < COLUMNS; ++i)
   {
     const ColumnChoice& choice = CHOICES[i];
-    const std::string& given = source.*choice.given;
+    const std::string& given = columns[i];
     if (!given.empty() && !contains(there, given))
     {
       throw InputError(place + ": " + choice.option + " " + given + ": no such column" + didYouMean(given, there) +
@@ -162,13 +175,11 @@ SignalSample sampleOf(const std::array<double, COLUMNS>& row, double torque_scal
 {
   SignalSample sample;
   sample.stamp = static_cast<std::int64_t>(std::llround(1e9 * row[TIME]));
-  sample.motor_angle = row[MOTOR_ANGLE];
-  sample.output_angle = row[OUTPUT_ANGLE];
-  sample.motor_velocity = row[MOTOR_VELOCITY];
-  sample.motor_torque = torque_scale * row[MOTOR_TORQUE];
-  sample.load_torque = row[LOAD_TORQUE];
-  sample.temperature = row[TEMPERATURE];
-  sample.target_angle = row[TARGET_ANGLE];
+  for (std::size_t i = TIME + 1; i < COLUMNS; ++i)
+  {
+    sample.*CHOICES[i].field = row[i];
+  }
+  sample.motor_torque *= torque_scale;
   return sample;
 }
 
@@ -189,7 +200,8 @@ std::vector<double> velocityOf(const std::vector<double>& time, const std::vecto
 
 void readTable(const std::string& path, const SignalSource& source, const Take& take)
 {
-  NumberTable<COLUMNS> table(path, columnsOf(path + ":1", CsvRows(path).header(), source), COLUMNS - MOTOR_ANGLE);
+  NumberTable<COLUMNS> table(path, columnsOf(path + ":1", CsvRows(path).header(), source.columns),
+                             COLUMNS - MOTOR_ANGLE);
   std::array<double, COLUMNS> row{};
   row.fill(NOT_MEASURED);
   while (table.read(row) && take(sampleOf(row, source.torque_scale)))
@@ -203,7 +215,7 @@ void readColumns(const std::string& place, Columns columns, const SignalSource& 
   std::vector<std::string> there;
   std::transform(columns.begin(), columns.end(), std::back_inserter(there),
                  [](const auto& item) { return item.first; });
-  const Names names = columnsOf(place, there, source);
+  const Names names = columnsOf(place, there, source.columns);
   if (columns.count(names[MOTOR_VELOCITY]) == 0 && columns.count(names[MOTOR_ANGLE]) > 0)
   {
     columns[names[MOTOR_VELOCITY]] =
@@ -229,9 +241,9 @@ void readColumns(const std::string& place, Columns columns, const SignalSource& 
 void readRun(const std::string& path, const SignalSource& source, const Take& take)
 {
   const ColumnChoice& torque = CHOICES[MOTOR_TORQUE];
-  Columns columns =
-      readRunColumns(path, source.motor_torque.empty() ? std::vector<std::string>{ torque.name, torque.otherwise } :
-                                                         std::vector<std::string>{ source.motor_torque });
+  const std::string& named = source.columns[MOTOR_TORQUE];
+  Columns columns = readRunColumns(path, named.empty() ? std::vector<std::string>{ torque.name, torque.otherwise } :
+                                                         std::vector<std::string>{ named });
   if (columns.empty())
   {
     columns = readRunColumns(path, { CHOICES[TIME].name });  // for the error text
@@ -259,11 +271,11 @@ SignalSample sampleOf(const sensor_msgs::JointState& state, const JointNames& na
 
 void readBag(const std::string& path, const SignalSource& source, const Take& take)
 {
-  for (const ColumnChoice& choice : CHOICES)
+  for (std::size_t i = 0; i < COLUMNS; ++i)
   {
-    if (!(source.*choice.given).empty())
+    if (!source.columns[i].empty())
     {
-      throw InputError(path + " is a bag: " + choice.option + " " + source.*choice.given + " names a column");
+      throw InputError(path + " is a bag: " + CHOICES[i].option + " " + source.columns[i] + " names a column");
     }
   }
   rosbag::Bag bag;
@@ -315,7 +327,8 @@ SignalSource signalSource(const SignalOptions& options, const Parameters& parame
     throw InputError("torque_scale = " + numberText(scale) + " must be a finite number other than 0");
   }
   const std::optional<UrJoint> known = findUrJoint(options.joint);
-  SignalSource source = options.source;
+  SignalSource source;
+  source.columns = options.columns;
   source.joint = known ? known->name : robot ? options.joint : parameters.joint.name;
   source.states_topic =
       options.states_topic.value_or(robot ? "/joint_states" : options.joint_namespace + "/" + topics::JOINT_STATES);
@@ -328,22 +341,21 @@ SignalSource signalSource(const SignalOptions& options, const Parameters& parame
 }
 }  // namespace
 
-bool namesColumn(const SignalSource& source)
+bool namesColumn(const SignalOptions& options)
 {
-  return std::any_of(CHOICES.begin(), CHOICES.end(),
-                     [&](const ColumnChoice& choice) { return !(source.*choice.given).empty(); });
+  return options.columns != Names();
 }
 
-void nameColumn(SignalSource& source, const std::string& signal, const std::string& column)
+void nameColumn(SignalOptions& options, const std::string& signal, const std::string& column)
 {
   std::vector<std::string> signals;
-  for (const ColumnChoice& choice : CHOICES)
+  for (std::size_t i = 0; i < COLUMNS; ++i)
   {
-    std::string name = choice.option + 2;  // without its dashes
+    std::string name = CHOICES[i].option + 2;  // without its dashes
     std::replace(name.begin(), name.end(), '-', '_');
     if (name == signal)
     {
-      source.*choice.given = column;
+      options.columns[i] = column;
       return;
     }
     signals.push_back(name);
@@ -365,11 +377,12 @@ void addSignalOptions(OptionTable& table, SignalOptions& options)
   table.add("--joint", options.joint,
             "bag: a robot's joint on /joint_states, effort in A, by telemetry.torque_per_current: base, shoulder, "
             "elbow, wrist_1 ..., or its name in the messages; default: the twin's own");
-  for (const ColumnChoice& choice : CHOICES)
+  for (std::size_t i = 0; i < COLUMNS; ++i)
   {
+    const ColumnChoice& choice = CHOICES[i];
     const std::string otherwise = choice.otherwise == nullptr ? "" : std::string(", else ") + choice.otherwise;
     const std::string help = std::string("CSV, HDF5: ") + choice.meaning + "; default: " + choice.name + otherwise;
-    table.add(choice.option, options.source.*choice.given, help).type("COLUMN");
+    table.add(choice.option, options.columns[i], help).type("COLUMN");
   }
   table.add("--torque-scale", options.torque_scale,
             "motor torque per unit of the recorded signal [N.m]; default: 1, and with --joint "

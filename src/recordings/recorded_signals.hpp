@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <functional>
 #include <map>
 #include <optional>
@@ -16,33 +17,6 @@
 
 namespace hjt
 {
-/// Columns or topics of a recording with the signals of the joint.
-struct SignalSource
-{
-  // Columns of a CSV or HDF5 file, which must be there; empty: those of `joint_twin simulate` and of a data set.
-  std::string time;
-  std::string motor_torque;
-  std::string motor_angle;
-  std::string output_angle;
-  std::string motor_velocity;
-  std::string load_torque;
-  std::string temperature;
-  std::string target_angle;
-  // Topics of a bag.
-  std::string states_topic;
-  std::string load_topic;
-  bool load_topic_given{};        ///< then it must be there
-  std::string joint;              ///< its name in both
-  double torque_scale{ 1.0 };     ///< motor torque per unit of the recorded signal
-  double velocity_window{ 0.0 };  ///< over which a data set's drive takes its motor speed, if that is not recorded [s]
-};
-
-/// Whether a column was named.
-bool namesColumn(const SignalSource& source);
-
-/// Names the column of a signal: "motor_torque", as the tool's --motor-torque. @throws InputError naming the signals.
-void nameColumn(SignalSource& source, const std::string& signal, const std::string& column);
-
 /// Recordings of one joint, the parameters of its twin, and where in them its signals lie.
 struct SignalOptions : ConfigurationOptions
 {
@@ -54,12 +28,19 @@ struct SignalOptions : ConfigurationOptions
   std::optional<std::string> states_topic;
   std::optional<std::string> load_topic;
   std::optional<double> torque_scale;  ///< motor torque per unit of the recorded signal [N.m]
-  SignalSource source;                 ///< columns
-  bool force{};                        ///< overwrite files
+  /// Columns of a CSV or HDF5 file, in the order of the signals, which must be there; empty: those of `joint_twin
+  /// simulate` and of a data set.
+  std::array<std::string, 8> columns;
+  bool force{};  ///< overwrite files
   Watch watch;
 };
 
 void addSignalOptions(OptionTable& table, SignalOptions& options);
+
+/// Whether a column was named.
+bool namesColumn(const SignalOptions& options);
+/// Names the column of a signal: "motor_torque", as the tool's --motor-torque. @throws InputError naming the signals.
+void nameColumn(SignalOptions& options, const std::string& signal, const std::string& column);
 
 /// Gives every sample of a recording at hand, a CSV file, a run of a data set (HDF5) or a bag to `take`, in order of
 /// time, until that returns false.

@@ -76,7 +76,7 @@ RecordingParameters recordingParameters(const SignalOptions& options, const std:
 std::optional<std::vector<SignalIndicators>> windowsOfRun(const std::string& recording, const SignalOptions& options,
                                                           const RecordingParameters& parameters)
 {
-  const bool plain = !options.torque_scale && options.joint.empty() && !namesColumn(options.source);
+  const bool plain = !options.torque_scale && options.joint.empty() && !namesColumn(options);
   if (!parameters.run || !plain || !makeSameWindows(*parameters.run, parameters.values))
   {
     return std::nullopt;

@@ -318,14 +318,16 @@ void takeFit(const RecordingFit& fit, const std::vector<Parameters>& parameters,
   }
 }
 
+using AssessedJoints = std::vector<std::unique_ptr<AssessedJoint>>;
+
 /// Samples that the differentiators of all joints have ready.
-void addReady(std::vector<MotionDifferentiator>& joints, bool at_end, const AssessedTwins& twins)
+void addReady(std::vector<MotionDifferentiator>& joints, bool at_end, AssessedJoints& twins)
 {
   for (std::size_t i = 0; i < joints.size(); ++i)
   {
     while (const std::optional<MotionSample> sample = joints[i].pop(at_end))
     {
-      twins[i].update(*sample);
+      twins[i]->update(*sample);
     }
   }
 }
@@ -342,13 +344,8 @@ void readArm(const RecordingOptions& options, CheckedArm& arm)
   const RecordingOptions own = optionsFor(options, arm, arm.taken);
   ArmRecording recording(own);
   RecordingFit fit(recording.parameters());
-  AssessedTwins twins;
   AssessmentSettings settings;
-  settings.make_joints = [&]
-  { return twins.make(recording.parameters(), recording.loadOrigin(), !options.identified.empty()); };
-  settings.gives_notice = false;
   settings.looks_for_arm = arm.ranked.empty();
-  settings.watch = options.watch;
   const ArmAssessment assessment = assess(recording, settings, fit);
   arm.found = assessment.found;
   arm.timing = assessment.timing;
@@ -362,7 +359,7 @@ void readArm(const RecordingOptions& options, CheckedArm& arm)
   takeFit(fit, recording.parameters(), arm);
   for (std::size_t i = 0; i < arm.joints.size(); ++i)
   {
-    arm.joints[i].verdict = judge(twins[i].evidence(), assessment.context(i));
+    arm.joints[i].verdict = judge(assessment.joints[i]->evidence(), assessment.context(i));
   }
 }
 
@@ -379,21 +376,21 @@ Misfit misfitOfParts(const CheckedArm& arm)
 }
 
 /// Each joint after what the friction of all has in common.
-void judgeJoints(const AssessedTwins& twins, const RecordingFit& fit, const std::vector<Parameters>& parameters,
+void judgeJoints(const AssessedJoints& twins, const RecordingFit& fit, const std::vector<Parameters>& parameters,
                  CheckedArm& arm)
 {
   takeFit(fit, parameters, arm);
   std::vector<MeasuredFriction> frictions;
   for (std::size_t i = 0; i < arm.joints.size(); ++i)
   {
-    frictions.push_back(twins[i].friction(arm.joints[i].misfit));
+    frictions.push_back(twins[i]->friction(arm.joints[i].misfit));
   }
   const ArmFriction common = commonFriction(frictions, parameters.front().comparison.repeat_tolerance);
   for (std::size_t i = 0; i < arm.joints.size(); ++i)
   {
     CheckedJoint& joint = arm.joints[i];
     const Misfit& misfit = misfitOf(joint.misfit, common.misfit);
-    joint.verdict = judge(twins[i].evidence(), twins[i].context(misfit, common.factors[i], common.deviations[i]));
+    joint.verdict = judge(twins[i]->evidence(), twins[i]->context(misfit, common.factors[i], common.deviations[i]));
   }
 }
 
@@ -405,8 +402,11 @@ void readJoints(const RecordingOptions& options, CheckedArm& arm)
   const MotionDriven twin(parameters.front());
   StreamTiming timing;
   RecordingFit fit(parameters);
-  AssessedTwins twins;
-  twins.make(parameters, LoadOrigin::CONFIGURED, false);
+  AssessedJoints twins;
+  for (const Parameters& of : parameters)
+  {
+    twins.push_back(std::make_unique<AssessedJoint>(of, LoadOrigin::CONFIGURED, SoundJoint(), false));
+  }
   std::vector<MotionDifferentiator> differentiators(names.size(), MotionDifferentiator(ArmRates::HALF_WIDTH));
   std::vector<MotionDifferentiator> own(names.size());
   std::vector<MotionSample> samples(names.size());
@@ -429,7 +429,7 @@ void readJoints(const RecordingOptions& options, CheckedArm& arm)
     }
     addReady(own, at_end, twins);
   };
-  static_cast<MotionCount&>(arm.found) = readArmMotion(
+  static_cast<MotionCount&>(arm.found) = readMotion(
       motionSource(options), names,
       [&](const std::vector<MotionRow>& rows)
       {

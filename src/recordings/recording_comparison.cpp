@@ -2,19 +2,20 @@
 #include "recordings/recording_comparison.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <optional>
 #include <set>
+#include <utility>
 
 #include "bags/recorded_messages.hpp"
+#include "base/text.hpp"
 #include "base/whole_file.hpp"
 #include "harmonic_joint_twin/health/tracked_lines.hpp"
 #include "harmonic_joint_twin/statics/static_analysis.hpp"
 #include "harmonic_joint_twin/statics/torsion_loop.hpp"
 #include "health/baseline_file.hpp"
 #include "messages/conversions.hpp"
-#include "output/report.hpp"
+#include "messages/topics.hpp"
+#include "recordings/arm_recording.hpp"
 #include "tracking/sound_joint.hpp"
 
 namespace hjt
@@ -29,106 +30,74 @@ constexpr const char* TWIN = "angle and speed of a twin that ran beside the robo
 
 const auto NO_PROGRESS = [](double) {};
 
-void writeCourse(const std::string& path, const RecordingComparison& comparison)
+const std::vector<Column<JudgedWindow>> WINDOW_COLUMNS{
+  { "time", [](const JudgedWindow& window) { return 1e-9 * static_cast<double>(window.indicators.stamp); } },
+  { "speed", [](const JudgedWindow& window) { return window.indicators.point.speed; } },
+  { "load", [](const JudgedWindow& window) { return window.indicators.point.load; } },
+  { "level", [](const JudgedWindow& window) { return static_cast<int>(window.assessment.level); } },
+  { "cause", [](const JudgedWindow& window) { return static_cast<int>(window.assessment.cause); } },
+  { "confidence", [](const JudgedWindow& window) { return window.assessment.confidence; } },
+  { "largest_score", [](const JudgedWindow& window) { return window.assessment.largest_score; } }
+};
+
+/// One instant of the twin that ran when the bag was made.
+struct TwinState
 {
-  const std::vector<Column<ComparedRow>> columns{
-    { "time", [](const ComparedRow& row) { return row.measured.time; } },
-    { "position", [](const ComparedRow& row) { return row.measured.position; } },
-    { "velocity", [](const ComparedRow& row) { return row.measured.velocity; } },
-    { "load", [](const ComparedRow& row) { return row.measured.load; } },
-    { "current_measured", [](const ComparedRow& row) { return row.measured.current; } },
-    { "current_predicted", [](const ComparedRow& row) { return row.predicted.current; } },
-    { "current_band", [](const ComparedRow& row) { return row.predicted.band; } },
-    { "friction_torque", [](const ComparedRow& row) { return row.predicted.friction_torque; } }
+  double time{};           ///< since the first row of the telemetry [s]
+  double position{};       ///< of the joint [rad]
+  double velocity{};       ///< [rad/s]
+  double motor_current{};  ///< [A]
+};
+
+/// `twin_topic`: the joint states of a twin that was recorded beside the robot. @throws InputError if the file cannot
+/// be read.
+RecordingContents readContents(const MotionSource& source, const std::string& twin_topic, const MotionFindings& found,
+                               const MotionReach& reach)
+{
+  const bool has_load = found.has_load;
+  const std::uint64_t temperature_rows = reach.temperature_rows;
+  RecordingContents contents;
+  if (isCsv(source))
+  {
+    const std::string n = "_" + std::to_string(source.csv_joint);
+    contents.lines = { { "timestamp, actual_q" + n + ", actual_current" + n, ANGLE_AND_CURRENT, found.rows, true },
+                       { "target_moment" + n, LOAD, has_load ? found.rows : 0, has_load },
+                       { "joint_temperatures" + n, TEMPERATURE, temperature_rows, temperature_rows > 0 } };
+    return contents;
+  }
+  const std::unique_ptr<RecordedMessages> recording = RecordedMessages::open(source.path);
+  const std::uint64_t loads = recording->messagesOn(source.load_topic);
+  const std::uint64_t twins = twin_topic == source.topic ? 0 : recording->messagesOn(twin_topic);
+  contents.lines = {
+    { source.topic, ANGLE_AND_CURRENT, found.rows, true },
+    { source.topic + ": " + JointNames(source.joint).motor, MOTOR_ANGLE, reach.motor_rows, reach.motor_rows > 0 },
+    { source.load_topic, LOAD, loads, loads > 0 },
+    { "sensor_msgs/Temperature of " + source.joint, TEMPERATURE, temperature_rows, temperature_rows > 0 }
   };
-  writeTable(path, columns, comparison.course().rows());
-}
-
-void writeFriction(const std::string& directory, const RecordingComparison& comparison)
-{
-  const std::vector<Column<FrictionPoint>> columns{ { "speed", &FrictionPoint::speed },
-                                                    { "measured", &FrictionPoint::measured },
-                                                    { "deviation", &FrictionPoint::deviation },
-                                                    { "twin", &FrictionPoint::twin },
-                                                    { "rows", &FrictionPoint::rows } };
-  const std::vector<FrictionPoint> points = comparison.evidence().friction().points();
-  writeTable(directory + "/" + FRICTION_FILE, columns, points);
-  double fastest = 1.0;
-  for (const FrictionPoint& point : points)
+  if (twin_topic != source.topic)
   {
-    fastest = std::max(fastest, std::abs(point.speed));
+    contents.lines.push_back({ twin_topic, TWIN, twins, twins > 0 });
   }
-  constexpr int STEPS = 100;
-  CsvWriter curve(directory + "/friction_twin.csv", { "speed", "at_typical_load", "at_largest_load" });
-  for (int i = 1; i <= STEPS; ++i)
+  recording->visit(
+      { source.topic }, false,
+      [&](const RecordedMessage& message)
+      {
+        contents.joints = message.state == nullptr ? contents.joints : message.state->name;
+        return message.state == nullptr;
+      },
+      NO_PROGRESS);
+  const std::set<std::string> used{ source.topic, source.load_topic, twin_topic };
+  std::set<std::string> others;
+  for (const auto& [name, topic] : recording->topics())
   {
-    const double speed = 1.1 * fastest * i / STEPS;
-    const auto at = [&](double load)
-    { return comparison.evidence().twin().frictionAt(speed, load, comparison.evidence().temperature()); };
-    curve.writeRow({ speed, at(comparison.evidence().typicalLoad()), at(comparison.evidence().largestLoad()) });
+    const bool is_temperature = temperature_rows > 0 && topic.type == TEMPERATURE_TYPE;
+    if (!is_temperature && used.count(name) == 0)
+    {
+      others.insert(name);
+    }
   }
-  curve.close();
-}
-
-void writeSpectrum(const std::string& path, const RecordingComparison& comparison)
-{
-  const std::vector<Column<SpectrumLine>> columns{ { "order", &SpectrumLine::order },
-                                                   { "forward", &SpectrumLine::forward },
-                                                   { "backward", &SpectrumLine::backward } };
-  writeTable(path, columns, comparison.spectrum().lines());
-}
-
-void writeTorsion(const std::string& directory, const RecordingComparison& comparison, const Parameters& parameters)
-{
-  if (comparison.evidence().torsion().rows() == 0)
-  {
-    return;
-  }
-  const std::vector<Column<TorsionMean>> columns{ { "torque", &TorsionMean::torque },
-                                                  { "forward", &TorsionMean::forward },
-                                                  { "backward", &TorsionMean::backward } };
-  const std::vector<TorsionMean> means = comparison.evidence().torsion().means();
-  writeTable(directory + "/torsion.csv", columns, means);
-  double largest = 0.0;
-  for (const TorsionMean& mean : means)
-  {
-    largest = std::max(largest, std::abs(mean.torque));
-  }
-  constexpr int STEPS = 60;
-  const double lost_motion = parameters.indicators.lost_motion_torque;
-  const TorsionLoop loop = analyseTorsionLoop(parameters, std::max(largest, 2.0 * lost_motion), lost_motion, STEPS);
-  const std::vector<Column<TorsionPoint>> curve{ { "torque", &TorsionPoint::torque },
-                                                 { "torsion", &TorsionPoint::output_angle } };
-  writeTable(directory + "/torsion_twin.csv", curve, loop.points);
-}
-
-/// Every tooth of the twin's ring under the recording's typical and largest load.
-void writeTeeth(const std::string& path, const RecordingComparison& comparison, const Parameters& parameters)
-{
-  const std::vector<StiffnessRow> rows =
-      analyseStiffness(parameters, 0.0, { comparison.evidence().typicalLoad(), comparison.evidence().largestLoad() });
-  CsvWriter csv(path, { "x", "y", "wave_generator_typical", "mesh_typical", "wave_generator_largest", "mesh_largest" });
-  const ToothTable& typical = rows[0].teeth;
-  const ToothTable& largest = rows[1].teeth;
-  for (std::size_t i = 0; i < typical.tooth_x.size(); ++i)
-  {
-    csv.writeRow({ typical.tooth_x[i], typical.tooth_y[i], typical.wave_generator_force[i], typical.mesh_force[i],
-                   largest.wave_generator_force[i], largest.mesh_force[i] });
-  }
-  csv.close();
-}
-
-void writeTwinStates(const std::string& path, const Decimated<TwinState>& states)
-{
-  if (states.rows().empty())
-  {
-    return;
-  }
-  const std::vector<Column<TwinState>> columns{ { "time", &TwinState::time },
-                                                { "position", &TwinState::position },
-                                                { "velocity", &TwinState::velocity },
-                                                { "motor_current", &TwinState::motor_current } };
-  writeTable(path, columns, states.rows());
+  contents.other_topics.assign(others.begin(), others.end());
+  return contents;
 }
 
 /// One indicator of the window that was judged worst.
@@ -139,18 +108,18 @@ struct HealthRow
   Deviation deviation;
 };
 
-Json healthJson(const RecordingComparison& comparison)
+Json healthJson(const JointEvidence& evidence)
 {
   std::vector<HealthRow> rows;
-  for (std::size_t i = 0; comparison.evidence().worst() && i < INDICATOR_COUNT; ++i)
+  for (std::size_t i = 0; evidence.worst() && i < INDICATOR_COUNT; ++i)
   {
-    const JudgedWindow& window = *comparison.evidence().worst();
+    const JudgedWindow& window = *evidence.worst();
     if (std::isfinite(window.indicators.values[i]) && std::isfinite(window.deviations[i].score))
     {
       rows.push_back({ i, window.indicators.values[i], window.deviations[i] });
     }
   }
-  const double threshold = comparison.evidence().assessor().baseline().threshold();
+  const double threshold = evidence.assessor().baseline().threshold();
   const std::vector<Column<HealthRow>> columns{
     { "indicator", [](const HealthRow& row) { return indicatorName(row.indicator); } },
     { "unit", [](const HealthRow& row) { return indicatorUnit(row.indicator); } },
@@ -199,69 +168,183 @@ Json verdictJson(const Verdict& verdict)
   all["cannot_show"] = hiddenTexts(verdict);
   return all;
 }
-}  // namespace
 
-RecordingContents readContents(const MotionSource& source, const std::string& twin_topic, const MotionCount& count,
-                               std::uint64_t motor_rows, std::uint64_t temperature_rows, bool has_load)
+/// Standard deviation of the friction by its scatter, as a share; NaN: it was not judged by the joint's own rows, which
+/// are no reference then.
+double frictionDeviation(const ComparedJoint& compared)
 {
-  RecordingContents contents;
-  if (isCsv(source))
-  {
-    const std::string n = "_" + std::to_string(source.csv_joint);
-    contents.lines = { { "timestamp, actual_q" + n + ", actual_current" + n, ANGLE_AND_CURRENT, count.rows, true },
-                       { "target_moment" + n, LOAD, has_load ? count.rows : 0, has_load },
-                       { "joint_temperatures" + n, TEMPERATURE, temperature_rows, temperature_rows > 0 } };
-    return contents;
-  }
-  const std::unique_ptr<RecordedMessages> recording = RecordedMessages::open(source.path);
-  const std::uint64_t loads = recording->messagesOn(source.load_topic);
-  const std::uint64_t twins = twin_topic == source.topic ? 0 : recording->messagesOn(twin_topic);
-  contents.lines = { { source.topic, ANGLE_AND_CURRENT, count.rows, true },
-                     { source.topic + ": " + JointNames(source.joint).motor, MOTOR_ANGLE, motor_rows, motor_rows > 0 },
-                     { source.load_topic, LOAD, loads, loads > 0 },
-                     { "sensor_msgs/Temperature of " + source.joint, TEMPERATURE, temperature_rows,
-                       temperature_rows > 0 } };
-  if (twin_topic != source.topic)
-  {
-    contents.lines.push_back({ twin_topic, TWIN, twins, twins > 0 });
-  }
-  recording->visit(
-      { source.topic }, false,
-      [&](const RecordedMessage& message)
-      {
-        contents.joints = message.state == nullptr ? contents.joints : message.state->name;
-        return message.state == nullptr;
-      },
-      NO_PROGRESS);
-  const std::set<std::string> used{ source.topic, source.load_topic, twin_topic };
-  std::set<std::string> others;
-  for (const auto& [name, topic] : recording->topics())
-  {
-    const bool is_temperature = temperature_rows > 0 && topic.type == TEMPERATURE_TYPE;
-    if (!is_temperature && used.count(name) == 0)
-    {
-      others.insert(name);
-    }
-  }
-  contents.other_topics.assign(others.begin(), others.end());
-  return contents;
+  return compared.friction && compared.friction->isJudged() ? compared.friction->scatter :
+                                                              std::numeric_limits<double>::quiet_NaN();
 }
 
-Decimated<TwinState> readTwinStates(const MotionSource& source, const std::string& twin_topic, double start)
+/// Friction factor after division by the arm's common factor; null: not judged.
+Json factorJson(const ComparedJoint& compared)
 {
-  Decimated<TwinState> states;
-  if (isCsv(source) || twin_topic == source.topic)
+  const Verdict& verdict = compared.verdict;
+  return compared.friction ? Json{ { "value", verdict.friction.factor },
+                                   { "low", verdict.friction.lower },
+                                   { "high", verdict.friction.upper },
+                                   { "lowest_sound", verdict[Figure::FRICTION_LOWEST] },
+                                   { "highest_sound", verdict[Figure::FRICTION_HIGHEST] },
+                                   { "shared", verdict[Figure::FRICTION_OF_ARM] },
+                                   { "reference", referenceName(compared.friction->reference) } } :
+                             Json();
+}
+}  // namespace
+
+RecordingComparison::RecordingComparison(const ArmRecording& recording, std::size_t joint, const std::string& directory,
+                                         SoundJoint sound)
+  : AssessedJoint(recording.parameters(joint), recording.loadOrigin(), std::move(sound),
+                  !recording.options().identified.empty())
+  , recording_(recording)
+  , joint_(joint)
+  , directory_(directory)
+  , twin_topic_(recording.twinNamespace(joint) + "/" + topics::JOINT_STATES)
+  , spectrum_(evidence().ratio())
+{
+  if (!directory.empty())
   {
-    return states;
+    windows_.emplace(file("windows.csv"), WINDOW_COLUMNS);
+  }
+}
+
+JointEvidence::Row RecordingComparison::update(const MotionSample& sample)
+{
+  const JointEvidence::Row taken = AssessedJoint::update(sample);
+  if (taken == JointEvidence::Row::IMPOSSIBLE)
+  {
+    return taken;
+  }
+  const ComparedRow row{ sample, evidence().predicted() };
+  course_.add(row);
+  if (taken != JointEvidence::Row::TOUCHED && std::abs(sample.velocity) > FrictionPoints::SLOWEST &&
+      row.predicted.tellsFriction())
+  {
+    spectrum_.add(sample.position, sample.velocity, row.residual());
+  }
+  if (taken == JointEvidence::Row::WINDOW && windows_)
+  {
+    const Assessor& assessor = evidence().assessor();
+    windows_->write({ evidence().indicators(), assessor.deviations(), assessor.assessment() });
+  }
+  return taken;
+}
+
+ComparedJoint RecordingComparison::write(const MotionFindings& found, const JointContext& context)
+{
+  const MotionReach& reach = evidence().reach();
+  ComparedJoint compared;
+  if (recording_.isFile())
+  {
+    compared.contents = readContents(recording_.source(joint_), twin_topic_, found, reach);
+  }
+  compared.verdict = judge(evidence(), context);
+  if (compared.verdict.findings.front().level != VerdictLevel::NOT_JUDGED)
+  {
+    compared.friction = frictionFactor(evidence(), context);
+  }
+  compared.contact = reach.touched_rows > 0 ? sentence(contactText(evidence().contact().largest())) : std::string();
+  compared.temperature = evidence().temperature();
+  compared.temperature_source = temperatureSource(evidence());
+  compared.rows = reach.rows;
+  compared.current_rms = evidence().currentRms();
+  compared.residual_rms = evidence().residualRms();
+  if (windows_)
+  {
+    windows_->close();
+    writeData(found);
+  }
+  compared.document = documentOf(found, compared);
+  if (!directory_.empty())
+  {
+    writeTextFile(file(COMPARISON_FILE), compared.document.dump() + "\n");
+  }
+  return compared;
+}
+
+void RecordingComparison::writeFriction() const
+{
+  const std::vector<Column<FrictionPoint>> columns{ { "speed", &FrictionPoint::speed },
+                                                    { "measured", &FrictionPoint::measured },
+                                                    { "deviation", &FrictionPoint::deviation },
+                                                    { "twin", &FrictionPoint::twin },
+                                                    { "rows", &FrictionPoint::rows } };
+  const std::vector<FrictionPoint> points = evidence().friction().points();
+  writeTable(file(FRICTION_FILE), columns, points);
+  double fastest = 1.0;
+  for (const FrictionPoint& point : points)
+  {
+    fastest = std::max(fastest, std::abs(point.speed));
+  }
+  constexpr int STEPS = 100;
+  CsvWriter curve(file("friction_twin.csv"), { "speed", "at_typical_load", "at_largest_load" });
+  for (int i = 1; i <= STEPS; ++i)
+  {
+    const double speed = 1.1 * fastest * i / STEPS;
+    const auto at = [&](double load) { return evidence().twin().frictionAt(speed, load, evidence().temperature()); };
+    curve.writeRow({ speed, at(evidence().typicalLoad()), at(evidence().largestLoad()) });
+  }
+  curve.close();
+}
+
+void RecordingComparison::writeTorsion() const
+{
+  if (evidence().torsion().rows() == 0)
+  {
+    return;
+  }
+  const std::vector<Column<TorsionMean>> columns{ { "torque", &TorsionMean::torque },
+                                                  { "forward", &TorsionMean::forward },
+                                                  { "backward", &TorsionMean::backward } };
+  const std::vector<TorsionMean> means = evidence().torsion().means();
+  writeTable(file("torsion.csv"), columns, means);
+  double largest = 0.0;
+  for (const TorsionMean& mean : means)
+  {
+    largest = std::max(largest, std::abs(mean.torque));
+  }
+  constexpr int STEPS = 60;
+  const double lost_motion = parameters().indicators.lost_motion_torque;
+  const TorsionLoop loop = analyseTorsionLoop(parameters(), std::max(largest, 2.0 * lost_motion), lost_motion, STEPS);
+  const std::vector<Column<TorsionPoint>> curve{ { "torque", &TorsionPoint::torque },
+                                                 { "torsion", &TorsionPoint::output_angle } };
+  writeTable(file("torsion_twin.csv"), curve, loop.points);
+}
+
+/// Every tooth of the twin's ring under the recording's typical and largest load.
+void RecordingComparison::writeTeeth() const
+{
+  const std::vector<StiffnessRow> rows =
+      analyseStiffness(parameters(), 0.0, { evidence().typicalLoad(), evidence().largestLoad() });
+  CsvWriter csv(file("teeth.csv"),
+                { "x", "y", "wave_generator_typical", "mesh_typical", "wave_generator_largest", "mesh_largest" });
+  const ToothTable& typical = rows[0].teeth;
+  const ToothTable& largest = rows[1].teeth;
+  for (std::size_t i = 0; i < typical.tooth_x.size(); ++i)
+  {
+    csv.writeRow({ typical.tooth_x[i], typical.tooth_y[i], typical.wave_generator_force[i], typical.mesh_force[i],
+                   largest.wave_generator_force[i], largest.mesh_force[i] });
+  }
+  csv.close();
+}
+
+/// The twin's recorded states, where the recording has such a topic, which is not the telemetry itself.
+void RecordingComparison::writeTwinStates(double start) const
+{
+  const MotionSource source = recording_.source(joint_);
+  Decimated<TwinState> states;
+  if (isCsv(source) || twin_topic_ == source.topic)
+  {
+    return;
   }
   const std::unique_ptr<RecordedMessages> recording = RecordedMessages::open(source.path);
-  if (recording->messagesOn(twin_topic) == 0)
+  if (recording->messagesOn(twin_topic_) == 0)
   {
-    return states;
+    return;
   }
   const JointNames names(source.joint);
   recording->visit(
-      { twin_topic }, false,
+      { twin_topic_ }, false,
       [&](const RecordedMessage& message)
       {
         if (message.state == nullptr)
@@ -279,7 +362,90 @@ Decimated<TwinState> readTwinStates(const MotionSource& source, const std::strin
         return true;
       },
       NO_PROGRESS);
-  return states;
+  if (!states.rows().empty())
+  {
+    const std::vector<Column<TwinState>> columns{ { "time", &TwinState::time },
+                                                  { "position", &TwinState::position },
+                                                  { "velocity", &TwinState::velocity },
+                                                  { "motor_current", &TwinState::motor_current } };
+    writeTable(file("twin_states.csv"), columns, states.rows());
+  }
+}
+
+/// The data of the page's figures.
+void RecordingComparison::writeData(const MotionFindings& found) const
+{
+  const std::vector<Column<ComparedRow>> columns{
+    { "time", [](const ComparedRow& row) { return row.measured.time; } },
+    { "position", [](const ComparedRow& row) { return row.measured.position; } },
+    { "velocity", [](const ComparedRow& row) { return row.measured.velocity; } },
+    { "load", [](const ComparedRow& row) { return row.measured.load; } },
+    { "current_measured", [](const ComparedRow& row) { return row.measured.current; } },
+    { "current_predicted", [](const ComparedRow& row) { return row.predicted.current; } },
+    { "current_band", [](const ComparedRow& row) { return row.predicted.band; } },
+    { "friction_torque", [](const ComparedRow& row) { return row.predicted.friction_torque; } }
+  };
+  writeTable(file("course.csv"), columns, course_.rows());
+  writeFriction();
+  const std::vector<Column<SpectrumLine>> lines{ { "order", &SpectrumLine::order },
+                                                 { "forward", &SpectrumLine::forward },
+                                                 { "backward", &SpectrumLine::backward } };
+  writeTable(file("spectrum.csv"), lines, spectrum_.lines());
+  writeTorsion();
+  writeTeeth();
+  if (recording_.isFile())
+  {
+    writeTwinStates(toSeconds(found.start));
+  }
+  if (!evidence().assessor().baseline().bins().empty())
+  {
+    writeBaseline(file(BASELINE_FILE), evidence().assessor().baseline(), false);
+  }
+}
+
+Json RecordingComparison::documentOf(const MotionFindings& found, const ComparedJoint& compared) const
+{
+  const MotionReach& reach = evidence().reach();
+  Json orders;
+  const LineOrders tracked = trackedOrders(parameters().gear, parameters().bearing);
+  for (std::size_t i = 0; i < FIRST_LOADED; ++i)
+  {
+    const std::string name = indicatorName(amplitudeIndex(LineSignal::MOTOR_TORQUE, i));
+    orders[name.substr(std::string("torque_").size())] = tracked[i];
+  }
+  const MotionSource source = recording_.source(joint_);
+  return { { "recording", source.path },
+           { "joint", source.joint },
+           { "made_with", MADE_WITH },
+           { "verdict", verdictJson(compared.verdict) },
+           { "contents", contentsJson(compared.contents) },
+           { "reading",
+             { { "rows", reach.rows },
+               { "duration", found.duration },
+               { "unreadable_or_impossible", found.corrupt + reach.impossible },
+               { "repeated_or_out_of_order", found.refused },
+               { "temperatures_refused", found.refused_temperatures },
+               { "gaps", found.gaps },
+               { "least_delay", found.least_delay },
+               { "most_delay", found.most_delay } } },
+           { "motion",
+             { { "least_angle", reach.least_angle },
+               { "most_angle", reach.most_angle },
+               { "least_load", reach.least_load },
+               { "most_load", reach.most_load },
+               { "typical_load", evidence().typicalLoad() },
+               { "largest_load", evidence().largestLoad() } } },
+           { "current", { { "measured_rms", evidence().currentRms() }, { "residual_rms", evidence().residualRms() } } },
+           { "temperature", evidence().temperature() },
+           { "temperature_source", temperatureSource(evidence()) },
+           { "friction_ratio", evidence().friction().ratio().value },
+           { "friction_deviation", frictionDeviation(compared) },
+           { "friction_factor", factorJson(compared) },
+           { "compliance_ratio", evidence().torsion().compliance() },
+           { "line_orders", orders },
+           { "highest_order", compared.verdict[Figure::HIGHEST_ORDER] },
+           { "windows_assessed", evidence().assessedWindows() },
+           { "health", healthJson(evidence()) } };
 }
 
 Json verdictFields(const Verdict& verdict)
@@ -313,102 +479,5 @@ Json verdictFields(const Verdict& verdict)
            { "evidence_values", values },
            { "evidence_units", units },
            { "text", verdictText(verdict) } };
-}
-
-namespace
-{
-/// Standard deviation of the friction by its scatter, as a share; NaN: it was not judged by the joint's own rows, which
-/// are no reference then.
-double frictionDeviation(const ComparisonRecord& record)
-{
-  return record.is_friction_judged && record.friction.isJudged() ? record.friction.scatter :
-                                                                   std::numeric_limits<double>::quiet_NaN();
-}
-
-/// Friction factor after division by the arm's common factor; null: not judged.
-Json factorJson(const ComparisonRecord& record)
-{
-  const JudgedFriction& friction = record.verdict.friction;
-  return record.is_friction_judged ? Json{ { "value", friction.factor },
-                                           { "low", friction.lower },
-                                           { "high", friction.upper },
-                                           { "lowest_sound", record.verdict[Figure::FRICTION_LOWEST] },
-                                           { "highest_sound", record.verdict[Figure::FRICTION_HIGHEST] },
-                                           { "shared", record.verdict[Figure::FRICTION_OF_ARM] },
-                                           { "reference", referenceName(record.friction.reference) } } :
-                                     Json(std::optional<double>());
-}
-
-/// Writes the data of the page's figures.
-void writeData(const std::string& directory, const RecordingComparison& comparison, const Parameters& parameters,
-               const ComparisonRecord& record)
-{
-  writeCourse(directory + "/course.csv", comparison);
-  writeFriction(directory, comparison);
-  writeSpectrum(directory + "/spectrum.csv", comparison);
-  writeTorsion(directory, comparison, parameters);
-  writeTeeth(directory + "/teeth.csv", comparison, parameters);
-  writeTwinStates(directory + "/twin_states.csv", record.twin_states);
-  if (!comparison.evidence().assessor().baseline().bins().empty())
-  {
-    writeBaseline(directory + "/" + BASELINE_FILE, comparison.evidence().assessor().baseline(), false);
-  }
-}
-}  // namespace
-
-Json writeComparison(const std::string& directory, const RecordingComparison& comparison, const Parameters& parameters,
-                     const ComparisonRecord& record)
-{
-  if (!directory.empty())
-  {
-    writeData(directory, comparison, parameters, record);
-  }
-  const MotionReach& reach = comparison.evidence().reach();
-  Json orders;
-  const LineOrders tracked = trackedOrders(parameters.gear, parameters.bearing);
-  for (std::size_t i = 0; i < FIRST_LOADED; ++i)
-  {
-    const std::string name = indicatorName(amplitudeIndex(LineSignal::MOTOR_TORQUE, i));
-    orders[name.substr(std::string("torque_").size())] = tracked[i];
-  }
-  const Json all{ { "recording", record.recording },
-                  { "joint", record.joint },
-                  { "made_with", record.made_with },
-                  { "verdict", verdictJson(record.verdict) },
-                  { "contents", contentsJson(record.contents) },
-                  { "reading",
-                    { { "rows", reach.rows },
-                      { "duration", record.found.duration },
-                      { "unreadable_or_impossible", record.found.corrupt + reach.impossible },
-                      { "repeated_or_out_of_order", record.found.refused },
-                      { "temperatures_refused", record.found.refused_temperatures },
-                      { "gaps", record.found.gaps },
-                      { "least_delay", record.found.least_delay },
-                      { "most_delay", record.found.most_delay } } },
-                  { "motion",
-                    { { "least_angle", reach.least_angle },
-                      { "most_angle", reach.most_angle },
-                      { "least_load", reach.least_load },
-                      { "most_load", reach.most_load },
-                      { "typical_load", comparison.evidence().typicalLoad() },
-                      { "largest_load", comparison.evidence().largestLoad() } } },
-                  { "current",
-                    { { "measured_rms", comparison.evidence().currentRms() },
-                      { "residual_rms", comparison.evidence().residualRms() } } },
-                  { "temperature", comparison.evidence().temperature() },
-                  { "temperature_source", temperatureSource(comparison.evidence()) },
-                  { "friction_ratio", comparison.evidence().friction().ratio().value },
-                  { "friction_deviation", frictionDeviation(record) },
-                  { "friction_factor", factorJson(record) },
-                  { "compliance_ratio", comparison.evidence().torsion().compliance() },
-                  { "line_orders", orders },
-                  { "highest_order", record.verdict[Figure::HIGHEST_ORDER] },
-                  { "windows_assessed", comparison.evidence().assessedWindows() },
-                  { "health", healthJson(comparison) } };
-  if (!directory.empty())
-  {
-    writeTextFile(directory + "/" + COMPARISON_FILE, all.dump() + "\n");
-  }
-  return all;
 }
 }  // namespace hjt

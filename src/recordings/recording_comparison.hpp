@@ -6,16 +6,13 @@
 #include <complex>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
+#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "gear/angle.hpp"
-#include "output/json.hpp"
-#include "recordings/recorded_motion.hpp"
-#include "tracking/joint_evidence.hpp"
-#include "tracking/verdict.hpp"
+#include "output/report.hpp"
+#include "recordings/compare.hpp"
 
 namespace hjt
 {
@@ -186,109 +183,43 @@ struct ComparedRow
 
 /// A recorded joint beside the twin that makes the same motion: what is judged of it, and what a page shows besides.
 /// Memory does not grow with the rows.
-class RecordingComparison
+class RecordingComparison : public AssessedJoint
 {
 public:
-  /// `baseline`: of the sound joint; empty: learned from the first windows. `watch`: is given every window.
-  /// @throws ParameterError if the ring finds no equilibrium under load.
-  RecordingComparison(const Parameters& parameters, LoadOrigin load, std::vector<ReferenceBin> baseline,
-                      std::function<void(const JudgedWindow&)> watch)
-    : evidence_(parameters, load), spectrum_(evidence_.ratio()), watch_(std::move(watch))
-  {
-    evidence_.setReference(std::move(baseline));
-  }
+  /// `recording`: stays there as long as this. `directory`: of the joint's report; empty: no file is written. `sound`:
+  /// what earlier reports left of it.
+  /// @throws ParameterError if the ring finds no equilibrium under load, InputError.
+  RecordingComparison(const ArmRecording& recording, std::size_t joint, const std::string& directory, SoundJoint sound);
 
-  void update(const MotionSample& sample)
-  {
-    const JointEvidence::Row taken = evidence_.update(sample);
-    if (taken == JointEvidence::Row::IMPOSSIBLE)
-    {
-      return;
-    }
-    const ComparedRow row{ sample, evidence_.predicted() };
-    course_.add(row);
-    if (taken == JointEvidence::Row::TOUCHED)
-    {
-      return;
-    }
-    if (std::abs(sample.velocity) > FrictionPoints::SLOWEST && row.predicted.tellsFriction())
-    {
-      spectrum_.add(sample.position, sample.velocity, row.residual());
-    }
-    if (taken == JointEvidence::Row::WINDOW)
-    {
-      const Assessor& assessor = evidence_.assessor();
-      watch_({ evidence_.indicators(), assessor.deviations(), assessor.assessment() });
-    }
-  }
+  JointEvidence::Row update(const MotionSample& sample) override;
 
-  const JointEvidence& evidence() const { return evidence_; }
-  const Decimated<ComparedRow>& course() const { return course_; }
-  const ResidualSpectrum& spectrum() const { return spectrum_; }
+  /// Judges, and writes COMPARISON_FILE, BASELINE_FILE and tables beside them, as CSV: course, friction, friction_twin,
+  /// spectrum, teeth, health, and where the recording has them torsion, torsion_twin, twin_states. Solves the ring
+  /// under the loads of the recording. @throws InputError if a file cannot be written.
+  ComparedJoint write(const MotionFindings& found, const JointContext& context);
 
 private:
-  JointEvidence evidence_;
+  void writeData(const MotionFindings& found) const;
+  void writeFriction() const;
+  void writeTorsion() const;
+  void writeTeeth() const;
+  void writeTwinStates(double start) const;
+  Json documentOf(const MotionFindings& found, const ComparedJoint& compared) const;
+
+  const Parameters& parameters() const { return recording_.parameters(joint_); }
+  std::string file(const char* name) const { return directory_ + "/" + name; }
+
+  const ArmRecording& recording_;
+  const std::size_t joint_;
+  const std::string directory_;
+  const std::string twin_topic_;                    // joint states of a twin that was recorded beside the robot
+  std::optional<TableFile<JudgedWindow>> windows_;  // of a report
   Decimated<ComparedRow> course_;
   ResidualSpectrum spectrum_;
-  const std::function<void(const JudgedWindow&)> watch_;
-};
-
-/// A topic or column that a comparison can use.
-struct ContentLine
-{
-  std::string name;
-  std::string gives;
-  std::uint64_t messages{};  ///< rows of a CSV file; of temperatures: rows that have one
-  bool found{};
-};
-
-/// Contents of a recording.
-struct RecordingContents
-{
-  std::vector<ContentLine> lines;
-  std::vector<std::string> joints;        ///< named in the telemetry's first message
-  std::vector<std::string> other_topics;  ///< that a comparison does not use
-};
-
-/// One instant of the twin that ran when the bag was made.
-struct TwinState
-{
-  double time{};           ///< since the first row of the telemetry [s]
-  double position{};       ///< of the joint [rad]
-  double velocity{};       ///< [rad/s]
-  double motor_current{};  ///< [A]
-};
-
-/// `twin_topic`: the joint states of a twin that was recorded beside the robot. `count`: of the reading;
-/// `temperature_rows`: those with a received temperature.
-/// @throws InputError if the file cannot be read.
-RecordingContents readContents(const MotionSource& source, const std::string& twin_topic, const MotionCount& count,
-                               std::uint64_t motor_rows, std::uint64_t temperature_rows, bool has_load);
-
-/// The twin's recorded states; none where the recording has no such topic, or it is the telemetry itself.
-Decimated<TwinState> readTwinStates(const MotionSource& source, const std::string& twin_topic, double start);
-
-/// All that a report is made of.
-struct ComparisonRecord
-{
-  std::string recording;
-  std::string joint;
-  std::string made_with;  ///< name and version of the program
-  MotionFindings found;
-  FrictionFactor friction;
-  bool is_friction_judged{};
-  RecordingContents contents;
-  Decimated<TwinState> twin_states;
-  Verdict verdict;
 };
 
 /// The fields of Verdict.msg; level and reason by name.
 Json verdictFields(const Verdict& verdict);
 
-/// Writes COMPARISON_FILE, BASELINE_FILE and tables beside them, as CSV: course, friction, friction_twin, spectrum,
-/// teeth, health, and where the recording has them torsion, torsion_twin, twin_states. Solves the ring under the loads
-/// of the recording. Gives what COMPARISON_FILE holds; with an empty `directory` that alone, and nothing is written.
-/// @throws InputError if a file cannot be written.
-Json writeComparison(const std::string& directory, const RecordingComparison& comparison, const Parameters& parameters,
-                     const ComparisonRecord& record);
+constexpr const char* MADE_WITH = "joint_twin " HJT_VERSION;
 }  // namespace hjt

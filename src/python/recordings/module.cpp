@@ -111,7 +111,7 @@ void takeSignals(const Given& given, Options& options)
   const py::object columns = given["columns"];
   for (const auto& [signal, column] : columns.is_none() ? py::dict() : py::dict(columns))
   {
-    nameColumn(options.source, py::cast<std::string>(py::str(signal)), py::cast<std::string>(py::str(column)));
+    nameColumn(options, py::cast<std::string>(py::str(signal)), py::cast<std::string>(py::str(column)));
   }
 }
 
