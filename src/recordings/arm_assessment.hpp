@@ -37,11 +37,12 @@ public:
   const JointEvidence& evidence() const { return evidence_; }
 
   const OwnReference& own() const { return own_; }
-  bool hasReference() const { return is_identified_ || !own_.friction.empty(); }  ///< of its friction
+  /// Whether a reference of the joint's friction is known.
+  bool hasReference() const { return is_identified_ || !own_.friction.empty(); }
   /// Without a reference the friction is held against what the arm's controller expects.
   void holdAgainstController() { has_controller_ = true; }
 
-  /// `factor`, `deviation`: what the joints of an arm have in common.
+  /// `factor` and `deviation` are of the friction that the joints of an arm have in common.
   JointContext context(const Misfit& misfit, double factor = 1.0, double deviation = UNWITNESSED) const
   {
     return { own_, is_identified_, has_controller_, factor, misfit, deviation };
@@ -63,8 +64,8 @@ struct ArmAssessment
   StreamTimingReport timing;
   JudgedJoints judged;
   std::optional<FoundLoad> load;
-  AssumedLoad assumed;                    ///< that the joints are judged with
-  std::vector<FittedFriction> frictions;  ///< of each joint, of the first pass; empty: none
+  AssumedLoad assumed;                    ///< load that the joints are judged with
+  std::vector<FittedFriction> frictions;  ///< friction of each joint by the first pass; empty: not known
 
   JointContext context(std::size_t joint) const
   {
@@ -79,16 +80,17 @@ struct AssessmentSettings
 {
   /// Makes a joint by its number, anew for each pass through the recording; none: a plain one.
   std::function<std::unique_ptr<AssessedJoint>(std::size_t)> make_joint;
-  bool beside_controller{ true };  ///< without a reference hold the friction against the controller's where that is one
-  bool looks_for_arm{ true };      ///< judge nothing where another shipped arm explains the recording clearly better
-  bool gives_notice{};             ///< whether misfits of the recording are printed
+  bool beside_controller{ true };  ///< the friction that the controller expects may be the reference
+  bool looks_for_arm{ true };      ///< nothing is judged if another shipped arm explains the recording clearly better
+  bool gives_notice{};             ///< whether the user gets notices of what is wrong with the recording
 };
 
-/// Reads the recording, and again with the payload and the mounting that its currents show, where these explain them:
-/// they are the recording's then. `fit` is that of the last pass. @throws ParameterError, InputError.
+/// Reads and judges the recording. If its currents show another payload or mounting, the recording is read again with
+/// that load, which stays the recording's if it explains the currents. `fit` is that of the last pass.
+/// @throws ParameterError, InputError.
 ArmAssessment assess(ArmRecording& recording, const AssessmentSettings& settings, RecordingFit& fit);
 
-/// Of the arms of these names, the best first: how each explains the first two minutes, the gains that the recording
-/// states too. @throws InputError, ParameterError.
+/// Ranks the arms of these names, the best first, by how they explain the first two minutes of the recording and the
+/// gains that it states. @throws InputError, ParameterError.
 std::vector<ArmFit> rankArms(const RecordingOptions& options, const std::vector<std::string>& names);
 }  // namespace hjt

@@ -10,26 +10,28 @@
 
 namespace hjt
 {
-/// The header of a recording's table with the names of a controller's columns in place of its own: a time named `time`,
-/// `t` or `__time`, and what PlotJuggler exports of a JointState, `/joint_states/elbow_joint/position`. Other columns
+/// Renames the columns of a table to those of a controller's recording. Known names are `time`, `t` and `__time` for
+/// the time, and those that PlotJuggler gives to a JointState, as `/joint_states/elbow_joint/position`. Other columns
 /// keep their names.
 std::vector<std::string> controllerColumns(std::vector<std::string> header);
 
-/// The program that wrote the file, and how its data can be read, as a clause; empty: not known.
+/// Clause that says which program wrote a table that cannot be read, and how its data can be read; empty if the program
+/// is not known.
 std::string foreignTable(const std::vector<std::string>& header);
 
-/// What a recording says besides its rows; of messages the first alone.
+/// What a recording states besides its rows. A recording of messages states only whether it has a load.
 struct RecordedStatements
 {
   bool has_load{};
-  /// Torque per current that the controller of an arm counts with: the ratio of its columns `target_moment_N` and
-  /// `target_current_N` while the whole arm is at rest, where its current holds no friction; of the first minutes. One
-  /// for each of six joints [N.m/A]. NaN: the joint bears no load at rest. Empty: not recorded.
+  /// Torque per current of each of six joints by the controller [N.m/A]: the ratio of the columns `target_moment_N` and
+  /// `target_current_N` in the first minutes while the whole arm is at rest, where the current holds no friction. NaN
+  /// if the joint bears no load at rest. Empty if the columns are not recorded.
   std::vector<double> gains;
-  /// Columns payload [kg] and payload_cog_0 ... 2 [m]; none: not recorded, or another in some rows.
+  /// Payload by the columns payload [kg] and payload_cog_0, _1 and _2 [m]; none if they are not recorded or change.
   std::optional<Payload> payload;
 };
 
-/// `of_arm`: else it is not asked for gains and payload. @throws InputError on an unreadable file.
+/// Reads the statements of a recording; gains and payload are read only if it is `of_arm`. @throws InputError if the
+/// file is unreadable.
 RecordedStatements readStatements(const MotionSource& source, bool of_arm);
 }  // namespace hjt

@@ -12,17 +12,17 @@
 
 namespace hjt
 {
-/// One window and what was made of it.
+/// One window of the signals and its assessment.
 struct WindowResult
 {
   std::string recording;
   const char* origin;      ///< source of the window, in words
-  const char* parameters;  ///< and with whose parameters
+  const char* parameters;  ///< source of the parameters, in words
   SignalIndicators indicators;
   Deviations deviations;
   WindowResidual residual;
   Assessment assessment;
-  std::optional<SeenFrom> seen_from{};  ///< of the last window of a recording, where the verdict is OK
+  std::optional<SeenFrom> seen_from{};  ///< severities that would show; for the last window, if it is OK
 };
 
 struct UnreadRecording
@@ -34,38 +34,38 @@ struct UnreadRecording
 /// The windows of all recordings.
 struct AssessedWindows
 {
-  std::vector<WindowResult> windows;    ///< none: stopped before the first
-  double threshold{};                   ///< of the scores
-  bool is_judged{};                     ///< at least one of them
-  std::vector<UnreadRecording> unread;  ///< the recordings that have none
+  std::vector<WindowResult> windows;    ///< none if stopped before the first window
+  double threshold{};                   ///< threshold of the scores
+  bool is_judged{};                     ///< whether at least one window is judged
+  std::vector<UnreadRecording> unread;  ///< recordings that could not be read
 };
 
-/// Severities by cause, of causes with signatures; null: at none of theirs.
+/// Severity from which on each cause with signatures would show; null if it would show at none.
 Json seenFromJson(const SeenFrom& seen_from);
 
-/// A CSV file with a row per window; no path: none.
+/// Writes a CSV file with a row for each window, unless the path is empty.
 void writeWindows(const std::string& path, const std::vector<WindowResult>& windows);
 
-/// The document with every window.
+/// Report with every window.
 Report reportOf(const AssessedWindows& found);
 
-/// The last window, for people.
+/// Prints the last window for people.
 void printSummary(const std::vector<WindowResult>& windows);
 
 struct IndicatorsOptions : SignalOptions
 {
-  std::vector<std::string> models;  ///< none, or one for each recording
-  std::string baseline;             ///< the reference; empty: learned from the first windows
-  std::string save_baseline;        ///< where to write the learned one; empty: nowhere
-  std::string out;                  ///< CSV with a row for each window; empty: none
+  std::vector<std::string> models;  ///< recordings of the twin, none or one for each recording
+  std::string baseline;             ///< file of the reference; empty: it is learned from the first windows
+  std::string save_baseline;        ///< file for the learned reference; empty: none
+  std::string out;                  ///< CSV file with a row for each window; empty: none
   bool carry{};                     ///< the reference is of another motion
   bool windows{};                   ///< the recordings hold the windows' indicators, not the signals
 };
 
 void addOptions(OptionTable& table, IndicatorsOptions& options);
 
-/// Health indicators of recordings and their assessment, from encoders and torque or current; writes the files that are
-/// asked for. A recording that cannot be read is named and left out.
-/// @throws ParameterError, InputError: none can be read, too short for a window, or not one model for each.
+/// Computes and assesses health indicators of recordings from encoders and torque or current, and writes the files of
+/// the options. A recording that cannot be read is left out, and a notice names it.
+/// @throws ParameterError, InputError if no recording can be read or has a whole window, or a model is missing.
 AssessedWindows indicators(const IndicatorsOptions& options);
 }  // namespace hjt

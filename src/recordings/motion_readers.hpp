@@ -20,16 +20,16 @@ namespace hjt
 {
 /// Times of a recording's rows from its first row on [s].
 ///
-/// Stamps that jump back, of a recording played in a loop, or ahead by more than a day, from before there was a time,
-/// begin another round: it counts from BETWEEN after the one before, a gap that cuts the stream. So does a clock that
-/// was set back by less: MOST_BEHIND rows in order among themselves, all behind an earlier one. Rows that are days
-/// apart one after the other have stamps of another unit, and no rounds.
+/// Another round begins where a stamp jumps back, as in a recording played in a loop, or ahead by more than a day, as
+/// after stamps of a clock that was not set. A round begins BETWEEN after the round before: a gap that cuts the stream.
+/// A round also begins where a clock was set back by less: after MOST_BEHIND rows in order that are all earlier than a
+/// row before. Rows that are days apart one after the other have stamps of another unit, and no rounds.
 class RowTime
 {
 public:
-  static constexpr double BACK = 1.0;       ///< less than this is a row out of order [s]
-  static constexpr double AHEAD = 86400.0;  ///< [s]
-  static constexpr double BETWEEN = 1.0;    ///< [s]
+  static constexpr double BACK = 1.0;       ///< jump back that begins a round; a smaller one is a row out of order [s]
+  static constexpr double AHEAD = 86400.0;  ///< jump ahead that begins a round [s]
+  static constexpr double BETWEEN = 1.0;    ///< time from one round to the next [s]
   static constexpr std::uint64_t MOST_AHEAD = 10;
   static constexpr std::uint64_t MOST_BEHIND = 10;
 
@@ -56,7 +56,7 @@ public:
     return time;
   }
 
-  /// As received, beside the stamp that `at` was given last.
+  /// Time at which the row was received whose stamp was given to `at` last [s].
   double received(Stamp recorded) const { return offset_ + toSeconds(recorded - zero_); }
 
   std::uint64_t rounds() const { return rounds_; }
@@ -73,7 +73,7 @@ private:
   std::uint64_t behind_{};
 };
 
-/// Do the rows come in the order of their stamps?
+/// Checks whether the rows come in the order of their stamps.
 class RowOrder
 {
 public:
@@ -87,7 +87,7 @@ public:
     last_ = stamp;
   }
 
-  /// The deviation as a clause; empty: the times agree, or nearly.
+  /// Clause on what is wrong with the order; empty if nearly all rows are in order.
   std::string text() const
   {
     constexpr std::uint64_t FEWEST = 10;
@@ -118,11 +118,11 @@ private:
   std::uint64_t same_{};
 };
 
-/// Do several sources give the same joints in turn?
+/// Checks whether several sources give the same joints in turn.
 ///
-/// By the names of their nodes where these are recorded; else by the angles: a row far from its neighbours, which are
-/// near to each other, and near to another such row shortly before, in more than LEAST_SHARE of the rows. Damage comes
-/// once, and noise is small beside the motion.
+/// Sources differ by the names of their nodes, where these are recorded. Else they are seen in the angles: in more than
+/// LEAST_SHARE of the rows a row is far from its neighbours, which are near to each other, and near to another such row
+/// shortly before. A damaged row comes once, and noise is small beside the motion.
 class SourceWatch
 {
 public:
@@ -157,7 +157,7 @@ public:
     last_[seen_++ % 2] = rows;
   }
 
-  /// As a clause; empty: one source.
+  /// Clause on several sources; empty if there is one source.
   std::string text() const
   {
     if (publishers_.size() > 1 && switches_ >= LEAST_RETURNS)
@@ -194,7 +194,7 @@ private:
     return sum;
   }
 
-  /// Of all joints together, with these rows.
+  /// Range of the angles of all joints together, with these rows.
   double rangeWith(const std::vector<MotionRow>& rows)
   {
     constexpr double NONE = std::numeric_limits<double>::infinity();
@@ -218,37 +218,38 @@ private:
   std::uint64_t jumps_{};
   std::vector<double> least_;  // of the joints
   std::vector<double> most_;
-  double counted_step_{ LEAST_STEP };  // of the first row that counts [rad]
+  double counted_step_{ LEAST_STEP };  // step when counting began [rad]
   std::uint64_t seen_{};
   std::uint64_t moves_{};
   std::uint64_t returns_{};
 };
 
-// The kinds of recordings behind readMotion; times as they are recorded.
+// Readers for the kinds of recordings behind readMotion. Times are as they are recorded.
 
-/// Messages: one row for each of `names`, all of one time.
+/// Reads messages. The visitor gets one row for each of `names`, all of one time.
 MotionCount readMessageMotion(const MotionSource& source, const std::vector<std::string>& names,
                               const VisitMotionRows& visit, const std::function<void(double)>& progress);
 
-/// A table with a controller's columns, of the source's joint or of so many.
+/// Reads a table with a controller's columns, of the source's joint or of as many joints.
 MotionCount readTableMotion(const MotionSource& source, std::size_t joints, const VisitMotionRows& visit,
                             const std::function<void(double)>& progress);
 
-/// Rows at hand, MotionSource::rows, of so many joints; times scaled.
+/// Reads rows in memory, MotionSource::rows, of as many joints. The times are scaled.
 MotionCount readArrayMotion(const MotionSource& source, std::size_t joints, const VisitMotionRows& visit,
                             const std::function<void(double)>& progress);
 
-// Remarks of a reading.
+// Remarks on a reading.
 
-/// Of angles that were folded into one turn, and of a recording that was played in a loop.
+/// Adds remarks on angles that were folded into one turn, and on a recording that was played in a loop.
 void remarkOnRounds(const std::vector<UnfoldedAngle>& angles, std::uint64_t rounds, MotionCount& count);
 
-/// Of joints whose effort is never a number; empty: none.
+/// Remark on joints whose effort is never a number; empty without such joints.
 std::string silentText(const std::vector<std::string>& joints);
 
-/// Of values that are no number in more than a few rows; empty: none. `missing`: in how many, by name.
+/// Remark on values that are no number in more than a few rows; empty without such values. `missing` has the number of
+/// rows by the name of the value.
 std::string missingText(const std::map<std::string, std::uint64_t>& missing, const MotionCount& count);
 
-/// The table has a load of that joint.
+/// Whether the table has a load of the source's joint.
 bool tableRecordsLoad(const MotionSource& source);
 }  // namespace hjt
