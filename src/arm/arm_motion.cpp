@@ -15,19 +15,19 @@ namespace hjt
 {
 namespace
 {
-constexpr double ACCELERATION = 300.0 * DEGREE;  // moderate: 17 N.m at a stretched UR5 [rad/s^2]
-constexpr double REST = 0.5;                     // before and after [s]
-constexpr std::size_t MAX_INSTANTS = 450'000;    // an hour at a controller's 125 Hz
+constexpr double ACCELERATION = 300.0 * DEGREE;  // moderate: it takes 17 N.m of a stretched UR5 [rad/s^2]
+constexpr double REST = 0.5;                     // time at rest before and after the moves [s]
+constexpr std::size_t MAX_INSTANTS = 450'000;    // instants of an hour at a controller's 125 Hz
 constexpr double LIMIT_SHARE = 5.0 / 6.0;        // largest share of the joint's speed limit in a stroke [-]
 
-/// To an angle about the pose.
+/// A stroke of the joint to an angle about its pose.
 struct Stroke
 {
   double angle;  // [deg]
   double speed;  // [deg/s]
 };
 constexpr std::array<Stroke, 16> STROKES{ {
-    // Slow, all of the load's range, 42 motor turns each way.
+    // Slow strokes over all of the load's range, 42 motor turns each way.
     { 75.0, 20.0 },
     { -75.0, 20.0 },
     { 0.0, 20.0 },
@@ -38,7 +38,7 @@ constexpr std::array<Stroke, 16> STROKES{ {
     { -20.0, 60.0 },
     { 20.0, 60.0 },
     { -20.0, 60.0 },
-    // Fast: a lobe over a place of the flexspline up to 84 times a second, where the joint can.
+    // Fast strokes: a lobe passes a place of the flexspline up to 84 times a second, if the joint can turn so fast.
     { 55.0, 150.0 },
     { -55.0, 150.0 },
     { 55.0, 150.0 },
@@ -48,7 +48,8 @@ constexpr std::array<Stroke, 16> STROKES{ {
     { 0.0, 150.0 },
 } };
 
-/// Share of a distance over time: the speed a trapezoid, or its mean over the time in which its acceleration comes.
+/// Share of a distance over time. The speed is a trapezoid, or its moving mean over the time in which the acceleration
+/// rises.
 class Profile
 {
 public:
@@ -60,7 +61,7 @@ public:
   {
     if (move.jerk > 0.0)
     {
-      // Where nothing lies between the two accelerations, their mean goes from the one to the other.
+      // Without a time between the two accelerations the moving mean goes directly from one to the other.
       const double once = acceleration_ / move.jerk;
       mean_ = end_ - 2.0 * rise_ >= once ? once : 2.0 * once;
     }
@@ -115,8 +116,8 @@ private:
   double distance_;
   double acceleration_;
   double rise_;
-  double end_;     // of the trapezoid
-  double mean_{};  // time over which it is taken [s]
+  double end_;     // end of the trapezoid [s]
+  double mean_{};  // time over which the mean is taken [s]
 };
 
 void requireWithin(const ArmDescription& arm, const ArmInstant& instant)
@@ -138,7 +139,7 @@ void requireWithin(const ArmDescription& arm, const ArmInstant& instant)
     refuse("torque", instant.torques[i], joint.torque_limit, "[N.m]");
   }
 }
-/// Takes moves one after the other.
+/// Samples moves one after the other.
 class Sampler
 {
 public:
@@ -208,14 +209,14 @@ private:
   ArmDynamics dynamics_;
   ArmPose from_;
   double period_;
-  double begin_{};  // of the next piece [s]
+  double begin_{};  // begin of the next piece [s]
   std::vector<ArmInstant> instants_;
 };
 }  // namespace
 
 void ArmMotion::goOn(double time, const std::vector<JointMotion>& joints) noexcept
 {
-  // A move without a pause changes the last one.
+  // A set point at the time of the last one replaces it.
   if (goes_on_ && time > end())
   {
     std::swap(points_[0], points_[1]);
@@ -255,7 +256,7 @@ void ArmMotion::at(double time, std::vector<JointMotion>& motion) noexcept
     const JointMotion& a = from.joints[i];
     const JointMotion& b = to.joints[i];
     const double way = b.position - a.position;
-    // Hermite's cubic by its derivatives at both ends.
+    // Hermite's cubic by the derivatives at its ends.
     const double c2 = 3.0 * way - length * (2.0 * a.velocity + b.velocity);
     const double c3 = length * (a.velocity + b.velocity) - 2.0 * way;
     motion[i].position = a.position + s * (length * a.velocity + s * (c2 + s * c3));
@@ -269,7 +270,7 @@ void ArmMotion::at(double time, std::vector<JointMotion>& motion) noexcept
 std::vector<ArmSetPoint> fromRest(const ArmSetPoint& point)
 {
   constexpr double STILL = 1e-3;        // [rad/s]
-  constexpr double ACCELERATION = 2.0;  // mean, of the fastest joint [rad/s^2]
+  constexpr double ACCELERATION = 2.0;  // mean acceleration of the fastest joint [rad/s^2]
   constexpr double SHORTEST = 0.2;      // [s]
   constexpr std::size_t STEPS = 32;
   double fastest = 0.0;
@@ -285,7 +286,7 @@ std::vector<ArmSetPoint> fromRest(const ArmSetPoint& point)
   std::vector<ArmSetPoint> points(STEPS + 1, point);
   for (std::size_t k = 0; k < STEPS; ++k)
   {
-    // Speed a cubic of the time's share s, at rest without acceleration at 0, the point's own at 1.
+    // The speed is a cubic of the share s of the time: 0 without acceleration at s = 0, that of the point at s = 1.
     const double s = static_cast<double>(k) / static_cast<double>(STEPS);
     points[k].time = point.time - (1.0 - s) * length;
     for (std::size_t i = 0; i < point.joints.size(); ++i)
@@ -304,7 +305,7 @@ std::vector<ArmSetPoint> fromRest(const ArmSetPoint& point)
 
 std::vector<ArmSetPoint> toRest(const ArmSetPoint& point)
 {
-  // As from rest, backwards in time.
+  // The way to rest is that from rest, backwards in time.
   const auto turned = [&](ArmSetPoint at)
   {
     at.time = 2.0 * point.time - at.time;
@@ -323,9 +324,9 @@ std::vector<ArmSetPoint> toRest(const ArmSetPoint& point)
 ArmMotion gentleMotion(const ArmDescription& arm)
 {
   constexpr double ACCELERATION = 2.0;                           // [rad/s^2]
-  constexpr std::array SPEEDS{ 0.35, 0.7, 1.05 };                // of the joint that goes farthest [rad/s]
-  constexpr std::array WAYS{ 0.6, 0.4, -0.6, 0.5, -0.55, 0.6 };  // from the pose in the middle, both ways [rad]
-  constexpr double PERIOD = 0.008;                               // of the set points [s]
+  constexpr std::array SPEEDS{ 0.35, 0.7, 1.05 };                // speeds of the joint that goes farthest [rad/s]
+  constexpr std::array WAYS{ 0.6, 0.4, -0.6, 0.5, -0.55, 0.6 };  // ways of the joints from the middle pose [rad]
+  constexpr double PERIOD = 0.008;                               // time between set points [s]
   const std::size_t joints = arm.joints.size();
   const bool is_known =
       std::all_of(arm.joints.begin(), arm.joints.end(),

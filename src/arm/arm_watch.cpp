@@ -69,7 +69,7 @@ bool LoadWatch::isDue() const
                        fit_->moved() >= next_look_;
 }
 
-/// Of the rows so far; without a thread to spare the next look is as good.
+/// Begins a look at the rows so far. If no thread can be started, the next look is made later.
 void LoadWatch::begin(std::vector<bool> measured)
 {
   looked_at_ = last_time_;
@@ -101,7 +101,7 @@ bool LoadWatch::look(const JudgedJoints& joints)
   return counts && take(found, joints);
 }
 
-/// `found`: nothing while another load is tried.
+/// Takes what a look has found. While another load is tried `found` is empty.
 bool LoadWatch::take(const FoundLoad& found, const JudgedJoints& joints)
 {
   const bool was_trying = isTrying();
@@ -129,8 +129,8 @@ bool LoadWatch::take(const FoundLoad& found, const JudgedJoints& joints)
 
 bool ArmWatch::moves(const std::vector<MotionRow>& rows)
 {
-  constexpr double MOVED = 0.01;  // beyond play and noise [rad]
-  constexpr double STILL = 1.0;   // [s]
+  constexpr double MOVED = 0.01;  // least motion, beyond play and noise [rad]
+  constexpr double STILL = 1.0;   // time after a motion that still counts as motion [s]
   moved_from_.resize(rows.size(), HUGE_VAL);
   for (std::size_t i = 0; i < rows.size(); ++i)
   {
@@ -210,14 +210,14 @@ bool ArmWatch::look()
   }
   if (is_stopped_)
   {
-    answer_ = {};  // of rows of before
+    answer_ = {};  // the answer is on rows before the last reset
     return false;
   }
   other_ = answer_.get();
   is_settled_ = true;
   if (!other_.empty())
   {
-    moved_ = std::max(moved_, 0.0);  // one that was wrong, as of an arm led by hand, does not last
+    moved_ = std::max(moved_, 0.0);  // ask again soon: a wrong answer, as of an arm led by hand, does not last
   }
   return true;
 }

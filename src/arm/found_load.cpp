@@ -14,7 +14,7 @@ namespace hjt
 {
 namespace
 {
-/// The payload to be named beside the configured one; none: it is the configured one.
+/// The load with the configured one of the arm's file; none if both are the same.
 template <class Found>
 std::optional<Found> named(Found found, const std::optional<Found>& counts)
 {
@@ -22,7 +22,7 @@ std::optional<Found> named(Found found, const std::optional<Found>& counts)
   return found.differs() ? std::make_optional(found) : std::nullopt;
 }
 
-/// Nothing but what another load makes too stands against any joint: with the right one it has to be gone.
+/// Whether all misfits of the joints can come from a wrong load, and would be gone with the right one.
 bool mayBeOther(const JudgedJoints& joints)
 {
   for (std::size_t i = 0; i < joints.misfits.size(); ++i)
@@ -38,7 +38,7 @@ bool mayBeOther(const JudgedJoints& joints)
   return true;
 }
 
-/// Every joint that is measured fits.
+/// Whether every joint with a measured current fits.
 bool explains(const JudgedJoints& joints)
 {
   for (std::size_t i = 0; i < joints.misfits.size(); ++i)
@@ -112,9 +112,9 @@ double IdentifiedMounting::tilt() const
 
 bool IdentifiedMounting::differs() const
 {
-  constexpr double LEAST = 4.0 * DEGREE;  // errors of the links' masses tilt it too
-  constexpr double KNOWN = 3.0;           // half widths, at least: a hand on the arm tilts it too
-  constexpr double SIZE = 1.35;           // a payload, or errors of gains, beside
+  constexpr double LEAST = 4.0 * DEGREE;  // least tilt; errors of the links' masses make less
+  constexpr double KNOWN = 3.0;           // least tilt in half widths; a hand on the arm makes less
+  constexpr double SIZE = 1.35;           // largest factor of the size, as a payload or errors of gains make
   return tilt() > LEAST && tilt() > KNOWN * half_width && size > 1.0 / SIZE && size < SIZE;
 }
 
@@ -141,7 +141,7 @@ std::string FoundDrag::text() const
 
 Misfit FoundLoad::misfit() const
 {
-  constexpr double NOTEWORTHY = 0.2;  // gains of one type differ by less
+  constexpr double NOTEWORTHY = 0.2;  // least change of the gain; gains of one type differ by less
   if (std::abs(gain) - gain_half_width < NOTEWORTHY)
   {
     return {};
@@ -245,11 +245,11 @@ bool LoadLaw::take(const FoundLoad& found, const JudgedJoints& joints)
   return true;
 }
 
-/// None: it stays as it is.
+/// The load to try in place of the present one; none if the present one stays.
 std::optional<AssumedLoad> LoadLaw::other(const FoundLoad& found, const JudgedJoints& joints) const
 {
   const bool is_mounted = found.mounting.differs();
-  // A mass below zero is no other payload; less than was found is that it was put down.
+  // A mass below zero is no payload. A mass that is less than the one found before means that the payload was put down.
   const bool is_put_down = counts_.payload && counts_.payload->isCarried();
   const bool changes = !found.changes.empty() || !std::isinf(found.since);
   const bool is_carried = changes || (found.payload.differs() && (found.payload.isOther() || is_put_down));

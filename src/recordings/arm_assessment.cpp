@@ -13,11 +13,12 @@ namespace hjt
 {
 namespace
 {
-/// Stated gains are exact, those of a type too where they are known: a few that agree tell the arm.
+/// Cost of an arm by the gains that the recording states. Stated gains are exact, and so are known gains of a type: a
+/// few that agree show which arm it is.
 double costOfGains(const ArmRecording& recording, const RecordingOptions& options)
 {
-  constexpr double KNOWN = 0.01;  // deviation of the logarithm
-  constexpr double MOST = 10.0;   // of one joint: where the type's is not known any may be
+  constexpr double KNOWN = 0.01;  // standard deviation of the logarithm [-]
+  constexpr double MOST = 10.0;   // largest cost of one joint, whose type's gain may not be known [-]
   double cost = 0.0;
   for (std::size_t i = 0; i < recording.joints().size(); ++i)
   {
@@ -32,7 +33,8 @@ double costOfGains(const ArmRecording& recording, const RecordingOptions& option
   return cost;
 }
 
-/// Where no joint has a reference of its own, and the controller's is that of sound joints.
+/// Holds the joints against the friction that the controller expects, if no joint has a reference of its own and the
+/// controller expects that of sound joints.
 void holdAgainstController(const std::vector<std::unique_ptr<AssessedJoint>>& joints)
 {
   std::vector<const JointEvidence*> evidences;
@@ -53,7 +55,7 @@ void holdAgainstController(const std::vector<std::unique_ptr<AssessedJoint>>& jo
   }
 }
 
-/// With the friction that each is held against.
+/// The drives of the joints with the friction that is expected of them.
 std::vector<LoadFit::Drive> drivesOf(const std::vector<Parameters>& parameters,
                                      const std::vector<std::unique_ptr<AssessedJoint>>& joints)
 {
@@ -65,7 +67,7 @@ std::vector<LoadFit::Drive> drivesOf(const std::vector<Parameters>& parameters,
   return drives;
 }
 
-/// `looks_for_load`: else it is what it counts as.
+/// Reads the recording once and judges its joints. With `looks_for_load` it finds the load that the currents show.
 ArmAssessment pass(const ArmRecording& recording, const AssessmentSettings& settings, bool looks_for_load,
                    bool gives_notice, RecordingFit& fit)
 {
@@ -129,8 +131,8 @@ ArmAssessment pass(const ArmRecording& recording, const AssessmentSettings& sett
   return arm;
 }
 
-/// Where a shipped arm with these joints explains the recording so much better that it contradicts its own, shipped
-/// too. A user's own file is taken at its word.
+/// Names another shipped arm with the same joints in the misfits, if that arm explains the recording so much better
+/// that it contradicts the given one. An arm of the user's own file is not doubted.
 void nameOther(const ArmRecording& recording, std::vector<Misfit>& misfits)
 {
   if (!mayBeOtherArm(misfits))
@@ -155,11 +157,11 @@ std::vector<ArmFit> rankArms(const RecordingOptions& options, const std::vector<
   own.load = LOAD_OF_ARM;
   if (own.rows)
   {
-    own.assignments.emplace_back("telemetry.effort=current");  // as such rows are
+    own.assignments.emplace_back("telemetry.effort=current");  // rows in memory are currents
   }
   std::vector<ArmCandidate> candidates;
   std::unique_ptr<const ArmRecording> first;  // has the rows of all candidates
-  std::vector<std::string> others;            // whose joints have other names: they are of other rows
+  std::vector<std::string> others;            // arms whose joints have other names, and so other rows
   for (const std::string& name : names)
   {
     own.arm = name;
@@ -212,7 +214,7 @@ ArmAssessment assess(ArmRecording& recording, const AssessmentSettings& settings
     arm = pass(recording, settings, false, false, fit);
     if (!law.isTrying())
     {
-      break;  // taken back: it would be found again
+      break;  // the load was taken back: it would be found again
     }
   }
   arm.assumed = law.counts();

@@ -19,7 +19,8 @@ namespace hjt
 {
 namespace
 {
-/// `gain`: stated in the recording; NaN: none. An identified or configured gain takes precedence.
+/// Parameters of a joint of an arm. `gain` is the one that the recording states, or NaN. An identified or configured
+/// gain takes precedence.
 Parameters parametersOf(const ArmJoint& joint, double gain, const RecordingOptions& options)
 {
   ParameterMap map = armJointParameters(joint, configDirectory(options), options.identified);
@@ -39,7 +40,7 @@ Parameters parametersOf(const ArmJoint& joint, double gain, const RecordingOptio
   return parameters;
 }
 
-/// One joint as an arm.
+/// An arm of one joint.
 ArmDescription armOf(const std::string& short_name)
 {
   ArmDescription arm;
@@ -50,7 +51,7 @@ ArmDescription armOf(const std::string& short_name)
   return arm;
 }
 
-/// In words, if stamps and angles of a joint disagree with the recorded velocities.
+/// Text on stamps and angles that disagree with the recorded velocities; empty if they agree.
 std::string wrongStamps(const MotionCount& count)
 {
   constexpr double TOLERANCE = 0.03;
@@ -72,7 +73,7 @@ ArmRecording::ArmRecording(const RecordingOptions& options)
 {
   if (!is_arm_)
   {
-    parameters_.push_back(loadParameters(options));  // its errors come before those of the file
+    parameters_.push_back(loadParameters(options));  // errors of the parameters are reported before those of the file
   }
   source_ = motionSource(options);
   if (isFile() && !options.stated)
@@ -288,7 +289,7 @@ void ArmRecording::noticeOf(const MotionFindings& found) const
   {
     options_.watch.notice(source_.path + ": " + remark);
   }
-  if (!is_arm_ && found.misfit.exists())  // an arm's is of its fit
+  if (!is_arm_ && found.misfit.exists())  // the misfit of an arm is one of its fit
   {
     options_.watch.notice(source_.path + ": " + found.misfit.clause);
   }

@@ -35,8 +35,8 @@ namespace
 class ArmRows
 {
 public:
-  /// `spec`: the run, ArmSpec::arm.state_rate that of the rows, which divides solver.rate. `path`: empty, none.
-  /// `moving`: at the first row; stays there as long as this. @throws InputError.
+  /// `spec` describes the run; ArmSpec::arm.state_rate is the rate of the rows and divides solver.rate. Without a
+  /// `path` no file is written. `moving` is at the first row and must live as long as this object. @throws InputError.
   ArmRows(const std::string& path, const RunSpec& spec, const MovingArm& moving)
     : moving_(moving), begin_(moving.twin().stamp()), end_(begin_), path_(path), spec_(spec)
   {
@@ -61,7 +61,7 @@ public:
     }
   }
 
-  /// After every step of the motion; `row`: none, no row is due. @throws InputError.
+  /// To be called after every step of the motion. `row` is null where no row is due. @throws InputError.
   void take(Stamp stamp, double time, ArmRecorder& recorder, const ArmRow* row)
   {
     if (file_ && !failed_)
@@ -69,7 +69,7 @@ public:
       end_ = stamp;
       on_surface_ += stamp > begin_ && allOnSurface(moving_.twin()) ? 1 : 0;
       failed_ = countersOf(moving_.twin()).solver_failures > 0;
-      if (!failed_)  // a failed twin ends the file here, as it ends a run of a data set
+      if (!failed_)  // a failed twin ends the file, as in a data set
       {
         file_->record(stamp, recorder);
       }
@@ -101,96 +101,103 @@ public:
     }
   }
 
-  /// Whether it is a run's file: without `close` nothing is left of it.
+  /// Whether the file is that of a run: it exists only after `close`.
   bool isRun() const { return file_ != nullptr; }
 
 private:
   const MovingArm& moving_;
-  Stamp begin_;  // of the rows
-  Stamp end_;    // of a run
+  Stamp begin_;  // stamp of the first row
+  Stamp end_;    // stamp of the last step
   bool failed_{};
+  std::uint64_t on_surface_{};
+  std::string path_;
+  RunSpec spec_;
+  std::unique_ptr<RunFile> file_;
+  std::optional<CsvWriter> csv_;
+  std::vector<double> values_;
+};
 
-  /// The rate of the rows as the arm's: the next one to that wanted that divides the solver's.
-  void takeRate(const ArmRunOptions& options, double solver_rate, ArmDescription& arm)
+/// Sets the arm's state_rate to the rate that is next to the wanted rate of rows and divides solver.rate.
+void takeRate(const ArmRunOptions& options, double solver_rate, ArmDescription& arm)
+{
+  const double wanted = options.rate.value_or(arm.state_rate);
+  arm.state_rate = solver_rate / static_cast<double>(publishSteps(wanted, solver_rate));
+  if (std::abs(arm.state_rate / wanted - 1.0) > 1e-9)
   {
-    const double wanted = options.rate.value_or(arm.state_rate);
-    arm.state_rate = solver_rate / static_cast<double>(publishSteps(wanted, solver_rate));
-    if (std::abs(arm.state_rate / wanted - 1.0) > 1e-9)
-    {
-      options.watch.notice("rows at " + roundedText(arm.state_rate, 6) + " Hz in place of " + numberText(wanted) +
-                           " Hz, which does not divide solver.rate = " + numberText(solver_rate) + " Hz");
-    }
+    options.watch.notice("rows at " + roundedText(arm.state_rate, 6) + " Hz in place of " + numberText(wanted) +
+                         " Hz, which does not divide solver.rate = " + numberText(solver_rate) + " Hz");
   }
+}
 
-  /// Adds the errors of a moving arm at a row.
-  void addErrors(const ArmRow& row, const ArmTwin& twin, ArmRun& run)
+/// Adds the errors of a moving arm at a row.
+void addErrors(const ArmRow& row, const ArmTwin& twin, ArmRun& run)
+{
+  for (std::size_t i = 0; i < run.joints.size(); ++i)
   {
-    for (std::size_t i = 0; i < run.joints.size(); ++i)
-    {
-      run.joints[i].angle_error.add(twin.motion()[i].position - row[TARGET_POSITION][i]);
-      run.joints[i].current.add(row[ACTUAL_CURRENT][i]);
-    }
-    const std::vector<double>& wanted = row[TARGET_TOOL];
-    const std::vector<double>& tool = row[ACTUAL_TOOL];
-    run.tool_error.add(std::hypot(tool[0] - wanted[0], tool[1] - wanted[1], tool[2] - wanted[2]));
+    run.joints[i].angle_error.add(twin.motion()[i].position - row[TARGET_POSITION][i]);
+    run.joints[i].current.add(row[ACTUAL_CURRENT][i]);
   }
+  const std::vector<double>& wanted = row[TARGET_TOOL];
+  const std::vector<double>& tool = row[ACTUAL_TOOL];
+  run.tool_error.add(std::hypot(tool[0] - wanted[0], tool[1] - wanted[1], tool[2] - wanted[2]));
+}
 
-  /// The run for a file that has labels.
-  RunSpec specOf(const ArmRunOptions& options, ArmDescription arm, std::vector<Parameters> drives,
-                 const ArmMotion& motion)
+/// Description of the run for a file with labels.
+RunSpec specOf(const ArmRunOptions& options, ArmDescription arm, std::vector<Parameters> drives,
+               const ArmMotion& motion)
+{
+  RunSpec spec;
+  spec.fault_class = options.faults.empty() ? "healthy" : joined(options.faults, ";");
+  spec.duty_name = options.motion.empty() ? "motion" : options.motion;
+  spec.duration = motion.end() - motion.begin();
+  for (std::size_t joint = 0; joint < drives.size(); ++joint)
   {
-    RunSpec spec;
-    spec.fault_class = options.faults.empty() ? "healthy" : joined(options.faults, ";");
-    spec.duty_name = options.motion.empty() ? "motion" : options.motion;
-    spec.duration = motion.end() - motion.begin();
-    for (std::size_t joint = 0; joint < drives.size(); ++joint)
-    {
-      const std::vector<RunFault> more = configuredFaults(drives[joint], joint);
-      spec.faults.insert(spec.faults.end(), more.begin(), more.end());
-    }
-    spec.parameters = drives.front();
-    spec.arm = ArmSpec{ std::move(arm), std::move(drives), nullptr };
-    return spec;
+    const std::vector<RunFault> more = configuredFaults(drives[joint], joint);
+    spec.faults.insert(spec.faults.end(), more.begin(), more.end());
   }
+  spec.parameters = drives.front();
+  spec.arm = ArmSpec{ std::move(arm), std::move(drives), nullptr };
+  return spec;
+}
 
-  /// Moves it to the end of its motion, recording every row.
-  void move(const ArmRunOptions& options, const ArmMotion& motion, MovingArm& moving, const RunSpec& spec, ArmRun& run)
+/// Moves the arm to the end of its motion and records every row.
+void move(const ArmRunOptions& options, const ArmMotion& motion, MovingArm& moving, const RunSpec& spec, ArmRun& run)
+{
+  ArmTwin& twin = moving.twin();
+  ArmRecorder recorder(spec.arm->arm, moving);
+  std::optional<ArmRows> rows;
+  const Stamp end = moving.motionBegin() + toStampLength(motion.end() - motion.begin());
+  const auto row_steps = publishSteps(spec.arm->arm.state_rate, spec.parameters.solver.rate);
+  const auto progress = options.watch.progress("moving the arm");
+  std::int64_t steps = 0;
+  while (!options.watch.stopped() && moving.step(end))
   {
-    ArmTwin& twin = moving.twin();
-    ArmRecorder recorder(spec.arm->arm, moving);
-    std::optional<ArmRows> rows;
-    const Stamp end = moving.motionBegin() + toStampLength(motion.end() - motion.begin());
-    const auto row_steps = publishSteps(spec.arm->arm.state_rate, spec.parameters.solver.rate);
-    const auto progress = options.watch.progress("moving the arm");
-    std::int64_t steps = 0;
-    while (!options.watch.stopped() && moving.step(end))
+    if (twin.stamp() >= moving.motionBegin())
     {
-      if (twin.stamp() >= moving.motionBegin())
+      if (!rows)
       {
-        if (!rows)
-        {
-          rows.emplace(options.out, spec, moving);
-        }
-        const double time = motion.begin() + toSeconds(twin.stamp() - moving.motionBegin());
-        const ArmRow* row = steps++ % row_steps == 0 ? &recorder.row() : nullptr;
-        if (row != nullptr)
-        {
-          addErrors(*row, twin, run);
-          options.take(time, *row);
-        }
-        rows->take(twin.stamp(), time, recorder, row);
+        rows.emplace(options.out, spec, moving);
       }
-      progress(static_cast<double>(twin.stamp() - SIMULATION_EPOCH) / static_cast<double>(end - SIMULATION_EPOCH));
+      const double time = motion.begin() + toSeconds(twin.stamp() - moving.motionBegin());
+      const ArmRow* row = steps++ % row_steps == 0 ? &recorder.row() : nullptr;
+      if (row != nullptr)
+      {
+        addErrors(*row, twin, run);
+        options.take(time, *row);
+      }
+      rows->take(twin.stamp(), time, recorder, row);
     }
-    if (rows && rows->isRun() && options.watch.stopped())
-    {
-      throw Stopped{};  // an incomplete run gets no file
-    }
-    if (rows)
-    {
-      rows->close();
-    }
+    progress(static_cast<double>(twin.stamp() - SIMULATION_EPOCH) / static_cast<double>(end - SIMULATION_EPOCH));
   }
+  if (rows && rows->isRun() && options.watch.stopped())
+  {
+    throw Stopped{};  // an incomplete run gets no file
+  }
+  if (rows)
+  {
+    rows->close();
+  }
+}
 }  // namespace
 
 void addOptions(OptionTable& table, ArmRunOptions& options)

@@ -42,7 +42,7 @@ void refuseReferenceAsReport(const ComparisonOptions& options)
   }
 }
 
-/// Shipped arms are known by their names; one's own file may be of any.
+/// Refuses references of another shipped arm, by the arms' names. The user's own files may be of any arm.
 void refuseReferenceOfOtherArm(const ComparisonOptions& options)
 {
   const auto is_name = [](const std::string& arm) { return arm.find_first_of("./") == std::string::npos; };
@@ -56,7 +56,7 @@ void refuseReferenceOfOtherArm(const ComparisonOptions& options)
   }
 }
 
-/// None: the friction is not judged.
+/// The value, or none if the friction of the joint is not judged.
 std::optional<double> number(const ComparedJoint& line, double value)
 {
   return line.friction ? std::make_optional(value) : std::nullopt;
@@ -86,11 +86,11 @@ const std::vector<Column<ComparedJoint>> ARM_COLUMNS{
   { "current_residual_rms", &ComparedJoint::residual_rms, "less predicted [A]" }
 };
 
-/// Common factor of a group of joints, if it is large enough to be named.
+/// Sentence on the common factor of a group of joints; empty if the factor is small.
 std::string groupText(const JointGroup& group, const std::vector<ComparedJoint>& lines)
 {
   constexpr double NOTEWORTHY = 0.1;
-  constexpr double MOST = 2.5;  // largest factor by temperature or lubricant
+  constexpr double MOST = 2.5;  // largest factor that temperature or lubricant makes
   if (!group.is_known || std::abs(group.median - 1.0) < NOTEWORTHY)
   {
     return {};
@@ -102,7 +102,7 @@ std::string groupText(const JointGroup& group, const std::vector<ComparedJoint>&
          ", not a fault of one joint. ";
 }
 
-/// Every joint that departs or is not judged, and why.
+/// Sentences on every joint that departs or is not judged.
 std::string departuresOf(const std::vector<ComparedJoint>& lines)
 {
   std::string text;
@@ -138,7 +138,7 @@ std::string departuresOf(const std::vector<ComparedJoint>& lines)
   return text;
 }
 
-/// Joints that are judged, but not against the reference that was given.
+/// Sentence on joints that are judged, but not against the given reference.
 std::string withoutReference(const std::vector<ComparedJoint>& lines)
 {
   std::vector<std::string> names;
@@ -154,7 +154,7 @@ std::string withoutReference(const std::vector<ComparedJoint>& lines)
              "The reference did not judge the friction of " + joined(names) + "; the twin is taken in its place. ";
 }
 
-/// Factors that are divided out before the friction is judged, where they differ from the arm's factor.
+/// Sentence on factors by which the friction is divided before it is judged, if they differ from the arm's factor.
 std::string sharedText(const std::vector<ComparedJoint>& lines, double of_whole_arm)
 {
   std::vector<std::pair<std::string, std::vector<std::string>>> shares;  // factor, joints
@@ -176,7 +176,7 @@ std::string sharedText(const std::vector<ComparedJoint>& lines, double of_whole_
                               " times the reference's friction. ";
 }
 
-/// Common factors of the joints, and each joint that departs or is not judged.
+/// Sentences on common factors of the joints, and on each joint that departs or is not judged.
 std::string textOf(const std::vector<ComparedJoint>& lines, const ArmFriction& arm, bool has_reference)
 {
   std::string text;
@@ -200,7 +200,7 @@ std::string textOf(const std::vector<ComparedJoint>& lines, const ArmFriction& a
   return text;
 }
 
-/// Level and text of an arm by those of its joints. `misfits`: why the rows of each say nothing.
+/// Sets level and text of an arm by those of its joints. `misfits` are those of the joints' rows.
 void judgeArm(const std::vector<Misfit>& misfits, bool has_reference, ComparedRecording& compared)
 {
   for (const ComparedJoint& joint : compared.joints)
@@ -247,14 +247,14 @@ Json documentOfArm(const ComparisonOptions& options, const ComparedRecording& co
            { "joints", tableOf(compared).rows() } };
 }
 
-/// The directory of a joint's report, or of its reference, in that of the whole.
+/// The directory of a joint's report or reference within that of the whole arm.
 std::string directoryOf(const ArmRecording& recording, const std::string& whole, std::size_t joint)
 {
   return recording.isArm() && !whole.empty() ? (fs::path(whole) / recording.joints()[joint].short_name).string() :
                                                whole;
 }
 
-/// Once: a second pass writes the files again.
+/// Prepares the directories of the reports. A second pass through the recording writes the same files again.
 void prepareReports(const ComparisonOptions& options, const ArmRecording& recording)
 {
   if (recording.isArm())
@@ -287,14 +287,14 @@ std::unique_ptr<RecordingComparison> prepareJoint(const ComparisonOptions& optio
                                                readSoundJoint(references, recording.parameters(joint)));
 }
 
-/// With its data in `options.report`, if that is given.
+/// Compares the recording and writes the data of the pages into options.report, if that is given.
 ComparedRecording compareInto(const ComparisonOptions& options)
 {
   refuseReferenceAsReport(options);
   ArmRecording recording(options);
   prepareReports(options, recording);
   ComparedRecording compared;
-  std::vector<RecordingComparison*> joints(recording.joints().size());  // of the last pass
+  std::vector<RecordingComparison*> joints(recording.joints().size());  // joints of the last pass
   AssessmentSettings settings;
   settings.make_joint = [&](std::size_t i)
   {

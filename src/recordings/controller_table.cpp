@@ -30,7 +30,7 @@ bool beginsWith(const std::string& text, const std::string& begin)
   return text.compare(0, begin.size(), begin) == 0;
 }
 
-/// TOPIC/NAME/quantity; other names stay.
+/// A controller's name for a column that is named TOPIC/NAME/quantity. Other names stay as they are.
 std::string ofPlotJuggler(const std::string& column)
 {
   static const std::array<std::pair<const char*, const char*>, 3> QUANTITIES{
@@ -49,7 +49,7 @@ std::string ofPlotJuggler(const std::string& column)
       continue;
     }
     std::string name = column.substr(before + 1, last - before - 1);
-    // A driver puts a prefix before the name.
+    // A driver may put a prefix before the name.
     for (std::size_t at = 0; at != std::string::npos; at = name.find('_', at + 1))
     {
       const std::optional<UrJoint> joint = findUrJoint(at == 0 ? name : name.substr(at + 1));
@@ -65,7 +65,7 @@ std::string ofPlotJuggler(const std::string& column)
 constexpr std::size_t JOINTS = 6;
 constexpr std::size_t COLUMNS = 4 * JOINTS;
 
-/// In this order, each of all joints.
+/// Places of the columns: each quantity has one column for each joint.
 enum Column : std::size_t
 {
   CURRENT = 0,
@@ -88,7 +88,7 @@ NumberTable<COLUMNS>::Names columnNames()
   return names;
 }
 
-/// By the target speeds where they are recorded, else by the measured ones.
+/// Whether the arm is at rest, by the target speeds or, where these are not recorded, by the measured speeds.
 bool isAtRest(const std::array<double, COLUMNS>& row)
 {
   constexpr double STILL = 1e-3;  // [rad/s]
@@ -103,12 +103,12 @@ bool isAtRest(const std::array<double, COLUMNS>& row)
   return true;
 }
 
-/// The middle one, if the ratios agree; NaN: they do not, or are of too few of the rows at rest.
+/// Median of the ratios, or NaN if the ratios do not agree or are of too few of the rows at rest.
 double agreedRatio(std::vector<double>& ratios, std::size_t rows)
 {
   constexpr std::size_t LEAST = 10;
-  constexpr std::size_t SHARE = 5;  // a loaded joint at rest has it in each pose; others only as a motion begins
-  constexpr double AGREE = 0.005;   // a controller computes both with the same numbers [-]
+  constexpr std::size_t SHARE = 5;  // largest number of rows at rest per ratio of a loaded joint
+  constexpr double AGREE = 0.005;   // largest deviation; a controller computes both with the same numbers [-]
   if (ratios.size() < std::max(LEAST, rows / SHARE))
   {
     return std::numeric_limits<double>::quiet_NaN();
@@ -125,9 +125,9 @@ double agreedRatio(std::vector<double>& ratios, std::size_t rows)
 
 std::vector<double> readStatedGains(const MotionSource& source)
 {
-  constexpr int ROWS = 50000;             // minutes at any rate
-  constexpr double LEAST_CURRENT = 0.01;  // its digits would count otherwise [A]
-  constexpr double WIDEST = 100.0;        // beyond, the columns are not what they are named [N.m/A]
+  constexpr int ROWS = 50000;             // rows that are read: minutes at any rate
+  constexpr double LEAST_CURRENT = 0.01;  // least current whose digits suffice [A]
+  constexpr double WIDEST = 100.0;        // largest ratio of true torque and current [N.m/A]
   NumberTable<COLUMNS> table(source.path, columnNames(), COLUMNS, COLUMNS, controllerColumns);
   if (!table.hasColumn(CURRENT) || !table.hasColumn(MOMENT))
   {

@@ -27,15 +27,15 @@ namespace hjt
 {
 namespace
 {
-constexpr double VERDICT_RATE = 1.0;  // [Hz]
+constexpr double VERDICT_RATE = 1.0;  // rate of the verdicts [Hz]
 
-/// A bag with the topics that the node publishes beside a robot, made offline from its recording. Where that is a bag
-/// of ROS 1 too, it holds all of its messages as they are.
+/// A bag with the topics that the node publishes beside a robot, made offline from a recording. If the recording is a
+/// bag of ROS 1, all of its messages are copied.
 class TrackedBag
 {
 public:
-  /// A CSV file's times count from SIMULATION_EPOCH. `recording`: stays there as long as this.
-  /// @throws InputError if a file cannot be opened, or the recording holds a topic of the twin already.
+  /// Times of a CSV file count from SIMULATION_EPOCH. `recording` must live as long as this object.
+  /// @throws InputError if a file cannot be opened, or the recording has a topic of the twin.
   TrackedBag(const std::string& path, const ArmRecording& recording) : recording_(recording), writer_(path)
   {
     const MotionSource source = recording.source(0);
@@ -55,7 +55,7 @@ public:
     }
     for (std::size_t i = 0; i < recording.joints().size(); ++i)
     {
-      const std::string joint_namespace = recording.twinNamespace(i);  // its topics lie below
+      const std::string joint_namespace = recording.twinNamespace(i);  // the joint's topics lie below it
       if (source.format == RecordingFormat::BAG)
       {
         refuseTopics(source_, source.path, trackerTopics(joint_namespace));
@@ -70,7 +70,7 @@ public:
     }
   }
 
-  /// A comparison of a joint, by its place in the list. Takes over what was recorded until the comparison's row.
+  /// Takes a comparison of a joint, by the joint's number, after copying the messages that were recorded before it.
   void offer(std::size_t joint, const Comparison& comparison, const Tracker& tracker)
   {
     const Stamp stamp = start_ + std::llround(1e9 * comparison.time);
@@ -78,8 +78,8 @@ public:
     outputs_[joint]->offer(stamp, comparison, tracker);
   }
 
-  /// The joints are judged too: `trackers` in the order of the list. `arm`: the same recording as a whole, which they
-  /// are judged with.
+  /// Adds verdicts of the joints. `trackers` are in the order of the joints, and `arm` is the assessment of the whole
+  /// recording.
   void judge(const std::vector<Tracker*>& trackers, const ArmAssessment& arm)
   {
     for (std::size_t i = 0; i < trackers.size(); ++i)
@@ -89,7 +89,8 @@ public:
     }
   }
 
-  /// After the comparisons of a row: a verdict of each joint about once a second, of the rows so far.
+  /// To be called after the comparisons of a row. Writes a verdict of each joint about once a second, by the rows so
+  /// far.
   void offerVerdicts(double time)
   {
     if (verdict_periods_.begins(start_ + std::llround(1e9 * time)))
@@ -98,7 +99,7 @@ public:
     }
   }
 
-  /// Takes over the rest, and the verdicts of all rows. @throws InputError if not all could be written.
+  /// Copies the remaining messages and writes the verdicts by all rows. @throws InputError if not all could be written.
   void close()
   {
     judgeNow();
@@ -139,18 +140,18 @@ private:
   }
 
   const ArmRecording& recording_;
-  rosbag::Bag source_;  // not open: the recording is no bag
-  rosbag::View view_;   // of all of it
+  rosbag::Bag source_;  // open only if the recording is a bag
+  rosbag::View view_;   // all messages of source_
   std::optional<rosbag::View::iterator> next_;
   BagWriter writer_;
   Stamp start_{};  // stamp of the first row [ns]
-  Stamp delay_{};  // of its recording behind that [ns]
+  Stamp delay_{};  // time from the first row's stamp to its recording [ns]
   std::vector<std::unique_ptr<TrackerOutputs<RecordedTopic>>> outputs_;
   std::vector<std::unique_ptr<VerdictWatch>> verdicts_;
   StampPeriods verdict_periods_{ VERDICT_RATE };
 };
 
-/// As the fields of Comparison.msg.
+/// Columns with the fields of Comparison.msg.
 const std::vector<Column<Comparison>> COLUMNS{
   { "time", &Comparison::time },
   { "position_measured", [](const Comparison& now) { return now.position.measured; } },
@@ -180,7 +181,7 @@ const std::vector<Column<Comparison>> COLUMNS{
 class Follower
 {
 public:
-  /// `bag`: gets the comparisons as those of joint `number`, if there is one.
+  /// `bag` may be null, else it gets the comparisons of the joint `number`.
   Follower(const ArmRecording& recording, const FollowOptions& options, TrackedBag* bag, std::size_t number)
     : recording_(recording)
     , options_(options)
@@ -250,14 +251,14 @@ private:
     }
   }
 
-  /// `motor_part`: what a controller's torque holds beside the arm's load [N.m].
+  /// `motor_part`: part of a controller's torque that is not the arm's load [N.m].
   void take(Comparison now, double motor_part)
   {
     if (bag_ != nullptr)
     {
       bag_->offer(number_, now, tracker_);
     }
-    // The column is always the torque of a controller, independent of the load option.
+    // The column is the torque as a controller counts it, whatever load is chosen.
     now.load_torque += has_arm_load_ ? motor_part : 0.0;
     current_.add(now.current.measured);
     residual_.add(now.current.residual());
@@ -274,7 +275,7 @@ private:
   const FollowOptions& options_;
   const bool has_arm_load_;
   TrackedBag* bag_;
-  std::size_t number_;  // of the joint
+  std::size_t number_;  // number of the joint
   Tracker tracker_;
   std::optional<TableFile<Comparison>> csv_;
   StreamTiming timing_;
@@ -285,7 +286,7 @@ private:
   Rms load_error_;
 };
 
-/// The temperature that the friction of an arm's joints means, once a second.
+/// Sets the temperature of the joints' twins once a second, by the friction that the joints have in common.
 class CommonTemperature
 {
 public:
@@ -318,7 +319,7 @@ private:
   StampPeriods periods_{ VERDICT_RATE };
 };
 
-/// Null: no bag is asked for.
+/// The bag of the options, or null.
 std::unique_ptr<TrackedBag> bagOf(const ArmRecording& recording, const FollowOptions& options)
 {
   if (options.bag.empty())
@@ -332,7 +333,7 @@ std::unique_ptr<TrackedBag> bagOf(const ArmRecording& recording, const FollowOpt
   return std::make_unique<TrackedBag>(options.bag, recording);
 }
 
-/// As `compare` judges it; the load that the currents show is the recording's from then on.
+/// Judges the recording as `compare` does. The load that the currents show is then that of the recording.
 ArmAssessment assessFor(ArmRecording& recording, const FollowOptions& options)
 {
   RecordingFit fit(recording.parameters());

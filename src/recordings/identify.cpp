@@ -18,12 +18,12 @@ namespace hjt
 {
 namespace
 {
-constexpr double PAST_THE_END = 1.0;  // [s]
+constexpr double PAST_THE_END = 1.0;  // time behind the last row at which parts end [s]
 
 /// Entries of an overlay by section.
 using Sections = std::map<std::string, std::string>;
 
-/// The identified parameters, each with its interval.
+/// Entries of the identified parameters, with their intervals in comments.
 Sections identifiedSections(const Identification& found)
 {
   Sections sections;
@@ -72,7 +72,7 @@ void writeOverlay(const IdentifyOptions& options, const std::string& joint, cons
   writeTextFile(path, text);
 }
 
-/// Whether an interval leaves zero out: else it says nothing.
+/// Whether the interval of a value does not contain zero.
 bool saysSomething(const Identification& found)
 {
   return std::any_of(found.values.begin(), found.values.end(),
@@ -82,7 +82,7 @@ bool saysSomething(const Identification& found)
                      [](const RippleLine& line) { return line.refusal.empty() && line.half_width < line.amplitude; });
 }
 
-/// Remarks for the user that help to judge the result of one joint.
+/// Tells the user what helps to judge the result of one joint.
 void noticeOf(const IdentifiedJoint& joint, bool any, const Watch& watch)
 {
   const JudgedErrors& judged = joint.found.judged;
@@ -99,7 +99,7 @@ void noticeOf(const IdentifiedJoint& joint, bool any, const Watch& watch)
   }
 }
 
-/// Where three numbers fitted alike would do better than the twin.
+/// Tells the user if three fitted numbers would predict the current better than the twin.
 void noticeOfSimpleFit(const IdentifiedJoint& joint, const Watch& watch)
 {
   const double twin = joint.left_out.identified.moving;
@@ -113,11 +113,11 @@ void noticeOfSimpleFit(const IdentifiedJoint& joint, const Watch& watch)
 }
 
 constexpr int ARM_FOLDS = 5;
-/// Largest error of pieces left out with ripple over that without, moving, at which the ripple of an arm's joint is
-/// kept.
+/// Largest error on pieces left out with ripple over that without ripple, both in motion, at which the ripple of an
+/// arm's joint is kept.
 constexpr double RIPPLE_GAIN = 0.95;
 
-/// @throws InputError for parts that no recording has.
+/// @throws InputError if the options have a part that no recording has.
 void requireParts(const IdentifyOptions& options)
 {
   if (!options.arm.empty() && options.judge)
@@ -134,7 +134,7 @@ void requireParts(const IdentifyOptions& options)
   }
 }
 
-/// The parts to identify and to judge on, as given or by default.
+/// Sets the parts to identify and to judge on, as given or by default.
 void chooseParts(const IdentifyOptions& options, double duration, double last, IdentifiedJoint& joint)
 {
   const bool is_arm = !options.arm.empty();
@@ -144,14 +144,14 @@ void chooseParts(const IdentifyOptions& options, double duration, double last, I
   joint.judge = options.judge.value_or(is_arm ? whole : Span{ third, duration + PAST_THE_END });
 }
 
-/// Pieces that are left out in turn: those of an arm judge what was identified.
+/// Number of pieces that are left out in turn. An arm has such pieces by default, by which its parameters are judged.
 int foldsOf(const IdentifyOptions& options)
 {
   return options.folds > 0 || options.arm.empty() ? options.folds : ARM_FOLDS;
 }
 
-/// Fits a joint to its part, then to what is left of it without each piece; `fitted` is called after each.
-/// @throws InputError if it hardly moves.
+/// Identifies a joint on its part, and then on that part without each of its pieces. `fitted` is called after each fit.
+/// @throws InputError if the joint hardly moves.
 void identifyJoint(const IdentifyOptions& options, const Parameters& parameters, bool load_recorded,
                    const std::vector<MotionSample>& samples, const std::function<void()>& fitted,
                    IdentifiedJoint& joint)
@@ -184,7 +184,7 @@ void identifyJoint(const IdentifyOptions& options, const Parameters& parameters,
   }
 }
 
-/// By the currents that the twins predict as configured; of no use if stopped.
+/// The payload by the currents that the configured twins predict. The result has no meaning if the user stopped.
 IdentifiedPayload payloadOf(const ArmRecording& recording, const std::vector<std::vector<MotionSample>>& samples,
                             const Watch& watch)
 {
@@ -212,7 +212,7 @@ IdentifiedPayload payloadOf(const ArmRecording& recording, const std::vector<std
   return fit.solve(std::vector<bool>(samples.size(), true)).payload;
 }
 
-/// Where the overlay of a joint goes. @throws InputError if it must not be written.
+/// Path of a joint's overlay. @throws InputError if the file must not be written.
 std::string overlayOf(const IdentifyOptions& options, const std::string& joint)
 {
   const std::string path =
@@ -236,7 +236,7 @@ std::vector<IdentifiedJoint> identifyJoints(const IdentifyOptions& options, cons
 {
   std::vector<IdentifiedJoint> joints;
   const auto progress = options.watch.progress("identifying");
-  const std::size_t fits = 1 + static_cast<std::size_t>(foldsOf(options));  // of a joint, each of about the same time
+  const std::size_t fits = 1 + static_cast<std::size_t>(foldsOf(options));  // of a joint; each takes the same time
   for (std::size_t i = 0; i < samples.size() && !options.watch.stopped(); ++i)
   {
     IdentifiedJoint& joint = joints.emplace_back();
@@ -369,7 +369,7 @@ std::vector<ReportLine> linesOf(const IdentifiedPayload& found)
 {
   const auto list = [](const std::array<double, 3>& values)
   { return std::vector<double>(values.begin(), values.end()); };
-  constexpr double KNOWN = 5.0;  // half width of a mass that says anything of these arms' payloads [kg]
+  constexpr double KNOWN = 5.0;  // largest half width of a mass that is known [kg]
   const std::string mass = found.mass_half_width < KNOWN ?
                                shortNumber(found.mass) + " +- " + shortNumber(found.mass_half_width) + " kg" :
                                "not known: the arm hardly moves, or is in too few poses";

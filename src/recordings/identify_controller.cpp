@@ -23,18 +23,18 @@ namespace
 constexpr std::array QUANTITIES{ "target_q_", "target_qd_", "target_current_", "target_moment_",
                                  "actual_q_", "actual_qd_", "actual_current_" };
 
-/// Of ArmController::defaultGains, the most that the gain of the speed may be: with twice of them a wrist's loop, which
-/// has none of the filters of a real one, swings up.
+/// Largest speed gain as a multiple of that of ArmController::defaultGains. With twice the default gain the loop of a
+/// wrist, which has none of the filters of a real controller, becomes unstable.
 constexpr double MOST_SPEED_GAIN = 1.5;
 
 struct Recorded
 {
-  double period{};                                 // of the rows, median [s]
-  std::vector<std::vector<ControllerRow>> joints;  // the moment in place of its current
-  std::vector<std::vector<double>> angles;         // actual [rad]
+  double period{};                                 // median time between rows [s]
+  std::vector<std::vector<ControllerRow>> joints;  // rows of each joint, with the moment in place of its current
+  std::vector<std::vector<double>> angles;         // actual angles of each joint [rad]
 };
 
-/// By how much the actual speeds are behind the actual angles' rates, least squares, not less than 0 [s].
+/// Delay of the actual speeds behind the rates of the actual angles, by least squares; 0 or more [s].
 double ageOfSpeeds(const std::vector<ControllerRow>& rows, const std::vector<double>& angles, double period)
 {
   double products = 0.0;
@@ -50,7 +50,8 @@ double ageOfSpeeds(const std::vector<ControllerRow>& rows, const std::vector<dou
   return squares > 0.0 ? std::max(products / squares, 0.0) : 0.0;
 }
 
-/// The errors that the controller had, which takes set points late, and their speeds as late as it reads its own.
+/// Computes the errors as the controller had them. It takes set points late, and their speeds as late as it reads the
+/// actual speeds.
 void takeDelays(double delay, double speed_age, double period, std::vector<ControllerRow>& rows)
 {
   const std::vector<ControllerRow> logged = rows;

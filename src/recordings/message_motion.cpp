@@ -20,7 +20,7 @@ namespace hjt
 {
 namespace
 {
-/// Rows of the parts in which an arm comes, put side by side at the times of the first part.
+/// Puts rows of an arm that comes in several parts side by side, at the times of the first part.
 class SideBySide
 {
 public:
@@ -37,7 +37,7 @@ public:
     }
   }
 
-  /// False: the visitor has had enough.
+  /// Takes rows of a part. Returns false if the visitor has had enough.
   bool add(std::size_t part, const std::vector<MotionRow>& rows)
   {
     waiting_[part].push_back(rows);
@@ -64,7 +64,7 @@ public:
   std::uint64_t dropped() const { return dropped_; }
 
 private:
-  /// All other parts have a row that is not before `time`.
+  /// Whether all other parts have a row that is not before `time`.
   bool areReady(double time) const
   {
     return std::all_of(waiting_.begin() + 1, waiting_.end(),
@@ -79,7 +79,7 @@ private:
     }
   }
 
-  /// On the line between the rows of `part` before and after. False: they are too far from each other.
+  /// Places rows of `part` on the line between its rows before and after. Returns false if these are too far apart.
   bool placeAt(std::size_t part, const MotionRow& base)
   {
     auto& rows = waiting_[part];
@@ -122,7 +122,7 @@ private:
   std::uint64_t dropped_{};
 };
 
-/// Content of a topic's messages for the joints, for the error text if there is none.
+/// What the messages of a topic hold of the joints, for an error text.
 class SeenNames
 {
 public:
@@ -193,7 +193,7 @@ private:
   {
     bool angle{};
     bool effort{};
-    bool together{};  // in one message
+    bool together{};  // angle and effort in one message
     bool finite{};
   };
 
@@ -202,7 +202,7 @@ private:
   std::vector<Incomplete> incomplete_;
 };
 
-/// Empty: no row.
+/// Text with the number of rows; empty if that is 0.
 std::string counted(std::uint64_t rows, const std::string& text)
 {
   return rows == 0 ? "" : std::to_string(rows) + (rows == 1 ? " row " : " rows ") + text;

@@ -28,7 +28,7 @@ namespace hjt
 {
 namespace
 {
-/// Tells times that are not in seconds, by how rarely samples come and by the motor's speed, if it is recorded.
+/// Recognises times that are not in seconds, by how rarely samples come and by the motor's speed, if that is recorded.
 class SecondsCheck
 {
 public:
@@ -53,11 +53,11 @@ public:
     last_ = sample;
   }
 
-  /// Empty: none.
+  /// Why the times are not in seconds; empty if they seem to be.
   std::string doubt() const
   {
-    constexpr double TURN = 2.0 * M_PI;  // a motor that turns by less may stand, and its speed be noise [rad]
-    constexpr double FACTOR = 100.0;     // between the factors of milliseconds and of another unit of the speed
+    constexpr double TURN = 2.0 * M_PI;  // least turn of the motor at which its speed is no noise [rad]
+    constexpr double FACTOR = 100.0;     // least factor; another unit of the speed makes less, milliseconds make more
     if (2 * rare_ > steps_)
     {
       return "most samples come " + numberText(RARE) + " s apart or more";
@@ -69,15 +69,15 @@ public:
   }
 
 private:
-  static constexpr double RARE = 0.5;  // no motion is seen in steps as long [s]
+  static constexpr double RARE = 0.5;  // step that is too long to see a motion [s]
 
   SignalSample last_;
   std::uint64_t steps_{};
-  std::uint64_t rare_{};      // steps of RARE or more
-  double by_angle_{};         // sum of speed times travel [rad^2/s]
-  double by_speed_{};         // and of speed squared times step
-  double least_{ HUGE_VAL };  // angle of the motor [rad]
-  double most_{ -HUGE_VAL };  // likewise
+  std::uint64_t rare_{};      // number of steps of RARE or more
+  double by_angle_{};         // sum of speed times way [rad^2/s]
+  double by_speed_{};         // sum of squared speed times step [rad^2/s]
+  double least_{ HUGE_VAL };  // least angle of the motor [rad]
+  double most_{ -HUGE_VAL };  // largest angle of the motor [rad]
 };
 
 using Take = std::function<bool(const SignalSample&)>;
@@ -97,14 +97,14 @@ enum Column : std::size_t
 
 using Names = std::array<std::string, COLUMNS>;
 
-/// How a column is named on the command line and, unless it is, in the file.
+/// How a column is named on the command line, and how it is named in the file by default.
 struct ColumnChoice
 {
   const char* option;
   const char* meaning;
-  double SignalSample::*field;  // none: the time's
+  double SignalSample::*field;  // null for the time
   const char* name;
-  const char* otherwise{};  // where `name` is missing
+  const char* otherwise{};  // second default, if there is no column `name`
 };
 constexpr std::array<ColumnChoice, COLUMNS> CHOICES{
   { { "--time", "time [s]", nullptr, "time" },
@@ -127,10 +127,10 @@ struct SignalSource
   // Topics of a bag.
   std::string states_topic;
   std::string load_topic;
-  bool load_topic_given{};        // then it must be there
-  std::string joint;              // its name in both
+  bool load_topic_given{};        // whether the user named the topic, so that it must exist
+  std::string joint;              // name of the joint on both topics
   double torque_scale{ 1.0 };     // motor torque per unit of the recorded signal
-  double velocity_window{ 0.0 };  // over which a data set's drive takes its motor speed, if that is not recorded [s]
+  double velocity_window{ 0.0 };  // window of a motor speed that is computed [s]
 };
 
 bool contains(const std::vector<std::string>& names, const std::string& name)
@@ -138,8 +138,8 @@ bool contains(const std::vector<std::string>& names, const std::string& name)
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// The columns of a file in the order of the signals. `place`: file and line. @throws InputError if one that was named
-/// is not there, or none of the angles.
+/// Names of the columns of a file in the order of the signals. `place` is file and line. @throws InputError if a column
+/// that the user named does not exist, or no column of an angle.
 Names columnsOf(const std::string& place, const std::vector<std::string>& there, const Names& columns)
 {
   Names names;
@@ -183,8 +183,8 @@ SignalSample sampleOf(const std::array<double, COLUMNS>& row, double torque_scal
   return sample;
 }
 
-/// The motor's speed as the drive's own sensors have it: what its angle changes by over the window. Before the first
-/// window is over, that of the first window.
+/// The motor's speed as the drive's own sensors compute it: the change of its angle over the window. Before the first
+/// window is over, the speed is that of the first window.
 std::vector<double> velocityOf(const std::vector<double>& time, const std::vector<double>& angle, double window)
 {
   std::vector<double> velocity(time.size(), NOT_MEASURED);
@@ -209,7 +209,7 @@ void readTable(const std::string& path, const SignalSource& source, const Take& 
   }
 }
 
-/// Columns by their names. `place`: whose, for the error text.
+/// Reads columns in memory. `place` names the recording in an error text.
 void readColumns(const std::string& place, Columns columns, const SignalSource& source, const Take& take)
 {
   std::vector<std::string> there;
@@ -237,7 +237,7 @@ void readColumns(const std::string& place, Columns columns, const SignalSource& 
   }
 }
 
-/// A run of a data set.
+/// Reads a run of a data set.
 void readRun(const std::string& path, const SignalSource& source, const Take& take)
 {
   const ColumnChoice& torque = CHOICES[MOTOR_TORQUE];
@@ -317,7 +317,7 @@ void readBag(const std::string& path, const SignalSource& source, const Take& ta
                      "; it holds:" + listTopics(bag));
   }
 }
-/// Where the signals lie: a robot's telemetry if a joint was named, else what the twin publishes.
+/// Columns and topics of the signals: the telemetry of a robot if a joint was named, else the topics of the twin.
 SignalSource signalSource(const SignalOptions& options, const Parameters& parameters)
 {
   const bool robot = !options.joint.empty();

@@ -64,7 +64,7 @@ CheckedContents contentsOf(const std::vector<std::vector<MotionRow>>& rows)
   return contents;
 }
 
-/// @throws InputError where no name tells a joint.
+/// @throws InputError if no name is that of a joint.
 void requireNames(const std::string& topic, const std::vector<std::string>& names)
 {
   const auto all = [&](const auto& is) { return !names.empty() && std::all_of(names.begin(), names.end(), is); };
@@ -87,7 +87,7 @@ void requireNames(const std::string& topic, const std::vector<std::string>& name
 
 CheckedContents readMessageContents(const MotionSource& source)
 {
-  constexpr int MESSAGES = 1000;  // after so many messages every publisher of the topic was heard
+  constexpr int MESSAGES = 1000;  // messages in which every publisher of the topic occurs
   CheckedContents contents;
   const std::unique_ptr<RecordedMessages> recording = RecordedMessages::open(source.path);
   recording->requireStates(source.topic);
@@ -127,7 +127,7 @@ CheckedContents readMessageContents(const MotionSource& source)
   return contents;
 }
 
-/// Of the joints at hand those of an arm that is not complete; all of them if there is none.
+/// Sorts the joints of an arm that is not complete into joints that are usable and joints that are missing.
 void takeParts(const std::vector<std::string>& names, const CheckedContents& contents, CheckedArm& arm)
 {
   for (const std::string& name : names)
@@ -154,7 +154,7 @@ CheckedArm withoutArm(const std::vector<fs::path>& files, const CheckedContents&
   return none;
 }
 
-/// How a recording may name the joints of an arm.
+/// Prefixes and suffixes with which the recording may name the joints of an arm.
 std::vector<JointAffixes> affixesOf(const ArmDescription& arm, const RecordingOptions& options,
                                     const CheckedContents& contents)
 {
@@ -175,7 +175,7 @@ CheckedArm armWith(const JointAffixes& affixes)
   return arm;
 }
 
-/// Those of the configuration, one for each way of naming the joints.
+/// Arms of the configuration that fit, one entry for each prefix and suffix.
 std::vector<CheckedArm> armsOfConfiguration(const std::vector<fs::path>& files, const RecordingOptions& options,
                                             const CheckedContents& contents)
 {
@@ -202,7 +202,7 @@ std::vector<CheckedArm> armsOfConfiguration(const std::vector<fs::path>& files, 
   return arms;
 }
 
-/// The arm that the options name, as often as the recording names its joints; `known` has what else fits.
+/// The arm that the options name, one entry for each prefix and suffix. `known` has the arms that fit.
 std::vector<CheckedArm> armsGiven(const std::vector<CheckedArm>& known, const RecordingOptions& options,
                                   const CheckedContents& contents)
 {
@@ -223,7 +223,7 @@ std::vector<CheckedArm> armsGiven(const std::vector<CheckedArm>& known, const Re
   return arms;
 }
 
-/// An arm whose joints have no angle or no effort cannot be read as one.
+/// Removes an arm whose joints lack angle or effort, which cannot be read as an arm.
 void leaveOutIncomplete(const RecordingOptions& options, const CheckedContents& contents, CheckedArm& arm)
 {
   const std::string name = arm.taken.empty() ? (arm.fitting.empty() ? "" : arm.fitting.front()) : arm.taken;
@@ -239,7 +239,7 @@ void leaveOutIncomplete(const RecordingOptions& options, const CheckedContents& 
   }
 }
 
-/// The joints that the recording names, and its temperature. @throws InputError if it cannot be read.
+/// Finds the joints that the recording names, and its temperature. @throws InputError if the recording cannot be read.
 CheckedContents readCheckedContents(const MotionSource& source)
 {
   return source.rows   ? contentsOf(*source.rows) :
@@ -247,9 +247,9 @@ CheckedContents readCheckedContents(const MotionSource& source)
                          readMessageContents(source);
 }
 
-/// The arms whose joints the recording names, by the names' prefixes and suffixes, or the arm of the options; at least
-/// one, without an arm if none fits. What they say of each other is left open: `ranked`, `taken` of more than one that
-/// fits.
+/// Finds the arm of the options, or the arms whose joints the recording names, one entry for each prefix and suffix.
+/// There is at least one entry, which has no arm if none fits. `ranked` is empty, and `taken` too unless the options
+/// name it.
 /// @throws InputError, ParameterError.
 std::vector<CheckedArm> findArms(const RecordingOptions& options, const CheckedContents& contents)
 {
@@ -275,7 +275,7 @@ std::vector<CheckedArm> findArms(const RecordingOptions& options, const CheckedC
   return arms;
 }
 
-/// Taken where no arm explains the currents clearly better than others.
+/// Arm that is taken if no arm explains the currents clearly better than the others.
 constexpr const char* DEFAULT_ARM = "ur5";
 
 RecordingOptions optionsFor(const RecordingOptions& options, const CheckedArm& arm, const std::string& name)
@@ -287,7 +287,7 @@ RecordingOptions optionsFor(const RecordingOptions& options, const CheckedArm& a
   return own;
 }
 
-/// The best of the ranking where it is clearly better than the default.
+/// The best arm of the ranking if it is clearly better than the default arm, else the default arm.
 std::string choice(const CheckedArm& arm)
 {
   const auto preset =
@@ -320,7 +320,7 @@ void takeFit(const RecordingFit& fit, const std::vector<Parameters>& parameters,
 
 using AssessedJoints = std::vector<std::unique_ptr<AssessedJoint>>;
 
-/// Samples that the differentiators of all joints have ready.
+/// Gives the joints the samples that their differentiators have ready.
 void addReady(std::vector<MotionDifferentiator>& joints, bool at_end, AssessedJoints& twins)
 {
   for (std::size_t i = 0; i < joints.size(); ++i)
@@ -363,7 +363,7 @@ void readArm(const RecordingOptions& options, CheckedArm& arm)
   }
 }
 
-/// Of joints that are not a whole arm.
+/// Misfit of joints that are not a whole arm.
 Misfit misfitOfParts(const CheckedArm& arm)
 {
   if (arm.found.misfit.exists() || arm.missing.empty())
@@ -375,7 +375,7 @@ Misfit misfitOfParts(const CheckedArm& arm)
                joined(arm.missing) };
 }
 
-/// Each joint after what the friction of all has in common.
+/// Judges each joint apart from the friction that all joints have in common.
 void judgeJoints(const AssessedJoints& twins, const RecordingFit& fit, const std::vector<Parameters>& parameters,
                  CheckedArm& arm)
 {
@@ -394,7 +394,7 @@ void judgeJoints(const AssessedJoints& twins, const RecordingFit& fit, const std
   }
 }
 
-/// Reads all joints at hand without an arm: the load is what one joint is configured to carry.
+/// Reads all usable joints without an arm. Their load is the configured load of a single joint.
 void readJoints(const RecordingOptions& options, CheckedArm& arm)
 {
   const std::vector<std::string>& names = arm.joints_at_hand;
@@ -464,7 +464,7 @@ bool hasFinding(const CheckedArm& arm, const std::string& kind)
                      [&](const RecordingFinding& finding) { return finding.kind == kind; });
 }
 
-/// A number that a person would write, within what is known of it.
+/// The factor with as few digits as its uncertainty allows.
 std::string plainFactor(const FittedFactor& factor)
 {
   int digits = 1;
@@ -476,7 +476,7 @@ std::string plainFactor(const FittedFactor& factor)
   return roundedText(factor.value, digits);
 }
 
-/// Reads the recording again with what would mend its findings.
+/// Reads the recording again with a change that may mend its findings.
 void tryRemedies(const RecordingOptions& options, CheckedArm& arm)
 {
   RecordingOptions changed = options;
@@ -512,7 +512,7 @@ void tryRemedies(const RecordingOptions& options, CheckedArm& arm)
   readArm(changed, mended);
   remedy.before = arm.rest.share();
   remedy.after = mended.rest.share();
-  // Another time changes the inertia alone, which may be little of the load.
+  // Another time scale changes the inertia only, which may be a small part of the load.
   constexpr double NOT_WORSE = 1.05;
   const double bound = kind == "effort_unit" ? 1.0 : NOT_WORSE;
   const bool is_left = hasFinding(mended, kind) || (kind == "period" && hasFinding(mended, "stamps"));

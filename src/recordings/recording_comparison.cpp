@@ -49,8 +49,8 @@ struct TwinState
   double motor_current{};  ///< [A]
 };
 
-/// `twin_topic`: the joint states of a twin that was recorded beside the robot. @throws InputError if the file cannot
-/// be read.
+/// Contents of the recording. `twin_topic` is that of a twin that was recorded beside the robot. @throws InputError if
+/// the file cannot be read.
 RecordingContents readContents(const MotionSource& source, const std::string& twin_topic, const MotionFindings& found,
                                const MotionReach& reach)
 {
@@ -153,7 +153,7 @@ Json namesOf(const std::vector<WeightedCause>& causes)
   return names;
 }
 
-/// With what else a page shows.
+/// The verdict with all that a page shows of it.
 Json verdictJson(const Verdict& verdict)
 {
   const std::vector<Column<Finding>> columns{
@@ -169,15 +169,15 @@ Json verdictJson(const Verdict& verdict)
   return all;
 }
 
-/// Standard deviation of the friction by its scatter, as a share; NaN: it was not judged by the joint's own rows, which
-/// are no reference then.
+/// Standard deviation of the friction by its scatter, as a share. NaN if the friction was not judged by the joint's own
+/// rows, which are no reference then.
 double frictionDeviation(const ComparedJoint& compared)
 {
   return compared.friction && compared.friction->isJudged() ? compared.friction->scatter :
                                                               std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Friction factor after division by the arm's common factor; null: not judged.
+/// Friction factor after division by the arm's common factor; null if it is not judged.
 Json factorJson(const ComparedJoint& compared)
 {
   const Verdict& verdict = compared.verdict;
@@ -311,7 +311,7 @@ void RecordingComparison::writeTorsion() const
   writeTable(file("torsion_twin.csv"), curve, loop.points);
 }
 
-/// Every tooth of the twin's ring under the recording's typical and largest load.
+/// Writes the forces on every tooth of the twin under the recording's typical and largest load.
 void RecordingComparison::writeTeeth() const
 {
   const std::vector<StiffnessRow> rows =
@@ -328,7 +328,7 @@ void RecordingComparison::writeTeeth() const
   csv.close();
 }
 
-/// The twin's recorded states, where the recording has such a topic, which is not the telemetry itself.
+/// Writes the recorded states of a twin, if the recording has them on another topic than the telemetry.
 void RecordingComparison::writeTwinStates(double start) const
 {
   const MotionSource source = recording_.source(joint_);
@@ -372,7 +372,7 @@ void RecordingComparison::writeTwinStates(double start) const
   }
 }
 
-/// The data of the page's figures.
+/// Writes the data of the page's figures.
 void RecordingComparison::writeData(const MotionFindings& found) const
 {
   const std::vector<Column<ComparedRow>> columns{

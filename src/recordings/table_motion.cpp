@@ -23,7 +23,7 @@ namespace
 constexpr std::size_t JOINTS = 6;
 constexpr double LATEST = 9e9;  // largest time that a stamp holds [s]
 
-/// Columns of one joint; the first two are required.
+/// Quantities of a joint that have a column; the first two are required.
 enum Quantity : std::size_t
 {
   ANGLE,
@@ -38,7 +38,7 @@ enum Quantity : std::size_t
 constexpr std::array<const char*, QUANTITIES> NAMES{ "actual_q_",  "actual_current_",     "target_moment_",
                                                      "actual_qd_", "joint_temperatures_", "target_current_" };
 
-/// Columns of some joints of a controller's table. `COUNT` of them.
+/// Columns of COUNT joints of a controller's table.
 template <std::size_t COUNT>
 class JointTable
 {
@@ -46,7 +46,7 @@ public:
   static constexpr std::size_t COLUMNS = 1 + QUANTITIES * COUNT;
 
   explicit JointTable(const MotionSource& source)
-    // A value that is no number spoils its row, not the file.
+    // A value that is no number makes its row useless, but not the file.
     : names_(names(source)), table_(source.path, names_, COLUMNS - 1 - 2 * COUNT, COLUMNS, controllerColumns)
   {
     table_.allowCutOff();
@@ -85,10 +85,10 @@ public:
     return std::all_of(values_.begin(), values_.begin() + column(VELOCITY, 0), is_finite);
   }
 
-  /// From now on such a current is 0.
+  /// Currents of these joints are 0 from now on.
   void silence(const std::array<bool, COUNT>& joints) { is_silent_ = joints; }
 
-  /// Of the columns that have to hold numbers, those that never did.
+  /// Names of required columns that never held a number.
   std::vector<std::string> neverFinite() const
   {
     std::vector<std::string> never;
@@ -102,7 +102,7 @@ public:
     return never;
   }
 
-  /// Of the columns that have to hold numbers, those of the row at hand that do not.
+  /// Counts required columns that hold no number in the present row.
   void addMissing(std::map<std::string, std::uint64_t>& missing) const
   {
     for (std::size_t i = 0; i < column(VELOCITY, 0); ++i)
@@ -141,7 +141,7 @@ private:
   std::array<bool, COUNT> is_silent_{};
 };
 
-/// Kind of the currents in a table, judged by all of its rows.
+/// What the currents of a table are, by all of its rows.
 template <std::size_t COUNT>
 struct CurrentsSeen
 {
@@ -163,7 +163,7 @@ struct CurrentsSeen
     }
     if (std::all_of(is_silent.begin(), is_silent.end(), [](bool silent) { return silent; }))
     {
-      is_silent.fill(false);  // nothing can be read without any
+      is_silent.fill(false);  // without any current nothing could be read
     }
   }
 
@@ -227,7 +227,7 @@ private:
       count_.start = stamp;
       first_ = table_.time();
     }
-    // Differences of the numbers themselves where there is one round: as they stand in the file.
+    // In the first round times are differences of the numbers in the file, which are exact.
     const double by_stamps = times_.at(stamp);
     const double time = times_.rounds() == 1 ? source_.time_scale * (table_.time() - first_) : by_stamps;
     order_.add(seconds);
@@ -315,7 +315,7 @@ void remarkOnRounds(const std::vector<UnfoldedAngle>& angles, std::uint64_t roun
 
 std::string missingText(const std::map<std::string, std::uint64_t>& missing, const MotionCount& count)
 {
-  constexpr double NOTEWORTHY = 0.02;  // of all rows
+  constexpr double NOTEWORTHY = 0.02;  // least share of all rows
   const auto all = static_cast<double>(count.rows + count.corrupt);
   std::vector<std::string> names;
   for (const auto& [name, rows] : missing)
@@ -393,7 +393,7 @@ MotionCount readArrayMotion(const MotionSource& source, std::size_t joints, cons
       continue;
     }
     const double by_stamps = times.at(std::llround(1e9 * seconds));
-    // As the numbers stand in the array where there is one round.
+    // In the first round times are the numbers in the array.
     const double time = times.rounds() == 1 ? seconds : by_stamps;
     order.add(seconds);
     count.duration = std::max(count.duration, time);
