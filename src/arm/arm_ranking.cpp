@@ -53,7 +53,7 @@ public:
     }
     if (counts)
     {
-      load_fit_.add(sample_.own, beside_);
+      load_fit_.add(sample_.own, [this](std::size_t i) -> const MotionDriven& { return twins_[i]; });
     }
   }
 
@@ -85,10 +85,6 @@ private:
     , load_fit_(candidate.arm, joints)
     , twins_(joints.begin(), joints.end())
   {
-    for (const MotionDriven& twin : twins_)
-    {
-      beside_.push_back(&twin);
-    }
   }
 
   std::string name_;
@@ -99,7 +95,6 @@ private:
   LoadFit load_fit_;
   std::vector<MotionDriven> twins_;
   ArmSample sample_;
-  std::vector<const MotionDriven*> beside_;
 };
 
 using Trials = std::vector<std::unique_ptr<ArmTrial>>;

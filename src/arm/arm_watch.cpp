@@ -18,10 +18,6 @@ LoadWatch::LoadWatch(const ArmDescription& arm, const std::vector<Parameters>& j
   {
     twins_.emplace_back(joint);
   }
-  for (const MotionDriven& twin : twins_)
-  {
-    beside_.push_back(&twin);
-  }
   reset();
 }
 
@@ -59,7 +55,7 @@ void LoadWatch::add(const ArmSample& sample)
   if (counts)
   {
     last_time_ = time;
-    fit_->add(samples_, beside_);
+    fit_->add(samples_, [this](std::size_t i) -> const MotionDriven& { return twins_[i]; });
   }
 }
 

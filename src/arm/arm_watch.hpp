@@ -66,7 +66,6 @@ private:
   std::vector<MotionDriven> twins_;
   std::optional<LoadFit> fit_;
   std::vector<MotionSample> samples_;
-  std::vector<const MotionDriven*> beside_;
   double last_time_{ -HUGE_VAL };  // time of the last sample that counted [s]
   double next_look_{ LoadFit::FIRST_LOOK };
   bool has_looked_{};

@@ -197,7 +197,7 @@ void LoadFit::addTo(std::size_t number, const MotionSample& sample, const Motion
   sum.rise += own * (friction_at(most) - friction_at(least)) / (most - least);
 }
 
-void LoadFit::add(const std::vector<MotionSample>& samples, const std::vector<const MotionDriven*>& twins)
+void LoadFit::add(const std::vector<MotionSample>& samples, const TwinOf& twin)
 {
   const double time = samples.front().time;
   const double step = time - last_time_;
@@ -219,7 +219,7 @@ void LoadFit::add(const std::vector<MotionSample>& samples, const std::vector<co
     const MotionSample& sample = samples[i];
     Open& block = joints_[i].open;
     const bool counts = std::abs(sample.velocity) > MotionDifferentiator::SLIDING && std::isfinite(sample.current) &&
-                        twins[i]->at(sample.temperatureOr(joints_[i].drive.temperature)).tellsFriction();
+                        twin(i).at(sample.temperatureOr(joints_[i].drive.temperature)).tellsFriction();
     if (sample.after_gap || !counts || sample.velocity * block.velocity < 0.0 || time > block.begin + BLOCK ||
         block.sum.leg + 1 != legs_.size())
     {
@@ -234,7 +234,7 @@ void LoadFit::add(const std::vector<MotionSample>& samples, const std::vector<co
       block = { {}, 0, time, sample.velocity };
       block.sum.leg = legs_.size() - 1;
     }
-    addTo(i, sample, *twins[i], torques_.row(static_cast<Eigen::Index>(i)).transpose());
+    addTo(i, sample, twin(i), torques_.row(static_cast<Eigen::Index>(i)).transpose());
   }
   thin();
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -48,8 +49,10 @@ public:
   {
   }
 
+  /// Gives the twin of a joint, by the joint's number.
+  using TwinOf = std::function<const MotionDriven&(std::size_t joint)>;
   /// Takes samples of one time. The twins must have made the step to that time.
-  void add(const std::vector<MotionSample>& samples, const std::vector<const MotionDriven*>& twins);
+  void add(const std::vector<MotionSample>& samples, const TwinOf& twin);
 
   /// The load by the joints that count: those whose current is measured.
   FoundLoad solve(const std::vector<bool>& counts);

@@ -35,7 +35,7 @@ double costOfGains(const ArmRecording& recording, const RecordingOptions& option
 
 /// Holds the joints against the friction that the controller expects, if no joint has a reference of its own and the
 /// controller expects that of sound joints.
-void holdAgainstController(const std::vector<std::unique_ptr<AssessedJoint>>& joints)
+void holdAgainstController(const AssessedJoints& joints)
 {
   std::vector<const JointEvidence*> evidences;
   for (const auto& joint : joints)
@@ -56,8 +56,7 @@ void holdAgainstController(const std::vector<std::unique_ptr<AssessedJoint>>& jo
 }
 
 /// The drives of the joints with the friction that is expected of them.
-std::vector<LoadFit::Drive> drivesOf(const std::vector<Parameters>& parameters,
-                                     const std::vector<std::unique_ptr<AssessedJoint>>& joints)
+std::vector<LoadFit::Drive> drivesOf(const std::vector<Parameters>& parameters, const AssessedJoints& joints)
 {
   std::vector<LoadFit::Drive> drives(parameters.begin(), parameters.end());
   for (std::size_t i = 0; i < drives.size(); ++i)
@@ -81,14 +80,9 @@ ArmAssessment pass(const ArmRecording& recording, const AssessmentSettings& sett
   }
   std::optional<LoadFit> load;
   std::vector<MotionSample> samples(arm.joints.size());
-  std::vector<const MotionDriven*> twins;
   if (looks_for_load)
   {
     load.emplace(recording.arm(), drivesOf(recording.parameters(), arm.joints));
-    for (const auto& joint : arm.joints)
-    {
-      twins.push_back(&joint->evidence().twin());
-    }
   }
   fit = RecordingFit(recording.parameters());
   StreamTiming timing;
@@ -103,7 +97,8 @@ ArmAssessment pass(const ArmRecording& recording, const AssessmentSettings& sett
         samples[i] = sample;
         if (load && i + 1 == samples.size())  // rows of one time come one after the other
         {
-          load->add(samples, twins);
+          load->add(samples,
+                    [&](std::size_t joint) -> const MotionDriven& { return arm.joints[joint]->evidence().twin(); });
         }
       },
       fit);

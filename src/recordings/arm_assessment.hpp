@@ -56,10 +56,12 @@ private:
   bool has_controller_{};
 };
 
+using AssessedJoints = std::vector<std::unique_ptr<AssessedJoint>>;
+
 /// The joints of a recording beside their twins after a pass through it.
 struct ArmAssessment
 {
-  std::vector<std::unique_ptr<AssessedJoint>> joints;
+  AssessedJoints joints;
   MotionFindings found;
   StreamTimingReport timing;
   JudgedJoints judged;

@@ -12,6 +12,7 @@
 
 #include "base/csv_table.hpp"
 #include "base/statistics.hpp"
+#include "base/text.hpp"
 #include "recordings/recording_options.hpp"
 
 namespace hjt
@@ -19,11 +20,6 @@ namespace hjt
 namespace
 {
 constexpr const char* TIME = "timestamp";
-
-bool holds(const std::vector<std::string>& header, const std::string& name)
-{
-  return std::find(header.begin(), header.end(), name) != header.end();
-}
 
 bool beginsWith(const std::string& text, const std::string& begin)
 {

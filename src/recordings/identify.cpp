@@ -190,11 +190,6 @@ IdentifiedPayload payloadOf(const ArmRecording& recording, const std::vector<std
 {
   LoadFit fit(recording.arm(), recording.parameters());
   std::vector<MotionDriven> twins(recording.parameters().begin(), recording.parameters().end());
-  std::vector<const MotionDriven*> beside;
-  for (const MotionDriven& twin : twins)
-  {
-    beside.push_back(&twin);
-  }
   std::vector<MotionSample> row(samples.size());
   for (std::size_t k = 0; k < samples.front().size(); ++k)
   {
@@ -207,7 +202,7 @@ IdentifiedPayload payloadOf(const ArmRecording& recording, const std::vector<std
       row[i] = samples[i][k];
       twins[i].step(row[i]);
     }
-    fit.add(row, beside);
+    fit.add(row, [&](std::size_t i) -> const MotionDriven& { return twins[i]; });
   }
   return fit.solve(std::vector<bool>(samples.size(), true)).payload;
 }

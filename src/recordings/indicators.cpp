@@ -10,6 +10,7 @@
 #include "output/report.hpp"
 #include "recordings/recorded_windows.hpp"
 
+#include "base/statistics.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "health/baseline_file.hpp"
 #include "health/seen_from.hpp"
@@ -37,9 +38,7 @@ void noticeSteps(std::vector<float> steps, const std::string& recording, const W
   {
     return;
   }
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  const double usual = *middle;
+  const double usual = upperMedian(steps.begin(), steps.end());
   std::size_t gaps = 0;
   double longest = 0.0;
   double square = 0.0;

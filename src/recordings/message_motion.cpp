@@ -132,7 +132,7 @@ public:
   {
     for (const std::string& name : state.name)
     {
-      if (std::find(names_.begin(), names_.end(), name) == names_.end() && names_.size() < MOST)
+      if (!holds(names_, name) && names_.size() < MOST)
       {
         names_.push_back(name);
       }
@@ -162,10 +162,14 @@ public:
     for (std::size_t i = 0; i < joints_.size(); ++i)
     {
       const Incomplete& joint = incomplete_[i];
-      const bool named = std::find(names_.begin(), names_.end(), joints_[i]) != names_.end();
       if (!joint.finite)
       {
-        joints[!named ? 0 : !joint.angle ? 1 : !joint.effort ? 2 : !joint.together ? 3 : 4].push_back(joints_[i]);
+        joints[!holds(names_, joints_[i]) ? 0 :
+               !joint.angle               ? 1 :
+               !joint.effort              ? 2 :
+               !joint.together            ? 3 :
+                                            4]
+            .push_back(joints_[i]);
       }
     }
     std::vector<std::string> all;

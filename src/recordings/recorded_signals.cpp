@@ -133,11 +133,6 @@ struct SignalSource
   double velocity_window{ 0.0 };  // window of a motor speed that is computed [s]
 };
 
-bool contains(const std::vector<std::string>& names, const std::string& name)
-{
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
 /// Names of the columns of a file in the order of the signals. `place` is file and line. @throws InputError if a column
 /// that the user named does not exist, or no column of an angle.
 Names columnsOf(const std::string& place, const std::vector<std::string>& there, const Names& columns)
@@ -147,23 +142,23 @@ Names columnsOf(const std::string& place, const std::vector<std::string>& there,
   {
     const ColumnChoice& choice = CHOICES[i];
     const std::string& given = columns[i];
-    if (!given.empty() && !contains(there, given))
+    if (!given.empty() && !holds(there, given))
     {
       throw InputError(place + ": " + choice.option + " " + given + ": no such column" + didYouMean(given, there) +
                        "; it holds " + joined(there, ", "));
     }
-    const bool is_named_so = choice.otherwise == nullptr || contains(there, choice.name);
+    const bool is_named_so = choice.otherwise == nullptr || holds(there, choice.name);
     names[i] = !given.empty() ? given : is_named_so ? choice.name : choice.otherwise;
   }
   for (const Column column : { MOTOR_TORQUE, TIME })
   {
-    if (!contains(there, names[column]))
+    if (!holds(there, names[column]))
     {
       throw InputError(place + ": column '" + names[column] + "' is missing; name one with " + CHOICES[column].option +
                        "; it holds " + joined(there, ", "));
     }
   }
-  if (!contains(there, names[MOTOR_ANGLE]) && !contains(there, names[OUTPUT_ANGLE]))
+  if (!holds(there, names[MOTOR_ANGLE]) && !holds(there, names[OUTPUT_ANGLE]))
   {
     throw InputError(place + ": neither column '" + names[MOTOR_ANGLE] + "' nor '" + names[OUTPUT_ANGLE] +
                      "' is there; name one with --motor-angle or --output-angle; it holds " + joined(there, ", "));

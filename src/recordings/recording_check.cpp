@@ -26,11 +26,6 @@ namespace
 {
 namespace fs = std::filesystem;
 
-bool holds(const std::vector<std::string>& names, const std::string& name)
-{
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
 CheckedContents readTableContents(const MotionSource& source)
 {
   CheckedContents contents;
@@ -317,8 +312,6 @@ void takeFit(const RecordingFit& fit, const std::vector<Parameters>& parameters,
     joint.misfit = misfits[i];
   }
 }
-
-using AssessedJoints = std::vector<std::unique_ptr<AssessedJoint>>;
 
 /// Gives the joints the samples that their differentiators have ready.
 void addReady(std::vector<MotionDifferentiator>& joints, bool at_end, AssessedJoints& twins)
