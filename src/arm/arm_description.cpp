@@ -55,11 +55,12 @@ bool isBaseName(const std::string& name)
 
 void readGains(const std::string& place, FieldReader& fields, JointGains& gains)
 {
-  fields(place + ".position", "1/s", gains.position, Range{ 0.0, 1e3 }, "speed wanted for an error of the angle");
-  fields(place + ".speed", "N.m.s/rad", gains.speed, Range{ 0.0, 1e6 }, "torque for an error of the speed");
-  fields(place + ".integral_time", "s", gains.integral_time, Range{ 1e-3, 1e6 }, "of the speed's control");
-  fields(place + ".coulomb", "N.m", gains.coulomb, Range{ -1e4, 1e4 }, "friction that is fed forward, constant");
-  fields(place + ".viscous", "N.m.s/rad", gains.viscous, Range{ -1e4, 1e4 }, "and by speed");
+  fields(place + ".position", "1/s", gains.position, Range{ 0.0, 1e3 }, "wanted speed per error of the angle");
+  fields(place + ".speed", "N.m.s/rad", gains.speed, Range{ 0.0, 1e6 }, "torque per error of the speed");
+  fields(place + ".integral_time", "s", gains.integral_time, Range{ 1e-3, 1e6 }, "integral time of the speed control");
+  fields(place + ".coulomb", "N.m", gains.coulomb, Range{ -1e4, 1e4 },
+         "constant part of the friction that is fed forward");
+  fields(place + ".viscous", "N.m.s/rad", gains.viscous, Range{ -1e4, 1e4 }, "fed-forward friction per speed");
 }
 
 /// Reads the joints one after the other.
@@ -70,7 +71,7 @@ public:
 
   void read(const std::string& place, std::size_t joints, ArmJoint& joint)
   {
-    fields_(place + ".name", joint.name, "of the joint in the messages and in the URDF");
+    fields_(place + ".name", joint.name, "name of the joint in the messages and in the URDF");
     readShortName(place + ".short_name", joint.short_name);
     readOverlays(place + ".overlays", joint.overlays);
     if (isMapOrNone(place + ".parameters"))
@@ -89,7 +90,8 @@ public:
     }
     if (holds(map_, place + ".delay"))
     {
-      fields_(place + ".delay", "s", joint.delay, Range{ 0.0, 0.1 }, "of a set point until the controller acts on it");
+      fields_(place + ".delay", "s", joint.delay, Range{ 0.0, 0.1 },
+              "time from a set point until the controller acts on it");
     }
     if (isMapOrNone(place + ".controller") && holds(map_, place + ".controller"))
     {
@@ -106,7 +108,7 @@ public:
 private:
   void readShortName(const std::string& key, std::string& name)
   {
-    fields_(key, name, "of files and namespaces");
+    fields_(key, name, "name of the joint in files and namespaces");
     if (name.empty())
     {
       return;
@@ -432,12 +434,13 @@ ArmDescription readArmDescription(const std::string& path)
   fields("description", description, "URDF beside the file");
   fields("base", arm.base, "link that stands still");
   fields("tip", arm.tip, "link that carries the payload");
-  fields("gravity", "m/s^2", arm.gravity, Range{ -100.0, 100.0 }, "in the frame of the base");
-  fields("payload.mass", "kg", arm.payload.mass, PAYLOAD_MASS, "at the tip");
-  fields("payload.centre", "m", arm.payload.centre, PAYLOAD_CENTRE, "of its mass, in the frame of the tip");
+  fields("gravity", "m/s^2", arm.gravity, Range{ -100.0, 100.0 }, "gravity in the frame of the base");
+  fields("payload.mass", "kg", arm.payload.mass, PAYLOAD_MASS, "mass of the payload at the tip");
+  fields("payload.centre", "m", arm.payload.centre, PAYLOAD_CENTRE,
+         "centre of mass of the payload in the frame of the tip");
   if (holds(map, "state_rate"))
   {
-    fields("state_rate", "Hz", arm.state_rate, Range{ 1.0, 1000.0 }, "of the controller's states");
+    fields("state_rate", "Hz", arm.state_rate, Range{ 1.0, 1000.0 }, "rate of the controller's states");
   }
   const auto place = [](std::size_t joint) { return "joints." + std::to_string(joint); };
   std::size_t joints = 0;

@@ -61,7 +61,7 @@ RecordingFinding velocityFinding(const FittedFactor& own, double of_stamps)
   constexpr double STANDS = 0.01;
   if (std::isinf(own.value))
   {
-    return { "velocity_zero", "velocity zero: taken from the angles", std::nullopt };
+    return { "velocity_zero", "the recorded velocity is zero, so it is computed from the angles", std::nullopt };
   }
   if (own.value < -STANDS)
   {
@@ -69,14 +69,14 @@ RecordingFinding velocityFinding(const FittedFactor& own, double of_stamps)
   }
   if (std::abs(own.value / DEGREE - 1.0) < FACTOR_OFF)
   {
-    return { "velocity_unit", "velocity in deg/s: taken from angles", std::nullopt };
+    return { "velocity_unit", "the recorded velocity is in deg/s, so it is computed from the angles", std::nullopt };
   }
   if (own.value < STANDS)
   {
-    return { "velocity_scale", "angle stands still while the velocity says that the joint moves",
+    return { "velocity_scale", "the angle stands still while the velocity says that the joint moves",
              Reason::VELOCITY_SCALE };
   }
-  return { "velocity_scale", "angle changes " + rounded(own.value / of_stamps) + " times the velocity",
+  return { "velocity_scale", "the angle changes " + rounded(own.value / of_stamps) + " times the velocity",
            Reason::VELOCITY_SCALE };
 }
 }  // namespace
@@ -241,7 +241,7 @@ std::optional<RecordingFinding> RecordingFit::ofTimes() const
     const double period = slow_time_ / static_cast<double>(slow_rows_);
     return RecordingFinding{ "period",
                              "rows come " + rounded(period) + " s apart by their stamps (" + rounded(1.0 / period) +
-                                 " Hz), more than " + rounded(SLOW_ROWS) + " s: no accelerations, no loads" +
+                                 " Hz), more than " + rounded(SLOW_ROWS) + " s: accelerations and loads are unknown" +
                                  (likelyTimeScale(period) < 1.0 ? ", or the stamps are of another unit (of a recording "
                                                                   "`joint_twin check` tries --time-scale)" :
                                                                   ""),
@@ -426,7 +426,8 @@ std::vector<RecordingFinding> RecordingFit::ofJoint(std::size_t number) const
   }
   if (!isMeasured(number))
   {
-    findings.push_back({ "effort_constant", joint.last_current == 0.0 ? "effort is zero" : "effort never changes",
+    findings.push_back({ "effort_constant",
+                         joint.last_current == 0.0 ? "the effort is zero" : "the effort never changes",
                          Reason::EFFORT_CONSTANT });
   }
   if (const double late = ownLag(joint.lag.left()); late != 0.0)
@@ -457,11 +458,11 @@ std::vector<RecordingFinding> RecordingFit::ofJoint(std::size_t number) const
   }
   if (!joint.time.hasVelocity())
   {
-    findings.push_back({ "no_velocity", "velocity taken from the angles", std::nullopt });
+    findings.push_back({ "no_velocity", "no velocity is recorded, so it is computed from the angles", std::nullopt });
   }
   if (joint.reach.most_angle - joint.reach.least_angle < LEAST_MOTION)
   {
-    findings.push_back({ "at_rest", "does not move", std::nullopt });
+    findings.push_back({ "at_rest", "the joint does not move", std::nullopt });
   }
   return findings;
 }

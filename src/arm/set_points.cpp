@@ -105,15 +105,16 @@ private:
   {
     move.target.resize(joints_);
     fields_(at + "to", "rad", move.target, Range{ -LARGEST, LARGEST }, "angles of all joints");
-    fields_(at + "speed", "rad/s", move.speed, Range{ 1e-3, 100.0 }, "of the joint that goes farthest, at most");
-    fields_(at + "acceleration", "rad/s^2", move.acceleration, Range{ 1e-2, 1e4 }, "of that joint, at most");
+    fields_(at + "speed", "rad/s", move.speed, Range{ 1e-3, 100.0 }, "largest speed of the joint that goes farthest");
+    fields_(at + "acceleration", "rad/s^2", move.acceleration, Range{ 1e-2, 1e4 },
+            "largest acceleration of that joint");
     if (holds(at + "jerk"))
     {
-      fields_(at + "jerk", "rad/s^3", move.jerk, Range{ 1e-2, 1e6 }, "of that joint, at most");
+      fields_(at + "jerk", "rad/s^3", move.jerk, Range{ 1e-2, 1e6 }, "largest jerk of that joint");
     }
     if (holds(at + "wait"))
     {
-      fields_(at + "wait", "s", move.wait, Range{ 0.0, LONGEST_REST }, "at rest afterwards");
+      fields_(at + "wait", "s", move.wait, Range{ 0.0, LONGEST_REST }, "time at rest after the move");
     }
   }
 

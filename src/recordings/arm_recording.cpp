@@ -99,7 +99,7 @@ ArmRecording::ArmRecording(const RecordingOptions& options)
   uses_recorded_ = is_arm_ ? options.load == LOAD_RECORDED : has_load_;
   if (uses_recorded_ && !has_load_)
   {
-    throw InputError(source_.path + " holds no load; --load arm needs none");
+    throw InputError(source_.path + " holds no load; the option --load arm needs none");
   }
   for (Parameters& parameters : parameters_)
   {

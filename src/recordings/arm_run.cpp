@@ -217,9 +217,9 @@ void addOptions(OptionTable& table, ArmRunOptions& options)
            "targets and actual angles, speeds, currents in a controller's columns, and the tool's position [m]; .bag: "
            "/joint_states as the arm's driver publishes it; .h5: as a run of `joint_twin sweep`")
       .type("FILE.csv|FILE.bag|FILE.h5");
-  table.add("--rate", options.rate, "of the rows [Hz]; default: that of the arm's states")
+  table.add("--rate", options.rate, "rate of the rows [Hz]; default: the rate of the arm's states")
       .range(ROW_RATE.min, ROW_RATE.max);
-  table.add("--fault", options.faults, "in a joint from its onset [s] on; may be given again")
+  table.add("--fault", options.faults, "a fault of a joint, which begins at its onset [s]; may be given several times")
       .type("JOINT:KIND:SEVERITY[:PLACE[:ONSET]]");
   addOptions(table, options, options.force);
 }

@@ -54,9 +54,10 @@ Sections identifiedSections(const Identification& found)
                                "Ripple, " + shortNumber(line.order) + " a joint turn [N.m]: " + line.refusal + ".");
   }
   add("telemetry.ripple_resonance", numberText(telemetry.ripple_resonance), "Resonance of the load [Hz].");
-  add("telemetry.ripple_damping", numberText(telemetry.ripple_damping), "Its damping ratio [-].");
-  add("telemetry.ripple_lag", numberText(telemetry.ripple_lag), "Of the ripple behind the angle [s].");
-  add("telemetry.ripple_fastest", numberText(telemetry.ripple_fastest), "Beyond, none is known [rad/s].");
+  add("telemetry.ripple_damping", numberText(telemetry.ripple_damping), "Damping ratio of the resonance [-].");
+  add("telemetry.ripple_lag", numberText(telemetry.ripple_lag), "Lag of the ripple behind the angle [s].");
+  add("telemetry.ripple_fastest", numberText(telemetry.ripple_fastest),
+      "Speed above which no ripple is known [rad/s].");
   return sections;
 }
 

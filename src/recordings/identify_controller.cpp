@@ -110,7 +110,7 @@ Recorded readController(const std::string& path, std::size_t joints)
   recorded.period = steps.empty() ? 0.0 : upperMedian(steps.begin(), steps.end());
   if (!(recorded.period > 0.0))
   {
-    throw InputError(path + ": the times of its rows do not go on");
+    throw InputError(path + ": the times of its rows do not increase");
   }
   return recorded;
 }
@@ -129,16 +129,17 @@ std::string textOf(const RecordingOptions& options, const std::vector<Identified
   for (const IdentifiedController& joint : joints)
   {
     const ControllerFit& fit = joint.fit;
-    text += "\n" + joint.name + ":\n  # Speed wanted for an error of the angle [1/s]" +
-            (fit.refusal.empty() ? halfWidthText(fit.position_half_width) : "; as configured: " + fit.refusal) +
-            ".\n  position: " + numberText(fit.gains.position) + "\n  # Torque for an error of the speed [N.m.s/rad]" +
-            (joint.is_limited    ? "; identified more, beyond what this loop bears" :
-             fit.refusal.empty() ? halfWidthText(joint.fit.gains.speed / fit.speed_current * fit.speed_half_width) :
-                                   "") +
-            ".\n  speed: " + numberText(fit.gains.speed) +
-            "\n  # Of the speed's control [s].\n  integral_time: " + numberText(fit.gains.integral_time) +
-            "\n  # Friction that is fed forward, constant [N.m].\n  coulomb: " + numberText(fit.gains.coulomb) +
-            "\n  # And by speed [N.m.s/rad].\n  viscous: " + numberText(fit.gains.viscous) + "\n";
+    text +=
+        "\n" + joint.name + ":\n  # Wanted speed per error of the angle [1/s]" +
+        (fit.refusal.empty() ? halfWidthText(fit.position_half_width) : "; as configured: " + fit.refusal) +
+        ".\n  position: " + numberText(fit.gains.position) + "\n  # Torque per error of the speed [N.m.s/rad]" +
+        (joint.is_limited    ? "; identified more, beyond what this loop bears" :
+         fit.refusal.empty() ? halfWidthText(joint.fit.gains.speed / fit.speed_current * fit.speed_half_width) :
+                               "") +
+        ".\n  speed: " + numberText(fit.gains.speed) +
+        "\n  # Integral time of the speed control [s].\n  integral_time: " + numberText(fit.gains.integral_time) +
+        "\n  # Constant part of the friction that is fed forward [N.m].\n  coulomb: " + numberText(fit.gains.coulomb) +
+        "\n  # Fed-forward friction per speed [N.m.s/rad].\n  viscous: " + numberText(fit.gains.viscous) + "\n";
   }
   return text;
 }

@@ -54,7 +54,7 @@ void noticeSteps(std::vector<float> steps, const std::string& recording, const W
   {
     watch.notice(recording + ": " + std::to_string(gaps) + (gaps == 1 ? " gap" : " gaps") +
                  " between samples, the longest " + shortNumber(longest) + " s where " + shortNumber(1e3 * usual) +
-                 " ms are usual: indicators of these windows are off");
+                 " ms are usual: the indicators of these windows are wrong");
   }
   if (jitter > JITTER * usual)
   {
@@ -91,7 +91,7 @@ std::vector<SignalIndicators> readWindows(const std::string& recording, const Si
   if (monitor.refused() > 0)
   {
     watch.notice(recording + ": " + std::to_string(monitor.refused()) +
-                 " samples without an angle, a torque or progress in time passed over");
+                 " samples were ignored, which have no angle, no torque or no later time than the sample before");
   }
   return windows;
 }

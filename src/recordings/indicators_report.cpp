@@ -233,8 +233,8 @@ void printSummary(const std::vector<WindowResult>& windows)
   const Assessment& assessment = last.assessment;
   const bool judged = assessment.state == AssessmentState::ASSESSED;
   std::vector<ReportLine> lines{ { "", "windows", windows.size() },
-                                 { "", "turns in the last", last.indicators.turns },
-                                 { "", "motor speed in it", last.indicators.point.speed, "rad/s" },
+                                 { "", "turns in the last window", last.indicators.turns },
+                                 { "", "motor speed in the last window", last.indicators.point.speed, "rad/s" },
                                  { "", "made of", last.origin },
                                  { "", "with the parameters of the", last.parameters },
                                  { "", "state", stateName(assessment.state) },

@@ -339,14 +339,14 @@ private:
     count_.remark(recording_.remark());
     count_.remark(counted(without_time, "without a time (stamp 0, before there was one) left out"));
     count_.remark(
-        counted(without_effort, "with effort 0 left out: a second source without values, or a source that had none"));
+        counted(without_effort, "with effort 0 left out: a second source gives no values, or the source had none"));
     count_.remark(silentText({ layout_.silent.begin(), layout_.silent.end() }));
     count_.remark(missingText(missing, count_));
     remarkOnRounds(angles, time_.rounds(), count_);
     if (parts_.size() > 1)
     {
       count_.remark("the joints come in " + std::to_string(parts_.size()) +
-                    " messages: put side by side in time by lines between their rows");
+                    " messages: their rows are interpolated linearly to the same times");
     }
   }
 

@@ -104,7 +104,7 @@ public:
     if (COPIES * same_ > (COPIES - 1) * rows_)
     {
       return "the stamps are rounded: " + std::to_string(same_) + " of " + std::to_string(rows_) +
-             " rows have that of the row before, so times, speeds and loads are unknown";
+             " rows have the stamp of the row before, so times, speeds and loads are unknown";
     }
     return MOST * back_ > rows_ ? "the rows are not in the order of their stamps: " + std::to_string(back_) + " of " +
                                       std::to_string(rows_) + " go back" :

@@ -331,8 +331,8 @@ Report reportOf(const Remaining& found)
     { "hours", "hours of use so far", estimate.hours, "h" },
     { "turns", "turns of the motor so far", estimate.turns },
     { "remaining_q10", "remaining, of 90 % of such drives at least", remaining.quantile[1], "h" },
-    { "remaining_q50", "of half of them", remaining.quantile[2], "h" },
-    { "remaining_q90", "of 10 % of them", remaining.quantile[3], "h" },
+    { "remaining_q50", "remaining, of 50 % of such drives at least", remaining.quantile[2], "h" },
+    { "remaining_q90", "remaining, of 10 % of such drives at least", remaining.quantile[3], "h" },
     { "nearest", "nearest limit of the nominal drive", nameOf(estimate.nearest()) },
     { "used", "used of it", 100.0 * estimate.usedOf(estimate.nearest()), "%" },
     { "parameters", "with the parameters of the", found.parameters },
@@ -351,7 +351,7 @@ Report reportOf(const Remaining& found)
   if (found.wear)
   {
     lines.push_back({ "wear_flank", "wear read, as a severity of tooth_wear", found.wear->flank });
-    lines.push_back({ "wear_interface", "of interface_wear", found.wear->interface });
+    lines.push_back({ "wear_interface", "wear read, as a severity of interface_wear", found.wear->interface });
     lines.push_back({ "lost_motion", "lost motion", found.wear->lost_motion, "rad" });
   }
   lines.push_back({ "density", "", densityJson(remaining) });

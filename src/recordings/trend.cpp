@@ -271,7 +271,7 @@ std::string textOf(const Trend& trend)
   }
   if (!trend.has_dates)
   {
-    text += "Not all recordings tell a date: their order stands for time. ";
+    text += "Not all recordings have a date: their order stands for time. ";
   }
   if (trend.latest && (!is_any || trend.recordings[*trend.latest].compared.health != HealthLevel::OK))
   {
