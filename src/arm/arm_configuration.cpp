@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 namespace
 {
-/// Where `file` is another name of an arm, a link to the file beside it: that file.
+/// The file of the arm of which `file` is another name, a link to a file beside it; none if `file` is no such link.
 std::optional<fs::path> namesakeOf(const fs::path& file)
 {
   std::error_code error;
@@ -48,7 +48,7 @@ std::string findArm(const std::string& name, const fs::path& directory)
 std::vector<fs::path> armFiles(const fs::path& directory)
 {
   std::vector<fs::path> files;
-  std::error_code error;  // a configuration of one's own may have none
+  std::error_code error;  // the user's own configuration may have no arms
   for (const fs::directory_entry& entry : fs::directory_iterator(directory / "arms", error))
   {
     if (entry.path().extension() == ".yaml" && !namesakeOf(entry.path()))
@@ -179,8 +179,8 @@ std::vector<std::string> driverNames(const ArmDescription& arm)
 
 void giveOwnSeeds(std::vector<Parameters>& drives)
 {
-  constexpr int SEEDS = 100'000;                   // the parameter's range
-  constexpr std::int64_t NOISE_SEEDS = 1LL << 31;  // likewise
+  constexpr int SEEDS = 100'000;                   // range of the parameter pitch seed
+  constexpr std::int64_t NOISE_SEEDS = 1LL << 31;  // range of the parameter noise_seed
   for (std::size_t i = 0; i < drives.size(); ++i)
   {
     int& noise = drives[i].sensors.noise_seed;
@@ -188,7 +188,7 @@ void giveOwnSeeds(std::vector<Parameters>& drives)
     ManufactureParameters& errors = drives[i].manufacture;
     for (PitchParameters* pitch : { &errors.flexspline_pitch, &errors.circular_spline_pitch })
     {
-      // Without a deviation a seed makes no other gear, and joints alike share a table.
+      // Without a deviation the seed does not change the gear, and equal joints can share a table.
       if (pitch->deviation > 0.0)
       {
         pitch->seed = (pitch->seed + 2 * static_cast<int>(i)) % SEEDS;

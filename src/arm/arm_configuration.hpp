@@ -14,66 +14,70 @@
 
 namespace hjt
 {
-/// Of a shipped arm with several names the one that armsLike() has, else `name`.
+/// The main name of a shipped arm that has several names: the one that armsLike() gives. Other names are returned as
+/// they are.
 std::string mainName(const std::string& name, const std::filesystem::path& directory);
 
-/// `name` if that is a file, else arms/NAME.yaml in the directory of the default configuration.
-/// @throws ParameterError if there is neither.
+/// The file of an arm: `name` itself if it is a file, else arms/NAME.yaml in the directory of the default
+/// configuration.
+/// @throws ParameterError if neither file exists.
 std::string findArm(const std::string& name, const std::filesystem::path& directory);
 
-/// Files of the arms there, by name; further names of an arm, links beside its file, are left out.
+/// The files of the arms in a directory of configurations, sorted by name. Further names of an arm, which are links
+/// beside its file, are not in the list.
 std::vector<std::filesystem::path> armFiles(const std::filesystem::path& directory);
 
 /// The names of the joints, from the base on.
 std::vector<std::string> jointNames(const ArmDescription& arm);
 
-/// Names of the arms there whose joints have the same names. @throws ParameterError.
+/// Names of the arms in a directory of configurations whose joints have the same names as those of `arm`.
+/// @throws ParameterError.
 std::vector<std::string> armsLike(const ArmDescription& arm, const std::filesystem::path& directory);
 
-/// The joint of this name or short name; none: the arm has none.
+/// Number of the joint that has this name or short name; none if the arm has no such joint.
 std::optional<std::size_t> findJoint(const ArmDescription& arm, const std::string& name);
 
 /// Short names of the joints, for error texts.
 std::string shortNames(const ArmDescription& arm);
 
-/// The drive of a joint: default configuration, the joint's overlays and parameters, and `identified`/SHORT_NAME.yaml
-/// if that directory is given. Its load is that of the arm. @throws ParameterError.
+/// Parameters of the drive of a joint: the default configuration, over it the joint's overlays and parameters, and over
+/// them the file SHORT_NAME.yaml of the directory `identified`, if that is not empty. The load of the drive is that of
+/// the arm. @throws ParameterError.
 ParameterMap armJointParameters(const ArmJoint& joint, const std::filesystem::path& directory,
                                 const std::string& identified);
 
-/// The same of a drive that turns in a closed loop. A recording's currents can hold less of a rotor's inertia than the
-/// rotor has, down to nothing: an identified one that is less than the configured is not taken. @throws ParameterError.
+/// As armJointParameters, for a drive that turns in a closed loop. The currents of a recording can show a rotor's
+/// inertia that is too small: an identified inertia below the configured one is ignored. @throws ParameterError.
 ParameterMap armDriveParameters(const ArmJoint& joint, const std::filesystem::path& directory,
                                 const std::string& identified);
 
-/// Those of all drives, solver.scene = auto where neither the joint's files nor the options say otherwise.
+/// The parameters of all drives of the arm. solver.scene is `auto` unless the joint's files or the options set it.
 std::vector<ParameterMap> armDriveMaps(const ArmDescription& arm, const ConfigurationOptions& options,
                                        const std::string& identified);
 
-/// Where `identified`, a directory or empty, holds the gains of the arm's controller, they are the joints'.
-/// @throws ParameterError.
+/// Gives the joints the gains of the arm's controller, if the directory `identified` has a file of them. An empty name
+/// is no directory. @throws ParameterError.
 void addIdentifiedGains(const std::string& identified, ArmDescription& arm);
 constexpr const char* GAINS_FILE = "controller.yaml";
 
-/// The joints in the order of ros_control's states, which UR's driver publishes: by their names.
+/// Numbers of the joints in the order in which UR's driver publishes their states: sorted by name.
 std::vector<std::size_t> driverOrder(const ArmDescription& arm);
 std::vector<std::string> driverNames(const ArmDescription& arm);
 
-/// Drives of an arm are of one series and none is the other: where teeth or spaces have seeded pitch deviations, each
-/// joint's seeds are those configured and twice its number from the base on more; the seed of its sensors' noise is its
-/// number more.
+/// Makes the drives of an arm differ, as drives of one series do. The seeds of a joint's pitch deviations are raised by
+/// twice the joint's number from the base on, and the seed of its sensors' noise by that number.
 void giveOwnSeeds(std::vector<Parameters>& drives);
 
-/// Adds faults to those of the drives, each JOINT:KIND:SEVERITY[:PLACE[:ONSET]], JOINT a joint's name or short name.
-/// @throws ParameterError naming the fault.
+/// Adds faults to the drives. A fault is written JOINT:KIND:SEVERITY[:PLACE[:ONSET]], where JOINT is the name or the
+/// short name of a joint. @throws ParameterError naming the fault.
 void addArmFaults(const ArmDescription& arm, const std::vector<std::string>& faults, std::vector<Parameters>& drives);
 
-/// The drives of all joints, with seeds of their own and these faults. @throws ParameterError.
+/// Parameters of the drives of all joints, with seeds of their own and with `faults`. @throws ParameterError.
 std::vector<Parameters> armDrives(const ArmDescription& arm, const ConfigurationOptions& options,
                                   const std::string& identified, const std::vector<std::string>& faults);
 
-/// Takes out of a checked drive, whose load is that of the links, what a controller's torque holds of the motor beside
-/// it: at the joint [kg.m^2].
+/// Sets telemetry.inertia_in_load of a drive to 0, for a load that is computed from the links alone. Returns the
+/// inertia that was set there, seen from the joint [kg.m^2].
 inline double takeInertiaInLoad(Parameters& parameters)
 {
   const double ratio = nominalRatio(parameters.gear);

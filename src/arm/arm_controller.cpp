@@ -11,7 +11,7 @@ namespace hjt
 {
 namespace
 {
-/// By the motor's encoder [rad/s].
+/// Speed of the joint by the motor's encoder [rad/s].
 double jointSpeed(const EncoderReadings& read, const Twin& drive)
 {
   return read.motor_velocity / nominalRatio(drive.parameters().gear);
@@ -26,7 +26,7 @@ double ArmController::motorInertia(const Parameters& drive)
 
 JointGains ArmController::defaultGains(const Parameters& drive)
 {
-  constexpr double SPEED_BANDWIDTH = 25.0;  // on the motor's inertia alone [Hz]
+  constexpr double SPEED_BANDWIDTH = 25.0;  // bandwidth with the motor's inertia alone [Hz]
   JointGains gains;
   gains.position = 20.0;
   gains.speed = TWO_PI * SPEED_BANDWIDTH * motorInertia(drive);
@@ -82,7 +82,7 @@ double ArmController::speed(const ArmTwin& twin, std::size_t joint) const noexce
   return twin.stamp() == controlled_ ? before_[joint] : speed_[joint];
 }
 
-/// Gives the set point to the ways to the joints; the first after a reset was there before.
+/// Puts the set point into the delay lines of the joints. The first set point after a reset fills the lines.
 void ArmController::take(const ArmTwin& twin, const std::vector<JointMotion>& set_point) noexcept
 {
   dynamics_.torques(set_point, rigid_);
@@ -104,7 +104,7 @@ void ArmController::take(const ArmTwin& twin, const std::vector<JointMotion>& se
   }
 }
 
-/// Set point of that time before, interpolated linearly.
+/// The set point of `periods` before now, interpolated linearly.
 ArmController::Wanted ArmController::delayed(std::size_t joint, double periods) const noexcept
 {
   const std::vector<Wanted>& line = line_[joint];

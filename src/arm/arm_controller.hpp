@@ -5,13 +5,14 @@
 #include <limits>
 #include <vector>
 
+#include "arm/arm_description.hpp"
 #include "arm/arm_twin.hpp"
-#include "arm/joint_gains.hpp"
 
 namespace hjt
 {
-/// Cascaded control of an arm's joints, as in UR's: the angle by the encoder at the output, the speed by that at the
-/// motor, the current's torque; rigid-body torque and friction of the set point fed forward.
+/// Cascaded control of an arm's joints, as UR's controller has it. The outer loop controls the angle of the encoder at
+/// the output, the inner loop the speed of the encoder at the motor. The rigid-body torque and the friction of the set
+/// point are fed forward.
 ///
 ///   v_c = v_s + k_p (q_s - q)      q by the output's encoder, v by the motor's, over the ratio
 ///   T   = T_s + c,  c = k_v (v_c - v) + k_v / T_i integral (v_c' - v)
@@ -26,30 +27,36 @@ namespace hjt
 class ArmController
 {
 public:
-  /// Of the motor, seen from the joint [kg.m^2].
+  /// Inertia of the motor, seen from the joint [kg.m^2].
   static double motorInertia(const Parameters& drive);
 
-  /// For a drive without gains of its own: speed control of 25 Hz on the motor, position of 3 Hz, no friction.
+  /// Gains for a drive that has none of its own: a bandwidth of 25 Hz of the speed control and of 3 Hz of the position
+  /// control, and no friction fed forward.
   static JointGains defaultGains(const Parameters& drive);
 
-  /// `rate`: of the control [Hz], a divisor of solver.rate.
+  /// `rate` of the control must divide solver.rate [Hz].
   ArmController(const ArmDescription& arm, const ArmTwin& twin, std::vector<JointGains> gains, double rate);
 
-  void reset() noexcept;                                                               ///< forgets integrals and count
-  void setPayload(const Payload& payload) noexcept { dynamics_.setPayload(payload); }  ///< that it feeds forward
+  void reset() noexcept;  ///< sets integrals and counter to zero
+  void setPayload(const Payload& payload) noexcept
+  {
+    dynamics_.setPayload(payload);
+  }  ///< payload whose torque is fed forward
 
-  /// To be called at each instant that is due, with its set point: commands each drive from there on.
+  /// Commands the torque of each drive from now on. To be called at each instant for which isDue() is true, with the
+  /// set point of that instant.
   void control(ArmTwin& twin, const std::vector<JointMotion>& set_point) noexcept;
 
-  bool isDue(const ArmTwin& twin) const noexcept;  ///< the present instant is one of the control
+  bool isDue(const ArmTwin& twin) const noexcept;  ///< whether the control acts at the present instant
 
-  /// Torque fed forward for the last set point, which acts after the delay: rigid-body, and with friction [N.m].
+  /// Rigid-body torque of each joint that is fed forward for the last set point; it acts after the delay [N.m].
   const std::vector<double>& rigidTorques() const noexcept { return rigid_; }
   /// How often a joint's feedback was at its limit while its brake was off, since reset [-].
   std::uint64_t limitedControls() const noexcept { return limited_; }
+  /// The whole torque of a joint that is fed forward, with inertia of the motor and friction [N.m].
   double feedForward(std::size_t joint) const noexcept { return feed_forward_[joint]; }
-  /// Of a joint by the motor's encoder: while it controls the one that the torque until now was made of, else the
-  /// present [rad/s].
+  /// Speed of a joint by the motor's encoder. While the controller runs, the speed that the present torque was computed
+  /// from, else the present speed [rad/s].
   double speed(const ArmTwin& twin, std::size_t joint) const noexcept;
 
 private:
@@ -60,7 +67,7 @@ private:
   {
     double position{};  // [rad]
     double velocity{};  // [rad/s]
-    double torque{};    // fed forward [N.m]
+    double torque{};    // torque that is fed forward [N.m]
   };
 
   void take(const ArmTwin& twin, const std::vector<JointMotion>& set_point) noexcept;
@@ -68,19 +75,19 @@ private:
 
   ArmDynamics dynamics_;
   std::vector<JointGains> gains_;
-  std::vector<double> feedback_limit_;  // HUGE_VAL: none [N.m]
-  std::vector<double> delay_;           // of the set points [periods]
-  std::vector<double> speed_delay_;     // of their speeds [periods]
-  std::vector<double> unseen_;          // error of the angle that the integral leaves [rad]
+  std::vector<double> feedback_limit_;  // limits of the feedback torques, HUGE_VAL without a limit [N.m]
+  std::vector<double> delay_;           // delays of the set points [periods]
+  std::vector<double> speed_delay_;     // delays of the set points' speeds [periods]
+  std::vector<double> unseen_;          // errors of the angle below which the integral stands [rad]
   Stamp period_;
-  std::vector<std::vector<Wanted>> line_;  // of each joint, a ring of the last
-  std::size_t newest_{};                   // in it
+  std::vector<std::vector<Wanted>> line_;  // the last set points of each joint, as a ring
+  std::size_t newest_{};                   // place of the newest set point in line_
   std::vector<double> rigid_;
   std::vector<double> feed_forward_;
-  std::vector<double> integral_;  // of the torque [N.m]
-  std::vector<double> speed_;     // of the joints at the last control [rad/s]
-  std::vector<double> before_;    // and at the one before [rad/s]
-  Stamp controlled_{ NEVER };     // the last one
-  std::uint64_t limited_{};       // controls of a joint [-]
+  std::vector<double> integral_;  // integral parts of the torques [N.m]
+  std::vector<double> speed_;     // speeds of the joints at the last control [rad/s]
+  std::vector<double> before_;    // speeds of the joints at the control before the last [rad/s]
+  Stamp controlled_{ NEVER };     // stamp of the last control
+  std::uint64_t limited_{};       // number of controls with a limited feedback [-]
 };
 }  // namespace hjt

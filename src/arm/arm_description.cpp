@@ -13,7 +13,6 @@
 #include <kdl/tree.hpp>
 #include <kdl_parser/kdl_parser.hpp>
 
-#include "arm/arm_file.hpp"
 #include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "params/field_reader.hpp"
@@ -22,16 +21,16 @@ namespace hjt
 {
 namespace
 {
-constexpr double LARGEST_ANGLE = 6.283185307179586;  // a turn either way, as a UR's joints [rad]
+constexpr double LARGEST_ANGLE = 6.283185307179586;  // a turn either way, as the joints of UR's arms have [rad]
 
-/// Whether there is `key`, or one below it.
+/// Whether the map has `key` or a key below it.
 bool holds(const ParameterMap& map, const std::string& key)
 {
   const auto below = map.lower_bound(key + ".");
   return map.count(key) != 0 || (below != map.end() && below->first.rfind(key + ".", 0) == 0);
 }
 
-/// Takes out of the map what is below `key`, under the rest of its keys.
+/// Moves the entries below `key` out of the map. Their new keys lack the prefix `key`.
 ParameterMap takeBelow(ParameterMap& map, const std::string& key)
 {
   const std::string prefix = key + ".";
@@ -44,7 +43,7 @@ ParameterMap takeBelow(ParameterMap& map, const std::string& key)
   return taken;
 }
 
-/// As ROS allows a name that is neither a path nor anonymous.
+/// Whether ROS allows the name, which is neither a path nor anonymous.
 bool isBaseName(const std::string& name)
 {
   const auto is_letter = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; };
@@ -56,11 +55,12 @@ bool isBaseName(const std::string& name)
 
 void readGains(const std::string& place, FieldReader& fields, JointGains& gains)
 {
-  fields(place + ".position", "1/s", gains.position, Range{ 0.0, 1e3 }, "speed wanted for an error of the angle");
-  fields(place + ".speed", "N.m.s/rad", gains.speed, Range{ 0.0, 1e6 }, "torque for an error of the speed");
-  fields(place + ".integral_time", "s", gains.integral_time, Range{ 1e-3, 1e6 }, "of the speed's control");
-  fields(place + ".coulomb", "N.m", gains.coulomb, Range{ -1e4, 1e4 }, "friction that is fed forward, constant");
-  fields(place + ".viscous", "N.m.s/rad", gains.viscous, Range{ -1e4, 1e4 }, "and by speed");
+  fields(place + ".position", "1/s", gains.position, Range{ 0.0, 1e3 }, "wanted speed per error of the angle");
+  fields(place + ".speed", "N.m.s/rad", gains.speed, Range{ 0.0, 1e6 }, "torque per error of the speed");
+  fields(place + ".integral_time", "s", gains.integral_time, Range{ 1e-3, 1e6 }, "integral time of the speed control");
+  fields(place + ".coulomb", "N.m", gains.coulomb, Range{ -1e4, 1e4 },
+         "constant part of the friction that is fed forward");
+  fields(place + ".viscous", "N.m.s/rad", gains.viscous, Range{ -1e4, 1e4 }, "fed-forward friction per speed");
 }
 
 /// Reads the joints one after the other.
@@ -71,7 +71,7 @@ public:
 
   void read(const std::string& place, std::size_t joints, ArmJoint& joint)
   {
-    fields_(place + ".name", joint.name, "of the joint in the messages and in the URDF");
+    fields_(place + ".name", joint.name, "name of the joint in the messages and in the URDF");
     readShortName(place + ".short_name", joint.short_name);
     readOverlays(place + ".overlays", joint.overlays);
     if (isMapOrNone(place + ".parameters"))
@@ -90,7 +90,8 @@ public:
     }
     if (holds(map_, place + ".delay"))
     {
-      fields_(place + ".delay", "s", joint.delay, Range{ 0.0, 0.1 }, "of a set point until the controller acts on it");
+      fields_(place + ".delay", "s", joint.delay, Range{ 0.0, 0.1 },
+              "time from a set point until the controller acts on it");
     }
     if (isMapOrNone(place + ".controller") && holds(map_, place + ".controller"))
     {
@@ -107,7 +108,7 @@ public:
 private:
   void readShortName(const std::string& key, std::string& name)
   {
-    fields_(key, name, "of files and namespaces");
+    fields_(key, name, "name of the joint in files and namespaces");
     if (name.empty())
     {
       return;
@@ -144,7 +145,7 @@ private:
     }
   }
 
-  /// Otherwise it is refused, and taken out of the map.
+  /// Returns true if `key` has no value of its own. A value is refused and taken out of the map.
   bool isMapOrNone(const std::string& key)
   {
     if (map_.count(key) == 0)
@@ -161,7 +162,7 @@ private:
   std::vector<std::pair<std::string, std::string>> short_names_;  // key and name of the joints so far
 };
 
-/// Of the '>' that ends a tag, not of one in an attribute.
+/// Place of the '>' that ends a tag, which is not in an attribute.
 std::size_t endOfTag(const std::string& xml, std::size_t at)
 {
   constexpr const char* ENDS = ">\"'";
@@ -174,7 +175,7 @@ std::size_t endOfTag(const std::string& xml, std::size_t at)
   return at;
 }
 
-/// Elements within elements, at most. A parser of XML may take a time that grows with the square of it.
+/// Largest depth of elements within elements. The time of an XML parser may grow with the square of the depth.
 std::size_t depthOf(const std::string& xml)
 {
   std::size_t depth = 0;
@@ -198,7 +199,7 @@ std::size_t depthOf(const std::string& xml)
   return deepest;
 }
 
-/// Takes what the parser of URDF reports while it exists. The parser passes over numbers that it cannot read.
+/// Collects what the URDF parser reports while this object exists. The parser skips numbers that it cannot read.
 class ParserErrors : public console_bridge::OutputHandler
 {
 public:
@@ -220,7 +221,7 @@ public:
   const std::string& first() const { return first_; }  ///< empty: none
 
 private:
-  /// The handler is the process's.
+  /// The parser's handler is one for the whole process.
   static std::mutex& mutex()
   {
     static std::mutex of_handler;
@@ -231,7 +232,7 @@ private:
   std::string first_;
 };
 
-/// @throws ParameterError with the parser's first error.
+/// Parses the URDF of the arm. @throws ParameterError with the parser's first error.
 void parse(const ArmDescription& arm, urdf::Model& model, KDL::Tree& tree)
 {
   std::string error;
@@ -247,8 +248,8 @@ void parse(const ArmDescription& arm, urdf::Model& model, KDL::Tree& tree)
   }
 }
 
-/// Each joint moves a mass, its own link's or one that is fixed to it: without any the loads and limits of all joints
-/// before are those of another arm. @throws ParameterError.
+/// Requires that each joint moves a mass, that of its own link or of one fixed to it. Without a mass the loads and
+/// limits of all joints before would be wrong. @throws ParameterError.
 void requireMasses(const ArmDescription& arm, const KDL::Chain& chain)
 {
   const KDL::Segment* moved = nullptr;
@@ -275,7 +276,7 @@ void requireMasses(const ArmDescription& arm, const KDL::Chain& chain)
   require_mass();
 }
 
-/// Range that the URDF allows; without limits a great many turns.
+/// Range of the joint's angle in the URDF, or many turns if the URDF has no limits.
 Range angleRange(const urdf::Model& model, const std::string& joint)
 {
   const auto found = model.getJoint(joint);
@@ -284,7 +285,7 @@ Range angleRange(const urdf::Model& model, const std::string& joint)
   return is_limited ? Range{ found->limits->lower, found->limits->upper } : ArmJoint{}.angles;
 }
 
-/// @throws ParameterError where the link that a joint carries, or its place, is none that a robot can have.
+/// @throws ParameterError if no robot can have such a link or such a place of a link.
 void requirePlausible(const ArmDescription& arm, const KDL::Segment& segment)
 {
   const KDL::Joint& joint = segment.getJoint();
@@ -315,13 +316,13 @@ void requirePlausible(const ArmDescription& arm, const KDL::Segment& segment)
     require_range("centre of mass", body.getCOG()(i), "m", Range{ -100.0, 100.0 });
     for (int k = 0; k < 3; ++k)
     {
-      // Rounding makes a little less of none.
+      // Rounding can make a zero moment of inertia slightly negative.
       require_range("inertia", inertia.data[3 * i + k], "kg.m^2", Range{ i == k ? -1e-9 : -1e6, 1e6 });
     }
   }
 }
 
-/// Each checked; the joints get their ranges.
+/// The chain of the arm's links, which are checked. The joints get their ranges.
 KDL::Chain chainOf(ArmDescription& arm)
 {
   constexpr std::size_t MAX_DEPTH = 100;
@@ -407,7 +408,7 @@ ArmLink linkOf(const KDL::Segment& segment)
 
 std::string payloadErrors(const Payload& payload)
 {
-  // Written so that NaN is no number of a range.
+  // The comparisons are written so that NaN is outside of every range.
   const auto is_within = [](double value, const Range& range) { return value >= range.min && value <= range.max; };
   if (!is_within(payload.mass, PAYLOAD_MASS))
   {
@@ -433,12 +434,13 @@ ArmDescription readArmDescription(const std::string& path)
   fields("description", description, "URDF beside the file");
   fields("base", arm.base, "link that stands still");
   fields("tip", arm.tip, "link that carries the payload");
-  fields("gravity", "m/s^2", arm.gravity, Range{ -100.0, 100.0 }, "in the frame of the base");
-  fields("payload.mass", "kg", arm.payload.mass, PAYLOAD_MASS, "at the tip");
-  fields("payload.centre", "m", arm.payload.centre, PAYLOAD_CENTRE, "of its mass, in the frame of the tip");
+  fields("gravity", "m/s^2", arm.gravity, Range{ -100.0, 100.0 }, "gravity in the frame of the base");
+  fields("payload.mass", "kg", arm.payload.mass, PAYLOAD_MASS, "mass of the payload at the tip");
+  fields("payload.centre", "m", arm.payload.centre, PAYLOAD_CENTRE,
+         "centre of mass of the payload in the frame of the tip");
   if (holds(map, "state_rate"))
   {
-    fields("state_rate", "Hz", arm.state_rate, Range{ 1.0, 1000.0 }, "of the controller's states");
+    fields("state_rate", "Hz", arm.state_rate, Range{ 1.0, 1000.0 }, "rate of the controller's states");
   }
   const auto place = [](std::size_t joint) { return "joints." + std::to_string(joint); };
   std::size_t joints = 0;

@@ -7,39 +7,48 @@
 #include <string>
 #include <vector>
 
-#include "arm/joint_gains.hpp"
 #include "base/range.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"
 
 namespace hjt
 {
+/// Gains of the control of one joint, all seen from the joint.
+struct JointGains
+{
+  double position{};       ///< wanted speed per error of the angle [1/s]
+  double speed{};          ///< torque per error of the speed [N.m.s/rad]
+  double integral_time{};  ///< integral time of the speed control [s]
+  double coulomb{};        ///< constant part of the friction that is fed forward [N.m]
+  double viscous{};        ///< fed-forward friction per speed [N.m.s/rad]
+};
+
 /// One joint of an arm and the drive in it.
 struct ArmJoint
 {
-  std::string name;                   ///< in the messages and in the URDF
-  std::string short_name;             ///< of files and namespaces, a name in ROS; no other joint's
-  std::vector<std::string> overlays;  ///< configuration files of its drive, later wins
-  ParameterMap parameters;            ///< over the overlays
-  Range angles{ -100.0, 100.0 };      ///< of the URDF; without limits 16 turns either way [rad]
-  double speed_limit{};               ///< 0: none given [rad/s]
-  double torque_limit{};              ///< at the output, 0: none given [N.m]
-  double feedback_limit{};            ///< of its controller's torque beyond what is fed forward, 0: none [N.m]
-  double delay{};                     ///< of a set point until its controller acts on it [s]
-  std::vector<double> check_up;       ///< angles of all joints where its check-up begins; empty: none [rad]
-  std::optional<JointGains> gains;    ///< of its controller; none: ArmController::defaultGains
+  std::string name;                   ///< name of the joint in messages and in the URDF
+  std::string short_name;             ///< unique name of the joint in files and namespaces
+  std::vector<std::string> overlays;  ///< configuration files of the drive; later files win
+  ParameterMap parameters;            ///< parameters of the drive that win over the overlays
+  Range angles{ -100.0, 100.0 };      ///< range of the URDF; without limits 16 turns either way [rad]
+  double speed_limit{};               ///< largest speed, 0 if it is not given [rad/s]
+  double torque_limit{};              ///< largest torque at the output, 0 if it is not given [N.m]
+  double feedback_limit{};            ///< largest feedback torque of the controller, 0 without a limit [N.m]
+  double delay{};                     ///< time from a set point until the controller acts on it [s]
+  std::vector<double> check_up;       ///< angles of all joints where the check-up begins; empty: unknown [rad]
+  std::optional<JointGains> gains;    ///< gains of the controller; none: ArmController::defaultGains
 };
 
-inline constexpr Range PAYLOAD_MASS{ 0.0, 1e4 };       ///< [kg]
-inline constexpr Range PAYLOAD_CENTRE{ -10.0, 10.0 };  ///< each of its coordinates [m]
+inline constexpr Range PAYLOAD_MASS{ 0.0, 1e4 };       ///< allowed masses of a payload [kg]
+inline constexpr Range PAYLOAD_CENTRE{ -10.0, 10.0 };  ///< allowed coordinates of its centre of mass [m]
 
 /// Mass at the tip of an arm.
 struct Payload
 {
   double mass{};                   ///< [kg]
-  std::array<double, 3> centre{};  ///< in the frame of the tip [m]
+  std::array<double, 3> centre{};  ///< centre of mass in the frame of the tip [m]
 };
 
-/// Values out of range; empty: none.
+/// Says which value of the payload is out of range; empty if none is.
 std::string payloadErrors(const Payload& payload);
 
 /// How a joint moves the link that it carries.
@@ -54,13 +63,15 @@ enum class LinkMotion : std::uint8_t
 struct ArmLink
 {
   LinkMotion motion{};
-  std::array<double, 3> axis{};      ///< of the joint, in the frame of the link before, of length 1; fixed: none [-]
-  std::array<double, 3> origin{};    ///< of the joint, in the frame of the link before [m]
-  std::array<double, 3> position{};  ///< of the link's frame in that of the link before, at an angle of 0 [m]
-  std::array<double, 9> rotation{};  ///< likewise, by rows [-]
+  std::array<double, 3>
+      axis{};  ///< unit vector of the joint's axis in the frame of the link before; 0 if it is fixed [-]
+  std::array<double, 3> origin{};  ///< a point of the joint's axis in the frame of the link before [m]
+  std::array<double, 3>
+      position{};  ///< origin of the link's frame in that of the link before, at a joint angle of 0 [m]
+  std::array<double, 9> rotation{};  ///< rotation of the link's frame in that of the link before, row by row [-]
   double mass{};                     ///< [kg]
-  std::array<double, 3> centre{};    ///< of its mass, in its frame [m]
-  std::array<double, 6> inertia{};   ///< about its centre: xx, yy, zz, xy, xz, yz [kg.m^2]
+  std::array<double, 3> centre{};    ///< centre of mass in the link's frame [m]
+  std::array<double, 6> inertia{};   ///< about the centre of mass: xx, yy, zz, xy, xz, yz [kg.m^2]
 };
 
 /// An arm as its YAML file describes it, and the URDF that the file names.
@@ -70,23 +81,47 @@ struct ArmDescription
   std::string urdf;                 ///< text of the description
   std::string base;                 ///< link that stands still
   std::string tip;                  ///< link that carries the payload
-  std::array<double, 3> gravity{};  ///< in the frame of the base [m/s^2]
+  std::array<double, 3> gravity{};  ///< gravity in the frame of the base [m/s^2]
   Payload payload;
-  double drag{};                 ///< of a force on the tip against its motion [N]
-  double state_rate{ 125.0 };    ///< of the controller's states [Hz]
+  double drag{};                 ///< size of a force on the tip against its motion [N]
+  double state_rate{ 125.0 };    ///< rate of the controller's states [Hz]
   std::vector<ArmJoint> joints;  ///< from the base on; at least one
   std::vector<ArmLink> links;    ///< from the base on to the tip, as readLinks finds them
 };
 
-/// With its links. @throws ParameterError naming file, line and key: unreadable, missing, unknown, mistyped or out of
-/// range; and as readLinks.
+/// Reads the file of an arm and the links of its URDF. @throws ParameterError naming file, line and key of a value that
+/// is unreadable, missing, unknown, mistyped or out of range, and as readLinks.
 ArmDescription readArmDescription(const std::string& path);
 
-/// The links of the URDF's chain from base to tip, and the ranges of the joints' angles. @throws ParameterError if any
-/// of it cannot be read, it has no such chain, other joints than the description names, a joint that moves no mass, or
-/// masses, inertia, places or axes that no robot has.
+/// Reads from the URDF the links of the chain from base to tip and the ranges of the joints' angles.
+/// @throws ParameterError if the URDF cannot be read or has no such chain, if its joints are not those of the
+/// description, if a joint moves no mass, or if masses, inertia, places or axes are none of a robot.
 void readLinks(ArmDescription& arm);
 
-/// A controller's gains, SHORT_NAME.position ... of the joints that the file names. @throws ParameterError alike.
+/// Reads the gains of a controller, SHORT_NAME.position and so on, for the joints that the file names.
+/// @throws ParameterError as readArmDescription.
 void readGains(const std::string& path, ArmDescription& arm);
+
+/// A payload that the arm carries from a time on.
+struct PayloadFrom
+{
+  double time{};  ///< [s]
+  Payload payload;
+};
+
+/// Payloads of an arm in order of time; empty: the configured one.
+using PayloadCourse = std::vector<PayloadFrom>;
+
+/// The text of a file of at most MAX_TEXT bytes (base/whole_file.hpp). `place` says in the error text where the file is
+/// named. @throws ParameterError if the file is not regular, larger, empty, or cannot be read.
+std::string textOf(const std::string& path, const std::string& place = "");
+
+/// The path of the file `name` in the folder of the file `path`. An absolute `name` stays as it is.
+std::string beside(const std::string& path, const std::string& name);
+
+/// Contents of an arm's YAML file, under keys joined by dots: "payload.mass", "joints.0.name". A list of numbers is one
+/// value; the elements of any other list have keys of their own. Keys that the file does not give come from the file
+/// that its key `like` names. The path of "description" is relative to the file that gives it.
+/// @throws ParameterError naming file and line.
+ParameterMap readArmFile(const std::string& path);
 }  // namespace hjt

@@ -32,7 +32,7 @@ KDL::RigidBodyInertia bodyOf(const Payload& payload)
   return KDL::RigidBodyInertia(payload.mass, vectorOf(payload.centre));
 }
 
-/// The links, the payload last.
+/// The chain of the links with the payload as its last segment.
 KDL::Chain chainOf(const ArmDescription& arm)
 {
   KDL::Chain chain;
@@ -73,7 +73,7 @@ struct ArmDynamics::Solver
   {
   }
 
-  /// KDL's solvers refer to the chain that they were made for.
+  /// The solvers are made anew, because KDL's solvers refer to the chain that they were made for.
   Solver(const Solver& other)
     : chain(other.chain)
     , gravity(other.gravity)
@@ -98,7 +98,7 @@ struct ArmDynamics::Solver
     }
   }
 
-  /// Of the end of each segment, from the base on, given to `visit`.
+  /// Gives the pose of the end of each segment to `visit`, from the base on. Returns the pose of the tip.
   template <class Visit>
   KDL::Frame walk(const Visit& visit) const
   {
@@ -114,7 +114,7 @@ struct ArmDynamics::Solver
     return pose;
   }
 
-  /// Of the tip [m/s].
+  /// Velocity of the tip [m/s].
   KDL::Vector tipVelocity() const
   {
     KDL::Frame pose = KDL::Frame::Identity();
@@ -134,7 +134,7 @@ struct ArmDynamics::Solver
 
   KDL::Chain chain;
   KDL::Vector gravity;
-  double drag;  // on the tip against its motion [N]
+  double drag;  // force on the tip against its motion [N]
   KDL::ChainIdSolver_RNE recursion;
   KDL::ChainDynParam parameters;
   KDL::JntArray position;
@@ -142,7 +142,7 @@ struct ArmDynamics::Solver
   KDL::JntArray acceleration;
   KDL::JntArray torque;
   KDL::JntSpaceInertiaMatrix mass;
-  KDL::Wrenches forces;  // on each segment, in its frame
+  KDL::Wrenches forces;  // forces on each segment, in the segment's frame
 };
 
 ArmDynamics::ArmDynamics(const ArmDescription& arm) : solver_(std::make_unique<Solver>(arm)) {}

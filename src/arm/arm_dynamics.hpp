@@ -27,42 +27,44 @@ struct ArmWrench
   std::array<double, 3> moment{};
 };
 
-/// Of the tip in the frame of the base: position [m]; orientation as a unit quaternion x, y, z, w [-].
+/// Pose of the tip in the frame of the base: position [m] and orientation as a unit quaternion x, y, z, w [-].
 struct ToolPose
 {
   std::array<double, 3> position{};
   std::array<double, 4> orientation{};
 };
 
-inline constexpr double DRAG_SPEED = 0.01;  ///< of the tip, above which a drag has nearly all its force [m/s]
+inline constexpr double DRAG_SPEED = 0.01;  ///< speed of the tip above which a drag has nearly all of its force [m/s]
 
 /// Rigid-body dynamics of an arm: weight, inertia, Coriolis and coupling of all links and the payload, by KDL's
-/// recursive Newton-Euler. Links alone: the motors' inertia is that of the drives. After construction nothing but a
-/// copy throws or allocates.
+/// recursive Newton-Euler. The inertia of the motors is not part of it, but of the drives. After construction nothing
+/// but a copy throws or allocates.
 class ArmDynamics
 {
 public:
-  /// @throws ParameterError if not as many of the links move as the arm has joints.
+  /// @throws ParameterError if the number of links that move is not that of the arm's joints.
   explicit ArmDynamics(const ArmDescription& arm);
   ~ArmDynamics();
   ArmDynamics(const ArmDynamics& other);
   ArmDynamics(ArmDynamics&&) noexcept;
 
   std::size_t joints() const noexcept;
-  double mass() const noexcept;  ///< of the links from the first to the tip, and the payload [kg]
+  double mass() const noexcept;  ///< mass of all links and of the payload [kg]
 
-  /// `torques` at the output of each joint that make the motion, > 0 resists positive motion [N.m]. Both have an entry
-  /// for each joint.
+  /// Gives the torque at the output of each joint that makes the motion; a positive torque resists positive motion
+  /// [N.m]. Both vectors have an entry for each joint.
   void torques(const std::vector<JointMotion>& motion, std::vector<double>& torques) noexcept;
 
-  /// Force [N] and moment about the tip [N.m] on the tip from outside, in the frame of the base; counts in `torques`.
+  /// Sets the force [N] and the moment about the tip [N.m] that act on the tip from outside, in the frame of the base.
+  /// The torques take them into account.
   void setWrench(const ArmWrench& wrench) noexcept { wrench_ = wrench; }
 
-  void setPayload(const Payload& payload) noexcept;  ///< in place of the description's
+  void setPayload(const Payload& payload) noexcept;  ///< replaces the payload of the description
 
-  /// Inertia of links and payload by joints, symmetric [kg.m^2]; `mass`: of the joints' size.
+  /// Gives the symmetric mass matrix of links and payload in joint coordinates [kg.m^2]. `mass` has a row and a column
+  /// for each joint.
   void massMatrix(const std::vector<JointMotion>& motion, Eigen::MatrixXd& mass) noexcept;
-  double potentialEnergy(const std::vector<JointMotion>& motion) noexcept;  ///< of weight [J]
+  double potentialEnergy(const std::vector<JointMotion>& motion) noexcept;  ///< potential energy of the weight [J]
   ToolPose toolPose(const std::vector<JointMotion>& motion) noexcept;
 
 private:

@@ -9,13 +9,13 @@
 
 #include <Eigen/Cholesky>
 
-#include "arm/residual_statistics.hpp"
+#include "base/statistics.hpp"
 
 namespace hjt
 {
 namespace
 {
-/// Terms of the arm, then of each joint; a group: base to elbow, wrists.
+/// Places of the terms: those of the arm, of the two groups of joints (base to elbow, wrists), and of each joint.
 enum Term : int
 {
   JUMP = ArmEstimator::LOAD,
@@ -34,11 +34,11 @@ enum OwnTerm : int
   OWN_LOSS,
   OWN_INERTIA,
   PER_JOINT,
-  USED = GROUP + 1 + PER_JOINT  // of one joint's rows
+  USED = GROUP + 1 + PER_JOINT  // number of terms that one joint's rows depend on
 };
 
-constexpr double NEVER = 1e-6;   // width of the prior of a term that is left out
-constexpr double STUDENT = 4.0;  // degrees of freedom of what rows leave
+constexpr double NEVER = 1e-6;   // width of the prior of a term that is not considered
+constexpr double STUDENT = 4.0;  // degrees of freedom of the rows' errors
 constexpr int STARTS = 4;
 constexpr int HELD = -1;  // a start with all priors at full weight
 
@@ -53,8 +53,8 @@ int ownOf(std::size_t joint)
   return OWN + PER_JOINT * static_cast<int>(joint);
 }
 
-/// Of one joint's rows. The payload and its jump have one slope, and so have terms of the arm, the group and the joint:
-/// of its load; of the whole, friction, cold friction, an offset, loss and inertia.
+/// Place of the slope by a term. Several terms share a slope: the payload and its jump, and terms of the arm, the group
+/// and the joint. The slopes are those by the load, the gain, friction, cold friction, offset, loss and inertia.
 int slopeOf(int used)
 {
   constexpr std::array<int, USED - GAIN> OF_OTHERS{ 0, 1, 2, 1, 0, 1, 2, 3, 4, 5 };
@@ -75,25 +75,26 @@ constexpr double ARM_FRICTION = 0.1;     // [-]
 constexpr double ARM_COLD = 1.0;         // [10 K]
 constexpr double GROUP_FRICTION = 0.04;  // [-]
 constexpr double JOINT_GAIN = 0.03;      // [-]
-constexpr double ALIKE_GAIN = 0.003;     // of a joint whose load is less than its friction [-]
+constexpr double ALIKE_GAIN = 0.003;     // gain of a joint whose load is less than its friction [-]
 constexpr double JOINT_FRICTION = 0.05;  // [-]
 constexpr double JOINT_COLD = 0.3;       // [10 K]
 constexpr double JOINT_OFFSET = 0.1;     // [A]
-constexpr double JOINT_LOSS = 0.02;      // of the load [-]
-constexpr double JOINT_INERTIA = 0.3;    // of the rotor's [-]
+constexpr double JOINT_LOSS = 0.02;      // loss over load [-]
+constexpr double JOINT_INERTIA = 0.3;    // change of the rotor's inertia over the inertia [-]
 
-constexpr std::size_t FEWEST = 20;  // rows of a joint that counts
+constexpr std::size_t FEWEST = 20;  // least rows of a joint that counts
 
-constexpr double INDEPENDENT = 40.0;  // rows of a joint, at most
-constexpr double LEAST = 0.02;        // deviation of the rows of a real arm [A]
+constexpr double INDEPENDENT = 40.0;  // largest number of rows that a joint's rows count as
+constexpr double LEAST = 0.02;        // least standard deviation of the rows of a real arm [A]
 
-/// How much rarer a row is, logarithm, by the square of its error in deviations.
+/// Logarithm of how much rarer a row is, by the square of its error in standard deviations.
 double rarer(double square)
 {
   return 0.5 * (STUDENT + 1.0) * std::log1p(square / STUDENT);
 }
 
-/// What start it is tells the causes that are hardly held at first: the load; all; load and friction; friction.
+/// Factor on the weight of a term's prior in the first rounds. It is small for the causes that the start sets free: 0
+/// the load, 1 all causes, 2 load and friction, 3 friction.
 double looseness(int start, int term)
 {
   constexpr double OF_LOAD = 0.01;
@@ -109,28 +110,28 @@ double looseness(int start, int term)
 struct ArmEstimator::Prior
 {
   Eigen::VectorXd width;
-  std::vector<bool> normal;  // else Cauchy's
+  std::vector<bool> normal;  // the prior is normal; else it is Cauchy's
 };
 
-/// Values of all terms, and how they came about.
+/// Values of all terms, with their information and cost.
 struct ArmEstimator::Point
 {
   Eigen::VectorXd at;
   Eigen::MatrixXd information;
-  Eigen::VectorXd of_prior;        // the part of it, of each term
-  std::vector<double> deviations;  // of the rows of each joint [A]
+  Eigen::VectorXd of_prior;        // information of each term by its prior
+  std::vector<double> deviations;  // standard deviations of the rows of each joint [A]
   double rareness{};
   double cost{ std::numeric_limits<double>::infinity() };
 };
 
-/// Of the rows of one joint.
+/// Errors and slopes of the rows of one joint.
 struct ArmEstimator::Work
 {
   Eigen::VectorXd error;  // [A]
   std::vector<Slope> slopes;
 };
 
-/// Of the slopes of rows of one state, with each other and with the error.
+/// Sums of the products of the slopes of rows of one state, with each other and with the errors.
 struct ArmEstimator::Products
 {
   Eigen::Matrix<double, SLOPES, SLOPES> slopes = Eigen::Matrix<double, SLOPES, SLOPES>::Zero();
@@ -194,7 +195,8 @@ ArmEstimator::Prior ArmEstimator::priorOf(const Freedom& may) const
   return prior;
 }
 
-/// `state`: of its leg; `slope`: as slopeOf.
+/// Error of a row: measured current less explained current [A]. `state` is that of the row's leg. The slopes are
+/// ordered as by slopeOf.
 double ArmEstimator::errorOf(std::size_t joint, const Row& of, bool state, const Eigen::VectorXd& at, Slope* slope)
 {
   const int own = ownOf(joint);
@@ -218,7 +220,7 @@ double ArmEstimator::errorOf(std::size_t joint, const Row& of, bool state, const
   return of.current - gain * inner - at[own + OWN_OFFSET];
 }
 
-/// Of the currents over those that are predicted.
+/// Factor of the measured currents over the predicted ones.
 double ArmEstimator::multiple() const
 {
   double both = 0.0;
@@ -234,7 +236,7 @@ double ArmEstimator::multiple() const
   return both / squares;
 }
 
-/// The likeliest of those that the starts lead to, and that all currents are another multiple: they are not one.
+/// The likeliest point that the starts lead to. The last start is that all currents have another factor.
 ArmEstimator::Point ArmEstimator::best(const Prior& prior, const std::vector<bool>& states) const
 {
   Point best;
@@ -251,10 +253,10 @@ ArmEstimator::Point ArmEstimator::best(const Prior& prior, const std::vector<boo
   return best;
 }
 
-/// Legs whose own mass, beside that of a point, is in the upper half of all.
+/// States of the legs: 1 for legs whose mass beside that of a point is in the upper half of all masses.
 std::vector<bool> ArmEstimator::parted(const Point& by) const
 {
-  constexpr double NOISE = 0.05;  // deviation, at least [A]
+  constexpr double NOISE = 0.05;  // least standard deviation [A]
   Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(legs_), 2);
   for (std::size_t i = 0; i < rows_.size(); ++i)
   {
@@ -276,10 +278,10 @@ std::vector<bool> ArmEstimator::parted(const Point& by) const
   return states;
 }
 
-/// The state that the rows of each leg fit better.
+/// States of the legs: for each leg the state that its rows fit better.
 std::vector<bool> ArmEstimator::likelier(const Point& by) const
 {
-  std::vector<double> costs(legs_);  // of state 1 beyond that of state 0
+  std::vector<double> costs(legs_);  // cost of state 1 less that of state 0, of each leg
   for (const bool state : { false, true })
   {
     for (std::size_t i = 0; i < rows_.size(); ++i)
@@ -296,8 +298,9 @@ std::vector<bool> ArmEstimator::likelier(const Point& by) const
   return states;
 }
 
-/// The payload has two states, between which it changes from leg to leg; `states` stays empty where all legs are alike.
-/// Begun by what one payload leaves, and by what the arm as configured leaves.
+/// The likeliest point with a payload that changes from leg to leg between two states. `states` stays empty if all legs
+/// are alike. The search begins with the legs as they differ from one payload, and as they differ from the configured
+/// arm.
 ArmEstimator::Point ArmEstimator::withJump(const Freedom& may, const Point& without, std::vector<bool>& states) const
 {
   constexpr int TURNS = 6;
@@ -332,8 +335,8 @@ ArmEstimator::Point ArmEstimator::withJump(const Freedom& may, const Point& with
 
 std::vector<ArmEstimator::Push> ArmEstimator::pushesOf(const Point& point, const std::vector<bool>& states) const
 {
-  constexpr double USUAL_MASS = 3.0;  // deviations a priori [kg]
-  constexpr double USUAL = 50.0;      // [N]
+  constexpr double USUAL_MASS = 3.0;  // standard deviation of the mass a priori [kg]
+  constexpr double USUAL = 50.0;      // standard deviation of the forces a priori [N]
   struct Leg
   {
     Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
@@ -403,7 +406,7 @@ ArmEstimator::Estimate ArmEstimator::estimateOf(const Point& point, const std::v
       all += row.current * row.current;
     }
     found.gains.push_back(known(Eigen::VectorXd::Unit(size_, own + OWN_GAIN)));
-    // Of what the other terms add, the part that is in proportion to the friction.
+    // The part of the other terms that is in proportion to the friction.
     Eigen::VectorXd terms = Eigen::VectorXd::Zero(size_);
     terms[groupOf(i)] = terms[own + OWN_FRICTION] = 1.0;
     terms[own + OWN_COLD] = cold / power;
@@ -451,8 +454,8 @@ void ArmEstimator::addPrior(const Prior& prior, int start, Point& point, Eigen::
     right[k] -= weight * point.at[k];
     point.rareness += is_normal ? 0.5 * t * t : std::log1p(t * t);
   }
-  // Gravity's size is known but for the masses of the links, which look like it. At first it may turn over; weightless
-  // as configured there is nothing to turn.
+  // The size of gravity is known up to the errors of the links' masses, which look like it. In the first rounds gravity
+  // may turn over. Without configured gravity there is no direction to find.
   constexpr double LINKS = 0.02;  // uncertainty of the links' masses, as a share
   const Eigen::Vector3d total = gravity_ + point.at.segment<GRAVITY>(PAYLOAD);
   if (looseness(start, PAYLOAD) < 1.0 || !(prior.width[PAYLOAD] > NEVER) || gravity_.isZero() || total.isZero())
@@ -483,7 +486,7 @@ void ArmEstimator::addRows(std::size_t joint, const std::vector<bool>& states, W
   {
     deviation = std::max(robustDeviation(error), LEAST);
   }
-  // By the weights of the last deviation a likelier one.
+  // A likelier standard deviation, by the weights of the last one.
   Eigen::ArrayXd squares = (error / deviation).array().square();
   deviation = std::max(deviation * std::sqrt((squares * (STUDENT + 1.0) / (STUDENT + squares)).mean()), LEAST);
   squares = (error / deviation).array().square();
@@ -513,24 +516,24 @@ void ArmEstimator::addRows(std::size_t joint, const std::vector<bool>& states, W
   }
 }
 
-/// Whether it is led to `other`.
+/// Whether the point is near `other`.
 bool ArmEstimator::isNear(const Point& point, const Point& other)
 {
-  constexpr double NEAR = 0.1;  // of the deviations a posteriori
+  constexpr double NEAR = 0.1;  // distance in standard deviations a posteriori
   return other.at.size() == point.at.size() &&
          ((point.at - other.at).array().square() * point.information.diagonal().array()).maxCoeff() < NEAR * NEAR;
 }
 
-/// By Gauss and Newton, until the logarithm of the likelihood changes no more, or near `best`, where another start has
-/// led; what `start` names is hardly held in the first rounds. Weights of rows, deviations and priors follow the values
-/// (expectation and maximisation), so that a round by itself makes the values no less likely.
+/// Refines the values by Gauss and Newton until the likelihood changes no more, or until they are near `best`, which
+/// another start has led to. `start` is that of looseness(). Weights of rows, standard deviations and priors follow the
+/// values (expectation and maximisation), so that no single step makes the values less likely.
 ArmEstimator::Point ArmEstimator::refine(const Prior& prior, const std::vector<bool>& states, Eigen::VectorXd at,
                                          int start, const Point& best) const
 {
   constexpr int ROUNDS = 60;
   constexpr int LOOSE_ROUNDS = 5;
   constexpr double NOTHING = 1e-3;
-  constexpr double MOST = 0.8;  // ratio of a step to the last one
+  constexpr double MOST = 0.8;  // largest ratio of a step to the last one
   Point point;
   point.at = std::move(at);
   point.deviations.resize(rows_.size());
@@ -558,7 +561,8 @@ ArmEstimator::Point ArmEstimator::refine(const Prior& prior, const std::vector<b
       break;
     }
     cost = point.cost;
-    // Steps shrink by much the same ratio from round to round: every second one goes as far as all to come would.
+    // Steps shrink by nearly the same ratio from round to round. So every second step goes as far as all later steps
+    // would.
     const Eigen::VectorXd step = point.information.ldlt().solve(right);
     const Eigen::VectorXd weighted = point.information.diagonal().cwiseProduct(last_step);
     const double size = last_step.dot(weighted);

@@ -9,7 +9,7 @@
 
 namespace hjt
 {
-/// What explains the currents of an arm beside those that its twins predict: the most likely causes a posteriori.
+/// Finds what explains the currents of an arm beside those that its twins predict: the most likely causes a posteriori.
 ///
 ///   current = (1 + g + g_i) (predicted + L_i + F_i (friction + rise_i U_i) - friction + (c + c_i) cold
 ///             + l_i |T_i + L_i| + j_i inertia) + o_i
@@ -21,16 +21,16 @@ namespace hjt
 ///                              rise_i how much friction rises with it
 ///   g, o gains and offsets;  l_i  loss in proportion to the load;  j_i  of the rotor's inertia
 ///
-/// Friction, rise and loss have the sign of the motion. Few arms carry another payload, hang otherwise, or have a joint
-/// of another gain or friction: their priors are Cauchy's. All differ in what is left, by a normal distribution. Rows
-/// are those of one joint that moves one way; outliers (contact) count as by Student's t of 4 degrees of freedom. A
-/// joint's rows tell no more than INDEPENDENT ones: errors of a model are no noise. A joint's gain is free only where
-/// its load is at least its friction: elsewhere both look alike.
+/// Friction, rise and loss have the sign of the motion. Few arms carry another payload than configured, are mounted
+/// otherwise, or have a joint of another gain or friction: these causes have Cauchy priors. The other causes have
+/// normal priors. A row is of one joint that moves one way. Outliers of the rows, as of contact, count as by Student's
+/// t of 4 degrees of freedom. All rows of a joint count as at most INDEPENDENT rows, because errors of a model are no
+/// noise. A joint's gain is free only where its load is at least its friction: elsewhere both look alike.
 class ArmEstimator
 {
 public:
-  static constexpr int PAYLOAD = 4;  ///< mass and its three moments
-  static constexpr int GRAVITY = 3;  ///< its change
+  static constexpr int PAYLOAD = 4;  ///< terms of the payload: its mass and three moments
+  static constexpr int GRAVITY = 3;  ///< terms of the change of gravity
   static constexpr int DRAG = PAYLOAD + GRAVITY;
   static constexpr int LOAD = DRAG + 1;
   using Load = Eigen::Matrix<double, LOAD, 1>;
@@ -43,66 +43,66 @@ public:
     std::size_t leg{};
     double current{};
     double predicted{};
-    double friction{};                                  ///< of the twin
-    double cold{};                                      ///< the same 10 K colder, less that
+    double friction{};                                  ///< of the twin's friction
+    double cold{};                                      ///< by which the friction is more when it is 10 K colder
     double torque{};                                    ///< of the load as configured
-    double inertia{};                                   ///< of the rotor
-    double rise{};                                      ///< of the friction with the load, size by size [-]
+    double inertia{};                                   ///< of the rotor's inertia
+    double rise{};                                      ///< rise of the friction per load, both by their sizes [-]
     Load load{ Load::Zero() };                          ///< of units of mass, moments, gravity and drag
     Eigen::Vector2d across{ Eigen::Vector2d::Zero() };  ///< of unit forces on the tip across gravity
   };
-  using Rows = std::vector<std::vector<Row>>;  ///< of each joint, from the base on
+  using Rows = std::vector<std::vector<Row>>;  ///< rows of each joint, from the base on
 
   /// Value and half width of its 95 % interval.
   struct Known
   {
     double value{};
     double half_width{};
-    double of_rows{ HUGE_VAL };  ///< likewise, by the rows alone
+    double of_rows{ HUGE_VAL };  ///< half width of the 95 % interval by the rows alone, without the prior
 
-    bool isBeyond(double least) const;  ///< the interval, from `least` either way
+    bool isBeyond(double least) const;  ///< whether the whole interval is farther than `least` from 0
   };
 
   /// A force on the tip that explains what the rows of a leg leave.
   struct Push
   {
     double size{};    ///< [N]
-    double across{};  ///< the part of it across gravity, where no payload weighs [N]
+    double across{};  ///< part of the force across gravity, which no payload makes [N]
   };
 
   struct Estimate
   {
-    Carried payload{ Carried::Zero() };  ///< of the legs of state 0, beside the configured one
+    Carried payload{ Carried::Zero() };  ///< payload of the legs of state 0, less the configured one
     Carried payload_half_width{ Carried::Zero() };
-    Carried jump{ Carried::Zero() };  ///< to the legs of state 1
+    Carried jump{ Carried::Zero() };  ///< payload of the legs of state 1, less that of state 0
     Carried jump_half_width{ Carried::Zero() };
-    Eigen::Vector3d gravity{ Eigen::Vector3d::Zero() };  ///< beside the configured one
+    Eigen::Vector3d gravity{ Eigen::Vector3d::Zero() };  ///< gravity less the configured one
     Eigen::Vector3d gravity_half_width{ Eigen::Vector3d::Zero() };
-    Known drag;                    ///< beside the configured one [N]
-    Known gain;                    ///< of the arm, beside 1
-    std::vector<Known> gains;      ///< of each joint, beside the arm's
-    std::vector<Known> frictions;  ///< of each joint, over the twin's, in its rows
-    std::vector<Known> own;        ///< of each joint beside the arm's: the part that is a fault's
-    std::vector<bool> states;      ///< of each leg; empty: one payload
-    std::vector<Push> pushes;      ///< of each leg
-    double left{ 1.0 };            ///< of the currents, share, rms [-]
-    double rareness{};             ///< of what is found, logarithm
-    double cost{};                 ///< logarithm of a likelihood a posteriori
+    Known drag;                    ///< drag less the configured one [N]
+    Known gain;                    ///< factor of all gains, less 1 [-]
+    std::vector<Known> gains;      ///< factor of the gain of each joint, less that of all gains [-]
+    std::vector<Known> frictions;  ///< friction of each joint over the twin's, in the joint's rows [-]
+    std::vector<Known> own;        ///< part of each joint's friction that is a fault's, over the twin's friction [-]
+    std::vector<bool> states;      ///< state of each leg; empty if all legs have one payload
+    std::vector<Push> pushes;      ///< force on the tip in each leg
+    double left{ 1.0 };            ///< share of the currents that is not explained, rms [-]
+    double rareness{};             ///< logarithm of how rare the found causes are [-]
+    double cost{};                 ///< negative logarithm of the likelihood a posteriori [-]
   };
 
-  /// `gravity`: as configured, in the frame of the base [m/s^2]; that of another mounting is of its size. `repeats`: of
-  /// each joint, by which its friction is another than in its rows when it is sound, standard deviation as a share;
-  /// empty: as joints of one type differ.
+  /// `gravity`: as configured, in the frame of the base [m/s^2]; another mounting does not change its size. `repeats`:
+  /// standard deviation of each joint's friction when it is sound, as a share; empty: as joints of one type differ.
   ArmEstimator(Rows rows, const Eigen::Vector3d& gravity, std::vector<double> repeats = {});
 
-  /// What may be another than configured, beside a payload.
+  /// Causes that are considered beside a payload.
   struct Freedom
   {
     bool mounting{};
-    bool jump{};  ///< the payload changes between legs
+    bool jump{};  ///< the payload may change between legs
     bool drag{};
   };
-  /// The likeliest with one payload, then, where it may change between legs and some have another, that with two.
+  /// The likeliest estimate with one payload. Where the payload may change and some legs have another one, the
+  /// likeliest estimate with two payloads follows.
   std::vector<Estimate> solve(const Freedom& may) const;
 
 private:
@@ -135,6 +135,6 @@ private:
   Eigen::Vector3d gravity_;
   std::vector<double> repeats_;
   std::size_t legs_{};
-  int size_;  // of all terms
+  int size_;  // number of all terms
 };
 }  // namespace hjt

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "arm/arm_file.hpp"
+#include "arm/arm_description.hpp"
 
 #include <filesystem>
 #include <optional>
@@ -17,18 +17,18 @@ namespace
 {
 constexpr const char* LIKE = "like";
 constexpr const char* DESCRIPTION = "description";
-constexpr int MAX_FILES = 8;  // each like the next
-// An alias can stand for itself, or for ever more copies of others.
+constexpr int MAX_FILES = 8;  // largest chain of files, each of which is like the next
+// Limits, because an alias of YAML can contain itself or many copies of other values.
 constexpr int MAX_DEPTH = 32;
 constexpr std::size_t MAX_VALUES = 100'000;
 
-/// Takes the values of one file.
+/// Reads the values of one file.
 class Reading
 {
 public:
   explicit Reading(std::string file) : file_(std::move(file)) {}
 
-  /// `place`: where the file is named.
+  /// `place` says in an error text where the file is named.
   ParameterMap read(const std::string& place)
   {
     try
@@ -87,7 +87,7 @@ private:
     return key.empty() ? name : key + "." + name;
   }
 
-  /// Its first element tells, and of none it does.
+  /// Whether a list is one of numbers, by its first element. An empty list is one.
   static bool holdsNumbers(const YAML::Node& list, const std::string& origin)
   {
     return list.size() == 0 || (list[0].IsScalar() && numberIn(list[0], "", origin));
@@ -133,7 +133,7 @@ std::string sectionOf(const std::string& key)
   return key.substr(0, key.find('.'));
 }
 
-/// The value, which must be a text.
+/// The value of `key`, which must be a text.
 std::string fileName(const ParameterMap& map, const char* key)
 {
   const ParameterValue& value = map.at(key);
@@ -165,7 +165,7 @@ ParameterMap readLike(const std::string& path, const std::string& place, int fil
   ParameterMap whole = own;
   for (const auto& [key, value] : other)
   {
-    // A section that the file gives is its own as a whole.
+    // A section that the file gives replaces the whole section of the other file.
     const auto given = own.lower_bound(sectionOf(key));
     if (given == own.end() || sectionOf(given->first) != sectionOf(key))
     {

@@ -37,7 +37,7 @@ bool ArmRates::push(const std::vector<MotionRow>& rows) noexcept
   {
     reset();
   }
-  // Refused for one joint is refused for all: their rows stay side by side.
+  // Rows that are refused for one joint are refused for all, so that the joints' rows stay side by side.
   const bool is_plausible = std::all_of(
       rows.begin(), rows.end(), [](const MotionRow& row) { return isPlausible(row) && std::isfinite(row.load); });
   if (!is_plausible || time < last_time_ + MotionDifferentiator::MIN_STEP)
@@ -62,7 +62,7 @@ bool ArmRates::push(const std::vector<MotionRow>& rows) noexcept
   return true;
 }
 
-/// The rows at hand, whose times are mended.
+/// Gives rows_ to the differentiators for the vibration, with mended times.
 void ArmRates::pushFast() noexcept
 {
   const double stamp_error = times_.stampError(rows_);
@@ -73,7 +73,7 @@ void ArmRates::pushFast() noexcept
   }
 }
 
-/// The next sample of every joint. False: one is not ready.
+/// Takes the next sample of every joint. Returns false if the sample of a joint is not ready.
 bool ArmRates::take(std::vector<MotionDifferentiator>& from, bool at_end, std::vector<MotionSample>& samples) noexcept
 {
   for (std::size_t i = 0; i < samples.size(); ++i)
@@ -126,7 +126,7 @@ LinkTorques::LinkTorques(const ArmDescription& arm, PayloadCourse course)
 {
 }
 
-/// Payload at that time; before the course begins, the first one.
+/// Sets the payload of that time. Before the course begins it is the first payload.
 void LinkTorques::carry(double time) noexcept
 {
   const auto next = std::find_if(course_.begin(), course_.end(), [time](const auto& from) { return from.time > time; });

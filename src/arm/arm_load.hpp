@@ -1,32 +1,116 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <utility>
 #include <vector>
 
+#include "arm/arm_description.hpp"
 #include "arm/arm_dynamics.hpp"
-#include "arm/payload_course.hpp"
-#include "arm/row_times.hpp"
 #include "arm/unit_loads.hpp"
 #include "tracking/motion_differentiator.hpp"
 
 namespace hjt
 {
+/// Errors of the stamps of an arm's rows, from the angles and the velocities recorded beside them.
+///
+/// The time between two rows is that in which the mean velocities v make the changes of angle dq, by least squares over
+/// all joints, with the stamps' own interval d as an observation beside them:
+///   e = (v.dq / ANGLE^2 + d / STAMP^2) / (v.v / ANGLE^2 + 1 / STAMP^2)
+/// A log that stamps its rows evenly but took them unevenly, or lost one, shows as e other than d. Differences below
+/// SIGNIFICANT are noise and passed over. A joint counts while its velocities agree with its angles and the stamps
+/// within AGREES in the mean of the last seconds: one of the wrong sign or unit does not. Only the differences
+/// between errors count, until the next gap. Nothing allocates or throws after construction.
+class RowTimes
+{
+public:
+  static constexpr double ANGLE = 1e-4;  ///< standard deviation of an angle's change from its velocity's integral [rad]
+  static constexpr double STAMP = 4e-3;  ///< standard deviation of a stamp's interval [s]
+  static constexpr double SIGNIFICANT = 0.35;  ///< share of the interval by the stamps
+  static constexpr double AGREES = 0.1;        ///< share by which velocities and angles may differ [-]
+
+  explicit RowTimes(std::size_t joints) : last_(joints), agreements_(joints) {}
+
+  /// Returns how late the stamp of these rows is [s]. There is one row of each joint, later than the rows before.
+  double stampError(const std::vector<MotionRow>& rows) noexcept
+  {
+    const double step = started_ ? rows.front().time - last_.front().time : HUGE_VAL;
+    error_ = step > MotionDifferentiator::MAX_GAP ? 0.0 : error_ + step - interval(rows);
+    std::copy(rows.begin(), rows.end(), last_.begin());
+    started_ = true;
+    return error_;
+  }
+
+  void reset() noexcept
+  {
+    std::fill(agreements_.begin(), agreements_.end(), Agreement{});
+    started_ = false;
+    error_ = 0.0;
+  }
+
+private:
+  /// Sums of v dq and of v v d of one joint, which are forgotten over MEMORY. Both sums begin in agreement.
+  struct Agreement
+  {
+    double change{ START };
+    double expected{ START };
+  };
+  static constexpr double MEMORY = 10.0;  // [s]
+  static constexpr double START = 0.25;   // as after 1 s at 0.5 rad/s [rad^2/s]
+
+  /// Time between the last rows and these, by the motion where the motion is surer than the stamps [s].
+  double interval(const std::vector<MotionRow>& rows) noexcept
+  {
+    const double by_stamps = rows.front().time - last_.front().time;
+    double weight = 1.0 / (STAMP * STAMP);
+    double weighted = by_stamps * weight;
+    for (std::size_t i = 0; i < rows.size(); ++i)
+    {
+      const double velocity = 0.5 * (rows[i].recorded_velocity + last_[i].recorded_velocity);
+      if (!std::isfinite(velocity))
+      {
+        continue;
+      }
+      const double change = rows[i].position - last_[i].position;
+      Agreement& agreement = agreements_[i];
+      const double kept = 1.0 - by_stamps / MEMORY;
+      agreement.change = kept * agreement.change + velocity * change;
+      agreement.expected = kept * agreement.expected + velocity * velocity * by_stamps;
+      if (std::abs(agreement.change - agreement.expected) <= AGREES * agreement.expected)
+      {
+        weight += velocity * velocity / (ANGLE * ANGLE);
+        weighted += velocity * change / (ANGLE * ANGLE);
+      }
+    }
+    const double by_motion = weighted / weight;
+    const double difference = std::abs(by_motion - by_stamps);
+    constexpr double MOST = 4.0;  // a damaged angle
+    const bool is_usable = by_motion > by_stamps / MOST && by_motion < by_stamps * MOST;
+    return is_usable && difference > SIGNIFICANT * by_stamps ? by_motion : by_stamps;
+  }
+
+  std::vector<MotionRow> last_;
+  std::vector<Agreement> agreements_;
+  bool started_{};
+  double error_{};
+};
+
 /// All joints of an arm at the time of one row.
 struct ArmSample
 {
-  std::vector<MotionSample> joints;  ///< rates within ArmRates::HALF_WIDTH, for the load
-  /// The same with a joint's own rates, within MotionDifferentiator::HALF_WIDTH, stamp errors and vibration.
+  std::vector<MotionSample> joints;  ///< samples with rates within ArmRates::HALF_WIDTH, for the load
+  /// Samples with a joint's own rates, within MotionDifferentiator::HALF_WIDTH, with stamp errors and vibration.
   std::vector<MotionSample> own;
-  /// Of the links and the payload at the output of each joint, the motor's own inertia not in it, > 0 resists positive
-  /// motion [N.m].
+  /// Torque of links and payload at the output of each joint, without the motor's own inertia. A positive torque
+  /// resists positive motion [N.m].
   std::vector<double> torques;
 };
 
-/// Rates of all joints of an arm from a stream of their angles, rows of one time each: what is the same of every arm.
+/// Rates of all joints of an arm from a stream of rows of their angles. They do not depend on which arm it is.
 ///
 /// They are the slopes of parabolas through the angles within HALF_WIDTH of a row, so they need no recorded velocity
 /// and have no phase, and a row comes out at most HALF_WIDTH late. Velocities mend the rows' times (RowTimes): for load
@@ -35,7 +119,8 @@ struct ArmSample
 class ArmRates
 {
 public:
-  /// Wider than that of a joint's own rates: the load is that of the commanded motion, without vibration [s].
+  /// Half width of the rates for the load. It is wider than that of a joint's own rates, because the load is that of
+  /// the commanded motion without vibration [s].
   static constexpr double HALF_WIDTH = 0.1;
 
   explicit ArmRates(std::size_t joints);
@@ -43,12 +128,12 @@ public:
   /// Starts a new stream.
   void reset() noexcept;
 
-  /// One row for each joint, all of one time. False: the row is not later than the one before, or one that no joint can
-  /// have, and is left out.
+  /// Takes one row for each joint, all of one time. Returns false for rows that it leaves out: rows that are not later
+  /// than those before, or that no joint can have.
   bool push(const std::vector<MotionRow>& rows) noexcept;
 
-  /// The next sample that is ready, without its torques and vibration; none: nullptr. Valid until the next call. With
-  /// `at_end` also those that wait for later rows.
+  /// The next sample that is ready, without torques and vibration, or nullptr. It is valid until the next call. With
+  /// `at_end` also samples are ready that wait for later rows.
   ArmSample* pop(bool at_end = false) noexcept;
 
 private:
@@ -59,27 +144,27 @@ private:
   void pushFast() noexcept;
 
   RowTimes times_;
-  // One a joint, all with rows of the same times, for load and vibration.
+  // Differentiators of each joint, for load (slow) and vibration (fast); all have rows of the same times.
   std::vector<MotionDifferentiator> slow_;
   std::vector<MotionDifferentiator> fast_;
-  std::vector<ArmSample> waiting_;  // with slow rates, from first_waiting_ to end_waiting_, round and round
+  std::vector<ArmSample> waiting_;  // ring of samples with slow rates, from first_waiting_ to end_waiting_
   std::uint64_t first_waiting_{};
   std::uint64_t end_waiting_{};
   std::vector<MotionRow> rows_;
-  bool has_velocities_{};  // of the first row
+  bool has_velocities_{};  // the first row has velocities of all joints
   double last_time_{ -std::numeric_limits<double>::infinity() };
 };
 
-/// Torques at the joints of an arm in the motion of a sample. What the faster rates, within a joint's own half width,
-/// take beyond the load is the torque of the arm's vibration: mostly the answer to the drives' ripple. After
-/// construction nothing throws; nothing allocates.
+/// Torques at the joints of an arm in the motion of a sample. The rates within a joint's own half width take more
+/// torque than the load: the difference is the torque of the arm's vibration, mostly its answer to the drives' ripple.
+/// After construction nothing throws or allocates.
 class LinkTorques
 {
 public:
   /// @throws ParameterError as ArmDynamics.
   explicit LinkTorques(const ArmDescription& arm, PayloadCourse course = {});
 
-  /// `sample` with its torques and vibration.
+  /// Adds torques and vibration to `sample`.
   void addTo(ArmSample& sample) noexcept;
 
   std::size_t joints() const noexcept { return motion_.size(); }
@@ -92,7 +177,7 @@ private:
 
   UnitLoads links_;
   const PayloadCourse course_;
-  std::size_t carried_{ NONE };  // of the course
+  std::size_t carried_{ NONE };  // place of the present payload in the course
   std::vector<JointMotion> motion_;
   std::vector<double> fast_torques_;
 };

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <utility>
 #include <vector>
 
+#include "arm/arm_description.hpp"
 #include "arm/arm_dynamics.hpp"
 
 namespace hjt
@@ -13,23 +15,23 @@ namespace hjt
 struct ArmSetPoint
 {
   double time{};                    ///< [s]
-  std::vector<JointMotion> joints;  ///< all
+  std::vector<JointMotion> joints;  ///< motion of all joints
 };
 
 /// Accelerations between set points.
 enum class ArmAccelerations : std::uint8_t
 {
-  GIVEN,     ///< linear between those of the set points, which lie close together
-  OF_CUBICS  ///< those of the angles between them; the set points' own are not read
+  GIVEN,     ///< linear between the accelerations of the set points, which lie close together
+  OF_CUBICS  ///< second derivatives of the cubics; the accelerations of the set points are not read
 };
 
-/// A commanded motion between its set points: angles by cubics that have the set points' angles and speeds. Before the
-/// first and after the last it stands still there.
+/// A commanded motion between its set points: the angles follow cubics that have the set points' angles and speeds.
+/// Before the first set point and after the last the joints stand still there.
 class ArmMotion
 {
 public:
-  /// At least one set point, in order of time; otherwise undefined. `repeats`: after the last it goes on from the
-  /// first, which then has the same angles.
+  /// `points`: at least one set point, in order of time. `repeats`: after the last set point the motion goes on from
+  /// the first, which must have the same angles.
   explicit ArmMotion(std::vector<ArmSetPoint> points, ArmAccelerations accelerations = ArmAccelerations::GIVEN,
                      bool repeats = false)
     : points_(std::move(points)), accelerations_(accelerations), repeats_(repeats)
@@ -41,29 +43,62 @@ public:
   std::size_t joints() const noexcept { return points_.front().joints.size(); }
   const std::vector<ArmSetPoint>& points() const noexcept { return points_; }
 
-  /// Fast for times that go forward; `motion`: of the joints' size.
+  /// Gives the motion of each joint at a time [s]. It is fast for times that go forward. `motion` has an entry for each
+  /// joint.
   void at(double time, std::vector<JointMotion>& motion) noexcept;
 
-  /// This set point follows the last in place of the first of two; the motion need not end there at rest.
+  /// Of two set points, replaces the first by the last and the last by this one. The motion need not end there at rest.
   void goOn(double time, const std::vector<JointMotion>& joints) noexcept;
 
-  /// The first set point becomes this one, of as many joints.
+  /// Replaces the joints of the first set point, by as many joints.
   void beginFrom(const std::vector<JointMotion>& joints) noexcept { points_.front().joints = joints; }
 
 private:
   std::vector<ArmSetPoint> points_;
   ArmAccelerations accelerations_;
   bool repeats_;
-  bool goes_on_{};      // set points follow one by one
-  std::size_t last_{};  // set point not after the time asked for last
+  bool goes_on_{};      // set points come one by one, by goOn
+  std::size_t last_{};  // number of the set point before the time that at() was called with last
 };
 
-/// Set points from rest to this one, which is the last, or from it to rest; it alone where it is at rest.
+/// Set points that lead from rest to `point`, which is the last, and from `point` to rest. Where `point` is at rest it
+/// is the only one.
 std::vector<ArmSetPoint> fromRest(const ArmSetPoint& point);
 std::vector<ArmSetPoint> toRest(const ArmSetPoint& point);
 
-/// A gentle motion of all joints that comes back to where it began, again and again: slow and fast, each joint both
-/// ways. About the pose in which the arm stands upright for its check-up. An arm without ArmJoint::check_up or limits
-/// stands still at angles of 0. @throws ParameterError if it would go beyond a limit.
+/// A gentle motion of all joints that repeats: slow and fast, each joint both ways, about the pose in which the arm
+/// stands upright for its check-up. An arm without ArmJoint::check_up or limits stands still at angles of 0.
+/// @throws ParameterError if the motion would go beyond a limit.
 ArmMotion gentleMotion(const ArmDescription& arm);
+
+/// Straight move of all joints together, as URScript's movej: the speed over time is a trapezoid. With a limit of the
+/// jerk it is the trapezoid's moving mean over the time in which the acceleration rises.
+struct ArmMove
+{
+  std::vector<double> target;  ///< angles of all joints [rad]
+  double speed{};              ///< largest speed of the joint that goes farthest [rad/s]
+  double acceleration{};       ///< largest acceleration of that joint [rad/s^2]
+  double jerk{};               ///< largest jerk of that joint, 0 without a limit [rad/s^3]
+  double wait{};               ///< time at rest after the move [s]
+};
+
+/// Angles of all joints [rad].
+using ArmPose = std::vector<double>;
+
+/// A set point with what it takes.
+struct ArmInstant : ArmSetPoint
+{
+  std::vector<double> torques;  ///< torques at the outputs that make the motion [N.m]
+};
+
+/// The motion in which a joint's faults are looked for: slow one way and the other over all of its stroke, for
+/// stiffness and friction by load; to and fro where the load goes through zero, for clearance and loop; fast. The joint
+/// moves alone, from ArmJoint::check_up and back to it. @throws ParameterError if the arm's file gives no such pose, or
+/// no limits of a joint.
+std::vector<ArmMove> checkUpMoves(const ArmDescription& arm, std::size_t joint);
+
+/// Samples the moves every `period` [s], with a rest before and after them. @throws ParameterError naming a joint that
+/// would exceed the limit of its speed or torque, or if the moves take too long.
+std::vector<ArmInstant> sampleMoves(const ArmDescription& arm, const ArmPose& start, const std::vector<ArmMove>& moves,
+                                    double period);
 }  // namespace hjt

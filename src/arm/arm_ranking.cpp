@@ -16,7 +16,7 @@ namespace hjt
 {
 namespace
 {
-/// With efforts of that unit.
+/// The joints with efforts of that unit.
 std::vector<Parameters> withUnit(std::vector<Parameters> joints, EffortUnit unit)
 {
   for (Parameters& joint : joints)
@@ -32,7 +32,7 @@ class ArmTrial
 public:
   ArmTrial(const ArmCandidate& candidate, EffortUnit unit) : ArmTrial(candidate, withUnit(candidate.joints, unit)) {}
 
-  /// `sample`: with efforts for currents, and without torques. `counts`: for the fit of the load.
+  /// Adds a sample whose currents are efforts and which has no torques. `counts`: the fit of the load takes it too.
   void add(const ArmSample& sample, bool counts)
   {
     sample_ = sample;
@@ -53,7 +53,7 @@ public:
     }
     if (counts)
     {
-      load_fit_.add(sample_.own, beside_);
+      load_fit_.add(sample_.own, [this](std::size_t i) -> const MotionDriven& { return twins_[i]; });
     }
   }
 
@@ -63,7 +63,7 @@ public:
     return { name_, unit_, fit.size, fit.left, fit.cost + cost_ };
   }
 
-  /// The unit of the efforts that leaves clearly less than the configured one.
+  /// The unit of the efforts with which the load leaves clearly less of the currents than with the configured unit.
   EffortUnit likeliestUnit() const
   {
     constexpr double CLEARLY = 0.5;
@@ -85,10 +85,6 @@ private:
     , load_fit_(candidate.arm, joints)
     , twins_(joints.begin(), joints.end())
   {
-    for (const MotionDriven& twin : twins_)
-    {
-      beside_.push_back(&twin);
-    }
   }
 
   std::string name_;
@@ -99,16 +95,15 @@ private:
   LoadFit load_fit_;
   std::vector<MotionDriven> twins_;
   ArmSample sample_;
-  std::vector<const MotionDriven*> beside_;
 };
 
 using Trials = std::vector<std::unique_ptr<ArmTrial>>;
 
-/// Their rates are the same for all.
+/// Gives all rows to the trials. The rates of the rows are the same for all trials.
 void play(const PlayArmRows& rows, const Trials& trials, std::size_t joints)
 {
   ArmRates rates(joints);
-  double last_time = -HUGE_VAL;  // that counted [s]
+  double last_time = -HUGE_VAL;  // time of the last sample that counted [s]
   const auto forward = [&](bool at_end)
   {
     while (const ArmSample* sample = rates.pop(at_end))
@@ -145,7 +140,7 @@ std::vector<ArmFit> rankArms(const std::vector<ArmCandidate>& candidates, const 
     trials.push_back(std::make_unique<ArmTrial>(candidate, candidate.joints.front().telemetry.effort));
   }
   play(rows, trials, candidates.front().joints.size());
-  Trials others;  // of another unit than configured
+  Trials others;  // trials with another unit than the configured one
   for (std::size_t i = 0; i < candidates.size() && !unit_is_given; ++i)
   {
     const EffortUnit unit = trials[i]->likeliestUnit();

@@ -15,19 +15,19 @@ namespace hjt
 /// How well an arm explains the currents of a recording.
 struct ArmFit
 {
-  static constexpr double CLEARLY = 15.0;       ///< by which one is likelier, logarithm
-  static constexpr double CONTRADICTED = 20.0;  ///< likewise, than the arm that is given
-  static constexpr double EXPLAINED = 0.35;     ///< of the currents left, at most, where an arm may be the one [-]
-  static constexpr double ENOUGH = 120.0;       ///< of the rows that are looked at [s]
+  static constexpr double CLEARLY = 15.0;       ///< logarithm by which an arm is clearly likelier [-]
+  static constexpr double CONTRADICTED = 20.0;  ///< logarithm by which another arm contradicts the given one [-]
+  static constexpr double EXPLAINED = 0.35;     ///< largest share of the currents that the true arm may leave [-]
+  static constexpr double ENOUGH = 120.0;       ///< time of the rows that are looked at [s]
 
   std::string arm;
-  EffortUnit unit{};   ///< of the efforts, that fits best
-  double size{ 1.0 };  ///< of all currents, as a multiple of those of that unit: another unit or gain of all [-]
-  double left{};       ///< of the currents of the moving joints, with the best payload and mounting, share, rms [-]
-  double cost{};       ///< logarithm of a likelihood: less is likelier [-]
+  EffortUnit unit{};   ///< unit of the efforts that fits best
+  double size{ 1.0 };  ///< factor of all currents, other than 1 if they have another unit or gain [-]
+  double left{};       ///< share of the moving joints' currents that the best payload and mounting leave, rms [-]
+  double cost{};       ///< negative logarithm of a likelihood [-]
 
   bool operator<(const ArmFit& other) const { return cost < other.cost; }
-  /// `by`: logarithm by which it is likelier at least.
+  /// Whether this arm explains the currents and is likelier than `other`, by the logarithm `by` at least.
   bool isBetter(const ArmFit& other, double by) const { return left < EXPLAINED && cost < other.cost - by; }
 };
 
@@ -36,30 +36,30 @@ struct ArmCandidate
 {
   std::string name;
   ArmDescription arm;
-  std::vector<Parameters> joints;  ///< their load is that of the arm
-  double cost{};                   ///< negative log likelihood of the rows [-]
+  std::vector<Parameters> joints;  ///< parameters of the joints, whose load is that of the arm
+  double cost{};                   ///< cost by what is known besides the rows, as ArmFit::cost [-]
 };
 
-/// Rows of all joints at one time, `current` the effort as it comes.
+/// Takes a row of each joint, all of one time. The member `current` is the effort as it was received.
 using VisitArmRows = std::function<void(const std::vector<MotionRow>&)>;
-/// Visits the same rows, the earliest first, each time that it is called.
+/// Gives all rows to the visitor, the earliest first. Each call gives the same rows.
 using PlayArmRows = std::function<void(const VisitArmRows&)>;
 
-/// The best first: how each explains the rows with the payload and the mounting that fit it best, gains within what
-/// those of a type differ by, any friction, and, where that is much likelier, all currents of another size. Where
-/// `unit_is_given` efforts are of the configured unit. @throws ParameterError.
+/// Ranks the candidates, the best first, by how they explain the rows. Each has the payload and the mounting that fit
+/// it best, gains as they differ within a type, and any friction. All currents may have another size if that is much
+/// likelier. With `unit_is_given` the efforts are of the configured unit. @throws ParameterError.
 std::vector<ArmFit> rankArms(const std::vector<ArmCandidate>& candidates, const PlayArmRows& play, bool unit_is_given);
 
 /// Ranks the arms of these names, the best first.
 using RankArms = std::function<std::vector<ArmFit>(const std::vector<std::string>&)>;
-/// Of these names, the one that explains the rows so much better than `own`, which is one of them, that it contradicts
-/// it; empty: none. Where `own` explains them so well that none could, no other is tried.
+/// Name of the arm that explains the rows so much better than `own` that it contradicts `own`; empty if there is none.
+/// `names` contains `own`. No other arm is tried if `own` explains the rows so well that none could contradict it.
 std::string betterArm(const std::string& own, std::vector<std::string> names, const RankArms& rank);
 
-/// "the arm may be a ur5e: ..."
+/// The clause "the arm may be a ur5e: ...".
 std::string otherArmText(const std::string& other);
-/// Nothing is judged of a joint that the load may be wrong for, where the arm may be the `other`.
+/// Gives a misfit that names the arm `other` to each joint whose load may be wrong.
 void nameOtherArm(const std::string& other, std::vector<Misfit>& misfits);
-/// Whether a joint's misfit may be that of another arm.
+/// Whether the misfit of a joint may come from another arm than the given one.
 bool mayBeOtherArm(const std::vector<Misfit>& misfits);
 }  // namespace hjt

@@ -16,7 +16,7 @@ struct ArmQuantity
   const char* name;
   const char* unit;
   const char* meaning;
-  bool of_tool;  ///< x, y, z; else a number a joint
+  bool of_tool;  ///< the quantity has x, y and z; otherwise it has a number for each joint
 
   constexpr std::size_t width(std::size_t joints) const { return of_tool ? 3 : joints; }
 };
@@ -50,17 +50,17 @@ enum ArmQuantityIndex : std::size_t
 /// The numbers of each quantity at one instant, in the order of ARM_QUANTITIES.
 using ArmRow = std::array<std::vector<double>, ARM_QUANTITIES.size()>;
 
-/// "target_q_0" ... in the order of an ArmRow.
+/// Names of the columns, "target_q_0" and so on, in the order of an ArmRow.
 std::vector<std::string> armColumnNames(std::size_t joints);
 
-/// Reads what a controller would record off a moving arm.
+/// Reads from a moving arm what its controller would record.
 class ArmRecorder
 {
 public:
-  /// `arm`: stays there as long as this.
+  /// `arm` must live as long as the recorder.
   ArmRecorder(const ArmDescription& description, MovingArm& arm);
 
-  /// At the present instant; until the next call.
+  /// The row of the present instant. It is valid until the next call.
   const ArmRow& row() noexcept;
 
 private:
@@ -71,7 +71,7 @@ private:
   ArmRow row_;
 };
 
-/// How the steps of all drives went, which step together.
+/// Sums of the drives' counters. The number of steps is that of one drive, because the drives step together.
 TwinCounters countersOf(const ArmTwin& twin);
 
 /// Whether all drives took their last step on a response surface.

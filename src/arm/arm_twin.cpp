@@ -15,7 +15,7 @@ namespace hjt
 {
 namespace
 {
-/// Of the last step's value and of those before, by order: polynomials through them at the next step.
+/// Weights of the last steps' values in a polynomial through them at the next step, by the polynomial's order.
 constexpr std::array<std::array<double, 3>, 3> EXTRAPOLATIONS{
   { { 1.0, 0.0, 0.0 }, { 2.0, -1.0, 0.0 }, { 3.0, -3.0, 1.0 } }
 };
@@ -24,7 +24,7 @@ constexpr std::array<std::array<double, 3>, 3> EXTRAPOLATIONS{
 std::vector<double> leastInertia(ArmDynamics& dynamics, const std::vector<double>& spline_inertia)
 {
   constexpr int POSES = 500;
-  constexpr double MARGIN = 0.8;  // factor on the least inertia found, for poses between
+  constexpr double MARGIN = 0.8;  // factor on the least inertia, for poses that are not sampled
   const auto joints = static_cast<Eigen::Index>(spline_inertia.size());
   std::vector<JointMotion> pose(spline_inertia.size());
   std::vector<double> least(spline_inertia.size(), std::numeric_limits<double>::infinity());
@@ -34,7 +34,7 @@ std::vector<double> leastInertia(ArmDynamics& dynamics, const std::vector<double
   {
     for (JointMotion& joint : pose)
     {
-      // Not a distribution of the library, whose numbers are its own.
+      // The standard library's distributions would differ from library to library.
       joint.position = TWO_PI * static_cast<double>(generator()) / static_cast<double>(std::mt19937::max());
     }
     dynamics.massMatrix(pose, mass);
@@ -134,7 +134,7 @@ bool ArmTwin::reset(Stamp stamp) noexcept
     drives_[i].coupleArm(1.0 / inverse_(k, k) - spline_inertia_[i], bias_[i]);
     good = drives_[i].reset(stamp) && good;
     link_torques_[0][k] = bias_[i];
-    // The arm hangs in its drives' compliance, at the angles that it starts with.
+    // At the start angles the arm's weight has already twisted the drives.
     zero_[i] = motion_[i].position - drives_[i].outputs().output_angle;
   }
   link_torques_.fill(link_torques_[0]);
@@ -142,14 +142,14 @@ bool ArmTwin::reset(Stamp stamp) noexcept
   return good;
 }
 
-/// M + D at a pose.
+/// Computes M + D at a pose.
 void ArmTwin::setMass(const std::vector<JointMotion>& pose) noexcept
 {
   dynamics_.massMatrix(pose, mass_);
   mass_.diagonal() += Eigen::Map<const Eigen::VectorXd>(spline_inertia_.data(), mass_.rows());
 }
 
-/// M + D at the predicted pose, and its inverse.
+/// Computes M + D at the predicted pose, and the inverse.
 void ArmTwin::takeMass() noexcept
 {
   setMass(next_);
@@ -187,7 +187,7 @@ bool ArmTwin::step(Stamp until) noexcept
   return true;
 }
 
-/// Gives each drive the arm as it will be at the end of the step.
+/// Gives each drive the arm's inertia and load at the end of the step.
 void ArmTwin::couple() noexcept
 {
   const auto joints = static_cast<Eigen::Index>(drives_.size());

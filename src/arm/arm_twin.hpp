@@ -16,8 +16,8 @@ namespace hjt
 /// How the drives of an arm are coupled. Cost and error of each: docs/arm_twin.md.
 struct ArmCoupling
 {
-  double mass_rate{ 1000.0 };  ///< of the mass matrix, at most solver.rate [Hz]
-  int order{ 1 };              ///< of the extrapolation of the other drives' torques: 0, the last step's, 1 or 2
+  double mass_rate{ 1000.0 };  ///< rate at which the mass matrix is computed, at most solver.rate [Hz]
+  int order{ 1 };  ///< order of the extrapolation of the other drives' torques, 0 to 2; 0 takes those of the last step
 };
 
 /// The drives of an arm, each a Twin, coupled by the rigid-body dynamics of its links:
@@ -28,7 +28,8 @@ struct ArmCoupling
 ///        D     inertia of the circular splines, on the diagonal                                  [kg.m^2]
 ///        tau   of gears and output friction on the links                                         [N.m]
 ///
-/// Solved for one joint at a time. With W the inverse of M + D a drive sees, exactly, the inertia 1/W_ii and the load
+/// The equation is solved for one joint at a time. With W the inverse of M + D a drive sees the inertia 1/W_ii and the
+/// load
 ///
 ///   h_i - sum_{k != i} W_ik (tau_k - h_k) / W_ii
 ///
@@ -52,10 +53,10 @@ public:
   Twin& drive(std::size_t joint) noexcept { return drives_[joint]; }
   const Twin& drive(std::size_t joint) const noexcept { return drives_[joint]; }
 
-  /// Back to the start at `stamp`. False: the stamp is beyond +-MAX_STAMP.
+  /// Sets the arm back to the start at `stamp`. Returns false if the stamp is beyond +-MAX_STAMP.
   bool reset(Stamp stamp) noexcept;
 
-  /// One solver step of all drives, if the next instant is not after `until`. False: nothing was done.
+  /// Makes one solver step of all drives. Returns false, and does nothing, if the next instant is after `until`.
   bool step(Stamp until) noexcept;
 
   Stamp stamp() const noexcept { return drives_.front().stamp(); }
@@ -63,20 +64,20 @@ public:
 
   /// Angles, speeds and accelerations of the links at the present instant.
   const std::vector<JointMotion>& motion() const noexcept { return motion_; }
-  /// Of the encoders' zero: joint angle less output angle of the drive [rad].
+  /// Angle of the joint where its drive's output angle is zero [rad].
   double startAngle(std::size_t joint) const noexcept { return zero_[joint]; }
   ToolPose toolPose() noexcept { return dynamics_.toolPose(motion_); }
 
-  /// On the tip, from the next step on, in the frame of the base.
+  /// Sets force and moment on the tip in the frame of the base, from the next step on.
   void setWrench(const ArmWrench& wrench) noexcept { dynamics_.setWrench(wrench); }
 
-  /// At the tip, from the next step on.
+  /// Sets the payload at the tip, from the next step on.
   void setPayload(const Payload& payload) noexcept { dynamics_.setPayload(payload); }
 
-  /// Energy delivered by the drives less that of the arm, since reset [J]: error of the coupling. Not meaningful once
-  /// a wrench or another payload was set.
+  /// Error of the coupling since reset: energy that the drives delivered less the change of the arm's energy [J]. It
+  /// has no meaning once a wrench or another payload was set.
   double energyResidual() noexcept;
-  double deliveredEnergy() const noexcept;  ///< by all drives to the links since reset [J]
+  double deliveredEnergy() const noexcept;  ///< energy that all drives delivered to the links since reset [J]
 
 private:
   double armEnergy() noexcept;
@@ -87,10 +88,10 @@ private:
 
   ArmDynamics dynamics_;
   std::vector<double> pose_at_start_;  // [rad]
-  std::vector<double> zero_;           // of the encoders, joint angle less output angle [rad]
+  std::vector<double> zero_;           // joint angles less output angles of the drives [rad]
   std::vector<Twin> drives_;
   std::vector<double> spline_inertia_;  // [kg.m^2]
-  std::int64_t mass_steps_;             // from one mass matrix to the next
+  std::int64_t mass_steps_;             // steps from one mass matrix to the next
   std::int64_t steps_{};
   std::vector<JointMotion> motion_;
   std::vector<JointMotion> next_;  // predicted
@@ -98,8 +99,8 @@ private:
   Eigen::MatrixXd mass_;           // M + D [kg.m^2]
   Eigen::LLT<Eigen::MatrixXd> factors_;
   Eigen::MatrixXd inverse_;                      // W [1/(kg.m^2)]
-  std::array<double, 3> weights_;                // of the last steps' torques in the extrapolation
-  std::array<Eigen::VectorXd, 3> link_torques_;  // tau of the last step and of those before [N.m]
+  std::array<double, 3> weights_;                // weights of the last steps' torques in the extrapolation
+  std::array<Eigen::VectorXd, 3> link_torques_;  // tau of the last three steps, the last first [N.m]
   Eigen::VectorXd excess_;                       // tau - h, extrapolated [N.m]
   double energy_at_start_{};
 };

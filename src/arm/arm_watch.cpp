@@ -5,14 +5,128 @@
 #include <chrono>
 #include <cstddef>
 #include <iterator>
+#include <system_error>
 #include <utility>
 
 namespace hjt
 {
+LoadWatch::LoadWatch(const ArmDescription& arm, const std::vector<Parameters>& joints,
+                     std::vector<LoadFit::Drive> drives)
+  : given_(arm), arm_(arm), drives_(std::move(drives))
+{
+  for (const Parameters& joint : joints)
+  {
+    twins_.emplace_back(joint);
+  }
+  reset();
+}
+
+void LoadWatch::reset()
+{
+  start(isTrying() ? TRIAL : LoadFit::FIRST_LOOK);
+  frictions_.clear();
+  is_of_others_ = isLooking();
+}
+
+void LoadWatch::start(double first_look)
+{
+  fit_.emplace(arm_, drives_);
+  last_time_ = -HUGE_VAL;
+  next_look_ = first_look;
+  is_new_ = true;
+}
+
+void LoadWatch::add(const ArmSample& sample)
+{
+  const double time = sample.joints.front().time;
+  const bool counts = time >= last_time_ + LoadFit::PERIOD;
+  samples_ = sample.joints;
+  for (std::size_t i = 0; i < samples_.size(); ++i)
+  {
+    samples_[i].load = sample.torques[i];
+    samples_[i].after_gap = samples_[i].after_gap || is_new_;
+    twins_[i].move(samples_[i]);
+    if (counts)
+    {
+      twins_[i].bear(samples_[i]);
+    }
+  }
+  is_new_ = false;
+  if (counts)
+  {
+    last_time_ = time;
+    fit_->add(samples_, [this](std::size_t i) -> const MotionDriven& { return twins_[i]; });
+  }
+}
+
+bool LoadWatch::isDue() const
+{
+  return isLooking() ? found_.wait_for(std::chrono::seconds(0)) == std::future_status::ready :
+                       fit_->moved() >= next_look_;
+}
+
+/// Begins a look at the rows so far. If no thread can be started, the next look is made later.
+void LoadWatch::begin(std::vector<bool> measured)
+{
+  looked_at_ = last_time_;
+  try
+  {
+    found_ = std::async(std::launch::async,
+                        [fit = *fit_, measured = std::move(measured)]() mutable { return fit.solve(measured); });
+  }
+  catch (const std::system_error&)
+  {
+    next_look_ += LoadFit::FIRST_LOOK;
+  }
+}
+
+bool LoadWatch::look(const JudgedJoints& joints)
+{
+  if (isTrying())
+  {
+    return take({}, joints);
+  }
+  if (!isLooking())
+  {
+    begin(joints.measured);
+    return false;
+  }
+  const FoundLoad found = found_.get();
+  const bool counts = !is_of_others_;
+  is_of_others_ = false;
+  return counts && take(found, joints);
+}
+
+/// Takes what a look has found. While another load is tried `found` is empty.
+bool LoadWatch::take(const FoundLoad& found, const JudgedJoints& joints)
+{
+  const bool was_trying = isTrying();
+  frictions_ = was_trying ? frictions_ : found.frictions;
+  const bool alternates = found.changes.size() > 2 && found.changes.back().time > looked_at_ - LoadFit::FIRST_LOOK;
+  misfit_ = alternates ? Misfit{ Reason::LOAD_WRONG,
+                                 "the payload changes from leg to leg, as in picking and placing: "
+                                 "record the motion and compare it, which judges each leg with its "
+                                 "payload" } :
+                         found.misfit();
+  const bool is_other = !alternates && law_.take(found.last(), joints);
+  has_looked_ = true;
+  if (is_other)
+  {
+    arm_ = given_;
+    law_.counts().configure(arm_);
+  }
+  next_look_ += LoadFit::FIRST_LOOK;
+  if (is_other || was_trying || next_look_ > LoadFit::LAST_LOOK)
+  {
+    start(isTrying() ? TRIAL : was_trying && is_other ? LoadFit::LAST_LOOK : LoadFit::FIRST_LOOK);
+  }
+  return is_other;
+}
+
 bool ArmWatch::moves(const std::vector<MotionRow>& rows)
 {
-  constexpr double MOVED = 0.01;  // beyond play and noise [rad]
-  constexpr double STILL = 1.0;   // [s]
+  constexpr double MOVED = 0.01;  // least motion, beyond play and noise [rad]
+  constexpr double STILL = 1.0;   // time after a motion that still counts as motion [s]
   moved_from_.resize(rows.size(), HUGE_VAL);
   for (std::size_t i = 0; i < rows.size(); ++i)
   {
@@ -92,14 +206,14 @@ bool ArmWatch::look()
   }
   if (is_stopped_)
   {
-    answer_ = {};  // of rows of before
+    answer_ = {};  // the answer is on rows before the last reset
     return false;
   }
   other_ = answer_.get();
   is_settled_ = true;
   if (!other_.empty())
   {
-    moved_ = std::max(moved_, 0.0);  // one that was wrong, as of an arm led by hand, does not last
+    moved_ = std::max(moved_, 0.0);  // ask again soon: a wrong answer, as of an arm led by hand, does not last
   }
   return true;
 }

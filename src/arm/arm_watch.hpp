@@ -3,24 +3,87 @@
 
 #include <atomic>
 #include <cmath>
+#include <cstddef>
 #include <functional>
 #include <future>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "arm/arm_load.hpp"
 #include "arm/arm_ranking.hpp"
+#include "arm/found_load.hpp"
 #include "arm/load_fit.hpp"
+#include "tracking/motion_driven.hpp"
 
 namespace hjt
 {
-/// Whether an arm is another than given, by the law of `rankArms`, while its rows come: asked after 30, 60 and 120 s of
-/// motion, and after eight minutes all over again, at once where it may be another. A thread of its own works each time
-/// some seconds; rows of motion alone are kept for it.
+/// Finds payload and mounting that an arm's currents show while its rows come. It looks every 30 s of motion, starts
+/// again after eight minutes, and takes the rows since a change of the payload alone. A load that was found is tried
+/// for 10 s of motion (LoadLaw). Once it is taken back, nothing is looked for in the next eight minutes. A look takes
+/// some tenths of a second in a thread of its own. The class allocates and is not for a real-time loop.
+class LoadWatch
+{
+public:
+  /// `joints`: parameters of each joint; `drives`: drives of the joints, with the friction that is expected of them.
+  /// @throws ParameterError as MotionDriven.
+  LoadWatch(const ArmDescription& arm, const std::vector<Parameters>& joints, std::vector<LoadFit::Drive> drives);
+
+  void add(const ArmSample& sample);
+  /// Starts again with the load that counts, because other rows follow.
+  void reset();
+
+  /// Whether it is time to begin a look, or to take what a look has found.
+  bool isDue() const;
+  bool isLooking() const { return found_.valid(); }
+  /// Begins a look or takes its result. To be called when isDue(), with the joints as they are judged with the load
+  /// that counts. Returns true if another load counts from now on.
+  bool look(const JudgedJoints& joints);
+
+  const AssumedLoad& assumed() const { return law_.counts(); }
+  bool isTrying() const { return law_.isTrying(); }
+  /// Why no joint can be judged: the payload changes again and again, or the gain of all joints is another one.
+  const Misfit& misfit() const { return misfit_; }
+  /// Friction of each joint by the last look; empty before the first look.
+  const std::vector<FittedFriction>& frictions() const { return frictions_; }
+  /// Whether it has looked and tries no load.
+  bool isSettled() const { return has_looked_ && !isTrying(); }
+  /// The arm with the payload and the mounting that count.
+  const ArmDescription& arm() const { return arm_; }
+
+private:
+  static constexpr double TRIAL = 10.0;  // motion for which a load is tried [s]
+
+  void start(double first_look);
+  void begin(std::vector<bool> measured);
+  bool take(const FoundLoad& found, const JudgedJoints& joints);
+
+  const ArmDescription given_;
+  ArmDescription arm_;
+  LoadLaw law_;
+  const std::vector<LoadFit::Drive> drives_;
+  std::vector<MotionDriven> twins_;
+  std::optional<LoadFit> fit_;
+  std::vector<MotionSample> samples_;
+  double last_time_{ -HUGE_VAL };  // time of the last sample that counted [s]
+  double next_look_{ LoadFit::FIRST_LOOK };
+  bool has_looked_{};
+  Misfit misfit_;
+  std::vector<FittedFriction> frictions_;
+  bool is_new_{ true };           // the next row comes after a gap
+  double looked_at_{};            // time of the last row of the last look [s]
+  bool is_of_others_{};           // the running look is at rows before the last reset
+  std::future<FoundLoad> found_;  // the last member: it is waited for before the others are destroyed
+};
+
+/// Finds whether an arm is another than given, by the law of `rankArms`, while its rows come. It asks after 30, 60 and
+/// 120 s of motion and starts again after eight minutes, or at once if the arm may be another. Each answer takes a
+/// thread of its own some seconds. Only rows with motion are kept for it.
 class ArmWatch
 {
 public:
-  /// Makes the arms to choose from, `own` among them, in that thread.
+  /// Makes the arms to choose from, `own` among them. It is called in the thread that ranks them.
   using MakeCandidates = std::function<std::vector<ArmCandidate>()>;
 
   /// `unit_is_given`: efforts are of the configured unit.
@@ -34,19 +97,19 @@ public:
 
   /// Rows of all joints at one time, `current` the effort as it comes.
   void add(const std::vector<MotionRow>& rows);
-  /// Other rows follow: what was found of those before, or is still asked of them, counts no more.
+  /// Forgets all answers and questions about the rows so far, because other rows follow.
   void reset();
 
-  /// True: an answer has come. @throws what the making of the arms threw.
+  /// Returns true if an answer has come. @throws what the making of the arms threw.
   bool look();
 
-  /// Clearly likelier than the one given; empty: none is known.
+  /// The arm that is clearly likelier than the given one; empty if none is known.
   const std::string& other() const { return other_; }
-  /// It has an answer.
+  /// Whether there is an answer.
   bool isSettled() const { return is_settled_; }
 
 private:
-  static constexpr double PERIOD = 0.006;  // of the rows that are kept, at least [s]
+  static constexpr double PERIOD = 0.006;  // least time between rows that are kept [s]
 
   bool moves(const std::vector<MotionRow>& rows);
   void ask();
@@ -58,11 +121,11 @@ private:
   bool is_settled_{};
   std::vector<std::vector<MotionRow>> rows_;
   std::vector<double> moved_from_;  // angles where the joints last stood [rad]
-  double last_moved_{ -HUGE_VAL };  // [s]
-  double last_time_{ -HUGE_VAL };   // of a row that is kept [s]
-  double moved_{};                  // since the last start, but for the rest [s]
+  double last_moved_{ -HUGE_VAL };  // time of the last row with motion [s]
+  double last_time_{ -HUGE_VAL };   // time of the last row that was kept [s]
+  double moved_{};                  // motion since the last start [s]
   double next_look_{ LoadFit::FIRST_LOOK };
-  std::atomic<bool> is_stopped_{ false };  // pending questions are ignored
-  std::future<std::string> answer_;        // last: it is waited for before the rest goes
+  std::atomic<bool> is_stopped_{ false };  // the answer that is on its way is ignored
+  std::future<std::string> answer_;        // the last member: it is waited for before the others are destroyed
 };
 }  // namespace hjt

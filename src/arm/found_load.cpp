@@ -4,12 +4,60 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include "base/number_text.hpp"
 #include "gear/angle.hpp"
+#include "tracking/verdict.hpp"
 
 namespace hjt
 {
+namespace
+{
+/// The load with the configured one of the arm's file; none if both are the same.
+template <class Found>
+std::optional<Found> named(Found found, const std::optional<Found>& counts)
+{
+  found.configured = counts ? counts->configured : found.configured;
+  return found.differs() ? std::make_optional(found) : std::nullopt;
+}
+
+/// Whether all misfits of the joints can come from a wrong load, and would be gone with the right one.
+bool mayBeOther(const JudgedJoints& joints)
+{
+  for (std::size_t i = 0; i < joints.misfits.size(); ++i)
+  {
+    const Misfit& misfit = joints.misfits[i];
+    const bool is_of_load = misfit.reason == Reason::LOAD_WRONG || misfit.reason == Reason::LESS_THAN_FAULTS ||
+                            misfit.reason == Reason::COMMON_FRICTION;
+    if (joints.measured[i] && misfit.exists() && !is_of_load)
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// Whether every joint with a measured current fits.
+bool explains(const JudgedJoints& joints)
+{
+  for (std::size_t i = 0; i < joints.misfits.size(); ++i)
+  {
+    const MeasuredFriction& friction = joints.frictions[i];
+    if (joints.measured[i] && (joints.misfits[i].exists() || friction.is_below_faults || friction.is_load_wrong))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+std::string massText(const IdentifiedPayload& found)
+{
+  return fixedText(std::max(found.mass, 0.0), 1) + " +- " + fixedText(found.mass_half_width, 1) + " kg";
+}
+}  // namespace
+
 bool IdentifiedPayload::differs() const
 {
   return std::abs(mass - configured.mass) > std::max(mass_half_width, least_claim);
@@ -64,9 +112,9 @@ double IdentifiedMounting::tilt() const
 
 bool IdentifiedMounting::differs() const
 {
-  constexpr double LEAST = 4.0 * DEGREE;  // errors of the links' masses tilt it too
-  constexpr double KNOWN = 3.0;           // half widths, at least: a hand on the arm tilts it too
-  constexpr double SIZE = 1.35;           // a payload, or errors of gains, beside
+  constexpr double LEAST = 4.0 * DEGREE;  // least tilt; errors of the links' masses make less
+  constexpr double KNOWN = 3.0;           // least tilt in half widths; a hand on the arm makes less
+  constexpr double SIZE = 1.35;           // largest factor of the size, as a payload or errors of gains make
   return tilt() > LEAST && tilt() > KNOWN * half_width && size > 1.0 / SIZE && size < SIZE;
 }
 
@@ -93,7 +141,7 @@ std::string FoundDrag::text() const
 
 Misfit FoundLoad::misfit() const
 {
-  constexpr double NOTEWORTHY = 0.2;  // gains of one type differ by less
+  constexpr double NOTEWORTHY = 0.2;  // least change of the gain; gains of one type differ by less
   if (std::abs(gain) - gain_half_width < NOTEWORTHY)
   {
     return {};
@@ -115,5 +163,117 @@ FoundLoad FoundLoad::last() const
   found.changes.clear();
   found.since = changes.back().time;
   return found;
+}
+
+std::string AssumedLoad::text() const
+{
+  std::string text = mounting ? sentence(mounting->text()) + " " : std::string();
+  text += drag ? sentence(drag->text()) + " " : std::string();
+  if (!changes.empty() && payload)
+  {
+    const auto parts = std::count_if(changes.begin(), changes.end(), [](const auto& part) { return part.is_found; });
+    text += "The payload changes: in " + std::to_string(parts) + " of " + std::to_string(changes.size()) +
+            " parts of the time the currents look like " + massText(*payload) + ", in the others like " +
+            (otherwise ? massText(*otherwise) : "the configured " + roundedText(payload->configured.mass, 3) + " kg") +
+            ". ";
+  }
+  else if (payload)
+  {
+    text += sentence(payload->text()) + " ";
+  }
+  return text + (isConfigured() ? "" : "The joints are judged with it. ");
+}
+
+void AssumedLoad::configure(ArmDescription& arm) const
+{
+  arm.payload = payload ? payload->payload() : arm.payload;
+  arm.gravity = mounting ? mounting->gravity : arm.gravity;
+  arm.drag = drag ? drag->force : arm.drag;
+}
+
+PayloadCourse AssumedLoad::course(const Payload& configured) const
+{
+  PayloadCourse course;
+  for (const PayloadChange& change : changes)
+  {
+    course.push_back({ change.time, change.is_found && payload ? payload->payload() :
+                                    otherwise                  ? otherwise->payload() :
+                                                                 configured });
+  }
+  return course;
+}
+
+JudgedJoints::JudgedJoints(const RecordingFit& fit, std::vector<Misfit> of_rows, std::vector<MeasuredFriction> of_each,
+                           double tolerance)
+  : misfits(std::move(of_rows))
+  , frictions(std::move(of_each))
+  , measured(fit.measured())
+  , common(commonFriction(frictions, tolerance))
+{
+  for (Misfit& misfit : misfits)
+  {
+    misfit = misfitOf(misfit, common.misfit);
+  }
+}
+
+void addMisfit(const Misfit& misfit, std::vector<Misfit>& misfits)
+{
+  if (misfit.exists())
+  {
+    std::replace_if(
+        misfits.begin(), misfits.end(), [](const Misfit& other) { return !other.exists(); }, misfit);
+  }
+}
+
+bool LoadLaw::take(const FoundLoad& found, const JudgedJoints& joints)
+{
+  if (is_trying_)
+  {
+    is_trying_ = false;
+    const bool stands = explains(joints);
+    (stands ? stands_ : counts_) = stands ? counts_ : stands_;
+    return !stands;
+  }
+  const std::optional<AssumedLoad> next = other(found, joints);
+  if (!next)
+  {
+    return false;
+  }
+  counts_ = *next;
+  is_trying_ = !counts_.isConfigured();
+  stands_ = is_trying_ ? stands_ : counts_;
+  return true;
+}
+
+/// The load to try in place of the present one; none if the present one stays.
+std::optional<AssumedLoad> LoadLaw::other(const FoundLoad& found, const JudgedJoints& joints) const
+{
+  const bool is_mounted = found.mounting.differs();
+  // A mass below zero is no payload. A mass that is less than the one found before means that the payload was put down.
+  const bool is_put_down = counts_.payload && counts_.payload->isCarried();
+  const bool changes = !found.changes.empty() || !std::isinf(found.since);
+  const bool is_carried = changes || (found.payload.differs() && (found.payload.isOther() || is_put_down));
+  const bool takes_payload = is_carried && mayBeOther(joints);
+  if (!is_mounted && !found.drag.exists() && !takes_payload)
+  {
+    return std::nullopt;
+  }
+  AssumedLoad next = counts_;
+  if (is_mounted)
+  {
+    next.mounting = named(found.mounting, counts_.mounting);
+  }
+  if (found.drag.exists())
+  {
+    next.drag = { found.drag.force + (counts_.drag ? counts_.drag->force : 0.0), found.drag.half_width };
+  }
+  if (takes_payload)
+  {
+    next.payload = named(found.payload, counts_.payload);
+    next.otherwise = found.changes.empty() ? std::nullopt : named(found.otherwise, counts_.payload);
+    next.changes = found.changes;
+    next.since = found.since;
+  }
+  return next;
 }
 }  // namespace hjt

@@ -14,16 +14,16 @@ namespace hjt
 {
 namespace
 {
-// Logarithm of how much rarer another mounting, a payload that changes or a drag is; where nothing changes, recordings
-// of a UR5 and a UR10e show up to 8 for such a payload.
+// Logarithm of how much rarer another mounting, a changing payload or a drag is. Recordings of a UR5 and a UR10e with a
+// constant payload show up to 8 for a changing one.
 constexpr double OTHER_CAUSE = 10.0;
-constexpr double TOLD = 1.0;    // half width of a friction by the rows alone, that says something of it [-]
-constexpr double FLOOR = 0.02;  // of the currents: that the twin of no real arm falls below [-]
+constexpr double TOLD = 1.0;    // largest half width by the rows alone of a friction that is known [-]
+constexpr double FLOOR = 0.02;  // share of the currents that the twin of every real arm leaves [-]
 
-/// Of what is left of the currents, share.
+/// Cost of the share of the currents that is left.
 double misfitCost(double left)
 {
-  constexpr double COUNTED = 60.0;  // rows: errors of a model are not independent from row to row
+  constexpr double COUNTED = 60.0;  // number of rows that count: errors of a model are not independent from row to row
   return COUNTED * std::log(std::hypot(left, FLOOR));
 }
 FoundDrag dragOf(const ArmEstimator::Estimate& estimate)
@@ -31,9 +31,10 @@ FoundDrag dragOf(const ArmEstimator::Estimate& estimate)
   return { estimate.drag.value, estimate.drag.half_width };
 }
 
-/// Legs in which something pushes the tip; none: empty. It is known by a force across gravity, far larger than in most
-/// legs; where there is one, a force up or down in another leg is a push too, and no payload. Of made-up days without a
-/// push legs show up to 12 N, most of them 1 N, of those with a push of 60 N 16 to 79 N.
+/// Legs in which something pushes the tip; empty if there are none. A push is known by a force across gravity that is
+/// far larger than in most legs. If one leg has a push, a force up or down in another leg is a push too, and no
+/// payload. In simulated days without a push legs show up to 12 N, most of them 1 N; legs with a push of 60 N show 16
+/// to 79 N.
 std::vector<bool> pushedLegs(const std::vector<ArmEstimator::Push>& pushes)
 {
   constexpr double LEAST = 10.0;  // [N]
@@ -83,7 +84,7 @@ LoadFit::LoadFit(const ArmDescription& arm, const std::vector<Drive>& drives)
   }
 }
 
-/// A leg ends where all joints stand, and after 5 s.
+/// Begins a new leg where all joints stand, and after 5 s.
 void LoadFit::cutLegs(double time, double speed)
 {
   constexpr double STOP = 0.2;  // [s]
@@ -129,7 +130,7 @@ void LoadFit::close(std::size_t joint, double time)
   block.count = 0;
 }
 
-/// By the golden ratio: every nth would take one part of a motion that repeats, of one direction perhaps.
+/// The golden ratio spreads the rows. Every nth row would always be the same part of a motion that repeats.
 bool LoadFit::isDrawn(std::size_t number, double share)
 {
   constexpr double GOLDEN = 0.6180339887498949;
@@ -137,7 +138,7 @@ bool LoadFit::isDrawn(std::size_t number, double share)
   return turns - std::floor(turns) < share;
 }
 
-/// Half of the rows go where there are more than enough.
+/// Removes half of the rows if there are more than enough.
 void LoadFit::thin()
 {
   constexpr std::size_t ENOUGH = 6000;  // ten minutes of each joint
@@ -162,7 +163,7 @@ void LoadFit::thin()
   share_ *= 0.5;
 }
 
-/// `torques`: of unit loads, as UnitLoads has them [N.m].
+/// Adds a sample to the open row of a joint. `torques` are those of unit loads (UnitLoads) [N.m].
 void LoadFit::addTo(std::size_t number, const MotionSample& sample, const MotionDriven& twin,
                     const UnitLoads::Torques& torques)
 {
@@ -196,7 +197,7 @@ void LoadFit::addTo(std::size_t number, const MotionSample& sample, const Motion
   sum.rise += own * (friction_at(most) - friction_at(least)) / (most - least);
 }
 
-void LoadFit::add(const std::vector<MotionSample>& samples, const std::vector<const MotionDriven*>& twins)
+void LoadFit::add(const std::vector<MotionSample>& samples, const TwinOf& twin)
 {
   const double time = samples.front().time;
   const double step = time - last_time_;
@@ -218,7 +219,7 @@ void LoadFit::add(const std::vector<MotionSample>& samples, const std::vector<co
     const MotionSample& sample = samples[i];
     Open& block = joints_[i].open;
     const bool counts = std::abs(sample.velocity) > MotionDifferentiator::SLIDING && std::isfinite(sample.current) &&
-                        twins[i]->at(sample.temperatureOr(joints_[i].drive.temperature)).tellsFriction();
+                        twin(i).at(sample.temperatureOr(joints_[i].drive.temperature)).tellsFriction();
     if (sample.after_gap || !counts || sample.velocity * block.velocity < 0.0 || time > block.begin + BLOCK ||
         block.sum.leg + 1 != legs_.size())
     {
@@ -233,12 +234,12 @@ void LoadFit::add(const std::vector<MotionSample>& samples, const std::vector<co
       block = { {}, 0, time, sample.velocity };
       block.sum.leg = legs_.size() - 1;
     }
-    addTo(i, sample, *twins[i], torques_.row(static_cast<Eigen::Index>(i)).transpose());
+    addTo(i, sample, twin(i), torques_.row(static_cast<Eigen::Index>(i)).transpose());
   }
   thin();
 }
 
-/// Those of the joints that count, as many as `most` of each, without those of pushed legs.
+/// Rows of the joints that count: at most `most` of each joint, without rows of pushed legs.
 ArmEstimator::Rows LoadFit::rowsOf(const std::vector<bool>& counts, std::size_t most) const
 {
   ArmEstimator::Rows rows(rows_.size());
@@ -256,7 +257,7 @@ ArmEstimator::Rows LoadFit::rowsOf(const std::vector<bool>& counts, std::size_t 
   return rows;
 }
 
-/// That 2 % of the links' masses make, as a mass at the tip, at the joint that weighs it best [kg].
+/// Mass at the tip that loads the joint which weighs it best as much as 2 % of the links' masses do [kg].
 double LoadFit::ofLinks(const std::vector<bool>& counts) const
 {
   constexpr double LINKS_SHARE = 0.02;
@@ -276,7 +277,7 @@ double LoadFit::ofLinks(const std::vector<bool>& counts) const
 IdentifiedPayload LoadFit::payloadOf(const ArmEstimator::Carried& beside, const ArmEstimator::Carried& half_width,
                                      double of_links) const
 {
-  constexpr double UNLOADED = 0.05;  // of the links' mass: a sound UR5 without a payload shows 0 to 0.8 kg
+  constexpr double UNLOADED = 0.05;  // share of the links' mass: sound UR5 without a payload show 0 to 0.8 kg
   IdentifiedPayload found;
   found.configured = payload_;
   found.mass = payload_.mass + beside[0];
@@ -295,18 +296,18 @@ IdentifiedMounting LoadFit::mountingOf(const ArmEstimator::Estimate& estimate) c
 {
   const Eigen::Vector3d total = gravity_ + estimate.gravity;
   const Eigen::Vector3d direction = total / std::max(total.norm(), 1e-6);
-  // Of the half widths, what lies across the direction.
+  // The part of the half widths across the direction.
   const Eigen::Array3d across = (1.0 - direction.array().square()).max(0.0);
   IdentifiedMounting found;
   Eigen::Map<Eigen::Vector3d>(found.configured.data()) = gravity_;
   Eigen::Map<Eigen::Vector3d>(found.gravity.data()) = gravity_.norm() * direction;
   found.half_width =
       std::sqrt((estimate.gravity_half_width.array().square() * across).sum()) / std::max(total.norm(), 1e-6);
-  found.size = total.norm() / std::max(gravity_.norm(), 1e-6);  // weightless as configured: nothing to turn
+  found.size = total.norm() / std::max(gravity_.norm(), 1e-6);  // without configured gravity there is no direction
   return found;
 }
 
-/// As the estimator takes them.
+/// Standard deviations of the joints' own friction, as ArmEstimator takes them.
 std::vector<double> LoadFit::repeats() const
 {
   std::vector<double> repeats;
@@ -322,7 +323,7 @@ std::vector<double> LoadFit::repeats() const
   return repeats;
 }
 
-/// Of the rows of legs in which nothing pushes the arm.
+/// The likeliest hypotheses by the rows of legs in which nothing pushes the arm.
 std::vector<LoadFit::Hypothesis> LoadFit::hypotheses(const std::vector<bool>& counts)
 {
   for (std::size_t i = 0; i < rows_.size(); ++i)
@@ -335,10 +336,10 @@ std::vector<LoadFit::Hypothesis> LoadFit::hypotheses(const std::vector<bool>& co
   return pushed_.empty() ? all : likeliest(counts);
 }
 
-/// What may explain the currents, the likeliest first, with those that are not clearly less likely.
+/// Hypotheses that may explain the currents: the likeliest first, then all that are not clearly less likely.
 std::vector<LoadFit::Hypothesis> LoadFit::likeliest(const std::vector<bool>& counts) const
 {
-  constexpr double LEAST_JUMP = 0.1;       // of a mass: friction that rises with a payload looks like less [kg]
+  constexpr double LEAST_JUMP = 0.1;       // least change of a mass; rising friction looks like less [kg]
   constexpr std::size_t MOST_ROWS = 1500;  // of a joint
   const ArmEstimator estimator(rowsOf(counts, MOST_ROWS), gravity_, repeats());
   std::vector<Hypothesis> all;
@@ -368,8 +369,8 @@ ArmEstimator::Estimate LoadFit::estimate(const std::vector<bool>& counts)
   return hypotheses(counts).front().found;
 }
 
-/// A joint's friction is another only where its own part and the whole are: the one nearer to the expected counts. With
-/// another mounting the twins' friction is that of a load which is none: no joint is named by the fit.
+/// Friction of each joint by all hypotheses. Of a joint's own part and its whole friction the one counts that is nearer
+/// to the expected one. With another mounting nothing is known, because the twins' friction is that of a wrong load.
 std::vector<FittedFriction> LoadFit::frictionsOf(const std::vector<Hypothesis>& all)
 {
   std::vector<FittedFriction> frictions(all.front().found.own.size());
@@ -435,7 +436,7 @@ FoundLoad LoadFit::solve(const std::vector<bool>& counts)
   {
     return found;
   }
-  // What one of both lacks to the configured payload is an error of the links, which the other has too.
+  // The difference of one payload from the configured one is an error of the links, which the other payload has too.
   found.otherwise = found.payload;
   const bool is_known = !found.otherwise.differs();
   const ArmEstimator::Carried other =
@@ -464,9 +465,9 @@ double LoadFit::leastCost()
 LoadFit::Fit LoadFit::explained(const std::vector<bool>& counts)
 {
   constexpr std::size_t MOST_ROWS = 400;  // of a joint
-  constexpr double OTHER_SIZE = 20.0;     // logarithm of how much rarer it is
-  constexpr double CLEAR = 0.3;           // of the size, logarithm: payloads and gains make less
-  constexpr double NO_MASS = 0.5;         // below zero: deviation that masses of links make [kg]
+  constexpr double OTHER_SIZE = 20.0;     // logarithm of how much rarer another size of all currents is
+  constexpr double CLEAR = 0.3;           // least logarithm of another size; payloads and gains make less
+  constexpr double NO_MASS = 0.5;         // standard deviation of masses below zero, by errors of the links [kg]
   const ArmEstimator estimator(rowsOf(counts, MOST_ROWS), gravity_);
   Fit best;
   const auto likelier = [&](bool is_mounted)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -16,65 +17,66 @@
 
 namespace hjt
 {
-/// Payload, mounting and drag of an arm from the currents of all joints while they move (ArmEstimator). A row of the
-/// fit is the mean over 0.1 s of one joint that moves one way with all its friction; of long recordings as many rows
-/// are kept as say what is said at all, evenly over the time. Between legs, from one standstill to the next or of 5 s,
-/// the payload may change. The interval of a mass holds the fit's and 2 % of the links' own masses.
+/// Finds payload, mounting and drag of an arm from the currents of all joints while they move (ArmEstimator). A row of
+/// the fit is the mean over 0.1 s of one joint that moves one way with all its friction. Of long recordings a number of
+/// rows is kept that suffices, evenly over the time. A leg lasts from one standstill to the next, 5 s at most; the
+/// payload may change between legs. The interval of a mass contains that of the fit and 2 % of the links' own masses.
 class LoadFit
 {
 public:
-  static constexpr double PERIOD = 0.02;      ///< of the rows that count, at least [s]
-  static constexpr double FIRST_LOOK = 30.0;  ///< at rows that still come, of motion [s]
-  static constexpr double LAST_LOOK = 480.0;  ///< likewise: then all begins again [s]
+  static constexpr double PERIOD = 0.02;      ///< least time between rows that count [s]
+  static constexpr double FIRST_LOOK = 30.0;  ///< motion after which live rows are looked at first [s]
+  static constexpr double LAST_LOOK = 480.0;  ///< motion after which all begins again [s]
 
-  /// What it knows of a joint's drive.
+  /// What the fit knows of a joint's drive.
   struct Drive
   {
     explicit Drive(const Parameters& parameters);
-    /// `known`: what is expected of its friction is that of this joint when it was sound, `friction` by speed; none:
-    /// as the twin's.
+    /// Expects the friction that this joint had when it was sound, if `known`: the points `friction` by speed. Without
+    /// points the twin's friction is expected.
     void setOwn(bool known, const std::vector<FrictionPoint>& friction);
 
     double gain;             ///< [N.m/A]
     double rotor;            ///< inertia at the joint [kg.m^2]
-    double temperature;      ///< of samples without one [degC]
-    bool is_own{};           ///< the friction of this joint when it was sound is known
-    double friction{ 1.0 };  ///< the known one over the twin's [-]
+    double temperature;      ///< temperature of samples that have none [degC]
+    bool is_own{};           ///< whether the friction of this joint when it was sound is known
+    double friction{ 1.0 };  ///< known friction over the twin's [-]
   };
 
-  /// @param drives from the base on
   LoadFit(const ArmDescription& arm, const std::vector<Drive>& drives);
   LoadFit(const ArmDescription& arm, const std::vector<Parameters>& joints)
     : LoadFit(arm, std::vector<Drive>(joints.begin(), joints.end()))
   {
   }
 
-  /// Samples of one time, and the twins, which made the step to it.
-  void add(const std::vector<MotionSample>& samples, const std::vector<const MotionDriven*>& twins);
+  /// Gives the twin of a joint, by the joint's number.
+  using TwinOf = std::function<const MotionDriven&(std::size_t joint)>;
+  /// Takes samples of one time. The twins must have made the step to that time.
+  void add(const std::vector<MotionSample>& samples, const TwinOf& twin);
 
-  /// `counts`: whether the current of a joint, by its number, is measured: else it is left out.
+  /// The load by the joints that count: those whose current is measured.
   FoundLoad solve(const std::vector<bool>& counts);
-  /// All that it rests on.
+  /// The likeliest estimate of all causes, by the joints that count.
   ArmEstimator::Estimate estimate(const std::vector<bool>& counts);
 
-  /// Of the currents, what is left with the best of all terms, and how much these take.
+  /// How well the best causes explain the currents.
   struct Fit
   {
-    double size{ 1.0 };  ///< of all currents, where it is another than gains of a type make [-]
-    double left{ 1.0 };  ///< share, rms [-]
-    double cost{};       ///< logarithm of a likelihood, less is likelier; errors of models count for what they are [-]
+    double size{ 1.0 };  ///< factor of all currents, 1 if it is one that gains of a type have [-]
+    double left{ 1.0 };  ///< share of the currents that is not explained, rms [-]
+    double cost{};       ///< negative logarithm of a likelihood that allows for errors of the models [-]
   };
-  /// How well the arm explains the currents of the joints that count, with its best payload, or the best mounting too.
+  /// How well the arm explains the currents of the joints that count, with the best payload and the best mounting.
   Fit explained(const std::vector<bool>& counts);
-  /// The least cost of any arm: of one that explains all with no cause that is rare.
+  /// The least cost that any arm can have: that of an arm that explains all currents without a rare cause.
   static double leastCost();
-  /// Of numbered rows the same share of all their parts, those of a motion that repeats too; those of a smaller share
-  /// are among those of a larger one.
+  /// Whether a row is drawn when a `share` of the numbered rows is: the same share of every part of the rows, of a
+  /// motion that repeats too. Rows of a smaller share are also among those of a larger one.
   static bool isDrawn(std::size_t number, double share);
   double moved() const { return moved_; }  ///< time in which a joint moved [s]
 
 private:
-  static constexpr double BLOCK = 0.1;  ///< that a row is the mean of [s]
+  static constexpr double BLOCK = 0.1;  ///< time that a row is the mean of [s]
 
   struct Open
   {
@@ -86,8 +88,8 @@ private:
   struct Joint
   {
     Drive drive;
-    double loads{};    // sum of squares [(N.m)^2]
-    double weights{};  // of 1 kg at the tip, likewise
+    double loads{};    // sum of the squares of its loads [(N.m)^2]
+    double weights{};  // sum of the squares of the loads of 1 kg at the tip [(N.m)^2]
     Open open{};
   };
 
@@ -96,7 +98,7 @@ private:
   {
     ArmEstimator::Estimate found;
     ArmEstimator::Freedom may;
-    double cost{};  ///< with those of its causes
+    double cost{};  ///< cost of the estimate and of its rare causes [-]
   };
 
   std::vector<Hypothesis> hypotheses(const std::vector<bool>& counts);
@@ -122,12 +124,12 @@ private:
   std::vector<JointMotion> motion_;
   std::vector<Joint> joints_;
   ArmEstimator::Rows rows_;
-  std::vector<double> legs_;  // begin of each [s]
-  std::vector<bool> pushed_;  // legs that do not count; empty: none
-  double still_{};            // for how long [s]
+  std::vector<double> legs_;  // begin of each leg [s]
+  std::vector<bool> pushed_;  // legs that do not count, because something pushes the arm; empty: none
+  double still_{};            // time for which all joints have stood still [s]
   double moved_{};            // [s]
   double last_time_{};
-  double share_{ 1.0 };  // of the blocks that are kept
+  double share_{ 1.0 };  // share of the blocks that are kept
   std::vector<std::size_t> blocks_;
 };
 }  // namespace hjt

@@ -31,7 +31,7 @@ std::vector<JointGains> gainsOf(const ArmDescription& arm, const std::vector<Par
   return gains;
 }
 
-/// Faults with an onset come that long after the motion's begin.
+/// The drives with onsets of faults that count from the begin of the motion.
 std::vector<Parameters> withFaultsInMotion(std::vector<Parameters> drives, double settling)
 {
   constexpr double LATEST_ONSET = 1e9;  // largest onset that a drive accepts [s]
@@ -93,7 +93,7 @@ bool MovingArm::step(Stamp until) noexcept
   return true;
 }
 
-/// At an instant of the control: what acts from there on.
+/// At an instant of the control, commands what acts from there on.
 void MovingArm::control() noexcept
 {
   if (!controller_.isDue(twin_))
@@ -116,13 +116,13 @@ void MovingArm::control() noexcept
   }
 }
 
-/// Whether the joints are where the controller wants them.
+/// Makes a protective stop if a joint is not where the controller wants it, or too fast.
 void MovingArm::watch() noexcept
 {
   for (std::size_t i = 0; i < twin_.joints() && !stop_; ++i)
   {
     const JointMotion& joint = twin_.motion()[i];
-    // Written so that NaN stops.
+    // The comparisons are written so that NaN stops the arm.
     if (!(std::abs(joint.position - set_point_[i].position) <= STOP_DEVIATION))
     {
       stop_ = { twin_.stamp(), i, "off its set point" };
@@ -139,7 +139,7 @@ void MovingArm::watch() noexcept
     twin_.drive(i).commandBrake(now, true);
     if (release > now)
     {
-      twin_.drive(i).commandBrake(release, true);  // after the release that is queued
+      twin_.drive(i).commandBrake(release, true);  // engages the brake again at the release that is queued
     }
   }
 }
@@ -147,7 +147,7 @@ void MovingArm::watch() noexcept
 bool MovingArm::unlock() noexcept
 {
   const std::vector<JointMotion>& joints = twin_.motion();
-  // Written so that NaN moves.
+  // The comparison is written so that NaN counts as motion.
   const bool is_still = std::all_of(joints.begin(), joints.end(),
                                     [](const JointMotion& joint) { return std::abs(joint.velocity) <= STILL; });
   if (!stop_ || !is_still)
@@ -173,7 +173,7 @@ void MovingArm::follow(ArmMotion& motion) noexcept
   std::swap(commanded_, motion);
   is_commanded_ = true;
   is_held_ = false;
-  command_begin_ = std::max(twin_.stamp(), motion_begin_);  // never while the brakes hold
+  command_begin_ = std::max(twin_.stamp(), motion_begin_);  // not before the brakes are released
 }
 
 void MovingArm::setPayload(const Payload& payload) noexcept

@@ -13,77 +13,78 @@ namespace hjt
 /// State of a joint as the arm's controller reports it.
 struct JointReading
 {
-  double position{};  ///< by the encoder at the output [rad]
-  double velocity{};  ///< by that at the motor, over the ratio, that the current was made of [rad/s]
-  double current{};   ///< of the motor [A]
+  double position{};  ///< angle by the encoder at the output [rad]
+  double velocity{};  ///< speed by the encoder at the motor, over the ratio, that the current was computed from [rad/s]
+  double current{};   ///< current of the motor [A]
 };
 
 /// A motion that the arm's controller ended by itself.
 struct ProtectiveStop
 {
-  Stamp stamp{};         ///< when it was seen
-  std::size_t joint{};   ///< of the arm, from the base on
-  const char* reason{};  ///< for people
+  Stamp stamp{};         ///< stamp at which the controller stopped the arm
+  std::size_t joint{};   ///< number of the joint, from the base on
+  const char* reason{};  ///< reason for people
 };
 
-/// A twin of an arm under its controller, which has it follow set points. After a reset it stands in its brakes for
-/// half of the settling, is held where it stands for the other half, then begins its motion; to one that begins in
-/// motion it comes by a lead-in.
+/// A twin of an arm that follows set points under its controller. After a reset the arm stands in its brakes for half
+/// of the settling time, and the controller holds it for the other half. Then its motion begins. A motion that does not
+/// begin at rest gets a lead-in.
 ///
-/// Where a joint is STOP_DEVIATION off its set point, or faster than STOP_SPEED of its limit, the controller stops all:
-/// the motors give no torque, the brakes engage, until it is unlocked or reset. The bounds are assumed; the maker gives
-/// none.
+/// Where a joint is STOP_DEVIATION off its set point, or faster than STOP_SPEED times its limit, the controller makes a
+/// protective stop: the motors give no torque and the brakes engage until the arm is unlocked or reset. The two bounds
+/// are assumed, because the maker gives none.
 ///
 /// After construction nothing but a copy throws or allocates.
 class MovingArm
 {
 public:
   static constexpr double CONTROL_RATE = 2000.0;  ///< [Hz]
-  static constexpr double SETTLING = 0.5;         ///< if no other is given [s]
-  static constexpr double STOP_DEVIATION = 0.1;   ///< [rad]
-  static constexpr double STOP_SPEED = 1.1;       ///< of ArmJoint::speed_limit [-]
-  static constexpr double STILL = 0.1;            ///< speed of a joint that may be unlocked [rad/s]
+  static constexpr double SETTLING = 0.5;         ///< settling time if no other is given [s]
+  static constexpr double STOP_DEVIATION = 0.1;   ///< deviation from the set point that stops the arm [rad]
+  static constexpr double STOP_SPEED = 1.1;       ///< speed over ArmJoint::speed_limit that stops the arm [-]
+  static constexpr double STILL = 0.1;            ///< largest speed of a joint at which the arm is unlocked [rad/s]
 
-  /// `drives`: as ArmTwin takes them; the onsets of their faults count from the motion's begin, but those at 0 are
-  /// there from the reset on. settling: from 0 on [s]. @throws ParameterError.
+  /// `drives`: as ArmTwin takes them. The onsets of their faults count from the begin of the motion, but faults with an
+  /// onset of 0 exist from the reset on. `settling` is 0 or more [s]. @throws ParameterError.
   MovingArm(const ArmDescription& arm, const std::vector<Parameters>& drives, ArmMotion motion,
             const SurfaceSource& surface_source, double settling = SETTLING);
 
-  /// Back to the start of the motion given at construction. False: as ArmTwin::reset.
+  /// Sets the arm back to the start of the motion that was given at construction. Returns false as ArmTwin::reset.
   bool reset(Stamp stamp) noexcept;
 
-  /// As ArmTwin::step, with what the controller commands.
+  /// Makes a step as ArmTwin::step, with the commands of the controller.
   bool step(Stamp until) noexcept;
 
-  /// Gets another motion in exchange for the last one taken this way. It begins now, from the present set point, which
-  /// takes the place of its first.
+  /// Takes another motion, in exchange for the last one that was taken so. The motion begins now, from the present set
+  /// point, which replaces its first one.
   void follow(ArmMotion& motion) noexcept;
 
-  /// Of the motion that it follows: time until its end, < 0 behind it [s].
+  /// Time until the end of the commanded motion; it is negative after the end [s].
   double commandLeft() const noexcept
   {
     return commanded_.end() - commanded_.begin() - toSeconds(twin_.stamp() - command_begin_);
   }
 
-  /// For a motion that comes point by point: goes from the last set point to this one, which is due at `time` of the
-  /// motion given at construction, later than the last. That motion has two set points; the first is the start.
+  /// Goes on to a set point that is due at `time`, for a motion that comes point by point. The motion given at
+  /// construction must have two set points, of which the first is the start. `time` is a time of that motion, later
+  /// than the last one.
   void goOn(double time, const std::vector<JointMotion>& set_point) noexcept { motion_.goOn(time, set_point); }
 
-  /// At the tip, from the next step on; the controller knows of it.
+  /// Sets the payload at the tip, from the next step on. The controller knows of it.
   void setPayload(const Payload& payload) noexcept;
 
-  /// Present set point; `motion`: of the joints' size.
+  /// Gives the present set point. `motion` has an entry for each joint.
   void wanted(std::vector<JointMotion>& motion) noexcept { wantedAt(twin_.stamp(), motion); }
 
-  /// Ends a protective stop: the arm is held where it stands, until the next motion. False: a joint still moves, it
-  /// stays stopped.
+  /// Ends a protective stop: the controller holds the arm where it stands until the next motion. Returns false, and the
+  /// arm stays stopped, if a joint still moves.
   bool unlock() noexcept;
 
-  /// None: it moves.
+  /// The protective stop of the arm; none if it is not stopped.
   const std::optional<ProtectiveStop>& protectiveStop() const noexcept { return stop_; }
 
   JointReading reading(std::size_t joint) const noexcept;
-  Stamp motionBegin() const noexcept { return motion_begin_; }  ///< of the motion given at construction [ns]
+  Stamp motionBegin() const noexcept { return motion_begin_; }  ///< begin of the motion given at construction [ns]
   ArmTwin& twin() noexcept { return twin_; }
   const ArmTwin& twin() const noexcept { return twin_; }
   const ArmController& controller() const noexcept { return controller_; }
@@ -99,14 +100,14 @@ private:
   ArmTwin twin_;
   ArmController controller_;
   ArmMotion motion_;
-  double motion_start_;  // of its times [s]
+  double motion_start_;  // time of the first set point of motion_ [s]
   ArmMotion commanded_;
   bool is_commanded_{};
   Stamp motion_begin_{};
   Stamp command_begin_{};
-  std::vector<JointMotion> set_point_;  // of the last control
-  std::vector<double> fastest_;         // at which the joints are stopped [rad/s]
+  std::vector<JointMotion> set_point_;  // set point of the last control
+  std::vector<double> fastest_;         // speeds of the joints above which the arm is stopped [rad/s]
   std::optional<ProtectiveStop> stop_;
-  bool is_held_{};  // where the last set point is, after a stop
+  bool is_held_{};  // the arm is held at the last set point, after a stop
 };
 }  // namespace hjt

@@ -19,17 +19,17 @@ namespace hjt
 {
 namespace
 {
-constexpr double FASTEST = 10.0;      // no joint of an arm turns faster [rad/s]
-constexpr double FACTOR_OFF = 0.03;   // of angle over velocity: beyond the errors of encoders' scales
-constexpr double DEVIATIONS = 3.0;    // beyond these a difference is significant
-constexpr double WIDE = 2.0;          // of a unit's factor: a payload or another gain make no more of it
+constexpr double FASTEST = 10.0;      // speed that no joint of an arm exceeds [rad/s]
+constexpr double FACTOR_OFF = 0.03;   // change of angle over velocity that errors of encoders' scales do not make
+constexpr double DEVIATIONS = 3.0;    // standard deviations of a significant difference
+constexpr double WIDE = 2.0;          // factor that a payload or another gain makes at most
 constexpr double WIDEST_FACTOR = 20;  // largest factor of stamps; beyond it another unit is likelier
-constexpr double LAG_OFF = 0.05;      // [s]
+constexpr double LAG_OFF = 0.05;      // least lag of the velocity that counts [s]
 constexpr std::uint64_t MIN_ROWS = 100;
-constexpr double UNCHANGED = 2.0;       // no current stays the same in motion for longer [s]
+constexpr double UNCHANGED = 2.0;       // longest motion in which a measured current stays the same [s]
 constexpr double LEAST_SQUARE = 1e-12;  // least square of an uncertainty: simulated data may have none
 
-/// "0.2 s later": of currents behind their motion. `longest`: nothing longer is tried [s].
+/// Text on a lag of currents behind their motion, as "0.2 s later". `longest` is the longest lag that is tried [s].
 std::string lagText(double lag, double longest)
 {
   const bool is_longest = std::abs(lag) > longest - 0.5 * CurrentLag::SPACING;
@@ -41,11 +41,11 @@ bool differs(const FittedFactor& factor, double from)
   return std::abs(factor.value - from) > std::max(FACTOR_OFF * std::abs(from), DEVIATIONS * factor.uncertainty);
 }
 
-/// No gain of a type or payload that leaves the joints judged makes so much of it.
+/// Whether the factor is larger than gains of one type and payloads make with which the joints can be judged.
 bool isOtherLoad(const FittedFactor& factor)
 {
   constexpr double OTHER = 1.7;
-  constexpr double SURE = 2.0;  // deviations: what is refused is no alarm
+  constexpr double SURE = 2.0;  // standard deviations; joints that are not judged give no alarm
   return std::abs(std::log(std::max(factor.value, 1e-3))) >
          std::log(OTHER) + SURE * factor.uncertainty / std::max(factor.value, 1e-3);
 }
@@ -55,13 +55,13 @@ std::string rounded(double value)
   return roundedText(value, 3);
 }
 
-/// Contradiction of angle and velocity of one joint whose factor is not that of the stamps; empty: nothing.
+/// The contradiction of angle and velocity of one joint whose factor is not that of the stamps.
 RecordingFinding velocityFinding(const FittedFactor& own, double of_stamps)
 {
   constexpr double STANDS = 0.01;
   if (std::isinf(own.value))
   {
-    return { "velocity_zero", "velocity zero: taken from the angles", std::nullopt };
+    return { "velocity_zero", "the recorded velocity is zero, so it is computed from the angles", std::nullopt };
   }
   if (own.value < -STANDS)
   {
@@ -69,14 +69,14 @@ RecordingFinding velocityFinding(const FittedFactor& own, double of_stamps)
   }
   if (std::abs(own.value / DEGREE - 1.0) < FACTOR_OFF)
   {
-    return { "velocity_unit", "velocity in deg/s: taken from angles", std::nullopt };
+    return { "velocity_unit", "the recorded velocity is in deg/s, so it is computed from the angles", std::nullopt };
   }
   if (own.value < STANDS)
   {
-    return { "velocity_scale", "angle stands still while the velocity says that the joint moves",
+    return { "velocity_scale", "the angle stands still while the velocity says that the joint moves",
              Reason::VELOCITY_SCALE };
   }
-  return { "velocity_scale", "angle changes " + rounded(own.value / of_stamps) + " times the velocity",
+  return { "velocity_scale", "the angle changes " + rounded(own.value / of_stamps) + " times the velocity",
            Reason::VELOCITY_SCALE };
 }
 }  // namespace
@@ -84,7 +84,7 @@ RecordingFinding velocityFinding(const FittedFactor& own, double of_stamps)
 double likelyTimeScale(double period)
 {
   constexpr double FASTEST_ROWS = 0.5e-3;  // [s]
-  constexpr double LONG = 0.5;             // no telemetry comes so rarely [s]
+  constexpr double LONG = 0.5;             // period that no telemetry has [s]
   if (period < LONG)
   {
     return 1.0;
@@ -232,7 +232,7 @@ FittedFactor RecordingFit::stampFactor() const
   return 2 * agree > likely.size() ? middle : FittedFactor();
 }
 
-/// Rows too far apart, or stamps that angles and velocities contradict.
+/// Finding on rows too far apart, or on stamps that angles and velocities contradict.
 std::optional<RecordingFinding> RecordingFit::ofTimes() const
 {
   constexpr std::uint64_t FEW_ROWS = 10;
@@ -241,7 +241,7 @@ std::optional<RecordingFinding> RecordingFit::ofTimes() const
     const double period = slow_time_ / static_cast<double>(slow_rows_);
     return RecordingFinding{ "period",
                              "rows come " + rounded(period) + " s apart by their stamps (" + rounded(1.0 / period) +
-                                 " Hz), more than " + rounded(SLOW_ROWS) + " s: no accelerations, no loads" +
+                                 " Hz), more than " + rounded(SLOW_ROWS) + " s: accelerations and loads are unknown" +
                                  (likelyTimeScale(period) < 1.0 ? ", or the stamps are of another unit (of a recording "
                                                                   "`joint_twin check` tries --time-scale)" :
                                                                   ""),
@@ -261,7 +261,7 @@ std::optional<RecordingFinding> RecordingFit::ofTimes() const
   return std::nullopt;
 }
 
-/// They come earlier or later than the motion that draws them.
+/// Finding on currents that come earlier or later than their motion.
 std::optional<RecordingFinding> RecordingFit::ofCurrents() const
 {
   std::vector<std::array<double, CurrentLag::LAGS>> left;
@@ -283,7 +283,7 @@ std::optional<RecordingFinding> RecordingFit::ofCurrents() const
 
 EffortFit RecordingFit::effort() const
 {
-  constexpr double MAX_UNCERTAINTY = 1.0 / 3.0;  // share of the factor: beyond, the effort may not contain the load
+  constexpr double MAX_UNCERTAINTY = 1.0 / 3.0;  // largest share of the factor with which the effort contains the load
   EffortFit fit;
   fit.unit = joints_.front().effort;
   double weights = 0.0;
@@ -293,7 +293,7 @@ EffortFit RecordingFit::effort() const
   std::vector<double> expected(units.size());
   for (const Joint& joint : joints_)
   {
-    // By the load, not by the uncertainty: a dead current would be the most certain one.
+    // The weight is the load and not the certainty, because a dead current would be the most certain one.
     double weight = 0.0;
     const FittedFactor slope = joint.lag.now().slope(weight);
     if (!std::isfinite(slope.value) || joint.reach.least_current == joint.reach.most_current)
@@ -347,7 +347,7 @@ RecordingFit::LoadRest RecordingFit::loadRest(EffortUnit unit) const
 
 std::vector<RecordingFinding> RecordingFit::ofArm() const
 {
-  constexpr double MIN_SHARE = 0.1;  // least share of the moving rows: jolts where pieces are joined are fewer
+  constexpr double MIN_SHARE = 0.1;  // least share of the moving rows; jolts where pieces are joined are fewer
   const auto is_too_fast = [](const Joint& joint)
   { return static_cast<double>(joint.fast_rows) > static_cast<double>(MIN_ROWS) + MIN_SHARE * joint.moving_rows; };
   std::vector<RecordingFinding> findings;
@@ -426,7 +426,8 @@ std::vector<RecordingFinding> RecordingFit::ofJoint(std::size_t number) const
   }
   if (!isMeasured(number))
   {
-    findings.push_back({ "effort_constant", joint.last_current == 0.0 ? "effort is zero" : "effort never changes",
+    findings.push_back({ "effort_constant",
+                         joint.last_current == 0.0 ? "the effort is zero" : "the effort never changes",
                          Reason::EFFORT_CONSTANT });
   }
   if (const double late = ownLag(joint.lag.left()); late != 0.0)
@@ -457,11 +458,11 @@ std::vector<RecordingFinding> RecordingFit::ofJoint(std::size_t number) const
   }
   if (!joint.time.hasVelocity())
   {
-    findings.push_back({ "no_velocity", "velocity taken from the angles", std::nullopt });
+    findings.push_back({ "no_velocity", "no velocity is recorded, so it is computed from the angles", std::nullopt });
   }
   if (joint.reach.most_angle - joint.reach.least_angle < LEAST_MOTION)
   {
-    findings.push_back({ "at_rest", "does not move", std::nullopt });
+    findings.push_back({ "at_rest", "the joint does not move", std::nullopt });
   }
   return findings;
 }

@@ -18,16 +18,16 @@
 
 namespace hjt
 {
-/// Rows further apart tell no acceleration: 20 Hz at least, with jitter [s].
+/// Largest time between rows that show accelerations: that of 20 Hz, with jitter [s].
 constexpr double SLOW_ROWS = 0.06;
 
-/// By which stamps are multiplied that are in ms, us or ns, where rows so far apart [s] mean one of these; 1: they do
-/// not.
+/// Factor that makes seconds of stamps in ms, us or ns. The unit is recognised by the time between rows, `period`, as
+/// it looks in seconds. 1: the stamps are in seconds.
 double likelyTimeScale(double period);
 
-/// For people: "the motor's current in A".
+/// Name of the unit for people, as "the motor's current in A".
 const char* effortUnitName(EffortUnit unit);
-/// In configuration.
+/// Keyword of the unit in the configuration.
 const char* effortKeyword(EffortUnit unit);
 
 /// Something in a recording of an arm that does not fit.
@@ -37,7 +37,7 @@ struct RecordingFinding
                      ///< effort_constant, velocity_zero, velocity_sign, velocity_unit, velocity_scale, lag,
                      ///< no_velocity, at_rest
   std::string text;  ///< a clause without a full stop
-  std::optional<Reason> stops;  ///< nothing can be judged with it
+  std::optional<Reason> stops;  ///< reason why nothing can be judged; none if the finding does not prevent it
 };
 
 /// Ranges of a joint in a recording; empty before the first row.
@@ -46,66 +46,67 @@ struct JointReach
   std::uint64_t rows{};
   double least_angle{ std::numeric_limits<double>::infinity() };    ///< [rad]
   double most_angle{ -std::numeric_limits<double>::infinity() };    ///< [rad]
-  double least_speed{};                                             ///< 0: never moves in negative direction [rad/s]
+  double least_speed{};                                             ///< 0 without negative motion [rad/s]
   double most_speed{};                                              ///< [rad/s]
-  double least_current{ std::numeric_limits<double>::infinity() };  ///< of the effort [A]
+  double least_current{ std::numeric_limits<double>::infinity() };  ///< least current by the effort [A]
   double most_current{ -std::numeric_limits<double>::infinity() };  ///< [A]
 };
 
-/// How much of the load is found in the currents of an arm.
+/// How the currents of an arm change with its load.
 struct EffortFit
 {
-  FittedFactor factor;  ///< current per load, over that of telemetry.torque_per_current; NaN: too little load to tell
-  EffortUnit unit{};    ///< that the recording shows; as configured where it does not show another
-  bool is_known{};      ///< the factor is that of a unit
+  FittedFactor factor;  ///< current per load, over that of telemetry.torque_per_current; NaN with too little load
+  EffortUnit unit{};    ///< unit that the recording shows, or the configured unit
+  bool is_known{};      ///< whether the factor is that of a unit
 };
 
-/// Does a recording of an arm fit together: angles, velocities and stamps; currents and the load of the arm?
+/// Checks whether the rows of an arm fit together: angles with velocities and stamps, and currents with the load.
 ///
-/// Fed with the rows of all joints, live or offline. What it knows is of the last minutes of motion. `update` neither
-/// throws nor allocates.
+/// The rows of all joints come live or from a recording. The findings are of the last minutes of motion. `update`
+/// neither throws nor allocates.
 class RecordingFit
 {
 public:
-  static constexpr double PATIENCE = 30.0;  ///< [s]
+  static constexpr double PATIENCE = 30.0;  ///< motion after which the findings are final [s]
 
-  /// @param joints of the arm; the currents in the samples follow from their efforts as these are configured.
+  /// `joints`: parameters of the arm's joints, by which the currents of the samples follow from the efforts.
   explicit RecordingFit(const std::vector<Parameters>& joints);
 
   void reset() noexcept;
-  /// `torques`: NaN where the load is not known.
+  /// `torques`: loads of the joints, NaN where a load is not known [N.m].
   void update(const std::vector<MotionSample>& joints, const std::vector<double>& torques) noexcept;
 
-  /// By how much the stamps must be stretched to fit the velocities of most joints; NaN: not known.
+  /// Factor by which the stamps must be stretched to fit the velocities of most joints; NaN if it is not known.
   FittedFactor stampFactor() const;
   EffortFit effort() const;
   const JointReach& reach(std::size_t joint) const { return joints_[joint].reach; }
-  std::vector<bool> measured() const;  ///< of each joint: its current changes, as a measured one does
+  std::vector<bool> measured() const;  ///< whether the current of each joint changes, as a measured current does
   bool hasVelocity(std::size_t joint) const { return joints_[joint].time.hasVelocity(); }
-  /// Of angle and velocity of the joint.
+  /// Fit of the joint's angle and velocity.
   const TimeFit& timeFit(std::size_t joint) const { return joints_[joint].time; }
 
-  /// Nothing can be judged of any joint; none: nothing stands against it.
+  /// Sets a misfit with which no joint can be judged, or none.
   void refuse(const Misfit& misfit) { refusal_ = misfit; }
 
-  /// Of the moving joints, rms; NaN: nothing moved.
+  /// Currents of the moving joints, rms; NaN if nothing moved.
   struct LoadRest
   {
-    double current{};  ///< current less constant, friction and rotor inertia, fitted [A]
-    double left{};     ///< and the load as it is too [A]
+    double current{};  ///< current less fitted constant, friction and rotor inertia [A]
+    double left{};     ///< `current` less the current of the load [A]
 
-    double share() const { return left / current; }  ///< of the current that the load leaves; not finite: no motion [-]
+    /// Share of the current that the load leaves; not finite without motion [-].
+    double share() const { return left / current; }
   };
-  /// If the efforts were of this unit.
+  /// The currents if the efforts were of this unit.
   LoadRest loadRest(EffortUnit unit) const;
 
   std::vector<RecordingFinding> ofArm() const;
   std::vector<RecordingFinding> ofJoint(std::size_t joint) const;
 
-  /// Whether the rows suffice for its findings, or PATIENCE of motion has passed without any.
+  /// Whether the rows suffice for the findings, or PATIENCE of motion has passed.
   bool isSettled() const;
 
-  /// For each joint the first finding of arm or joint with which nothing can be judged.
+  /// The misfit of each joint: the first finding of the arm or the joint with which nothing can be judged.
   std::vector<Misfit> whyNotJudged() const;
 
 private:
@@ -117,15 +118,15 @@ private:
   {
     double gain{};  // [N.m/A]
     EffortUnit effort{};
-    std::vector<double> current_per_effort;  // by unit [A], [A/(N.m)]
+    std::vector<double> current_per_effort;  // current per effort of each unit [A], [A/(N.m)]
     TimeFit time;
     RatioFit ratio;
     CurrentLag lag;
     JointReach reach;
     std::uint64_t moving_rows{};
-    std::uint64_t fast_rows{};  // faster than any joint
+    std::uint64_t fast_rows{};  // rows with a speed that no joint has
     double last_current{};      // [A]
-    double unchanged{};         // motion since it changed [s]
+    double unchanged{};         // motion since the current changed [s]
   };
 
   std::vector<FittedFactor> timeFactors() const;
@@ -134,7 +135,7 @@ private:
   std::vector<Joint> joints_;
   double last_time_{ std::numeric_limits<double>::quiet_NaN() };
   double moving_{};     // time in which a joint moved [s]
-  double slow_time_{};  // between rows too far from each other [s]
+  double slow_time_{};  // sum of the steps that are longer than SLOW_ROWS [s]
   std::uint64_t slow_rows_{};
   std::uint64_t rows_{};
 };

@@ -10,12 +10,13 @@
 #include <tuple>
 #include <utility>
 
-#include "arm/arm_dynamics.hpp"
-#include "arm/arm_file.hpp"
-#include "arm/check_up.hpp"
+#include "arm/arm_controller.hpp"
+#include "arm/arm_description.hpp"
+#include "arm/arm_motion.hpp"
 #include "base/csv_table.hpp"
 #include "base/number_text.hpp"
 #include "base/statistics.hpp"
+#include "gear/ratio.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "params/field_reader.hpp"
 
@@ -23,12 +24,12 @@ namespace hjt
 {
 namespace
 {
-constexpr double PERIOD = 0.008;         // of the set points [s]
-constexpr double LARGEST = 100.0;        // angle: a joint may turn without end [rad]
-constexpr double LONGEST_REST = 3600.0;  // rest [s]
+constexpr double PERIOD = 0.008;         // time between set points [s]
+constexpr double LARGEST = 100.0;        // largest angle; a joint may turn without end [rad]
+constexpr double LONGEST_REST = 3600.0;  // longest rest after a move [s]
 constexpr const char* MOVES = "moves";
 
-/// Moves, each with what the file says for all where it says nothing itself.
+/// Reads the moves of a program. Values at the top of the file count for each move that does not give its own.
 class ProgramReader
 {
 public:
@@ -104,15 +105,16 @@ private:
   {
     move.target.resize(joints_);
     fields_(at + "to", "rad", move.target, Range{ -LARGEST, LARGEST }, "angles of all joints");
-    fields_(at + "speed", "rad/s", move.speed, Range{ 1e-3, 100.0 }, "of the joint that goes farthest, at most");
-    fields_(at + "acceleration", "rad/s^2", move.acceleration, Range{ 1e-2, 1e4 }, "of that joint, at most");
+    fields_(at + "speed", "rad/s", move.speed, Range{ 1e-3, 100.0 }, "largest speed of the joint that goes farthest");
+    fields_(at + "acceleration", "rad/s^2", move.acceleration, Range{ 1e-2, 1e4 },
+            "largest acceleration of that joint");
     if (holds(at + "jerk"))
     {
-      fields_(at + "jerk", "rad/s^3", move.jerk, Range{ 1e-2, 1e6 }, "of that joint, at most");
+      fields_(at + "jerk", "rad/s^3", move.jerk, Range{ 1e-2, 1e6 }, "largest jerk of that joint");
     }
     if (holds(at + "wait"))
     {
-      fields_(at + "wait", "s", move.wait, Range{ 0.0, LONGEST_REST }, "at rest afterwards");
+      fields_(at + "wait", "s", move.wait, Range{ 0.0, LONGEST_REST }, "time at rest after the move");
     }
   }
 
@@ -121,22 +123,20 @@ private:
   FieldReader fields_;
 };
 
-/// Set points of a program, a YAML file of moves between via points (docs/arm_twin.md), 125 a second. The arm rests for
-/// half a second before and after. @throws ParameterError naming file, line and key, or the joint and its limit.
+/// Set points of a program, a YAML file of moves between via points (docs/arm_twin.md), at 125 Hz. The arm rests for
+/// half a second before and after the moves. @throws ParameterError naming file, line and key, or the joint and its
+/// limit.
 std::vector<ArmSetPoint> readArmProgram(const std::string& path, const ArmDescription& arm)
 {
   ProgramReader reader(path, arm.joints.size());
   const ArmPose start = reader.start();
-  std::vector<ArmSetPoint> points;
-  for (ArmInstant& instant : sampleMoves(arm, start, reader.moves(), PERIOD))
-  {
-    points.push_back({ instant.time, std::move(instant.joints) });
-  }
+  const std::vector<ArmInstant> instants = sampleMoves(arm, start, reader.moves(), PERIOD);
+  std::vector<ArmSetPoint> points(instants.begin(), instants.end());
   requireMotion(points, arm, path);
   return points;
 }
 
-/// The column of a header by one of its names; -1: none.
+/// Number of the column that has one of these names; -1 if there is none.
 int columnOf(const std::vector<std::string>& header, const std::vector<std::string>& names)
 {
   for (const std::string& name : names)
@@ -150,8 +150,8 @@ int columnOf(const std::vector<std::string>& header, const std::vector<std::stri
   return -1;
 }
 
-/// In which the joints go from one set point to the next at their speeds, least squares [s]; NaN: they are too slow to
-/// tell.
+/// Time in which the joints go from one set point to the next at their speeds, by least squares; NaN if the joints are
+/// too slow to tell [s].
 double stepByMotion(const ArmSetPoint& from, const ArmSetPoint& to, double least_speed)
 {
   double way = 0.0;
@@ -165,8 +165,8 @@ double stepByMotion(const ArmSetPoint& from, const ArmSetPoint& to, double least
   return squares > least_speed * least_speed ? way / squares : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Of a motion's first or last set point, whose speeds are those in the middle of the row beside it: a joint that the
-/// row, of that length [s], is long enough to start or stop in is at rest there.
+/// Sets speeds of a motion's first or last set point to zero. Their speeds are those in the middle of the row beside
+/// it. A joint is at rest there if it can start or stop within the row of that length [s].
 void restAtEnd(double length, ArmSetPoint& point)
 {
   constexpr double ACCELERATION = 10.0;  // [rad/s^2]
@@ -176,13 +176,13 @@ void restAtEnd(double length, ArmSetPoint& point)
   }
 }
 
-/// Evidence that the speeds of a joint have another unit or sign; empty: none.
+/// Text on speeds of a joint that have another unit or sign than the angles; empty if there are none.
 std::string rateErrors(const std::vector<ArmSetPoint>& points, std::size_t joint)
 {
-  constexpr double LEAST_WAY = 0.1;        // that tells of the speeds [rad]
-  constexpr double LEAST_PART = 1e-4;      // of a row, likewise [rad]
-  constexpr std::size_t LEAST_ROWS = 3;    // in motion; of fewer the way is a jump
-  constexpr Range SAME_RATES{ 0.5, 2.0 };  // speeds over the angles' rates, median: jumps are left to the arm
+  constexpr double LEAST_WAY = 0.1;        // least way of a joint that is checked [rad]
+  constexpr double LEAST_PART = 1e-4;      // least way of a row that counts [rad]
+  constexpr std::size_t LEAST_ROWS = 3;    // least rows in motion; with fewer rows the way is a jump
+  constexpr Range SAME_RATES{ 0.5, 2.0 };  // allowed median of speeds over the angles' rates
   double way = 0.0;                        // [rad]
   std::vector<double> ratios;
   for (std::size_t k = 1; k < points.size(); ++k)
@@ -208,7 +208,7 @@ std::string rateErrors(const std::vector<ArmSetPoint>& points, std::size_t joint
   return {};
 }
 
-constexpr double LONGEST = 1e6;  // of a motion, eleven days [s]
+constexpr double LONGEST = 1e6;  // longest motion, eleven days [s]
 
 std::string rangeErrors(const JointMotion& motion, const ArmJoint& joint)
 {
@@ -224,11 +224,12 @@ std::string rangeErrors(const JointMotion& motion, const ArmJoint& joint)
                               errors("acceleration", motion.acceleration, "rad/s^2", Range{ -1e4, 1e4 });
 }
 
-/// Beyond any controller's set points, which may be a little faster than the joint.
+/// Text on a joint that would turn faster than in any controller's set points, which may be a little faster than the
+/// joint.
 std::string speedErrors(const std::vector<ArmSetPoint>& points, const ArmDescription& arm)
 {
-  constexpr double TIMES = 3.0;  // the joint's greatest speed
-  constexpr double SHORT = 0.1;  // stamps of single set points jitter [s]
+  constexpr double TIMES = 3.0;  // largest multiple of the joint's speed limit
+  constexpr double SHORT = 0.1;  // time over which speeds are taken, because single stamps jitter [s]
   std::size_t from = 0;
   for (const ArmSetPoint& to : points)
   {
@@ -252,7 +253,7 @@ std::string speedErrors(const std::vector<ArmSetPoint>& points, const ArmDescrip
   return {};
 }
 
-/// At rest in each set point no joint may bear more of links and payload than its limit.
+/// Text on a joint that cannot bear links and payload at rest in a set point; empty if all joints can.
 std::string weightErrors(const std::vector<ArmSetPoint>& points, const ArmDescription& arm)
 {
   ArmDynamics dynamics(arm);
@@ -312,12 +313,12 @@ void fillRates(std::vector<ArmSetPoint>& points, bool has_velocity, bool has_acc
 
 double straightenTimes(std::vector<ArmSetPoint>& points)
 {
-  constexpr double MOVING = 0.05;      // all joints together [rad/s]
-  constexpr double SAME_RATES = 0.02;  // share by which the speeds may be off the angles' rates
-  constexpr double JITTER = 0.1;       // of a step, rms, that counts
-  constexpr double LONGEST = 4.0;      // step over that of the stamps
+  constexpr double MOVING = 0.05;      // least speed of all joints together [rad/s]
+  constexpr double SAME_RATES = 0.02;  // largest share by which the speeds differ from the angles' rates
+  constexpr double JITTER = 0.1;       // least jitter that counts, rms over the step
+  constexpr double LONGEST = 4.0;      // longest step over that of the stamps
   std::vector<double> steps;
-  double by_stamps = 0.0;  // of the steps in motion [s]
+  double by_stamps = 0.0;  // sum of the steps in motion [s]
   double by_motion = 0.0;
   double squares = 0.0;
   double moving = 0.0;
@@ -445,16 +446,7 @@ std::vector<ArmSetPoint> readSetPoints(const std::string& path, const ArmDescrip
     throw InputError(path + ": no column " + missing);
   }
   std::vector<ArmSetPoint> points;
-  const auto number = [&](int column)
-  {
-    const std::optional<double> value = decimalNumber(rows.text(static_cast<std::size_t>(column)));
-    if (!value || !std::isfinite(*value))
-    {
-      throw InputError(rows.place() + ": column '" + header[static_cast<std::size_t>(column)] +
-                       "' is no finite number");
-    }
-    return *value;
-  };
+  const auto number = [&](int column) { return rows.number(static_cast<std::size_t>(column)); };
   while (rows.next())
   {
     ArmSetPoint point{ number(time), {} };
@@ -468,5 +460,56 @@ std::vector<ArmSetPoint> readSetPoints(const std::string& path, const ArmDescrip
   fillRates(points, has_velocity, has_acceleration);
   requireMotion(points, arm, path);
   return points;
+}
+
+MotionLimits::MotionLimits(const ArmDescription& arm, const std::vector<Parameters>& drives)
+  : dynamics_(arm), torques_(drives.size())
+{
+  for (std::size_t i = 0; i < drives.size(); ++i)
+  {
+    joints_.push_back({ arm.joints[i].name, arm.joints[i].torque_limit,
+                        nominalRatio(drives[i].gear) * drives[i].motor.torque_limit,
+                        ArmController::motorInertia(drives[i]) });
+  }
+}
+
+std::string MotionLimits::errors(const std::vector<ArmSetPoint>& points)
+{
+  std::vector<JointMotion> motion(joints_.size());
+  for (std::size_t k = 1; k < points.size(); ++k)
+  {
+    ArmMotion piece({ points[k - 1], points[k] }, ArmAccelerations::OF_CUBICS);
+    const double length = points[k].time - points[k - 1].time;
+    // The acceleration of a cubic is greatest at its ends, which belong to the set points' neighbours too.
+    for (const double share : { 1e-6, 0.5, 1.0 - 1e-6 })
+    {
+      piece.at(points[k - 1].time + share * length, motion);
+      if (std::string error = errorsAt(motion, points[k].time); !error.empty())
+      {
+        return error;
+      }
+    }
+  }
+  return {};
+}
+
+std::string MotionLimits::errorsAt(const std::vector<JointMotion>& motion, double before)
+{
+  dynamics_.torques(motion, torques_);
+  for (std::size_t i = 0; i < joints_.size(); ++i)
+  {
+    const Joint& joint = joints_[i];
+    const double motor = std::abs(torques_[i] + joint.motor_inertia * motion[i].acceleration);
+    // Written so that NaN fails.
+    const bool links_can = joint.torque_limit == 0.0 || std::abs(torques_[i]) <= joint.torque_limit;
+    if (!links_can || !(motor <= joint.motor_limit))
+    {
+      return joint.name + " would need " + roundedText(links_can ? motor : std::abs(torques_[i]), 3) +
+             (links_can ? " N.m of its motor" : " N.m") + " before " + roundedText(before, 4) + " s, at " +
+             roundedText(motion[i].acceleration, 3) + " rad/s^2; " + (links_can ? "it has " : "its limit is ") +
+             roundedText(links_can ? joint.motor_limit : joint.torque_limit, 4);
+    }
+  }
+  return {};
 }
 }  // namespace hjt

@@ -126,6 +126,16 @@ void CsvRows::readHeader()
   std::transform(header_.begin(), header_.end(), header_.begin(), withoutUnit);
 }
 
+double CsvRows::number(std::size_t column) const
+{
+  const std::optional<double> value = decimalNumber(text(column));
+  if (!value || !std::isfinite(*value))
+  {
+    throw InputError(place() + ": column '" + header_[column] + "' is no finite number");
+  }
+  return *value;
+}
+
 bool CsvRows::next()
 {
   do

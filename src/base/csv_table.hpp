@@ -47,6 +47,8 @@ public:
 
   /// Of the row read last; valid until the next is.
   const char* text(std::size_t column) const { return texts_[column]; }
+  /// The number that the text is. @throws InputError naming the line if it is no finite number.
+  double number(std::size_t column) const;
 
   /// File and line of the row read last.
   std::string place() const { return path_ + ":" + std::to_string(line_number_); }

@@ -30,6 +30,16 @@ inline double medianOf(std::vector<double> values)
   return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
+/// Standard deviation of residuals, a vector's, whose outliers do not count: by their median size, as of a normal
+/// distribution.
+template <class Vector>
+double robustDeviation(const Vector& residuals)
+{
+  std::vector<double> sizes(residuals.data(), residuals.data() + residuals.size());
+  std::transform(sizes.begin(), sizes.end(), sizes.begin(), [](double residual) { return std::abs(residual); });
+  return upperMedian(sizes.begin(), sizes.end()) / NORMAL_MEDIAN;
+}
+
 /// Root mean square of what is added.
 class Rms
 {

@@ -29,6 +29,12 @@ std::string joined(const Texts& texts, const char* separator = ", ")
   return joined(texts, separator, [](const std::string& text) { return text; });
 }
 
+/// Whether a text is one of several.
+inline bool holds(const std::vector<std::string>& texts, const std::string& text)
+{
+  return std::find(texts.begin(), texts.end(), text) != texts.end();
+}
+
 /// Single edits (insert, delete, replace) between two texts (Levenshtein).
 inline std::size_t editDistance(const std::string& from, const std::string& to)
 {

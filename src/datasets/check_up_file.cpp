@@ -10,7 +10,7 @@
 #include "output/process_end.hpp"
 
 #include "arm/arm_configuration.hpp"
-#include "arm/check_up.hpp"
+#include "arm/arm_motion.hpp"
 #include "bags/bag_writer.hpp"
 #include "base/number_text.hpp"
 #include "base/whole_file.hpp"

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "arm/arm_file.hpp"
+#include "arm/arm_description.hpp"
 #include "arm/arm_recorder.hpp"
 #include "base/number_text.hpp"
 #include "base/text.hpp"

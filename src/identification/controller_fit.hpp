@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "arm/joint_gains.hpp"
+#include "arm/arm_description.hpp"
 
 namespace hjt
 {

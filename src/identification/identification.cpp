@@ -7,7 +7,6 @@
 
 #include <Eigen/Cholesky>
 
-#include "arm/residual_statistics.hpp"
 #include "base/statistics.hpp"
 #include "elements/motor.hpp"
 #include "gear/ratio.hpp"

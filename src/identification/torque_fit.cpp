@@ -8,15 +8,41 @@
 #include <utility>
 
 #include <Eigen/Cholesky>
+#include <unsupported/Eigen/FFT>
 
-#include "arm/residual_statistics.hpp"
 #include "base/number_text.hpp"
+#include "base/statistics.hpp"
 #include "elements/motor.hpp"
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 
 namespace hjt
 {
+double correlationRows(const Eigen::VectorXd& residuals)
+{
+  const Eigen::Index rows = residuals.size();
+  Eigen::Index size = 2;
+  while (size < 2 * rows)
+  {
+    size *= 2;
+  }
+  // Padded by zeros, else the end of the rows would meet their begin.
+  Eigen::VectorXd padded = Eigen::VectorXd::Zero(size);
+  padded.head(rows) = residuals;
+  Eigen::FFT<double> transform;
+  Eigen::VectorXcd spectrum;
+  transform.fwd(spectrum, padded);
+  spectrum = spectrum.cwiseAbs2().cast<std::complex<double>>();
+  Eigen::VectorXd products;  // of rows that lie so far apart
+  transform.inv(products, spectrum, size);
+  double length = 1.0;
+  for (Eigen::Index lag = 1; lag < rows / 4 && products[lag] > 0.0; ++lag)
+  {
+    length += 2.0 * products[lag] / products[0];
+  }
+  return length;
+}
+
 NormalEquations huberEquations(const Eigen::VectorXd& errors, const Eigen::MatrixXd& columns, Eigen::MatrixXd products,
                                double outlier)
 {

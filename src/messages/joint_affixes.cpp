@@ -9,11 +9,6 @@ namespace hjt
 {
 namespace
 {
-bool holds(const std::vector<std::string>& names, const std::string& name)
-{
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
 std::string lacking(const std::vector<std::string>& joints, const std::vector<std::string>& names,
                     const JointAffixes& affixes)
 {

@@ -2,20 +2,43 @@
 #include "recordings/arm_assessment.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <memory>
 #include <utility>
 
+#include "arm/arm_configuration.hpp"
 #include "arm/load_fit.hpp"
-#include "recordings/recorded_ranking.hpp"
 
 namespace hjt
 {
 namespace
 {
-/// Where no joint has a reference of its own, and the controller's is that of sound joints.
-void holdAgainstController(const std::vector<AssessedJoint*>& joints)
+/// Cost of an arm by the gains that the recording states. Stated gains are exact, and so are known gains of a type: a
+/// few that agree show which arm it is.
+double costOfGains(const ArmRecording& recording, const RecordingOptions& options)
+{
+  constexpr double KNOWN = 0.01;  // standard deviation of the logarithm [-]
+  constexpr double MOST = 10.0;   // largest cost of one joint, whose type's gain may not be known [-]
+  double cost = 0.0;
+  for (std::size_t i = 0; i < recording.joints().size(); ++i)
+  {
+    const double stated = recording.statedGains()[i];
+    if (std::isfinite(stated))
+    {
+      const double type = parseParameters(armJointParameters(recording.joints()[i], configDirectory(options), ""))
+                              .telemetry.torque_per_current;
+      cost += std::min(0.5 * std::pow(std::log(std::abs(stated) / type) / KNOWN, 2), MOST);
+    }
+  }
+  return cost;
+}
+
+/// Holds the joints against the friction that the controller expects, if no joint has a reference of its own and the
+/// controller expects that of sound joints.
+void holdAgainstController(const AssessedJoints& joints)
 {
   std::vector<const JointEvidence*> evidences;
-  for (const AssessedJoint* joint : joints)
+  for (const auto& joint : joints)
   {
     if (joint->hasReference())
     {
@@ -25,16 +48,15 @@ void holdAgainstController(const std::vector<AssessedJoint*>& joints)
   }
   if (controllerIsReference(evidences))
   {
-    for (AssessedJoint* joint : joints)
+    for (const auto& joint : joints)
     {
       joint->holdAgainstController();
     }
   }
 }
 
-/// With the friction that each is held against.
-std::vector<LoadFit::Drive> drivesOf(const std::vector<Parameters>& parameters,
-                                     const std::vector<AssessedJoint*>& joints)
+/// The drives of the joints with the friction that is expected of them.
+std::vector<LoadFit::Drive> drivesOf(const std::vector<Parameters>& parameters, const AssessedJoints& joints)
 {
   std::vector<LoadFit::Drive> drives(parameters.begin(), parameters.end());
   for (std::size_t i = 0; i < drives.size(); ++i)
@@ -44,22 +66,23 @@ std::vector<LoadFit::Drive> drivesOf(const std::vector<Parameters>& parameters,
   return drives;
 }
 
-/// `looks_for_load`: else it is what it counts as.
+/// Reads the recording once and judges its joints. With `looks_for_load` it finds the load that the currents show.
 ArmAssessment pass(const ArmRecording& recording, const AssessmentSettings& settings, bool looks_for_load,
                    bool gives_notice, RecordingFit& fit)
 {
   ArmAssessment arm;
-  arm.joints = settings.make_joints();
+  for (std::size_t i = 0; i < recording.joints().size(); ++i)
+  {
+    arm.joints.push_back(settings.make_joint ?
+                             settings.make_joint(i) :
+                             std::make_unique<AssessedJoint>(recording.parameters(i), recording.loadOrigin(),
+                                                             SoundJoint(), !recording.options().identified.empty()));
+  }
   std::optional<LoadFit> load;
   std::vector<MotionSample> samples(arm.joints.size());
-  std::vector<const MotionDriven*> twins;
   if (looks_for_load)
   {
     load.emplace(recording.arm(), drivesOf(recording.parameters(), arm.joints));
-    for (const AssessedJoint* joint : arm.joints)
-    {
-      twins.push_back(&joint->evidence().twin());
-    }
   }
   fit = RecordingFit(recording.parameters());
   StreamTiming timing;
@@ -74,7 +97,8 @@ ArmAssessment pass(const ArmRecording& recording, const AssessmentSettings& sett
         samples[i] = sample;
         if (load && i + 1 == samples.size())  // rows of one time come one after the other
         {
-          load->add(samples, twins);
+          load->add(samples,
+                    [&](std::size_t joint) -> const MotionDriven& { return arm.joints[joint]->evidence().twin(); });
         }
       },
       fit);
@@ -84,7 +108,7 @@ ArmAssessment pass(const ArmRecording& recording, const AssessmentSettings& sett
     recording.noticeOf(arm.found);
   }
   std::vector<Misfit> misfits = recording.isArm() ? fit.whyNotJudged() : std::vector<Misfit>{ arm.found.misfit };
-  if (load && !settings.watch.stopped())
+  if (load && !recording.options().watch.stopped())
   {
     arm.load = load->solve(fit.measured());
     addMisfit(arm.load->misfit(), misfits);
@@ -102,16 +126,72 @@ ArmAssessment pass(const ArmRecording& recording, const AssessmentSettings& sett
   return arm;
 }
 
-/// Where another arm is clearly likelier.
+/// Names another shipped arm with the same joints in the misfits, if that arm explains the recording so much better
+/// that it contradicts the given one. An arm of the user's own file is not doubted.
 void nameOther(const ArmRecording& recording, std::vector<Misfit>& misfits)
 {
-  const std::string other = mayBeOtherArm(misfits) ? betterArm(recording) : std::string();
+  if (!mayBeOtherArm(misfits))
+  {
+    return;
+  }
+  const RecordingOptions& options = recording.options();
+  const std::vector<std::string> names = armsLike(recording.arm(), configDirectory(options));
+  const std::string name = mainName(options.arm, configDirectory(options));
+  const std::string other =
+      betterArm(name, names, [&](const std::vector<std::string>& of) { return rankArms(options, of); });
   if (!other.empty())
   {
     nameOtherArm(other, misfits);
   }
 }
 }  // namespace
+
+std::vector<ArmFit> rankArms(const RecordingOptions& options, const std::vector<std::string>& names)
+{
+  RecordingOptions own = options;
+  own.load = LOAD_OF_ARM;
+  if (own.rows)
+  {
+    own.assignments.emplace_back("telemetry.effort=current");  // rows in memory are currents
+  }
+  std::vector<ArmCandidate> candidates;
+  std::unique_ptr<const ArmRecording> first;  // has the rows of all candidates
+  std::vector<std::string> others;            // arms whose joints have other names, and so other rows
+  for (const std::string& name : names)
+  {
+    own.arm = name;
+    auto recording = std::make_unique<const ArmRecording>(own);
+    if (!candidates.empty() && jointNames(recording->arm()) != jointNames(candidates.front().arm))
+    {
+      others.push_back(name);
+      continue;
+    }
+    candidates.push_back({ name, recording->arm(), recording->parameters(), costOfGains(*recording, own) });
+    if (!first)
+    {
+      first = std::move(recording);
+    }
+  }
+  ParameterMap given;
+  addOverlays(own, given);
+  const auto play = [&](const VisitArmRows& visit)
+  {
+    first->readRows(
+        [&](const std::vector<MotionRow>& rows)
+        {
+          visit(rows);
+          return rows.front().time < ArmFit::ENOUGH;
+        });
+  };
+  std::vector<ArmFit> fits = rankArms(candidates, play, given.count("telemetry.effort") > 0);
+  if (!others.empty())
+  {
+    const std::vector<ArmFit> more = rankArms(options, others);
+    fits.insert(fits.end(), more.begin(), more.end());
+    std::stable_sort(fits.begin(), fits.end());
+  }
+  return fits;
+}
 
 ArmAssessment assess(ArmRecording& recording, const AssessmentSettings& settings, RecordingFit& fit)
 {
@@ -120,22 +200,22 @@ ArmAssessment assess(ArmRecording& recording, const AssessmentSettings& settings
   LoadLaw law;
   ArmAssessment arm = pass(recording, settings, shows_load, settings.gives_notice, fit);
   const std::vector<FittedFriction> frictions = arm.load ? arm.load->frictions : std::vector<FittedFriction>();
-  while (shows_load && !settings.watch.stopped() && law.take(arm.load.value_or(FoundLoad()), arm.judged))
+  while (shows_load && !recording.options().watch.stopped() && law.take(arm.load.value_or(FoundLoad()), arm.judged))
   {
     ArmDescription other = configured;
     law.counts().configure(other);
-    recording.setPayload(other.payload, law.counts().course(configured.payload));
-    recording.setGravity(other.gravity);
-    recording.setDrag(other.drag);
+    recording.setLoad(std::move(other), law.counts().course(configured.payload));
+    arm.joints.clear();  // closes the files that the next pass opens
     arm = pass(recording, settings, false, false, fit);
     if (!law.isTrying())
     {
-      break;  // taken back: it would be found again
+      break;  // the load was taken back: it would be found again
     }
   }
   arm.assumed = law.counts();
   arm.frictions = frictions;
-  if (shows_load && settings.looks_for_arm && recording.options().identified.empty() && !settings.watch.stopped())
+  if (shows_load && settings.looks_for_arm && recording.options().identified.empty() &&
+      !recording.options().watch.stopped())
   {
     nameOther(recording, arm.judged.misfits);
   }

@@ -4,11 +4,14 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
-#include "arm/load_law.hpp"
+#include "arm/arm_ranking.hpp"
+#include "arm/found_load.hpp"
 #include "recordings/arm_recording.hpp"
+#include "tracking/sound_joint.hpp"
 #include "tracking/stream_timing.hpp"
 #include "tracking/verdict.hpp"
 
@@ -19,80 +22,52 @@ namespace hjt
 class AssessedJoint
 {
 public:
-  AssessedJoint(OwnReference own, bool is_identified) : own_(std::move(own)), is_identified_(is_identified) {}
+  /// `sound`: what is known of the joint in sound condition. `is_identified`: the parameters are of this very joint.
+  /// @throws ParameterError as JointEvidence.
+  AssessedJoint(const Parameters& parameters, LoadOrigin load, SoundJoint sound, bool is_identified)
+    : evidence_(parameters, load), own_(std::move(sound.own)), is_identified_(is_identified)
+  {
+    evidence_.setReference(std::move(sound.baseline));
+  }
   virtual ~AssessedJoint() = default;
   AssessedJoint(const AssessedJoint&) = delete;
   AssessedJoint& operator=(const AssessedJoint&) = delete;
 
-  virtual void update(const MotionSample& sample) = 0;
-  virtual const JointEvidence& evidence() const = 0;
+  virtual JointEvidence::Row update(const MotionSample& sample) { return evidence_.update(sample); }
+  const JointEvidence& evidence() const { return evidence_; }
 
   const OwnReference& own() const { return own_; }
-  bool hasReference() const { return is_identified_ || !own_.friction.empty(); }  ///< of its friction
+  /// Whether a reference of the joint's friction is known.
+  bool hasReference() const { return is_identified_ || !own_.friction.empty(); }
   /// Without a reference the friction is held against what the arm's controller expects.
   void holdAgainstController() { has_controller_ = true; }
 
-  /// `factor`, `deviation`: what the joints of an arm have in common.
+  /// `factor` and `deviation` are of the friction that the joints of an arm have in common.
   JointContext context(const Misfit& misfit, double factor = 1.0, double deviation = UNWITNESSED) const
   {
     return { own_, is_identified_, has_controller_, factor, misfit, deviation };
   }
-  MeasuredFriction friction(const Misfit& misfit) const { return measuredFriction(evidence(), context(misfit)); }
-  /// Why it is not judged; SOUND: it is.
-  Reason frictionReason() const { return frictionFactor(evidence(), context({})).reason; }
+  MeasuredFriction friction(const Misfit& misfit) const { return measuredFriction(evidence_, context(misfit)); }
 
 private:
+  JointEvidence evidence_;
   const OwnReference own_;
   const bool is_identified_;
   bool has_controller_{};
 };
 
-/// The same without output files.
-class AssessedTwin : public AssessedJoint
-{
-public:
-  AssessedTwin(const Parameters& parameters, LoadOrigin load, bool is_identified)
-    : AssessedJoint(OwnReference(), is_identified), evidence_(parameters, load)
-  {
-  }
-  void update(const MotionSample& sample) override { evidence_.update(sample); }
-  const JointEvidence& evidence() const override { return evidence_; }
-
-private:
-  JointEvidence evidence_;
-};
-
-/// The joints beside their twins, made anew for each reading.
-class AssessedTwins
-{
-public:
-  std::vector<AssessedJoint*> make(const std::vector<Parameters>& parameters, LoadOrigin load, bool is_identified)
-  {
-    joints_.clear();
-    std::vector<AssessedJoint*> all;
-    for (const Parameters& of : parameters)
-    {
-      all.push_back(joints_.emplace_back(std::make_unique<AssessedTwin>(of, load, is_identified)).get());
-    }
-    return all;
-  }
-
-  AssessedTwin& operator[](std::size_t joint) const { return *joints_[joint]; }
-
-private:
-  std::vector<std::unique_ptr<AssessedTwin>> joints_;
-};
+using AssessedJoints = std::vector<std::unique_ptr<AssessedJoint>>;
 
 /// The joints of a recording beside their twins after a pass through it.
 struct ArmAssessment
 {
-  std::vector<AssessedJoint*> joints;
+  AssessedJoints joints;
   MotionFindings found;
   StreamTimingReport timing;
   JudgedJoints judged;
   std::optional<FoundLoad> load;
-  AssumedLoad assumed;                    ///< that the joints are judged with
-  std::vector<FittedFriction> frictions;  ///< of each joint, of the first pass; empty: none
+  AssumedLoad assumed;                    ///< load that the joints are judged with
+  std::vector<FittedFriction> frictions;  ///< friction of each joint by the first pass; empty: not known
 
   JointContext context(std::size_t joint) const
   {
@@ -105,15 +80,19 @@ struct ArmAssessment
 
 struct AssessmentSettings
 {
-  /// New joints, for each pass through the recording; theirs is the caller.
-  std::function<std::vector<AssessedJoint*>()> make_joints;
-  bool beside_controller{ true };  ///< without a reference hold the friction against the controller's where that is one
-  bool looks_for_arm{ true };      ///< judge nothing where another shipped arm explains the recording clearly better
-  bool gives_notice{ true };       ///< whether misfits of the recording are printed
-  Watch watch;
+  /// Makes a joint by its number, anew for each pass through the recording; none: a plain one.
+  std::function<std::unique_ptr<AssessedJoint>(std::size_t)> make_joint;
+  bool beside_controller{ true };  ///< the friction that the controller expects may be the reference
+  bool looks_for_arm{ true };      ///< nothing is judged if another shipped arm explains the recording clearly better
+  bool gives_notice{};             ///< whether the user gets notices of what is wrong with the recording
 };
 
-/// Reads the recording, and again with the payload and the mounting that its currents show, where these explain them:
-/// they are the recording's then. `fit` is that of the last pass. @throws ParameterError, InputError.
+/// Reads and judges the recording. If its currents show another payload or mounting, the recording is read again with
+/// that load, which stays the recording's if it explains the currents. `fit` is that of the last pass.
+/// @throws ParameterError, InputError.
 ArmAssessment assess(ArmRecording& recording, const AssessmentSettings& settings, RecordingFit& fit);
+
+/// Ranks the arms of these names, the best first, by how they explain the first two minutes of the recording and the
+/// gains that it states. @throws InputError, ParameterError.
+std::vector<ArmFit> rankArms(const RecordingOptions& options, const std::vector<std::string>& names);
 }  // namespace hjt

@@ -10,7 +10,7 @@
 #include "elements/load.hpp"
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
-#include "recordings/stated_gains.hpp"
+#include "recordings/controller_table.hpp"
 #include "tracking/effort.hpp"
 #include "tracking/motion_driven.hpp"
 #include "tracking/ratio_fit.hpp"
@@ -19,7 +19,8 @@ namespace hjt
 {
 namespace
 {
-/// `gain`: stated in the recording; NaN: none. An identified or configured gain takes precedence.
+/// Parameters of a joint of an arm. `gain` is the one that the recording states, or NaN. An identified or configured
+/// gain takes precedence.
 Parameters parametersOf(const ArmJoint& joint, double gain, const RecordingOptions& options)
 {
   ParameterMap map = armJointParameters(joint, configDirectory(options), options.identified);
@@ -39,7 +40,7 @@ Parameters parametersOf(const ArmJoint& joint, double gain, const RecordingOptio
   return parameters;
 }
 
-/// One joint as an arm.
+/// An arm of one joint.
 ArmDescription armOf(const std::string& short_name)
 {
   ArmDescription arm;
@@ -50,7 +51,7 @@ ArmDescription armOf(const std::string& short_name)
   return arm;
 }
 
-/// In words, if stamps and angles of a joint disagree with the recorded velocities.
+/// Text on stamps and angles that disagree with the recorded velocities; empty if they agree.
 std::string wrongStamps(const MotionCount& count)
 {
   constexpr double TOLERANCE = 0.03;
@@ -67,15 +68,12 @@ std::string wrongStamps(const MotionCount& count)
 
 ArmRecording::ArmRecording(const RecordingOptions& options)
   : options_(options)
-  , watch_(options.watch)
-  , joint_namespace_(options.joint_namespace)
-  , affixes_(options.affixes)
   , is_arm_(!options.arm.empty())
   , arm_(is_arm_ ? readArmDescription(findArm(options.arm, configDirectory(options))) : armOf(options.joint))
 {
   if (!is_arm_)
   {
-    parameters_.push_back(loadParameters(options));  // its errors come before those of the file
+    parameters_.push_back(loadParameters(options));  // errors of the parameters are reported before those of the file
   }
   source_ = motionSource(options);
   if (isFile() && !options.stated)
@@ -101,7 +99,7 @@ ArmRecording::ArmRecording(const RecordingOptions& options)
   uses_recorded_ = is_arm_ ? options.load == LOAD_RECORDED : has_load_;
   if (uses_recorded_ && !has_load_)
   {
-    throw InputError(source_.path + " holds no load; --load arm needs none");
+    throw InputError(source_.path + " holds no load; the option --load arm needs none");
   }
   for (Parameters& parameters : parameters_)
   {
@@ -115,21 +113,11 @@ ArmRecording::ArmRecording(const RecordingOptions& options)
   }
 }
 
-std::vector<double> ArmRecording::gains() const
-{
-  std::vector<double> gains;
-  for (const Parameters& parameters : parameters_)
-  {
-    gains.push_back(parameters.telemetry.torque_per_current);
-  }
-  return gains;
-}
-
 MotionSource ArmRecording::source(std::size_t joint) const
 {
   const Parameters& parameters = parameters_[joint];
   MotionSource source = source_;
-  source.joint = is_arm_ ? affixes_(arm_.joints[joint].name) : source_.joint;
+  source.joint = is_arm_ ? options_.affixes(arm_.joints[joint].name) : source_.joint;
   source.csv_joint = is_arm_ ? static_cast<int>(joint) : source_.csv_joint;
   source.speeds = { source_.speeds[joint] };
   source.current_per_effort = currentPerEffort(parameters);
@@ -139,45 +127,26 @@ MotionSource ArmRecording::source(std::size_t joint) const
 
 std::string ArmRecording::twinNamespace(std::size_t joint) const
 {
-  return (is_arm_ ? "/" + arm_.joints[joint].short_name : std::string()) + joint_namespace_;
+  return (is_arm_ ? "/" + arm_.joints[joint].short_name : std::string()) + options_.joint_namespace;
 }
 
-MotionFindings ArmRecording::read(const VisitRows& visit) const
+MotionFindings ArmRecording::read(const VisitRows& visit, RecordingFit& fit) const
 {
-  RecordingFit fit(parameters_);
-  const MotionFindings found = read(visit, fit);
-  noticeOf(fit);
-  noticeOf(found);
-  return found;
-}
-
-MotionFindings ArmRecording::read(const VisitRows& visit, RecordingFit& fit, double end) const
-{
-  return is_arm_ ? readArm(visit, fit, end) : readJoint(visit, end);
-}
-
-MotionFindings ArmRecording::readSamples(const VisitSample& visit) const
-{
-  return readSamplesBy([this](const VisitRows& rows) { return read(rows); }, visit);
+  return is_arm_ ? readArm(visit, fit) : readJoint(visit);
 }
 
 MotionFindings ArmRecording::readSamples(const VisitSample& visit, RecordingFit& fit) const
 {
-  return readSamplesBy([&](const VisitRows& rows) { return read(rows, fit); }, visit);
-}
-
-MotionFindings ArmRecording::readSamplesBy(const Read& read, const VisitSample& visit) const
-{
   if (is_arm_)
   {
-    return read(
-        [&](const std::vector<ArmJointRow>& rows)
-        {
-          for (std::size_t i = 0; i < rows.size(); ++i)
-          {
-            visit(i, rows[i].row);
-          }
-        });
+    const auto visit_all = [&](const std::vector<ArmJointRow>& rows)
+    {
+      for (std::size_t i = 0; i < rows.size(); ++i)
+      {
+        visit(i, rows[i].row);
+      }
+    };
+    return readArm(visit_all, fit);
   }
   MotionDifferentiator differentiator;
   const Load load(parameters_.front().output);
@@ -189,7 +158,7 @@ MotionFindings ArmRecording::readSamplesBy(const Read& read, const VisitSample& 
       visit(0, *sample);
     }
   };
-  MotionFindings found = read(
+  MotionFindings found = readJoint(
       [&](const std::vector<ArmJointRow>& rows)
       {
         differentiator.push(rows.front().row);
@@ -200,27 +169,42 @@ MotionFindings ArmRecording::readSamplesBy(const Read& read, const VisitSample& 
   found.gaps = differentiator.gaps();
   if (found.corrupt > 0 || found.refused > 0 || found.gaps > 0)
   {
-    watch_.notice(source_.path + ": " + std::to_string(found.corrupt) + " messages unreadable or impossible, " +
-                  std::to_string(found.refused) + " rows repeated or out of order, " + std::to_string(found.gaps) +
-                  " gaps over " + roundedText(MotionDifferentiator::MAX_GAP, 3) + " s");
+    options_.watch.notice(source_.path + ": " + std::to_string(found.corrupt) + " messages unreadable or impossible, " +
+                          std::to_string(found.refused) + " rows repeated or out of order, " +
+                          std::to_string(found.gaps) + " gaps over " + roundedText(MotionDifferentiator::MAX_GAP, 3) +
+                          " s");
   }
   return found;
 }
 
-MotionFindings ArmRecording::readJoint(const VisitRows& visit, double end) const
+MotionCount ArmRecording::readRows(const VisitMotionRows& visit) const
+{
+  std::vector<std::string> names;
+  for (const ArmJoint& joint : arm_.joints)
+  {
+    names.push_back(is_arm_ ? options_.affixes(joint.name) : source_.joint);
+  }
+  return readMotion(
+      is_arm_ ? source_ : source(0), names,
+      [&](const std::vector<MotionRow>& rows) { return visit(rows) && !options_.watch.stopped(); },
+      options_.watch.progress("reading"));
+}
+
+MotionFindings ArmRecording::readJoint(const VisitRows& visit) const
 {
   RatioFit ratio(nominalRatio(parameters_.front().gear));
   std::vector<ArmJointRow> rows(1);
   MotionFindings found;
   found.has_load = has_load_;
-  const auto take = [&](const MotionRow& row)
+  const auto take = [&](const std::vector<MotionRow>& motion)
   {
+    const MotionRow& row = motion.front();
     rows.front() = { { row }, row.load, 0.0 };
     ratio.add(row);
     visit(rows);
-    return !watch_.stopped() && row.time < end;
+    return true;
   };
-  static_cast<MotionCount&>(found) = readMotion(source(0), take, watch_.progress("reading"));
+  static_cast<MotionCount&>(found) = readRows(take);
   if (!found.misfit.exists())
   {
     found.misfit = { Reason::GEAR_RATIO, ratio.text() };
@@ -228,27 +212,7 @@ MotionFindings ArmRecording::readJoint(const VisitRows& visit, double end) const
   return found;
 }
 
-MotionCount ArmRecording::readArmRows(const std::function<bool(const std::vector<MotionRow>&)>& visit) const
-{
-  std::vector<std::string> names;
-  for (const ArmJoint& joint : arm_.joints)
-  {
-    names.push_back(affixes_(joint.name));
-  }
-  return readArmMotion(source_, names, visit, watch_.progress("reading"));
-}
-
-void ArmRecording::readEfforts(const VisitMotion& visit, double end) const
-{
-  readArmRows(
-      [&](const std::vector<MotionRow>& rows)
-      {
-        visit(rows);
-        return !watch_.stopped() && rows.front().time < end;
-      });
-}
-
-MotionFindings ArmRecording::readArm(const VisitRows& visit, RecordingFit& fit, double end) const
+MotionFindings ArmRecording::readArm(const VisitRows& visit, RecordingFit& fit) const
 {
   ArmLoad load(arm_, course_);
   std::vector<ArmJointRow> rows(arm_.joints.size());
@@ -283,13 +247,10 @@ MotionFindings ArmRecording::readArm(const VisitRows& visit, RecordingFit& fit, 
     }
     findings.refused += load.push(in_current) ? 0 : 1;
     forward(false);
-    return !watch_.stopped() && motion.front().time < end;
+    return true;
   };
-  static_cast<MotionCount&>(findings) = readArmRows(take);
-  if (!payload_text_.empty())
-  {
-    findings.remarks.push_back(payload_text_);
-  }
+  static_cast<MotionCount&>(findings) = readRows(take);
+  findings.remark(payload_text_);
   forward(true);
   findings.velocity_ratio = fit.stampFactor().value;
   fit.refuse(findings.misfit);
@@ -304,7 +265,7 @@ void ArmRecording::noticeOf(const RecordingFit& fit) const
     {
       if (finding.stops && finding.kind != "stamps")
       {
-        watch_.notice(of + finding.text);
+        options_.watch.notice(of + finding.text);
       }
     }
   };
@@ -322,15 +283,15 @@ void ArmRecording::noticeOf(const MotionFindings& found) const
 {
   if (const std::string text = wrongStamps(found); !text.empty())
   {
-    watch_.notice(text);
+    options_.watch.notice(text);
   }
   for (const std::string& remark : found.remarks)
   {
-    watch_.notice(source_.path + ": " + remark);
+    options_.watch.notice(source_.path + ": " + remark);
   }
-  if (!is_arm_ && found.misfit.exists())  // an arm's is of its fit
+  if (!is_arm_ && found.misfit.exists())  // the misfit of an arm is one of its fit
   {
-    watch_.notice(source_.path + ": " + found.misfit.clause);
+    options_.watch.notice(source_.path + ": " + found.misfit.clause);
   }
 }
 }  // namespace hjt

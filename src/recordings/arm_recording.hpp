@@ -18,93 +18,78 @@ namespace hjt
 /// One joint of the arm at the time of a row.
 struct ArmJointRow
 {
-  MotionSample row;        ///< its load the one chosen, at the output; rates are those of an arm's joint only
+  MotionSample row;        ///< with the chosen load at the output; its rates are set for a joint of an arm only
   double recorded_load{};  ///< [N.m]
-  double motor_part{};     ///< of the motor's inertia, in a controller's torque beside the arm's load [N.m]
+  double motor_part{};     ///< torque of the motor's inertia that a controller's torque holds [N.m]
 };
 
-/// The recording of an arm, or of one joint as an arm of one, and the twin's parameters of each of its joints. The load
-/// of one joint is the recorded one.
+/// The recording of an arm, or of one joint as an arm of one joint, and the parameters of the joints' twins. The load
+/// of a single joint is the recorded one.
 class ArmRecording
 {
 public:
   using VisitRows = std::function<void(const std::vector<ArmJointRow>&)>;
-  using VisitMotion = std::function<void(const std::vector<MotionRow>&)>;
   using VisitSample = std::function<void(std::size_t, const MotionSample&)>;
 
-  /// @throws ParameterError, InputError: unreadable, or without the load that is chosen.
+  /// @throws ParameterError, InputError if the recording is unreadable or has not the load that is chosen.
   explicit ArmRecording(const RecordingOptions& options);
 
   const RecordingOptions& options() const { return options_; }
   bool isArm() const { return is_arm_; }
   bool isFile() const { return !options_.rows; }
-  const ArmDescription& arm() const { return arm_; }  ///< for a single joint: that joint alone
+  const ArmDescription& arm() const { return arm_; }  ///< of a single joint: an arm with that joint alone
   const std::vector<ArmJoint>& joints() const { return arm_.joints; }
-  /// In place of the configured one.
-  void setPayload(const Payload& payload, PayloadCourse course = {})
+  /// The same arm under another load, in place of the configured one.
+  void setLoad(ArmDescription arm, PayloadCourse course)
   {
-    arm_.payload = payload;
+    arm_ = std::move(arm);
     course_ = std::move(course);
   }
-  void setGravity(const std::array<double, 3>& gravity) { arm_.gravity = gravity; }
-  void setDrag(double force) { arm_.drag = force; }    ///< on the tip against its motion [N]
-  MotionSource source(std::size_t joint) const;        ///< with that joint alone
-  std::string twinNamespace(std::size_t joint) const;  ///< of its twin's topics, those of arm.launch
-  /// `telemetry.inertia_in_load` is that of the load that is chosen.
+  MotionSource source(std::size_t joint) const;        ///< source of that joint alone
+  std::string twinNamespace(std::size_t joint) const;  ///< namespace of the twin's topics, as in arm.launch
+  /// Parameters of a joint; telemetry.inertia_in_load is that of the chosen load.
   const Parameters& parameters(std::size_t joint) const { return parameters_[joint]; }
   const std::vector<Parameters>& parameters() const { return parameters_; }
-  std::vector<double> gains() const;  ///< of the joints, torque per current [N.m/A]
-  /// Torque per current that an arm's recording states, see RecordedStatements; it counts unless another was identified
-  /// or set [N.m/A].
+  /// Torque per current of each joint that the recording states, see RecordedStatements [N.m/A]. It counts unless
+  /// another one was identified or set.
   const std::vector<double>& statedGains() const { return stated_gains_; }
   bool hasRecordedLoad() const { return has_load_; }
-  /// The load is the recorded one.
+  /// Whether the load is the recorded one.
   bool usesRecordedLoad() const { return uses_recorded_; }
   LoadOrigin loadOrigin() const
   {
     return uses_recorded_ ? LoadOrigin::RECORDED : is_arm_ ? LoadOrigin::ARM : LoadOrigin::CONFIGURED;
   }
 
-  /// Calls `visit` for each time with a row of each joint, in memory that does not grow, and gives notice of what does
-  /// not fit. Without any load the rows' is 0. @throws InputError.
-  MotionFindings read(const VisitRows& visit) const;
-  /// The same without notices, up to `end` [s]; `fit` receives all rows of an arm.
-  MotionFindings read(const VisitRows& visit, RecordingFit& fit, double end = HUGE_VAL) const;
+  /// Calls `visit` for each time with a row of each joint; `fit` gets all rows of an arm. Memory does not grow with the
+  /// recording. A row without a load has a load of 0. @throws InputError.
+  MotionFindings read(const VisitRows& visit, RecordingFit& fit) const;
 
-  /// Rows of an arm up to `end` [s], `current` the effort as recorded. @throws InputError.
-  void readEfforts(const VisitMotion& visit, double end) const;
+  /// Calls `visit` with the rows as they are recorded. In rows of an arm `current` is the effort. @throws InputError.
+  MotionCount readRows(const VisitMotionRows& visit) const;
 
-  /// Gives notice of what does not fit in an arm: why a joint cannot be judged. Wrong stamps are said of the whole.
-  void noticeOf(const RecordingFit& fit) const;
-  /// And of the whole recording.
-  void noticeOf(const MotionFindings& found) const;
-
-  /// Calls `visit` with the samples of each joint, their rates and loads filled in; a joint without any load carries
-  /// what it is configured to. @throws InputError.
-  MotionFindings readSamples(const VisitSample& visit) const;
-  /// The same without notices of an arm.
+  /// Calls `visit` with the samples of each joint, with rates and loads. A joint without a recorded load carries the
+  /// configured one. @throws InputError.
   MotionFindings readSamples(const VisitSample& visit, RecordingFit& fit) const;
 
-private:
-  using Read = std::function<MotionFindings(const VisitRows&)>;
+  /// Tells the user why joints of an arm cannot be judged, except for wrong stamps, which the next function tells.
+  void noticeOf(const RecordingFit& fit) const;
+  /// Tells the user what is wrong with the whole recording.
+  void noticeOf(const MotionFindings& found) const;
 
-  MotionCount readArmRows(const std::function<bool(const std::vector<MotionRow>&)>& visit) const;
-  MotionFindings readJoint(const VisitRows& visit, double end) const;
-  MotionFindings readArm(const VisitRows& visit, RecordingFit& fit, double end) const;
-  MotionFindings readSamplesBy(const Read& read, const VisitSample& visit) const;
+private:
+  MotionFindings readJoint(const VisitRows& visit) const;
+  MotionFindings readArm(const VisitRows& visit, RecordingFit& fit) const;
 
   RecordingOptions options_;
-  Watch watch_;
-  std::string joint_namespace_;
-  JointAffixes affixes_;
   bool is_arm_;
   ArmDescription arm_;
   PayloadCourse course_;
   std::vector<double> stated_gains_;
   std::vector<Parameters> parameters_;
-  std::vector<double> inertias_in_load_;  // of the motors, in a controller's torque, at the joints [kg.m^2]
+  std::vector<double> inertias_in_load_;  // motors' inertia in a controller's torque, at the joints [kg.m^2]
   MotionSource source_;
-  std::string payload_text_;  // where it is the controller's in place of the file's; else empty
+  std::string payload_text_;  // remark on a payload that the recording states; empty: the file's payload counts
   bool has_load_{};
   bool uses_recorded_{};
 };

@@ -4,14 +4,16 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
 #include <optional>
+#include <string>
 #include <utility>
-
-#include "output/output_file.hpp"
-#include "output/process_end.hpp"
-#include "recordings/arm_rows.hpp"
+#include <vector>
 
 #include "arm/arm_configuration.hpp"
+#include "arm/arm_recorder.hpp"
 #include "arm/moving_arm.hpp"
 #include "arm/set_points.hpp"
 #include "bags/recorded_messages.hpp"
@@ -19,12 +21,103 @@
 #include "base/publish_period.hpp"
 #include "base/statistics.hpp"
 #include "base/text.hpp"
+#include "datasets/run_file.hpp"
+#include "datasets/sweep_directory.hpp"
+#include "output/output_file.hpp"
+#include "output/process_end.hpp"
 
 namespace hjt
 {
 namespace
 {
-/// The rate of the rows as the arm's: the next one to that wanted that divides the solver's.
+/// Writes the rows of an arm's motion to a file. A CSV file has one row for each; a `.bag` has the messages that the
+/// arm's driver would publish; an `.h5` file is like a run of a data set.
+class ArmRows
+{
+public:
+  /// `spec` describes the run; ArmSpec::arm.state_rate is the rate of the rows and divides solver.rate. Without a
+  /// `path` no file is written. `moving` is at the first row and must live as long as this object. @throws InputError.
+  ArmRows(const std::string& path, const RunSpec& spec, const MovingArm& moving)
+    : moving_(moving), begin_(moving.twin().stamp()), end_(begin_), path_(path), spec_(spec)
+  {
+    const std::string ending = std::filesystem::path(path).extension().string();
+    if (ending == runFileExtension(RunFormat::BAG) || ending == runFileExtension(RunFormat::HDF5))
+    {
+      Recording recording;
+      recording.format = ending == runFileExtension(RunFormat::BAG) ? RunFormat::BAG : RunFormat::HDF5;
+      RecordingGroup group{ "states", spec.arm->arm.state_rate, false, {} };
+      for (const RunColumn& column : armColumns())
+      {
+        group.columns.push_back(&column);
+      }
+      recording.groups.push_back(group);
+      file_ = makeRunFile(recording, spec, &moving.twin().drive(0), path);
+    }
+    else if (!path.empty())
+    {
+      std::vector<std::string> columns = armColumnNames(moving.twin().joints());
+      columns.insert(columns.begin(), "timestamp");
+      csv_.emplace(path, columns);
+    }
+  }
+
+  /// To be called after every step of the motion. `row` is null where no row is due. @throws InputError.
+  void take(Stamp stamp, double time, ArmRecorder& recorder, const ArmRow* row)
+  {
+    if (file_ && !failed_)
+    {
+      end_ = stamp;
+      on_surface_ += stamp > begin_ && allOnSurface(moving_.twin()) ? 1 : 0;
+      failed_ = countersOf(moving_.twin()).solver_failures > 0;
+      if (!failed_)  // a failed twin ends the file, as in a data set
+      {
+        file_->record(stamp, recorder);
+      }
+    }
+    if (csv_ && row != nullptr)
+    {
+      values_.assign(1, time);
+      for (const std::vector<double>& numbers : *row)
+      {
+        values_.insert(values_.end(), numbers.begin(), numbers.end());
+      }
+      csv_->writeRow(values_);
+    }
+  }
+
+  /// @throws InputError.
+  void close()
+  {
+    if (file_)
+    {
+      OrderedJson record = recordOf(spec_, path_);
+      addOutcome(countersOf(moving_.twin()), on_surface_, toSeconds(end_ - begin_), record);
+      addProtectiveStop(spec_.arm->arm, moving_, record);
+      file_->finish(record);
+    }
+    if (csv_)
+    {
+      csv_->close();
+    }
+  }
+
+  /// Whether the file is that of a run: it exists only after `close`.
+  bool isRun() const { return file_ != nullptr; }
+
+private:
+  const MovingArm& moving_;
+  Stamp begin_;  // stamp of the first row
+  Stamp end_;    // stamp of the last step
+  bool failed_{};
+  std::uint64_t on_surface_{};
+  std::string path_;
+  RunSpec spec_;
+  std::unique_ptr<RunFile> file_;
+  std::optional<CsvWriter> csv_;
+  std::vector<double> values_;
+};
+
+/// Sets the arm's state_rate to the rate that is next to the wanted rate of rows and divides solver.rate.
 void takeRate(const ArmRunOptions& options, double solver_rate, ArmDescription& arm)
 {
   const double wanted = options.rate.value_or(arm.state_rate);
@@ -36,62 +129,20 @@ void takeRate(const ArmRunOptions& options, double solver_rate, ArmDescription& 
   }
 }
 
-/// Adds up the errors of a moving arm.
-class Errors
+/// Adds the errors of a moving arm at a row.
+void addErrors(const ArmRow& row, const ArmTwin& twin, ArmRun& run)
 {
-public:
-  explicit Errors(const ArmDescription& arm) : joints_(arm.joints.size())
+  for (std::size_t i = 0; i < run.joints.size(); ++i)
   {
-    for (std::size_t i = 0; i < joints_.size(); ++i)
-    {
-      joints_[i].name = arm.joints[i].short_name;
-    }
+    run.joints[i].angle_error.add(twin.motion()[i].position - row[TARGET_POSITION][i]);
+    run.joints[i].current.add(row[ACTUAL_CURRENT][i]);
   }
+  const std::vector<double>& wanted = row[TARGET_TOOL];
+  const std::vector<double>& tool = row[ACTUAL_TOOL];
+  run.tool_error.add(std::hypot(tool[0] - wanted[0], tool[1] - wanted[1], tool[2] - wanted[2]));
+}
 
-  void add(const ArmRow& row, const ArmTwin& twin)
-  {
-    for (std::size_t i = 0; i < joints_.size(); ++i)
-    {
-      JointErrors& joint = joints_[i];
-      const double error = twin.motion()[i].position - row[TARGET_POSITION][i];
-      joint.angle.add(error);
-      joint.largest_angle = std::max(joint.largest_angle, std::abs(error));
-      joint.current.add(row[ACTUAL_CURRENT][i]);
-    }
-    const std::vector<double>& wanted = row[TARGET_TOOL];
-    const std::vector<double>& tool = row[ACTUAL_TOOL];
-    const double error = std::hypot(tool[0] - wanted[0], tool[1] - wanted[1], tool[2] - wanted[2]);
-    tool_.add(error);
-    tool_largest_ = std::max(tool_largest_, error);
-  }
-
-  ArmRun finish() const
-  {
-    ArmRun run;
-    run.tool_error_rms = tool_.value();
-    run.tool_error_max = tool_largest_;
-    for (const JointErrors& joint : joints_)
-    {
-      run.joints.push_back({ joint.name, joint.angle.value(), joint.largest_angle, joint.current.value() });
-    }
-    return run;
-  }
-
-private:
-  struct JointErrors
-  {
-    std::string name;
-    Rms angle;               // [rad]
-    double largest_angle{};  // [rad]
-    Rms current;             // [A]
-  };
-
-  std::vector<JointErrors> joints_;
-  Rms tool_;               // [m]
-  double tool_largest_{};  // [m]
-};
-
-/// The run for a file that has labels.
+/// Description of the run for a file with labels.
 RunSpec specOf(const ArmRunOptions& options, ArmDescription arm, std::vector<Parameters> drives,
                const ArmMotion& motion)
 {
@@ -109,8 +160,8 @@ RunSpec specOf(const ArmRunOptions& options, ArmDescription arm, std::vector<Par
   return spec;
 }
 
-/// Moves it to the end of its motion, recording every row.
-void move(const ArmRunOptions& options, const ArmMotion& motion, MovingArm& moving, const RunSpec& spec, Errors& errors)
+/// Moves the arm to the end of its motion and records every row.
+void move(const ArmRunOptions& options, const ArmMotion& motion, MovingArm& moving, const RunSpec& spec, ArmRun& run)
 {
   ArmTwin& twin = moving.twin();
   ArmRecorder recorder(spec.arm->arm, moving);
@@ -131,7 +182,7 @@ void move(const ArmRunOptions& options, const ArmMotion& motion, MovingArm& movi
       const ArmRow* row = steps++ % row_steps == 0 ? &recorder.row() : nullptr;
       if (row != nullptr)
       {
-        errors.add(*row, twin);
+        addErrors(*row, twin, run);
         options.take(time, *row);
       }
       rows->take(twin.stamp(), time, recorder, row);
@@ -166,9 +217,9 @@ void addOptions(OptionTable& table, ArmRunOptions& options)
            "targets and actual angles, speeds, currents in a controller's columns, and the tool's position [m]; .bag: "
            "/joint_states as the arm's driver publishes it; .h5: as a run of `joint_twin sweep`")
       .type("FILE.csv|FILE.bag|FILE.h5");
-  table.add("--rate", options.rate, "of the rows [Hz]; default: that of the arm's states")
+  table.add("--rate", options.rate, "rate of the rows [Hz]; default: the rate of the arm's states")
       .range(ROW_RATE.min, ROW_RATE.max);
-  table.add("--fault", options.faults, "in a joint from its onset [s] on; may be given again")
+  table.add("--fault", options.faults, "a fault of a joint, which begins at its onset [s]; may be given several times")
       .type("JOINT:KIND:SEVERITY[:PLACE[:ONSET]]");
   addOptions(table, options, options.force);
 }
@@ -196,11 +247,14 @@ try
   const std::vector<Parameters> drives = armDrives(arm, options, options.identified, options.faults);
   takeRate(options, drives.front().solver.rate, arm);
   MovingArm moving(arm, drives, motion, surfaceSource(options.watch));
-  Errors errors(arm);
+  ArmRun run;
+  for (const ArmJoint& joint : arm.joints)
+  {
+    run.joints.push_back({ joint.short_name, {}, {} });
+  }
   moving.reset(SIMULATION_EPOCH);
   const auto started = std::chrono::steady_clock::now();
-  move(options, motion, moving, specOf(options, arm, drives, motion), errors);
-  ArmRun run = errors.finish();
+  move(options, motion, moving, specOf(options, arm, drives, motion), run);
   run.wall_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   run.duration = toSeconds(moving.twin().stamp() - SIMULATION_EPOCH);
   run.energy_residual = moving.twin().energyResidual();
@@ -222,10 +276,10 @@ Report reportOf(const ArmRun& run)
 {
   const std::vector<Column<ArmRunJoint>> columns{
     { "joint", &ArmRunJoint::name, "joint" },
-    { "angle_error_rms", [](const ArmRunJoint& joint) { return 1e3 * joint.angle_error_rms; },
+    { "angle_error_rms", [](const ArmRunJoint& joint) { return 1e3 * joint.angle_error.rms(); },
       "angle error, rms [mrad]" },
-    { "angle_error_max", [](const ArmRunJoint& joint) { return 1e3 * joint.angle_error_max; }, "largest [mrad]" },
-    { "current_rms", &ArmRunJoint::current_rms, "current, rms [A]" }
+    { "angle_error_max", [](const ArmRunJoint& joint) { return 1e3 * joint.angle_error.largest(); }, "largest [mrad]" },
+    { "current_rms", [](const ArmRunJoint& joint) { return joint.current.value(); }, "current, rms [A]" }
   };
   const std::string stop =
       run.stop ? run.stop->joint + " " + run.stop->reason + " at " + roundedText(run.stop->time, 4) + " s" : "none";
@@ -236,8 +290,8 @@ Report reportOf(const ArmRun& run)
                    Json{ { "joint", run.stop->joint }, { "reason", run.stop->reason }, { "time", run.stop->time } } :
                    Json() },
              { "real_time_factor", "times real time", run.duration / run.wall_time },
-             { "tool_error_rms", "tool position error, rms [mm]", 1e3 * run.tool_error_rms },
-             { "tool_error_max", "largest [mm]", 1e3 * run.tool_error_max },
+             { "tool_error_rms", "tool position error, rms [mm]", 1e3 * run.tool_error.rms() },
+             { "tool_error_max", "largest [mm]", 1e3 * run.tool_error.largest() },
              { "energy_residual", "error of the arm's energy [J]", run.energy_residual },
              { "feedback_limited", "", run.feedback_limited },
              { "solver_failures", "", run.counters.solver_failures },

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "recordings/check_report.hpp"
+#include "recordings/recording_check.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -8,13 +8,13 @@
 
 #include "base/number_text.hpp"
 #include "output/report.hpp"
-#include "recordings/comparison_files.hpp"
+#include "recordings/recording_comparison.hpp"
 
 namespace hjt
 {
 namespace
 {
-/// As a shell takes it for one word.
+/// The text in quotes, if a shell needs them to read it as one word.
 std::string shellWord(const std::string& text)
 {
   const auto is_plain = [](char c)
@@ -119,10 +119,10 @@ std::vector<std::string> nextCommands(const RecordingCheck& check, const Checked
   const RecordingOptions& options = check.options;
   if (options.rows)
   {
-    return {};  // of no file
+    return {};  // the recording is no file
   }
   const bool is_mended = !arm.tried.empty() && arm.tried.front().helps;
-  // Last, and in place of what it mends.
+  // The remedy stands last, and replaces the option that it mends.
   const std::string remedy = is_mended ? arm.tried.front().options : "";
   std::string reading = optionsOf(arm.affixes);
   if (options.time_scale != 1.0 && remedy.find("--time-scale") == std::string::npos)

@@ -2,128 +2,32 @@
 #include "recordings/compare.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <optional>
-#include <string>
 #include <utility>
-#include <vector>
 
-#include "messages/conversions.hpp"
-#include "output/output_file.hpp"
-#include "output/report.hpp"
-#include "recordings/arm_recording.hpp"
-#include "recordings/comparison_files.hpp"
-#include "recordings/recording_comparison.hpp"
-#include "recordings/report_page.hpp"
-#include "tracking/sound_joint.hpp"
+#include <spawn.h>
+#include <sys/wait.h>
 
 #include "base/number_text.hpp"
 #include "base/text.hpp"
 #include "base/whole_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
-#include "messages/topics.hpp"
+#include "output/output_file.hpp"
+#include "params/configuration_files.hpp"
+#include "recordings/arm_recording.hpp"
+#include "recordings/recording_comparison.hpp"
+#include "tracking/sound_joint.hpp"
 
 namespace hjt
 {
 namespace
 {
-namespace fs = std::filesystem;
-
-const std::vector<Column<JudgedWindow>> WINDOW_COLUMNS{
-  { "time", [](const JudgedWindow& window) { return 1e-9 * static_cast<double>(window.indicators.stamp); } },
-  { "speed", [](const JudgedWindow& window) { return window.indicators.point.speed; } },
-  { "load", [](const JudgedWindow& window) { return window.indicators.point.load; } },
-  { "level", [](const JudgedWindow& window) { return static_cast<int>(window.assessment.level); } },
-  { "cause", [](const JudgedWindow& window) { return static_cast<int>(window.assessment.cause); } },
-  { "confidence", [](const JudgedWindow& window) { return window.assessment.confidence; } },
-  { "largest_score", [](const JudgedWindow& window) { return window.assessment.largest_score; } }
-};
-
-constexpr const char* MADE_WITH = "joint_twin " HJT_VERSION;
-
-/// A joint that is being compared, its source, and the directory of its report.
-class JointComparison : public AssessedJoint
-{
-public:
-  /// `directory`: of its report. `sound`: what earlier reports left of it. `is_identified`: the parameters are of this
-  /// very joint.
-  JointComparison(const ArmRecording& recording, std::size_t joint, const std::string& directory, SoundJoint sound,
-                  bool is_identified)
-    : AssessedJoint(std::move(sound.own), is_identified)
-    , source_(recording.source(joint))
-    , is_file_(recording.isFile())
-    , directory_(directory)
-    , comparison_(recording.parameters(joint), recording.loadOrigin(), std::move(sound.baseline),
-                  [this](const JudgedWindow& window)
-                  {
-                    if (windows_)
-                    {
-                      windows_->write(window);
-                    }
-                  })
-  {
-    if (!directory_.empty())
-    {
-      windows_.emplace((fs::path(directory) / "windows.csv").string(), WINDOW_COLUMNS);
-    }
-  }
-
-  void update(const MotionSample& sample) override { comparison_.update(sample); }
-  const JointEvidence& evidence() const override { return comparison_.evidence(); }
-
-  /// Judges, and writes the data of the page. `parameters`: of this joint. `twin_topic`: of a twin that was recorded
-  /// beside the robot.
-  /// @throws InputError.
-  ComparedJoint write(const Parameters& parameters, const MotionFindings& found, const JointContext& context,
-                      const std::string& twin_topic)
-  {
-    if (windows_)
-    {
-      windows_->close();
-    }
-    ComparisonRecord record;
-    record.recording = source_.path;
-    record.joint = source_.joint;
-    record.made_with = MADE_WITH;
-    record.found = found;
-    const MotionReach& reach = evidence().reach();
-    if (is_file_)
-    {
-      record.contents =
-          readContents(source_, twin_topic, found, reach.motor_rows, reach.temperature_rows, found.has_load);
-      if (!directory_.empty())  // of the page alone
-      {
-        record.twin_states = readTwinStates(source_, twin_topic, toSeconds(found.start));
-      }
-    }
-    record.verdict = judge(evidence(), context);
-    record.friction = frictionFactor(evidence(), context);
-    record.is_friction_judged = record.verdict.findings.front().level != VerdictLevel::NOT_JUDGED;
-    ComparedJoint compared;
-    compared.friction = record.is_friction_judged ? std::make_optional(record.friction) : std::nullopt;
-    compared.contact = reach.touched_rows > 0 ? sentence(contactText(evidence().contact().largest())) : std::string();
-    compared.document = writeComparison(directory_, comparison_, parameters, record);
-    compared.temperature = evidence().temperature();
-    compared.temperature_source = temperatureSource(evidence());
-    compared.rows = reach.rows;
-    compared.current_rms = evidence().currentRms();
-    compared.residual_rms = evidence().residualRms();
-    compared.contents = std::move(record.contents);
-    compared.verdict = std::move(record.verdict);
-    return compared;
-  }
-
-private:
-  const MotionSource source_;
-  const bool is_file_;
-  const std::string directory_;                     // empty: no file is written
-  std::optional<TableFile<JudgedWindow>> windows_;  // likewise
-  RecordingComparison comparison_;
-};
-
 namespace fs = std::filesystem;
 
 void refuseReferenceAsReport(const ComparisonOptions& options)
@@ -138,7 +42,7 @@ void refuseReferenceAsReport(const ComparisonOptions& options)
   }
 }
 
-/// Shipped arms are known by their names; one's own file may be of any.
+/// Refuses references of another shipped arm, by the arms' names. The user's own files may be of any arm.
 void refuseReferenceOfOtherArm(const ComparisonOptions& options)
 {
   const auto is_name = [](const std::string& arm) { return arm.find_first_of("./") == std::string::npos; };
@@ -152,7 +56,7 @@ void refuseReferenceOfOtherArm(const ComparisonOptions& options)
   }
 }
 
-/// None: the friction is not judged.
+/// The value, or none if the friction of the joint is not judged.
 std::optional<double> number(const ComparedJoint& line, double value)
 {
   return line.friction ? std::make_optional(value) : std::nullopt;
@@ -182,11 +86,11 @@ const std::vector<Column<ComparedJoint>> ARM_COLUMNS{
   { "current_residual_rms", &ComparedJoint::residual_rms, "less predicted [A]" }
 };
 
-/// Common factor of a group of joints, if it is large enough to be named.
+/// Sentence on the common factor of a group of joints; empty if the factor is small.
 std::string groupText(const JointGroup& group, const std::vector<ComparedJoint>& lines)
 {
   constexpr double NOTEWORTHY = 0.1;
-  constexpr double MOST = 2.5;  // largest factor by temperature or lubricant
+  constexpr double MOST = 2.5;  // largest factor that temperature or lubricant makes
   if (!group.is_known || std::abs(group.median - 1.0) < NOTEWORTHY)
   {
     return {};
@@ -198,7 +102,7 @@ std::string groupText(const JointGroup& group, const std::vector<ComparedJoint>&
          ", not a fault of one joint. ";
 }
 
-/// Every joint that departs or is not judged, and why.
+/// Sentences on every joint that departs or is not judged.
 std::string departuresOf(const std::vector<ComparedJoint>& lines)
 {
   std::string text;
@@ -234,7 +138,7 @@ std::string departuresOf(const std::vector<ComparedJoint>& lines)
   return text;
 }
 
-/// Joints that are judged, but not against the reference that was given.
+/// Sentence on joints that are judged, but not against the given reference.
 std::string withoutReference(const std::vector<ComparedJoint>& lines)
 {
   std::vector<std::string> names;
@@ -250,7 +154,7 @@ std::string withoutReference(const std::vector<ComparedJoint>& lines)
              "The reference did not judge the friction of " + joined(names) + "; the twin is taken in its place. ";
 }
 
-/// Factors that are divided out before the friction is judged, where they differ from the arm's factor.
+/// Sentence on factors by which the friction is divided before it is judged, if they differ from the arm's factor.
 std::string sharedText(const std::vector<ComparedJoint>& lines, double of_whole_arm)
 {
   std::vector<std::pair<std::string, std::vector<std::string>>> shares;  // factor, joints
@@ -272,7 +176,7 @@ std::string sharedText(const std::vector<ComparedJoint>& lines, double of_whole_
                               " times the reference's friction. ";
 }
 
-/// Common factors of the joints, and each joint that departs or is not judged.
+/// Sentences on common factors of the joints, and on each joint that departs or is not judged.
 std::string textOf(const std::vector<ComparedJoint>& lines, const ArmFriction& arm, bool has_reference)
 {
   std::string text;
@@ -296,7 +200,7 @@ std::string textOf(const std::vector<ComparedJoint>& lines, const ArmFriction& a
   return text;
 }
 
-/// Level and text of an arm by those of its joints. `misfits`: why the rows of each say nothing.
+/// Sets level and text of an arm by those of its joints. `misfits` are those of the joints' rows.
 void judgeArm(const std::vector<Misfit>& misfits, bool has_reference, ComparedRecording& compared)
 {
   for (const ComparedJoint& joint : compared.joints)
@@ -343,14 +247,14 @@ Json documentOfArm(const ComparisonOptions& options, const ComparedRecording& co
            { "joints", tableOf(compared).rows() } };
 }
 
-/// The directory of a joint's report, or of its reference, in that of the whole.
+/// The directory of a joint's report or reference within that of the whole arm.
 std::string directoryOf(const ArmRecording& recording, const std::string& whole, std::size_t joint)
 {
   return recording.isArm() && !whole.empty() ? (fs::path(whole) / recording.joints()[joint].short_name).string() :
                                                whole;
 }
 
-/// Once: a second pass writes the files again.
+/// Prepares the directories of the reports. A second pass through the recording writes the same files again.
 void prepareReports(const ComparisonOptions& options, const ArmRecording& recording)
 {
   if (recording.isArm())
@@ -371,46 +275,35 @@ void prepareReports(const ComparisonOptions& options, const ArmRecording& record
   }
 }
 
-std::vector<std::unique_ptr<JointComparison>> prepareJoints(const ComparisonOptions& options,
-                                                            const ArmRecording& recording)
+std::unique_ptr<RecordingComparison> prepareJoint(const ComparisonOptions& options, const ArmRecording& recording,
+                                                  std::size_t joint)
 {
-  std::vector<std::unique_ptr<JointComparison>> joints;
-  for (std::size_t i = 0; i < recording.joints().size(); ++i)
+  std::vector<std::string> references;
+  for (const std::string& reference : options.references)
   {
-    const std::string directory = directoryOf(recording, options.report, i);
-    std::vector<std::string> references;
-    for (const std::string& reference : options.references)
-    {
-      references.push_back(directoryOf(recording, reference, i));
-    }
-    joints.push_back(std::make_unique<JointComparison>(
-        recording, i, directory, readSoundJoint(references, recording.parameters(i)), !options.identified.empty()));
+    references.push_back(directoryOf(recording, reference, joint));
   }
-  return joints;
+  return std::make_unique<RecordingComparison>(recording, joint, directoryOf(recording, options.report, joint),
+                                               readSoundJoint(references, recording.parameters(joint)));
 }
 
-/// With its data in `options.report`, if that is given.
+/// Compares the recording and writes the data of the pages into options.report, if that is given.
 ComparedRecording compareInto(const ComparisonOptions& options)
 {
   refuseReferenceAsReport(options);
   ArmRecording recording(options);
   prepareReports(options, recording);
   ComparedRecording compared;
-  std::vector<std::unique_ptr<JointComparison>> joints;
+  std::vector<RecordingComparison*> joints(recording.joints().size());  // joints of the last pass
   AssessmentSettings settings;
-  settings.make_joints = [&]
+  settings.make_joint = [&](std::size_t i)
   {
-    joints.clear();  // closes the files that the next pass opens
-    joints = prepareJoints(options, recording);
-    std::vector<AssessedJoint*> all;
-    for (const auto& joint : joints)
-    {
-      all.push_back(joint.get());
-    }
-    return all;
+    std::unique_ptr<RecordingComparison> joint = prepareJoint(options, recording, i);
+    joints[i] = joint.get();
+    return joint;
   };
   settings.beside_controller = options.beside_controller;
-  settings.watch = options.watch;
+  settings.gives_notice = true;
   RecordingFit fit(recording.parameters());
   const ArmAssessment arm = assess(recording, settings, fit);
   compared.is_arm = recording.isArm();
@@ -423,8 +316,7 @@ ComparedRecording compareInto(const ComparisonOptions& options)
   }
   for (std::size_t i = 0; i < joints.size(); ++i)
   {
-    ComparedJoint& joint = compared.joints.emplace_back(joints[i]->write(
-        recording.parameters(i), arm.found, arm.context(i), recording.twinNamespace(i) + "/" + topics::JOINT_STATES));
+    ComparedJoint& joint = compared.joints.emplace_back(joints[i]->write(arm.found, arm.context(i)));
     joint.name = recording.joints()[i].short_name;
   }
   if (recording.isArm())
@@ -468,6 +360,31 @@ void addReferenceOption(OptionTable& table, ComparisonOptions& options)
       .follow()
       .type("DIR")
       .existingDirectory();
+}
+
+void makePage(const std::string& directory)
+{
+  constexpr const char* PYTHON = "/usr/bin/python3";
+  std::string script = (packageDirectory() / "scripts/comparison_page.py").string();
+  std::string python = PYTHON;
+  std::string argument = directory;
+  std::array<char*, 4> arguments{ python.data(), script.data(), argument.data(), nullptr };
+  pid_t child{};
+  const int refused = posix_spawn(&child, PYTHON, nullptr, nullptr, arguments.data(), environ);
+  int status = 0;
+  if (refused == 0)
+  {
+    while (waitpid(child, &status, 0) < 0 && errno == EINTR)
+    {
+    }
+  }
+  if (refused != 0 || status != 0)
+  {
+    throw InputError("the page was not made" +
+                     (refused != 0 ? ": " + std::string(PYTHON) + ": " + std::strerror(refused) : std::string()) +
+                     "; the data are in " + directory + ", and `" + python + " " + script + " " + directory +
+                     "` makes the page of them");
+  }
 }
 
 ComparedRecording compare(const ComparisonOptions& options)

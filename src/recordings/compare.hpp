@@ -8,9 +8,7 @@
 
 #include "output/report.hpp"
 #include "recordings/arm_assessment.hpp"
-#include "recordings/recording_contents.hpp"
 #include "recordings/recording_options.hpp"
-
 #include "tracking/common_friction.hpp"
 #include "tracking/verdict.hpp"
 
@@ -18,29 +16,46 @@ namespace hjt
 {
 struct ComparisonOptions : RecordingOptions
 {
-  bool beside_controller{ true };  ///< without a reference hold the friction against the controller's where that is one
-  /// Directory of the page, its figures and data; of an arm a directory for each joint. Empty: nothing is written.
+  bool beside_controller{ true };  ///< the friction that the controller expects may be the reference
+  /// Directory of the page, its figures and data, with a directory for each joint of an arm. Empty: nothing is written.
   std::string report;
-  std::vector<std::string> references;  ///< earlier reports of this joint or arm in sound condition; empty: none
+  std::vector<std::string> references;  ///< earlier reports of the joint or arm in sound condition
 };
 
 void addOptions(OptionTable& table, ComparisonOptions& options);
-/// Earlier reports to judge by.
+/// Adds the option for earlier reports to judge by.
 void addReferenceOption(OptionTable& table, ComparisonOptions& options);
+
+/// A topic or column that a comparison can use.
+struct ContentLine
+{
+  std::string name;
+  std::string gives;
+  std::uint64_t messages{};  ///< number of messages, or of rows with a value
+  bool found{};
+};
+
+/// Contents of a recording.
+struct RecordingContents
+{
+  std::vector<ContentLine> lines;
+  std::vector<std::string> joints;        ///< named in the telemetry's first message
+  std::vector<std::string> other_topics;  ///< topics that a comparison does not use
+};
 
 /// A joint beside its twin.
 struct ComparedJoint
 {
-  std::string name;  ///< short
+  std::string name;  ///< short name
   Verdict verdict;
   RecordingContents contents;
-  std::optional<FrictionFactor> friction;  ///< measured over expected; none: not judged
-  std::string contact;                     ///< contact that was found, in a sentence; empty: none
-  double temperature{};                    ///< that it was judged at [degC]
+  std::optional<FrictionFactor> friction;  ///< measured friction over the expected one; none if it is not judged
+  std::string contact;                     ///< sentence on a contact that was found; empty: none
+  double temperature{};                    ///< temperature at which the joint was judged [degC]
   const char* temperature_source{};
   std::uint64_t rows{};
-  double current_rms{};   ///< measured [A]
-  double residual_rms{};  ///< measured less predicted [A]
+  double current_rms{};   ///< measured current [A]
+  double residual_rms{};  ///< measured current less predicted current [A]
   Json document;          ///< the data of its page
 };
 
@@ -50,20 +65,26 @@ struct ComparedRecording
   std::string level;
   std::string text;  ///< a sentence or two
   bool is_judged{};
-  std::size_t not_judged{};  ///< joints; the level does not speak for them
-  HealthLevel health{};      ///< the worst of the joints
+  std::size_t not_judged{};  ///< number of joints that are not judged
+  HealthLevel health{};      ///< worst level of the joints
   MotionFindings found;
-  AssumedLoad assumed;                ///< that the joints are judged with in place of the configured one
-  ArmFriction friction;               ///< common factors of the joints
-  std::vector<ComparedJoint> joints;  ///< from the base on; none: stopped
-  Json document;                      ///< the data of the page
-  std::string page;                   ///< its path; empty: none
+  AssumedLoad assumed;                ///< load that the joints are judged with
+  ArmFriction friction;               ///< friction that the joints have in common
+  std::vector<ComparedJoint> joints;  ///< joints from the base on; none if the comparison was stopped
+  Json document;                      ///< data of the page
+  std::string page;                   ///< path of the page; empty: none
 };
 
-/// Compares a recorded joint or arm with its twin: verdict, data and figures as a page.
-/// @throws ParameterError, InputError: unreadable, a file that cannot be written, a page that cannot be made.
+/// Compares a recorded joint or arm with its twin, and makes a page of verdict, data and figures if a report is wanted.
+/// @throws ParameterError, InputError if the recording is unreadable, or a file or page cannot be made.
 ComparedRecording compare(const ComparisonOptions& options);
 
-/// A row for each joint.
+/// Table with a row for each joint.
 Table tableOf(const ComparedRecording& compared);
+
+constexpr const char* REPORT_PAGE = "report.html";
+
+/// Runs the script that makes a page and its pictures of the data in a directory. @throws InputError if the script
+/// fails.
+void makePage(const std::string& directory);
 }  // namespace hjt

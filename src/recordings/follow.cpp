@@ -27,69 +27,50 @@ namespace hjt
 {
 namespace
 {
-constexpr double VERDICT_RATE = 1.0;  // [Hz]
+constexpr double VERDICT_RATE = 1.0;  // rate of the verdicts [Hz]
 
-/// A bag with the topics that the node publishes beside a robot, made offline from its recording. Where that is a bag
-/// of ROS 1 too, it holds all of its messages as they are.
+/// A bag with the topics that the node publishes beside a robot, made offline from a recording. If the recording is a
+/// bag of ROS 1, all of its messages are copied.
 class TrackedBag
 {
 public:
-  /// One joint whose comparisons go into the bag.
-  struct Joint
+  /// Times of a CSV file count from SIMULATION_EPOCH. `recording` must live as long as this object.
+  /// @throws InputError if a file cannot be opened, or the recording has a topic of the twin.
+  TrackedBag(const std::string& path, const ArmRecording& recording) : recording_(recording), writer_(path)
   {
-    std::string name;             ///< in the messages
-    std::string joint_namespace;  ///< its topics lie below, e.g. "/elbow/joint_twin"
-    const Parameters& parameters;
-  };
-
-  /// A CSV file's times count from SIMULATION_EPOCH.
-  /// @throws InputError if a file cannot be opened, or the recording holds a topic of the twin already.
-  TrackedBag(const std::string& path, const MotionSource& source, const std::vector<Joint>& joints)
-    : source_path_(source.path), writer_(path), joints_(joints)
-  {
+    const MotionSource source = recording.source(0);
     if (source.time_scale != 1.0)
     {
       throw InputError("--bag keeps the times of the recording: --time-scale cannot change them");
     }
-    std::vector<std::string> names;
-    for (const Joint& joint : joints)
+    const auto take_first = [this](const std::vector<MotionRow>& rows)
     {
-      names.push_back(joint.name);
-    }
-    const auto take_first = [this](const MotionRow& row)
-    {
-      delay_ = std::llround(1e9 * (row.received - row.time));
+      delay_ = std::llround(1e9 * (rows.front().received - rows.front().time));
       return false;
     };
-    const auto no_progress = [](double) {};
-    start_ = (joints.size() == 1 ?
-                  readMotion(source, take_first, no_progress) :
-                  readArmMotion(
-                      source, names, [&](const std::vector<MotionRow>& rows) { return take_first(rows.front()); },
-                      no_progress))
-                 .start;
-    if (isCsv(source))
-    {
-      start_ += SIMULATION_EPOCH;  // a controller counts from its own start
-    }
-    else if (source.format == RecordingFormat::BAG)
+    start_ = recording.readRows(take_first).start + (isCsv(source) ? SIMULATION_EPOCH : 0);
+    if (source.format == RecordingFormat::BAG)
     {
       openForReading(source_, source.path);
-      for (const Joint& joint : joints)
+    }
+    for (std::size_t i = 0; i < recording.joints().size(); ++i)
+    {
+      const std::string joint_namespace = recording.twinNamespace(i);  // the joint's topics lie below it
+      if (source.format == RecordingFormat::BAG)
       {
-        refuseTopics(source_, source.path, trackerTopics(joint.joint_namespace));
+        refuseTopics(source_, source.path, trackerTopics(joint_namespace));
       }
+      const BagContext context{ writer_, joint_namespace + "/", delay_ };
+      outputs_.push_back(std::make_unique<TrackerOutputs<RecordedTopic>>(context, recording.parameters(i)));
+    }
+    if (source.format == RecordingFormat::BAG)
+    {
       view_.addQuery(source_);
       next_ = view_.begin();
     }
-    for (const Joint& joint : joints)
-    {
-      const BagContext context{ writer_, joint.joint_namespace + "/", delay_ };
-      outputs_.push_back(std::make_unique<TrackerOutputs<RecordedTopic>>(context, joint.parameters));
-    }
   }
 
-  /// A comparison of a joint, by its place in the list. Takes over what was recorded until the comparison's row.
+  /// Takes a comparison of a joint, by the joint's number, after copying the messages that were recorded before it.
   void offer(std::size_t joint, const Comparison& comparison, const Tracker& tracker)
   {
     const Stamp stamp = start_ + std::llround(1e9 * comparison.time);
@@ -97,8 +78,8 @@ public:
     outputs_[joint]->offer(stamp, comparison, tracker);
   }
 
-  /// The joints are judged too: `trackers` in the order of the list. `arm`: the same recording as a whole, which they
-  /// are judged with.
+  /// Adds verdicts of the joints. `trackers` are in the order of the joints, and `arm` is the assessment of the whole
+  /// recording.
   void judge(const std::vector<Tracker*>& trackers, const ArmAssessment& arm)
   {
     for (std::size_t i = 0; i < trackers.size(); ++i)
@@ -108,7 +89,8 @@ public:
     }
   }
 
-  /// After the comparisons of a row: a verdict of each joint about once a second, of the rows so far.
+  /// To be called after the comparisons of a row. Writes a verdict of each joint about once a second, by the rows so
+  /// far.
   void offerVerdicts(double time)
   {
     if (verdict_periods_.begins(start_ + std::llround(1e9 * time)))
@@ -117,7 +99,7 @@ public:
     }
   }
 
-  /// Takes over the rest, and the verdicts of all rows. @throws InputError if not all could be written.
+  /// Copies the remaining messages and writes the verdicts by all rows. @throws InputError if not all could be written.
   void close()
   {
     judgeNow();
@@ -138,7 +120,7 @@ private:
     }
     catch (const rosbag::BagException& error)
     {
-      throw InputError(source_path_ + " cannot be copied: " + error.what() + "; " + writer_.path() +
+      throw InputError(recording_.options().recording + " cannot be copied: " + error.what() + "; " + writer_.path() +
                        " is readable and holds what came before");
     }
   }
@@ -150,27 +132,26 @@ private:
     {
       verdicts.push_back(verdict.get());
     }
-    judgeTogether(verdicts, joints_.front().parameters.comparison.repeat_tolerance);
+    judgeTogether(verdicts, recording_.parameters(0).comparison.repeat_tolerance);
     for (std::size_t i = 0; i < verdicts_.size(); ++i)
     {
       outputs_[i]->offer(start_ + std::llround(1e9 * verdicts_[i]->lastRow()), verdicts_[i]->now());
     }
   }
 
-  const std::string source_path_;
-  rosbag::Bag source_;  // not open: the recording is no bag
-  rosbag::View view_;   // of all of it
+  const ArmRecording& recording_;
+  rosbag::Bag source_;  // open only if the recording is a bag
+  rosbag::View view_;   // all messages of source_
   std::optional<rosbag::View::iterator> next_;
   BagWriter writer_;
   Stamp start_{};  // stamp of the first row [ns]
-  Stamp delay_{};  // of its recording behind that [ns]
-  const std::vector<Joint> joints_;
+  Stamp delay_{};  // time from the first row's stamp to its recording [ns]
   std::vector<std::unique_ptr<TrackerOutputs<RecordedTopic>>> outputs_;
   std::vector<std::unique_ptr<VerdictWatch>> verdicts_;
   StampPeriods verdict_periods_{ VERDICT_RATE };
 };
 
-/// As the fields of Comparison.msg.
+/// Columns with the fields of Comparison.msg.
 const std::vector<Column<Comparison>> COLUMNS{
   { "time", &Comparison::time },
   { "position_measured", [](const Comparison& now) { return now.position.measured; } },
@@ -200,35 +181,30 @@ const std::vector<Column<Comparison>> COLUMNS{
 class Follower
 {
 public:
-  /// `bag`: gets the comparisons as those of joint `number`, if there is one.
+  /// `bag` may be null, else it gets the comparisons of the joint `number`.
   Follower(const ArmRecording& recording, const FollowOptions& options, TrackedBag* bag, std::size_t number)
-    : options_(options)
-    , is_arm_(recording.isArm())
-    , has_load_(recording.isArm() || recording.hasRecordedLoad())
+    : recording_(recording)
+    , options_(options)
     , has_arm_load_(recording.isArm() && !recording.usesRecordedLoad())
-    , has_load_error_(has_arm_load_ && recording.hasRecordedLoad())
     , bag_(bag)
     , number_(number)
     , tracker_(recording.parameters(number), options.mode, surfaceSource(options.watch))
   {
     if (!options.out.empty())
     {
-      csv_.emplace(pathOf(recording), COLUMNS);
+      csv_.emplace(path(), COLUMNS);
     }
   }
 
   void add(const ArmJointRow& joint)
   {
-    if (has_load_error_)
-    {
-      load_error_.add(joint.row.load + joint.motor_part - joint.recorded_load);
-    }
-    if (has_load_)
+    load_error_.add(joint.row.load + joint.motor_part - joint.recorded_load);
+    if (recording_.isArm() || recording_.hasRecordedLoad())
     {
       tracker_.pushLoad(joint.row.time, joint.row.load);
     }
     timing_.add(joint.row.time, joint.row.received);
-    if (is_arm_)
+    if (recording_.isArm())
     {
       take(tracker_.compare(joint.row), joint.motor_part);
       return;
@@ -237,14 +213,14 @@ public:
     takeAll(false);
   }
 
-  FollowedJoint finish(const std::string& name)
+  FollowedJoint finish()
   {
     takeAll(true);
     if (csv_)
     {
       csv_->close();
     }
-    return { name,
+    return { recording_.joints()[number_].short_name,
              tracker_.counters(),
              timing_.report(),
              tracker_.lag(),
@@ -252,17 +228,17 @@ public:
              residual_.value(),
              velocity_.value(),
              position_.value(),
-             has_load_error_ ? std::make_optional(load_error_.value()) : std::nullopt };
+             has_arm_load_ && recording_.hasRecordedLoad() ? std::make_optional(load_error_.value()) : std::nullopt };
   }
 
   Tracker& tracker() { return tracker_; }
 
 private:
-  std::string pathOf(const ArmRecording& recording) const
+  std::string path() const
   {
     const std::filesystem::path out = options_.out;
     const std::string path =
-        recording.isArm() ? (out / (recording.joints()[number_].short_name + ".csv")).string() : options_.out;
+        recording_.isArm() ? (out / (recording_.joints()[number_].short_name + ".csv")).string() : options_.out;
     requireWritable(path, options_.force, options_.recording);
     return path;
   }
@@ -275,14 +251,14 @@ private:
     }
   }
 
-  /// `motor_part`: what a controller's torque holds beside the arm's load [N.m].
+  /// `motor_part`: part of a controller's torque that is not the arm's load [N.m].
   void take(Comparison now, double motor_part)
   {
     if (bag_ != nullptr)
     {
       bag_->offer(number_, now, tracker_);
     }
-    // The column is always the torque of a controller, independent of the load option.
+    // The column is the torque as a controller counts it, whatever load is chosen.
     now.load_torque += has_arm_load_ ? motor_part : 0.0;
     current_.add(now.current.measured);
     residual_.add(now.current.residual());
@@ -295,13 +271,11 @@ private:
     }
   }
 
+  const ArmRecording& recording_;
   const FollowOptions& options_;
-  const bool is_arm_;
-  const bool has_load_;
   const bool has_arm_load_;
-  const bool has_load_error_;
   TrackedBag* bag_;
-  std::size_t number_;  // of the joint
+  std::size_t number_;  // number of the joint
   Tracker tracker_;
   std::optional<TableFile<Comparison>> csv_;
   StreamTiming timing_;
@@ -312,7 +286,7 @@ private:
   Rms load_error_;
 };
 
-/// The temperature that the friction of an arm's joints means, once a second.
+/// Sets the temperature of the joints' twins once a second, by the friction that the joints have in common.
 class CommonTemperature
 {
 public:
@@ -345,7 +319,7 @@ private:
   StampPeriods periods_{ VERDICT_RATE };
 };
 
-/// Null: no bag is asked for.
+/// The bag of the options, or null.
 std::unique_ptr<TrackedBag> bagOf(const ArmRecording& recording, const FollowOptions& options)
 {
   if (options.bag.empty())
@@ -356,24 +330,14 @@ std::unique_ptr<TrackedBag> bagOf(const ArmRecording& recording, const FollowOpt
   {
     throw InputError("bag = '" + options.bag + "' needs a recording in a file, whose times it keeps");
   }
-  std::vector<TrackedBag::Joint> joints;
-  for (std::size_t i = 0; i < recording.joints().size(); ++i)
-  {
-    joints.push_back({ recording.joints()[i].name, recording.twinNamespace(i), recording.parameters(i) });
-  }
-  return std::make_unique<TrackedBag>(options.bag, recording.source(0), joints);
+  return std::make_unique<TrackedBag>(options.bag, recording);
 }
 
-/// As `compare` judges it; the load that the currents show is the recording's from then on.
-ArmAssessment assessFor(AssessedTwins& twins, ArmRecording& recording, const FollowOptions& options)
+/// Judges the recording as `compare` does. The load that the currents show is then that of the recording.
+ArmAssessment assessFor(ArmRecording& recording, const FollowOptions& options)
 {
-  AssessmentSettings settings;
-  settings.make_joints = [&]
-  { return twins.make(recording.parameters(), recording.loadOrigin(), !options.identified.empty()); };
-  settings.gives_notice = false;
-  settings.watch = options.watch;
   RecordingFit fit(recording.parameters());
-  const ArmAssessment arm = assess(recording, settings, fit);
+  ArmAssessment arm = assess(recording, {}, fit);
   if (!arm.assumed.isConfigured())
   {
     options.watch.notice(arm.assumed.text());
@@ -476,9 +440,7 @@ try
   }
   requireWritable(options.bag, options.force, options.recording);
   const std::unique_ptr<TrackedBag> bag = bagOf(recording, options);
-  AssessedTwins twins;
-  const std::optional<ArmAssessment> assessed =
-      bag ? std::make_optional(assessFor(twins, recording, options)) : std::nullopt;
+  const std::optional<ArmAssessment> assessed = bag ? std::make_optional(assessFor(recording, options)) : std::nullopt;
   std::vector<std::unique_ptr<Follower>> followers;
   std::vector<Tracker*> trackers;
   for (std::size_t i = 0; i < recording.joints().size(); ++i)
@@ -509,9 +471,9 @@ try
       fit);
   recording.noticeOf(fit);
   recording.noticeOf(followed.found);
-  for (std::size_t i = 0; i < followers.size(); ++i)
+  for (const auto& follower : followers)
   {
-    followed.joints.push_back(followers[i]->finish(recording.joints()[i].short_name));
+    followed.joints.push_back(follower->finish());
   }
   if (bag)
   {

@@ -7,24 +7,23 @@
 #include <functional>
 #include <map>
 
-#include "output/report.hpp"
-#include "recordings/arm_recording.hpp"
-
 #include "base/number_text.hpp"
 #include "base/whole_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
+#include "output/report.hpp"
+#include "recordings/arm_recording.hpp"
 #include "tracking/motion_driven.hpp"
 
 namespace hjt
 {
 namespace
 {
-constexpr double PAST_THE_END = 1.0;  // [s]
+constexpr double PAST_THE_END = 1.0;  // time behind the last row at which parts end [s]
 
 /// Entries of an overlay by section.
 using Sections = std::map<std::string, std::string>;
 
-/// The identified parameters, each with its interval.
+/// Entries of the identified parameters, with their intervals in comments.
 Sections identifiedSections(const Identification& found)
 {
   Sections sections;
@@ -55,9 +54,10 @@ Sections identifiedSections(const Identification& found)
                                "Ripple, " + shortNumber(line.order) + " a joint turn [N.m]: " + line.refusal + ".");
   }
   add("telemetry.ripple_resonance", numberText(telemetry.ripple_resonance), "Resonance of the load [Hz].");
-  add("telemetry.ripple_damping", numberText(telemetry.ripple_damping), "Its damping ratio [-].");
-  add("telemetry.ripple_lag", numberText(telemetry.ripple_lag), "Of the ripple behind the angle [s].");
-  add("telemetry.ripple_fastest", numberText(telemetry.ripple_fastest), "Beyond, none is known [rad/s].");
+  add("telemetry.ripple_damping", numberText(telemetry.ripple_damping), "Damping ratio of the resonance [-].");
+  add("telemetry.ripple_lag", numberText(telemetry.ripple_lag), "Lag of the ripple behind the angle [s].");
+  add("telemetry.ripple_fastest", numberText(telemetry.ripple_fastest),
+      "Speed above which no ripple is known [rad/s].");
   return sections;
 }
 
@@ -73,7 +73,7 @@ void writeOverlay(const IdentifyOptions& options, const std::string& joint, cons
   writeTextFile(path, text);
 }
 
-/// Whether an interval leaves zero out: else it says nothing.
+/// Whether the interval of a value does not contain zero.
 bool saysSomething(const Identification& found)
 {
   return std::any_of(found.values.begin(), found.values.end(),
@@ -83,7 +83,7 @@ bool saysSomething(const Identification& found)
                      [](const RippleLine& line) { return line.refusal.empty() && line.half_width < line.amplitude; });
 }
 
-/// Remarks for the user that help to judge the result of one joint.
+/// Tells the user what helps to judge the result of one joint.
 void noticeOf(const IdentifiedJoint& joint, bool any, const Watch& watch)
 {
   const JudgedErrors& judged = joint.found.judged;
@@ -100,7 +100,7 @@ void noticeOf(const IdentifiedJoint& joint, bool any, const Watch& watch)
   }
 }
 
-/// Where three numbers fitted alike would do better than the twin.
+/// Tells the user if three fitted numbers would predict the current better than the twin.
 void noticeOfSimpleFit(const IdentifiedJoint& joint, const Watch& watch)
 {
   const double twin = joint.left_out.identified.moving;
@@ -114,11 +114,11 @@ void noticeOfSimpleFit(const IdentifiedJoint& joint, const Watch& watch)
 }
 
 constexpr int ARM_FOLDS = 5;
-/// Largest error of pieces left out with ripple over that without, moving, at which the ripple of an arm's joint is
-/// kept.
+/// Largest error on pieces left out with ripple over that without ripple, both in motion, at which the ripple of an
+/// arm's joint is kept.
 constexpr double RIPPLE_GAIN = 0.95;
 
-/// @throws InputError for parts that no recording has.
+/// @throws InputError if the options have a part that no recording has.
 void requireParts(const IdentifyOptions& options)
 {
   if (!options.arm.empty() && options.judge)
@@ -135,7 +135,7 @@ void requireParts(const IdentifyOptions& options)
   }
 }
 
-/// The parts to identify and to judge on, as given or by default.
+/// Sets the parts to identify and to judge on, as given or by default.
 void chooseParts(const IdentifyOptions& options, double duration, double last, IdentifiedJoint& joint)
 {
   const bool is_arm = !options.arm.empty();
@@ -145,14 +145,14 @@ void chooseParts(const IdentifyOptions& options, double duration, double last, I
   joint.judge = options.judge.value_or(is_arm ? whole : Span{ third, duration + PAST_THE_END });
 }
 
-/// Pieces that are left out in turn: those of an arm judge what was identified.
+/// Number of pieces that are left out in turn. An arm has such pieces by default, by which its parameters are judged.
 int foldsOf(const IdentifyOptions& options)
 {
   return options.folds > 0 || options.arm.empty() ? options.folds : ARM_FOLDS;
 }
 
-/// Fits a joint to its part, then to what is left of it without each piece; `fitted` is called after each.
-/// @throws InputError if it hardly moves.
+/// Identifies a joint on its part, and then on that part without each of its pieces. `fitted` is called after each fit.
+/// @throws InputError if the joint hardly moves.
 void identifyJoint(const IdentifyOptions& options, const Parameters& parameters, bool load_recorded,
                    const std::vector<MotionSample>& samples, const std::function<void()>& fitted,
                    IdentifiedJoint& joint)
@@ -185,17 +185,12 @@ void identifyJoint(const IdentifyOptions& options, const Parameters& parameters,
   }
 }
 
-/// By the currents that the twins predict as configured; of no use if stopped.
+/// The payload by the currents that the configured twins predict. The result has no meaning if the user stopped.
 IdentifiedPayload payloadOf(const ArmRecording& recording, const std::vector<std::vector<MotionSample>>& samples,
                             const Watch& watch)
 {
   LoadFit fit(recording.arm(), recording.parameters());
   std::vector<MotionDriven> twins(recording.parameters().begin(), recording.parameters().end());
-  std::vector<const MotionDriven*> beside;
-  for (const MotionDriven& twin : twins)
-  {
-    beside.push_back(&twin);
-  }
   std::vector<MotionSample> row(samples.size());
   for (std::size_t k = 0; k < samples.front().size(); ++k)
   {
@@ -208,12 +203,12 @@ IdentifiedPayload payloadOf(const ArmRecording& recording, const std::vector<std
       row[i] = samples[i][k];
       twins[i].step(row[i]);
     }
-    fit.add(row, beside);
+    fit.add(row, [&](std::size_t i) -> const MotionDriven& { return twins[i]; });
   }
   return fit.solve(std::vector<bool>(samples.size(), true)).payload;
 }
 
-/// Where the overlay of a joint goes. @throws InputError if it must not be written.
+/// Path of a joint's overlay. @throws InputError if the file must not be written.
 std::string overlayOf(const IdentifyOptions& options, const std::string& joint)
 {
   const std::string path =
@@ -237,7 +232,7 @@ std::vector<IdentifiedJoint> identifyJoints(const IdentifyOptions& options, cons
 {
   std::vector<IdentifiedJoint> joints;
   const auto progress = options.watch.progress("identifying");
-  const std::size_t fits = 1 + static_cast<std::size_t>(foldsOf(options));  // of a joint, each of about the same time
+  const std::size_t fits = 1 + static_cast<std::size_t>(foldsOf(options));  // of a joint; each takes the same time
   for (std::size_t i = 0; i < samples.size() && !options.watch.stopped(); ++i)
   {
     IdentifiedJoint& joint = joints.emplace_back();
@@ -275,6 +270,138 @@ Option& addSpan(OptionTable& table, const char* name, std::optional<Span>& span,
   };
   return table.add(name, Option::Kind::NUMBER, take, help).pair();
 }
+
+const std::vector<Column<IdentifiedValue>> VALUE_COLUMNS{
+  { "name", &IdentifiedValue::name },      { "key", &IdentifiedValue::key },
+  { "unit", &IdentifiedValue::unit },      { "configured", &IdentifiedValue::configured },
+  { "value", &IdentifiedValue::value },    { "half_width", &IdentifiedValue::half_width },
+  { "refusal", &IdentifiedValue::refusal }
+};
+const std::vector<Column<RippleLine>> LINE_COLUMNS{ { "key", &RippleLine::key },
+                                                    { "order", &RippleLine::order },
+                                                    { "amplitude", &RippleLine::amplitude },
+                                                    { "half_width", &RippleLine::half_width },
+                                                    { "phase", &RippleLine::phase },
+                                                    { "refusal", &RippleLine::refusal } };
+
+void addErrors(const std::string& key, const JudgedErrors& judged, bool shown, std::vector<ReportLine>& lines)
+{
+  const auto add = [&](const std::string& name, const std::string& label, const CurrentError& error)
+  {
+    const std::string path = key + "." + name;
+    lines.insert(lines.end(), { { path + ".rows", "", error.rows },
+                                { path + ".all", "", error.all },
+                                { path + ".moving", "", error.moving },
+                                { path + ".resting", "", error.resting },
+                                { path + ".signal", "", error.signal } });
+    if (shown)
+    {
+      lines.push_back({ "", label,
+                        shortNumber(error.all) + " (moving " + shortNumber(error.moving) + ", resting " +
+                            shortNumber(error.resting) + ")",
+                        "A" });
+    }
+  };
+  add("configured", "as configured", judged.configured);
+  add("without_ripple", "identified, without ripple", judged.without_ripple);
+  add("identified", "identified", judged.identified);
+  add("gain_coulomb_viscous", "gain, Coulomb and viscous fitted alike", judged.gain_coulomb_viscous);
+}
+
+Report valuesOf(const IdentifiedJoint& joint, std::vector<std::string>& refused)
+{
+  const Identification& found = joint.found;
+  const TelemetryParameters& telemetry = found.parameters.telemetry;
+  std::vector<ReportLine> lines{ { "train", "", std::vector<double>{ joint.train.from, joint.train.to } },
+                                 { "judge", "", std::vector<double>{ joint.judge.from, joint.judge.to } },
+                                 { "values", "", Table(VALUE_COLUMNS, found.values).rows() },
+                                 { "lines", "", Table(LINE_COLUMNS, found.lines).rows() },
+                                 { "ripple_resonance", "", telemetry.ripple_resonance },
+                                 { "ripple_damping", "", telemetry.ripple_damping },
+                                 { "ripple_lag", "", telemetry.ripple_lag },
+                                 { "ripple_fastest", "", telemetry.ripple_fastest } };
+  const auto tell = [&](const std::string& name, const auto& value, double size, const std::string& unit)
+  {
+    if (value.refusal.empty())
+    {
+      lines.push_back({ "", name, shortNumber(size) + " +- " + shortNumber(value.half_width), unit });
+    }
+    else
+    {
+      refused.push_back(name + ": " + value.refusal);
+    }
+  };
+  for (const IdentifiedValue& value : found.values)
+  {
+    tell(value.name, value, value.value, value.unit);
+  }
+  for (const RippleLine& line : found.lines)
+  {
+    tell("ripple, " + shortNumber(line.order) + " a turn", line, line.amplitude, "N.m");
+  }
+  const auto span = [&](const std::string& name, const Span& part) {
+    lines.push_back({ "", name, shortNumber(part.from) + " to " + shortNumber(part.to), "s" });
+  };
+  span("identified on", joint.train);
+  span("judged on", joint.judge);
+  return { lines, {} };
+}
+
+std::vector<ReportLine> errorsOf(const IdentifiedJoint& joint)
+{
+  std::vector<ReportLine> errors{ { "", "the current itself, rms", joint.found.judged.identified.signal, "A" },
+                                  { "", "error of the current on the judged part, rms", "" } };
+  addErrors("judged", joint.found.judged, true, errors);
+  const bool folded = joint.left_out.identified.rows > 0;
+  if (folded)
+  {
+    errors.push_back({ "", "on pieces left out in turn", "" });
+  }
+  addErrors("left_out", joint.left_out, folded, errors);
+  return errors;
+}
+
+std::vector<ReportLine> linesOf(const IdentifiedPayload& found)
+{
+  const auto list = [](const std::array<double, 3>& values)
+  { return std::vector<double>(values.begin(), values.end()); };
+  constexpr double KNOWN = 5.0;  // largest half width of a mass that is known [kg]
+  const std::string mass = found.mass_half_width < KNOWN ?
+                               shortNumber(found.mass) + " +- " + shortNumber(found.mass_half_width) + " kg" :
+                               "not known: the arm hardly moves, or is in too few poses";
+  std::vector<ReportLine> lines{ { "payload.configured", "", found.configured.mass },
+                                 { "payload.mass", "", found.mass },
+                                 { "payload.mass_half_width", "", found.mass_half_width },
+                                 { "payload.moment", "", list(found.moment) },
+                                 { "payload.moment_half_width", "", list(found.moment_half_width) },
+                                 { "", "payload by the currents", mass },
+                                 { "", "payload configured", found.configured.mass, "kg" } };
+  if (found.differs() && found.isCarried())
+  {
+    std::string centre;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+      centre += (axis > 0 ? ", " : "") + shortNumber(found.moment[axis] / found.mass) + " +- " +
+                shortNumber(found.moment_half_width[axis] / found.mass);
+    }
+    lines.push_back({ "", "its centre in the frame of the tip", centre, "m" });
+    lines.push_back({ "", "if the arm carries it", "set payload in the arm's file, identify again" });
+  }
+  return lines;
+}
+
+const std::vector<Column<IdentifiedJoint>> JOINT_TABLE{
+  { "joint", &IdentifiedJoint::name, "joint" },
+  { "signal", [](const IdentifiedJoint& joint) { return joint.left_out.identified.signal; }, "current, rms [A]" },
+  { "configured", [](const IdentifiedJoint& joint) { return joint.left_out.configured.all; }, "as configured [A]" },
+  { "identified", [](const IdentifiedJoint& joint) { return joint.left_out.identified.all; }, "identified [A]" },
+  { "identified_moving", [](const IdentifiedJoint& joint) { return joint.left_out.identified.moving; }, "moving [A]" },
+  { "gain_coulomb_viscous", [](const IdentifiedJoint& joint) { return joint.left_out.gain_coulomb_viscous.all; },
+    "gain, Coulomb, viscous [A]" },
+  { "values", [](const IdentifiedJoint& joint)
+    { return joint.found.values.empty() ? Json() : Table(VALUE_COLUMNS, joint.found.values).rows(); } },
+  { "refusal", &IdentifiedJoint::refusal, "stays as configured" }
+};
 }  // namespace
 
 void addOptions(OptionTable& table, IdentifyOptions& options)
@@ -309,8 +436,11 @@ Identified identify(const IdentifyOptions& options)
   }
   std::vector<std::vector<MotionSample>> samples(recording.joints().size());
   Identified identified{ recording.isArm(), options.load, {}, {}, {}, false };
+  RecordingFit fit(recording.parameters());
   identified.found =
-      recording.readSamples([&](std::size_t i, const MotionSample& sample) { samples[i].push_back(sample); });
+      recording.readSamples([&](std::size_t i, const MotionSample& sample) { samples[i].push_back(sample); }, fit);
+  recording.noticeOf(fit);
+  recording.noticeOf(identified.found);
   identified.joints = identifyJoints(options, recording, identified.found.duration, samples);
   if (recording.isArm() && !options.watch.stopped())
   {
@@ -345,5 +475,28 @@ Identified identify(const IdentifyOptions& options)
     writeOverlay(options, recording.joints()[i], identified.joints[i]);
   }
   return identified;
+}
+
+IdentifyReport reportOf(const Identified& identified)
+{
+  IdentifyReport report;
+  if (!identified.is_arm)
+  {
+    report.values = valuesOf(identified.joints.front(), report.refused);
+    report.errors = errorsOf(identified.joints.front());
+    return report;
+  }
+  report.values.lines = { { "rows", "rows", identified.found.rows }, { "load", "load", identified.load } };
+  const std::vector<ReportLine> payload = linesOf(*identified.payload);
+  report.values.lines.insert(report.values.lines.end(), payload.begin(), payload.end());
+  report.values.tables = { { "joints", Table(JOINT_TABLE, identified.joints) } };
+  return report;
+}
+
+Report IdentifyReport::whole() const
+{
+  Report report = values;
+  report.lines.insert(report.lines.end(), errors.begin(), errors.end());
+  return report;
 }
 }  // namespace hjt

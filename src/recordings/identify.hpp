@@ -15,10 +15,10 @@ namespace hjt
 {
 struct IdentifyOptions : RecordingOptions
 {
-  std::string out;            ///< overlay to write, of an arm a directory; empty: none
-  std::optional<Span> train;  ///< to identify on; none: the first third, of an arm all
-  std::optional<Span> judge;  ///< to test on; none: the rest, of an arm all
-  int folds{};                ///< pieces to predict each from the others, 2 ... 100; 0: none, of an arm 5
+  std::string out;            ///< overlay to write, for an arm a directory; empty: none
+  std::optional<Span> train;  ///< part to identify on; none: the first third, for an arm all
+  std::optional<Span> judge;  ///< part to test on; none: the rest, for an arm all
+  int folds{};                ///< number of pieces that are predicted from the others, 2 to 100; 0: none, for an arm 5
 };
 
 void addOptions(OptionTable& table, IdentifyOptions& options);
@@ -26,30 +26,31 @@ void addOptions(OptionTable& table, IdentifyOptions& options);
 /// Identified parameters of a joint, and the parts of the recording for training and judging.
 struct IdentifiedJoint
 {
-  std::string name;  ///< short
+  std::string name;  ///< short name
   Span train;
   Span judge;
   Identification found;
-  JudgedErrors left_out;  ///< empty without folds
-  std::string refusal;    ///< why the joint stays as configured; empty: it does not
+  JudgedErrors left_out;  ///< errors on pieces left out; empty without folds
+  std::string refusal;    ///< why the joint stays as configured; empty if it was identified
 };
 
 struct Identified
 {
   bool is_arm{};
-  std::string load;  ///< of an arm's joints: LOAD_OF_ARM or LOAD_RECORDED
+  std::string load;  ///< load of an arm's joints: LOAD_OF_ARM or LOAD_RECORDED
   MotionFindings found;
-  std::vector<IdentifiedJoint> joints;       ///< from the base on; none: stopped
-  std::optional<IdentifiedPayload> payload;  ///< of an arm
-  bool any{};                                ///< something was identified
+  std::vector<IdentifiedJoint> joints;       ///< joints from the base on; none if stopped
+  std::optional<IdentifiedPayload> payload;  ///< payload of an arm
+  bool any{};                                ///< whether something was identified
 };
 
-/// Gain, friction, inertia and ripple of a joint, or of all joints of an arm, from a recording; writes overlays if
-/// asked for.
-/// @throws ParameterError, InputError: unreadable, one joint that hardly moves, a file that cannot be written.
+/// Identifies gain, friction, inertia and ripple of a joint, or of all joints of an arm, from a recording. Writes
+/// overlays if the options name a file.
+/// @throws ParameterError, InputError if a file cannot be read or written, or a single joint hardly moves.
 Identified identify(const IdentifyOptions& options);
 
-/// As lines; `errors` are a block of their own for people. `refused`: what is not identifiable, a line each.
+/// Report of an identification. The lines `errors` are a block of their own for people. `refused` has a line for each
+/// value that is not identifiable.
 struct IdentifyReport
 {
   Report values;

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <optional>
 
 #include "arm/arm_configuration.hpp"
 #include "arm/arm_controller.hpp"
@@ -24,18 +23,18 @@ namespace
 constexpr std::array QUANTITIES{ "target_q_", "target_qd_", "target_current_", "target_moment_",
                                  "actual_q_", "actual_qd_", "actual_current_" };
 
-/// Of ArmController::defaultGains, the most that the gain of the speed may be: with twice of them a wrist's loop, which
-/// has none of the filters of a real one, swings up.
+/// Largest speed gain as a multiple of that of ArmController::defaultGains. With twice the default gain the loop of a
+/// wrist, which has none of the filters of a real controller, becomes unstable.
 constexpr double MOST_SPEED_GAIN = 1.5;
 
 struct Recorded
 {
-  double period{};                                 // of the rows, median [s]
-  std::vector<std::vector<ControllerRow>> joints;  // the moment in place of its current
-  std::vector<std::vector<double>> angles;         // actual [rad]
+  double period{};                                 // median time between rows [s]
+  std::vector<std::vector<ControllerRow>> joints;  // rows of each joint, with the moment in place of its current
+  std::vector<std::vector<double>> angles;         // actual angles of each joint [rad]
 };
 
-/// By how much the actual speeds are behind the actual angles' rates, least squares, not less than 0 [s].
+/// Delay of the actual speeds behind the rates of the actual angles, by least squares; 0 or more [s].
 double ageOfSpeeds(const std::vector<ControllerRow>& rows, const std::vector<double>& angles, double period)
 {
   double products = 0.0;
@@ -51,7 +50,8 @@ double ageOfSpeeds(const std::vector<ControllerRow>& rows, const std::vector<dou
   return squares > 0.0 ? std::max(products / squares, 0.0) : 0.0;
 }
 
-/// The errors that the controller had, which takes set points late, and their speeds as late as it reads its own.
+/// Computes the errors as the controller had them. It takes set points late, and their speeds as late as it reads the
+/// actual speeds.
 void takeDelays(double delay, double speed_age, double period, std::vector<ControllerRow>& rows)
 {
   const std::vector<ControllerRow> logged = rows;
@@ -84,15 +84,6 @@ Recorded readController(const std::string& path, std::size_t joints)
     std::transform(QUANTITIES.begin(), QUANTITIES.end(), columns[i].begin(),
                    [&](const char* name) { return column(name + std::to_string(i)); });
   }
-  const auto number = [&](std::size_t place)
-  {
-    const std::optional<double> value = decimalNumber(rows.text(place));
-    if (!value || !std::isfinite(*value))
-    {
-      throw InputError(rows.place() + ": column '" + header[place] + "' is no finite number");
-    }
-    return *value;
-  };
   Recorded recorded;
   recorded.joints.resize(joints);
   recorded.angles.resize(joints);
@@ -100,7 +91,7 @@ Recorded readController(const std::string& path, std::size_t joints)
   double before = 0.0;
   while (rows.next())
   {
-    const double now = number(time);
+    const double now = rows.number(time);
     if (!recorded.joints.front().empty())
     {
       steps.push_back(now - before);
@@ -109,7 +100,8 @@ Recorded readController(const std::string& path, std::size_t joints)
     for (std::size_t i = 0; i < joints; ++i)
     {
       std::array<double, QUANTITIES.size()> value{};
-      std::transform(columns[i].begin(), columns[i].end(), value.begin(), number);
+      std::transform(columns[i].begin(), columns[i].end(), value.begin(),
+                     [&](std::size_t place) { return rows.number(place); });
       recorded.joints[i].push_back(
           { value[0] - value[4], value[1] - value[5], value[1], value[3], value[2], value[6] });
       recorded.angles[i].push_back(value[4]);
@@ -118,7 +110,7 @@ Recorded readController(const std::string& path, std::size_t joints)
   recorded.period = steps.empty() ? 0.0 : upperMedian(steps.begin(), steps.end());
   if (!(recorded.period > 0.0))
   {
-    throw InputError(path + ": the times of its rows do not go on");
+    throw InputError(path + ": the times of its rows do not increase");
   }
   return recorded;
 }
@@ -137,16 +129,17 @@ std::string textOf(const RecordingOptions& options, const std::vector<Identified
   for (const IdentifiedController& joint : joints)
   {
     const ControllerFit& fit = joint.fit;
-    text += "\n" + joint.name + ":\n  # Speed wanted for an error of the angle [1/s]" +
-            (fit.refusal.empty() ? halfWidthText(fit.position_half_width) : "; as configured: " + fit.refusal) +
-            ".\n  position: " + numberText(fit.gains.position) + "\n  # Torque for an error of the speed [N.m.s/rad]" +
-            (joint.is_limited    ? "; identified more, beyond what this loop bears" :
-             fit.refusal.empty() ? halfWidthText(joint.fit.gains.speed / fit.speed_current * fit.speed_half_width) :
-                                   "") +
-            ".\n  speed: " + numberText(fit.gains.speed) +
-            "\n  # Of the speed's control [s].\n  integral_time: " + numberText(fit.gains.integral_time) +
-            "\n  # Friction that is fed forward, constant [N.m].\n  coulomb: " + numberText(fit.gains.coulomb) +
-            "\n  # And by speed [N.m.s/rad].\n  viscous: " + numberText(fit.gains.viscous) + "\n";
+    text +=
+        "\n" + joint.name + ":\n  # Wanted speed per error of the angle [1/s]" +
+        (fit.refusal.empty() ? halfWidthText(fit.position_half_width) : "; as configured: " + fit.refusal) +
+        ".\n  position: " + numberText(fit.gains.position) + "\n  # Torque per error of the speed [N.m.s/rad]" +
+        (joint.is_limited    ? "; identified more, beyond what this loop bears" :
+         fit.refusal.empty() ? halfWidthText(joint.fit.gains.speed / fit.speed_current * fit.speed_half_width) :
+                               "") +
+        ".\n  speed: " + numberText(fit.gains.speed) +
+        "\n  # Integral time of the speed control [s].\n  integral_time: " + numberText(fit.gains.integral_time) +
+        "\n  # Constant part of the friction that is fed forward [N.m].\n  coulomb: " + numberText(fit.gains.coulomb) +
+        "\n  # Fed-forward friction per speed [N.m.s/rad].\n  viscous: " + numberText(fit.gains.viscous) + "\n";
   }
   return text;
 }

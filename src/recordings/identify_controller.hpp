@@ -10,18 +10,18 @@
 
 namespace hjt
 {
-/// The controller of a joint.
+/// The identified controller of a joint.
 struct IdentifiedController
 {
-  std::string name;  ///< short
+  std::string name;  ///< short name
   ControllerFit fit;
-  bool is_limited{};  ///< the gain of the speed, to what the twin's loop bears
+  bool is_limited{};  ///< whether the speed gain was limited to what the twin's loop bears
 };
 
-/// Gains of the controller of all joints of an arm (fitController) from a table with a controller's columns target_q_0,
-/// target_qd_0, target_current_0, target_moment_0, actual_q_0, actual_qd_0, actual_current_0 ...; written into the
-/// directory `out` if it is not empty, as GAINS_FILE. @throws ParameterError, InputError: unreadable, a column that is
-/// missing, a file that cannot be written.
+/// Identifies the gains of the controller of all joints of an arm (fitController). The recording is a table with the
+/// columns target_q_0, target_qd_0, target_current_0, target_moment_0, actual_q_0, actual_qd_0, actual_current_0 and so
+/// on. The gains are written as GAINS_FILE into the directory `out`, unless that is empty. @throws ParameterError,
+/// InputError if a file cannot be read or written, or a column is missing.
 std::vector<IdentifiedController> identifyController(const RecordingOptions& options, const std::string& out);
 
 Report reportOf(const std::vector<IdentifiedController>& joints);

@@ -10,6 +10,7 @@
 #include "output/report.hpp"
 #include "recordings/recorded_windows.hpp"
 
+#include "base/statistics.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "health/baseline_file.hpp"
 #include "health/seen_from.hpp"
@@ -19,7 +20,7 @@ namespace hjt
 {
 namespace
 {
-/// Windows of a recording, and what they were made of and with.
+/// Windows of a recording, with their source and that of the parameters.
 struct WindowSeries
 {
   std::vector<SignalIndicators> windows;
@@ -27,19 +28,17 @@ struct WindowSeries
   const char* parameters{};
 };
 
-/// Remarks stamps that make indicators wrong: rates and accelerations come from them. With 0.05 ms of jitter at 2 kHz
-/// the stiffness K1 was off by 0.65 %, with a gap of 1 s by 1.4 %.
+/// Tells the user about stamps that make indicators wrong, because rates and accelerations come from the stamps. A
+/// jitter of 0.05 ms at 2 kHz changed the stiffness K1 by 0.65 %, and a gap of 1 s changed it by 1.4 %.
 void noticeSteps(std::vector<float> steps, const std::string& recording, const Watch& watch)
 {
-  constexpr double GAP = 10.0;     // usual steps: filters bridge less
-  constexpr double JITTER = 0.05;  // rms, of a usual step
+  constexpr double GAP = 10.0;     // least gap in usual steps; filters bridge shorter ones
+  constexpr double JITTER = 0.05;  // least jitter, rms over a usual step
   if (steps.size() < 2)
   {
     return;
   }
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  const double usual = *middle;
+  const double usual = upperMedian(steps.begin(), steps.end());
   std::size_t gaps = 0;
   double longest = 0.0;
   double square = 0.0;
@@ -55,7 +54,7 @@ void noticeSteps(std::vector<float> steps, const std::string& recording, const W
   {
     watch.notice(recording + ": " + std::to_string(gaps) + (gaps == 1 ? " gap" : " gaps") +
                  " between samples, the longest " + shortNumber(longest) + " s where " + shortNumber(1e3 * usual) +
-                 " ms are usual: indicators of these windows are off");
+                 " ms are usual: the indicators of these windows are wrong");
   }
   if (jitter > JITTER * usual)
   {
@@ -72,7 +71,7 @@ std::vector<SignalIndicators> readWindows(const std::string& recording, const Si
   SignalMonitor monitor(parameters);
   monitor.seekBearingSlip(parameters);
   std::vector<SignalIndicators> windows;
-  std::vector<float> steps;  // between samples [s]
+  std::vector<float> steps;  // times between samples [s]
   std::int64_t last = 0;
   readSignals(recording, options, parameters,
               [&](const SignalSample& sample)
@@ -92,12 +91,12 @@ std::vector<SignalIndicators> readWindows(const std::string& recording, const Si
   if (monitor.refused() > 0)
   {
     watch.notice(recording + ": " + std::to_string(monitor.refused()) +
-                 " samples without an angle, a torque or progress in time passed over");
+                 " samples were ignored, which have no angle, no torque or no later time than the sample before");
   }
   return windows;
 }
 
-/// All windows of one recording, or of a model's.
+/// All windows of one recording, of the joint or of its model.
 WindowSeries readOne(const std::string& path, const SignalOptions& signals, const IndicatorsOptions& options)
 {
   if (options.windows)
@@ -113,7 +112,7 @@ WindowSeries readOne(const std::string& path, const SignalOptions& signals, cons
   return { readWindows(path, signals, parameters.values, options.watch), "signals", parameters.origin };
 }
 
-/// All windows of recording `index`, less those of its model if there is one, which come into `model`.
+/// All windows of the recording `index`, less those of its model, if it has one. `model` gets the windows of the model.
 WindowSeries readRecording(std::size_t index, const IndicatorsOptions& options, std::vector<SignalIndicators>& model)
 {
   WindowSeries measured = readOne(options.recordings[index], options, options);
@@ -138,7 +137,7 @@ bool isSound(const Assessment& assessment)
   return assessment.state == AssessmentState::ASSESSED && assessment.level == HealthLevel::OK;
 }
 
-/// Names the recordings that cannot be read. @throws InputError if none can.
+/// Tells the user which recordings cannot be read. @throws InputError if none can be read.
 void throwIfNoneIsRead(const AssessedWindows& found, const IndicatorsOptions& options)
 {
   const std::size_t recordings = options.recordings.size();
@@ -154,7 +153,7 @@ void throwIfNoneIsRead(const AssessedWindows& found, const IndicatorsOptions& op
   }
 }
 
-/// Every window of the recordings that can be read. @throws InputError if none can.
+/// Assesses every window of the recordings that can be read. @throws InputError if none can be read.
 AssessedWindows assess(const IndicatorsOptions& options, Assessor& assessor)
 {
   AssessedWindows found;
@@ -174,7 +173,7 @@ AssessedWindows assess(const IndicatorsOptions& options, Assessor& assessor)
     }
     if (!options.baseline.empty())
     {
-      assessor.reset();  // each is judged for itself
+      assessor.reset();  // each recording is judged by itself
     }
     ClosestAssessment judged;
     for (std::size_t i = 0; i < measured.windows.size(); ++i)
@@ -199,11 +198,12 @@ AssessedWindows assess(const IndicatorsOptions& options, Assessor& assessor)
   return found;
 }
 
-/// Says where a cause was sought with signatures of a gear much stiffer or softer than the reference's.
+/// Tells the user if a cause was sought with signatures of a gear that is much stiffer or softer than that of the
+/// reference.
 void noticeOtherGear(const std::vector<WindowResult>& windows, const Assessor& assessor, const std::string& signatures,
                      const Watch& watch)
 {
-  // Sizes of a series differ by 1.9 and more from one to the next, ratio, encoders and making of one by 1.25.
+  // From size to size of a series the stiffness changes by a factor of 1.9 at least, within a size by 1.25 at most.
   constexpr double ALIKE = 1.6;
   constexpr std::size_t K1 = indexOf(ScalarIndicator::TORSIONAL_STIFFNESS);
   const double theirs = assessor.signatures().sound[K1];
@@ -231,7 +231,7 @@ void refuseWrongModels(const IndicatorsOptions& options)
   }
 }
 
-/// Those of the first recording that can be read.
+/// Parameters of the first recording that can be read.
 Parameters parametersOf(const IndicatorsOptions& options)
 {
   for (auto recording = options.recordings.begin();; ++recording)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "recordings/indicators_report.hpp"
+#include "recordings/indicators.hpp"
 
 #include <algorithm>
 #include <array>
@@ -54,7 +54,7 @@ Json toJson(const Assessment& assessment)
            { "evidence", Table(columns, evidence).rows() } };
 }
 
-/// Of a window, for documents and files alike.
+/// Columns of a window for documents and files.
 const std::vector<Column<WindowResult>> POINT_COLUMNS{
   { "time", [](const WindowResult& window) { return toSeconds(window.indicators.stamp); } },
   { "turns", [](const WindowResult& window) { return window.indicators.turns; } },
@@ -68,7 +68,7 @@ const std::vector<Column<WindowResult>> POINT_COLUMNS{
   { "temperature", [](const WindowResult& window) { return window.indicators.point.temperature; } }
 };
 
-/// What `value` gives for each indicator, by its name.
+/// The result of `value` for each indicator, by the indicator's name.
 template <class Value>
 Json byIndicator(const Value& value)
 {
@@ -80,7 +80,8 @@ Json byIndicator(const Value& value)
   return json;
 }
 
-/// Sound value, difference from it, own variance, what goes with each common cause; null: not compared.
+/// For each indicator its sound value, the difference from it, the variance of its own, and its shares of the common
+/// causes; null if it is not compared.
 Json residualJson(const WindowResult& window)
 {
   return byIndicator(
@@ -93,13 +94,13 @@ Json residualJson(const WindowResult& window)
       });
 }
 
-/// The indicator that is furthest from its reference, and the difference of the averaged windows from it.
+/// The indicator that is furthest from its reference, with the difference of the averaged windows.
 struct Strongest
 {
   std::size_t indicator{};
   double score{};
-  double spreads{};  // of the mean [-]
-  double percent{};  // of the reference; NaN: that is nothing beside the spread, as of a part of a line
+  double spreads{};  // difference over the spread [-]
+  double percent{};  // difference over the reference [%]; NaN if the reference is smaller than the spread
 };
 
 std::optional<Strongest> strongestOf(const WindowResult& window)
@@ -219,7 +220,7 @@ Report reportOf(const AssessedWindows& found)
            {} };
 }
 
-/// As people read a probability or a severity: digits beyond change with the last count of an encoder.
+/// A probability or severity in hundredths. Further digits would change with the last count of an encoder.
 double hundredths(double value)
 {
   return std::round(100.0 * value) / 100.0;
@@ -232,8 +233,8 @@ void printSummary(const std::vector<WindowResult>& windows)
   const Assessment& assessment = last.assessment;
   const bool judged = assessment.state == AssessmentState::ASSESSED;
   std::vector<ReportLine> lines{ { "", "windows", windows.size() },
-                                 { "", "turns in the last", last.indicators.turns },
-                                 { "", "motor speed in it", last.indicators.point.speed, "rad/s" },
+                                 { "", "turns in the last window", last.indicators.turns },
+                                 { "", "motor speed in the last window", last.indicators.point.speed, "rad/s" },
                                  { "", "made of", last.origin },
                                  { "", "with the parameters of the", last.parameters },
                                  { "", "state", stateName(assessment.state) },

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <deque>
@@ -14,17 +15,16 @@
 #include "messages/joint_affixes.hpp"
 #include "recordings/message_rows.hpp"
 #include "recordings/motion_readers.hpp"
-#include "recordings/row_time.hpp"
 
 namespace hjt
 {
 namespace
 {
-/// Rows of the parts in which an arm comes, put side by side at the times of the first part.
+/// Puts rows of an arm that comes in several parts side by side, at the times of the first part.
 class SideBySide
 {
 public:
-  SideBySide(const std::vector<std::vector<std::size_t>>& parts, std::size_t joints, const VisitRows& visit)
+  SideBySide(const std::vector<std::vector<std::size_t>>& parts, std::size_t joints, const VisitMotionRows& visit)
     : parts_(parts), waiting_(parts.size()), rows_(joints), visit_(visit)
   {
   }
@@ -37,7 +37,7 @@ public:
     }
   }
 
-  /// False: the visitor has had enough.
+  /// Takes rows of a part. Returns false if the visitor has had enough.
   bool add(std::size_t part, const std::vector<MotionRow>& rows)
   {
     waiting_[part].push_back(rows);
@@ -64,7 +64,7 @@ public:
   std::uint64_t dropped() const { return dropped_; }
 
 private:
-  /// All other parts have a row that is not before `time`.
+  /// Whether all other parts have a row that is not before `time`.
   bool areReady(double time) const
   {
     return std::all_of(waiting_.begin() + 1, waiting_.end(),
@@ -79,7 +79,7 @@ private:
     }
   }
 
-  /// On the line between the rows of `part` before and after. False: they are too far from each other.
+  /// Places rows of `part` on the line between its rows before and after. Returns false if these are too far apart.
   bool placeAt(std::size_t part, const MotionRow& base)
   {
     auto& rows = waiting_[part];
@@ -117,12 +117,12 @@ private:
   const std::vector<std::vector<std::size_t>>& parts_;
   std::vector<std::deque<std::vector<MotionRow>>> waiting_;
   std::vector<MotionRow> rows_;
-  const VisitRows& visit_;
+  const VisitMotionRows& visit_;
   std::uint64_t complete_{};
   std::uint64_t dropped_{};
 };
 
-/// Content of a topic's messages for the joints, for the error text if there is none.
+/// What the messages of a topic hold of the joints, for an error text.
 class SeenNames
 {
 public:
@@ -132,7 +132,7 @@ public:
   {
     for (const std::string& name : state.name)
     {
-      if (std::find(names_.begin(), names_.end(), name) == names_.end() && names_.size() < MOST)
+      if (!holds(names_, name) && names_.size() < MOST)
       {
         names_.push_back(name);
       }
@@ -154,38 +154,35 @@ public:
 
   std::string text(const std::string& topic) const
   {
-    std::vector<std::string> missing;
-    std::vector<std::string> without_angle;
-    std::vector<std::string> without_effort;
-    std::vector<std::string> apart;
-    std::vector<std::string> not_finite;
+    static constexpr std::array WHY{ "", "; their position is empty",
+                                     "; their effort is empty: the motors' currents have to be recorded as effort",
+                                     "; position and effort are never in the same message, where they have to be",
+                                     "; what they give is not finite (NaN)" };
+    std::array<std::vector<std::string>, WHY.size()> joints;
     for (std::size_t i = 0; i < joints_.size(); ++i)
     {
       const Incomplete& joint = incomplete_[i];
-      const bool named = std::find(names_.begin(), names_.end(), joints_[i]) != names_.end();
-      auto& list = !named          ? missing :
-                   !joint.angle    ? without_angle :
-                   !joint.effort   ? without_effort :
-                   !joint.together ? apart :
-                                     not_finite;
       if (!joint.finite)
       {
-        list.push_back(joints_[i]);
+        joints[!holds(names_, joints_[i]) ? 0 :
+               !joint.angle               ? 1 :
+               !joint.effort              ? 2 :
+               !joint.together            ? 3 :
+                                            4]
+            .push_back(joints_[i]);
       }
     }
-    std::string text = topic + " never contains angle and effort of ";
-    std::vector<std::string> all = missing;
-    all.insert(all.end(), without_angle.begin(), without_angle.end());
-    all.insert(all.end(), without_effort.begin(), without_effort.end());
-    all.insert(all.end(), apart.begin(), apart.end());
-    all.insert(all.end(), not_finite.begin(), not_finite.end());
+    std::vector<std::string> all;
+    std::string why;
+    for (std::size_t k = 0; k < WHY.size(); ++k)
+    {
+      all.insert(all.end(), joints[k].begin(), joints[k].end());
+      why += joints[k].empty() ? "" : WHY[k];
+    }
     std::vector<std::string> found = names_;
     std::sort(found.begin(), found.end());
-    text += joined(all) + "; joints found: " + (found.empty() ? "none" : joined(found));
-    text += without_angle.empty() ? "" : "; their position is empty";
-    text += without_effort.empty() ? "" : "; their effort is empty: the motors' currents have to be recorded as effort";
-    text += apart.empty() ? "" : "; position and effort are never in the same message, where they have to be";
-    text += not_finite.empty() ? "" : "; what they give is not finite (NaN)";
+    std::string text = topic + " never contains angle and effort of " + joined(all) +
+                       "; joints found: " + (found.empty() ? "none" : joined(found)) + why;
     for (const JointAffixes& affixes : findAffixes(joints_, names_))
     {
       text += affixes.empty() ? "" : "; given" + optionsOf(affixes) + " they are found";
@@ -200,7 +197,7 @@ private:
   {
     bool angle{};
     bool effort{};
-    bool together{};  // in one message
+    bool together{};  // angle and effort in one message
     bool finite{};
   };
 
@@ -209,23 +206,17 @@ private:
   std::vector<Incomplete> incomplete_;
 };
 
-/// One part of the arm on its way into rows.
-struct Part
-{
-  std::vector<std::string> names;
-  std::unique_ptr<MessageRows> rows;
-};
-
+/// Text with the number of rows; empty if that is 0.
 std::string counted(std::uint64_t rows, const std::string& text)
 {
-  return std::to_string(rows) + (rows == 1 ? " row " : " rows ") + text;
+  return rows == 0 ? "" : std::to_string(rows) + (rows == 1 ? " row " : " rows ") + text;
 }
 
 class MessageMotion
 {
 public:
   MessageMotion(RecordedMessages& recording, const MotionSource& source, const std::vector<std::string>& names,
-                const VisitRows& visit)
+                const VisitMotionRows& visit)
     : recording_(recording)
     , source_(source)
     , names_(names)
@@ -235,14 +226,13 @@ public:
   {
     for (std::size_t i = 0; i < layout_.parts.size(); ++i)
     {
-      Part part;
+      std::vector<std::string> of_part;
       for (const std::size_t joint : layout_.parts[i])
       {
-        part.names.push_back(names[joint]);
+        of_part.push_back(names[joint]);
       }
-      part.rows = std::make_unique<MessageRows>(source, part.names, layout_,
-                                                [this, i](const StampedRows& rows) { return take(i, rows); });
-      parts_.push_back(std::move(part));
+      parts_.push_back(std::make_unique<MessageRows>(source, of_part, layout_,
+                                                     [this, i](const StampedRows& rows) { return take(i, rows); }));
     }
   }
 
@@ -257,26 +247,23 @@ public:
           {
             seen_.add(*message.state);
           }
-          for (Part& part : parts_)
+          for (const auto& part : parts_)
           {
-            more = more && part.rows->read(message);
+            more = more && part->read(message);
           }
           return more;
         },
         progress);
-    for (Part& part : parts_)
-    {
-      more = more && part.rows->flush();
-    }
     std::size_t joints = 0;
-    for (const Part& part : parts_)
+    for (std::size_t i = 0; i < parts_.size(); ++i)
     {
-      joints += part.names.size();
+      more = more && parts_[i]->flush();
+      joints += layout_.parts[i].size();
     }
     if (!start_ || joints < names_.size())
     {
       const bool are_short =
-          std::any_of(parts_.begin(), parts_.end(), [](const Part& part) { return part.rows->hasShortEfforts(); });
+          std::any_of(parts_.begin(), parts_.end(), [](const auto& part) { return part->hasShortEfforts(); });
       throw InputError(are_short ? source_.topic +
                                        ": the messages have fewer efforts than names, so whose they are is "
                                        "not known; all joints that a message names need one" :
@@ -331,21 +318,17 @@ private:
   {
     std::uint64_t without_time = 0;
     std::uint64_t without_effort = 0;
-    std::uint64_t folds = 0;
+    std::vector<UnfoldedAngle> angles;
     std::map<std::string, std::uint64_t> missing;
-    for (std::size_t i = 0; i < parts_.size(); ++i)
+    for (const auto& rows : parts_)
     {
-      const MessageRows& rows = *parts_[i].rows;
-      count_.corrupt = i == 0 ? rows.corrupt() : std::max(count_.corrupt, rows.corrupt());
-      without_time += rows.withoutTime();
-      without_effort += rows.withoutEffort();
-      folds += rows.folds();
-      missing.insert(rows.missing().begin(), rows.missing().end());
-      count_.refused_temperatures += rows.refusedTemperatures();
-      if (!count_.misfit.exists())
-      {
-        count_.misfit = { Reason::TWO_SOURCES, rows.sources().text() };
-      }
+      count_.corrupt = std::max(count_.corrupt, rows->corrupt());
+      without_time += rows->withoutTime();
+      without_effort += rows->withoutEffort();
+      angles.insert(angles.end(), rows->angles().begin(), rows->angles().end());
+      missing.insert(rows->missing().begin(), rows->missing().end());
+      count_.refused_temperatures += rows->refusedTemperatures();
+      count_.misfit = count_.misfit.exists() ? count_.misfit : Misfit{ Reason::TWO_SOURCES, rows->sources().text() };
     }
     for (const auto& [part, order] : orders_)
     {
@@ -353,24 +336,18 @@ private:
     }
     count_.rows = side_by_side_.complete();
     count_.corrupt += side_by_side_.dropped() + without_effort;
-    const auto remark = [this](bool is, const std::string& text)
+    count_.remark(recording_.remark());
+    count_.remark(counted(without_time, "without a time (stamp 0, before there was one) left out"));
+    count_.remark(
+        counted(without_effort, "with effort 0 left out: a second source gives no values, or the source had none"));
+    count_.remark(silentText({ layout_.silent.begin(), layout_.silent.end() }));
+    count_.remark(missingText(missing, count_));
+    remarkOnRounds(angles, time_.rounds(), count_);
+    if (parts_.size() > 1)
     {
-      if (is)
-      {
-        count_.remarks.push_back(text);
-      }
-    };
-    remark(!recording_.remark().empty(), recording_.remark());
-    remark(without_time > 0, counted(without_time, "without a time (stamp 0, before there was one) left out"));
-    remark(
-        without_effort > 0,
-        counted(without_effort, "with effort 0 left out: a second source without values, or a source that had none"));
-    remark(!layout_.silent.empty(), silentText({ layout_.silent.begin(), layout_.silent.end() }));
-    const std::string lacking = missingText(missing, count_);
-    remark(!lacking.empty(), lacking);
-    remarkOnRounds(folds, time_.rounds(), count_);
-    remark(parts_.size() > 1, "the joints come in " + std::to_string(parts_.size()) +
-                                  " messages: put side by side in time by lines between their rows");
+      count_.remark("the joints come in " + std::to_string(parts_.size()) +
+                    " messages: their rows are interpolated linearly to the same times");
+    }
   }
 
   RecordedMessages& recording_;
@@ -379,7 +356,7 @@ private:
   SeenNames seen_;
   const TopicLayout layout_;
   SideBySide side_by_side_;
-  std::vector<Part> parts_;
+  std::vector<std::unique_ptr<MessageRows>> parts_;
   std::map<std::size_t, RowOrder> orders_;
   RowTime time_;
   std::optional<Stamp> start_;
@@ -387,8 +364,8 @@ private:
 };
 }  // namespace
 
-MotionCount readMessageMotion(const MotionSource& source, const std::vector<std::string>& names, const VisitRows& visit,
-                              const std::function<void(double)>& progress)
+MotionCount readMessageMotion(const MotionSource& source, const std::vector<std::string>& names,
+                              const VisitMotionRows& visit, const std::function<void(double)>& progress)
 {
   const std::unique_ptr<RecordedMessages> recording = RecordedMessages::open(source.path);
   recording->requireStates(source.topic);

@@ -17,7 +17,8 @@ namespace
 {
 constexpr double CLOCK_STEP = 1.0;  // largest difference of the delays of neighbouring messages [s]
 
-/// Whether a row is no measurement: the efforts of all these joints are exactly zero, or all values of one joint.
+/// Whether a message is no measurement: the efforts of all these joints are exactly zero, or all values of a single
+/// joint.
 bool isWithoutEffort(const sensor_msgs::JointState& message, const std::vector<std::string>& names)
 {
   const auto is_zero = [&](const std::vector<double>& values, const std::string& name)
@@ -38,12 +39,12 @@ bool isVoid(const MotionRow& row)
   return row.position == 0.0 && row.current == 0.0 && !(std::abs(row.recorded_velocity) > 0.0);
 }
 
-/// Of a joint all that it gives turned to exactly zero, or the angles of all did: a source that had no values.
-/// Without a jump of the angle it is a joint that comes to rest at zero and bears nothing there, as a twin's wrist.
+/// Whether all values of a joint, or the angles of all joints, changed to exactly zero, as from a source without
+/// values. Without a jump of the angle the joint came to rest at zero and bears nothing there, as the wrist of a twin.
 bool isVoidAfter(const std::vector<MotionRow>& before, const std::vector<MotionRow>& rows)
 {
   constexpr std::size_t MANY = 3;
-  constexpr double JUMP = 0.002;  // 16 ms of stopping at 16 rad/s^2 [rad]
+  constexpr double JUMP = 0.002;  // way of stopping for 16 ms at 16 rad/s^2 [rad]
   const auto is_at_zero = [](const MotionRow& row) { return row.position == 0.0; };
   const auto all_at_zero = [&](const std::vector<MotionRow>& all)
   { return all.size() >= MANY && std::all_of(all.begin(), all.end(), is_at_zero); };
@@ -55,7 +56,7 @@ bool isVoidAfter(const std::vector<MotionRow>& before, const std::vector<MotionR
   return is_void;
 }
 
-/// Names beyond the end of the efforts, but for those of motors.
+/// Names of joints without an effort, because there are fewer efforts than names. Names of motors are not among them.
 std::vector<std::string> beyondEfforts(const sensor_msgs::JointState& message)
 {
   return message.effort.size() < message.name.size() ?
@@ -64,7 +65,7 @@ std::vector<std::string> beyondEfforts(const sensor_msgs::JointState& message)
              std::vector<std::string>();
 }
 
-/// The joints of which a message has angles, and efforts that are numbers.
+/// The joints whose angles, and whose efforts, have been numbers.
 struct JointsSeen
 {
   void add(const sensor_msgs::JointState& message, const std::vector<std::string>& names)
@@ -135,7 +136,7 @@ TopicLayout readLayout(RecordedMessages& recording, const MotionSource& source, 
       },
       [](double) {});
   layout.silent = seen.silent();
-  // Joints that come in several parts count in the largest.
+  // A joint that comes in several parts counts in the largest part.
   std::vector<std::vector<std::size_t>> sorted(parts.begin(), parts.end());
   std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
   std::set<std::size_t> taken;
@@ -223,7 +224,8 @@ bool MessageRows::agree(const StampedRows& a, const StampedRows& b) const
   return agrees;
 }
 
-/// Efforts are fewer than the names: whose they are is not known where a joint of the same arm is left without.
+/// Whether it is known which joints the efforts belong to. If a message has fewer efforts than names, it is not known
+/// unless the names without an effort are of another arm.
 bool MessageRows::tellsWhose(const sensor_msgs::JointState& message) const
 {
   const std::vector<std::string> beyond = beyondEfforts(message);
@@ -233,7 +235,7 @@ bool MessageRows::tellsWhose(const sensor_msgs::JointState& message) const
          std::none_of(beyond.begin(), beyond.end(), is_sibling);
 }
 
-/// False: a joint lacks something, or what it gives cannot be.
+/// Makes rows of a message. Returns false if a joint lacks a value, or has one that cannot be true.
 bool MessageRows::readRows(const sensor_msgs::JointState& message, std::vector<MotionRow>& rows)
 {
   if (!tellsWhose(message))
@@ -327,16 +329,6 @@ void MessageRows::readLoad(const sensor_msgs::JointState& message, Stamp stamp)
       waiting_->rows[i].load = loads_[i];
     }
   }
-}
-
-std::uint64_t MessageRows::folds() const
-{
-  std::uint64_t folds = 0;
-  for (const UnfoldedAngle& angle : angles_)
-  {
-    folds += angle.folds();
-  }
-  return folds;
 }
 
 std::uint64_t MessageRows::refusedTemperatures() const

@@ -11,8 +11,8 @@
 
 #include "bags/recorded_messages.hpp"
 #include "messages/conversions.hpp"
+#include "recordings/motion_readers.hpp"
 #include "recordings/recorded_motion.hpp"
-#include "recordings/source_watch.hpp"
 #include "tracking/held_values.hpp"
 #include "tracking/unfolded_angle.hpp"
 
@@ -25,27 +25,27 @@ struct StampedRows
   Stamp stamp{};
   Stamp recorded{};
   std::string publisher;
-  bool agrees{};  // with a neighbour
+  bool agrees{};  // with the row before or after
 
   double delay() const { return toSeconds(recorded - stamp); }
 };
 
-/// How a topic gives the joints of an arm, by all of its messages.
+/// How the messages of a topic hold the joints of an arm.
 struct TopicLayout
 {
-  bool has_stamps{};   ///< a message has a stamp
-  bool has_efforts{};  ///< a message has an effort other than zero
-  /// Joints whose effort is never a number, while those of other joints are: their current counts as 0.
+  bool has_stamps{};   ///< at least one message has a stamp
+  bool has_efforts{};  ///< at least one message has an effort other than zero
+  /// Joints whose effort is never a number, while other joints' efforts are. Their current counts as 0.
   std::set<std::string> silent;
-  /// Indices of the joints that share a message; a single list: a message holds all of them.
+  /// Lists of the joints that share a message, by their numbers. A single list: each message holds all joints.
   std::vector<std::vector<std::size_t>> parts;
 };
 
-/// Reads as much of the recording as tells.
+/// Finds the layout of a topic. It reads only as many messages as are needed.
 TopicLayout readLayout(RecordedMessages& recording, const MotionSource& source, const std::vector<std::string>& names);
 
-/// Turns the messages that name the joints of one part into rows, and leaves out what cannot be true. A row waits for
-/// the next one: a load with its own stamp can still reach it, and the next one tells whether it can be true.
+/// Makes rows of the messages that name the joints of one part, and leaves out rows that cannot be true. A row waits
+/// for the next one, which shows whether it can be true; a load with an own stamp can reach the row until then.
 class MessageRows
 {
 public:
@@ -54,20 +54,20 @@ public:
   MessageRows(const MotionSource& source, const std::vector<std::string>& names, const TopicLayout& layout,
               Visit visit);
 
-  /// False: the visitor has had enough.
+  /// Takes a message. Returns false if the visitor has had enough.
   bool read(const RecordedMessage& message);
-  /// Hands on the row that waits, if it can be true.
+  /// Gives the row that waits to the visitor, if the row can be true.
   bool flush();
 
   std::uint64_t corrupt() const { return corrupt_; }
   std::uint64_t withoutTime() const { return without_time_; }
   std::uint64_t withoutEffort() const { return without_effort_; }
-  /// Messages in which angle or effort of a joint is no number, by joint.
+  /// Number of messages in which angle or effort of a joint is no number, by joint.
   const std::map<std::string, std::uint64_t>& missing() const { return missing_; }
   bool hasShortEfforts() const { return has_short_efforts_; }
-  std::uint64_t folds() const;
+  const std::vector<UnfoldedAngle>& angles() const { return angles_; }
   std::uint64_t refusedTemperatures() const;
-  /// Of the rows as they came, true or not.
+  /// Whether several sources give the joints, by all rows.
   const SourceWatch& sources() const { return sources_; }
 
 private:
@@ -86,8 +86,8 @@ private:
   std::vector<double> loads_;
   std::vector<TemperatureRecord> temperatures_;
   std::optional<StampedRows> waiting_;
-  std::optional<StampedRows> last_;  // unfiltered
-  std::uint64_t seen_{};             // the only row has no neighbour to disagree with
+  std::optional<StampedRows> last_;  // last row, whether it can be true or not
+  std::uint64_t seen_{};             // number of rows; a single row cannot disagree with another one
   std::uint64_t corrupt_{};
   std::uint64_t without_time_{};
   std::uint64_t without_effort_{};

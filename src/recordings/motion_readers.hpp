@@ -1,39 +1,255 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "harmonic_joint_twin/base/stamp.hpp"
 #include "recordings/recorded_motion.hpp"
+#include "tracking/motion_differentiator.hpp"
+#include "tracking/unfolded_angle.hpp"
 
 namespace hjt
 {
-// The kinds of recordings behind readMotion and readArmMotion; times as they are recorded.
+/// Times of a recording's rows from its first row on [s].
+///
+/// Another round begins where a stamp jumps back, as in a recording played in a loop, or ahead by more than a day, as
+/// after stamps of a clock that was not set. A round begins BETWEEN after the round before: a gap that cuts the stream.
+/// A round also begins where a clock was set back by less: after MOST_BEHIND rows in order that are all earlier than a
+/// row before. Rows that are days apart one after the other have stamps of another unit, and no rounds.
+class RowTime
+{
+public:
+  static constexpr double BACK = 1.0;       ///< jump back that begins a round; a smaller one is a row out of order [s]
+  static constexpr double AHEAD = 86400.0;  ///< jump ahead that begins a round [s]
+  static constexpr double BETWEEN = 1.0;    ///< time from one round to the next [s]
+  static constexpr std::uint64_t MOST_AHEAD = 10;
+  static constexpr std::uint64_t MOST_BEHIND = 10;
 
-using VisitRows = std::function<bool(const std::vector<MotionRow>& rows)>;
+  double at(Stamp stamp)
+  {
+    if (!last_)
+    {
+      last_ = stamp;
+      zero_ = start_ = stamp;
+    }
+    const double step = toSeconds(stamp - *last_);
+    ahead_ += step > AHEAD ? 1 : 0;
+    behind_ = step > 0.0 && offset_ + toSeconds(stamp - zero_) < time_ ? behind_ + 1 : 0;
+    if (step < -BACK || (step > AHEAD && ahead_ <= MOST_AHEAD) || behind_ > MOST_BEHIND)
+    {
+      zero_ = stamp;
+      offset_ = time_ + BETWEEN;
+      behind_ = 0;
+      ++rounds_;
+    }
+    last_ = stamp;
+    const double time = offset_ + toSeconds(stamp - zero_);
+    time_ = time > time_ ? time : time_;
+    return time;
+  }
 
-/// Messages: one row for each of `names`, all of one time.
-MotionCount readMessageMotion(const MotionSource& source, const std::vector<std::string>& names, const VisitRows& visit,
-                              const std::function<void(double)>& progress);
+  /// Time at which the row was received whose stamp was given to `at` last [s].
+  double received(Stamp recorded) const { return offset_ + toSeconds(recorded - zero_); }
 
-/// A table: the joints of these numbers in its columns.
-MotionCount readTableMotion(const MotionSource& source, const std::vector<int>& numbers, const VisitRows& visit,
+  std::uint64_t rounds() const { return rounds_; }
+  Stamp start() const { return start_; }
+
+private:
+  std::optional<Stamp> last_;
+  Stamp zero_{};
+  Stamp start_{};
+  double offset_{};
+  double time_{};
+  std::uint64_t rounds_{ 1 };
+  std::uint64_t ahead_{};
+  std::uint64_t behind_{};
+};
+
+/// Checks whether the rows come in the order of their stamps.
+class RowOrder
+{
+public:
+  void add(double stamp)
+  {
+    if (rows_++ > 0)
+    {
+      back_ += stamp < last_ ? 1 : 0;
+      same_ += stamp == last_ ? 1 : 0;
+    }
+    last_ = stamp;
+  }
+
+  /// Clause on what is wrong with the order; empty if nearly all rows are in order.
+  std::string text() const
+  {
+    constexpr std::uint64_t FEWEST = 10;
+    constexpr std::uint64_t MOST = 5;    // rows for one that goes back
+    constexpr std::uint64_t COPIES = 9;  // most copies of one row
+    if (rows_ < FEWEST)
+    {
+      return {};
+    }
+    if (same_ + 1 == rows_)
+    {
+      return "all rows have the same stamp: times, speeds and loads are unknown";
+    }
+    if (COPIES * same_ > (COPIES - 1) * rows_)
+    {
+      return "the stamps are rounded: " + std::to_string(same_) + " of " + std::to_string(rows_) +
+             " rows have the stamp of the row before, so times, speeds and loads are unknown";
+    }
+    return MOST * back_ > rows_ ? "the rows are not in the order of their stamps: " + std::to_string(back_) + " of " +
+                                      std::to_string(rows_) + " go back" :
+                                  std::string();
+  }
+
+private:
+  double last_{};
+  std::uint64_t rows_{};
+  std::uint64_t back_{};
+  std::uint64_t same_{};
+};
+
+/// Checks whether several sources give the same joints in turn.
+///
+/// Sources differ by the names of their nodes, where these are recorded. Else they are seen in the angles: in more than
+/// LEAST_SHARE of the rows a row is far from its neighbours, which are near to each other, and near to another such row
+/// shortly before. A damaged row comes once, and noise is small beside the motion.
+class SourceWatch
+{
+public:
+  void add(const std::string& publisher, const std::vector<MotionRow>& rows)
+  {
+    if (!publisher.empty())
+    {
+      ++publishers_[publisher];
+      switches_ += !last_publisher_.empty() && publisher != last_publisher_ ? 1 : 0;
+      last_publisher_ = publisher;
+    }
+    const double step = std::max(LEAST_STEP, LEAST_OF_RANGE * rangeWith(rows));
+    if (step > GROWN * counted_step_)  // the motion before was noise
+    {
+      counted_step_ = step;
+      moves_ = returns_ = 0;
+    }
+    if (seen_ >= 2)
+    {
+      const std::vector<MotionRow>& last = last_[(seen_ - 1) % 2];
+      const double to_last = distance(rows, last);
+      const double to_other = distance(rows, last_[seen_ % 2]);
+      moves_ += to_last > step || to_other > step ? 1 : 0;
+      if (to_last > step && to_other < NEARER * to_last)
+      {
+        const auto is_near = [&](const std::vector<MotionRow>& apart)
+        { return !apart.empty() && distance(apart, last) < NEARER * to_last; };
+        returns_ += std::any_of(apart_.begin(), apart_.end(), is_near) ? 1 : 0;
+        apart_[jumps_++ % apart_.size()] = last;
+      }
+    }
+    last_[seen_++ % 2] = rows;
+  }
+
+  /// Clause on several sources; empty if there is one source.
+  std::string text() const
+  {
+    if (publishers_.size() > 1 && switches_ >= LEAST_RETURNS)
+    {
+      std::string names;
+      for (const auto& [name, messages] : publishers_)
+      {
+        names += (names.empty() ? "" : " and ") + name;
+      }
+      return "several sources give these joints in turn on this topic: the nodes " + names;
+    }
+    const bool returns =
+        returns_ >= LEAST_RETURNS && static_cast<double>(returns_) > LEAST_SHARE * static_cast<double>(moves_);
+    return returns ? "two sources give these joints in turn on this topic: in " + std::to_string(returns_) + " of " +
+                         std::to_string(seen_) + " rows the angles jump to and fro" :
+                     std::string();
+  }
+
+private:
+  static constexpr double LEAST_STEP = 5e-3;      // beyond the noise of an angle [rad]
+  static constexpr double LEAST_OF_RANGE = 1e-3;  // share of the sum of the joints' ranges: angles may be in degrees
+  static constexpr double GROWN = 5.0;
+  static constexpr double NEARER = 0.3;  // [-]
+  static constexpr double LEAST_SHARE = 0.05;
+  static constexpr std::uint64_t LEAST_RETURNS = 20;
+
+  static double distance(const std::vector<MotionRow>& a, const std::vector<MotionRow>& b)
+  {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i)
+    {
+      sum += std::abs(a[i].position - b[i].position);
+    }
+    return sum;
+  }
+
+  /// Range of the angles of all joints together, with these rows.
+  double rangeWith(const std::vector<MotionRow>& rows)
+  {
+    constexpr double NONE = std::numeric_limits<double>::infinity();
+    least_.resize(rows.size(), NONE);
+    most_.resize(rows.size(), -NONE);
+    double range = 0.0;
+    for (std::size_t i = 0; i < rows.size(); ++i)
+    {
+      least_[i] = std::min(least_[i], rows[i].position);
+      most_[i] = std::max(most_[i], rows[i].position);
+      range += most_[i] - least_[i];
+    }
+    return range;
+  }
+
+  std::map<std::string, std::uint64_t> publishers_;
+  std::string last_publisher_;
+  std::uint64_t switches_{};
+  std::array<std::vector<MotionRow>, 2> last_;
+  std::array<std::vector<MotionRow>, 2> apart_;  // rows far from their neighbours
+  std::uint64_t jumps_{};
+  std::vector<double> least_;  // of the joints
+  std::vector<double> most_;
+  double counted_step_{ LEAST_STEP };  // step when counting began [rad]
+  std::uint64_t seen_{};
+  std::uint64_t moves_{};
+  std::uint64_t returns_{};
+};
+
+// Readers for the kinds of recordings behind readMotion. Times are as they are recorded.
+
+/// Reads messages. The visitor gets one row for each of `names`, all of one time.
+MotionCount readMessageMotion(const MotionSource& source, const std::vector<std::string>& names,
+                              const VisitMotionRows& visit, const std::function<void(double)>& progress);
+
+/// Reads a table with a controller's columns, of the source's joint or of as many joints.
+MotionCount readTableMotion(const MotionSource& source, std::size_t joints, const VisitMotionRows& visit,
                             const std::function<void(double)>& progress);
 
-/// Rows at hand, MotionSource::rows, of so many joints; times scaled.
-MotionCount readArrayMotion(const MotionSource& source, std::size_t joints, const VisitRows& visit,
+/// Reads rows in memory, MotionSource::rows, of as many joints. The times are scaled.
+MotionCount readArrayMotion(const MotionSource& source, std::size_t joints, const VisitMotionRows& visit,
                             const std::function<void(double)>& progress);
 
-// Remarks of a reading.
-/// Of angles that were folded into one turn, and of a recording that was played in a loop.
-void remarkOnRounds(std::uint64_t folds, std::uint64_t rounds, MotionCount& count);
-/// Of joints whose effort is never a number.
+// Remarks on a reading.
+
+/// Adds remarks on angles that were folded into one turn, and on a recording that was played in a loop.
+void remarkOnRounds(const std::vector<UnfoldedAngle>& angles, std::uint64_t rounds, MotionCount& count);
+
+/// Remark on joints whose effort is never a number; empty without such joints.
 std::string silentText(const std::vector<std::string>& joints);
-/// Of values that are no number in more than a few rows; empty: none. `missing`: in how many, by name.
+
+/// Remark on values that are no number in more than a few rows; empty without such values. `missing` has the number of
+/// rows by the name of the value.
 std::string missingText(const std::map<std::string, std::uint64_t>& missing, const MotionCount& count);
 
-/// The table has a load of that joint.
+/// Whether the table has a load of the source's joint.
 bool tableRecordsLoad(const MotionSource& source);
 }  // namespace hjt

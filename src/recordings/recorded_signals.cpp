@@ -28,7 +28,7 @@ namespace hjt
 {
 namespace
 {
-/// Tells times that are not in seconds, by how rarely samples come and by the motor's speed, if it is recorded.
+/// Recognises times that are not in seconds, by how rarely samples come and by the motor's speed, if that is recorded.
 class SecondsCheck
 {
 public:
@@ -53,11 +53,11 @@ public:
     last_ = sample;
   }
 
-  /// Empty: none.
+  /// Why the times are not in seconds; empty if they seem to be.
   std::string doubt() const
   {
-    constexpr double TURN = 2.0 * M_PI;  // a motor that turns by less may stand, and its speed be noise [rad]
-    constexpr double FACTOR = 100.0;     // between the factors of milliseconds and of another unit of the speed
+    constexpr double TURN = 2.0 * M_PI;  // least turn of the motor at which its speed is no noise [rad]
+    constexpr double FACTOR = 100.0;     // least factor; another unit of the speed makes less, milliseconds make more
     if (2 * rare_ > steps_)
     {
       return "most samples come " + numberText(RARE) + " s apart or more";
@@ -69,15 +69,15 @@ public:
   }
 
 private:
-  static constexpr double RARE = 0.5;  // no motion is seen in steps as long [s]
+  static constexpr double RARE = 0.5;  // step that is too long to see a motion [s]
 
   SignalSample last_;
   std::uint64_t steps_{};
-  std::uint64_t rare_{};      // steps of RARE or more
-  double by_angle_{};         // sum of speed times travel [rad^2/s]
-  double by_speed_{};         // and of speed squared times step
-  double least_{ HUGE_VAL };  // angle of the motor [rad]
-  double most_{ -HUGE_VAL };  // likewise
+  std::uint64_t rare_{};      // number of steps of RARE or more
+  double by_angle_{};         // sum of speed times way [rad^2/s]
+  double by_speed_{};         // sum of squared speed times step [rad^2/s]
+  double least_{ HUGE_VAL };  // least angle of the motor [rad]
+  double most_{ -HUGE_VAL };  // largest angle of the motor [rad]
 };
 
 using Take = std::function<bool(const SignalSample&)>;
@@ -97,60 +97,68 @@ enum Column : std::size_t
 
 using Names = std::array<std::string, COLUMNS>;
 
-/// How a column is named on the command line and, unless it is, in the file.
+/// How a column is named on the command line, and how it is named in the file by default.
 struct ColumnChoice
 {
   const char* option;
   const char* meaning;
-  std::string SignalSource::*given;
+  double SignalSample::*field;  // null for the time
   const char* name;
-  const char* otherwise{};  // where `name` is missing
+  const char* otherwise{};  // second default, if there is no column `name`
 };
 constexpr std::array<ColumnChoice, COLUMNS> CHOICES{
-  { { "--time", "time [s]", &SignalSource::time, "time" },
-    { "--motor-torque", "motor torque, or current with --torque-scale", &SignalSource::motor_torque,
+  { { "--time", "time [s]", nullptr, "time" },
+    { "--motor-torque", "motor torque, or current with --torque-scale", &SignalSample::motor_torque,
       "motor_torque_reading", "motor_torque" },
-    { "--motor-angle", "motor encoder [rad]", &SignalSource::motor_angle, "motor_angle_encoder" },
-    { "--output-angle", "output encoder [rad]", &SignalSource::output_angle, "output_angle_encoder" },
-    { "--motor-velocity", "motor speed, else differences of the angle [rad/s]", &SignalSource::motor_velocity,
+    { "--motor-angle", "motor encoder [rad]", &SignalSample::motor_angle, "motor_angle_encoder" },
+    { "--output-angle", "output encoder [rad]", &SignalSample::output_angle, "output_angle_encoder" },
+    { "--motor-velocity", "motor speed, else differences of the angle [rad/s]", &SignalSample::motor_velocity,
       "motor_velocity_encoder" },
-    { "--load-torque", "load torque at the output, > 0 resists positive motion [N.m]", &SignalSource::load_torque,
+    { "--load-torque", "load torque at the output, > 0 resists positive motion [N.m]", &SignalSample::load_torque,
       "load_torque" },
-    { "--temperature", "temperature [degC]", &SignalSource::temperature, "housing_temperature", "temperature" },
-    { "--target-angle", "set point of the output angle [rad]", &SignalSource::target_angle, "target_angle" } }
+    { "--temperature", "temperature [degC]", &SignalSample::temperature, "housing_temperature", "temperature" },
+    { "--target-angle", "set point of the output angle [rad]", &SignalSample::target_angle, "target_angle" } }
 };
 
-bool contains(const std::vector<std::string>& names, const std::string& name)
+/// Columns or topics of a recording with the signals of the joint.
+struct SignalSource
 {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
+  Names columns;
+  // Topics of a bag.
+  std::string states_topic;
+  std::string load_topic;
+  bool load_topic_given{};        // whether the user named the topic, so that it must exist
+  std::string joint;              // name of the joint on both topics
+  double torque_scale{ 1.0 };     // motor torque per unit of the recorded signal
+  double velocity_window{ 0.0 };  // window of a motor speed that is computed [s]
+};
 
-/// The columns of a file in the order of the signals. `place`: file and line. @throws InputError if one that was named
-/// is not there, or none of the angles.
-Names columnsOf(const std::string& place, const std::vector<std::string>& there, const SignalSource& source)
+/// Names of the columns of a file in the order of the signals. `place` is file and line. @throws InputError if a column
+/// that the user named does not exist, or no column of an angle.
+Names columnsOf(const std::string& place, const std::vector<std::string>& there, const Names& columns)
 {
   Names names;
   for (std::size_t i = 0; i < COLUMNS; ++i)
   {
     const ColumnChoice& choice = CHOICES[i];
-    const std::string& given = source.*choice.given;
-    if (!given.empty() && !contains(there, given))
+    const std::string& given = columns[i];
+    if (!given.empty() && !holds(there, given))
     {
       throw InputError(place + ": " + choice.option + " " + given + ": no such column" + didYouMean(given, there) +
                        "; it holds " + joined(there, ", "));
     }
-    const bool is_named_so = choice.otherwise == nullptr || contains(there, choice.name);
+    const bool is_named_so = choice.otherwise == nullptr || holds(there, choice.name);
     names[i] = !given.empty() ? given : is_named_so ? choice.name : choice.otherwise;
   }
   for (const Column column : { MOTOR_TORQUE, TIME })
   {
-    if (!contains(there, names[column]))
+    if (!holds(there, names[column]))
     {
       throw InputError(place + ": column '" + names[column] + "' is missing; name one with " + CHOICES[column].option +
                        "; it holds " + joined(there, ", "));
     }
   }
-  if (!contains(there, names[MOTOR_ANGLE]) && !contains(there, names[OUTPUT_ANGLE]))
+  if (!holds(there, names[MOTOR_ANGLE]) && !holds(there, names[OUTPUT_ANGLE]))
   {
     throw InputError(place + ": neither column '" + names[MOTOR_ANGLE] + "' nor '" + names[OUTPUT_ANGLE] +
                      "' is there; name one with --motor-angle or --output-angle; it holds " + joined(there, ", "));
@@ -162,18 +170,16 @@ SignalSample sampleOf(const std::array<double, COLUMNS>& row, double torque_scal
 {
   SignalSample sample;
   sample.stamp = static_cast<std::int64_t>(std::llround(1e9 * row[TIME]));
-  sample.motor_angle = row[MOTOR_ANGLE];
-  sample.output_angle = row[OUTPUT_ANGLE];
-  sample.motor_velocity = row[MOTOR_VELOCITY];
-  sample.motor_torque = torque_scale * row[MOTOR_TORQUE];
-  sample.load_torque = row[LOAD_TORQUE];
-  sample.temperature = row[TEMPERATURE];
-  sample.target_angle = row[TARGET_ANGLE];
+  for (std::size_t i = TIME + 1; i < COLUMNS; ++i)
+  {
+    sample.*CHOICES[i].field = row[i];
+  }
+  sample.motor_torque *= torque_scale;
   return sample;
 }
 
-/// The motor's speed as the drive's own sensors have it: what its angle changes by over the window. Before the first
-/// window is over, that of the first window.
+/// The motor's speed as the drive's own sensors compute it: the change of its angle over the window. Before the first
+/// window is over, the speed is that of the first window.
 std::vector<double> velocityOf(const std::vector<double>& time, const std::vector<double>& angle, double window)
 {
   std::vector<double> velocity(time.size(), NOT_MEASURED);
@@ -189,7 +195,8 @@ std::vector<double> velocityOf(const std::vector<double>& time, const std::vecto
 
 void readTable(const std::string& path, const SignalSource& source, const Take& take)
 {
-  NumberTable<COLUMNS> table(path, columnsOf(path + ":1", CsvRows(path).header(), source), COLUMNS - MOTOR_ANGLE);
+  NumberTable<COLUMNS> table(path, columnsOf(path + ":1", CsvRows(path).header(), source.columns),
+                             COLUMNS - MOTOR_ANGLE);
   std::array<double, COLUMNS> row{};
   row.fill(NOT_MEASURED);
   while (table.read(row) && take(sampleOf(row, source.torque_scale)))
@@ -197,13 +204,13 @@ void readTable(const std::string& path, const SignalSource& source, const Take& 
   }
 }
 
-/// Columns by their names. `place`: whose, for the error text.
+/// Reads columns in memory. `place` names the recording in an error text.
 void readColumns(const std::string& place, Columns columns, const SignalSource& source, const Take& take)
 {
   std::vector<std::string> there;
   std::transform(columns.begin(), columns.end(), std::back_inserter(there),
                  [](const auto& item) { return item.first; });
-  const Names names = columnsOf(place, there, source);
+  const Names names = columnsOf(place, there, source.columns);
   if (columns.count(names[MOTOR_VELOCITY]) == 0 && columns.count(names[MOTOR_ANGLE]) > 0)
   {
     columns[names[MOTOR_VELOCITY]] =
@@ -225,13 +232,13 @@ void readColumns(const std::string& place, Columns columns, const SignalSource& 
   }
 }
 
-/// A run of a data set.
+/// Reads a run of a data set.
 void readRun(const std::string& path, const SignalSource& source, const Take& take)
 {
   const ColumnChoice& torque = CHOICES[MOTOR_TORQUE];
-  Columns columns =
-      readRunColumns(path, source.motor_torque.empty() ? std::vector<std::string>{ torque.name, torque.otherwise } :
-                                                         std::vector<std::string>{ source.motor_torque });
+  const std::string& named = source.columns[MOTOR_TORQUE];
+  Columns columns = readRunColumns(path, named.empty() ? std::vector<std::string>{ torque.name, torque.otherwise } :
+                                                         std::vector<std::string>{ named });
   if (columns.empty())
   {
     columns = readRunColumns(path, { CHOICES[TIME].name });  // for the error text
@@ -259,11 +266,11 @@ SignalSample sampleOf(const sensor_msgs::JointState& state, const JointNames& na
 
 void readBag(const std::string& path, const SignalSource& source, const Take& take)
 {
-  for (const ColumnChoice& choice : CHOICES)
+  for (std::size_t i = 0; i < COLUMNS; ++i)
   {
-    if (!(source.*choice.given).empty())
+    if (!source.columns[i].empty())
     {
-      throw InputError(path + " is a bag: " + choice.option + " " + source.*choice.given + " names a column");
+      throw InputError(path + " is a bag: " + CHOICES[i].option + " " + source.columns[i] + " names a column");
     }
   }
   rosbag::Bag bag;
@@ -305,7 +312,7 @@ void readBag(const std::string& path, const SignalSource& source, const Take& ta
                      "; it holds:" + listTopics(bag));
   }
 }
-/// Where the signals lie: a robot's telemetry if a joint was named, else what the twin publishes.
+/// Columns and topics of the signals: the telemetry of a robot if a joint was named, else the topics of the twin.
 SignalSource signalSource(const SignalOptions& options, const Parameters& parameters)
 {
   const bool robot = !options.joint.empty();
@@ -315,7 +322,8 @@ SignalSource signalSource(const SignalOptions& options, const Parameters& parame
     throw InputError("torque_scale = " + numberText(scale) + " must be a finite number other than 0");
   }
   const std::optional<UrJoint> known = findUrJoint(options.joint);
-  SignalSource source = options.source;
+  SignalSource source;
+  source.columns = options.columns;
   source.joint = known ? known->name : robot ? options.joint : parameters.joint.name;
   source.states_topic =
       options.states_topic.value_or(robot ? "/joint_states" : options.joint_namespace + "/" + topics::JOINT_STATES);
@@ -328,22 +336,21 @@ SignalSource signalSource(const SignalOptions& options, const Parameters& parame
 }
 }  // namespace
 
-bool namesColumn(const SignalSource& source)
+bool namesColumn(const SignalOptions& options)
 {
-  return std::any_of(CHOICES.begin(), CHOICES.end(),
-                     [&](const ColumnChoice& choice) { return !(source.*choice.given).empty(); });
+  return options.columns != Names();
 }
 
-void nameColumn(SignalSource& source, const std::string& signal, const std::string& column)
+void nameColumn(SignalOptions& options, const std::string& signal, const std::string& column)
 {
   std::vector<std::string> signals;
-  for (const ColumnChoice& choice : CHOICES)
+  for (std::size_t i = 0; i < COLUMNS; ++i)
   {
-    std::string name = choice.option + 2;  // without its dashes
+    std::string name = CHOICES[i].option + 2;  // without its dashes
     std::replace(name.begin(), name.end(), '-', '_');
     if (name == signal)
     {
-      source.*choice.given = column;
+      options.columns[i] = column;
       return;
     }
     signals.push_back(name);
@@ -365,11 +372,12 @@ void addSignalOptions(OptionTable& table, SignalOptions& options)
   table.add("--joint", options.joint,
             "bag: a robot's joint on /joint_states, effort in A, by telemetry.torque_per_current: base, shoulder, "
             "elbow, wrist_1 ..., or its name in the messages; default: the twin's own");
-  for (const ColumnChoice& choice : CHOICES)
+  for (std::size_t i = 0; i < COLUMNS; ++i)
   {
+    const ColumnChoice& choice = CHOICES[i];
     const std::string otherwise = choice.otherwise == nullptr ? "" : std::string(", else ") + choice.otherwise;
     const std::string help = std::string("CSV, HDF5: ") + choice.meaning + "; default: " + choice.name + otherwise;
-    table.add(choice.option, options.source.*choice.given, help).type("COLUMN");
+    table.add(choice.option, options.columns[i], help).type("COLUMN");
   }
   table.add("--torque-scale", options.torque_scale,
             "motor torque per unit of the recorded signal [N.m]; default: 1, and with --joint "

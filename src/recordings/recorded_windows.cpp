@@ -25,8 +25,7 @@ bool isRun(const std::string& recording)
   return std::filesystem::path(recording).extension() == ".h5";
 }
 
-/// Whether two configurations make the same windows, for all that is known: they may differ in what reference and
-/// assessment alone go by.
+/// Whether two configurations make the same windows. They may differ in parameters of reference and assessment.
 bool makeSameWindows(Parameters one, const Parameters& other)
 {
   one.indicators.baseline_windows = other.indicators.baseline_windows;
@@ -38,7 +37,7 @@ bool makeSameWindows(Parameters one, const Parameters& other)
   return describeParameters(one) == describeParameters(other);
 }
 
-/// Of a bag; none if the bytes are another message.
+/// Reads a message of a bag; none if it is of another type.
 std::optional<harmonic_joint_twin::Indicators> readMessage(const rosbag::MessageInstance& instance)
 {
   if (instance.getMD5Sum() != MD5_WITHOUT_ERRORS)
@@ -46,7 +45,7 @@ std::optional<harmonic_joint_twin::Indicators> readMessage(const rosbag::Message
     const auto message = instance.instantiate<harmonic_joint_twin::Indicators>();
     return message ? std::make_optional(*message) : std::nullopt;
   }
-  std::vector<std::uint8_t> bytes(instance.size() + sizeof(std::uint32_t));  // and an empty list
+  std::vector<std::uint8_t> bytes(instance.size() + sizeof(std::uint32_t));  // with an empty list behind
   ros::serialization::OStream out(bytes.data(), instance.size());
   instance.write(out);
   ros::serialization::IStream in(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
@@ -76,7 +75,7 @@ RecordingParameters recordingParameters(const SignalOptions& options, const std:
 std::optional<std::vector<SignalIndicators>> windowsOfRun(const std::string& recording, const SignalOptions& options,
                                                           const RecordingParameters& parameters)
 {
-  const bool plain = !options.torque_scale && options.joint.empty() && !namesColumn(options.source);
+  const bool plain = !options.torque_scale && options.joint.empty() && !namesColumn(options);
   if (!parameters.run || !plain || !makeSameWindows(*parameters.run, parameters.values))
   {
     return std::nullopt;
@@ -121,7 +120,7 @@ std::optional<std::vector<SignalIndicators>> windowsOfRun(const std::string& rec
   }
   for (std::size_t i = SCALAR_COUNT; i < INDICATOR_COUNT; ++i)
   {
-    if (columns.count(errorColumn(i)) > 0)  // files of before have none
+    if (columns.count(errorColumn(i)) > 0)  // files of earlier versions have none
     {
       read(errorColumn(i).c_str(), [i](W w, double value) { w.uncertainty[i] = value; });
     }

@@ -3,16 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <optional>
+#include <system_error>
 
 #include "arm/arm_configuration.hpp"
+#include "bags/recorded_messages.hpp"
+#include "base/csv_table.hpp"
 #include "base/number_text.hpp"
 #include "base/text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
-#include "recordings/recorded_arms.hpp"
-#include "recordings/recorded_ranking.hpp"
-#include "recordings/stated_gains.hpp"
+#include "recordings/arm_assessment.hpp"
+#include "recordings/controller_table.hpp"
 #include "tracking/effort.hpp"
 #include "tracking/joint_evidence.hpp"
 #include "tracking/verdict.hpp"
@@ -21,7 +24,253 @@ namespace hjt
 {
 namespace
 {
-/// Taken where no arm explains the currents clearly better than others.
+namespace fs = std::filesystem;
+
+CheckedContents readTableContents(const MotionSource& source)
+{
+  CheckedContents contents;
+  contents.is_csv = true;
+  const std::string temperatures = "joint_temperatures_";
+  const CsvRows table(source.path);
+  if (const std::string foreign = foreignTable(table.header()); !foreign.empty())
+  {
+    throw InputError(source.path + ": " + foreign);
+  }
+  for (const std::string& name : table.header())
+  {
+    contents.temperature =
+        name.compare(0, temperatures.size(), temperatures) == 0 ? temperatures + "N" : contents.temperature;
+  }
+  return contents;
+}
+
+CheckedContents contentsOf(const std::vector<std::vector<MotionRow>>& rows)
+{
+  CheckedContents contents;
+  contents.is_csv = true;
+  const bool has_temperature =
+      std::any_of(rows.begin(), rows.end(),
+                  [](const std::vector<MotionRow>& joints)
+                  {
+                    return std::any_of(joints.begin(), joints.end(),
+                                       [](const MotionRow& row) { return std::isfinite(row.temperature); });
+                  });
+  contents.temperature = has_temperature ? "temperature" : "";
+  return contents;
+}
+
+/// @throws InputError if no name is that of a joint.
+void requireNames(const std::string& topic, const std::vector<std::string>& names)
+{
+  const auto all = [&](const auto& is) { return !names.empty() && std::all_of(names.begin(), names.end(), is); };
+  if (all([](const std::string& name) { return name.empty(); }))
+  {
+    throw InputError(topic + ": the joints have no names (each name is empty), so whose the values are is not known");
+  }
+  const auto names_quantity = [](const std::string& name)
+  {
+    const std::string quantity = name.substr(name.rfind('/') + 1);
+    return quantity != name && (quantity == "position" || quantity == "velocity" || quantity == "effort");
+  };
+  if (all(names_quantity))
+  {
+    throw InputError(
+        topic + ": the names carry the quantity (" + names.front() +
+        "); a message has to name each joint once, with its position, velocity and effort in these fields");
+  }
+}
+
+CheckedContents readMessageContents(const MotionSource& source)
+{
+  constexpr int MESSAGES = 1000;  // messages in which every publisher of the topic occurs
+  CheckedContents contents;
+  const std::unique_ptr<RecordedMessages> recording = RecordedMessages::open(source.path);
+  recording->requireStates(source.topic);
+  for (const auto& [name, topic] : recording->topics())
+  {
+    contents.temperature = topic.type == TEMPERATURE_TYPE ? name : contents.temperature;
+  }
+  int read = 0;
+  recording->visit(
+      { source.topic }, false,
+      [&](const RecordedMessage& message)
+      {
+        if (message.state == nullptr)
+        {
+          return true;
+        }
+        const sensor_msgs::JointState& state = *message.state;
+        contents.has_angles = contents.has_angles || !state.position.empty();
+        for (std::size_t i = 0; i < state.name.size(); ++i)
+        {
+          if (!holds(contents.named, state.name[i]))
+          {
+            contents.named.push_back(state.name[i]);
+          }
+          if (i < std::min(state.position.size(), state.effort.size()) && !holds(contents.usable, state.name[i]))
+          {
+            contents.usable.push_back(state.name[i]);
+          }
+        }
+        // Efforts may come later than angles.
+        return ++read < MESSAGES || contents.usable.size() < contents.named.size();
+      },
+      [](double) {});
+  requireNames(source.topic, contents.named);
+  contents.named = withoutMotors(contents.named);
+  contents.usable = withoutMotors(contents.usable);
+  return contents;
+}
+
+/// Sorts the joints of an arm that is not complete into joints that are usable and joints that are missing.
+void takeParts(const std::vector<std::string>& names, const CheckedContents& contents, CheckedArm& arm)
+{
+  for (const std::string& name : names)
+  {
+    (holds(contents.usable, arm.affixes(name)) ? arm.joints_at_hand : arm.missing).push_back(arm.affixes(name));
+  }
+}
+
+CheckedArm withoutArm(const std::vector<fs::path>& files, const CheckedContents& contents)
+{
+  CheckedArm none;
+  for (const fs::path& file : files)
+  {
+    const std::vector<std::string> names = jointNames(readArmDescription(file.string()));
+    const auto at_hand =
+        std::count_if(names.begin(), names.end(), [&](const std::string& name) { return holds(contents.named, name); });
+    if (2 * static_cast<std::size_t>(at_hand) > names.size())
+    {
+      takeParts(names, contents, none);
+      return none;
+    }
+  }
+  none.joints_at_hand = contents.usable;
+  return none;
+}
+
+/// Prefixes and suffixes with which the recording may name the joints of an arm.
+std::vector<JointAffixes> affixesOf(const ArmDescription& arm, const RecordingOptions& options,
+                                    const CheckedContents& contents)
+{
+  return contents.is_csv || !options.affixes.empty() ? std::vector<JointAffixes>{ options.affixes } :
+                                                       findAffixes(jointNames(arm), contents.named);
+}
+
+bool namesAll(const CheckedContents& contents, const std::vector<std::string>& names, const JointAffixes& affixes)
+{
+  return contents.is_csv || std::all_of(names.begin(), names.end(),
+                                        [&](const std::string& name) { return holds(contents.named, affixes(name)); });
+}
+
+CheckedArm armWith(const JointAffixes& affixes)
+{
+  CheckedArm arm;
+  arm.affixes = affixes;
+  return arm;
+}
+
+/// Arms of the configuration that fit, one entry for each prefix and suffix.
+std::vector<CheckedArm> armsOfConfiguration(const std::vector<fs::path>& files, const RecordingOptions& options,
+                                            const CheckedContents& contents)
+{
+  std::vector<CheckedArm> arms;
+  for (const fs::path& file : files)
+  {
+    const ArmDescription description = readArmDescription(file.string());
+    for (const JointAffixes& affixes : affixesOf(description, options, contents))
+    {
+      const bool has_all = options.rows ? options.rows->front().size() == description.joints.size() :
+                                          namesAll(contents, jointNames(description), affixes);
+      if (!has_all)
+      {
+        continue;
+      }
+      auto arm = std::find_if(arms.begin(), arms.end(), [&](const CheckedArm& one) { return one.affixes == affixes; });
+      if (arm == arms.end())
+      {
+        arm = arms.insert(arms.end(), armWith(affixes));
+      }
+      arm->fitting.push_back(file.stem().string());
+    }
+  }
+  return arms;
+}
+
+/// The arm that the options name, one entry for each prefix and suffix. `known` has the arms that fit.
+std::vector<CheckedArm> armsGiven(const std::vector<CheckedArm>& known, const RecordingOptions& options,
+                                  const CheckedContents& contents)
+{
+  const ArmDescription given = readArmDescription(findArm(options.arm, configDirectory(options)));
+  std::vector<CheckedArm> arms;
+  for (const JointAffixes& affixes : affixesOf(given, options, contents))
+  {
+    const auto same =
+        std::find_if(known.begin(), known.end(), [&](const CheckedArm& one) { return one.affixes == affixes; });
+    arms.push_back(same == known.end() ? armWith(affixes) : *same);
+    arms.back().taken = options.arm;
+  }
+  if (arms.empty())
+  {
+    arms.emplace_back();
+    takeParts(jointNames(given), contents, arms.back());
+  }
+  return arms;
+}
+
+/// Removes an arm whose joints lack angle or effort, which cannot be read as an arm.
+void leaveOutIncomplete(const RecordingOptions& options, const CheckedContents& contents, CheckedArm& arm)
+{
+  const std::string name = arm.taken.empty() ? (arm.fitting.empty() ? "" : arm.fitting.front()) : arm.taken;
+  if (name.empty() || contents.is_csv)
+  {
+    return;
+  }
+  takeParts(jointNames(readArmDescription(findArm(name, configDirectory(options)))), contents, arm);
+  if (!arm.missing.empty())
+  {
+    arm.taken.clear();
+    arm.fitting.clear();
+  }
+}
+
+/// Finds the joints that the recording names, and its temperature. @throws InputError if the recording cannot be read.
+CheckedContents readCheckedContents(const MotionSource& source)
+{
+  return source.rows   ? contentsOf(*source.rows) :
+         isCsv(source) ? readTableContents(source) :
+                         readMessageContents(source);
+}
+
+/// Finds the arm of the options, or the arms whose joints the recording names, one entry for each prefix and suffix.
+/// There is at least one entry, which has no arm if none fits. `ranked` is empty, and `taken` too unless the options
+/// name it.
+/// @throws InputError, ParameterError.
+std::vector<CheckedArm> findArms(const RecordingOptions& options, const CheckedContents& contents)
+{
+  const std::vector<fs::path> files = armFiles(configDirectory(options));
+  std::vector<CheckedArm> arms = armsOfConfiguration(files, options, contents);
+  if (!options.arm.empty())
+  {
+    arms = armsGiven(arms, options, contents);
+  }
+  if (arms.empty() && options.rows)
+  {
+    throw InputError(options.recording + " has " + std::to_string(options.rows->front().size()) +
+                     " joints, which no arm in config/arms has; give your own (docs/arm.md)");
+  }
+  if (arms.empty())
+  {
+    arms.push_back(withoutArm(files, contents));
+  }
+  for (CheckedArm& arm : arms)
+  {
+    leaveOutIncomplete(options, contents, arm);
+  }
+  return arms;
+}
+
+/// Arm that is taken if no arm explains the currents clearly better than the others.
 constexpr const char* DEFAULT_ARM = "ur5";
 
 RecordingOptions optionsFor(const RecordingOptions& options, const CheckedArm& arm, const std::string& name)
@@ -33,7 +282,7 @@ RecordingOptions optionsFor(const RecordingOptions& options, const CheckedArm& a
   return own;
 }
 
-/// The best of the ranking where it is clearly better than the default.
+/// The best arm of the ranking if it is clearly better than the default arm, else the default arm.
 std::string choice(const CheckedArm& arm)
 {
   const auto preset =
@@ -64,14 +313,14 @@ void takeFit(const RecordingFit& fit, const std::vector<Parameters>& parameters,
   }
 }
 
-/// Samples that the differentiators of all joints have ready.
-void addReady(std::vector<MotionDifferentiator>& joints, bool at_end, const AssessedTwins& twins)
+/// Gives the joints the samples that their differentiators have ready.
+void addReady(std::vector<MotionDifferentiator>& joints, bool at_end, AssessedJoints& twins)
 {
   for (std::size_t i = 0; i < joints.size(); ++i)
   {
     while (const std::optional<MotionSample> sample = joints[i].pop(at_end))
     {
-      twins[i].update(*sample);
+      twins[i]->update(*sample);
     }
   }
 }
@@ -88,13 +337,8 @@ void readArm(const RecordingOptions& options, CheckedArm& arm)
   const RecordingOptions own = optionsFor(options, arm, arm.taken);
   ArmRecording recording(own);
   RecordingFit fit(recording.parameters());
-  AssessedTwins twins;
   AssessmentSettings settings;
-  settings.make_joints = [&]
-  { return twins.make(recording.parameters(), recording.loadOrigin(), !options.identified.empty()); };
-  settings.gives_notice = false;
   settings.looks_for_arm = arm.ranked.empty();
-  settings.watch = options.watch;
   const ArmAssessment assessment = assess(recording, settings, fit);
   arm.found = assessment.found;
   arm.timing = assessment.timing;
@@ -108,11 +352,11 @@ void readArm(const RecordingOptions& options, CheckedArm& arm)
   takeFit(fit, recording.parameters(), arm);
   for (std::size_t i = 0; i < arm.joints.size(); ++i)
   {
-    arm.joints[i].verdict = judge(twins[i].evidence(), assessment.context(i));
+    arm.joints[i].verdict = judge(assessment.joints[i]->evidence(), assessment.context(i));
   }
 }
 
-/// Of joints that are not a whole arm.
+/// Misfit of joints that are not a whole arm.
 Misfit misfitOfParts(const CheckedArm& arm)
 {
   if (arm.found.misfit.exists() || arm.missing.empty())
@@ -124,26 +368,26 @@ Misfit misfitOfParts(const CheckedArm& arm)
                joined(arm.missing) };
 }
 
-/// Each joint after what the friction of all has in common.
-void judgeJoints(const AssessedTwins& twins, const RecordingFit& fit, const std::vector<Parameters>& parameters,
+/// Judges each joint apart from the friction that all joints have in common.
+void judgeJoints(const AssessedJoints& twins, const RecordingFit& fit, const std::vector<Parameters>& parameters,
                  CheckedArm& arm)
 {
   takeFit(fit, parameters, arm);
   std::vector<MeasuredFriction> frictions;
   for (std::size_t i = 0; i < arm.joints.size(); ++i)
   {
-    frictions.push_back(twins[i].friction(arm.joints[i].misfit));
+    frictions.push_back(twins[i]->friction(arm.joints[i].misfit));
   }
   const ArmFriction common = commonFriction(frictions, parameters.front().comparison.repeat_tolerance);
   for (std::size_t i = 0; i < arm.joints.size(); ++i)
   {
     CheckedJoint& joint = arm.joints[i];
     const Misfit& misfit = misfitOf(joint.misfit, common.misfit);
-    joint.verdict = judge(twins[i].evidence(), twins[i].context(misfit, common.factors[i], common.deviations[i]));
+    joint.verdict = judge(twins[i]->evidence(), twins[i]->context(misfit, common.factors[i], common.deviations[i]));
   }
 }
 
-/// Reads all joints at hand without an arm: the load is what one joint is configured to carry.
+/// Reads all usable joints without an arm. Their load is the configured load of a single joint.
 void readJoints(const RecordingOptions& options, CheckedArm& arm)
 {
   const std::vector<std::string>& names = arm.joints_at_hand;
@@ -151,8 +395,11 @@ void readJoints(const RecordingOptions& options, CheckedArm& arm)
   const MotionDriven twin(parameters.front());
   StreamTiming timing;
   RecordingFit fit(parameters);
-  AssessedTwins twins;
-  twins.make(parameters, LoadOrigin::CONFIGURED, false);
+  AssessedJoints twins;
+  for (const Parameters& of : parameters)
+  {
+    twins.push_back(std::make_unique<AssessedJoint>(of, LoadOrigin::CONFIGURED, SoundJoint(), false));
+  }
   std::vector<MotionDifferentiator> differentiators(names.size(), MotionDifferentiator(ArmRates::HALF_WIDTH));
   std::vector<MotionDifferentiator> own(names.size());
   std::vector<MotionSample> samples(names.size());
@@ -175,7 +422,7 @@ void readJoints(const RecordingOptions& options, CheckedArm& arm)
     }
     addReady(own, at_end, twins);
   };
-  static_cast<MotionCount&>(arm.found) = readArmMotion(
+  static_cast<MotionCount&>(arm.found) = readMotion(
       motionSource(options), names,
       [&](const std::vector<MotionRow>& rows)
       {
@@ -210,7 +457,7 @@ bool hasFinding(const CheckedArm& arm, const std::string& kind)
                      [&](const RecordingFinding& finding) { return finding.kind == kind; });
 }
 
-/// A number that a person would write, within what is known of it.
+/// The factor with as few digits as its uncertainty allows.
 std::string plainFactor(const FittedFactor& factor)
 {
   int digits = 1;
@@ -222,7 +469,7 @@ std::string plainFactor(const FittedFactor& factor)
   return roundedText(factor.value, digits);
 }
 
-/// Reads the recording again with what would mend its findings.
+/// Reads the recording again with a change that may mend its findings.
 void tryRemedies(const RecordingOptions& options, CheckedArm& arm)
 {
   RecordingOptions changed = options;
@@ -258,7 +505,7 @@ void tryRemedies(const RecordingOptions& options, CheckedArm& arm)
   readArm(changed, mended);
   remedy.before = arm.rest.share();
   remedy.after = mended.rest.share();
-  // Another time changes the inertia alone, which may be little of the load.
+  // Another time scale changes the inertia only, which may be a small part of the load.
   constexpr double NOT_WORSE = 1.05;
   const double bound = kind == "effort_unit" ? 1.0 : NOT_WORSE;
   const bool is_left = hasFinding(mended, kind) || (kind == "period" && hasFinding(mended, "stamps"));

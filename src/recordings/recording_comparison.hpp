@@ -5,17 +5,54 @@
 #include <cmath>
 #include <complex>
 #include <cstddef>
-#include <functional>
-#include <utility>
+#include <cstdint>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "gear/angle.hpp"
-#include "recordings/decimated.hpp"
-
-#include "tracking/joint_evidence.hpp"
+#include "output/report.hpp"
+#include "recordings/compare.hpp"
 
 namespace hjt
 {
+/// Keeps every nth row of a stream of any length: never more than MAX_ROWS, and at least MAX_ROWS / 2 of a long stream.
+template <class Row>
+class Decimated
+{
+public:
+  static constexpr std::size_t MAX_ROWS = 16000;
+
+  void add(const Row& row)
+  {
+    if (seen_++ % stride_ == 0)
+    {
+      rows_.push_back(row);
+      if (rows_.size() == MAX_ROWS)
+      {
+        halve();
+      }
+    }
+  }
+
+  const std::vector<Row>& rows() const { return rows_; }
+
+private:
+  void halve()
+  {
+    for (std::size_t i = 0; i < MAX_ROWS / 2; ++i)
+    {
+      rows_[i] = rows_[2 * i];
+    }
+    rows_.resize(MAX_ROWS / 2);
+    stride_ *= 2;
+  }
+
+  std::vector<Row> rows_;
+  std::uint64_t seen_{};
+  std::uint64_t stride_{ 1 };
+};
+
 /// One line of a spectrum by turns of the motor, for each way of turning.
 struct SpectrumLine
 {
@@ -24,11 +61,12 @@ struct SpectrumLine
   double backward{};
 };
 
-/// The part of a residual that repeats with the joint's angle, in orders of the motor's turn.
+/// Spectrum of the part of a residual that repeats with the joint's angle, in orders of the motor's turn.
 ///
-/// The residual is averaged over narrow bins of the joint's angle, both ways apart; so memory does not grow, time needs
-/// not be even and what does not stay in place goes out. The amplitude at order o is |2 / n sum r exp(-i o theta)| over
-/// the bins that were visited; where these do not fill a turn of the joint, neighbouring orders leak into each other.
+/// The residual is averaged over narrow bins of the joint's angle, for each way of turning. So memory does not grow,
+/// rows need not be even in time, and what does not repeat with the angle averages out. The amplitude at order o is |2
+/// / n sum r exp(-i o theta)| over the bins that were visited; where these do not fill a turn of the joint,
+/// neighbouring orders leak into each other.
 class ResidualSpectrum
 {
 public:
@@ -39,7 +77,7 @@ public:
     bins_.fill(std::vector<Bin>(static_cast<std::size_t>(BINS_PER_MOTOR_TURN * std::ceil(ratio))));
   }
 
-  /// `angle` and `speed` of the joint [rad], [rad/s].
+  /// Adds a residual at an angle [rad] and a speed [rad/s] of the joint.
   void add(double angle, double speed, double residual)
   {
     std::vector<Bin>& bins = bins_[speed < 0.0 ? 0 : 1];
@@ -50,8 +88,8 @@ public:
     bin.rows += 1.0;
   }
 
-  /// Lines at every whole order of the joint's turn; amplitudes in the residual's unit. Empty: the joint passed less
-  /// than a motor turn.
+  /// Lines at every whole order of the joint's turn, with amplitudes in the residual's unit. Empty if the joint passed
+  /// less than a motor turn.
   std::vector<SpectrumLine> lines() const
   {
     const int highest = static_cast<int>(MAX_ORDER * ratio_);
@@ -99,7 +137,7 @@ private:
     double residual;
   };
 
-  /// Amplitude of orders 1 ... highest of the joint's turn; each place's phasor is turned on from order to order.
+  /// Amplitudes of the orders 1 to `highest` of the joint's turn. Each place's phasor is turned on from order to order.
   static std::vector<double> amplitudes(const std::vector<Place>& places, int highest)
   {
     using Phasor = std::complex<double>;
@@ -132,7 +170,7 @@ private:
   };
 
   double ratio_;
-  std::array<std::vector<Bin>, 2> bins_;  // over one turn of the joint: backward, forward
+  std::array<std::vector<Bin>, 2> bins_;  // bins over one turn of the joint: backward, forward
 };
 
 /// One row, measured beside predicted.
@@ -144,52 +182,45 @@ struct ComparedRow
   double residual() const { return measured.current - predicted.current; }  ///< [A]
 };
 
-/// A recorded joint beside the twin that makes the same motion: what is judged of it, and what a page shows besides.
-/// Memory does not grow with the rows.
-class RecordingComparison
+/// A recorded joint beside the twin that makes the same motion, with what is judged and what a page shows. Memory does
+/// not grow with the rows.
+class RecordingComparison : public AssessedJoint
 {
 public:
-  /// `baseline`: of the sound joint; empty: learned from the first windows. `watch`: is given every window.
-  /// @throws ParameterError if the ring finds no equilibrium under load.
-  RecordingComparison(const Parameters& parameters, LoadOrigin load, std::vector<ReferenceBin> baseline,
-                      std::function<void(const JudgedWindow&)> watch)
-    : evidence_(parameters, load), spectrum_(evidence_.ratio()), watch_(std::move(watch))
-  {
-    evidence_.setReference(std::move(baseline));
-  }
+  /// `recording` must live as long as this object. `directory` is that of the joint's report; if it is empty no file is
+  /// written. `sound` comes from earlier reports.
+  /// @throws ParameterError if the ring finds no equilibrium under load, InputError.
+  RecordingComparison(const ArmRecording& recording, std::size_t joint, const std::string& directory, SoundJoint sound);
 
-  void update(const MotionSample& sample)
-  {
-    const JointEvidence::Row taken = evidence_.update(sample);
-    if (taken == JointEvidence::Row::IMPOSSIBLE)
-    {
-      return;
-    }
-    const ComparedRow row{ sample, evidence_.predicted() };
-    course_.add(row);
-    if (taken == JointEvidence::Row::TOUCHED)
-    {
-      return;
-    }
-    if (std::abs(sample.velocity) > FrictionPoints::SLOWEST && row.predicted.tellsFriction())
-    {
-      spectrum_.add(sample.position, sample.velocity, row.residual());
-    }
-    if (taken == JointEvidence::Row::WINDOW)
-    {
-      const Assessor& assessor = evidence_.assessor();
-      watch_({ evidence_.indicators(), assessor.deviations(), assessor.assessment() });
-    }
-  }
+  JointEvidence::Row update(const MotionSample& sample) override;
 
-  const JointEvidence& evidence() const { return evidence_; }
-  const Decimated<ComparedRow>& course() const { return course_; }
-  const ResidualSpectrum& spectrum() const { return spectrum_; }
+  /// Judges the joint, and writes COMPARISON_FILE, BASELINE_FILE and tables beside them, as CSV: course, friction,
+  /// friction_twin, spectrum, teeth, health, and where the recording has them torsion, torsion_twin, twin_states.
+  /// Solves the ring under the loads of the recording. @throws InputError if a file cannot be written.
+  ComparedJoint write(const MotionFindings& found, const JointContext& context);
 
 private:
-  JointEvidence evidence_;
+  void writeData(const MotionFindings& found) const;
+  void writeFriction() const;
+  void writeTorsion() const;
+  void writeTeeth() const;
+  void writeTwinStates(double start) const;
+  Json documentOf(const MotionFindings& found, const ComparedJoint& compared) const;
+
+  const Parameters& parameters() const { return recording_.parameters(joint_); }
+  std::string file(const char* name) const { return directory_ + "/" + name; }
+
+  const ArmRecording& recording_;
+  const std::size_t joint_;
+  const std::string directory_;
+  const std::string twin_topic_;                    // topic of a twin that was recorded beside the robot
+  std::optional<TableFile<JudgedWindow>> windows_;  // windows of the signals, for a report
   Decimated<ComparedRow> course_;
   ResidualSpectrum spectrum_;
-  const std::function<void(const JudgedWindow&)> watch_;
 };
+
+/// The fields of Verdict.msg, with level and reason by name.
+Json verdictFields(const Verdict& verdict);
+
+constexpr const char* MADE_WITH = "joint_twin " HJT_VERSION;
 }  // namespace hjt

@@ -8,7 +8,7 @@ namespace hjt
 {
 namespace
 {
-/// Short name and that in the messages of UR's driver, in the order of the columns of its recordings.
+/// Short names of UR's joints and their names in the messages of UR's driver, in the order of a recording's columns.
 constexpr std::array<std::array<const char*, 2>, 6> UR_JOINTS{ { { "base", "shoulder_pan_joint" },
                                                                  { "shoulder", "shoulder_lift_joint" },
                                                                  { "elbow", "elbow_joint" },
@@ -18,10 +18,11 @@ constexpr std::array<std::array<const char*, 2>, 6> UR_JOINTS{ { { "base", "shou
 
 void addReadingOptions(OptionTable& table, RecordingOptions& options)
 {
-  table.add("--topic", options.topic, "of a bag's telemetry, sensor_msgs/JointState, effort as telemetry.effort says");
+  table.add("--topic", options.topic,
+            "topic of the telemetry in a bag, sensor_msgs/JointState with the effort that telemetry.effort names");
   table.add("--prefix", options.affixes.prefix,
-            "before the arm's names of the joints in the messages, as left_; `joint_twin check` finds it");
-  table.add("--suffix", options.affixes.suffix, "behind them");
+            "prefix of the arm's joint names in the messages, as left_; `joint_twin check` finds it");
+  table.add("--suffix", options.affixes.suffix, "suffix of the arm's joint names in the messages");
   table
       .add("--time-scale", options.time_scale,
            "multiplies the times of the rows where the stamps are wrong; `joint_twin check` finds it")

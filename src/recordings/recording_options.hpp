@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "output/progress.hpp"
+#include "recordings/controller_table.hpp"
 #include "recordings/recorded_motion.hpp"
-#include "recordings/stated_gains.hpp"
 
 #include "messages/joint_affixes.hpp"
 #include "messages/topics.hpp"
@@ -24,40 +24,40 @@ constexpr const char* LOAD_RECORDED = "target_moment";
 struct RecordingOptions : ConfigurationOptions
 {
   std::string recording;                             ///< bag, .db3, .mcap, their directory, or a controller's CSV
-  std::string joint;                                 ///< base, shoulder ..., or its name in the messages
+  std::string joint;                                 ///< base, shoulder and so on, or the name in the messages
   std::string arm;                                   ///< name in config/arms, or a file; empty: one joint
-  std::string load{ LOAD_OF_ARM };                   ///< of an arm's joints: that or LOAD_RECORDED
+  std::string load{ LOAD_OF_ARM };                   ///< load of an arm's joints: LOAD_OF_ARM or LOAD_RECORDED
   std::string identified;                            ///< directory of overlays, SHORT_NAME.yaml; empty: none
-  std::string joint_namespace{ DEFAULT_NAMESPACE };  ///< of the twin's topics
-  std::string topic{ DEFAULT_TOPIC };                ///< of the telemetry in a bag
-  JointAffixes affixes;                              ///< of an arm's joints in the messages
+  std::string joint_namespace{ DEFAULT_NAMESPACE };  ///< namespace of the twin's topics
+  std::string topic{ DEFAULT_TOPIC };                ///< topic of the telemetry in a bag
+  JointAffixes affixes;                              ///< prefix and suffix of an arm's joint names in the messages
   double time_scale{ 1.0 };                          ///< multiplies the times of the rows
   bool force{};                                      ///< overwrite files
-  /// A recording at hand: a row of each joint at each time, currents in A, times from 0 on; null: it is a file.
+  /// Recording in memory: a row of each joint at each time, currents in A, times from 0 on. Null if it is a file.
   std::shared_ptr<const std::vector<std::vector<MotionRow>>> rows;
   bool rows_have_load{};
-  /// By the recording, besides its rows; null: not read yet.
+  /// Statements of the recording besides its rows; null if they have not been read.
   std::shared_ptr<const RecordedStatements> stated;
   Watch watch;
 };
 
-/// Those of `check`, which finds the arm by itself.
+/// Adds the options of `check`, which finds the arm by itself.
 void addOptions(OptionTable& table, RecordingOptions& options);
-/// The recording alone; `--joint` or `--arm` and what goes with them, and how it is read.
+// Add the argument for the recording alone; `--joint`, `--arm` and the options for reading; the namespace.
 void addRecordingOption(OptionTable& table, RecordingOptions& options);
 void addJointOptions(OptionTable& table, RecordingOptions& options);
 void addNamespaceOption(OptionTable& table, std::string& joint_namespace);
 
-/// A joint of UR's robots: its place in the columns of a controller's recording.
+/// A joint of UR's robots.
 struct UrJoint
 {
-  int number{};      ///< 0 ... 5
-  std::string name;  ///< in the messages of UR's driver
+  int number{};      ///< number in the columns of a controller's recording, 0 to 5
+  std::string name;  ///< name in the messages of UR's driver
 };
 
-/// By short name ("elbow"), name in the messages or number; none: not a joint of UR's robots.
+/// Finds a joint by short name ("elbow"), name in the messages or number; none if it is not a joint of UR's robots.
 std::optional<UrJoint> findUrJoint(const std::string& name);
 
-/// The recording and joint they name.
+/// The recording and the joint that the options name.
 MotionSource motionSource(const RecordingOptions& options);
 }  // namespace hjt

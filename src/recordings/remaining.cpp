@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "output/output_file.hpp"
-#include "recordings/indicators_report.hpp"
+#include "recordings/indicators.hpp"
 #include "recordings/recorded_windows.hpp"
 
 #include "base/range.hpp"
@@ -22,7 +22,7 @@ namespace hjt
 {
 namespace
 {
-/// Adds what the samples of a recording say of the drive's use. Gaps of a second and more are none.
+/// Adds the samples of a recording to the drive's use. Gaps of a second and more do not count as use.
 class RecordedUse
 {
 public:
@@ -36,7 +36,7 @@ public:
 
   void add(const SignalSample& sample)
   {
-    constexpr double LONGEST = 1.0;  // [s]
+    constexpr double LONGEST = 1.0;  // longest step that counts [s]
     const double seconds = last_ ? 1e-9 * static_cast<double>(sample.stamp - last_->stamp) : 0.0;
     const double speed = last_ ? std::abs(motorAngle(sample) - motorAngle(*last_)) / seconds : 0.0;
     const double torque = jointTorque(sample);
@@ -66,13 +66,13 @@ private:
   }
 
   OutputParameters output_;
-  double temperature_;  // of samples without one [degC]
+  double temperature_;  // temperature of samples that have none [degC]
   double ratio_;
   UsageHistory& use_;
   std::optional<SignalSample> last_;
 };
 
-/// The same use, gone on with for so many hours.
+/// The same use for so many hours.
 UsageHistory lasting(const UsageHistory& use, double hours, const LifeParameters& life)
 {
   UsageHistory scaled(life);
@@ -84,7 +84,7 @@ UsageHistory lasting(const UsageHistory& use, double hours, const LifeParameters
   return scaled;
 }
 
-/// Where each bin begins and the chance that the end comes within it; the last bin has no end.
+/// Begin of each bin and the probability that the drive's use ends within it. The last bin has no end.
 Json densityJson(const RemainingHours& remaining)
 {
   std::vector<double> hours(RemainingHours::BINS);
@@ -96,7 +96,7 @@ Json densityJson(const RemainingHours& remaining)
            { "probability", std::vector<double>(remaining.probability.begin(), remaining.probability.end()) } };
 }
 
-/// Chance of each end.
+/// Probability of each cause of the end.
 Json endJson(const RemainingHours& remaining)
 {
   Json json;
@@ -107,8 +107,8 @@ Json endJson(const RemainingHours& remaining)
   return json;
 }
 
-/// Ratings of the run's gear, as a catalogue gives them, and the laws of ageing of the configuration: those that a
-/// simulated drive was made with are what nobody knows of a real one.
+/// Ratings of the run's gear, as a catalogue gives them, with the laws of ageing of the configuration. The laws that a
+/// simulated drive was made with do not count, because nobody knows those of a real drive.
 LifeParameters assumedLife(const RemainingOptions& options, const LifeParameters& of_run)
 {
   ParameterMap map = defaultParameterMap(options);
@@ -139,12 +139,12 @@ struct Condition
     seen_from = assessment.level == HealthLevel::OK ? std::make_optional(seenFrom(assessor, point)) : std::nullopt;
   }
 
-  Assessment assessment;  // the last one that counts; of none its state is WAITING
+  Assessment assessment;  // last assessment that counts; its state is WAITING if there is none
   std::optional<SeenFrom> seen_from;
   ReadWear read;
 };
 
-/// Use at which a recording was made [h].
+/// Hours of use at which a recording was made [h].
 double hoursOf(const RemainingOptions& options, std::size_t recording, const UsageHistory& use)
 {
   if (options.hours.empty())
@@ -154,8 +154,8 @@ double hoursOf(const RemainingOptions& options, std::size_t recording, const Usa
   return options.hours[options.hours.size() > 1 ? recording : 0];
 }
 
-/// Goes through the recordings: their use, unless a duty cycle says it, wear and the last assessment that counts, if
-/// there is a reference to hold them against. @throws InputError if that comes to none.
+/// Reads the recordings: their use, unless the options have a duty cycle, and with a reference also wear and the last
+/// assessment that counts. @throws InputError if there is a reference, but nothing can be judged.
 Condition readRecordings(const RemainingOptions& options, Assessor& assessor, UsageHistory& use)
 {
   const bool is_assessed = !options.baseline.empty();
@@ -216,7 +216,7 @@ Condition readRecordings(const RemainingOptions& options, Assessor& assessor, Us
   return condition;
 }
 
-/// Names of the faults that would not show at any severity, "none" without one.
+/// Names of the faults that would not show at any severity; "none" if there are none.
 std::string unseen(const SeenFrom& seen_from)
 {
   std::vector<std::string> names;
@@ -230,7 +230,7 @@ std::string unseen(const SeenFrom& seen_from)
   return names.empty() ? "none" : joined(names);
 }
 
-/// @throws InputError
+/// @throws InputError if an option is out of range.
 void requireRanges(const RemainingOptions& options)
 {
   const std::vector<double>& hours = options.hours;
@@ -331,8 +331,8 @@ Report reportOf(const Remaining& found)
     { "hours", "hours of use so far", estimate.hours, "h" },
     { "turns", "turns of the motor so far", estimate.turns },
     { "remaining_q10", "remaining, of 90 % of such drives at least", remaining.quantile[1], "h" },
-    { "remaining_q50", "of half of them", remaining.quantile[2], "h" },
-    { "remaining_q90", "of 10 % of them", remaining.quantile[3], "h" },
+    { "remaining_q50", "remaining, of 50 % of such drives at least", remaining.quantile[2], "h" },
+    { "remaining_q90", "remaining, of 10 % of such drives at least", remaining.quantile[3], "h" },
     { "nearest", "nearest limit of the nominal drive", nameOf(estimate.nearest()) },
     { "used", "used of it", 100.0 * estimate.usedOf(estimate.nearest()), "%" },
     { "parameters", "with the parameters of the", found.parameters },
@@ -351,7 +351,7 @@ Report reportOf(const Remaining& found)
   if (found.wear)
   {
     lines.push_back({ "wear_flank", "wear read, as a severity of tooth_wear", found.wear->flank });
-    lines.push_back({ "wear_interface", "of interface_wear", found.wear->interface });
+    lines.push_back({ "wear_interface", "wear read, as a severity of interface_wear", found.wear->interface });
     lines.push_back({ "lost_motion", "lost motion", found.wear->lost_motion, "rad" });
   }
   lines.push_back({ "density", "", densityJson(remaining) });

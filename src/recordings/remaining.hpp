@@ -16,12 +16,12 @@ namespace hjt
 {
 struct RemainingOptions : SignalOptions
 {
-  /// Use that the drive has behind it; none: that of the recordings. Or one for each recording, ascending [h]
+  /// Hours of use of the drive [h]: one number, or one for each recording, ascending. Empty: those of the recordings.
   std::vector<double> hours;
-  std::string baseline;                     ///< reference of the new drive; empty: nothing is assessed
-  std::string duty;                         ///< use so far, as a duty cycle; the recordings are then assessed only
-  std::optional<double> lost_motion_limit;  ///< that ends its use too [rad]
-  std::string use_record;                   ///< where to write the use as a duty cycle; empty: nowhere
+  std::string baseline;                     ///< file of the new drive's reference; empty: nothing is assessed
+  std::string duty;                         ///< duty cycle of the use so far, in place of the recordings' use
+  std::optional<double> lost_motion_limit;  ///< lost motion that ends the use of the drive [rad]
+  std::string use_record;                   ///< file to write the use to, as a duty cycle; empty: none
 };
 
 void addOptions(OptionTable& table, RemainingOptions& options);
@@ -29,14 +29,14 @@ void addOptions(OptionTable& table, RemainingOptions& options);
 struct Remaining
 {
   LifeEstimate estimate;
-  std::optional<Assessment> assessment;  ///< the last one that counts; none: nothing was assessed
-  std::optional<WearReading> wear;       ///< the last one
-  std::optional<SeenFrom> seen_from;     ///< of the assessment, where nothing was found
-  const char* parameters{};              ///< whose they are, in words
+  std::optional<Assessment> assessment;  ///< last assessment that counts; none if nothing was assessed
+  std::optional<WearReading> wear;       ///< last reading of the wear
+  std::optional<SeenFrom> seen_from;     ///< severities that would show, if no fault was found
+  const char* parameters{};              ///< source of the parameters, in words
 };
 
-/// The use of a recorded joint, and how long a drive lasts that is used so.
-/// @throws ParameterError, InputError: unreadable, a motor that does not turn, or nothing that can be judged.
+/// Estimates from recordings how a joint is used, and how long a drive lasts that is used so.
+/// @throws ParameterError, InputError if a file is unreadable, the motor does not turn, or nothing can be judged.
 Remaining remaining(const RemainingOptions& options);
 
 Report reportOf(const Remaining& found);

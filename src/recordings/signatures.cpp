@@ -16,15 +16,15 @@ namespace hjt
 {
 namespace
 {
-constexpr std::array SEVERITIES{ 0.1, 0.16, 0.25, 0.4, 0.63, 1.0 };  // of the rows
+constexpr std::array SEVERITIES{ 0.1, 0.16, 0.25, 0.4, 0.63, 1.0 };  // severities of the signatures
 
-/// A line that stands alone by kinematics, whatever the motion. Its size at severity 1 is assumed.
+/// A line of a cause that follows from kinematics for every motion. Its size at severity 1 is assumed.
 struct KinematicLine
 {
   Cause cause;
   LineSignal signal;
   Line line;
-  double size;  // of an error [rad]; of the torque as a share of the rated torque at the output
+  double size;  // size of an angle [rad]; of a torque over the rated torque at the output
 };
 constexpr double TORQUE_SHARE = 1e-2 / 67.0;
 constexpr std::array<KinematicLine, 9> KINEMATIC_LINES{ {
@@ -39,7 +39,7 @@ constexpr std::array<KinematicLine, 9> KINEMATIC_LINES{ {
     { Cause::CIRCULAR_SPLINE_TOOTH, LineSignal::KINEMATIC_ERROR, Line::CIRCULAR_SPLINE_2, 5e-5 },
 } };
 
-/// What a run has in common with the sound one that it is compared with.
+/// Conditions of a run, which the sound run that it is compared with has too.
 std::string conditionsOf(const RunSpec& spec)
 {
   std::string text;
@@ -55,7 +55,7 @@ std::string conditionsOf(const RunSpec& spec)
   throw InputError("plan " + plan.name() + ", class " + spec.fault_class + ", duty " + spec.duty_name + ": " + what);
 }
 
-/// The last one of a run.
+/// The last window of a run.
 SignalIndicators windowOf(const Plan& plan, const RunSpec& spec, const std::string& file)
 {
   const std::vector<SignalIndicators> windows =
@@ -69,7 +69,8 @@ SignalIndicators windowOf(const Plan& plan, const RunSpec& spec, const std::stri
   return windows.back();
 }
 
-/// Of a line with a phase the length of its change. What a window did not tell: 0.
+/// Changes of the indicators. For a line with a phase it is the length of the change. A value that was not measured has
+/// changed by 0.
 std::array<double, SIGNATURE_SIZE> changesOf(Cause cause, const SignalIndicators& window, const SignalIndicators& sound)
 {
   const SignalIndicators change = difference(window, sound);
@@ -84,7 +85,7 @@ std::array<double, SIGNATURE_SIZE> changesOf(Cause cause, const SignalIndicators
   return found;
 }
 
-/// Over sound windows.
+/// Mean motion of sound windows.
 MotionKind kindOf(const std::map<std::string, SignalIndicators>& sound)
 {
   MotionKind kind{};
@@ -96,7 +97,8 @@ MotionKind kindOf(const std::map<std::string, SignalIndicators>& sound)
   return kind;
 }
 
-/// On straight lines between signatures of rising severity; beyond the last one as there.
+/// The signature of a severity, on straight lines between signatures of rising severity. Beyond the last one it is the
+/// last.
 Signature between(const std::vector<Signature>& known, double severity)
 {
   const auto after = std::find_if(known.begin() + 1, known.end() - 1,
@@ -225,10 +227,10 @@ std::string SignatureRuns::text(const std::string& gear, const SignatureSet& bas
     throw InputError("no run found its equilibrium: there is nothing to make signatures of");
   }
   SignatureSet set = basis;
-  std::vector<std::string> motions;  // by signature
+  std::vector<std::string> motions;  // motion of each signature
   set.gear = gear;
   set.signatures.clear();
-  set.fitted.fill(true);  // but what the runs have not: numbers of robots are those of the basis
+  set.fitted.fill(true);  // the runs have all but the numbers of robots, which are those of the basis
   for (const FaultDescription& description : FAULT_DESCRIPTIONS)
   {
     for (const Motion& motion : motions_)

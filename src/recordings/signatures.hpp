@@ -12,30 +12,31 @@
 
 namespace hjt
 {
-/// @throws InputError if signatures cannot be made of this plan's runs: each has no fault or one, there from the start
-/// on, and is recorded as a bag.
+/// @throws InputError if signatures cannot be made of the runs of this plan. Each run must be recorded as a bag and
+/// have no fault or one, which exists from the start on.
 void checkSignaturePlan(const Plan& plan);
 
-/// Changes of the health indicators by faults, from the runs of plans: the last window of each run with one fault less
-/// that of the sound run under the same conditions, the mean over the conditions, by motion and severity. Other
-/// severities lie on straight lines between those that were run, from nothing at 0 on.
+/// Changes of the health indicators by faults, from the runs of plans. A change is the last window of a run with one
+/// fault, less that of the sound run under the same conditions. The mean over the conditions counts, for each motion
+/// and severity. Severities between those that were run lie on straight lines, which begin with no change at 0.
 class SignatureRuns
 {
 public:
-  /// `notice`: told of each run that is left out as it failed.
+  /// `notice` gets a text for each run that is left out because it failed.
   explicit SignatureRuns(std::function<void(const std::string&)> notice) : notice_(std::move(notice)) {}
 
-  /// The runs of a plan, all finished. @throws InputError if one has no window, or no sound one under its conditions.
+  /// Adds the runs of a plan, which must be finished. @throws InputError if a run has no window, or no sound run under
+  /// the same conditions.
   void add(const Plan& plan, const SweepDirectory& directory);
 
-  /// A file of signatures. `basis`: its errors and `carried` are taken over, as they take many gears to find. Sound
-  /// values are those of the first motion. `rated_torque`: at the output [N.m].
+  /// Text of a file of signatures. Errors and `carried` are those of `basis`, because they take many gears to find.
+  /// Sound values are those of the first motion. `rated_torque` is that at the output [N.m].
   std::string text(const std::string& gear, const SignatureSet& basis, double rated_torque) const;
 
 private:
   using Changes = std::array<double, SIGNATURE_SIZE>;
 
-  /// Over the conditions.
+  /// Sum of the changes over the conditions.
   struct Mean
   {
     Changes sum{};
@@ -46,8 +47,8 @@ private:
   struct Motion
   {
     std::string name;
-    std::map<std::string, SignalIndicators> sound;        // by the run's conditions
-    std::map<std::pair<FaultKind, double>, Mean> faulty;  // by kind and severity
+    std::map<std::string, SignalIndicators> sound;        // sound windows by the conditions of the run
+    std::map<std::pair<FaultKind, double>, Mean> faulty;  // changes by kind and severity of the fault
   };
 
   static void addFaulty(const Plan& plan, const RunSpec& spec, const SignalIndicators& window, Motion& motion);

@@ -10,10 +10,8 @@
 #include "base/csv_table.hpp"
 #include "base/text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
-#include "recordings/controller_columns.hpp"
+#include "recordings/controller_table.hpp"
 #include "recordings/motion_readers.hpp"
-#include "recordings/row_time.hpp"
-#include "recordings/source_watch.hpp"
 #include "tracking/held_values.hpp"
 #include "tracking/plausible.hpp"
 #include "tracking/unfolded_angle.hpp"
@@ -25,7 +23,7 @@ namespace
 constexpr std::size_t JOINTS = 6;
 constexpr double LATEST = 9e9;  // largest time that a stamp holds [s]
 
-/// Columns of one joint; the first two are required.
+/// Quantities of a joint that have a column; the first two are required.
 enum Quantity : std::size_t
 {
   ANGLE,
@@ -40,16 +38,16 @@ enum Quantity : std::size_t
 constexpr std::array<const char*, QUANTITIES> NAMES{ "actual_q_",  "actual_current_",     "target_moment_",
                                                      "actual_qd_", "joint_temperatures_", "target_current_" };
 
-/// Columns of some joints of a controller's table. `COUNT` of them.
+/// Columns of COUNT joints of a controller's table.
 template <std::size_t COUNT>
 class JointTable
 {
 public:
   static constexpr std::size_t COLUMNS = 1 + QUANTITIES * COUNT;
 
-  JointTable(const std::string& path, const std::vector<int>& numbers)
-    // A value that is no number spoils its row, not the file.
-    : names_(names(numbers)), table_(path, names_, COLUMNS - 1 - 2 * COUNT, COLUMNS, controllerColumns)
+  explicit JointTable(const MotionSource& source)
+    // A value that is no number makes its row useless, but not the file.
+    : names_(names(source)), table_(source.path, names_, COLUMNS - 1 - 2 * COUNT, COLUMNS, controllerColumns)
   {
     table_.allowCutOff();
     table_.allowUneven();
@@ -76,6 +74,7 @@ public:
   double time() const { return values_[0]; }
   double value(Quantity quantity, std::size_t joint) const { return values_[column(quantity, joint)]; }
   bool has(Quantity quantity, std::size_t joint) const { return table_.hasColumn(column(quantity, joint)); }
+  const std::string& name(Quantity quantity, std::size_t joint) const { return names_[column(quantity, joint)]; }
   std::string place() const { return table_.place(); }
   bool wasCutOff() const { return table_.wasCutOff(); }
   std::string unevenText() const { return table_.unevenText(); }
@@ -86,10 +85,10 @@ public:
     return std::all_of(values_.begin(), values_.begin() + column(VELOCITY, 0), is_finite);
   }
 
-  /// From now on such a current is 0.
+  /// Currents of these joints are 0 from now on.
   void silence(const std::array<bool, COUNT>& joints) { is_silent_ = joints; }
 
-  /// Of the columns that have to hold numbers, those that never did.
+  /// Names of required columns that never held a number.
   std::vector<std::string> neverFinite() const
   {
     std::vector<std::string> never;
@@ -103,7 +102,7 @@ public:
     return never;
   }
 
-  /// Of the columns that have to hold numbers, those of the row at hand that do not.
+  /// Counts required columns that hold no number in the present row.
   void addMissing(std::map<std::string, std::uint64_t>& missing) const
   {
     for (std::size_t i = 0; i < column(VELOCITY, 0); ++i)
@@ -121,14 +120,15 @@ public:
 private:
   static constexpr std::size_t column(std::size_t quantity, std::size_t joint) { return 1 + quantity * COUNT + joint; }
 
-  static typename NumberTable<COLUMNS>::Names names(const std::vector<int>& numbers)
+  static typename NumberTable<COLUMNS>::Names names(const MotionSource& source)
   {
     typename NumberTable<COLUMNS>::Names names{ "timestamp" };
     for (std::size_t joint = 0; joint < COUNT; ++joint)
     {
       for (std::size_t quantity = 0; quantity < QUANTITIES; ++quantity)
       {
-        names[column(quantity, joint)] = NAMES[quantity] + std::to_string(numbers[joint]);
+        names[column(quantity, joint)] =
+            NAMES[quantity] + std::to_string(COUNT == 1 ? source.csv_joint : static_cast<int>(joint));
       }
     }
     return names;
@@ -141,17 +141,17 @@ private:
   std::array<bool, COUNT> is_silent_{};
 };
 
-/// Kind of the currents in a table, judged by all of its rows.
+/// What the currents of a table are, by all of its rows.
 template <std::size_t COUNT>
 struct CurrentsSeen
 {
-  CurrentsSeen(const std::string& path, const std::vector<int>& numbers)
+  explicit CurrentsSeen(const MotionSource& source)
   {
     if (COUNT == 1)
     {
       return;
     }
-    JointTable<COUNT> table(path, numbers);
+    JointTable<COUNT> table(source);
     is_silent.fill(true);
     while (table.read() && !(has_any && isComplete()))
     {
@@ -163,7 +163,7 @@ struct CurrentsSeen
     }
     if (std::all_of(is_silent.begin(), is_silent.end(), [](bool silent) { return silent; }))
     {
-      is_silent.fill(false);  // nothing can be read without any
+      is_silent.fill(false);  // without any current nothing could be read
     }
   }
 
@@ -180,19 +180,14 @@ template <std::size_t COUNT>
 class TableMotion
 {
 public:
-  TableMotion(const MotionSource& source, const std::vector<int>& numbers)
-    : source_(source)
-    , numbers_(numbers)
-    , table_(source.path, numbers)
-    , angles_(COUNT)
-    , rows_(COUNT)
-    , temperatures_(COUNT)
+  explicit TableMotion(const MotionSource& source)
+    : source_(source), table_(source), angles_(COUNT), rows_(COUNT), temperatures_(COUNT)
   {
   }
 
-  MotionCount read(const VisitRows& visit)
+  MotionCount read(const VisitMotionRows& visit)
   {
-    const CurrentsSeen<COUNT> seen(source_.path, numbers_);
+    const CurrentsSeen<COUNT> seen(source_);
     table_.silence(seen.is_silent);
     bool more = true;
     while (more && table_.read())
@@ -215,18 +210,15 @@ public:
     {
       if (seen.is_silent[i])
       {
-        silent.push_back(NAMES[CURRENT] + std::to_string(numbers_[i]));
+        silent.push_back(table_.name(CURRENT, i));
       }
     }
-    if (!silent.empty())
-    {
-      count_.remarks.push_back(silentText(silent));
-    }
+    count_.remark(silentText(silent));
     return count_;
   }
 
 private:
-  bool take(const VisitRows& visit)
+  bool take(const VisitMotionRows& visit)
   {
     const double seconds = source_.time_scale * table_.time();
     const Stamp stamp = std::llround(1e9 * std::clamp(seconds, -LATEST, LATEST));
@@ -235,7 +227,7 @@ private:
       count_.start = stamp;
       first_ = table_.time();
     }
-    // Differences of the numbers themselves where there is one round: as they stand in the file.
+    // In the first round times are differences of the numbers in the file, which are exact.
     const double by_stamps = times_.at(stamp);
     const double time = times_.rounds() == 1 ? source_.time_scale * (table_.time() - first_) : by_stamps;
     order_.add(seconds);
@@ -276,26 +268,20 @@ private:
 
   void finish()
   {
-    std::uint64_t folds = 0;
-    for (std::size_t i = 0; i < COUNT; ++i)
+    for (const TemperatureRecord& temperatures : temperatures_)
     {
-      folds += angles_[i].folds();
-      count_.refused_temperatures += temperatures_[i].refused();
+      count_.refused_temperatures += temperatures.refused();
     }
     if (table_.wasCutOff())
     {
-      count_.remarks.push_back("the last line is cut off and left out (" + table_.place() + ")");
+      count_.remark("the last line is cut off and left out (" + table_.place() + ")");
     }
-    if (const std::string text = missingText(missing_, count_); !text.empty())
-    {
-      count_.remarks.push_back(text);
-    }
-    remarkOnRounds(folds, times_.rounds(), count_);
+    count_.remark(missingText(missing_, count_));
+    remarkOnRounds(angles_, times_.rounds(), count_);
     count_.misfit = { Reason::STAMPS, order_.text() };
   }
 
   const MotionSource& source_;
-  const std::vector<int>& numbers_;
   JointTable<COUNT> table_;
   std::vector<UnfoldedAngle> angles_;
   std::vector<MotionRow> rows_;
@@ -308,23 +294,28 @@ private:
 };
 }  // namespace
 
-void remarkOnRounds(std::uint64_t folds, std::uint64_t rounds, MotionCount& count)
+void remarkOnRounds(const std::vector<UnfoldedAngle>& angles, std::uint64_t rounds, MotionCount& count)
 {
+  std::uint64_t folds = 0;
+  for (const UnfoldedAngle& angle : angles)
+  {
+    folds += angle.folds();
+  }
   if (folds > 0)
   {
-    count.remarks.push_back("angles are folded into one turn: unwrapped, " + std::to_string(folds) + " jumps of 2 pi");
+    count.remark("angles are folded into one turn: unwrapped, " + std::to_string(folds) + " jumps of 2 pi");
   }
   if (rounds > 1)
   {
-    count.remarks.push_back("stamps jump back or by days " + std::to_string(rounds - 1) +
-                            " times, as of a recording played in a loop: each of " + std::to_string(rounds) +
-                            " rounds is read for itself");
+    count.remark("stamps jump back or by days " + std::to_string(rounds - 1) +
+                 " times, as of a recording played in a loop: each of " + std::to_string(rounds) +
+                 " rounds is read for itself");
   }
 }
 
 std::string missingText(const std::map<std::string, std::uint64_t>& missing, const MotionCount& count)
 {
-  constexpr double NOTEWORTHY = 0.02;  // of all rows
+  constexpr double NOTEWORTHY = 0.02;  // least share of all rows
   const auto all = static_cast<double>(count.rows + count.corrupt);
   std::vector<std::string> names;
   for (const auto& [name, rows] : missing)
@@ -341,27 +332,27 @@ std::string missingText(const std::map<std::string, std::uint64_t>& missing, con
 
 std::string silentText(const std::vector<std::string>& joints)
 {
-  return "the effort of " + joined(joints) +
-         " is never a number: it counts as 0 and its joint is not judged; the other joints are";
+  return joints.empty() ? std::string() :
+                          "the effort of " + joined(joints) +
+                              " is never a number: it counts as 0 and its joint is not judged; the other joints are";
 }
 
-MotionCount readTableMotion(const MotionSource& source, const std::vector<int>& numbers, const VisitRows& visit,
+MotionCount readTableMotion(const MotionSource& source, std::size_t joints, const VisitMotionRows& visit,
                             const std::function<void(double)>& progress)
 {
-  if (numbers.size() != 1 && numbers.size() != JOINTS)
+  if (joints != 1 && joints != JOINTS)
   {
     throw InputError(source.path + ": a controller's CSV recording has " + std::to_string(JOINTS) +
-                     " joints, the arm has " + std::to_string(numbers.size()));
+                     " joints, the arm has " + std::to_string(joints));
   }
-  if (numbers.front() == NO_COLUMNS)
+  if (source.csv_joint == NO_COLUMNS)
   {
     throw InputError(source.path +
                      ": the joints of a controller's CSV recording are base, shoulder, elbow, wrist_1, "
                      "wrist_2, wrist_3, or 0 to 5, not '" +
                      source.joint + "'");
   }
-  const MotionCount count = numbers.size() == 1 ? TableMotion<1>(source, numbers).read(visit) :
-                                                  TableMotion<JOINTS>(source, numbers).read(visit);
+  const MotionCount count = joints == 1 ? TableMotion<1>(source).read(visit) : TableMotion<JOINTS>(source).read(visit);
   progress(1.0);
   return count;
 }
@@ -378,7 +369,7 @@ bool tableRecordsLoad(const MotionSource& source)
   return std::find(rows.header().begin(), rows.header().end(), name) != rows.header().end();
 }
 
-MotionCount readArrayMotion(const MotionSource& source, std::size_t joints, const VisitRows& visit,
+MotionCount readArrayMotion(const MotionSource& source, std::size_t joints, const VisitMotionRows& visit,
                             const std::function<void(double)>& progress)
 {
   MotionCount count;
@@ -402,7 +393,7 @@ MotionCount readArrayMotion(const MotionSource& source, std::size_t joints, cons
       continue;
     }
     const double by_stamps = times.at(std::llround(1e9 * seconds));
-    // As the numbers stand in the array where there is one round.
+    // In the first round times are the numbers in the array.
     const double time = times.rounds() == 1 ? seconds : by_stamps;
     order.add(seconds);
     count.duration = std::max(count.duration, time);
@@ -418,12 +409,7 @@ MotionCount readArrayMotion(const MotionSource& source, std::size_t joints, cons
       break;
     }
   }
-  std::uint64_t folds = 0;
-  for (const UnfoldedAngle& angle : angles)
-  {
-    folds += angle.folds();
-  }
-  remarkOnRounds(folds, times.rounds(), count);
+  remarkOnRounds(angles, times.rounds(), count);
   count.misfit = { Reason::TWO_SOURCES, sources.text() };
   if (!count.misfit.exists())
   {

@@ -8,8 +8,7 @@
 #include <utility>
 
 #include "output/output_file.hpp"
-#include "recordings/report_page.hpp"
-#include "recordings/trend_report.hpp"
+#include "recordings/compare.hpp"
 
 #include "base/number_text.hpp"
 #include "base/text.hpp"
@@ -22,9 +21,9 @@ namespace
 {
 namespace fs = std::filesystem;
 
-/// Stamps before the year 2000 are no date but seconds since something was started [ns].
+/// Stamps before the year 2000 are no dates, but times since a program was started [ns].
 constexpr Stamp FIRST_DATE = 946'684'800'000'000'000;
-/// Changes within this time are of the drives' temperature and make no trend [h].
+/// Changes within this time come from the drives' temperature and are no trend [h].
 constexpr double DAY = 24.0;
 constexpr double PER_CENT = 100.0;
 
@@ -59,7 +58,7 @@ std::vector<std::string> recordingsIn(const std::string& folder)
   return found;
 }
 
-/// The files without repetition, in the given order.
+/// The files in the given order, each only once.
 std::vector<std::string> filesOf(const std::vector<std::string>& given)
 {
   std::vector<std::string> files;
@@ -75,7 +74,7 @@ std::vector<std::string> filesOf(const std::vector<std::string>& given)
     {
       std::error_code error;
       const std::string there = fs::canonical(file, error).string();
-      if (known.insert(error ? file : there).second)  // a link to nowhere gets its row, with the reason
+      if (known.insert(error ? file : there).second)  // a link to nowhere is listed with the reason
       {
         files.push_back(file);
       }
@@ -84,7 +83,7 @@ std::vector<std::string> filesOf(const std::vector<std::string>& given)
   return files;
 }
 
-/// `progress`: 0 ... 1 of this recording.
+/// Compares one recording. `progress` gets 0 to 1 for this recording.
 DatedRecording readRecording(const ComparisonOptions& all, const std::string& path,
                              const std::function<void(double)>& progress)
 {
@@ -93,7 +92,7 @@ DatedRecording readRecording(const ComparisonOptions& all, const std::string& pa
   ComparisonOptions options = all;
   options.recording = path;
   options.report.clear();
-  options.beside_controller = false;  // a recording without it would be held against something else
+  options.beside_controller = false;  // all recordings need the same reference
   options.watch.progress = [&progress](const std::string&) { return progress; };
   options.watch.notice = [&recording](const std::string& text) { recording.remarks.push_back(text); };
   try
@@ -120,7 +119,7 @@ DatedRecording readRecording(const ComparisonOptions& all, const std::string& pa
   return recording;
 }
 
-/// By date where all that were read have one, and their times.
+/// Sorts the recordings by date, if all that were read have a date, and sets their times.
 void putInOrder(Trend& trend)
 {
   std::vector<DatedRecording>& recordings = trend.recordings;
@@ -146,7 +145,8 @@ std::string perCent(double share)
   return fixedText(PER_CENT * share, 1);
 }
 
-/// "1.31 [1.17, 1.46] times from 2026-01-03 to 2026-09-30, 4.8 % [2.9, 6.7] per 1000 h, by 10 recordings."
+/// Text on a change, as "1.31 [1.17, 1.46] times from 2026-01-03 to 2026-09-30, 4.8 % [2.9, 6.7] per 1000 h, by 10
+/// recordings."
 std::string changeText(const FrictionTrend& friction, const Trend& trend, const std::vector<Stamp>& dates)
 {
   const double unit = trendUnit(trend);
@@ -159,7 +159,7 @@ std::string changeText(const FrictionTrend& friction, const Trend& trend, const 
          std::to_string(friction.recordings) + " recordings.";
 }
 
-/// Logarithm of a joint's friction with what the joints of the arm have in common. None: not judged.
+/// Logarithm of a joint's friction, with the factor that the arm's joints have in common; none if it is not judged.
 std::optional<double> logarithmOf(const DatedRecording& recording, std::size_t joint)
 {
   if (!recording.isRead() || !recording.compared.joints[joint].friction)
@@ -171,7 +171,7 @@ std::optional<double> logarithmOf(const DatedRecording& recording, std::size_t j
   return factor > 0.0 ? std::make_optional(std::log(factor)) : std::nullopt;
 }
 
-/// Joints [begin, end), a group, in all recordings.
+/// Sets the frictions of a group of joints, from `begin` to before `end`, in all recordings.
 void dateFrictions(std::vector<DatedRecording>& recordings, std::size_t begin, std::size_t end)
 {
   std::vector<std::vector<std::optional<double>>> logarithms(end - begin);
@@ -240,7 +240,8 @@ JointTrend judgeJoint(const Trend& trend, std::size_t joint, const std::string& 
   return judged;
 }
 
-/// Each trend, the joints without one by their reason, and the latest recording where it departs or no trend is judged.
+/// Text of the trends: joints that change, joints without a trend and why, and the latest recording if it departs or no
+/// trend is judged.
 std::string textOf(const Trend& trend)
 {
   std::string text;
@@ -270,7 +271,7 @@ std::string textOf(const Trend& trend)
   }
   if (!trend.has_dates)
   {
-    text += "Not all recordings tell a date: their order stands for time. ";
+    text += "Not all recordings have a date: their order stands for time. ";
   }
   if (trend.latest && (!is_any || trend.recordings[*trend.latest].compared.health != HealthLevel::OK))
   {
@@ -317,7 +318,7 @@ void judgeTrend(Trend& trend)
   trend.text = textOf(trend);
 }
 
-/// @throws InputError if what is to be written cannot be.
+/// @throws InputError if a file of the options cannot be written.
 void requireFiles(const TrendOptions& options)
 {
   requireWritable(options.out, options.force);

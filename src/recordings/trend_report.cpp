@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "recordings/trend_report.hpp"
+#include "recordings/trend.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,13 +17,13 @@ std::optional<std::string> dateOf(const DatedRecording& recording)
   return recording.date ? std::make_optional(isoDate(*recording.date)) : std::nullopt;
 }
 
-/// Of the finding of the friction.
+/// Reason of the finding on the friction.
 Reason reasonOf(const ComparedJoint& joint)
 {
   return joint.verdict.findings.front().reason;
 }
 
-/// A joint in one recording; nothing where it was not read.
+/// A value of a joint in a recording; null if the recording was not read.
 template <class Value>
 std::function<Json(const DatedRecording&)> ofJoint(std::size_t joint, const Value& value)
 {
@@ -36,7 +36,7 @@ std::optional<double> ofFriction(const ComparedJoint& joint, double JudgedFricti
   return joint.friction ? std::make_optional(joint.verdict.friction.*field) : std::nullopt;
 }
 
-/// "1.02 [0.92, 1.13]", the level where it is not OK, or why there is no friction.
+/// Text of a cell: "1.02 [0.92, 1.13]" with the level if it is not OK, or why the friction is not judged.
 std::string cellOf(const ComparedJoint& joint)
 {
   if (!joint.friction)
@@ -56,7 +56,7 @@ bool hasTemperature(const ComparedJoint& joint)
   return std::string(joint.temperature_source) == "received";
 }
 
-/// "24 to 31", of the joints whose temperature was recorded; "-": of none.
+/// Recorded temperatures of the joints, as "24 to 31"; "-" if there are none.
 std::string temperaturesOf(const DatedRecording& recording)
 {
   double least = HUGE_VAL;
@@ -74,7 +74,7 @@ std::string temperaturesOf(const DatedRecording& recording)
   return low == high ? low : low + " to " + high;
 }
 
-/// Keys of a joint's fields, `before` each of them.
+/// Fields of a joint, with `before` in front of each key.
 std::vector<Column<DatedRecording>> fieldsOf(std::size_t i, const std::string& before)
 {
   const auto of_verdict = [](double JudgedFriction::*field)
@@ -95,7 +95,7 @@ std::vector<Column<DatedRecording>> fieldsOf(std::size_t i, const std::string& b
              ofJoint(i, [](const ComparedJoint& joint) { return joint.temperature_source; }) } };
 }
 
-/// Data of a recording besides its joints.
+/// Fields of a recording besides its joints.
 std::vector<Column<DatedRecording>> wholeFields()
 {
   return { { "recording", &DatedRecording::path },
@@ -107,7 +107,7 @@ std::vector<Column<DatedRecording>> wholeFields()
              [](const DatedRecording& recording) { return recording.compared.friction.temperature; } } };
 }
 
-/// For a CSV file.
+/// Text of a value in a CSV file.
 struct CellText
 {
   std::string operator()(std::nullptr_t) const { return {}; }

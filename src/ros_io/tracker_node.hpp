@@ -17,7 +17,6 @@
 
 #include "arm/arm_load.hpp"
 #include "arm/arm_watch.hpp"
-#include "arm/load_watch.hpp"
 #include "arm/recording_fit.hpp"
 #include "ros_io/joint_tracker.hpp"
 #include "tracking/row_filter.hpp"

@@ -8,7 +8,6 @@
 
 #include "arm/arm_configuration.hpp"
 #include "arm/arm_motion.hpp"
-#include "arm/check_up.hpp"
 #include "test_parameters.hpp"
 #include "tracking/friction_map.hpp"
 

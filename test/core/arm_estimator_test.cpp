@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <iterator>
 #include <random>
 #include <string>
 #include <vector>
@@ -135,9 +134,6 @@ LoadFit fitOf(const EstimatorCase& of, unsigned seed)
   ArmDynamics carrying(loaded);
   std::vector<MotionDriven> true_twins = arm.twins;
   std::vector<MotionDriven> twins = arm.twins;
-  std::vector<const MotionDriven*> beside;
-  std::transform(twins.begin(), twins.end(), std::back_inserter(beside),
-                 [](const MotionDriven& twin) { return &twin; });
   std::mt19937 engine(seed);
   std::normal_distribution<double> normal;
   std::array<std::array<double, 3>, 6> own{};
@@ -178,7 +174,7 @@ LoadFit fitOf(const EstimatorCase& of, unsigned seed)
       twins[i].step(sample);
       samples[i] = sample;
     }
-    fit.add(samples, beside);
+    fit.add(samples, [&](std::size_t i) -> const MotionDriven& { return twins[i]; });
   }
   return fit;
 }

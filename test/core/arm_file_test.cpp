@@ -6,8 +6,8 @@
 #include <gmock/gmock.h>
 
 #include "arm/arm_configuration.hpp"
+#include "arm/arm_description.hpp"
 #include "arm/arm_dynamics.hpp"
-#include "arm/arm_file.hpp"
 #include "arm/set_points.hpp"
 #include "test/core/complaint.hpp"
 #include "test/support/temporary_folder.hpp"

@@ -11,7 +11,6 @@
 #include <gmock/gmock.h>
 
 #include "arm/arm_motion.hpp"
-#include "arm/check_up.hpp"
 #include "arm/moving_arm.hpp"
 #include "harmonic_joint_twin/params/parameter_map.hpp"
 #include "test/core/complaint.hpp"

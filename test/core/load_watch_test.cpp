@@ -11,7 +11,7 @@
 
 #include <gmock/gmock.h>
 
-#include "arm/load_watch.hpp"
+#include "arm/arm_watch.hpp"
 #include "gear/angle.hpp"
 #include "test/core/arm_support.hpp"
 #include "test/core/test_parameters.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "arm/motion_limits.hpp"
+#include "arm/set_points.hpp"
 
 #include <string>
 #include <vector>

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "arm/residual_statistics.hpp"
+#include "identification/torque_fit.hpp"
 
 namespace hjt
 {

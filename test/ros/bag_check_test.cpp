@@ -125,7 +125,7 @@ bool readInEveryWay(const std::string& path)
         source.joint = parameters().joint.name;
         source.load_topic = "/joint_twin/load_torque";
         readMotion(
-            source, [](const MotionRow&) { return true; }, [](double) {});
+            source, { source.joint }, [](const std::vector<MotionRow>&) { return true; }, [](double) {});
       });
   return whole;
 }
@@ -230,7 +230,7 @@ TEST(BagMotion, SaysHowManyJumpsOfAFoldedAngleItTookOut)
   source.joint = parameters().joint.name;
   source.speeds = { 30.0 };
   const MotionCount count = readMotion(
-      source, [](const MotionRow&) { return true; }, [](double) {});
+      source, { source.joint }, [](const std::vector<MotionRow>&) { return true; }, [](double) {});
   EXPECT_THAT(count.remarks, ::testing::Contains("angles are folded into one turn: unwrapped, 3 jumps of 2 pi"));
 }
 

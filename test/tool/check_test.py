@@ -258,9 +258,9 @@ class Check(tool.ToolTest):
         self.assertEqual([joint["verdict"]["reason"] for joint in arm["joints"]], reasons)
         self.assertEqual([joint["verdict"]["friction_measured"] for joint in arm["joints"]],
                          [False] * 3 + [True] * 2 + [False])
-        self.assertIn("Not judged: base. Effort is zero.", arm["text"])
+        self.assertIn("Not judged: base. The effort is zero.", arm["text"])
         done = self.succeed("follow", "arm.csv", "--arm", "ur5")
-        for part in ("base: effort is zero", "shoulder: angle and velocity of opposite sign", "elbow: velocity 0.1"):
+        for part in ("base: the effort is zero", "shoulder: angle and velocity of opposite sign", "elbow: velocity 0.1"):
             self.assertIn(part, done.stderr)
 
     def test_a_bag_without_effort_or_without_a_known_arm(self):

@@ -217,6 +217,7 @@ class Recordings(RecordingTest):
             self.assertIn(done.returncode, (0, 1), (command, done.stderr))
             self.assertNotIn("never contains", done.stderr)
         self.fail_with(1, ["given --prefix robot_", "given --suffix _b"], "follow", "two.bag", "--arm", "ur5")
+        self.succeed("follow", "two.bag", "--arm", "ur5", "--prefix", "robot_", "--bag", "followed.bag")
 
     def test_names_without_efforts_or_with_nan_are_told_apart(self):
         for value, part in (([], "effort is empty"), ([float("nan")] * 6, "not finite")):

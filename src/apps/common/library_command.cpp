@@ -18,11 +18,4 @@ Watch consoleWatch()
   watch.stopped = [interrupts = std::make_shared<InterruptScope>()] { return interruptSignal() != 0; };
   return watch;
 }
-
-SurfaceSource surfaceSource()
-{
-  const auto progress = std::make_shared<Progress>("building the response surface");
-  return { surfaceCacheDirectory(), [progress](double done) { progress->update(done); },
-           [](const std::string& what) { std::cerr << "warning: " << what << '\n'; } };
-}
 }  // namespace hjt

@@ -27,9 +27,6 @@ Watch readingWatch();
 /// As `readingWatch`; signals that end the process otherwise stop the function, as long as it is kept.
 Watch consoleWatch();
 
-/// Response surfaces from the user's cache; building shows its progress and what is amiss on stderr.
-SurfaceSource surfaceSource();
-
 /// Gives the result of FUNCTION to PRINT, which gives the exit code. A signal ends FUNCTION; PARTS: what it has by then
 /// is printed too.
 template <auto FUNCTION, auto PRINT, bool PARTS, class Options>

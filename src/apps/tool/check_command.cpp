@@ -10,7 +10,6 @@
 #include "apps/common/library_command.hpp"
 #include "output/process_end.hpp"
 #include "output/report.hpp"
-#include "recordings/check_report.hpp"
 #include "recordings/recording_check.hpp"
 
 #include "base/number_text.hpp"

@@ -15,7 +15,6 @@
 #include "recordings/indicators.hpp"
 #include "recordings/remaining.hpp"
 #include "recordings/trend.hpp"
-#include "recordings/trend_report.hpp"
 
 namespace hjt
 {

@@ -225,7 +225,7 @@ int simulate(const SimulateOptions& options)
   const Parameters parameters = loadParameters(options);
   requireWritable(options.out, options.force, options.profile);
   TorqueProfile profile = makeProfile(options);
-  Twin twin(parameters, surfaceSource());
+  Twin twin(parameters, surfaceSource(readingWatch()));
   printGearWarnings(parameters);
   twin.reset(SIMULATION_EPOCH);
   const RunSummary summary{ options.out, twin.stamp() };
@@ -448,7 +448,7 @@ int replay(const ReplayOptions& options)
   refuseTopics(bag, options.bag, outputTopics(options.joint_namespace));
   checkSpan(bag, options.bag);
   const BagInputs found = requireInputs(bag, options, map, parameters);
-  Twin twin(parameters, surfaceSource());
+  Twin twin(parameters, surfaceSource(readingWatch()));
   twin.watchSignals(true);
   twin.reset(stampOf(found.inputs.front()));
   const RunSummary summary{ options.out, twin.stamp() };

@@ -15,13 +15,13 @@
 #include "python/comparison_row.hpp"
 #include "python/recordings/calls.hpp"
 #include "recordings/arm_run.hpp"
-#include "recordings/check_report.hpp"
 #include "recordings/compare.hpp"
 #include "recordings/follow.hpp"
 #include "recordings/identify.hpp"
 #include "recordings/indicators.hpp"
+#include "recordings/recording_check.hpp"
 #include "recordings/remaining.hpp"
-#include "recordings/trend_report.hpp"
+#include "recordings/trend.hpp"
 
 namespace hjt
 {
@@ -111,7 +111,7 @@ void takeSignals(const Given& given, Options& options)
   const py::object columns = given["columns"];
   for (const auto& [signal, column] : columns.is_none() ? py::dict() : py::dict(columns))
   {
-    nameColumn(options.source, py::cast<std::string>(py::str(signal)), py::cast<std::string>(py::str(column)));
+    nameColumn(options, py::cast<std::string>(py::str(signal)), py::cast<std::string>(py::str(column)));
   }
 }
 

@@ -1,24 +1,67 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "recordings/stated_gains.hpp"
+#include "recordings/controller_table.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <set>
 #include <string>
+#include <utility>
 
 #include "base/csv_table.hpp"
 #include "base/statistics.hpp"
-#include "recordings/controller_columns.hpp"
+#include "base/text.hpp"
+#include "recordings/recording_options.hpp"
 
 namespace hjt
 {
 namespace
 {
+constexpr const char* TIME = "timestamp";
+
+bool beginsWith(const std::string& text, const std::string& begin)
+{
+  return text.compare(0, begin.size(), begin) == 0;
+}
+
+/// A controller's name for a column that is named TOPIC/NAME/quantity. Other names stay as they are.
+std::string ofPlotJuggler(const std::string& column)
+{
+  static const std::array<std::pair<const char*, const char*>, 3> QUANTITIES{
+    { { "position", "actual_q_" }, { "velocity", "actual_qd_" }, { "effort", "actual_current_" } }
+  };
+  const std::size_t last = column.rfind('/');
+  const std::size_t before = last == std::string::npos || last == 0 ? last : column.rfind('/', last - 1);
+  if (before == std::string::npos || last == 0)
+  {
+    return column;
+  }
+  for (const auto& [quantity, controllers] : QUANTITIES)
+  {
+    if (column.substr(last + 1) != quantity)
+    {
+      continue;
+    }
+    std::string name = column.substr(before + 1, last - before - 1);
+    // A driver may put a prefix before the name.
+    for (std::size_t at = 0; at != std::string::npos; at = name.find('_', at + 1))
+    {
+      const std::optional<UrJoint> joint = findUrJoint(at == 0 ? name : name.substr(at + 1));
+      if (joint && joint->name == (at == 0 ? name : name.substr(at + 1)))
+      {
+        return controllers + std::to_string(joint->number);
+      }
+    }
+  }
+  return column;
+}
+
 constexpr std::size_t JOINTS = 6;
 constexpr std::size_t COLUMNS = 4 * JOINTS;
 
-/// In this order, each of all joints.
+/// Places of the columns: each quantity has one column for each joint.
 enum Column : std::size_t
 {
   CURRENT = 0,
@@ -41,7 +84,7 @@ NumberTable<COLUMNS>::Names columnNames()
   return names;
 }
 
-/// By the target speeds where they are recorded, else by the measured ones.
+/// Whether the arm is at rest, by the target speeds or, where these are not recorded, by the measured speeds.
 bool isAtRest(const std::array<double, COLUMNS>& row)
 {
   constexpr double STILL = 1e-3;  // [rad/s]
@@ -56,12 +99,12 @@ bool isAtRest(const std::array<double, COLUMNS>& row)
   return true;
 }
 
-/// The middle one, if the ratios agree; NaN: they do not, or are of too few of the rows at rest.
+/// Median of the ratios, or NaN if the ratios do not agree or are of too few of the rows at rest.
 double agreedRatio(std::vector<double>& ratios, std::size_t rows)
 {
   constexpr std::size_t LEAST = 10;
-  constexpr std::size_t SHARE = 5;  // a loaded joint at rest has it in each pose; others only as a motion begins
-  constexpr double AGREE = 0.005;   // a controller computes both with the same numbers [-]
+  constexpr std::size_t SHARE = 5;  // largest number of rows at rest per ratio of a loaded joint
+  constexpr double AGREE = 0.005;   // largest deviation; a controller computes both with the same numbers [-]
   if (ratios.size() < std::max(LEAST, rows / SHARE))
   {
     return std::numeric_limits<double>::quiet_NaN();
@@ -78,9 +121,9 @@ double agreedRatio(std::vector<double>& ratios, std::size_t rows)
 
 std::vector<double> readStatedGains(const MotionSource& source)
 {
-  constexpr int ROWS = 50000;             // minutes at any rate
-  constexpr double LEAST_CURRENT = 0.01;  // its digits would count otherwise [A]
-  constexpr double WIDEST = 100.0;        // beyond, the columns are not what they are named [N.m/A]
+  constexpr int ROWS = 50000;             // rows that are read: minutes at any rate
+  constexpr double LEAST_CURRENT = 0.01;  // least current whose digits suffice [A]
+  constexpr double WIDEST = 100.0;        // largest ratio of true torque and current [N.m/A]
   NumberTable<COLUMNS> table(source.path, columnNames(), COLUMNS, COLUMNS, controllerColumns);
   if (!table.hasColumn(CURRENT) || !table.hasColumn(MOMENT))
   {
@@ -147,6 +190,36 @@ std::optional<Payload> readStatedPayload(const MotionSource& source)
   return payloadErrors(payload).empty() ? std::make_optional(payload) : std::nullopt;
 }
 }  // namespace
+
+std::vector<std::string> controllerColumns(std::vector<std::string> header)
+{
+  static const std::set<std::string> TIMES{ "time", "Time", "t", "__time" };
+  const auto is_time = [&](const std::string& name) { return TIMES.count(name) != 0; };
+  if (!holds(header, TIME) && std::count_if(header.begin(), header.end(), is_time) == 1)
+  {
+    *std::find_if(header.begin(), header.end(), is_time) = TIME;
+  }
+  std::transform(header.begin(), header.end(), header.begin(), ofPlotJuggler);
+  return header;
+}
+
+std::string foreignTable(const std::vector<std::string>& header)
+{
+  if (std::any_of(header.begin(), header.end(), [](const std::string& name) { return beginsWith(name, "field."); }))
+  {
+    return "it is a table of `rostopic echo -p`, which the joints' names and the unit of the time leave unclear; give "
+           "the bag itself, or record one: `rosbag record /joint_states`";
+  }
+  if (holds(header, "header.seq") || holds(header, "header.stamp.secs") || holds(header, "header.stamp.sec"))
+  {
+    return "it is a table of messages, as bagpy makes of a bag; give the bag itself";
+  }
+  if (holds(header, "position") && holds(header, "effort"))
+  {
+    return "it has lists in its cells; each joint needs columns of its own, or give the bag that it was made of";
+  }
+  return {};
+}
 
 RecordedStatements readStatements(const MotionSource& source, bool of_arm)
 {
