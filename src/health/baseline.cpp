@@ -10,7 +10,6 @@
 #include "gear/angle.hpp"
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/health/fault_signatures.hpp"
-#include "health/deviation_laws.hpp"
 #include "health/indicator_table.hpp"
 #include "health/reference_fit.hpp"
 

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "health/indicator_table.hpp"
-#include "health/motion_likeness.hpp"
 #include "health/signature_terms.hpp"
 
 namespace hjt

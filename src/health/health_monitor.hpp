@@ -5,16 +5,174 @@
 #include <cmath>
 #include <cstdint>
 
+#include <Eigen/Core>
+
 #include "gear/ratio.hpp"
-#include "harmonic_joint_twin/health/indicator.hpp"
 #include "harmonic_joint_twin/health/motion_indicators.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
-#include "health/efficiency_estimate.hpp"
-#include "health/forgetting.hpp"
-#include "health/turn_window.hpp"
 
 namespace hjt
 {
+/// The torsion over the last turn of the motor: transmission ratio and kinematic error.
+///
+/// The torsion is kept at marks evenly spaced in the motor angle, 16 to a tooth of the flexspline (the error of a sound
+/// gear repeats every tooth pitch), interpolated linearly between the two samples around each mark. The store holds
+/// one turn, whatever the speed.
+///
+/// Coming back to the mark before the last one is a reversal and empties the store; less (up to 2 mrad with 200 teeth)
+/// is a tremor about the same place and is not. Both indicators are valid once the store is full: after one turn and
+/// one or two marks of travel in one direction since start or reversal.
+class TurnWindow
+{
+public:
+  explicit TurnWindow(const GearParameters& gear);
+
+  void reset() noexcept;
+
+  /// `torsion`: motor angle / nominal ratio - output angle [rad]. An angle beyond 1e15 marks, or none, empties the
+  /// store.
+  void update(double motor_angle, double torsion) noexcept;
+
+  /// Motor travel over output travel, from the instant the motor stood exactly one turn behind until now [-].
+  /// Also not valid if the output made no way: less than a millionth of the nominal.
+  Indicator transmissionRatio() const noexcept;
+
+  /// Peak to peak of the torsion at the marks of the last turn, after subtracting the straight line through the two
+  /// ends of that turn [rad]. The line takes out a torsion that grows with a changing load, and, as the turn's ends
+  /// are alike, leaves every error of a whole number of cycles a turn untouched; a line by least squares would not.
+  Indicator kinematicError() const noexcept;
+
+private:
+  bool full() const noexcept { return count_ == torsions_.size(); }
+  void keep(double place, double slope, std::int64_t marks) noexcept;
+  double torsionAt(Eigen::Index marks_back) const noexcept;
+
+  double nominal_ratio_;
+  std::int64_t marks_per_turn_;
+  double marks_per_radian_;
+
+  // Places are motor angles in marks, mirrored so that they grow in the direction of travel.
+  bool started_{};
+  int direction_{ 1 };
+  double place_{};              // of the last sample
+  double torsion_{};            // of the last sample
+  std::int64_t newest_mark_{};  // last mark reached
+  Eigen::VectorXd torsions_;    // ring of one turn and one mark, both ends included
+  Eigen::Index newest_{};
+  Eigen::Index count_{};
+};
+
+/// Exponential forgetting in time: what is `window` old counts 1/e of what is new.
+class Forgetting
+{
+public:
+  /// `window`: time constant [s].
+  explicit Forgetting(double window) : window_(window) {}
+
+  /// Share that is kept over `elapsed` [ns]. Steps are nearly always alike, so the last one is remembered.
+  double kept(std::int64_t elapsed) noexcept
+  {
+    if (elapsed != elapsed_)
+    {
+      elapsed_ = elapsed;
+      kept_ = std::exp(-1e-9 * static_cast<double>(elapsed) / window_);
+    }
+    return kept_;
+  }
+
+private:
+  double window_;
+  std::int64_t elapsed_{};
+  double kept_{ 1.0 };
+};
+
+/// Efficiency of the drive between the motor shaft and the circular spline.
+///
+/// Law:   eta = <P_j> / <P_m>  driving, both > 0;   eta = <P_m> / <P_j>  driven back by the load, both < 0
+/// where  P_m  motor torque times motor speed: what the motor puts in                                 [W]
+///        P_j  joint torque times output speed: what the circular spline passes on to the load        [W]
+///        <>   exponential mean over `health.averaging_time`
+///
+/// Not valid
+/// - before one window has passed,
+/// - near standstill: a mean power below 0.1 W,
+/// - unless power flows one way through the drive: both means of one sign, and each at least 90 % of the mean of its
+///   magnitude,
+/// - when the output power exceeds the input power by over 1 %: then inertia is being slowed down.
+class EfficiencyEstimate
+{
+public:
+  explicit EfficiencyEstimate(const HealthParameters& parameters)
+    : window_(std::llround(1e9 * parameters.averaging_time)), forgetting_(parameters.averaging_time)
+  {
+  }
+
+  void reset() noexcept
+  {
+    age_ = 0;
+    motor_ = {};
+    joint_ = {};
+  }
+
+  /// [ns], [W], [W]
+  void update(std::int64_t elapsed, double motor_power, double joint_power) noexcept
+  {
+    age_ += elapsed;
+    const double kept = forgetting_.kept(elapsed);
+    motor_.update(kept, motor_power);
+    joint_.update(kept, joint_power);
+  }
+
+  /// [-]
+  Indicator efficiency() const noexcept
+  {
+    const bool driving = motor_.mean() > 0.0;
+    if (age_ < window_ || !motor_.steady() || !joint_.steady() || driving != (joint_.mean() > 0.0))
+    {
+      return {};
+    }
+    const double efficiency = driving ? joint_.mean() / motor_.mean() : motor_.mean() / joint_.mean();
+    if (efficiency > MAX_EFFICIENCY)
+    {
+      return {};
+    }
+    return { true, efficiency };
+  }
+
+private:
+  static constexpr double MIN_POWER = 0.1;     // [W]
+  static constexpr double STEADY_SHARE = 0.9;  // of the mean magnitude [-]
+  static constexpr double MAX_EFFICIENCY = 1.01;
+
+  /// Mean of a power and of its magnitude.
+  class PowerMean
+  {
+  public:
+    void update(double kept, double power) noexcept
+    {
+      mean_ = kept * mean_ + (1.0 - kept) * power;
+      magnitude_ = kept * magnitude_ + (1.0 - kept) * std::abs(power);
+    }
+
+    bool steady() const noexcept
+    {
+      return std::abs(mean_) >= MIN_POWER && std::abs(mean_) >= STEADY_SHARE * magnitude_;
+    }
+
+    double mean() const noexcept { return mean_; }  // [W]
+
+  private:
+    double mean_{};       // [W]
+    double magnitude_{};  // [W]
+  };
+
+  std::int64_t window_;  // [ns]
+  Forgetting forgetting_;
+  std::int64_t age_{};  // since start or reset [ns]
+  PowerMean motor_;
+  PowerMean joint_;
+};
+
 /// How far a quantity has varied lately: over the running window of fixed length and the one before it.
 class RecentSpan
 {

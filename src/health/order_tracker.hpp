@@ -5,17 +5,83 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <vector>
 
 #include <Eigen/Core>
 
 #include "gear/angle.hpp"
 #include "harmonic_joint_twin/health/signal_indicators.hpp"
-#include "harmonic_joint_twin/health/tracked_lines.hpp"
-#include "health/angle_multiples.hpp"
 #include "health/running_regression.hpp"
 
 namespace hjt
 {
+/// Cosine and sine of many multiples of one angle. A multiple that is the sum or the difference of two earlier ones, up
+/// to rounding, takes the product of their rotations in place of a sine and a cosine.
+template <std::size_t COUNT>
+class AngleMultiples
+{
+public:
+  explicit AngleMultiples(const std::array<double, COUNT>& multiples)
+  {
+    for (std::size_t k = 0; k < COUNT; ++k)
+    {
+      rules_[k] = rule(multiples, k);
+    }
+  }
+
+  /// `rotations`: cosine and sine of each multiple, one after the other.
+  void at(double angle, double* rotations) const noexcept
+  {
+    for (std::size_t k = 0; k < COUNT; ++k)
+    {
+      const Rule& rule = rules_[k];
+      const double* a = rotations + 2 * rule.first;
+      const double* b = rotations + 2 * rule.second;
+      double* to = rotations + 2 * k;
+      if (rule.sign == 0.0)
+      {
+        to[0] = std::cos(rule.multiple * angle);
+        to[1] = std::sin(rule.multiple * angle);
+        continue;
+      }
+      const double sine = rule.sign * b[1];
+      to[0] = a[0] * b[0] - a[1] * sine;
+      to[1] = a[1] * b[0] + a[0] * sine;
+    }
+  }
+
+private:
+  struct Rule
+  {
+    double multiple{};
+    std::size_t first{};
+    std::size_t second{};
+    double sign{};  // of the second; 0: of no other two
+  };
+
+  static Rule rule(const std::array<double, COUNT>& multiples, std::size_t k)
+  {
+    constexpr double ROUNDING = 1e-14;
+    const double multiple = multiples[k];
+    for (std::size_t i = 0; i < k; ++i)
+    {
+      for (std::size_t j = 0; j < k; ++j)
+      {
+        for (const double sign : { 1.0, -1.0 })
+        {
+          if (std::abs(multiples[i] + sign * multiples[j] - multiple) <= ROUNDING * std::abs(multiple))
+          {
+            return { multiple, i, j, sign };
+          }
+        }
+      }
+    }
+    return { multiple, 0, 0, 0.0 };
+  }
+
+  std::array<Rule, COUNT> rules_;
+};
+
 /// A sample of the tracker.
 struct LineSample
 {
@@ -247,5 +313,55 @@ private:
   Eigen::Vector3d targets_;
   RunningRegression regression_;
   int used_{};  // columns of the last fit
+};
+
+/// Slip of the wave generator's bearing over one window, by the lines of races and balls in the motor's ripple.
+///
+/// Law:   L(s) = sum_k |F_k(s)|^2 / n_k,   F_k(s) = sum w r exp(-j o_k(s) theta),   s* = argmax L(s), 0 <= s <= MOST
+/// where  k       over lines;  w  weight
+///        r       ripple less all that the window's fit makes of it but for these lines [rad]
+///        theta   motor angle [rad];  o_k(s)  orders with slip s (trackedOrders)
+///        n_k     of the noise about the line: median of |F_k|^2 over slips that no bearing has as well, over ln 2
+/// s is 0 too where L of the kinematic error is larger by CLEARLY without slip.
+/// Without a line that slips L is the sum of squares of noise, whose largest value over s passes L(0) by CLEARLY in
+/// less than one window in 1000: s is then 0.
+/// Source: bearings slip by 1 to 2 % (Randall and Antoni, Mech. Syst. Signal Process. 25, 2011, 485-520).
+///
+/// At an even speed none is looked for: sampling folds the lines of the teeth to sharp ones at any order there, two
+/// apart as those of a race are.
+///
+/// Keeps every sample of a window: for recordings and data sets, not for a loop. A window of more than a million, or of
+/// places more than 500 turns apart, has no slip looked for.
+class BearingSlip
+{
+public:
+  static constexpr double MOST = 0.03;  ///< [-]
+
+  explicit BearingSlip(const Parameters& parameters);
+
+  void reset() noexcept { samples_.clear(); }
+  void add(const LineSample& sample)
+  {
+    if (samples_.size() <= MOST_SAMPLES)
+    {
+      samples_.push_back(sample);
+    }
+  }
+
+  /// `fitted`: to the samples, without slip. 0: none stands out [-].
+  double find(const OrderTracker& fitted) const;
+  /// All lines fitted to the samples at the orders of a bearing with that slip, `angle_step` as OrderTracker::fit.
+  OrderTracker refit(double slip, double angle_step) const;
+
+private:
+  static constexpr std::size_t MOST_SAMPLES = 1000000;
+
+  struct BearingLine;
+  std::vector<BearingLine> linesOf(const OrderTracker& fitted) const;
+
+  GearParameters gear_;
+  BearingParameters bearing_;
+  double rated_torque_;  // [N.m]
+  std::vector<LineSample> samples_;
 };
 }  // namespace hjt

@@ -7,25 +7,39 @@
 #include <complex>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 #include <Eigen/Core>
 #include <Eigen/Dense>
 
 #include "gear/angle.hpp"
-#include "harmonic_joint_twin/health/indicator.hpp"
+#include "harmonic_joint_twin/health/motion_indicators.hpp"
 #include "harmonic_joint_twin/health/signal_indicators.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
-#include "health/bearing_slip.hpp"
-#include "health/efficiency_estimate.hpp"
+#include "health/health_monitor.hpp"
 #include "health/order_tracker.hpp"
 #include "health/running_regression.hpp"
-#include "health/signal_sample.hpp"
 #include "health/torsion_loop_estimate.hpp"
-#include "health/turn_window.hpp"
 
 namespace hjt
 {
+constexpr double NOT_MEASURED = std::numeric_limits<double>::quiet_NaN();
+
+/// What a drive's own sensors tell at one instant. What is not measured stays NaN: without one of the encoders only
+/// what needs both is missing, without a load estimate only efficiency, without set points only the lag.
+struct SignalSample
+{
+  std::int64_t stamp{};                   ///< [ns]
+  double motor_angle{ NOT_MEASURED };     ///< encoder, without jumps at full turns [rad]
+  double output_angle{ NOT_MEASURED };    ///< encoder, without jumps at full turns [rad]
+  double motor_velocity{ NOT_MEASURED };  ///< [rad/s]
+  double motor_torque{ NOT_MEASURED };    ///< at the shaft: commanded, or current times torque constant [N.m]
+  double load_torque{ NOT_MEASURED };     ///< estimate at the output, > 0 resists positive motion [N.m]
+  double temperature{ NOT_MEASURED };     ///< [degC]
+  double target_angle{ NOT_MEASURED };    ///< set point of the output angle [rad]
+};
+
 /// Ripple of an angle: what three filters in a row do not follow of it.
 ///
 /// Law:   r = (s t / (1 + s t))^3 x

@@ -2,16 +2,34 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "harmonic_joint_twin/health/assessment.hpp"
 #include "harmonic_joint_twin/health/fault_signatures.hpp"
 
 namespace hjt
 {
+constexpr double OTHER_MOTION = 1e-3;  // weight of a signature of no motion alike
+
+/// How far a signature's motion and the window's are alike, 0 ... 1.
+inline double likeness(const MotionKind& motion, const OperatingPoint& point) noexcept
+{
+  constexpr double SPEED_RANGE = 0.2;      // of the logarithm, in which motions are alike
+  constexpr double DIRECTION_RANGE = 0.3;  // as well
+  if (!(motion.speed > 0.0 && point.speed > 0.0))
+  {
+    return 1.0;
+  }
+  const double speed = std::log(point.speed / motion.speed) / SPEED_RANGE;
+  const double direction = (std::abs(point.direction) - motion.direction) / DIRECTION_RANGE;
+  return std::exp(-0.5 * (speed * speed + direction * direction));
+}
+
 /// Rows of the set that make each cause's pattern: those whose severity is nearest to 0.4.
 std::array<std::vector<std::size_t>, CAUSE_COUNT> patternRows(const SignatureSet& set);
 
@@ -71,4 +89,11 @@ private:
   std::array<Term, INDICATOR_COUNT> terms_;
   std::size_t count_{};
 };
+
+using SeenFrom = std::array<double, CAUSE_COUNT>;  ///< severities by cause [-]
+
+/// Least severity at which half of the drives with each fault would be out of the ordinary in the windows that were
+/// compared last, among those of the signatures; infinite: with none; NaN: the fault has no signature. For reports:
+/// allocates.
+SeenFrom seenFrom(const Assessor& assessor, const OperatingPoint& point);
 }  // namespace hjt

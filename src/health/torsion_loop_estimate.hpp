@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-#include "harmonic_joint_twin/health/indicator.hpp"
+#include "harmonic_joint_twin/health/motion_indicators.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "health/running_regression.hpp"
 

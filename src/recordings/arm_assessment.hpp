@@ -9,7 +9,7 @@
 
 #include "arm/load_law.hpp"
 #include "recordings/arm_recording.hpp"
-#include "tracking/stream_timing.hpp"
+#include "tracking/telemetry_rows.hpp"
 #include "tracking/verdict.hpp"
 
 namespace hjt

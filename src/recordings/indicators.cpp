@@ -12,8 +12,8 @@
 
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "health/baseline_file.hpp"
-#include "health/seen_from.hpp"
 #include "health/signal_monitor.hpp"
+#include "health/signature_terms.hpp"
 
 namespace hjt
 {

@@ -6,7 +6,7 @@
 
 #include "bags/recorded_messages.hpp"
 #include "recordings/motion_readers.hpp"
-#include "tracking/time_fit.hpp"
+#include "tracking/telemetry_fit.hpp"
 
 namespace hjt
 {

@@ -13,8 +13,8 @@
 #include "recordings/recorded_arms.hpp"
 #include "recordings/recorded_ranking.hpp"
 #include "recordings/stated_gains.hpp"
-#include "tracking/effort.hpp"
 #include "tracking/joint_evidence.hpp"
+#include "tracking/motion_driven.hpp"
 #include "tracking/verdict.hpp"
 
 namespace hjt

@@ -14,9 +14,8 @@
 #include "recordings/motion_readers.hpp"
 #include "recordings/row_time.hpp"
 #include "recordings/source_watch.hpp"
-#include "tracking/held_values.hpp"
-#include "tracking/plausible.hpp"
-#include "tracking/unfolded_angle.hpp"
+#include "tracking/drive_temperature.hpp"
+#include "tracking/telemetry_rows.hpp"
 
 namespace hjt
 {

@@ -11,7 +11,7 @@
 #include <Eigen/Core>
 
 #include "tracking/motion_differentiator.hpp"
-#include "tracking/time_fit.hpp"
+#include "tracking/telemetry_fit.hpp"
 
 namespace hjt
 {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/statistics.hpp"
-#include "tracking/friction_verdict.hpp"
+#include "tracking/verdict.hpp"
 
 namespace hjt
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tracking/friction_verdict.hpp"
+#include "tracking/verdict.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -10,8 +10,6 @@
 
 #include "base/number_text.hpp"
 #include "base/text.hpp"
-#include "tracking/verdict.hpp"
-#include "tracking/wrong_gain.hpp"
 
 namespace hjt
 {

@@ -24,8 +24,8 @@
 #include "tracking/friction_points.hpp"
 #include "tracking/motion_differentiator.hpp"
 #include "tracking/motion_driven.hpp"
-#include "tracking/plausible.hpp"
-#include "tracking/time_fit.hpp"
+#include "tracking/telemetry_fit.hpp"
+#include "tracking/telemetry_rows.hpp"
 
 namespace hjt
 {

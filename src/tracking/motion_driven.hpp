@@ -3,21 +3,120 @@
 
 #include <array>
 #include <cmath>
+#include <complex>
+#include <cstddef>
 #include <limits>
 #include <utility>
 
 #include "elements/friction_laws.hpp"
 #include "elements/load.hpp"
 #include "elements/motor.hpp"
+#include "gear/angle.hpp"
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
-#include "tracking/effort.hpp"
+#include "harmonic_joint_twin/twin/twin.hpp"
+#include "params/variants.hpp"
 #include "tracking/friction_map.hpp"
 #include "tracking/motion_differentiator.hpp"
-#include "tracking/torque_ripple.hpp"
 
 namespace hjt
 {
+/// Motor current of 1 of what a robot gives as effort [A], [A/(N.m)].
+inline double currentPerEffort(EffortUnit effort, const Parameters& parameters) noexcept
+{
+  const double gain = parameters.telemetry.torque_per_current;
+  switch (effort)
+  {
+    case EffortUnit::CURRENT:
+      break;
+    case EffortUnit::JOINT_TORQUE:
+      return 1.0 / gain;
+    case EffortUnit::MOTOR_TORQUE:
+      return nominalRatio(parameters.gear) / gain;
+  }
+  return 1.0;
+}
+
+/// Current per effort in the configured unit.
+inline double currentPerEffort(const Parameters& parameters) noexcept
+{
+  return currentPerEffort(parameters.telemetry.effort, parameters);
+}
+
+/// Motor torque ripple caused by the kinematic error, referred to the joint.
+///
+/// Each line is a torque K e, the joint's stiffness times its kinematic error, that a load standing still would feel.
+/// The load is carried along: with its resonance w0 on that stiffness and its damping z the gear feels
+///   T = K e (-w^2) / (w0^2 - w^2 + 2 i z w0 w),   w = order times the joint's speed,
+/// nothing at rest, since the load settles. Four lines: two and four waves a turn of the motor, against the circular
+/// spline, which turns with the output, and against the flexspline. Beyond the speed up to which the lines are known
+/// there is none.
+class TorqueRipple
+{
+public:
+  static constexpr std::size_t LINES = 4;
+  using Orders = std::array<double, LINES>;
+  using Waves = std::array<std::complex<double>, LINES>;
+
+  TorqueRipple(const TelemetryParameters& p, double ratio)
+    : orders_(orders(ratio))
+    , lines_{ { { p.ripple_circular_spline_2[0], p.ripple_circular_spline_2[1] },
+                { p.ripple_flexspline_2[0], p.ripple_flexspline_2[1] },
+                { p.ripple_circular_spline_4[0], p.ripple_circular_spline_4[1] },
+                { p.ripple_flexspline_4[0], p.ripple_flexspline_4[1] } } }
+    , response_{ p.ripple_resonance, p.ripple_damping, p.ripple_lag }
+    , fastest_(lines_ == Waves() ? -1.0 : p.ripple_fastest)
+  {
+  }
+
+  /// Ripple at the joint's angle [rad] and speed [rad/s], [N.m].
+  double at(double position, double velocity) const noexcept
+  {
+    double sum = 0.0;
+    if (std::abs(velocity) <= fastest_)
+    {
+      const Waves felt = waves(orders_, position, velocity, response_.data());
+      for (std::size_t i = 0; i < LINES; ++i)
+      {
+        sum += (std::conj(lines_[i]) * felt[i]).real();
+      }
+    }
+    return sum;
+  }
+
+  /// Per turn of the joint: circular spline 2, flexspline 2, circular spline 4, flexspline 4.
+  static Orders orders(double ratio) { return { 2.0 * ratio - 2.0, 2.0 * ratio, 4.0 * ratio - 4.0, 4.0 * ratio }; }
+
+  /// w0^2 - w^2 + 2 i z w0 w; `response`: resonance [Hz], damping [-], lag [s].
+  static std::complex<double> stiffness(double w, const double* response) noexcept
+  {
+    const double natural = TWO_PI * response[0];
+    return { natural * natural - w * w, 2.0 * response[1] * natural * w };
+  }
+
+  /// What the gear feels of each line of 1 N.m: of its cosine the real part, of its sine the imaginary part.
+  static Waves waves(const Orders& orders, double position, double velocity, const double* response) noexcept
+  {
+    Waves turned;
+    Waves felt;
+    for (std::size_t i = 0; i < LINES; ++i)
+    {
+      const double w = orders[i] * velocity;
+      const std::complex<double> inverse = std::conj(stiffness(w, response));
+      // The orders of the last two are twice those of the first two.
+      turned[i] = i < 2 ? std::polar(1.0, orders[i] * position - w * response[2]) : turned[i - 2] * turned[i - 2];
+      felt[i] = -w * w / std::norm(inverse) * inverse * turned[i];
+    }
+    return felt;
+  }
+
+private:
+  Orders orders_;
+  Waves lines_;                     // cos + i sin [N.m]
+  std::array<double, 3> response_;  // resonance [Hz], damping [-], lag [s]
+  double fastest_;                  // [rad/s]; below 0: there is no line
+};
+
 /// Share of the friction that is mobilised, between -1 and 1: after a reversal it builds up over a presliding angle
 /// (`mobilised`, by the motor's angle). Two of them add up. The contacts' builds up over telemetry.presliding_angle.
 /// While the joint stands the motion does not tell it, and it forgets the last one within RELAXATION, as the current of
@@ -200,5 +299,73 @@ private:
   mutable std::array<Viscosity, 2> known_;
   double predicted_at_{ std::numeric_limits<double>::quiet_NaN() };
   bool started_{};
+};
+
+/// The whole twin driven by a measured motor current, open loop: motion out. Differences from the robot accumulate.
+///
+/// The current of a sample drives from its time on. The weight is that at the measured angle, so that a twin gone
+/// astray does not hang elsewhere. Starts at rest at the measured angle, and again after a gap.
+class TorqueDriven
+{
+public:
+  /// @throws ParameterError as the twin.
+  explicit TorqueDriven(const Parameters& parameters, const SurfaceSource& surface_source = {})
+    : twin_(withoutHeat(withoutWeight(parameters)), surface_source)
+    , load_(parameters.output)
+    , telemetry_(parameters.telemetry)
+    , ratio_(nominalRatio(parameters.gear))
+    , temperature_(parameters.input.temperature)
+  {
+  }
+
+  struct Motion
+  {
+    double position{};         ///< of the joint, at the sample's time [rad]
+    double velocity{};         ///< [rad/s]
+    double joint_torque{};     ///< of the mesh on the output [N.m]
+    double friction_torque{};  ///< of the whole, at the joint, against the motion [N.m]
+  };
+
+  /// State of the joint at the time of `sample`, whose current and load act from then on.
+  /// @param load external torque at the output, without the configured weight and inertia [N.m]
+  Motion step(const MotionSample& sample, double load) noexcept
+  {
+    const Stamp stamp = std::llround(1e9 * sample.time);
+    if (!started_ || sample.after_gap)
+    {
+      solver_failures_ = solverFailures();
+      twin_.reset(stamp);
+      start_position_ = sample.position;
+      started_ = true;
+    }
+    while (twin_.step(stamp))
+    {
+    }
+    twin_.setTemperature(stamp, sample.temperatureOr(temperature_));
+    twin_.commandMotorTorque(stamp,
+                             telemetry_.torque_per_current * (sample.current - telemetry_.current_offset) / ratio_);
+    twin_.commandLoadTorque(stamp, load - load_.gravityTorque(sample.position));
+
+    const JointOutputs& now = twin_.outputs();
+    Motion motion;
+    motion.velocity = now.output_velocity;
+    motion.position =
+        start_position_ + now.output_angle + 1e-9 * static_cast<double>(stamp - now.stamp) * now.output_velocity;
+    motion.joint_torque = now.joint_torque;
+    motion.friction_torque = std::copysign(ratio_ * now.friction_torque, now.motor_velocity);
+    return motion;
+  }
+
+  std::uint64_t solverFailures() const noexcept { return solver_failures_ + twin_.counters().solver_failures; }
+
+private:
+  Twin twin_;
+  Load load_;
+  TelemetryParameters telemetry_;
+  double ratio_;
+  double temperature_;       // of samples without one [degC]
+  double start_position_{};  // the twin's zero [rad]
+  bool started_{};
+  std::uint64_t solver_failures_{};  // before the last start
 };
 }  // namespace hjt

@@ -13,7 +13,7 @@
 #include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "health/baseline_file.hpp"
-#include "tracking/friction_verdict.hpp"
+#include "tracking/verdict.hpp"
 
 namespace hjt
 {

@@ -10,9 +10,7 @@
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "tracking/motion_driven.hpp"
 #include "tracking/observer.hpp"
-#include "tracking/plausible.hpp"
-#include "tracking/stream_timing.hpp"
-#include "tracking/torque_driven.hpp"
+#include "tracking/telemetry_rows.hpp"
 
 namespace hjt
 {

@@ -13,8 +13,7 @@
 
 #include "elements/load.hpp"
 #include "surface/surface_cache.hpp"
-#include "tracking/grease_temperature.hpp"
-#include "tracking/held_values.hpp"
+#include "tracking/drive_temperature.hpp"
 #include "tracking/joint_evidence.hpp"
 #include "tracking/motion_differentiator.hpp"
 

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "gear/angle.hpp"
-#include "tracking/wrong_gain.hpp"
 
 namespace hjt
 {

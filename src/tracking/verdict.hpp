@@ -1,20 +1,61 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <string>
 #include <vector>
 
+#include "base/number_text.hpp"
+#include "base/statistics.hpp"
 #include "tracking/common_friction.hpp"
-#include "tracking/friction_verdict.hpp"
 #include "tracking/joint_evidence.hpp"
 #include "tracking/reason.hpp"
 
 namespace hjt
 {
+constexpr double LEAST_MOTION = 0.02;  ///< a joint whose angles differ by less does not move [rad]
+
+/// Bound of a joint's own friction: a smaller change is of no interest however certain. Less friction counts half as
+/// much, since no fault takes a fifth of it.
+constexpr double MORE_THAN_OWN = 0.05;
+constexpr double LESS_THAN_OWN = 0.10;
+
+/// What the friction of a joint is a multiple of.
+enum class FrictionReference : std::uint8_t
+{
+  TWIN,
+  CONTROLLER,  ///< what the arm's controller expects
+  OWN          ///< its own when it was sound
+};
+
+const char* referenceName(FrictionReference reference) noexcept;  ///< "controller"
+
+/// Friction of a joint as a multiple of its reference, with what is known of its error
+/// (docs/compare.md).
+struct FrictionFactor
+{
+  double value{ std::numeric_limits<double>::quiet_NaN() };  ///< NaN: the rows show none
+  double deviation{};                                        ///< standard deviation of its logarithm [-]
+  double scatter{};                                          ///< the part of it that the rows' scatter makes [-]
+  FrictionReference reference{ FrictionReference::TWIN };
+  bool is_below_faults{};          ///< less than any fault leaves of it
+  Reason reason{ Reason::SOUND };  ///< why it is not judged; SOUND: it is
+  std::string why_not;             ///< the same in a sentence; empty: it is judged
+
+  bool isJudged() const { return reason == Reason::SOUND; }
+  /// Ends of the 95 % interval.
+  double low() const { return value * std::exp(-halfWidth()); }
+  double high() const { return value * std::exp(halfWidth()); }
+
+private:
+  double halfWidth() const { return NORMAL_95 * deviation; }
+};
+
 /// Figures of the same joint in sound condition.
 struct OwnReference
 {
@@ -221,4 +262,83 @@ inline const char* temperatureSource(const JointEvidence& evidence)
 /// Friction that the rows show, as a multiple of the joint's own when sound, else of the twin's. The evidence
 /// must outlive it.
 MeasuredFriction measuredFriction(const JointEvidence& evidence, const JointContext& context);
+
+/// "1.18 [1.05, 1.32]"
+std::string factorText(const FrictionFactor& factor);
+std::string factorText(const JudgedFriction& friction);
+
+/// Whether the friction of the joints of an arm can be held against what its controller expects: most of them agree
+/// with it, and so it is that of sound joints.
+bool controllerIsReference(const std::vector<const JointEvidence*>& joints);
+
+/// By which the friction of a sound joint repeats from its own earlier one, apart from what the joints of its group
+/// have in common: standard deviation as a share [-]. `friction` [N.m]
+double repeatOfOwn(double friction);
+
+/// Of the rows that the evidence holds, apart from what the joints of the arm have in common.
+FrictionFactor frictionFactor(const JointEvidence& evidence, const JointContext& context);
+
+/// Friction of a sound joint in one recording.
+struct SoundFriction
+{
+  std::vector<FrictionPoint> points;
+  double deviation{};  ///< by the scatter, standard deviation as a share [-]
+};
+
+/// Means at the speeds of all, and by how much the recordings differ. None: it is not known.
+OwnReference ownReference(const std::vector<SoundFriction>& recordings);
+
+/// WARN where the interval clears the bound. Factor, text and figures go into the verdict.
+Finding judgeFriction(const JointEvidence& evidence, const JointContext& context, Verdict& verdict);
+
+/// Faults that move the indicator that way, +1 or -1.
+void nameCauses(const JointEvidence& evidence, ScalarIndicator indicator, double way, Finding& finding);
+
+/// What to say of a load that is not the joint's.
+const char* wrongLoad(LoadOrigin load);
+
+/// How what the motion takes beside friction departs: as the friction does, then the current as a whole is another.
+struct GainEvidence
+{
+  explicit GainEvidence(const JointEvidence& evidence)
+    : load(evidence.loadFactor()), friction(evidence.friction().ratio().value)
+  {
+  }
+
+  /// Friction departs alone.
+  bool isExcluded() const
+  {
+    return load.value > 0.0 && !isAlike() && std::abs(load.value - friction) > DEVIATIONS * load.uncertainty;
+  }
+
+  /// The friction is nearer to what the load says than to the twin's; else another load is as likely.
+  bool isOfFriction() const { return std::abs(std::log(load.value / friction)) < std::abs(std::log(friction)); }
+
+  /// Both depart alike; none: they do not, or it cannot be told.
+  Misfit misfit() const
+  {
+    constexpr double NOTEWORTHY = 0.2;  // gains of one type differ by less
+    if (!(load.value > 0.0 && isAlike()) ||
+        std::abs(load.value - 1.0) < std::max(NOTEWORTHY, DEVIATIONS * load.uncertainty))
+    {
+      return {};
+    }
+    return { Reason::EFFORT_UNIT, "the current is " + roundedText(load.value, 2) +
+                                      " times what load and inertia take, and " + roundedText(friction, 2) +
+                                      " times what friction takes: another gain (telemetry.torque_per_current) or unit "
+                                      "than configured, not friction" };
+  }
+
+  FittedFactor load;
+  double friction;
+
+private:
+  static constexpr double DEVIATIONS = 3.0;
+
+  bool isAlike() const
+  {
+    constexpr double ALIKE = 1.25;
+    return std::abs(std::log(load.value / friction)) < std::log(ALIKE);
+  }
+};
 }  // namespace hjt

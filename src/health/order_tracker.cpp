@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "health/bearing_slip.hpp"
+#include "health/order_tracker.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "health/turn_window.hpp"
+#include "health/health_monitor.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,19 +2,168 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
+#include "gear/angle.hpp"
 #include "gear/ratio.hpp"
+#include "harmonic_joint_twin/base/stamp.hpp"
+#include "harmonic_joint_twin/params/parameters.hpp"
 #include "tracking/motion_differentiator.hpp"
-#include "tracking/plausible.hpp"
-#include "tracking/stream_timing.hpp"
 
 namespace hjt
 {
+/// Beyond these a message was damaged [s], [rad], [A] or [N.m].
+constexpr double MAX_TIME = 1e-9 * static_cast<double>(MAX_STAMP);
+constexpr double MAX_ANGLE = 1.0e4;
+constexpr double MAX_EFFORT = 1.0e4;
+
+inline bool isPlausibleEffort(double effort) noexcept
+{
+  return std::abs(effort) <= MAX_EFFORT;  // false for NaN
+}
+
+/// The motor's angle may be missing.
+inline bool isPlausible(const MotionRow& row) noexcept
+{
+  return std::abs(row.time) < MAX_TIME && std::abs(row.position) < MAX_ANGLE && isPlausibleEffort(row.current) &&
+         !(std::abs(row.motor_angle) > MAX_ANGLE * MAX_ANGLE);
+}
+
+/// The largest that this joint's motor can take [A].
+inline double possibleCurrent(const Parameters& parameters) noexcept
+{
+  constexpr double MARGIN = 3.0;  // of a current's peaks over the motor's continuous torque [-]
+  return MARGIN * parameters.motor.torque_limit * nominalRatio(parameters.gear) /
+         parameters.telemetry.torque_per_current;
+}
+
+/// How stamped rows arrive. Times in seconds from one zero.
+struct StreamTimingReport
+{
+  std::uint64_t rows{};      ///< that brought something new
+  std::uint64_t repeated{};  ///< with the stamp of the row before
+  std::uint64_t backward{};  ///< with an earlier one
+  std::uint64_t missing{};   ///< that the period would have had between two others
+  double period{};           ///< between stamps, median of the last rows [s]
+  double longest_gap{};      ///< between stamps [s]
+  double offset{};  ///< smallest reception less stamp of the last rows: offset of the clocks and shortest transport [s]
+  double jitter{};  ///< how far beyond it 95 of 100 rows stay [s]
+};
+
+/// Watches the stamps of a stream and when its rows arrive. Fixed memory; nothing allocates.
+class StreamTiming
+{
+public:
+  /// Stamps that go back by more are a new stream: a new recording, or a clock that was set [s].
+  static constexpr double RESTART = 1.0;
+
+  void reset() noexcept { *this = StreamTiming(); }
+
+  void add(double time, double received) noexcept
+  {
+    if (time < last_ - RESTART)
+    {
+      reset();
+    }
+    if (time <= last_)
+    {
+      ++(time == last_ ? report_.repeated : report_.backward);
+      return;
+    }
+    const double interval = report_.rows > 0 ? time - last_ : 0.0;
+    const std::size_t slot = report_.rows % KEPT;
+    // The first row has none: the second one's stands for it.
+    intervals_[slot] = interval;
+    intervals_[0] = report_.rows == 1 ? interval : intervals_[0];
+    delays_[slot] = received - time;
+    last_ = time;
+    ++report_.rows;
+    if (report_.rows % RENEW == 0)
+    {
+      report_.period = quantile(intervals_, kept(), 0.5);
+    }
+    report_.longest_gap = std::max(report_.longest_gap, interval);
+    if (report_.period > 0.0 && interval > 1.5 * report_.period)
+    {
+      report_.missing += static_cast<std::uint64_t>(std::lround(interval / report_.period)) - 1;
+    }
+  }
+
+  StreamTimingReport report() const noexcept
+  {
+    StreamTimingReport report = report_;
+    report.period = quantile(intervals_, kept(), 0.5);
+    report.offset = quantile(delays_, kept(), 0.0);
+    report.jitter = quantile(delays_, kept(), 0.95) - report.offset;
+    return report;
+  }
+
+private:
+  static constexpr std::size_t KEPT = 256;  // rows that medians are made of
+  static constexpr std::size_t RENEW = 32;  // rows between two updates of the period
+
+  template <std::size_t N>
+  static double quantile(std::array<double, N> values, std::size_t count, double part) noexcept
+  {
+    if (count == 0)
+    {
+      return 0.0;
+    }
+    const auto place = values.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(count - 1));
+    std::nth_element(values.begin(), place, values.begin() + static_cast<std::ptrdiff_t>(count));
+    return *place;
+  }
+
+  std::size_t kept() const noexcept { return report_.rows < KEPT ? static_cast<std::size_t>(report_.rows) : KEPT; }
+
+  StreamTimingReport report_;
+  std::array<double, KEPT> intervals_{};
+  std::array<double, KEPT> delays_{};
+  double last_{ -std::numeric_limits<double>::infinity() };
+};
+
+/// Angles of a joint that a source gives folded into one turn, made continuous again. Nothing allocates.
+///
+/// A step within MotionDifferentiator::MAX_GAP that is nearer to one turn than NEAR is a fold: no joint turns as far
+/// in that time. After a gap the turns stay as they are.
+class UnfoldedAngle
+{
+public:
+  /// `angle` [rad] at `time` [s].
+  double take(double time, double angle) noexcept
+  {
+    const double step = angle - last_;
+    const double turns = std::round(step / (TWO_PI));
+    const double passed = time - time_;
+    if (std::abs(turns) == 1.0 && passed > 0.0 && passed <= MotionDifferentiator::MAX_GAP &&
+        std::abs(step - TWO_PI * turns) < NEAR)
+    {
+      offset_ -= TWO_PI * turns;
+      ++folds_;
+    }
+    last_ = angle;
+    time_ = time;
+    return offset_ == 0.0 ? angle : angle + offset_;
+  }
+
+  std::uint64_t folds() const noexcept { return folds_; }
+  void reset() noexcept { *this = UnfoldedAngle(); }
+
+private:
+  static constexpr double NEAR = 1.0;  // [rad]
+
+  double last_{ std::numeric_limits<double>::quiet_NaN() };
+  double time_{ std::numeric_limits<double>::quiet_NaN() };
+  double offset_{};
+  std::uint64_t folds_{};
+};
+
 /// Rows that RowFilter left out, by the reason.
 struct LeftOutRows
 {
