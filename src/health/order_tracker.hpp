@@ -15,8 +15,8 @@
 
 namespace hjt
 {
-/// Cosine and sine of many multiples of one angle. A multiple that is the sum or the difference of two earlier ones, up
-/// to rounding, takes the product of their rotations in place of a sine and a cosine.
+/// Cosine and sine of many multiples of one angle. For a multiple that is the sum or the difference of two earlier
+/// multiples, up to rounding, the class multiplies their rotations in place of computing a sine and a cosine.
 template <std::size_t COUNT>
 class AngleMultiples
 {
@@ -29,7 +29,7 @@ public:
     }
   }
 
-  /// `rotations`: cosine and sine of each multiple, one after the other.
+  /// Writes cosine and sine of each multiple, one after the other, into `rotations`.
   void at(double angle, double* rotations) const noexcept
   {
     for (std::size_t k = 0; k < COUNT; ++k)
@@ -56,7 +56,7 @@ private:
     double multiple{};
     std::size_t first{};
     std::size_t second{};
-    double sign{};  // of the second; 0: of no other two
+    double sign{};  // of the second multiple; 0: this multiple is that of no other two
   };
 
   static Rule rule(const std::array<double, COUNT>& multiples, std::size_t k)
@@ -82,7 +82,7 @@ private:
   std::array<Rule, COUNT> rules_;
 };
 
-/// A sample of the tracker.
+/// A sample of the signals that OrderTracker fits lines to.
 struct LineSample
 {
   double motor_angle{};      ///< [rad]
@@ -115,8 +115,8 @@ struct LineFit
 ///               mean, so that the line without either is that of the mean load;  T_r  rated torque, d  direction
 ///        n      what is no line: 1, direction, speed, cos and sin of the output angle (weight, runout), load T, T |T|,
 ///               T^3 (the torsion is no straight line over the load)
-/// Nothing is resampled and no speed need be constant: the line is a function of the angle, whichever way and however
-/// fast it is passed, and the motion may go back and forth. Lines fitted at once do not leak into each other.
+/// The tracker resamples nothing and needs no constant speed: a line is a function of the angle, in either direction
+/// and at any speed, and the motion may go back and forth. Lines that are fitted at once do not leak into each other.
 ///
 /// Not valid, and not fitted: a line above 0.8 of half the samples a turn. Not valid either: one that the travel cannot
 /// tell from another (variance inflated more than fourfold: orders o1, o2 need about 0.3 / |o1 - o2| turns in all, 15
@@ -147,7 +147,7 @@ public:
     regression_.add(row_, targets_, sample.weight);
   }
 
-  /// `angle_step`: mean travel between two samples [rad]. False: too little came.
+  /// Fits the lines. `angle_step`: mean travel between two samples [rad]. False: too few samples.
   bool fit(double angle_step) noexcept
   {
     const double highest = USED_BAND * 0.5 * TWO_PI / angle_step;
@@ -179,7 +179,8 @@ public:
     return fit;
   }
 
-  /// Whether the last fit determined every line. One that it did not determine can take any value outside the window.
+  /// Whether the last fit determined every line. A line that it did not determine can have any value outside the
+  /// window.
   bool complete() const noexcept
   {
     bool determined = used_ > FIRST_LINE;
@@ -190,10 +191,10 @@ public:
     return determined;
   }
 
-  /// Kinematic error of the last added sample less what the last fit makes of it [rad].
+  /// Kinematic error of the last added sample less that of the last fit [rad].
   double residual() const noexcept { return targets_[0] - row_.dot(regression_.coefficients(0)); }
 
-  /// A sample's signals, by LineSignal, less what the last fit makes of them but for the lines that `without` names.
+  /// Signals of a sample, by LineSignal, less those of the last fit. The lines in `without` stay in the signals.
   Eigen::Vector3d beside(const LineSample& sample, const std::array<bool, FIRST_LOADED>& without) const noexcept
   {
     Row row;
@@ -275,7 +276,7 @@ private:
     return FIRST_LINE + 2 * static_cast<int>(places_[FIRST_LOADED + static_cast<std::size_t>(i) / 2]) + i % 2;
   }
 
-  /// Takes the means off the load, and leaves out what the window cannot determine.
+  /// Takes the means off the load, and drops the lines that the window cannot determine.
   void prepareLoaded(int used) noexcept
   {
     const double weighted_load = regression_.mean(LOAD, 0) / rated_torque_;
@@ -327,11 +328,11 @@ private:
 /// less than one window in 1000: s is then 0.
 /// Source: bearings slip by 1 to 2 % (Randall and Antoni, Mech. Syst. Signal Process. 25, 2011, 485-520).
 ///
-/// At an even speed none is looked for: sampling folds the lines of the teeth to sharp ones at any order there, two
-/// apart as those of a race are.
+/// At an even speed it looks for no slip: sampling then folds the lines of the teeth to sharp lines at any order, which
+/// are two orders apart as those of a race are.
 ///
-/// Keeps every sample of a window: for recordings and data sets, not for a loop. A window of more than a million, or of
-/// places more than 500 turns apart, has no slip looked for.
+/// The class keeps every sample of a window: it is for recordings and data sets, not for a loop. It looks for no slip
+/// in a window of more than a million samples, or of angles more than 500 turns apart.
 class BearingSlip
 {
 public:
@@ -348,7 +349,7 @@ public:
     }
   }
 
-  /// `fitted`: to the samples, without slip. 0: none stands out [-].
+  /// Slip of the window [-]; 0: no slip stands out. `fitted`: the lines without slip, fitted to the samples.
   double find(const OrderTracker& fitted) const;
   /// All lines fitted to the samples at the orders of a bearing with that slip, `angle_step` as OrderTracker::fit.
   OrderTracker refit(double slip, double angle_step) const;

@@ -19,7 +19,7 @@ namespace hjt
 class HeldValues
 {
 public:
-  static constexpr std::size_t ROOM = 512;  ///< older ones are forgotten
+  static constexpr std::size_t ROOM = 512;  ///< number of values that are kept
 
   void push(double time, double value) noexcept
   {
@@ -27,7 +27,7 @@ public:
     ++end_;
   }
 
-  /// The value given last of those not later than `time`; none, or older than `max_age`: nothing. Times in [s].
+  /// The last pushed value that is not later than `time` and not older than `max_age`, or nothing. Times in [s].
   std::optional<double> at(double time, double max_age = std::numeric_limits<double>::infinity()) const noexcept
   {
     for (std::uint64_t i = end_; i > begin_ && end_ - i < ROOM; --i)
@@ -43,11 +43,11 @@ public:
 
   void clear() noexcept { begin_ = end_; }
 
-  /// Marks the values pushed so far as those of rows that were received.
+  /// Marks the values that were pushed so far: their rows were received.
   void mark() noexcept { marked_ = end_; }
 
-  /// The time of the rows jumps back: forgets all but what was pushed since the mark from a time before `earliest` on,
-  /// which belongs to rows to come.
+  /// Call it when the time of the rows jumps back. Forgets the values up to the mark, and those after it up to the
+  /// first one whose time is before `earliest`: from that one on the values belong to rows to come.
   void jumpBack(double earliest) noexcept
   {
     begin_ = std::max({ begin_, marked_, end_ > ROOM ? end_ - ROOM : 0 });
@@ -70,19 +70,20 @@ private:
   std::uint64_t end_{};
 };
 
-/// Temperatures of one drive as they are received. Bad ones are counted and left out. Nothing allocates.
+/// Received temperatures of one drive. Impossible temperatures are counted and left out. Nothing allocates.
 class TemperatureRecord
 {
 public:
-  /// Older ones are not used. The slowest that a UR's joints warm up with is a time constant of some 1600 s: in this
-  /// time by 4 % of the whole rise, which is 1 K or less [s].
+  /// Temperatures older than this are not used [s]. The joints of a UR warm up with a time constant of some 1600 s at
+  /// least: in this time by 4 % of the whole rise, which is 1 K or less.
   static constexpr double MAX_AGE = 60.0;
   static constexpr double LOWEST = -20.0;  ///< [degC]
   static constexpr double HIGHEST = 120.0;
 
   static bool isPossible(double temperature) noexcept { return temperature >= LOWEST && temperature <= HIGHEST; }
 
-  /// Keeps a temperature of a time [s] from any zero; refuses one outside LOWEST ... HIGHEST [degC] or not finite.
+  /// Keeps a temperature [degC] of a time [s], which may count from any zero. Refuses a temperature outside LOWEST ...
+  /// HIGHEST, and numbers that are not finite.
   void push(double time, double temperature) noexcept
   {
     if (std::isfinite(time) && isPossible(temperature))
@@ -95,7 +96,7 @@ public:
     }
   }
 
-  /// The latest one not later than `time` and not older than MAX_AGE; NaN: there is none [degC].
+  /// The latest temperature that is not later than `time` and not older than MAX_AGE; NaN: there is none [degC].
   double at(double time) const noexcept
   {
     return values_.at(time, MAX_AGE).value_or(std::numeric_limits<double>::quiet_NaN());
@@ -114,9 +115,10 @@ private:
 
 /// Temperature of the grease of a measured joint, from the losses of its motion.
 ///
-/// thermal.model = none: the temperature of the sample, or as configured. two_nodes: a measured temperature is that of
-/// the housing, beside the motor, and the grease warms up above it; where none is measured both nodes warm up above
-/// surroundings of input.temperature. Over a gap the joint is taken to stand. Nothing allocates.
+/// With thermal.model = none the grease has the temperature of the sample, or else the configured one. With two_nodes a
+/// measured temperature is that of the housing, beside the motor, and the grease warms up above it. Where no
+/// temperature is measured, both nodes warm up above surroundings of input.temperature. The model assumes that the
+/// joint stands during a gap. Nothing allocates.
 class GreaseTemperature
 {
 public:
@@ -129,7 +131,7 @@ public:
   {
   }
 
-  /// Temperature of the grease at a sample, by the losses booked before it [degC].
+  /// Temperature of the grease at a sample, by the losses that were booked before [degC].
   double at(const MotionSample& sample) noexcept
   {
     if (!on_)
@@ -167,14 +169,15 @@ public:
     return std::clamp(heat_.grease(), MIN_TEMPERATURE, MAX_TEMPERATURE);
   }
 
-  /// Losses from a sample to the next: joint's speed [rad/s], friction at the joint and motor torque [N.m].
+  /// Sets the losses from this sample to the next: speed of the joint [rad/s], friction at the joint and torque of the
+  /// motor [N.m].
   void book(double velocity, double friction_torque, double motor_torque) noexcept
   {
     friction_power_ = std::abs(friction_torque * velocity);
     copper_power_ = copper_loss_ * motor_torque * motor_torque;
   }
 
-  /// Temperature of the housing with two nodes; else that of the grease [degC].
+  /// Temperature of the housing with two nodes, else that of the grease [degC].
   double housing(double grease) const noexcept { return on_ ? heat_.housing() : grease; }
 
 private:

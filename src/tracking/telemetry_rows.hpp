@@ -18,7 +18,7 @@
 
 namespace hjt
 {
-/// Beyond these a message was damaged [s], [rad], [A] or [N.m].
+/// A message with a number beyond these limits was damaged [s], [rad], [A] or [N.m].
 constexpr double MAX_TIME = 1e-9 * static_cast<double>(MAX_STAMP);
 constexpr double MAX_ANGLE = 1.0e4;
 constexpr double MAX_EFFORT = 1.0e4;
@@ -28,14 +28,14 @@ inline bool isPlausibleEffort(double effort) noexcept
   return std::abs(effort) <= MAX_EFFORT;  // false for NaN
 }
 
-/// The motor's angle may be missing.
+/// Whether time, position and current can be true, and the motor's angle if there is one.
 inline bool isPlausible(const MotionRow& row) noexcept
 {
   return std::abs(row.time) < MAX_TIME && std::abs(row.position) < MAX_ANGLE && isPlausibleEffort(row.current) &&
          !(std::abs(row.motor_angle) > MAX_ANGLE * MAX_ANGLE);
 }
 
-/// The largest that this joint's motor can take [A].
+/// Largest current that the motor of this joint can take [A].
 inline double possibleCurrent(const Parameters& parameters) noexcept
 {
   constexpr double MARGIN = 3.0;  // of a current's peaks over the motor's continuous torque [-]
@@ -46,21 +46,21 @@ inline double possibleCurrent(const Parameters& parameters) noexcept
 /// How stamped rows arrive. Times in seconds from one zero.
 struct StreamTimingReport
 {
-  std::uint64_t rows{};      ///< that brought something new
-  std::uint64_t repeated{};  ///< with the stamp of the row before
-  std::uint64_t backward{};  ///< with an earlier one
-  std::uint64_t missing{};   ///< that the period would have had between two others
-  double period{};           ///< between stamps, median of the last rows [s]
-  double longest_gap{};      ///< between stamps [s]
-  double offset{};  ///< smallest reception less stamp of the last rows: offset of the clocks and shortest transport [s]
-  double jitter{};  ///< how far beyond it 95 of 100 rows stay [s]
+  std::uint64_t rows{};      ///< rows with a later stamp than the row before
+  std::uint64_t repeated{};  ///< rows with the stamp of the row before
+  std::uint64_t backward{};  ///< rows with an earlier stamp than the row before
+  std::uint64_t missing{};   ///< rows that are missing between two others, by the period
+  double period{};           ///< median step between stamps of the last rows [s]
+  double longest_gap{};      ///< longest step between stamps [s]
+  double offset{};           ///< smallest reception less stamp of the last rows: clocks and shortest transport [s]
+  double jitter{};           ///< 95 % of the rows arrive within this time after the offset [s]
 };
 
-/// Watches the stamps of a stream and when its rows arrive. Fixed memory; nothing allocates.
+/// Watches the stamps of a stream and the times when its rows arrive. Memory is fixed; nothing allocates.
 class StreamTiming
 {
 public:
-  /// Stamps that go back by more are a new stream: a new recording, or a clock that was set [s].
+  /// Stamps that go back by more than this begin a new stream: a new recording, or a clock that was set [s].
   static constexpr double RESTART = 1.0;
 
   void reset() noexcept { *this = StreamTiming(); }
@@ -78,7 +78,7 @@ public:
     }
     const double interval = report_.rows > 0 ? time - last_ : 0.0;
     const std::size_t slot = report_.rows % KEPT;
-    // The first row has none: the second one's stands for it.
+    // The first row has no interval, so the second row's interval stands for it.
     intervals_[slot] = interval;
     intervals_[0] = report_.rows == 1 ? interval : intervals_[0];
     delays_[slot] = received - time;
@@ -128,10 +128,10 @@ private:
   double last_{ -std::numeric_limits<double>::infinity() };
 };
 
-/// Angles of a joint that a source gives folded into one turn, made continuous again. Nothing allocates.
+/// Makes the angles of a joint continuous if their source folds them into one turn. Nothing allocates.
 ///
-/// A step within MotionDifferentiator::MAX_GAP that is nearer to one turn than NEAR is a fold: no joint turns as far
-/// in that time. After a gap the turns stay as they are.
+/// A step within MotionDifferentiator::MAX_GAP that differs from one turn by less than NEAR is a fold, because no joint
+/// turns as far in that time. A gap changes no number of turns.
 class UnfoldedAngle
 {
 public:
@@ -170,7 +170,7 @@ struct LeftOutRows
   std::uint64_t impossible{};   ///< a value is not finite, or beyond what a sound message holds
   std::uint64_t unreachable{};  ///< an angle that the rows beside it contradict
   std::uint64_t repeated{};     ///< all values are those of the row before, while the joints move
-  std::uint64_t bunched{};      ///< rows much closer to the one before than the period
+  std::uint64_t bunched{};      ///< rows that follow the row before much sooner than by the period
 
   std::uint64_t all() const noexcept { return impossible + unreachable + repeated + bunched; }
 };
@@ -181,23 +181,24 @@ inline double greatestSpeed(const Parameters& parameters) noexcept
   return parameters.motor.speed_limit / nominalRatio(parameters.gear);
 }
 
-/// Lets through the rows of some joints that are new and can be true; of recordings, arrays and live messages alike.
+/// Passes the rows of several joints that are new and can be true, of recordings, arrays and live messages alike.
 ///
-/// An angle that a joint cannot have reached from the row before is held back: if a row within MotionDifferentiator's
-/// MAX_GAP can be reached from the row before it, what was held back is left out; else the angles did jump, or the
-/// stamps or the unit are wrong, which others have to say, and all goes on. In this way no good row waits, but the
-/// first, which has none before it. A row that repeats angles, currents and velocities of all joints while they move
-/// was not measured: a recorder was stuck, or a driver publishes faster than its robot measures. A row that follows
-/// another within a quarter of the mean step was stamped when a buffer was emptied, and its stamp is not its time.
-/// After construction nothing throws or allocates.
+/// The filter holds back an angle that the joint cannot have reached from the row before. If a later row, within
+/// MotionDifferentiator::MAX_GAP, can be reached from that row before, the filter drops the rows that it held back.
+/// Otherwise the angles did jump, or stamps or unit are wrong, and the filter passes all rows: other checks report such
+/// faults. No good row waits but the first one, which has no row before it.
+/// A row that repeats the angles, currents and velocities of all joints while they move was not measured: a recorder
+/// was stuck, or a driver publishes faster than its robot measures. A row that follows another one within a quarter of
+/// the mean step was stamped when a buffer was emptied, so that its stamp is not its time. After construction nothing
+/// throws or allocates.
 class RowFilter
 {
 public:
-  static constexpr double SLACK = 0.02;  ///< added to a row's time: messages come in bursts [s]
+  static constexpr double SLACK = 0.02;  ///< added to the step between rows, because messages come in bursts [s]
 
   using Rows = std::vector<MotionRow>;
 
-  /// @param speeds the joints' greatest [rad/s]
+  /// @param speeds greatest speed of each joint [rad/s]
   explicit RowFilter(std::vector<double> speeds)
     : speeds_(std::move(speeds)), last_(speeds_.size()), raw_(speeds_.size()), held_(ROOM, Rows(speeds_.size()))
   {
@@ -212,8 +213,8 @@ public:
     mean_step_ = 0.0;
   }
 
-  /// One row of each joint, all of one time. Calls `visit` with each that is let through, in their order; false: the
-  /// visitor has had enough.
+  /// Takes one row of each joint, all of one time. Calls `visit` with the rows of each time that pass, in their order.
+  /// False: `visit` returned false, and needs no more rows.
   template <class Visit>
   bool push(const Rows& rows, const Visit& visit)
   {
@@ -242,7 +243,7 @@ public:
     return more && place(rows, visit);
   }
 
-  /// Of what waits, what is true as far as it can be told.
+  /// Ends the stream: passes the first row if it still waits, and drops the rows that are held back.
   template <class Visit>
   bool finish(const Visit& visit)
   {
@@ -332,7 +333,7 @@ private:
     }
     if (!is_confirmed_ && held_count_ > 0 && canReach(held_[held_count_ - 1], rows))
     {
-      // Two rows that agree against the first one.
+      // Two rows agree with each other and contradict the first one.
       ++left_out_.unreachable;
       is_confirmed_ = true;
       return release(visit) && accept(rows, visit);
@@ -368,13 +369,13 @@ private:
   }
 
   std::vector<double> speeds_;
-  Rows last_;               // let through last; the first one waits for the second
-  Rows raw_;                // unfiltered, without repeated ones
-  std::vector<Rows> held_;  // that cannot be reached from the last
+  Rows last_;               // rows that passed last; the first ones wait for the second
+  Rows raw_;                // last rows before the filter, without repeated ones
+  std::vector<Rows> held_;  // rows that cannot be reached from last_
   std::size_t held_count_{};
   bool has_last_{};
   bool has_raw_{};
-  bool is_confirmed_{};  // the last one was let through
+  bool is_confirmed_{};  // the rows in last_ have passed
   bool moves_{};         // by the angles of the two rows before
   std::uint64_t rows_{};
   double mean_step_{};  // [s]

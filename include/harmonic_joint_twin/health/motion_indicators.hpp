@@ -3,7 +3,7 @@
 
 namespace hjt
 {
-/// A health indicator that cannot always be given. The value is 0 while it is not valid.
+/// A health indicator that may not be valid. Its value is then 0.
 struct Indicator
 {
   bool valid{};
