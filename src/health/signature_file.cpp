@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -27,30 +28,12 @@ namespace
 {
 namespace fs = std::filesystem;
 
-constexpr const char* TABLE = "\nsignatures: |\n";  // the last key: rows are read as they stand
+constexpr const char* TABLE = "\nsignatures: |\n";  // the last key, whose rows are read as plain text
 constexpr std::size_t ROW_START = 5;                // cause, motion, speed, direction, severity
 
 std::size_t lineOf(const YAML::Node& node)
 {
   return static_cast<std::size_t>(node.Mark().line) + 1;
-}
-
-bool isIn(const Range& range, double value)
-{
-  return value >= range.min && value <= range.max;
-}
-
-std::vector<std::string> wordsOf(const std::string& row)
-{
-  constexpr const char* BLANKS = " \t\r";
-  std::vector<std::string> words;
-  for (std::size_t begin = row.find_first_not_of(BLANKS); begin != std::string::npos;)
-  {
-    const std::size_t end = std::min(row.find_first_of(BLANKS, begin), row.size());
-    words.push_back(row.substr(begin, end - begin));
-    begin = row.find_first_not_of(BLANKS, end);
-  }
-  return words;
 }
 
 class SignatureReader
@@ -129,11 +112,18 @@ private:
 
   double number(const YAML::Node& node, const std::string& key, const Range& range) const
   {
-    const std::optional<double> value = node.IsScalar() ? decimalNumber(node.Scalar()) : std::nullopt;
-    if (!value || !isIn(range, *value))
+    const auto before = [&] { return key + ": "; };
+    return number(node.IsScalar() ? node.Scalar() : "no number", range, lineOf(node), before);
+  }
+
+  /// `before`: makes the beginning of the message.
+  template <class Text>
+  double number(const std::string& word, const Range& range, std::size_t line, const Text& before) const
+  {
+    const std::optional<double> value = decimalNumber(word);
+    if (!value || !isWithin(*value, range))
     {
-      fail(lineOf(node),
-           key + ": " + (node.IsScalar() ? node.Scalar() : "no number") + ", expected " + rangeText(range));
+      fail(line, before() + word + ", expected " + rangeText(range));
     }
     return *value;
   }
@@ -146,19 +136,26 @@ private:
     }
   }
 
-  std::size_t indicatorNamed(const YAML::Node& node) const
+  /// The one of `first` to `count` that has this name. `kind`: for the message.
+  template <class NameOf>
+  std::size_t named(const std::string& name, const NameOf& name_of, std::size_t first, std::size_t count,
+                    const std::string& kind, std::size_t line) const
   {
-    const std::string& name = node.Scalar();
     std::vector<std::string> known;
-    for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
+    for (std::size_t i = first; i < count; ++i)
     {
-      known.emplace_back(indicatorName(i));
+      known.emplace_back(name_of(i));
       if (known.back() == name)
       {
         return i;
       }
     }
-    fail(lineOf(node), "indicator " + name + ": no such indicator" + didYouMean(name, known));
+    fail(line, kind + " " + name + ": no such " + kind + didYouMean(name, known));
+  }
+
+  std::size_t indicatorNamed(const YAML::Node& node) const
+  {
+    return named(node.Scalar(), indicatorName, 0, INDICATOR_COUNT, "indicator", lineOf(node));
   }
 
   void readIndicators(const YAML::Node& indicators)
@@ -239,7 +236,7 @@ private:
     }
   }
 
-  /// On straight lines from 0 and between the severities.
+  /// Adds the numbers of robots to a signature, interpolated linearly from 0 and between the severities.
   void addOfRobots(Signature& signature) const
   {
     RobotSignature before{};
@@ -267,7 +264,8 @@ private:
     std::string row;
     for (std::size_t line = first_line; std::getline(rows, row); ++line)
     {
-      const std::vector<std::string> words = wordsOf(row);
+      std::istringstream blanks(row);
+      const std::vector<std::string> words{ std::istream_iterator<std::string>(blanks), {} };
       if (!words.empty())
       {
         readRow(words, line);
@@ -297,26 +295,14 @@ private:
 
   double rowNumber(const std::string& word, const char* key, const Range& range, std::size_t line) const
   {
-    const std::optional<double> value = decimalNumber(word);
-    if (!value || !isIn(range, *value))
-    {
-      fail(line, std::string("signatures: ") + key + " = " + word + ", expected " + rangeText(range));
-    }
-    return *value;
+    return number(word, range, line, [&] { return std::string("signatures: ") + key + " = "; });
   }
 
   Cause causeNamed(const std::string& name, std::size_t line) const
   {
-    std::vector<std::string> known;
-    for (auto cause = static_cast<std::size_t>(Cause::FIRST_FAULT); cause < CAUSE_COUNT; ++cause)
-    {
-      known.emplace_back(causeName(static_cast<Cause>(cause)));
-      if (known.back() == name)
-      {
-        return static_cast<Cause>(cause);
-      }
-    }
-    fail(line, "no such cause: " + name + didYouMean(name, known));
+    const auto name_of = [](std::size_t cause) { return causeName(static_cast<Cause>(cause)); };
+    constexpr auto FIRST = static_cast<std::size_t>(Cause::FIRST_FAULT);
+    return static_cast<Cause>(named(name, name_of, FIRST, CAUSE_COUNT, "cause", line));
   }
 
   const std::string path_;
@@ -336,8 +322,8 @@ std::string readText(const std::string& path)
   return std::move(*text);
 }
 
-/// With a signature at the geometric mean of each two severities that follow each other, linear between them: else an
-/// estimate sticks to the severities that were run.
+/// Adds a signature at the geometric mean of each two severities that follow each other, interpolated linearly. Without
+/// them an estimate would stay at the severities of the runs.
 SignatureSet withSeveritiesBetween(SignatureSet set)
 {
   const std::vector<Signature> known = std::move(set.signatures);
@@ -407,7 +393,7 @@ std::shared_ptr<const SignatureSet> loadSignatures(const std::string& name)
 
 namespace
 {
-constexpr const char* KINEMATICS = " kinematics ";  // motion of the rows that no run made
+constexpr const char* KINEMATICS = " kinematics ";  // motion of the rows that do not come from a run
 constexpr const char* HEAD = R"(# SPDX-License-Identifier: BSD-3-Clause
 # What faults change in the health indicators of a gear, found in the twin's own runs
 # (docs/indicators.md, "Signatures").
@@ -449,7 +435,7 @@ constexpr const char* SIGNATURES = R"(
 signatures: |
 )";
 
-/// As short as can be: -2.44e-5.
+/// A number with the shortest exponent: -2.44e-5.
 std::string shortText(double value, int digits)
 {
   const std::string text = roundedText(value, digits);

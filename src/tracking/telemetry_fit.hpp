@@ -15,8 +15,9 @@
 
 namespace hjt
 {
-/// Do motor and joint turn by the configured ratio? Slope of the motor's angle over the joint's by least squares of
-/// their changes from row to row, in which a constant torsion has no part. Nothing allocates but the text.
+/// Checks whether motor and joint turn by the configured ratio. The fit is the slope of the motor's angle over the
+/// joint's, by least squares of their changes from row to row, so that a constant torsion has no effect. Nothing but
+/// the text allocates.
 class RatioFit
 {
 public:
@@ -46,7 +47,7 @@ public:
     return way_ > LEAST_WAY ? products_ / squares_ : std::numeric_limits<double>::quiet_NaN();
   }
 
-  /// As a clause; empty: they agree, or it is not known.
+  /// A clause on a wrong ratio; empty: the ratio is as configured, or not known.
   std::string text() const
   {
     const double found = ratio();
@@ -54,13 +55,13 @@ public:
     {
       return {};
     }
-    return "its motor turns " + roundedText(found, 4) + " times as far as the joint, the configured gear's ratio is " +
-           roundedText(ratio_, 4) + ": another gear, sign or unit";
+    return "its motor turns " + roundedText(found, 4) + " times as far as the joint, but the configured gear has the " +
+           "ratio " + roundedText(ratio_, 4) + ": the gear, a sign or a unit is another than configured";
   }
 
 private:
   static constexpr double LEAST_WAY = 0.5;  // [rad]
-  static constexpr double OFF = 0.005;      // beyond the effect of torsion and encoders [-]
+  static constexpr double OFF = 0.005;      // torsion and encoders have less effect on the ratio [-]
 
   double ratio_;
   MotionRow last_;
@@ -70,18 +71,18 @@ private:
   std::uint64_t rows_{};
 };
 
-/// A multiple, and how far it may be off.
+/// A factor with its uncertainty.
 struct FittedFactor
 {
   double value{ std::numeric_limits<double>::quiet_NaN() };  ///< NaN: not known
   double uncertainty{};                                      ///< standard deviation
 };
 
-/// Do the velocities that a recording gives of a joint agree with the slopes of its angles, by their stamps?
+/// Checks whether the recorded velocities of a joint agree with the slopes of its angles, by their stamps.
 ///
-/// Both are averaged over pieces of 0.1 s. Their factor is the weighted median over windows of 0.8 s in which
-/// the joint moves, so a join or a damaged row does not count. The lag is that of least squares, to first order. Only
-/// the last MEMORY of motion counts. Fixed memory; nothing allocates.
+/// Both are averaged over pieces of 0.1 s. Their factor is the weighted median over windows of 0.8 s in which the joint
+/// moves, so that single wrong rows do not count. The lag follows from least squares, to first order. Only the last
+/// MEMORY pieces of motion count. Memory is fixed; nothing allocates.
 class TimeFit
 {
 public:
@@ -159,7 +160,7 @@ public:
     return factor;
   }
 
-  /// Of the recorded velocity behind the slope of the angles [s]. Means something where the factor is near 1.
+  /// Lag of the recorded velocity behind the slope of the angles [s]. It has a meaning only where the factor is near 1.
   FittedFactor lag() const noexcept
   {
     FittedFactor lag;
