@@ -6,8 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "tracking/plausible.hpp"
-#include "tracking/stream_timing.hpp"
+#include "tracking/telemetry_rows.hpp"
 
 namespace hjt
 {

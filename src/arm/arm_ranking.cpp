@@ -9,7 +9,6 @@
 #include "arm/load_fit.hpp"
 #include "arm/recording_fit.hpp"
 #include "params/choices.hpp"
-#include "tracking/effort.hpp"
 #include "tracking/motion_driven.hpp"
 
 namespace hjt

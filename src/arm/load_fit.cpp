@@ -8,7 +8,7 @@
 #include "base/statistics.hpp"
 #include "elements/motor.hpp"
 #include "gear/ratio.hpp"
-#include "tracking/friction_verdict.hpp"
+#include "tracking/verdict.hpp"
 
 namespace hjt
 {

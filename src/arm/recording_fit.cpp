@@ -12,8 +12,8 @@
 #include "gear/angle.hpp"
 #include "gear/ratio.hpp"
 #include "params/choices.hpp"
-#include "tracking/effort.hpp"
-#include "tracking/friction_verdict.hpp"
+#include "tracking/motion_driven.hpp"
+#include "tracking/verdict.hpp"
 
 namespace hjt
 {

@@ -12,9 +12,8 @@
 #include "arm/arm_load.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "tracking/current_lag.hpp"
-#include "tracking/ratio_fit.hpp"
 #include "tracking/reason.hpp"
-#include "tracking/time_fit.hpp"
+#include "tracking/telemetry_fit.hpp"
 
 namespace hjt
 {

@@ -12,8 +12,9 @@ namespace hjt
 {
 namespace
 {
-constexpr int LEAST_EVIDENCE = 3;  // of which an outlier can be left out, and in a row for another level
-}
+// Windows in a mean, so that it can leave out an outlier, and means in a row for another level.
+constexpr int LEAST_EVIDENCE = 3;
+}  // namespace
 
 const char* levelName(HealthLevel level) noexcept
 {
@@ -39,8 +40,8 @@ std::string whyNotJudged(const Assessment& assessment)
     case AssessmentState::TOO_FEW_WINDOWS:
       return "too few windows: a verdict needs " + needed + " at one operating point, has " + here;
     case AssessmentState::OTHER_PAYLOAD:
-      return "payload, load or gain of the current is not in the reference: windows with payload and load like these "
-             "belong there, or the torque per current is another than theirs";
+      return "the reference has no windows with this payload, load or gain of the current: add windows with such a "
+             "payload and load to the reference, or correct the torque per current";
     case AssessmentState::ASSESSED:
       break;
   }
@@ -84,13 +85,13 @@ void Assessor::begin(const SignalIndicators& indicators, const SignalIndicators*
   }
 }
 
-/// All but the cause.
+/// Judges a window, all but its cause.
 void Assessor::judge(const SignalIndicators& indicators, const SignalIndicators* model) noexcept
 {
   assessment_.stamp = indicators.stamp;
   assessment_.windows = indicators.windows;
-  const BaselineState compared = baseline_.update(indicators, model, deviations_);
-  if (compared != BaselineState::COMPARED)
+  const AssessmentState compared = baseline_.update(indicators, model, deviations_);
+  if (compared != AssessmentState::ASSESSED)
   {
     setState(compared);
     return;
@@ -131,21 +132,18 @@ void Assessor::search(std::size_t signatures) noexcept
   }
 }
 
-void Assessor::setState(BaselineState compared) noexcept
+void Assessor::setState(AssessmentState state) noexcept
 {
   assessment_.windows_here = baseline_.windowsHere();
   assessment_.windows_needed = baseline_.windowsNeeded();
-  if (compared == BaselineState::COMPARED)
+  assessment_.state = state;
+  if (state == AssessmentState::ASSESSED)
   {
     assessment_.windows_needed = 2 * least_windows_ - 1;  // so many means of so many windows
     const bool is_verdict =
         assessment_.level != HealthLevel::OK || assessment_.windows_here >= assessment_.windows_needed;
-    assessment_.state = is_verdict ? AssessmentState::ASSESSED : AssessmentState::TOO_FEW_WINDOWS;
-    return;
+    assessment_.state = is_verdict ? state : AssessmentState::TOO_FEW_WINDOWS;
   }
-  assessment_.state = compared == BaselineState::LEARNING      ? AssessmentState::LEARNING :
-                      compared == BaselineState::OTHER_PAYLOAD ? AssessmentState::OTHER_PAYLOAD :
-                                                                 AssessmentState::NO_REFERENCE;
 }
 
 HealthLevel Assessor::levelOf(const FeatureScores& scores, const OperatingPoint& point) noexcept
@@ -170,8 +168,8 @@ HealthLevel Assessor::levelOf(const FeatureScores& scores, const OperatingPoint&
   return factor > error_factor_ ? HealthLevel::ERROR : HealthLevel::WARN;
 }
 
-/// Lets the level follow once enough windows in a row agree. What one class of operating points shows is not refuted by
-/// another, where the fault may not show.
+/// Changes the level once enough windows in a row agree. Another class of operating points does not refute a level,
+/// because the fault may not show there.
 void Assessor::updateLevel(HealthLevel level) noexcept
 {
   if (baseline_.residual().windows < least_windows_)
@@ -207,7 +205,7 @@ void Assessor::updateLevel(HealthLevel level) noexcept
   }
 }
 
-/// That something is wrong is settled: only what, is asked.
+/// Fills cause, severity and alternatives of an alarm.
 void Assessor::explain(const CausePosterior& posterior) noexcept
 {
   std::array<std::size_t, CAUSE_COUNT> sorted{};
@@ -232,7 +230,7 @@ void Assessor::explain(const CausePosterior& posterior) noexcept
   }
 }
 
-/// Those beyond the threshold; the strongest in any case.
+/// Lists the indicators beyond the threshold, and the strongest one in any case.
 void Assessor::listEvidence(const SignalIndicators& indicators, const FeatureScores& scores) noexcept
 {
   std::array<FeatureScore, FEATURE_COUNT> sorted = scores;

@@ -10,7 +10,6 @@
 #include "gear/angle.hpp"
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/health/fault_signatures.hpp"
-#include "health/deviation_laws.hpp"
 #include "health/indicator_table.hpp"
 #include "health/reference_fit.hpp"
 
@@ -18,13 +17,15 @@ namespace hjt
 {
 namespace
 {
-constexpr std::size_t TRIMMED = 5;              // one of so many is left out at either end
-constexpr std::size_t LEAST_WINDOWS = 3;        // of which one can be left out at either end
-constexpr double OTHER_PAYLOAD_WIDENING = 4.0;  // a spread of 2.2 times its usual one, which would hide most faults
-constexpr double LEAST_RIDGE = 4e-4;            // noise of the estimate, 0.02 of half a class
-constexpr std::size_t JUMPS = 2;  // no scatter: the onset of a fault, and the newest window beside the oldest
+using Causes = Eigen::Matrix<double, COMMON_CAUSES, 1>;
 
-/// Of Baseline::Compared windows.
+constexpr std::size_t TRIMMED = 5;              // the trimmed mean leaves out one window in 5 at either end
+constexpr std::size_t LEAST_WINDOWS = 3;        // least number of windows of which one can be left out at either end
+constexpr double OTHER_PAYLOAD_WIDENING = 4.0;  // makes a spread 2.2 times as large, which would hide most faults
+constexpr double LEAST_RIDGE = 4e-4;            // square of the noise of the place, 0.02 of half a class
+constexpr std::size_t JUMPS = 2;  // steps that are no scatter: onset of a fault, newest window beside the oldest
+
+/// Mean of Baseline::Compared::along over some windows.
 template <class Window>
 PlaceVector meanAlong(const Window* windows, std::size_t count) noexcept
 {
@@ -58,7 +59,7 @@ constexpr double INERTIA_ACCELERATION = 5.0;  // [rad/s^2]
 
 int stepOf(double value, double step) noexcept
 {
-  constexpr double FARTHEST = 1e6;  // damaged recordings hold numbers that no int does
+  constexpr double FARTHEST = 1e6;  // damaged recordings have numbers that no int can hold
   return std::isfinite(value) ? static_cast<int>(std::clamp(std::floor(value / step), -FARTHEST, FARTHEST)) : 0;
 }
 
@@ -66,7 +67,44 @@ bool isNear(double value, double step, int known) noexcept
 {
   return std::isfinite(value) ? std::abs(value / step - known - 0.5) <= 0.5 + REACH : known == 0;
 }
+
+/// Whether the point lies within the class or no more than REACH beyond its edges.
+bool isInReach(const OperatingBin& bin, const OperatingPoint& point, double load_step) noexcept
+{
+  const OperatingBin own = binOf(point, load_step);
+  const bool is_speed_near =
+      point.speed > 0.0 ? isNear(std::log2(point.speed), 1.0, bin.speed) : own.speed == bin.speed;
+  return is_speed_near && own.direction == bin.direction && isNear(point.load, load_step, bin.load) &&
+         isNear(point.temperature, TEMPERATURE_STEP, bin.temperature);
+}
+
+/// Temperature and load -1 ... 1 from one edge of the class to the other and to 1.5 beyond them, the others in the same
+/// steps, the inertia by its torque at INERTIA_ACCELERATION; 0 of what is not measured [-].
+Place placeIn(const OperatingBin& bin, const OperatingPoint& point, double load_step) noexcept
+{
+  const auto place = [](double value, int step, double size, double farthest)
+  { return std::isfinite(value) ? std::clamp(2.0 * (value / size - step) - 1.0, -farthest, farthest) : 0.0; };
+  const double temperature = place(point.temperature, bin.temperature, TEMPERATURE_STEP, 1.0 + 2.0 * REACH);
+  constexpr double FARTHEST = 100.0;
+  return { temperature,
+           temperature * temperature,
+           place(point.load, bin.load, load_step, 1.0 + 2.0 * REACH),
+           place(point.load_constant, 0, load_step, FARTHEST),
+           place(point.load_sine, 0, load_step, FARTHEST),
+           place(point.load_cosine, 0, load_step, FARTHEST),
+           place(INERTIA_ACCELERATION * point.inertia, 0, load_step, FARTHEST) };
+}
 }  // namespace
+
+OperatingBin binOf(const OperatingPoint& point, double load_step) noexcept
+{
+  OperatingBin bin;
+  bin.speed = point.speed > 0.0 ? stepOf(std::log2(point.speed), 1.0) : -100;
+  bin.direction = point.direction > ONE_WAY ? 1 : point.direction < -ONE_WAY ? -1 : 0;
+  bin.load = stepOf(point.load, load_step);
+  bin.temperature = stepOf(point.temperature, TEMPERATURE_STEP);
+  return bin;
+}
 
 double amplitudeChange(double sound, double change) noexcept
 {
@@ -168,8 +206,8 @@ ReferenceBin* Baseline::findCarried(const OperatingBin& bin) noexcept
   return bin.direction == 0 ? most : nullptr;
 }
 
-BaselineState Baseline::update(const SignalIndicators& indicators, const SignalIndicators* model,
-                               Deviations& deviations) noexcept
+AssessmentState Baseline::update(const SignalIndicators& indicators, const SignalIndicators* model,
+                                 Deviations& deviations) noexcept
 {
   deviations = {};
   residual_ = {};
@@ -177,7 +215,7 @@ BaselineState Baseline::update(const SignalIndicators& indicators, const SignalI
   windows_here_ = bin != nullptr ? bin->windows : 0;
   if (bin == nullptr || (given_ && windows_here_ < MIN_WINDOWS))
   {
-    return BaselineState::NO_REFERENCE;
+    return AssessmentState::NO_REFERENCE;
   }
   const auto index = static_cast<std::size_t>(bin - bins_.data());
   if (!given_ && bin->windows < windows_)
@@ -187,12 +225,12 @@ BaselineState Baseline::update(const SignalIndicators& indicators, const SignalI
     {
       fitReference(*bin, sums_[index], bins_, sums_, repeatability_, fit_room_);
     }
-    return BaselineState::LEARNING;
+    return AssessmentState::LEARNING;
   }
   const Place place = placeFrom(*bin, indicators.point);
   if (isOtherPayload(*bin, place))
   {
-    return BaselineState::OTHER_PAYLOAD;
+    return AssessmentState::OTHER_PAYLOAD;
   }
   Recent& recent = recent_[index];
   const std::size_t first = index * evidence_windows_;
@@ -201,7 +239,7 @@ BaselineState Baseline::update(const SignalIndicators& indicators, const SignalI
   windows_here_ = static_cast<int>(++recent.count);
   bin_ = bin->bin;
   compare(*bin, first, std::min(recent.count, evidence_windows_), deviations);
-  return BaselineState::COMPARED;
+  return AssessmentState::ASSESSED;
 }
 
 Baseline::Variance Baseline::variance(std::size_t indicator, const ReferenceBin& bin, const Average& average,
@@ -217,14 +255,9 @@ Baseline::Variance Baseline::variance(std::size_t indicator, const ReferenceBin&
            learned };
 }
 
-double Baseline::scoreOf(double difference, const Deviation& scale) const noexcept
+double Deviation::scoreOf(double difference) const noexcept
 {
-  return scale.spread > 0.0 ? normalScore(scale.stretch * difference / scale.spread, scale.freedom) : 0.0;
-}
-
-double Baseline::scoreOf(std::size_t indicator, double change, const Deviations& deviations) const noexcept
-{
-  return scoreOf(change, deviations[indicator]);
+  return spread > 0.0 ? normalScore(stretch * difference / spread, freedom) : 0.0;
 }
 
 Deviation Baseline::pattern(double student) const noexcept
@@ -233,7 +266,7 @@ Deviation Baseline::pattern(double student) const noexcept
   deviation.spread = 1.0;
   deviation.freedom = residual_.pattern_freedom;
   deviation.stretch = residual_.pattern_stretch;
-  deviation.score = scoreOf(student, deviation);
+  deviation.score = deviation.scoreOf(student);
   deviation.threshold_factor = deviation.stretch * student / studentOf(pattern_threshold_, deviation.freedom);
   return deviation;
 }
@@ -329,11 +362,10 @@ Baseline::Average Baseline::average(std::size_t first, std::size_t count, std::s
 
 void Baseline::compare(const ReferenceBin& bin, std::size_t first, std::size_t count, Deviations& deviations) noexcept
 {
-  using Causes = Eigen::Matrix<double, COMMON_CAUSES, 1>;
   double causes = 0.0;
   double freedoms = 0.0;
   double compared = 0.0;
-  MeanUncertainty scalars;
+  Eigen::Vector3d scalars = Eigen::Vector3d::Zero();  // number of those compared, sums of their Uncertainty
   const PlaceVector along = meanAlong(&compared_[first], count);
   residual_.windows = static_cast<int>(count);
   const std::array<double, INDICATOR_COUNT> alike = varianceOfAlike(bin);
@@ -371,61 +403,29 @@ void Baseline::compare(const ReferenceBin& bin, std::size_t first, std::size_t c
     deviations[i] = deviationOf(average.difference, expected_[i], std::sqrt(variance.all), uncertainty, threshold_);
     if (i < SCALAR_COUNT)
     {
-      scalars.add(uncertainty);
+      scalars += Eigen::Vector3d(1.0, uncertainty.inverse, uncertainty.of_mean);
     }
-    if (!sound_known)
+    if (sound_known)
     {
-      continue;
+      const Causes common =
+          carried_ ? Causes(Causes::Zero()) : Causes(Eigen::Map<const Causes>(reference.common.data()));
+      const double found = static_cast<double>((common.array() != 0.0).count());
+      const double spread = std::max(1.0 - common.squaredNorm(), LEAST_LEFT);
+      const double left = spread * (n - 1.0 - fitted) / std::max(n - 1.0 - fitted - found, 1.0);
+      causes = std::max(causes, found);
+      residual_.own[i] = this->variance(i, bin, average, left * usual, widening).all;
+      Eigen::Map<Causes>(residual_.common[i].data()) = std::sqrt(usual * (widening.stays + widening.varies)) * common;
     }
-    const Causes common = carried_ ? Causes(Causes::Zero()) : Causes(Eigen::Map<const Causes>(reference.common.data()));
-    const double found = static_cast<double>((common.array() != 0.0).count());
-    const double left =
-        std::max(1.0 - common.squaredNorm(), LEAST_LEFT) * (n - 1.0 - fitted) / std::max(n - 1.0 - fitted - found, 1.0);
-    causes = std::max(causes, found);
-    residual_.own[i] = this->variance(i, bin, average, left * usual, widening).all;
-    Eigen::Map<Causes>(residual_.common[i].data()) = std::sqrt(usual * (widening.stays + widening.varies)) * common;
   }
   residual_.freedom = compared > 0.0 ? std::max(freedoms / compared - causes, 1.0) : 0.0;
-  residual_.pattern_freedom = scalars.mean().freedom();
-  residual_.pattern_stretch = scalars.mean().stretch();
+  scalars /= std::max(scalars[0], 1.0);
+  const Uncertainty mean{ scalars[1], scalars[2] };
+  residual_.pattern_freedom = mean.freedom();
+  residual_.pattern_stretch = mean.stretch();
 }
 
 double loadStep(const Parameters& parameters) noexcept
 {
   return LOAD_STEP * parameters.life.rated_torque;
-}
-
-OperatingBin binOf(const OperatingPoint& point, double load_step) noexcept
-{
-  OperatingBin bin;
-  bin.speed = point.speed > 0.0 ? stepOf(std::log2(point.speed), 1.0) : -100;
-  bin.direction = point.direction > ONE_WAY ? 1 : point.direction < -ONE_WAY ? -1 : 0;
-  bin.load = stepOf(point.load, load_step);
-  bin.temperature = stepOf(point.temperature, TEMPERATURE_STEP);
-  return bin;
-}
-
-bool isInReach(const OperatingBin& bin, const OperatingPoint& point, double load_step) noexcept
-{
-  const OperatingBin own = binOf(point, load_step);
-  const bool is_speed_near =
-      point.speed > 0.0 ? isNear(std::log2(point.speed), 1.0, bin.speed) : own.speed == bin.speed;
-  return is_speed_near && own.direction == bin.direction && isNear(point.load, load_step, bin.load) &&
-         isNear(point.temperature, TEMPERATURE_STEP, bin.temperature);
-}
-
-Place placeIn(const OperatingBin& bin, const OperatingPoint& point, double load_step) noexcept
-{
-  const auto place = [](double value, int step, double size, double farthest)
-  { return std::isfinite(value) ? std::clamp(2.0 * (value / size - step) - 1.0, -farthest, farthest) : 0.0; };
-  const double temperature = place(point.temperature, bin.temperature, TEMPERATURE_STEP, 1.0 + 2.0 * REACH);
-  constexpr double FARTHEST = 100.0;
-  return { temperature,
-           temperature * temperature,
-           place(point.load, bin.load, load_step, 1.0 + 2.0 * REACH),
-           place(point.load_constant, 0, load_step, FARTHEST),
-           place(point.load_sine, 0, load_step, FARTHEST),
-           place(point.load_cosine, 0, load_step, FARTHEST),
-           place(INERTIA_ACCELERATION * point.inertia, 0, load_step, FARTHEST) };
 }
 }  // namespace hjt

@@ -12,7 +12,6 @@
 #include "base/number_text.hpp"
 #include "base/whole_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
-#include "health/deviation_laws.hpp"
 #include "health/reference_fit.hpp"
 
 namespace hjt

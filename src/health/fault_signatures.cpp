@@ -8,81 +8,22 @@
 #include <utility>
 
 #include "health/indicator_table.hpp"
-#include "health/motion_likeness.hpp"
 #include "health/signature_terms.hpp"
 
 namespace hjt
 {
 namespace
 {
-/// Gathers the deviations of one feature.
-class Gatherer
-{
-public:
-  Gatherer(const Deviations& deviations, FeatureScores& scores) : deviations_(deviations), scores_(scores) {}
-
-  void scalar(Feature feature, ScalarIndicator indicator) const noexcept
-  {
-    single(feature, indexOf(indicator), deviations_[indexOf(indicator)].score);
-  }
-
-  /// A line that only grows: what lies below its mean is no fault.
-  void amplitude(Feature feature, Line line) const noexcept
-  {
-    for (const LineSignal signal : ALL_LINE_SIGNALS)
-    {
-      const std::size_t indicator = amplitudeIndex(signal, index(line));
-      single(feature, indicator, std::max(deviations_[indicator].score, 0.0));
-    }
-  }
-
-  /// A line with a phase: how far its vector has moved. Less one degree of freedom, so that noise scores as much as
-  /// else.
-  void vector(Feature feature, Line line) const noexcept
-  {
-    for (const LineSignal signal : ALL_LINE_SIGNALS)
-    {
-      if (!hasLine(signal, index(line)))
-      {
-        continue;
-      }
-      const Deviation& cosine = deviations_[cosineIndex(signal, index(line))];
-      const Deviation& sine = deviations_[sineIndex(signal, index(line))];
-      const double square = cosine.score * cosine.score + sine.score * sine.score - 1.0;
-      const double factor = std::hypot(cosine.threshold_factor, sine.threshold_factor);
-      take(feature, amplitudeIndex(signal, index(line)), std::sqrt(std::max(square, 0.0)), factor);
-    }
-  }
-
-private:
-  void single(Feature feature, std::size_t indicator, double score) const noexcept
-  {
-    take(feature, indicator, score, score == 0.0 ? 0.0 : deviations_[indicator].threshold_factor);
-  }
-
-  void take(Feature feature, std::size_t indicator, double score, double factor) const noexcept
-  {
-    FeatureScore& best = scores_[static_cast<std::size_t>(feature)];
-    if (std::isfinite(score) && (!best.compared || std::abs(score) > std::abs(best.score)))
-    {
-      best = { score, factor, indicator, true };
-    }
-  }
-
-  const Deviations& deviations_;
-  FeatureScores& scores_;
-};
-
 constexpr std::array TOGETHER{ causeOf(FaultKind::TOOTH_WEAR), causeOf(FaultKind::INTERFACE_WEAR),
                                causeOf(FaultKind::LUBRICANT_DEGRADATION) };  // wear by use (docs/life.md)
-constexpr double LESS = 0.4;  // severity of wear beside other, over that, where it is less
+constexpr double LESS = 0.4;  // severity of a wear over that of a larger wear beside it
 
-/// Causes without signatures: anything of a strength S, and what is no wear of a gear.
+/// Causes without signatures: an unknown fault of a strength S, a brake that drags, and noise of the sensors.
 struct Unknown
 {
   double strength;  // S
-  double drag;      // friction more at every speed alike, over the sound running torque: a brake
-  double noise;     // of the sensors more, as a share
+  double drag;      // additional friction, equal at every speed, over the sound running torque: a brake
+  double noise;     // additional noise of the sensors, as a share
 
   double prior() const { return strength > 0.0 ? 1.0 : 0.1; }  // brakes and sensors fail less often than gears wear
 };
@@ -99,7 +40,7 @@ constexpr std::array<Unknown, 12> UNKNOWNS{ { { 3.0, 0.0, 0.0 },
                                               { 0.0, 0.0, 0.5 },
                                               { 0.0, 0.0, 1.0 } } };
 
-/// Noise widens the spread of peaks from turn to turn and of every line.
+/// Signature of a brake or of noise. Noise widens the spread of peaks from turn to turn and of every line.
 Signature signatureOf(const Unknown& unknown, const WindowResidual& residual) noexcept
 {
   constexpr std::size_t FRICTION = indexOf(ScalarIndicator::RUNNING_TORQUE);
@@ -146,20 +87,43 @@ std::vector<Cause> causesThatMove(const SignatureSet& set, ScalarIndicator indic
 FeatureScores featureScores(const Deviations& deviations) noexcept
 {
   FeatureScores scores{};
-  const Gatherer gather(deviations, scores);
+  const auto take = [&](Feature feature, std::size_t indicator, double score, double factor)
+  {
+    FeatureScore& best = scores[static_cast<std::size_t>(feature)];
+    if (std::isfinite(score) && (!best.compared || std::abs(score) > std::abs(best.score)))
+    {
+      best = { score, factor, indicator, true };
+    }
+  };
   for (const ScalarRow& row : SCALARS)
   {
-    gather.scalar(row.feature, row.indicator);
+    const Deviation& deviation = deviations[indexOf(row.indicator)];
+    take(row.feature, indexOf(row.indicator), deviation.score,
+         deviation.score == 0.0 ? 0.0 : deviation.threshold_factor);
   }
   for (const LineRow& row : LINES)
   {
-    if (isPhaseLocked(index(row.line)))
+    const std::size_t line = index(row.line);
+    for (const LineSignal signal : ALL_LINE_SIGNALS)
     {
-      gather.vector(row.feature, row.line);
-    }
-    else
-    {
-      gather.amplitude(row.feature, row.line);
+      if (!hasLine(signal, line))
+      {
+        continue;
+      }
+      const std::size_t indicator = amplitudeIndex(signal, line);
+      if (!isPhaseLocked(line))
+      {
+        // Such a line only grows: an amplitude below the mean is no fault.
+        const double score = std::max(deviations[indicator].score, 0.0);
+        take(row.feature, indicator, score, score == 0.0 ? 0.0 : deviations[indicator].threshold_factor);
+        continue;
+      }
+      // How far the line's vector has moved, less one degree of freedom, so that noise scores as much as elsewhere.
+      const Deviation& cosine = deviations[cosineIndex(signal, line)];
+      const Deviation& sine = deviations[sineIndex(signal, line)];
+      const double square = cosine.score * cosine.score + sine.score * sine.score - 1.0;
+      take(row.feature, indicator, std::sqrt(std::max(square, 0.0)),
+           std::hypot(cosine.threshold_factor, sine.threshold_factor));
     }
   }
   return scores;
@@ -173,7 +137,7 @@ void CauseSearch::Sum::add(double weighted, double prior, double severity) noexc
   second += weight * severity * severity;
 }
 
-/// All signatures alone, then those that come together.
+/// Rows of single signatures, then rows of signatures that come together.
 std::vector<CauseSearch::Row> CauseSearch::rowsOf(const SignatureSet& set)
 {
   std::vector<Row> rows;
@@ -236,7 +200,7 @@ CauseSearch::CauseSearch(std::shared_ptr<const SignatureSet> set)
   start();
 }
 
-/// Whether a drive's faults occur as they are rated is as likely as that all occur alike.
+/// Prior weights of the causes: half by their rated occurrence, half equal for all.
 std::array<double, CAUSE_COUNT> CauseSearch::priorsOf(const SignatureSet& set)
 {
   const std::array<double, CAUSE_COUNT>& rated = set.occurrence;

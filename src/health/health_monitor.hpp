@@ -5,17 +5,452 @@
 #include <cmath>
 #include <cstdint>
 
+#include <Eigen/Core>
+
 #include "gear/ratio.hpp"
-#include "harmonic_joint_twin/health/indicator.hpp"
 #include "harmonic_joint_twin/health/motion_indicators.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
-#include "health/efficiency_estimate.hpp"
-#include "health/forgetting.hpp"
-#include "health/turn_window.hpp"
+#include "health/running_regression.hpp"
 
 namespace hjt
 {
-/// How far a quantity has varied lately: over the running window of fixed length and the one before it.
+/// Inputs of the drive's torsion at one instant.
+struct TorsionSample
+{
+  double torsion;       ///< motor angle / ratio - output angle [rad]
+  double torque;        ///< through the gear, > 0 resists positive motion [N.m]
+  double motor_angle;   ///< [rad]
+  double output_angle;  ///< [rad]
+};
+
+/// Two first-order lags in a row.
+///
+/// Law:   y = F x,   F = 1 / (1 + s t)^2,   t = TIME
+/// Quantities that are smoothed together lag by the same 2 t, so that their values of one instant belong together in
+/// any motion.
+template <int COUNT>
+class TwiceSmoothed
+{
+public:
+  static constexpr double TIME = 0.02;  ///< [s]
+  using Values = Eigen::Matrix<double, COUNT, 1>;
+
+  void reset() noexcept { age_ = -1.0; }
+
+  /// `seconds`: since the values before.
+  void update(const Values& values, double seconds) noexcept
+  {
+    if (age_ < 0.0)
+    {
+      age_ = 0.0;
+      first_ = values;
+      second_ = values;
+    }
+    const double kept = std::exp(-seconds / TIME);
+    const Values before = second_;
+    first_ = kept * first_ + (1.0 - kept) * values;
+    second_ = kept * second_ + (1.0 - kept) * first_;
+    rates_ = (second_ - before) / seconds;
+    age_ += seconds;
+  }
+
+  const Values& values() const noexcept { return second_; }
+  const Values& rates() const noexcept { return rates_; }  ///< per second, since the update before
+
+  /// Whether the values from before the first update are forgotten.
+  bool settled() const noexcept { return age_ > 12.0 * TIME; }
+
+private:
+  Values first_{ Values::Zero() };
+  Values second_{ Values::Zero() };
+  Values rates_{ Values::Zero() };
+  double age_{ -1.0 };  // [s]; < 0: no values yet
+};
+
+/// Play of a quantity (Prandtl and Ishlinskii's operator): the direction in which the quantity moved last.
+class Play
+{
+public:
+  explicit Play(double width) : half_(0.5 * width) {}
+
+  /// -1 while the quantity falls, +1 while it rises, and a value between them just after a reversal.
+  double follow(double quantity) noexcept
+  {
+    centre_ = std::clamp(centre_, quantity - half_, quantity + half_);
+    return (quantity - centre_) / half_;
+  }
+
+private:
+  double half_;
+  double centre_{};
+};
+
+/// Torsion under a swinging load, over one window.
+///
+/// Torsion as read and torque, inertia's share in it, are TwiceSmoothed: x = F x_0,  T = F T_0 + J F d^2(psi) / dt^2
+/// where  x_0, T_0  torsion as read [rad], torque at one end of the gear [N.m]
+///        J, psi    inertia between that end and the gear [kg.m^2], its angle [rad]
+/// Law:   x = a - h p(T) + q p(theta) + T / K1 + c clamp(T, -T0, T0) + (1 / K2 - 1 / K1) sign(T) max(|T| - T1, 0)
+///            + e_c cos(phi) + e_s sin(phi),  least squares over the samples
+/// where  x, T         torsion [rad], torque through the gear [N.m]
+///        theta, phi   motor angle, output angle [rad]
+///        p            play: of T as wide as indicators.lost_motion_torque, of theta as DIRECTION_PLAY
+///        2 h, 2 q     width of the loop by dry friction in the cup, which changes sign with the torque, and by that of
+///                     the teeth, which changes sign with the motion [rad]
+///        T0, T1       indicators.lost_motion_torque, indicators.stiffness_torque
+///        c            softness about no load: clearance, worn teeth
+///        e            eccentricity of the output encoder [rad]. A weight twists the drive as sin(phi) too: inertia
+///                     tells them apart. With q the mean square of a column of e that the others leave, e comes out at
+///                     q^2 / (q^2 + ECCENTRICITY_LEFT^2) of it: all of it, or none. What is left of it is the same in
+///                     1 / K1 and 1 / K2 of all windows of a motion, so that their changes have nothing of it
+/// Lost motion  angle between the middles of the loop at T0 and -T0: 2 T0 (1 / K1 + c) [rad]
+/// Loop area    integral of T over the torsion from one maximum of T to the next, mean of the loops that closed [J]
+/// K1 is valid if T spans health.stiffness_torque_span between -T1 and T1, K2 if it does so beyond T1 on one side, and
+/// the lost motion if T reaches 2 T0 on both sides.
+class TorsionLoopEstimate
+{
+public:
+  TorsionLoopEstimate(const HealthParameters& health, const IndicatorParameters& parameters)
+    : first_torque_(parameters.stiffness_torque)
+    , torque_span_(health.stiffness_torque_span)
+    , play_(parameters.lost_motion_torque)
+    , torque_play_(parameters.lost_motion_torque)
+    , direction_play_(DIRECTION_PLAY)
+    , regression_(COLUMNS, 1)
+  {
+    reset();
+  }
+
+  void restart() noexcept
+  {
+    torque_play_ = Play(play_);
+    direction_play_ = Play(DIRECTION_PLAY);
+    interrupt();
+    reset();
+  }
+
+  /// No torsion was read.
+  void interrupt() noexcept { smoothed_.reset(); }
+
+  /// The next window.
+  void reset() noexcept
+  {
+    regression_.reset();
+    lowest_ = 0.0;
+    highest_ = 0.0;
+    started_ = false;
+    area_ = 0.0;
+    loops_ = 0;
+  }
+
+  /// Every sample in its turn. `given`: as read, the torque without inertia's; `speed`: of psi [rad/s]; `seconds`:
+  /// since the last sample.
+  void add(const TorsionSample& given, double speed, double inertia, double seconds) noexcept
+  {
+    TwiceSmoothed<5>::Values read;
+    read << given.torsion, given.torque, given.motor_angle, given.output_angle, speed;
+    smoothed_.update(read, seconds);
+    if (!smoothed_.settled())
+    {
+      return;
+    }
+    const auto& values = smoothed_.values();
+    const double torque = values[1] + inertia * smoothed_.rates()[4];
+    followTorque(values[0], torque);
+    const bool first = regression_.rows() == 0.0;
+    lowest_ = first ? torque : std::min(lowest_, torque);
+    highest_ = first ? torque : std::max(highest_, torque);
+    const double beyond = std::copysign(std::max(std::abs(torque) - first_torque_, 0.0), torque);
+    Row row;
+    row << 1.0, torque, torque_play_.follow(torque), beyond, std::clamp(torque, -play_, play_),
+        direction_play_.follow(values[2]), std::cos(values[3]), std::sin(values[3]);
+    regression_.add(row, Eigen::Matrix<double, 1, 1>(values[0]));
+  }
+
+  struct Found
+  {
+    Indicator stiffness;         ///< K1 [N.m/rad]
+    Indicator second_stiffness;  ///< K2 [N.m/rad]
+    Indicator lost_motion;       ///< [rad]
+    Indicator hysteresis;        ///< 2 h [rad]
+    Indicator loop_area;         ///< [J]
+  };
+
+  Found fit() noexcept
+  {
+    Found found;
+    found.loop_area = loops_ > 0 ? Indicator{ true, area_ / loops_ } : Indicator{};
+    if (!holdEccentricity() || !regression_.fit(COLUMNS))
+    {
+      return found;
+    }
+    const double slope = regression_.coefficient(SLOPE, 0);
+    if (!(slope > 0.0) || regression_.standardError(SLOPE, 0) > MAX_ERROR * slope)
+    {
+      return found;
+    }
+    const double within =
+        std::clamp(highest_, -first_torque_, first_torque_) - std::clamp(lowest_, -first_torque_, first_torque_);
+    found.stiffness = { within >= torque_span_, 1.0 / slope };
+    const double second = slope + regression_.coefficient(BEYOND, 0);
+    found.second_stiffness = { std::max(highest_, -lowest_) - first_torque_ > torque_span_ && second > 0.0,
+                               1.0 / second };
+    found.lost_motion = { std::min(highest_, -lowest_) > 2.0 * play_,
+                          2.0 * play_ * (slope + regression_.coefficient(SOFTNESS, 0)) };
+    found.hysteresis = { highest_ - lowest_ >= torque_span_ && regression_.inflation(BRANCH) < MAX_INFLATION,
+                         -2.0 * regression_.coefficient(BRANCH, 0) };
+    return found;
+  }
+
+private:
+  static constexpr int COLUMNS = 8;
+  using Row = Eigen::Matrix<double, COLUMNS, 1>;
+  static constexpr int SLOPE = 1;     // column of the torque
+  static constexpr int BRANCH = 2;    // of its play
+  static constexpr int BEYOND = 3;    // of the torque beyond T1
+  static constexpr int SOFTNESS = 4;  // of the torque up to T0
+  static constexpr int COSINE = 6;
+  static constexpr int SINE = 7;
+  static constexpr double MAX_ERROR = 0.1;       // of the slope, standard, as a share of it [-]
+  static constexpr double MAX_INFLATION = 10.0;  // of the branch's variance: both branches at like torques [-]
+  static constexpr double DIRECTION_PLAY = 0.1;  // of the motor, far above an encoder's noise [rad]
+  // What the law leaves of the torsion of a sound drive, 15 urad rms, over an eccentricity, 0.44 mrad
+  // (config/real_sensors.yaml), squared, is 1.2e-3: what tells e must be more [-].
+  static constexpr double ECCENTRICITY_LEFT = 1.5e-3;
+  static constexpr double LEAST_TOLD = 1e-6;  // of q [-]
+
+  /// Adds a ridge for each part of e, by how much of its column the other columns leave. False: too few samples.
+  bool holdEccentricity() noexcept
+  {
+    if (!regression_.fit(COLUMNS))
+    {
+      return false;
+    }
+    const double rows = regression_.rows();
+    for (const int column : { COSINE, SINE })
+    {
+      const double told = regression_.mean(column, column) / regression_.inflation(column);
+      Row row = Row::Zero();
+      row[column] = ECCENTRICITY_LEFT * std::sqrt(rows / std::max(told, LEAST_TOLD));
+      regression_.add(row, Eigen::Matrix<double, 1, 1>(0.0));
+    }
+    return true;
+  }
+
+  void followTorque(double torsion, double joint_torque) noexcept
+  {
+    if (!started_)
+    {
+      started_ = true;
+      rising_ = true;
+      past_first_ = false;
+      extreme_ = joint_torque;
+      work_ = 0.0;
+    }
+    else
+    {
+      work_ += 0.5 * (joint_torque + torque_) * (torsion - torsion_);
+    }
+    torsion_ = torsion;
+    torque_ = joint_torque;
+    extreme_ = rising_ ? std::max(extreme_, joint_torque) : std::min(extreme_, joint_torque);
+    if (std::abs(joint_torque - extreme_) > play_)
+    {
+      // Every maximum is seen equally late, so that a loop gains at its end what it lacks at its start.
+      if (rising_)
+      {
+        area_ += past_first_ ? work_ : 0.0;
+        loops_ += past_first_ ? 1 : 0;
+        past_first_ = true;
+        work_ = 0.0;
+      }
+      rising_ = !rising_;
+      extreme_ = joint_torque;
+    }
+  }
+
+  double first_torque_;  // T1 [N.m]
+  double torque_span_;
+  double play_;  // T0 [N.m]
+  Play torque_play_;
+  Play direction_play_;
+  TwiceSmoothed<5> smoothed_;  // a TorsionSample and the speed of psi
+  RunningRegression regression_;
+  double lowest_{};   // torque in the regression [N.m]
+  double highest_{};  // [N.m]
+
+  bool started_{};
+  bool rising_{};
+  double extreme_{};   // of the torque since it turned round last [N.m]
+  double torsion_{};   // of the last sample [rad]
+  double torque_{};    // of the last sample [N.m]
+  double work_{};      // integral since the last maximum was seen [J]
+  bool past_first_{};  // a maximum has been seen, so that the present loop is a whole one
+  double area_{};      // of the loops that closed [J]
+  int loops_{};
+};
+
+/// The torsion over the last turn of the motor: transmission ratio and kinematic error.
+///
+/// The class keeps the torsion at marks that are evenly spaced in the motor angle, 16 for each tooth of the flexspline,
+/// because the error of a sound gear repeats every tooth pitch. The torsion at a mark is interpolated linearly between
+/// the two samples around it. The store holds one turn at any speed.
+///
+/// A return to the mark before the last one is a reversal and empties the store. A smaller return (up to 2 mrad with
+/// 200 teeth) is a tremor about one place and keeps the store. Both indicators are valid once the store is full: after
+/// one turn and one or two marks of travel in one direction since start or reversal.
+class TurnWindow
+{
+public:
+  explicit TurnWindow(const GearParameters& gear);
+
+  void reset() noexcept;
+
+  /// `torsion`: motor angle / nominal ratio - output angle [rad]. An angle beyond 1e15 marks, or not finite, empties
+  /// the store.
+  void update(double motor_angle, double torsion) noexcept;
+
+  /// Motor travel over output travel, from the instant when the motor stood exactly one turn behind until now [-].
+  /// It is not valid either if the output moved by less than a millionth of its nominal travel.
+  Indicator transmissionRatio() const noexcept;
+
+  /// Peak to peak of the torsion at the marks of the last turn, less the straight line through the two ends of that
+  /// turn [rad]. The line removes a torsion that grows with a changing load. It does not change errors with a whole
+  /// number of cycles in a turn, as a line by least squares would, because those are equal at both ends.
+  Indicator kinematicError() const noexcept;
+
+private:
+  bool full() const noexcept { return count_ == torsions_.size(); }
+  void keep(double place, double slope, std::int64_t marks) noexcept;
+  double torsionAt(Eigen::Index marks_back) const noexcept;
+
+  double nominal_ratio_;
+  std::int64_t marks_per_turn_;
+  double marks_per_radian_;
+
+  // Places are motor angles in marks, mirrored so that they grow in the direction of travel.
+  bool started_{};
+  int direction_{ 1 };
+  double place_{};              // of the last sample
+  double torsion_{};            // of the last sample
+  std::int64_t newest_mark_{};  // last mark reached
+  Eigen::VectorXd torsions_;    // ring of one turn and one mark, both ends included
+  Eigen::Index newest_{};
+  Eigen::Index count_{};
+};
+
+/// Exponential forgetting in time: a value of age `window` counts 1/e of a new value.
+class Forgetting
+{
+public:
+  /// `window`: time constant [s].
+  explicit Forgetting(double window) : window_(window) {}
+
+  /// Share that is kept over `elapsed` [ns]. The share of the last step is stored, because most steps are equal.
+  double kept(std::int64_t elapsed) noexcept
+  {
+    if (elapsed != elapsed_)
+    {
+      elapsed_ = elapsed;
+      kept_ = std::exp(-1e-9 * static_cast<double>(elapsed) / window_);
+    }
+    return kept_;
+  }
+
+private:
+  double window_;
+  std::int64_t elapsed_{};
+  double kept_{ 1.0 };
+};
+
+/// Efficiency of the drive between the motor shaft and the circular spline.
+///
+/// Law:   eta = <P_j> / <P_m>  driving, both > 0;   eta = <P_m> / <P_j>  driven back by the load, both < 0
+/// where  P_m  motor torque times motor speed: power from the motor                                   [W]
+///        P_j  joint torque times output speed: power from the circular spline to the load            [W]
+///        <>   exponential mean over `health.averaging_time`
+///
+/// Not valid
+/// - before one window has passed,
+/// - near standstill: a mean power below 0.1 W,
+/// - unless power flows in one direction through the drive: both means have one sign, and each is at least 90 % of the
+///   mean of its magnitude,
+/// - when the output power is more than 1 % larger than the input power: then inertia slows down.
+class EfficiencyEstimate
+{
+public:
+  explicit EfficiencyEstimate(const HealthParameters& parameters)
+    : window_(std::llround(1e9 * parameters.averaging_time)), forgetting_(parameters.averaging_time)
+  {
+  }
+
+  void reset() noexcept
+  {
+    age_ = 0;
+    motor_ = {};
+    joint_ = {};
+  }
+
+  /// [ns], [W], [W]
+  void update(std::int64_t elapsed, double motor_power, double joint_power) noexcept
+  {
+    age_ += elapsed;
+    const double kept = forgetting_.kept(elapsed);
+    motor_.update(kept, motor_power);
+    joint_.update(kept, joint_power);
+  }
+
+  /// [-]
+  Indicator efficiency() const noexcept
+  {
+    const bool driving = motor_.mean() > 0.0;
+    if (age_ < window_ || !motor_.steady() || !joint_.steady() || driving != (joint_.mean() > 0.0))
+    {
+      return {};
+    }
+    const double efficiency = driving ? joint_.mean() / motor_.mean() : motor_.mean() / joint_.mean();
+    if (efficiency > MAX_EFFICIENCY)
+    {
+      return {};
+    }
+    return { true, efficiency };
+  }
+
+private:
+  static constexpr double MIN_POWER = 0.1;     // [W]
+  static constexpr double STEADY_SHARE = 0.9;  // of the mean magnitude [-]
+  static constexpr double MAX_EFFICIENCY = 1.01;
+
+  /// Mean of a power and of its magnitude.
+  class PowerMean
+  {
+  public:
+    void update(double kept, double power) noexcept
+    {
+      mean_ = kept * mean_ + (1.0 - kept) * power;
+      magnitude_ = kept * magnitude_ + (1.0 - kept) * std::abs(power);
+    }
+
+    bool steady() const noexcept
+    {
+      return std::abs(mean_) >= MIN_POWER && std::abs(mean_) >= STEADY_SHARE * magnitude_;
+    }
+
+    double mean() const noexcept { return mean_; }  // [W]
+
+  private:
+    double mean_{};       // [W]
+    double magnitude_{};  // [W]
+  };
+
+  std::int64_t window_;  // [ns]
+  Forgetting forgetting_;
+  std::int64_t age_{};  // since start or reset [ns]
+  PowerMean motor_;
+  PowerMean joint_;
+};
+
+/// Range of a quantity over the present window of fixed length and the window before it.
 class RecentSpan
 {
 public:
@@ -27,18 +462,12 @@ public:
   void update(std::int64_t elapsed, double value) noexcept
   {
     age_ += elapsed;
-    if (!started_)
+    if (!started_ || age_ >= window_)
     {
+      age_ = 0;
+      before_ = started_ ? running_ : Extremes{ value, value };
+      running_ = { value, value };
       started_ = true;
-      age_ = 0;
-      running_ = { value, value };
-      before_ = running_;
-    }
-    else if (age_ >= window_)
-    {
-      age_ = 0;
-      before_ = running_;
-      running_ = { value, value };
     }
     running_ = { std::min(running_.lowest, value), std::max(running_.highest, value) };
   }
@@ -64,8 +493,8 @@ private:
 
 /// Torsional stiffness of the drive: slope of the joint torque over the torsion.
 ///
-/// Recursive least squares of  T = T_0 + K tau, each sample weighted with the time it stands for and forgotten
-/// exponentially over health.averaging_time.
+/// Recursive least squares of  T = T_0 + K tau. Each sample has the time since the last one as its weight and is
+/// forgotten exponentially over health.averaging_time.
 /// where  T    joint torque                          [N.m]
 ///        tau  torsion                               [rad]
 ///        K    torsional stiffness                   [N.m/rad]
@@ -129,7 +558,7 @@ private:
   double product_{};         // [N.m rad s]
 };
 
-/// The joint at one instant, as the model knows it: true angles, not encoder readings.
+/// The joint of the model at one instant, with its true angles in place of encoder readings.
 struct HealthSample
 {
   std::int64_t stamp{};      ///< [ns]
@@ -141,7 +570,7 @@ struct HealthSample
   double joint_torque{};     ///< of the mesh on the circular spline [N.m]
 };
 
-/// Watches the joint's motion step by step, in fixed memory. Allocates only at construction.
+/// Computes MotionIndicators of the joint step by step, in fixed memory. Only the constructor allocates.
 class HealthMonitor
 {
 public:
@@ -159,12 +588,12 @@ public:
     efficiency_.reset();
   }
 
-  /// Stamps must ascend; call `reset` before a restart.
+  /// Stamps must ascend. Call `reset` before a restart.
   void update(const HealthSample& sample) noexcept
   {
     torsion_ = sample.motor_angle / nominal_ratio_ - sample.output_angle;
     turn_.update(sample.motor_angle, torsion_);
-    // The first sample stands for no time yet.
+    // The first sample has no step before it.
     if (started_)
     {
       const std::int64_t elapsed = sample.stamp - stamp_;

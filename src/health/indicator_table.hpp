@@ -9,8 +9,7 @@
 
 namespace hjt
 {
-/// Whether the rows of a table stand in the order of the enumeration they are looked up by, none missing. For
-/// static_assert.
+/// Whether a table has a row for each value of the enumeration, in its order. For static_assert.
 template <class Rows, class Row, class Key>
 constexpr bool isInOrder(const Rows& rows, Key Row::*key)
 {
@@ -24,7 +23,7 @@ constexpr bool isInOrder(const Rows& rows, Key Row::*key)
   return true;
 }
 
-/// Of the smallest spread that a healthy indicator is taken to have.
+/// Unit of the smallest spread that the spread of a healthy indicator is assumed to have.
 enum class FloorUnit
 {
   INDICATOR,       ///< the indicator's own
@@ -37,15 +36,15 @@ struct ScalarRow
   ScalarIndicator indicator;
   const char* name;
   const char* unit;
-  Feature feature;  ///< that the cause of a fault is sought with
-  double floor{};   ///< below this a spread is not believed
+  Feature feature;  ///< group in which the indicator counts
+  double floor{};   ///< smaller spreads are not believed
   FloorUnit floor_unit{};
 };
 
-/// By as much of an encoder count a window's mean may wander.
+/// Share of an encoder count by which the mean of a window may change [-].
 constexpr double COUNT_SHARE = 0.1;
 
-/// All that health, messages and files know of the scalar indicators.
+/// Properties of the scalar indicators for health, messages and files.
 inline constexpr std::array<ScalarRow, SCALAR_COUNT> SCALARS{ {
     { ScalarIndicator::RATIO_DEVIATION, "ratio_deviation", "-", Feature::RATIO, COUNT_SHARE,
       FloorUnit::COUNT_IN_A_TURN },
@@ -61,7 +60,7 @@ inline constexpr std::array<ScalarRow, SCALAR_COUNT> SCALARS{ {
     { ScalarIndicator::VISCOUS_FRICTION, "viscous_friction", "N.m.s/rad", Feature::VISCOUS },
     { ScalarIndicator::EFFICIENCY, "efficiency", "-", Feature::EFFICIENCY },
     { ScalarIndicator::RESIDUAL_RMS, "residual_rms", "rad", Feature::RESIDUAL, COUNT_SHARE, FloorUnit::ENCODER_COUNT },
-    // Moments of the residual are no normal quantities: smaller spreads are not looked into.
+    // Moments of the residual are not normal quantities, so that smaller spreads are not believed.
     { ScalarIndicator::RESIDUAL_KURTOSIS, "residual_kurtosis", "-", Feature::IMPULSES, 0.3, FloorUnit::INDICATOR },
     { ScalarIndicator::RESIDUAL_CREST, "residual_crest", "-", Feature::IMPULSES, 0.5, FloorUnit::INDICATOR },
     { ScalarIndicator::LOAD_FRICTION, "load_friction", "-", Feature::EFFICIENCY },
@@ -72,14 +71,14 @@ inline constexpr std::array<ScalarRow, SCALAR_COUNT> SCALARS{ {
 } };
 static_assert(isInOrder(SCALARS, &ScalarRow::indicator), "a row for each ScalarIndicator, in its order");
 
-/// Of a line, or of one of its parts.
+/// Signal of a line, or of one of its parts.
 constexpr LineSignal signalOf(std::size_t indicator)
 {
   return indicator < LOADED_BLOCK ? ALL_LINE_SIGNALS[(indicator - SCALAR_COUNT) / LINE_BLOCK] :
                                     LineSignal::MOTOR_RIPPLE;
 }
 
-/// Of a part of a line the line's amplitude, else the indicator itself.
+/// The amplitude of the line for a part of a line, else the indicator itself.
 constexpr std::size_t amplitudeOf(std::size_t indicator)
 {
   const bool loaded = indicator >= LOADED_BLOCK;

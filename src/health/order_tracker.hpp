@@ -5,18 +5,84 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <vector>
 
 #include <Eigen/Core>
 
 #include "gear/angle.hpp"
 #include "harmonic_joint_twin/health/signal_indicators.hpp"
-#include "harmonic_joint_twin/health/tracked_lines.hpp"
-#include "health/angle_multiples.hpp"
 #include "health/running_regression.hpp"
 
 namespace hjt
 {
-/// A sample of the tracker.
+/// Cosine and sine of many multiples of one angle. For a multiple that is the sum or the difference of two earlier
+/// multiples, up to rounding, the class multiplies their rotations in place of computing a sine and a cosine.
+template <std::size_t COUNT>
+class AngleMultiples
+{
+public:
+  explicit AngleMultiples(const std::array<double, COUNT>& multiples)
+  {
+    for (std::size_t k = 0; k < COUNT; ++k)
+    {
+      rules_[k] = rule(multiples, k);
+    }
+  }
+
+  /// Writes cosine and sine of each multiple, one after the other, into `rotations`.
+  void at(double angle, double* rotations) const noexcept
+  {
+    for (std::size_t k = 0; k < COUNT; ++k)
+    {
+      const Rule& rule = rules_[k];
+      const double* a = rotations + 2 * rule.first;
+      const double* b = rotations + 2 * rule.second;
+      double* to = rotations + 2 * k;
+      if (rule.sign == 0.0)
+      {
+        to[0] = std::cos(rule.multiple * angle);
+        to[1] = std::sin(rule.multiple * angle);
+        continue;
+      }
+      const double sine = rule.sign * b[1];
+      to[0] = a[0] * b[0] - a[1] * sine;
+      to[1] = a[1] * b[0] + a[0] * sine;
+    }
+  }
+
+private:
+  struct Rule
+  {
+    double multiple{};
+    std::size_t first{};
+    std::size_t second{};
+    double sign{};  // of the second multiple; 0: this multiple is that of no other two
+  };
+
+  static Rule rule(const std::array<double, COUNT>& multiples, std::size_t k)
+  {
+    constexpr double ROUNDING = 1e-14;
+    const double multiple = multiples[k];
+    for (std::size_t i = 0; i < k; ++i)
+    {
+      for (std::size_t j = 0; j < k; ++j)
+      {
+        for (const double sign : { 1.0, -1.0 })
+        {
+          if (std::abs(multiples[i] + sign * multiples[j] - multiple) <= ROUNDING * std::abs(multiple))
+          {
+            return { multiple, i, j, sign };
+          }
+        }
+      }
+    }
+    return { multiple, 0, 0, 0.0 };
+  }
+
+  std::array<Rule, COUNT> rules_;
+};
+
+/// A sample of the signals that OrderTracker fits lines to.
 struct LineSample
 {
   double motor_angle{};      ///< [rad]
@@ -49,8 +115,8 @@ struct LineFit
 ///               mean, so that the line without either is that of the mean load;  T_r  rated torque, d  direction
 ///        n      what is no line: 1, direction, speed, cos and sin of the output angle (weight, runout), load T, T |T|,
 ///               T^3 (the torsion is no straight line over the load)
-/// Nothing is resampled and no speed need be constant: the line is a function of the angle, whichever way and however
-/// fast it is passed, and the motion may go back and forth. Lines fitted at once do not leak into each other.
+/// The tracker resamples nothing and needs no constant speed: a line is a function of the angle, in either direction
+/// and at any speed, and the motion may go back and forth. Lines that are fitted at once do not leak into each other.
 ///
 /// Not valid, and not fitted: a line above 0.8 of half the samples a turn. Not valid either: one that the travel cannot
 /// tell from another (variance inflated more than fourfold: orders o1, o2 need about 0.3 / |o1 - o2| turns in all, 15
@@ -81,7 +147,7 @@ public:
     regression_.add(row_, targets_, sample.weight);
   }
 
-  /// `angle_step`: mean travel between two samples [rad]. False: too little came.
+  /// Fits the lines. `angle_step`: mean travel between two samples [rad]. False: too few samples.
   bool fit(double angle_step) noexcept
   {
     const double highest = USED_BAND * 0.5 * TWO_PI / angle_step;
@@ -113,7 +179,8 @@ public:
     return fit;
   }
 
-  /// Whether the last fit determined every line. One that it did not determine can take any value outside the window.
+  /// Whether the last fit determined every line. A line that it did not determine can have any value outside the
+  /// window.
   bool complete() const noexcept
   {
     bool determined = used_ > FIRST_LINE;
@@ -124,10 +191,10 @@ public:
     return determined;
   }
 
-  /// Kinematic error of the last added sample less what the last fit makes of it [rad].
+  /// Kinematic error of the last added sample less that of the last fit [rad].
   double residual() const noexcept { return targets_[0] - row_.dot(regression_.coefficients(0)); }
 
-  /// A sample's signals, by LineSignal, less what the last fit makes of them but for the lines that `without` names.
+  /// Signals of a sample, by LineSignal, less those of the last fit. The lines in `without` stay in the signals.
   Eigen::Vector3d beside(const LineSample& sample, const std::array<bool, FIRST_LOADED>& without) const noexcept
   {
     Row row;
@@ -209,7 +276,7 @@ private:
     return FIRST_LINE + 2 * static_cast<int>(places_[FIRST_LOADED + static_cast<std::size_t>(i) / 2]) + i % 2;
   }
 
-  /// Takes the means off the load, and leaves out what the window cannot determine.
+  /// Takes the means off the load, and drops the lines that the window cannot determine.
   void prepareLoaded(int used) noexcept
   {
     const double weighted_load = regression_.mean(LOAD, 0) / rated_torque_;
@@ -247,5 +314,55 @@ private:
   Eigen::Vector3d targets_;
   RunningRegression regression_;
   int used_{};  // columns of the last fit
+};
+
+/// Slip of the wave generator's bearing over one window, by the lines of races and balls in the motor's ripple.
+///
+/// Law:   L(s) = sum_k |F_k(s)|^2 / n_k,   F_k(s) = sum w r exp(-j o_k(s) theta),   s* = argmax L(s), 0 <= s <= MOST
+/// where  k       over lines;  w  weight
+///        r       ripple less all that the window's fit makes of it but for these lines [rad]
+///        theta   motor angle [rad];  o_k(s)  orders with slip s (trackedOrders)
+///        n_k     of the noise about the line: median of |F_k|^2 over slips that no bearing has as well, over ln 2
+/// s is 0 too where L of the kinematic error is larger by CLEARLY without slip.
+/// Without a line that slips L is the sum of squares of noise, whose largest value over s passes L(0) by CLEARLY in
+/// less than one window in 1000: s is then 0.
+/// Source: bearings slip by 1 to 2 % (Randall and Antoni, Mech. Syst. Signal Process. 25, 2011, 485-520).
+///
+/// At an even speed it looks for no slip: sampling then folds the lines of the teeth to sharp lines at any order, which
+/// are two orders apart as those of a race are.
+///
+/// The class keeps every sample of a window: it is for recordings and data sets, not for a loop. It looks for no slip
+/// in a window of more than a million samples, or of angles more than 500 turns apart.
+class BearingSlip
+{
+public:
+  static constexpr double MOST = 0.03;  ///< [-]
+
+  explicit BearingSlip(const Parameters& parameters);
+
+  void reset() noexcept { samples_.clear(); }
+  void add(const LineSample& sample)
+  {
+    if (samples_.size() <= MOST_SAMPLES)
+    {
+      samples_.push_back(sample);
+    }
+  }
+
+  /// Slip of the window [-]; 0: no slip stands out. `fitted`: the lines without slip, fitted to the samples.
+  double find(const OrderTracker& fitted) const;
+  /// All lines fitted to the samples at the orders of a bearing with that slip, `angle_step` as OrderTracker::fit.
+  OrderTracker refit(double slip, double angle_step) const;
+
+private:
+  static constexpr std::size_t MOST_SAMPLES = 1000000;
+
+  struct BearingLine;
+  std::vector<BearingLine> linesOf(const OrderTracker& fitted) const;
+
+  GearParameters gear_;
+  BearingParameters bearing_;
+  double rated_torque_;  // [N.m]
+  std::vector<LineSample> samples_;
 };
 }  // namespace hjt

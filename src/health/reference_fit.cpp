@@ -5,29 +5,186 @@
 #include <cmath>
 
 #include <Eigen/Dense>
+#include <boost/math/distributions/normal.hpp>
 
-#include "health/deviation_laws.hpp"
+#include "gear/ratio.hpp"
 #include "health/indicator_table.hpp"
 
 namespace hjt
 {
 namespace
 {
+constexpr double CARRIED_WINDOWS = 10.0;  // windows in the means that CarriedError is fitted to
+constexpr double LEAST_INVERSE = 1e-6;    // 1 / degrees of freedom: beyond a million it is the normal distribution
+constexpr int MIN_COMMON = 4;             // number of indicators that a common persistence needs
+
+// Of the friction, over Repeatability::share.
+constexpr double FRICTION_SHARE = 3.0;    // [-]
+constexpr double FRICTION_TORQUE = 22.0;  // at the joint [N.m]
+
+/// Size of the difference between drive and model. For a line it is the root of the sum of squares over the lines of
+/// its signal whose phase stays, because resonances make each of them large in one motion and small in another.
+double sizeOffModel(const ReferenceBin& bin, std::size_t indicator) noexcept
+{
+  if (indicator < SCALAR_COUNT)
+  {
+    return std::abs(bin.references[indicator].mean);
+  }
+  double square = 0.0;
+  for (std::size_t line = 0; line < FIRST_LOCKED; ++line)
+  {
+    const double amplitude = bin.references[amplitudeIndex(signalOf(indicator), line)].mean;
+    square += amplitude * amplitude;
+  }
+  return std::sqrt(square);
+}
+
+/// Standard error of the share that stays (von Neumann 1941).
+double errorOfStay(const ReferenceBin& bin, const Reference& reference) noexcept
+{
+  return 1.0 / std::sqrt(std::max(reference.count - bin.runs, 1));
+}
+}  // namespace
+
+double normalScore(double t, double freedom) noexcept
+{
+  return std::copysign(std::sqrt(freedom * std::log1p(t * t / freedom)), t) * (8.0 * freedom + 1.0) /
+         (8.0 * freedom + 3.0);
+}
+
+double studentOf(double score, double freedom) noexcept
+{
+  const double plain = score * (8.0 * freedom + 3.0) / (8.0 * freedom + 1.0);
+  return std::sqrt(freedom * std::expm1(plain * plain / freedom));
+}
+
+double normalQuantile(double share)
+{
+  return boost::math::quantile(boost::math::complement(boost::math::normal(), share));
+}
+
+Repeatability repeatabilityOf(const Parameters& parameters)
+{
+  const double share = parameters.indicators.least_spread;
+  return { share, FRICTION_SHARE * share, FRICTION_TORQUE * share / nominalRatio(parameters.gear) };
+}
+
+double repeatsWithin(const Repeatability& repeatability, const ReferenceBin& bin, std::size_t indicator) noexcept
+{
+  const double own = bin.references[amplitudeOf(indicator)].scale;  // of a part of a line: it may be near zero itself
+  const auto friction = [&](double torque)
+  { return std::hypot(repeatability.friction_share * torque, repeatability.friction_torque); };
+  switch (static_cast<ScalarIndicator>(indicator))
+  {
+    case ScalarIndicator::RUNNING_TORQUE:
+    case ScalarIndicator::COULOMB_TORQUE:
+      return friction(own);
+    case ScalarIndicator::LOAD_FRICTION:
+      return repeatability.friction_share * own;
+    case ScalarIndicator::VISCOUS_FRICTION:
+    {
+      const double speed = std::exp2(bin.bin.speed + 0.5);  // middle of the octave [rad/s]
+      return friction(bin.references[indexOf(ScalarIndicator::RUNNING_TORQUE)].scale) / speed;
+    }
+    default:
+      return repeatability.share * own;
+  }
+}
+
+CommonPersistence commonPersistence(const ReferenceBin& bin, std::size_t kind) noexcept
+{
+  CommonPersistence common;
+  double sum = 0.0;
+  double square = 0.0;
+  double errors = 0.0;
+  for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
+  {
+    const Reference& reference = bin.references[i];
+    if (tailOf(i) == kind && reference.within > 0.0 && reference.variance > 0.0)
+    {
+      const double found = 1.0 - reference.within / reference.variance;
+      const double error = errorOfStay(bin, reference);
+      sum += found;
+      square += found * found;
+      errors += error * error;
+      ++common.count;
+    }
+  }
+  if (common.count >= MIN_COMMON)
+  {
+    common.mean = sum / common.count;
+    common.variance = std::max((square - sum * common.mean) / (common.count - 1) - errors / common.count, 0.0);
+  }
+  return common;
+}
+
+Persistence persistenceOf(const ReferenceBin& bin, const Reference& reference, const CommonPersistence& common) noexcept
+{
+  if (!(reference.within > 0.0 && reference.variance > 0.0))
+  {
+    return { 1.0, 1.0 };
+  }
+  double stays = 1.0 - reference.within / reference.variance;
+  double error = errorOfStay(bin, reference);
+  if (common.count >= MIN_COMMON)
+  {
+    const double all = common.variance + error * error;
+    const double own = common.variance / all;
+    stays = common.mean + own * (stays - common.mean);
+    error = std::sqrt(own * error * error + (1.0 - own) * (1.0 - own) * all / common.count);
+  }
+  // The share that stays may be larger or smaller than found, by its error.
+  const double least = std::clamp(stays - error, 0.0, 1.0);
+  const double runs = static_cast<double>(bin.runs) / bin.windows;
+  return { std::clamp(stays + error, 0.0, 1.0), std::max((1.0 - least) / (1.0 + least), std::min(runs, 1.0)) };
+}
+
+double carriedVariance(const ReferenceBin& bin, const CarriedError& error, std::size_t indicator,
+                       double windows) noexcept
+{
+  const double off = error.share * sizeOffModel(bin, indicator);
+  // With fewer windows than CARRIED_WINDOWS the variance grows as if all of it were noise.
+  return (error.deviation * error.deviation + off * off) * std::max(CARRIED_WINDOWS / windows, 1.0);
+}
+
+double excessOf(double tail) noexcept
+{
+  return tail / (1.0 - 4.0 * std::min(tail, MOST_TAIL));
+}
+
+double Uncertainty::freedom() const noexcept
+{
+  return 1.0 / std::clamp(inverse, LEAST_INVERSE, 1.0);
+}
+
+double Uncertainty::stretch() const noexcept
+{
+  return 1.0 / std::sqrt(1.0 - 2.0 * of_mean);
+}
+
+Uncertainty uncertaintyOf(double learned, double tail, double weight, double freedom) noexcept
+{
+  const double of_mean = learned * learned * tail / weight;
+  return { learned * learned * (1.0 + 3.0 * excessOf(tail)) / freedom + of_mean, of_mean };
+}
+
+namespace
+{
 constexpr double LEAST_OTHERS = 0.05;  // least share of a window's weight that the other windows determine
-constexpr double TAIL_STEP = 0.01;     // 1 / degrees of freedom
-// Least gain of the log likelihood over the normal distribution's: chance gives less in 95 %, half the
-// quantile of chi square with one degree of freedom. Of so few windows the spread's own degrees of freedom say enough.
+constexpr double TAIL_STEP = 0.01;     // step of 1 / degrees of freedom
+// Least gain of the log likelihood over that of the normal distribution. In 95 % of all cases chance gives less: half
+// the quantile of chi square with one degree of freedom.
 constexpr double LEAST_GAIN = 1.92;
 
-/// Moments of a residual are no normal quantities, nor are amplitudes of lines whose phase is free: these have spreads
-/// and a law of their own.
+/// Whether an indicator tells of the tail. Moments of a residual and amplitudes of lines whose phase is free do not:
+/// they are not normal quantities, and have spreads and a law of their own.
 bool tellsTail(std::size_t indicator) noexcept
 {
   return indicator != indexOf(ScalarIndicator::RESIDUAL_KURTOSIS) &&
          indicator != indexOf(ScalarIndicator::RESIDUAL_CREST) && !isFreeAmplitude(indicator);
 }
 
-/// Deviations of windows, each from all others in units of their spread, by logarithmic classes.
+/// Histogram over logarithmic classes: deviation of each window from all others, in units of their spread.
 struct Residuals
 {
   static constexpr std::size_t CLASSES = 48;
@@ -42,7 +199,7 @@ struct Residuals
     count += 1.0;
   }
 
-  /// Logarithm, where single windows have this tail.
+  /// Logarithm of the likelihood if single windows have this tail.
   double likelihood(double tail) const noexcept
   {
     const double inverse = tail + (1.0 + 3.0 * excessOf(tail)) * count / freedom;
@@ -62,8 +219,8 @@ struct Residuals
   double count{};
 };
 
-/// Sets ReferenceBin::tail, once the slopes are fitted: that under which what KeptWindows are off by, each from all
-/// others, is likeliest, in the distribution that single windows are scored by (Baseline). Of normal windows it is 0 to
+/// Sets ReferenceBin::tail once the slopes are fitted. It is the tail that makes the deviations of KeptWindows, each
+/// from all others, most likely in the distribution that scores single windows (Baseline). Normal windows give 0 to
 /// 0.01.
 void fitTails(ReferenceBin& bin, const LearnedSums& sums) noexcept
 {
@@ -110,16 +267,16 @@ void fitTails(ReferenceBin& bin, const LearnedSums& sums) noexcept
   }
 }
 
-constexpr int MIN_FITTED = 4;  // windows before slopes mean anything
+constexpr int MIN_FITTED = 4;  // number of windows that slopes need
 constexpr int RIDGE_STEPS = 4;
-constexpr double LEAST_FREEDOM = 1.0;  // that a spread is divided by
-constexpr int MIN_STEPS = 8;           // pairs of windows before what they differ by means anything
-// Of a place, rms: nearer ones count as one, 0.025 K and a quarter of a percent of the class of load [-].
+constexpr double LEAST_FREEDOM = 1.0;  // least degrees of freedom of a spread
+constexpr int MIN_STEPS = 8;           // number of pairs of windows that their mean difference needs
+// Error of a place, rms: 0.025 K and a quarter of a percent of the class of load. Nearer places count as one [-].
 constexpr double PLACE_ERROR = 0.005;
-constexpr int MIN_ALIKE = 4;    // lines before what they have in common means anything
-constexpr int ITERATIONS = 30;  // for a principal component: its line is narrow enough long before it is exact
+constexpr int MIN_ALIKE = 4;    // number of lines that a common variance needs
+constexpr int ITERATIONS = 30;  // power iterations for a principal component
 
-/// Adds the products of differences.
+/// Adds the products of an indicator's difference and the place.
 void add(double indicator, const PlaceVector& place, double weight, IndicatorSums& sums) noexcept
 {
   ++sums.count;
@@ -128,7 +285,7 @@ void add(double indicator, const PlaceVector& place, double weight, IndicatorSum
   mapped(sums.places).noalias() += weight * place * place.transpose();
 }
 
-/// Of the indicator's square, what slopes over the place leave.
+/// Part of the indicator's square that slopes over the place do not explain.
 double squareLeft(const IndicatorSums& sums, const PlaceVector& slopes) noexcept
 {
   return sums.square + slopes.dot(mapped(sums.places) * slopes - 2.0 * mapped(sums.mixed));
@@ -139,7 +296,7 @@ constexpr int SHARED = PLACES - OWN_PLACES;
 using SharedSquares = Eigen::Matrix<double, SHARED, SHARED>;
 using SharedVector = Eigen::Matrix<double, SHARED, 1>;
 
-/// The shared coordinates of the place, less what goes with the own ones.
+/// The shared coordinates of the place, less their regression on the class's own coordinates.
 struct SharedPlaces
 {
   SharedPlaces(const PlaceSquares& places, int windows) noexcept
@@ -160,18 +317,15 @@ struct SharedPlaces
   SharedSquares squares;
 };
 
-bool isAlikeButForTemperature(OperatingBin one, const OperatingBin& other) noexcept
-{
-  one.temperature = other.temperature;
-  return one == other;
-}
-
+/// Whether the other class differs from this one in temperature alone.
 bool serves(const ReferenceBin& other, const ReferenceBin& bin) noexcept
 {
-  return isAlikeButForTemperature(other.bin, bin.bin) && !(other.bin == bin.bin);
+  OperatingBin there = other.bin;
+  there.temperature = bin.bin.temperature;
+  return there == bin.bin && other.bin.temperature != bin.bin.temperature;
 }
 
-/// What all windows know of the slopes in this class.
+/// Information of the slopes in this class by the windows of all classes.
 void fitInformation(ReferenceBin& bin, const LearnedSums& sums, const std::vector<ReferenceBin>& bins,
                     const std::vector<LearnedSums>& all_sums) noexcept
 {
@@ -228,7 +382,7 @@ void fitSlopes(ReferenceBin& bin, const LearnedSums& learned, const std::vector<
                      slopes.dot(mapped(bin.mean_place) - mapped(learned.windows.mean_places[indicator]));
   }
   mapped(reference.slopes) = slopes;
-  // Beyond the variance by chance where windows are independent; the mean of many such is then not off.
+  // Where windows are independent, chance may make it larger than the variance, so that a mean of many is not biased.
   reference.within = steps.count >= MIN_STEPS && reference.variance > 0.0 ?
                          std::clamp(0.5 * squareLeft(steps, slopes) / steps.count, LEAST_LEFT * reference.variance,
                                     2.0 * reference.variance) :
@@ -237,8 +391,8 @@ void fitSlopes(ReferenceBin& bin, const LearnedSums& learned, const std::vector<
 
 constexpr std::size_t KINDS_OF_LINE = 2 * LINE_SIGNALS + 1;
 
-/// Lines are alike by signal: amplitudes whose phase is free, parts of those whose phase stays; and those in proportion
-/// to the load. KINDS_OF_LINE: none is like it.
+/// Kind of lines that are alike: of one signal the amplitudes with a free phase, or the parts of lines whose phase
+/// stays, or all lines in proportion to the load. KINDS_OF_LINE: no line is like this indicator.
 std::size_t kindOfLine(std::size_t indicator) noexcept
 {
   if (indicator < SCALAR_COUNT || (indicator >= LOADED_BLOCK && indicator < LOADED_BLOCK + LOADED_COUNT))
@@ -254,7 +408,7 @@ std::size_t kindOfLine(std::size_t indicator) noexcept
   return isFreeAmplitude(indicator) ? signal : is_part ? LINE_SIGNALS + signal : KINDS_OF_LINE;
 }
 
-/// Of the indicators that every window determined.
+/// Fits the common causes of the indicators that every window determined.
 void fitCommonCauses(ReferenceBin& bin, const ReferenceSums& sums, FitRoom& room) noexcept
 {
   using Vector = Eigen::Matrix<double, INDICATOR_COUNT, 1>;

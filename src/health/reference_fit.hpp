@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include <Eigen/Core>
@@ -9,7 +10,68 @@
 
 namespace hjt
 {
-constexpr double LEAST_LEFT = 1e-4;  ///< of a variance by the common causes: they are known no better
+/// 1 / degrees of freedom of a window's own distribution, at most: from 4 down a spread tells nothing.
+constexpr double MOST_TAIL = 0.22;
+
+/// Student's t with `freedom` as a normal deviate (Wallace 1959), and back.
+double normalScore(double t, double freedom) noexcept;
+double studentOf(double score, double freedom) noexcept;
+
+/// Normal deviate beyond which this share of the distribution lies.
+double normalQuantile(double share);
+
+/// Repeatability of one UR5 from one recording to the next: 3 % and 0.22 N.m of its friction (docs/compare.md), which
+/// corresponds to a `share` of 0.01. For other indicators nothing is measured, and a third of it is assumed.
+Repeatability repeatabilityOf(const Parameters& parameters);
+
+/// Standard deviation of a sound drive's indicator from one recording to the next, in the unit of the indicator.
+double repeatsWithin(const Repeatability& repeatability, const ReferenceBin& bin, std::size_t indicator) noexcept;
+
+/// Share of the variance that stays from one window to the next.
+struct Persistence
+{
+  double stays;        // r
+  double independent;  // e
+};
+
+/// Persistence of all indicators of one kind, scalars or lines, in a class: mean of the share that stays, and variance
+/// of single indicators about that mean.
+struct CommonPersistence
+{
+  double mean{};
+  double variance{};  // without the error of each
+  int count{};
+};
+
+CommonPersistence commonPersistence(const ReferenceBin& bin, std::size_t kind) noexcept;
+
+Persistence persistenceOf(const ReferenceBin& bin, const Reference& reference,
+                          const CommonPersistence& common) noexcept;
+
+/// Additional variance of a reference that is carried to another motion, for a mean of so many windows.
+double carriedVariance(const ReferenceBin& bin, const CarriedError& error, std::size_t indicator,
+                       double windows) noexcept;
+
+/// Kurtosis less 3, over 6, of Student's t with 1/`tail` degrees of freedom. A variance from such windows has 1 + 3
+/// times this the uncertainty of one from normal windows. The value is bounded: below 4 degrees of freedom it does not
+/// exist.
+double excessOf(double tail) noexcept;
+
+/// How the distribution of a deviation over its spread differs from the normal distribution.
+struct Uncertainty
+{
+  double inverse{};  // 1 / v'
+  double of_mean{};  // y^2 a / k
+
+  double freedom() const noexcept;  ///< v' [-]
+  double stretch() const noexcept;  ///< g, to Student's unit [-]
+};
+
+/// `learned`: share of the variance that was learned; `tail`: a; `weight`: k; `freedom`: degrees of freedom of the
+/// learned spread.
+Uncertainty uncertaintyOf(double learned, double tail, double weight, double freedom) noexcept;
+
+constexpr double LEAST_LEFT = 1e-4;  ///< least share of a variance that the common causes leave [-]
 
 using Squares = Eigen::Matrix<double, PLACES, PLACES, Eigen::RowMajor>;
 using PlaceVector = Eigen::Matrix<double, PLACES, 1>;
@@ -49,14 +111,14 @@ std::array<double, INDICATOR_COUNT> varianceOfAlike(const ReferenceBin& bin) noe
 /// quotient depends on the motion, not on the noise. 0: not known.
 std::array<double, INDICATOR_COUNT> relativeErrors(const SignalIndicators& indicators) noexcept;
 
-/// Takes a window up into the sums of its class; `here`: its place there. Does not allocate.
-/// `model`: what was subtracted; nullptr: nothing.
+/// Adds a window to the sums of its class. `here`: place of the window in the class. `model`: indicators that were
+/// subtracted; nullptr: none. Does not allocate.
 void learnWindow(ReferenceBin& bin, LearnedSums& sums, const SignalIndicators& indicators,
                  const SignalIndicators* model, const Place& here) noexcept;
 
-/// What an indicator changes by over half a class, as a share of it, standard deviation beforehand [-]. Friction of the
-/// shipped drive, of all that a sound drive shows the most: 14 % in 5 K (threefold from 10 to 50 degC), 16 % by
-/// 12.6 N.m.
+/// Prior standard deviation of the change of an indicator over half a class, as a share of the indicator [-]. Of a
+/// sound drive the friction changes most: that of the shipped drive by 14 % in 5 K (threefold from 10 to 50 degC) and
+/// by 16 % with 12.6 N.m.
 constexpr double SLOPE_SHARE = 0.2;
 
 /// Makes of the sums what windows are compared with: the straight line over the place, and of what it leaves the first

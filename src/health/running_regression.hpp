@@ -9,7 +9,7 @@ namespace hjt
 ///
 /// Law:   minimise  sum w (y - x . b)^2 + ridge
 /// where  x, y  row of the design and its targets;  b  coefficients, one column per target
-///        w     weight: as added, less by what `forget` keeps
+///        w     weight as given to `add`, times the shares that `forget` kept since
 /// Columns are scaled to unit mean square before the factorisation. The ridge, 1e-6 of that, only matters where columns
 /// depend on each other: their coefficients are then shared, and `inflation` shows it.
 class RunningRegression
@@ -23,18 +23,19 @@ public:
   void add(const Eigen::Ref<const Eigen::VectorXd>& row, const Eigen::Ref<const Eigen::VectorXd>& targets,
            double weight = 1.0) noexcept;
 
-  /// Makes the sums those of the column less `share` of the other.
+  /// Changes the sums as if `share` times the other column had been subtracted from the column in every row.
   void subtract(int column, int other, double share) noexcept;
-  void drop(int column) noexcept;  ///< as if it had been added as zeros: its coefficient is 0
+  /// Changes the sums as if the column had been zero in every row: its coefficient is then 0.
+  void drop(int column) noexcept;
   /// Mean of the product of two columns [-].
   double mean(int column, int other) const noexcept;
 
   /// Fits with the first `used` columns. False: too few rows, or not solvable; the coefficients are then as before.
   bool fit(int used) noexcept;
 
-  double rows() const noexcept { return rows_; }  ///< less what was forgotten [-]
+  double rows() const noexcept { return rows_; }  ///< number of rows, less what was forgotten [-]
 
-  // Of the last fit.
+  // Results of the last fit.
   double coefficient(int column, int target) const noexcept { return coefficients_(column, target); }
   Eigen::Ref<const Eigen::VectorXd> coefficients(int target) const noexcept { return coefficients_.col(target); }
   double standardError(int column, int target) const noexcept;

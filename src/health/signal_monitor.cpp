@@ -12,20 +12,20 @@ namespace hjt
 {
 namespace
 {
-constexpr double MEAN_TRAVEL = 0.5 * TWO_PI;     // over which the mean speed forgets [rad]
-constexpr double MEAN_TIME = 0.5;                // and the time, for a joint that stands [s]
-constexpr double LARGEST_RIPPLE = 12e-3;         // of a steady motion, by the speed as read [rad]
-constexpr double SETTLING_TIME = 0.1;            // after it was larger or the speed not steady [s]
-constexpr std::int64_t WAITING_TIME = 20000000;  // before that [ns]
-// After a change of speed the drive rings on, in a shoulder at 33 to 45 Hz. The filters' pulse at the change is some
-// six times as large as the ringing, and ten times or more as large as the ripple of lines.
-constexpr double RINGING_SHARE = 0.15;      // of the ripple [-]
-constexpr double RINGING_TIME = 0.45;       // in which it dies down by a factor of e [s]
-constexpr double CALM_RINGING = 0.3e-3;     // as large as the noise in one line [rad]
-constexpr double LEAST_WEIGHT = 0.04;       // of a sample whose residual counts: 1.5 mrad of it [-]
-constexpr double RESIDUAL_TRAVEL = TWO_PI;  // over which the residual's own mean forgets [rad]
-constexpr int MIN_RESIDUALS = 100;          // for moments of the fourth order
-constexpr double FRICTION_WINDOWS = 10.0;   // memory of the friction estimate
+constexpr double MEAN_TRAVEL = 0.5 * TWO_PI;     // travel over which the mean speed forgets [rad]
+constexpr double MEAN_TIME = 0.5;                // time over which it forgets, for a joint that stands [s]
+constexpr double LARGEST_RIPPLE = 12e-3;         // ripple of the speed as read in a calm motion [rad]
+constexpr double SETTLING_TIME = 0.1;            // time after a motion that was not calm [s]
+constexpr std::int64_t WAITING_TIME = 20000000;  // time before a motion that is not calm [ns]
+// After a change of speed the drive rings at 33 to 45 Hz. The pulse of the filters at the change is some six times as
+// large as the ringing, and ten times or more as large as the ripple of lines.
+constexpr double RINGING_SHARE = 0.15;   // ringing over the ripple [-]
+constexpr double RINGING_TIME = 0.45;    // time in which the ringing decays by a factor of e [s]
+constexpr double CALM_RINGING = 0.3e-3;  // ringing as large as the noise in one line [rad]
+constexpr double LEAST_WEIGHT = 0.04;    // weight of a sample with 1.5 mrad of ringing; its residual still counts [-]
+constexpr double RESIDUAL_TRAVEL = TWO_PI;  // travel over which the residual's own mean forgets [rad]
+constexpr int MIN_RESIDUALS = 100;          // number of residuals for moments of the fourth order
+constexpr double FRICTION_WINDOWS = 10.0;   // memory of the friction estimate, in windows
 }  // namespace
 
 SignalMonitor::SignalMonitor(const Parameters& parameters)
@@ -46,7 +46,6 @@ void SignalMonitor::reset() noexcept
 {
   resetLines();
   friction_.reset();
-  smoothed_.reset();
   loop_.restart();
   turn_.reset();
   efficiency_.reset();
@@ -89,15 +88,9 @@ double SignalMonitor::weightAt(double output_angle) const noexcept
   return output_.gravity_torque != 0.0 ? output_.gravity_torque * std::sin(output_angle - output_.gravity_angle) : 0.0;
 }
 
-/// With the weight at the output, which no sample's load has.
-SignalSample SignalMonitor::withWeight(SignalSample sample) const noexcept
-{
-  sample.load_torque += weightAt(sample.output_angle);
-  return sample;
-}
-
-/// The torque is known at one end of the gear, the load's or the motor's: between it and the gear is inertia. The
-/// weight stands in for a load that nobody estimates: the motor's torque has the friction in it.
+/// Adds a sample to the torsion loop. The torque is known at one end of the gear, at the load or at the motor, and
+/// there is inertia between that end and the gear. Without a load estimate the weight takes its place, because the
+/// motor's torque includes the friction.
 void SignalMonitor::addLoop(const SignalSample& sample, double motor_angle, double torsion, double velocity,
                             double seconds) noexcept
 {
@@ -106,19 +99,16 @@ void SignalMonitor::addLoop(const SignalSample& sample, double motor_angle, doub
   const double other_torque = weight_known ? weightAt(sample.output_angle) : ratio_ * sample.motor_torque;
   const bool at_output = load_known || weight_known;
   const double output_speed = (sample.output_angle - last_.output_angle) / seconds;
-  smoothed_.update({ torsion, load_known ? sample.load_torque : other_torque, motor_angle, sample.output_angle },
-                   at_output && std::isfinite(output_speed) ? output_speed : velocity / ratio_,
-                   at_output ? output_inertia_ : -motor_inertia_, seconds);
-  if (smoothed_.settled())
-  {
-    loop_.add(smoothed_.sample());
-  }
+  loop_.add({ torsion, load_known ? sample.load_torque : other_torque, motor_angle, sample.output_angle },
+            at_output && std::isfinite(output_speed) ? output_speed : velocity / ratio_,
+            at_output ? output_inertia_ : -motor_inertia_, seconds);
 }
 
 bool SignalMonitor::update(const SignalSample& given) noexcept
 {
-  const SignalSample sample = withWeight(given);
-  // One encoder is enough to know where the motor stands.
+  SignalSample sample = given;
+  sample.load_torque += weightAt(sample.output_angle);  // no sample's load has it
+  // One encoder is enough for the angle of the motor.
   const bool motor_known = std::isfinite(sample.motor_angle);
   const double motor_angle = motor_known ? sample.motor_angle : ratio_ * sample.output_angle;
   if (!std::isfinite(motor_angle) || !std::isfinite(sample.motor_torque) || !isStamp(sample.stamp) ||
@@ -157,7 +147,7 @@ bool SignalMonitor::update(const SignalSample& given) noexcept
   }
   else
   {
-    smoothed_.reset();
+    loop_.interrupt();
   }
   if (load_known)
   {
@@ -178,7 +168,7 @@ bool SignalMonitor::update(const SignalSample& given) noexcept
   return true;
 }
 
-/// What counts in any motion: what the torque goes into, lag, load and temperature.
+/// Adds the parts of a sample that count in any motion: torque balance, lag, load and temperature.
 void SignalMonitor::addAny(const SignalSample& sample, double velocity, double motor_angle, double output_angle,
                            double seconds) noexcept
 {
@@ -199,7 +189,7 @@ void SignalMonitor::addAny(const SignalSample& sample, double velocity, double m
   }
 }
 
-/// Whether the speed is even; how calm the motion has been.
+/// Updates for how long the motion has been calm. Returns whether the speed is even.
 bool SignalMonitor::judgeMotion(double velocity, double seconds, bool motor_known) noexcept
 {
   const bool moving = std::abs(mean_velocity_) >= parameters_.least_speed;
@@ -232,7 +222,7 @@ void SignalMonitor::addSteady(const SignalSample& sample, double motor_angle, do
   window_.running_torque.add(direction * (sample.motor_torque - load / ratio_));
 }
 
-/// Takes those that have waited long enough, and the oldest if there are too many.
+/// Adds the samples that have waited long enough to the lines, and the oldest sample if too many wait.
 void SignalMonitor::addLines(const LineSample& sample, double travel, std::int64_t stamp) noexcept
 {
   while (waiting_count_ > 0 &&
@@ -314,7 +304,12 @@ void SignalMonitor::complete(std::int64_t stamp) noexcept
   set(ScalarIndicator::LAG_ORDER_1, lag_.line(0));
   set(ScalarIndicator::LAG_ORDER_2, lag_.line(1));
   set(ScalarIndicator::LAG_ORDER_4, lag_.line(2));
-  fillTorsion();
+  const TorsionLoopEstimate::Found torsion = loop_.fit();
+  set(ScalarIndicator::TORSIONAL_STIFFNESS, torsion.stiffness);
+  set(ScalarIndicator::SECOND_STIFFNESS, torsion.second_stiffness);
+  set(ScalarIndicator::LOST_MOTION, torsion.lost_motion);
+  set(ScalarIndicator::HYSTERESIS, torsion.hysteresis);
+  set(ScalarIndicator::HYSTERESIS_AREA, torsion.loop_area);
   friction_.fit();
   set(ScalarIndicator::COULOMB_TORQUE, friction_.coulomb());
   set(ScalarIndicator::VISCOUS_FRICTION, friction_.viscous());
@@ -337,16 +332,6 @@ void SignalMonitor::complete(std::int64_t stamp) noexcept
   balance_.restart();
   lag_.restart();
   window_ = {};
-}
-
-void SignalMonitor::fillTorsion() noexcept
-{
-  loop_.fit();
-  set(ScalarIndicator::TORSIONAL_STIFFNESS, loop_.stiffness());
-  set(ScalarIndicator::SECOND_STIFFNESS, loop_.secondStiffness());
-  set(ScalarIndicator::LOST_MOTION, loop_.lostMotion());
-  set(ScalarIndicator::HYSTERESIS, loop_.hysteresis());
-  set(ScalarIndicator::HYSTERESIS_AREA, loop_.loopArea());
 }
 
 void SignalMonitor::resetLines() noexcept

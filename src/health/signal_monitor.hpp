@@ -7,36 +7,51 @@
 #include <complex>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 #include <Eigen/Core>
 #include <Eigen/Dense>
 
 #include "gear/angle.hpp"
-#include "harmonic_joint_twin/health/indicator.hpp"
+#include "harmonic_joint_twin/health/motion_indicators.hpp"
 #include "harmonic_joint_twin/health/signal_indicators.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
-#include "health/bearing_slip.hpp"
-#include "health/efficiency_estimate.hpp"
+#include "health/health_monitor.hpp"
 #include "health/order_tracker.hpp"
 #include "health/running_regression.hpp"
-#include "health/signal_sample.hpp"
-#include "health/torsion_loop_estimate.hpp"
-#include "health/turn_window.hpp"
 
 namespace hjt
 {
-/// Ripple of an angle: what three filters in a row do not follow of it.
+constexpr double NOT_MEASURED = std::numeric_limits<double>::quiet_NaN();
+
+/// Signals of a drive's own sensors at one instant. A signal that is not measured stays NaN. Without one of the
+/// encoders the indicators that need both are missing, without a load estimate the efficiency, without set points the
+/// lag.
+struct SignalSample
+{
+  std::int64_t stamp{};                   ///< [ns]
+  double motor_angle{ NOT_MEASURED };     ///< encoder, without jumps at full turns [rad]
+  double output_angle{ NOT_MEASURED };    ///< encoder, without jumps at full turns [rad]
+  double motor_velocity{ NOT_MEASURED };  ///< [rad/s]
+  double motor_torque{ NOT_MEASURED };    ///< at the shaft: commanded, or current times torque constant [N.m]
+  double load_torque{ NOT_MEASURED };     ///< estimate at the output, > 0 resists positive motion [N.m]
+  double temperature{ NOT_MEASURED };     ///< [degC]
+  double target_angle{ NOT_MEASURED };    ///< set point of the output angle [rad]
+};
+
+/// Ripple of an angle: the part of it that passes three high-pass filters in a row.
 ///
 /// Law:   r = (s t / (1 + s t))^3 x
 /// where  x  angle, given by its speed [rad];  t  TIME [s]
-/// A steady acceleration has no ripple; of a line at f the share (1 + 1 / (2 pi f t)^2)^-1.5 is left, 0.9 at 30 Hz.
+/// A steady acceleration has no ripple. A line at the frequency f keeps the share (1 + 1 / (2 pi f t)^2)^-1.5, which is
+/// 0.9 at 30 Hz.
 class RippleFilter
 {
 public:
   explicit RippleFilter(double speed = 0.0) : smooth_speed_(speed) {}
 
-  /// `seconds` since the last one. Speed [rad/s].
+  /// `speed`: of the angle [rad/s]; `seconds`: since the last update.
   void update(double speed, double seconds) noexcept
   {
     const double kept = std::exp(-seconds / TIME);
@@ -55,19 +70,18 @@ private:
   double smooth_acceleration_{};  // [rad/s^2]
 };
 
-/// What the motor's torque goes into, over one window: inertia, and friction that grows with the load.
+/// Inertia and friction that grows with the load, from the motor's torque over one window.
 ///
-/// Law:   F tau = J F a + C F sign(omega) + g_0 [ + g_c F cos(phi) + g_s F sin(phi) ],  F = 1 / (1 + s t)^2
+/// Law:   F tau = J F a + C F sign(omega) + g_0 [ + g_c F cos(phi) + g_s F sin(phi) ],  F as of TwiceSmoothed
 ///        F tau = J F a + C F sign(omega) + g_0 + B F omega + l F(sign(omega) |T| / i)   where the motor moves
 /// where  tau            motor torque less the load's [N.m];  a, omega  motor acceleration [rad/s^2], speed [rad/s]
-///        C              friction: without its column what changes with the temperature or a fault would count as
-///                       inertia, for the friction turns round with the motion
+///        C              friction: it changes sign with the motion, so that without its column a change by temperature
+///                       or a fault would count as inertia
 ///        phi            output angle [rad]; g_c, g_s: weight, where the load is not known
 ///        B              viscous friction;  T, i  load torque [N.m], ratio;  l  friction by load [-]: needs a load
 ///                       that varies
-///        t              TIME [s]
-/// A motion of less than LEAST_ACCELERATION rms, or whose weight goes as its acceleration, has no inertia to see: it
-/// goes to 0.
+/// The inertia goes to 0 where the motion does not show it: with less than LEAST_ACCELERATION rms, or if the weight is
+/// in proportion to the acceleration.
 class TorqueBalance
 {
 public:
@@ -76,7 +90,7 @@ public:
   void reset() noexcept
   {
     restart();
-    started_ = false;
+    smoothed_.reset();
   }
 
   /// The next window.
@@ -86,35 +100,28 @@ public:
     friction_.reset();
   }
 
-  /// Every sample. `torque`: less the load's; `load`: at the motor, NaN: not known [N.m]; `seconds` since the last one.
+  /// Takes every sample. `torque`: of the motor, less the load's [N.m]; `load`: at the motor, NaN: not known [N.m];
+  /// `seconds`: since the last sample.
   void add(double torque, double load, double velocity, double output_angle, double seconds, bool moving) noexcept
   {
     const double direction = std::copysign(1.0, velocity);
-    Values values;
-    values << torque, velocity, direction, std::cos(output_angle), std::sin(output_angle),
+    TwiceSmoothed<COLUMNS + 1>::Values given;
+    given << torque, velocity, direction, std::cos(output_angle), std::sin(output_angle),
         direction * (std::isfinite(load) ? std::abs(load) : 0.0);
-    if (!started_)
-    {
-      started_ = true;
-      first_ = values;
-      second_ = values;
-    }
-    const double last_speed = second_[1];
-    const double kept = std::exp(-seconds / TIME);
-    first_ = kept * first_ + (1.0 - kept) * values;
-    second_ = kept * second_ + (1.0 - kept) * first_;
+    smoothed_.update(given, seconds);
+    const auto& values = smoothed_.values();
     Eigen::Matrix<double, COLUMNS, 1> row;
-    row << (second_[1] - last_speed) / seconds, second_[2], 1.0, second_[3], second_[4];
-    const Eigen::Matrix<double, 1, 1> balance(second_[0]);
+    row << smoothed_.rates()[1], values[2], 1.0, values[3], values[4];
+    const Eigen::Matrix<double, 1, 1> balance(values[0]);
     regression_.add(row, balance);
     if (moving)
     {
-      row.tail<2>() << second_[1], second_[5];
+      row.tail<2>() << values[1], values[5];
       friction_.add(row, balance);
     }
   }
 
-  /// At the motor [kg.m^2].
+  /// Inertia at the motor [kg.m^2].
   double fit(bool load_known) noexcept
   {
     Eigen::Matrix<double, COLUMNS, 1> row = Eigen::Matrix<double, COLUMNS, 1>::Zero();
@@ -123,7 +130,7 @@ public:
     return regression_.fit(load_known ? COLUMNS - 2 : COLUMNS) ? regression_.coefficient(0, 0) : 0.0;
   }
 
-  /// [-]
+  /// Friction by load, l [-].
   Indicator loadFriction() noexcept
   {
     constexpr int LOAD = COLUMNS - 1;
@@ -134,22 +141,18 @@ public:
 private:
   static constexpr int COLUMNS = 5;
   static constexpr double MAX_INFLATION = 30.0;       // of the variance of the friction by load [-]
-  static constexpr double TIME = 0.02;                // [s]
   static constexpr double LEAST_ACCELERATION = 20.0;  // rms, of the motor [rad/s^2]
-  using Values = Eigen::Matrix<double, COLUMNS + 1, 1>;
 
   RunningRegression regression_;
   RunningRegression friction_;
-  Values first_{ Values::Zero() };
-  Values second_{ Values::Zero() };
-  bool started_{};
+  TwiceSmoothed<COLUMNS + 1> smoothed_;
 };
 
-/// Payload of a joint, from its load torque over its angle: a payload gives the same on any path.
+/// Load torque of a joint as a function of its angle, which is the same for one payload on any path.
 ///
 /// Law:   T = c + s sin(phi) + k cos(phi),  least squares over the time
-/// where  T, phi  load torque [N.m], output angle [rad];  s, k  weight;  c  what does not depend on the angle
-/// An angle that varies by less than some 0.3 deg rms determines c alone: s and k go to 0.
+/// where  T, phi  load torque [N.m], output angle [rad];  s, k  weight;  c  the part that does not depend on the angle
+/// If the angle varies by less than some 0.3 deg rms, it determines c alone, and s and k go to 0.
 class LoadOverAngle
 {
 public:
@@ -162,7 +165,7 @@ public:
     right_.noalias() += seconds * torque * row;
   }
 
-  /// NaN: nothing came.
+  /// NaN: nothing was added.
   Coefficients coefficients() const noexcept
   {
     constexpr double LEAST_SQUARE = 2.5e-5;  // of the sine and cosine about their means [-]
@@ -180,13 +183,14 @@ private:
   Eigen::Vector3d right_{ Eigen::Vector3d::Zero() };
 };
 
-/// What a joint's controller cannot keep of its set points, over one window: ripple of the lag, and its lines.
+/// Ripple and lines of the lag of a joint behind its set points, over one window.
 ///
 /// Law:   r = RippleFilter of i (phi - phi_s),   R^2 = <r^2>,   A_o^2 = 4 <|c_o|^2>,   c_o = mean of r exp(j o theta)
 /// where  phi, phi_s  output angle, its set point [rad];  i  ratio;  theta  motor angle [rad];  o  order
-///        <>          mean over the travel;  c_o forgets in LINE_TRAVEL, so that a line counts whatever its phase does:
-///                    under a load that changes its sign, and from one move to the next
-/// Set points are smooth: of the motion itself nothing is left in r, which the ripple of the angle alone is full of.
+///        <>          mean over the travel;  c_o is forgotten over LINE_TRAVEL, so that a line counts although its
+/// phase
+///                    changes, as under a load that changes sign and from one move to the next
+/// Set points are smooth, so that r contains nothing of the motion itself. The ripple of the angle alone would.
 class LagEstimate
 {
 public:
@@ -203,8 +207,8 @@ public:
     lines_ = {};
   }
 
-  /// Every sample. `lag`: at the motor [rad], NaN: no set point; `travel` of the motor, `seconds` since the last one;
-  /// `moving`: it counts.
+  /// Takes every sample. `lag`: at the motor [rad], NaN: there is no set point; `travel`: of the motor since the last
+  /// sample [rad]; `seconds`: since the last sample; `moving`: whether the sample counts.
   void add(double lag, double motor_angle, double travel, double seconds, bool moving) noexcept
   {
     const bool is_first = age_ == 0.0;
@@ -245,7 +249,7 @@ public:
     return { travel_ > LEAST_TRAVEL, std::sqrt(square_ / travel_) };
   }
 
-  /// A_o [rad]
+  /// A_o of ORDERS[order] [rad]
   Indicator line(std::size_t order) const noexcept
   {
     const Line& line = lines_[order];
@@ -257,7 +261,7 @@ private:
   static constexpr double LEAST_TRAVEL = 10.0 * TWO_PI;  // in a window [rad]
   static constexpr double SETTLING_TIME = 0.2;           // of the filter [s]
   static constexpr double USED_BAND = 0.8;               // of half the samples a turn [-]
-  static constexpr double SEEN_SHARE = 0.5;              // of the travel, that a line could be seen in [-]
+  static constexpr double SEEN_SHARE = 0.5;              // least share of the travel in which a line could be seen [-]
 
   struct Line
   {
@@ -278,9 +282,9 @@ private:
 ///
 /// Law:   tau - T / i = C sign(omega) + B omega + g_c cos(phi) + g_s sin(phi) + g_0
 /// where  tau, T      motor torque, load estimate (0 if none) [N.m];  i  ratio [-]
-///        omega, phi  motor speed over about a turn [rad/s], output angle [rad]; the terms in phi take up the weight
-/// Recursive least squares over samples at near-constant speed, forgotten exponentially over travel.
-/// Valid while the motion separates the two: several speeds, each way.
+///        omega, phi  motor speed over about a turn [rad/s], output angle [rad]; the terms in phi are the weight
+/// Recursive least squares over samples at near-constant speed, which are forgotten exponentially over the travel.
+/// The values are valid while the motion separates them: with several speeds in each direction.
 class FrictionEstimate
 {
 public:
@@ -309,8 +313,8 @@ public:
 
 private:
   static constexpr int COLUMNS = 5;
-  /// Speed and direction tell Coulomb from viscous friction only while their variance is inflated less than this [-]:
-  /// two speeds in the ratio 1 to 2, each way, give 10.
+  /// Largest inflation of a coefficient's variance at which speed and direction separate Coulomb from viscous friction
+  /// [-]. Two speeds in the ratio 1 to 2, in each direction, give 10.
   static constexpr double MAX_INFLATION = 30.0;
 
   Indicator value(int column) const noexcept
@@ -329,34 +333,35 @@ private:
 
 /// Health indicators from a drive's own signals, window by window, in fixed memory. Allocates only at construction.
 ///
-/// A window ends after indicators.window_turns turns of the motor at steady speed, either way, or after
-/// indicators.window_time. The joint torque is the load estimate and the weight that output.gravity_torque says.
-/// Steady: the mean speed over about half a turn is above indicators.least_speed, and the speed itself within
-/// indicators.speed_change of it. Lines are fitted to the calm part of the steady motion: not from 20 ms before to
-/// 0.4 s after a change of speed, which excites the drive a thousand times more than the lines. Without a motor encoder
-/// they are fitted to all steady motion.
+/// A window ends after indicators.window_turns turns of the motor at steady speed, in either direction, or after
+/// indicators.window_time. The joint torque is the load estimate plus the weight by output.gravity_torque. The motion
+/// is steady if the mean speed over about half a turn is above indicators.least_speed and the speed itself is within
+/// indicators.speed_change of that mean. Lines are fitted to the calm part of the steady motion. A change of speed
+/// excites the drive a thousand times more than the lines do, so that the motion is not calm from 20 ms before it to
+/// 0.4 s after it. Without a motor encoder lines are fitted to all steady motion.
 class SignalMonitor
 {
 public:
   explicit SignalMonitor(const Parameters& parameters);
 
-  /// Looks for the bearing's slip in every further window with a motor encoder (BearingSlip); allocates, as updates do
-  /// then.
+  /// From now on looks for the bearing's slip in every window with a motor encoder (BearingSlip). This call allocates,
+  /// and updates allocate after it.
   void seekBearingSlip(const Parameters& parameters) { slip_.emplace(parameters); }
 
   void reset() noexcept;
 
-  /// True: this sample completed a window. A sample without stamp progress, angle or torque is passed over and counted.
+  /// True: this sample completed a window. A sample whose stamp is not later, or that has no angle or torque, is
+  /// refused and counted.
   bool update(const SignalSample& given) noexcept;
 
-  /// Of the last window that was completed.
+  /// Indicators of the last complete window.
   const SignalIndicators& indicators() const noexcept { return indicators_; }
 
   std::uint64_t refused() const noexcept { return refused_; }
-  double progress() const noexcept;  ///< of the running window, 0 ... 1 [-]
+  double progress() const noexcept;  ///< complete share of the present window, 0 ... 1 [-]
 
 private:
-  /// Sums over a window; the mean is over `weight`.
+  /// A weighted mean over a window.
   struct Mean
   {
     void add(double value, double value_weight = 1.0) noexcept
@@ -364,7 +369,7 @@ private:
       sum += value_weight * value;
       weight += value_weight;
     }
-    double value() const noexcept { return sum / weight; }  // NaN: nothing came
+    double value() const noexcept { return sum / weight; }  // NaN: nothing was added
     double sum{};
     double weight{};
   };
@@ -392,7 +397,7 @@ private:
     double residual_largest{};
   };
 
-  /// A sample for the lines that waits whether the motion stays calm.
+  /// A sample for the lines that waits until it is known whether the motion stays calm.
   struct Waiting
   {
     LineSample sample;
@@ -402,7 +407,6 @@ private:
 
   void start(const SignalSample& sample, double motor_angle) noexcept;
   double weightAt(double output_angle) const noexcept;
-  SignalSample withWeight(SignalSample sample) const noexcept;
   void addLoop(const SignalSample& sample, double motor_angle, double torsion, double velocity,
                double seconds) noexcept;
   void addAny(const SignalSample& sample, double velocity, double motor_angle, double output_angle,
@@ -419,7 +423,6 @@ private:
   void fillLines(LineSignal signal, const OrderTracker& tracker) noexcept;
   void set(ScalarIndicator indicator, double value) noexcept { indicators_.values[indexOf(indicator)] = value; }
   void set(ScalarIndicator indicator, const Indicator& value) noexcept;
-  void fillTorsion() noexcept;
 
   const double ratio_;
   const OutputParameters output_;
@@ -429,7 +432,6 @@ private:
   OrderTracker tracker_;
   std::optional<BearingSlip> slip_;
   FrictionEstimate friction_;
-  SmoothedTorsion smoothed_;
   TorsionLoopEstimate loop_;
   TurnWindow turn_;
   EfficiencyEstimate efficiency_;
@@ -439,19 +441,19 @@ private:
   bool started_{};
   SignalSample last_;
   double last_angle_{};     // of the motor [rad]
-  double torsion_zero_{};   // of the first sample, so that what is summed is small [rad]
+  double torsion_zero_{};   // torsion of the first sample, so that sums stay small [rad]
   double mean_velocity_{};  // over about half a turn [rad/s]
-  RippleFilter speed_;      // of the speed as read: uneven stamps do not disturb it
+  RippleFilter speed_;      // of the speed as read, which uneven stamps do not disturb
   RippleFilter angle_;      // of the motor angle
   TorqueBalance balance_;
   LagEstimate lag_;
-  double calm_{};  // how long the motion has been [s]
+  double calm_{};  // time for which the motion has been calm [s]
   std::array<Waiting, 128> waiting_;
   std::size_t first_waiting_{};
   std::size_t waiting_count_{};
   double ringing_{};        // amplitude after the last change of speed [rad]
-  double turn_travel_{};    // since the turn window was read [rad]
-  bool tracked_{};          // every line has been fitted: the residual means something
+  double turn_travel_{};    // travel since the turn window was read [rad]
+  bool tracked_{};          // every line has been fitted, so that the residual is valid
   double residual_mean_{};  // slow [rad]
   Window window_;
 };

@@ -5,10 +5,12 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <mutex>
 #include <optional>
 #include <sstream>
+#include <string>
 #include <vector>
 
 #include <yaml-cpp/yaml.h>
@@ -26,30 +28,12 @@ namespace
 {
 namespace fs = std::filesystem;
 
-constexpr const char* TABLE = "\nsignatures: |\n";  // the last key: rows are read as they stand
+constexpr const char* TABLE = "\nsignatures: |\n";  // the last key, whose rows are read as plain text
 constexpr std::size_t ROW_START = 5;                // cause, motion, speed, direction, severity
 
 std::size_t lineOf(const YAML::Node& node)
 {
   return static_cast<std::size_t>(node.Mark().line) + 1;
-}
-
-bool isIn(const Range& range, double value)
-{
-  return value >= range.min && value <= range.max;
-}
-
-std::vector<std::string> wordsOf(const std::string& row)
-{
-  constexpr const char* BLANKS = " \t\r";
-  std::vector<std::string> words;
-  for (std::size_t begin = row.find_first_not_of(BLANKS); begin != std::string::npos;)
-  {
-    const std::size_t end = std::min(row.find_first_of(BLANKS, begin), row.size());
-    words.push_back(row.substr(begin, end - begin));
-    begin = row.find_first_not_of(BLANKS, end);
-  }
-  return words;
 }
 
 class SignatureReader
@@ -128,11 +112,18 @@ private:
 
   double number(const YAML::Node& node, const std::string& key, const Range& range) const
   {
-    const std::optional<double> value = node.IsScalar() ? decimalNumber(node.Scalar()) : std::nullopt;
-    if (!value || !isIn(range, *value))
+    const auto before = [&] { return key + ": "; };
+    return number(node.IsScalar() ? node.Scalar() : "no number", range, lineOf(node), before);
+  }
+
+  /// `before`: makes the beginning of the message.
+  template <class Text>
+  double number(const std::string& word, const Range& range, std::size_t line, const Text& before) const
+  {
+    const std::optional<double> value = decimalNumber(word);
+    if (!value || !isWithin(*value, range))
     {
-      fail(lineOf(node),
-           key + ": " + (node.IsScalar() ? node.Scalar() : "no number") + ", expected " + rangeText(range));
+      fail(line, before() + word + ", expected " + rangeText(range));
     }
     return *value;
   }
@@ -145,19 +136,26 @@ private:
     }
   }
 
-  std::size_t indicatorNamed(const YAML::Node& node) const
+  /// The one of `first` to `count` that has this name. `kind`: for the message.
+  template <class NameOf>
+  std::size_t named(const std::string& name, const NameOf& name_of, std::size_t first, std::size_t count,
+                    const std::string& kind, std::size_t line) const
   {
-    const std::string& name = node.Scalar();
     std::vector<std::string> known;
-    for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
+    for (std::size_t i = first; i < count; ++i)
     {
-      known.emplace_back(indicatorName(i));
+      known.emplace_back(name_of(i));
       if (known.back() == name)
       {
         return i;
       }
     }
-    fail(lineOf(node), "indicator " + name + ": no such indicator" + didYouMean(name, known));
+    fail(line, kind + " " + name + ": no such " + kind + didYouMean(name, known));
+  }
+
+  std::size_t indicatorNamed(const YAML::Node& node) const
+  {
+    return named(node.Scalar(), indicatorName, 0, INDICATOR_COUNT, "indicator", lineOf(node));
   }
 
   void readIndicators(const YAML::Node& indicators)
@@ -238,7 +236,7 @@ private:
     }
   }
 
-  /// On straight lines from 0 and between the severities.
+  /// Adds the numbers of robots to a signature, interpolated linearly from 0 and between the severities.
   void addOfRobots(Signature& signature) const
   {
     RobotSignature before{};
@@ -266,7 +264,8 @@ private:
     std::string row;
     for (std::size_t line = first_line; std::getline(rows, row); ++line)
     {
-      const std::vector<std::string> words = wordsOf(row);
+      std::istringstream blanks(row);
+      const std::vector<std::string> words{ std::istream_iterator<std::string>(blanks), {} };
       if (!words.empty())
       {
         readRow(words, line);
@@ -296,26 +295,14 @@ private:
 
   double rowNumber(const std::string& word, const char* key, const Range& range, std::size_t line) const
   {
-    const std::optional<double> value = decimalNumber(word);
-    if (!value || !isIn(range, *value))
-    {
-      fail(line, std::string("signatures: ") + key + " = " + word + ", expected " + rangeText(range));
-    }
-    return *value;
+    return number(word, range, line, [&] { return std::string("signatures: ") + key + " = "; });
   }
 
   Cause causeNamed(const std::string& name, std::size_t line) const
   {
-    std::vector<std::string> known;
-    for (auto cause = static_cast<std::size_t>(Cause::FIRST_FAULT); cause < CAUSE_COUNT; ++cause)
-    {
-      known.emplace_back(causeName(static_cast<Cause>(cause)));
-      if (known.back() == name)
-      {
-        return static_cast<Cause>(cause);
-      }
-    }
-    fail(line, "no such cause: " + name + didYouMean(name, known));
+    const auto name_of = [](std::size_t cause) { return causeName(static_cast<Cause>(cause)); };
+    constexpr auto FIRST = static_cast<std::size_t>(Cause::FIRST_FAULT);
+    return static_cast<Cause>(named(name, name_of, FIRST, CAUSE_COUNT, "cause", line));
   }
 
   const std::string path_;
@@ -335,8 +322,8 @@ std::string readText(const std::string& path)
   return std::move(*text);
 }
 
-/// With a signature at the geometric mean of each two severities that follow each other, linear between them: else an
-/// estimate sticks to the severities that were run.
+/// Adds a signature at the geometric mean of each two severities that follow each other, interpolated linearly. Without
+/// them an estimate would stay at the severities of the runs.
 SignatureSet withSeveritiesBetween(SignatureSet set)
 {
   const std::vector<Signature> known = std::move(set.signatures);
@@ -402,5 +389,162 @@ std::shared_ptr<const SignatureSet> loadSignatures(const std::string& name)
         name == NO_FILE ? SignatureSet{} : withSeveritiesBetween(parseSignatures(readText(path), path)));
   }
   return set;
+}
+
+namespace
+{
+constexpr const char* KINEMATICS = " kinematics ";  // motion of the rows that do not come from a run
+constexpr const char* HEAD = R"(# SPDX-License-Identifier: BSD-3-Clause
+# What faults change in the health indicators of a gear, found in the twin's own runs
+# (docs/indicators.md, "Signatures").
+# Written by `joint_twin signatures`.
+format: )";
+constexpr const char* ERRORS = R"(
+# Errors by the law of docs/indicators.md [-]: of each number of a signature on another gear, and in a motion of another
+# kind; share of the sound drive's lines that a fault of severity 1 changes; weight of the evidence, and the share of it
+# that is left where no signature fits; of the severity, and more where no signature fits.
+errors:
+)";
+constexpr const char* INDICATORS = R"(
+# Indicators that the signatures are known for, in the order of the columns below, and their units.
+indicators:
+)";
+constexpr const char* SOUND = R"(
+# Values of the sound drive in the first motion, in these units.
+sound:
+)";
+constexpr const char* CARRIED = R"(
+# What the indicators of a sound drive less a model's differ by from one motion to another: [deviation in the
+# indicator's unit, share of what drive and model differ by, degrees of freedom]. Not known of what is missing here.
+carried:
+)";
+constexpr const char* OCCURRENCE = R"(
+# How often a cause occurs, 1 ... 10 [-]: FMECA of C. Costantino, Politecnico di Torino, 2021, Table 3.7. What is
+# missing here is not rated.
+occurrence:
+)";
+constexpr const char* ROBOTS = R"(
+# What faults change in friction by load and lag of a robot in closed loop, of any gear in any motion: [cause, severity,
+# then, as shares of the sound values, load_friction, lag_ripple, lag_order_1, _2, _4]. By `lab/run faults_seen --fit`.
+robots:
+)";
+constexpr const char* SIGNATURES = R"(
+# A row each: cause, motion, speed of the motor [rad/s] and share of travel one way less the other [-] (magnitudes; 0 0:
+# any motion), severity [-], then the change of each of the indicators; of stiffness, lost motion and loop, and of
+# friction by thicker grease, as a share of the sound value [-].
+signatures: |
+)";
+
+/// A number with the shortest exponent: -2.44e-5.
+std::string shortText(double value, int digits)
+{
+  const std::string text = roundedText(value, digits);
+  const std::size_t exponent = text.find('e');
+  if (exponent == std::string::npos)
+  {
+    return text;
+  }
+  const std::string sign = text[exponent + 1] == '-' ? "-" : "";
+  return text.substr(0, exponent + 1) + sign + text.substr(text.find_first_not_of('0', exponent + 2));
+}
+
+void writeRow(const Signature& signature, const std::string& motion, const SignatureSet& set, TextStream& text)
+{
+  text << "  " << causeName(signature.cause) << ' ' << motion << ' ' << shortText(signature.motion.speed, 4) << ' '
+       << shortText(signature.motion.direction, 2) << ' ' << numberText(signature.severity);
+  for (std::size_t i = 0; i < SIGNATURE_SIZE; ++i)
+  {
+    if (set.fitted[i] && !isOfRobot(i))
+    {
+      text << ' ' << shortText(signature.change[i], 3);
+    }
+  }
+  text << '\n';
+}
+
+void writeOccurrence(const SignatureSet& set, TextStream& text)
+{
+  text << OCCURRENCE;
+  for (std::size_t i = 0; i < CAUSE_COUNT; ++i)
+  {
+    if (set.occurrence[i] > 0.0)
+    {
+      text << "  " << causeName(static_cast<Cause>(i)) << ": " << numberText(set.occurrence[i]) << '\n';
+    }
+  }
+}
+}  // namespace
+
+std::string signatureText(const SignatureSet& set, const std::vector<std::string>& motions)
+{
+  TextStream text;
+  text << HEAD << SIGNATURE_FORMAT << "\ngear: " << set.gear << '\n' << ERRORS;
+  for (const SignatureErrorRow& row : SIGNATURE_ERRORS)
+  {
+    text << "  " << row.key << ": " << numberText(set.*row.value) << '\n';
+  }
+  text << INDICATORS;
+  const std::array<std::size_t, SIGNATURE_SIZE> indicators = indicatorsOfNumbers();
+  for (std::size_t i = 0; i < SIGNATURE_SIZE; ++i)
+  {
+    if (set.fitted[i] && !isOfRobot(i))
+    {
+      const std::string unit = indicatorUnit(indicators[i]);
+      text << "  " << indicatorName(indicators[i]) << ": " << (unit == "-" ? "\"-\"" : unit) << '\n';
+    }
+  }
+  text << SOUND;
+  for (std::size_t i = 0; i < SCALAR_COUNT; ++i)
+  {
+    if (!std::isnan(set.sound[i]))
+    {
+      text << "  " << indicatorName(i) << ": " << numberText(*decimalNumber(roundedText(set.sound[i], 3))) << '\n';
+    }
+  }
+  text << CARRIED;
+  for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
+  {
+    const CarriedError& error = set.carried[i];
+    if (error.deviation < CarriedError{}.deviation)
+    {
+      text << "  " << indicatorName(i) << ": [" << numberText(error.deviation) << ", " << numberText(error.share)
+           << ", " << numberText(error.freedom) << "]\n";
+    }
+  }
+  writeOccurrence(set, text);
+  if (!set.of_robots.empty())
+  {
+    text << ROBOTS;
+  }
+  for (const RobotSignature& signature : set.of_robots)
+  {
+    text << "  - [" << causeName(signature.cause) << ", " << numberText(signature.severity);
+    for (const double share : signature.share)
+    {
+      text << ", " << numberText(share);
+    }
+    text << "]\n";
+  }
+  text << SIGNATURES;
+  for (std::size_t i = 0; i < set.signatures.size(); ++i)
+  {
+    writeRow(set.signatures[i], motions[i], set, text);
+  }
+  return text.str();
+}
+
+std::string withRowsOf(const std::string& text, const std::string& path, const std::string& added)
+{
+  if (parseSignatures(text, path).fitted != parseSignatures(added, "those to add").fitted)
+  {
+    throw ParameterError(path + ": its indicators are not those of the signatures to add");
+  }
+  std::string all = text + (text.back() == '\n' ? "" : "\n");
+  std::istringstream rows(added.substr(added.find(SIGNATURES) + std::string(SIGNATURES).size()));
+  for (std::string row; std::getline(rows, row);)
+  {
+    all += row.find(KINEMATICS) == std::string::npos ? row + '\n' : "";
+  }
+  return all;
 }
 }  // namespace hjt

@@ -11,10 +11,10 @@
 
 namespace hjt
 {
-/// Of the files that this software reads and writes.
+/// Format number of the files that this software reads and writes.
 constexpr int SIGNATURE_FORMAT = 3;
 
-/// A number of section `errors` of a file.
+/// A number of the section `errors` of a file.
 struct SignatureErrorRow
 {
   const char* key;
@@ -29,11 +29,12 @@ constexpr std::array<SignatureErrorRow, 7> SIGNATURE_ERRORS{ { { "number", &Sign
                                                                { "severity_misfit",
                                                                  &SignatureSet::severity_misfit } } };
 
-/// Of each number of a signature, index of the indicator that it speaks of.
+/// Index of the indicator for each number of a signature.
 std::array<std::size_t, SIGNATURE_SIZE> indicatorsOfNumbers();
 
-/// The signatures of parameter indicators.signatures: of a file as named, else beside the default configuration;
-/// NO_FILE: none. A file is read once: those who use it share it. Allocates and reads: not for the real-time loop.
+/// The signatures of the file that parameter indicators.signatures names, by its path or beside the default
+/// configuration; NO_FILE: none. A file is read once, and all users share it. The function allocates and reads files:
+/// it is not for the real-time loop.
 /// @throws ParameterError naming file, line and key of what is wrong: damaged, of another format, with an indicator or
 /// unit that this software has not.
 std::shared_ptr<const SignatureSet> loadSignatures(const std::string& name);
@@ -41,11 +42,11 @@ std::shared_ptr<const SignatureSet> loadSignatures(const std::string& name);
 /// Contents of a file (format: config/signatures/size_25.yaml). `path`: for the messages alone. @throws as above.
 SignatureSet parseSignatures(const std::string& text, const std::string& path);
 
-/// The text of a file, which reads back as the same set but for the digits beyond the third of a change. `motions`:
-/// names for people, of each signature.
+/// The text of a file. Reading it gives the same set, except that changes have three digits. `motions`: a name for
+/// people of each signature's motion.
 std::string signatureText(const SignatureSet& set, const std::vector<std::string>& motions);
 
-/// The text of a file with the rows of runs of another one behind its own. `path`: of the former, for messages alone.
+/// The text of a file with the rows of another file added. `path`: of the first file, for messages alone.
 /// @throws ParameterError if one is damaged or they speak of different indicators.
 std::string withRowsOf(const std::string& text, const std::string& path, const std::string& added);
 }  // namespace hjt

@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Dense>
-
-#include "health/motion_likeness.hpp"
 
 namespace hjt
 {
@@ -14,8 +16,8 @@ namespace
 {
 constexpr double LARGE = 1e100;  // logarithms of products are taken before they overflow
 
-/// Half the square of the amplitude that a line with a phase has in the sound drive. Orders 2 and 1.98 are told apart
-/// so little in a motion to and fro that they count as one.
+/// Half the square of the amplitude that a line with a phase has in the sound drive. Orders 2 and 1.98 are so hard to
+/// separate in a motion to and fro that they count as one.
 double soundSquare(const WindowResidual& residual, LineSignal signal, std::size_t line) noexcept
 {
   constexpr std::array NEIGHBOURS{ index(Line::WAVE_GENERATOR_2), index(Line::CIRCULAR_SPLINE_2) };
@@ -142,7 +144,7 @@ double SignatureTerms::misfit(const SignatureParts& parts) const noexcept
   return count_ > 0 ? std::max(1.0, square / static_cast<double>(count_)) : 1.0;
 }
 
-/// Of a number that is no line's, as its signature has it.
+/// Change of a number by a signature, for a number that is not that of a line.
 double SignatureTerms::shareOrChange(const Signature& signature, const Term& term) const noexcept
 {
   const double change = signature.change[term.number];
@@ -178,32 +180,26 @@ SignatureTerms::Direction SignatureTerms::direction(const std::vector<std::size_
   for (const std::size_t row : rows)
   {
     const Signature& signature = set_.signatures[row];
-    addDirection(signature, OTHER_MOTION + likeness(signature.motion, point), direction);
+    Direction changes{};
+    double square = 0.0;
+    for (std::size_t i = 0; i < count_; ++i)
+    {
+      if (terms_[i].number < SCALAR_COUNT)
+      {
+        changes[i] = shareOrChange(signature, terms_[i]) / std::sqrt(terms_[i].own);
+        square += changes[i] * changes[i];
+      }
+    }
+    const double weight = (OTHER_MOTION + likeness(signature.motion, point)) / std::sqrt(square);
+    for (std::size_t i = 0; i < count_ && square > 0.0; ++i)
+    {
+      direction[i] += weight * changes[i];
+    }
   }
   return direction;
 }
 
-void SignatureTerms::addDirection(const Signature& signature, double weight, Direction& direction) const noexcept
-{
-  std::array<double, INDICATOR_COUNT> changes{};
-  double square = 0.0;
-  for (std::size_t i = 0; i < count_; ++i)
-  {
-    const Term& term = terms_[i];
-    if (term.number < SCALAR_COUNT)
-    {
-      changes[i] = shareOrChange(signature, term) / std::sqrt(term.own);
-      square += changes[i] * changes[i];
-    }
-  }
-  for (std::size_t i = 0; i < count_ && square > 0.0; ++i)
-  {
-    direction[i] += weight / std::sqrt(square) * changes[i];
-  }
-}
-
-double SignatureTerms::largest(const Signature& signature, bool with_lines, const Baseline& baseline,
-                               const Deviations& deviations) const noexcept
+double SignatureTerms::largest(const Signature& signature, bool with_lines, const Deviations& deviations) const noexcept
 {
   double largest = 0.0;
   for (std::size_t i = 0; i < count_; ++i)
@@ -213,7 +209,7 @@ double SignatureTerms::largest(const Signature& signature, bool with_lines, cons
     {
       continue;
     }
-    largest = std::max(largest, std::abs(baseline.scoreOf(term.indicator, changeBy(signature, term), deviations)));
+    largest = std::max(largest, std::abs(deviations[term.indicator].scoreOf(changeBy(signature, term))));
   }
   return largest;
 }
@@ -261,5 +257,55 @@ void SignatureTerms::add(const WindowResidual& residual, std::size_t indicator, 
                          sound,
                          line_square.value_or(is_play ? sound * sound : 0.0) };
   }
+}
+
+namespace
+{
+/// Likeness of the motions from which on a signature counts for lines. Lines depend on the motion more than on the
+/// fault.
+constexpr double ALIKE = 0.5;
+}  // namespace
+
+SeenFrom seenFrom(const Assessor& assessor, const OperatingPoint& point)
+{
+  const SignatureSet& set = assessor.signatures();
+  const Baseline& baseline = assessor.baseline();
+  const SignatureTerms terms(set, baseline.residual());
+  const auto rows = patternRows(set);
+  std::array<SignatureTerms::Direction, CAUSE_COUNT> directions;
+  std::transform(rows.begin(), rows.end(), directions.begin(),
+                 [&](const std::vector<std::size_t>& own) { return terms.direction(own, point); });
+
+  /// Over the signatures of one cause and severity, by how far their motion is like the window's.
+  struct Mean
+  {
+    double weight{};
+    double pattern{};  // Student's t
+    double single{};   // score of the indicator furthest off
+  };
+  std::map<std::pair<std::size_t, double>, Mean> means;
+  for (const Signature& signature : set.signatures)
+  {
+    const auto cause = static_cast<std::size_t>(signature.cause);
+    const double alike = likeness(signature.motion, point);
+    const double weight = OTHER_MOTION + alike;
+    Mean& mean = means[{ cause, signature.severity }];
+    mean.weight += weight;
+    mean.pattern += weight * terms.along(directions[cause], &signature);
+    mean.single += weight * terms.largest(signature, alike > ALIKE, assessor.deviations());
+  }
+  SeenFrom least;
+  least.fill(std::numeric_limits<double>::quiet_NaN());
+  for (const auto& [key, mean] : means)
+  {
+    double& from = least[key.first];
+    from = std::isnan(from) ? HUGE_VAL : from;
+    if (baseline.pattern(mean.pattern / mean.weight).score > baseline.patternThreshold() ||
+        mean.single / mean.weight > baseline.threshold())
+    {
+      from = std::min(from, key.second);
+    }
+  }
+  return least;
 }
 }  // namespace hjt

@@ -11,7 +11,7 @@
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "tracking/friction_map.hpp"
 #include "tracking/motion_differentiator.hpp"
-#include "tracking/torque_ripple.hpp"
+#include "tracking/motion_driven.hpp"
 
 namespace hjt
 {

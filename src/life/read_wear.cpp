@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "health/motion_likeness.hpp"
+#include "health/signature_terms.hpp"
 
 namespace hjt
 {

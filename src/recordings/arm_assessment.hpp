@@ -12,7 +12,7 @@
 #include "arm/found_load.hpp"
 #include "recordings/arm_recording.hpp"
 #include "tracking/sound_joint.hpp"
-#include "tracking/stream_timing.hpp"
+#include "tracking/telemetry_rows.hpp"
 #include "tracking/verdict.hpp"
 
 namespace hjt

@@ -11,9 +11,8 @@
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "recordings/controller_table.hpp"
-#include "tracking/effort.hpp"
 #include "tracking/motion_driven.hpp"
-#include "tracking/ratio_fit.hpp"
+#include "tracking/telemetry_fit.hpp"
 
 namespace hjt
 {

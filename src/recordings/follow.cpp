@@ -17,7 +17,7 @@
 #include "params/choices.hpp"
 #include "recordings/arm_assessment.hpp"
 #include "recordings/recorded_motion.hpp"
-#include "tracking/stream_timing.hpp"
+#include "tracking/telemetry_rows.hpp"
 #include "tracking/verdict_watch.hpp"
 
 #include "base/statistics.hpp"

@@ -10,7 +10,7 @@
 #include "output/report.hpp"
 #include "recordings/recording_options.hpp"
 
-#include "tracking/stream_timing.hpp"
+#include "tracking/telemetry_rows.hpp"
 #include "tracking/tracker.hpp"
 
 namespace hjt

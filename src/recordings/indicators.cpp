@@ -13,8 +13,8 @@
 #include "base/statistics.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "health/baseline_file.hpp"
-#include "health/seen_from.hpp"
 #include "health/signal_monitor.hpp"
+#include "health/signature_terms.hpp"
 
 namespace hjt
 {

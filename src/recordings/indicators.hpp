@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "harmonic_joint_twin/health/assessment.hpp"
-#include "health/seen_from.hpp"
+#include "health/signature_terms.hpp"
 #include "output/report.hpp"
 #include "recordings/recorded_signals.hpp"
 

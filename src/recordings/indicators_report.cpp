@@ -9,7 +9,7 @@
 
 #include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/stamp.hpp"
-#include "health/signal_sample.hpp"
+#include "health/signal_monitor.hpp"
 #include "output/output_file.hpp"
 #include "output/report.hpp"
 

@@ -9,7 +9,7 @@
 #include "messages/joint_affixes.hpp"
 #include "messages/tracker_messages.hpp"
 #include "recordings/recording_options.hpp"
-#include "tracking/plausible.hpp"
+#include "tracking/telemetry_rows.hpp"
 
 namespace hjt
 {

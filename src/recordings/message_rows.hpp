@@ -13,8 +13,8 @@
 #include "messages/conversions.hpp"
 #include "recordings/motion_readers.hpp"
 #include "recordings/recorded_motion.hpp"
-#include "tracking/held_values.hpp"
-#include "tracking/unfolded_angle.hpp"
+#include "tracking/drive_temperature.hpp"
+#include "tracking/telemetry_rows.hpp"
 
 namespace hjt
 {

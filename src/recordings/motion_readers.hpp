@@ -14,7 +14,7 @@
 #include "harmonic_joint_twin/base/stamp.hpp"
 #include "recordings/recorded_motion.hpp"
 #include "tracking/motion_differentiator.hpp"
-#include "tracking/unfolded_angle.hpp"
+#include "tracking/telemetry_rows.hpp"
 
 namespace hjt
 {

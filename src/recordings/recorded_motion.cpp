@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "recordings/motion_readers.hpp"
-#include "tracking/time_fit.hpp"
+#include "tracking/telemetry_fit.hpp"
 
 namespace hjt
 {

@@ -12,7 +12,7 @@
 #include "harmonic_joint_twin/base/stamp.hpp"
 #include "tracking/motion_differentiator.hpp"
 #include "tracking/reason.hpp"
-#include "tracking/row_filter.hpp"
+#include "tracking/telemetry_rows.hpp"
 
 namespace hjt
 {

@@ -11,7 +11,7 @@
 #include "datasets/run_file.hpp"
 #include "output/progress.hpp"
 
-#include "health/signal_sample.hpp"
+#include "health/signal_monitor.hpp"
 #include "messages/topics.hpp"
 #include "twin/options.hpp"
 

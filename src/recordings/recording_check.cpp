@@ -16,8 +16,8 @@
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "recordings/arm_assessment.hpp"
 #include "recordings/controller_table.hpp"
-#include "tracking/effort.hpp"
 #include "tracking/joint_evidence.hpp"
+#include "tracking/motion_driven.hpp"
 #include "tracking/verdict.hpp"
 
 namespace hjt

@@ -8,7 +8,7 @@
 #include "output/json.hpp"
 #include "recordings/arm_assessment.hpp"
 #include "recordings/arm_recording.hpp"
-#include "tracking/stream_timing.hpp"
+#include "tracking/telemetry_rows.hpp"
 #include "tracking/verdict.hpp"
 
 namespace hjt

@@ -9,7 +9,7 @@
 #include "bags/recorded_messages.hpp"
 #include "base/text.hpp"
 #include "base/whole_file.hpp"
-#include "harmonic_joint_twin/health/tracked_lines.hpp"
+#include "harmonic_joint_twin/health/signal_indicators.hpp"
 #include "harmonic_joint_twin/statics/static_analysis.hpp"
 #include "harmonic_joint_twin/statics/torsion_loop.hpp"
 #include "health/baseline_file.hpp"

@@ -9,7 +9,7 @@
 #include "recordings/recorded_signals.hpp"
 
 #include "harmonic_joint_twin/health/assessment.hpp"
-#include "health/seen_from.hpp"
+#include "health/signature_terms.hpp"
 #include "life/life_estimate.hpp"
 
 namespace hjt

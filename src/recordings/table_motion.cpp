@@ -12,9 +12,8 @@
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "recordings/controller_table.hpp"
 #include "recordings/motion_readers.hpp"
-#include "tracking/held_values.hpp"
-#include "tracking/plausible.hpp"
-#include "tracking/unfolded_angle.hpp"
+#include "tracking/drive_temperature.hpp"
+#include "tracking/telemetry_rows.hpp"
 
 namespace hjt
 {

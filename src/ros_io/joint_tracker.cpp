@@ -8,7 +8,7 @@
 #include "gear/ratio.hpp"
 #include "messages/topics.hpp"
 #include "ros_io/node_environment.hpp"
-#include "tracking/effort.hpp"
+#include "tracking/motion_driven.hpp"
 
 namespace hjt
 {

@@ -29,9 +29,8 @@
 #include "ros_io/diagnostics.hpp"
 #include "ros_io/input_subscribers.hpp"
 #include "ros_io/life_publisher.hpp"
-#include "tracking/row_filter.hpp"
 #include "tracking/sound_joint.hpp"
-#include "tracking/stream_timing.hpp"
+#include "tracking/telemetry_rows.hpp"
 #include "tracking/tracker.hpp"
 #include "tracking/verdict_watch.hpp"
 

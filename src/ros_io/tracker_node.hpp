@@ -19,8 +19,7 @@
 #include "arm/arm_watch.hpp"
 #include "arm/recording_fit.hpp"
 #include "ros_io/joint_tracker.hpp"
-#include "tracking/row_filter.hpp"
-#include "tracking/unfolded_angle.hpp"
+#include "tracking/telemetry_rows.hpp"
 
 namespace hjt
 {

@@ -11,7 +11,7 @@ namespace hjt
 {
 namespace
 {
-/// Common factor of a group of joints, besides factors of their friction.
+/// Common factor of the joints from `begin` to `end`, beside the `factors` that are known already.
 JointGroup groupOf(const std::vector<MeasuredFriction>& joints, const std::vector<double>& factors, double tolerance,
                    std::size_t begin, std::size_t end)
 {
@@ -35,15 +35,8 @@ JointGroup groupOf(const std::vector<MeasuredFriction>& joints, const std::vecto
   return group;
 }
 
-/// From the base to the elbow, and the wrists.
-std::vector<JointGroup> groupsOf(const std::vector<MeasuredFriction>& joints, const std::vector<double>& factors,
-                                 double tolerance)
-{
-  const std::size_t half = jointsToElbow(joints.size());
-  return { groupOf(joints, factors, tolerance, 0, half), groupOf(joints, factors, tolerance, half, joints.size()) };
-}
-
-/// The temperature at which the joints' median friction is the twins'; none if it is received, or beyond the range.
+/// The temperature at which the median friction of the joints is that of their twins. None if a temperature was
+/// received, or if it is not within COLDEST and WARMEST.
 std::optional<double> temperatureOf(const std::vector<MeasuredFriction>& joints)
 {
   constexpr double COLDEST = 0.0;  // [degC]
@@ -93,8 +86,8 @@ ArmFriction ofWholeArm(const std::vector<MeasuredFriction>& joints, double toler
   return arm;
 }
 
-/// By how much more the other joints of a group differ than sound ones do from one recording to the next: of the
-/// logarithm of their mean, standard deviation [-].
+/// Standard deviation of the logarithm of the other joints' mean, by the part of their scatter that is more than sound
+/// joints have from one recording to the next [-].
 double scatterBeside(std::size_t joint, const JointGroup& group, const std::vector<MeasuredFriction>& joints,
                      const std::vector<double>& factors)
 {
@@ -133,7 +126,7 @@ void take(const JointGroup& group, const std::vector<MeasuredFriction>& joints, 
   }
 }
 
-/// A joint shows what a larger one would, apart from what the whole arm has in common.
+/// A joint shows as much friction as a larger joint would, apart from the factor of the whole arm.
 bool hasFarMore(const std::vector<MeasuredFriction>& joints, const std::vector<double>& factors)
 {
   constexpr double FAR_MORE = 2.0;  // times the expected friction
@@ -151,7 +144,9 @@ ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double t
   constexpr std::ptrdiff_t SEVERAL = 2;
   ArmFriction arm = ofWholeArm(joints, tolerance);
   const bool is_other = hasFarMore(joints, arm.factors);
-  arm.groups = groupsOf(joints, arm.factors, tolerance);
+  const std::size_t half = jointsToElbow(joints.size());
+  arm.groups = { groupOf(joints, arm.factors, tolerance, 0, half),
+                 groupOf(joints, arm.factors, tolerance, half, joints.size()) };
   for (const JointGroup& group : arm.groups)
   {
     take(group, joints, arm);
@@ -168,29 +163,29 @@ ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double t
            number(&MeasuredFriction::is_none) == number(&MeasuredFriction::is_below_faults))
   {
     arm.misfit = { Reason::NO_FRICTION,
-                   "the effort of several joints holds no friction: it is a modelled or commanded torque, not a "
-                   "measured one" };
+                   "the efforts of several joints show no friction: they are modelled or commanded torques, not "
+                   "measured ones" };
   }
   else if (number(&MeasuredFriction::is_below_faults) >= SEVERAL)
   {
     arm.misfit = { Reason::LESS_THAN_FAULTS,
                    "several joints show less friction than any fault leaves: the arm is led by hand or carried, or "
-                   "gains, ratios or signs are others than configured" };
+                   "gains, ratios or signs are not as configured" };
   }
   else if (number(&MeasuredFriction::is_load_wrong) + number(&MeasuredFriction::is_below_faults) >= SEVERAL)
   {
     arm.misfit = {
       Reason::LOAD_WRONG,
-      "the currents of several joints fit no load of this arm: another arm, gain, payload or mounting than "
-      "configured, a payload picked up or put down, joints in another order, angles with another zero or "
-      "sign, or disturbed currents"
+      "the currents of several joints fit no load of this arm. Possible reasons are another arm, gain, payload or "
+      "mounting than configured, a payload picked up or put down, joints in another order, angles with another zero "
+      "or sign, and disturbed currents"
     };
   }
   else if (number(&MeasuredFriction::is_below_faults) > 0 && is_other)
   {
     arm.misfit = { Reason::LESS_THAN_FAULTS,
-                   "one joint shows less friction than any fault leaves, another more than twice the expected one: "
-                   "joints in another order, or gains, ratios or signs are others than configured" };
+                   "one joint shows less friction than any fault leaves, and another more than twice the expected "
+                   "friction: the joints are in another order, or gains, ratios or signs are not as configured" };
   }
   return arm;
 }

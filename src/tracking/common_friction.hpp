@@ -10,17 +10,17 @@
 
 namespace hjt
 {
-/// By which the temperature of a drive, and what else the joints of an arm have in common, changes friction from day to
-/// day, where no other joints tell: standard deviation of the logarithm [-].
+/// Change of a joint's friction from day to day by its temperature and by whatever else the joints of an arm share,
+/// where no other joints show that change: standard deviation of the logarithm [-].
 constexpr double UNWITNESSED = 0.06;
-/// Of common factors of the joints, from which on they are no witnesses: standard deviation of the logarithm, as much
-/// as three joints of their type may have in common by chance [-].
+/// Deviation of a common factor from which on the joints that share it are no witnesses: standard deviation of the
+/// logarithm. Three joints of one type may have as much in common by chance [-].
 constexpr double NO_WITNESS = 0.05;
 
-/// Joints that witness for each other, at least.
+/// So many joints, at least, can witness for each other.
 constexpr std::size_t MIN_WITNESSES = 3;
 
-/// How many of an arm's joints are from the base to the elbow; the others are the wrists.
+/// Number of an arm's joints from the base to the elbow. The other joints are the wrists.
 inline std::size_t jointsToElbow(std::size_t joints)
 {
   return (joints + 1) / 2;
@@ -29,50 +29,54 @@ inline std::size_t jointsToElbow(std::size_t joints)
 /// Friction of one joint of an arm.
 struct MeasuredFriction
 {
-  std::optional<double> ratio;       ///< measured over expected; none: not known
-  double temperature{};              ///< that it is expected at [degC]
-  bool temperature_received{};       ///< that one was
-  std::function<double(double)> at;  ///< the twin's at a temperature [degC], in the motion that was measured [N.m]
-  bool is_below_faults{};            ///< less than any fault leaves of it
-  bool is_none{};                    ///< friction is nearly zero
-  bool is_against{};                 ///< the current goes against the motion's
+  std::optional<double> ratio;       ///< measured over expected friction; none: the ratio is not known
+  double temperature{};              ///< temperature of the expected friction [degC]
+  bool temperature_received{};       ///< the temperature was measured
+  std::function<double(double)> at;  ///< friction of the twin at a temperature [degC] in the measured motion [N.m]
+  bool is_below_faults{};            ///< the friction is less than any fault leaves
+  bool is_none{};                    ///< the friction is nearly zero
+  bool is_against{};                 ///< the current has the opposite sign of the current that the motion takes
   bool is_load_wrong{};              ///< the current fits no load of this joint
-  bool is_to_own{};                  ///< the expected one is the joint's own when it was sound
+  bool is_to_own{};                  ///< the expected friction is the joint's own when it was sound
 };
 
 /// Joints of an arm that are built and warmed alike: from the base to the elbow, and the wrists.
 struct JointGroup
 {
   std::size_t begin{};
-  std::size_t end{};     ///< one past the last
-  double median{ 1.0 };  ///< of the joints' friction, apart from that of the arm
-  bool is_known{};       ///< most of at least three agree on it
+  std::size_t end{};     ///< one past the last joint
+  double median{ 1.0 };  ///< median ratio of the joints' friction, apart from the factor of the whole arm
+  bool is_known{};       ///< most of at least three joints agree on the median
 };
 
 /// Common factors of the friction of an arm's joints.
 struct ArmFriction
 {
-  std::vector<double> factors;        ///< of each joint, that of its group in it
-  std::vector<double> deviations;     ///< of the factors, standard deviation of the logarithm; 0: witnessed [-]
-  double median{ 1.0 };               ///< of the joints; 1: they have nothing in common
-  std::optional<double> temperature;  ///< that it means by the twins' law of friction; none: not within 0 ... 60 degC
+  std::vector<double> factors;        ///< factor of each joint: that of the arm times that of its group
+  std::vector<double> deviations;     ///< standard deviation of each factor's logarithm; 0: other joints witness it [-]
+  double median{ 1.0 };               ///< factor of the whole arm; 1: the joints have nothing in common
+  std::optional<double> temperature;  ///< temperature that explains the factor; none: it is not within 0 ... 60 degC
   std::vector<JointGroup> groups;
   bool is_known{};  ///< enough joints show their friction
-  Misfit misfit;    ///< of all joints
+  Misfit misfit;    ///< why none of the joints is judged
 };
 
-/// The joints are judged after what most of at least three agree on within `tolerance`: nothing, or one factor that
-/// differs from 1 by more than that. Factor and temperature are the median joint's, so that one faulty joint changes
-/// neither. What is left then and most of the three joints of a group agree on is the group's: three drives do not fail
-/// alike. Joints held against their type differ by more, and 5 % of it may be chance: of a joint that is held against
-/// its own while others are not, that is the deviation. More friction of the others makes no joint's less; less of the
-/// others makes it more by as much as they agree on: what they scatter by, beyond what sound joints do, is a deviation
-/// too. Two joints or more whose friction is below what any fault leaves: something else carries the arm. Two or more
-/// whose currents fit no load, or one and one of the former: its load is another. One of the former, and one with more
-/// than twice what is expected of it: they are in another order. In all these cases no joint is judged.
+/// The factor of the whole arm is the median joint's, if most of at least three joints agree on it within `tolerance`
+/// and it differs from 1 by more than that. One faulty joint then changes neither the factor nor the temperature.
+/// A group has a factor of its own if most of its three joints agree on what the factor of the arm leaves, because
+/// three drives do not fail alike. Joints that are compared with their type differ by more than joints that are
+/// compared with themselves: 5 % of the group's factor may be chance. That is the deviation of a joint that is compared
+/// with itself while others of its group are not. If a group has more friction than expected, no joint of it counts as
+/// one with less. If a group has less friction than expected, its joints count as joints with more, and the scatter of
+/// the group's other joints beyond that of sound joints is a deviation too.
+/// No joint is judged in three cases. If the friction of two joints or more is below what any fault leaves, something
+/// else carries the arm. If the currents of two or more fit no load, or if one does not and the friction of another is
+/// below what any fault leaves, the load of the arm is another one. If the friction of one joint is below what any
+/// fault leaves and that of another is more than twice the expected, the joints are in another order.
 ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double tolerance);
 
-/// Why a joint is not judged: its own reason, or that of all joints. Signs of efforts tell more than another load.
+/// Why a joint is not judged: its own reason, or else that of all joints. Wrong signs of the efforts explain a load
+/// that does not fit, so the reason of all joints then counts.
 inline const Misfit& misfitOf(const Misfit& joint, const Misfit& arm)
 {
   const bool is_sign = joint.reason == Reason::LOAD_WRONG && arm.reason == Reason::EFFORT_NOT_CURRENT;

@@ -11,12 +11,12 @@
 #include <Eigen/Core>
 
 #include "tracking/motion_differentiator.hpp"
-#include "tracking/time_fit.hpp"
+#include "tracking/telemetry_fit.hpp"
 
 namespace hjt
 {
-/// Regression of a joint's current on a constant, Coulomb and viscous friction, the acceleration, which draws the
-/// current of the rotor's inertia, and the load, of the last two minutes of motion.
+/// Regression of a joint's current over the last two minutes of motion on a constant, the sign of the speed (Coulomb
+/// friction), the speed (viscous friction), the acceleration (inertia of the rotor) and the load.
 class LoadRegression
 {
 public:
@@ -29,14 +29,14 @@ public:
   }
 
   double seconds() const { return sums_(0, 0); }
-  /// Sums of load and current without constant, friction and acceleration [A^2 s].
+  /// Products of load and current, less what constant, friction and acceleration explain of both [A^2 s].
   Eigen::Matrix2d left() const;
-  /// Mean square of the current that the load leaves too [A^2]; NaN: too little motion.
+  /// Mean square of the current that none of the columns explains [A^2]; NaN: too little motion.
   double leftByLoad() const;
-  /// Slope of the current over the load; NaN: it says too little of it. `content`: square of the load that the others
-  /// do not explain, summed over time.
+  /// Slope of the current over the load; NaN: the load varies too little. `content`: square of the load that the other
+  /// columns do not explain, summed over time.
   FittedFactor slope(double& content) const;
-  /// The same by the sums of what `left` gives [A^2 s], over that time [s].
+  /// That slope from the products that the function left() gives [A^2 s] and the time that they are of [s].
   static FittedFactor slopeOf(const Eigen::Matrix2d& left, double seconds);
 
 private:
@@ -46,23 +46,23 @@ private:
   Eigen::Matrix<double, OTHERS + 2, OTHERS + 2> sums_ = Eigen::Matrix<double, OTHERS + 2, OTHERS + 2>::Zero();
 };
 
-/// That regression if the current came earlier or later than the motion. Fixed memory; nothing allocates.
+/// A LoadRegression for each of several lags of the current behind the motion. Memory is fixed; nothing allocates.
 ///
-/// Rows count at most every 20 ms, the motion between them on lines. Of motion faster than
-/// MotionDifferentiator::SLIDING.
+/// One row counts in 20 ms; between rows the motion is interpolated linearly. Only motion faster than
+/// MotionDifferentiator::SLIDING counts.
 class CurrentLag
 {
 public:
   static constexpr double LONGEST = 0.4;   ///< [s]
-  static constexpr double SPACING = 0.04;  ///< between lags tried [s]
+  static constexpr double SPACING = 0.04;  ///< step from one lag to the next [s]
   static constexpr std::size_t LAGS = 21;
 
-  /// Of the current behind the motion [s].
+  /// Lag number `i` of the current behind the motion [s].
   static constexpr double lagAt(std::size_t i) { return SPACING * static_cast<double>(i) - LONGEST; }
 
   void reset() noexcept { *this = CurrentLag(); }
 
-  /// A row, later than the one before. `load`: as a current [A].
+  /// Adds a row that is later than the row before. `load`: load of the joint as a motor current [A].
   void add(const MotionSample& sample, double load) noexcept
   {
     if (end_ > begin_)
@@ -79,7 +79,7 @@ public:
     take();
   }
 
-  /// Mean square of what is left of the current at each lag [A^2]; NaN: too little motion.
+  /// LoadRegression::leftByLoad at each lag [A^2].
   std::array<double, LAGS> left() const
   {
     std::array<double, LAGS> left;
@@ -90,7 +90,7 @@ public:
     return left;
   }
 
-  /// As it came.
+  /// The regression without a lag.
   const LoadRegression& now() const { return regressions_[LAGS / 2]; }
 
 private:
@@ -107,7 +107,7 @@ private:
   };
   const Row& at(std::uint64_t index) const noexcept { return rows_[index % ROOM]; }
 
-  /// The current in the middle of what is held, beside the motion before and after it.
+  /// Adds the current in the middle of the held rows to each regression, with the motion before or after it.
   void take() noexcept
   {
     const std::uint64_t oldest = std::max(begin_, end_ > ROOM ? end_ - ROOM : 0);
@@ -149,10 +149,11 @@ private:
   std::array<LoadRegression, LAGS> regressions_{};
 };
 
-/// By how much the currents of an arm come later than its motion, as most of its joints agree [s]; 0: not by enough to
-/// tell. `left`: of each joint.
+/// Lag of an arm's currents behind its motion on which most of its joints agree [s]; 0: no lag can be told. `left`:
+/// CurrentLag::left of each joint.
 double commonLag(const std::vector<std::array<double, CurrentLag::LAGS>>& left);
 
-/// The same of one joint alone, which takes more to tell.
+/// Lag of the current of one joint alone [s]; 0: no lag can be told. One joint must show the lag more clearly than most
+/// joints of an arm together.
 double ownLag(const std::array<double, CurrentLag::LAGS>& left);
 }  // namespace hjt

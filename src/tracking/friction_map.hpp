@@ -23,25 +23,28 @@ struct FrictionShares
   double sum() const noexcept { return preload + grease + flanks + rest + stribeck + viscous; }
 };
 
-/// The twin's friction by speed and load, tabled once from the whole ring, so that a motion of hours costs seconds.
+/// Table of the twin's friction over speed and load. The full ring makes the table once, so that a motion of hours
+/// costs seconds.
 ///
-/// Errors of manufacture are left out: they change the friction's ripple over a tooth pitch, not its mean.
+/// The table leaves out errors of manufacture: they change the ripple of the friction over a tooth pitch, not its mean.
 class FrictionMap
 {
 public:
-  /// Tables loads up to what the motor can hold, with motor.torque_limit = 0 up to output.load_torque_limit (some ten
-  /// milliseconds). Beyond output.load_torque_limit the table ends where the ring finds no equilibrium.
+  /// The table covers loads up to what the motor can hold, or with motor.torque_limit = 0 up to
+  /// output.load_torque_limit. It takes some ten milliseconds. Beyond output.load_torque_limit the table ends where the
+  /// ring finds no equilibrium.
   /// @throws ParameterError if both limits are 0 or the ring finds no equilibrium under a smaller load.
   explicit FrictionMap(const Parameters& parameters);
 
-  /// Friction at motor speed [rad/s], output load [N.m] and temperature [degC]; larger loads than tabled count as the
-  /// largest.
+  /// Friction at motor speed [rad/s], output load [N.m] and temperature [degC]. A load beyond the table counts as the
+  /// largest load of the table.
   FrictionShares at(double motor_speed, double load, double temperature) const noexcept
   {
     return atViscosity(motor_speed, load, viscosity(temperature));
   }
 
-  /// The same where the viscosity [m^2/s] is known: it is the costly part, and the temperature hardly changes.
+  /// Friction where the viscosity [m^2/s] is known. The viscosity takes most of the time, and the temperature hardly
+  /// changes from call to call.
   FrictionShares atViscosity(double motor_speed, double load, double viscosity) const noexcept;
   double viscosity(double temperature) const noexcept { return bearing_.viscosity(temperature); }
 

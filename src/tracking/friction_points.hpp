@@ -15,13 +15,13 @@
 
 namespace hjt
 {
-/// Friction at one speed, at the joint and against the motion: mean of the rows.
+/// Mean friction of the rows at one speed, at the joint and against the motion.
 struct FrictionPoint
 {
   double speed{};      ///< with its sign [rad/s]
   double measured{};   ///< [N.m]
   double deviation{};  ///< standard deviation of the measured rows [N.m]
-  double twin{};       ///< the twin's at the same rows [N.m]
+  double twin{};       ///< friction of the twin in the same rows [N.m]
   std::uint64_t rows{};
   double load{};  ///< with its sign [N.m]
 };
@@ -29,18 +29,18 @@ struct FrictionPoint
 /// Measured friction over that of a reference.
 struct FrictionRatio
 {
-  double value{ std::numeric_limits<double>::quiet_NaN() };  ///< NaN: no speed, or none of both
-  double deviation{};                                        ///< standard deviation, by the scatter [-]
-  double of_points{};                 ///< the same by leaving out one speed after the other alone [-]
-  std::vector<FrictionPoint> points;  ///< at the speeds of both, `twin` that of the reference
+  double value{ std::numeric_limits<double>::quiet_NaN() };  ///< NaN: joint and reference have no speed in common
+  double deviation{};                                        ///< standard deviation, by the scatter of the rows [-]
+  double of_points{};                 ///< standard deviation by leaving out one speed after the other [-]
+  std::vector<FrictionPoint> points;  ///< at the speeds that both have; `twin` is the friction of the reference
 };
 
-/// Rows of friction by blocks of time: what follows each other in them says the same, so a ratio scatters as its blocks
-/// do.
+/// Rows of friction by blocks of time. Rows that follow each other are not independent, so the scatter of a ratio
+/// follows from the scatter of its blocks.
 class FrictionBlocks
 {
 public:
-  static constexpr double LENGTH = 2.0;  ///< of a block [s]
+  static constexpr double LENGTH = 2.0;  ///< length of a block [s]
 
   void add(double time, bool forward, double measured, double twin)
   {
@@ -58,8 +58,9 @@ public:
 
   std::uint64_t count() const { return blocks_ + (open_.head<2>().sum() > 0.0 ? 1 : 0); }
 
-  /// Share of the ratio (FrictionPoints::ratio) that is its standard deviation by the scatter of the blocks: what each
-  /// adds to numerator less ratio times denominator, squared. Infinity: fewer than three blocks.
+  /// Standard deviation of FrictionPoints::ratio by the scatter of the blocks, as a share of the ratio. Each block adds
+  /// the square of its part of the numerator less the ratio times its part of the denominator. Infinity: fewer than
+  /// three blocks.
   double deviation() const
   {
     FrictionBlocks all = *this;
@@ -114,12 +115,12 @@ private:
   std::uint64_t blocks_{};
 };
 
-/// Friction by speed, both ways apart, from rows of any number.
+/// Friction of any number of rows by speed, with each direction of motion apart.
 class FrictionPoints
 {
 public:
-  static constexpr std::uint64_t MIN_ROWS = 30;  ///< points with fewer are not given
-  static constexpr double SLOWEST = 0.01;        ///< of rows that count [rad/s]
+  static constexpr std::uint64_t MIN_ROWS = 30;  ///< fewer rows make no point
+  static constexpr double SLOWEST = 0.01;        ///< slower rows do not count [rad/s]
 
   /// `time` [s]; `speed` with its sign [rad/s]; friction at the joint, against the motion > 0 [N.m]; `load` with its
   /// sign [N.m].
@@ -130,7 +131,8 @@ public:
     {
       return;
     }
-    Bin& bin = bins_[speed < 0.0 ? 0 : 1][static_cast<std::size_t>(place)];
+    const auto from_standstill = static_cast<std::size_t>(place);
+    Bin& bin = bins_[speed < 0.0 ? BINS - 1 - from_standstill : BINS + from_standstill];
     ++bin.rows;
     bin.speed += speed;
     bin.measured += measured;
@@ -140,43 +142,39 @@ public:
     blocks_.add(time, speed > 0.0, measured, twin);
   }
 
-  /// By speed, ascending
+  /// Points in the order of their speeds.
   std::vector<FrictionPoint> points() const
   {
     std::vector<FrictionPoint> points;
-    for (const auto& way : bins_)
+    for (const Bin& bin : bins_)
     {
-      for (const Bin& bin : way)
+      if (bin.rows >= MIN_ROWS)
       {
-        if (bin.rows >= MIN_ROWS)
-        {
-          const auto n = static_cast<double>(bin.rows);
-          const double mean = bin.measured / n;
-          const double deviation = std::sqrt(std::max(0.0, bin.squares / n - mean * mean));
-          points.push_back({ bin.speed / n, mean, deviation, bin.twin / n, bin.rows, bin.load / n });
-        }
+        const auto n = static_cast<double>(bin.rows);
+        const double mean = bin.measured / n;
+        const double deviation = std::sqrt(std::max(0.0, bin.squares / n - mean * mean));
+        points.push_back({ bin.speed / n, mean, deviation, bin.twin / n, bin.rows, bin.load / n });
       }
     }
-    std::sort(points.begin(), points.end(),
-              [](const FrictionPoint& a, const FrictionPoint& b) { return a.speed < b.speed; });
     return points;
   }
 
   const FrictionBlocks& blocks() const { return blocks_; }
 
-  /// Measured friction over the twin's, by the rows of all points; both ways count alike, so that a load that is wrong
-  /// goes out. Its deviation is the larger of that by the blocks and that by leaving out one point after the other.
+  /// Measured friction over the twin's, by the rows of all points. Both directions count alike, so that a wrong load
+  /// cancels out. The deviation is the larger of two: by the blocks, and by leaving out one point after the other.
   FrictionRatio ratio() const { return ratio(points()); }
 
-  /// The same over that of `reference`, at the speeds of both: the twin's friction need not rise with the speed as the
-  /// joint's does.
+  /// Measured friction over that of `reference`, at the speeds that both have: the twin's friction need not rise with
+  /// the speed as the joint's does.
   FrictionRatio ratioTo(const std::vector<FrictionPoint>& reference) const
   {
     return ratio(common(points(), reference));
   }
 
-  /// Points at the speeds of both, `twin` raised to the friction of `reference`: its measured over its twin's, between
-  /// its points less than a bin away by their rows and nearness.
+  /// Those `points` whose speed `reference` has too. Their `twin` becomes the friction of the reference: it is
+  /// multiplied by the reference's measured friction over its twin's, the mean over the reference's points less than a
+  /// bin away, weighted by rows and nearness.
   static std::vector<FrictionPoint> common(const std::vector<FrictionPoint>& points,
                                            const std::vector<FrictionPoint>& reference)
   {
@@ -204,25 +202,23 @@ public:
     return common;
   }
 
-  /// Means of the points at one speed, by their rows, ascending.
+  /// Means of the points in one bin of speed, weighted by their rows, in the order of their speeds.
   static std::vector<FrictionPoint> merged(const std::vector<FrictionPoint>& points)
   {
-    std::map<std::pair<bool, double>, std::vector<FrictionPoint>> at;
+    std::map<double, std::vector<FrictionPoint>> at;  // by bins from standstill, with the speed's sign
     for (const FrictionPoint& point : points)
     {
-      at[{ point.speed > 0.0, std::floor(placeOf(point.speed)) }].push_back(point);
+      at[std::copysign(std::floor(placeOf(point.speed)) + 1.0, point.speed)].push_back(point);
     }
     std::vector<FrictionPoint> merged;
     for (const auto& [place, same] : at)
     {
-      merged.push_back(meanOf(same, place.first ? 1.0 : -1.0));
+      merged.push_back(meanOf(same, std::copysign(1.0, place)));
     }
-    std::sort(merged.begin(), merged.end(),
-              [](const FrictionPoint& a, const FrictionPoint& b) { return a.speed < b.speed; });
     return merged;
   }
 
-  /// Both ways count alike. NaN: no point.
+  /// Measured friction over the twin's; both directions count alike. NaN: no point.
   static double ratioOf(const std::vector<FrictionPoint>& points)
   {
     const FrictionPoint backward = meanOf(points, -1.0);
@@ -231,7 +227,7 @@ public:
     return twin > 0.0 ? (backward.measured + forward.measured) / twin : std::numeric_limits<double>::quiet_NaN();
   }
 
-  /// Mean of the points one way, +1 or -1, by their rows.
+  /// Mean of the points of one direction, +1 or -1, weighted by their rows.
   static FrictionPoint meanOf(const std::vector<FrictionPoint>& points, double way)
   {
     FrictionPoint mean;
@@ -248,11 +244,7 @@ public:
       }
     }
     const double rows = std::max(static_cast<double>(mean.rows), 1.0);
-    mean.speed /= rows;
-    mean.measured /= rows;
-    mean.twin /= rows;
-    mean.load /= rows;
-    return mean;
+    return { mean.speed / rows, mean.measured / rows, 0.0, mean.twin / rows, mean.rows, mean.load / rows };
   }
 
 private:
@@ -266,7 +258,7 @@ private:
     return found;
   }
 
-  /// Standard deviation of the ratio by leaving out one point after the other; 0: fewer than two.
+  /// Standard deviation of the ratio by leaving out one point after the other; 0: fewer than two points.
   static double jackknife(const std::vector<FrictionPoint>& points)
   {
     double sum = 0.0;
@@ -297,7 +289,7 @@ private:
   static constexpr double BINS_PER_DECADE = 10.0;
   static constexpr std::size_t BINS = 30;  // up to 10 rad/s
 
-  std::array<std::array<Bin, BINS>, 2> bins_{};
+  std::array<Bin, 2 * BINS> bins_{};  // from the fastest backward to the fastest forward
   FrictionBlocks blocks_;
 };
 }  // namespace hjt

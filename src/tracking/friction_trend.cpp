@@ -12,7 +12,7 @@ namespace hjt
 {
 namespace
 {
-/// By which a joint's answer to common factors of the joints differs from the others': standard deviation [-].
+/// Standard deviation of a joint's response to the common factors, less that of the other joints [-].
 constexpr double OTHER_ANSWER = 0.5;
 
 double weightOf(const DatedFriction& recording)

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/statistics.hpp"
-#include "tracking/friction_verdict.hpp"
+#include "tracking/verdict.hpp"
 
 namespace hjt
 {
@@ -23,15 +23,15 @@ struct DatedFriction
 };
 
 /// A line through the logarithms of a joint's friction over time, each weighted by its deviation. Where the factors
-/// scatter more than their deviations say, their scatter counts. What is slow does not average out: it counts as if it
-/// were of one sign in the first half and of the other in the second. A joint may answer to what the joints have in
-/// common, their temperature, by more or less than the others: that is fitted beside the line.
+/// scatter more than their deviations say, their scatter counts. Slow deviations do not average out: they count as if
+/// they had one sign in the first half of the time and the other sign in the second half. A joint may respond to the
+/// common temperature of the joints by more or less than the others do: the fit has a term for that response.
 struct FrictionTrend
 {
-  static constexpr std::size_t MIN_RECORDINGS = 4;  ///< two make any line; the others have to agree with it
+  static constexpr std::size_t MIN_RECORDINGS = 4;  ///< two determine a line, and others have to confirm it
 
   std::size_t recordings{};
-  double span{};                                             ///< of their times
+  double span{};                                             ///< time from the first to the last recording
   double slope{ std::numeric_limits<double>::quiet_NaN() };  ///< of the logarithm, in 1 / unit of time; NaN: not known
   double deviation{};                                        ///< standard deviation of the slope
 
@@ -44,19 +44,20 @@ struct FrictionTrend
   double changeLow() const { return std::exp(slopeLow() * span); }
   double changeHigh() const { return std::exp(slopeHigh() * span); }
 
-  /// The whole interval of the change is beyond what counts as a change of a joint's own friction.
+  /// The whole interval of the change lies beyond MORE_THAN_OWN or LESS_THAN_OWN.
   bool departs() const { return changeLow() > 1.0 + MORE_THAN_OWN || changeHigh() < 1.0 - LESS_THAN_OWN; }
 
 private:
   double halfWidth() const { return NORMAL_95 * deviation; }
 };
 
-/// Not known: fewer than MIN_RECORDINGS, or no time between them.
+/// The trend is not known with fewer than MIN_RECORDINGS recordings, or if all have the same time.
 FrictionTrend frictionTrend(const std::vector<DatedFriction>& recordings);
 
-/// Common factor of a group of joints in each recording: of the logarithms of their friction, each less the
-/// joint's own median, the median joint's. It is taken alike of all recordings, so that it makes no step from one to
-/// the other. `logarithms`: by joint and recording; none: not known. None: of fewer than MIN_WITNESSES joints.
+/// Logarithm of the common factor of a group of joints in each recording: the median, over the joints, of the logarithm
+/// of their friction less the joint's own median over the recordings. All recordings are treated alike, so that the
+/// factor makes no step from one to the next. `logarithms`: by joint and recording; none: not known. The factor of a
+/// recording is none if fewer than MIN_WITNESSES joints are known.
 std::vector<std::optional<double>> commonOfRecordings(
     const std::vector<std::vector<std::optional<double>>>& logarithms);
 }  // namespace hjt

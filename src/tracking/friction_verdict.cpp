@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tracking/friction_verdict.hpp"
+#include "tracking/verdict.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <string>
 #include <tuple>
@@ -9,44 +10,56 @@
 #include <vector>
 
 #include "base/number_text.hpp"
-#include "base/text.hpp"
-#include "tracking/verdict.hpp"
-#include "tracking/wrong_gain.hpp"
 
 namespace hjt
 {
 namespace
 {
-/// By which the friction of a sound drive repeats from one recording to the other, beyond what joints have in common,
-/// standard deviation: a share, and a torque, which counts in small drives [-], [N.m].
+/// Standard deviation of a sound drive's friction from one recording to the next, apart from the joints' common factor:
+/// a share [-], and a torque that counts in small drives [N.m].
 constexpr double REPEAT_SHARE = 0.03;
 constexpr double REPEAT_TORQUE = 0.22;
 
-/// The same from its own earlier one, apart from what the joints of its group, which witness, have in common.
+/// The same standard deviation if the joints of its group witness their common factor.
 constexpr double WITNESSED_SHARE = 0.025;
 constexpr double WITNESSED_TORQUE = 0.1;
 
-/// Of the load: masses of the links, 2 %, and gain, 5 %; standard deviation as a share.
+/// Standard deviation of the load as a share: 2 % by the masses of the links and 5 % by the gain [-].
 constexpr double LOAD_SHARE = 0.054;
 
-/// Of what a controller expects of a sound joint, standard deviation as a share.
+/// Standard deviation of the friction that a controller expects of a sound joint, as a share [-].
 constexpr double CONTROLLER_SHARE = 0.05;
 
-/// No fault of severity 1 leaves less of the friction.
+/// No fault of severity 1 leaves a smaller share of the friction [-].
 constexpr double LEAST_OF_FAULTS = 0.5;
 
-/// Below it the rows show no friction at all.
+/// A smaller factor counts as no friction [-].
 constexpr double NO_FRICTION = 0.1;
 
-/// A factor that is known no better than to a half tells nothing; half width of the logarithm's interval.
+/// Half width of the logarithm's interval, beyond which a factor tells too little: it is then known to a half only [-].
 constexpr double WIDEST = 0.4;
 
-/// No change of temperature makes the friction of grease and contacts larger or smaller by more.
+/// No change of temperature changes the friction by a larger factor [-].
 constexpr double MAX_ARM_FRICTION = 2.5;
 
 constexpr std::size_t MIN_POINTS = 3;
 
-/// The mean friction one way is against the motion in every drive. 0: so it is; else the way it is not.
+struct ReferenceRow
+{
+  const char* name;
+  const char* text;  // for sentences
+  Figure figure;     // friction as a multiple of this reference
+};
+
+/// In the order of FrictionReference.
+constexpr std::array<ReferenceRow, 3> REFERENCES{
+  { { "twin", "the twin's", Figure::FRICTION_OF_TWIN },
+    { "controller", "what the arm's controller expects", Figure::FRICTION_OF_CONTROLLER },
+    { "own", "this joint's own when it was sound", Figure::FRICTION_OF_OWN } }
+};
+
+/// Direction of motion, +1 or -1, in which the mean friction pushes the joint along, which no drive does. 0: in
+/// neither.
 double impossibleWay(const std::vector<FrictionPoint>& points)
 {
   for (const double way : { -1.0, 1.0 })
@@ -59,15 +72,15 @@ double impossibleWay(const std::vector<FrictionPoint>& points)
   return 0.0;
 }
 
-using Gap = std::pair<Reason, std::string>;  // and in a sentence
+using Gap = std::pair<Reason, std::string>;  // a reason and its sentence
 
-/// Why points show no factor.
+/// Why the points do not show a factor of the friction.
 Gap whyNone(const std::vector<FrictionPoint>& points, const JointEvidence& evidence, bool is_to_own)
 {
   const std::string have_rows = " have " + std::to_string(FrictionPoints::MIN_ROWS) + " rows" +
                                 (evidence.reach().touched_rows > 0 ? " apart from contact" : "") +
                                 (is_to_own ? " and are in the reference too" : "");
-  if (points.empty() && evidence.reach().most_angle - evidence.reach().least_angle < LEAST_MOTION)
+  if (points.empty() && evidence.reach().isAtRest())
   {
     return { Reason::AT_REST, "The joint does not move." };
   }
@@ -81,69 +94,71 @@ Gap whyNone(const std::vector<FrictionPoint>& points, const JointEvidence& evide
   }
   if (!(points.front().speed < 0.0 && points.back().speed > 0.0))
   {
-    return { Reason::ONE_DIRECTION, "The joint moves one way only at the speeds that" + have_rows +
-                                        ": friction and load cannot be separated." };
+    return { Reason::ONE_DIRECTION,
+             "Friction and load cannot be separated, because the joint moves one way only at the speeds that" +
+                 have_rows + "." };
   }
   if (points.size() < MIN_POINTS)
   {
     return { Reason::ONE_SPEED,
-             "Fewer than three speeds" + have_rows + ": how sure the joint's friction is cannot be told." };
+             "Fewer than three speeds" + have_rows + ". The uncertainty of the joint's friction is then not known." };
   }
   if (evidence.friction().blocks().count() < MIN_POINTS)
   {
-    return { Reason::TOO_SHORT, "Too few rows show the joint's friction: it moves steadily for less than " +
-                                    fixedText(MIN_POINTS * FrictionBlocks::LENGTH, 0) + " s." };
+    return { Reason::TOO_SHORT, "The joint moves steadily for less than " +
+                                    fixedText(MIN_POINTS * FrictionBlocks::LENGTH, 0) +
+                                    " s, which is too short to measure its friction." };
   }
   return { Reason::SOUND, "" };
 }
 
-/// Why a factor that the points show is not that of a drive.
+/// Why a factor cannot be that of a drive.
 Gap whyImpossible(const FrictionFactor& factor, const std::vector<FrictionPoint>& points, LoadOrigin load)
 {
   if (factor.is_below_faults && factor.value < -LEAST_OF_FAULTS)
   {
-    return { Reason::EFFORT_NOT_CURRENT, "Friction pushes the joint along (" + fixedText(factor.value, 2) +
-                                             " times the expected one): effort or angle of this joint is of the "
-                                             "opposite sign." };
+    return { Reason::EFFORT_NOT_CURRENT, "The friction comes out at " + fixedText(factor.value, 2) +
+                                             " times the expected one, as if it pushed the joint along: the effort or "
+                                             "the angle of this joint has the opposite sign." };
   }
   if (factor.is_below_faults && std::abs(factor.value) < NO_FRICTION)
   {
     return { Reason::NO_FRICTION,
-             "The effort holds no friction (" + fixedText(factor.value, 2) +
-                 " times the expected one): it is a modelled or commanded torque, or something else carries the "
-                 "joint." };
+             "The effort shows no friction (" + fixedText(factor.value, 2) +
+                 " times the expected one): the effort is a modelled or commanded torque, or something else carries "
+                 "the joint." };
   }
   if (factor.is_below_faults)
   {
     return { Reason::LESS_THAN_FAULTS,
-             "Friction is " + factorText(factor) +
-                 " times the expected one, less than any fault leaves of it: the arm is led by hand or held, or "
-                 "gain, ratio or sign are others than configured." };
+             "The friction is " + factorText(factor) +
+                 " times the expected one, and no fault leaves so little: a hand leads or holds the arm, or the gain, "
+                 "the ratio or a sign is not as configured." };
   }
   if (const double way = impossibleWay(points); way != 0.0)
   {
-    return { Reason::LOAD_WRONG, std::string("Friction would push the joint along in ") +
-                                     (way > 0.0 ? "positive" : "negative") +
-                                     " motion, which it cannot: " + wrongLoad(load) };
+    return { Reason::LOAD_WRONG,
+             std::string("In ") + (way > 0.0 ? "positive" : "negative") +
+                 " motion the friction would have to push the joint along, which is impossible: " + wrongLoad(load) };
   }
   if (!(factor.high() < factor.value * std::exp(WIDEST)))
   {
-    return { Reason::FRICTION_SCATTER, "The rows scatter too much to know the friction: " + factorText(factor) +
-                                           " times the expected one. Too few of them are steady, or " +
-                                           wrongLoad(load) };
+    return { Reason::FRICTION_SCATTER, "The rows scatter too much to measure the friction (" + factorText(factor) +
+                                           " times the expected one): too few rows are steady, or " + wrongLoad(load) };
   }
   return { Reason::SOUND, "" };
 }
 
-/// The joint's own rows do not show its friction; those of the whole arm may.
+/// The joint's own rows do not show its friction, but the fit of all joints' currents may.
 bool isUnshown(Reason reason)
 {
   return reason == Reason::NO_STEADY_MOTION || reason == Reason::NO_REFERENCE || reason == Reason::ONE_DIRECTION ||
          reason == Reason::ONE_SPEED || reason == Reason::TOO_SHORT || reason == Reason::FRICTION_SCATTER;
 }
 
-/// Of the ratio to the mean of the reference's recordings. `stated`: of one recording to another; it counts like as
-/// many recordings as STATED_COUNT beside the difference of those that there are.
+/// Standard deviation of the ratio to the mean of the reference's recordings, as a share. `stated`: prior value of that
+/// between two recordings. It counts like STATED_COUNT recordings beside the differences between those of the
+/// reference.
 double repeatDeviation(double stated, const OwnReference& own)
 {
   constexpr double STATED_COUNT = 3.0;
@@ -154,16 +169,17 @@ double repeatDeviation(double stated, const OwnReference& own)
   return std::sqrt(of_one * (1.0 + 1.0 / count));
 }
 
-/// Of the friction over its own earlier one, by the scatter of the rows of both, as a share: by leaving out one speed
-/// of both after the other, or of the blocks of each, whichever is larger. Half of the blocks' variance counts: the
-/// rest is where the twin's friction does not rise with the speed as the joint's does, which both recordings share.
+/// Standard deviation of the friction over the joint's own earlier friction by the scatter of the rows, as a share. It
+/// is the larger of two: by leaving out one speed after the other, and by the blocks of both recordings. Half of the
+/// blocks' variance counts. The other half comes from the twin, whose friction does not rise with the speed as the
+/// joint's does, and both recordings share it.
 double scatterToOwn(const FrictionRatio& ratio, const FrictionBlocks& blocks, const OwnReference& own)
 {
   const double of_blocks = std::sqrt(0.5) * std::hypot(blocks.deviation(), own.friction_deviation);
   return std::max(ratio.of_points / std::max(std::abs(ratio.value), NO_FRICTION), of_blocks);
 }
 
-/// Standard deviation of the logarithm, of all that the factor is uncertain by.
+/// Standard deviation of the factor's logarithm by all that makes it uncertain.
 double deviationOf(const FrictionRatio& ratio, const FrictionBlocks& blocks, const JointContext& context,
                    FrictionReference reference)
 {
@@ -182,7 +198,8 @@ double deviationOf(const FrictionRatio& ratio, const FrictionBlocks& blocks, con
                    context.arm_deviation * context.arm_deviation);
 }
 
-/// Distance of the factor from 1 over that at which its interval clears the bound; > 1 is a departure.
+/// Distance of the factor from 1 over the distance at which its whole interval lies beyond the bound. Beyond 1 the
+/// friction departs.
 double departure(const FrictionFactor& factor, double arm_friction, double more, double less)
 {
   const double distance = factor.value / arm_friction - 1.0;
@@ -224,16 +241,7 @@ const char* wrongLoad(LoadOrigin load)
 
 const char* referenceName(FrictionReference reference) noexcept
 {
-  switch (reference)
-  {
-    case FrictionReference::CONTROLLER:
-      return "controller";
-    case FrictionReference::OWN:
-      return "own";
-    case FrictionReference::TWIN:
-      break;
-  }
-  return "twin";
+  return REFERENCES[static_cast<std::size_t>(reference)].name;
 }
 
 bool controllerIsReference(const std::vector<const JointEvidence*>& joints)
@@ -278,34 +286,14 @@ FrictionFactor frictionFactor(const JointEvidence& evidence, const JointContext&
 
 namespace
 {
-const char* referenceText(FrictionReference reference)
-{
-  switch (reference)
-  {
-    case FrictionReference::CONTROLLER:
-      return "what the arm's controller expects";
-    case FrictionReference::OWN:
-      return "this joint's own when it was sound";
-    case FrictionReference::TWIN:
-      break;
-  }
-  return "the twin's";
-}
-
-Figure figureOf(FrictionReference reference)
-{
-  return reference == FrictionReference::OWN        ? Figure::FRICTION_OF_OWN :
-         reference == FrictionReference::CONTROLLER ? Figure::FRICTION_OF_CONTROLLER :
-                                                      Figure::FRICTION_OF_TWIN;
-}
-
-/// `verdict`: with the friction that was judged, and its bounds.
+/// Sentences on the friction. `verdict`: with the friction and its bounds.
 std::string frictionText(const FrictionFactor& factor, bool is_fitted, const JointEvidence& evidence,
                          const JointContext& context, const Finding& finding, const Verdict& verdict)
 {
   const double shared = context.arm_friction;
   std::string text =
-      "Friction is " + factorText(verdict.friction) + " times " + referenceText(factor.reference) +
+      "Friction is " + factorText(verdict.friction) + " times " +
+      REFERENCES[static_cast<std::size_t>(factor.reference)].text +
       (is_fitted     ? " in a fit of the currents of all joints, apart from what they share" :
        shared == 1.0 ? "" :
                        ", apart from the " + fixedText(shared, 2) + " times that the arm's joints share") +
@@ -313,27 +301,22 @@ std::string frictionText(const FrictionFactor& factor, bool is_fitted, const Joi
       fixedText(verdict[Figure::FRICTION_HIGHEST], 2) + " counts as sound).";
   if (finding.level != VerdictLevel::OK)
   {
-    const auto name = [](const WeightedCause& cause) { return causeName(cause.cause); };
-    text += (evidence.assessor().signatures().signatures.empty() ? std::string() :
-             finding.causes.empty() ? std::string(" No fault in the list has this effect.") :
-                                      " Possible faults: " + joined(finding.causes, ", ", name) + ".") +
-            " Other causes: grease at another temperature, another preload" +
-            (GainEvidence(evidence).isExcluded() ? "." : ", or a wrong gain: the load shows too little to tell.");
+    text += possibleFaults(verdict, finding) + " Other causes: grease at another temperature, another preload" +
+            (verdict.may_be_gain ? ", or a wrong gain, which the load shows too little to exclude." : ".");
   }
   if (context.own.is_unjudged)
   {
-    text += " The reference did not judge this joint's friction; the twin is taken in its place.";
+    text += " The reference did not judge this joint's friction, so it is compared with the twin's.";
   }
   text += " At " + fixedText(evidence.temperature(), 0) + " degC (" + temperatureSource(evidence) + ")";
   text += std::isfinite(context.own.temperature) ?
               ", the reference at " + fixedText(context.own.temperature, 0) +
                   " degC; the twin's law of friction makes up for the difference." :
               ".";
-  const std::vector<FrictionPoint> points = evidence.friction().points();
-  return points.empty() ?
-             text :
-             text + " Measured at " + std::to_string(points.size()) + " speeds from " +
-                 fixedText(points.front().speed, 2) + " to " + fixedText(points.back().speed, 2) + " rad/s.";
+  return verdict[Figure::SPEEDS] > 0.0 ? text + " Measured at " + fixedText(verdict[Figure::SPEEDS], 0) +
+                                             " speeds from " + fixedText(verdict[Figure::LOWEST_SPEED], 2) + " to " +
+                                             fixedText(verdict[Figure::HIGHEST_SPEED], 2) + " rad/s." :
+                                         text;
 }
 }  // namespace
 
@@ -354,17 +337,9 @@ Finding judgeFriction(const JointEvidence& evidence, const JointContext& context
 {
   Finding finding;
   finding.subject = FindingSubject::FRICTION;
-  const std::vector<FrictionPoint> points = evidence.friction().points();
-  verdict[Figure::SPEEDS] = static_cast<double>(points.size());
-  if (!points.empty())
-  {
-    verdict[Figure::LOWEST_SPEED] = points.front().speed;
-    verdict[Figure::HIGHEST_SPEED] = points.back().speed;
-  }
-  verdict[Figure::FRICTION_OF_ARM] = context.arm_friction;
   const FrictionFactor factor = frictionFactor(evidence, context);
   const double of_kind = evidence.parameters().comparison.friction_tolerance;
-  // Where others of the arm are held against themselves, the fit is of two kinds of joints.
+  // The fit does not count for a joint without its own reference if others of the arm have theirs.
   const FittedFriction fitted = context.own.is_unjudged ? FittedFriction() : context.fitted;
   bool is_fitted = isUnshown(factor.reason) && (fitted.departs() || fitted.isWithin(of_kind));
   verdict.friction_text = factor.why_not;
@@ -377,8 +352,8 @@ Finding judgeFriction(const JointEvidence& evidence, const JointContext& context
   {
     finding.reason = Reason::COMMON_FRICTION;
     verdict.friction_text = "The friction of the whole arm is " + fixedText(context.arm_friction, 2) +
-                            " times the reference's, more than temperature makes: gain or unit of the currents are not "
-                            "the configured ones.";
+                            " times the reference's. No temperature explains so much: the gain or the unit of the "
+                            "currents is not as configured.";
     return finding;
   }
   const bool is_to_twin = factor.reference == FrictionReference::TWIN;
@@ -391,7 +366,7 @@ Finding judgeFriction(const JointEvidence& evidence, const JointContext& context
   if (factor.isJudged())
   {
     finding.level = levelOf(departure(factor, shared, more, less), 1.0, evidence.parameters().indicators.error_factor);
-    verdict[figureOf(factor.reference)] = factor.value;
+    verdict[REFERENCES[static_cast<std::size_t>(factor.reference)].figure] = factor.value;
     verdict[Figure::FRICTION_SCATTER] = factor.scatter;
     const bool is_better = is_to_twin || fitted.upper * factor.low() < fitted.lower * factor.high();
     is_fitted = finding.level == VerdictLevel::OK && fitted.departs() && is_better;

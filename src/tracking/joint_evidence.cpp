@@ -13,27 +13,6 @@
 
 namespace hjt
 {
-JointEvidence::Sums::Sums(const Parameters& parameters)
-  : torsion(parameters), loads(static_cast<std::size_t>(LOAD_STEPS) + 2)
-{
-}
-
-void JointEvidence::Sums::reset() noexcept
-{
-  reach = MotionReach();
-  friction = FrictionPoints();
-  beside_controller = FrictionPoints();
-  torsion.reset();
-  std::fill(loads.begin(), loads.end(), std::uint64_t{ 0 });
-  current_squares = predicted_squares = temperatures = alarm_time = gains_time = 0.0;
-  products.setZero();
-  gains.setZero();
-  assessed = 0;
-  worst.reset();
-  too_few.reset();
-  votes.fill(0);
-}
-
 JointEvidence::JointEvidence(const Parameters& parameters, LoadOrigin load)
   : parameters_(parameters)
   , load_(load)
@@ -43,7 +22,7 @@ JointEvidence::JointEvidence(const Parameters& parameters, LoadOrigin load)
   , course_(parameters)
   , contact_(parameters.output.load_torque_limit)
   , health_(parameters)
-  , now_(parameters)
+  , torsion_(parameters)
 {
 }
 
@@ -59,13 +38,15 @@ void JointEvidence::setReference(std::vector<ReferenceBin> bins)
 void JointEvidence::forget() noexcept
 {
   const double end = now_.reach.end;
-  now_.reset();
+  torsion_.reset();
+  now_ = {};
   now_.reach.begin = now_.reach.end = end;
 }
 
 void JointEvidence::reset() noexcept
 {
-  now_.reset();
+  torsion_.reset();
+  now_ = {};
   course_.reset();
   contact_.reset();
   health_.reset();
@@ -129,7 +110,7 @@ double JointEvidence::addToReach(const MotionSample& sample) noexcept
   return step;
 }
 
-/// Rows after a contact too: to a current of another multiple, contact is what its load makes.
+/// Rows shortly after a contact count here: where the gain is wrong, the load of the joint looks like a contact.
 void JointEvidence::addGain(const MotionSample& sample, double residual, double step) noexcept
 {
   if (std::abs(sample.velocity) > FrictionPoints::SLOWEST && predicted_.tellsFriction())
@@ -145,9 +126,8 @@ void JointEvidence::addRow(const MotionSample& sample, double residual) noexcept
 {
   const double gain = parameters_.telemetry.torque_per_current;
   const double friction = predicted_.friction_torque;
-  now_.current_squares += sample.current * sample.current;
-  now_.predicted_squares += predicted_.current * predicted_.current;
-  const Eigen::Vector3d terms(1.0, friction / gain, residual);
+  Eigen::Matrix<double, PRODUCTS, 1> terms;
+  terms << 1.0, friction / gain, residual, predicted_.current, sample.current;
   now_.products += terms * terms.transpose();
   ++now_.loads[static_cast<std::size_t>(std::abs(sample.load) / load_step_)];
   now_.temperatures += sample.temperatureOr(parameters_.input.temperature);
@@ -168,8 +148,8 @@ void JointEvidence::addRow(const MotionSample& sample, double residual) noexcept
   }
   if (std::isfinite(sample.motor_angle))
   {
-    now_.torsion.add(sample.load, twin_torsion_, sample.motor_angle / ratio_ - sample.position, sample.position,
-                     sample.velocity);
+    torsion_.add(sample.load, twin_torsion_, sample.motor_angle / ratio_ - sample.position, sample.position,
+                 sample.velocity);
   }
 }
 
@@ -222,34 +202,24 @@ double JointEvidence::causeShare() const
   return all > 0 ? static_cast<double>(own) / static_cast<double>(all) : 0.0;
 }
 
-double JointEvidence::currentRms() const
+double JointEvidence::rms(Product of) const
 {
-  return std::sqrt(now_.current_squares / counted());
-}
-
-double JointEvidence::predictedRms() const
-{
-  return std::sqrt(now_.predicted_squares / counted());
-}
-
-double JointEvidence::residualRms() const
-{
-  return std::sqrt(now_.products(2, 2) / counted());
+  return std::sqrt(now_.products(of, of) / counted());
 }
 
 double JointEvidence::residualSpread() const
 {
   const double rows = counted();
-  const double mean = now_.products(0, 2) / rows;
-  return std::sqrt(std::max(now_.products(2, 2) / rows - mean * mean, 0.0));
+  const double mean = now_.products(ONE, RESIDUAL) / rows;
+  return std::sqrt(std::max(now_.products(RESIDUAL, RESIDUAL) / rows - mean * mean, 0.0));
 }
 
 double JointEvidence::unexplainedRms() const
 {
-  const Eigen::Vector2d with = now_.products.topRightCorner<2, 1>();
+  const Eigen::Vector2d with = now_.products.block<2, 1>(ONE, RESIDUAL);
   const Eigen::Vector2d best = now_.products.topLeftCorner<2, 2>().ldlt().solve(with);
   const double rows = counted();
-  return std::sqrt(std::max(now_.products(2, 2) - best.dot(with), 0.0) / rows);
+  return std::sqrt(std::max(now_.products(RESIDUAL, RESIDUAL) - best.dot(with), 0.0) / rows);
 }
 
 FittedFactor JointEvidence::loadFactor() const
@@ -293,13 +263,4 @@ double JointEvidence::twinFrictionAt(double temperature) const
   return sum / std::max(rows, 1.0);
 }
 
-double JointEvidence::typicalLoad() const
-{
-  return loadQuantile(0.5);
-}
-
-double JointEvidence::largestLoad() const
-{
-  return loadQuantile(0.999);
-}
 }  // namespace hjt

@@ -24,70 +24,53 @@
 #include "tracking/friction_points.hpp"
 #include "tracking/motion_differentiator.hpp"
 #include "tracking/motion_driven.hpp"
-#include "tracking/plausible.hpp"
-#include "tracking/time_fit.hpp"
+#include "tracking/telemetry_fit.hpp"
+#include "tracking/telemetry_rows.hpp"
 
 namespace hjt
 {
-/// Torsion at one joint torque, both ways of turning apart: mean of the rows.
+/// Mean torsion of the rows at one joint torque, with each direction of turning apart.
 struct TorsionMean
 {
   double torque{};    ///< [N.m]
-  double forward{};   ///< NaN: never passed that way [rad]
-  double backward{};  ///< [rad]
+  double forward{};   ///< NaN: the joint never turned forward under this torque [rad]
+  double backward{};  ///< NaN: the joint never turned backward under this torque [rad]
 };
 
-/// Torsion of a joint with two encoders, compared with the twin's under the same course of loads, for torques up to
-/// output.load_torque_limit. Memory is fixed; `add` neither allocates nor throws.
+/// Torsion of a joint with two encoders beside the torsion of the twin under the same course of loads, for torques up
+/// to output.load_torque_limit. Memory is fixed; `add` neither allocates nor throws.
 class TorsionPoints
 {
 public:
   explicit TorsionPoints(const Parameters& parameters)
-    : step_(std::max(parameters.output.load_torque_limit, 1.0) / STEPS), regression_(3, 1)
+    : step_(std::max(parameters.output.load_torque_limit, 1.0) / STEPS), regression_(SINE + 1, 1)
   {
-    bins_.fill(std::vector<Bin>(2 * static_cast<std::size_t>(STEPS) + 1));
   }
 
   void reset() noexcept
   {
     regression_.reset();
-    for (std::vector<Bin>& way : bins_)
-    {
-      std::fill(way.begin(), way.end(), Bin());
-    }
-    rows_ = 0;
-    twin_sum_ = twin_squares_ = 0.0;
-    turn_sum_.setZero();
-    turn_squares_.setZero();
+    bins_ = {};
   }
 
-  /// `torque` at the output [N.m], `twin` the torsion of the twin under it [rad], `torsion` motor angle over ratio less
-  /// joint angle, from any zero [rad], `position` of the joint [rad], `speed` [rad/s].
+  /// `torque`: at the output [N.m]. `twin`: torsion of the twin under that torque [rad]. `torsion`: motor angle over
+  /// ratio less joint angle, from any zero [rad]. `position`: of the joint [rad]. `speed`: of the joint [rad/s].
   void add(double torque, double twin, double torsion, double position, double speed) noexcept
   {
-    const double way = speed < 0.0 ? -1.0 : 1.0;
-    regression_.add(Eigen::Vector3d(1.0, way, twin), Eigen::Matrix<double, 1, 1>(torsion));
-    ++rows_;
-    twin_sum_ += twin;
-    twin_squares_ += twin * twin;
-    const Eigen::Vector2d turn(std::cos(position), std::sin(position));
-    turn_sum_ += turn;
-    turn_squares_ += turn * turn.transpose();
+    Eigen::Matrix<double, SINE + 1, 1> row;
+    row << 1.0, std::copysign(1.0, speed), twin, std::cos(position), std::sin(position);
+    regression_.add(row, Eigen::Matrix<double, 1, 1>(torsion));
     Bin& bin = bins_[speed < 0.0 ? 1 : 0][static_cast<std::size_t>(std::lround(torque / step_ + STEPS))];
     bin.sum += torsion;
     bin.rows += 1.0;
   }
 
-  std::uint64_t rows() const { return rows_; }
+  std::uint64_t rows() const { return static_cast<std::uint64_t>(regression_.rows()); }
 
-  /// By torque, ascending, in steps; zero is where the twin's curve has it.
+  /// Means in the order of their torques. The zero of the torsion is that of the twin's curve.
   std::vector<TorsionMean> means() const
   {
     std::vector<TorsionMean> means;
-    if (rows_ == 0)
-    {
-      return means;
-    }
     const double zero = fitted().coefficient(0, 0);
     const auto mean_of = [&](const Bin& bin) { return bin.rows > 0.0 ? bin.sum / bin.rows - zero : std::nan(""); };
     for (std::size_t step = 0; step < bins_[0].size(); ++step)
@@ -101,33 +84,34 @@ public:
     return means;
   }
 
-  /// Measured torsion over the twin's under the same torques, by least squares with an offset for each way of turning;
-  /// NaN if the torque hardly varied.
+  /// Measured torsion over the twin's under the same torques, by least squares with an offset for each direction of
+  /// turning; NaN if the torque hardly varied.
   double compliance() const
   {
-    return twinAmplitude() < MIN_VARIED ? std::numeric_limits<double>::quiet_NaN() : fitted().coefficient(2, 0);
+    return twinAmplitude() < MIN_VARIED ? std::numeric_limits<double>::quiet_NaN() : fitted().coefficient(TWIN, 0);
   }
 
   /// Standard deviation of the twin's torsion under the same torques [rad]
-  double twinAmplitude() const
-  {
-    const auto n = static_cast<double>(rows_);
-    return rows_ == 0 ? 0.0 : std::sqrt(std::max(0.0, twin_squares_ / n - std::pow(twin_sum_ / n, 2)));
-  }
+  double twinAmplitude() const { return std::sqrt(std::max(0.0, covariance(TWIN, TWIN))); }
 
-  /// Largest standard deviation that a sine of the joint angle of amplitude 1 has, over all phases [-].
+  /// Standard deviation of a sine of the joint angle with amplitude 1, the largest over all phases [-].
   double turnAmplitude() const
   {
-    const double n = std::max(static_cast<double>(rows_), 1.0);
-    const Eigen::Matrix2d squares = turn_squares_ / n - turn_sum_ * turn_sum_.transpose() / (n * n);
+    const double cosines = covariance(COSINE, COSINE);
+    const double sines = covariance(SINE, SINE);
     // The root of the larger eigenvalue.
-    return std::sqrt(0.5 * squares.trace() + std::hypot(0.5 * (squares(0, 0) - squares(1, 1)), squares(0, 1)));
+    return std::sqrt(0.5 * (cosines + sines) + std::hypot(0.5 * (cosines - sines), covariance(COSINE, SINE)));
   }
 
 private:
-  static constexpr double STEPS = 142.0;       // up to the largest load
+  static constexpr int STEPS = 142;            // up to the largest load
   static constexpr double MIN_VARIED = 20e-6;  // least standard deviation of the twin's torsion that allows an
                                                // estimate [rad]
+  // Columns beside the constant and the direction of turning. Those of the joint angle take no part in the fit.
+  static constexpr int TWIN = 2;
+  static constexpr int COSINE = 3;
+  static constexpr int SINE = 4;
+
   struct Bin
   {
     double sum{};
@@ -137,22 +121,20 @@ private:
   RunningRegression fitted() const
   {
     RunningRegression regression = regression_;
-    regression.fit(3);
+    regression.fit(TWIN + 1);
     return regression;
   }
+  double covariance(int column, int other) const
+  {
+    return regression_.mean(column, other) - regression_.mean(column, 0) * regression_.mean(other, 0);
+  }
 
-  double step_;                           // of the torque [N.m]
-  RunningRegression regression_;          // of the torsion over: one, way of turning, the twin's torsion
-  std::array<std::vector<Bin>, 2> bins_;  // by way of turning: torques from the least to the largest
-  std::uint64_t rows_{};
-  double twin_sum_{};
-  double twin_squares_{};
-  Eigen::Vector2d turn_sum_{ 0.0, 0.0 };  // of cosine and sine of the joint angle
-  Eigen::Matrix2d turn_squares_{ Eigen::Matrix2d::Zero() };
+  double step_;  // of the torque [N.m]
+  RunningRegression regression_;
+  std::array<std::array<Bin, 2 * STEPS + 1>, 2> bins_{};  // by way of turning: torques from the least to the largest
 };
 
-/// Health of a measured joint from its own signals, live and offline alike. Nothing allocates or throws after
-/// construction.
+/// Health of a measured joint from its own signals. After construction nothing allocates or throws.
 class SignalWatch
 {
 public:
@@ -165,10 +147,11 @@ public:
   {
   }
 
-  /// The reference to hold the joint against; none: it is learned from the first windows.
+  /// Sets the reference that the joint is compared with; without this call the first windows are the reference.
   void setReference(std::vector<ReferenceBin> bins) { assessor_.setReference(std::move(bins)); }
 
-  /// `sample`: its load holds weight and inertia too. True: a window is complete, and what follows is of it.
+  /// `sample`: its load includes weight and inertia. True: this sample completed a window, which indicators and
+  /// assessor now show.
   bool update(const MotionSample& sample) noexcept
   {
     SignalSample signal;
@@ -207,35 +190,35 @@ private:
 /// A contact on a joint's side of the arm.
 struct Contact
 {
-  double since{};    ///< when it was first seen [s]
-  double lasted{};   ///< without pauses shorter than ContactWatch::HOLD [s]
-  double largest{};  ///< torque at the joint beyond the usual, magnitude [N.m]
+  double since{};    ///< time when the contact began [s]
+  double lasted{};   ///< duration without its pauses, each shorter than ContactWatch::HOLD [s]
+  double largest{};  ///< largest torque at the joint beyond the usual one, magnitude [N.m]
 };
 
-/// Something that touches the arm: a torque that the joint's motion does not usually take, while it moves, for a short
-/// time. What stays becomes the usual, and what comes more often than a fifth of the time is no contact: friction, gain
-/// and payload.
+/// Detects that something touches the arm: while the joint moves, the motion takes for a short time a torque that it
+/// does not usually take. A torque that stays becomes the usual one. Torques that differ for more than a fifth of the
+/// time are no contact: friction, gain or payload are the reason.
 ///
-/// The mean residual over MEAN must differ from the usual one of that direction by more than half of the friction, 5 %
-/// of the load and 2 % of the largest load together, for LASTING, longer by what rates of rows that come rarely smear a
-/// jolt over. Fixed memory; nothing allocates or throws.
+/// The mean residual over MEAN must differ from the usual residual of that direction for LASTING. The difference must
+/// be more than half of the friction, 5 % of the load and 2 % of the largest load together. Where rows come rarely, the
+/// window of their rates smears a jolt, and LASTING is longer by that. Memory is fixed; nothing allocates or throws.
 class ContactWatch
 {
 public:
-  static constexpr double MEMORY = 10.0;  ///< of motion one way, in which the usual follows [s]
-  static constexpr double HOLD = 10.0;    ///< after a contact, in which nothing is judged [s]
+  static constexpr double MEMORY = 10.0;  ///< time of motion in one direction over which the usual torque adapts [s]
+  static constexpr double HOLD = 10.0;    ///< time after a contact in which nothing is judged [s]
 
   explicit ContactWatch(double largest_load) : largest_load_(largest_load) {}  ///< [N.m]
 
   void reset() noexcept { *this = ContactWatch(largest_load_); }
 
-  /// `residual_torque`: measured less predicted, at the joint [N.m]. `is_held`: by stiction.
+  /// `residual_torque`: measured less predicted torque at the joint [N.m]. `is_held`: stiction holds the joint.
   void update(const MotionSample& sample, double residual_torque, double friction_torque, bool is_held) noexcept
   {
     constexpr double MEAN = 0.1;     // [s]
-    constexpr double SETTLED = 0.3;  // of motion one way: then presliding and the start are over [s]
+    constexpr double SETTLED = 0.3;  // motion in one direction after which presliding and start are over [s]
     constexpr double LASTING = 0.1;  // [s]
-    constexpr double KNOWN = 2.0;    // motion in one direction before a mean is known [s]
+    constexpr double KNOWN = 2.0;    // motion in one direction after which the usual torque is known [s]
     constexpr double OF_FRICTION = 0.5;
     constexpr double OF_LOAD = 0.05;
     constexpr double OF_LARGEST = 0.02;
@@ -281,11 +264,11 @@ public:
     constexpr double OFTEN = 0.2;  // share of the motion
     return touched_ > 0.0 && touched_ < OFTEN * (usual_[0].time + usual_[1].time);
   }
-  bool isTouching() const noexcept { return hasSeen() && time_ == last_; }  ///< now
-  /// Now, or less than HOLD ago.
+  bool isTouching() const noexcept { return hasSeen() && time_ == last_; }  ///< in the last row
+  /// A contact now, or less than HOLD ago.
   bool isRecent() const noexcept { return hasSeen() && time_ - last_ < HOLD; }
-  const Contact& last() const noexcept { return contact_; }     ///< the last one
-  const Contact& largest() const noexcept { return largest_; }  ///< that with the largest torque
+  const Contact& last() const noexcept { return contact_; }     ///< the last contact
+  const Contact& largest() const noexcept { return largest_; }  ///< the contact with the largest torque
 
 private:
   struct Usual
@@ -297,25 +280,25 @@ private:
   double largest_load_;
   double time_{};
   int way_{};                                                // +1, -1; 0: at rest
-  double moved_{};                                           // that way [s]
-  double mean_{};                                            // of the difference [N.m]
-  double beyond_{};                                          // how long [s]
+  double moved_{};                                           // time of motion in that direction [s]
+  double mean_{};                                            // mean difference from the usual torque [N.m]
+  double beyond_{};                                          // time for which the mean is beyond the bound [s]
   std::array<Usual, 2> usual_{};                             // by direction
-  double last_{ -std::numeric_limits<double>::infinity() };  // when something touched it [s]
-  double touched_{};                                         // in all [s]
+  double last_{ -std::numeric_limits<double>::infinity() };  // last time when something touched the arm [s]
+  double touched_{};                                         // duration of all contacts [s]
   Contact contact_;
   Contact largest_;
 };
 
-/// A clause for people.
+/// A clause on a contact.
 inline std::string contactText(const Contact& contact)
 {
-  return "something touched the arm, or its payload changed: at " + roundedText(contact.since, 3) + " s and " +
-         roundedText(contact.lasted, 2) + " s long, up to " + roundedText(contact.largest, 2) +
-         " N.m beyond what this motion usually takes";
+  return "something touched the arm, or its payload changed, at " + roundedText(contact.since, 3) + " s for " +
+         roundedText(contact.lasted, 2) + " s, with up to " + roundedText(contact.largest, 2) +
+         " N.m more than this motion usually takes";
 }
 
-/// One window of the signals and what was made of it.
+/// One window of the signals with its deviations and assessment.
 struct JudgedWindow
 {
   SignalIndicators indicators;
@@ -323,17 +306,21 @@ struct JudgedWindow
   Assessment assessment;
 };
 
+constexpr double LEAST_MOTION = 0.02;  ///< a joint whose angles differ by less is at rest [rad]
+
 /// Coverage of the measured motion.
 struct MotionReach
 {
+  bool isAtRest() const { return most_angle - least_angle < LEAST_MOTION; }
+
   std::uint64_t rows{};
-  std::uint64_t impossible{};        ///< rows with a current or load beyond what the joint has
+  std::uint64_t impossible{};        ///< rows with a current or load that the joint cannot have
   std::uint64_t motor_rows{};        ///< rows with a motor angle
   std::uint64_t temperature_rows{};  ///< rows with a received temperature
-  std::uint64_t touched_rows{};      ///< rows left out: something touched the arm, or had a moment before
-  double begin{};                    ///< of the rows [s]
-  double end{};                      ///< [s]
-  double sampled{};                  ///< time between rows that follow each other, without gaps [s]
+  std::uint64_t touched_rows{};      ///< rows left out because of a contact now or less than ContactWatch::HOLD before
+  double begin{};                    ///< time of the first row [s]
+  double end{};                      ///< time of the last row [s]
+  double sampled{};                  ///< sum of the steps from row to row, without gaps [s]
   double least_load{};               ///< [N.m]
   double most_load{};                ///< [N.m]
   double least_angle{};              ///< [rad]
@@ -343,12 +330,12 @@ struct MotionReach
 /// Where the load of the samples comes from.
 enum class LoadOrigin
 {
-  CONFIGURED,  ///< weight and inertia of the joint's parameters
+  CONFIGURED,  ///< from weight and inertia of the joint's parameters
   RECORDED,
-  ARM  ///< links and payload, by rigid-body dynamics
+  ARM  ///< from links and payload, by rigid-body dynamics
 };
 
-/// The groups of a joint's parameters that evidence and verdict rest on.
+/// The groups of a joint's parameters that evidence and verdict use.
 struct EvidenceParameters
 {
   explicit EvidenceParameters(const Parameters& of)
@@ -373,108 +360,115 @@ struct EvidenceParameters
   double possible_current;  ///< [A]
 };
 
-/// Evidence of a measured joint beside the twin in the same motion, row by row, live and offline alike:
-/// `hjt::judge` makes the verdict of it. Rows while something touches the arm, and ContactWatch::HOLD after it, count
-/// for nothing, unless the load is the configured one. Memory is fixed; after construction nothing allocates or throws.
+/// Evidence on a measured joint: sums over its rows beside the twin in the same motion. `hjt::judge` makes a verdict of
+/// the evidence. Rows during a contact, and for ContactWatch::HOLD after it, do not count, unless the load is the
+/// configured one. Memory is fixed; after construction nothing allocates or throws.
 class JointEvidence
 {
 public:
   /// @throws ParameterError if the ring finds no equilibrium under load.
   JointEvidence(const Parameters& parameters, LoadOrigin load);
 
-  /// Of the sound joint; without it the signals' reference is learned from the first windows.
+  /// Sets the signals' reference of the sound joint. Without this call the first windows are the reference.
   void setReference(std::vector<ReferenceBin> bins);
 
   /// Result of a row.
   enum class Row
   {
-    IMPOSSIBLE,  ///< its current or load is beyond what the joint has
-    TOUCHED,     ///< something touches the arm, or did a moment before
+    IMPOSSIBLE,  ///< the joint cannot have such a current or load
+    TOUCHED,     ///< something touches the arm, or did less than ContactWatch::HOLD before
     COUNTED,
-    WINDOW  ///< counted, and a window of the signals is complete
+    WINDOW  ///< the row counts, and it completed a window of the signals
   };
 
-  /// `sample`: its load holds weight and inertia too. `fits`: else the signals are not looked at.
+  /// `sample`: its load includes weight and inertia. `fits`: whether the signals of this row count.
   Row update(const MotionSample& sample, bool fits = true) noexcept
   {
     predict(sample);
     return judge(sample, fits);
   }
-  /// The same in two: the twin makes the motion of every row, of which those with a known load are judged.
+  /// The function update in two steps: the twin makes the motion of every row, and rows with a known load are judged.
   const MotionPrediction& predict(const MotionSample& sample) noexcept { return predicted_ = twin_.step(sample); }
   Row judge(const MotionSample& sample, bool fits) noexcept;
 
-  /// Starts again, but keeps what the signals are held against and what touches the arm.
+  /// Clears the sums, but keeps the signals' reference and the state of contact.
   void forget() noexcept;
-  /// All of it: other rows follow.
+  /// Clears everything: rows of another recording follow.
   void reset() noexcept;
-  /// Of the signals alone.
+  /// Clears the signals alone.
   void resetSignals() noexcept { health_.reset(); }
 
   LoadOrigin loadOrigin() const { return load_; }
   const EvidenceParameters& parameters() const { return parameters_; }
   double ratio() const { return ratio_; }
   const MotionDriven& twin() const { return twin_; }
-  const MotionPrediction& predicted() const { return predicted_; }  ///< at the row that was taken last
+  const MotionPrediction& predicted() const { return predicted_; }  ///< for the last row
   const MotionReach& reach() const { return now_.reach; }
   const FrictionPoints& friction() const { return now_.friction; }
-  /// The same beside the friction that the controller expects, in the twin's place: with its target current in place of
-  /// the measured one. Of the rows that hold it.
+  /// Friction beside the friction that the arm's controller expects, which stands in `twin`: the current is then the
+  /// controller's target current. Only rows with a target current count.
   const FrictionPoints& besideController() const { return now_.beside_controller; }
-  const TorsionPoints& torsion() const { return now_.torsion; }
+  const TorsionPoints& torsion() const { return torsion_; }
   const SignalIndicators& indicators() const { return health_.indicators(); }
   const Assessor& assessor() const { return health_.assessor(); }
   const ContactWatch& contact() const { return contact_; }
   /// Something touches the arm, or did less than ContactWatch::HOLD ago.
   bool isTouched() const { return load_ != LoadOrigin::CONFIGURED && contact_.isRecent(); }
 
-  double currentRms() const;    ///< of the measured current [A]
-  double predictedRms() const;  ///< of the predicted current [A]
-  double residualRms() const;   ///< [A]
-  /// Standard deviation of the residual about its mean: an unknown constant load does not count [A].
+  double currentRms() const { return rms(MEASURED); }     ///< of the measured current [A]
+  double predictedRms() const { return rms(PREDICTED); }  ///< of the predicted current [A]
+  double residualRms() const { return rms(RESIDUAL); }    ///< [A]
+  /// Standard deviation of the residual about its mean, so that an unknown constant load does not count [A].
   double residualSpread() const;
-  /// The residual that is left after the best constant and the best multiple of the predicted friction: neither a
-  /// constant load nor worn or cold grease counts, rms [A].
+  /// Residual less the best constant and the best multiple of the predicted friction, rms [A]. A constant load and worn
+  /// or cold grease then do not count.
   double unexplainedRms() const;
-  /// The part of the measured current besides friction, load and inertia: a multiple of the predicted one.
-  /// NaN: too little of it to tell.
+  /// Measured over predicted current, of the part that load and inertia take, without friction. NaN: that part is too
+  /// small.
   FittedFactor loadFactor() const;
-  double temperature() const;  ///< that the rows were judged at, mean [degC]
+  double temperature() const;  ///< mean temperature of the rows [degC]
   /// More than half of the rows had a received temperature.
   bool isTemperatureReceived() const { return 2 * now_.reach.temperature_rows > now_.reach.rows; }
-  /// The twin's friction by the speeds of `friction`, under the typical load, at a temperature [degC], mean [N.m].
+  /// Mean friction of the twin at the speeds of friction(), under the typical load, at a temperature [degC], [N.m].
   double twinFrictionAt(double temperature) const;
-  double typicalLoad() const;  ///< median of its magnitude [N.m]
-  double largestLoad() const;  ///< that all but one in a thousand rows stay below [N.m]
+  double typicalLoad() const { return loadQuantile(0.5); }    ///< median of the load's magnitude [N.m]
+  double largestLoad() const { return loadQuantile(0.999); }  ///< one row in a thousand has a larger load [N.m]
 
   bool baselineGiven() const { return baseline_given_; }
   std::uint64_t assessedWindows() const { return now_.assessed; }
-  /// The last window of those at the worst level; none: no window was judged.
+  /// The last of the windows at the worst level; none: no window was judged.
   const std::optional<JudgedWindow>& worst() const { return now_.worst; }
-  const std::optional<Assessment>& tooFew() const { return now_.too_few; }  ///< the last one of too few windows
-  double alarmTime() const { return now_.alarm_time; }                      ///< when the level first left OK [s]
-  Cause cause() const;                                                      ///< that most windows in alarm name
-  double causeShare() const;  ///< share of the windows in alarm that name the cause; 0: none [-]
+  /// The last assessment that had too few windows for a verdict.
+  const std::optional<Assessment>& tooFew() const { return now_.too_few; }
+  double alarmTime() const { return now_.alarm_time; }  ///< time when the level first was not OK [s]
+  Cause cause() const;                                  ///< the cause that most windows in alarm name
+  double causeShare() const;                            ///< share of the windows in alarm that name the cause [-]
 
 private:
+  static constexpr int LOAD_STEPS = 568;  // of the histogram
+  enum Product : int
+  {
+    ONE,
+    FRICTION,
+    RESIDUAL,
+    PREDICTED,
+    MEASURED,
+    PRODUCTS
+  };
+  using Products = Eigen::Matrix<double, PRODUCTS, PRODUCTS>;
+
   /// Sums over the rows.
   struct Sums
   {
-    explicit Sums(const Parameters& parameters);
-    void reset() noexcept;
-
     MotionReach reach;
     FrictionPoints friction;
     FrictionPoints beside_controller;
-    TorsionPoints torsion;
-    std::vector<std::uint64_t> loads;  // histogram of magnitudes
-    double current_squares{};
-    double predicted_squares{};
-    double temperatures{};                                // [degC]
-    Eigen::Matrix3d products{ Eigen::Matrix3d::Zero() };  // of 1, predicted friction, residual [1, A, A]
-    /// The same of 1, predicted friction, the rest of the prediction and the residual, where friction tells.
+    std::array<std::uint64_t, LOAD_STEPS + 2> loads{};  // histogram of magnitudes
+    double temperatures{};                              // [degC]
+    Products products{ Products::Zero() };              // of 1 and currents [A]
+    /// Products of 1, predicted friction, the rest of the prediction and the residual, in rows that tell friction.
     Eigen::Matrix4d gains{ Eigen::Matrix4d::Zero() };
-    double gains_time{};  // that these rows are of [s]
+    double gains_time{};  // time of the rows in `gains` [s]
     std::uint64_t assessed{};
     std::optional<JudgedWindow> worst;
     std::optional<Assessment> too_few;
@@ -487,9 +481,8 @@ private:
   void addRow(const MotionSample& sample, double residual) noexcept;
   bool watchSignals(const MotionSample& sample) noexcept;
   double loadQuantile(double share) const;
-  double counted() const;  // rows, 1 at least
-
-  static constexpr double LOAD_STEPS = 568.0;  // of the histogram
+  double counted() const;  // number of rows that count, 1 at least
+  double rms(Product of) const;
 
   const EvidenceParameters parameters_;
   const LoadOrigin load_;
@@ -502,6 +495,7 @@ private:
   ContactWatch contact_;
   SignalWatch health_;
   bool baseline_given_{};
+  TorsionPoints torsion_;
   Sums now_;
 };
 }  // namespace hjt

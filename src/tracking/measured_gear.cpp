@@ -16,7 +16,7 @@ namespace hjt
 {
 namespace
 {
-/// The wave generator is inserted again where the way to its angle is longer [rad].
+/// Over a longer way the wave generator is not turned but inserted again at its new angle [rad].
 constexpr double LONG_WAY = 0.5;
 }  // namespace
 
@@ -67,7 +67,7 @@ bool MeasuredGear::moveTo(double position, double joint_torque) noexcept
   return true;
 }
 
-/// To equilibrium at an angle of the wave generator.
+/// Brings the ring to equilibrium at an angle of the wave generator.
 bool MeasuredGear::solve(double motor_angle, double joint_torque) noexcept
 {
   const std::int64_t shift = teeth_are_alike_ ? static_cast<std::int64_t>(std::floor(motor_angle / pitch_)) : 0;
@@ -99,7 +99,7 @@ LobeLoads MeasuredGear::lobes() const noexcept
                      ring_.position().wave_generator_angle });
 }
 
-/// Of the drive, that the ring's first one stands for.
+/// Tooth of the drive that the first tooth of the ring stands for.
 int MeasuredGear::firstTooth() const noexcept
 {
   const std::int64_t teeth = tooth_angles_.size();

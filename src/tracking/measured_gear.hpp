@@ -16,9 +16,9 @@ namespace hjt
 {
 /// The gear of a measured joint: all teeth in equilibrium at the measured angle under the joint's torque of the moment.
 ///
-/// If all teeth are alike, the drive repeats after the wave generator has turned by a tooth pitch p of the flexspline
-/// and the output by p / ratio; only the numbers of the teeth differ. The ring is then solved within one pitch, and its
-/// result is turned into place. After construction nothing throws or allocates.
+/// If all teeth are alike, the drive repeats itself after the wave generator has turned by a tooth pitch p of the
+/// flexspline and the output by p / ratio: only the numbers of the teeth differ. The gear then solves the ring within
+/// one pitch and turns the result into place. After construction nothing throws or allocates.
 class MeasuredGear
 {
 public:
@@ -27,8 +27,9 @@ public:
   MeasuredGear(const MeasuredGear&) = delete;  // the ring refers to the model
   MeasuredGear& operator=(const MeasuredGear&) = delete;
 
-  /// To the joint's angle [rad] and the torque of the mesh on the output [N.m]. False: not finite, a torque beyond
-  /// output.load_torque_limit, or no equilibrium was found; the angles stay as they were.
+  /// Moves the gear to an angle of the joint [rad] and a torque of the mesh on the output [N.m]. False: a number is not
+  /// finite, the torque is beyond output.load_torque_limit, or there is no equilibrium. The angles then stay as they
+  /// were.
   bool moveTo(double position, double joint_torque) noexcept;
 
   double position() const noexcept { return position_; }       ///< of the joint [rad]
@@ -58,7 +59,7 @@ private:
   const double ratio_;
   const double torque_limit_;     // [N.m]
   Eigen::VectorXd tooth_angles_;  // at rest [rad]
-  std::int64_t shift_{};          // pitches that the ring is behind the drive
+  std::int64_t shift_{};          // number of pitches by which the ring is behind the drive
   double position_{};
   double motor_angle_{};
   double torsion_{};  // of the ring [rad]

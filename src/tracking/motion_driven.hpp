@@ -3,26 +3,127 @@
 
 #include <array>
 #include <cmath>
+#include <complex>
+#include <cstddef>
 #include <limits>
 #include <utility>
 
 #include "elements/friction_laws.hpp"
 #include "elements/load.hpp"
 #include "elements/motor.hpp"
+#include "gear/angle.hpp"
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/params/parameters.hpp"
-#include "tracking/effort.hpp"
+#include "harmonic_joint_twin/twin/twin.hpp"
+#include "params/variants.hpp"
 #include "tracking/friction_map.hpp"
 #include "tracking/motion_differentiator.hpp"
-#include "tracking/torque_ripple.hpp"
 
 namespace hjt
 {
-/// Share of the friction that is mobilised, between -1 and 1: after a reversal it builds up over a presliding angle
-/// (`mobilised`, by the motor's angle). Two of them add up. The contacts' builds up over telemetry.presliding_angle.
-/// While the joint stands the motion does not tell it, and it forgets the last one within RELAXATION, as the current of
-/// standing joints does (UR5 CB series, K. Kufieta, NTNU 2014: 5 to 10 s). The lasting part, telemetry.lasting_share of
-/// the whole, builds up over LASTING_ANGLE, so that the encoder's noise at standstill hardly changes it, and remains.
+/// Motor current of an effort of 1 in the unit `effort` [A], [A/(N.m)].
+inline double currentPerEffort(EffortUnit effort, const Parameters& parameters) noexcept
+{
+  const double gain = parameters.telemetry.torque_per_current;
+  switch (effort)
+  {
+    case EffortUnit::CURRENT:
+      break;
+    case EffortUnit::JOINT_TORQUE:
+      return 1.0 / gain;
+    case EffortUnit::MOTOR_TORQUE:
+      return nominalRatio(parameters.gear) / gain;
+  }
+  return 1.0;
+}
+
+/// Motor current of an effort of 1 in the configured unit [A], [A/(N.m)].
+inline double currentPerEffort(const Parameters& parameters) noexcept
+{
+  return currentPerEffort(parameters.telemetry.effort, parameters);
+}
+
+/// Motor torque ripple caused by the kinematic error, referred to the joint.
+///
+/// Each line is a torque K e, the joint's stiffness times its kinematic error, that a load at rest would feel. The load
+/// moves too: with its resonance w0 on that stiffness and its damping z the gear feels
+///   T = K e (-w^2) / (w0^2 - w^2 + 2 i z w0 w),   w = order times the joint's speed.
+/// At rest there is no ripple, since the load settles. The four lines have two and four waves in a turn of the motor
+/// against the circular spline, which turns with the output, and against the flexspline. The lines are known up to
+/// telemetry.ripple_fastest; beyond that speed there is no ripple.
+class TorqueRipple
+{
+public:
+  static constexpr std::size_t LINES = 4;
+  using Orders = std::array<double, LINES>;
+  using Waves = std::array<std::complex<double>, LINES>;
+
+  TorqueRipple(const TelemetryParameters& p, double ratio)
+    : orders_(orders(ratio))
+    , lines_{ { { p.ripple_circular_spline_2[0], p.ripple_circular_spline_2[1] },
+                { p.ripple_flexspline_2[0], p.ripple_flexspline_2[1] },
+                { p.ripple_circular_spline_4[0], p.ripple_circular_spline_4[1] },
+                { p.ripple_flexspline_4[0], p.ripple_flexspline_4[1] } } }
+    , response_{ p.ripple_resonance, p.ripple_damping, p.ripple_lag }
+    , fastest_(lines_ == Waves() ? -1.0 : p.ripple_fastest)
+  {
+  }
+
+  /// Ripple at the joint's angle [rad] and speed [rad/s], [N.m].
+  double at(double position, double velocity) const noexcept
+  {
+    double sum = 0.0;
+    if (std::abs(velocity) <= fastest_)
+    {
+      const Waves felt = waves(orders_, position, velocity, response_.data());
+      for (std::size_t i = 0; i < LINES; ++i)
+      {
+        sum += (std::conj(lines_[i]) * felt[i]).real();
+      }
+    }
+    return sum;
+  }
+
+  /// Per turn of the joint: circular spline 2, flexspline 2, circular spline 4, flexspline 4.
+  static Orders orders(double ratio) { return { 2.0 * ratio - 2.0, 2.0 * ratio, 4.0 * ratio - 4.0, 4.0 * ratio }; }
+
+  /// w0^2 - w^2 + 2 i z w0 w; `response`: resonance [Hz], damping [-], lag [s].
+  static std::complex<double> stiffness(double w, const double* response) noexcept
+  {
+    const double natural = TWO_PI * response[0];
+    return { natural * natural - w * w, 2.0 * response[1] * natural * w };
+  }
+
+  /// Torque that the gear feels of each line of 1 N.m: the real part is that of the line's cosine, the imaginary part
+  /// that of its sine.
+  static Waves waves(const Orders& orders, double position, double velocity, const double* response) noexcept
+  {
+    Waves turned;
+    Waves felt;
+    for (std::size_t i = 0; i < LINES; ++i)
+    {
+      const double w = orders[i] * velocity;
+      const std::complex<double> inverse = std::conj(stiffness(w, response));
+      // The orders of the last two are twice those of the first two.
+      turned[i] = i < 2 ? std::polar(1.0, orders[i] * position - w * response[2]) : turned[i - 2] * turned[i - 2];
+      felt[i] = -w * w / std::norm(inverse) * inverse * turned[i];
+    }
+    return felt;
+  }
+
+private:
+  Orders orders_;
+  Waves lines_;                     // cos + i sin [N.m]
+  std::array<double, 3> response_;  // resonance [Hz], damping [-], lag [s]
+  double fastest_;                  // [rad/s]; below 0: there is no line
+};
+
+/// Share of the friction that is mobilised, between -1 and 1. After a reversal the share builds up over a presliding
+/// angle of the motor (function `mobilised`). It is the sum of two parts. The part of the contacts builds up over
+/// telemetry.presliding_angle. While the joint stands, that part decays with the time constant RELAXATION, as the
+/// current of standing joints does (UR5 CB series, K. Kufieta, NTNU 2014: 5 to 10 s). The lasting part,
+/// telemetry.lasting_share of the whole, builds up over LASTING_ANGLE and does not decay. The noise of an encoder at
+/// standstill hardly changes the lasting part.
 class Presliding
 {
 public:
@@ -34,7 +135,7 @@ public:
   {
   }
 
-  /// The motor turned by this much [rad] within [s]
+  /// The motor turned by `motor_step` [rad] in `duration` [s].
   void move(double motor_step, double duration) noexcept
   {
     contacts_ = mobilised(contacts_ * std::exp(-duration / RELAXATION), motor_step, angle_);
@@ -44,8 +145,6 @@ public:
   void reset() noexcept { contacts_ = lasting_ = 0.0; }
 
   double share() const noexcept { return (1.0 - lasting_share_) * contacts_ + lasting_share_ * lasting_; }
-  double contacts() const noexcept { return contacts_; }  ///< of the contacts alone
-  double lasting() const noexcept { return lasting_; }    ///< of the lasting part alone
 
 private:
   double angle_;
@@ -65,27 +164,27 @@ struct MotionPrediction
 {
   double motor_torque{};     ///< at the shaft [N.m]
   double current{};          ///< [A]
-  double friction_torque{};  ///< of the whole, at the joint, with its sign [N.m]
-  double friction_limit{};   ///< the most that it could be at this speed and load [N.m]
-  double band{};             ///< half width of the current's band that the motion leaves open [A]
+  double friction_torque{};  ///< friction of the whole drive, at the joint, with its sign [N.m]
+  double friction_limit{};   ///< largest friction possible at this speed and load [N.m]
+  double band{};             ///< half width of the current's band, by the share of friction that is not mobilised [A]
 
-  /// Nearly all of it is mobilised: the current tells it.
+  /// Nearly all of the friction is mobilised, so that the current tells it.
   bool tellsFriction() const
   {
-    constexpr double LEFT = 0.05;  // of the friction, at most [-]
+    constexpr double LEFT = 0.05;  // largest share of the friction that is not mobilised [-]
     return friction_limit - std::abs(friction_torque) < LEFT * std::abs(friction_torque);
   }
 };
 
-/// The twin driven by a measured motion: motor torque and current out. No ring is solved: friction comes from a table
-/// of it.
+/// The twin driven by a measured motion: it predicts the torque and the current of the motor. The friction comes from a
+/// table (FrictionMap), so no ring is solved.
 ///
 ///   current = (load + vibration + J_m n^2 a + n s T_f(n |v|, load) + T_r) / gain + offset
 /// where n   ratio, a and v the joint's acceleration and speed, J_m motor and wave generator
 ///       T_f friction at the motor shaft (FrictionMap), s the mobilised share of it (Presliding)
 ///       T_r torque ripple caused by the kinematic error (TorqueRipple)
-/// The load of the sample holds all that acts at the output: inertia and weight too. Steps cost some hundred
-/// nanoseconds; nothing allocates.
+/// The load of the sample includes everything that acts at the output, with inertia and weight. A step takes some
+/// hundred nanoseconds; nothing allocates.
 class MotionDriven
 {
 public:
@@ -111,7 +210,7 @@ public:
     return bear(sample);
   }
 
-  /// The step without a prediction, whatever its load.
+  /// The part of a step that needs no load; it makes no prediction.
   void move(const MotionSample& sample) noexcept
   {
     if (!started_ || sample.after_gap)
@@ -139,7 +238,7 @@ public:
     return temperature == predicted_at_ ? predicted_ : predict(temperature);
   }
 
-  /// Of the joint's telemetry [A], [A/(N.m)].
+  /// hjt::currentPerEffort of the joint's telemetry [A], [A/(N.m)].
   double currentPerEffort() const noexcept { return current_per_effort_; }
 
   /// Friction at the joint in steady motion at a speed [rad/s], load [N.m] and temperature [degC], >= 0 [N.m].
@@ -196,9 +295,79 @@ private:
   double temperature_;  // of samples without one [degC]
   double current_per_effort_;
   MotionSample last_;
-  MotionPrediction predicted_;  // for it, at this temperature; NaN: not known
+  MotionPrediction predicted_;  // for the last sample, at the temperature predicted_at_
   mutable std::array<Viscosity, 2> known_;
-  double predicted_at_{ std::numeric_limits<double>::quiet_NaN() };
+  double predicted_at_{ std::numeric_limits<double>::quiet_NaN() };  // NaN: nothing is predicted [degC]
   bool started_{};
+};
+
+/// The whole twin driven by a measured motor current, in open loop: it predicts the motion. Differences from the robot
+/// accumulate.
+///
+/// The current of a sample drives the twin from the sample's time on. The weight is that at the measured angle, so that
+/// it stays right where the twin has drifted away. The twin starts at rest at the measured angle, and again after a
+/// gap.
+class TorqueDriven
+{
+public:
+  /// @throws ParameterError as the twin.
+  explicit TorqueDriven(const Parameters& parameters, const SurfaceSource& surface_source = {})
+    : twin_(withoutHeat(withoutWeight(parameters)), surface_source)
+    , load_(parameters.output)
+    , telemetry_(parameters.telemetry)
+    , ratio_(nominalRatio(parameters.gear))
+    , temperature_(parameters.input.temperature)
+  {
+  }
+
+  struct Motion
+  {
+    double position{};         ///< of the joint, at the sample's time [rad]
+    double velocity{};         ///< [rad/s]
+    double joint_torque{};     ///< of the mesh on the output [N.m]
+    double friction_torque{};  ///< friction of the whole drive, at the joint, against the motion [N.m]
+  };
+
+  /// State of the joint at the time of `sample`, whose current and load act from then on.
+  /// @param load external torque at the output, without the configured weight and inertia [N.m]
+  Motion step(const MotionSample& sample, double load) noexcept
+  {
+    const Stamp stamp = std::llround(1e9 * sample.time);
+    if (!started_ || sample.after_gap)
+    {
+      solver_failures_ = solverFailures();
+      twin_.reset(stamp);
+      start_position_ = sample.position;
+      started_ = true;
+    }
+    while (twin_.step(stamp))
+    {
+    }
+    twin_.setTemperature(stamp, sample.temperatureOr(temperature_));
+    twin_.commandMotorTorque(stamp,
+                             telemetry_.torque_per_current * (sample.current - telemetry_.current_offset) / ratio_);
+    twin_.commandLoadTorque(stamp, load - load_.gravityTorque(sample.position));
+
+    const JointOutputs& now = twin_.outputs();
+    Motion motion;
+    motion.velocity = now.output_velocity;
+    motion.position =
+        start_position_ + now.output_angle + 1e-9 * static_cast<double>(stamp - now.stamp) * now.output_velocity;
+    motion.joint_torque = now.joint_torque;
+    motion.friction_torque = std::copysign(ratio_ * now.friction_torque, now.motor_velocity);
+    return motion;
+  }
+
+  std::uint64_t solverFailures() const noexcept { return solver_failures_ + twin_.counters().solver_failures; }
+
+private:
+  Twin twin_;
+  Load load_;
+  TelemetryParameters telemetry_;
+  double ratio_;
+  double temperature_;       // of samples without one [degC]
+  double start_position_{};  // the twin's zero [rad]
+  bool started_{};
+  std::uint64_t solver_failures_{};  // before the last start
 };
 }  // namespace hjt

@@ -15,11 +15,11 @@ namespace hjt
 namespace
 {
 constexpr double DAMPING = 0.02;    // of the torsional swing, share of critical damping [-]
-constexpr double DEVIATIONS = 3.0;  // of a band
-// Of the first state, rms.
+constexpr double DEVIATIONS = 3.0;  // half width of a band, in standard deviations
+// Standard deviations of the first state.
 constexpr double FIRST_TORSION = 1.0e-4;        // [rad]
 constexpr double FIRST_SPEED = 1.0;             // of the joint [rad/s]
-constexpr double FIRST_DISTURBANCE_TIME = 1.0;  // as much as the disturbance changes in this time [s]
+constexpr double FIRST_DISTURBANCE_TIME = 1.0;  // the first disturbance is as large as its growth in this time [s]
 
 using Vector = ObserverPiece::Vector;
 using Matrix = ObserverPiece::Matrix;
@@ -81,7 +81,7 @@ Observer::Observer(const Parameters& parameters)
   }
 }
 
-/// At rest under the load; the first rows determine speed and disturbance at once.
+/// Starts at rest under the load, with a covariance so large that the first rows determine speed and disturbance.
 void Observer::start(const Measurement& measurement) noexcept
 {
   const double load = measurement.load_torque - load_.gravityTorque(measurement.output_angle);
@@ -97,7 +97,7 @@ void Observer::start(const Measurement& measurement) noexcept
   started_ = true;
 }
 
-/// One step on.
+/// Moves the state and its covariance on by one step.
 void Observer::predict(double motor_torque, double load_torque, double temperature) noexcept
 {
   const double torsion = state_[0] / ratio_ - state_[2];
@@ -112,7 +112,7 @@ void Observer::predict(double motor_torque, double load_torque, double temperatu
 
   const double most = friction_.at(state_[1], gear, temperature).sum();
   const double by_friction = piece.input(1, 0);
-  double taken = 1.0 / by_friction;  // friction by the speed without it, while it holds the motor [N.m.s/rad]
+  double taken = 1.0 / by_friction;  // friction over the speed without friction, while it holds the motor [N.m.s/rad]
   if (presliding_angle_ > 0.0)
   {
     taken = preslide(most, free[1], by_friction);
@@ -127,7 +127,7 @@ void Observer::predict(double motor_torque, double load_torque, double temperatu
   Matrix transition = piece.transition;
   if (sticking_)
   {
-    // Friction takes what would move the motor: a linear map too.
+    // The friction takes away the speed that the motor would get, which is a linear map too.
     Matrix held = Matrix::Identity();
     held.col(1) -= piece.input.col(0) * taken;
     transition = held * transition;
@@ -140,9 +140,9 @@ void Observer::predict(double motor_torque, double load_torque, double temperatu
   now_ += STEP;
 }
 
-/// Friction that builds up over the presliding angle, taken at the end of a step that would end with the motor speed
-/// `free` without it [rad/s], of which a unit of it takes `response`. @returns how it grows with that speed
-/// [N.m.s/rad].
+/// Sets the friction that has built up over the presliding angle at the end of a step. `most`: largest friction [N.m].
+/// `free`: motor speed at that end without friction [rad/s]. `response`: speed that a friction of 1 N.m takes away.
+/// @returns the slope of the friction over `free` [N.m.s/rad].
 double Observer::preslide(double most, double free, double response) noexcept
 {
   constexpr int BISECTIONS = 40;
@@ -162,7 +162,7 @@ double Observer::preslide(double most, double free, double response) noexcept
   return growth / (1.0 + response * growth);
 }
 
-/// Takes one angle; returns the innovation.
+/// Corrects the state by one measured angle. Returns the innovation [rad].
 double Observer::correct(ObserverPiece::State angle, double measured, double noise) noexcept
 {
   const double innovation = measured - state_[angle];

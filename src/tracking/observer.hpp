@@ -13,7 +13,7 @@
 
 namespace hjt
 {
-/// The joint about one local stiffness, one step on: x' = transition x + input (motor torque, output torque).
+/// The joint about one local stiffness, for one step: x' = transition x + input (motor torque, output torque).
 /// x: motor angle and speed, output angle and speed, disturbance torque at the motor.
 struct ObserverPiece
 {
@@ -31,16 +31,17 @@ struct ObserverPiece
   double stiffness{};  ///< [N.m/rad] at the output
   Matrix transition;
   Eigen::Matrix<double, 5, 2> input;
-  Matrix process;  ///< covariance of what no model knows, over a step
+  Matrix process;  ///< covariance of the process noise over a step
 };
 
-/// The exact step of one stiffness. `inertia`: of motor and output [kg.m^2]; `step` [s].
-/// Two per cent of critical damping are taken for the torsional swing, so that a swing faster than the rows cannot
-/// hide.
+/// The exact step of one stiffness. `inertia`: of motor and output [kg.m^2]; `step`: its length [s].
+/// The torsional swing has two per cent of critical damping, so that a swing faster than the rows does not persist
+/// unseen.
 ObserverPiece makeObserverPiece(const Eigen::Vector2d& inertia, double ratio, double stiffness, double step,
                                 const ObserverParameters& noise);
 
-/// Kalman gain of one measured angle; the covariance becomes that after the measurement (Joseph's form).
+/// Kalman gain of one measured angle. The function replaces the covariance by that after the measurement (Joseph's
+/// form).
 ObserverPiece::Vector takeAngle(ObserverPiece::Matrix& covariance, ObserverPiece::State angle, double noise) noexcept;
 
 /// Measurements at one instant.
@@ -58,30 +59,30 @@ struct Measurement
 /// Estimate after the measurement.
 struct Observation
 {
-  double motor_angle{};      ///< zero where output and load say [rad]
+  double motor_angle{};      ///< its zero follows from output and load at the start [rad]
   double motor_velocity{};   ///< [rad/s]
   double output_angle{};     ///< [rad]
   double output_velocity{};  ///< [rad/s]
   double joint_torque{};     ///< in the gear, at the output [N.m]
   double friction_torque{};  ///< a healthy joint's, at the motor, with its sign [N.m]
-  double residual_torque{};  ///< at the motor: torque beyond that of the healthy joint that explains the measurement
-                             ///< [N.m]
-  double residual_band{};    ///< three deviations, if the noise is as stated and the joint healthy [N.m]
-  double innovation{};       ///< output angle measured less predicted [rad]
+  double residual_torque{};  ///< at the motor: torque beyond a healthy joint's that explains the measurement [N.m]
+  double residual_band{};    ///< three standard deviations for a healthy joint with the configured noise [N.m]
+  double innovation{};       ///< measured less predicted output angle [rad]
   double innovation_band{};  ///< band of the innovation: three deviations [rad]
   bool sticking{};           ///< friction holds the motor: any torque within it fits, so the residual carries no
                              ///< information
 };
 
-/// The joint of four states, driven by the measured torque and corrected towards the encoders, the output's alone or
-/// both: an extended Kalman filter in steps of STEP, so that rows may come unevenly or not at all.
+/// An extended Kalman filter of a joint with four states. The measured torque drives the joint, and the encoder of the
+/// output, or both encoders, correct it. The filter runs in steps of STEP, so that rows may come unevenly or not at
+/// all.
 ///
-/// The torsion is the twin's own curve, the friction the twin's own (FrictionMap), taken implicitly: as large as needed
-/// to stop the motor, at most what it is; or, with motor.presliding_angle, as built up over that angle. While the motor
-/// sticks, the angle measurement does not update the disturbance, so the estimate does not wind up; its band widens
-/// instead. If the robot moves nevertheless, the model's output follows it until the spring torque exceeds stiction.
-/// The remaining torque is the residual: increased friction, an unknown load. The model's parameters are never adapted,
-/// so a fault cannot be adapted away. A step costs about a microsecond.
+/// Torsion and friction are the twin's (TorsionCurve, FrictionMap). The friction is implicit: as large as it takes to
+/// stop the motor, but no larger than the twin's; with motor.presliding_angle it builds up over that angle. While the
+/// motor sticks, the measured angle does not update the disturbance, so that the estimate does not wind up. Its band
+/// widens instead. If the robot moves nevertheless, the model's output follows it until the torque of the spring
+/// exceeds stiction. The remaining torque is the residual: more friction, or an unknown load. The observer never adapts
+/// the model's parameters, so that no fault is adapted away. A step takes about a microsecond.
 class Observer
 {
 public:
@@ -113,8 +114,8 @@ private:
   double now_{};           // of the state [s]
   double motor_zero_{};    // of the motor encoder [rad]
   double friction_now_{};  // [N.m]
-  double mobilised_{};     // share of it, where it builds up over an angle
+  double mobilised_{};     // share of the friction that is mobilised
   bool sticking_{};
-  double angle_deviation_{};  // expected of the innovation of the angle taken last [rad]
+  double angle_deviation_{};  // expected standard deviation of the last innovation [rad]
 };
 }  // namespace hjt

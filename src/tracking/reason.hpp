@@ -9,7 +9,7 @@
 
 namespace hjt
 {
-/// Reason of a verdict, or why there is none. Numbers and names are those of Verdict.msg.
+/// Reason of a verdict, or why there is no verdict. Numbers and names are those of Verdict.msg.
 enum class Reason : std::uint8_t
 {
   SOUND = 0,                 ///< judged: as in a sound joint
@@ -52,31 +52,33 @@ constexpr std::size_t REASON_COUNT = 35;
 
 const char* reasonName(Reason reason) noexcept;  ///< "ONE_DIRECTION"
 
-/// Why nothing can be judged of a joint.
+/// Why a joint is not judged.
 struct Misfit
 {
   Reason reason{};
-  std::string clause;  ///< for people, without a full stop; empty: it fits
+  std::string clause;  ///< for people, without a full stop; empty: the joint is judged
 
   bool exists() const { return !clause.empty(); }
 };
 
-/// Friction of a joint over the expected in fits of the currents of all joints, apart from what they share: of the
-/// likeliest, and the ends of the intervals of all that are not clearly less likely.
+/// Friction of a joint over the expected friction in fits of the currents of all joints, apart from the factor that the
+/// joints share. The factor is that of the likeliest fit; the interval covers those of all fits that are not clearly
+/// less likely.
 struct FittedFriction
 {
   double factor{ 1.0 };
   double lower{ 0.0 };
-  double upper{ HUGE_VAL };    ///< 0 and this: there is no fit
-  double of_rows{ HUGE_VAL };  ///< half width of the interval by the rows alone, without what is expected of joints
-  /// Why it may be as expected where the joint's own rows show more, or less; clauses, empty: it is not.
+  double upper{ HUGE_VAL };    ///< lower end 0 and this upper end: there is no fit
+  double of_rows{ HUGE_VAL };  ///< half width of the interval by the rows alone, without prior knowledge of joints
+  /// Clauses: why the friction may be as expected although the joint's own rows show more, or less. Empty: it may not.
   std::string not_more{};
   std::string not_less{};
 
-  /// Of sound arms a UR5 and a UR10e show up to 0.07, a joint beside one of 60 % more friction 0.11.
+  /// Deviation from 1 that counts as a departure. Joints of a sound UR5 and UR10e deviate by up to 0.07, and a sound
+  /// joint beside a joint with 60 % more friction by 0.11.
   static constexpr double BOUND = 0.15;
   bool departs() const { return lower > 1.0 + BOUND || upper < 1.0 - BOUND; }
-  /// So it is, by the rows alone too.
+  /// The friction is within `tolerance` of the expected friction, by the rows alone too.
   bool isWithin(double tolerance) const
   {
     return std::max(upper, factor + of_rows) < 1.0 + tolerance && std::min(lower, factor - of_rows) > 1.0 - tolerance;

@@ -13,7 +13,7 @@
 #include "base/number_text.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "health/baseline_file.hpp"
-#include "tracking/friction_verdict.hpp"
+#include "tracking/verdict.hpp"
 
 namespace hjt
 {
@@ -34,39 +34,34 @@ YAML::Node readData(const std::string& directory, const char* name)
   }
   catch (const YAML::Exception& error)
   {
-    throw InputError(path + " is no data of `joint_twin compare`: " + error.what());
+    throw InputError(path + " does not hold data of `joint_twin compare`: " + error.what());
   }
 }
 
-struct Numbers
-{
-  double compliance_ratio{};    // NaN: not known
-  double temperature{};         // [degC]
-  double friction_deviation{};  // NaN: the friction was not judged
-};
-
-/// Null, or missing in older files: NaN.
-Numbers readNumbers(const std::string& directory)
+/// Numbers of a comparison. A number that is null, or that an older file lacks, is NaN.
+template <std::size_t N>
+std::array<double, N> readNumbers(const std::string& directory, const std::array<const char*, N>& names)
 {
   const YAML::Node object = readData(directory, COMPARISON_FILE);
-  const std::string path = directory + "/" + COMPARISON_FILE;
+  const std::string refusal = directory + "/" + COMPARISON_FILE + " does not hold data of `joint_twin compare`: ";
   if (!object.IsMap() || !object["compliance_ratio"])
   {
-    throw InputError(path + " is no data of `joint_twin compare`: it has no compliance_ratio");
+    throw InputError(refusal + "it has no compliance_ratio");
   }
-  const auto number = [&](const char* name)
+  std::array<double, N> numbers{};
+  for (std::size_t i = 0; i < N; ++i)
   {
-    const YAML::Node value = object[name];
+    const YAML::Node value = object[names[i]];
     try
     {
-      return value && !value.IsNull() ? yamlNumber(value) : std::numeric_limits<double>::quiet_NaN();
+      numbers[i] = value && !value.IsNull() ? yamlNumber(value) : std::numeric_limits<double>::quiet_NaN();
     }
     catch (const YAML::Exception& error)
     {
-      throw InputError(path + " is no data of `joint_twin compare`: " + name + ": " + error.what());
+      throw InputError(refusal + names[i] + ": " + error.what());
     }
-  };
-  return { number("compliance_ratio"), number("temperature"), number("friction_deviation") };
+  }
+  return numbers;
 }
 
 std::vector<FrictionPoint> readFriction(const std::string& directory)
@@ -87,7 +82,7 @@ std::string armOfReport(const std::string& directory)
   const YAML::Node report = readData(directory, ARM_FILE);
   if (!report.IsMap() || !report["arm"] || !report["arm"].IsScalar())
   {
-    throw InputError(directory + "/" + ARM_FILE + " is no data of `joint_twin compare`: it has no arm");
+    throw InputError(directory + "/" + ARM_FILE + " does not hold data of `joint_twin compare`: it has no arm");
   }
   return report["arm"].Scalar();
 }
@@ -104,12 +99,13 @@ SoundJoint readSoundJoint(const std::vector<std::string>& directories, const Par
   double temperatures = 0.0;
   for (const std::string& directory : directories)
   {
-    const Numbers numbers = readNumbers(directory);
-    compliances += numbers.compliance_ratio;
-    temperatures += numbers.temperature;
-    if (std::isfinite(numbers.friction_deviation))
+    const auto [compliance, temperature, friction_deviation] =
+        readNumbers<3>(directory, { "compliance_ratio", "temperature", "friction_deviation" });
+    compliances += compliance;
+    temperatures += temperature;
+    if (std::isfinite(friction_deviation))  // else the friction was not judged
     {
-      frictions.push_back({ readFriction(directory), numbers.friction_deviation });
+      frictions.push_back({ readFriction(directory), friction_deviation });
     }
     const std::string baseline = directory + "/" + BASELINE_FILE;
     if (sound.baseline.empty() && std::filesystem::exists(baseline))

@@ -22,13 +22,13 @@ struct SoundJoint
   std::vector<ReferenceBin> baseline;  ///< none: the recordings were too short for one
 };
 
-/// As given when the report of an arm was made: a name, or a file.
+/// Name or file of the arm of a report, as it was given when the report was made.
 /// @throws InputError if the directory holds no report of an arm.
 std::string armOfReport(const std::string& directory);
 
-/// Of one or more recordings of the sound joint, by the directories of their reports: their friction is the mean at the
-/// speeds of all, and by how much they differ tells how the joint repeats. A recording in which its friction was not
-/// judged is no reference of it. None: nothing is known.
+/// Reads the reports of one or more recordings of the sound joint. The friction is the mean over the recordings at each
+/// speed, and the differences between the recordings tell how well the joint repeats. A recording in which the friction
+/// was not judged does not count for it. Without directories nothing is known.
 /// @throws InputError if a directory holds no comparison, or one of another gear.
 SoundJoint readSoundJoint(const std::vector<std::string>& directories, const Parameters& parameters);
 }  // namespace hjt

@@ -10,18 +10,16 @@
 #include "harmonic_joint_twin/base/errors.hpp"
 #include "tracking/motion_driven.hpp"
 #include "tracking/observer.hpp"
-#include "tracking/plausible.hpp"
-#include "tracking/stream_timing.hpp"
-#include "tracking/torque_driven.hpp"
+#include "tracking/telemetry_rows.hpp"
 
 namespace hjt
 {
 namespace
 {
-/// Half width of a band, in deviations.
+/// Half width of a band, in standard deviations.
 constexpr double DEVIATIONS = 3.0;
 
-/// The load is all that acts at the output, weight and inertia too.
+/// Whether loads of this source include everything that acts at the output, with weight and inertia.
 bool holdsAll(LoadSource source)
 {
   return source == LoadSource::TARGET_MOMENT || source == LoadSource::ARM;
@@ -34,114 +32,27 @@ LoadOrigin originOf(LoadSource source)
                                        LoadOrigin::RECORDED;
 }
 
-class TorqueFollower : public Tracker::Follower
-{
-public:
-  TorqueFollower(const Parameters& parameters, const SurfaceSource& source) : twin_(parameters, source) {}
-
-  void follow(const MotionSample& sample, double external, Comparison& now) noexcept override
-  {
-    const TorqueDriven::Motion motion = twin_.step(sample, external);
-    now.position.predicted = motion.position;
-    now.velocity.predicted = motion.velocity;
-    now.joint_torque = motion.joint_torque;
-    now.friction_torque = motion.friction_torque;
-  }
-  std::uint64_t solverFailures() const noexcept override { return twin_.solverFailures(); }
-
-private:
-  TorqueDriven twin_;
-};
-
-class MotionFollower : public Tracker::Follower
-{
-public:
-  /// `twin`: has made the step when its sample is followed.
-  MotionFollower(const Parameters& parameters, const MotionDriven& twin) : twin_(twin), telemetry_(parameters.telemetry)
-  {
-  }
-
-  void follow(const MotionSample& sample, double /*external*/, Comparison& now) noexcept override
-  {
-    const MotionPrediction predicted = twin_.at(sample.temperature);
-    now.current.predicted = predicted.current;
-    now.current.band = DEVIATIONS * telemetry_.current_deviation + predicted.band;
-    now.sticking = predicted.band > telemetry_.current_deviation;
-    now.friction_torque = predicted.friction_torque;
-    now.joint_torque = sample.load + sample.vibration + telemetry_.torque_per_current * now.current.residual();
-  }
-
-private:
-  const MotionDriven& twin_;
-  TelemetryParameters telemetry_;
-};
-
-class ObserverFollower : public Tracker::Follower
-{
-public:
-  explicit ObserverFollower(const Parameters& parameters)
-    : observer_(parameters), telemetry_(parameters.telemetry), ratio_(nominalRatio(parameters.gear))
-  {
-  }
-
-  void follow(const MotionSample& sample, double external, Comparison& now) noexcept override
-  {
-    const double to_current = ratio_ / telemetry_.torque_per_current;
-    const Observation seen =
-        observer_.step({ sample.time, (sample.current - telemetry_.current_offset) / to_current, external,
-                         sample.position, sample.motor_angle, sample.after_gap, sample.temperature });
-    now.position.predicted = sample.position - seen.innovation;
-    now.position.band = seen.innovation_band;
-    // Of the rotor: the output's own swings by what the load is not known.
-    now.velocity.predicted = seen.motor_velocity / ratio_;
-    now.current.predicted = sample.current + to_current * seen.residual_torque;
-    now.current.band = std::hypot(DEVIATIONS * telemetry_.current_deviation, to_current * seen.residual_band);
-    now.sticking = seen.sticking;
-    now.friction_torque = ratio_ * seen.friction_torque;
-    now.joint_torque = seen.joint_torque;
-  }
-
-private:
-  Observer observer_;
-  TelemetryParameters telemetry_;
-  double ratio_;
-};
-
-/// `twin`: for this motion.
-std::unique_ptr<Tracker::Follower> makeFollower(const Parameters& parameters, InputMode mode, const MotionDriven& twin,
-                                                const SurfaceSource& source)
-{
-  if (mode == InputMode::MOTION)
-  {
-    return std::make_unique<MotionFollower>(parameters, twin);
-  }
-  if (holdsAll(parameters.telemetry.load) && parameters.output.gravity_torque != 0.0)
-  {
-    throw ParameterError(
-        std::string("telemetry.load = ") + (parameters.telemetry.load == LoadSource::ARM ? "arm" : "target_moment") +
-        " holds the weight already, but output.gravity_torque = " + numberText(parameters.output.gravity_torque) +
-        " [N.m]: without a recorded load take telemetry.load = model, with it config/recorded_load.yaml after the "
-        "joint's own file");
-  }
-  if (mode == InputMode::TORQUE)
-  {
-    return std::make_unique<TorqueFollower>(parameters, source);
-  }
-  return std::make_unique<ObserverFollower>(parameters);
-}
 }  // namespace
 
 Tracker::Tracker(const Parameters& parameters, InputMode mode, const SurfaceSource& surface_source)
-  : mode_(mode)
-  , load_source_(parameters.telemetry.load)
+  : load_source_(parameters.telemetry.load)
   , load_(parameters.output)
   , telemetry_(parameters.telemetry)
   , ratio_(nominalRatio(parameters.gear))
   , grease_(parameters)
   , temperature_(parameters.input.temperature)
   , evidence_(parameters, originOf(parameters.telemetry.load))
-  , follower_(makeFollower(parameters, mode, evidence_.twin(), surface_source))
 {
+  if (mode != InputMode::MOTION && holdsAll(load_source_) && parameters.output.gravity_torque != 0.0)
+  {
+    throw ParameterError(
+        std::string("telemetry.load = ") + (load_source_ == LoadSource::ARM ? "arm" : "target_moment") +
+        " holds the weight already, but output.gravity_torque = " + numberText(parameters.output.gravity_torque) +
+        " [N.m]: without a recorded load take telemetry.load = model, with it config/recorded_load.yaml after the "
+        "joint's own file");
+  }
+  torque_driven_ = mode == InputMode::TORQUE ? std::make_unique<TorqueDriven>(parameters, surface_source) : nullptr;
+  observer_ = mode == InputMode::OBSERVER ? std::make_unique<Observer>(parameters) : nullptr;
 }
 
 Tracker::~Tracker() = default;
@@ -153,7 +64,7 @@ void Tracker::reset() noexcept
   restart();
 }
 
-/// Keeps loads and temperatures.
+/// Starts again, but keeps loads and temperatures.
 void Tracker::restart() noexcept
 {
   refused_ += smoother_.refused();
@@ -182,13 +93,13 @@ void Tracker::pushLoad(double time, double torque) noexcept
   }
 }
 
-/// The load given last of those not later than `time`.
+/// The last load that is not later than `time`.
 std::optional<double> Tracker::loadAt(double time) const noexcept
 {
   return load_source_ == LoadSource::MODEL ? std::nullopt : loads_.at(time);
 }
 
-/// A row of that time is next.
+/// Prepares for a row of that time, which may be a restart.
 void Tracker::begin(double time) noexcept
 {
   if (time < last_time_ - StreamTiming::RESTART)
@@ -265,32 +176,70 @@ Comparison Tracker::comparisonOf(MotionSample& sample) noexcept
   now.temperature_received = is_temperature_received;
   now.housing_temperature = grease_.housing(prediction_temperature);
   now.after_gap = sample.after_gap;
-  // Health is compared by the temperature beside the motor, as in `compare`; the follower by that of the grease.
+  // The evidence of health uses the temperature beside the motor, as `compare` does. The comparison uses that of the
+  // grease.
   evidence_.predict(sample);
   sample.temperature = prediction_temperature;
-  follower_->follow(sample, external, now);
+  if (torque_driven_)
+  {
+    predictByTorque(sample, external, now);
+  }
+  else if (observer_)
+  {
+    predictByObserver(sample, external, now);
+  }
+  else
+  {
+    predictByMotion(sample, now);
+  }
   grease_.book(sample.velocity, now.friction_torque,
                telemetry_.torque_per_current * (sample.current - telemetry_.current_offset) / ratio_);
-  if (!is_known)
-  {
-    now.current.band = 0.0;  // the current cannot be judged without the load
-  }
+  now.current.band = is_known ? now.current.band : 0.0;  // without the load the current cannot be judged
   now.residual_torque = telemetry_.torque_per_current * now.current.residual();
 
   sample.temperature = received_temperature;
   watch(sample, now, is_known);
-  if (mode_ != InputMode::OBSERVER)  // whose prediction has learnt of the measured current
-  {
-    const Compared& judged = mode_ == InputMode::TORQUE ? now.velocity : now.current;
-    lag_.add(now.time, judged.predicted, judged.measured);
-  }
-  ++counters_.compared;
-  counters_.outside += now.isOutside() ? 1 : 0;
-  counters_.without_load += is_known ? 0 : 1;
   return now;
 }
 
-/// Evidence, and the share of rows outside.
+void Tracker::predictByTorque(const MotionSample& sample, double external, Comparison& now) noexcept
+{
+  const TorqueDriven::Motion motion = torque_driven_->step(sample, external);
+  now.position.predicted = motion.position;
+  now.velocity.predicted = motion.velocity;
+  now.joint_torque = motion.joint_torque;
+  now.friction_torque = motion.friction_torque;
+}
+
+/// The twin of the evidence has made the step already.
+void Tracker::predictByMotion(const MotionSample& sample, Comparison& now) const noexcept
+{
+  const MotionPrediction predicted = evidence_.twin().at(sample.temperature);
+  now.current.predicted = predicted.current;
+  now.current.band = DEVIATIONS * telemetry_.current_deviation + predicted.band;
+  now.sticking = predicted.band > telemetry_.current_deviation;
+  now.friction_torque = predicted.friction_torque;
+  now.joint_torque = sample.load + sample.vibration + telemetry_.torque_per_current * now.current.residual();
+}
+
+void Tracker::predictByObserver(const MotionSample& sample, double external, Comparison& now) noexcept
+{
+  const double to_current = ratio_ / telemetry_.torque_per_current;
+  const Observation seen =
+      observer_->step({ sample.time, (sample.current - telemetry_.current_offset) / to_current, external,
+                        sample.position, sample.motor_angle, sample.after_gap, sample.temperature });
+  now.position.predicted = sample.position - seen.innovation;
+  now.position.band = seen.innovation_band;
+  // The velocity is that of the rotor: the output swings by the error of the load.
+  now.velocity.predicted = seen.motor_velocity / ratio_;
+  now.current.predicted = sample.current + to_current * seen.residual_torque;
+  now.current.band = std::hypot(DEVIATIONS * telemetry_.current_deviation, to_current * seen.residual_band);
+  now.sticking = seen.sticking;
+  now.friction_torque = ratio_ * seen.friction_torque;
+  now.joint_torque = seen.joint_torque;
+}
+
+/// Adds a row to evidence, lag, counters and the share of rows outside.
 void Tracker::watch(const MotionSample& sample, const Comparison& now, bool load_is_known) noexcept
 {
   if (load_is_known)
@@ -301,6 +250,14 @@ void Tracker::watch(const MotionSample& sample, const Comparison& now, bool load
       now.after_gap || evidence_.isTouched() ? 0.0 : std::clamp(now.time - last_compared_, 0.0, OUTSIDE_MEMORY);
   outside_share_ += (1.0 - std::exp(-step / OUTSIDE_MEMORY)) * ((now.isOutside() ? 1.0 : 0.0) - outside_share_);
   last_compared_ = now.time;
+  if (!observer_)  // the observer's prediction has learnt of the measured current
+  {
+    const Compared& judged = torque_driven_ ? now.velocity : now.current;
+    lag_.add(now.time, judged.predicted, judged.measured);
+  }
+  ++counters_.compared;
+  counters_.outside += now.isOutside() ? 1 : 0;
+  counters_.without_load += load_is_known ? 0 : 1;
 }
 
 TrackerCounters Tracker::counters() const noexcept
@@ -308,7 +265,7 @@ TrackerCounters Tracker::counters() const noexcept
   TrackerCounters counters = counters_;
   counters.refused = refused_ + smoother_.refused();
   counters.refused_temperatures = temperatures_.refused();
-  counters.solver_failures = follower_->solverFailures();
+  counters.solver_failures = torque_driven_ ? torque_driven_->solverFailures() : 0;
   return counters;
 }
 }  // namespace hjt

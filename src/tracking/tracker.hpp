@@ -13,28 +13,30 @@
 
 #include "elements/load.hpp"
 #include "surface/surface_cache.hpp"
-#include "tracking/grease_temperature.hpp"
-#include "tracking/held_values.hpp"
+#include "tracking/drive_temperature.hpp"
 #include "tracking/joint_evidence.hpp"
 #include "tracking/motion_differentiator.hpp"
 
 namespace hjt
 {
-/// By how much one signal of a stream lags behind another: where their cross-correlation is largest.
+class Observer;
+
+/// Lag of one signal of a stream behind another: the lag with the largest cross-correlation.
 ///
-/// Both pass the same high-pass; products are summed for lags on a grid up to LONGEST to either side and forgotten over
-/// MEMORY; a parabola through the largest three gives what lies between. Fixed memory; nothing allocates.
+/// Both signals pass the same high-pass. The products are summed for lags on a grid up to LONGEST to either side, and
+/// forgotten over MEMORY. A parabola through the three largest values gives the lag between the points of the grid.
+/// Memory is fixed; nothing allocates.
 class DelayEstimate
 {
 public:
   static constexpr double LONGEST = 0.1;          ///< [s]
-  static constexpr double GRID = 0.004;           ///< between lags tried [s]
-  static constexpr double MEMORY = 20.0;          ///< [s]
-  static constexpr double MIN_CORRELATION = 0.7;  ///< below it no delay is given [-]
+  static constexpr double GRID = 0.004;           ///< step from one lag to the next [s]
+  static constexpr double MEMORY = 20.0;          ///< time constant of forgetting [s]
+  static constexpr double MIN_CORRELATION = 0.7;  ///< a smaller correlation gives no lag [-]
 
   void reset() noexcept { *this = DelayEstimate(); }
 
-  /// A row of both, later than the one before [s].
+  /// Adds a row of both signals. `time`: later than that of the row before [s].
   void add(double time, double leading, double lagging) noexcept
   {
     const bool first = end_ == begin_ || time > at(end_ - 1).time + MotionDifferentiator::MAX_GAP;
@@ -51,7 +53,7 @@ public:
     rows_[end_ % ROOM] = { time, leading - leading_mean_, lagging - lagging_mean_ };
     ++end_;
 
-    // The lagging signal is taken in the middle of what is held, so that the leading one is known to either side.
+    // The lagging signal is that in the middle of the held rows, so that the leading one is known to either side.
     const double middle = time - LONGEST;
     const std::uint64_t oldest = std::max(begin_, end_ > ROOM ? end_ - ROOM : 0);
     if (at(oldest).time > middle - LONGEST)
@@ -82,7 +84,8 @@ public:
     }
   }
 
-  /// Of the lagging signal, > 0: it comes later [s]. Nothing: too little alike, or the largest lies at the end.
+  /// Lag of the lagging signal; > 0: it comes later [s]. Nothing: the signals are too little alike, or the largest
+  /// correlation is that of the longest lag.
   std::optional<double> lag() const noexcept
   {
     std::size_t best = 0;
@@ -103,7 +106,7 @@ public:
   }
 
 private:
-  static constexpr double MIN_SECONDS = 2.0;  // of signal before a delay is given
+  static constexpr double MIN_SECONDS = 2.0;  // shorter signals give no lag
 
   static constexpr std::size_t ROOM = 512;
   static constexpr int HALF = 25;  // LONGEST / GRID
@@ -132,7 +135,7 @@ private:
   std::array<double, LAGS> products_{};
   std::array<double, LAGS> leading_power_{};
   double lagging_power_{};
-  double seconds_{};  // that the sums hold
+  double seconds_{};  // time in the sums, less what was forgotten
 };
 
 /// One quantity, measured and predicted.
@@ -140,29 +143,29 @@ struct Compared
 {
   double measured{};
   double predicted{};
-  double band{};  ///< half width within which a healthy joint's residual is expected; 0: nothing is known of it
+  double band{};  ///< half width of the range in which a healthy joint's residual stays; 0: not known
 
   double residual() const noexcept { return measured - predicted; }
 };
 
-/// A healthy joint beside the measured one at the time of one row of telemetry. Fields as in Comparison.msg; always
-/// finite.
+/// A healthy joint beside the measured joint at the time of one row of telemetry. The fields are those of
+/// Comparison.msg and always finite.
 struct Comparison
 {
-  double time{};             ///< of the row [s]
-  Compared position;         ///< of the joint [rad]
-  Compared velocity;         ///< of the joint [rad/s]
-  Compared current;          ///< of the motor [A]
-  double joint_torque{};     ///< torque on the arm: measured, less friction and the rotor's inertia [N.m]
-  double friction_torque{};  ///< of a healthy joint, at the joint, with its sign [N.m]
-  double load_torque{};      ///< at the output that was reckoned with, all in all, > 0 resists positive motion [N.m]
-  bool load_provided{};      ///< a load was received; else weight and inertia as configured, and where telemetry.load
-                             ///< expects one, no band
-  double temperature{};      ///< of the grease, that the prediction was made at [degC]
-  bool temperature_received{};   ///< it comes from a received one; else estimated or as configured
+  double time{};                 ///< of the row [s]
+  Compared position;             ///< of the joint [rad]
+  Compared velocity;             ///< of the joint [rad/s]
+  Compared current;              ///< of the motor [A]
+  double joint_torque{};         ///< torque on the arm: the motor's, less friction and the rotor's inertia [N.m]
+  double friction_torque{};      ///< of a healthy joint, at the joint, with its sign [N.m]
+  double load_torque{};          ///< whole load at the output in the prediction, > 0 resists positive motion [N.m]
+  bool load_provided{};          ///< a load was received; else weight and inertia are as configured, without a band if
+                                 ///< telemetry.load expects a load
+  double temperature{};          ///< temperature of the grease in the prediction [degC]
+  bool temperature_received{};   ///< that temperature follows from a received one; else it is estimated or configured
   double housing_temperature{};  ///< thermal.model = two_nodes: beside the motor; else that of the grease [degC]
   bool sticking{};               ///< friction holds the joint: any current within the band fits
-  bool after_gap{};              ///< first after a gap in the telemetry
+  bool after_gap{};              ///< this row is the first one after a gap in the telemetry
 
   /// Measured less predicted current as a torque at the joint [N.m].
   double residual_torque{};
@@ -172,24 +175,24 @@ struct Comparison
 /// Counts of the rows that were given.
 struct TrackerCounters
 {
-  std::uint64_t compared{};              ///< rows beside which there is a comparison
-  std::uint64_t refused{};               ///< repeated, out of order, not finite or beyond what can be
-  std::uint64_t gaps{};                  ///< longer than MotionDifferentiator::MAX_GAP
-  std::uint64_t restarts{};              ///< stamps went back by more than StreamTiming::RESTART
+  std::uint64_t compared{};              ///< rows with a comparison
+  std::uint64_t refused{};               ///< rows that are repeated, out of order, not finite or impossible
+  std::uint64_t gaps{};                  ///< gaps longer than MotionDifferentiator::MAX_GAP
+  std::uint64_t restarts{};              ///< times that stamps went back by more than StreamTiming::RESTART
   std::uint64_t outside{};               ///< comparisons whose current lies outside its band
   std::uint64_t without_load{};          ///< comparisons without a received load, though telemetry.load expects one
-  std::uint64_t refused_temperatures{};  ///< not finite or beyond what a drive can have
+  std::uint64_t refused_temperatures{};  ///< temperatures that are not finite or impossible
   std::uint64_t solver_failures{};       ///< steps of the twin in torque mode that did not converge
 };
 
-/// The twin beside a robot: rows of telemetry in, comparisons and health out, in one of the modes `torque`, `motion`
-/// and `observer`. Live and offline alike: the same rows and loads give the same numbers, if a load comes before the
-/// rows that are MotionDifferentiator::HALF_WIDTH later than it. Knows no ROS; after construction nothing throws or
+/// The twin beside a robot: it compares rows of telemetry with its prediction and judges the health, in one of the
+/// modes `torque`, `motion` and `observer`. Live and offline the same rows and loads give the same numbers, if a load
+/// comes before the rows that are MotionDifferentiator::HALF_WIDTH later than it. After construction nothing throws or
 /// allocates.
 class Tracker
 {
 public:
-  static constexpr double OUTSIDE_MEMORY = 30.0;  ///< a touch of the arm is shorter [s]
+  static constexpr double OUTSIDE_MEMORY = 30.0;  ///< longer than a touch of the arm [s]
 
   /// @throws ParameterError where the parameters do not allow the mode; `mode` is not COMMANDS.
   Tracker(const Parameters& parameters, InputMode mode, const SurfaceSource& surface_source = {});
@@ -197,75 +200,72 @@ public:
 
   void reset() noexcept;
 
-  /// False: the telemetry does not fit together; health is not judged, and starts again once it does.
+  /// `fits` false: the telemetry does not fit together. The health is then not judged, and starts again once the
+  /// telemetry fits.
   void setFits(bool fits) noexcept;
 
-  /// The load at the output from `time` on; as telemetry.load says, external or all in all [N.m]. Not finite: refused.
+  /// Sets the load at the output from `time` on: the external or the whole load, as telemetry.load says [N.m]. A number
+  /// that is not finite is refused.
   void pushLoad(double time, double torque) noexcept;
 
-  /// The temperature of the drive from `time` on, for rows without their own [degC]. Bad ones are refused and counted.
+  /// Sets the temperature of the drive from `time` on, for rows without a temperature [degC]. Impossible temperatures
+  /// are refused and counted.
   void pushTemperature(double time, double temperature) noexcept { temperatures_.push(time, temperature); }
 
-  /// An estimate for rows without a received temperature [degC]; none: the configured one.
+  /// Sets an estimate for rows without a received temperature [degC]; none: the configured temperature.
   void setTemperature(std::optional<double> temperature) noexcept { estimated_temperature_ = temperature; }
 
   bool hasEstimate() const noexcept { return estimated_temperature_.has_value(); }
 
-  /// Reference of the joint's signals; none: learned from the first windows. Allocates.
+  /// Sets the reference of the joint's signals; without this call the first windows are the reference. Allocates.
   void setReference(std::vector<ReferenceBin> bins) { evidence_.setReference(std::move(bins)); }
 
-  /// A row of telemetry; its own load is passed over. Take the comparisons afterwards.
+  /// Takes a row of telemetry, whose own load does not count. Call pop() afterwards.
   void push(const MotionRow& row) noexcept;
 
-  /// The next comparison that is ready, at most MotionDifferentiator::HALF_WIDTH after its row. Call it until there is
-  /// none.
+  /// The next comparison that is ready, at most MotionDifferentiator::HALF_WIDTH after its row. Call it until it
+  /// returns none.
   std::optional<Comparison> pop(bool at_end = false) noexcept;
 
-  /// In place of both, for a row whose rates are known, as ArmLoad makes it: later than the one before, its values
-  /// possible. Its own load is passed over too.
+  /// Takes the place of push() and pop() for a row whose rates are known, as of ArmLoad. The row must be later than the
+  /// row before, and its values possible. Its own load does not count.
   Comparison compare(MotionSample sample) noexcept;
 
-  /// The last comparison had the load that is expected, or none is.
+  /// Whether the last comparison had a load, or telemetry.load expects none.
   bool isLoadKnown() const noexcept { return load_is_known_; }
 
   TrackerCounters counters() const noexcept;
 
-  /// Share of the last rows, forgotten over OUTSIDE_MEMORY, whose current lies outside its band [-].
+  /// Share of the rows whose current lies outside its band, forgotten over OUTSIDE_MEMORY [-].
   double outsideShare() const noexcept { return outside_share_; }
 
-  /// Of the measured joint, in every mode alike. While something touches the arm its health is not judged, starts again
-  /// afterwards, and the rows do not count as outside.
+  /// Evidence on the measured joint, which is the same in every mode. While something touches the arm, the health is
+  /// not judged and the rows do not count as outside; afterwards the health starts again.
   const JointEvidence& evidence() const noexcept { return evidence_; }
 
-  /// The verdict is of what follows.
+  /// Clears the evidence, so that the next verdict is of later rows.
   void forgetEvidence() noexcept { evidence_.forget(); }
 
-  /// Delay of the measured signal relative to its prediction: current (motion) or speed (torque); the observer has none
-  /// [s].
+  /// Lag of a measured signal behind its prediction [s]: of the current in mode `motion`, of the speed in mode
+  /// `torque`. In mode `observer` there is none.
   std::optional<double> lag() const noexcept { return lag_.lag(); }
 
   /// Health of the measured joint, from its own signals.
   const SignalIndicators& signalIndicators() const noexcept { return evidence_.indicators(); }
   const Assessment& assessment() const noexcept { return evidence_.assessor().assessment(); }
 
-  /// Predicts a sample in this mode: fills position, velocity, current, torques. @param external load besides the
-  /// weight and inertia that are configured; the whole is in the sample [N.m]
-  class Follower
-  {
-  public:
-    virtual ~Follower() = default;
-    virtual void follow(const MotionSample& sample, double external, Comparison& now) noexcept = 0;
-    virtual std::uint64_t solverFailures() const noexcept { return 0; }
-  };
-
 private:
   void restart() noexcept;
   void begin(double time) noexcept;
   Comparison comparisonOf(MotionSample& sample) noexcept;
   std::optional<double> loadAt(double time) const noexcept;
+  // Each fills position, velocity, current and torques of a comparison. `external`: load beside the weight and inertia
+  // that are configured; the sample has the whole [N.m].
+  void predictByTorque(const MotionSample& sample, double external, Comparison& now) noexcept;
+  void predictByMotion(const MotionSample& sample, Comparison& now) const noexcept;
+  void predictByObserver(const MotionSample& sample, double external, Comparison& now) noexcept;
   void watch(const MotionSample& sample, const Comparison& now, bool load_is_known) noexcept;
 
-  InputMode mode_;
   LoadSource load_source_;
   Load load_;
   TelemetryParameters telemetry_;
@@ -274,18 +274,19 @@ private:
   double temperature_;                           // of the grease, at the last row [degC]
   std::optional<double> estimated_temperature_;  // in its place where none is received [degC]
   JointEvidence evidence_;
-  std::unique_ptr<Follower> follower_;
+  std::unique_ptr<TorqueDriven> torque_driven_;  // in mode TORQUE alone
+  std::unique_ptr<Observer> observer_;           // in mode OBSERVER alone
   MotionDifferentiator smoother_;
   bool restarted_{};
   bool fits_{ true };
   bool load_is_known_{ true };
-  double last_time_{ -HUGE_VAL };  // of the rows since the last restart [s]
+  double last_time_{ -HUGE_VAL };  // time of the last row since the last restart [s]
   HeldValues loads_;
   TemperatureRecord temperatures_;
   double outside_share_{};
-  double last_compared_{};  // [s]
+  double last_compared_{};  // time of the last comparison [s]
   DelayEstimate lag_;
   TrackerCounters counters_;
-  std::uint64_t refused_{};  // before the smoother, and by it before the last restart
+  std::uint64_t refused_{};  // rows refused before smoother_, and by it before the last restart
 };
 }  // namespace hjt

@@ -8,26 +8,11 @@
 #include <utility>
 
 #include "gear/angle.hpp"
-#include "tracking/wrong_gain.hpp"
 
 namespace hjt
 {
 namespace
 {
-/// Share of the largest load by which the load must vary to show anything that load alone shows.
-constexpr double MIN_LOADING = 0.035;
-
-bool movesBothWays(const std::vector<FrictionPoint>& points)
-{
-  return points.front().speed < 0.0 && points.back().speed > 0.0;
-}
-
-bool isAtRest(const JointEvidence& evidence)
-{
-  const MotionReach& reach = evidence.reach();
-  return evidence.friction().points().empty() && reach.most_angle - reach.least_angle < LEAST_MOTION;
-}
-
 /// Mean product of measured and predicted current [A^2].
 double agreement(const JointEvidence& evidence)
 {
@@ -35,7 +20,8 @@ double agreement(const JointEvidence& evidence)
                 std::pow(evidence.residualRms(), 2));
 }
 
-/// Why the recorded current says nothing about the drive: not that of its motor, or of another load; none: it fits.
+/// Why the recorded current tells nothing of the drive: it is not that of the motor, or the load is another. None: the
+/// current fits.
 std::optional<Reason> whyRowsDoNotFit(const JointEvidence& evidence)
 {
   constexpr double MIN_RATIO = 0.02;  // least share of the predicted current, rms
@@ -46,7 +32,7 @@ std::optional<Reason> whyRowsDoNotFit(const JointEvidence& evidence)
   const double noticeable = 2.0 * evidence.parameters().telemetry.current_deviation;
   const double measured = evidence.currentRms();
   const double predicted = evidence.predictedRms();
-  if (isAtRest(evidence))
+  if (evidence.reach().isAtRest() && evidence.friction().points().empty())
   {
     return std::nullopt;  // stiction holds it at any current
   }
@@ -70,12 +56,6 @@ std::optional<Reason> whyRowsDoNotFit(const JointEvidence& evidence)
     return Reason::LOAD_WRONG;
   }
   return std::nullopt;
-}
-
-/// The same, with what is known of the whole recording.
-std::optional<Reason> whyItDoesNotFit(const JointEvidence& evidence, const JointContext& context)
-{
-  return context.misfit.exists() ? context.misfit.reason : whyRowsDoNotFit(evidence);
 }
 
 Finding judgeTorsion(const JointEvidence& evidence, const OwnReference& own, Verdict& verdict)
@@ -177,50 +157,27 @@ Finding judgeSignals(const JointEvidence& evidence, const JointContext& context,
   return finding;
 }
 
-/// Order of the motor's turn that the rows resolve at the highest speed; 0: the joint does not move.
-double highestOrder(const JointEvidence& evidence)
+/// Highest order of the motor's turn that the rows resolve at the highest speed [-]; 0: the joint does not move.
+double highestOrder(const JointEvidence& evidence, const Verdict& verdict)
 {
   constexpr double RESOLVED = 0.4;  // share of the rows' rate; the limit is a half
-  double fastest = 0.0;
-  for (const FrictionPoint& point : evidence.friction().points())
-  {
-    fastest = std::max(fastest, std::abs(point.speed));
-  }
+  const double fastest = std::max(-verdict[Figure::LOWEST_SPEED], verdict[Figure::HIGHEST_SPEED]);
   const double turns = std::abs(fastest * evidence.ratio()) * evidence.reach().sampled / TWO_PI;
   return turns > 0.0 ? RESOLVED * static_cast<double>(evidence.reach().rows) / turns : 0.0;
 }
 
-std::vector<Hidden> cannotShow(const JointEvidence& evidence, const Verdict& verdict)
-{
-  const MotionReach& reach = evidence.reach();
-  const std::vector<FrictionPoint> points = evidence.friction().points();
-  const std::pair<bool, Hidden> all[] = { { reach.motor_rows == 0, Hidden::TORSION },
-                                          { evidence.loadOrigin() == LoadOrigin::ARM, Hidden::PAYLOAD },
-                                          { evidence.loadOrigin() == LoadOrigin::CONFIGURED, Hidden::LOAD },
-                                          { !evidence.isTemperatureReceived(), Hidden::TEMPERATURE },
-                                          { !evidence.baselineGiven(), Hidden::EARLY_FAULT },
-                                          { reach.touched_rows > 0, Hidden::CONTACT },
-                                          { !points.empty() && !movesBothWays(points), Hidden::FRICTION_FROM_LOAD },
-                                          { points.size() < 3, Hidden::FRICTION_OVER_SPEED },
-                                          { reach.most_load - reach.least_load <
-                                                MIN_LOADING * evidence.parameters().output.load_torque_limit,
-                                            Hidden::LOADED },
-                                          { verdict[Figure::HIGHEST_ORDER] > 0.0, Hidden::HIGH_ORDERS } };
-  std::vector<Hidden> hidden;
-  for (const auto& [is_hidden, what] : all)
-  {
-    if (is_hidden)
-    {
-      hidden.push_back(what);
-    }
-  }
-  return hidden;
-}
-
-/// Sets the figures that do not depend on the kind of verdict.
+/// Sets the figures that do not depend on the findings.
 void setFigures(const JointEvidence& evidence, const JointContext& context, Verdict& verdict)
 {
   const MotionReach& reach = evidence.reach();
+  const std::vector<FrictionPoint> points = evidence.friction().points();
+  verdict[Figure::SPEEDS] = static_cast<double>(points.size());
+  if (!points.empty())
+  {
+    verdict[Figure::LOWEST_SPEED] = points.front().speed;
+    verdict[Figure::HIGHEST_SPEED] = points.back().speed;
+  }
+  verdict[Figure::FRICTION_OF_ARM] = context.arm_friction;
   verdict[Figure::ROWS] = static_cast<double>(reach.rows);
   verdict[Figure::TOUCHED_ROWS] = static_cast<double>(reach.touched_rows);
   verdict[Figure::SPAN] = reach.end - reach.begin;
@@ -232,7 +189,7 @@ void setFigures(const JointEvidence& evidence, const JointContext& context, Verd
   verdict[Figure::MOST_LOAD] = reach.most_load;
   verdict[Figure::TEMPERATURE] = evidence.temperature();
   verdict[Figure::REFERENCE_TEMPERATURE] = context.own.temperature;
-  verdict[Figure::HIGHEST_ORDER] = highestOrder(evidence);
+  verdict[Figure::HIGHEST_ORDER] = highestOrder(evidence, verdict);
   if (evidence.contact().hasSeen() || reach.touched_rows > 0)
   {
     const Contact& last = evidence.contact().last();
@@ -245,12 +202,11 @@ void setFigures(const JointEvidence& evidence, const JointContext& context, Verd
     verdict[Figure::LARGEST_CONTACT_TORQUE] = largest.largest;
   }
   verdict.load = evidence.loadOrigin();
-  verdict.is_temperature_received = evidence.isTemperatureReceived();
   verdict.is_reference_given = evidence.baselineGiven();
   verdict.has_signatures = !evidence.assessor().signatures().signatures.empty();
 }
 
-/// Level and reason of all findings.
+/// Sets level and reason of the verdict by its findings.
 void sumUp(Verdict& verdict)
 {
   verdict.reason = verdict.findings.front().reason;
@@ -275,17 +231,16 @@ VerdictLevel levelOf(double deviation, double tolerance, double error_factor)
 MeasuredFriction measuredFriction(const JointEvidence& evidence, const JointContext& context)
 {
   const FrictionFactor factor = frictionFactor(evidence, context);
-  const bool fits = !whyItDoesNotFit(evidence, context);
-  return { fits && factor.isJudged() ? std::make_optional(factor.value) : std::nullopt,
+  const std::optional<Reason> why_not = whyRowsDoNotFit(evidence);
+  const bool is_open = !context.misfit.exists();
+  return { is_open && !why_not && factor.isJudged() ? std::make_optional(factor.value) : std::nullopt,
            evidence.temperature(),
            evidence.reach().temperature_rows > 0,
            [&evidence](double temperature) { return evidence.twinFrictionAt(temperature); },
-           !context.misfit.exists() && factor.is_below_faults,
-           !context.misfit.exists() && factor.reason == Reason::NO_FRICTION,
-           factor.reason == Reason::EFFORT_NOT_CURRENT ||
-               (whyRowsDoNotFit(evidence) == Reason::EFFORT_NOT_CURRENT && factor.value < 0.0),
-           !context.misfit.exists() &&
-               (whyItDoesNotFit(evidence, context) == Reason::LOAD_WRONG || factor.reason == Reason::LOAD_WRONG),
+           is_open && factor.is_below_faults,
+           is_open && factor.reason == Reason::NO_FRICTION,
+           factor.reason == Reason::EFFORT_NOT_CURRENT || (why_not == Reason::EFFORT_NOT_CURRENT && factor.value < 0.0),
+           is_open && (why_not == Reason::LOAD_WRONG || factor.reason == Reason::LOAD_WRONG),
            !context.own.friction.empty() };
 }
 
@@ -320,13 +275,17 @@ Verdict judge(const JointEvidence& evidence, const JointContext& context)
   setFigures(evidence, context, verdict);
   verdict.findings = { judgeFriction(evidence, context, verdict), judgeTorsion(evidence, context.own, verdict),
                        judgeSignals(evidence, context, verdict) };
-  if (const std::optional<Reason> why_not = whyItDoesNotFit(evidence, context))
+  if (context.misfit.exists())
   {
-    verdict.dismiss({ *why_not, context.misfit.clause });
+    verdict.dismiss(context.misfit);
+  }
+  else if (const std::optional<Reason> why_not = whyRowsDoNotFit(evidence))
+  {
+    verdict.dismiss({ *why_not, "" });
   }
   else if (verdict.findings.front().level != VerdictLevel::NOT_JUDGED)
   {
-    // Of a reference the gain may be wrong alike.
+    // The reference of the joint itself may have the same wrong gain.
     const bool departs = severityOf(verdict.findings.front().level) != HealthLevel::OK;
     const bool is_to_own = context.is_identified || !context.own.friction.empty();
     const GainEvidence gain(evidence);

@@ -1,42 +1,81 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <string>
 #include <vector>
 
+#include "base/number_text.hpp"
+#include "base/statistics.hpp"
 #include "tracking/common_friction.hpp"
-#include "tracking/friction_verdict.hpp"
 #include "tracking/joint_evidence.hpp"
 #include "tracking/reason.hpp"
 
 namespace hjt
 {
-/// Figures of the same joint in sound condition.
+/// Change of a joint's friction from its own that a verdict ignores, however certain it is. The bound for less friction
+/// is twice as wide, since no fault takes away a fifth of the friction.
+constexpr double MORE_THAN_OWN = 0.05;
+constexpr double LESS_THAN_OWN = 0.10;
+
+/// Reference of which the friction of a joint is a multiple.
+enum class FrictionReference : std::uint8_t
+{
+  TWIN,
+  CONTROLLER,  ///< the friction that the arm's controller expects
+  OWN          ///< the joint's own friction when it was sound
+};
+
+const char* referenceName(FrictionReference reference) noexcept;  ///< "controller"
+
+/// Friction of a joint as a multiple of its reference, with its uncertainty (docs/compare.md).
+struct FrictionFactor
+{
+  double value{ std::numeric_limits<double>::quiet_NaN() };  ///< NaN: the rows show none
+  double deviation{};                                        ///< standard deviation of its logarithm [-]
+  double scatter{};                                          ///< part of `deviation` by the rows' scatter [-]
+  FrictionReference reference{ FrictionReference::TWIN };
+  bool is_below_faults{};          ///< the friction is less than any fault leaves
+  Reason reason{ Reason::SOUND };  ///< why the friction is not judged; SOUND: it is judged
+  std::string why_not;             ///< that reason in a sentence; empty: the friction is judged
+
+  bool isJudged() const { return reason == Reason::SOUND; }
+  /// Ends of the 95 % interval.
+  double low() const { return value * std::exp(-halfWidth()); }
+  double high() const { return value * std::exp(halfWidth()); }
+
+private:
+  double halfWidth() const { return NORMAL_95 * deviation; }
+};
+
+/// Figures of the same joint when it was sound.
 struct OwnReference
 {
   std::vector<FrictionPoint> friction;                                  ///< none: not known
   double compliance_ratio{ std::numeric_limits<double>::quiet_NaN() };  ///< NaN: not known
-  double temperature{ std::numeric_limits<double>::quiet_NaN() };       ///< judged at; NaN: not known [degC]
-  double friction_deviation{};    ///< of the friction, by its scatter, standard deviation as a share [-]
-  std::size_t recordings{ 1 };    ///< that it is of
-  double recordings_deviation{};  ///< standard deviation of one of them, as a share [-]
+  double temperature{ std::numeric_limits<double>::quiet_NaN() };       ///< of the recordings; NaN: not known [degC]
+  double friction_deviation{};    ///< standard deviation of the friction by its scatter, as a share [-]
+  std::size_t recordings{ 1 };    ///< number of recordings of the friction
+  double recordings_deviation{};  ///< standard deviation from one recording to the next, as a share [-]
   bool is_unjudged{};             ///< there is a recording, but it did not show the joint's friction
 };
 
-/// Context of a joint besides its samples.
+/// What a verdict on a joint uses beside its evidence.
 struct JointContext
 {
   OwnReference own;
-  bool is_identified{};   ///< the twin's friction is that of this joint
-  bool has_controller{};  ///< without `own` the friction is held against what the arm's controller expects
-  /// Multiple of the reference's friction by what the joints of an arm have in common: temperature or gain, no fault.
+  bool is_identified{};  ///< the twin's friction was identified from this joint
+  bool
+      has_controller{};  ///< without `own` the friction is compared with the friction that the arm's controller expects
+  /// Common factor of the friction of the joints, over that of the reference: by temperature or gain, not by a fault.
   double arm_friction{ 1.0 };
-  Misfit misfit{};  ///< of its rows
-  /// Of `arm_friction`, standard deviation of its logarithm; 0: the joints of its group are its witnesses.
+  Misfit misfit{};  ///< why the rows of the joint are not judged
+  /// Standard deviation of the logarithm of `arm_friction`; 0: the joints of its group witness it.
   double arm_deviation{ UNWITNESSED };
   FittedFriction fitted{};
 };
@@ -52,64 +91,61 @@ enum class VerdictLevel : std::uint8_t
 
 const char* levelName(VerdictLevel level) noexcept;  ///< "WARN", "NOT JUDGED"
 
-/// How bad: OK where nothing was judged.
+/// The level as a HealthLevel, which is OK where nothing was judged.
 inline HealthLevel severityOf(VerdictLevel level)
 {
   return level == VerdictLevel::NOT_JUDGED ? HealthLevel::OK : static_cast<HealthLevel>(level);
 }
 
-/// A number that a verdict rests on.
+/// A number behind a verdict.
 enum class Figure : std::uint8_t
 {
-  ROWS,                    ///< that count
-  TOUCHED_ROWS,            ///< left out: something touched the arm
-  SPAN,                    ///< of the rows [s]
+  ROWS,                    ///< all rows
+  TOUCHED_ROWS,            ///< rows left out because something touched the arm
+  SPAN,                    ///< time from the first to the last row [s]
   CURRENT,                 ///< measured, rms [A]
   CURRENT_PREDICTED,       ///< rms [A]
   CURRENT_RESIDUAL,        ///< measured less predicted, rms [A]
-  CURRENT_UNEXPLAINED,     ///< left by the best constant and the best multiple of the friction, rms [A]
+  CURRENT_UNEXPLAINED,     ///< residual less the best constant and the best multiple of the friction, rms [A]
   LEAST_LOAD,              ///< [N.m]
   MOST_LOAD,               ///< [N.m]
-  TEMPERATURE,             ///< judged at [degC]
-  REFERENCE_TEMPERATURE,   ///< of the joint's own reference [degC]
-  HIGHEST_ORDER,           ///< of the motor's turn that the rows resolve at the highest speed [-]
-  SPEEDS,                  ///< at which the friction was measured [-]
+  TEMPERATURE,             ///< mean temperature of the rows [degC]
+  REFERENCE_TEMPERATURE,   ///< temperature of the joint's own reference [degC]
+  HIGHEST_ORDER,           ///< order of the motor's turn that the rows resolve at the highest speed [-]
+  SPEEDS,                  ///< number of speeds at which the friction was measured [-]
   LOWEST_SPEED,            ///< with its sign [rad/s]
   HIGHEST_SPEED,           ///< [rad/s]
-  FRICTION_OF_TWIN,        ///< over the twin's [-]
-  FRICTION_OF_CONTROLLER,  ///< over what the arm's controller expects [-]
-  FRICTION_OF_OWN,         ///< over the joint's own when it was sound [-]
-  FRICTION_OF_ARM,         ///< common factor of all joints of the arm [-]
-  FRICTION_SCATTER,        ///< standard deviation of its logarithm by the scatter of the rows [-]
-  FRICTION_LOWEST,         ///< of a sound joint [-]
-  FRICTION_HIGHEST,        ///< of a sound joint [-]
+  FRICTION_OF_TWIN,        ///< friction over the twin's [-]
+  FRICTION_OF_CONTROLLER,  ///< friction over the friction that the arm's controller expects [-]
+  FRICTION_OF_OWN,         ///< friction over the joint's own when it was sound [-]
+  FRICTION_OF_ARM,         ///< common factor of the friction of all joints of the arm [-]
+  FRICTION_SCATTER,        ///< standard deviation of the friction's logarithm by the scatter of the rows [-]
+  FRICTION_LOWEST,         ///< lowest friction of a sound joint, over the reference [-]
+  FRICTION_HIGHEST,        ///< highest friction of a sound joint, over the reference [-]
   TORSION_OF_TWIN,         ///< torsion over the twin's [-]
-  TORSION_OF_OWN,          ///< over the drive's own when it was sound [-]
-  TORSION_TOLERANCE,       ///< by which a sound drive's may differ from 1 [-]
-  ENCODER_SHARE,           ///< of the tolerance, for the encoders' eccentricity [-]
-  ENCODER_ERROR,           ///< of the output encoder once a turn, that would look the same [rad]
-  ENCODER_ECCENTRICITY,    ///< of the output encoder as configured [rad]
-  WINDOWS,                 ///< of the signals, compared [-]
-  WINDOWS_HERE,            ///< windows at one operating point, if those are too few [-]
-  WINDOWS_NEEDED,          ///< at one operating point [-]
-  ALARM_TIME,              ///< from which on the signals depart [s]
-  CONTACT_SINCE,           ///< of the last contact [s]
-  CONTACT_LASTED,          ///< [s]
-  CONTACT_TORQUE,          ///< [N.m]
-  LARGEST_CONTACT_SINCE,   ///< of the strongest contact [s]
-  LARGEST_CONTACT_LASTED,  ///< [s]
-  LARGEST_CONTACT_TORQUE   ///< [N.m]
+  TORSION_OF_OWN,          ///< torsion over the drive's own when it was sound [-]
+  TORSION_TOLERANCE,       ///< deviation from 1 that the torsion of a sound drive may have [-]
+  ENCODER_SHARE,           ///< part of that tolerance for the encoders' eccentricity [-]
+  ENCODER_ERROR,           ///< error of the output encoder once a turn that would look like the torsion found [rad]
+  ENCODER_ECCENTRICITY,    ///< configured eccentricity of the output encoder [rad]
+  WINDOWS,                 ///< windows of the signals that were compared [-]
+  WINDOWS_HERE,            ///< windows at one operating point, if they are too few [-]
+  WINDOWS_NEEDED,          ///< windows that a verdict needs at one operating point [-]
+  ALARM_TIME,              ///< time from which on the signals depart from the reference [s]
+  CONTACT_SINCE,           ///< beginning of the last contact [s]
+  CONTACT_LASTED,          ///< duration of the last contact [s]
+  CONTACT_TORQUE,          ///< largest torque of the last contact [N.m]
+  LARGEST_CONTACT_SINCE,   ///< beginning of the strongest contact [s]
+  LARGEST_CONTACT_LASTED,  ///< duration of the strongest contact [s]
+  LARGEST_CONTACT_TORQUE   ///< torque of the strongest contact [N.m]
 };
 constexpr std::size_t FIGURE_COUNT = 38;
 
-const char* figureName(Figure figure) noexcept;  ///< "rows"
-const char* figureUnit(Figure figure) noexcept;
-
-/// A kind of fault and how much speaks for it.
+/// A kind of fault as a possible cause.
 struct WeightedCause
 {
   Cause cause{};
-  double weight{};  ///< of the windows in alarm that name it; of causes that cannot be told apart an equal share [-]
+  double weight{};  ///< share of the windows in alarm that name it, or an equal share for causes that look alike [-]
 };
 
 /// Quantities of a joint that are judged.
@@ -127,42 +163,26 @@ struct Finding
   FindingSubject subject{};
   VerdictLevel level{ VerdictLevel::NOT_JUDGED };
   Reason reason{};                    ///< SOUND at level OK
-  std::vector<WeightedCause> causes;  ///< that would show like this; none at level OK
+  std::vector<WeightedCause> causes;  ///< faults that have this effect; none at level OK
 };
 
-/// Friction of the joint: a multiple of its own when sound where that is known, else of what the controller expects or
-/// of the twin's; in an arm over what all joints have in common.
+/// Friction of the joint as a multiple of its FrictionReference, and in an arm of the joints' common factor too.
 struct JudgedFriction
 {
   double factor{ std::numeric_limits<double>::quiet_NaN() };  ///< NaN: not measured [-]
-  double lower{ std::numeric_limits<double>::quiet_NaN() };   ///< of its interval; without one the factor [-]
-  double upper{ std::numeric_limits<double>::quiet_NaN() };   ///< [-]
+  double lower{ std::numeric_limits<double>::quiet_NaN() };   ///< lower end of its interval [-]
+  double upper{ std::numeric_limits<double>::quiet_NaN() };   ///< upper end of its interval [-]
   bool has_interval{};
 };
 
-/// Limits of a recording.
-enum class Hidden
-{
-  TORSION,             ///< no angle of the motor
-  PAYLOAD,             ///< no torque recorded, load of the arm
-  LOAD,                ///< as configured
-  TEMPERATURE,         ///< none received
-  EARLY_FAULT,         ///< no reference
-  CONTACT,             ///< rows left out
-  FRICTION_FROM_LOAD,  ///< one way only
-  FRICTION_OVER_SPEED,
-  LOADED,  ///< the load hardly varies
-  HIGH_ORDERS
-};
-
-/// Findings of a measured joint, as data: `verdictText` and `findingText` make the sentences.
+/// Verdict on a measured joint: its findings as data. `verdictText` and `findingText` make the sentences.
 struct Verdict
 {
   Verdict() { figures.fill(std::numeric_limits<double>::quiet_NaN()); }
 
   bool isJudged() const { return level != VerdictLevel::NOT_JUDGED; }
   double operator[](Figure figure) const { return figures[static_cast<std::size_t>(figure)]; }  ///< NaN: not known
-  /// Nothing is judged.
+  /// Makes it a verdict in which nothing is judged.
   void dismiss(const Misfit& why_not);
   double& operator[](Figure figure) { return figures[static_cast<std::size_t>(figure)]; }
 
@@ -170,24 +190,23 @@ struct Verdict
   Reason reason{ Reason::NO_STEADY_MOTION };  ///< reason of the worst finding; if none is judged, of the first
   std::string joint;
   JudgedFriction friction;
-  std::string friction_text;        ///< finding, or why it is not judged, in sentences
-  std::vector<Finding> findings;    ///< none: nothing was looked at
-  std::vector<Evidence> evidence;   ///< of the worst window of the signals, strongest first
-  std::vector<Hidden> cannot_show;  ///< by these rows
-  bool may_be_gain{};               ///< a wrong gain would show like the friction that departs
-  bool fits{ true };                ///< false: telemetry or load are why nothing is judged
-  std::string misfit;               ///< a clause of contact or telemetry that does not fit; empty: none
+  std::string friction_text;             ///< sentences on the friction, or why it is not judged
+  std::vector<Finding> findings;         ///< on friction, torsion and signals
+  std::vector<Evidence> evidence;        ///< of the worst window of the signals, strongest first
+  std::vector<std::string> cannot_show;  ///< by these rows, in sentences
+  bool may_be_gain{};                    ///< a wrong gain would show like the friction that departs
+  bool fits{ true };                     ///< false: telemetry or load are why nothing is judged
+  std::string misfit;                    ///< clause on why nothing is judged; empty: none
   LoadOrigin load{};
-  bool is_temperature_received{};
   bool is_reference_given{};  ///< of the signals
-  bool has_signatures{};      ///< of faults: causes can be named
+  bool has_signatures{};      ///< signatures of faults are known, so that causes can be named
   std::array<double, FIGURE_COUNT> figures{};
 };
 
-/// Of all findings, each kind once, the heaviest first.
+/// Causes of all findings, each kind of fault once, the one with the largest weight first.
 std::vector<WeightedCause> causesOf(const Verdict& verdict);
 
-/// One number with its unit.
+/// A number with its name and unit.
 struct NamedFigure
 {
   std::string name;
@@ -195,30 +214,115 @@ struct NamedFigure
   const char* unit;
 };
 
-/// The known figures of a verdict, and the indicators of the worst window with their sound values.
+/// The known figures of a verdict, and the indicators of its evidence with their sound values.
 std::vector<NamedFigure> evidenceOf(const Verdict& verdict);
 
 // Sentences for people and documents.
 std::string verdictText(const Verdict& verdict);
 std::string findingText(const Verdict& verdict, const Finding& finding);
-std::vector<std::string> hiddenTexts(const Verdict& verdict);
+/// The rows of the evidence cannot show these things. `verdict`: with its figures.
+std::vector<std::string> cannotShow(const JointEvidence& evidence, const Verdict& verdict);
+
+/// Sentence on the causes of a finding; empty: without signatures of faults nothing is known of them.
+std::string possibleFaults(const Verdict& verdict, const Finding& finding);
 
 /// A clause as a sentence.
 std::string sentence(std::string clause);
 
-/// `deviation` as a share, beyond `tolerance`: WARN, and beyond `error_factor` times it: ERROR.
+/// WARN if the magnitude of `deviation` is larger than `tolerance`, ERROR if it is larger than `error_factor` times
+/// that.
 VerdictLevel levelOf(double deviation, double tolerance, double error_factor);
 
-/// Live and offline alike.
 Verdict judge(const JointEvidence& evidence, const JointContext& context);
 
-/// Where the temperature that a joint was judged at is from, for people and documents.
+/// Source of the temperature of a joint, in a word.
 inline const char* temperatureSource(const JointEvidence& evidence)
 {
   return evidence.isTemperatureReceived() ? "received" : "configured";
 }
 
-/// Friction that the rows show, as a multiple of the joint's own when sound, else of the twin's. The evidence
-/// must outlive it.
+/// Friction of the rows as a multiple of its FrictionReference. The evidence must outlive the result.
 MeasuredFriction measuredFriction(const JointEvidence& evidence, const JointContext& context);
+
+/// "1.18 [1.05, 1.32]"
+std::string factorText(const FrictionFactor& factor);
+std::string factorText(const JudgedFriction& friction);
+
+/// Whether the friction that an arm's controller expects can be the reference: the friction of most joints agrees with
+/// it, so that it is that of sound joints.
+bool controllerIsReference(const std::vector<const JointEvidence*>& joints);
+
+/// Standard deviation of a sound joint's friction from its own earlier friction, apart from the common factor of its
+/// group, as a share [-]. `friction` [N.m]
+double repeatOfOwn(double friction);
+
+/// Friction factor of the rows in the evidence.
+FrictionFactor frictionFactor(const JointEvidence& evidence, const JointContext& context);
+
+/// Friction of a sound joint in one recording.
+struct SoundFriction
+{
+  std::vector<FrictionPoint> points;
+  double deviation{};  ///< standard deviation by the scatter of the rows, as a share [-]
+};
+
+/// Reference of several recordings: the mean friction at each speed, and how much the recordings differ. Without
+/// recordings the reference is not known.
+OwnReference ownReference(const std::vector<SoundFriction>& recordings);
+
+/// Judges the friction: WARN if the whole interval lies beyond the bound. Puts factor, text and figures into the
+/// verdict.
+Finding judgeFriction(const JointEvidence& evidence, const JointContext& context, Verdict& verdict);
+
+/// Adds the faults that move the indicator in the direction `way`, +1 or -1, to the finding.
+void nameCauses(const JointEvidence& evidence, ScalarIndicator indicator, double way, Finding& finding);
+
+/// Clause on a load that is not the joint's.
+const char* wrongLoad(LoadOrigin load);
+
+/// Tells a wrong gain of the current from friction. With a wrong gain the current that load and inertia take departs
+/// from the prediction by the same factor as the friction does.
+struct GainEvidence
+{
+  explicit GainEvidence(const JointEvidence& evidence)
+    : load(evidence.loadFactor()), friction(evidence.friction().ratio().value)
+  {
+  }
+
+  /// The friction departs alone, so the gain is right.
+  bool isExcluded() const
+  {
+    return load.value > 0.0 && !isAlike() && std::abs(load.value - friction) > DEVIATIONS * load.uncertainty;
+  }
+
+  /// The factor of the friction is nearer to that of the load than to 1. If not, another load is as likely as a gain.
+  bool isOfFriction() const { return std::abs(std::log(load.value / friction)) < std::abs(std::log(friction)); }
+
+  /// Misfit by a wrong gain; none: both factors do not depart alike, or the load tells too little.
+  Misfit misfit() const
+  {
+    constexpr double NOTEWORTHY = 0.2;  // gains of one type differ by less
+    if (!(load.value > 0.0 && isAlike()) ||
+        std::abs(load.value - 1.0) < std::max(NOTEWORTHY, DEVIATIONS * load.uncertainty))
+    {
+      return {};
+    }
+    return { Reason::EFFORT_UNIT, "the current is " + roundedText(load.value, 2) +
+                                      " times what load and inertia take, and " + roundedText(friction, 2) +
+                                      " times what friction takes: not the friction but the gain "
+                                      "(telemetry.torque_per_current) or the unit is another than configured" };
+  }
+
+  FittedFactor load;
+  double friction;
+
+private:
+  static constexpr double DEVIATIONS = 3.0;
+
+  bool isAlike() const
+  {
+    constexpr double ALIKE = 1.25;
+    return std::abs(std::log(load.value / friction)) < std::log(ALIKE);
+  }
+};
 }  // namespace hjt

@@ -19,11 +19,9 @@ std::string whole(double value)
   return fixedText(value, 0);
 }
 
-std::string wrongLoadText(const Verdict& verdict)
+std::string causeNames(const Finding& finding, const char* separator)
 {
-  return "Of " + fixedText(verdict[Figure::CURRENT], 2) + " A rms " +
-         fixedText(verdict[Figure::CURRENT_UNEXPLAINED], 2) +
-         " A are neither predicted nor explained by another friction or a constant: " + wrongLoad(verdict.load);
+  return joined(finding.causes, separator, [](const WeightedCause& cause) { return causeName(cause.cause); });
 }
 
 std::string wrongEffortText(double current, double predicted, Reason reason)
@@ -32,83 +30,63 @@ std::string wrongEffortText(double current, double predicted, Reason reason)
   {
     if (current > 0.5 * predicted)
     {
-      return "The recorded effort goes against the current that this motion takes: effort or angle of this joint is "
-             "of the opposite sign, or its load is another than configured (mounting, payload).";
+      return "The recorded effort goes against the current that this motion takes: the effort or the angle of this "
+             "joint has the opposite sign, or its load (mounting, payload) is not as configured.";
     }
     return "The recorded effort is " + fixedText(current, 2) + " A rms where this motion takes some " +
-           fixedText(predicted, 2) + " A: it is not the motor's current.";
+           fixedText(predicted, 2) + " A: the effort is not the motor's current.";
   }
   return "The recorded effort is " + fixedText(current / predicted, 1) +
-         " times the current that this motion takes: it is expected in A, not in N.m; or telemetry.torque_per_current "
-         "is wrong.";
+         " times the current that this motion takes: the effort is in N.m in place of A, or "
+         "telemetry.torque_per_current is wrong.";
 }
 
-/// Of torsion or signals that are not judged, or of all.
+/// Sentence on why torsion or signals, or all findings, are not judged.
 std::string reasonText(const Verdict& verdict, Reason reason)
 {
   switch (reason)
   {
     case Reason::LOAD_WRONG:
-      return verdict.misfit.empty() ? wrongLoadText(verdict) : sentence(verdict.misfit);
+      if (!verdict.misfit.empty())
+      {
+        break;
+      }
+      return "Of a current of " + fixedText(verdict[Figure::CURRENT], 2) + " A rms, " +
+             fixedText(verdict[Figure::CURRENT_UNEXPLAINED], 2) +
+             " A follow neither from the prediction nor from another friction or a constant load: " +
+             wrongLoad(verdict.load);
     case Reason::EFFORT_NOT_CURRENT:
     case Reason::EFFORT_TOO_LARGE:
       return wrongEffortText(verdict[Figure::CURRENT], verdict[Figure::CURRENT_PREDICTED], reason);
     case Reason::COMMON_FRICTION:
       return "The friction of the whole arm is " + fixedText(verdict[Figure::FRICTION_OF_ARM], 2) +
-             " times that of the reference: its signals are of another temperature or gain.";
+             " times that of the reference: the signals have another temperature or gain than those of the reference.";
     case Reason::NO_MOTOR_ANGLE:
-      return "One angle a joint: torsion needs encoders at the motor and at the output.";
+      return "The recording has one angle for each joint, but torsion needs encoders at the motor and at the output.";
     case Reason::LOAD_CONSTANT:
       return "The load hardly varies, so the stiffness of the drive cannot be measured.";
     case Reason::TOO_FEW_WINDOWS:
       return "Too few windows: a verdict needs " + whole(verdict[Figure::WINDOWS_NEEDED]) +
-             " at one operating point, has " + whole(verdict[Figure::WINDOWS_HERE]) + ".";
+             " at one operating point, and the recording has " + whole(verdict[Figure::WINDOWS_HERE]) + ".";
     case Reason::NO_REFERENCE:
       return "No window of the recording is at an operating point that the reference knows.";
     case Reason::TOO_SHORT:
       return "No reference was given, and the recording is too short to learn one (" +
              whole(verdict[Figure::WINDOWS_NEEDED]) + " windows at one operating point).";
     case Reason::TORSION_NO_DRIVE:
-      return "Torsion is " + fixedText(verdict[Figure::TORSION_OF_TWIN], 2) +
-             " times the twin's, which no fault makes: load, or the angles of motor and joint, are not this joint's, "
-             "or "
-             "of other signs.";
+      return "The torsion is " + fixedText(verdict[Figure::TORSION_OF_TWIN], 2) +
+             " times the twin's, which no fault explains: the load or the angles are not those of this joint, or a "
+             "sign is wrong.";
     case Reason::SOLVER_FAILED:
       return "The solver did not converge: the last good state is held.";
     case Reason::LOAD_UNKNOWN:
       return "The load is unknown.";
     case Reason::TELEMETRY_UNSETTLED:
-      return "Whether angles and efforts fit is not known yet.";
-    case Reason::SOUND:
-    case Reason::FRICTION:
-    case Reason::TORSION:
-    case Reason::SIGNALS:
-    case Reason::CONTACT:
-    case Reason::ROW_RATE:
-    case Reason::STAMPS:
-    case Reason::ANGLE_UNIT:
-    case Reason::EFFORT_UNIT:
-    case Reason::EFFORT_CONSTANT:
-    case Reason::VELOCITY_SIGN:
-    case Reason::VELOCITY_SCALE:
-    case Reason::VELOCITY_LAG:
-    case Reason::TWO_SOURCES:
-    case Reason::GEAR_RATIO:
-    case Reason::NO_FRICTION:
-    case Reason::LESS_THAN_FAULTS:
-    case Reason::FRICTION_SCATTER:
-    case Reason::NO_STEADY_MOTION:
-    case Reason::AT_REST:
-    case Reason::ONE_SPEED:
-    case Reason::ONE_DIRECTION:
+      return "It is not known yet whether angles and efforts fit together.";
+    default:  // the clause of the misfit says it
       break;
   }
   return sentence(verdict.misfit);
-}
-
-std::string causeNames(const Finding& finding, const char* separator)
-{
-  return joined(finding.causes, separator, [](const WeightedCause& cause) { return causeName(cause.cause); });
 }
 
 std::string torsionText(const Verdict& verdict, const Finding& finding)
@@ -131,10 +109,7 @@ std::string torsionText(const Verdict& verdict, const Finding& finding)
                      " (" + fixedText(lowest, digits) + " to " + fixedText(highest, digits) + " counts as sound).";
   if (finding.level != VerdictLevel::OK)
   {
-    text += (!verdict.has_signatures ? std::string() :
-             finding.causes.empty()  ? std::string(" No fault in the list has this effect.") :
-                                       " Possible faults: " + causeNames(finding, ", ") + ".") +
-            " Other causes: a wrong load, eccentric encoders.";
+    text += possibleFaults(verdict, finding) + " Other causes: a wrong load, eccentric encoders.";
   }
   const double alike = verdict[Figure::ENCODER_ERROR];
   const double share = verdict[Figure::ENCODER_SHARE];
@@ -147,8 +122,8 @@ std::string torsionText(const Verdict& verdict, const Finding& finding)
   if (share > 0.01)
   {
     text += " " + fixedText(share, 2) +
-            " of the tolerance is for the encoders' eccentricity; a recording of "
-            "the sound joint (--reference) would narrow it.";
+            " of the tolerance covers the encoders' eccentricity. A recording of the sound joint (--reference) would "
+            "make the tolerance narrower.";
   }
   return text;
 }
@@ -160,7 +135,8 @@ std::string signalsText(const Verdict& verdict, const Finding& finding)
                                     "the reference learned from the first windows of this recording";
   if (finding.level == VerdictLevel::OK)
   {
-    return whole(verdict[Figure::WINDOWS]) + " windows compared with " + reference + ": nothing out of the ordinary.";
+    return whole(verdict[Figure::WINDOWS]) + " windows were compared with " + reference +
+           ": none is out of the ordinary.";
   }
   std::string text =
       "From " + fixedText(verdict[Figure::ALARM_TIME], 1) + " s on the signals depart from " + reference +
@@ -181,46 +157,6 @@ std::string lowerFirst(std::string text)
     text.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(text.front())));
   }
   return text;
-}
-
-std::string hiddenText(const Verdict& verdict, Hidden hidden)
-{
-  switch (hidden)
-  {
-    case Hidden::TORSION:
-      break;
-    case Hidden::PAYLOAD:
-      return "Whether the payload is as configured, and what presses on the arm all the time: no torque was recorded; "
-             "both look like current.";
-    case Hidden::LOAD:
-      return "Whether the load is as configured: no load was recorded, so weight and inertia of the configuration are "
-             "taken; a payload left out looks like current.";
-    case Hidden::TEMPERATURE:
-      return "Temperature: none is recorded; grease at another one changes the friction by some per cent a kelvin.";
-    case Hidden::EARLY_FAULT:
-      return "A fault that was there from the first window, unless it is larger than what joints of one kind differ "
-             "by: no reference of this joint was given.";
-    case Hidden::CONTACT:
-      return "What the joint did while something touched the arm, and shortly after: " +
-             whole(verdict[Figure::TOUCHED_ROWS]) + " of " + whole(verdict[Figure::ROWS]) +
-             " rows are left out. The strongest: " +
-             contactText({ verdict[Figure::LARGEST_CONTACT_SINCE], verdict[Figure::LARGEST_CONTACT_LASTED],
-                           verdict[Figure::LARGEST_CONTACT_TORQUE] }) +
-             ".";
-    case Hidden::FRICTION_FROM_LOAD:
-      return "Friction apart from a load that is wrong: the joint moves one way only.";
-    case Hidden::FRICTION_OVER_SPEED:
-      return "How friction depends on the speed: fewer than three speeds.";
-    case Hidden::LOADED:
-      return "Anything that shows under load only, such as stiffness and cracks: the load varies by " +
-             fixedText(verdict[Figure::MOST_LOAD] - verdict[Figure::LEAST_LOAD], 1) + " N.m.";
-    case Hidden::HIGH_ORDERS:
-      return "Lines above order " + fixedText(verdict[Figure::HIGHEST_ORDER], 1) +
-             " of the motor's turn at the highest speed: the recording has too few rows a turn to show them; "
-             "slower motion shows more.";
-  }
-  return "Torsion, stiffness, lost motion, kinematic error, ratcheting: the recording has one angle a joint; the "
-         "motor's is needed too.";
 }
 
 struct FigureEntry
@@ -307,6 +243,13 @@ constexpr std::array<const char*, REASON_COUNT> REASONS{ "SOUND",
                                                          "TORSION_NO_DRIVE" };
 }  // namespace
 
+std::string possibleFaults(const Verdict& verdict, const Finding& finding)
+{
+  return !verdict.has_signatures ? "" :
+         finding.causes.empty()  ? " No fault in the list has this effect." :
+                                   " Possible faults: " + causeNames(finding, ", ") + ".";
+}
+
 std::string sentence(std::string clause)
 {
   if (!clause.empty())
@@ -372,29 +315,56 @@ std::string verdictText(const Verdict& verdict)
                              (open.empty() ? "" : " The motion does not show: " + joined(open) + ".");
 }
 
-std::vector<std::string> hiddenTexts(const Verdict& verdict)
+std::vector<std::string> cannotShow(const JointEvidence& evidence, const Verdict& verdict)
 {
+  constexpr double MIN_LOADING = 0.035;  // share of the largest load: what a load that varies less hides
+  const MotionReach& reach = evidence.reach();
+  const double speeds = verdict[Figure::SPEEDS];
+  const bool is_both_ways = verdict[Figure::LOWEST_SPEED] < 0.0 && verdict[Figure::HIGHEST_SPEED] > 0.0;
+  const double loading = reach.most_load - reach.least_load;
   std::vector<std::string> texts;
-  for (const Hidden hidden : verdict.cannot_show)
+  const auto add = [&](bool is_hidden, const std::string& text)
   {
-    texts.push_back(hiddenText(verdict, hidden));
-  }
+    if (is_hidden)
+    {
+      texts.push_back(text);
+    }
+  };
+  add(reach.motor_rows == 0,
+      "Torsion, stiffness, lost motion, kinematic error and ratcheting: the recording has one angle for each joint, "
+      "and the motor's is needed too.");
+  add(evidence.loadOrigin() == LoadOrigin::ARM,
+      "Whether the payload is as configured, and whether something presses on the arm all the time: no torque was "
+      "recorded, and without it both look like current.");
+  add(evidence.loadOrigin() == LoadOrigin::CONFIGURED,
+      "Whether the load is as configured: no load was recorded, so the twin uses the configured weight and inertia. A "
+      "payload that the configuration lacks looks like current.");
+  add(!evidence.isTemperatureReceived(),
+      "Whether the temperature changed the friction: no temperature was recorded, and each kelvin changes the "
+      "friction of the grease by some per cent.");
+  add(!evidence.baselineGiven(),
+      "A fault that was there from the first window, unless its effect is larger than the differences between sound "
+      "joints of one kind: no reference of this joint was given.");
+  add(reach.touched_rows > 0,
+      "What the joint did during a contact and shortly after it: " + whole(verdict[Figure::TOUCHED_ROWS]) + " of " +
+          whole(verdict[Figure::ROWS]) + " rows are left out. In the strongest contact " +
+          contactText(evidence.contact().largest()) + ".");
+  add(speeds > 0.0 && !is_both_ways,
+      "Whether friction or a wrong load explains the current: the joint moves one way only.");
+  add(speeds < 3.0, "How friction depends on the speed: the rows have fewer than three speeds.");
+  add(loading < MIN_LOADING * evidence.parameters().output.load_torque_limit,
+      "What shows under load only, such as stiffness and cracks: the load varies by no more than " +
+          fixedText(loading, 1) + " N.m.");
+  add(verdict[Figure::HIGHEST_ORDER] > 0.0,
+      "Lines above order " + fixedText(verdict[Figure::HIGHEST_ORDER], 1) +
+          " of the motor's turn at the highest speed: the recording has too few rows in a turn to show such lines. "
+          "Slower motion would show more of them.");
   return texts;
 }
 
 const char* reasonName(Reason reason) noexcept
 {
   return REASONS[static_cast<std::size_t>(reason)];
-}
-
-const char* figureName(Figure figure) noexcept
-{
-  return FIGURES[static_cast<std::size_t>(figure)].name;
-}
-
-const char* figureUnit(Figure figure) noexcept
-{
-  return FIGURES[static_cast<std::size_t>(figure)].unit;
 }
 
 const char* levelName(VerdictLevel level) noexcept

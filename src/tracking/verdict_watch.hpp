@@ -11,16 +11,16 @@
 
 namespace hjt
 {
-/// The verdict on a measured joint while its rows come, live and offline alike. It is of the rows of half an hour; then
-/// they start again, and the last verdict stands until there is another. A worse one counts after it has stood for a
-/// while: the first rows of a motion are few.
+/// The verdict on a measured joint while its rows come. The verdict is of the rows of half an hour. Then the rows start
+/// again, and the last verdict stands until there is another one. A worse verdict counts only after CONFIRMED_AFTER,
+/// because the first rows of a motion are few.
 class VerdictWatch
 {
 public:
-  /// `tracker`: must outlive this. `known`: what its friction is held against.
+  /// `tracker`: must outlive this object. `known`: the reference of the joint.
   VerdictWatch(Tracker& tracker, JointContext known) : tracker_(tracker), known_(std::move(known)) {}
 
-  /// Misfit of the telemetry; none: it fits, or that is not yet `settled`.
+  /// Sets the misfit of the telemetry; none: it fits, or it is not yet `settled` whether it fits.
   void setMisfit(const Misfit& misfit, bool settled)
   {
     misfit_ = misfit;
@@ -30,13 +30,11 @@ public:
   const Misfit& misfit() const { return misfit_; }
   void setFitted(const FittedFriction& friction) { known_.fitted = friction; }
 
-  /// As `joint_twin compare` measures it, of the rows that the verdict is of.
-  MeasuredFriction measuredFriction() const
-  {
-    return hjt::measuredFriction(tracker_.evidence(), context(1.0, UNWITNESSED, {}));
-  }
+  /// Friction of the rows that the verdict is of, as `joint_twin compare` measures it.
+  MeasuredFriction measuredFriction() const { return hjt::measuredFriction(tracker_.evidence(), context()); }
 
-  /// Rows without a received temperature are predicted at what the friction of the joints means, if that is known.
+  /// Rows without a received temperature are predicted at the temperature that explains the friction of all joints, if
+  /// that is known.
   void predictAt(const ArmFriction& arm)
   {
     if (arm.is_known)
@@ -45,15 +43,12 @@ public:
     }
   }
 
-  /// Makes the verdict again, alone.
-  void judge() { judge(1.0, UNWITNESSED, {}); }
-  /// Makes it after common factors of the joints of `measuredFriction`. `joint`: its number.
-  void judge(const ArmFriction& arm, std::size_t joint)
-  {
-    judge(arm.factors[joint], arm.deviations[joint], arm.misfit);
-  }
+  /// Makes the verdict again, without other joints.
+  void judge() { judge(context()); }
+  /// Makes the verdict again with the common factors of all joints. `joint`: number of this joint.
+  void judge(const ArmFriction& arm, std::size_t joint) { judge(context(&arm, joint)); }
 
-  /// Why nothing is judged at the moment; none: it is.
+  /// Why nothing is judged at the moment; none: the joint is judged.
   std::optional<Misfit> whyNotJudged() const
   {
     if (misfit_.exists())
@@ -70,12 +65,12 @@ public:
                std::nullopt;
   }
 
-  double lastRow() const { return last_row_; }  ///< that was judged [s]
+  double lastRow() const { return last_row_; }  ///< time of the last row that was judged [s]
 
-  /// The one that stands.
+  /// The verdict that stands.
   const Verdict& confirmed() const { return confirmed_; }
 
-  /// That one, or why nothing is judged at the moment.
+  /// The verdict that stands, or one that says why nothing is judged at the moment.
   Verdict now() const
   {
     Verdict verdict = confirmed_;
@@ -94,26 +89,27 @@ private:
   static constexpr double JUDGED_SPAN = 1800.0;    // [s]
   static constexpr double CONFIRMED_AFTER = 10.0;  // [s]
 
-  JointContext context(double arm_friction, double arm_deviation, const Misfit& of_arm) const
+  /// `arm`: what the joints have in common, of which this is number `joint`; nullptr: not known.
+  JointContext context(const ArmFriction* arm = nullptr, std::size_t joint = 0) const
   {
     JointContext context = known_;
-    context.arm_friction = arm_friction;
-    context.misfit = misfit_.exists() ? misfit_ : of_arm;
-    context.arm_deviation = arm_deviation;
+    context.arm_friction = arm != nullptr ? arm->factors[joint] : 1.0;
+    context.arm_deviation = arm != nullptr ? arm->deviations[joint] : UNWITNESSED;
+    context.misfit = misfit_.exists() || arm == nullptr ? misfit_ : arm->misfit;
     return context;
   }
 
-  void judge(double arm_friction, double arm_deviation, const Misfit& of_arm)
+  void judge(const JointContext& context)
   {
     const MotionReach& reach = tracker_.evidence().reach();
     last_row_ = reach.end;
     const bool is_new = confirmed_at_ > reach.end;  // the telemetry started again
-    Verdict verdict = hjt::judge(tracker_.evidence(), context(arm_friction, arm_deviation, of_arm));
+    Verdict verdict = hjt::judge(tracker_.evidence(), context);
     const bool is_in_place = confirmed_.isJudged() && !whyNotJudged() && !is_new;
-    // Found of the rows, unlike that they are too few: it takes the place of a verdict as a worse one does.
+    // A misfit that the rows show replaces a verdict as a worse verdict does. Too few rows replace none.
     const bool is_other =
         !verdict.fits && (verdict.reason == Reason::EFFORT_UNIT || verdict.reason == Reason::LESS_THAN_FAULTS ||
-                          verdict.reason == Reason::NO_FRICTION || !of_arm.clause.empty() ||
+                          verdict.reason == Reason::NO_FRICTION || context.misfit.exists() ||
                           (!verdict.misfit.empty() &&
                            (verdict.misfit == known_.fitted.not_more || verdict.misfit == known_.fitted.not_less)));
     const bool is_open = is_in_place && !verdict.isJudged() && !is_other;
@@ -135,10 +131,10 @@ private:
   bool settled_{ true };
   double last_row_{};  // [s]
   Verdict confirmed_;
-  double confirmed_at_{};  // time up to which no worse verdict was found [s]
+  double confirmed_at_{};  // last time at which no worse verdict was found [s]
 };
 
-/// What the friction of the joints has in common within `tolerance`.
+/// The function commonFriction for the joints of these verdicts.
 inline ArmFriction commonFriction(const std::vector<VerdictWatch*>& joints, double tolerance)
 {
   std::vector<MeasuredFriction> frictions;
@@ -149,7 +145,7 @@ inline ArmFriction commonFriction(const std::vector<VerdictWatch*>& joints, doub
   return commonFriction(frictions, tolerance);
 }
 
-/// Each joint after that, as `joint_twin compare` judges a recording.
+/// Judges each joint with the common factors of all, as `joint_twin compare` judges a recording.
 inline ArmFriction judgeTogether(const std::vector<VerdictWatch*>& joints, double tolerance)
 {
   const ArmFriction arm = commonFriction(joints, tolerance);

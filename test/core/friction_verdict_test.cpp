@@ -310,9 +310,9 @@ TEST_F(FrictionVerdict, MotionThatShowsNoFrictionIsNotJudged)
   EXPECT_EQ(gap(swing, 3.9, 2.0), Reason::TOO_SHORT);
   EXPECT_EQ(gap(swing, 60.0, 1.0), Reason::SOUND);
   const auto hidden = [&](const Motion& motion) { return judge(joint_.evidence(motion, 60.0, 1.0), {}).cannot_show; };
-  EXPECT_THAT(hidden(forward), Contains(Hidden::FRICTION_FROM_LOAD));
-  EXPECT_THAT(hidden(swing), Not(Contains(Hidden::FRICTION_FROM_LOAD)));
-  EXPECT_THAT(hidden(still), Not(Contains(Hidden::FRICTION_FROM_LOAD))) << "it shows no friction at all";
+  EXPECT_THAT(hidden(forward), Contains(HasSubstr("one way only")));
+  EXPECT_THAT(hidden(swing), Not(Contains(HasSubstr("one way only"))));
+  EXPECT_THAT(hidden(still), Not(Contains(HasSubstr("one way only")))) << "it shows no friction at all";
 }
 
 TEST_F(FrictionVerdict, SpeedsThatTheReferenceLacksAreNotJudged)

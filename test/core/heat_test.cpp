@@ -13,7 +13,7 @@
 #include "gear/ratio.hpp"
 #include "test/support/allocation_count.hpp"
 #include "test_parameters.hpp"
-#include "tracking/grease_temperature.hpp"
+#include "tracking/drive_temperature.hpp"
 #include "tracking/tracker.hpp"
 #include "twin_runs.hpp"
 

@@ -19,7 +19,6 @@
 #include "model/joint_model.hpp"
 #include "tracking/friction_map.hpp"
 #include "tracking/motion_driven.hpp"
-#include "tracking/torque_driven.hpp"
 
 namespace hjt
 {

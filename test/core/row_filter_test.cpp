@@ -5,7 +5,7 @@
 
 #include <gmock/gmock.h>
 
-#include "tracking/row_filter.hpp"
+#include "tracking/telemetry_rows.hpp"
 
 namespace hjt
 {

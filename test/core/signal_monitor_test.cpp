@@ -11,7 +11,7 @@
 #include "gear/angle.hpp"
 #include "harmonic_joint_twin/health/assessment.hpp"
 #include "harmonic_joint_twin/twin/twin.hpp"
-#include "health/angle_multiples.hpp"
+#include "health/order_tracker.hpp"
 #include "health/signature_file.hpp"
 #include "sensors/joint_sensors.hpp"
 #include "test/core/signal_monitor_support.hpp"

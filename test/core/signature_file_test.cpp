@@ -115,7 +115,7 @@ TEST(SignatureFile, SaysWhereItIsDamaged)
               says(":6: indicators.torque_ball: unit rad, expected N.m"));
   EXPECT_THAT(refusal(replaced("[0.1, 0.2, 3.0]", "[0.1, 0.2]")),
               says(":10: carried.torque_ball_above: expected [deviation, share, degrees of freedom]"));
-  EXPECT_THAT(refusal(replaced("pitting", "pittin")), says(":11: no such cause: pittin (did you mean pitting?)"));
+  EXPECT_THAT(refusal(replaced("pitting", "pittin")), says(":11: cause pittin: no such cause (did you mean pitting?)"));
   EXPECT_THAT(refusal(replaced("6.0", "60.0")), says(":11: occurrence.pitting: 60.0, expected 1 ... 10"));
   EXPECT_THAT(refusal(replaced("0.5 -0.25", "1.5 -0.25")),
               says(":13: signatures: severity [-] = 1.5, expected 0 ... 1"));
@@ -178,8 +178,8 @@ TEST(Baseline, LearnsNoMoreClassesThanItHasMemoryFor)
   for (const double speed : { 20.0, 80.0, 320.0 })
   {
     window.point.speed = speed;
-    const BaselineState state = baseline.update(window, nullptr, deviations);
-    EXPECT_EQ(state, speed < 300.0 ? BaselineState::LEARNING : BaselineState::NO_REFERENCE);
+    const AssessmentState state = baseline.update(window, nullptr, deviations);
+    EXPECT_EQ(state, speed < 300.0 ? AssessmentState::LEARNING : AssessmentState::NO_REFERENCE);
   }
   EXPECT_EQ(baseline.bins().size(), 2U);
   baseline.setReference(baseline.bins());

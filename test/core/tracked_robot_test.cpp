@@ -11,8 +11,8 @@
 
 #include "test/core/tracker_support.hpp"
 #include "tracking/joint_evidence.hpp"
-#include "tracking/stream_timing.hpp"
-#include "tracking/time_fit.hpp"
+#include "tracking/telemetry_fit.hpp"
+#include "tracking/telemetry_rows.hpp"
 #include "tracking/tracker.hpp"
 #include "tracking/verdict_watch.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "test_parameters.hpp"
 
-#include "tracking/wrong_gain.hpp"
+#include "tracking/verdict.hpp"
 
 namespace hjt
 {

@@ -20,17 +20,7 @@ enum class HealthLevel : std::uint8_t
 
 const char* levelName(HealthLevel level) noexcept;  ///< "WARN"
 
-enum class AssessmentState : std::uint8_t
-{
-  WAITING = 0,          ///< no window has been completed
-  LEARNING = 1,         ///< the reference of this operating point is being learned
-  ASSESSED = 2,         ///< the last window was compared with the reference, and the level is a verdict
-  NO_REFERENCE = 3,     ///< the given reference does not know this operating point
-  TOO_FEW_WINDOWS = 4,  ///< compared; nothing found, in fewer windows of this operating point than another level takes
-  OTHER_PAYLOAD = 5     ///< not compared: the reference says nothing of this payload or load
-};
-
-/// One indicator that speaks for the level.
+/// One indicator that departs from its reference.
 struct Evidence
 {
   std::size_t indicator{};
@@ -39,7 +29,7 @@ struct Evidence
   double score{};     ///< normal score of the deviation [-]
 };
 
-/// Another cause that would show alike.
+/// Another cause that would have a similar effect.
 struct Alternative
 {
   Cause cause{};
@@ -53,21 +43,21 @@ struct Assessment
 {
   static constexpr std::size_t MAX_EVIDENCE = 3;
   static constexpr std::size_t MAX_ALTERNATIVES = 3;
-  static constexpr double SET = 0.9;  ///< least probability of cause and alternatives together
+  static constexpr double SET = 0.9;  ///< least probability of cause and alternatives together [-]
 
   std::int64_t stamp{};     ///< end of the last window [ns]
   std::uint64_t windows{};  ///< windows seen
   AssessmentState state{};
-  int windows_here{};    ///< at the last operating point: in the reference if there is no more, else compared
+  int windows_here{};    ///< windows at the last operating point: those compared, or those in the reference
   int windows_needed{};  ///< windows that a reference or a verdict takes
   HealthLevel level{};
   Cause cause{};                ///< the most likely; NONE at level OK, or if no known fault explains the departure
-  bool shows_play{};            ///< the last window had its lost motion compared: its load went both ways
-  Cause pattern{};              ///< cause with the pattern of the largest score; NONE: an indicator has a larger one
+  bool shows_play{};            ///< the lost motion of the last window was compared: its load had both signs
+  Cause pattern{};              ///< cause with the pattern of the largest score; NONE: an indicator has a larger score
   double confidence{};          ///< probability of the cause, 0 at level OK [-]
   double severity{};            ///< mean severity of the fault, if this is the cause; 0 with NONE [-]
   double severity_deviation{};  ///< standard deviation of that [-]
-  double largest_score{};       ///< largest score of the last windows' mean over the threshold; beyond 1: alarm [-]
+  double largest_score{};       ///< largest score of the last windows' mean, over the threshold; > 1: alarm [-]
   std::size_t alternative_count{};
   std::array<Alternative, MAX_ALTERNATIVES> alternatives;  ///< most likely first, until SET is reached
   std::size_t evidence_count{};
@@ -77,14 +67,15 @@ struct Assessment
 /// Why the last window has no verdict, as a clause; empty: it has one.
 std::string whyNotJudged(const Assessment& assessment);
 
-/// Makes one verdict of the windows: level, most likely cause and what speaks for it. Fixed memory.
+/// Makes one verdict of the windows: level, most likely cause and evidence. Memory is fixed.
 ///
-/// It judges the mean of the last windows of an operating point (Baseline). WARN: an indicator or a cause's pattern
-/// beyond the baseline's threshold. ERROR: beyond indicators.error_factor times the threshold. The level rises
-/// after three such means in a row, each of three windows at least, that show the higher level. It falls after three
-/// that show a lower one at the operating point that last showed the level. With indicators.evidence_windows below
-/// three, that many do. Until so many means could have shown another level, OK is no verdict. While the operating point
-/// has no reference, or none of the payload, the last verdict stands.
+/// The assessor judges the mean of the last windows of an operating point (Baseline). WARN: an indicator or a cause's
+/// pattern is beyond the baseline's threshold. ERROR: it is beyond indicators.error_factor times the threshold. The
+/// level rises after three such means in a row, each of three windows at least, that show the higher level. It falls
+/// after three means that show a lower level at the operating point that last showed the level. If
+/// indicators.evidence_windows is below three, that number takes the place of three. Until so many means could have
+/// shown another level, OK is no verdict. The last verdict stands while the operating point has no reference, or none
+/// with the payload.
 class Assessor
 {
 public:
@@ -97,11 +88,11 @@ public:
     baseline_.setReference(std::move(bins), carried);
   }
 
-  /// A window was completed. `model`: indicators of a model that were subtracted from it.
+  /// Takes a complete window. `model`: indicators of a model that were subtracted from it.
   const Assessment& update(const SignalIndicators& indicators, const SignalIndicators* model = nullptr) noexcept;
 
-  /// The same in parts, for a loop: after `begin`, each call of `advance` goes through so many signatures more in
-  /// search of the cause. Once all are done the assessment is that of the new window.
+  /// The function update in parts, for a loop: after `begin`, each call of `advance` goes through so many signatures
+  /// more in search of the cause. Once all are done, the assessment is that of the new window.
   void begin(const SignalIndicators& indicators, const SignalIndicators* model = nullptr) noexcept;
   void advance(std::size_t signatures) noexcept
   {
@@ -120,7 +111,7 @@ public:
 private:
   void judge(const SignalIndicators& indicators, const SignalIndicators* model) noexcept;
   void search(std::size_t signatures) noexcept;
-  void setState(BaselineState compared) noexcept;
+  void setState(AssessmentState state) noexcept;
   HealthLevel levelOf(const FeatureScores& scores, const OperatingPoint& point) noexcept;
   void updateLevel(HealthLevel level) noexcept;
   void explain(const CausePosterior& posterior) noexcept;
@@ -138,8 +129,8 @@ private:
   OperatingPoint point_;  // of the search
   bool is_searching_{};
   OperatingBin shown_in_;  // class that the level was last seen in
-  int worse_{};            // windows in a row that say worse than the level
-  int better_{};           // and better
+  int worse_{};            // windows in a row that show more than the level
+  int better_{};           // windows in a row that show less than the level
   HealthLevel least_worse_{};
   HealthLevel most_better_{};
 };

@@ -14,7 +14,7 @@ namespace hjt
 {
 struct SignatureSet;
 
-/// How far an indicator of a sound drive, less the model's, differs from one motion to another.
+/// Difference of an indicator of a sound drive, less the model's, from one motion to another.
 struct CarriedError
 {
   double deviation{ 1e30 };  ///< rms of a drive like the model, unit of the indicator; 1e30: not known
@@ -37,28 +37,21 @@ struct OperatingBin
   }
 };
 
-/// `load_step`: between two classes of load [N.m].
+/// `load_step`: step between two classes of load [N.m].
 OperatingBin binOf(const OperatingPoint& point, double load_step) noexcept;
-
-/// Whether the point lies within the class or no more than a quarter of a step beyond its edges.
-bool isInReach(const OperatingBin& bin, const OperatingPoint& point, double load_step) noexcept;
 
 /// The gear's step between two classes of load [N.m].
 double loadStep(const Parameters& parameters) noexcept;
 
-/// Covariates of healthy indicators within a class: temperature, its square, the load's mean magnitude, and what the
-/// joint carries, which stays over a job and is the same on any path: the load's constant part and its parts over sine
-/// and cosine of the output angle, and the inertia.
+/// Covariates of healthy indicators within a class: temperature, its square, the load's mean magnitude, and numbers of
+/// the payload, which are constant during a job and equal on any path. Those are the load's constant part, its parts
+/// over sine and cosine of the output angle, and the inertia.
 constexpr std::size_t PLACES = 7;
-constexpr std::size_t OWN_PLACES = 2;  ///< the first ones, over which each class has slopes of its own
+constexpr std::size_t OWN_PLACES = 2;  ///< number of the first covariates, for which each class has slopes of its own
 using Place = std::array<double, PLACES>;
 using PlaceSquares = std::array<Place, PLACES>;  ///< by pairs of coordinates
 
-/// Temperature and load -1 ... 1 from one edge of the class to the other and to 1.5 beyond them, the others in the same
-/// steps, the inertia by its torque at 5 rad/s^2; 0 of what is not measured [-].
-Place placeIn(const OperatingBin& bin, const OperatingPoint& point, double load_step) noexcept;
-
-/// How far a sound drive repeats from one recording to the next, whatever its reference has seen.
+/// Deviations of a sound drive from one recording to the next, beside those in its reference.
 struct Repeatability
 {
   double share{};            ///< indicators.least_spread [-]
@@ -66,7 +59,7 @@ struct Repeatability
   double friction_torque{};  ///< of the friction too, at the motor [N.m]
 };
 
-/// Common causes that change several healthy indicators together from window to window.
+/// Largest number of common causes, which change several healthy indicators together from window to window.
 constexpr std::size_t COMMON_CAUSES = 3;
 
 /// One healthy indicator, over the windows that determined it.
@@ -86,7 +79,8 @@ struct Reference
   std::array<double, COMMON_CAUSES> common{};
 };
 
-/// Sums of products of differences of an indicator and the place, over the windows or pairs of windows that have it.
+/// Sums of products of the differences of an indicator and of the place, over the windows or pairs of windows that have
+/// the indicator.
 struct IndicatorSums
 {
   int count{};
@@ -95,7 +89,7 @@ struct IndicatorSums
   PlaceSquares places{};
 };
 
-/// Over the windows learned, from the means.
+/// Sums over the learned windows, of differences from the means.
 struct ReferenceSums
 {
   std::array<IndicatorSums, INDICATOR_COUNT> by_indicator{};
@@ -106,7 +100,7 @@ struct ReferenceSums
   std::array<double, INDICATOR_COUNT*(INDICATOR_COUNT + 1) / 2> indicators{};
 };
 
-/// Over pairs of windows of which one follows the other, from one to the other.
+/// Sums over pairs of successive windows, of differences from one to the next.
 struct StepSums
 {
   std::array<IndicatorSums, INDICATOR_COUNT> by_indicator{};
@@ -115,7 +109,7 @@ struct StepSums
   Place last_place{};
 };
 
-/// Scalars, and lines: of each kind the tails are alike.
+/// Number of kinds of indicators with a tail of their own: scalars and lines.
 constexpr std::size_t TAILS = 2;
 constexpr std::size_t tailOf(std::size_t indicator)
 {
@@ -133,7 +127,7 @@ struct ReferenceBin
   std::array<Reference, INDICATOR_COUNT> references;
 };
 
-/// The first windows themselves: their tails are in no sum.
+/// The first windows of a class, kept because no sum holds their tails.
 struct KeptWindows
 {
   static constexpr std::size_t MOST = 64;
@@ -161,25 +155,28 @@ struct Deviation
 {
   double expected{};
   double spread{};
-  /// Normal score of the deviation: standard deviations a normal quantity of known spread would be as unlikely at. NaN:
-  /// not compared.
+  /// Normal score of the deviation: a normal quantity of known spread is as unlikely at so many standard deviations.
+  /// NaN: not compared.
   double score{ std::numeric_limits<double>::quiet_NaN() };
   double threshold_factor{};  ///< deviation over spread, as a multiple of that at the threshold [-]
   double freedom{};           ///< v': degrees of freedom that deviation over spread has [-]
   double stretch{ 1.0 };      ///< its spread in Student's unit [-]
+
+  /// Score that another difference from the reference would have; 0: not compared.
+  double scoreOf(double difference) const noexcept;
 };
 
 using Deviations = std::array<Deviation, INDICATOR_COUNT>;
 
-/// Change of an amplitude, as a nearly normal number. An amplitude of noise alone is Rayleigh's, whose tail is
-/// far longer than the normal one; that of its power 2/3 is not (Wilson and Hilferty 1931).
+/// Change of an amplitude as a nearly normal number. The amplitude of noise alone has Rayleigh's distribution, whose
+/// tail is far longer than that of the normal distribution. Its power 2/3 has no such tail (Wilson and Hilferty 1931).
 ///
 /// Law:   c = 3/2 m^(1/3) ((m + x)^(2/3) - m^(2/3)),  to first order x;  x where m is none
 /// where  m  sound amplitude;  x  change of it, not below -m;  in the unit of the amplitude
 double amplitudeChange(double sound, double change) noexcept;
 
-/// Difference of the last windows of a class from their reference, and the covariance of sound ones, D + F F',
-/// F  Reference::common times the reference's share of a score's spread, D  that spread squared, of what F leaves.
+/// Difference of the last windows of a class from their reference, and the covariance D + F F' of sound windows.
+/// F  Reference::common times the reference's share of a score's spread;  D  square of the spread that F leaves
 struct WindowResidual
 {
   int windows{};                                     ///< number of windows averaged [-]
@@ -192,12 +189,14 @@ struct WindowResidual
   double pattern_stretch{ 1.0 };                                            ///< its spread in Student's unit [-]
 };
 
-enum class BaselineState : std::uint8_t
+enum class AssessmentState : std::uint8_t
 {
-  LEARNING,      ///< the window went into the reference of its operating point
-  COMPARED,      ///< the window was compared with it
-  NO_REFERENCE,  ///< no reference for this operating point, and none is learned
-  OTHER_PAYLOAD  ///< the reference says nothing of what the joint carries in this window
+  WAITING = 0,          ///< no window has been completed
+  LEARNING = 1,         ///< the window went into the reference of its operating point
+  ASSESSED = 2,         ///< the last window was compared with the reference, and the level is a verdict
+  NO_REFERENCE = 3,     ///< the given reference does not know this operating point
+  TOO_FEW_WINDOWS = 4,  ///< compared, but nothing found in fewer windows of this operating point than a verdict takes
+  OTHER_PAYLOAD = 5     ///< not compared: the reference knows no such payload or load
 };
 
 /// Indicators of a healthy joint by operating point: learned from the first windows there, or given. Compared is the
@@ -228,36 +227,39 @@ enum class BaselineState : std::uint8_t
 ///        c, c_0   what the motion makes of the fit's standard error (relativeErrors), rms, of the windows averaged and
 ///                 of the healthy ones: what a line is off by differs between windows as c does
 ///        q        a tenth of what one encoder count makes; 0.3 for kurtosis, 0.5 for crest
-/// A carried reference is one of another motion, for windows from which a model is subtracted. They are compared with
-/// the class of motion to and fro at their temperature that has most windows. b is over temperature alone, the variance
-/// grows by the squares of CarriedError::deviation and of CarriedError::share of |m| (of a line: of all amplitudes of
-/// its signal together), both times 10/windows below ten windows, v is CarriedError::freedom at most, and F is 0.
-/// The score turns Student's t into a normal deviate (Wallace 1959), so that few windows give no more alarms than many.
+/// A carried reference is a reference of another motion, for windows from which a model is subtracted. Such windows are
+/// compared with the class of motion to and fro at their temperature that has the most windows. b is over temperature
+/// alone, and F is 0. The variance grows by the squares of CarriedError::deviation and of CarriedError::share of |m|
+/// (of a line: of all amplitudes of its signal together), both times 10/windows below ten windows. v is
+/// CarriedError::freedom at most.
+/// The score turns Student's t into a normal deviate (Wallace 1959), so that few windows give no more alarms than many
+/// windows do.
 /// Thresholds: normal quantiles of indicators.false_alarm_rate, one half of it shared by all indicators, two-sided, the
 /// other by the patterns of all causes, one-sided (Bonferroni); without patterns all of it by the indicators.
-/// A window at the edge of a class with too few windows for a reference is one of the class beyond that edge. One whose
-/// payload or load widens S^2 beyond OTHER_PAYLOAD_WIDENING times is not compared.
+/// A window at the edge of a class with too few windows for a reference belongs to the class beyond that edge. A window
+/// whose payload or load makes S^2 more than OTHER_PAYLOAD_WIDENING times as large is not compared.
 ///
-/// Learning opens indicators.baseline_classes classes at most, whose memory the constructor takes: 0.2 MB each. A
-/// reference that is given needs 19 kB a class, and its memory takes the place of the other.
+/// Learning opens indicators.baseline_classes classes at most. The constructor takes their memory, 0.2 MB for each. A
+/// given reference needs 19 kB for each class, and its memory replaces that of the learned classes.
 class Baseline
 {
 public:
   static constexpr std::size_t MAX_EVIDENCE = 100;  // windows
-  /// Before a spread means anything; as least of indicators.baseline_windows.
+  /// Least number of windows for a spread, and least value of indicators.baseline_windows.
   static constexpr int MIN_WINDOWS = 8;
 
   /// `signatures`: its CarriedErrors are used.
   Baseline(const Parameters& parameters, std::shared_ptr<const SignatureSet> signatures);
 
-  /// Uses the reference of a file; learning stops. `carried`: to another motion.
+  /// Sets the reference of a file; learning stops. `carried`: the reference is of another motion.
   void setReference(std::vector<ReferenceBin> bins, bool carried = false);
 
-  void reset() noexcept;  ///< forgets what was learned, not what was given
+  void reset() noexcept;  ///< forgets a learned reference, but keeps a given one
 
-  /// `model`: indicators of a model that were subtracted from these; nullptr: none were.
-  BaselineState update(const SignalIndicators& indicators, const SignalIndicators* model,
-                       Deviations& deviations) noexcept;
+  /// Learns a window or compares it: LEARNING, ASSESSED, NO_REFERENCE or OTHER_PAYLOAD. `model`: indicators of a model
+  /// that were subtracted from it; nullptr: none.
+  AssessmentState update(const SignalIndicators& indicators, const SignalIndicators* model,
+                         Deviations& deviations) noexcept;
 
   double threshold() const noexcept { return threshold_; }                 ///< of |score| [-]
   Deviation pattern(double student) const noexcept;                        ///< scores that, along a pattern
@@ -269,14 +271,12 @@ public:
   {
     return sums_;
   }                                                           ///< by bin; empty of a reference that was given
-  int windowsHere() const noexcept { return windows_here_; }  ///< in the reference, or compared since reset
-  /// Sums of a class, for its reference.
+  int windowsHere() const noexcept { return windows_here_; }  ///< windows in the reference, or compared since reset
+  /// Windows that a reference needs.
   int windowsNeeded() const noexcept { return given_ ? MIN_WINDOWS : windows_; }
   bool given() const noexcept { return given_; }           ///< by setReference: there are no sums to fit again
   double loadStep() const noexcept { return load_step_; }  ///< [N.m]
   const Repeatability& repeatability() const noexcept { return repeatability_; }
-  /// Score of such a change of one indicator by itself, with the spread of the last window; 0: not compared.
-  double scoreOf(std::size_t indicator, double change, const Deviations& deviations) const noexcept;
 
 private:
   /// One window against its reference.
@@ -303,7 +303,7 @@ private:
     double weight{};           // k
   };
 
-  /// Shares of the reference's variance: that which stays from window to window, and that of the rest in a mean.
+  /// Factors and terms of a difference's variance beside that of the reference.
   struct Widening
   {
     double stays{};
@@ -331,7 +331,6 @@ private:
   /// `left`: of the reference [unit of the indicator squared].
   Variance variance(std::size_t indicator, const ReferenceBin& bin, const Average& average, double left,
                     const Widening& widening) const noexcept;
-  double scoreOf(double difference, const Deviation& scale) const noexcept;
   void compare(const ReferenceBin& bin, std::size_t first, std::size_t count, Deviations& deviations) noexcept;
 
   std::shared_ptr<const SignatureSet> signatures_;

@@ -15,8 +15,8 @@
 
 namespace hjt
 {
-/// What may be wrong with the drive: the kinds of faults, in their order from FIRST_FAULT on, and a damaged tooth of
-/// the circular spline.
+/// Causes of an alarm: the kinds of faults, in their order from FIRST_FAULT on, and a damaged tooth of the circular
+/// spline.
 enum class Cause : std::uint8_t
 {
   NONE,
@@ -33,7 +33,7 @@ constexpr Cause causeOf(FaultKind kind)
 
 const char* causeName(Cause cause) noexcept;  ///< "tooth_root_crack"
 
-/// Groups of indicators that say the same: of each the strongest counts.
+/// Groups of indicators that show the same property of the drive. In each group the strongest indicator counts.
 enum class Feature : std::size_t
 {
   RATIO,
@@ -114,7 +114,7 @@ constexpr bool isStiffness(ScalarIndicator indicator)
   return indicator == ScalarIndicator::TORSIONAL_STIFFNESS || indicator == ScalarIndicator::SECOND_STIFFNESS;
 }
 
-/// Numbers of what a robot in closed loop tells beside, from LOAD_FRICTION on.
+/// Additional numbers of a robot in closed loop, from LOAD_FRICTION on.
 constexpr std::size_t FIRST_OF_ROBOT = indexOf(ScalarIndicator::LOAD_FRICTION);
 constexpr std::size_t ROBOT_NUMBERS = indexOf(ScalarIndicator::LAG_ORDER_4) - FIRST_OF_ROBOT + 1;
 
@@ -123,7 +123,7 @@ constexpr bool isOfRobot(std::size_t number)
   return number - FIRST_OF_ROBOT < ROBOT_NUMBERS;
 }
 
-/// What a fault changes in those numbers, as shares of the sound values, of any gear in any motion.
+/// Changes of those numbers by a fault, as shares of the sound values, for any gear in any motion.
 struct RobotSignature
 {
   Cause cause;
@@ -131,7 +131,7 @@ struct RobotSignature
   std::array<double, ROBOT_NUMBERS> share;
 };
 
-/// What tells one motion from another.
+/// Speed and direction of a motion.
 struct MotionKind
 {
   double speed;      ///< magnitude, motor [rad/s]
@@ -139,7 +139,7 @@ struct MotionKind
 };
 constexpr MotionKind ANY_MOTION{ 0.0, 0.0 };
 
-/// What a fault of one severity changes in the indicators of one gear in one motion.
+/// Changes of the indicators of one gear in one motion by a fault of one severity.
 struct Signature
 {
   Cause cause;
@@ -148,11 +148,11 @@ struct Signature
   std::array<double, SIGNATURE_SIZE> change{};  ///< units of the indicators; of what isShare [-]
 };
 
-/// One signature, or several that come together, of which the first counts; null: none.
+/// One signature, or several that come together. The first one is that of the cause; null: none.
 using SignatureParts = std::array<const Signature*, 3>;
 
-/// The signatures of a gear and how far they hold: what a file says that parameter indicators.signatures names. Without
-/// a file: no signatures, and nothing is known of a carried reference.
+/// The signatures of a gear and their errors, from the file that parameter indicators.signatures names. Without a file
+/// there are no signatures, and the errors of a carried reference are not known.
 struct SignatureSet
 {
   SignatureSet() { sound.fill(std::numeric_limits<double>::quiet_NaN()); }
@@ -180,15 +180,15 @@ std::vector<Cause> causesThatMove(const SignatureSet& set, ScalarIndicator indic
 
 std::size_t patternCount(const SignatureSet& set) noexcept;  ///< causes with signatures
 
-/// Which cause's pattern a window shows most of.
+/// The cause whose pattern a window shows most clearly.
 struct PatternScore
 {
   Cause cause{};     ///< NONE: of no cause
   double student{};  ///< of Student's t with WindowResidual::freedom, one-sided [-]
 };
 
-/// The window's differences d along the pattern of each cause: many small changes that belong together are seen before
-/// any of them is out of the ordinary by itself.
+/// The window's differences d along the pattern of each cause. Many small changes that belong together show along a
+/// pattern before any of them is out of the ordinary by itself.
 ///
 /// Law:   t = p' C^-1 d / sqrt(p' C^-1 p),  C = D + F F',  p_i = sum_h P(h) mu_i / |mu|,  |mu|^2 = sum_i mu_i^2 / D_ii
 /// where  h        over the signatures of the cause whose severity is nearest to 0.4
@@ -205,7 +205,7 @@ private:
   std::array<std::vector<std::size_t>, CAUSE_COUNT> rows_;  // of the set
 };
 
-/// What a window says of the causes.
+/// Probability and severity of each cause by a window.
 struct CausePosterior
 {
   /// Given that something is wrong; entry NONE: that no fault of the table is the cause [-]
@@ -214,7 +214,7 @@ struct CausePosterior
   std::array<double, CAUSE_COUNT> severity_deviation{};  ///< standard deviation of that [-]
 };
 
-/// Likelihood of the window's differences d from the reference under every signature.
+/// Searches for the cause by the likelihood of the window's differences d from the reference under every signature.
 ///
 /// Law:   d ~ t_v(mu, D_h + F F'),   P(h | d) ~ P(h) p(d | h)^b,   P(h) ~ 1 + O / O_m by cause, within it ~ w_0 + a
 ///        a = exp(-(ln(n / n_h) / N)^2 / 2 - ((q - q_h) / Q)^2 / 2), 1 in ANY_MOTION
@@ -235,17 +235,18 @@ struct CausePosterior
 ///        n, q     MotionKind of the window, of the signature: where a line meets a resonance of the drive, it is the
 ///                 larger part of every signature, elsewhere of none;  N = 0.2, Q = 0.3, w_0 = 0.001
 /// Teeth, interface and grease wear together: h is also the sum of the signatures of two or three of them in one
-/// motion, the others of the severity of the first or two fifths of it. It counts for the first, and all such sums
-/// together as much beforehand as its signatures alone, and beside these.
+/// motion,
+/// where the others have the severity of the first or two fifths of it. Such a sum counts for the cause of the first,
+/// and all its sums together have the same prior weight as its single signatures, in addition to these.
 /// Stiffness changes as a compliance does: mu = c x^2 / x_h,  c  share by the signature, x  sound value of the window's
 /// motion, x_h  of SignatureSet::sound. An eccentric encoder adds the same to the compliance of every drive.
 /// Something of no signature: mu = 0, S = 3, 10, 30, 100. With a tenth of the weight each, what is no fault of a
 /// gear: a brake that drags, mu of running and Coulomb torque 0.05, 0.15, 0.4, 1 of the sound running torque, S = 0;
 /// noise g = 0.12, 0.25, 0.5, 1 more, 1 + S^2 = (1 + g)^2, mu of the kinematic error g of the sound one.
-/// Indicators that the signatures were not fitted for count for nothing.
+/// Indicators for which the signatures were not fitted do not count.
 ///
-/// A search takes a pass over all signatures for their likelihoods and one for the sums over them, in as many parts as
-/// the caller likes. Only the constructor allocates.
+/// A search makes one pass over all signatures for their likelihoods and one for the sums over them, in as many parts
+/// as the caller chooses. Only the constructor allocates.
 class CauseSearch
 {
 public:

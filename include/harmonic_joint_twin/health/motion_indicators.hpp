@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "harmonic_joint_twin/health/indicator.hpp"
-
 namespace hjt
 {
+/// A health indicator that may not be valid. Its value is then 0.
+struct Indicator
+{
+  bool valid{};
+  double value{};
+};
+
 /// Indicators that follow from the motion.
 struct MotionIndicators
 {

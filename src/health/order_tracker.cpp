@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "health/bearing_slip.hpp"
+#include "health/order_tracker.hpp"
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace hjt
 {
-/// Its order is `order` + `by_slip` s.
+/// A line with the order `order` + `by_slip` s at a slip s.
 struct BearingSlip::BearingLine
 {
   std::size_t line{};
@@ -29,7 +29,7 @@ constexpr std::array SEARCHED{ LineSignal::MOTOR_RIPPLE, LineSignal::KINEMATIC_E
 constexpr double NOISE_FROM = -BearingSlip::MOST;
 constexpr double NOISE_TO = 2.0 * BearingSlip::MOST;
 
-/// Standard deviation of the speed, way of turning apart, over its mean.
+/// Standard deviation of the speed's magnitude over its mean [-].
 double speedSpread(const std::vector<LineSample>& samples)
 {
   double sum = 0.0;
@@ -42,7 +42,8 @@ double speedSpread(const std::vector<LineSample>& samples)
   return std::sqrt(std::max(0.0, squares * static_cast<double>(samples.size()) / (sum * sum) - 1.0));
 }
 
-/// Squares of a line's Fourier sums by slip, in units of the noise about it. `sums`: of its bins without slip.
+/// Squares of a line's Fourier sums by slip, in units of the noise about the line. `sums`: those of its bins without
+/// slip.
 std::vector<double> powersOf(const std::vector<Complex>& sums, double by_slip, double step, std::size_t steps)
 {
   std::vector<Complex> turned(sums.size());
@@ -81,7 +82,7 @@ BearingSlip::BearingSlip(const Parameters& parameters)
 {
 }
 
-/// Those that slip moves far enough for the noise about them to be known.
+/// Lines whose order slip changes by so much that the noise about them is known.
 std::vector<BearingSlip::BearingLine> BearingSlip::linesOf(const OrderTracker& fitted) const
 {
   constexpr double MOVES = 5.0;  // orders a slip of 1

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "health/turn_window.hpp"
+#include "health/health_monitor.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@ namespace
 {
 constexpr int MARKS_PER_TOOTH = 16;
 constexpr double MIN_TRAVEL = 1e-6;      // of the output, as a share of the nominal one [-]
-constexpr double FARTHEST_PLACE = 1e15;  // place in marks; beyond it numbers do not tell one mark from the next
+constexpr double FARTHEST_PLACE = 1e15;  // in marks; beyond it a double cannot tell one mark from the next
 }  // namespace
 
 TurnWindow::TurnWindow(const GearParameters& gear)
@@ -113,7 +113,8 @@ Indicator TurnWindow::kinematicError() const noexcept
   return { true, highest - lowest };
 }
 
-/// So many marks more, the first at a `place` beyond the last sample, on a line from its torsion.
+/// Keeps `marks` more marks, the first of them `place` marks after the last sample, on a line with that `slope` from
+/// its torsion.
 void TurnWindow::keep(double place, double slope, std::int64_t marks) noexcept
 {
   count_ = std::min<Eigen::Index>(count_ + marks, torsions_.size());

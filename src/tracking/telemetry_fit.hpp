@@ -7,24 +7,82 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <string>
 
+#include "base/number_text.hpp"
 #include "base/statistics.hpp"
 #include "tracking/motion_differentiator.hpp"
 
 namespace hjt
 {
-/// A multiple, and how far it may be off.
+/// Checks whether motor and joint turn by the configured ratio. The fit is the slope of the motor's angle over the
+/// joint's, by least squares of their changes from row to row, so that a constant torsion has no effect. Nothing but
+/// the text allocates.
+class RatioFit
+{
+public:
+  explicit RatioFit(double ratio = 1.0) : ratio_(ratio) {}
+
+  void reset() noexcept { *this = RatioFit(ratio_); }
+
+  void add(const MotionRow& row) noexcept
+  {
+    if (!std::isfinite(row.motor_angle))
+    {
+      return;
+    }
+    const double change = row.position - last_.position;
+    if (rows_++ > 0 && row.time > last_.time && row.time - last_.time <= MotionDifferentiator::MAX_GAP)
+    {
+      squares_ += change * change;
+      products_ += change * (row.motor_angle - last_.motor_angle);
+      way_ += std::abs(change);
+    }
+    last_ = row;
+  }
+
+  /// NaN: the joint moved too little to tell.
+  double ratio() const noexcept
+  {
+    return way_ > LEAST_WAY ? products_ / squares_ : std::numeric_limits<double>::quiet_NaN();
+  }
+
+  /// A clause on a wrong ratio; empty: the ratio is as configured, or not known.
+  std::string text() const
+  {
+    const double found = ratio();
+    if (!std::isfinite(found) || std::abs(found / ratio_ - 1.0) < OFF)
+    {
+      return {};
+    }
+    return "its motor turns " + roundedText(found, 4) + " times as far as the joint, but the configured gear has the " +
+           "ratio " + roundedText(ratio_, 4) + ": the gear, a sign or a unit is another than configured";
+  }
+
+private:
+  static constexpr double LEAST_WAY = 0.5;  // [rad]
+  static constexpr double OFF = 0.005;      // torsion and encoders have less effect on the ratio [-]
+
+  double ratio_;
+  MotionRow last_;
+  double squares_{};
+  double products_{};
+  double way_{};
+  std::uint64_t rows_{};
+};
+
+/// A factor with its uncertainty.
 struct FittedFactor
 {
   double value{ std::numeric_limits<double>::quiet_NaN() };  ///< NaN: not known
   double uncertainty{};                                      ///< standard deviation
 };
 
-/// Do the velocities that a recording gives of a joint agree with the slopes of its angles, by their stamps?
+/// Checks whether the recorded velocities of a joint agree with the slopes of its angles, by their stamps.
 ///
-/// Both are averaged over pieces of 0.1 s. Their factor is the weighted median over windows of 0.8 s in which
-/// the joint moves, so a join or a damaged row does not count. The lag is that of least squares, to first order. Only
-/// the last MEMORY of motion counts. Fixed memory; nothing allocates.
+/// Both are averaged over pieces of 0.1 s. Their factor is the weighted median over windows of 0.8 s in which the joint
+/// moves, so that single wrong rows do not count. The lag follows from least squares, to first order. Only the last
+/// MEMORY pieces of motion count. Memory is fixed; nothing allocates.
 class TimeFit
 {
 public:
@@ -102,7 +160,7 @@ public:
     return factor;
   }
 
-  /// Of the recorded velocity behind the slope of the angles [s]. Means something where the factor is near 1.
+  /// Lag of the recorded velocity behind the slope of the angles [s]. It has a meaning only where the factor is near 1.
   FittedFactor lag() const noexcept
   {
     FittedFactor lag;
