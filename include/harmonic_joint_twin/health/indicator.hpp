@@ -3,7 +3,7 @@
 
 namespace hjt
 {
-/// A health indicator that cannot always be given. The value is 0 while it is not valid.
+/// A health indicator with its validity. The value is 0 if it is not valid.
 struct Indicator
 {
   bool valid{};

@@ -5,7 +5,7 @@
 
 namespace hjt
 {
-/// Indicators that follow from the motion.
+/// Indicators that follow from the motion of motor and output.
 struct MotionIndicators
 {
   Indicator transmission_ratio;   ///< over the last motor turn [-]
