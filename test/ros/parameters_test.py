@@ -124,7 +124,7 @@ class Parameters(unittest.TestCase):
                 ("cup/torsion_breakpoints", [14.0, "high"], "not a number"),
                 ("cup/torsion_stiffness", [31.0e3, 50.0e3], "[N.m/rad]"),
                 ("manufacture/flexspline_pitch_table", "/nowhere.csv", "/nowhere.csv", "cannot be read"),
-                ("solver", 3, "= 3 must be keys and values, e.g. solver."),
+                ("solver", 3, "= 3 must be keys and values, for example solver."),
                 ("faults", 3, "= 3 must be a list of {kind:"),
                 ("publish/encoders_rate", 3000, "3000", "[Hz]", "10000")):
             with self.subTest(key=key, value=value):
@@ -180,7 +180,7 @@ class Parameters(unittest.TestCase):
         for text, expected in ((joint + "'a b'}", "arm.yaml:3: joints.0.short_name = 'a b' must be a name"),
                                (joint + "base, parameters: [1, 2]}", "arm.yaml:3: joints.0.parameters = [1.0, 2.0]"),
                                (like + "payload: {mass: .nan, centre: [0, 0, 0]}", "arm.yaml:2: payload.mass = .nan"),
-                               (like + "description: pipe.urdf", "pipe.urdf cannot be read: it is a folder, a device")):
+                               (like + "description: pipe.urdf", "pipe.urdf cannot be read: it is a directory")):
             with self.subTest(text=text):
                 self.check_arm_refusal(text, expected)
 

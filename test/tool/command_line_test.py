@@ -222,7 +222,7 @@ class InputFiles(tool.ToolTest):
         with open(os.path.join(arms, "ur5.yaml"), encoding="utf-8") as file:
             arm = file.read().replace("ur5.urdf", os.path.join(arms, "ur5.urdf"))
         self.write("rows.csv", "time\n0\n")
-        for name, reason in (("pipe", "cannot be read: it is a folder, a device or a pipe"),
+        for name, reason in (("pipe", "cannot be read: it is a directory, a device or a pipe"),
                              ("sparse", "cannot be read: it is larger than 10000000 bytes")):
             path = self.path(name)
             self.write("arm.yaml", arm.replace("[joints/base.yaml, ", f"[{path}, "))
