@@ -168,7 +168,8 @@ class Stiffness(tool.ToolTest):
         done = self.run_tool("stiffness", "--torques", "5", "--config", "golden.yaml", "--set",
                              "gear.teeth_flexspline=160", "--set", "gear.teeth_circular_spline=162")
         self.assertEqual(done.returncode, 0)
-        self.assertIn("warning: the teeth jam without load: 78 of 160 loaded, 13519", done.stderr)
+        self.assertIn("warning: the teeth jam without load: 78 of 160 teeth are loaded, and the wave generator "
+                      "carries 13519", done.stderr)
         self.assertEqual(self.succeed("stiffness", "--torques", "5").stderr, "")
 
     def test_torque_may_be_negative(self):
