@@ -276,7 +276,7 @@ class OutputFiles(tool.ToolTest):
         self.write("victim", "precious")
         os.symlink("victim", self.path("link.bag.active"))
         os.mkfifo(self.path("pipe.bag.active"))
-        for name, reason in (("link", ""), ("pipe", ": it is no regular file")):
+        for name, reason in (("link", ""), ("pipe", ", because it is not a regular file")):
             self.fail_with(1, [f"{name}.bag.active cannot be written{reason}"], "simulate", "--torque", "0.2",
                            "--duration", "0.02", "--out", f"{name}.bag")
         self.assertEqual(tool.read_bytes(self.path("victim")), b"precious")
