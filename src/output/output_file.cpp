@@ -61,7 +61,7 @@ void prepareReport(const std::string& folder, const std::string& data, bool forc
   {
     if (!force && !entry.is_directory(error))
     {
-      throw InputError(folder + " already contains files,  " + entry.path().filename().string() +
+      throw InputError(folder + " already contains files, " + entry.path().filename().string() +
                        " among them; give another directory, or --force to overwrite the files of a report");
     }
   }

@@ -37,20 +37,20 @@
 
 namespace hjt
 {
-/// What the twin of an arm publishes: joint_states as the robot's driver does, the tool's pose and the wanted one, and
-/// of each drive what the twin of a joint publishes, below its own name.
+/// The topics of an arm's twin: joint_states as of the robot's driver, actual and wanted pose of the tool, and for each
+/// drive the topics of a joint's twin in its own namespace.
 class ArmPublishers
 {
 public:
   ArmPublishers(ros::NodeHandle& node, const ArmDescription& arm, const ArmTwin& twin);
 
-  /// Loop: fills the messages due at the present instant that somebody hears. No allocation, no lock.
+  /// For the loop: fills the due messages that have subscribers. It neither allocates nor locks.
   void offer(MovingArm& arm) noexcept;
 
-  /// Loop: as OutputPublishers::finishCycle.
+  /// For the loop: as OutputPublishers::finishCycle.
   Stamp finishCycle(Stamp instant) noexcept;
 
-  /// Messages that could not be published.
+  /// Number of messages that could not be published.
   std::uint64_t dropped() const noexcept;
 
 private:
@@ -60,28 +60,28 @@ private:
   void drain();
 
   ros::NodeHandle parent_;
-  std::vector<std::size_t> order_;  // joints in that of the driver's messages
-  Stamp period_;                    // [ns]
+  std::vector<std::size_t> order_;  // indices of the joints in the order of the driver's messages
+  Stamp period_;                    // period of joint_states [ns]
   ArmDynamics dynamics_;
   std::vector<JointMotion> wanted_;
   std::vector<std::unique_ptr<OutputPublishers>> drives_;
   OutputChannel<sensor_msgs::JointState> states_;
   OutputChannel<Pose> tool_;
   OutputChannel<Pose> wanted_tool_;
-  PublisherThread thread_;  // last: it uses the rest
+  PublisherThread thread_;  // last, because it uses the other members
 };
 
-/// What the twin of an arm says of itself to /diagnostics: whether it moves, what its drives cannot bear, and whether
-/// it keeps up with the clock.
+/// State of the arm's twin in /diagnostics: whether it moves, which drives are overloaded, and whether the loop is in
+/// time.
 class ArmDiagnostics
 {
 public:
-  /// Read once a look, from whoever spins.
+  /// State at one update, read in the caller's thread.
   struct Snapshot
   {
     LoopStatus loop;
     std::vector<TwinCounters> drives;
-    std::string stop_reason;  ///< of a protective stop; empty: it moves
+    std::string stop_reason;  ///< reason of a protective stop; empty: no stop
     std::uint64_t dropped{};  ///< messages that could not be published
   };
   using Read = std::function<Snapshot()>;
@@ -98,21 +98,21 @@ private:
   const ArmDescription& arm_;
   const Read read_;
   Snapshot snapshot_;
-  std::vector<RecentEvents> failures_;   // of each joint
-  std::vector<RecentEvents> overloads_;  // likewise
+  std::vector<RecentEvents> failures_;   // for each joint
+  std::vector<RecentEvents> overloads_;  // for each joint
   TimingTask timing_;
   DiagnosticTasks tasks_;
   ros::WallTimer timer_;
 };
 
-/// The newest of some values from callbacks to a loop, which never waits and frees nothing.
+/// Passes the newest value from callbacks to a loop that neither waits nor frees memory.
 template <class Value>
 class Handover
 {
 public:
   explicit Handover(Value unused) : value_(std::move(unused)) {}
 
-  /// From any thread, in place of one that was not taken.
+  /// Sets the value, which replaces one that was not taken; thread-safe.
   void give(Value value)
   {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -120,7 +120,7 @@ public:
     is_new_ = true;
   }
 
-  /// From the loop: calls `use(Value&)` if there is a new one. What is in the value then is freed by the next `give`.
+  /// For the loop: calls `use(Value&)` if there is a new value. The next `give` frees the content of the used one.
   template <class Use>
   void take(Use&& use) noexcept
   {
@@ -138,12 +138,12 @@ private:
   bool is_new_{};
 };
 
-/// State of the robot as ur_robot_driver publishes it, by its names, latched: robot and safety mode, whether it takes
-/// commands, the share of its speed. The modes are messages of ur_dashboard_msgs, which need not be there.
+/// State of the robot with the topic names of ur_robot_driver, latched: robot mode, safety mode, whether it accepts
+/// commands, and the speed scaling. The modes are messages of ur_dashboard_msgs, which need not be installed.
 class DriverStates
 {
 public:
-  /// `parent`: of the driver's names.
+  /// `parent`: namespace of the driver's names.
   explicit DriverStates(const ros::NodeHandle& parent);
 
   /// Publishes what has changed.
@@ -158,28 +158,29 @@ private:
   ros::Publisher speed_scaling_;
 };
 
-/// The live twin of a whole arm, in place of a robot: moves gently until somebody commands a trajectory, publishes
-/// what the robot's driver would, and takes faults of every joint.
+/// The live twin of a whole arm without a robot. It moves gently until a trajectory is commanded, publishes the topics
+/// of the robot's driver, and accepts faults of every joint.
 class ArmNode
 {
 public:
-  /// A motion and what counts as following it.
+  /// A motion with its tolerances.
   struct Command
   {
     ArmMotion motion;
     ArmGoal goal;
   };
 
-  /// `drives`: as ArmTwin takes them. Waits for their response surfaces, then starts. @throws ParameterError.
+  /// `drives`: parameters as for ArmTwin. The constructor waits for the response surfaces and starts the arm. @throws
+  /// ParameterError.
   ArmNode(ros::NodeHandle& node, const ArmDescription& arm, const std::vector<Parameters>& drives);
 
-  /// From any thread: sets out on a trajectory, in place of what the arm did; without points it comes to rest. The goal
-  /// gets its number. @returns why not, or nothing.
+  /// Begins a trajectory that replaces the present motion; without points the arm comes to rest. `goal` receives its
+  /// number. Thread-safe. @returns the reason of a refusal; empty if the trajectory is accepted.
   std::string command(const trajectory_msgs::JointTrajectory& message, ArmGoal& goal);
-  /// How the last command that the loop has taken is followed.
+  /// Report on the last command that the loop has taken.
   GoalReport report() const { return advance_.report.read(); }
   const ArmDescription& description() const noexcept { return description_; }
-  /// From any thread: in a protective stop why, else nothing.
+  /// Reason of a protective stop; empty without a stop. Thread-safe.
   std::string stopReason() const;
 
 private:
@@ -191,7 +192,7 @@ private:
     MOVES
   };
 
-  /// What the loop advances.
+  /// The object that the loop advances.
   class Advance : public Advanced
   {
   public:
@@ -207,11 +208,11 @@ private:
     Handover<Command> command;
     Handover<ArmWrench> wrench;
     Handover<Payload> payload;
-    TryLockValue<std::vector<JointMotion>> shown;      ///< present set point
-    TryLockValue<std::vector<TwinCounters>> counters;  ///< of each drive
+    TryLockValue<std::vector<JointMotion>> shown;      ///< present set points
+    TryLockValue<std::vector<TwinCounters>> counters;  ///< counts of each drive
     TryLockValue<GoalReport> report;
-    std::atomic<const char*> stop_reason{ nullptr };  ///< of a protective stop; none: it moves
-    std::atomic<std::size_t> stopped_joint{};         ///< of which joint
+    std::atomic<const char*> stop_reason{ nullptr };  ///< reason of a protective stop; null: no stop
+    std::atomic<std::size_t> stopped_joint{};         ///< joint of the protective stop
     std::atomic<Unlock> unlock{ Unlock::NOT_ASKED };
 
   private:
@@ -240,8 +241,8 @@ private:
   std::atomic<std::uint64_t> too_large_{ 0 };
   std::mutex command_mutex_;
   MotionLimits limits_;
-  std::uint64_t commands_{};                              // given to the loop
-  std::vector<std::unique_ptr<FaultSubscriber>> faults_;  // of each joint
+  std::uint64_t commands_{};                              // number of commands given to the loop
+  std::vector<std::unique_ptr<FaultSubscriber>> faults_;  // for each joint
   ros::Subscriber command_subscriber_;
   ros::Subscriber wrench_subscriber_;
   ros::Subscriber payload_subscriber_;
@@ -253,11 +254,11 @@ private:
   ros::WallTimer stop_timer_;
 };
 
-/// Offers the action FollowJointTrajectory below the controller's name, `~controller`, as the arm's driver does, for as
-/// long as what it returns lives. Where control_msgs was not found nothing, and the log says so.
+/// Offers the action FollowJointTrajectory in the namespace of `~controller`, as the robot's driver does, during the
+/// lifetime of the result. Without control_msgs at build time it offers nothing and logs this.
 std::shared_ptr<void> offerArmAction(ros::NodeHandle& node, ArmNode& arm);
 
-/// The live twin of an arm with its action.
+/// The live twin of an arm with its action server.
 class ArmWithAction
 {
 public:

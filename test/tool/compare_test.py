@@ -80,8 +80,8 @@ class Compare(tool.ToolTest):
                 folder = "of_" + name
                 os.mkdir(self.path(folder))
                 self.write(os.path.join(folder, name), "precious")
-                self.fail_with(1, [f"already contains files, {name} among them", "--force"], "compare", "a.bag", *OPTIONS,
-                               "--report", folder)
+                self.fail_with(1, [f"already contains files, {name} among them", "--force"], "compare", "a.bag",
+                               *OPTIONS, "--report", folder)
                 self.assertEqual(tool.read_bytes(self.path(os.path.join(folder, name))), b"precious")
                 self.assertEqual(os.listdir(self.path(folder)), [name])
         self.fail_with(1, ["joints found: elbow_joint, wrist_1_joint"], "compare", "a.bag", "--joint", "shoulder",
