@@ -126,7 +126,8 @@ class ArmTwin(unittest.TestCase):
         self.said("Refused a trajectory on ~command: its stamp is more than a day ahead of the clock")
         time.sleep(1.1)
         self.send((dict(START, elbow_joint=START["elbow_joint"] + 3.0), 1.0))
-        self.said("elbow_joint would reach 4.2 rad/s between the set point at 1 s and the one before; its limit is 3.142")
+        self.said("elbow_joint would reach 4.2 rad/s between the set point at 1 s and the one before; "
+                  "its limit is 3.142")
         time.sleep(1.1)
         self.send((dict(START, elbow_joint=float("nan")), 5.0))
         self.said("points[0]: not all values are finite")
