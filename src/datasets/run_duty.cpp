@@ -96,7 +96,7 @@ std::shared_ptr<const TableWaveform::Rows> TableWaveform::read(const std::string
   {
     if (row[0] < 0.0 || (!rows->empty() && row[0] <= rows->back().first))
     {
-      throw InputError(table.place() + ": column 'time' must start at 0 or later and ascend");
+      throw InputError(table.place() + ": column 'time' must be >= 0 and ascending");
     }
     table.requireRange(1, row[1], range, unit);
     if (!rows->empty() && !std::isfinite((row[1] - rows->back().second) / (row[0] - rows->back().first)))

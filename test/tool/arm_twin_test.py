@@ -169,7 +169,7 @@ class ArmTwin(tool.ToolTest):
             for value, half_width in (("speed_current", "speed_half_width"), ("position", "position_half_width")):
                 self.assertLess(abs(joint[value] - before[value]), joint[half_width] + before[half_width], value)
         for option in (("--judge", 0, 1), ("--folds", 3), ("--load", "target_moment")):
-            self.fail_with(1, ["--controller takes", option[0]], "identify", "run.csv", "--arm", "ur5", "--controller",
+            self.fail_with(1, ["--controller uses", option[0]], "identify", "run.csv", "--arm", "ur5", "--controller",
                            *option)
         self.fail_with(1, ["no column target_qd_0"], "identify", self.write("few.csv", "timestamp,target_q_0\n0,0\n"),
                        "--arm", "ur5", "--controller")

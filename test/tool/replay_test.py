@@ -147,7 +147,7 @@ class Replay(tool.ToolTest):
 
     def test_other_joints_are_not_mistaken_for_this_one(self):
         tool.write_recording(self.path("in.bag"), joint="elbow_joint")
-        self.fail_with(1, ["commands other joints (elbow_joint)", "joint.name = wrist"],
+        self.fail_with(1, ["contains commands for other joints (elbow_joint)", "joint.name = wrist"],
                        "replay", "in.bag", "--out", "out.bag", "--set", "joint.name=wrist")
         self.assertIn("joint.name = elbow_joint", self.replay().stderr)
 

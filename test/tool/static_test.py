@@ -253,7 +253,7 @@ class Ratchet(tool.ToolTest):
         done = self.run_tool("ratchet", "--torque-limit", 20000, "--lobe-stiffness", 1e7, "--angle-step", 4e-4)
         self.assertEqual(done.returncode, 1, done.stderr)
         self.assertRegex(done.stdout, "end +gave up, no equilibrium")
-        self.assertIn("the search gave up", done.stderr)
+        self.assertIn("the search ended", done.stderr)
         self.assertIn("lower bound", done.stderr)
 
     def test_wrong_usage(self):

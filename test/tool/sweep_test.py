@@ -301,7 +301,8 @@ class Sweep(SweepTest):
         self.sweep("a")
         before = tree(self.path("a"))
         self.write("plan.yaml", PLAN.replace("seed: 7", "seed: 8"))
-        self.fail_with(1, ["a/plan.json belongs to another plan; give another --out"], "sweep", "plan.yaml", "--out", "a")
+        self.fail_with(1, ["a/plan.json belongs to another plan; give another --out"], "sweep", "plan.yaml", "--out",
+                       "a")
         self.write("plan.yaml", PLAN)
         self.fail_with(1, ["a/plan.json belongs to another configuration"], "sweep", "plan.yaml", "--out", "a",
                        "--set", "output.load_inertia=2.0")
@@ -310,7 +311,8 @@ class Sweep(SweepTest):
         version = json.loads(text)["version"]
         self.write("a/plan.json", text.replace(f'"version": "{version}"', '"version": "0.0.1"'))
         before["plan.json"] = tool.read_bytes(self.path("a/plan.json"))
-        self.fail_with(1, ["a/plan.json belongs to another version of the software"], "sweep", "plan.yaml", "--out", "a")
+        self.fail_with(1, ["a/plan.json belongs to another version of the software"], "sweep", "plan.yaml", "--out",
+                       "a")
         self.assertEqual(tree(self.path("a")), before)
 
     def test_dry_run_tells_runs_and_size_and_writes_nothing(self):
