@@ -106,8 +106,7 @@ void visitRing(P& p, Visitor& visit)
         "rotation that bending resists; curvature: between neighbouring segments; absolute: of each segment from rest");
   visit("ring.loss_factor", "-", p.ring.loss_factor, Range{ 0.0, 1.0 },
         "loss factor of rim and outer race in bending: energy lost in a cycle over 2 pi times the largest stored "
-        "energy; 0 = "
-        "elastic");
+        "energy; 0 = elastic");
 }
 
 template <class P, class Visitor>
