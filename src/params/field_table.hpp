@@ -264,8 +264,7 @@ void visitLife(P& p, Visitor& visit)
         ofOthers("depth of a crack at a tooth root of the new drive; 0 = no crack"));
   visit("life.crack_coefficient", "m", p.life.crack_coefficient, Range{ 0.0, 1e-3 },
         ofOthers("C of Paris' law: growth in a cycle at a range of stress intensity of 1 MPa sqrt(m)"));
-  visit("life.crack_exponent", "-", p.life.crack_exponent, Range{ 1.0, 20.0 },
-        ofOthers("m of Paris' law, the exponent of the range of stress intensity"));
+  visit("life.crack_exponent", "-", p.life.crack_exponent, Range{ 1.0, 20.0 }, ofOthers("exponent m of Paris' law"));
   visit("life.crack_threshold", "MPa sqrt(m)", p.life.crack_threshold, Range{ 0.0, 100.0 },
         ofOthers("range of stress intensity below which a crack does not grow"));
   visit("life.use_record", p.life.use_record,

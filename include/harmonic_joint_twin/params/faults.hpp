@@ -79,44 +79,46 @@ struct FaultDescription
 
 /// Descriptions of all kinds, in the order of FaultKind.
 inline constexpr std::array FAULT_DESCRIPTIONS{
-  FaultDescription{ FaultKind::INTERFACE_WEAR, "interface_wear", FaultPlace::SEGMENT, true,
-                    "rim and outer race worn by fault_scale.interface_wear_depth, rougher by its friction factor",
-                    "stiffness and lost motion about zero torque" },
+  FaultDescription{
+      FaultKind::INTERFACE_WEAR, "interface_wear", FaultPlace::SEGMENT, true,
+      "rim and outer race worn by fault_scale.interface_wear_depth, friction times interface_friction_factor",
+      "stiffness and lost motion about zero torque" },
   FaultDescription{ FaultKind::REAR_SECTION_CRACK, "rear_section_crack", FaultPlace::MEMBER, true,
                     "crack behind the teeth over fault_scale.cup_crack_fraction of the circumference",
                     "torsion loop, torsional stiffness" },
   FaultDescription{ FaultKind::LUBRICANT_DEGRADATION, "lubricant_degradation", FaultPlace::MEMBER, true,
-                    "viscosity and boundary friction times the factors of fault_scale", "running torque" },
+                    "viscosity and boundary friction multiplied by their factors of fault_scale", "running torque" },
   FaultDescription{ FaultKind::TOOTH_WEAR, "tooth_wear", FaultPlace::TOOTH, true,
-                    "fault_scale.tooth_wear_depth off both flanks, along their normal", "lost motion" },
+                    "both flanks worn by fault_scale.tooth_wear_depth along their normal", "lost motion" },
   FaultDescription{
       FaultKind::TOOTH_ROOT_CRACK, "tooth_root_crack", FaultPlace::TOOTH, false,
-      "crack through the tooth (broken off), or fault_scale.rim_crack_depth into the rim, by the backup ratio",
+      "tooth broken off, or crack of fault_scale.rim_crack_depth in the rim, depending on the backup ratio",
       "orders 2, 4, 6 ... of the kinematic error" },
   FaultDescription{ FaultKind::FLANGE_CRACK, "flange_crack", FaultPlace::MEMBER, true,
                     "crack at the cup's flange over fault_scale.cup_crack_fraction of the circumference",
                     "torsional stiffness, torsion loop" },
   FaultDescription{ FaultKind::TOOTH_TIP_CRACK, "tooth_tip_crack", FaultPlace::TOOTH, false,
-                    "crack along the tooth's middle as long as the tooth is high: two leaves",
+                    "crack in the tooth's middle over the whole tooth height, which leaves two halves",
                     "orders 2, 4, 6 ... of the kinematic error" },
   FaultDescription{
       FaultKind::PITTING, "pitting", FaultPlace::TOOTH, true,
-      "fault_scale.pitted_fraction of the flank's width lost, its friction times fault_scale.pitted_friction_factor",
+      "fault_scale.pitted_fraction of the flank's width lost, friction times fault_scale.pitted_friction_factor",
       "one tooth: orders 2, 4, 6 ... of the kinematic error" },
   FaultDescription{ FaultKind::WAVE_GENERATOR_WEAR, "wave_generator_wear", FaultPlace::LOBE, true,
-                    "major semi-axis less by fault_scale.wave_generator_wear_depth",
+                    "major semi-axis smaller by fault_scale.wave_generator_wear_depth",
                     "lost motion, stiffness, lower running torque" },
   FaultDescription{
       FaultKind::FLEXSPLINE_CRACK, "flexspline_crack", FaultPlace::SEGMENT, false,
-      "rim cracked by fault_scale.rim_crack_depth here, fading out over fault_scale.rim_crack_segments either side",
+      "crack of fault_scale.rim_crack_depth in the rim, decreasing to zero over fault_scale.rim_crack_segments",
       "orders 2, 4, 6 ... of the kinematic error" },
   FaultDescription{
       FaultKind::BUCKLING, "buckling", FaultPlace::MEMBER, true,
-      "cup softer by fault_scale.buckling_stiffness_loss, rim bent to waves of fault_scale.buckling_out_of_round",
+      "cup softer by fault_scale.buckling_stiffness_loss, rim out of round by fault_scale.buckling_out_of_round",
       "torsional stiffness, torsion loop" },
-  FaultDescription{ FaultKind::RATCHETING, "ratcheting", FaultPlace::MEMBER, true,
-                    "circular spline off centre by fault_scale.ratcheting_eccentricity, tips shorter by its tip loss",
-                    "running torque, orders 2 and {spline}" },
+  FaultDescription{
+      FaultKind::RATCHETING, "ratcheting", FaultPlace::MEMBER, true,
+      "circular spline off centre by fault_scale.ratcheting_eccentricity, tips shorter by ratcheting_tip_loss",
+      "running torque, orders 2 and {spline}" },
   FaultDescription{ FaultKind::BEARING_INNER_RACE, "bearing_inner_race", FaultPlace::INNER_RACE, false,
                     "spall of fault_scale.spall_depth and spall_length on the inner race", "order {inner}" },
   FaultDescription{ FaultKind::BEARING_OUTER_RACE, "bearing_outer_race", FaultPlace::OUTER_RACE, false,
@@ -124,9 +126,10 @@ inline constexpr std::array FAULT_DESCRIPTIONS{
                     "order {outer} and its sidebands at 2" },
   FaultDescription{ FaultKind::BEARING_BALL, "bearing_ball", FaultPlace::BALL, false,
                     "spall of fault_scale.spall_depth and spall_length on a ball", "orders {ball} and {lobe}" },
-  FaultDescription{ FaultKind::BEARING_CAGE, "bearing_cage", FaultPlace::BALL, false,
-                    "the ball of a broken pocket lets the outer race down by fault_scale.cage_deflection",
-                    "order {lobe}: twice 1 less the cage's {cage}" }
+  FaultDescription{
+      FaultKind::BEARING_CAGE, "bearing_cage", FaultPlace::BALL, false,
+      "outer race lower by fault_scale.cage_deflection where a ball's broken pocket does not hold the ball",
+      "order {lobe}: twice the difference of 1 and the cage's order {cage}" }
 };
 
 /// Whether a table has one row for each kind of fault, in the order of FaultKind.
@@ -142,11 +145,12 @@ constexpr bool hasRowsInOrder(const Table& table) noexcept
 }
 static_assert(hasRowsInOrder(FAULT_DESCRIPTIONS), "one row for each FaultKind, in its order");
 
-/// row of FAULT_DESCRIPTIONS; `kind` must not be COUNT
+/// Row of FAULT_DESCRIPTIONS; `kind` must not be COUNT.
 constexpr const FaultDescription& describe(FaultKind kind) noexcept
 {
   return FAULT_DESCRIPTIONS[static_cast<std::size_t>(kind)];
 }
+
 /// Signal that shows a fault of this kind first, with the orders of this drive's bearing and teeth.
 std::string shownFirst(FaultKind kind, const Parameters& parameters);
 std::optional<FaultKind> faultNamed(const std::string& name);  ///< kind with this name; nothing if there is none
@@ -157,7 +161,7 @@ const char* placeName(FaultPlace place) noexcept;
 /// Number of places of this sort in the gear.
 int placesOf(FaultPlace place, const Parameters& parameters) noexcept;
 int firstPlace(FaultKind kind) noexcept;  ///< least place that the kind allows: WHOLE_MEMBER or 0
-/// greatest place that the kind allows in this gear
+/// Greatest place that the kind allows in this gear.
 int lastPlace(FaultKind kind, const Parameters& parameters) noexcept;
 
 /// Text of the places that a kind allows, for example "tooth 0 ... 199 or -1 (the whole member)".
