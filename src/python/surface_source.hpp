@@ -18,8 +18,8 @@ namespace hjt
 class SurfaceSourceOf
 {
 public:
-  /// `cache`: a directory; none: that of the tool. `progress`: called with 0 ... 1, or Python's None. `builders`: number
-  /// of builders that use this source one after the other and share equal surfaces.
+  /// `cache`: a directory; none: that of the tool. `progress`: called with the share 0 ... 1, or Python's None.
+  /// `builders`: number of builders that use this source one after the other and share equal surfaces.
   SurfaceSourceOf(const std::optional<std::string>& cache, const py::object& progress, std::size_t builders = 1)
   {
     source_.cache_directory = cache ? *cache : surfaceCacheDirectory();
