@@ -22,6 +22,6 @@ void openForReading(rosbag::Bag& bag, const std::string& path);
 /// @throws InputError if the bag contains one of the topics, whose messages could be mistaken for the twin's.
 void refuseTopics(const rosbag::Bag& bag, const std::string& path, const std::vector<std::string>& topics);
 
-/// Text of all topics of a bag with their types, one a line.
+/// Text of all topics of a bag with their types, one per line.
 std::string listTopics(const rosbag::Bag& bag);
 }  // namespace hjt

@@ -170,7 +170,7 @@ struct BagContext
 {
   BagWriter& bag;
   std::string prefix;  ///< prefix of the topic names
-  Stamp delay{};       ///< time of recording less the stamps of the messages [ns]
+  Stamp delay{};       ///< time of recording minus the stamps of the messages [ns]
 };
 
 /// Sink of one topic in a bag.

@@ -73,7 +73,7 @@ public:
 
   const std::map<std::string, TopicMessages>& topics() const { return topics_; }
   std::uint64_t messagesOn(const std::string& topic) const;
-  /// Text of the topics with their types, one a line.
+  /// Text of the topics with their types, one per line.
   std::string listTopics() const;
   /// @throws InputError if the topic has no message or another type; the text lists the existing topics.
   void requireStates(const std::string& topic) const;

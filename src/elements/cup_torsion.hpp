@@ -19,7 +19,7 @@ namespace hjt
 /// The torque acts on the mean rotation. The thesis applies it to each tooth, which would make the cup N times too
 /// stiff and resist the travelling wave.
 ///
-/// The curve is the catalogue's for the whole gear less the compliance of the model's rim, teeth and bearing. The wall
+/// The curve is the catalogue's for the whole gear minus the compliance of the model's rim, teeth and bearing. The wall
 /// and the diaphragm contribute 1/K_W of its compliance; no other part of the model represents the rest.
 class CupTorsion
 {

@@ -10,7 +10,7 @@
 
 namespace hjt
 {
-/// Radius of the bearing's outer race less that of the rim's bore, both free and round: the fit plus the expansion by
+/// Radius of the bearing's outer race minus that of the rim's bore, both free and round: the fit plus the expansion by
 /// the wave generator's excess temperature; > 0 interference [m].
 inline double raceFit(const Parameters& parameters) noexcept
 {

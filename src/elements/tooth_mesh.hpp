@@ -22,8 +22,8 @@ struct ToothEngagement
   Chord chord;
   double xi;           ///< across, from the position of the space in the perfect gear [m]
   double zeta;         ///< along the axis [m]
-  double tooth_ahead;  ///< error of manufacture of the tooth less that of the space, across [m]
-  double space_out;    ///< error of manufacture of the space less that of the tooth, along the axis [m]
+  double tooth_ahead;  ///< error of manufacture of the tooth minus that of the space, across [m]
+  double space_out;    ///< error of manufacture of the space minus that of the tooth, along the axis [m]
 };
 
 /// Energy of a tooth and its derivatives by xi and zeta.

@@ -19,7 +19,7 @@ namespace hjt
 /// Energy:  U = 2/5 K sum_b depth_b^(5/2),   depth_b = <sum_i w_bi z_i - h_b>+
 /// where    w_bi  quadratic B-spline of the distance between ball b and tooth i in tooth pitches. It weights the three
 ///                teeth nearest to the ball, with 1/8, 3/4, 1/8 if the ball is below the middle tooth; the sum is 1
-///          z_i   depth of tooth i inside the wave generator, less the gap between rim and race at it [m]
+///          z_i   depth of tooth i inside the wave generator, minus the gap between rim and race at it [m]
 ///          h_b   drop of ball b into a spall, or because it carries no load, see RaceDeflection       [m]
 ///          K     Hertz' stiffness of one ball [N/m^1.5]
 /// The balls move with the wave generator's angle theta (RaceDeflection), so that w and h depend on theta too. Their
@@ -86,7 +86,7 @@ public:
     void repeat() noexcept;
 
     Eigen::VectorXd force;      ///< N, normal force of the wave generator on each tooth, >= 0 [N]
-    Eigen::VectorXd depth;      ///< N, depth of each tooth point inside the wave generator, less the gap [m]
+    Eigen::VectorXd depth;      ///< N, depth of each tooth point inside the wave generator, minus the gap [m]
     Eigen::VectorXd slope;      ///< N, derivative of the force by the depth; 0 with single balls [N/m]
     Eigen::VectorXd curvature;  ///< N, curvature of the wave generator at the foot [1/m]
     Eigen::VectorXd normal;     ///< 2 N, direction of the force, outward [-]

@@ -12,7 +12,7 @@ namespace hjt
 /// Cumulative pitch deviations of the teeth or spaces of a part (ISO 1328-1), counter-clockwise > 0 [m].
 ///
 /// Seeded:  F_i = A sum_k cos(2 pi k i / Z + phase_k) / k,  k = 1 ... Z/2
-/// where    A        makes the largest less the smallest value equal to the total cumulative pitch deviation Fp
+/// where    A        makes the largest minus the smallest value equal to the total cumulative pitch deviation Fp
 ///          phase_k  k-th number of the generator mt19937 over 2^32, times 2 pi: equal on every platform
 ///
 /// The amplitudes 1/k are those of a gear that is cut tooth by tooth: a drive with two encoders shows 6.9" at two and

@@ -69,7 +69,7 @@ struct HalfClearance
 /// Half clearance as a function of zeta, the distance of the tooth along the axis of its space, by thesis section 3.2.
 ///
 /// trapezoid:  c(zeta) = c0 + (r0 + z_t + w0 - zeta) tan(beta), in closed form
-/// others:     c(zeta) = c0 + min over y of [s(zeta + y) - t(y)], less its value at full engagement
+/// others:     c(zeta) = c0 + min over y of [s(zeta + y) - t(y)], minus its value at full engagement
 /// where       c0      half clearance at full engagement, zeta = r0 + z_t + w0       [m]
 ///             beta    flank angle                                                   [rad]
 ///             t, s    half thickness of the tooth at height y, half width of its space; y is within

@@ -29,7 +29,7 @@ constexpr double TRANSIENT = 0.25;  // time that is excluded on either side of a
 
 using Column = Eigen::VectorXd;
 
-/// Values less their moving mean over `width` rows.
+/// Values minus their moving mean over `width` rows.
 Column withoutSlow(const Column& values, Eigen::Index width)
 {
   Column sums(values.size() + 1);
@@ -98,7 +98,7 @@ struct Record
   Column current;
 };
 
-/// 1 for rows in which the control is linear, else 0. `limit`: of the current less the target's; 0: none [A].
+/// 1 for rows in which the control is linear, else 0. `limit`: of the current minus the target's; 0: none [A].
 Column linearRows(const std::vector<ControllerRow>& rows, double period, double limit)
 {
   const auto count = static_cast<Eigen::Index>(rows.size());

@@ -8,7 +8,7 @@
 
 namespace hjt
 {
-/// A row of a joint's controller in a recording. Errors are target less actual value of the same time.
+/// A row of a joint's controller in a recording. Errors are target minus actual value of the same time.
 struct ControllerRow
 {
   double angle_error{};     ///< error of the angle [rad]
@@ -28,7 +28,7 @@ struct ControllerFit
   double speed_half_width{};     ///< half width of its 95 % interval [A.s/rad]
   double position_half_width{};  ///< half width of the 95 % interval of the angle's gain [1/s]
   double lag{};                  ///< lag of the recorded current behind the errors [s]
-  /// share that the errors explain in the variance of the current less the rigid-body torque's, for periods below 1 s
+  /// share that the errors explain in the variance of the current minus the rigid-body torque's, for periods below 1 s
   double explained{};
   JointGains gains;
   std::string refusal;  ///< reason why the gains were not identified; empty: they were
@@ -38,10 +38,10 @@ struct ControllerFit
 ///
 ///   i - i_rigid = a e(t - lag) + b de(t - lag) + c integral e + d sign v + f v + g i_rigid
 ///
-/// each less its moving mean over a second. The lag is that of the smallest residual. With k_v = b K, K = torque per
+/// each minus its moving mean over a second. The lag is that of the smallest residual. With k_v = b K, K = torque per
 /// current: a / b = k_p + 1 / T_i of ArmController. Slow swings do not separate the integral from friction, so its time
 /// stays that of `usual`, or is 2 b / a if the sum is less than twice its inverse. Friction of the feedforward is the
-/// target current less that of the rigid-body torque. The fit excludes a quarter of a second on either side of a jump
+/// target current minus that of the rigid-body torque. The fit excludes a quarter of a second on either side of a jump
 /// of the set point's speed, or of a current at the `feedback_limit` (ArmJoint): there the control is not linear, and
 /// large errors would dominate. `period`: time between two rows [s].
 ControllerFit fitController(const std::vector<ControllerRow>& rows, double period, double torque_per_current,

@@ -206,8 +206,8 @@ double rowPeriod(const std::vector<MotionSample>& samples)
 struct Lacking
 {
   std::vector<double> friction;   // upper bound of the friction in each row [A]
-  std::vector<double> missing;    // measured current less the predicted one without friction, in each row [A]
-  std::vector<RippleRow> moving;  // rows of measured less predicted torque
+  std::vector<double> missing;    // measured current minus the predicted one without friction, in each row [A]
+  std::vector<RippleRow> moving;  // rows of measured minus predicted torque
 };
 
 Lacking lackingOf(const Parameters& parameters, const std::vector<MotionSample>& samples)

@@ -54,7 +54,7 @@ public:
   {
     GAIN,      ///< inverse gain [A/(N.m)]
     OFFSET,    ///< [A]
-    INERTIA,   ///< inertia of the motor, less the part in the load [kg.m^2]
+    INERTIA,   ///< inertia of the motor, minus the part in the load [kg.m^2]
     PRELOAD,   ///< [N]
     GREASE,    ///< relative to the configured one [-]
     FLANKS,    ///< relative to the configured one [-]
@@ -100,7 +100,7 @@ private:
   std::array<std::string, QUANTITIES> refusal_;
 };
 
-/// Motor torque less load, inertia and friction at one instant.
+/// Motor torque minus load, inertia and friction at one instant.
 struct RippleRow
 {
   double position;  ///< angle of the joint [rad]

@@ -26,8 +26,8 @@ struct RevolutionLoad
   double interface_sliding{};
   double race_creep{};  ///< creep of the outer race in the rim, > 0 in the direction of the wave generator [m]
   std::array<StressCycle, STRESS_PLACES> stress{};  ///< stress cycle at each place
-  double bending_range{};  ///< largest less smallest nominal bending stress in the tooth space [Pa]
-  double tension_range{};  ///< largest less smallest nominal tension stress of the rim [Pa]
+  double bending_range{};  ///< largest minus smallest nominal bending stress in the tooth space [Pa]
+  double tension_range{};  ///< largest minus smallest nominal tension stress of the rim [Pa]
 };
 
 /// Applies `of(x, y)` to all numbers of two loads.

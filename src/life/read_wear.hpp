@@ -45,8 +45,8 @@ constexpr double detectionShare(FaultKind kind) noexcept
 constexpr double DETECTED_SEVERITY = 0.1;
 constexpr double DETECTED_SPREAD = 0.3;
 
-/// Shares of the alarms at severity >= 0.3 by these three kinds: the first cause is right, or one of the reported set
-/// is.
+/// Shares of the alarms by faults of these kinds from severity 0.3 on: those with the right first cause, and those with
+/// the right cause in the reported set.
 constexpr double RIGHT_CAUSE = shareOf(assessment_counts::RIGHT_CAUSES, assessment_counts::ALARMS);
 constexpr double IN_SET = shareOf(assessment_counts::IN_SETS, assessment_counts::ALARMS);
 

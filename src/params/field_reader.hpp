@@ -301,7 +301,7 @@ private:
   std::vector<std::string> errors_;
 };
 
-/// @throws ParameterError with all errors, one a line.
+/// @throws ParameterError with all errors, one per line.
 inline void throwIfAny(const std::vector<std::string>& errors)
 {
   if (!errors.empty())

@@ -103,9 +103,9 @@ void visitThermal(P& p, Visitor& visit)
   visit("thermal.standby_power", "W", p.thermal.standby_power, Range{ 0.0, 1e4 },
         ofOthers("heat of the electronics and the released brake, which flows into the housing"));
   visit("thermal.grease_rise", "K", p.thermal.grease_rise, Range{ -100.0, 150.0 },
-        ofOthers("temperature of the grease less that of the surroundings, at start and reset"));
+        ofOthers("temperature of the grease minus that of the surroundings, at start and reset"));
   visit("thermal.housing_rise", "K", p.thermal.housing_rise, Range{ -100.0, 150.0 },
-        ofOthers("temperature of the housing less that of the surroundings, at start and reset"));
+        ofOthers("temperature of the housing minus that of the surroundings, at start and reset"));
 }
 
 template <class P, class Visitor>
@@ -429,7 +429,7 @@ void visitFields(P& p, Visitor&& visit)
 /// Hash of the parameters and faults that determine a response surface (FNV-1a, 64 bits).
 std::uint64_t surfaceParametersHash(const Parameters& parameters);
 
-/// Text of the parameters that determine a response surface, one a line. `faulty`: with those that determine its
+/// Text of the parameters that determine a response surface, one per line. `faulty`: with those that determine its
 /// faults.
 std::string describeSurfaceParameters(const Parameters& parameters, bool faulty);
 

@@ -86,7 +86,7 @@ void visitManufacture(P& p, Visitor& visit)
   visit("manufacture.wave_generator_eccentricity", "m", p.manufacture.wave_generator_eccentricity, ERROR_SHIFT,
         "centre of the wave generator's ellipse from the motor's axis, along the major and the minor axis");
   visit("manufacture.wave_generator_ellipticity", "m", p.manufacture.wave_generator_ellipticity, ERROR_SHIFT,
-        "amplitude of the wave generator less gear.wave_amplitude, to which the teeth were cut");
+        "amplitude of the wave generator minus gear.wave_amplitude, to which the teeth were cut");
 }
 
 template <class P, class Visitor>
@@ -119,9 +119,9 @@ void visitContact(P& p, Visitor& visit)
   visit("contact.stiffness", "N/m", p.contact.stiffness, Range{ 1.0, 1e12 },
         "stiffness between wave generator and flexspline for each tooth, with contact.support = springs");
   visit("contact.fit", "m", p.contact.fit, ERROR_SHIFT,
-        "mean radius of the wave generator less the flexspline's inner radius; > 0 interference, < 0 clearance");
+        "mean radius of the wave generator minus the flexspline's inner radius; > 0 interference, < 0 clearance");
   visit("contact.temperature_difference", "K", p.contact.temperature_difference, Range{ -100.0, 100.0 },
-        "temperature of the wave generator less that of the flexspline's rim; thermal expansion then changes the fit");
+        "temperature of the wave generator minus that of the flexspline's rim; thermal expansion then changes the fit");
   visit("contact.damping", "N.s/m", p.contact.damping, Range{ 0.0, 1e6 },
         "damping between wave generator and flexspline for each tooth");
   visit("contact.law", p.contact.law,

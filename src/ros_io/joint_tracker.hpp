@@ -81,8 +81,8 @@ private:
   static bool agree(Stamp a, Stamp b) { return std::abs(a - b) <= FAR_STAMP; }
 
   std::optional<Stamp> zero_;            // [ns]
-  Stamp offset_{};                       // reception less stamp of the last accepted row [ns]
-  std::optional<Stamp> refused_offset_;  // reception less stamp of the last row, if it was refused [ns]
+  Stamp offset_{};                       // reception minus stamp of the last accepted row [ns]
+  std::optional<Stamp> refused_offset_;  // reception minus stamp of the last row, if it was refused [ns]
 };
 
 /// Messages of one topic for all joints of a robot. The node's mutex protects all except `too_large`.

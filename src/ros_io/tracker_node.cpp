@@ -470,7 +470,7 @@ void TrackerNode::tryOnArm(const std::function<void()>& act)
   }
 }
 
-/// Text on when the payload changed; empty: it is that of all rows.
+/// Text on the time at which the payload changed; empty if the payload is equal in all rows.
 std::string TrackerNode::sinceText(double since) const
 {
   return std::isinf(since) ? "" : "; since " + dateText(stream_.clock.stamp(since), "%H:%M:%S") + " UTC";

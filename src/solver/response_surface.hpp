@@ -209,8 +209,8 @@ public:
     double weight{};                                 ///< [-]
   };
 
-  /// One to MAX_SHARES surfaces of gears with equal numbers of teeth; the weights sum up to 1. The range is the common
-  /// one.
+  /// One to MAX_SHARES surfaces of gears with equal numbers of teeth; the weights sum up to 1. The
+  /// range is the common part of their ranges.
   explicit ResponseSurface(std::vector<Share> shares);
 
   /// Position on the table and its deviations.

@@ -126,7 +126,7 @@ struct ToothResponse
 ///
 ///   u    wave generator angle [tooth pitches], period 1
 ///   v    output angle - wave generator angle / ratio [rad]
-///   chi  angle of the ball less the wave generator's angle [rad]
+///   chi  angle of the ball minus the wave generator's angle [rad]
 ///
 /// Each value is a polynomial in x = h / deepest without a constant term. Its coefficients are cubic B-splines of u,
 /// chi and w = asinh(v / scale) on even grids.

@@ -25,7 +25,7 @@ inline double toothSpace(const GearParameters& gear, const StressParameters& str
 ///                + q E s/(1 - nu^2) (f^2 d + f m)      and bends along the axis where the rim does not cone
 ///   flange       h E k r^3 / (6 L^2)                   the flange restrains the warping of the cup
 ///   wall         C / (2 pi r^2 s), shear               at transition and flange
-/// where eta  rotation of the rim at a tooth, less that at rest [rad]; k = eta/p [1/m]
+/// where eta  rotation of the rim at a tooth, minus that at rest [rad]; k = eta/p [1/m]
 ///       p, c tooth pitch; share of the pitch that the tooth's base takes
 ///       N    tension, mean of both sides of the tooth
 ///       t, s thickness of rim and wall; b face width; L, z: distance from the flange to middle and end of the teeth

@@ -97,7 +97,7 @@ struct ToothForceComparison
 struct QuasiStaticRow
 {
   double time{};                  ///< [s]
-  double torsion_dynamic{};       ///< output angle less wave generator angle over the ratio [rad]
+  double torsion_dynamic{};       ///< output angle minus wave generator angle over the ratio [rad]
   double torsion_quasi_static{};  ///< torsion of the equilibrium under the same load at the same motor angle [rad]
   double wave_generator_torque_dynamic{};  ///< torque on the wave generator, dynamic ring [N.m]
   double wave_generator_torque_quasi_static{};

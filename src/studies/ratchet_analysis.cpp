@@ -35,7 +35,7 @@ public:
 
   int snaps() const { return snaps_; }
 
-  /// Force of the ring on each lobe less that without load [N].
+  /// Force of the ring on each lobe minus that without load [N].
   double lobeForce() { return 0.5 * (amplitudeForce() - unloaded_); }
 
 private:

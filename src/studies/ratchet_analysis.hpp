@@ -15,7 +15,7 @@ struct RatchetRow
   double output_angle{};              ///< angle against the load's torque, from no load [rad]
   double torque{};                    ///< load on the circular spline [N.m]
   double wave_amplitude{};            ///< amplitude of the wave [m]
-  double lobe_force{};                ///< inward force of the ring on each lobe, less that without load [N]
+  double lobe_force{};                ///< inward force of the ring on each lobe, minus that without load [N]
   double depth_max{};                 ///< depth of the deepest tooth below the circular spline's tip circle [m]
   double mesh_force_max{};            ///< largest mesh force of a tooth [N]
   double wave_generator_force_max{};  ///< largest force of the wave generator on a tooth [N]

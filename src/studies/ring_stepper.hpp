@@ -198,7 +198,7 @@ inline const RungeKuttaTableau& trBdf2()
   {
     const double g = 1.0 - std::sqrt(0.5);
     const double w = 0.25 * std::sqrt(2.0);
-    // Weights of the step less those of the embedded method.
+    // Weights of the step minus those of the embedded method.
     const std::vector<double> error{ w - (1.0 - w) / 3.0, w - (3.0 * w + 1.0) / 3.0, g - g / 3.0 };
     return RungeKuttaTableau{ 2, g, true, { {}, { g }, { w, w } }, { 0.0, 2.0 * g, 1.0 }, error, 3 };
   }();

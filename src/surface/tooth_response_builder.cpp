@@ -221,7 +221,7 @@ private:
     table.values = SharedValues<float>(std::move(all));
   }
 
-  /// The line at the opposite v. In the mirror, u becomes a pitch less u, and the teeth count in the opposite
+  /// The line at the opposite v. In the mirror, u becomes a pitch minus u, and the teeth count in the opposite
   /// direction.
   Values mirrorImage(const Values& line, const ToothResponse& table) const
   {

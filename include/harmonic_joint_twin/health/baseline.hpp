@@ -14,7 +14,7 @@ namespace hjt
 {
 struct SignatureSet;
 
-/// Difference of a sound drive's indicator, less the model's, between two motions.
+/// Difference of a sound drive's indicator between two motions, minus the difference of the model's indicator.
 struct CarriedError
 {
   double deviation{ 1e30 };  ///< rms of a drive like the model, in the indicator's unit; 1e30: not known
@@ -222,13 +222,13 @@ enum class BaselineState : std::uint8_t
 ///        y        share of S^2 that was learned, as p and w^2 (Satterthwaite 1946)
 ///        a        inverse degrees of freedom of one window's distribution, from the sound ones; 0: normal
 ///        R        repeatability of the drive from one recording to the next (Repeatability)
-///        k        averaged windows, less those omitted at one end
+///        k        averaged windows, minus those omitted at one end
 ///        w^2      half the mean square of successive differences without the two largest, from four windows on
-///        r        share of s^2 common to successive windows: 1 less half their mean square difference over s^2 (von
+///        r        share of s^2 common to successive windows: 1 minus half their mean square difference over s^2 (von
 ///                 Neumann 1941). It is shrunk towards the mean of scalars or lines, and its uncertainty is added. 1
 ///                 without successive windows
 ///        e        share of the windows that count as independent, (1 - r') / (1 + r'), at least one in each sequence;
-///                 r' is r less its error. 1 without successive windows
+///                 r' is r minus its error. 1 without successive windows
 ///        s_0, v_0 spread by similar lines (varianceOfAlike) and ALIKE_FREEDOM; of scalars and if carried v_0 = 0
 ///        c, c_0   rms factor of the motion on the fit's standard error (relativeErrors), of the averaged and of the
 ///                 sound windows: the spread of a line is in proportion to c
@@ -325,7 +325,7 @@ private:
   ReferenceBin* find(const OperatingPoint& point) noexcept;
   ReferenceBin* findCarried(const OperatingBin& bin) noexcept;
   void makeRoom(std::size_t bins);
-  /// Covariates of the window less their mean in the reference.
+  /// Covariates of the window minus their mean in the reference.
   Place placeFrom(const ReferenceBin& bin, const OperatingPoint& point) const noexcept;
   bool isOtherPayload(const ReferenceBin& bin, const Place& place) const noexcept;
   void take(const ReferenceBin& bin, const Place& place, const SignalIndicators& indicators,

@@ -96,7 +96,7 @@ const char* indicatorUnit(std::size_t indicator) noexcept;
 struct OperatingPoint
 {
   double speed{};        ///< magnitude of the motor's speed [rad/s]
-  double direction{};    ///< share of forward travel less share of backward travel: -1 ... 1 [-]
+  double direction{};    ///< share of forward travel minus share of backward travel: -1 ... 1 [-]
   double load{};         ///< magnitude of the load torque; NaN: not estimated [N.m]
   double temperature{};  ///< NaN: not measured [degC]
   /// part of the load torque that does not depend on the output angle; NaN: not estimated [N.m]

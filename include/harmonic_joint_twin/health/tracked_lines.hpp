@@ -27,12 +27,12 @@ enum class Line : std::size_t
   CAGE_LOBES,         ///< each lobe passes a place of the cage
   CAGE_LOBES_DOUBLE,
   BALL,            ///< a place of a ball touches either race
-  BALL_BELOW,      ///< order of BALL less that of CAGE_LOBES, because the lobes load the ball; BALL_ABOVE: plus
-  BALL_FAR_BELOW,  ///< order of BALL less twice that of CAGE_LOBES
+  BALL_BELOW,      ///< order of BALL minus that of CAGE_LOBES, because the lobes load the ball; BALL_ABOVE: plus
+  BALL_FAR_BELOW,  ///< order of BALL minus twice that of CAGE_LOBES
   BALL_ABOVE,
   OUTER,            ///< balls pass a place of the outer race
-  OUTER_BELOW,      ///< order of OUTER less two, because the two lobes load that place in turn; OUTER_ABOVE: plus two
-  OUTER_FAR_BELOW,  ///< order of OUTER less four
+  OUTER_BELOW,      ///< order of OUTER minus two, because the two lobes load that place in turn; OUTER_ABOVE: plus two
+  OUTER_FAR_BELOW,  ///< order of OUTER minus four
   OUTER_ABOVE,
   /// balls pass a place of the inner race; that place does not move relative to the lobes, so it has no sidebands
   INNER,

@@ -169,7 +169,7 @@ std::string placeText(FaultKind kind, const Parameters& parameters);
 
 /// Whether severity, place and onset of the fault are within their ranges.
 bool isValid(const Fault& fault, const Parameters& parameters) noexcept;
-/// Error texts of the fault with values and ranges, one a line; empty if the fault is valid. `key` begins each line.
+/// Error texts of the fault with values and ranges, one per line; empty if the fault is valid. `key` begins each line.
 std::string faultErrors(const Fault& fault, const Parameters& parameters, const std::string& key);
 
 /// Parses KIND:SEVERITY[:PLACE[:ONSET]]. The default of PLACE is the least allowed place. @throws ParameterError.

@@ -60,7 +60,7 @@ void changeParameters(Parameters& parameters, const ParameterMap& changes);
 /// Hash of all values (FNV-1a, 64 bits).
 std::uint64_t parametersHash(const Parameters& parameters);
 
-/// Text of all parameters, one a line: `section.key: value  # [unit] meaning`.
+/// Text of all parameters, one per line: `section.key: value  # [unit] meaning`.
 std::string describeParameters(const Parameters& parameters);
 
 /// Reads a text of describeParameters into `map`; its faults replace those of `map`. Error texts name `source`.

@@ -16,7 +16,7 @@ struct ToothTable
   std::vector<double> tooth_x;          ///< x of the tooth point [m]
   std::vector<double> tooth_y;          ///< y of the tooth point [m]
   std::vector<double> radius;           ///< distance of the tooth point from the axis [m]
-  std::vector<double> angle_deviation;  ///< polar angle of the tooth point less its angle at rest, psi - psi0 [rad]
+  std::vector<double> angle_deviation;  ///< polar angle of the tooth point minus its angle at rest, psi - psi0 [rad]
   std::vector<double> wave_generator_force;  ///< force of the wave generator on the tooth [N]
   std::vector<double> rim_tension;           ///< tension of the rim to the next tooth [N]
   std::vector<double> bending_force;         ///< bending force of the segment to the next tooth [N]

@@ -32,7 +32,7 @@ struct JointOutputs
   double load_torque{};          ///< external torque at the output, > 0 resists positive motion
   double temperature{};          ///< temperature of the grease, which determines the friction [degC]
   double housing_temperature{};  ///< temperature of the housing [degC]
-  /// torque of the wave generator on the flexspline: the motor's torque less friction and inertia
+  /// torque of the wave generator on the flexspline: the motor's torque minus friction and inertia
   double wave_generator_torque{};
   double joint_torque{};         ///< torque of the mesh on the circular spline
   double friction_torque{};      ///< torque at the motor shaft with the power of all friction, >= 0

@@ -282,7 +282,7 @@ std::vector<double> list(const Eigen::VectorXd& values)
   return { values.data(), values.data() + values.size() };
 }
 
-/// Fp: largest less smallest cumulative deviation [m].
+/// Fp: largest minus smallest cumulative deviation [m].
 double totalDeviation(const Eigen::VectorXd& pitch)
 {
   return pitch.maxCoeff() - pitch.minCoeff();

@@ -145,8 +145,8 @@ void printWarning(const std::string& text)
   std::cerr << "warning: " << text << '\n';
 }
 
-/// Prints number, time and size of the plan's runs from a trial of one run for each class and duty cycle. Their
-/// response surfaces are built, and stored if the source does. @throws InputError, ParameterError if a run has no
+/// Prints number, time and size of the plan's runs from a trial of one run for each class and duty cycle. The
+/// trial builds the response surfaces, which the source may store. @throws InputError, ParameterError if a run has no
 /// equilibrium.
 void printExpectation(const Plan& plan, unsigned jobs)
 {

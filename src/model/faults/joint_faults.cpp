@@ -50,7 +50,7 @@ void crackFlexspline(const Fault& fault, const Parameters& parameters, JointMode
   }
 }
 
-/// Wear leaves a gap between rim and race and makes their friction rougher; one segment contributes its share.
+/// Wear leaves a gap between rim and race and increases their friction. A worn segment contributes its share.
 void wearInterface(const Fault& fault, const Parameters& parameters, JointModel& joint) noexcept
 {
   const double part = fault.place == WHOLE_MEMBER ? 1.0 : 1.0 / parameters.gear.teeth_flexspline;
