@@ -136,7 +136,7 @@ private:
     if (end_ - at < sizeof(count) || !stream_.read(reinterpret_cast<char*>(&count), sizeof(count)) ||
         end_ - at - sizeof(count) < count)
     {
-      throw Damage{ record, "a record longer than what is left of the file or chunk" };
+      throw Damage{ record, "a record longer than the remaining file or chunk" };
     }
     return count;
   }

@@ -272,7 +272,7 @@ public:
     {
       share.value = share.configured;
       share.half_width = 0.0;
-      share.refusal = trial.share <= 0.0 ? "its estimate is zero" : "no rest of this motion shows it";
+      share.refusal = trial.share <= 0.0 ? "its estimate is zero" : "the joint does not rest long enough to show it";
     }
     result.values.push_back(share);
     result.parameters.telemetry.lasting_share = share.value;

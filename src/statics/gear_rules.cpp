@@ -141,7 +141,7 @@ std::vector<std::string> gearWarnings(const Parameters& parameters)
   if (fit.teeth_loaded == 0)
   {
     warnings.push_back("mesh.flank_clearance = " + shortNumber(sound.mesh.flank_clearance) +
-                       "[m] leaves no tooth in contact without load, so that the output has backlash. In a preloaded "
+                       " [m] leaves no tooth in contact without load, so that the output has backlash. In a preloaded "
                        "gear about 5 % of the teeth are in contact");
   }
   if (const LossRow row =

@@ -120,10 +120,9 @@ SurfaceParameters::SurfaceParameters(const Parameters& of)
 std::string tooManyPoints(const SurfaceParameters& parameters, std::size_t most)
 {
   const auto named = [](const char* key, double value) { return std::string(key) + " = " + numberText(value); };
-  return "a table as fine as its tolerances ask for would have more than " + std::to_string(most) +
+  return "a table as fine as its tolerances require would have more than " + std::to_string(most) +
          " points; fewer teeth, a smaller wave, smaller torque limits or, where teeth differ, smaller errors and "
-         "faults "
-         "need fewer (" +
+         "faults need fewer points (" +
          named("gear.teeth_flexspline", parameters.gear.teeth_flexspline) + ", " +
          named("gear.wave_amplitude", parameters.gear.wave_amplitude) + ", " +
          named("motor.torque_limit", parameters.motor.torque_limit) + ", " +
