@@ -311,7 +311,7 @@ void OptionTable::checkTogether()
     if (given != 1)
     {
       throw InputError("Exactly 1 option from [" + joined(names, ",") + "] is required" +
-                       (given > 1 ? " and " + std::to_string(given) + "were given" : ""));
+                       (given > 1 ? " and " + std::to_string(given) + " were given" : ""));
     }
   }
 }
