@@ -223,7 +223,7 @@ TEST(SurfaceCache, KeepsNothingWhereEverybodyMayWrite)
   std::string notice;
   const SurfaceSource source{ folder.path().string(), {}, [&](const std::string& text) { notice += text; } };
   ASSERT_TRUE(obtainSurface(narrowParameters(), JointModel(narrowParameters()), "", source));
-  EXPECT_THAT(notice, testing::HasSubstr(folder.path().string() + " may be written to by everybody"));
+  EXPECT_THAT(notice, testing::HasSubstr(folder.path().string() + " is writable for everybody"));
   EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 

@@ -128,8 +128,8 @@ class Options(tool.ToolTest):
                                  "\nOptions:\n  -h,--help                   Print this help message and exit\n",
                                  f"\n  --torques FLOAT ... REQUIRED{column}loads on",
                                  "\n  --angle FLOAT=0             wave generator angle [rad]\n",
-                                 "\n  --teeth Needs: --json       every tooth's",
-                                 "\nCommon options:\n  --config FILE ...           YAML overlay"]),
+                                 "\n  --teeth Needs: --json       with --json, add every tooth's",
+                                 "\nCommon options:\n  --config FILE ...           YAML file"]),
                 (["life", "trials"], ["Usage: joint_twin life trials [OPTIONS] DUTY\n",
                                       "\nPositionals:\n  DUTY TEXT:FILE REQUIRED     CSV file",
                                       "\n  --hours FLOAT=1e+06         longest duration of use [h]\n"]),
@@ -239,7 +239,7 @@ class OutputFiles(tool.ToolTest):
 
     def test_a_failure_keeps_the_earlier_file(self):
         self.write("out.csv", "precious")
-        self.fail_with(1, ["out.csv holds nothing"], *self.SIMULATE, "0.02", "--set", "publish.joint_states_rate=10")
+        self.fail_with(1, ["out.csv would be empty"], *self.SIMULATE, "0.02", "--set", "publish.joint_states_rate=10")
         self.assertEqual(os.listdir(self.directory), ["out.csv"])
         self.assertEqual(tool.read_bytes(self.path("out.csv")), b"precious")
 

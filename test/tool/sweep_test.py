@@ -175,7 +175,7 @@ class Sweep(SweepTest):
                 ("seed: 7", "sead: 7", ["plan.yaml:3: sead = 7 is unknown; allowed: name, seed"]),
                 ("    speed: {sinus:", "    sped: {sinus:", ["plan.yaml:12: duty.0.sped is unknown; allowed: name"]),
                 ("speed: {sinus:", "speed: {square:", ["duty.0.speed.square is unknown; allowed: constant, sinus"]),
-                ("mesh_force,", "mesh_forces,", ["record.groups.teeth.columns.0 = 'mesh_forces' is no column"]),
+                ("mesh_force,", "mesh_forces,", ["record.groups.teeth.columns.0 = 'mesh_forces' is not a column"]),
                 ("rate: 500.0", "rate: 333.0", ["rate = 333.0 [Hz] must divide solver.rate = 10000"]),
                 ("float32", "float16", ["type = 'float16' is unknown; allowed: float32, float64"]),
                 ("format: hdf5", "format: hdf6", ["record.format = 'hdf6' is unknown; allowed: hdf5, bag"]),
