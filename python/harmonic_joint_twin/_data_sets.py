@@ -93,7 +93,8 @@ def load(folder: Path, group: Optional[str] = "indicators", *, columns: Optional
     _commands._remark(unread)
     if not any(map(len, parts)):
         raise _hjt.InputError(f"{folder}: no run contains a row of '{group}'; either a window "
-                              "(indicators.window_turns, window_time) is longer than a run minus record.start, or every run has failed")
+                              "(indicators.window_turns, window_time) is longer than a run minus record.start, or "
+                              "every run has failed")
     of_group = pandas.concat(parts, ignore_index=True)
     of_index = [name for name in index if columns is None or name in columns or name == "file"]
     return _chosen(of_group.merge(index[of_index], on="file"), columns, index.columns)
