@@ -35,7 +35,6 @@ public:
   }
 
 private:
-  /// Sink of a channel.
   template <class Message>
   class RecordedChannel
   {

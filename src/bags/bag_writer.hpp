@@ -165,7 +165,6 @@ private:
   std::uint64_t messages_{};
 };
 
-/// Context of the messages in a bag.
 struct BagContext
 {
   BagWriter& bag;

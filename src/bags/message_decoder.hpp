@@ -14,7 +14,6 @@
 
 namespace hjt
 {
-/// Encoding of the bytes of a message.
 enum class MessageEncoding
 {
   ROS1,  ///< little endian, unaligned

@@ -21,7 +21,6 @@ struct CheckUpOptions : ConfigurationOptions
 
 void addOptions(OptionTable& table, CheckUpOptions& options);
 
-/// The written motion.
 struct CheckUpMotion
 {
   std::string output;  ///< path of the file

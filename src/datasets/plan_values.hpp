@@ -53,7 +53,6 @@ PlanNode readPlanFile(const std::string& path);
 class PlanValues
 {
 public:
-  /// Sets the value of a variable.
   void set(const PlanNode& variable, ParameterValue value) { drawn_[&variable] = std::move(value); }
 
   // `otherwise`: default if the key is missing; without it the key is required.

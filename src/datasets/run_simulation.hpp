@@ -13,7 +13,6 @@
 
 namespace hjt
 {
-/// Costs of a run.
 struct RunCost
 {
   double surfaces{};          ///< time for building or loading its response surfaces [s]

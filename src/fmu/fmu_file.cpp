@@ -23,7 +23,6 @@ namespace hjt::fmu
 {
 namespace
 {
-/// Data of a unit's description.
 struct UnitDescription
 {
   std::string name;
@@ -193,7 +192,6 @@ std::vector<Referred> referred(const std::vector<FmuVariable>& all, Version vers
   return found;
 }
 
-/// modelDescription.xml of a version.
 std::string modelDescription(const UnitDescription& unit, Version version)
 {
   const bool is_3 = version == Version::FMI_3;

@@ -10,7 +10,6 @@
 
 namespace hjt::fmu
 {
-/// Libraries of a unit.
 struct UnitLibraries
 {
   std::string own;                  ///< path of the library with FMI's functions

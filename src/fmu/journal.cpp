@@ -56,7 +56,6 @@ void Journal::forInputs(const Values& values, const Put& put)
   }
 }
 
-/// Makes room for an entry of this size.
 void Journal::make(std::size_t room)
 {
   if (last_.size() + room > CHUNK)

@@ -50,7 +50,6 @@ protected:
   Simulation& operator=(const Simulation&) = default;
 };
 
-/// Resources of a unit.
 class Unit
 {
 public:

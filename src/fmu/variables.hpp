@@ -65,7 +65,6 @@ enum DriveReference : unsigned
   FIRST_OUTPUT = FIRST_FAULT + FAULT_KINDS
 };
 
-/// A scalar output.
 struct ScalarOutput
 {
   const char* name;
@@ -77,7 +76,6 @@ struct ScalarOutput
 };
 const std::vector<ScalarOutput>& scalarOutputs();
 
-/// An output with a number for each tooth.
 struct ToothOutput
 {
   const char* name;

@@ -62,7 +62,6 @@ Column delayed(const Column& values, double rows)
   return before;
 }
 
-/// The recording in columns.
 struct Record
 {
   Record(const std::vector<ControllerRow>& rows, double period)

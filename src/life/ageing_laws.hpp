@@ -73,7 +73,6 @@ inline double greaseWearFactor(const LifeParameters& parameters, double age)
   return 1.0 + (parameters.grease_wear_factor - 1.0) * age;
 }
 
-/// Parameters for the laws of ageing.
 struct AgeingParameters
 {
   AgeingParameters(const Parameters& of) : gear(of.gear), stress(of.stress), life(of.life) {}

@@ -24,7 +24,6 @@ struct LifeEstimate
 
   double usedOf(EndOfLife limit) const { return used[static_cast<std::size_t>(limit)]; }
 
-  /// The limit that is nearest.
   EndOfLife nearest() const
   {
     return static_cast<EndOfLife>(std::max_element(used.begin(), used.end()) - used.begin());

@@ -11,7 +11,6 @@
 
 namespace hjt
 {
-/// Exit code of the process.
 enum ExitCode : int
 {
   EXIT_DONE = 0,

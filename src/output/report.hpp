@@ -26,7 +26,6 @@ void printValues(const std::vector<NamedValue>& values);
 /// Prints a text in lines of at most 100 columns. All lines except the first have `indent` more columns of indentation.
 void printWrapped(const std::string& text, std::size_t indent);
 
-/// Width of a column of numbers.
 constexpr std::size_t NUMBER_WIDTH = 14;
 
 /// Prints rows under headings ("torque [N.m]") in aligned columns of at least this width.
@@ -131,7 +130,6 @@ void writeTable(const std::string& path, const std::vector<Column<Row>>& columns
   file.close();
 }
 
-/// A value of a report.
 struct ReportLine
 {
   std::string key;    ///< key in the document, with dots for members of members; empty: only for people
@@ -146,7 +144,6 @@ struct ReportTable
   Table table;
 };
 
-/// Report of a function.
 struct Report
 {
   std::vector<ReportLine> lines;

@@ -218,7 +218,6 @@ TorsionLoop torsionLoop(const Configuration& parameters, double amplitude, doubl
   return loop;
 }
 
-/// One value of all points of a loop.
 template <double TorsionPoint::*VALUE>
 py::array_t<double> pointsOf(const TorsionLoop& loop)
 {

@@ -52,7 +52,6 @@ void requireInput(InputKind kind, double value, double load_torque_limit, const 
   }
 }
 
-/// Shape of the inputs of a run.
 struct RunShape
 {
   /// Possible axes of an array: a value for each step, for each twin, or for each step of each twin.
@@ -177,7 +176,6 @@ struct GivenInputs
   py::object temperature = py::none();
 };
 
-/// All inputs of a run.
 class RunInputs
 {
 public:

@@ -13,7 +13,6 @@
 
 namespace hjt
 {
-/// Style of the drawing.
 struct MarkerStyle
 {
   std::string frame;    ///< frame of the markers, whose z axis is the drive's axis

@@ -115,7 +115,6 @@ void addTree(const std::string& prefix, XmlRpcValue& tree, const std::string& or
   }
 }
 
-/// Reads all parameters of a namespace.
 ParameterMap readAll(const std::string& parameter_namespace)
 {
   ParameterMap map;

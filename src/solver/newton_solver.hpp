@@ -104,7 +104,6 @@ private:
   std::vector<int> old_space_;
 };
 
-/// Requirements on an equilibrium.
 struct EquilibriumGoal
 {
   double residual;     ///< largest out-of-balance force component on a tooth [N]

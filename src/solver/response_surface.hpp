@@ -137,7 +137,6 @@ private:
 class SurfaceCell
 {
 public:
-  /// Cell of no table.
   SurfaceCell() = default;
 
   /// `below`: node at the lower u on the line below; the node at the higher u follows in memory. `above`: node at the
@@ -268,7 +267,6 @@ public:
     return sum + (which == SurfaceNode::CONTACT_FORCE ? place.balls.contact_force : 0.0);
   }
 
-  /// All bilinear values.
   static SurfaceNode bilinear(const Place& place) noexcept
   {
     SurfaceNode node;

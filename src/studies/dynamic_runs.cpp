@@ -122,7 +122,6 @@ TransientResult analyseTransient(const Parameters& parameters, const TransientSe
 
 namespace
 {
-/// Sums differences.
 class ErrorSum
 {
 public:
@@ -156,7 +155,6 @@ std::vector<double> toVector(const Eigen::VectorXd& values)
   return { values.data(), values.data() + values.size() };
 }
 
-/// The comparisons of one run.
 class Comparison
 {
 public:

@@ -257,7 +257,6 @@ void makeSplines(std::size_t columns, std::size_t places, std::vector<Coefficien
   }
 }
 
-/// Splines across the lines.
 std::vector<Coefficients> acrossLines(const Lines& lines)
 {
   const std::size_t size = lines.front().size();

@@ -47,7 +47,6 @@ private:
   std::list<Entry> entries_;  // last requested first
 };
 
-/// Tables of a surface.
 struct SurfaceTables
 {
   SurfaceTable table;

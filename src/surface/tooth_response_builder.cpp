@@ -23,7 +23,6 @@ constexpr int MAX_HALVINGS = 4;
 using Values = std::vector<float>;
 using Lines = std::map<double, Values>;  // key: v [rad]
 
-/// Builder of a ToothResponse, node by node.
 class ToothResponseBuilder
 {
 public:

@@ -21,7 +21,6 @@
 
 namespace hjt
 {
-/// A declared command.
 struct CommandNode
 {
   std::string name;  ///< full name, with those of the commands above it: "joint_twin life age"

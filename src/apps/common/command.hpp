@@ -58,7 +58,6 @@ private:
   const std::function<Run(OptionTable&)> declare_;  // empty if it has subcommands
 };
 
-/// Command line of a program.
 class CommandLine
 {
 public:

@@ -99,7 +99,6 @@ public:
     load_ = command_;
   }
 
-  /// `temperatures`: joints with a column of temperatures.
   void write(const Row& row, const std::array<bool, JOINTS>& temperatures)
   {
     const Stamp stamp = start_ + static_cast<Stamp>(std::llround(row[0] * 1e9));
