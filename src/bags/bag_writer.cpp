@@ -17,7 +17,6 @@ constexpr char VERSION[] = "#ROSBAG V2.0\n";
 constexpr std::size_t FILE_HEADER_SIZE = 4096;       // with padding, because it is written again at the end
 constexpr std::size_t CHUNK_THRESHOLD = 768 * 1024;  // the message that exceeds it ends a chunk
 
-/// Kinds of records.
 enum class Operation : std::uint8_t
 {
   MESSAGE = 2,

@@ -29,7 +29,6 @@ std::string ros1Type(const std::string& type)
   return at == std::string::npos ? type : type.substr(0, at + 1) + type.substr(at + middle.size());
 }
 
-/// A topic of a ROS 2 file.
 struct Ros2Channel
 {
   std::string topic;

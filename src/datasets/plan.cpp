@@ -349,7 +349,6 @@ RunSpec Plan::run(std::uint64_t number) const
   return spec;
 }
 
-/// Reads a class' list of faults.
 std::vector<RunFault> Plan::faultsOf(const PlanNode& list, const PlanValues& values) const
 {
   std::vector<RunFault> faults;

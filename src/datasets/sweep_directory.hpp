@@ -36,7 +36,6 @@ public:
   OrderedJson record(std::uint64_t run) const;       ///< empty if the run is not finished
 
   std::string index() const;  ///< path of index.csv
-  /// Writes the index from the files of the runs.
   void writeIndex() const;
 
   /// Line of the index: of a finished run from its record, else with the given status. There is no line end.

@@ -60,7 +60,6 @@ public:
   const double* byMotor() const noexcept { return values_.col(1).data(); }
   const double* byOutput() const noexcept { return values_.col(2).data(); }
 
-  /// Iterator over the terms.
   struct Iterator
   {
     const FrictionTerms& terms;

@@ -124,7 +124,6 @@ public:
 
   bool hasPlay() const noexcept { return half_play_ > 0.0; }
 
-  /// Position of the brake's pin.
   struct Pin
   {
     double middle{};  ///< motor angle at the middle of the play [rad]

@@ -168,7 +168,6 @@ private:
     }
   }
 
-  /// Reads the outputs of the arm itself.
   void readArm(Values& values)
   {
     if (row_known_)

@@ -160,7 +160,6 @@ struct FutureLoad
   double interface_limit{};
 };
 
-/// Distribution of the remaining hours of use.
 struct RemainingHours
 {
   static constexpr std::array<double, 5> SHARES{ 0.05, 0.1, 0.5, 0.9, 0.95 };

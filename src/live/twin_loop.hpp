@@ -140,7 +140,6 @@ private:
   }
 };
 
-/// Kind of clock that the loop follows.
 enum class ClockKind : std::uint8_t
 {
   RUNNING,  ///< continuous clock: every instant is due at its own time
@@ -236,7 +235,6 @@ public:
   TwinLoop(Advanced& twin, const Parameters& parameters, Inbox& inbox, Clock clock, ClockKind clock_kind,
            AfterStep after_step, AfterCycle after_cycle = {});
 
-  /// Stops the thread.
   ~TwinLoop();
 
   /// Restarts the twin at the current instant and waits for it; thread-safe. @returns false if the loop did not answer.

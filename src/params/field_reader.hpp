@@ -109,7 +109,6 @@ public:
     mistyped(key, map_.at(key), names);
   }
 
-  /// Reads the list of faults, numbered from 0.
   void readFaults(std::vector<Fault>& faults)
   {
     for (int number = 0;; ++number)

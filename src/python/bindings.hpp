@@ -106,7 +106,6 @@ public:
     }
   }
 
-  /// Reports the end of the run.
   void end()
   {
     if (!progress_.is_none())

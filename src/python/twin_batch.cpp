@@ -178,7 +178,6 @@ constexpr py::ssize_t PORTION = 32;  // least number of steps that a thread take
 
 using Twins = std::vector<std::pair<py::object, TwinObject*>>;
 
-/// Makes the twins of a batch.
 class BatchBuilder
 {
 public:
@@ -428,7 +427,6 @@ private:
   Twins twins_;
   ThreadTeam team_;
 };
-/// An optional argument.
 py::arg_v none(const char* name)
 {
   return py::arg(name) = py::none();

@@ -188,7 +188,6 @@ public:
     add(InputColumn(InputKind::TEMPERATURE, "temperature", given.temperature, shape));
   }
 
-  /// Steps a twin once with its inputs.
   void step(Twin& twin, py::ssize_t step, py::ssize_t twin_number) const noexcept
   {
     const Stamp begin = twin.stamp();
@@ -324,7 +323,6 @@ inline StepRows rowsFor(const std::vector<py::ssize_t>& shape, const py::object&
   return rows;
 }
 
-/// A twin with the arrays of its teeth.
 class TwinObject
 {
 public:

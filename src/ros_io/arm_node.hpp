@@ -163,7 +163,6 @@ private:
 class ArmNode
 {
 public:
-  /// A motion with its tolerances.
   struct Command
   {
     ArmMotion motion;

@@ -113,7 +113,6 @@ public:
     publisher_ = node->advertise<Message>(channel.name, static_cast<std::uint32_t>(channel.slots), count(1), count(-1));
   }
 
-  /// Whether there are subscribers.
   bool isWanted() const noexcept { return subscribers_.load(std::memory_order_relaxed) > 0; }
 
   /// For the loop: `fill(Message&)` writes the next message unless it returns false. If the buffer is full, the message

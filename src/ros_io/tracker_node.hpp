@@ -33,7 +33,6 @@ public:
   /// For one joint. @param parameters input.mode must not be commands. @throws ParameterError.
   TrackerNode(ros::NodeHandle& node, const Parameters& parameters);
 
-  /// The arm beside the node.
   struct Arm
   {
     ArmDescription description;

@@ -227,7 +227,6 @@ public:
     std::array<double, 2> lobeForces() const noexcept;  ///< mesh forces of both lobes [N]
   };
 
-  /// A position on the surface.
   struct Place : Cells
   {
     double at{};  ///< v [rad]

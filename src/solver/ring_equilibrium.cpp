@@ -129,7 +129,6 @@ void RingEquilibrium::followModel() noexcept
   now_.shape.repeatSpaces(model_->gear.teeth_circular_spline);
 }
 
-/// Returns to an earlier equilibrium.
 void RingEquilibrium::restore(const RingState& state) noexcept
 {
   now_ = state;

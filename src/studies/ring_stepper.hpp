@@ -26,7 +26,6 @@ struct RingMotion
   double dissipated{};  ///< energy dissipated by dashpots and viscous friction [J]
 };
 
-/// Counts of a run's operations.
 struct StepCounts
 {
   long steps{};
@@ -51,7 +50,6 @@ protected:
   StepCounts counts_;
 };
 
-/// Integration methods of a dynamic ring.
 enum class RingMethod
 {
   RUNGE_KUTTA4,

@@ -34,7 +34,6 @@ struct GearOptions : CommonOptions
   std::string out;
 };
 
-/// A figure of the catalogue and of the gear.
 struct Figure
 {
   std::string name;

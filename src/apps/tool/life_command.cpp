@@ -42,7 +42,6 @@ struct TrialsOptions : LifeOptions
   LifeTrialOptions trials;
 };
 
-/// Data for the computation of a life.
 struct LifeBench
 {
   explicit LifeBench(const LifeOptions& options)

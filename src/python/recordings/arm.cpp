@@ -115,7 +115,6 @@ void warnPython(const std::vector<std::string>& notices)
   }
 }
 
-/// An arm that is simulated in pieces.
 class ArmObject
 {
 public:
