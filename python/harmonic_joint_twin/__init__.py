@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Digital twin of a robot joint's harmonic drive, tooth by tooth: `import harmonic_joint_twin as hjt` (docs/python.md).
 
-Parameters, Twin, static analyses and Tracker come from the extension module _hjt, which is loaded when the first of
-them is used: programs that want the messages in harmonic_joint_twin.msg alone do without it. Functions on recordings
-and data sets come from _commands, whose extension module _recordings is loaded when the first of them runs; the whole
-arm as an object from _arm; what gives frames of pandas from _data_sets.
+The package loads its modules at the first use of a name, so that a program that only imports the messages of
+harmonic_joint_twin.msg needs none of them. The extension module _hjt has Parameters, Twin, the static analyses and
+Tracker. The module _commands has the functions on recordings and data sets; the first call of a function loads the
+extension module _recordings. The module _arm has the class Arm, and _data_sets has the functions that return frames of
+pandas.
 """
 import importlib
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A whole arm in closed loop as an object, which is run piece by piece (docs/python.md)."""
+"""Class of a whole arm in closed loop (docs/python.md)."""
 import os
 from typing import TYPE_CHECKING, Any, Dict, List, Optional, Sequence
 
@@ -14,14 +14,14 @@ __all__ = ["Arm"]
 
 
 class Arm:
-    """An arm's drives, links and controller in closed loop (docs/arm_twin.md), run piece by piece.
+    """Simulation of an arm's drives, links and controller in closed loop (docs/arm_twin.md), by periods of time.
 
-    arm: name in config/arms, or a file. start: angles of all joints where it stands [rad]; None: all 0. payload: at the
-    tip [kg]; None: that of the arm's file. The controller knows it. faults: each JOINT:KIND:SEVERITY[:PLACE[:ONSET]],
-    there from the start, or from `time` = ONSET on. identified: directory of an arm's overlays. overlays, progress: as
-    of identify.
+    arm: name in config/arms, or a file. start: initial angles of all joints [rad]; None: all 0. payload: mass at the
+    tip, which the controller knows [kg]; None: payload of the arm's file. faults: texts
+    JOINT:KIND:SEVERITY[:PLACE[:ONSET]]; a fault acts from the start, or from `time` = ONSET on. identified: directory
+    of the arm's overlays from identify. overlays, progress: as for identify.
 
-    InputError, ParameterError.
+    Raises InputError, ParameterError.
     """
 
     def __init__(self, arm: Path, start: Optional[Sequence[float]] = None, *, payload: Optional[float] = None,
@@ -33,60 +33,62 @@ class Arm:
 
     @property
     def joints(self) -> List[str]:
-        """Short names, from the base on."""
+        """Short names of the joints, in the order from the base to the tip."""
         return self._arm.joints
 
     @property
     def time(self) -> float:
-        """Since the brakes were released and the arm held itself [s]."""
+        """Simulated time since the arm holds itself with released brakes [s]."""
         return self._arm.time
 
     @property
     def protective_stop(self) -> Optional[Dict[str, Any]]:
-        """'joint', 'reason' and 'time' [s] of the stop in which the arm stands in its brakes until reset; or None."""
+        """Dict of 'joint', 'reason' and 'time' [s] of the protective stop, after which the brakes hold the arm until
+        reset; None without a stop."""
         return self._arm.protective_stop
 
     @property
     def counters(self) -> Dict[str, int]:
-        """How the steps since reset went: 'solver_failures' those of no equilibrium, which are also warned of;
-        'feedback_limited' controls of a joint at the limit of its feedback, ..."""
+        """Counts of events since the reset. 'solver_failures' is the number of steps without an equilibrium, for which
+        a warning is given too. 'feedback_limited' counts how often the feedback of a joint reached its limit."""
         return self._arm.counters
 
     def move(self, motion: Recording) -> float:
-        """A motion from now on, in place of the last one: as of arm(). It begins where the arm is wanted now, in place
-        of its first set point. Returns how long it takes [s]; then the arm is held at its end, or comes to rest if that
-        is in motion."""
+        """Starts a motion, which replaces the present one. motion: as for arm(); its first set point is replaced by the
+        present set point of the arm. After the motion, the controller holds the arm at the last set point; if that set
+        point has a speed, the arm first comes to rest. Returns the duration of the motion [s]."""
         return self._arm.move(os.fspath(motion) if isinstance(motion, os.PathLike) else motion)
 
     def run(self, duration: float, *, rate: Optional[float] = None) -> Dict[str, "NDArray[np.float64]"]:
-        """Goes on for `duration` [s]. rate: of the rows [Hz], the next one that divides the solver's; None: that
-        of the arm's states.
+        """Advances the simulation by `duration` [s]. rate: rate of the rows, rounded to a divisor of the solver's rate
+        [Hz]; None: rate of the arm's states.
 
-        Returns the rows as arm() does; 'timestamp' is `time`. A KeyboardInterrupt leaves the arm where it is.
+        Returns the rows as arm() does; 'timestamp' is `time`. After a KeyboardInterrupt the arm keeps its state.
         """
         return self._arm.run(duration, rate)
 
     def inject_fault(self, fault: str) -> None:
-        """JOINT:KIND:SEVERITY[:PLACE[:ONSET]], onset from now on; severity 0 takes it away. Until its joint has a table
-        with the fault, that runs on its full ring."""
+        """Injects a fault JOINT:KIND:SEVERITY[:PLACE[:ONSET]]. ONSET counts from now [s]; severity 0 removes the fault.
+        The twin of the joint solves its full ring until a response surface with the fault is ready."""
         self._arm.inject_fault(fault)
 
     def set_wrench(self, force: Sequence[float] = (0.0, 0.0, 0.0), moment: Sequence[float] = (0.0, 0.0, 0.0)) -> None:
-        """On the tip from outside until the next one, in the frame of the base [N], [N.m]."""
+        """Sets the external force [N] and moment [N.m] on the tip, in the frame of the base, until the next call."""
         self._arm.set_wrench(force, moment)
 
     def set_payload(self, mass: float, centre: Sequence[float] = (0.0, 0.0, 0.0)) -> None:
-        """At the tip until the next one, its centre in the frame of the tip [kg], [m]. The controller knows it; of one
-        that it does not know the weight is a wrench."""
+        """Sets mass [kg] and centre of mass [m], in the frame of the tip, of the payload until the next call. The
+        controller knows this payload. The weight of a payload that the controller does not know is a wrench."""
         self._arm.set_payload(mass, centre)
 
     def set_temperature(self, temperature: float, joint: Optional[str] = None) -> None:
-        """Of the drive of a joint, or of all; with thermal.model = two_nodes that of its surroundings [degC]."""
+        """Sets the temperature of the drive of one joint, or of all drives [degC]. With thermal.model = two_nodes the
+        temperature is that of the surroundings."""
         self._arm.set_temperature(temperature, joint)
 
     def reset(self) -> None:
-        """Back to the start, with the faults given at construction and the configured temperatures; wrench and payload
-        stay."""
+        """Sets the arm to its state at the start, with the faults given to the constructor and the configured
+        temperatures. Wrench and payload do not change."""
         self._arm.reset()
 
     def __repr__(self) -> str:

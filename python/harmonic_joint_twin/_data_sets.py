@@ -18,14 +18,15 @@ Frame = Any  # pandas.DataFrame; pandas has no types
 
 __all__ = ["as_factorynet", "assess", "drive_fault", "load", "reference", "write_card", "write_cmapss"]
 
-# A check-up is one window, judged by itself: docs/health.md.
+# Parameters that judge a check-up as a single window (docs/health.md).
 CHECK_UP = {"indicators.evidence_windows": 1, "indicators.false_alarm_rate": 1e-3}
 ALL_WINDOWS = {"indicators.baseline_windows": 10000}
-DIRECTION_ROWS = 5  # over which the motor's direction is taken: a count of its noise is none
-# Of a group's columns those that tell the truth; the index's are labels or settings, all of them.
+DIRECTION_ROWS = 5  # rows of the motor's direction, so that a count of noise gives no direction
+# Columns of a group that are labels. All columns of the index are labels or settings.
 TRUTH = ("severity", "window_severity")
-# FactoryNet's columns, those of an arm without the joint's number behind both: schema.json, version 1.0, of
-# huggingface.co/datasets/Forgis/factorynet-hackathon; setpoint_acc, _current, _torque and _cartesian as its UR3e has.
+# Names of FactoryNet's columns, for an arm without the number of the joint at the end. Source: schema.json, version
+# 1.0, of huggingface.co/datasets/Forgis/factorynet-hackathon; for setpoint_acc, _current, _torque and _cartesian its
+# data of a UR3e.
 FACTORYNET = {"time": "timestamp", "class": "fault_label", "speed_reference": "setpoint_vel_0",
               "output_angle_encoder": "feedback_pos_0", "output_velocity_encoder": "feedback_vel_0",
               "motor_torque_reading": "effort_torque_0", "housing_temperature": "ctx_temp_0"}
@@ -36,7 +37,7 @@ FACTORYNET_ARM = {"target_q": "setpoint_pos", "target_qd": "setpoint_vel", "targ
 
 
 def _group(file: str, group: str, is_arm: bool, wanted: Optional[Sequence[str]]) -> Dict[str, "NDArray[Any]"]:
-    """Its columns of one number a row, those that are wanted alone; None: all."""
+    """Columns of a group with one number per row. wanted: names of the columns; None: all."""
     h5py = importlib.import_module("h5py")
     with h5py.File(file, "r") as run:
         groups = [name for name, item in run.items() if isinstance(item, h5py.Group) and name != "parameters"]
@@ -51,25 +52,25 @@ def _group(file: str, group: str, is_arm: bool, wanted: Optional[Sequence[str]])
 
 
 def load(folder: Path, group: Optional[str] = "indicators", *, columns: Optional[Sequence[str]] = None) -> Frame:
-    """A data set of sweep or lives as one frame.
+    """Loads a data set of sweep or lives as one frame.
 
-    folder: of the data set. group: of its files, 'indicators' or a name in the plan; None: the index alone. columns:
-    names of the group or of the index, all that is then read, beside 'file'; None: all.
+    folder: directory of the data set. group: group in its files, 'indicators' or a name in the plan; None: only the
+    index. columns: names of the columns of group and index to be read, in addition to 'file'; None: all.
 
-    Returns a pandas.DataFrame: a row for each sample or window of the group, its columns of one number a row, and
-    beside them the run's columns of index.csv, labels among them; 'file' with its path. Of whole arms a column for each
-    joint, 'actual_q_0' ... from the base on, 'severity_0' ... Without a group a row for each
-    run. Its attrs["features"] names the columns that a joint shows, attrs["labels"] all others: what was done to it,
-    and the truth. Runs that failed are left out, files that cannot be read too, with a warning. InputError.
+    Returns a pandas.DataFrame with a row for each sample or window of the group, or without a group for each run. Its
+    columns are those of the group with one number per row, those of the run in index.csv, and 'file', the path. Whole
+    arms have a column for each joint from the base on, such as 'actual_q_0' and 'severity_0'. attrs["features"] names
+    the columns that can be measured at a joint; attrs["labels"] names all others, which are settings and labels. The
+    frame contains no failed runs. Files that cannot be read are skipped with a warning. Raises InputError.
     """
     pandas = importlib.import_module("pandas")
     path = os.path.join(os.fspath(folder), "index.csv")
     if not os.path.exists(path):
-        raise _hjt.InputError(f"{path} is not there: no data set, or one whose sweep has not ended")
+        raise _hjt.InputError(f"{path} does not exist, so that this is no data set or its sweep has not ended")
     index = pandas.read_csv(path)
     missing = int((index["status"] == "missing").sum())
     _commands._remark([f"{folder} is unfinished: {missing} of {len(index)} runs are missing; the same sweep again "
-                       "makes them"] if missing else [])
+                       "simulates them"] if missing else [])
     index = index[index["status"] == "ok"].reset_index(drop=True)
     index["file"] = [os.path.join(os.fspath(folder), file) for file in index["file"]]
     if group is None:
@@ -77,7 +78,8 @@ def load(folder: Path, group: Optional[str] = "indicators", *, columns: Optional
     parts, unread = [], []
     for file in index["file"]:
         if not file.endswith(".h5"):
-            raise _hjt.InputError(f"{file} is no HDF5 file: a data set of bags has its index alone, group=None")
+            raise _hjt.InputError(f"{file} is no HDF5 file; of a data set of bags only the index can be loaded, with "
+                                  "group=None")
         try:
             part = pandas.DataFrame(_group(file, group, "fault_joint" in index, columns))
             if not len(part.columns) and columns is not None:
@@ -85,24 +87,25 @@ def load(folder: Path, group: Optional[str] = "indicators", *, columns: Optional
             part.insert(0, "file", file)
             parts.append(part)
         except OSError as error:
-            unread.append(f"not read: {file}: {error}; the same sweep again makes it anew")
+            unread.append(f"not read: {file}: {error}; the same sweep again replaces it")
     if unread and not parts:
         raise _hjt.InputError(unread[0])
     _commands._remark(unread)
     if not any(map(len, parts)):
-        raise _hjt.InputError(f"{folder}: no run holds a row of '{group}'; is a window (indicators.window_turns, "
-                              "window_time) longer than a run less record.start, or has every run failed?")
+        raise _hjt.InputError(f"{folder}: no run contains a row of '{group}'; either a window "
+                              "(indicators.window_turns, window_time) is longer than a run minus record.start, or "
+                              "every run has failed")
     of_group = pandas.concat(parts, ignore_index=True)
     of_index = [name for name in index if columns is None or name in columns or name == "file"]
     return _chosen(of_group.merge(index[of_index], on="file"), columns, index.columns)
 
 
 def _chosen(frame: Frame, columns: Optional[Sequence[str]], of_index: Sequence[str]) -> Frame:
-    """With 'file' and the columns alone, and which of them are labels."""
+    """Frame of 'file' and the chosen columns, with attrs that name features and labels."""
     if columns is not None:
         missing = [name for name in columns if name not in frame]
         if missing:
-            raise _hjt.InputError(f"columns: there is no '{missing[0]}'; load without columns shows all")
+            raise _hjt.InputError(f"columns: there is no '{missing[0]}'; load() without columns returns all")
         frame = frame[["file", *(name for name in columns if name != "file")]].copy()
     labels = [name for name in frame if name in of_index or name in TRUTH or name.startswith("severity_")]
     frame.attrs.update(labels=labels, features=[name for name in frame if name not in labels])
@@ -111,14 +114,15 @@ def _chosen(frame: Frame, columns: Optional[Sequence[str]], of_index: Sequence[s
 
 def drive_fault(recording: Arrays, kind: str, size: float, *, onset: float = 0.0,
                 ramp: float = 0.0) -> Dict[str, "NDArray[np.float64]"]:
-    """A recording of a joint as it would be with a fault of its brake, sensors or motor (docs/faults.md).
+    """Adds a fault of brake, sensors or motor to a recording of a joint (docs/faults.md).
 
-    recording: columns as of indicators, of load(folder, 'signals') or Twin.run. kind and size: 'brake_drag' [N.m at
-    the motor], 'lost_counts' [rad that the motor encoder misses of each turn forward], 'encoder_offset' [rad at the
-    output], 'current_gain' [-, share too much], 'weak_magnets' [-, share of the flux lost]. onset: when it begins [s].
-    ramp: time in which it then grows evenly to its size [s]; 0: at once.
+    recording: columns as for indicators, for example from load(folder, 'signals') or Twin.run. kind and size:
+    'brake_drag' with the torque at the motor [N.m], 'lost_counts' with the angle that the motor encoder loses in each
+    forward turn [rad], 'encoder_offset' with the offset at the output [rad], 'current_gain' with the relative error of
+    the gain [-], 'weak_magnets' with the lost share of the flux [-]. onset: time of the fault's begin [s]. ramp: time
+    of the linear growth from the onset to the full size [s]; 0: at once.
 
-    Returns a dict of the columns. What a controller makes of the fault is not in it. InputError.
+    Returns a dict of the columns. They do not contain the response of a controller to the fault. Raises InputError.
     """
     columns = _commands._columns(recording)
     needed = {"brake_drag": ("motor_torque_reading", "motor_angle_encoder"), "lost_counts": ("motor_angle_encoder",),
@@ -130,8 +134,8 @@ def drive_fault(recording: Arrays, kind: str, size: float, *, onset: float = 0.0
         if name not in columns:
             raise _hjt.InputError(f"{kind}: column '{name}' is missing")
     if not np.isfinite([size, onset, ramp]).all() or ramp < 0.0 or kind == "weak_magnets" and not 0.0 <= size < 1.0:
-        raise _hjt.InputError(f"{kind}: size = {size}, onset = {onset} [s], ramp = {ramp} [s] must be finite, ramp not "
-                              "below 0, the size of weak_magnets 0 ... below 1")
+        raise _hjt.InputError(f"{kind}: size = {size}, onset = {onset} [s], ramp = {ramp} [s] must be finite, ramp at "
+                              "least 0, and the size of weak_magnets 0 ... below 1")
     since = columns["time"] - onset
     now = size * (np.clip(since / ramp, 0.0, 1.0) if ramp > 0.0 else (since >= 0.0))
     if kind == "encoder_offset":
@@ -145,7 +149,7 @@ def drive_fault(recording: Arrays, kind: str, size: float, *, onset: float = 0.0
     if kind == "lost_counts":
         missed = now * np.maximum(travel, 0.0) / (2.0 * np.pi)
         columns["motor_angle_encoder"] = columns["motor_angle_encoder"] - np.cumsum(missed)
-        columns.pop("motor_velocity_encoder", None)  # comes from the angle
+        columns.pop("motor_velocity_encoder", None)  # the velocity would not fit the changed angle
     else:
         speed = np.convolve(travel, np.ones(DIRECTION_ROWS), "same")
         columns["motor_torque_reading"] = columns["motor_torque_reading"] + now * np.sign(speed)
@@ -156,7 +160,7 @@ Recordings = Union[Recording, Sequence[Recording]]
 
 
 def _expanded(recordings: Any) -> Any:
-    """A folder of a data set as its files."""
+    """Files of a data set whose directory is given; other recordings do not change."""
     is_folder = isinstance(recordings, (str, os.PathLike)) and os.path.isdir(recordings)
     return list(load(recordings, group=None)["file"]) if is_folder else recordings
 
@@ -164,14 +168,13 @@ def _expanded(recordings: Any) -> Any:
 def reference(recordings: Recordings, out: Path, *, joint: Optional[str] = None, torque_scale: Optional[float] = None,
               columns: Optional[Mapping[str, str]] = None, force: bool = False, overlays: Overlays = (),
               progress: Optional[Progress] = None) -> Frame:
-    """What a joint's indicators are in sound condition, learned from all windows of its recordings.
+    """Learns the reference of a sound joint's indicators from all windows of its recordings.
 
-    recordings: as of indicators, also a column of a frame with their paths, or the folder of a data set, all of whose
-    runs are then taken for sound. out: the file to write, for assess and for the tool's --baseline. Others as of
-    indicators.
+    recordings: as for indicators, or a column of a frame with their paths, or the directory of a data set with sound
+    runs only. out: file to write, for assess and for the tool's --baseline. Other arguments as for indicators.
 
-    Returns a pandas.DataFrame: a row for each window, its 'recording', operating point and indicators. InputError,
-    ParameterError.
+    Returns a pandas.DataFrame with a row for each window: 'recording', operating point and indicators. Raises
+    InputError, ParameterError.
     """
     pandas = importlib.import_module("pandas")
     found = _commands.indicators(_expanded(recordings), joint=joint, torque_scale=torque_scale, columns=columns,
@@ -183,7 +186,7 @@ def reference(recordings: Recordings, out: Path, *, joint: Optional[str] = None,
 
 
 def _verdict(recording: str, windows: List[Dict[str, Any]], is_read: bool) -> Dict[str, Any]:
-    """That of the last window that has one, else of the last."""
+    """Verdict of the last assessed window, or state of the last window if none is assessed."""
     row: Dict[str, Any] = {"recording": recording, "windows": len(windows),
                            "state": "no whole window" if is_read else "not read", "level": None}
     if not windows:
@@ -203,16 +206,17 @@ def _verdict(recording: str, windows: List[Dict[str, Any]], is_read: bool) -> Di
 def assess(recordings: Recordings, reference: Path, *, check_up: bool = False, joint: Optional[str] = None,
            torque_scale: Optional[float] = None, columns: Optional[Mapping[str, str]] = None, overlays: Overlays = (),
            progress: Optional[Progress] = None) -> Frame:
-    """Verdicts on recordings of a joint by its reference, each for itself; a run of a data set with its own parameters.
+    """Assesses each recording of a joint with the joint's reference. A run of a data set has its own parameters.
 
-    recordings: as of reference. reference: file that it wrote. check_up: each is a check-up, one window that is judged
-    by itself; else work that goes on, ten windows together. Others as of indicators.
+    recordings: as for reference. reference: file that the function reference wrote. check_up: True: each recording is a
+    check-up, of which a single window is judged; False: each is a part of normal work, of which ten windows are judged
+    together. Other arguments as for indicators.
 
-    Returns a pandas.DataFrame, a row for each recording: 'recording', 'windows', 'state' ('assessed': the others hold),
-    'level' ('OK', 'WARN', 'ERROR'), 'cause', 'confidence', 'severity', 'severity_deviation', 'alternatives', 'score'
-    over threshold, of the 'indicator' furthest off its deviation in 'spreads' and in 'percent', and at level OK
-    'blind_to': the faults that would not have shown at any severity. Recordings that are not judged, or not read, are
-    warned of. InputError, ParameterError.
+    Returns a pandas.DataFrame with a row for each recording: 'recording', 'windows', 'state' (with 'assessed' the other
+    columns are valid), 'level' ('OK', 'WARN', 'ERROR'), 'cause', 'confidence', 'severity', 'severity_deviation',
+    'alternatives', 'score' over the threshold, 'indicator' with the largest deviation, this deviation in 'spreads' and
+    in 'percent', and at level OK 'blind_to', the faults that are not detectable at any severity. Warns of recordings
+    that are not judged or not readable. Raises InputError, ParameterError.
     """
     pandas = importlib.import_module("pandas")
     expanded = _expanded(recordings)
@@ -232,21 +236,23 @@ def assess(recordings: Recordings, reference: Path, *, check_up: bool = False, j
 
 
 def write_cmapss(folder: Path, out: Path, *, duty: Optional[str] = None, seed: int = 1) -> Document:
-    """Lives as C-MAPSS has its engines: train.csv, test.csv and RUL.csv, for programs that read such.
+    """Writes a data set of lives in the format of C-MAPSS, with the files train.csv, test.csv and RUL.csv.
 
-    folder: data set of lives with indicators. out: folder to write to, made if need be. duty: that whose recordings are
-    taken; None: the only one. seed: of where the tests are cut.
+    folder: data set of lives with indicators. out: directory of the files, which is made if it does not exist. duty:
+    duty cycle of the recordings; None: the only one of the data set. seed: seed for the last check-ups of the test
+    drives.
 
-    Rows: 'unit' (drive), 'cycle' (check-up, from 1 on), 'hours', settings (speed, load, temperature of the windows) and
-    the indicators that every check-up has, means of its windows. Drives still in use are left out. train.csv: split
-    'train', to the end. test.csv: the others, each cut after one of its check-ups; RUL.csv: the hours they had left.
+    A row has 'unit' (drive), 'cycle' (check-up, from 1 on), 'hours', settings (speed, load, temperature of the windows)
+    and the means, over the windows, of the indicators that every check-up has. The files contain no drives that are
+    still in use. train.csv has the drives of the split 'train' up to the end of their lives. test.csv has the other
+    drives, each up to one of its check-ups, and RUL.csv their remaining hours.
 
-    Returns a dict: 'train', 'test' (numbers of drives), 'indicators' (names). InputError.
+    Returns a dict: 'train', 'test' (numbers of drives), 'indicators' (names). Raises InputError.
     """
     pandas = importlib.import_module("pandas")
     frame = load(folder)
     if "life.drive" not in frame:
-        raise _hjt.InputError(f"{folder} holds no lives")
+        raise _hjt.InputError(f"{folder} contains no lives")
     duties = sorted(set(frame["duty"]))
     if duty is None and len(duties) > 1 or duty is not None and duty not in duties:
         raise _hjt.InputError(f"duty = {duty} must be one of {', '.join(duties)}")
@@ -273,13 +279,14 @@ def write_cmapss(folder: Path, out: Path, *, duty: Optional[str] = None, seed: i
 
 
 def as_factorynet(samples: Frame) -> Frame:
-    """Samples of a data set with the columns of FactoryNet, for programs that learn from it (docs/datasets.md).
+    """Converts samples of a data set to the columns of FactoryNet (docs/datasets.md).
 
-    samples: of load(folder, group), of a joint or an arm, with 'file' and 'time', a set point and a torque or current.
+    samples: frame of load(folder, group), of a joint or an arm, with 'file', 'time', a set point and a torque or
+    current.
 
-    Returns a pandas.DataFrame: 'episode_id', the name of the run's file, 'timestamp' [s], 'setpoint_', 'effort_',
-    'feedback_' and 'ctx_' columns with the number of the joint, from the base on, 'fault_label', the class. What
-    FactoryNet has no name for is left out. InputError.
+    Returns a pandas.DataFrame: 'episode_id' (name of the run's file), 'timestamp' [s], 'setpoint_', 'effort_',
+    'feedback_' and 'ctx_' columns with the number of the joint from the base on, 'fault_label' (class). It contains no
+    columns for which FactoryNet has no name. Raises InputError.
     """
     names = {}
     for name in samples:
@@ -290,7 +297,7 @@ def as_factorynet(samples: Frame) -> Frame:
             names[name] = f"{FACTORYNET_ARM[stem]}_{joint}"
     for needed in ("timestamp", "setpoint_", "effort_"):
         if not any(name.startswith(needed) for name in names.values()):
-            raise _hjt.InputError(f"no column of these is one of FactoryNet's {needed}, which an episode needs: "
+            raise _hjt.InputError(f"none of these columns is one of FactoryNet's {needed}, which an episode needs: "
                                   f"{', '.join(samples)}")
     frame = samples[list(names)].rename(columns=names)
     frame.attrs = {}
@@ -299,7 +306,7 @@ def as_factorynet(samples: Frame) -> Frame:
 
 
 def _columns_of(file: str) -> List[str]:
-    """Table rows: groups of a run with their columns, of indicators only how many."""
+    """Rows of a table with the columns of a run's groups; indicators have only their number of columns."""
     h5py = importlib.import_module("h5py")
     lines = ["| group | column | unit | meaning |", "|---|---|---|---|"]
     with h5py.File(file, "r") as run:
@@ -324,20 +331,21 @@ def _digest(path: str) -> str:
 
 
 def write_card(folder: Path, *, licence: str, authors: str, title: Optional[str] = None, text: str = "") -> Document:
-    """The card of a data set: README.md, as Hugging Face and Zenodo take it, and SHA256SUMS, for sha256sum -c.
+    """Writes the card of a data set, README.md for Hugging Face and Zenodo, and SHA256SUMS for sha256sum -c.
 
-    folder: of the data set, complete. licence: its identifier by SPDX. authors: to be cited. title: None: the plan's
-    name, of a plan without one the folder's. text: what is to be said of it, Markdown.
+    folder: directory of the complete data set. licence: SPDX identifier of the licence. authors: authors for the
+    citation. title: title of the card; None: name of the plan, or of the directory if the plan has no name. text:
+    description in Markdown.
 
-    Returns a dict: 'card' and 'sums', paths, and 'files', how many. InputError.
+    Returns a dict: 'card' and 'sums' (paths of the two files), 'files' (number of files). Raises InputError.
     """
     index = load(folder, group=None)
     place = os.fspath(folder)
     with open(os.path.join(place, "plan.json"), encoding="utf-8") as file:
         document = json.load(file)
     if len(index) != document["runs"]:
-        raise _hjt.InputError(f"{place}: {len(index)} of {document['runs']} runs are there; a card is of a complete "
-                              "set")
+        raise _hjt.InputError(f"{place}: {len(index)} of {document['runs']} runs are present, but a card needs a "
+                              "complete data set")
     name, version = title or document["plan"].get("name", os.path.basename(os.path.abspath(place))), document["version"]
     counts = index["class"].value_counts(sort=False)
     is_life = "life.drive" in index

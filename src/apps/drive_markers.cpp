@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Draws a twin's drive for rviz: contact forces in, markers out. What the picture exaggerates may change meanwhile.
+// Markers of a twin's drive for rviz from its contact forces. The exaggeration can change at run time.
 #include <cmath>
 #include <cstdint>
 #include <stdexcept>
@@ -17,13 +17,13 @@
 
 namespace
 {
-/// @throws hjt::ParameterError if the parameter is missing, no number, or not above zero.
+/// @throws hjt::ParameterError if the parameter is missing, not a number, or not positive.
 double readPositive(const ros::NodeHandle& node, const std::string& name, const std::string& unit)
 {
   double value = 0.0;
   if (!node.getParam(name, value) || !(value > 0.0))
   {
-    throw hjt::ParameterError(node.resolveName(name) + ": a number above 0 [" + unit + "] is needed");
+    throw hjt::ParameterError(node.resolveName(name) + ": a positive number [" + unit + "] is required");
   }
   return value;
 }
@@ -34,17 +34,17 @@ std::string readText(const ros::NodeHandle& node, const std::string& name, const
   std::string value;
   if (!node.getParam(name, value) || value.empty())
   {
-    throw hjt::ParameterError(node.resolveName(name) + ": " + meaning + " is needed");
+    throw hjt::ParameterError(node.resolveName(name) + ": " + meaning + " is required");
   }
   return value;
 }
 
-/// Values that are not finite are refused: `value` becomes the present one. Ranges are those of dynamic_reconfigure.
+/// Refuses a value that is not finite: it becomes the present one. dynamic_reconfigure checks the range.
 void refuseUnlessFinite(double& value, double present, const char* name)
 {
   if (!std::isfinite(value))
   {
-    ROS_ERROR_STREAM(name << " = " << value << " is not a finite number; it stays at " << present);
+    ROS_ERROR_STREAM(name << " = " << value << " is not a finite number; the value stays " << present);
     value = present;
   }
 }

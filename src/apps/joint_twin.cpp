@@ -19,7 +19,7 @@
 #ifdef HJT_COMPLETE_TOOL
 namespace hjt
 {
-const char* toolHelp();  ///< output of joint_twin_complete --help; by cmake/tool_help.cmake
+const char* toolHelp();  ///< output of joint_twin_complete --help, from cmake/tool_help.cmake
 }
 
 namespace
@@ -30,7 +30,7 @@ bool asksForHelp(int argc, char** argv)
   return first == "--help" || first == "-h";
 }
 
-/// The tool with every command, beside this one, takes the place of the process.
+/// Replaces this process by the tool with all commands, which is in the same directory.
 int runComplete(char** argv)
 {
   const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe");
@@ -69,7 +69,7 @@ int main(int argc, char** argv)
       "Tooth-level digital twin of a robot joint's harmonic drive. All quantities in SI units, angles "
       "in rad.");
   line.addSubcommands();
-  std::signal(SIGXFSZ, SIG_IGN);  // beyond a limit of size, writing fails as on a full disk
+  std::signal(SIGXFSZ, SIG_IGN);  // writing beyond a size limit then fails as on a full disk
   try
   {
     const int code = run(line, argc, argv);
@@ -78,7 +78,7 @@ int main(int argc, char** argv)
   }
   catch (const std::exception& error)
   {
-    if (hjt::interruptSignal() != 0)  // then half of the work is no error of the user's
+    if (hjt::interruptSignal() != 0)  // an interrupt causes errors that are not the user's
     {
       std::cerr << "joint_twin: interrupted\n";
       return hjt::EXIT_BY_SIGNAL + hjt::interruptSignal();

@@ -43,7 +43,7 @@ namespace hjt
 {
 namespace
 {
-/// Whether `topic` of the publishers in a master's state has this node.
+/// Whether this node is among the publishers of `topic` in a master's state.
 bool hasThisNode(XmlRpc::XmlRpcValue& publishers, const std::string& topic)
 {
   for (int i = 0; i < publishers.size(); ++i)
@@ -60,8 +60,8 @@ bool hasThisNode(XmlRpc::XmlRpcValue& publishers, const std::string& topic)
   return false;
 }
 
-/// Whether the master that answers has all topics of this node: one that came while the node started has the last of
-/// them alone. None that answers is no reason to doubt: connections go on without it.
+/// Whether the present master knows all topics of this node. A master that came while the node started knows only the
+/// last ones. Without a response the answer is true, because connections continue without a master.
 bool isKnownToMaster()
 {
   XmlRpc::XmlRpcValue arguments;
@@ -78,12 +78,12 @@ bool isKnownToMaster()
                      [&](const std::string& topic) { return hasThisNode(state[0], topic); });
 }
 
-/// Until the node is told to end: true. False: another master has come, which knows nothing of the node, so that nobody
-/// can find its topics. It would have to be given its parameters and registrations again; a new start does that.
+/// Waits until the node shall end. @returns false if another master has come. That one knows nothing of the node, so
+/// that its topics cannot be found; a new start sets its parameters and registrations again.
 bool waitForShutdownOrNewMaster()
 {
-  constexpr int LOOKS = 100;  // of which one at the master
-  constexpr int MISSES = 2;   // in a row: one alone may be a master that is just starting or ending
+  constexpr int LOOKS = 100;  // number of polls for one question to the master
+  constexpr int MISSES = 2;   // successive negative answers; a single one may be due to a master that starts or ends
   const ros::WallDuration period(0.05);
   int misses = 0;
   for (int look = 1; ros::ok() && misses < MISSES; ++look)
@@ -97,14 +97,14 @@ bool waitForShutdownOrNewMaster()
   return !ros::ok();
 }
 
-/// The live twin: wires a `Twin` to the topics and services of a node. Translates only; computes nothing.
+/// The live twin: connects a `Twin` to the topics and services of a node. It only translates.
 ///
-/// Threads: the loop advances the twin; a publisher sends what it filled; another ages the drive; the callbacks,
-/// diagnostics and services run in whoever spins, at least two threads, since a reset waits for the loop.
+/// Threads: the loop advances the twin, a publisher sends the messages, another thread ages the drive. Callbacks,
+/// diagnostics and services run in the spinner's threads, at least two, because a reset waits for the loop.
 class TwinNode
 {
 public:
-  /// Starts at once. @throws ParameterError.
+  /// Starts the twin. @throws ParameterError.
   TwinNode(ros::NodeHandle& node, const Parameters& parameters)
     : twin_(watchedTwin(parameters))
     , advanced_(twin_)
@@ -131,7 +131,7 @@ public:
 private:
   static Twin watchedTwin(const Parameters& parameters)
   {
-    // In simulated time the twin waits for its surface, so that a replay gives the same bits every time.
+    // In simulated time the twin waits for its surface, so that a replay always gives equal bits.
     Twin twin(parameters, nodeSurfaceSource(!ros::Time::isSimTime()));
     twin.watchSignals(true);
     return twin;
@@ -140,7 +140,7 @@ private:
   bool reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response)
   {
     response.success = loop_.reset();
-    response.message = response.success ? "the twin restarts at the current instant" : "the loop does not answer";
+    response.message = response.success ? "the twin restarts at the current instant" : "the loop does not respond";
     return true;
   }
 
@@ -148,7 +148,7 @@ private:
   {
     inbox_.push(Input{ rosNow(), InputKind::BRAKE, request.data ? 1.0 : 0.0 });
     response.success = true;
-    response.message = request.data ? "brake engages" : "brake releases";
+    response.message = request.data ? "the brake engages" : "the brake releases";
     return true;
   }
 
@@ -170,7 +170,7 @@ private:
 
 namespace
 {
-/// Wait for the first time on /clock before it is missed [s].
+/// Time without a first message on /clock after which the node warns [s].
 constexpr double CLOCK_PATIENCE = 10.0;
 
 void warnOfParameters(const hjt::FoundParameters& found, const std::string& name,
@@ -179,8 +179,8 @@ void warnOfParameters(const hjt::FoundParameters& found, const std::string& name
   const std::string departures = found.departures(name, shipped);
   if (!departures.empty())
   {
-    ROS_WARN_STREAM("Found on the parameter server, set before this start, other than as shipped: "
-                    << departures << ". If an earlier launch has left them: rosparam delete " << name);
+    ROS_WARN_STREAM("The parameter server has values from before this start that differ from the shipped ones: "
+                    << departures << ". If they are from an earlier launch, use: rosparam delete " << name);
   }
 }
 
@@ -193,12 +193,13 @@ void run(ros::NodeHandle& handle, const Arguments&... arguments)
   if (ros::Time::isSimTime() && !ros::Time::waitForValid(ros::WallDuration(CLOCK_PATIENCE)) && ros::ok())
   {
     ROS_WARN_STREAM(
-        "/use_sim_time is true and no time comes on /clock. Beside a robot: rosparam delete /use_sim_time, "
-        "then start this node again");
+        "/use_sim_time is true, but there is no time on /clock. For a real robot use rosparam delete /use_sim_time "
+        "and start this node again");
   }
   if (!hjt::waitForShutdownOrNewMaster())
   {
-    throw std::runtime_error("The ROS master was replaced, and the new one does not know this node: start it again");
+    throw std::runtime_error(
+        "The ROS master was replaced, and the new one does not know this node; start the node again");
   }
 }
 
@@ -208,7 +209,7 @@ void runJoint(ros::NodeHandle& node, const hjt::FoundParameters& found)
   hjt::readDefaultConfiguration(hjt::configurationDirectory("").string(), shipped);
   warnOfParameters(found, node.getNamespace(), { shipped });
   hjt::ParameterMap map = hjt::readParameterServer(node.getNamespace());
-  // Nobody has loaded a configuration: the default one. Who has, has loaded all of it.
+  // If nobody has loaded a configuration, the node uses the default one. A loaded one is complete.
   if (found.areGiven(map))
   {
     map.merge(shipped);
@@ -230,7 +231,7 @@ void runJoint(ros::NodeHandle& node, const hjt::FoundParameters& found)
   }
 }
 
-/// Those of a list with commas.
+/// Items of a list that is separated by commas.
 std::vector<std::string> itemsOf(const std::string& list)
 {
   std::vector<std::string> items;
@@ -242,7 +243,7 @@ std::vector<std::string> itemsOf(const std::string& list)
   return items;
 }
 
-/// What the reports of the sound arm hold of each joint. @throws InputError if one of them holds no such data.
+/// Reference figures of each joint from the reports of the sound arm. @throws InputError if a report has no such data.
 std::vector<hjt::SoundJoint> soundJointsOf(const std::string& list, const hjt::ArmDescription& arm,
                                            const std::vector<hjt::Parameters>& parameters)
 {
@@ -260,13 +261,13 @@ std::vector<hjt::SoundJoint> soundJointsOf(const std::string& list, const hjt::A
     if (joints.back().own.is_unjudged)
     {
       ROS_WARN_STREAM("The reference did not judge the friction of " << arm.joints[i].short_name
-                                                                     << "; the twin is taken in its place");
+                                                                     << "; the twin is used instead");
     }
   }
   return joints;
 }
 
-/// Of every drive, with the parameters of this node over its own; written to the parameter server.
+/// Parameters of every drive, each changed by those of this node; also written to the parameter server.
 std::vector<hjt::Parameters> drivesOf(const hjt::ArmDescription& arm, const hjt::ParameterMap& overrides,
                                       std::vector<hjt::ParameterMap> maps)
 {
@@ -282,7 +283,8 @@ std::vector<hjt::Parameters> drivesOf(const hjt::ArmDescription& arm, const hjt:
     hjt::Parameters& drive = parameters.back();
     if (drive.input.mode != parameters.front().input.mode)
     {
-      throw hjt::ParameterError("input.mode is not the same for all joints of the arm: " + joint.short_name);
+      throw hjt::ParameterError("input.mode must be equal for all joints of the arm, but differs for " +
+                                joint.short_name);
     }
     if (drive.telemetry.load == hjt::LoadSource::ARM)
     {
@@ -295,8 +297,8 @@ std::vector<hjt::Parameters> drivesOf(const hjt::ArmDescription& arm, const hjt:
   return parameters;
 }
 
-/// Shipped arms with the joints of this one, with the parameters of this node over those of every joint; none: it is
-/// not one of them, or is taken at its word.
+/// Candidates for the check of the arm's type: shipped arms with the joints of this one, each joint changed by the
+/// node's parameters; null if this arm is not among them, or its type is not to be checked.
 hjt::ArmWatch::MakeCandidates otherArms(const hjt::ArmDescription& arm, const std::string& name,
                                         const hjt::ParameterMap& overrides)
 {
@@ -325,19 +327,20 @@ hjt::ArmWatch::MakeCandidates otherArms(const hjt::ArmDescription& arm, const st
   };
 }
 
-/// Whether the node is to be the arm. @throws ParameterError if it is not said.
+/// Whether the node simulates the arm itself. @throws ParameterError if input.mode is missing.
 bool inPlaceOfArm(const hjt::ParameterMap& overrides)
 {
   const auto mode = overrides.find("input.mode");
   if (mode == overrides.end())
   {
-    throw hjt::ParameterError("input.mode of an arm is missing: telemetry runs beside a robot, commands in its place");
+    throw hjt::ParameterError(
+        "input.mode of an arm is missing; torque, motion or observer are for use beside a robot, commands replaces it");
   }
   const auto* text = std::get_if<std::string>(&mode->second.value);
   return text != nullptr && *text == "commands";
 }
 
-/// As a driver with these affixes names its joints, and the frame of its base.
+/// Names the joints and the base frame as a driver with these affixes does.
 void nameAsInMessages(const hjt::JointAffixes& affixes, hjt::ArmDescription& arm)
 {
   for (hjt::ArmJoint& joint : arm.joints)
@@ -347,7 +350,7 @@ void nameAsInMessages(const hjt::JointAffixes& affixes, hjt::ArmDescription& arm
   arm.base = affixes.prefix + arm.base;
 }
 
-/// Before or after a joint's name, together a name of ROS.
+/// Prefix or suffix of the joint names, which must give valid ROS names.
 std::string affixOf(const ros::NodeHandle& node, const std::string& key)
 {
   XmlRpc::XmlRpcValue value;
@@ -371,8 +374,8 @@ std::string affixOf(const ros::NodeHandle& node, const std::string& key)
   return affix;
 }
 
-/// All joints of the arm `asked`: its files, then the parameters of this node over those of every joint. What comes of
-/// it stands on the parameter server below the name of each.
+/// Runs all joints of the arm `asked`: its files, each joint changed by the node's parameters. The results are on the
+/// parameter server in the namespace of each joint.
 void runArm(ros::NodeHandle& node, const std::string& asked, const hjt::FoundParameters& found)
 {
   const auto directory = hjt::configurationDirectory("");
@@ -381,7 +384,7 @@ void runArm(ros::NodeHandle& node, const std::string& asked, const hjt::FoundPar
   const std::string description = node.param<std::string>(hjt::DESCRIPTION, "");
   if (!description.empty() && !node.getParam(description, arm.urdf))
   {
-    throw hjt::ParameterError("~description: no URDF on the parameter server under " + description);
+    throw hjt::ParameterError("~description: there is no URDF on the parameter server at " + description);
   }
   hjt::readLinks(arm);
   const std::string identified = node.param<std::string>(hjt::IDENTIFIED, "");
@@ -425,14 +428,14 @@ int main(int argc, char** argv)
   const hjt::FoundParameters found(argc, argv);
   ros::init(argc, argv, "joint_twin");
   hjt::shutDownOnSignals();
-  // Outlives the try block: with the last handle ROS shuts down, and its console with it.
+  // Must outlive the try block: ROS and its console shut down with the last handle.
   ros::NodeHandle node("~");
   try
   {
     const std::string arm = node.param<std::string>(hjt::ARM, "");
     arm.empty() ? runJoint(node, found) : runArm(node, arm, found);
   }
-  catch (const std::exception& error)  // hjt::ParameterError, and what ROS refuses
+  catch (const std::exception& error)  // ParameterError, and errors of ROS
   {
     ROS_FATAL_STREAM(error.what());
     return 1;

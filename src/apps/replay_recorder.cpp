@@ -29,7 +29,7 @@ namespace
 {
 using topic_tools::ShapeShifter;
 
-/// Every topic of the bag that is played, and everything the twin puts out beside them.
+/// Topics of the played bag, and topics that the twin publishes.
 std::set<std::string> topicsToRecord(const std::string& played_bag, const std::string& twin_namespace)
 {
   std::set<std::string> topics{ "/diagnostics" };
@@ -47,28 +47,28 @@ std::set<std::string> topicsToRecord(const std::string& played_bag, const std::s
   return topics;
 }
 
-/// Records given topics, each message at the time it comes. `rosbag record` cannot serve here: its queues of 100
-/// messages lose joint states when the machine stalls for a tenth of a second, and with `--all` on a simulated clock it
-/// looks for topics only once the clock runs, and misses what came first.
+/// Records given topics, each message at the time of reception. `rosbag record` is unsuitable: its queues of 100
+/// messages lose joint states if the machine stalls for 0.1 s. With `--all` on a simulated clock it searches for topics
+/// only once the clock runs, and misses the first messages.
 ///
-/// Received messages wait in memory for the disk, up to a number of bytes; beyond it messages are lost and counted.
+/// Received messages wait in memory for the disk, up to a number of bytes. Beyond it messages are lost and counted.
 class TopicRecorder
 {
 public:
-  /// @param buffer for what waits [bytes].
+  /// @param buffer size of the waiting messages [bytes].
   TopicRecorder(const std::set<std::string>& topics, const std::string& path, std::size_t buffer)
     : writer_(path), buffer_(buffer)
   {
     for (const std::string& topic : topics)
     {
-      constexpr std::uint32_t NO_BOUND = 0;  // ROS' own queue has no bound, as `receive` empties it at once
+      constexpr std::uint32_t NO_BOUND = 0;  // ROS' own queue has no limit, because `receive` empties it at once
       subscribers_.push_back(node_.subscribe<ShapeShifter>(
           topic, NO_BOUND, [this, topic](const ShapeShifter::ConstPtr& message) { receive(topic, message); },
           ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay()));
     }
   }
 
-  /// Records until ROS shuts down. @throws hjt::InputError if not all could be written.
+  /// Records until ROS shuts down. @throws hjt::InputError if not everything could be written.
   void run()
   {
     ros::AsyncSpinner spinner(1);
@@ -83,8 +83,8 @@ public:
     if (!lost_.empty())
     {
       const auto text = [](const auto& lost) { return std::to_string(lost.second) + " of " + lost.first; };
-      throw hjt::InputError("more came than could be written; lost messages: " + hjt::joined(lost_, ", ", text) + ". " +
-                            writer_.path() + " has all others");
+      throw hjt::InputError("messages arrived faster than they could be written; lost messages: " +
+                            hjt::joined(lost_, ", ", text) + ". " + writer_.path() + " has all others");
     }
   }
 
@@ -109,8 +109,8 @@ private:
     arrived_.notify_one();
   }
 
-  /// Writes what waits; waits a moment if that is nothing. Before the clock has started there is no time to record at:
-  /// messages that arrived by then, as from a twin that heard the clock sooner, get its first one.
+  /// Writes waiting messages, or waits a moment. Before the clock has started there is no time of recording. Messages
+  /// from that time get the first one, for example those of a twin that received the clock earlier.
   void writeWaiting()
   {
     constexpr std::chrono::milliseconds MOMENT{ 50 };
@@ -140,15 +140,15 @@ private:
   hjt::BagWriter writer_;
   const std::size_t buffer_;
   ros::NodeHandle node_;
-  std::mutex mutex_;  // of the four below
+  std::mutex mutex_;  // protects the four members below
   std::condition_variable arrived_;
   std::deque<Waiting> waiting_;
-  std::size_t bytes_{};  // of all that waits
+  std::size_t bytes_{};  // size of all waiting messages
   std::map<std::string, std::uint64_t> lost_;
   std::vector<ros::Subscriber> subscribers_;
 };
 
-/// FILE_twin.bag beside FILE.bag.
+/// FILE_twin.bag in the directory of FILE.bag.
 std::string defaultOutput(const std::filesystem::path& played_bag)
 {
   const std::string stem = (played_bag.extension() == ".bag" ? played_bag.stem() : played_bag.filename()).string();
@@ -159,7 +159,7 @@ void record(const std::set<std::string>& topics, const std::string& path, std::s
 {
   if (!force && std::filesystem::exists(path))
   {
-    throw hjt::InputError(path + " exists already and is not overwritten without --force");
+    throw hjt::InputError(path + " exists and is not overwritten without --force");
   }
   TopicRecorder(topics, path, buffer).run();
 }
@@ -180,7 +180,8 @@ int main(int argc, char** argv)
   root.add("played", played_bag, "the bag being played").required().existingFile();
   root.add("--output", output_bag, "the bag to write; empty: PLAYED_twin.bag in the folder of the one played");
   root.add("--joint-namespace", twin_namespace, "ROS namespace of the twin's topics");
-  root.add("--buffer", buffer, "[MiB] for messages that wait for the disk; more are lost, counted and reported")
+  root.add("--buffer", buffer,
+           "size of the messages that may wait for the disk [MiB]; further messages are lost, counted and reported")
       .range(1, 1U << 20U);
   root.flag("--force", force, "overwrite an existing output");
   if (const std::optional<int> ended = line.parse(argc, argv))
@@ -194,7 +195,7 @@ int main(int argc, char** argv)
   }
   catch (const std::exception& error)
   {
-    // Not by ROS' console, which ends with the last node handle.
+    // ROS' console ends with the last node handle.
     std::cerr << "replay_recorder: " << error.what() << '\n';
     return hjt::EXIT_FAILED;
   }

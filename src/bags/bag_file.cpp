@@ -22,16 +22,16 @@ namespace hjt
 namespace
 {
 constexpr std::string_view VERSION_LINE = "#ROSBAG V2.0\n";
-constexpr std::uint32_t MAX_CHUNK = 1U << 28;  // compressed, when unpacked [byte]; rosbag's own have 0.75 MB
+constexpr std::uint32_t MAX_CHUNK = 1U << 28;  // [byte] after decompression; rosbag's own chunks have 0.75 MB
 
-/// Position in the file [byte] and what is wrong there.
+/// Description of a damage with its position in the file [byte].
 struct Damage
 {
   std::uint64_t position;
   std::string what;
 };
 
-/// Calls `visit(name, value)` for every field of a header. False: a length does not fit.
+/// Calls `visit(name, value)` for every field of a header. @returns false if a length does not fit.
 template <class Visitor>
 bool visitFields(std::string_view header, const Visitor& visit)
 {
@@ -57,9 +57,9 @@ bool visitFields(std::string_view header, const Visitor& visit)
 
 struct Record
 {
-  std::uint64_t position{};  // in its stream [byte]
+  std::uint64_t position{};  // position in its stream [byte]
   std::string header;
-  std::uint32_t size{};  // of the data, which the stream stands at [byte]
+  std::uint32_t size{};  // size of the data, which follow in the stream [byte]
 
   std::string_view text(const std::string& name) const
   {
@@ -91,14 +91,14 @@ struct Record
   unsigned char kind() const { return number<unsigned char>(rosbag::OP_FIELD_NAME); }
 };
 
-/// The records of a file, or of a chunk, one after the other.
+/// Iterates over the records of a file or of a chunk.
 class Records
 {
 public:
-  /// From where the stream stands to `end` [byte].
+  /// Begins at the position of the stream; `end`: position after the last record [byte].
   Records(std::istream& stream, std::uint64_t end) : stream_(stream), next_(position()), end_(end) {}
 
-  /// False: that was the last.
+  /// Reads the next record. @returns false after the last one.
   bool read(Record& record)
   {
     stream_.seekg(static_cast<std::streamoff>(next_));
@@ -128,7 +128,7 @@ public:
 private:
   std::uint64_t position() { return static_cast<std::uint64_t>(stream_.tellg()); }
 
-  /// The next number, a count of bytes that follow it.
+  /// Reads the next number, which is the count of bytes that follow it.
   std::uint32_t length(std::uint64_t record)
   {
     std::uint32_t count = 0;
@@ -136,7 +136,7 @@ private:
     if (end_ - at < sizeof(count) || !stream_.read(reinterpret_cast<char*>(&count), sizeof(count)) ||
         end_ - at - sizeof(count) < count)
     {
-      throw Damage{ record, "a record longer than what is left of the file or chunk" };
+      throw Damage{ record, "a record longer than the remaining file or chunk" };
     }
     return count;
   }
@@ -202,11 +202,11 @@ private:
     }
     else
     {
-      chunk_ = 0;  // the library looks for a chunk's index right behind it
+      chunk_ = 0;  // the rosbag library expects the index of a chunk directly after it
     }
   }
 
-  /// Finds where in the chunk its messages begin.
+  /// Finds the positions of the messages in a chunk.
   void readChunk(const Record& record, std::string bytes)
   {
     const auto size = record.number<std::uint32_t>(rosbag::SIZE_FIELD_NAME);
@@ -231,7 +231,8 @@ private:
       for (Record message; messages.read(message);)
       {
         const unsigned char kind = message.kind();
-        if (kind != rosbag::OP_CONNECTION && kind != rosbag::OP_MSG_DEF)  // behind these the library reads on
+        // the rosbag library reads on after these records
+        if (kind != rosbag::OP_CONNECTION && kind != rosbag::OP_MSG_DEF)
         {
           messages_.push_back(message.position);
         }
@@ -259,7 +260,7 @@ private:
     }
   }
 
-  /// Connections, and where the chunks lie.
+  /// Checks the connections and the positions of the chunks.
   void checkSummary(Records& records, const Record& record)
   {
     if (record.kind() == rosbag::OP_CONNECTION)
@@ -292,9 +293,9 @@ private:
   std::ifstream file_;
   std::uint64_t size_;
   rosbag::ChunkedFile unpacker_;
-  std::uint64_t chunk_{};                           // the one whose index comes next; 0: none
-  std::vector<std::uint64_t> messages_;             // where they begin in it, ascending
-  std::map<std::uint64_t, std::uint64_t> indexes_;  // of each chunk, by its position
+  std::uint64_t chunk_{};                           // position of the chunk whose index is next; 0: none
+  std::vector<std::uint64_t> messages_;             // positions of its messages in the chunk, ascending
+  std::map<std::uint64_t, std::uint64_t> indexes_;  // position of the index of each chunk, by the chunk's position
 };
 }  // namespace
 
@@ -307,7 +308,7 @@ void checkBagFile(const std::string& path)
   catch (const Damage& damage)
   {
     throw InputError(path + " cannot be read as a bag: " + damage.what + " at byte " + std::to_string(damage.position) +
-                     "; `rosbag reindex` may mend a copy of it, as of one that was cut off");
+                     "; `rosbag reindex` may repair a copy of it, for example if it was cut off");
   }
   catch (const std::exception& error)
   {
@@ -318,7 +319,7 @@ void checkBagFile(const std::string& path)
 void openForReading(rosbag::Bag& bag, const std::string& path)
 {
   checkBagFile(path);
-  // As in BagWriter.
+  // The same level as in BagWriter.
   console_bridge::setLogLevel(console_bridge::CONSOLE_BRIDGE_LOG_WARN);
   try
   {
@@ -326,7 +327,7 @@ void openForReading(rosbag::Bag& bag, const std::string& path)
   }
   catch (const rosbag::BagUnindexedException&)
   {
-    throw InputError(path + " was not closed properly and has no index; `rosbag reindex` may mend it");
+    throw InputError(path + " was not closed properly and has no index; `rosbag reindex` may repair it");
   }
   catch (const std::exception& error)
   {
@@ -340,7 +341,7 @@ void refuseTopics(const rosbag::Bag& bag, const std::string& path, const std::ve
   for (const rosbag::ConnectionInfo* connection : view.getConnections())
   {
     throw InputError(path + " holds " + connection->topic +
-                     " already; leave it out, or choose another --joint-namespace");
+                     " already; remove this topic from the bag, or choose another --joint-namespace");
   }
 }
 

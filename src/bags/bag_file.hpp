@@ -8,20 +8,20 @@
 
 namespace hjt
 {
-/// Checks the records of a bag before the rosbag library reads them: the library trusts every length, index position
-/// and message offset in the file, and reads beyond its buffers where one is damaged.
+/// Checks the records of a bag before the rosbag library reads them. The library does not check lengths, index
+/// positions and message offsets, and reads beyond its buffers in a damaged file.
 ///
-/// Reads the whole file once. Bags that were not closed are left to the library, which refuses them; encrypted ones
-/// too.
-/// @throws InputError naming the file, the damage and its position [byte].
+/// The function reads the whole file once. It does not check bags that were not closed, and encrypted ones; the library
+/// rejects them.
+/// @throws InputError with the file, the damage and its position [byte].
 void checkBagFile(const std::string& path);
 
-/// Opens a bag for reading. @throws InputError that says what is wrong with the file.
+/// Opens a bag for reading. @throws InputError with the reason.
 void openForReading(rosbag::Bag& bag, const std::string& path);
 
-/// @throws InputError if the bag holds one of the topics: its messages would look like the twin's.
+/// @throws InputError if the bag contains one of the topics, whose messages could be mistaken for the twin's.
 void refuseTopics(const rosbag::Bag& bag, const std::string& path, const std::vector<std::string>& topics);
 
-/// All topics of a bag and their types, one a line.
+/// Text of all topics of a bag with their types, one per line.
 std::string listTopics(const rosbag::Bag& bag);
 }  // namespace hjt

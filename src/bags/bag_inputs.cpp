@@ -16,10 +16,10 @@ namespace hjt
 {
 namespace
 {
-/// Between a stamp and the time of recording; farther apart, two clocks that do not agree were at work [s].
+/// Largest difference between a stamp and the time of recording [s]. A larger one means that two clocks disagree.
 constexpr double MAX_DELAY = 10.0;
 
-/// Sorts the messages of one bag into inputs.
+/// Converts the messages of a bag to inputs.
 class InputReader
 {
 public:

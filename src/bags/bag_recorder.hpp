@@ -9,11 +9,11 @@
 
 namespace hjt
 {
-/// Writes the twin's topics into a bag: the messages the node would publish, at the same simulated instants.
+/// Writes the twin's topics to a bag: the messages that the node would publish, at equal simulated instants.
 class BagRecorder
 {
 public:
-  /// `joint_namespace`: of the node, e.g. "/joint_twin".
+  /// `joint_namespace`: namespace of the node, for example "/joint_twin".
   BagRecorder(const Twin& twin, const std::string& joint_namespace, BagWriter& bag)
     : context_{ bag, joint_namespace + "/" }
     , names_(twin.parameters().joint.name)
@@ -23,7 +23,7 @@ public:
   {
   }
 
-  /// To be called after every step of the twin.
+  /// Must be called after every step of the twin.
   void record(Twin& twin)
   {
     if (const FaultList& faults = twin.activeFaults(); faults.version() != recorded_faults_)
@@ -35,7 +35,6 @@ public:
   }
 
 private:
-  /// Sink of a channel.
   template <class Message>
   class RecordedChannel
   {
@@ -61,7 +60,7 @@ private:
 
   BagContext context_;
   JointNames names_;
-  std::uint64_t recorded_faults_;  // version of the list that was recorded last
+  std::uint64_t recorded_faults_;  // version of the last recorded list
   Outputs<RecordedChannel> outputs_;
 };
 }  // namespace hjt

@@ -14,10 +14,9 @@ namespace
 using Bytes = std::vector<std::uint8_t>;
 
 constexpr char VERSION[] = "#ROSBAG V2.0\n";
-constexpr std::size_t FILE_HEADER_SIZE = 4096;       // with padding: it is written again at the end
-constexpr std::size_t CHUNK_THRESHOLD = 768 * 1024;  // a chunk ends with the message that exceeds it
+constexpr std::size_t FILE_HEADER_SIZE = 4096;       // with padding, because it is written again at the end
+constexpr std::size_t CHUNK_THRESHOLD = 768 * 1024;  // the message that exceeds it ends a chunk
 
-/// Of a record.
 enum class Operation : std::uint8_t
 {
   MESSAGE = 2,
@@ -38,7 +37,7 @@ template <class Number>
 void put(Bytes& out, Number number)
 {
   static_assert(std::is_integral_v<Number>);
-  put(out, &number, sizeof(number));  // little endian, as ROS' messages
+  put(out, &number, sizeof(number));  // little endian, as in ROS messages
 }
 
 void put(Bytes& out, const ros::Time& time)
@@ -75,7 +74,7 @@ public:
     return *this;
   }
 
-  /// The header's length goes before it. @returns it, with its own four bytes
+  /// Writes the header's length before it. @returns the length, with its own four bytes
   std::size_t finish()
   {
     putLength(begin_);
@@ -115,7 +114,7 @@ BagWriter::BagWriter(std::string path)
   {
     throw InputError(path_ + " cannot be written: " + std::strerror(errno));
   }
-  std::setvbuf(file_.get(), nullptr, _IONBF, 0);  // writes are large
+  std::setvbuf(file_.get(), nullptr, _IONBF, 0);  // no buffer, because writes are large
   Bytes version;
   put(version, VERSION, sizeof(VERSION) - 1);
   flush(version);
@@ -130,16 +129,16 @@ BagWriter::~BagWriter()
   }
   catch (const InputError&)
   {
-    // Nobody is left to tell.
+    // A destructor cannot report an error.
   }
 }
 
-/// First step of writing any message. @returns the time of recording
+/// First step of writing a message. @returns the time of recording
 ros::Time BagWriter::begin(Stamp stamp)
 {
   if (!file_)
   {
-    throw InputError(path_ + " cannot be written: it is closed");
+    throw InputError(path_ + " cannot be written, because it is closed");
   }
   const ros::Time time = toRosTime(stamp);
   if (time < ros::TIME_MIN)
@@ -151,7 +150,7 @@ ros::Time BagWriter::begin(Stamp stamp)
 
 void BagWriter::copy(const rosbag::MessageInstance& message)
 {
-  // Read before anything is written: an error of reading would leave half a record behind.
+  // Reads before writing anything: an error of reading would leave an incomplete record.
   scratch_.resize(message.size());
   ros::serialization::OStream stream(scratch_.data(), static_cast<std::uint32_t>(scratch_.size()));
   message.write(stream);
@@ -160,7 +159,7 @@ void BagWriter::copy(const rosbag::MessageInstance& message)
   auto known = copied_headers_.find(header);
   if (known == copied_headers_.end())
   {
-    // Two connections may have the same header, but for the topic.
+    // Two connections may have equal headers except for the topic.
     ros::M_string key = *header;
     key["topic"] = message.getTopic();
     auto same = copied_.find(key);
@@ -174,7 +173,7 @@ void BagWriter::copy(const rosbag::MessageInstance& message)
   end();
 }
 
-/// A new connection. @returns its number
+/// Makes a connection. @returns its number
 std::uint32_t BagWriter::connect(const std::string& topic, const ros::M_string& header)
 {
   const auto number = static_cast<std::uint32_t>(connections_.size());
@@ -183,7 +182,7 @@ std::uint32_t BagWriter::connect(const std::string& topic, const ros::M_string& 
   return number;
 }
 
-/// A message's record, but for the message itself. @returns where that has to be written, `size` bytes
+/// Appends the record of a message without its data. @returns the position for the `size` bytes of the data
 std::uint8_t* BagWriter::append(std::uint32_t connection, const ros::Time& time, std::uint32_t size)
 {
   std::vector<IndexEntry>& index = connections_[connection].index;
@@ -207,7 +206,7 @@ void BagWriter::end()
   }
 }
 
-/// The running chunk and the index of its messages.
+/// Writes the present chunk and the index of its messages.
 void BagWriter::writeChunk()
 {
   running_.position = position_;
@@ -248,7 +247,7 @@ void BagWriter::writeChunk()
   chunks_.push_back(std::exchange(running_, {}));
 }
 
-/// At the file's place. `index_position`: of what follows the chunks; zero: not there yet.
+/// Writes the file header at the present position. `index_position`: position after the chunks; zero: not known yet.
 void BagWriter::writeFileHeader(std::uint64_t index_position)
 {
   Bytes out;

@@ -26,13 +26,13 @@
 
 namespace hjt
 {
-/// Holds a file for this process alone, against others that ask in the same way; ends with the object, or with the
-/// process however that ends. The content is left as it is.
+/// Lock of a file against other processes that lock it in this way. It ends with the object, or with the process. The
+/// content does not change.
 class FileLock
 {
 public:
-  /// Makes the file if it is not there; a link is not followed. @throws InputError if that fails, what is there is no
-  /// regular file, or another holds it.
+  /// Makes the file if it is missing, without following a link. @throws InputError if that fails, if the path is not a
+  /// regular file, or if another process holds the lock.
   explicit FileLock(const std::string& path)
     : descriptor_(open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666))
   {
@@ -46,7 +46,7 @@ public:
     std::string error;
     if (fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode))
     {
-      error = " cannot be written: it is no regular file";
+      error = " cannot be written, because it is not a regular file";
     }
     else if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0)
     {
@@ -69,13 +69,12 @@ private:
   int descriptor_;
 };
 
-/// Writes a bag as `PATH.active` and gives it its name when closed, as `rosbag record` does: what stands under the name
-/// is always readable, also after an error or an interrupt. The same calls give the same bytes, those that rosbag::Bag
-/// would write, uncompressed; but a chunk goes to the disk as one, where that one seeks twice a message.
+/// Writes a bag as `PATH.active` and renames it when closed, as `rosbag record` does, so that a file with the final
+/// name is always readable, also after an error or an interrupt. Equal calls give equal bytes: those that rosbag::Bag
+/// would write uncompressed. Each chunk is written in one piece, whereas rosbag::Bag seeks twice for each message.
 ///
-/// If the disk is full, the bag is given up: it stays as `PATH.active` without an index, and the InputError
-/// tells how much is in it. `rosbag reindex` makes it readable but for the last chunk, 0.8 MB at most. Nothing can be
-/// written after that.
+/// If the disk is full, the bag stays as `PATH.active` without an index, and the InputError tells its content. `rosbag
+/// reindex` makes it readable except for the last chunk of at most 0.8 MB. After this error nothing can be written.
 ///
 /// Format: http://wiki.ros.org/Bags/Format/2.0
 class BagWriter
@@ -84,12 +83,12 @@ public:
   /// @throws InputError if the file cannot be written, or another BagWriter writes it.
   explicit BagWriter(std::string path);
 
-  /// Closes; an error of the disk is then swallowed, so call `close` where it matters.
+  /// Closes the bag and ignores errors of the disk; `close` reports them.
   ~BagWriter();
   BagWriter(const BagWriter&) = delete;
   BagWriter& operator=(const BagWriter&) = delete;
 
-  /// @throws InputError if the disk takes no more, or the stamp is zero, which a bag cannot hold.
+  /// @throws InputError if the disk is full, or the stamp is zero, which a bag cannot contain.
   template <class Message>
   void write(const std::string& topic, Stamp stamp, const Message& message)
   {
@@ -108,10 +107,10 @@ public:
     end();
   }
 
-  /// The message as it is: bytes, time, type and connection. @throws rosbag::BagException if it cannot be read.
+  /// Copies a message with its bytes, time, type and connection. @throws rosbag::BagException if it cannot be read.
   void copy(const rosbag::MessageInstance& message);
 
-  /// Leaves no file if nothing was written. @throws InputError if not all could be written.
+  /// Closes the bag; an empty one leaves no file. @throws InputError if not everything could be written.
   void close();
 
   bool isOpen() const { return file_ != nullptr; }
@@ -122,14 +121,14 @@ private:
   struct IndexEntry
   {
     ros::Time time;
-    std::uint32_t offset;  // of the message in the chunk
+    std::uint32_t offset;  // position of the message in the chunk
   };
 
   struct Connection
   {
     std::string topic;
     ros::M_string header;
-    std::vector<IndexEntry> index;  // of the running chunk
+    std::vector<IndexEntry> index;  // messages in the present chunk
   };
 
   struct ChunkInfo
@@ -137,7 +136,7 @@ private:
     std::uint64_t position{};
     ros::Time first;
     ros::Time last;
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> counts;  // connection, messages
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> counts;  // number of messages for each connection
   };
 
   ros::Time begin(Stamp stamp);
@@ -151,26 +150,26 @@ private:
 
   std::string path_;
   std::string active_path_;
-  FileLock lock_;                                         // of active_path_
-  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;  // none: closed
-  std::uint64_t position_{};                              // in the file
-  std::vector<std::uint8_t> chunk_;                       // the running one's messages and new connections
+  FileLock lock_;                                         // lock of active_path_
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;  // null: closed
+  std::uint64_t position_{};                              // position in the file
+  std::vector<std::uint8_t> chunk_;                       // messages and new connections of the present chunk
   ChunkInfo running_;
   std::vector<ChunkInfo> chunks_;
   std::vector<Connection> connections_;
   std::map<std::string, std::uint32_t> topics_;    // connections of `write`
   std::map<ros::M_string, std::uint32_t> copied_;  // connections of `copy`, by header and topic
-  std::map<boost::shared_ptr<ros::M_string>, std::uint32_t> copied_headers_;  // the same, found faster
+  // connections of `copy` by pointer, for a faster search
+  std::map<boost::shared_ptr<ros::M_string>, std::uint32_t> copied_headers_;
   std::vector<std::uint8_t> scratch_;
   std::uint64_t messages_{};
 };
 
-/// Where messages go in a bag.
 struct BagContext
 {
   BagWriter& bag;
-  std::string prefix;  ///< of the topics' names
-  Stamp delay{};       ///< of the time of recording behind the messages' stamps [ns]
+  std::string prefix;  ///< prefix of the topic names
+  Stamp delay{};       ///< time of recording minus the stamps of the messages [ns]
 };
 
 /// Sink of one topic in a bag.

@@ -9,7 +9,7 @@ namespace hjt
 {
 namespace
 {
-/// Takes one value after the other out of a message. After one that does not fit all are zero.
+/// Extracts values from a message one after the other. After one that does not fit all values are zero.
 class Decoder
 {
 public:
@@ -18,7 +18,7 @@ public:
   {
     if (is_cdr_)
     {
-      // Two bytes tell the representation, two are options; alignment counts from behind them.
+      // Two bytes are the representation and two are options. The alignment counts from their end.
       fits_ = bytes.size() >= ORIGIN && bytes[0] == 0 && bytes[1] <= 1;
       is_big_ = fits_ && bytes[1] == 0;
       at_ = ORIGIN;

@@ -14,7 +14,6 @@
 
 namespace hjt
 {
-/// How the bytes of a message are to be read.
 enum class MessageEncoding
 {
   ROS1,  ///< little endian, unaligned
@@ -22,22 +21,24 @@ enum class MessageEncoding
   OTHER
 };
 
-/// "ros1", "cdr".
+/// Encoding with the name "ros1" or "cdr".
 MessageEncoding encodingOf(const std::string& name);
 
-/// False: the bytes are no such message to the last byte. Lengths are held against the bytes before memory is taken.
+/// @returns false if the bytes are not exactly one such message. Lengths are checked against the bytes before memory is
+/// allocated.
 bool decode(const std::vector<std::uint8_t>& bytes, MessageEncoding encoding, sensor_msgs::JointState& message);
 bool decode(const std::vector<std::uint8_t>& bytes, MessageEncoding encoding, sensor_msgs::Temperature& message);
 
-/// Reads JointState and Temperature messages out of bags whose bytes may be damaged.
+/// Reads JointState and Temperature messages from bags whose bytes may be damaged.
 ///
-/// A length that damage has made huge would let the message's own reading ask for as much memory, so the lengths are
-/// held against the bytes that are there before.
+/// A damaged length could make the generated code request much memory. Therefore all lengths are checked against the
+/// available bytes before.
 class CheckedMessage
 {
 public:
-  /// False: the bytes are no JointState, or cannot be read. @throws InputError if the topic has another
-  /// type; a wrong md5sum alone is none.
+  /// @returns false if the bytes are not a JointState or cannot be read. @throws InputError if the topic has another
+  /// type; a wrong
+  /// md5sum alone is accepted.
   bool read(const rosbag::MessageInstance& instance)
   {
     const std::string expected = ros::message_traits::datatype<sensor_msgs::JointState>();
@@ -47,17 +48,17 @@ public:
     }
     const bool is_whole = take(instance, state_);
     has_read_ = has_read_ || is_whole;
-    // A recorder's own mistake in the sum is no matter where the bytes are those of the message.
+    // A wrong sum of a recorder does not matter if the bytes are those of the message.
     if (!has_read_ && !instance.isType<sensor_msgs::JointState>())
     {
-      throw InputError(instance.getTopic() + ": its messages are of another " + expected +
+      throw InputError(instance.getTopic() + ": its messages are of another version of " + expected +
                        " than this one: their md5sum is " + instance.getMD5Sum() + ", expected " +
                        ros::message_traits::md5sum<sensor_msgs::JointState>() + ", and their bytes do not fit");
     }
     return is_whole;
   }
 
-  /// The same of a Temperature, whose type is known.
+  /// Reads a Temperature, whose type is already checked.
   bool readTemperature(const rosbag::MessageInstance& instance) { return take(instance, temperature_); }
 
   const sensor_msgs::JointState& state() const noexcept { return state_; }
@@ -81,7 +82,7 @@ private:
   }
 
   std::vector<std::uint8_t> bytes_;
-  bool has_read_{};  // a JointState
+  bool has_read_{};  // whether a JointState was read
   sensor_msgs::JointState state_;
   sensor_msgs::Temperature temperature_;
 };

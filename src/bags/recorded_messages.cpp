@@ -41,27 +41,27 @@ struct Refused
 };
 
 constexpr std::array<Refused, 12> REFUSED{ {
-    { "#ROSBAG V1"sv, "a bag of format 1; `rosbag fix` of ROS 1 makes one of format 2.0 of it" },
-    { "\x28\xB5\x2F\xFD"sv, "compressed by zstd; `zstd -d FILE` unpacks it" },
-    { "\x1F\x8B"sv, "compressed by gzip; `gunzip FILE` unpacks it" },
-    { "BZh"sv, "compressed by bzip2; `bunzip2 FILE` unpacks it" },
+    { "#ROSBAG V1"sv, "a bag of format 1; `rosbag fix` of ROS 1 converts it to format 2.0" },
+    { "\x28\xB5\x2F\xFD"sv, "compressed by zstd; `zstd -d FILE` decompresses it" },
+    { "\x1F\x8B"sv, "compressed by gzip; `gunzip FILE` decompresses it" },
+    { "BZh"sv, "compressed by bzip2; `bunzip2 FILE` decompresses it" },
     { "\xFD"
       "7zXZ"sv,
-      "compressed by xz; `unxz FILE` unpacks it" },
+      "compressed by xz; `unxz FILE` decompresses it" },
     { "PK\x03\x04"sv, "a zip archive or a spreadsheet (.zip, .xlsx, .npz); save its table as CSV" },
     { "\x89HDF"sv, "an HDF5 file; save its table as CSV" },
     { "MATLAB 5.0"sv, "a MATLAB file; writetable saves its table as CSV" },
     { "PAR1"sv, "a Parquet file; save its table as CSV" },
-    { "\xFF\xFE"sv, "a text in UTF-16; `iconv -f UTF-16 -t UTF-8 FILE` makes one in UTF-8 of it" },
-    { "\xFE\xFF"sv, "a text in UTF-16; `iconv -f UTF-16 -t UTF-8 FILE` makes one in UTF-8 of it" },
-    { "ULog"sv, "a PX4 log; ulog2csv makes CSV of it" },
+    { "\xFF\xFE"sv, "a text in UTF-16; `iconv -f UTF-16 -t UTF-8 FILE` converts it to UTF-8" },
+    { "\xFE\xFF"sv, "a text in UTF-16; `iconv -f UTF-16 -t UTF-8 FILE` converts it to UTF-8" },
+    { "ULog"sv, "a PX4 log; ulog2csv converts it to CSV" },
 } };
 }  // namespace
 
 std::string conversionOf(const std::string& path)
 {
   return "`rosbags-convert --src " + path + " --dst " + std::filesystem::path(path).stem().string() +
-         ".bag` (pip install rosbags) makes a bag of it";
+         ".bag` (pip install rosbags) converts it to a bag";
 }
 
 RecordingFormat formatOfRecording(const std::string& path)
@@ -81,7 +81,7 @@ RecordingFormat formatOfRecording(const std::string& path)
   const std::string_view begin(bytes.data(), static_cast<std::size_t>(file.gcount()));
   if (begin.empty())
   {
-    throw InputError(path + " is empty: no byte was recorded");
+    throw InputError(path + " is empty");
   }
   for (const Read& known : READ)
   {
@@ -101,9 +101,9 @@ RecordingFormat formatOfRecording(const std::string& path)
   if (is_named_bag || begin.find('\0') != std::string_view::npos)
   {
     throw InputError(path +
-                     (is_named_bag ? " cannot be read as a bag: no bag of format 2.0 at byte 0" :
-                                     " is neither a recording of ROS nor a table of text") +
-                     "; what is read is a bag, a .db3 or .mcap file of ROS 2, and CSV");
+                     (is_named_bag ? " cannot be read as a bag: it has no bag header of format 2.0 at byte 0" :
+                                     " is neither a recording of ROS nor a text table") +
+                     "; readable are a bag, a .db3 or .mcap file of ROS 2, and CSV");
   }
   return RecordingFormat::TABLE;
 }
@@ -112,7 +112,7 @@ void requireTable(const std::string& path, const std::string& wanted)
 {
   if (std::filesystem::is_regular_file(path) && formatOfRecording(path) != RecordingFormat::TABLE)
   {
-    throw InputError(path + " holds messages, which have no targets: " + wanted);
+    throw InputError(path + " contains messages, which have no targets; " + wanted);
   }
 }
 
@@ -173,7 +173,7 @@ private:
   rosbag::Bag bag_;
 };
 
-/// The files of a directory of rosbag2, or the parts of a split bag, one after the other.
+/// Messages of all files in a directory of rosbag2, or of the parts of a split bag.
 class DirectoryMessages : public RecordedMessages
 {
 public:
@@ -199,9 +199,9 @@ public:
     if (files.empty())
     {
       throw InputError(path + " is a directory without .db3, .mcap and .bag files" +
-                       (compressed.empty() ? "" : "; `zstd -d " + compressed + "` unpacks one"));
+                       (compressed.empty() ? "" : "; `zstd -d " + compressed + "` decompresses one of them"));
     }
-    // NAME_2 before NAME_10
+    // natural order: NAME_2 before NAME_10
     std::sort(files.begin(), files.end(),
               [](const std::string& a, const std::string& b)
               { return std::make_pair(a.size(), a) < std::make_pair(b.size(), b); });
@@ -254,7 +254,7 @@ std::unique_ptr<RecordedMessages> RecordedMessages::open(const std::string& path
     case RecordingFormat::DIRECTORY:
       return std::make_unique<DirectoryMessages>(path);
     case RecordingFormat::TABLE:
-      throw InputError(path + " is text, no recording of ROS");
+      throw InputError(path + " is a text, not a recording of ROS");
     case RecordingFormat::BAG:
       break;
   }
@@ -286,8 +286,8 @@ void RecordedMessages::requireStates(const std::string& topic) const
   std::string others;
   for (const auto& [name, found] : topics_)
   {
-    others += found.type == JOINT_STATE_TYPE && found.messages > 0 ? "; --topic " + name + " reads that one" : "";
+    others += found.type == JOINT_STATE_TYPE && found.messages > 0 ? "; --topic " + name + " reads this topic" : "";
   }
-  throw InputError(path_ + " has no messages on " + topic + "; it holds:" + listTopics() + others);
+  throw InputError(path_ + " has no messages on " + topic + "; it contains:" + listTopics() + others);
 }
 }  // namespace hjt

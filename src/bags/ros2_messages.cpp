@@ -21,7 +21,7 @@ namespace hjt
 {
 namespace
 {
-/// "sensor_msgs/msg/JointState" is "sensor_msgs/JointState".
+/// Type in the spelling of ROS 1: "sensor_msgs/msg/JointState" is "sensor_msgs/JointState".
 std::string ros1Type(const std::string& type)
 {
   const std::string middle = "/msg/";
@@ -29,7 +29,6 @@ std::string ros1Type(const std::string& type)
   return at == std::string::npos ? type : type.substr(0, at + 1) + type.substr(at + middle.size());
 }
 
-/// A topic of a ROS 2 file.
 struct Ros2Channel
 {
   std::string topic;
@@ -38,7 +37,7 @@ struct Ros2Channel
   bool is_chosen{};
 };
 
-/// On a topic that is asked for. @throws InputError if that has another type than JointState.
+/// Whether the channel is on a requested topic. @throws InputError if such a topic has another type than JointState.
 bool isChosen(const Ros2Channel& channel, const std::vector<std::string>& topics, bool with_temperatures)
 {
   const bool is_named = std::find(topics.begin(), topics.end(), channel.topic) != topics.end();
@@ -49,7 +48,7 @@ bool isChosen(const Ros2Channel& channel, const std::vector<std::string>& topics
   return is_named || (with_temperatures && channel.type == TEMPERATURE_TYPE);
 }
 
-/// Reads and hands on one message of a chosen channel. False: the visitor has had enough.
+/// Decodes a message of a chosen channel and passes it on. @returns false if the visitor needs no more.
 class Ros2Message
 {
 public:
@@ -87,7 +86,7 @@ struct EndStatement
 
 namespace fs = std::filesystem;
 
-/// The name of a file as SQLite reads it in a URI.
+/// The file's name in a URI for SQLite.
 std::string uriOf(const std::string& path)
 {
   std::string uri = "file:";
@@ -156,8 +155,8 @@ public:
   }
 
 private:
-  /// Without writing beside it: SQLite makes files of its own for a recording in WAL mode (rosbag2's resilient preset),
-  /// and mends what a recorder left when it was killed. With such files beside it a copy is read.
+  /// Opens the file without writing beside it. SQLite makes additional files for a recording in WAL mode (rosbag2's
+  /// resilient preset) and repairs the file of a recorder that was killed. If such files exist, a copy is read.
   void openFile()
   {
     bool is_clean = true;
@@ -183,7 +182,7 @@ private:
     }
   }
 
-  /// With what lies beside it.
+  /// Copies the file with the files beside it.
   std::string copied()
   {
     const std::string copy = (fs::path(copy_.emplace().path()) / "copy.db3").string();
@@ -202,14 +201,15 @@ private:
     return copy;
   }
 
-  /// A view in its place may have no end.
+  /// Rejects a view of this name, which may be endless.
   void requireTable(const char* table) const
   {
     const auto found = prepare("SELECT type, COUNT(*) FROM sqlite_master WHERE name = ?1 COLLATE NOCASE");
     sqlite3_bind_text(found.get(), 1, table, -1, SQLITE_STATIC);
     if (!step(found) || text(found, 0) != "table")
     {
-      throw InputError(path_ + " is a SQLite file without a table '" + table + "', so not a .db3 of ROS 2");
+      throw InputError(path_ + " is a SQLite file without the table '" + table +
+                       "' and therefore not a .db3 file of ROS 2");
     }
   }
 
@@ -247,7 +247,7 @@ private:
     return text == nullptr ? "" : reinterpret_cast<const char*>(text);
   }
 
-  std::optional<TemporaryDirectory> copy_;  // that is read in place of the file
+  std::optional<TemporaryDirectory> copy_;  // copy that is read instead of the file
   std::unique_ptr<sqlite3, CloseDatabase> database_;
   std::map<std::int64_t, Ros2Channel> channels_;
 };
@@ -262,7 +262,7 @@ namespace
 {
 using Bytes = std::vector<std::uint8_t>;
 
-// https://mcap.dev/spec: records are an opcode, a length and so many bytes, all little endian.
+// https://mcap.dev/spec: a record is an opcode, a length and the content, all little endian.
 enum Opcode : std::uint8_t
 {
   FOOTER = 0x02,
@@ -275,16 +275,16 @@ enum Opcode : std::uint8_t
 
 constexpr std::size_t MAGIC = 8;                    // [byte]
 constexpr std::size_t RECORD_HEAD = 9;              // opcode and length [byte]
-constexpr std::uint64_t MAX_MCAP_CHUNK = 1U << 30;  // unpacked [byte]
-constexpr std::uint64_t SMALL_CHUNK = 1U << 26;     // accepted whatever the size of the file [byte]
-constexpr std::uint64_t MOST_PACKED = 100;          // unpacked over the file's size
+constexpr std::uint64_t MAX_MCAP_CHUNK = 1U << 30;  // [byte] after decompression
+constexpr std::uint64_t SMALL_CHUNK = 1U << 26;     // [byte], accepted for any size of the file
+constexpr std::uint64_t MOST_PACKED = 100;          // largest size after decompression over the file's size
 
 struct McapDamage
 {
   std::string what;
 };
 
-/// Takes fields out of a record. @throws McapDamage beyond its end.
+/// Extracts fields of a record. @throws McapDamage beyond its end.
 class Fields
 {
 public:
@@ -328,7 +328,7 @@ Bytes unpackedLz4(const std::uint8_t* data, std::size_t size, std::size_t unpack
   LZ4F_dctx* context = nullptr;
   if (LZ4F_isError(LZ4F_createDecompressionContext(&context, LZ4F_VERSION)) != 0)
   {
-    throw McapDamage{ "no memory for a chunk" };
+    throw McapDamage{ "not enough memory for a chunk" };
   }
   Bytes unpacked(unpacked_size);
   std::size_t written = 0;
@@ -406,7 +406,7 @@ private:
   using Take = std::function<bool(const Ros2Channel&, Stamp, const std::uint8_t*, std::size_t)>;
   using Count = std::function<void(const Ros2Channel&)>;
 
-  /// All records of the file, up to what is damaged or cut off.
+  /// Reads all records up to a damaged or truncated one.
   void readAll(const Take& take, const Count& count, const Progress& progress)
   {
     std::ifstream file(path_, std::ios::binary);
@@ -424,7 +424,7 @@ private:
         std::memcpy(&length, head.data() + 1, sizeof(length));
         if (!file || length > size_ - at - RECORD_HEAD)
         {
-          throw McapDamage{ "it was not closed" };
+          throw McapDamage{ "the file was not closed" };
         }
         if (head[0] == DATA_END || head[0] == FOOTER)
         {
@@ -442,12 +442,12 @@ private:
     }
     catch (const McapDamage& damage)
     {
-      remark_ =
-          path_ + " is read up to byte " + std::to_string(at) + " of " + std::to_string(size_) + ": " + damage.what;
+      remark_ = path_ + " could be read up to byte " + std::to_string(at) + " of " + std::to_string(size_) + ": " +
+                damage.what;
     }
   }
 
-  /// A chunk holds no chunk: each would stand in memory beside the one around it.
+  /// Rejects a chunk within a chunk, because both would be in memory at the same time.
   bool takeRecord(std::uint8_t opcode, Fields fields, bool is_in_chunk, const Take& take, const Count& count)
   {
     switch (opcode)
@@ -502,7 +502,7 @@ private:
 
   bool takeChunk(Fields& fields, const Take& take, const Count& count)
   {
-    fields.take(2 * sizeof(std::uint64_t));  // times
+    fields.take(2 * sizeof(std::uint64_t));  // times of the first and last message
     const auto unpacked_size = fields.number<std::uint64_t>();
     fields.take(sizeof(std::uint32_t));  // check sum
     const std::string compression = fields.text();

@@ -21,7 +21,7 @@ bool isBlank(char c)
   return c == ' ' || c == '\t';
 }
 
-/// The text between the two without blanks and then quotes around it, ended by a zero.
+/// Removes blanks and then quotes from both ends of the text, and terminates it with a zero.
 char* trimmed(char* begin, char* end)
 {
   begin = std::find_if_not(begin, end, isBlank);
@@ -38,7 +38,7 @@ char* trimmed(char* begin, char* end)
   return begin;
 }
 
-/// The name of a column without a unit in brackets behind it that is the one read.
+/// Name of a column without a unit in brackets at its end.
 std::string withoutUnit(const std::string& name)
 {
   static const std::set<std::string> UNITS{ "s", "rad", "rad/s", "A", "N.m", "Nm", "N*m", "degC", "C" };
@@ -52,7 +52,7 @@ std::string withoutUnit(const std::string& name)
   return last == std::string::npos ? name : name.substr(0, last + 1);
 }
 
-/// Behind the quotes that the text begins with; without any its begin.
+/// End of the quoted text at the beginning of the text; `begin` if there are no quotes.
 char* endOfQuotes(char* begin, char* end)
 {
   char* const first = std::find_if_not(begin, end, isBlank);
@@ -75,12 +75,12 @@ CsvRows::CsvRows(const std::string& path) : path_(path), file_(path, std::ios::b
   readHeader();
 }
 
-/// A carriage return alone where one comes before anything else ends a line.
+/// Files with a lone carriage return before the first line feed have lines that end with a carriage return.
 void CsvRows::findLineEnd()
 {
   if (file_.tellg() == std::ifstream::pos_type(-1))
   {
-    return;  // read once
+    return;  // the file is read once
   }
   file_.read(line_.data(), static_cast<std::streamsize>(line_.size()));
   const auto end = line_.cbegin() + file_.gcount();
@@ -90,7 +90,8 @@ void CsvRows::findLineEnd()
   file_.seekg(0);
 }
 
-/// A line that begins with # is the header if the next one has as many columns, one if it is a number; else a comment.
+/// A line that begins with # is the header if the next line has as many columns, or as one column if that line is a
+/// number. Otherwise the line is a comment.
 void CsvRows::readHeader()
 {
   bool is_header = false;
@@ -116,7 +117,7 @@ void CsvRows::readHeader()
     const std::size_t line_number = line_number_;
     is_header = !readLine() || (texts_.size() == header_.size() && texts_.front()[0] != '#' &&
                                 (header_.size() > 1 || decimalNumber(texts_.front()).has_value()));
-    if (place != std::ifstream::pos_type(-1))  // else it was the last line
+    if (place != std::ifstream::pos_type(-1))  // otherwise this was the last line
     {
       file_.clear();
       file_.seekg(place);
@@ -169,10 +170,9 @@ bool CsvRows::next()
 
 std::string CsvRows::unevenText() const
 {
-  return uneven_columns_ == 0 ?
-             "" :
-             "between " + std::string(separatorName()) + " the header has " + std::to_string(header_.size()) +
-                 " columns, a row " + std::to_string(uneven_columns_);
+  return uneven_columns_ == 0 ? "" :
+                                "the header has " + std::to_string(header_.size()) + " columns, separated by " +
+                                    separatorName() + ", but a row has " + std::to_string(uneven_columns_);
 }
 
 const char* CsvRows::separatorName() const
@@ -213,14 +213,14 @@ bool CsvRows::readLine()
     length_ = file_.eof() ? taken : taken - 1;
     if (std::memchr(line_.data(), '\0', length_) != nullptr)
     {
-      throw InputError(place() + ": a zero byte, so it is no text");
+      throw InputError(place() + ": the file contains a zero byte and is therefore no text");
     }
   } while (std::all_of(line_.data(), line_.data() + length_, is_line_end));
   split();
   return true;
 }
 
-/// By the header, in quotes or not.
+/// Finds the separator outside quotes in the header.
 void CsvRows::findSeparator()
 {
   const auto stands = [this](char c)

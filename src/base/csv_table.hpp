@@ -17,40 +17,41 @@
 
 namespace hjt
 {
-/// Rows of a table in a text file with a header. Commas, semicolons, tabs or blanks separate its texts; the header
-/// tells which. Blanks and quotes around a text, a byte order mark and a carriage return before a line's end are not
-/// part of it, nor is a # before the header. Between other separators, and in quotes, a comma is a decimal one. Empty
-/// lines and lines that begin with # are skipped, and so are empty texts beyond the header's.
+/// Rows of a text table with a header. The separators are commas, semicolons, tabs or blanks, as in the header. Blanks
+/// and quotes around a text, a byte order mark, a carriage return at the end of a line and a # before the header are
+/// skipped. Within quotes, or with another separator, a comma is a decimal comma. The reader skips empty lines, lines
+/// that begin with #, and empty texts beyond the columns of the header.
 class CsvRows
 {
 public:
-  /// Reads the header. @throws InputError on an unreadable or empty file.
+  /// Reads the header. @throws InputError if the file is empty or not readable.
   explicit CsvRows(const std::string& path);
 
   const std::vector<std::string>& header() const { return header_; }
 
-  /// Reads the next row; false at the end. @throws InputError naming the line if it differs in columns from the header.
+  /// Reads the next row. @returns false at the end. @throws InputError with the line if its number of columns differs
+  /// from the header's.
   bool next();
 
-  /// From now on a last line with too few columns is the end: its writer was stopped in it.
+  /// Accepts a last line with too few columns as the end of the file, because its writer was interrupted.
   void allowCutOff() { allows_cut_off_ = true; }
-  /// Such a line was left out.
+  /// Whether the last line was incomplete and therefore skipped.
   bool wasCutOff() const { return was_cut_off_; }
 
-  /// From now on any other line with too few or too many columns is a row of empty texts.
+  /// Accepts other lines with a wrong number of columns; such a row has empty texts.
   void allowUneven() { allows_uneven_ = true; }
-  /// How many columns the last such line and the header have, as a clause; empty: there was none.
+  /// Column counts of the header and of the last line with a wrong number, as a clause; empty: all rows are right.
   std::string unevenText() const;
 
-  /// "commas", "blanks".
+  /// Name of the separators, for example "commas".
   const char* separatorName() const;
 
-  /// Of the row read last; valid until the next is.
+  /// Text of the last row; valid until the next row is read.
   const char* text(std::size_t column) const { return texts_[column]; }
   /// The number that the text is. @throws InputError naming the line if it is no finite number.
   double number(std::size_t column) const;
 
-  /// File and line of the row read last.
+  /// File and line of the last row.
   std::string place() const { return path_ + ":" + std::to_string(line_number_); }
 
 private:
@@ -64,31 +65,31 @@ private:
   std::string path_;
   std::ifstream file_;
   std::vector<char> line_;
-  std::size_t length_ = 0;  // of the line
+  std::size_t length_ = 0;  // length of the line
   std::size_t line_number_ = 0;
   char line_end_ = '\n';
   char separator_ = ',';
   bool allows_cut_off_ = false;
   bool allows_uneven_ = false;
   bool was_cut_off_ = false;
-  std::size_t uneven_columns_ = 0;  // of the last line that is allowed for it
+  std::size_t uneven_columns_ = 0;  // of the last row with a wrong number of columns
   std::vector<std::string> header_;
   std::vector<const char*> texts_;
 };
 
-/// N named columns of finite numbers in a table with a header; other columns are skipped. Of the last `lenient`
-/// columns texts that are no finite number are NaN.
+/// Reader of N named columns with finite numbers from a table with a header. It skips other columns. Texts of the last
+/// `lenient` columns that are no finite number become NaN.
 template <std::size_t N>
 class NumberTable
 {
 public:
   using Names = std::array<std::string, N>;
 
-  /// A header with other names for the same columns.
+  /// Function that translates other names of the same columns.
   using Translate = std::vector<std::string> (*)(std::vector<std::string> header);
 
-  /// The last `optional` columns may be missing. @throws InputError on an unreadable file or a wrong header: it names
-  /// all columns that are missing.
+  /// Reads the header. The last `optional` columns may be missing. @throws InputError if the file is not readable or
+  /// the header lacks columns; the text names all of them.
   NumberTable(const std::string& path, const Names& names, std::size_t optional = 0, std::size_t lenient = 0,
               Translate translate = nullptr)
     : names_(names), strict_(N - lenient), rows_(path)
@@ -104,7 +105,7 @@ public:
       }
       if (std::count(found, header.end(), names[i]) > 1)
       {
-        throw InputError(place() + ": column '" + names[i] + "' is there twice");
+        throw InputError(place() + ": column '" + names[i] + "' occurs twice");
       }
       places_[i] = static_cast<std::size_t>(found - header.begin());
     }
@@ -116,8 +117,8 @@ public:
 
   bool hasColumn(std::size_t column) const { return places_[column] < rows_.header().size(); }
 
-  /// The next row, in the order of the names; a missing column keeps its value. False at the end.
-  /// @throws InputError naming line and column.
+  /// Reads the next row, in the order of the names; a missing column keeps its value. @returns false at the end.
+  /// @throws InputError with line and column.
   bool read(std::array<double, N>& row)
   {
     if (!rows_.next())
@@ -134,7 +135,7 @@ public:
     return true;
   }
 
-  /// @throws InputError naming line, column, value, unit and range.
+  /// @throws InputError with line, column, value, unit and range.
   void requireRange(std::size_t column, double value, const Range& range, const std::string& unit) const
   {
     if (!isWithin(value, range))
@@ -159,12 +160,13 @@ private:
     if (std::all_of(header.begin(), header.end(),
                     [](const std::string& text) { return decimalNumber(text).has_value(); }))
     {
-      return columns + ": the first line holds numbers; it has to be the header, with the names of the columns";
+      return columns + ": the first line contains numbers, but must be a header with the names of the columns";
     }
     constexpr std::size_t SHOWN = 8;
     std::vector<std::string> first(header.begin(), header.begin() + std::min(header.size(), SHOWN));
-    return columns + "; between " + rows_.separatorName() + " the header has " + std::to_string(header.size()) +
-           (header.size() == 1 ? " column: " : " columns: ") + joined(first) + (header.size() > SHOWN ? ", ..." : "");
+    return columns + "; the header has " + std::to_string(header.size()) +
+           (header.size() == 1 ? " column" : " columns") + ", separated by " + rows_.separatorName() + ": " +
+           joined(first) + (header.size() > SHOWN ? ", ..." : "");
   }
 
   double number(std::size_t column, const char* text) const
@@ -185,6 +187,6 @@ private:
   Names names_;
   std::size_t strict_;  // columns
   CsvRows rows_;
-  std::array<std::size_t, N> places_{};  // in the header; its size if not there
+  std::array<std::size_t, N> places_{};  // index in the header; its size if the column is missing
 };
 }  // namespace hjt

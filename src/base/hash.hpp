@@ -6,8 +6,8 @@
 
 namespace hjt
 {
-/// Fowler, Noll, Vo, 1a, 64 bits: distinguishes texts, without protection against deliberate collisions.
-/// `hash`: of the text before, to go on from.
+/// FNV-1a hash with 64 bits. It distinguishes texts, but does not protect against deliberate collisions. `hash`
+/// continues from the hash of a preceding text.
 constexpr std::uint64_t textHash(std::string_view text, std::uint64_t hash = 14695981039346656037ull)
 {
   for (const char c : text)
@@ -17,8 +17,8 @@ constexpr std::uint64_t textHash(std::string_view text, std::uint64_t hash = 146
   return hash;
 }
 
-/// Hashes of the source code, the compiler and its options, made by the build (cmake/source_hash.cmake): what is kept
-/// in files for other builds names the code it came from.
-const char* surfaceSourceHash();  ///< of all that the tables of a response surface come from
-const char* sourceHash();         ///< of all of src, include and msg
+/// Hashes of the source code, the compiler and its options, which the build computes (cmake/source_hash.cmake). Stored
+/// files contain the hash of the code that made them.
+const char* surfaceSourceHash();  ///< hash of the code that computes response surfaces
+const char* sourceHash();         ///< hash of all files in src, include and msg
 }  // namespace hjt

@@ -19,8 +19,8 @@ namespace hjt
 {
 namespace
 {
-/// While it lives, the C library reads and writes this thread's numbers with a decimal point, whatever locale the
-/// program has set. Does not allocate.
+/// During its lifetime the C library reads and writes the numbers of this thread with a decimal point, in any locale of
+/// the program. It does not allocate.
 class DecimalPoint
 {
 public:
@@ -32,15 +32,15 @@ public:
 private:
   static locale_t plain() noexcept
   {
-    static const locale_t PLAIN = newlocale(LC_ALL_MASK, "C", nullptr);  // one that always exists
+    static const locale_t PLAIN = newlocale(LC_ALL_MASK, "C", nullptr);  // exists in every C library
     return PLAIN;
   }
 
   locale_t before_;
 };
 
-/// A number in decimal digits, value 10^exponent. With few digits and a small exponent both are exact in a double, and
-/// so is their product or quotient but for its one rounding (Clinger 1990): the number that the C library reads.
+/// A decimal number, digits times 10^exponent. With at most 15 digits and a small exponent both factors are exact in a
+/// double, so that one rounding gives the nearest double (Clinger 1990), as the C library does.
 struct Decimal
 {
   static constexpr int FAR = 100000;  // an exponent that is not small
@@ -48,7 +48,7 @@ struct Decimal
                                                   1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
                                                   1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22 };
 
-  /// The digits there, behind those taken before. @returns what follows them.
+  /// Appends the digits of the text to the number. @returns the position after the digits.
   const char* take(const char* text) noexcept
   {
     for (; *text >= '0' && *text <= '9'; ++text)
@@ -74,11 +74,11 @@ struct Decimal
 
   bool is_negative{};
   std::uint64_t value{};
-  int digits{};  // without zeros in front
+  int digits{};  // without leading zeros
   int exponent{};
 
 private:
-  static constexpr int DIGITS = 15;  // below 2^53
+  static constexpr int DIGITS = 15;  // less than 2^53
 };
 }  // namespace
 
@@ -102,12 +102,12 @@ std::string numberText(double value)
       break;
     }
   }
-  // 2e+02 reads better as 200.
+  // 200 is easier to read than 2e+02.
   if (value == std::floor(value) && std::abs(value) < 1e6)
   {
     std::snprintf(buffer.data(), buffer.size(), "%.0f", value);
   }
-  // printf writes 31000 and 1e-07; rosparam wants 31000.0 and 1.0e-7.
+  // printf writes 31000 and 1e-07, but rosparam needs 31000.0 and 1.0e-7.
   const std::string text(buffer.data());
   const std::size_t exponent = text.find('e');
   std::string mantissa = text.substr(0, exponent);
@@ -179,7 +179,7 @@ std::optional<double> decimalNumber(const char* text)
     return number.quick();
   }
   const DecimalPoint decimal_point;
-  return std::strtod(text, nullptr);  // beyond the largest number it is infinite
+  return std::strtod(text, nullptr);  // infinite beyond the largest number
 }
 
 std::optional<double> nonFiniteNumber(const std::string& text)

@@ -13,27 +13,26 @@ class Node;
 
 namespace hjt
 {
-/// The shortest text that reads back as the same number, spelt so that rosparam takes it for one: 1.0e-5, 31000.0.
+/// Shortest text that reads back as the same number, in a form that rosparam reads as a number: 1.0e-5, 31000.0.
 std::string numberText(double value);
 
-/// The number with so many significant digits.
+/// The number with a number of significant digits.
 std::string roundedText(double value, int digits);
 
-/// The number with so many digits behind the decimal point.
+/// The number with a number of digits after the decimal point.
 std::string fixedText(double value, int digits);
 
-/// The number of a text in decimal digits as Python or C++ write it (5, -.5, 1e-06, 1.0E+3); nothing if it is another
-/// text.
+/// The number in a text of decimal digits, as Python or C++ write it (5, -.5, 1e-06, 1.0E+3); nothing for another text.
 std::optional<double> decimalNumber(const std::string& text);
 std::optional<double> decimalNumber(const char* text);
 
-/// Infinity or not a number as YAML spells them (.inf, -.Inf, .NAN); nothing if it is another text.
+/// Infinity or not-a-number in YAML's spelling (.inf, -.Inf, .NAN); nothing for another text.
 std::optional<double> nonFiniteNumber(const std::string& text);
 
-/// A number of a YAML file; yaml-cpp's own as<double>() follows the program's locale. @throws YAML::Exception.
+/// The number in a YAML node. as<double>() of yaml-cpp depends on the program's locale. @throws YAML::Exception.
 double yamlNumber(const YAML::Node& node);
 
-/// A text to write to. Its numbers have a decimal point and no separators, whatever locale the program has set.
+/// A string stream whose numbers have a decimal point and no separators in any locale of the program.
 class TextStream : public std::ostringstream
 {
 public:

@@ -8,7 +8,7 @@
 
 namespace hjt
 {
-/// Random words that are a function of a counter and a key: Philox 4x32 with 10 rounds.
+/// Pseudo-random words as a function of counter and key: Philox 4x32 with 10 rounds.
 /// Source: Salmon, Moraes, Dror, Shaw, "Parallel random numbers: as easy as 1, 2, 3", SC 2011.
 constexpr std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> counter, std::array<std::uint32_t, 2> key)
 {
@@ -23,13 +23,14 @@ constexpr std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> count
   return counter;
 }
 
-/// The words of one counter and key in a row, for the distributions of the standard library and Boost. Ends after 2^34.
+/// Sequence of the words for one counter and key, for distributions of the standard library and Boost. It ends after
+/// 2^34 words.
 class PhiloxStream
 {
 public:
   using result_type = std::uint32_t;
 
-  /// The counter's last word is the stream's own.
+  /// The stream counts with the last word of the counter.
   PhiloxStream(const std::array<std::uint32_t, 3>& counter, const std::array<std::uint32_t, 2>& key)
     : counter_{ counter[0], counter[1], counter[2], 0 }, key_(key)
   {

@@ -11,14 +11,14 @@
 
 namespace hjt
 {
-/// Closed interval a value must lie in.
+/// Closed interval of allowed values.
 struct Range
 {
   double min;
   double max;
 };
 
-/// "8 ... 4000", or ">= 0.001" where there is no upper end.
+/// Text of a range: "8 ... 4000", or ">= 0.001" without an upper limit.
 inline std::string rangeText(const Range& range)
 {
   const auto bound = [](double value)
@@ -33,13 +33,13 @@ inline std::string rangeText(const Range& range)
   return bound(range.min) + " ... " + bound(range.max);
 }
 
-/// NaN lies in no range.
+/// Whether the value is in the range; NaN never is.
 inline bool isWithin(double value, const Range& range)
 {
   return value >= range.min && value <= range.max;
 }
 
-/// An argument that counts something. @throws InputError.
+/// Checks an argument that is a count. @throws InputError.
 inline void requireAtLeast(const char* name, std::int64_t value, std::int64_t least)
 {
   if (value < least)
@@ -49,20 +49,20 @@ inline void requireAtLeast(const char* name, std::int64_t value, std::int64_t le
   }
 }
 
-/// "NAME = VALUE [UNIT] is out of range, allowed: RANGE [UNIT]".
+/// Error text "NAME = VALUE [UNIT] is out of range, allowed: RANGE [UNIT]".
 inline std::string outOfRangeText(const std::string& name, double value, const std::string& unit, const Range& range)
 {
   const std::string in_unit = " [" + unit + "]";
   return name + " = " + numberText(value) + in_unit + " is out of range, allowed: " + rangeText(range) + in_unit;
 }
 
-/// Empty where the value lies within.
+/// Error text of a value out of range; empty if the value is in range.
 inline std::string rangeErrors(const std::string& name, double value, const std::string& unit, const Range& range)
 {
   return isWithin(value, range) ? std::string() : outOfRangeText(name, value, unit, range);
 }
 
-/// @throws InputError with that text.
+/// @throws InputError with the text of outOfRangeText if the value is out of range.
 inline void requireWithin(const std::string& name, double value, const std::string& unit, const Range& range)
 {
   if (!isWithin(value, range))

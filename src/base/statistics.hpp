@@ -9,11 +9,11 @@
 
 namespace hjt
 {
-// Of a normal distribution, over its standard deviation.
+// Quantiles of a normal distribution, in standard deviations.
 constexpr double NORMAL_95 = 1.96;        ///< half width of the 95 % interval
-constexpr double NORMAL_MEDIAN = 0.6745;  ///< median size
+constexpr double NORMAL_MEDIAN = 0.6745;  ///< median of the magnitude
 
-/// Of at least one value, the upper of two in the middle. Reorders them, allocates nothing.
+/// Median of at least one value; of an even number the upper of the middle two. Reorders the values, allocates nothing.
 template <typename Iterator>
 auto upperMedian(Iterator first, Iterator last)
 {
@@ -22,7 +22,7 @@ auto upperMedian(Iterator first, Iterator last)
   return *middle;
 }
 
-/// Of at least one value, the mean of two in the middle.
+/// Median of at least one value; of an even number the mean of the middle two.
 inline double medianOf(std::vector<double> values)
 {
   std::sort(values.begin(), values.end());
@@ -30,8 +30,7 @@ inline double medianOf(std::vector<double> values)
   return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
-/// Standard deviation of residuals, a vector's, whose outliers do not count: by their median size, as of a normal
-/// distribution.
+/// Robust standard deviation of residuals: from their median size, as of a normal distribution.
 template <class Vector>
 double robustDeviation(const Vector& residuals)
 {
@@ -40,7 +39,7 @@ double robustDeviation(const Vector& residuals)
   return upperMedian(sizes.begin(), sizes.end()) / NORMAL_MEDIAN;
 }
 
-/// Root mean square of what is added.
+/// Root mean square of the added values.
 class Rms
 {
 public:

@@ -11,17 +11,17 @@
 
 namespace hjt
 {
-/// A directory that is removed with it.
+/// A temporary directory. The destructor removes it.
 class TemporaryDirectory
 {
 public:
-  /// @throws InputError if none can be made.
+  /// @throws InputError if the directory cannot be made.
   TemporaryDirectory()
   {
     std::string name = (std::filesystem::temp_directory_path() / "joint_twin_XXXXXX").string();
     if (mkdtemp(name.data()) == nullptr)
     {
-      throw InputError("no directory can be made in " + std::filesystem::temp_directory_path().string() + ": " +
+      throw InputError("cannot make a directory in " + std::filesystem::temp_directory_path().string() + ": " +
                        std::strerror(errno));
     }
     path_ = name;

@@ -8,7 +8,7 @@
 
 namespace hjt
 {
-/// Joins `text(item)` of all items, with `separator` between two.
+/// Joins `text(item)` of all items with `separator` between them.
 template <class Items, class Text>
 std::string joined(const Items& items, const char* separator, const Text& text)
 {
@@ -22,20 +22,20 @@ std::string joined(const Items& items, const char* separator, const Text& text)
   return all;
 }
 
-/// Texts, `separator` between two.
+/// Joins the texts with `separator` between them.
 template <class Texts>
 std::string joined(const Texts& texts, const char* separator = ", ")
 {
   return joined(texts, separator, [](const std::string& text) { return text; });
 }
 
-/// Whether a text is one of several.
+/// Whether `texts` contains `text`.
 inline bool holds(const std::vector<std::string>& texts, const std::string& text)
 {
   return std::find(texts.begin(), texts.end(), text) != texts.end();
 }
 
-/// Single edits (insert, delete, replace) between two texts (Levenshtein).
+/// Number of single edits (insert, delete, replace) between two texts (Levenshtein).
 inline std::size_t editDistance(const std::string& from, const std::string& to)
 {
   std::vector<std::size_t> row(to.size() + 1);
@@ -54,7 +54,7 @@ inline std::size_t editDistance(const std::string& from, const std::string& to)
   return row.back();
 }
 
-/// The name that is nearest to an unknown one; empty if none is near.
+/// The known name that is most similar to an unknown one; empty if none is similar.
 inline std::string nearestName(const std::string& unknown, const std::vector<std::string>& known)
 {
   std::string nearest;
@@ -70,14 +70,15 @@ inline std::string nearestName(const std::string& unknown, const std::vector<std
   return nearest;
 }
 
-/// " (did you mean speed?)" with the nearest name; nothing if none is near.
+/// Suggestion " (did you mean speed?)" with the most similar name; empty if none is similar.
 inline std::string didYouMean(const std::string& unknown, const std::vector<std::string>& known)
 {
   const std::string nearest = nearestName(unknown, known);
   return nearest.empty() ? "" : " (did you mean " + nearest + "?)";
 }
 
-/// Text from outside for a line of a log: control characters become '?', what is beyond `longest` bytes "...".
+/// Makes a text safe for a line of a log: control characters become '?', and "..." replaces what exceeds `longest`
+/// bytes.
 inline std::string printable(std::string text, std::size_t longest = 60)
 {
   if (text.size() > longest)
@@ -90,7 +91,7 @@ inline std::string printable(std::string text, std::size_t longest = 60)
   return text;
 }
 
-/// A text as it stands between the tags, or in an attribute, of XML.
+/// Escapes a text for an element or attribute of XML.
 inline std::string xmlText(const std::string& text)
 {
   std::string escaped;

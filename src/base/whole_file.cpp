@@ -39,7 +39,7 @@ struct Descriptor
   const int number;
 };
 
-/// Brings a file's or a directory's content to the disk.
+/// Flushes the content of a file or directory to the disk.
 void synchronise(const std::string& path)
 {
   const int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC);
@@ -55,7 +55,7 @@ void synchronise(const std::string& path)
   }
 }
 
-/// Writes to a file that was opened, and closes it. `path`: named in the error. @throws InputError.
+/// Writes to an open file and closes it. The error names `path`. @throws InputError.
 void writeAll(int descriptor, const std::string& bytes, const std::string& path)
 {
   bool good = descriptor >= 0;
@@ -73,10 +73,11 @@ void writeAll(int descriptor, const std::string& bytes, const std::string& path)
   }
 }
 
-/// Beside `target`, open for writing. `path`: as the user named it. @throws InputError.
+/// Opens a new file beside `target` for writing. The error names `path`, the user's name of the file. @throws
+/// InputError.
 int openBeside(const std::string& target, const std::string& path, mode_t mode, std::string& name)
 {
-  // Several may write the same file at once: each has one of its own.
+  // Several processes may write the same file at once, so each needs a temporary file of its own.
   constexpr int TRIES = 10;
   for (int i = 0; i < TRIES; ++i)
   {
@@ -95,7 +96,7 @@ int openBeside(const std::string& target, const std::string& path, mode_t mode, 
   throw InputError(path + " cannot be written: " + std::strerror(errno));
 }
 
-/// Gives the name `target` to a new file. `path`: as the user named it.
+/// Renames a new file to `target`. The error names `path`, the user's name of the file.
 void replaceFile(const std::string& path, const std::string& target, const std::string& bytes, mode_t mode)
 {
   std::string temporary;
@@ -112,7 +113,7 @@ void replaceFile(const std::string& path, const std::string& target, const std::
   }
 }
 
-constexpr mode_t READABLE = 0666;  // as the user's mask allows
+constexpr mode_t READABLE = 0666;  // limited by the user's umask
 }  // namespace
 
 std::optional<std::string> wholeFile(const std::string& path, std::size_t most, std::string* reason)
@@ -125,7 +126,7 @@ std::optional<std::string> wholeFile(const std::string& path, std::size_t most, 
     }
     return std::nullopt;
   };
-  // Opening a pipe that nobody writes to waits for ever.
+  // Without O_NONBLOCK, open() of a pipe without a writer blocks.
   const Descriptor file{ open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK) };
   struct stat status
   {
@@ -136,7 +137,7 @@ std::optional<std::string> wholeFile(const std::string& path, std::size_t most, 
   }
   if (!S_ISREG(status.st_mode))
   {
-    return fail("it is a folder, a device or a pipe");
+    return fail("it is a directory, a device or a pipe");
   }
   std::string text;
   for (;;)
@@ -177,8 +178,8 @@ void writeTextFile(const std::string& path, const std::string& text)
   namespace fs = std::filesystem;
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
-  const fs::path there = fs::canonical(path, error);  // behind links
-  // Targets of links in /proc/self/fd may have no name.
+  const fs::path there = fs::canonical(path, error);  // after resolving links
+  // Targets of links in /proc/self/fd may have no path.
   if (fs::exists(status) && (error || !fs::is_regular_file(status)))
   {
     const int descriptor = open(path.c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC);

@@ -7,29 +7,29 @@
 
 namespace hjt
 {
-/// Of a file that is read whole into memory [byte].
+/// Largest size of a file that is read into memory as a whole [byte].
 inline constexpr std::size_t MAX_TEXT = 10'000'000;
 inline constexpr std::size_t MAX_BINARY = 1'000'000'000;
 
-/// The bytes of a regular file of at most `most`; none if it is another, or cannot be read. A pipe, a device or a file
-/// without end holds up nobody. `reason`: gets why there are none.
+/// Content of a regular file of at most `most` bytes; nothing if the file is not regular, too large or not readable.
+/// The function does not block on a pipe, a device or an endless file. `reason` receives the reason of a failure.
 std::optional<std::string> wholeFile(const std::string& path, std::size_t most = MAX_TEXT,
                                      std::string* reason = nullptr);
-/// @throws InputError with the reason in place of none.
+/// Content of the file. @throws InputError with the reason if wholeFile fails.
 std::string readFile(const std::string& path, std::size_t most = MAX_TEXT);
 
-/// A text file, whole or not at all, brought to the disk. Links are followed; a device or pipe is written to.
-/// @throws InputError.
+/// Writes a text file atomically and flushes it to the disk. The function follows links and writes to a device or pipe
+/// directly. @throws InputError.
 void writeTextFile(const std::string& path, const std::string& text);
 
-/// A new file that only this user may read and write, whole or not at all, brought to the disk. It takes the place of
-/// whatever has the name: a link is not followed, a pipe not opened. @throws InputError.
+/// Writes a new file atomically, with access for this user only, and flushes it to the disk. The file replaces anything
+/// of that name, without following a link or opening a pipe. @throws InputError.
 void writePrivateFile(const std::string& path, const std::string& bytes);
 
-/// A new, empty file beside `target` to write that into, under a name that nobody knows beforehand: what lies there, a
-/// link or another's file, is not opened. @returns its path. @throws InputError.
+/// Makes a new empty file beside `target` under an unpredictable name, so that no existing file or link is opened.
+/// @returns its path. @throws InputError.
 std::string makeFileBeside(const std::string& target);
 
-/// Brings a written file to the disk and gives it its name. @throws InputError.
+/// Flushes a written file to the disk and renames it to `path`. @throws InputError.
 void bringToDisk(const std::string& temporary, const std::string& path);
 }  // namespace hjt

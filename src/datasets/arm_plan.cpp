@@ -16,7 +16,7 @@ namespace
 {
 namespace fs = std::filesystem;
 
-/// The path from the plan's folder, if it exists there, else unchanged. `folder`: of one, else of a file.
+/// The path in the plan's directory if it exists there, else unchanged. `folder`: of a directory instead of a file.
 std::string beside(const std::string& directory, const std::string& name, bool folder)
 {
   const fs::path path = fs::path(directory) / name;
@@ -56,7 +56,7 @@ ArmPlan::ArmPlan(const PlanNode& root, const std::string& directory, const Confi
 {
   if (root.find("lives") != nullptr)
   {
-    root.find("lives")->refuse("is not allowed in a plan of arms: a life is one drive's");
+    root.find("lives")->refuse("is not allowed in a plan of arms, because a life is that of one drive");
   }
   const PlanValues values;
   const std::string identified = values.text(root, "identified", "");
@@ -86,7 +86,7 @@ std::size_t ArmPlan::jointOf(const PlanNode& fault, const PlanValues& values) co
   const std::optional<std::size_t> joint = findJoint(arm_, values.text(fault, "joint"));
   if (!joint)
   {
-    required(fault, "joint").refuse("is no joint of the arm; there are " + shortNames(arm_));
+    required(fault, "joint").refuse("is not a joint of the arm; its joints are " + shortNames(arm_));
   }
   return *joint;
 }
@@ -116,7 +116,7 @@ OrderedJson ArmPlan::configuration() const
   OrderedJson json = OrderedJson::object();
   json["arm"] = arm_text_;
   json["urdf"] = arm_.urdf;
-  // Of another arm's file, where this one is like it.
+  // name of the arm whose file this one refers to
   json["base"] = arm_.base;
   json["tip"] = arm_.tip;
   json["gravity"] = arm_.gravity;

@@ -16,7 +16,7 @@
 
 namespace hjt
 {
-/// A run of a whole arm along set points.
+/// Specification of a run of a whole arm along set points.
 struct ArmSpec
 {
   ArmDescription arm;
@@ -26,37 +26,37 @@ struct ArmSpec
   double motionLength() const { return motion->back().time - motion->front().time; }  ///< [s]
 };
 
-/// A fault in a drive: of the joint of this number from the base on, in a plan of one drive 0.
+/// A fault in a drive. `joint`: number of the joint from the base; 0 in a plan of one drive.
 struct RunFault : GrowingFault
 {
   std::size_t joint{};
 };
 
-/// These faults in place of any other.
+/// Replaces all faults of a drive's configuration by these.
 void setFaults(const std::vector<RunFault>& faults, std::size_t joint, const std::string& origin, ParameterMap& map);
 
-/// The faults that a drive's configuration holds.
+/// Faults of a drive's configuration.
 std::vector<RunFault> configuredFaults(const Parameters& drive, std::size_t joint);
 
-/// Part of a plan with the key `arm` that a plan of drives lacks. All members throw InputError that names
-/// file, line, key, value, unit and range, or ParameterError.
+/// Additional part of a plan with the key `arm`. All members throw ParameterError, or InputError with file, line, key,
+/// value, unit and range.
 class ArmPlan
 {
 public:
-  /// `root`: the plan; `directory`: where it lies. `options`: configuration of all drives.
+  /// `root`: the plan; `directory`: its directory; `options`: configuration of all drives.
   ArmPlan(const PlanNode& root, const std::string& directory, const ConfigurationOptions& options);
 
-  /// Number of a joint by its name or short name that the fault gives.
+  /// Number of the joint whose name or short name the fault gives.
   std::size_t jointOf(const PlanNode& fault, const PlanValues& values) const;
   const std::string& jointName(std::size_t joint) const { return arm_.joints[joint].short_name; }
 
-  /// `settings`: over each drive's configuration. `faults`: in place of the configured ones; none: those stay.
+  /// `settings`: changes of each drive's configuration. `faults` replace the configured ones; null: those stay.
   ArmSpec read(const PlanNode& duty, const PlanValues& values, const ParameterMap& settings,
                const std::vector<RunFault>* faults, const std::string& faults_origin) const;
 
-  /// Inputs of the runs besides the plan.
+  /// Inputs of the runs that are not in the plan.
   OrderedJson configuration() const;
-  OrderedJson motions() const;  ///< by their files, a hash each
+  OrderedJson motions() const;  ///< hash of each motion by its file
 
 private:
   struct Motion

@@ -20,8 +20,8 @@ namespace hjt
 {
 namespace
 {
-constexpr double PERIOD = 0.008;  // of a UR controller [s]
-/// From one joint's pose to the next.
+constexpr double PERIOD = 0.008;  // sampling period of a UR controller [s]
+/// Motion between the poses of two joints.
 constexpr double TRANSFER_SPEED = 0.35;         // [rad/s]
 constexpr double TRANSFER_ACCELERATION = 0.35;  // [rad/s^2]
 constexpr const char* TOPIC = "/joint_trajectory";
@@ -72,7 +72,7 @@ void writeMotionCsv(const std::string& path, const ArmDescription& arm, const st
 void writeUrScript(const std::string& path, const std::vector<ArmMove>& moves)
 {
   TextStream text;
-  text << "# Check-up. The arm goes to the first pose from wherever it stands: keep its surroundings clear.\n"
+  text << "# Check-up. The arm moves to the first pose from any position, so keep its surroundings clear.\n"
           "def check_up():\n";
   for (const ArmMove& move : moves)
   {
@@ -107,7 +107,7 @@ void writeTrajectory(const std::string& path, const ArmDescription& arm, const s
     trajectory.points.push_back(point);
   }
   BagWriter bag(path);
-  bag.write(TOPIC, SIMULATION_EPOCH, trajectory);  // stamp 0: begins when it comes
+  bag.write(TOPIC, SIMULATION_EPOCH, trajectory);  // stamp 0: the motion begins on reception
   bag.close();
 }
 }  // namespace
@@ -115,9 +115,11 @@ void writeTrajectory(const std::string& path, const ArmDescription& arm, const s
 void addOptions(OptionTable& table, CheckUpOptions& options)
 {
   table.add("--arm", options.arm, "name in config/arms, or a file").required().type("NAME|FILE.yaml");
-  table.add("--joint", options.joint, "that alone, as base or shoulder; default: all, one after the other")
+  table
+      .add("--joint", options.joint,
+           "a single joint, for example base or shoulder; default: all joints, one after the other")
       .type("NAME");
-  table.add("--out", options.out, "the motion").required().type("FILE");
+  table.add("--out", options.out, "file of the motion").required().type("FILE");
   table
       .add("--format", options.format,
            "csv: angles, rates and torques every 8 ms; urscript: a program; bag: trajectory_msgs/JointTrajectory on "

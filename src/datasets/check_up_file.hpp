@@ -12,28 +12,27 @@ namespace hjt
 {
 struct CheckUpOptions : ConfigurationOptions
 {
-  std::string arm;              ///< name in config/arms, or a file
-  std::string joint;            ///< that alone; empty: all, one after the other
+  std::string arm;              ///< name of a shipped arm, or path of its file
+  std::string joint;            ///< a single joint; empty: all joints, one after the other
   std::string out;              ///< file
   std::string format{ "csv" };  ///< csv, urscript or bag
-  bool force{};                 ///< overwrite the file
+  bool force{};                 ///< overwrite an existing file
 };
 
 void addOptions(OptionTable& table, CheckUpOptions& options);
 
-/// The motion that was written.
 struct CheckUpMotion
 {
-  std::string output;  ///< file
+  std::string output;  ///< path of the file
   double duration{};   ///< [s]
   std::size_t moves{};
-  double largest_speed{};   ///< of a joint [rad/s]
-  double largest_torque{};  ///< at an output [N.m]
+  double largest_speed{};   ///< largest speed of a joint [rad/s]
+  double largest_torque{};  ///< largest torque at an output [N.m]
 };
 
-/// Writes the motion in which an arm's faults are seen best (checkUpMoves), within its limits of speed and torque: as
-/// table every 8 ms, as a program of URScript, or as trajectory_msgs/JointTrajectory on /joint_trajectory.
-/// @throws ParameterError, InputError: a file that cannot be written.
+/// Writes the motion that shows an arm's faults best (checkUpMoves), within its limits of speed and torque: as a table
+/// every 8 ms, as a URScript program, or as trajectory_msgs/JointTrajectory on /joint_trajectory.
+/// @throws ParameterError, or InputError if the file cannot be written.
 CheckUpMotion writeCheckUp(const CheckUpOptions& options);
 
 Report reportOf(const CheckUpMotion& motion);

@@ -19,7 +19,7 @@ namespace
 {
 constexpr std::size_t DIGITS = 16;
 
-/// A whole file in memory, as it is on the disk.
+/// A whole file, mapped into memory.
 class FileView
 {
 public:
@@ -48,7 +48,7 @@ public:
   FileView(const FileView&) = delete;
   FileView& operator=(const FileView&) = delete;
 
-  /// Empty: it cannot be read.
+  /// Content of the file; empty if it cannot be read.
   std::string_view bytes() const
   {
     return start_ == MAP_FAILED ? std::string_view() : std::string_view(static_cast<const char*>(start_), size_);
@@ -60,7 +60,7 @@ private:
   void* start_{ MAP_FAILED };
 };
 
-/// Of the seal's first digit; the file's size if there is no seal.
+/// Position of the seal's first digit; the size of the file without a seal.
 std::size_t sealPlace(std::string_view bytes)
 {
   const std::string before = '"' + std::string(FILE_HASH) + "\":\"";
@@ -69,7 +69,7 @@ std::size_t sealPlace(std::string_view bytes)
   return found == std::string_view::npos || place + DIGITS > bytes.size() ? bytes.size() : place;
 }
 
-/// With open seal.
+/// Hash of the bytes with zeros in the place of the seal.
 std::string hashOf(std::string_view bytes, std::size_t seal)
 {
   const std::uint64_t before = textHash(bytes.substr(0, seal));

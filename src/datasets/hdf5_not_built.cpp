@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// In place of hdf5_files.cpp where HDF5 is missing.
+// Replaces hdf5_files.cpp in builds without HDF5.
 #include "datasets/run_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 
@@ -9,7 +9,7 @@ namespace
 {
 [[noreturn]] void refuse(const std::string& path)
 {
-  throw InputError(path + ": this build has no HDF5, which files .h5 need");
+  throw InputError(path + " cannot be used, because this build has no HDF5");
 }
 }  // namespace
 

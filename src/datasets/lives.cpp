@@ -13,9 +13,9 @@ namespace hjt
 {
 namespace
 {
-constexpr std::size_t MAX_CHECK_UPS = 1'000'000;  // of all drives together
-constexpr int POSITIONS = 8;                      // of the wave generator in a tooth pitch, for the loads of a turn
-/// Where a bearing's first spall may lie.
+constexpr std::size_t MAX_CHECK_UPS = 1'000'000;  // limit for all drives together
+constexpr int POSITIONS = 8;  // positions of the wave generator in a tooth pitch, for the loads of a turn
+/// Places of a bearing's first spall.
 constexpr std::array SPALLED{ FaultKind::BEARING_OUTER_RACE, FaultKind::BEARING_INNER_RACE, FaultKind::BEARING_BALL };
 }  // namespace
 
@@ -69,7 +69,7 @@ Lives::Lives(const PlanNode& node, const Parameters& nominal, const std::string&
       check_ups_.push_back({ i, hours, age, stressAt(load_map, duties_[drive.duty].second, age) });
     };
     drive.life = ageing[drive.duty].live(drive.variation, longest, every, grease_changes, visit);
-    check_ups_.pop_back();  // the end itself: the drive is out of use
+    check_ups_.pop_back();  // at the end itself the drive is out of use
     drives_.push_back(drive);
   }
 }

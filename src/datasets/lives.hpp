@@ -14,57 +14,56 @@
 
 namespace hjt
 {
-/// Which drives of a plan are for the test of what others taught, evenly among their numbers: more drives leave it to
-/// the first ones what they were.
+/// Division of a plan's drives into those for training and those for the test, evenly by their numbers. More drives do
+/// not change the assignment of the first ones.
 class DriveSplit
 {
 public:
-  static constexpr double MAX_DRIVES = 1e6;  ///< of a plan
+  static constexpr double MAX_DRIVES = 1e6;  ///< largest number of drives in a plan
 
   // Columns of the index.
-  static constexpr const char* DRIVE = "drive";  ///< number
-  static constexpr const char* SPLIT = "split";  ///< name
+  static constexpr const char* DRIVE = "drive";  ///< number of the drive
+  static constexpr const char* SPLIT = "split";  ///< name of the set
 
-  /// `drives`: mapping of the plan that may have the key `test`, their share. @throws InputError.
+  /// `drives`: mapping of the plan, which may have the key `test` with the share of test drives. @throws InputError.
   explicit DriveSplit(const PlanNode& drives) : test_(PlanValues().number(drives, "test", "-", { 0.0, 1.0 }, SHARE)) {}
 
   double share() const { return test_; }
-  std::uint64_t testsOf(std::uint64_t drives) const  ///< among the first so many
+  std::uint64_t testsOf(std::uint64_t drives) const  ///< number of test drives among the first `drives`
   {
-    constexpr double ROUNDING = 1e-9;  // of the product
+    constexpr double ROUNDING = 1e-9;  // rounding error of the product
     return static_cast<std::uint64_t>(std::floor(static_cast<double>(drives) * test_ + ROUNDING));
   }
   const char* nameOf(std::uint64_t drive) const { return testsOf(drive + 1) > testsOf(drive) ? "test" : "train"; }
 
 private:
-  static constexpr double SHARE = 0.25;  // where none is given [-]
+  static constexpr double SHARE = 0.25;  // default share of test drives [-]
 
   double test_;
 };
 
-/// Lives of drives of different nature, from new to the end of their use, with a check-up every so many hours: the
-/// plan's mapping `lives`. A check-up is numbered life by life. After construction all members may be called from any
-/// thread.
+/// Lives of different drives from new to the end of use, with check-ups at equal intervals of use: the plan's mapping
+/// `lives`. Check-ups are numbered life by life. After construction all members are thread-safe.
 class Lives
 {
 public:
   using Labels = std::vector<std::pair<std::string, ParameterValue>>;
 
-  /// `nominal`: the drive whose tooth model the laws of ageing use; `directory`: where the plan lies. Takes seconds.
-  /// @throws InputError, ParameterError.
+  /// `nominal`: drive whose tooth model the laws of ageing use; `directory`: directory of the plan. The construction
+  /// takes seconds. @throws InputError, ParameterError.
   Lives(const PlanNode& node, const Parameters& nominal, const std::string& directory, std::uint32_t seed);
 
   std::uint64_t checkUps() const { return check_ups_.size(); }
   std::uint64_t driveAt(std::uint64_t check_up) const { return check_ups_[check_up].drive; }
 
-  /// The wear that the drive has then.
+  /// Wear of the drive at a check-up.
   std::vector<GrowingFault> faultsAt(std::uint64_t check_up) const;
 
-  /// True state of the drive at that time.
+  /// True state of the drive at a check-up.
   Labels labelsAt(std::uint64_t check_up) const;
   static std::vector<std::string> labelNames();
 
-  /// The duty cycles, for the plan's document.
+  /// The duty cycles for the plan's document.
   OrderedJson duties() const;
 
 private:
@@ -72,7 +71,7 @@ private:
   {
     UnitVariation variation;
     std::size_t duty{};
-    Fault spall;  // kind and place of its bearing's
+    Fault spall;  // kind and place of the bearing's spall
     int crack_place{};
     DriveAgeing::Life life;
   };
@@ -81,7 +80,7 @@ private:
     std::uint64_t drive{};
     double hours{};
     DriveAge age;
-    double stress{};  // largest amplitude of the duty cycle, at the notch, without mean [Pa]
+    double stress{};  // largest amplitude of the duty cycle at the notch, at zero mean stress [Pa]
   };
   void readDuties(const PlanNode& files, const std::string& directory);
   double stressAt(const RevolutionLoadMap& load_map, const DutyCycle& duty, const DriveAge& age) const;

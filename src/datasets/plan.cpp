@@ -16,12 +16,12 @@ namespace
 using Kind = PlanNode::Kind;
 
 constexpr double MAX_RUNS = 1e9;
-/// Where a plan has no classes: all runs are of this one.
+/// Class of all runs in a plan without classes.
 const PlanNode::Entry HEALTHY{ "healthy", PlanNode{ Kind::LIST, "classes.healthy", "", {}, {} } };
-/// Of the runs of a plan of lives.
+/// Class of the runs in a plan of lives.
 const PlanNode::Entry LIFE{ "life", PlanNode{ Kind::LIST, "lives", "", {}, {} } };
 
-/// With the overlays that the plan names, which lie beside it or in the default configuration's folder.
+/// Adds the overlays that the plan names, from the plan's directory or that of the default configuration.
 ConfigurationOptions withOverlays(const PlanNode& root, const std::string& directory, ConfigurationOptions options)
 {
   if (root.find("overlays") != nullptr)
@@ -38,7 +38,7 @@ ConfigurationOptions withOverlays(const PlanNode& root, const std::string& direc
 }
 
 constexpr const char* NOISE_SEED = "sensors.noise_seed";
-constexpr const char* LIVES_SET = "set.";  // before what is drawn for each drive
+constexpr const char* LIVES_SET = "set.";  // prefix of the values drawn for each drive
 constexpr const char* DRIVES_SET = "drives.set.";
 
 void refuseGrids(const std::vector<const Variable*>& variables, const std::string& where)
@@ -95,7 +95,7 @@ Plan::Plan(const std::string& path, const ConfigurationOptions& options)
   }
   catch (const InputError&)
   {
-    // Whoever asks for the run is told.
+    // The caller of `run` gets the error.
   }
 }
 
@@ -160,7 +160,7 @@ void Plan::makeBlocks()
   runs_ = drives * period_;
 }
 
-/// @returns how many.
+/// @returns the number of drives.
 std::uint64_t Plan::readDrives()
 {
   const PlanNode& node = required(root_, "drives", Kind::MAP);
@@ -181,7 +181,7 @@ std::uint64_t Plan::readDrives()
   {
     if (common != nullptr && common->find(key) != nullptr)
     {
-      setting.refuse("stands in set too: give it in one of them");
+      setting.refuse("is also in set; use only one of them");
     }
   }
   std::vector<const Variable*> drawn;
@@ -189,7 +189,7 @@ std::uint64_t Plan::readDrives()
   refuseGrids(drawn, "over drives");
   if (drawn.empty())
   {
-    settings.refuse("must draw at least one parameter: else all drives are the same");
+    settings.refuse("must draw at least one parameter, because otherwise all drives are equal");
   }
   return number;
 }
@@ -221,10 +221,10 @@ void Plan::makeLives()
     if (root_.find(other) != nullptr)
     {
       root_.find(other)->refuse(
-          "is not allowed in a plan of lives: lives.drives are its drives, their wear its faults");
+          "is not allowed in a plan of lives, where lives.drives gives the drives and their wear the faults");
     }
   }
-  // The laws of ageing take the drive that is the same in all lives.
+  // The laws of ageing use the drive that is common to all lives.
   ParameterMap nominal = base_;
   if (const PlanNode* settings = root_.find("set"))
   {
@@ -287,7 +287,7 @@ OrderedJson Plan::snapshot() const
   return { { "runs", runs_ }, { "plan", jsonOf(root_) }, { "tables", tables }, { "configuration", base } };
 }
 
-/// All that varies, with its value in a run; into the run too.
+/// Values of all variables in a run, which are also stored in the run.
 PlanValues Plan::valuesOf(const Block& block, std::uint64_t number, RunSpec& spec) const
 {
   std::uint64_t rest = number % period_ - block.first;
@@ -309,7 +309,7 @@ PlanValues Plan::valuesOf(const Block& block, std::uint64_t number, RunSpec& spe
   return values;
 }
 
-/// What is known of a run's drive besides what varies.
+/// Labels of a run's drive that are not variables.
 Lives::Labels Plan::labelsOf(std::uint64_t number) const
 {
   const std::uint64_t period = number / period_;
@@ -349,7 +349,6 @@ RunSpec Plan::run(std::uint64_t number) const
   return spec;
 }
 
-/// A class' list of faults.
 std::vector<RunFault> Plan::faultsOf(const PlanNode& list, const PlanValues& values) const
 {
   std::vector<RunFault> faults;
@@ -369,7 +368,7 @@ std::vector<RunFault> Plan::faultsOf(const PlanNode& list, const PlanValues& val
     const std::optional<FaultKind> kind = faultNamed(values.text(node, "kind"));
     if (!kind)
     {
-      required(node, "kind").refuse("is no fault; there are " + faultNames());
+      required(node, "kind").refuse("is not a fault; allowed: " + faultNames());
     }
     RunFault growing;
     growing.joint = arm_ ? arm_->jointOf(node, values) : 0;
@@ -383,11 +382,11 @@ std::vector<RunFault> Plan::faultsOf(const PlanNode& list, const PlanValues& val
   return faults;
 }
 
-/// Duty, faults and parameters of a run of one drive.
+/// Sets duty, faults and parameters of a run of one drive.
 void Plan::takeDrive(const Block& block, const PlanValues& values, RunSpec& spec) const
 {
   spec.duty = duties_.read(*block.duty, values);
-  constexpr double LEAST_EASING = 0.1;  // a shorter one jerks like a step [s]
+  constexpr double LEAST_EASING = 0.1;  // [s]; a shorter one excites vibration like a step
   spec.duty.easing = 0.5 * recording_.start >= LEAST_EASING ? 0.5 * recording_.start : 0.0;
   ParameterMap settings = settingsOf(values, spec.run);
   const bool given = lives_ || root_.find("classes") != nullptr;
@@ -413,7 +412,7 @@ void Plan::takeDrive(const Block& block, const PlanValues& values, RunSpec& spec
   }
 }
 
-/// Motion, faults and drives of a run of a whole arm.
+/// Sets motion, faults and drives of a run of a whole arm.
 void Plan::takeArm(const Block& block, const PlanValues& values, RunSpec& spec) const
 {
   const bool given = root_.find("classes") != nullptr;
@@ -450,8 +449,8 @@ ParameterMap Plan::settingsOf(const PlanValues& values, std::uint64_t number) co
   return map;
 }
 
-/// The settings of one run over those of the first, which set the same keys. Where something is wrong all is read, for
-/// the text of the error.
+/// Applies the settings of a run to the parameters of the first one, which sets the same keys. If there is an error,
+/// everything is read again for the text of the error.
 Parameters Plan::parametersOf(const ParameterMap& settings, bool faults_given) const
 {
   const auto first_fault = settings.lower_bound(FAULTS);

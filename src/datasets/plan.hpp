@@ -20,7 +20,7 @@
 
 namespace hjt
 {
-/// One run of a plan, with nothing left open.
+/// Complete specification of one run of a plan.
 struct RunSpec
 {
   std::uint64_t run{};
@@ -28,23 +28,23 @@ struct RunSpec
   std::string duty_name;
   std::uint64_t repeat{};
   double duration{};      ///< [s]
-  Parameters parameters;  ///< growing faults are a staircase; of an arm those of its first drive
+  Parameters parameters;  ///< growing faults are approximated by steps; for an arm the parameters of its first drive
   std::vector<RunFault> faults;
   RunDuty duty;
-  std::optional<ArmSpec> arm;                                     ///< of a plan of whole arms
+  std::optional<ArmSpec> arm;                                     ///< only in a plan of whole arms
   std::vector<std::pair<std::string, ParameterValue>> variables;  ///< path in the plan and value in this run
 };
 
-/// A plan of many runs: what is fixed, laid out on grids and drawn.
+/// A plan of many runs with constant values, grids and random draws.
 ///
-/// Runs are numbered class by class, within it duty cycle by duty cycle, within that grid by grid, the last one
-/// fastest, then the repeats; a plan with `drives` drive by drive, all that of each. A plan of lives: life by life,
-/// check-up by check-up, duty cycle by duty cycle; what `set` draws is drawn for each drive. A plan of whole arms: duty
-/// cycles are motions, and `set` is that of all drives. After construction all members may be called from any thread.
+/// Runs are numbered by class, then by duty cycle, then by grid with the last one fastest, then by repeat. A plan with
+/// `drives` is numbered by drive first. A plan of lives is numbered by life, check-up and duty cycle, and `set` is
+/// drawn for each drive. In a plan of whole arms duty cycles are motions, and `set` is that of all drives. After
+/// construction all members are thread-safe.
 class Plan
 {
 public:
-  /// `options`: the configuration below the plan's own settings. @throws InputError naming file and line.
+  /// `options`: configuration that the plan's settings change. @throws InputError with file and line.
   Plan(const std::string& path, const ConfigurationOptions& options);
   Plan(const Plan&) = delete;
   Plan& operator=(const Plan&) = delete;
@@ -53,32 +53,32 @@ public:
   std::uint64_t runs() const { return runs_; }
   const Recording& recording() const { return recording_; }
 
-  /// @throws InputError naming file, line, key, value, unit and range.
+  /// @throws InputError with file, line, key, value, unit and range.
   RunSpec run(std::uint64_t number) const;
 
-  /// Runs of one class and duty cycle.
+  /// The runs of one class and duty cycle.
   struct Block
   {
     const PlanNode::Entry* fault_class;
     const PlanNode* duty;
     std::vector<const Variable*> variables;
-    std::uint64_t first;     ///< run
-    std::uint64_t together;  ///< one after the other in each period
-    std::uint64_t period{};  ///< that of the plan
-    std::uint64_t size{};    ///< of all periods
+    std::uint64_t first;     ///< number of the first run
+    std::uint64_t together;  ///< number of successive runs in each period
+    std::uint64_t period{};  ///< period of the plan
+    std::uint64_t size{};    ///< number of runs in all periods
 
     std::uint64_t run(std::uint64_t i) const { return first + i / together * period + i % together; }
   };
   const std::vector<Block>& blocks() const { return blocks_; }
 
-  const Lives* lives() const { return lives_.get(); }  ///< none: a plan of other runs
+  const Lives* lives() const { return lives_.get(); }  ///< null for other plans than those of lives
   bool isOfArms() const { return arm_.has_value(); }
   std::string jointName(std::size_t joint) const { return arm_ ? arm_->jointName(joint) : std::string(); }
 
-  /// Paths of all that varies, in the order of the plan.
+  /// Paths of all variables, in the order of the plan.
   std::vector<std::string> variableNames() const;
 
-  /// Everything the runs depend on, as one document.
+  /// Document with everything that the runs depend on.
   OrderedJson snapshot() const;
 
 private:
@@ -103,14 +103,14 @@ private:
   std::uint32_t seed_{};
   std::uint64_t repeats_{};
   std::uint64_t runs_{};
-  std::uint64_t period_{};  // runs of a drive, of a check-up of lives, or all
+  std::uint64_t period_{};  // number of runs of a drive, of a check-up of lives, or all
   Recording recording_;
   DutyReader duties_;
   std::unique_ptr<const Lives> lives_;
-  std::optional<DriveSplit> split_;  // of a plan with drives
+  std::optional<DriveSplit> split_;  // only for a plan with drives
   std::optional<ArmPlan> arm_;
   std::vector<std::unique_ptr<const Variable>> variables_;
   std::vector<Block> blocks_;
-  std::optional<Parameters> first_;  // of the first run, if there is no error in it
+  std::optional<Parameters> first_;  // parameters of the first run, if they are valid
 };
 }  // namespace hjt

@@ -19,7 +19,7 @@ namespace hjt
 {
 namespace
 {
-// An alias can stand for itself, or for ever more copies of others.
+// An alias can refer to itself, or multiply copies of others.
 constexpr int DEEPEST = 32;
 constexpr std::size_t MAX_NODES = 100'000;
 
@@ -31,8 +31,8 @@ PlanNode convert(const YAML::Node& from, const std::string& file, const std::str
   node.origin = file + ":" + std::to_string(from.Mark().line + 1);
   if (depth > DEEPEST || ++nodes > MAX_NODES)
   {
-    node.refuse("makes the plan too large: at most " + std::to_string(DEEPEST) + " levels and " +
-                std::to_string(MAX_NODES) + " values, aliases counted each time");
+    node.refuse("makes the plan too large; allowed are at most " + std::to_string(DEEPEST) + " levels and " +
+                std::to_string(MAX_NODES) + " values, where each alias counts");
   }
   const auto below = [&](const YAML::Node& entry, const std::string& key)
   { return convert(entry, file, path.empty() ? key : path + "." + key, depth + 1, nodes); };
@@ -58,7 +58,7 @@ PlanNode convert(const YAML::Node& from, const std::string& file, const std::str
       const std::string key = entry.first.as<std::string>();
       if (node.find(key) != nullptr)
       {
-        node.find(key)->refuse("stands twice");
+        node.find(key)->refuse("occurs twice");
       }
       node.entries.emplace_back(key, below(entry.second, key));
     }
@@ -209,7 +209,7 @@ double PlanValues::number(const PlanNode& map, const std::string& key, const cha
   {
     refuse(node, found, "must be a number " + with_unit + ", " + rangeText(range));
   }
-  // Written so that NaN fails.
+  // This form of the comparison rejects NaN.
   if (!(*number >= range.min && *number <= range.max))
   {
     refuse(node, found, with_unit + " is out of range, allowed: " + rangeText(range) + " " + with_unit);
@@ -256,7 +256,7 @@ const PlanNode& required(const PlanNode& map, std::string_view key)
   const PlanNode* node = map.find(key);
   if (node == nullptr)
   {
-    map.refuse("lacks the key '" + std::string(key) + "'");
+    map.refuse("needs the key '" + std::string(key) + "'");
   }
   return *node;
 }
@@ -295,10 +295,11 @@ PhiloxStream wordsOf(std::uint32_t seed, const std::string& name, std::uint64_t 
                       { seed ^ static_cast<std::uint32_t>(hash), static_cast<std::uint32_t>(hash >> 32) });
 }
 
-constexpr double MIN_SHARE = 1e-3;  // least share of a normal distribution within its limits: others are redrawn
-constexpr double MAX_WHOLE = 1e15;  // which a double holds exactly
+// least probability of a normal distribution within its limits, because values outside are redrawn
+constexpr double MIN_SHARE = 1e-3;
+constexpr double MAX_WHOLE = 1e15;  // largest whole number that a double represents exactly
 
-/// Of a normal distribution {mean, standard deviation, lowest, highest}, what lies between its limits.
+/// Probability within the limits of a normal distribution {mean, standard deviation, lowest, highest}.
 double shareWithin(const std::array<double, 4>& normal)
 {
   const auto [mean, deviation, lowest, highest] = normal;
@@ -356,8 +357,8 @@ Variable::Variable(const PlanNode& node) : node_(&node)
       }
       if (shareWithin(numbers_) < MIN_SHARE)
       {
-        list.refuse("must leave at least " + numberText(MIN_SHARE) +
-                    " of the distribution between lowest and highest; for one value, write it");
+        list.refuse("must contain at least " + numberText(MIN_SHARE) +
+                    " of the distribution between lowest and highest; write a single value as a number");
       }
       break;
     default:

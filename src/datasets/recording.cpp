@@ -9,7 +9,7 @@ namespace hjt
 {
 namespace
 {
-/// The columns of a group, out of those `known`. @throws InputError naming file and line.
+/// Columns of a group, which must be among `known`. @throws InputError with file and line.
 std::vector<const RunColumn*> readColumns(const PlanNode& group, const std::vector<RunColumn>& known)
 {
   std::vector<const RunColumn*> columns;
@@ -22,11 +22,11 @@ std::vector<const RunColumn*> readColumns(const PlanNode& group, const std::vect
     if (column == known.end())
     {
       const auto name_of = [](const RunColumn& each) { return each.name; };
-      element.refuse("is no column; there are " + joined(known, ", ", name_of));
+      element.refuse("is not a column; allowed: " + joined(known, ", ", name_of));
     }
     if (std::find(columns.begin(), columns.end(), &*column) != columns.end())
     {
-      element.refuse("stands twice");
+      element.refuse("occurs twice");
     }
     columns.push_back(&*column);
   }
@@ -39,40 +39,44 @@ const std::vector<RunColumn>& driveColumns()
   using I = const Instant&;
   static const std::vector<RunColumn> COLUMNS{
     // Columns of a robot's controller.
-    { "motor_angle_encoder", "rad", "motor encoder", [](I i) { return i.encoders.motor_angle; } },
-    { "motor_velocity_encoder", "rad/s", "motor encoder, difference over sensors.velocity_window",
+    { "motor_angle_encoder", "rad", "angle by the motor encoder", [](I i) { return i.encoders.motor_angle; } },
+    { "motor_velocity_encoder", "rad/s", "speed by the motor encoder over sensors.velocity_window",
       [](I i) { return i.encoders.motor_velocity; } },
-    { "output_angle_encoder", "rad", "output encoder, unwrapped", [](I i) { return i.encoders.output_angle; } },
-    { "output_velocity_encoder", "rad/s", "output encoder, difference over sensors.velocity_window",
+    { "output_angle_encoder", "rad", "unwrapped angle by the output encoder",
+      [](I i) { return i.encoders.output_angle; } },
+    { "output_velocity_encoder", "rad/s", "speed by the output encoder over sensors.velocity_window",
       [](I i) { return i.encoders.output_velocity; } },
     { "motor_torque_reading", "N.m", "motor torque estimated from the current",
       [](I i) { return i.motor_torque_reading; } },
     { "speed_reference", "rad/s", "reference of the joint speed", [](I i) { return i.speed_reference; } },
     // Columns of true values, which only the twin knows.
-    { "motor_angle", "rad", "motor, true", [](I i) { return i.outputs.motor_angle; } },
-    { "motor_velocity", "rad/s", "motor, true", [](I i) { return i.outputs.motor_velocity; } },
-    { "output_angle", "rad", "output, true", [](I i) { return i.outputs.output_angle; } },
-    { "output_velocity", "rad/s", "output, true", [](I i) { return i.outputs.output_velocity; } },
-    { "motor_torque", "N.m", "applied by the motor", [](I i) { return i.outputs.motor_torque; } },
-    { "load_torque", "N.m", "external, at the output; > 0 resists positive motion",
+    { "motor_angle", "rad", "true angle of the motor", [](I i) { return i.outputs.motor_angle; } },
+    { "motor_velocity", "rad/s", "true speed of the motor", [](I i) { return i.outputs.motor_velocity; } },
+    { "output_angle", "rad", "true angle of the output", [](I i) { return i.outputs.output_angle; } },
+    { "output_velocity", "rad/s", "true speed of the output", [](I i) { return i.outputs.output_velocity; } },
+    { "motor_torque", "N.m", "torque applied by the motor", [](I i) { return i.outputs.motor_torque; } },
+    { "load_torque", "N.m", "external torque at the output; > 0 resists positive motion",
       [](I i) { return i.outputs.load_torque; } },
-    { "temperature", "degC", "of the grease", [](I i) { return i.outputs.temperature; } },
-    { "housing_temperature", "degC", "of the housing", [](I i) { return i.outputs.housing_temperature; } },
-    { "wave_generator_torque", "N.m", "of the wave generator on the flexspline",
+    { "temperature", "degC", "temperature of the grease", [](I i) { return i.outputs.temperature; } },
+    { "housing_temperature", "degC", "temperature of the housing", [](I i) { return i.outputs.housing_temperature; } },
+    { "wave_generator_torque", "N.m", "torque of the wave generator on the flexspline",
       [](I i) { return i.outputs.wave_generator_torque; } },
-    { "joint_torque", "N.m", "of the mesh on the circular spline", [](I i) { return i.outputs.joint_torque; } },
-    { "friction_torque", "N.m", "all friction, reduced to the motor by power",
+    { "joint_torque", "N.m", "torque of the mesh on the circular spline", [](I i) { return i.outputs.joint_torque; } },
+    { "friction_torque", "N.m", "all friction as a torque at the motor, by power",
       [](I i) { return i.outputs.friction_torque; } },
-    { "torsional_stiffness", "N.m/rad", "local, wave generator locked",
+    { "torsional_stiffness", "N.m/rad", "local stiffness with the wave generator locked",
       [](I i) { return i.outputs.torsional_stiffness; } },
-    { "energy_residual", "J", "energy in, less stored, dissipated and released",
+    { "energy_residual", "J", "supplied energy less stored, dissipated and released energy",
       [](I i) { return i.outputs.energy_residual; } },
-    { "wave_generator_force", "N", "wave generator on each tooth", nullptr, &ToothForces::wave_generator_force },
-    { "rim_tension", "N", "rim behind each tooth", nullptr, &ToothForces::rim_tension },
-    { "bending_force", "N", "of the bent rim on each tooth", nullptr, &ToothForces::bending_force },
-    { "mesh_force", "N", "flank of each tooth", nullptr, &ToothForces::mesh_force },
-    { "tooth_x", "m", "position of each tooth", nullptr, &ToothForces::tooth_x },
-    { "tooth_y", "m", "position of each tooth", nullptr, &ToothForces::tooth_y },
+    { "wave_generator_force", "N", "force of the wave generator on each tooth", nullptr,
+      &ToothForces::wave_generator_force },
+    { "rim_tension", "N", "tension of the rim from each tooth to the next", nullptr, &ToothForces::rim_tension },
+    { "bending_force", "N", "bending force of the segment from each tooth to the next", nullptr,
+      &ToothForces::bending_force },
+    { "mesh_force", "N", "normal force on the flank of each tooth; > 0 leading, < 0 trailing flank", nullptr,
+      &ToothForces::mesh_force },
+    { "tooth_x", "m", "x of each tooth point", nullptr, &ToothForces::tooth_x },
+    { "tooth_y", "m", "y of each tooth point", nullptr, &ToothForces::tooth_y },
   };
   return COLUMNS;
 }
@@ -108,13 +112,13 @@ Recording readRecording(const PlanNode& record, bool of_arms)
   }
   if (!hasHdf5())
   {
-    record.refuse("needs format: bag; hdf5 is not built: it needs HDF5");
+    record.refuse("needs format: bag, because this build has no HDF5");
   }
   allowOnly(record, { "format", "start", "deflate", "indicators", "groups" });
   recording.indicators = values.flag(record, "indicators");
   if (recording.indicators && of_arms)
   {
-    required(record, "indicators").refuse("are those of one drive, not of an arm: `joint_twin indicators` makes them");
+    required(record, "indicators").refuse("are those of one drive; use `joint_twin indicators` for an arm");
   }
   const std::vector<RunColumn>& known = of_arms ? armColumns() : driveColumns();
   constexpr double START = 1.0;  // [s]

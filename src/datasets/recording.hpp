@@ -10,7 +10,7 @@
 
 namespace hjt
 {
-/// The joint at one instant, for the columns of a data set.
+/// State of the joint at one instant, for the columns of a data set.
 struct Instant
 {
   JointOutputs outputs;
@@ -19,38 +19,38 @@ struct Instant
   double speed_reference{};       ///< [rad/s]
 };
 
-/// One quantity that can be recorded.
+/// A quantity that can be recorded.
 struct RunColumn
 {
   const char* name;
   const char* unit;
   const char* meaning;
-  double (*value)(const Instant&);                ///< none: a column of numbers per tooth, or of an arm
-  std::vector<double> ToothForces::*per_tooth{};  ///< none: one number
-  const ArmQuantity* of_arm{};                    ///< none: of one drive
+  double (*value)(const Instant&);                ///< null: a column for each tooth, or of an arm
+  std::vector<double> ToothForces::*per_tooth{};  ///< null: one number
+  const ArmQuantity* of_arm{};                    ///< null: a quantity of one drive
 
-  /// Numbers a row in a run of a drive of so many teeth, or of an arm of so many joints.
+  /// Number of values in a row, in a run of a drive with `teeth` or of an arm with `joints`.
   std::size_t width(int teeth, std::size_t joints) const
   {
     return of_arm != nullptr ? of_arm->width(joints) : per_tooth != nullptr ? static_cast<std::size_t>(teeth) : 1;
   }
-  bool isTable() const { return of_arm != nullptr || per_tooth != nullptr; }  ///< of several numbers a row
+  bool isTable() const { return of_arm != nullptr || per_tooth != nullptr; }  ///< whether a row has several numbers
 };
 
 const std::vector<RunColumn>& driveColumns();
 
 const std::vector<RunColumn>& armColumns();  ///< in the order of ARM_QUANTITIES
 
-/// Columns that are recorded at one rate.
+/// Columns that are recorded at the same rate.
 struct RecordingGroup
 {
   std::string name;
   double rate{};   // [Hz]
-  bool float32{};  // else float64
+  bool float32{};  // otherwise float64
   std::vector<const RunColumn*> columns;
 };
 
-/// This build writes and reads HDF5 files.
+/// Whether this build supports HDF5 files.
 bool hasHdf5();
 
 enum class RunFormat
@@ -62,12 +62,12 @@ enum class RunFormat
 struct Recording
 {
   RunFormat format{};
-  double start{};     ///< nothing is recorded before; what drives the joint comes in gently in its first half [s]
-  int deflate{};      ///< 0 ... 9; 0: not compressed
-  bool indicators{};  ///< those of docs/indicators.md, a row a window
+  double start{};     ///< start of the recording; in the first half of this time the inputs increase gradually [s]
+  int deflate{};      ///< compression level 0 ... 9; 0: none
+  bool indicators{};  ///< record the indicators of docs/indicators.md, one row for each window
   std::vector<RecordingGroup> groups;
 };
 
-/// The plan's mapping `record`; `of_arms`: of a plan of whole arms. @throws InputError naming file and line.
+/// Reads the plan's mapping `record`; `of_arms`: in a plan of whole arms. @throws InputError with file and line.
 Recording readRecording(const PlanNode& record, bool of_arms);
 }  // namespace hjt

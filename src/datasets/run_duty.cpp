@@ -13,10 +13,10 @@ namespace hjt
 {
 namespace
 {
-constexpr Range LARGE{ -1e6, 1e6 };  // any value of a waveform
-constexpr double BANDWIDTH = 8.0;    // of the speed control [Hz]
+constexpr Range LARGE{ -1e6, 1e6 };  // allowed values of a waveform
+constexpr double BANDWIDTH = 8.0;    // bandwidth of the speed control [Hz]
 
-/// Unit of the values of a key of a duty cycle.
+/// Unit of the values of a duty cycle's key.
 const char* unitOf(const std::string& key)
 {
   return key == "speed" ? "rad/s" : key == "temperature" ? "degC" : "N.m";
@@ -96,12 +96,12 @@ std::shared_ptr<const TableWaveform::Rows> TableWaveform::read(const std::string
   {
     if (row[0] < 0.0 || (!rows->empty() && row[0] <= rows->back().first))
     {
-      throw InputError(table.place() + ": column 'time' must start at 0 or later and ascend");
+      throw InputError(table.place() + ": column 'time' must be >= 0 and ascending");
     }
     table.requireRange(1, row[1], range, unit);
     if (!rows->empty() && !std::isfinite((row[1] - rows->back().second) / (row[0] - rows->back().first)))
     {
-      throw InputError(table.place() + ": column '" + column + "' rises without bound");
+      throw InputError(table.place() + ": column '" + column + "' must be finite and change at a finite rate");
     }
     rows->emplace_back(row[0], row[1]);
   }

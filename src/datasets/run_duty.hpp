@@ -18,14 +18,14 @@
 
 namespace hjt
 {
-/// A quantity over time, and its slope.
+/// A quantity as a function of time, with its slope.
 class Waveform
 {
 public:
   virtual ~Waveform() = default;
-  virtual double value(double time) const = 0;  ///< `time` [s] from 0 on
-  virtual double slope(double time) const = 0;  ///< [1/s] of the quantity's unit
-  virtual Range range() const = 0;              ///< it never leaves
+  virtual double value(double time) const = 0;  ///< `time` >= 0 [s]
+  virtual double slope(double time) const = 0;  ///< in the quantity's unit over seconds
+  virtual Range range() const = 0;              ///< bounds of all values
 };
 
 class ConstantWaveform : public Waveform
@@ -53,14 +53,14 @@ private:
   double mean_, amplitude_, angular_frequency_, phase_;
 };
 
-/// Periodic: up to the peak at a constant slope, there for `hold`, down to zero, there for `pause`; then the same
-/// with the opposite sign. Without a peak, where these times may all be zero, it stands still.
+/// Periodic waveform: constant slope to the peak, `hold`, constant slope to zero, `pause`; then the same with opposite
+/// sign. Without a peak all times may be zero, and the value is constant.
 class TrapezoidWaveform : public Waveform
 {
 public:
-  static constexpr double SHORTEST = 1e-9;  ///< half period of one with a peak [s]
+  static constexpr double SHORTEST = 1e-9;  ///< shortest half period of a waveform with a peak [s]
 
-  /// `slope` [1/s] of the quantity's unit, > 0; `hold`, `pause` [s].
+  /// `slope`: in the quantity's unit over seconds, > 0; `hold`, `pause` [s].
   TrapezoidWaveform(double peak, double slope, double hold, double pause);
   double value(double time) const override;
   double slope(double time) const override;
@@ -71,20 +71,20 @@ private:
   struct Place
   {
     double sign;
-    double time;  // since the half period began [s]
+    double time;  // since the beginning of the half period [s]
   };
   Place place(double time) const;
 
   double peak_, slope_, rise_, hold_, half_period_;
 };
 
-/// Straight lines between the rows of a table; before the first and after the last row its value holds.
+/// Linear interpolation between the rows of a table; constant before the first and after the last row.
 class TableWaveform : public Waveform
 {
 public:
   using Rows = std::vector<std::pair<double, double>>;
 
-  /// One column over the column `time` [s] of a CSV file. @throws InputError naming line and column.
+  /// Reads a column and the column `time` [s] of a CSV file. @throws InputError with line and column.
   static std::shared_ptr<const Rows> read(const std::string& path, const std::string& column, const Range& range,
                                           const std::string& unit);
 
@@ -99,26 +99,29 @@ private:
   std::shared_ptr<const Rows> rows_;
 };
 
-/// Duty of a run: a motor torque, or a speed that a drive's control holds; load and temperature.
+/// Duty of a run: motor torque or controlled speed, load and temperature.
 struct RunDuty
 {
-  std::shared_ptr<const Waveform> torque;       ///< of the motor [N.m]; none: speed is controlled
-  std::shared_ptr<const Waveform> speed;        ///< of the joint [rad/s]
-  double bandwidth{};                           ///< of the speed control [Hz]
-  std::shared_ptr<const Waveform> load;         ///< external torque at the output [N.m]; none: none
-  std::shared_ptr<const Waveform> temperature;  ///< of the drive [degC]; none: input.temperature throughout
-  double easing{};  ///< over which torque, speed and load come in, as half a cosine: a step would ring for seconds [s]
+  std::shared_ptr<const Waveform> torque;       ///< torque of the motor [N.m]; null: the speed is controlled
+  std::shared_ptr<const Waveform> speed;        ///< speed of the joint [rad/s]
+  double bandwidth{};                           ///< bandwidth of the speed control [Hz]
+  std::shared_ptr<const Waveform> load;         ///< external torque at the output [N.m]; null: none
+  std::shared_ptr<const Waveform> temperature;  ///< temperature of the drive [degC]; null: input.temperature
+  /// time in which torque, speed and load increase as half a cosine, because a step would excite vibration for seconds
+  /// [s]
+  double easing{};
 };
 
-/// Gives the twin its commands of a duty cycle, step by step.
+/// Commands a twin along a duty cycle, step by step.
 ///
-/// The speed control works as a drive's does, from the motor encoder's readings:
+/// The speed control is that of a drive, with readings of the motor encoder:
 ///        T = J a + 2 w J_m (v_r - v) + w^2 J_m (x_r - x)
-/// where  J    inertia of motor and joint, seen by the motor      [kg.m^2]
-///        J_m  of the motor alone: above the drive's resonance the joint stands still, and a gain for both would be
-///             too high there                                     [kg.m^2]
+/// where  J    inertia of motor and joint at the motor             [kg.m^2]
+///        J_m  inertia of the motor alone: above the drive's resonance the joint does not follow, so that a gain for
+///             both would be too high                                  [kg.m^2]
 ///        w    2 pi times the bandwidth                           [rad/s]
-///        a, v_r, x_r   references of acceleration, speed, angle; v, x as read   [rad/s^2], [rad/s], [rad], motor side
+///        a, v_r, x_r   references of acceleration, speed, angle; v, x readings   [rad/s^2], [rad/s], [rad], at the
+///                      motor
 class DutyFeeder
 {
 public:
@@ -129,11 +132,11 @@ public:
     inertia_ = motor_inertia_ + (p.output.circular_spline_inertia + p.output.load_inertia) / (ratio_ * ratio_);
   }
 
-  /// Before the step that ends `time` [s] after the start.
+  /// Must be called before the step that ends `time` [s] after the start.
   void feed(Twin& twin, double time)
   {
     const Stamp begin = twin.stamp();
-    const double middle = time - 0.5 * toSeconds(twin.stepLength());  // an input has its mean over the step
+    const double middle = time - 0.5 * toSeconds(twin.stepLength());  // an input acts with its mean over the step
     twin.commandMotorTorque(begin,
                             duty_.torque ? easedIn(middle) * duty_.torque->value(middle) : controlTorque(twin, time));
     if (duty_.load)
@@ -151,7 +154,8 @@ public:
     }
   }
 
-  double speedReference() const { return speed_reference_; }  ///< joint side [rad/s]; zero where a torque is given
+  /// reference of the joint's speed [rad/s]; zero with a given torque
+  double speedReference() const { return speed_reference_; }
 
 private:
   double easedIn(double time) const
@@ -179,25 +183,25 @@ private:
 
   RunDuty duty_;
   double ratio_;
-  double motor_inertia_;  // [kg.m^2]
-  double inertia_;        // of motor and joint [kg.m^2]
+  double motor_inertia_;  // inertia of the motor [kg.m^2]
+  double inertia_;        // inertia of motor and joint at the motor [kg.m^2]
   double last_load_{};
   double last_time_{};
-  double angle_reference_{};  // joint side [rad]
+  double angle_reference_{};  // reference of the joint's angle [rad]
   double speed_reference_{};
 };
 
-/// The duty cycles of a plan in one run. All members throw InputError that names file, line, key, value, unit and
+/// Reader of the duty cycles of a plan for one run. All members throw InputError with file, line, key, value, unit and
 /// range.
 class DutyReader
 {
 public:
-  /// Reads the tables of a plan's list `duty`, every one that a run may draw. `directory`: where the plan lies.
+  /// Reads all tables that a run of the plan's list `duty` may use. `directory`: directory of the plan.
   void readTables(const PlanNode& duties, const std::string& directory);
 
   RunDuty read(const PlanNode& duty, const PlanValues& values) const;
 
-  /// The tables' rows, for the plan's document.
+  /// Rows of the tables, for the plan's document.
   OrderedJson tables() const;
 
 private:

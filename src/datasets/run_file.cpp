@@ -30,10 +30,10 @@ namespace hjt
 {
 namespace
 {
-/// Opening and closing look for plugins (compression, encryption), which is not made for several threads.
+/// Lock for opening and closing, which search for plugins (compression, encryption) and are not thread-safe.
 std::mutex g_opening;
 
-/// Writes. A run that cannot be written is removed: an error must not tell how to read what is left of it.
+/// Writes a run. If that fails, the file is removed, so that the error need not tell how to read an incomplete one.
 template <class Action>
 void writeOrRefuse(const Action& action)
 {
@@ -48,8 +48,8 @@ void writeOrRefuse(const Action& action)
   }
 }
 
-/// A run as a bag: the node's topics at their rates, of an arm /joint_states as its driver publishes it; and at the end
-/// the record as a text on RECORD_TOPIC.
+/// A run as a bag: the topics of the node at their rates, for an arm /joint_states as its driver publishes it. At the
+/// end the record is a text on RECORD_TOPIC.
 class BagRunFile : public RunFile
 {
 public:
@@ -120,7 +120,7 @@ public:
     bringToDisk(temporary_, path_);
   }
 
-  /// Empty if there is none
+  /// Empty without a record.
   static std::string readRecord(const std::string& path)
   {
     const std::lock_guard<std::mutex> lock(g_opening);
@@ -137,7 +137,7 @@ public:
     }
     catch (const std::exception&)
     {
-      // Not a bag, or a damaged one: as if it were not there.
+      // A file that is not a bag, or is damaged, counts as missing.
     }
     return {};
   }
@@ -147,10 +147,10 @@ private:
   std::string temporary_;
   std::optional<BagWriter> bag_;
   std::optional<BagRecorder> recorder_;
-  std::vector<std::size_t> order_;  // of an arm's joints in its states
+  std::vector<std::size_t> order_;  // indices of an arm's joints in its states
   sensor_msgs::JointState states_;
-  Stamp period_{};  // of the states [ns]
-  Stamp begin_{};   // from which they count
+  Stamp period_{};  // period of the states [ns]
+  Stamp begin_{};   // epoch of that period [ns]
   Stamp last_;
 };
 

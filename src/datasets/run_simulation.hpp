@@ -13,26 +13,25 @@
 
 namespace hjt
 {
-/// Cost of a run.
 struct RunCost
 {
-  double surfaces{};          ///< time to build its response surfaces or to find them in the cache [s]
-  double ends{};              ///< before the first step, the surfaces at hand, and after the last one [s]
-  double real_time_factor{};  ///< simulated over real time, one core [-]
+  double surfaces{};          ///< time for building or loading its response surfaces [s]
+  double ends{};              ///< time before the first and after the last step, without that for the surfaces [s]
+  double real_time_factor{};  ///< simulated time over computing time, on one core [-]
 };
 
-/// How far runs are that are simulated by several threads.
+/// Progress of runs in several threads.
 struct RunCourse
 {
-  std::atomic<std::uint64_t> simulated{};  ///< about, RunSimulation::WHOLE a run
-  std::atomic<bool> stop{};                ///< set by others: no run goes on
+  std::atomic<std::uint64_t> simulated{};  ///< approximate progress, RunSimulation::WHOLE for each run
+  std::atomic<bool> stop{};                ///< set by another thread to stop all runs
 };
 
-/// Simulates runs of a plan, one after the other.
+/// Simulates runs of a plan one after the other.
 class RunSimulation
 {
 public:
-  static constexpr std::uint64_t WHOLE = 1'000'000;  ///< added to RunCourse::simulated over a run
+  static constexpr std::uint64_t WHOLE = 1'000'000;  ///< increase of RunCourse::simulated in a run
 
   RunSimulation(const Plan& plan, const SweepDirectory& directory, const SurfaceSource& surface_source,
                 RunCourse& course)
@@ -40,25 +39,26 @@ public:
   {
   }
 
-  /// A run through to its end, into its file. False: stopped, and no file left.
+  /// Simulates a run and writes its file. @returns false if it was stopped; then there is no file.
   /// @throws InputError if the file cannot be written.
   bool simulate(std::uint64_t number);
 
-  /// Tries a run, for no longer than `seconds` by the clock, and leaves nothing of it.
+  /// Simulates a run for at most `seconds` of computing time and removes its file.
   /// @throws InputError, ParameterError if the run's drive has no equilibrium.
   RunCost sample(std::uint64_t number, double seconds);
 
 private:
   using Clock = std::chrono::steady_clock;
 
-  /// Object of a run: a drive in its duty cycle, or an arm along its set points.
+  /// Object of a run: a drive with its duty cycle, or an arm along its set points.
   class Subject
   {
   public:
     virtual ~Subject() = default;
-    virtual bool step(double time, Stamp end) = 0;  ///< to `time` since the start of the run [s]; false: it is over
+    /// advances to `time` since the start of the run [s]; false: the run has ended
+    virtual bool step(double time, Stamp end) = 0;
     virtual void record(RunFile& file) = 0;
-    virtual const Twin& drive() const = 0;  ///< the first
+    virtual const Twin& drive() const = 0;  ///< the drive, or the first one of an arm
     virtual TwinCounters counters() const = 0;
     virtual bool onSurface() const = 0;
     virtual void tell(OrderedJson& record) const = 0;
@@ -66,7 +66,7 @@ private:
   class Drive;
   class Arm;
 
-  /// At its start. @throws ParameterError if a drive has no equilibrium.
+  /// The object at the start of its run. @throws ParameterError if a drive has no equilibrium.
   std::unique_ptr<Subject> begin(const RunSpec& spec) const;
   bool march(Subject& subject, const RunSpec& spec, RunFile& file, Clock::time_point until);
 

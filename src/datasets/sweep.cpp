@@ -26,7 +26,7 @@ namespace hjt
 {
 namespace
 {
-/// Of "I/N" with 0 <= I < N; none: another text.
+/// I and N of a text "I/N" with 0 <= I < N; empty for another text.
 std::optional<std::pair<std::uint64_t, std::uint64_t>> shardOf(const std::string& text)
 {
   std::pair<std::uint64_t, std::uint64_t> shard;
@@ -37,7 +37,7 @@ std::optional<std::pair<std::uint64_t, std::uint64_t>> shardOf(const std::string
                                                                                       std::nullopt;
 }
 
-/// What the threads of a sweep tell, for the caller's own thread.
+/// Messages of a sweep's threads to the caller's thread.
 class Told
 {
 public:
@@ -50,14 +50,14 @@ public:
     }
   }
 
-  /// Since the last call.
+  /// Notices since the last call.
   std::vector<std::string> notices()
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     return std::exchange(notices_, {});
   }
 
-  std::atomic<double> built{};  ///< of a response surface, 0 ... 1
+  std::atomic<double> built{};  ///< built fraction of a response surface, 0 ... 1
 
 private:
   std::mutex mutex_;
@@ -65,7 +65,7 @@ private:
   std::vector<std::string> notices_;
 };
 
-/// The runs still to be done, taken one by one by as many threads as wanted.
+/// Threads that take the remaining runs one by one.
 class Workers
 {
 public:
@@ -122,7 +122,7 @@ private:
     }
   }
 
-  /// As many threads as there are to be had. @throws InputError if there are none.
+  /// Starts the threads, or as many as the system allows. @throws InputError if it allows none.
   std::vector<std::thread> start()
   {
     std::vector<std::thread> threads;
@@ -179,7 +179,7 @@ private:
   const std::vector<std::uint64_t> todo_;
   const unsigned jobs_;
   Told told_;
-  RunCourse course_;  // of all todo
+  RunCourse course_;  // progress of all remaining runs
   std::atomic<std::size_t> next_{};
   std::atomic<std::uint64_t> done_{};
   std::atomic<unsigned> running_{};
@@ -198,16 +198,14 @@ SweepResult workOff(const Plan& plan, const SweepOptions& options)
 
 void addOptions(OptionTable& table, SweepOptions& options)
 {
-  table.add("plan", options.plan, "what to run and record (docs/datasets.md)").required().type("PLAN.yaml");
-  table.add("--out", options.out, "directory of runs and index; runs that stand there finished are kept")
-      .required()
-      .type("DIR");
+  table.add("plan", options.plan, "plan of the runs (docs/datasets.md)").required().type("PLAN.yaml");
+  table.add("--out", options.out, "directory of runs and index; finished runs in it are kept").required().type("DIR");
   addJobsOption(table, options.jobs);
   table
       .add(
           "--shard", Option::Kind::TEXT,
           [&options](const std::string& text) { std::tie(options.shard, options.shards) = shardOf(text).value(); },
-          "only every N-th run, from run I on: one of N processes, anywhere")
+          "only every N-th run, beginning with run I: the share of one of N processes")
       .type("I/N")
       .check([](const std::string& text)
              { return shardOf(text) ? std::string() : "'" + text + "' must be I/N with 0 <= I < N"; });
@@ -216,7 +214,7 @@ void addOptions(OptionTable& table, SweepOptions& options)
 
 void addJobsOption(OptionTable& table, unsigned& jobs)
 {
-  table.add("--jobs", jobs, "runs at the same time").range(JOBS.min, JOBS.max);
+  table.add("--jobs", jobs, "number of simultaneous runs").range(JOBS.min, JOBS.max);
 }
 
 RunSpec checkedRun(const Plan& plan, std::uint64_t run)
@@ -283,7 +281,7 @@ SweepResult runSweep(const Plan& plan, SweepDirectory& directory, const SweepOpt
       todo.push_back(run);
     }
   }
-  directory.claim(todo);  // all before any work: of two sweeps one goes on to its end
+  directory.claim(todo);  // Claims all runs before any work, so that one of two sweeps fails at once.
   if (!todo.empty() && !options.watch.stopped())
   {
     Workers workers(plan, directory, todo, options.jobs);

@@ -17,15 +17,15 @@ namespace hjt
 {
 inline constexpr Range JOBS{ 1.0, 4096.0 };
 
-/// How a plan is worked off. Only plan and configuration change what is in a run's file.
+/// Options of a sweep. Only plan and configuration change the content of a run's file.
 struct SweepOptions : ConfigurationOptions
 {
-  std::string plan;                                                    ///< file
+  std::string plan;                                                    ///< path of the plan
   std::string out;                                                     ///< directory of runs and index
-  unsigned jobs{ std::max(1U, std::thread::hardware_concurrency()) };  ///< runs at the same time, within JOBS
-  std::uint64_t shard{};  ///< of `shards`: this process does the runs whose number leaves this remainder
+  unsigned jobs{ std::max(1U, std::thread::hardware_concurrency()) };  ///< number of simultaneous runs, within JOBS
+  std::uint64_t shard{};  ///< this process simulates the runs whose number modulo `shards` is `shard`
   std::uint64_t shards{ 1 };
-  Watch watch;  ///< finished runs stay where it stops
+  Watch watch;  ///< if it stops the sweep, finished runs are kept
 };
 
 void addOptions(OptionTable& table, SweepOptions& options);
@@ -33,42 +33,42 @@ void addJobsOption(OptionTable& table, unsigned& jobs);
 
 struct SweepResult
 {
-  std::string index;                    ///< file with a row for each run
-  std::uint64_t runs{};                 ///< of the plan
-  std::uint64_t done{};                 ///< runs finished by this call
-  std::uint64_t present{};              ///< runs that stood there finished before
-  std::uint64_t damaged{};              ///< runs of those done whose file was damaged
-  std::uint64_t failed{};               ///< of this shard's, of those and of the others
-  std::uint64_t rows_without_forces{};  ///< of them
+  std::string index;                    ///< path of the file with a row for each run
+  std::uint64_t runs{};                 ///< number of runs in the plan
+  std::uint64_t done{};                 ///< number of runs that this call has finished
+  std::uint64_t present{};              ///< number of runs that were finished before
+  std::uint64_t damaged{};              ///< number of finished runs whose old file was damaged
+  std::uint64_t failed{};               ///< number of failed runs of this shard, done or present
+  std::uint64_t rows_without_forces{};  ///< sum over the runs of this shard
 };
 
-/// Does all runs of the shard that are not finished. @throws InputError, ParameterError: of the plan, before any run,
-/// or a file that cannot be written.
+/// Simulates all runs of the shard that are not finished. @throws ParameterError, InputError if the plan is invalid,
+/// before any run, or if a file cannot be written.
 SweepResult sweep(const SweepOptions& options);
 
-/// The same of a plan of lives. @throws InputError if it is none.
+/// Sweeps a plan of lives. @throws InputError if it is another plan.
 SweepResult sweepLives(const SweepOptions& options);
 
-/// The same of a plan and a directory at hand, whatever the options name.
+/// Sweeps a given plan into a given directory, which replace those of the options.
 SweepResult runSweep(const Plan& plan, SweepDirectory& directory, const SweepOptions& options);
 
 Json documentOf(const SweepResult& result);
 
-/// Behind a number of rows of that kind.
+/// Follows a number of such rows.
 inline constexpr const char* WITHOUT_FORCES =
-    "rows without forces on the teeth (NaN): no equilibrium was found for them; index.csv says in which runs";
+    "rows have no tooth forces (NaN), because the teeth had no equilibrium; index.csv names the runs";
 
-/// Response surfaces for so many runs at the same time, each once in memory. They are kept in the user's cache, but
-/// those of drives with a wear of their own, which come but once.
+/// Response surfaces for `jobs` simultaneous runs, each once in memory. The user's cache stores them, except those of
+/// drives with individual wear, which are used once.
 SurfaceSource runSurfaces(const Plan& plan, unsigned jobs);
 
-/// @throws InputError unless it is a plan of lives.
+/// @throws InputError if the plan is not one of lives.
 void requireLives(const Plan& plan, const std::string& path);
 
-/// Checks one run of the plan before any run starts, and returns it. @throws InputError as `Plan::run`, with the number
-/// of the run.
+/// Checks one run of the plan before any run starts, and returns it. @throws InputError as `Plan::run` does, with the
+/// number of the run.
 RunSpec checkedRun(const Plan& plan, std::uint64_t run);
 
-/// All of them, until the watch stops.
+/// Checks all runs, until the watch stops.
 void checkRuns(const Plan& plan, const Watch& watch = {});
 }  // namespace hjt

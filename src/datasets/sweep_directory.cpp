@@ -25,14 +25,14 @@ namespace hjt
 namespace
 {
 namespace fs = std::filesystem;
-/// Version and hash of the code: runs made by another code are not added to.
+/// Version and hash of the code, because runs of another code are not extended.
 std::string softwareVersion()
 {
   return std::string(HJT_VERSION "+") + sourceHash();
 }
 
 constexpr const char* FORMAT = "harmonic_joint_twin data set 1";
-/// Byte of plan.json that is locked while it is written; run N locks byte N.
+/// Byte of plan.json that is locked while the file is written; run N locks byte N.
 constexpr std::uint64_t PLAN_LOCK = 1ull << 62;
 
 std::string hexadecimal(std::uint64_t number)
@@ -42,7 +42,7 @@ std::string hexadecimal(std::uint64_t number)
   return text.str();
 }
 
-/// A cell of the index: texts in quotes, nothing for what is not there.
+/// Text of a cell in the index: texts in quotes, empty for a missing value.
 std::string cell(const OrderedJson& value)
 {
   if (value.is_null())
@@ -65,7 +65,7 @@ std::string cell(const OrderedJson& value)
   return "\"" + text + "\"";
 }
 
-/// Of all drives together.
+/// Hash of the parameters of all drives.
 std::uint64_t hashOf(const RunSpec& spec)
 {
   if (!spec.arm)
@@ -99,7 +99,7 @@ OrderedJson missingRun(std::uint64_t run)
   };
 }
 
-/// In what the document of a directory differs from that of a plan.
+/// Difference between the document of a directory and that of a plan.
 std::string otherThan(const OrderedJson& found, const OrderedJson& wanted)
 {
   const std::array<std::pair<const char*, const char*>, 5> parts{ { { "format", "another format" },
@@ -117,8 +117,8 @@ std::string otherThan(const OrderedJson& found, const OrderedJson& wanted)
   return "something else";
 }
 
-/// Locks or unlocks one byte, whether it is in the file or not. False: another process holds it. A file system that
-/// knows no locks refuses none.
+/// Locks or unlocks one byte, which need not exist. @returns false if another process has locked it. A file system
+/// without locks accepts all.
 bool lockByte(int file, std::uint64_t place, int command, short kind)
 {
   struct flock lock
@@ -152,13 +152,13 @@ void SweepDirectory::open()
   OrderedJson document{ { "format", FORMAT }, { "version", softwareVersion() } };
   document.update(plan_.snapshot());
   const std::string text = document.dump(1) + '\n';
-  // The plan is written before any run, perhaps by another shard at this moment: looked for in the opposite order.
+  // The plan is written before any run, perhaps by another shard now; therefore it is checked in the opposite order.
   const bool empty = fs::is_empty(path_ + "/runs");
   plan_file_ = ::open(name.c_str(), O_RDWR | O_CLOEXEC | (empty ? O_CREAT : 0), 0666);
   if (plan_file_ < 0)
   {
     throw InputError(errno == ENOENT ? path_ +
-                                           "/runs holds files of something else, and there is no plan.json; give "
+                                           "/runs contains other files, and there is no plan.json; give "
                                            "another --out" :
                                        name + " cannot be opened: " + std::strerror(errno));
   }
@@ -167,9 +167,10 @@ void SweepDirectory::open()
   if (found.empty() && fs::exists(index()))
   {
     fs::remove(name, error);
-    throw InputError(path_ + "/index.csv is of something else: there is no plan.json beside it; give another --out");
+    throw InputError(
+        path_ + "/index.csv belongs to something else, because there is no plan.json beside it; give another --out");
   }
-  // Not there yet, or left half written by a process that was killed.
+  // The file does not exist, or a killed process left it incomplete.
   if (found.size() < text.size() && text.compare(0, found.size(), found) == 0)
   {
     if (pwrite(plan_file_, text.data(), text.size(), 0) != static_cast<ssize_t>(text.size()) || fsync(plan_file_) != 0)
@@ -179,7 +180,7 @@ void SweepDirectory::open()
   }
   else if (found != text)
   {
-    throw InputError(name + " is of " + otherThan(OrderedJson::parse(found, nullptr, false), document) +
+    throw InputError(name + " belongs to " + otherThan(OrderedJson::parse(found, nullptr, false), document) +
                      "; give another --out");
   }
   lockByte(plan_file_, PLAN_LOCK, F_OFD_SETLK, F_UNLCK);
@@ -193,14 +194,14 @@ void SweepDirectory::claim(const std::vector<std::uint64_t>& runs) const
     if (!lockByte(plan_file_, run, F_OFD_SETLK, F_WRLCK))
     {
       throw InputError(runFile(run) + " is being written by another sweep into " + path_ +
-                       "; wait for it, or give each a shard of its own");
+                       "; wait for its end, or give each sweep its own shard");
     }
     names.insert(fs::path(runFileName(run)).filename().string());
   }
   std::vector<fs::path> leftovers;
   for (const fs::directory_entry& entry : fs::directory_iterator(path_ + "/runs"))
   {
-    // RUN.NUMBER.part, of makeFileBeside.
+    // Files RUN.NUMBER.part of makeFileBeside.
     if (entry.path().extension() == ".part" && names.count(entry.path().stem().stem().string()) > 0)
     {
       leftovers.push_back(entry.path());
@@ -296,7 +297,7 @@ std::string SweepDirectory::index() const
 
 void SweepDirectory::writeIndex() const
 {
-  // Another shard may end while this one reads: whoever writes last has seen all.
+  // Another shard may end while this one reads. The last writer has then read all runs.
   for (std::uint64_t seen = 0, now = finishedRuns(); seen != now; now = finishedRuns())
   {
     seen = now;

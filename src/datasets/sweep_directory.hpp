@@ -20,25 +20,25 @@ public:
   SweepDirectory(const SweepDirectory&) = delete;
   SweepDirectory& operator=(const SweepDirectory&) = delete;
 
-  /// Makes it, or takes it up again. @throws InputError if it holds something else than runs of this very plan.
+  /// Makes the directory, or opens an existing one. @throws InputError if it contains other things than runs of this
+  /// plan.
   void open();
 
-  /// Keeps other processes from writing these runs until this one ends, and removes what one that was killed left of
-  /// them. @throws InputError if another writes one of them.
+  /// Claims these runs for this process until it ends, and removes incomplete files of killed processes. @throws
+  /// InputError if another process has claimed one of them.
   void claim(const std::vector<std::uint64_t>& runs) const;
 
-  /// Whether the run's file is there, whole and undamaged.
+  /// Whether the run's file exists and is complete and undamaged.
   bool isFinished(std::uint64_t run) const;
 
-  std::string runFile(std::uint64_t run) const;      ///< whole path
-  std::string runFileName(std::uint64_t run) const;  ///< from the directory on
-  OrderedJson record(std::uint64_t run) const;       ///< none if the run is not finished
+  std::string runFile(std::uint64_t run) const;      ///< path of the file
+  std::string runFileName(std::uint64_t run) const;  ///< path of the file relative to the directory
+  OrderedJson record(std::uint64_t run) const;       ///< empty if the run is not finished
 
   std::string index() const;  ///< path of index.csv
-  /// Writes it from the runs' files.
   void writeIndex() const;
 
-  /// One line of the index: of a finished run from its record, else with the status given. Without line end.
+  /// Line of the index: of a finished run from its record, else with the given status. There is no line end.
   std::string indexHeader() const;
   std::string indexRow(const OrderedJson& record) const;
 
@@ -50,6 +50,6 @@ private:
   int plan_file_{ -1 };
 };
 
-/// Row of the index before the run: labels, variables, seeds.
+/// Beginning of a run's row in the index: labels, variables, seeds.
 OrderedJson recordOf(const RunSpec& spec, const std::string& file);
 }  // namespace hjt

@@ -5,7 +5,7 @@
 
 namespace hjt
 {
-/// Unilateral contact per unit stiffness: energy, force and tangent over the depth.
+/// Unilateral contact of unit stiffness: energy, force and tangent as functions of the depth.
 ///
 /// width = 0, the exact law:  force = <depth>+
 /// width > 0, a C1 ramp:      force = depth^2 / (2 width)  for depth < width,  depth - width/2  beyond
@@ -17,7 +17,7 @@ struct ContactRamp
 
   ContactRamp(double depth, double width) noexcept
   {
-    // Both branches are computed and one is taken: loops over the teeth then vectorise.
+    // Computing both branches and selecting one lets the loops over the teeth vectorise.
     const double part = depth / width;
     const double full_force = depth - 0.5 * width;
     const double full_energy = 0.5 * full_force * full_force + width * width / 24.0;
@@ -31,8 +31,8 @@ struct ContactRamp
   }
 };
 
-/// Point contact after Hertz per unit stiffness: energy, force and tangent over the depth. Beside a contact that opens
-/// the tangent goes to zero without a jump.
+/// Hertz' point contact of unit stiffness: energy, force and tangent as functions of the depth. The tangent goes to
+/// zero without a jump where the contact opens.
 struct HertzContact
 {
   double energy{};   ///< [m^2.5]
@@ -49,13 +49,13 @@ struct HertzContact
   }
 };
 
-/// Of a ball of steel between two races, K in Q = K depth^1.5 [N/m^1.5]; depth: by how much the races approach each
-/// other. Palmgren, for ball bearings with the usual osculation: depth = 4.36e-4 Q^(2/3) d^(-1/3), in mm and N, d the
-/// ball's diameter [m].
+/// Stiffness K of a steel ball between two races, Q = K depth^1.5 [N/m^1.5]; depth: approach of the races. Palmgren,
+/// for ball bearings with the usual osculation: depth = 4.36e-4 Q^(2/3) d^(-1/3) in mm and N, with d = `ball_diameter`
+/// [m].
 inline double hertzStiffness(double ball_diameter) noexcept
 {
   constexpr double PALMGREN = 4.36e-4;                                         // mm^(4/3) / N^(2/3)
-  constexpr double MILLIMETRES = 1e3;                                          // per metre
+  constexpr double MILLIMETRES = 1e3;                                          // in a metre
   const double per_force = PALMGREN / std::cbrt(MILLIMETRES * ball_diameter);  // depth over Q^(2/3) [mm/N^(2/3)]
   const double depth_scale = MILLIMETRES / per_force;
   return depth_scale * std::sqrt(depth_scale);

@@ -16,26 +16,27 @@ namespace hjt
 /// Torque:  C(Phi), odd, piecewise linear: slope K1 up to torque T1, K2 up to T2, K3 beyond
 /// where    Phi  mean rotation of the tooth points from rest, mean_i(psi_i - psi0_i) [rad]
 ///
-/// The torque acts on the mean rotation. Taken per tooth, as the thesis writes it, the cup would be N times too stiff
-/// and would resist the travelling wave.
+/// The torque acts on the mean rotation. The thesis applies it to each tooth, which would make the cup N times too
+/// stiff and resist the travelling wave.
 ///
-/// The curve is the catalogue's for the whole gear less what rim, teeth and bearing of the model give way: a lumping.
-/// Of its compliance 1/K_W is the wall's and diaphragm's; the rest has no place of its own in the model.
+/// The curve is the catalogue's for the whole gear minus the compliance of the model's rim, teeth and bearing. The wall
+/// and the diaphragm contribute 1/K_W of its compliance; no other part of the model represents the rest.
 class CupTorsion
 {
 public:
   CupTorsion(const Parameters& parameters, const ToothRing& rest);
 
-  /// Stiffness of wall and diaphragm times this, > 0; the rest of the compliance and the torques where the slope
-  /// changes stay [-].
+  /// Multiplies the stiffness of wall and diaphragm by `factor` > 0 [-]. The rest of the compliance and the breakpoints
+  /// do not change.
   void scaleWall(double factor) noexcept;
 
-  double meanRotation(const RingShape& shape) const noexcept;  ///< Phi [rad]
-  /// Rate of the mean rotation for speeds of the ring's points, 2 N [m/s]: dPhi/dt [rad/s].
+  /// mean rotation Phi of the tooth points from rest [rad]
+  double meanRotation(const RingShape& shape) const noexcept;
+  /// Rate dPhi/dt of the mean rotation [rad/s] for speeds of the ring's points, 2 N [m/s].
   static double meanRotationRate(const RingShape& shape, const Eigen::VectorXd& speeds) noexcept;
-  double torque(double rotation) const noexcept;           ///< C(Phi) [N.m]
-  double rotationAtTorque(double torque) const noexcept;   ///< inverse of C [rad]
-  double storedEnergy(double rotation) const noexcept;     ///< [J]
+  double torque(double rotation) const noexcept;           ///< torque C(Phi) [N.m]
+  double rotationAtTorque(double torque) const noexcept;   ///< inverse of C(Phi) [rad]
+  double storedEnergy(double rotation) const noexcept;     ///< energy of the cup's torsion [J]
   double stiffness(double rotation) const noexcept;        ///< dC/dPhi [N.m/rad]
   double complianceAtTorque(double torque) const noexcept  ///< 1 / stiffness [rad/(N.m)]
   {
@@ -58,11 +59,11 @@ public:
 private:
   void placeBreakpoints() noexcept;
 
-  double wall_compliance_;  // [rad/(N.m)]
+  double wall_compliance_;  // compliance of wall and diaphragm [rad/(N.m)]
   std::array<double, 3> slopes_;
   std::array<double, 3> compliances_{};  // 1 / slopes_
   std::array<double, 2> torques_;
-  std::array<double, 2> rotations_;  // where the slope changes [rad]
+  std::array<double, 2> rotations_;  // rotations at the breakpoints [rad]
   Eigen::VectorXd rest_radial_;
 };
 }  // namespace hjt

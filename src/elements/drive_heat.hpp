@@ -10,7 +10,7 @@
 
 namespace hjt
 {
-/// Heat of the drive in two nodes: grease, with what turns and bends in it, and housing.
+/// Heat of the drive with two capacities: the grease with all moving parts of the drive, and the housing.
 ///
 ///   C_g dT_g/dt = P_f - G (T_g - T_h)
 ///   C_h dT_h/dt = P_m + P_0 + G (T_g - T_h) - G_a (T_h - T_a)
@@ -18,11 +18,11 @@ namespace hjt
 ///       C_g, C_h  heat capacities [J/K], G, G_a  conductances [W/K], T_a  temperature of the surroundings
 ///
 /// A step is exact for constant powers and surroundings, whatever its length: the two modes of the symmetric problem in
-/// sqrt(C) T relax on their own. Without losses to the surroundings (G_a = 0) the nodes keep all heat to rounding.
+/// sqrt(C) T decay independently. Without losses to the surroundings (G_a = 0) heat is conserved to rounding.
 class DriveHeat
 {
 public:
-  static constexpr double PERIOD = 0.1;  ///< over which the twin takes the mean of the losses [s]
+  static constexpr double PERIOD = 0.1;  ///< time over which the twin averages the losses [s]
 
   explicit DriveHeat(const ThermalParameters& parameters)
     : parameters_(parameters), root_(std::sqrt(parameters.grease_capacity), std::sqrt(parameters.housing_capacity))
@@ -37,21 +37,21 @@ public:
     modes_ = solver.eigenvectors();
   }
 
-  /// Both nodes above the surroundings [degC] by the configured rise.
+  /// Sets both temperatures to the surroundings [degC] plus the configured rise.
   void reset(double ambient) noexcept
   {
     grease_ = ambient + parameters_.grease_rise;
     housing_ = ambient + parameters_.housing_rise;
   }
 
-  /// Losses of a step [J].
+  /// Losses in a step [J].
   struct Losses
   {
     double friction{};
     double copper{};
   };
 
-  /// Both nodes `seconds` later, in surroundings of `ambient` [degC].
+  /// Advances both temperatures by `seconds` in surroundings of `ambient` [degC].
   void advance(double seconds, const Losses& losses, double ambient) noexcept
   {
     const Eigen::Vector2d above(grease_ - ambient, housing_ - ambient);
@@ -68,7 +68,7 @@ public:
     housing_ = ambient + temperature[1];
   }
 
-  /// The same where the housing's temperature is measured [degC]: only the grease is free.
+  /// Advances only the grease, for a measured temperature of the housing [degC].
   void advanceGrease(double seconds, double friction, double housing) noexcept
   {
     const double rate = parameters_.internal_conductance / parameters_.grease_capacity;
@@ -81,7 +81,7 @@ public:
   double housing() const noexcept { return housing_; }  ///< [degC]
 
 private:
-  // Mean of exp(-rate t) over a step from 0 on [-].
+  // Mean of exp(-rate t) over a step that begins at t = 0 [-].
   static double meanDecay(double rate, double seconds) noexcept
   {
     const double decay = rate * seconds;
@@ -89,9 +89,9 @@ private:
   }
 
   ThermalParameters parameters_;
-  Eigen::Vector2d root_;   // of both capacities [sqrt(J/K)]
-  Eigen::Vector2d rates_;  // of the modes [1/s]
-  Eigen::Matrix2d modes_;  // columns, orthonormal
+  Eigen::Vector2d root_;   // square roots of both capacities [sqrt(J/K)]
+  Eigen::Vector2d rates_;  // decay rates of the modes [1/s]
+  Eigen::Matrix2d modes_;  // orthonormal columns
   double grease_{};
   double housing_{};
 };

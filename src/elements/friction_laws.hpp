@@ -14,14 +14,14 @@
 
 namespace hjt
 {
-/// One dry friction: a force against a slip. Power = strength * |slip . (motor speed, output speed)|.
+/// A dry friction: a force that opposes a slip. Its power is strength * |slip . (motor speed, output speed)|.
 struct FrictionTerm
 {
-  double strength;       ///< >= 0 [N] or [N.m]
-  Eigen::Vector2d slip;  ///< slip speed by motor and output speed [m/rad] or [-]
+  double strength;       ///< force or torque, >= 0 [N] or [N.m]
+  Eigen::Vector2d slip;  ///< slip speed per motor and output speed [m/rad] or [-]
 };
 
-/// Dry frictions in fixed room, quantity by quantity for loops that vectorise. Behind the last one zeros fill a PACK.
+/// Dry frictions in storage of fixed size, as arrays by quantity for vectorised loops. Zeros fill the last PACK.
 class FrictionTerms
 {
 public:
@@ -35,7 +35,7 @@ public:
     using One = Eigen::Array<double, 1, 1>;
     add(One(term.strength), One(term.slip[0]), One(term.slip[1]));
   }
-  /// Several at once; one that nothing slips does nothing.
+  /// Adds several terms; a term without slip has no effect.
   template <class Numbers>
   void add(const Numbers& strength, const Numbers& by_motor, const Numbers& by_output) noexcept
   {
@@ -50,17 +50,16 @@ public:
     size_ += COUNT;
   }
 
-  /// Of a term that is there [N] or [N.m].
+  /// Sets the strength of an existing term [N] or [N.m].
   void setStrength(int i, double strength) noexcept { values_(i, 0) = strength; }
 
   int size() const noexcept { return size_; }
-  int packedSize() const noexcept { return packed(size_); }  ///< with the zeros
+  int packedSize() const noexcept { return packed(size_); }  ///< size with the zeros of the last PACK
   FrictionTerm operator[](int i) const noexcept { return { values_(i, 0), { values_(i, 1), values_(i, 2) } }; }
   const double* strength() const noexcept { return values_.col(0).data(); }
   const double* byMotor() const noexcept { return values_.col(1).data(); }
   const double* byOutput() const noexcept { return values_.col(2).data(); }
 
-  /// For loops over the terms.
   struct Iterator
   {
     const FrictionTerms& terms;
@@ -85,14 +84,14 @@ private:
   int size_{};
 };
 
-/// All friction of the joint, seen through its two coordinates: dry terms and a viscous matrix.
+/// Friction of the joint with respect to its two angles: dry terms and a viscous matrix.
 ///
-/// The ring follows the two angles in equilibrium, so every slip in it is a combination of the two speeds, and friction
-/// acts on the angles by virtual power. Its feedback on the shape of the ring, of the order of the friction
-/// coefficient, is left out.
+/// The ring is in equilibrium at the two angles, so each slip in it is a linear combination of the two speeds. Friction
+/// acts on the angles by virtual power. Its effect on the shape of the ring, of the order of the friction coefficient,
+/// is neglected.
 struct JointFriction
 {
-  /// Room for one term a tooth, the motor shaft's, the cup's and the output's.
+  /// Allocates one term for each tooth, and those of motor shaft, cup and output.
   explicit JointFriction(int teeth) : terms(teeth + 3), running(2 * teeth), flank_load(teeth) {}
 
   void setZero() noexcept
@@ -101,7 +100,7 @@ struct JointFriction
     viscous.setZero();
   }
 
-  /// Power that the dry terms take at these speeds of motor and output [W], or torque by unit speed.
+  /// Power of the dry terms at these speeds of motor and output [W]; torque for unit speeds.
   double dryPower(const Eigen::Vector2d& speeds) const noexcept
   {
     double power = 0.0;
@@ -113,21 +112,20 @@ struct JointFriction
   }
 
   FrictionTerms terms;
-  double presliding{};  ///< dry friction at the motor shaft that is no term: it builds up over an angle [N.m]
-  Eigen::Matrix2d viscous{ Eigen::Matrix2d::Zero() };  ///< torque by speed, positive semi-definite [N.m.s/rad]
-  Eigen::VectorXd running;  ///< 2 N, rates of the ring's points by motor angle while the output follows [m/rad]
-  // Of the full ring, for other speeds at the same ring: what the strengths of the first terms, of shaft and flanks,
-  // are made of.
-  double contact_force{};      ///< of the wave generator, summed [N]
-  double ring_torque{};        ///< JointModel::ringTorque [N.m]
-  int flanks{};                ///< terms of flanks, behind the shaft's
-  Eigen::VectorXd flank_load;  ///< N, of these [N]
+  double presliding{};  ///< dry friction at the motor shaft that builds up over an angle and is therefore no term [N.m]
+  Eigen::Matrix2d viscous{ Eigen::Matrix2d::Zero() };  ///< torque per speed, positive semi-definite [N.m.s/rad]
+  Eigen::VectorXd running;  ///< 2 N, derivatives of the ring's points by motor angle if the output follows [m/rad]
+  // Data of the full ring from which the strengths of the shaft's and the flanks' terms at other speeds follow.
+  double contact_force{};      ///< sum of the wave generator's forces [N]
+  double ring_torque{};        ///< torque of JointModel::ringTorque [N.m]
+  int flanks{};                ///< number of flank terms, which follow the shaft's term
+  Eigen::VectorXd flank_load;  ///< N, normal forces of the flank terms [N]
 };
 
-/// Share of a dry friction from which on what it holds is taken to slide [-].
+/// Mobilised share of a dry friction from which a body counts as sliding [-].
 constexpr double SLIDING_SHARE = 0.95;
 
-/// Share of a dry friction that is mobilised, between -1 and 1, after a further turn (Dahl, exact):
+/// Mobilised share of a dry friction, between -1 and 1, after a further turn (exact solution of Dahl's model):
 ///
 ///   ds/dx = (1 - s sgn(dx)) / angle
 /// `turn` dx and `angle` in rad, angle > 0.
@@ -137,17 +135,17 @@ inline double mobilised(double share, double turn, double angle) noexcept
   return end + (share - end) * std::exp(-std::abs(turn) / angle);
 }
 
-/// Friction of the wave generator's ball bearing after Palmgren (thesis eq. 7.31-7.33; both parts oppose the speed).
+/// Friction of the wave generator's ball bearing by Palmgren (thesis eq. 7.31-7.33; both parts oppose the speed).
 ///
 ///   T0 = f0 (nu n)^(2/3) d_m^3 1e-7   for nu n >= 2000,   f0 160 d_m^3 1e-7  below   [N.mm]
 ///   T1 = f1 (F + F_race) d_m                                                         [N.mm]
-/// where nu  viscosity that the friction by speed acts with [mm^2/s]: nu^(2/3) = nu(T_0)^(2/3) (c + (1 - c) r^(2/3)),
-///           c the share that no temperature changes, of what is no grease, and r = nu_oil(T) / nu_oil(T_0);
-///           the oil's after Walther (ASTM D341), T in kelvin:
+/// where nu  effective viscosity of the speed-dependent friction [mm^2/s]: with r = nu_oil(T) / nu_oil(T_0) and
+///           the temperature-independent share c it is nu^(2/3) = nu(T_0)^(2/3) (c + (1 - c) r^(2/3));
+///           the oil's viscosity by Walther (ASTM D341), T in kelvin:
 ///           lg lg(nu_oil + 0.7) = lg lg(nu_oil(T_0) + 0.7) - m lg(T / T_0)
 ///       n   in rpm, d_m in mm
 ///       F   sum of the contact forces between wave generator and flexspline [N]
-///       F_race  ball forces of the bearing's own outer race, bent to the ellipse [N]
+///       F_race  ball forces of the outer race, which is bent to the ellipse [N]
 class BearingFriction
 {
 public:
@@ -156,21 +154,22 @@ public:
   {
   }
 
-  /// Grease of another viscosity, by this factor at any temperature [-].
+  /// Multiplies the viscosity of the grease by `factor` at all temperatures [-].
   void scaleViscosity(double factor) noexcept { viscosity_factor_ *= factor; }
-  /// Reduces the preload of the race by `loss`, not below min(`least`, present preload) [N].
+  /// Reduces the preload of the race by `loss` [N], to `least` or the present preload at the lowest.
   void reducePreload(double loss, double least) noexcept
   {
     preload_ = std::max(preload_ - loss, std::min(least, preload_));
   }
 
-  /// Size of the friction torque, >= 0 [N.m], at motor speed [rad/s], load [N] and temperature [degC].
+  /// Magnitude of the friction torque, >= 0 [N.m], at motor speed [rad/s], load [N] and temperature [degC].
   double torque(double speed, double load, double temperature) const noexcept
   {
     return torqueAtViscosity(speed, load, viscosity(temperature));
   }
 
-  /// The same where the viscosity [m^2/s] is known: it is the costly part, and the temperature hardly changes.
+  /// Friction torque for a known viscosity [m^2/s], whose computation is expensive while the temperature hardly
+  /// changes.
   double torqueAtViscosity(double speed, double load, double viscosity) const noexcept
   {
     constexpr double LOW_SPEED = 2000.0;  // mm^2/s rpm
@@ -182,11 +181,11 @@ public:
     return 1e-3 * (speed_part + load_part);
   }
 
-  /// Kinematic viscosity that the friction by speed acts with [m^2/s] at a temperature [degC].
+  /// Effective kinematic viscosity of the speed-dependent friction [m^2/s] at a temperature [degC].
   double viscosity(double temperature) const noexcept
   {
     constexpr double ZERO_CELSIUS = 273.15;  // K
-    constexpr double OFFSET = 0.7;           // mm^2/s; DIN 51563 has 0.8
+    constexpr double OFFSET = 0.7;           // [mm^2/s]; DIN 51563 has 0.8
     const double known = std::log10(1e6 * parameters_.oil_viscosity + OFFSET);
     const double ratio = (temperature + ZERO_CELSIUS) / (parameters_.viscosity_temperature + ZERO_CELSIUS);
     const double oil = 1e-6 * (std::pow(10.0, known * std::pow(ratio, -parameters_.viscosity_slope)) - OFFSET);
@@ -197,15 +196,16 @@ public:
       return grease;
     }
     const double root = std::cbrt(grease / parameters_.viscosity);
-    const double friction = constant + (1.0 - constant) * root * root;  // over that of the sound grease at T_0
+    const double friction = constant + (1.0 - constant) * root * root;  // relative to sound grease at T_0
     return parameters_.viscosity * friction * std::sqrt(friction);
   }
 
-  /// x^(2/3), x > 0 and finite, within 1e-14 of it: x times its reciprocal cube root, which begins with a third of the
-  /// exponent, 4 % off, and by the series of (1 - e)^(-1/3) comes to 2e-6 and to rounding.
+  /// x^(2/3) for finite x > 0 with a relative error of 1e-14, as x times its reciprocal cube root. The root starts with
+  /// a third of the exponent (error 4 %). Two steps of the series of (1 - e)^(-1/3) reduce the error to 2e-6 and to
+  /// rounding.
   static double twoThirdsPower(double x) noexcept
   {
-    constexpr std::uint64_t ONE = 0x553ef0ff289dd796;  // offset with which a third of the bits of 1 are those of 1
+    constexpr std::uint64_t ONE = 0x553ef0ff289dd796;  // for this offset a third of the bits of 1 gives the bits of 1
     std::uint64_t bits{};
     std::memcpy(&bits, &x, sizeof(bits));
     bits = ONE - bits / 3;
@@ -225,20 +225,20 @@ private:
   double viscosity_factor_{ 1.0 };
 };
 
-/// Dry friction beside the cup's spring: microscopic slip where the cup is clamped to the housing, and in its steel. It
-/// acts on the mean rotation Phi of the rim, so it costs nothing while the drive runs at constant load; it opens the
-/// torsion loop and damps the output when the motor stands.
+/// Dry friction in parallel to the cup's spring: microscopic slip at the clamping to the housing, and in the steel. It
+/// acts on the mean rotation Phi of the rim, so that it costs nothing at constant load. It opens the torsion loop and
+/// damps the output when the motor is at rest.
 ///
-/// cup.friction_angle 0: one rigid-plastic element, a dry term of cup.friction_torque F.
-/// Above: ELEMENTS springs side by side, each with a slider in series (Maxwell slip, Masing's model)
+/// cup.friction_angle = 0: one rigid-plastic element, a dry term of cup.friction_torque F.
+/// Otherwise: ELEMENTS parallel springs, each in series with a slider (Maxwell slip, Masing's model):
 ///
 ///   torque   sum_j k z_j,   z_j' = Phi' while |z_j| < w_j or Phi' leads back, else 0
 ///   stored   sum_j k z_j^2 / 2;   dissipated where an element slips: k w_j per rad
 /// where      w_j = (a / 2) 3^-j, j = 0 ... 5; a the friction angle [rad]; k = F / sum_j w_j [N.m/rad]
 ///
-/// Equal springs over widths that treble lose about the same share of the stored energy at amplitudes from w_5 to w_0,
-/// a range of 1 to 243, as structural damping does. Rate-independent. After a reversal all of it has turned round when
-/// the rim has turned by a.
+/// With equal springs and widths in the ratio 3, the loss is about the same share of the stored energy at amplitudes
+/// from w_5 to w_0, a range of 1 to 243, as in structural damping. The friction does not depend on the rate. After a
+/// reversal all elements slip once the rim has turned by a.
 class CupFriction
 {
 public:
@@ -261,21 +261,21 @@ public:
     stiffness_ = hasState() ? ELEMENTS * torque_ / widths : 0.0;
   }
 
-  /// Springs with sliders, which have a state; else one dry term.
+  /// Whether the friction is that of springs with sliders, which have a state; otherwise it is one dry term.
   bool hasState() const noexcept { return torque_ > 0.0 && width_ > 0.0; }
 
-  /// State of springs and sliders, and the torque that follows from it at `rotation`.
+  /// State of springs and sliders, and their torque at `rotation`.
   struct State
   {
-    std::array<double, ELEMENTS> twist{};  ///< z [rad]
-    double rotation{};                     ///< Phi [rad]
-    double torque{};                       ///< against positive rotation [N.m]
-    double stiffness{};                    ///< of the elements that do not slip [N.m/rad]
-    double energy{};                       ///< stored [J]
-    double slipped{};                      ///< energy dissipated on the way to `rotation` from the state before [J]
+    std::array<double, ELEMENTS> twist{};  ///< twist z of each spring [rad]
+    double rotation{};                     ///< mean rotation Phi of the rim [rad]
+    double torque{};                       ///< torque against positive rotation [N.m]
+    double stiffness{};                    ///< stiffness of the elements that do not slip [N.m/rad]
+    double energy{};                       ///< stored energy [J]
+    double slipped{};                      ///< dissipated energy since the preceding state [J]
   };
 
-  /// The state without torque at a rotation [rad].
+  /// State with zero torque at a rotation [rad].
   State relaxed(double rotation) const noexcept
   {
     State state;
@@ -284,7 +284,7 @@ public:
     return state;
   }
 
-  /// After a monotone turn to `rotation` [rad]. `from`: its twist and rotation count.
+  /// State after a monotone turn to `rotation` [rad] from the twist and rotation of `from`.
   inline __attribute__((always_inline)) State turned(const State& from, double rotation) const noexcept
   {
     using Elements = Eigen::Array<double, ELEMENTS, 1>;
@@ -302,11 +302,11 @@ public:
     return state;
   }
 
-  /// Of all elements together, before any slips: the largest [N.m/rad].
+  /// Largest stiffness, that of all elements before any slips [N.m/rad].
   double stiffness() const noexcept { return stiffness_; }
 
-  /// The rigid-plastic element's term, by the mean rotation's rates by motor and output angle [-]; none where there is
-  /// no friction or it has a state.
+  /// Adds the term of the rigid-plastic element; `rates`: derivatives of the mean rotation by motor and output angle
+  /// [-]. Adds nothing without friction or if the friction has a state.
   void addTerm(const Eigen::Vector2d& rates, JointFriction& friction) const noexcept
   {
     if (isTerm())
@@ -317,14 +317,14 @@ public:
   bool isTerm() const noexcept { return torque_ > 0.0 && !hasState(); }
 
 private:
-  static constexpr double RATIO = 3.0;  // width of an element over that of the next
-  // Of an element's width to the widest.
+  static constexpr double RATIO = 3.0;  // width of an element over that of the next element
+  // Shares of each element's width in the largest one.
   static constexpr std::array<double, ELEMENTS> SHARES{
     1.0, 1.0 / 3.0, 1.0 / 9.0, 1.0 / 27.0, 1.0 / 81.0, 1.0 / 243.0
   };
 
-  double torque_;  // sum of what the elements slip at [N.m]
-  double width_;   // of the widest element [rad]
+  double torque_;  // torque at which all elements slip [N.m]
+  double width_;   // width of the widest element [rad]
   double stiffness_{};
 };
 }  // namespace hjt

@@ -7,9 +7,9 @@
 
 namespace hjt
 {
-/// Load of the output: inertia, friction and gravity (thesis eq. 7.37-7.38, brackets mended).
+/// Load of the output: inertia, friction and gravity (thesis eq. 7.37-7.38 with corrected brackets).
 ///
-/// Gravity's energy:  U = -m g l cos(phi - phi_g), phi_g the angle at which the load hangs straight down. [J]
+/// Energy of gravity:  U = -m g l cos(phi - phi_g), phi_g = angle at which the load hangs straight down. [J]
 class Load
 {
 public:
@@ -17,7 +17,7 @@ public:
 
   double inertia() const noexcept { return parameters_.circular_spline_inertia + parameters_.load_inertia; }
   double viscousFriction() const noexcept { return parameters_.viscous_friction; }
-  /// Of bearing and seals, the bearing under its tilting moment [N.m].
+  /// Dry friction of bearing and seals, with that of the tilting moment [N.m].
   double dryFriction() const noexcept
   {
     return parameters_.coulomb_torque + parameters_.tilting_friction * parameters_.tilting_moment;
@@ -32,7 +32,7 @@ public:
   {
     return weightless() ? 0.0 : -parameters_.gravity_torque * std::sin(angle - parameters_.gravity_angle);
   }
-  /// Second derivative of its energy [N.m/rad].
+  /// Second derivative of gravity's energy [N.m/rad].
   double gravityStiffness(double angle) const noexcept
   {
     return parameters_.gravity_torque * std::cos(angle - parameters_.gravity_angle);

@@ -10,9 +10,9 @@ namespace hjt
 {
 namespace
 {
-using Bump = RaceDeflection::Drop;  // of 0 ... 1
+using Bump = RaceDeflection::Drop;  // values 0 ... 1
 
-/// Raised cosine of half width `half` at `angle` from its middle, which moves at `rate` over it.
+/// Raised cosine of half width `half` at `angle` from its middle; `rate`: derivative of `angle`.
 Bump bump(double angle, double rate, double half) noexcept
 {
   const double x = std::remainder(angle, TWO_PI);
@@ -44,7 +44,7 @@ void RaceDeflection::add(const Spall& spall) noexcept
   }
 }
 
-/// How far a ball drops into a spall.
+/// Depth by which a ball drops into a spall.
 double RaceDeflection::dropInto(double depth, double length) const noexcept
 {
   return std::min(depth, length * length / (4.0 * ball_diameter_));
@@ -108,10 +108,11 @@ double RaceDeflection::ballPlace(int ball, double wave_generator_angle) const no
   return TWO_PI * ball / balls_ + cage_rate_ * wave_generator_angle;
 }
 
-/// How far a ball drops through one spall.
+/// Drop of a ball through one spall.
 RaceDeflection::Drop RaceDeflection::drop(const Spall& spall, int ball, double angle) const noexcept
 {
-  constexpr double GOLDEN = 2.399963229728653;  // rad; the balls are turned one against the other, without a pattern
+  // [rad], golden angle: turns the balls relative to each other without a pattern
+  constexpr double GOLDEN = 2.399963229728653;
   Bump at;
   switch (spall.where)
   {

@@ -49,7 +49,7 @@ HJT_VECTOR_CLONES void RimTension::addTangent(const RingShape& shape, const Scra
 #pragma omp simd
   for (int i = 0; i < n; ++i)
   {
-    // k u u^T along the segment, tension / length across it.
+    // The stiffness is k u u^T along the segment, and tension / length across it.
     const double across = stiffness[i] * (length[i] - rest) / length[i];
     const double x = direction[2 * i];
     const double y = direction[2 * i + 1];
@@ -72,7 +72,7 @@ RimBending::RimBending(const Parameters& parameters, const ToothRing& rest)
 {
 }
 
-/// Adds the bending energy and writes the moment at each tooth, its stiffness times the angle of bending, to `scratch`.
+/// Adds the bending energy and writes the moment at each tooth, stiffness times bending angle, to `scratch`.
 HJT_VECTOR_CLONES void RimBending::addMoments(const RingShape& shape, Scratch& scratch, ForceSum& sum) const noexcept
 {
   const int n = shape.solved;
@@ -88,7 +88,7 @@ HJT_VECTOR_CLONES void RimBending::addMoments(const RingShape& shape, Scratch& s
   }
   else
   {
-    // Where each segment would point if the rim were bent there as at rest: the one before, turned by a pitch.
+    // Direction of each segment if the rim were bent as at rest: that of the preceding segment, turned by a pitch.
     const double c = rest_cos_;
     const double s = rest_sin_;
     const int before = 2 * shape.previous(0);
@@ -101,7 +101,7 @@ HJT_VECTOR_CLONES void RimBending::addMoments(const RingShape& shape, Scratch& s
       reference[2 * i + 1] = s * direction[2 * i - 2] + c * direction[2 * i - 1];
     }
   }
-  // Else what is inlined, and so vectorised, depends on the sources that are compiled beside this one.
+  // Without the attribute, inlining and vectorisation depend on the other sources of the unity build.
   const auto along = [&](int i) __attribute__((always_inline))
   {
     return reference[2 * i] * direction[2 * i] + reference[2 * i + 1] * direction[2 * i + 1];
@@ -116,7 +116,8 @@ HJT_VECTOR_CLONES void RimBending::addMoments(const RingShape& shape, Scratch& s
     const double angle = turn - natural_angle[i];
     moment[i] = stiffness[i] * angle + race * turn;
     rows[0][k] = 0.5 * stiffness[i] * angle * angle + 0.5 * race * turn * turn;
-    rows[1][k] = std::abs(across(i)) < SMALL_TANGENT * along(i) ? 0.0 : 1.0;  // as wide as an angle, for the vectors
+    // double like the sums, so that the loop vectorises
+    rows[1][k] = std::abs(across(i)) < SMALL_TANGENT * along(i) ? 0.0 : 1.0;
   };
   auto [energy, large] = blockSums<2>(0, n, bend);
   if (large > 0.0)
@@ -167,7 +168,8 @@ void RimBending::addTangent(const RingShape& shape, const Scratch& scratch, Ring
   }
 }
 
-/// The part that acts between the ends of a segment: its couple as it turns, and with the absolute law its stiffness.
+/// Stiffness between the ends of a segment: its couple as the segment turns and, with the absolute law, its bending
+/// stiffness.
 HJT_VECTOR_CLONES void RimBending::addTurnTangent(const RingShape& shape, const Scratch& scratch,
                                                   RingTangent& tangent) const noexcept
 {
@@ -201,7 +203,7 @@ HJT_VECTOR_CLONES void RimBending::addTurnTangent(const RingShape& shape, const 
   tangent.addSegments(n);
 }
 
-/// Each segment's gradient g of its turn by its far end; where only a half of the ring is solved, also beyond its ends.
+/// Gradient g of each segment's angle by its far end; with half of the ring solved, also one segment beyond either end.
 inline void fillGradients(const RingShape& shape, double* __restrict__ gx, double* __restrict__ gy) noexcept
 {
   const int n = shape.solved;
@@ -225,8 +227,8 @@ inline void fillGradients(const RingShape& shape, double* __restrict__ gx, doubl
   }
 }
 
-/// The stiffness between neighbouring segments: k times the outer product of the bend's gradient, which at tooth i is
-/// g_i at the tooth after, g_{i-1} at the tooth before and minus both at the tooth; g_i turns segment i by its far end.
+/// Bending stiffness between neighbouring segments: k times the outer product of the gradient of the bending angle. For
+/// tooth i the gradient is g_i at the next tooth, g_{i-1} at the preceding tooth and minus their sum at tooth i.
 HJT_VECTOR_CLONES void RimBending::addCurvatureTangent(const RingShape& shape, RingTangent& tangent) const noexcept
 {
   const int n = shape.solved;

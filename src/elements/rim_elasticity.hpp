@@ -9,7 +9,8 @@
 
 namespace hjt
 {
-/// Axial stiffness of the flexspline rim between neighbouring teeth (thesis eq. 5.33-5.34, the missing plus put in).
+/// Axial stiffness of the flexspline rim between neighbouring teeth (thesis eq. 5.33-5.34 with a missing plus sign
+/// added).
 ///
 /// Energy:  U = 1/2 sum_i k_i (d_i - d0)^2
 /// where    d_i  distance between tooth points i and i+1   [m]
@@ -30,29 +31,29 @@ public:
   void addTangent(const RingShape& shape, const Scratch&, RingTangent& tangent) const noexcept;
   bool repeats() const noexcept { return halvesAgree(stiffness_); }
 
-  /// Tension of segment i, pull > 0 [N].
+  /// Tension of segment i, > 0 pulls [N].
   double tension(const RingShape& shape, int i) const noexcept
   {
     return stiffness_[i] * (shape.lengths[i] - rest_length_);
   }
 
   const Eigen::VectorXd& stiffness() const noexcept { return stiffness_; }
-  Eigen::VectorXd& stiffness() noexcept { return stiffness_; }  ///< N, editable per segment [N/m]
+  /// N, stiffness of each segment, which faults change [N/m]
+  Eigen::VectorXd& stiffness() noexcept { return stiffness_; }
 
 private:
   Eigen::VectorXd stiffness_;
   double rest_length_;
 };
 
-/// Bending stiffness of the flexspline rim and of the bearing's outer race, which bends with it.
+/// Bending stiffness of the flexspline rim, and of the bearing's outer race, which bends with the rim.
 ///
 /// Energy:  absolute   U = 1/2 sum_i (k_i + k_race) eta_i^2                (thesis eq. 5.47-5.53; grounded)
 ///          curvature  U = 1/2 sum_i (k_i + k_race) (eta_i - eta_{i-1})^2  (frame-indifferent)
 /// where    eta_i   rotation of the segment from tooth i to i+1 from rest [rad]
 ///          k_i     stiffness of the rim, >= 0                            [N.m/rad]
-///          k_race  that of the race, everywhere beside the rim           [N.m/rad]
-/// A rim that has been bent for good adds its own angle: for its k_i, less natural_angle_i, what the brackets would be
-/// of themselves.
+///          k_race  stiffness of the race, equal at all teeth                     [N.m/rad]
+/// A permanently bent rim has a natural angle: for k_i, natural_angle_i is subtracted from the terms in brackets.
 class RimBending
 {
 public:
@@ -64,13 +65,13 @@ public:
     void setZero() noexcept {}  // `addForces` writes every entry
     void repeat() noexcept { repeatHalf(moment); }
 
-    Eigen::VectorXd moment;  ///< N, at each tooth (absolute law: on each segment) [N.m]
+    Eigen::VectorXd moment;  ///< N, bending moment at each tooth (absolute law: of each segment) [N.m]
   };
   void addForces(const RingShape& shape, const DrivePosition&, Scratch& scratch, ForceSum& sum) const noexcept;
   void addTangent(const RingShape& shape, const Scratch& scratch, RingTangent& tangent) const noexcept;
   bool repeats() const noexcept { return halvesAgree(stiffness_) && halvesAgree(natural_angle_); }
 
-  /// Force of the couple that turns segment i back, at its ends (thesis eq. 5.52) [N].
+  /// Forces at the ends of segment i that form its restoring couple (thesis eq. 5.52) [N].
   double bendingForce(const RingShape& shape, const Scratch& scratch, int i) const noexcept
   {
     const double next = law_ == BendingLaw::ABSOLUTE ? 0.0 : scratch.moment[shape.next(i)];
@@ -78,9 +79,11 @@ public:
   }
 
   const Eigen::VectorXd& stiffness() const noexcept { return stiffness_; }
-  Eigen::VectorXd& stiffness() noexcept { return stiffness_; }  ///< N, of the rim alone, editable per tooth [N.m/rad]
+  /// N, stiffness of the rim alone at each tooth, which faults change [N.m/rad]
+  Eigen::VectorXd& stiffness() noexcept { return stiffness_; }
   const Eigen::VectorXd& naturalAngle() const noexcept { return natural_angle_; }
-  Eigen::VectorXd& naturalAngle() noexcept { return natural_angle_; }  ///< N, editable per tooth [rad]
+  /// N, natural angle at each tooth, which faults change [rad]
+  Eigen::VectorXd& naturalAngle() noexcept { return natural_angle_; }
 
 private:
   void addMoments(const RingShape& shape, Scratch& scratch, ForceSum& sum) const noexcept;
@@ -89,10 +92,10 @@ private:
 
   BendingLaw law_;
   Eigen::VectorXd stiffness_;
-  double race_;  // [N.m/rad]
+  double race_;  // stiffness of the race [N.m/rad]
   Eigen::VectorXd natural_angle_;
   Eigen::VectorXd rest_directions_;
-  double rest_cos_;  // of the angle between neighbouring segments at rest
+  double rest_cos_;  // cosine of the angle between neighbouring segments at rest
   double rest_sin_;
 };
 }  // namespace hjt

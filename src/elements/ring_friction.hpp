@@ -16,22 +16,22 @@
 
 namespace hjt
 {
-/// How the ring's points move with the two angles of the joint.
+/// Derivatives of the ring's points by the two angles of the joint.
 struct RingRates
 {
   const RingShape& shape;
-  const Eigen::VectorXd& by_motor;   ///< 2 N, by wave generator angle [m/rad]
-  const Eigen::VectorXd& by_output;  ///< 2 N, by output angle [m/rad]
+  const Eigen::VectorXd& by_motor;   ///< 2 N, derivatives by the wave generator angle [m/rad]
+  const Eigen::VectorXd& by_output;  ///< 2 N, derivatives by the output angle [m/rad]
 
-  /// Of the rim's mean rotation, by motor and output angle [-].
+  /// Derivatives of the rim's mean rotation by motor and output angle [-].
   Eigen::Vector2d meanRotation() const noexcept
   {
     return { CupTorsion::meanRotationRate(shape, by_motor), CupTorsion::meanRotationRate(shape, by_output) };
   }
 };
 
-/// Friction on the tooth flanks: mu |F| against the sliding along the flank, mu falling from static to kinetic with the
-/// sliding speed (Stribeck, Gaussian).
+/// Friction of the tooth flanks: mu |F| against the sliding along the flank. mu decreases from static to kinetic with
+/// the sliding speed (Stribeck curve, Gaussian).
 class MeshFriction
 {
 public:
@@ -43,37 +43,37 @@ public:
   {
   }
 
-  /// Friction of all flanks times this [-].
+  /// Multiplies the friction of all flanks by `factor` [-].
   void scale(double factor) noexcept
   {
     friction_static_ *= factor;
     friction_kinetic_ *= factor;
   }
-  /// N, friction of each tooth's flanks to that of the others, editable [-].
+  /// N, factor on the friction of each tooth's flanks, which faults change [-].
   Eigen::VectorXd& toothFactor() noexcept { return tooth_factor_; }
 
-  /// One term per loaded tooth. `found`: by the mesh, at the same shape; `speeds`: motor and output [rad/s], for the
-  /// Stribeck curve.
+  /// Adds one term for each loaded tooth. `found`: result of the mesh at the same shape; `speeds`: motor and output
+  /// [rad/s], for the Stribeck curve.
   void addTerms(const ToothMesh& mesh, const ToothMesh::Scratch& found, const RingRates& rates,
                 const Eigen::Vector2d& speeds, JointFriction& friction) const noexcept;
 
-  /// Strengths of the terms that `addTerms` added, the first of them `first`, at other speeds.
+  /// Sets the strengths of the terms that `addTerms` added, from index `first` on, for other speeds.
   void setStrengths(int first, const Eigen::Vector2d& speeds, JointFriction& friction) const noexcept;
 
-  /// Friction coefficient by the Stribeck curve, at a sliding speed along the flank [m/s], [-].
+  /// Friction coefficient [-] of the Stribeck curve at a sliding speed along the flank [m/s].
   double coefficient(double sliding_speed) const noexcept
   {
     const double relative = sliding_speed / stribeck_velocity_;
     return friction_kinetic_ + (friction_static_ - friction_kinetic_) * std::exp(-relative * relative);
   }
 
-  /// The same for several speeds at once, an array of fixed size: quicker, and off by less than 3e-4 of the difference
-  /// between static and kinetic friction, exp(-q) taken as (1 + x + x^2/2)^-32 with x = q/32.
+  /// Coefficients for several speeds, an array of fixed size. This is faster; its error is below 3e-4 of the difference
+  /// between static and kinetic friction, because exp(-q) is approximated by (1 + x + x^2/2)^-32 with x = q/32.
   template <class Speeds>
   Speeds coefficients(const Speeds& sliding_speeds) const noexcept
   {
     const double scale = 1.0 / (32.0 * stribeck_velocity_ * stribeck_velocity_);
-    const Speeds x = (scale * sliding_speeds.square()).min(8.0);  // beyond it nothing is left of the difference
+    const Speeds x = (scale * sliding_speeds.square()).min(8.0);  // beyond 8 the coefficient is the kinetic one
     const Speeds base = 1.0 + x * (1.0 + 0.5 * x);
     return friction_kinetic_ +
            (friction_static_ - friction_kinetic_) / base.square().square().square().square().square();
@@ -88,10 +88,10 @@ private:
 
 /// Friction between the outer race of the wave generator's bearing and the flexspline.
 ///
-/// The race does not slide in the rim: it rolls, held by mu F r >> bearing friction. What slips are the two surfaces as
-/// rim and race bend: their neutral fibres lie a lever apart, so the slip is the lever times the rate at which the rim
-/// tilts. Taken literally, thesis eq. 7.25-7.28 lets the race slide at motor speed and gives 74 N.m on a 2.87 N.m
-/// motor.
+/// The race does not slide in the rim but rolls, because mu F r is much larger than the bearing friction. Slip arises
+/// because rim and race bend: their neutral fibres have a distance, the lever, and the slip is the lever times the rate
+/// at which the rim tilts. Taken literally, thesis eq. 7.25-7.28 lets the race slide at motor speed, which gives 74 N.m
+/// for a motor of 2.87 N.m.
 class InterfaceFriction
 {
 public:
@@ -102,8 +102,8 @@ public:
 
   void scale(double factor) noexcept { coefficient_ *= factor; }
 
-  /// Size of the torque at the motor shaft, >= 0 [N.m]. `found`: by the contact, at the same shape; `rates`: of the
-  /// points by motor angle while running [m/rad].
+  /// Magnitude of the torque at the motor shaft, >= 0 [N.m]. `found`: result of the contact at the same shape; `rates`:
+  /// derivatives of the points by motor angle if the output follows [m/rad].
   double torque(const RingShape& shape, const WaveGeneratorContact::Scratch& found,
                 const Eigen::VectorXd& rates) const noexcept;
 
@@ -112,20 +112,20 @@ private:
   double coefficient_;
 };
 
-/// Energy that the rim's steel loses as the wave bends it to and fro, whatever the speed:
+/// Hysteresis loss of the rim's steel, which the wave bends cyclically; it does not depend on the speed:
 ///
 ///   torque at the motor shaft = (pi / 2) eta sum_i |M_i dkappa_i/dtheta|
 /// where  M_i     bending moment at tooth i [N.m]
-///        kappa_i angle between the segments on either side of it [rad]; theta the motor's, the output following
-///        eta     ring.loss_factor: a cycle of the amplitude M_a loses pi eta M_a^2 / k, k the stiffness at the tooth
+///       kappa_i angle between the segments on either side of it [rad]; theta = motor angle, the output follows
+///        eta     ring.loss_factor: a cycle of amplitude M_a loses pi eta M_a^2 / k, k = stiffness at the tooth
 ///
-/// Exact where the moment swings about zero, as that of the wave does; a moment that stays counts as swinging too.
+/// Exact for a moment that alternates about zero, as that of the wave does. A constant part counts as alternating too.
 class FlexingLoss
 {
 public:
   explicit FlexingLoss(const RingParameters& parameters) : factor_(parameters.loss_factor) {}
 
-  /// >= 0 [N.m]. `found`: by the bending, at the same shape; `rates`: as InterfaceFriction's.
+  /// Torque >= 0 [N.m]. `found`: result of the bending at the same shape; `rates`: as for InterfaceFriction.
   double torque(const RingShape& shape, const RimBending::Scratch& found, const Eigen::VectorXd& rates) const noexcept
   {
     return factor_ > 0.0 ? factor_ * bendingRate(shape, found.moment, rates) : 0.0;
@@ -138,14 +138,14 @@ private:
   double factor_;
 };
 
-/// Power through the dashpots at one instant [W].
+/// Power of the dashpots at one instant [W].
 struct DashpotPower
 {
   double dissipated{};
-  double supplied{};  ///< by the growing wave generator
+  double supplied{};  ///< power that the growing wave generator supplies
 };
 
-/// Dashpots of the ring (thesis eq. 5.1, 5.23, 5.33, signs mended).
+/// Dashpots of the ring (thesis eq. 5.1, 5.23, 5.33 with corrected signs).
 ///
 /// Force:  c_tooth against the speed of each tooth point, c_tension against the stretching of each segment,
 ///         c_contact r'(depth) against the rate of depth of each tooth in the wave generator, r the contact ramp
@@ -165,12 +165,12 @@ public:
 
   using Contact = WaveGeneratorContact::Scratch;  ///< result of the contact at the same shape
 
-  /// Seen through the joint's two angles, the ring following them: adds to the viscous matrix.
+  /// Adds the damping with respect to the joint's two angles, with the ring in equilibrium, to the viscous matrix.
   void add(const Contact& contact, const RingRates& rates, JointFriction& friction) const noexcept;
 
-  /// Adds the dashpots' force on each coordinate of the ring: 2 N of the tooth points, wave generator and output angle.
-  /// `speeds`: of the same coordinates; `growth`: N, speed of the wave generator's surface by its growing amplitude
-  /// along each tooth's normal [m/s].
+  /// Adds the dashpot forces on each coordinate: 2 N of the tooth points, wave generator angle, output angle. `speeds`:
+  /// speeds of these coordinates; `growth`: N, speed of the wave generator's surface along each tooth's normal by its
+  /// growing amplitude [m/s].
   DashpotPower addForces(const RingShape& shape, const Contact& contact, const Eigen::VectorXd& speeds,
                          const Eigen::VectorXd& growth, Eigen::VectorXd& force) const noexcept;
 
@@ -180,9 +180,9 @@ public:
 private:
   double contactStrength(const Contact& contact, int i) const noexcept;
 
-  double tension_;    // [N.s/m]
-  double tooth_;      // [N.s/m]
-  double contact_;    // [N.s/m]
-  double smoothing_;  // [m]
+  double tension_;    // damping of each segment [N.s/m]
+  double tooth_;      // damping of each tooth to the housing [N.s/m]
+  double contact_;    // damping of each tooth to the wave generator [N.s/m]
+  double smoothing_;  // width of the contact ramp [m]
 };
 }  // namespace hjt

@@ -40,8 +40,8 @@ void RingTangent::closeHalf() noexcept
 {
   const int half = teeth() / 2;
   const int last = half - 1;
-  // Entries of the end teeth for their neighbours beyond the half: tooth `half` is the first one again, the last tooth
-  // of the ring that of the half.
+  // Entries for neighbours beyond the half: tooth `half` corresponds to tooth 0, the last tooth of the ring to the last
+  // of the half.
   const int beyond = teeth() - 1;
   for (Eigen::VectorXd* entry : { &diagonal.xx, &diagonal.xy, &diagonal.yy })
   {

@@ -9,18 +9,18 @@
 
 namespace hjt
 {
-/// Sum of what the elements of the ring do: minus the gradient of the stored energy.
+/// Sum over the elements of the ring: minus the gradient of the stored energy, and the energy.
 struct ForceSum
 {
   explicit ForceSum(int count) : teeth(2 * count), segment(2 * count) {}
 
-  /// Pulls tooth i with the force of segment i and pushes tooth i+1 with it, for the segments of all solved teeth.
+  /// Adds the force of segment i to tooth i and subtracts it from tooth i+1, for the segments of all solved teeth.
   void addSegmentForces(int solved) noexcept
   {
     const Eigen::Index size = 2 * solved;
     const double* pull = segment.data();
     double* force = teeth.data();
-    const double sign = size < teeth.size() ? -1.0 : 1.0;  // of the last segment's pull half a turn on
+    const double sign = size < teeth.size() ? -1.0 : 1.0;  // sign of the last segment's force half a turn away
     force[0] += pull[0] - sign * pull[size - 2];
     force[1] += pull[1] - sign * pull[size - 1];
     for (Eigen::Index k = 2; k < size; ++k)
@@ -29,10 +29,10 @@ struct ForceSum
     }
   }
 
-  /// The whole from the sum over the first half of the ring.
+  /// Extends the sum over the first half of the ring to the whole.
   void repeat() noexcept
   {
-    // Forces of the half's end teeth on their neighbours beyond it.
+    // Forces of the half's end teeth on their neighbours in the other half.
     const Eigen::Index half = teeth.size() / 2;
     teeth.head<2>() -= teeth.segment<2>(half);
     teeth.segment<2>(half - 2) -= teeth.tail<2>();
@@ -42,7 +42,7 @@ struct ForceSum
     energy *= 2.0;
   }
 
-  /// Sets the sums of the solved teeth and their neighbours to zero.
+  /// Sets the entries of the solved teeth and their neighbours to zero.
   void setZero(int solved) noexcept
   {
     teeth.head(std::min<Eigen::Index>(2 * solved + 2, teeth.size())).setZero();
@@ -52,16 +52,16 @@ struct ForceSum
     energy = 0.0;
   }
 
-  Eigen::VectorXd teeth;           ///< 2 N, on the tooth points [N]
-  double wave_generator_torque{};  ///< on the wave generator [N.m]
-  double output_torque{};          ///< on the circular spline [N.m]
-  double energy{};                 ///< stored [J]
-  Eigen::VectorXd segment;         ///< 2 N, what an element does along the rim, before `addSegmentForces` [N]
+  Eigen::VectorXd teeth;           ///< 2 N, forces on the tooth points [N]
+  double wave_generator_torque{};  ///< torque on the wave generator [N.m]
+  double output_torque{};          ///< torque on the circular spline [N.m]
+  double energy{};                 ///< stored energy [J]
+  Eigen::VectorXd segment;         ///< 2 N, forces of an element along the rim, before `addSegmentForces` [N]
 };
 
 using Block2 = Eigen::Matrix2d;
 
-/// A 2x2 block for every tooth, each entry in an array of its own: loops over the teeth then vectorise. [N/m]
+/// A 2x2 block for each tooth [N/m]. Each entry has its own array, so that loops over the teeth vectorise.
 struct ToothBlocks
 {
   explicit ToothBlocks(int teeth) : xx(teeth), xy(teeth), yx(teeth), yy(teeth) {}
@@ -87,12 +87,12 @@ struct ToothBlocks
   Eigen::VectorXd yy;
 };
 
-/// The same for symmetric blocks.
+/// Symmetric 2x2 blocks, in the same layout.
 struct SymmetricBlocks
 {
   explicit SymmetricBlocks(int teeth) : xx(teeth), xy(teeth), yy(teeth) {}
 
-  /// Of a symmetric block.
+  /// Adds a symmetric block.
   void add(int i, const Block2& block) noexcept
   {
     xx[i] += block(0, 0);
@@ -112,10 +112,10 @@ struct SymmetricBlocks
   Eigen::VectorXd yy;
 };
 
-/// Hessian of the stored energy over the tooth points, wave generator angle and output angle.
+/// Hessian of the stored energy by tooth points, wave generator angle and output angle.
 ///
-/// The tooth part couples a tooth with two neighbours on each side: symmetric, cyclic, five 2x2 blocks a row. The cup
-/// adds `cup_stiffness * cup_direction * cup_direction^T`, which couples all teeth.
+/// The part of the teeth is symmetric and cyclic: it couples a tooth with two neighbours on each side, with five 2x2
+/// blocks in a row. The cup adds `cup_stiffness * cup_direction * cup_direction^T`, which couples all teeth.
 struct RingTangent
 {
   explicit RingTangent(int teeth)
@@ -133,7 +133,7 @@ struct RingTangent
 
   void setZero() noexcept { setZero(teeth()); }
 
-  /// Sets the sums of the solved teeth and their neighbours to zero.
+  /// Sets the entries of the solved teeth and their neighbours to zero.
   void setZero(int solved_teeth) noexcept
   {
     solved = solved_teeth;
@@ -157,29 +157,30 @@ struct RingTangent
 
   void addDiagonal(int i, const Block2& block) noexcept { diagonal.add(i, block); }
 
-  /// Adds `block` at (i, j) and its transpose at (j, i); j is i+1 or i+2, cyclic.
+  /// Adds `block` at (i, j) and its transpose at (j, i), with j = i+1 or i+2, cyclic.
   void addPair(int i, int j, const Block2& block) noexcept
   {
     (j == i + 1 || j == i + 1 - teeth() ? next : second).add(i, block);
   }
 
-  /// Adds the blocks of `segment`: springs between teeth i and i+1, i all solved teeth.
+  /// Adds the blocks of `segment`: springs between teeth i and i+1, for all solved teeth i.
   void addSegments(int solved) noexcept;
 
-  /// Of the sum over the first half of the ring, the tangent that this half has as a ring of its own: its last teeth
-  /// are coupled to the first, which stand half a turn on at the points reversed.
+  /// Converts the sum over the first half of the ring to the tangent of this half as a closed ring. Its last teeth are
+  /// then coupled to the first ones, which represent the teeth half a turn away with opposite sign.
   void closeHalf() noexcept;
 
-  SymmetricBlocks diagonal;           ///< at (i, i)
-  ToothBlocks next;                   ///< at (i, i+1), cyclic
-  ToothBlocks second;                 ///< at (i, i+2), cyclic
-  Eigen::VectorXd cup_direction;      ///< 2 N, gradient of the mean rotation [rad/m]
-  double cup_stiffness{};             ///< [N.m/rad]
-  Eigen::VectorXd wave_generator;     ///< 2 N, mixed derivative of the energy by tooth and wave generator angle [N/rad]
-  Eigen::VectorXd output;             ///< 2 N, the same by output angle [N/rad]
-  double wave_generator_stiffness{};  ///< second derivative by the wave generator angle [N.m/rad]
-  int solved{};                       ///< teeth of the ring that it is of: all, or the first half
-  double output_stiffness{};          ///< second derivative by the output angle [N.m/rad]
-  SymmetricBlocks segment;            ///< an element's tangent between teeth i and i+1, before `addSegments`
+  SymmetricBlocks diagonal;       ///< blocks at (i, i)
+  ToothBlocks next;               ///< blocks at (i, i+1), cyclic
+  ToothBlocks second;             ///< blocks at (i, i+2), cyclic
+  Eigen::VectorXd cup_direction;  ///< 2 N, gradient of the mean rotation [rad/m]
+  double cup_stiffness{};         ///< stiffness of the cup for its mean rotation [N.m/rad]
+  /// 2 N, mixed derivative of the energy by tooth point and wave generator angle [N/rad]
+  Eigen::VectorXd wave_generator;
+  Eigen::VectorXd output;             ///< 2 N, mixed derivative of the energy by tooth point and output angle [N/rad]
+  double wave_generator_stiffness{};  ///< second derivative of the energy by the wave generator angle [N.m/rad]
+  int solved{};                       ///< number of solved teeth: all, or those of the first half
+  double output_stiffness{};          ///< second derivative of the energy by the output angle [N.m/rad]
+  SymmetricBlocks segment;            ///< tangent of an element between teeth i and i+1, before `addSegments`
 };
 }  // namespace hjt

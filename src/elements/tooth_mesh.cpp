@@ -11,16 +11,16 @@ namespace hjt
 {
 namespace
 {
-constexpr double OUTSIDE = -1.0;  // m: the depth in a flank of a tip that is not in the circular spline
+constexpr double OUTSIDE = -1.0;  // [m], depth in a flank if the tip is not in the circular spline
 
-/// Where a tooth stands among the axes of its space: across and along (FlankContact's xi and zeta).
+/// Position of a tooth in its space, across and along (FlankContact's xi and zeta).
 struct ToothPose
 {
   double xi;
   double zeta;
 };
 
-/// Of tooth i between its neighbours h and j, at mid-height; axis: of its space, a unit vector.
+/// Pose of tooth i between its neighbours h and j, at mid-height. The axis of its space is a unit vector.
 inline ToothPose poseOf(const double* point, double mid_height, int h, int i, int j, double axis_x,
                         double axis_y) noexcept
 {
@@ -97,7 +97,7 @@ ToothEngagement ToothMesh::engage(const RingShape& shape, double cos_output, dou
            space.along - tooth_along_[i] };
 }
 
-/// Of a tooth that touches.
+/// Energy and derivatives of a tooth that touches a flank.
 FlankLaw ToothMesh::law(const ToothEngagement& tooth, int i) const noexcept
 {
   const double xi = tooth.xi + tooth.tooth_ahead;
@@ -137,7 +137,7 @@ FlankLaw ToothMesh::law(const ToothEngagement& tooth, int i) const noexcept
   return law;
 }
 
-/// Depth of every tooth in the nearer flank; most that reach the circular spline do not touch.
+/// Depth of every tooth in the nearer flank. Most teeth that reach the circular spline do not touch.
 HJT_VECTOR_CLONES void ToothMesh::findPressed(const RingShape& shape, double cos_output, double sin_output,
                                               Scratch& scratch) const noexcept
 {
@@ -185,7 +185,7 @@ HJT_VECTOR_CLONES void ToothMesh::findPressed(const RingShape& shape, double cos
   }
 }
 
-/// Depth in the nearer flank, across.
+/// Depth of a tooth in the nearer flank, measured across.
 double ToothMesh::pressedBy(const ToothEngagement& tooth, int i) const noexcept
 {
   const double zeta = tooth.zeta - tooth.space_out;
@@ -227,7 +227,7 @@ void ToothMesh::addForces(const RingShape& shape, const DrivePosition& position,
     const ToothEngagement& tooth = contact.place;
     const FlankLaw& at = contact.law;
     const Eigen::Vector2d gradient = at.by_xi * tooth.across + at.by_zeta * tooth.radial;
-    // The tooth tilts with the chord: its couple acts on the two neighbours, along the chord's normal.
+    // The tooth tilts with the chord, so its couple acts on the two neighbours along the chord's normal.
     const Eigen::Vector2d& normal = tooth.chord.normal;
     const double couple = mid_height_ / tooth.chord.length * (-normal.y() * gradient.x() + normal.x() * gradient.y());
     sum.teeth.segment<2>(2 * i) -= gradient;
@@ -273,7 +273,7 @@ void ToothMesh::addTangent(const RingShape& shape, const Scratch& scratch, RingT
     tangent.addPair(h, i, -mixed.transpose());
     tangent.addPair(h, j, -chord);
 
-    // By the output angle: d xi = -zeta, d zeta = xi, d e_t = -e_r, d e_r = e_t.
+    // Derivatives by the output angle: d xi = -zeta, d zeta = xi, d e_t = -e_r, d e_r = e_t.
     const double xi_rate = -at.by_xi_xi * tooth.zeta + at.by_xi_zeta * tooth.xi;
     const double zeta_rate = -at.by_xi_zeta * tooth.zeta + at.by_zeta_zeta * tooth.xi;
     const Eigen::Vector2d gradient_rate = (xi_rate + at.by_zeta) * et + (zeta_rate - at.by_xi) * er;
@@ -286,12 +286,12 @@ void ToothMesh::addTangent(const RingShape& shape, const Scratch& scratch, RingT
   }
 }
 
-/// Where tooth 0 at rest lies among the spaces, plus a half for rounding, between 0 and twice their number.
+/// Position of tooth 0 at rest in units of spaces, plus one half for rounding, between 0 and twice their number.
 double ToothMesh::firstSpace(double output_angle) const noexcept
 {
   const double turns = output_angle / TWO_PI;
   const double part = turns - std::floor(turns);
-  // An angle that is no number has no space; any will do, the forces will tell.
+  // A NaN angle has no space. Any space serves, because the forces become NaN too.
   return 0.5 + spaces_ * (part >= 0.0 && part <= 1.0 ? 1.0 - part : 0.0);
 }
 
@@ -305,8 +305,8 @@ void ToothMesh::pairAtRest(const DrivePosition& position, RingShape& shape) cons
   }
 }
 
-/// Pairs every tooth whose tip does not reach the circular spline, however it is tilted, with the space nearest to its
-/// angle at rest: near enough while it cannot touch. @returns how many of the others are not within their space.
+/// Assigns the space nearest to its angle at rest to every tooth whose tip cannot reach the circular spline, whatever
+/// its tilt. @returns the number of other teeth that are outside their space.
 HJT_VECTOR_CLONES double ToothMesh::pairOutOfReach(const DrivePosition& position, RingShape& shape) const noexcept
 {
   const double cos_output = std::cos(position.output_angle);
@@ -328,7 +328,7 @@ HJT_VECTOR_CLONES double ToothMesh::pairOutOfReach(const DrivePosition& position
     const double ry = sin_output * own.axis_x + cos_output * own.axis_y;
     const ToothPose stand = poseOf(point, mid_height, h, i, j, rx, ry);
     const bool reaches = !(point[2 * i] * point[2 * i] + point[2 * i + 1] * point[2 * i + 1] < reach);
-    int rest = static_cast<int>(first + i * spaces_a_tooth);  // below three times the number of spaces
+    int rest = static_cast<int>(first + i * spaces_a_tooth);  // less than three times the number of spaces
     rest -= rest >= spaces ? spaces : 0;
     rest -= rest >= spaces ? spaces : 0;
     space[i] = reaches ? space[i] : rest;
@@ -354,7 +354,8 @@ int ToothMesh::pairNearest(const DrivePosition& position, RingShape& shape) cons
   return jumps * shape.copies();
 }
 
-/// Pairs every tooth that is out of contact and not within its space. @returns as `pairNearest`, of the solved teeth.
+/// Assigns a space to every tooth that is out of contact and outside its space. @returns as `pairNearest`, for the
+/// solved teeth.
 int ToothMesh::pairInReach(const DrivePosition& position, RingShape& shape) const noexcept
 {
   int jumps = 0;

@@ -14,19 +14,19 @@
 
 namespace hjt
 {
-/// A tooth in the axes of its space.
+/// Position of a tooth in the axes of its space.
 struct ToothEngagement
 {
   Eigen::Vector2d radial;  ///< axis of the space [-]
-  Eigen::Vector2d across;  ///< counter-clockwise of it [-]
+  Eigen::Vector2d across;  ///< perpendicular to `radial`, counter-clockwise [-]
   Chord chord;
-  double xi;           ///< across, from where the space would be in the perfect gear [m]
+  double xi;           ///< across, from the position of the space in the perfect gear [m]
   double zeta;         ///< along the axis [m]
-  double tooth_ahead;  ///< by errors of manufacture: the tooth's less the space's, across [m]
-  double space_out;    ///< by errors of manufacture: the space's less the tooth's, along its axis [m]
+  double tooth_ahead;  ///< error of manufacture of the tooth minus that of the space, across [m]
+  double space_out;    ///< error of manufacture of the space minus that of the tooth, along the axis [m]
 };
 
-/// Derivatives of a tooth's energy by xi and zeta.
+/// Energy of a tooth and its derivatives by xi and zeta.
 struct FlankLaw
 {
   double energy;        ///< [J]
@@ -35,11 +35,11 @@ struct FlankLaw
   double by_xi_xi;      ///< [N/m]
   double by_xi_zeta;    ///< [N/m]
   double by_zeta_zeta;  ///< [N/m]
-  double slope;         ///< tangent of the flank's angle where the tooth touches [-]
-  double cosine;        ///< of that angle [-]
+  double slope;         ///< tangent of the flank's angle at the contact [-]
+  double cosine;        ///< cosine of the flank's angle [-]
 };
 
-/// A tooth that touches a flank, with all that its force, its tangent and its friction follow from.
+/// A tooth that touches a flank, with the data for its force, tangent and friction.
 struct FlankContact
 {
   int tooth;
@@ -47,14 +47,14 @@ struct FlankContact
   FlankLaw law;
 };
 
-/// The teeth that touch a flank, in the order of the teeth. Room for all of them from the start.
+/// The teeth that touch a flank, ordered by tooth. The storage has room for all teeth.
 class FlankContacts
 {
 public:
   explicit FlankContacts(int teeth) : contacts_(static_cast<std::size_t>(teeth)) {}
 
   void clear() noexcept { count_ = 0; }
-  FlankContact& add() noexcept { return contacts_[count_++]; }  ///< at most once a tooth
+  FlankContact& add() noexcept { return contacts_[count_++]; }  ///< call at most once for each tooth
 
   const FlankContact* begin() const noexcept { return contacts_.data(); }
   const FlankContact* end() const noexcept { return contacts_.data() + count_; }
@@ -67,21 +67,21 @@ private:
 /// Position of a tooth in its space.
 struct ToothPlace
 {
-  double across;  ///< of the axis of the space, counter-clockwise > 0 [m]
-  double depth;   ///< of the tip below the circular spline's tip circle; < 0 outside [m]
-  double tilt;    ///< of the tooth against the axis, counter-clockwise > 0 [rad]
-  double gap;     ///< to the nearer flank, across; < 0 pressed [m]
+  double across;  ///< distance from the axis of the space, counter-clockwise > 0 [m]
+  double depth;   ///< depth of the tip below the circular spline's tip circle; < 0 outside [m]
+  double tilt;    ///< angle of the tooth against the axis, counter-clockwise > 0 [rad]
+  double gap;     ///< distance to the nearer flank, across; < 0 in contact [m]
 };
 
-/// Contact of the flexspline's teeth with the flanks of the circular spline (completes thesis ch. 7.4-7.5).
+/// Contact of the flexspline's teeth with the flanks of the circular spline (complements thesis ch. 7.4-7.5).
 ///
 /// Energy:  U = sum_i k_i cos^2(beta) [r(xi_i - c_i) + r(-xi_i - c_i)] s(d_i), r the contact ramp
 /// where    P_i     tooth at mid-height, X_i + z_t n_i, n_i outward normal of the chord X_{i+1} - X_{i-1}   [m]
 ///          xi_i    P_i across the axis of its space of the circular spline, counter-clockwise > 0,
 ///                  plus the error of the tooth, minus that of the space                                    [m]
 ///          zeta_i  P_i along that axis, plus the error of the tooth, minus that of the space               [m]
-///          c_i     half clearance of the profile at zeta_i, plus the tooth's own clearance                 [m]
-///          beta    the nominal flank angle, whichever the profile: it only scales the stiffness            [rad]
+///          c_i     half clearance of the profile at zeta_i, plus the additional clearance of the tooth     [m]
+///          beta    nominal flank angle for all profiles, which only scales the stiffness                   [rad]
 ///          d_i     depth of the tip below the circular spline's tip circle,
 ///                  zeta_i + h/2 - lost height - r_a                                                        [m]
 ///          s       0 at d <= 0, 1 at d >= d_s, smooth between                                              [-]
@@ -89,10 +89,10 @@ struct ToothPlace
 class ToothMesh
 {
 public:
-  /// @throws ParameterError on a bad table of pitch errors.
+  /// @throws ParameterError if a table of pitch errors is invalid.
   ToothMesh(const Parameters& parameters, const ToothRing& rest);
 
-  /// Intermediate results, one entry per tooth.
+  /// Intermediate results with one entry for each tooth.
   struct Scratch
   {
     explicit Scratch(int teeth);
@@ -110,45 +110,48 @@ public:
     }
 
     Eigen::VectorXd flank_force;  ///< N, normal force on the flank; > 0 leading, < 0 trailing flank [N]
-    std::vector<char> meshed;     ///< N, tooth touches a flank [-]
-    FlankContacts flanks;         ///< the solved teeth that touch
-    Eigen::VectorXd pressed;      ///< N, depth of each tooth in the nearer flank, across; touching if > 0 [m]
-    Eigen::VectorXd along;        ///< N, of the solved teeth: zeta [m]
+    std::vector<char> meshed;     ///< N, whether the tooth touches a flank [-]
+    FlankContacts flanks;         ///< solved teeth that touch
+    Eigen::VectorXd pressed;      ///< N, depth of each tooth in the nearer flank, across; > 0 in contact [m]
+    Eigen::VectorXd along;        ///< N, zeta of the solved teeth [m]
   };
-  /// `scratch`: set to zero before.
+  /// `scratch` must be zero before.
   void addForces(const RingShape& shape, const DrivePosition& position, Scratch& scratch, ForceSum& sum) const noexcept;
   void addTangent(const RingShape& shape, const Scratch& scratch, RingTangent& tangent) const noexcept;
   bool repeats() const noexcept;
 
-  /// Pairs every tooth with the space nearest to its angle at rest.
+  /// Assigns every tooth the space nearest to its angle at rest.
   void pairAtRest(const DrivePosition& position, RingShape& shape) const noexcept;
 
-  /// Pairs every tooth out of contact with its nearest space: a change in contact would tear the energy.
-  /// @returns teeth that changed their space below the circular spline's tip circle: that went through a tip.
+  /// Assigns every tooth out of contact its nearest space. For a tooth in contact the energy would jump.
+  /// @returns the number of teeth that changed their space below the circular spline's tip circle, and thus through a
+  /// tip.
   int pairNearest(const DrivePosition& position, RingShape& shape) const noexcept;
 
   ToothPlace place(const RingShape& shape, const DrivePosition& position, int i) const noexcept;
 
-  /// Sliding of a tooth that touches along its loaded flank [m/s] for speeds of the ring's points and of the output.
+  /// Sliding speed [m/s] along the loaded flank of a tooth, for speeds of the ring's points and of the output.
   double slidingSpeed(const RingShape& shape, const FlankContact& contact, const Eigen::VectorXd& speeds,
                       double output_speed) const noexcept;
 
   const Eigen::VectorXd& stiffness() const noexcept { return stiffness_; }
-  Eigen::VectorXd& stiffness() noexcept { return stiffness_; }  ///< N, editable per tooth [N/m]
-  /// N, height lost at the tip, editable per tooth, >= 0 [m]
+  /// N, stiffness of each tooth, which faults change [N/m]
+  Eigen::VectorXd& stiffness() noexcept { return stiffness_; }
+  /// N, reduction of each tooth's height, >= 0, which faults change [m].
   Eigen::VectorXd& tipLoss() noexcept { return tip_loss_; }
-  /// Moves the circular spline's spaces off their axis, towards space 0 [m].
+  /// Moves the circular spline's spaces by `distance` off their axis, towards space 0 [m].
   void moveSpaces(double distance) noexcept;
-  Eigen::VectorXd& clearance() noexcept { return clearance_; }  ///< N, editable per tooth, adds to the profile's [m]
+  /// N, additional clearance of each tooth, which faults change [m]
+  Eigen::VectorXd& clearance() noexcept { return clearance_; }
 
 private:
   ToothMesh(const MeshParameters& parameters, const GearParameters& gear, const ManufactureErrors& errors);
 
   struct Space
   {
-    double axis_x;  // unit vector at output angle 0
+    double axis_x;  // x of the unit vector at output angle 0
     double axis_y;
-    double across;  // errors of manufacture, see ManufactureErrors [m]
+    double across;  // error of manufacture, see ManufactureErrors [m]
     double along;
   };
   ToothEngagement engage(const RingShape& shape, double cos_output, double sin_output, int i) const noexcept;
@@ -161,12 +164,12 @@ private:
 
   int spaces_;
   double mid_height_;
-  double tip_offset_;  // half tooth height minus the circular spline's tip radius [m]
-  double reach_;       // radius of a tooth point below which its tip cannot touch [m]
+  double tip_offset_;  // half the tooth height minus the circular spline's tip radius [m]
+  double reach_;       // radius of a tooth point below which the tip cannot touch [m]
   double depth_;
   double smoothing_;
   double cos_flank_;
-  double half_space_;  // tangent of half a space
+  double half_space_;  // tangent of half the angle of a space
   ToothProfile profile_;
   std::vector<Space> space_;
   Eigen::VectorXd tooth_across_;  // errors of manufacture, see ManufactureErrors

@@ -14,17 +14,17 @@
 
 namespace hjt
 {
-/// The balls of the wave generator's bearing under the rim, each at its place.
+/// The balls of the wave generator's bearing under the rim, each at its own angle.
 ///
 /// Energy:  U = 2/5 K sum_b depth_b^(5/2),   depth_b = <sum_i w_bi z_i - h_b>+
-/// where    w_bi  quadratic B-spline of the tooth pitches between ball b and tooth i: the three teeth next to the ball,
-///                1/8, 3/4, 1/8 where it is below the middle one; they add up to 1
-///          z_i   depth of tooth i inside the wave generator, less the gap between rim and race there [m]
-///          h_b   how far ball b drops into a spall or carries nothing, see RaceDeflection             [m]
-///          K     Hertz, of one ball [N/m^1.5]
-/// The balls move with the wave generator's angle (RaceDeflection): theta enters through w and h too. The race's turn
-/// with the rim, some mrad, is left out of their places, so the torque on the cage has its reaction on the housing: it
-/// is less than a thousandth of the torque on the wave generator.
+/// where    w_bi  quadratic B-spline of the distance between ball b and tooth i in tooth pitches. It weights the three
+///                teeth nearest to the ball, with 1/8, 3/4, 1/8 if the ball is below the middle tooth; the sum is 1
+///          z_i   depth of tooth i inside the wave generator, minus the gap between rim and race at it [m]
+///          h_b   drop of ball b into a spall, or because it carries no load, see RaceDeflection       [m]
+///          K     Hertz' stiffness of one ball [N/m^1.5]
+/// The balls move with the wave generator's angle theta (RaceDeflection), so that w and h depend on theta too. Their
+/// positions do not include the rotation of the race with the rim, some mrad. The torque on the cage therefore reacts
+/// on the housing; it is less than a thousandth of the torque on the wave generator.
 class SingleBalls
 {
 public:
@@ -32,68 +32,68 @@ public:
 
   struct Ball
   {
-    std::array<int, 3> tooth;      ///< next to it
+    std::array<int, 3> tooth;      ///< the three teeth nearest to the ball
     std::array<double, 3> weight;  ///< [-]
-    std::array<double, 3> rate;    ///< derivative of the weight by the wave generator's angle [1/rad]
-    std::array<double, 3> second;  ///< the second one [1/rad^2]
+    std::array<double, 3> rate;    ///< derivative of each weight by the wave generator's angle [1/rad]
+    std::array<double, 3> second;  ///< second derivative of each weight [1/rad^2]
     RaceDeflection::Drop drop;
-    double depth;  ///< < 0: it carries nothing [m]
+    double depth;  ///< < 0: the ball carries no load [m]
     double force;  ///< [N]
-    double slope;  ///< of the force over the depth [N/m]
+    double slope;  ///< derivative of the force by the depth [N/m]
   };
   struct Scratch
   {
     explicit Scratch(int teeth) : balls(static_cast<std::size_t>(teeth)) {}
 
-    std::vector<Ball> balls;  ///< one per tooth; entries beyond the number of balls have no force
+    std::vector<Ball> balls;  ///< one for each tooth; entries beyond the number of balls have no force
   };
 
-  /// Finds the forces of the balls, and with them those on the teeth; adds the torque on the wave generator by the
-  /// motion of the balls along the rim. `depth`: z above. @returns the energy [J].
+  /// Computes the forces of the balls and those on the teeth. Adds the torque on the wave generator by the motion of
+  /// the balls along the rim. `depth`: z of the law above. @returns the energy [J].
   double press(const RaceDeflection& bearing, double wave_generator_angle, const Eigen::VectorXd& depth,
                Scratch& scratch, Eigen::VectorXd& force, double& torque) const noexcept;
 
-  /// All of the Hessian but the turn of the normals under the teeth's forces.
+  /// Adds the Hessian except for the rotation of the normals under the teeth's forces.
   void addTangent(const RaceDeflection& bearing, const RingShape& shape, const Eigen::VectorXd& depth,
                   const Eigen::VectorXd& normal, const Scratch& scratch, RingTangent& tangent) const noexcept;
 
 private:
-  double stiffness_;    // [N/m^1.5]
+  double stiffness_;    // Hertz' stiffness of a ball [N/m^1.5]
   double tooth_pitch_;  // [rad]
 };
 
 /// Contact of the flexspline's inner rim with the elliptic wave generator, semi-axes r0 + w and r0 - w, turned by
-/// theta. r0 is the rim's inner radius with the fit and its thermal growth. Errors of manufacture add to w
-/// (ellipticity) and move the ellipse's centre off the axis it turns about (eccentricity).
+/// theta. r0 is the rim's inner radius plus the fit and its thermal expansion. Errors of manufacture add to w
+/// (ellipticity) and move the centre of the ellipse off its axis of rotation (eccentricity).
 ///
-/// Energy (normal):  U = sum_i k_i r(depth_i - gap_i), depth_i inside the ellipse along its normal; r the contact ramp
-///                   where each tooth has a spring, Hertz' point contact where it has its share of the balls
-///                   Single balls: SingleBalls
+/// Energy (normal):  U = sum_i k_i r(depth_i - gap_i), depth_i inside the ellipse along its normal. With springs r is
+///                   the contact ramp, with balls Hertz' point contact. Single balls: see SingleBalls
 /// Law (polar):      F_i = k_i <depth_i>+ along atan2(a^2 y, b^2 x), depth from the point (a cos psi, b sin psi)
-///                   (thesis eq. 5.11-5.23): not a gradient; only for the insertion of the thesis. Its tangent leaves
-///                   the unsymmetric part out, which costs Newton some iterations and nothing else.
-/// where             k_i  stiffness per tooth, >= 0: of its spring [N/m], or Z/N times that of a ball [N/m^1.5]
-///                   gap_i  worn off rim and race there, plus the sag of a faulty bearing's outer race [m]
+///                   (thesis eq. 5.11-5.23). It has no potential and serves only the insertion of the thesis. The
+///                   tangent omits the unsymmetric part, which costs some Newton iterations.
+/// where             k_i  stiffness for each tooth, >= 0: of its spring [N/m], or Z/N times that of a ball [N/m^1.5]
+///                   gap_i  wear of rim and race at the tooth, plus the sag of a faulty bearing's outer race [m]
 class WaveGeneratorContact
 {
 public:
   WaveGeneratorContact(const Parameters& parameters, const ToothRing& rest);
 
-  /// Intermediate results, one entry per tooth.
+  /// Intermediate results with one entry for each tooth.
   struct Scratch : SingleBalls::Scratch
   {
     explicit Scratch(int teeth);
     void setZero() noexcept {}  // `addForces` writes every entry
     void repeat() noexcept;
 
-    Eigen::VectorXd force;       ///< N, normal force of the wave generator on each tooth, >= 0 [N]
-    Eigen::VectorXd depth;       ///< N, depth of each tooth point inside the wave generator, less the gap [m]
-    Eigen::VectorXd slope;       ///< N, of the force over the depth; 0 on single balls [N/m]
-    Eigen::VectorXd curvature;   ///< N, of the wave generator there [1/m]
-    Eigen::VectorXd normal;      ///< 2 N, direction of the force, outward [-]
-    Eigen::VectorXd gap;         ///< N, while the bearing is faulty: between wave generator and rim [m]
-    Eigen::VectorXd gap_rate;    ///< N, likewise: its derivative by the wave generator's angle [m/rad]
-    Eigen::VectorXd gap_second;  ///< N, likewise: the second derivative [m/rad^2]
+    Eigen::VectorXd force;      ///< N, normal force of the wave generator on each tooth, >= 0 [N]
+    Eigen::VectorXd depth;      ///< N, depth of each tooth point inside the wave generator, minus the gap [m]
+    Eigen::VectorXd slope;      ///< N, derivative of the force by the depth; 0 with single balls [N/m]
+    Eigen::VectorXd curvature;  ///< N, curvature of the wave generator at the foot [1/m]
+    Eigen::VectorXd normal;     ///< 2 N, direction of the force, outward [-]
+    Eigen::VectorXd gap;        ///< N, gap between wave generator and rim while the bearing is faulty [m]
+    /// N, derivative of the gap by the wave generator's angle while the bearing is faulty [m/rad]
+    Eigen::VectorXd gap_rate;
+    Eigen::VectorXd gap_second;  ///< N, second derivative of the gap while the bearing is faulty [m/rad^2]
   };
   void addForces(const RingShape& shape, const DrivePosition& position, Scratch& scratch, ForceSum& sum) const noexcept;
   void addTangent(const RingShape& shape, const Scratch& scratch, RingTangent& tangent) const noexcept;
@@ -103,24 +103,25 @@ public:
            halvesAgree(gap_);
   }
 
-  /// Of the ellipse, in the housing's axes [m].
+  /// Centre of the ellipse in the axes of the housing [m].
   Eigen::Vector2d centre(const DrivePosition& position) const noexcept;
 
-  /// Advance of the wave generator's surface along the normal of each touching tooth by the wave amplitude, 0 for the
-  /// others; N [-]. `scratch`: of the same position.
+  /// Derivative of the wave generator's surface by the wave amplitude, along the normal of each touching tooth; 0 for
+  /// the others; N [-]. `scratch`: of the same position.
   void surfaceByAmplitude(const DrivePosition& position, const Scratch& scratch, Eigen::VectorXd& rates) const noexcept;
 
   const Eigen::VectorXd& stiffness() const noexcept { return stiffness_; }
-  Eigen::VectorXd& stiffness() noexcept { return stiffness_; }  ///< N, editable per tooth [N/m], [N/m^1.5]
+  /// N, stiffness of each tooth, which faults change [N/m], [N/m^1.5]
+  Eigen::VectorXd& stiffness() noexcept { return stiffness_; }
   const Eigen::VectorXd& gap() const noexcept { return gap_; }
-  Eigen::VectorXd& gap() noexcept { return gap_; }  ///< N, editable per tooth, >= 0 [m]
+  Eigen::VectorXd& gap() noexcept { return gap_; }  ///< N, gap at each tooth, >= 0, which faults change [m]
   const RaceDeflection& bearing() const noexcept { return bearing_; }
-  RaceDeflection& bearing() noexcept { return bearing_; }  ///< editable
+  RaceDeflection& bearing() noexcept { return bearing_; }  ///< bearing, which faults change
 
-  /// Whether the force's slope jumps where a tooth makes contact.
+  /// Whether the stiffness jumps where a tooth makes contact.
   bool hasKinks() const noexcept { return support_ == SupportKind::SPRINGS; }
 
-  /// Shortens the major semi-axis at lobe 0 and at lobe 1 [m]. The minor axis stays.
+  /// Shortens the major semi-axis at lobes 0 and 1 [m]. The minor axis does not change.
   void wear(double lobe, double other_lobe) noexcept;
 
 private:
@@ -135,8 +136,8 @@ private:
   SupportKind support_;
   double smoothing_;
   double mean_radius_;
-  double ellipticity_;  // [m]
-  double centre_x_;     // of the ellipse, in the axes of the wave generator [m]
+  double ellipticity_;  // error of manufacture of the amplitude [m]
+  double centre_x_;     // centre of the ellipse in the axes of the wave generator [m]
   double centre_y_;
   Eigen::VectorXd stiffness_;
   Eigen::VectorXd gap_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The unit that is a whole arm, in closed loop or with the motors' torques given.
+/// The unit of a whole arm, in closed loop or with given motor torques.
 
 #include <algorithm>
 #include <cmath>
@@ -35,13 +35,13 @@ void takeSetPoint(const Values& values, std::vector<JointMotion>& joints)
   }
 }
 
-/// As a recording of whole nanoseconds spells it [s].
+/// Time in a recording in whole nanoseconds [s].
 double timeOf(Stamp stamp)
 {
   return toSeconds(stamp - EPOCH);
 }
 
-/// The instants of an arm under its controller are later than the importer's by MovingArm::SETTLING and the lead-in.
+/// Instants of an arm with its controller are later than the importer's by MovingArm::SETTLING and the lead-in.
 class ArmSimulation : public Simulation
 {
 public:
@@ -93,7 +93,7 @@ public:
   {
     ArmTwin& twin = moving_.twin();
     const std::uint64_t failures = countersOf(twin).solver_failures;
-    const Stamp until = stampAt(end) + settling_ + twin.stepLength() / 1000;  // sums of steps are rounded
+    const Stamp until = stampAt(end) + settling_ + twin.stepLength() / 1000;  // tolerance for rounded sums of steps
     takeSetPoint(values, set_point_);
     moving_.goOn(timeOf(stampAt(end)), set_point_);
     giveInputs(values, until);
@@ -168,7 +168,6 @@ private:
     }
   }
 
-  /// All outputs of the arm itself.
   void readArm(Values& values)
   {
     if (row_known_)
@@ -190,7 +189,7 @@ private:
     row_known_ = true;
   }
 
-  const ArmDescription& arm_;  // of the unit, which outlives this
+  const ArmDescription& arm_;  // of the unit, which outlives this object
   MovingArm moving_;
   ArmRecorder recorder_;
   std::vector<DrivePart> parts_;
@@ -225,7 +224,7 @@ public:
       parts.emplace_back(variables_, first, prefixOf(arm.joints[i]));
       drives.push_back(parts.back().parameters(drives_[i], values));
     }
-    // A parameter: importers give the inputs of the first step before the start, too.
+    // A parameter, because importers set the inputs of the first step before the start too.
     ArmSetPoint first{ timeOf(stampAt(start)), {} };
     for (const double angle : values[START_POSITION].numbers)
     {

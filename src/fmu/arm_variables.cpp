@@ -15,40 +15,40 @@ namespace
 {
 constexpr Range ANY{ -1e300, 1e300 };
 
-/// All values of an arm by their keys, for a reader or a writer.
+/// Visits all values of an arm with their keys, for reading or writing.
 template <class Arm, class Fields>
 void visitArm(Arm& arm, Fields& fields)
 {
-  fields("gravity", "m/s^2", arm.gravity, ANY, "in the frame of the base");
-  fields("payload_mass", "kg", arm.payload.mass, ANY, "at the tip");
-  fields("payload_centre", "m", arm.payload.centre, ANY, "of its mass");
-  fields("state_rate", "Hz", arm.state_rate, ANY, "of the controller's states");
+  fields("gravity", "m/s^2", arm.gravity, ANY, "acceleration of gravity in the frame of the base");
+  fields("payload_mass", "kg", arm.payload.mass, ANY, "mass of the payload at the tip");
+  fields("payload_centre", "m", arm.payload.centre, ANY, "centre of the payload's mass");
+  fields("state_rate", "Hz", arm.state_rate, ANY, "rate of the controller's states");
   for (std::size_t i = 0; i < arm.joints.size(); ++i)
   {
     const std::string place = "joints." + std::to_string(i) + '.';
     auto& joint = arm.joints[i];
-    fields(place + "name", joint.short_name, "of its variables");
+    fields(place + "name", joint.short_name, "prefix of the joint's variables");
     fields(place + "speed_limit", "rad/s", joint.speed_limit, ANY, "0: none");
     fields(place + "feedback_limit", "N.m", joint.feedback_limit, ANY, "0: none");
-    fields(place + "delay", "s", joint.delay, ANY, "of its set points");
+    fields(place + "delay", "s", joint.delay, ANY, "delay of the joint's set points");
     fields(place + "position", "1/s", joint.gains->position, ANY, "gain");
     fields(place + "speed", "N.m.s/rad", joint.gains->speed, ANY, "gain");
-    fields(place + "integral_time", "s", joint.gains->integral_time, ANY, "of the speed's control");
-    fields(place + "coulomb", "N.m", joint.gains->coulomb, ANY, "fed forward");
-    fields(place + "viscous", "N.m.s/rad", joint.gains->viscous, ANY, "fed forward");
+    fields(place + "integral_time", "s", joint.gains->integral_time, ANY, "integral time of the speed control");
+    fields(place + "coulomb", "N.m", joint.gains->coulomb, ANY, "constant friction in the feedforward");
+    fields(place + "viscous", "N.m.s/rad", joint.gains->viscous, ANY, "friction by speed in the feedforward");
   }
   for (std::size_t i = 0; i < arm.links.size(); ++i)
   {
     const std::string place = "links." + std::to_string(i) + '.';
     auto& link = arm.links[i];
-    fields(place + "motion", "-", link.motion, "of its joint");
-    fields(place + "axis", "-", link.axis, ANY, "of its joint");
-    fields(place + "origin", "m", link.origin, ANY, "of its joint");
-    fields(place + "position", "m", link.position, ANY, "of its frame");
-    fields(place + "rotation", "-", link.rotation, ANY, "of its frame");
-    fields(place + "mass", "kg", link.mass, ANY, "of the link");
-    fields(place + "centre", "m", link.centre, ANY, "of its mass");
-    fields(place + "inertia", "kg.m^2", link.inertia, ANY, "about its centre");
+    fields(place + "motion", "-", link.motion, "kind of the joint's motion");
+    fields(place + "axis", "-", link.axis, ANY, "axis of the joint");
+    fields(place + "origin", "m", link.origin, ANY, "origin of the joint");
+    fields(place + "position", "m", link.position, ANY, "position of the link's frame");
+    fields(place + "rotation", "-", link.rotation, ANY, "rotation of the link's frame");
+    fields(place + "mass", "kg", link.mass, ANY, "mass of the link");
+    fields(place + "centre", "m", link.centre, ANY, "centre of the link's mass");
+    fields(place + "inertia", "kg.m^2", link.inertia, ANY, "inertia of the link about its centre of mass");
   }
 }
 
@@ -72,7 +72,7 @@ struct Reader
   FieldReader fields;
 };
 
-/// Lines of YAML, a list of maps for what has numbers in its key.
+/// Writes lines of YAML, with a list of maps for keys that contain numbers.
 struct Writer
 {
   void operator()(const std::string& key, const char*, double value, const Range&, const char*)
@@ -106,7 +106,7 @@ struct Writer
   }
 
   std::string text;
-  std::string last;  // item that is being written
+  std::string last;  // item of the list that is being written
 };
 
 std::size_t countOf(const ParameterMap& map, const std::string& list, const std::string& key)
@@ -139,16 +139,18 @@ void addArmInputs(const ArmDescription& arm, std::vector<FmuVariable>& all)
     const bool is_array = start.size() > 1;
     all.push_back({ name, unit, meaning, Causality::INPUT, Type::FLOAT64, { std::move(start) }, range, is_array });
   };
-  constexpr double WRENCH = 1000.0;  // as the node's ~wrench [N], [N.m]
+  constexpr double WRENCH = 1000.0;  // limit of the node's ~wrench [N], [N.m]
   const std::vector<double> zeros(arm.joints.size(), 0.0);
   add("target_q", "rad", "set points of the joints for the end of the step", zeros, ANGLES);
-  add("target_qd", "rad/s", "speeds there", zeros, { -100.0, 100.0 });
-  add("target_qdd", "rad/s^2", "accelerations there", zeros, { -1e6, 1e6 });
-  add("wrench_force", "N", "on the tip from outside, in the frame of the base", { 0.0, 0.0, 0.0 }, { -WRENCH, WRENCH });
-  add("wrench_moment", "N.m", "on the tip from outside, in the frame of the base", { 0.0, 0.0, 0.0 },
+  add("target_qd", "rad/s", "speeds of the joints at the end of the step", zeros, { -100.0, 100.0 });
+  add("target_qdd", "rad/s^2", "accelerations of the joints at the end of the step", zeros, { -1e6, 1e6 });
+  add("wrench_force", "N", "external force on the tip, in the frame of the base", { 0.0, 0.0, 0.0 },
       { -WRENCH, WRENCH });
-  add("payload_mass", "kg", "at the tip; the controller knows of it", { arm.payload.mass }, hjt::PAYLOAD_MASS);
-  add("payload_centre", "m", "of its mass, in the frame of the tip",
+  add("wrench_moment", "N.m", "external moment on the tip, in the frame of the base", { 0.0, 0.0, 0.0 },
+      { -WRENCH, WRENCH });
+  add("payload_mass", "kg", "mass of the payload at the tip, known to the controller", { arm.payload.mass },
+      hjt::PAYLOAD_MASS);
+  add("payload_centre", "m", "centre of the payload's mass, in the frame of the tip",
       { arm.payload.centre.begin(), arm.payload.centre.end() }, { -100.0, 100.0 });
 }
 
@@ -162,11 +164,11 @@ void addArmOutputs(std::size_t joints, std::vector<FmuVariable>& all)
     const ArmQuantity& quantity = ARM_QUANTITIES[k];
     add(quantity.name, quantity.unit, quantity.meaning, quantity.width(joints), Type::FLOAT64);
   }
-  add("tool_orientation", "-", "of the tip in the frame of the base, true: unit quaternion x, y, z, w", 4,
+  add("tool_orientation", "-", "true orientation of the tip in the frame of the base, unit quaternion x, y, z, w", 4,
       Type::FLOAT64);
-  add("tool_error", "m", "distance of the tool from its place by the set point", 1, Type::FLOAT64);
-  add("protective_stop", "-", "0: none; else number of the joint for which the controller stopped the arm, base 1", 1,
-      Type::INT32);
+  add("tool_error", "m", "distance of the tool from its position by the set point", 1, Type::FLOAT64);
+  add("protective_stop", "-",
+      "0: no stop; otherwise number of the joint for which the controller stopped the arm, base = 1", 1, Type::INT32);
 }
 
 void addArmParameters(const ArmDescription& arm, std::vector<FmuVariable>& all)
@@ -177,23 +179,24 @@ void addArmParameters(const ArmDescription& arm, std::vector<FmuVariable>& all)
     const bool is_array = start.size() > 1;
     all.push_back({ name, unit, meaning, Causality::PARAMETER, Type::FLOAT64, { std::move(start) }, range, is_array });
   };
-  add("start_q", "rad", "where the arm stands at the start", std::vector<double>(arm.joints.size(), 0.0), ANGLES);
+  add("start_q", "rad", "angles of the joints at the start", std::vector<double>(arm.joints.size(), 0.0), ANGLES);
   all.push_back({ "controller.on",
                   "-",
                   "follows the set points; false: motor_torque of the joints goes to the motors",
                   Causality::PARAMETER,
                   Type::BOOLEAN,
                   { { 1.0 } } });
-  add("gravity", "m/s^2", "in the frame of the base", { arm.gravity.begin(), arm.gravity.end() }, { -100.0, 100.0 });
-  add("controller.position", "1/s", "speed wanted for an error of the angle", gainsOf(arm, &JointGains::position),
+  add("gravity", "m/s^2", "acceleration of gravity in the frame of the base",
+      { arm.gravity.begin(), arm.gravity.end() }, { -100.0, 100.0 });
+  add("controller.position", "1/s", "set speed per error of the angle", gainsOf(arm, &JointGains::position),
       { 0.0, 1e3 });
-  add("controller.speed", "N.m.s/rad", "torque for an error of the speed", gainsOf(arm, &JointGains::speed),
-      { 0.0, 1e6 });
-  add("controller.integral_time", "s", "of the speed's control", gainsOf(arm, &JointGains::integral_time),
+  add("controller.speed", "N.m.s/rad", "torque per error of the speed", gainsOf(arm, &JointGains::speed), { 0.0, 1e6 });
+  add("controller.integral_time", "s", "integral time of the speed control", gainsOf(arm, &JointGains::integral_time),
       { 1e-3, 1e6 });
-  add("controller.coulomb", "N.m", "friction that is fed forward, constant", gainsOf(arm, &JointGains::coulomb),
+  add("controller.coulomb", "N.m", "constant friction in the feedforward", gainsOf(arm, &JointGains::coulomb),
       { -1e4, 1e4 });
-  add("controller.viscous", "N.m.s/rad", "and by speed", gainsOf(arm, &JointGains::viscous), { -1e4, 1e4 });
+  add("controller.viscous", "N.m.s/rad", "friction by speed in the feedforward", gainsOf(arm, &JointGains::viscous),
+      { -1e4, 1e4 });
 }
 }  // namespace
 

@@ -9,17 +9,17 @@
 
 namespace hjt::fmu
 {
-constexpr const char* ARM_FILE = "arm.yaml";  ///< among the resources; beside it a folder of each joint's drive
+constexpr const char* ARM_FILE = "arm.yaml";  ///< file in the resources, beside a directory for each joint's drive
 
-/// Data of an arm's description for the closed loop: links as numbers, gravity, payload, limits and gains. The
-/// joints have gains.
+/// Text of an arm's description for the closed loop: links as numbers, gravity, payload, limits and gains. The joints
+/// must have gains.
 std::string armResource(const ArmDescription& arm);
 
-/// @throws ParameterError.
+/// Reads such a text from a file. @throws ParameterError.
 ArmDescription readArmResource(const std::string& path);
 
-/// The variables of an arm after the time, by value reference; then its drives' (DriveReference), base first. Arrays
-/// have a value for each joint, or of x, y, z, unless stated.
+/// Variables of an arm after the time, by value reference, followed by those of its drives (DriveReference), base
+/// first. Arrays have a value for each joint, or x, y, z, unless stated otherwise.
 enum ArmReference : unsigned
 {
   SET_POSITION = TIME + 1,
@@ -29,7 +29,7 @@ enum ArmReference : unsigned
   WRENCH_MOMENT,
   PAYLOAD_MASS,
   PAYLOAD_CENTRE,
-  FIRST_ARM_OUTPUT,  ///< ARM_QUANTITIES from the feed-forward's current on
+  FIRST_ARM_OUTPUT,  ///< ARM_QUANTITIES from the feedforward's current on
   TOOL_ORIENTATION = FIRST_ARM_OUTPUT + 7,
   TOOL_ERROR,
   PROTECTIVE_STOP,
@@ -44,9 +44,9 @@ enum ArmReference : unsigned
   FIRST_DRIVE
 };
 
-/// Of the names of a joint's variables.
+/// Prefix of the names of a joint's variables.
 std::string prefixOf(const ArmJoint& joint);
 
-/// All variables of a unit that is an arm. The joints have gains.
+/// All variables of a unit for an arm, whose joints must have gains.
 std::vector<FmuVariable> armVariables(const ArmDescription& arm, const std::vector<Parameters>& drives);
 }  // namespace hjt::fmu

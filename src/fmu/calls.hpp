@@ -12,11 +12,11 @@
 #include "fmu/fmi.hpp"
 #include "fmu/instance.hpp"
 
-/// What the functions of both versions of FMI do: whatever an instance throws becomes an error and a message; nothing
-/// is printed.
+/// Common functions of both versions of FMI. Exceptions of an instance become an error status and a message; nothing is
+/// printed.
 namespace hjt::fmu
 {
-/// The usual floating-point environment in place of the importer's, which may trap, or flush small numbers to zero.
+/// Sets the default floating-point environment instead of the importer's, which may trap or flush denormals.
 class UsualArithmetic
 {
 public:
@@ -33,7 +33,7 @@ private:
   std::fenv_t importers_{};
 };
 
-/// What `call` does with the instance, as a status; false is a warning. A null instance is an error too.
+/// Calls `call` with the instance and returns a status; false is a warning, a null instance an error.
 template <class Call>
 Status guarded(Instance* instance, const Call& call) noexcept
 {
@@ -67,10 +67,10 @@ Status guarded(Instance* instance, const Call& call) noexcept
 
 inline Status refuse(Instance* instance, const char* name) noexcept
 {
-  return guarded(instance, [&](Instance&) { throw CallError(std::string(name) + ": this unit has none of it"); });
+  return guarded(instance, [&](Instance&) { throw CallError(std::string(name) + " is not supported by this unit"); });
 }
 
-/// A new instance, or null and a message, whether logging is on or not. `check`: throws where the call is wrong.
+/// A new instance, or null and a message, independent of the logging. `check` throws if the call is invalid.
 template <class Check>
 Instance* instantiated(const char* token, const char* resources, bool logs, const Log& log, const Check& check) noexcept
 {
@@ -94,13 +94,13 @@ Instance* instantiated(const char* token, const char* resources, bool logs, cons
       log(Status::ERROR, LOG_CATEGORIES[1], error.what());
     }
   }
-  catch (...)  // nothing of C++ leaves the unit
+  catch (...)  // no exception may leave the unit
   {
   }
   return nullptr;
 }
 
-/// As an importer's log takes it, in which these letters have a meaning.
+/// Escapes letters that have a meaning in an importer's log.
 inline std::string doubled(const std::string& text, const char* letters)
 {
   std::string found;
@@ -266,13 +266,13 @@ inline Status deserialise(Instance* instance, const unsigned char* bytes, std::s
                  });
 }
 
-/// @returns false if the last good state is held.
+/// @returns false if the last converged state is kept.
 inline bool doStep(Instance& instance, double at, double length)
 {
   const bool converged = instance.step(at, length);
   if (!converged)
   {
-    instance.log(Status::WARNING, "a step found no equilibrium: the last good state is held");
+    instance.log(Status::WARNING, "a step had no equilibrium; the last converged state is kept");
   }
   return converged;
 }

@@ -123,7 +123,7 @@ void DrivePart::giveInputs(Stamp instant, const Values& values, Twin& twin)
   }
 }
 
-/// Indicators and assessment are made from the first time on that one of them is asked for.
+/// Computes indicators and assessment from the first time one of them is read.
 bool DrivePart::read(std::size_t reference, Twin& twin, Values& values)
 {
   if ((*variables_)[reference].is_array)
@@ -144,7 +144,7 @@ bool DrivePart::marks(std::size_t reference, const Twin& twin) const
   return (*variables_)[reference].is_array ? !teeth_known_ : scalar(reference).watches && !twin.watchesSignals();
 }
 
-/// On the response surface this solves a ring of its own.
+/// Reads values of teeth. On the response surface this solves a separate ring.
 bool DrivePart::readTeeth(Twin& twin, Values& values)
 {
   if (teeth_known_)

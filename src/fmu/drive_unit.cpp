@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The unit that is one drive.
+/// The unit of one drive.
 
 #include <utility>
 
@@ -21,15 +21,16 @@ public:
   bool step(const Values& values, double end) override
   {
     const std::uint64_t failures = twin_.counters().solver_failures;
-    const Stamp until = stampAt(end) + twin_.stepLength() / 1000;  // sums of steps are rounded
-    const Stamp last = until - twin_.stepLength();                 // that a step begins at
+    const Stamp until = stampAt(end) + twin_.stepLength() / 1000;  // tolerance for rounded sums of steps
+    const Stamp last = until - twin_.stepLength();                 // last instant at which a step can begin
     if (twin_.stamp() <= last)
     {
       part_.giveInputs(twin_.stamp(), values, twin_);
     }
     while (twin_.stamp() <= last)
     {
-      twin_.commandMotorTorque(twin_.stamp(), part_.motorTorque(values));  // at every instant: it does not time out
+      // at every instant, so that it does not time out
+      twin_.commandMotorTorque(twin_.stamp(), part_.motorTorque(values));
       twin_.step(until);
     }
     part_.moved();

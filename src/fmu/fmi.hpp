@@ -6,7 +6,7 @@
 #include <functional>
 #include <string>
 
-/// What FMI's C interfaces, 2.0 and 3.0, share for co-simulation; their functions are in fmi2.cpp and fmi3.cpp.
+/// Common part of FMI's C interfaces 2.0 and 3.0 for co-simulation; fmi2.cpp and fmi3.cpp have the functions.
 namespace hjt::fmu
 {
 enum class Version
@@ -24,13 +24,13 @@ enum class Status : int
   FATAL
 };
 
-/// What is logged: information and warnings, errors.
+/// Categories of the log: information and warnings, errors.
 constexpr const char* LOG_CATEGORIES[]{ "logStatusWarning", "logStatusError" };
 
-/// Of a variable, its place in the unit's list; FMI 2.0 has no arrays, its reference also says which element.
+/// Index of a variable in the unit's list. FMI 2.0 has no arrays, so its reference also contains the element.
 using ValueReference = std::uint32_t;
-constexpr unsigned ELEMENT_SHIFT = 16;  ///< element << this | variable
+constexpr unsigned ELEMENT_SHIFT = 16;  ///< reference = element << ELEMENT_SHIFT | variable
 
-/// To an importer's log; empty where it has none.
+/// Log of an importer; empty without one.
 using Log = std::function<void(Status status, const char* category, const std::string& message)>;
 }  // namespace hjt::fmu

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// FMI 2.0's C functions for co-simulation; names, arguments and the order of calls are the standard's. Truth values
-/// are whole numbers there, and each element of an array is a variable.
+/// C functions of FMI 2.0 for co-simulation; the standard gives names, arguments and order of calls. Truth values are
+/// integers, and each element of an array is a variable.
 
 #include <optional>
 
@@ -19,7 +19,7 @@ struct Callbacks
   void* environment;
 };
 
-/// A message is a format there, in which `#` would begin a value reference.
+/// A message is a format string, in which `#` begins a value reference.
 Log logOf(const Callbacks* callbacks, const char* name)
 {
   if (callbacks == nullptr || callbacks->log == nullptr || name == nullptr)
@@ -174,7 +174,7 @@ extern "C"
                    });
   }
 
-  // What this unit does not do; the arguments behind the instance are not looked at.
+  // Functions that this unit does not support; they ignore their arguments.
 #define HJT_REFUSED(name)           \
   Status name(Instance* instance)   \
   {                                 \

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// FMI 3.0's C functions for co-simulation; names, arguments and the order of calls are the standard's.
+/// C functions of FMI 3.0 for co-simulation; the standard gives names, arguments and order of calls.
 
 #include <cstdint>
 #include <optional>
@@ -12,7 +12,7 @@ namespace
 {
 using LogMessage = void (*)(void* environment, Status status, const char* category, const char* message);
 
-/// `#` would begin a value reference in a message.
+/// In a message `#` would begin a value reference.
 Log logOf(LogMessage log, void* environment)
 {
   if (log == nullptr)
@@ -52,7 +52,7 @@ extern "C"
           require(name, "instanceName");
           if (event_mode || intermediate > 0)
           {
-            throw CallError("eventModeUsed and requiredIntermediateVariables: this unit has none of it");
+            throw CallError("this unit supports neither eventModeUsed nor requiredIntermediateVariables");
           }
         });
   }
@@ -180,7 +180,7 @@ extern "C"
                    });
   }
 
-  // What this unit does not do; the arguments behind the instance are not looked at.
+  // Functions that this unit does not support; they ignore their arguments.
 #define HJT_REFUSED(name)           \
   Status name(Instance* instance)   \
   {                                 \

@@ -23,19 +23,18 @@ namespace hjt::fmu
 {
 namespace
 {
-/// What stands in a unit's description.
 struct UnitDescription
 {
   std::string name;
   std::string meaning;
-  std::string library;  ///< in the unit, without its ending
+  std::string library;  ///< name in the unit, without its extension
   std::string token;    ///< see instantiationToken
-  double rate{};        ///< of its own steps [Hz]
-  double step{};        ///< of an importer, by default [s]
+  double rate{};        ///< rate of its own steps [Hz]
+  double step{};        ///< default step of an importer [s]
   std::vector<FmuVariable> variables;
 };
 
-/// Units as exponents of the base units kg, m, s, A, K, rad; FMI needs no base unit of the others.
+/// Units as exponents of the base units kg, m, s, A, K, rad; FMI needs no base unit for the others.
 struct UnitRow
 {
   const char* name;
@@ -94,7 +93,7 @@ std::string unitDefinition(const std::string& unit)
   return text + (row->offset != 0.0 ? attribute("offset", numberText(row->offset)) : "") + "/></Unit>\n";
 }
 
-/// A bound of a variable as its type has it; without one where the table has none.
+/// Attribute of a bound in the variable's type; empty without a bound.
 std::string bound(const char* name, const FmuVariable& variable, double value)
 {
   const bool open = value <= -std::numeric_limits<double>::max() || value >= std::numeric_limits<double>::max();
@@ -114,7 +113,7 @@ std::string startText(const FmuVariable& variable)
                 });
 }
 
-/// What both versions say of a variable itself.
+/// Attributes of a variable in both versions.
 std::string generalAttributes(const FmuVariable& variable, std::size_t reference)
 {
   constexpr std::array CAUSALITIES{ "independent", "input", "output", "parameter" };
@@ -133,7 +132,7 @@ bool starts(const FmuVariable& variable)
   return variable.causality == Causality::INPUT || variable.causality == Causality::PARAMETER;
 }
 
-/// And of its values, but for texts.
+/// Attributes of a variable's values, except for texts.
 std::string valueAttributes(const FmuVariable& variable)
 {
   std::string text = variable.type == Type::FLOAT64 && variable.unit != "-" ? attribute("unit", variable.unit) : "";
@@ -164,14 +163,14 @@ std::string element2(const FmuVariable& variable, std::size_t reference)
          (variable.type == Type::STRING ? attribute("start", variable.start.text) : "") + "/></ScalarVariable>\n";
 }
 
-/// A variable of a description and its value reference.
+/// A variable of a description with its value reference.
 struct Referred
 {
   FmuVariable variable;
   std::size_t reference;
 };
 
-/// The variables as the version declares them: FMI 2.0 has a scalar for each element of an array.
+/// The variables in a version's declaration: FMI 2.0 has a scalar for each element of an array.
 std::vector<Referred> referred(const std::vector<FmuVariable>& all, Version version)
 {
   std::vector<Referred> found;
@@ -193,7 +192,6 @@ std::vector<Referred> referred(const std::vector<FmuVariable>& all, Version vers
   return found;
 }
 
-/// The version's modelDescription.xml.
 std::string modelDescription(const UnitDescription& unit, Version version)
 {
   const bool is_3 = version == Version::FMI_3;
@@ -212,7 +210,7 @@ std::string modelDescription(const UnitDescription& unit, Version version)
     }
     if (variable.causality == Causality::OUTPUT)
     {
-      // After a step an output is what it is, whatever the inputs become.
+      // After a step an output does not depend on later inputs.
       const std::string which =
           is_3 ? attribute("valueReference", std::to_string(reference)) : attribute("index", std::to_string(number));
       outputs += std::string(is_3 ? "    <Output" : "    <Unknown") + which + attribute("dependencies", "") + "/>\n";
@@ -241,23 +239,23 @@ std::string modelDescription(const UnitDescription& unit, Version version)
          "  </ModelStructure>\n</fmiModelDescription>\n";
 }
 
-/// A ZIP archive whose files are stored as they are (PKWARE's APPNOTE, ISO/IEC 21320-1), each below 4 GB.
+/// A ZIP archive with uncompressed files of less than 4 GB (PKWARE's APPNOTE, ISO/IEC 21320-1).
 class Zip
 {
 public:
-  /// `name`: with / between folders.
+  /// `name`: path with / between directories.
   void add(const std::string& name, const std::string& bytes)
   {
     const auto offset = static_cast<std::uint32_t>(files_.size());
     const auto size = static_cast<std::uint32_t>(bytes.size());
-    // Version 1.0, no flags, stored; 1980-01-01 00:00.
+    // Version 1.0, no flags, uncompressed; 1980-01-01 00:00.
     std::string common;
     append(common,
            { { 10, 2 }, { 0, 2 }, { 0, 2 }, { 0, 2 }, { 0x21, 2 }, { crc(bytes), 4 }, { size, 4 }, { size, 4 } });
     append(common, { { static_cast<std::uint32_t>(name.size()), 2 }, { 0, 2 } });
     append(files_, { { 0x04034b50, 4 } });
     files_ += common + name + bytes;
-    // Made on Unix by version 2.0; a file that all may read, and run.
+    // Made on Unix by version 2.0; readable and executable for all.
     append(directory_, { { 0x02014b50, 4 }, { 0x0314, 2 } });
     directory_ += common;
     append(directory_, { { 0, 2 }, { 0, 2 }, { 0, 2 }, { 0100755u << 16, 4 }, { offset, 4 } });
@@ -280,7 +278,7 @@ public:
   }
 
 private:
-  /// Numbers of so many bytes each, the lowest first.
+  /// Appends numbers of given sizes in bytes, lowest byte first.
   static void append(std::string& text, std::initializer_list<std::pair<std::uint32_t, int>> numbers)
   {
     for (const auto& [number, bytes] : numbers)
@@ -314,7 +312,7 @@ private:
 
 namespace fs = std::filesystem;
 
-/// Fills the folder of a unit's resources.
+/// Writes the directory of a unit's resources.
 class Resources
 {
 public:
@@ -326,7 +324,7 @@ public:
     texts_ += text;
   }
 
-  /// A drive, with the files that its parameters name. @returns it as its unit has it.
+  /// Adds a drive with the files that its parameters name. @returns the parameters as the unit has them.
   Parameters addDrive(const std::string& folder, Parameters parameters)
   {
     carry(folder, parameters.indicators.signatures, "signatures.yaml");
@@ -354,8 +352,8 @@ private:
   std::string texts_;
 };
 
-/// The library as the unit's and what it loads, with licences from where Debian keeps them:
-/// /usr/share/doc/libNAME-VERSION/copyright.
+/// Adds the unit's library and the libraries that it loads, with licences from /usr/share/doc/libNAME-VERSION/copyright
+/// (Debian).
 void addLibraries(const UnitLibraries& libraries, const std::string& name, Version version, Zip& zip)
 {
 #ifdef __aarch64__

@@ -10,18 +10,17 @@
 
 namespace hjt::fmu
 {
-/// Files of libraries for a unit.
 struct UnitLibraries
 {
-  std::string own;                  ///< path of that with FMI's functions
-  std::vector<std::string> others;  ///< paths of what it loads and a system may lack
+  std::string own;                  ///< path of the library with FMI's functions
+  std::vector<std::string> others;  ///< paths of the libraries that it loads and a system may lack
 };
 
-/// A co-simulation unit of this drive, as the bytes of its file. Files that parameters name go into the unit. @throws
+/// Bytes of the file of a co-simulation unit for this drive, with the files that its parameters name. @throws
 /// InputError.
 std::string driveFmu(const Parameters& parameters, const UnitLibraries& libraries, Version version);
 
-/// The same of an arm with these drives under its controller. @throws InputError.
+/// Bytes of the file of a unit for an arm with these drives and its controller. @throws InputError.
 std::string armFmu(const std::string& name, const ArmDescription& arm, const std::vector<Parameters>& drives,
                    const UnitLibraries& libraries, Version version);
 }  // namespace hjt::fmu

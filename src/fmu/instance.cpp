@@ -16,7 +16,7 @@ namespace hjt::fmu
 {
 namespace
 {
-/// FMI 3.0 has a path; a URI is what FMI 2.0 had, and importers of both may give.
+/// Directory from a path (FMI 3.0) or a URI (FMI 2.0); importers may give either.
 std::string folderOf(std::string resources)
 {
   if (resources.rfind("file:", 0) == 0)
@@ -108,7 +108,7 @@ void Instance::setUp(double start, std::optional<double> stop)
   {
     throw CallError("startTime = " + numberText(start) + " [s]" +
                     (stop ? ", stopTime = " + numberText(*stop) + " [s]" : std::string()) +
-                    " out of range, allowed: a start within +-1e9 and a stop not before it");
+                    " out of range, allowed: a start from -1e9 to 1e9 and a stop that is not before the start");
   }
   state_.start = start;
   state_.time = start;
@@ -160,7 +160,7 @@ Instance::Elements Instance::elements(Type type, const References& of, std::size
   }
   if (variables[variable].type != type)
   {
-    throw CallError(variables[variable].name + " is of another type than the function");
+    throw CallError(variables[variable].name + " has another type than the function");
   }
   return { variable, first, is_element ? first + 1 : size };
 }
@@ -198,7 +198,7 @@ void Instance::check(const FmuVariable& variable, std::size_t element, double va
   }
 }
 
-/// All numbers are looked at before the first is taken.
+/// Checks all numbers before it sets the first one.
 void Instance::setNumbers(Type type, const References& of, const std::function<double(std::size_t)>& number)
 {
   requireCount(type, of);
@@ -237,7 +237,7 @@ void Instance::setTexts(const References& of, const char* const* texts)
     requireSettable(target);
     if (texts[i] == nullptr)
     {
-      throw CallError(target.name + " is to be a null pointer");
+      throw CallError(target.name + " must be a null pointer");
     }
   }
   bool differs = false;
@@ -250,7 +250,7 @@ void Instance::setTexts(const References& of, const char* const* texts)
   changed(differs);
 }
 
-/// Before the start the twin is another one with other values; later inputs go to it with the next step.
+/// Before the start, other values need another twin; later inputs act with the next step.
 void Instance::changed(bool differs)
 {
   if (differs && state_.mode != Mode::STEP)
@@ -259,7 +259,7 @@ void Instance::changed(bool differs)
   }
 }
 
-/// Brings the value up to date. @returns false if it is of the last instant that had one.
+/// Updates a value. @returns false if it is that of an earlier instant.
 bool Instance::update(std::size_t reference)
 {
   const FmuVariable& asked = unit_->variables()[reference];
@@ -327,7 +327,7 @@ bool Instance::step(double at, double length)
   return converged;
 }
 
-/// The outputs too: one that could not be read since is of the last instant that had it.
+/// Includes the outputs, because one that cannot be read has the value of an earlier instant.
 std::string Instance::serialised(const State& state) const
 {
   std::string body;
@@ -361,12 +361,13 @@ std::unique_ptr<Instance::State> Instance::deserialised(std::string_view bytes) 
   const std::string_view body = whole.rest();
   if (hash != textHash(body))
   {
-    throw InputError("a serialised state is cut or damaged");
+    throw InputError("a serialised state is incomplete or damaged");
   }
   ByteReader reader(body);
   if (const std::string_view token = reader.text(); token != token_)
   {
-    throw InputError("a serialised state is of the unit '" + std::string(token) + "', this one is '" + token_ + "'");
+    throw InputError("a serialised state belongs to the unit '" + std::string(token) + "', but this unit is '" +
+                     token_ + "'");
   }
   auto state = std::make_unique<State>();
   state->mode = static_cast<Mode>(std::clamp(reader.number<int>(), 0, static_cast<int>(Mode::TERMINATED)));

@@ -17,13 +17,13 @@
 
 namespace hjt::fmu
 {
-/// A call that FMI does not allow, or one of its arguments. The instance stays as it was.
+/// Error of a call or of an argument that FMI does not allow. The instance does not change.
 struct CallError : std::runtime_error
 {
   using std::runtime_error::runtime_error;
 };
 
-/// The variables that a call names, and how many values it has for them.
+/// The variables of a call, and the number of values for them.
 struct References
 {
   const ValueReference* references;
@@ -32,7 +32,7 @@ struct References
   Version version;
 };
 
-/// Where an instance of FMI is.
+/// State of an instance in FMI.
 enum class Mode
 {
   INSTANTIATED,
@@ -41,19 +41,19 @@ enum class Mode
   TERMINATED
 };
 
-/// One instance behind FMI's functions: its values by reference, its mode, what it simulates. That is made when the
-/// initialisation ends, or when an output is asked for in it. Every function throws CallError, and ParameterError where
-/// the parameters have no twin.
+/// An instance behind the functions of FMI: its values by reference, its mode and its simulation. The simulation is
+/// made at the end of the initialisation, or when an output is read before. Every function throws CallError, and
+/// ParameterError if the parameters are invalid for a twin.
 class Instance
 {
 public:
-  /// `resources`: folder of the unit's. @throws InputError.
+  /// `resources`: directory of the unit's resources. @throws InputError.
   Instance(const std::string& resources, const std::string& token, bool logs, Log log);
 
-  /// To the instance's user, if he wants it. `status`: what the call returns, or OK where it only tells.
+  /// Sends a message to the user's log, if enabled. `status`: status of the call, or OK for information.
   void log(Status status, const std::string& message) const noexcept;
 
-  /// On: for these categories alone, for all if none is named. Off: for all.
+  /// On: only these categories, or all if none is given. Off: all.
   void setLogging(bool on, std::size_t count, const char* const* categories);
 
   void setUp(double start, std::optional<double> stop);
@@ -62,17 +62,19 @@ public:
   void terminate();
   void reset();
 
-  /// Of one type; an array's values in a row. @returns false if some are of the last instant that had them.
+  /// Gets values of one type; an array's values are consecutive. @returns false if some are those of an earlier
+  /// instant.
   template <class Put>
   bool get(Type type, const References& of, const Put& put);
   void setNumbers(Type type, const References& of, const std::function<double(std::size_t)>& number);
   void setTexts(const References& of, const char* const* texts);
 
-  /// From `at` on by `length` [s]. @returns false if a step found no equilibrium and held the last good state.
+  /// Steps from `at` by `length` [s]. @returns false if a step had no equilibrium and the last converged state was
+  /// kept.
   bool step(double at, double length);
   double time() const noexcept { return state_.time; }  ///< [s]
 
-  /// All that `step` depends on.
+  /// Data that determine the result of `step`.
   struct State
   {
     State() = default;
@@ -87,20 +89,20 @@ public:
     double time{};  // [s]
     std::optional<double> stop;
     Values values;
-    Journal journal;                   // of the simulation
-    std::shared_ptr<const Unit> unit;  // that the simulation refers to; a state may outlive the instance it was of
+    Journal journal;                   // journal of the simulation
+    std::shared_ptr<const Unit> unit;  // unit of the simulation; a state may outlive its instance
     std::unique_ptr<Simulation> simulation;
   };
   const State& state() const noexcept { return state_; }
   void takeUp(const State& state) { state_ = state; }
 
-  /// For another process with this unit, too. Guarded against damage, not against malice. @throws InputError.
+  /// State as bytes, also for another process with this unit. Damage is detected, forgery is not. @throws InputError.
   std::string serialised(const State& state) const;
-  /// Does all that the state has behind it once more. @throws InputError.
+  /// State from bytes; repeats everything since its start. @throws InputError.
   std::unique_ptr<State> deserialised(std::string_view bytes) const;
 
 private:
-  /// Elements of a variable that a reference means.
+  /// Elements of a variable that a reference denotes.
   struct Elements
   {
     std::size_t variable;

@@ -10,7 +10,7 @@ namespace
 {
 constexpr char STEP = 'S';
 constexpr char READ = 'R';
-using InputIndex = std::uint16_t;  // among the numbers of all inputs
+using InputIndex = std::uint16_t;  // index among the numbers of all inputs
 
 bool sameBits(double a, double b)
 {
@@ -21,7 +21,7 @@ void requireJournal(bool condition)
 {
   if (!condition)
   {
-    throw InputError("a serialised state has a journal that this unit cannot have written");
+    throw InputError("a serialised state has a journal that this unit did not write");
   }
 }
 
@@ -56,7 +56,6 @@ void Journal::forInputs(const Values& values, const Put& put)
   }
 }
 
-/// For an entry of this size.
 void Journal::make(std::size_t room)
 {
   if (last_.size() + room > CHUNK)
@@ -124,8 +123,8 @@ std::string Journal::bytes() const
 {
   if (is_too_long_)
   {
-    throw InputError("the inputs since the start are more than " + std::to_string(MOST >> 20) +
-                     " MB: such a state is not serialised");
+    throw InputError("the inputs since the start exceed " + std::to_string(MOST >> 20) +
+                     " MB, so that the state cannot be serialised");
   }
   std::string all;
   for (const auto& chunk : full_)

@@ -15,7 +15,7 @@
 
 namespace hjt::fmu
 {
-/// Appends a number, no truth value, as this machine has it.
+/// Appends a number, but no truth value, in the format of this machine.
 template <class Number>
 void putNumber(std::string& bytes, Number number)
 {
@@ -31,7 +31,7 @@ inline void putText(std::string& bytes, std::string_view text)
   bytes.append(text);
 }
 
-/// Takes from the front what was put. @throws InputError where less is left.
+/// Reads from the front of bytes. @throws InputError if too few are left.
 class ByteReader
 {
 public:
@@ -53,7 +53,7 @@ private:
   {
     if (size > left_.size())
     {
-      throw InputError("a serialised state ends too early");
+      throw InputError("a serialised state is incomplete");
     }
     const std::string_view taken = left_.substr(0, size);
     left_.remove_prefix(size);
@@ -63,8 +63,8 @@ private:
   std::string_view left_;
 };
 
-/// All that a simulation was told since its start: inputs, steps, and reads that change what comes. Told again, another
-/// one comes to the same bits. It takes the time that the simulation took.
+/// Everything that a simulation got since its start: inputs, steps, and reads with effect. A repetition gives equal
+/// bits and takes the time of the simulation.
 class Journal
 {
 public:
@@ -74,15 +74,15 @@ public:
   explicit Journal(const std::vector<FmuVariable>& variables);
 
   void begin(const Values& values);
-  void step(const Values& values, double end);  ///< end: [s]. Allocates once in CHUNK bytes.
+  void step(const Values& values, double end);  ///< `end` [s]; allocates once in CHUNK bytes
   void read(std::size_t reference);
 
-  /// @throws InputError if there was more than MOST.
+  /// @throws InputError if there are more than MOST bytes.
   std::string bytes() const;
 
-  /// Becomes the journal of these bytes and has a simulation of `unit` do what it says. `values`: parameters, and the
-  /// inputs that are to be replaced. `end`: of the last step, or `start` [s]. @throws InputError if the bytes are no
-  /// journal of this unit that ends there; ParameterError as Unit::start.
+  /// Replaces this journal by the one in `bytes`, and repeats it with a simulation of `unit`. `values`: parameters, and
+  /// inputs to be replaced. `end`: end of the last step, or `start` [s]. @throws InputError if the bytes are not a
+  /// journal of this unit with this end; ParameterError as Unit::start does.
   std::unique_ptr<Simulation> replay(std::string_view bytes, const Unit& unit, Values values, double start, double end,
                                      const Notice& notice);
 
@@ -93,9 +93,9 @@ private:
   void forInputs(const Values& values, const Put& put);
   void make(std::size_t room);
 
-  std::vector<std::size_t> inputs_;                       // their references
-  std::vector<double> given_;                             // their numbers at the last step
-  std::vector<std::shared_ptr<const std::string>> full_;  // shared by copies
+  std::vector<std::size_t> inputs_;                       // references of the inputs
+  std::vector<double> given_;                             // numbers of the inputs at the last step
+  std::vector<std::shared_ptr<const std::string>> full_;  // filled chunks, which copies share
   std::string last_;
   bool is_too_long_{};
 };

@@ -13,35 +13,35 @@
 
 namespace hjt::fmu
 {
-using Values = std::vector<Value>;  ///< of all variables of a unit
+using Values = std::vector<Value>;  ///< values of all variables of a unit
 using Notice = std::function<void(const std::string&)>;
 
 constexpr Stamp EPOCH = 1'000'000'000'000'000'000;  ///< stamp of time 0, as in `joint_twin simulate`
 
-constexpr double LARGEST_TIME = 1e9;  ///< either way [s]
+constexpr double LARGEST_TIME = 1e9;  ///< largest magnitude of a time [s]
 
-inline Stamp stampAt(double time)  ///< [s]
+inline Stamp stampAt(double time)  ///< stamp of a time [s]
 {
   return EPOCH + static_cast<Stamp>(std::llround(1e9 * time));
 }
 
-/// The simulated object of an instance, from its start on.
+/// The simulated object of an instance from its start on.
 class Simulation
 {
 public:
   virtual ~Simulation() = default;
 
-  /// At the same instant; with the same values both go on with the same bits.
+  /// A copy at the same instant; with equal values both give equal bits.
   virtual std::unique_ptr<Simulation> copy() const = 0;
 
-  /// To the last of its instants not after `end` [s], with these values of the inputs; does not allocate. False: a step
-  /// found no equilibrium and held the last good state.
+  /// Steps to the last instant not after `end` [s] with these input values, without allocation. @returns false if a
+  /// step had no equilibrium and the last converged state was kept.
   virtual bool step(const Values& values, double end) = 0;
 
-  /// Writes the value of an output. False: it is of the last instant that had one.
+  /// Writes the value of an output. @returns false if it is that of an earlier instant.
   virtual bool read(std::size_t reference, Values& values) = 0;
 
-  /// Whether a read of this output would change what comes.
+  /// Whether reading this output changes later results.
   virtual bool marks(std::size_t reference) const = 0;
 
 protected:
@@ -50,7 +50,6 @@ protected:
   Simulation& operator=(const Simulation&) = default;
 };
 
-/// Resources of a unit.
 class Unit
 {
 public:
@@ -58,8 +57,8 @@ public:
   Unit(const Unit&) = delete;
   Unit& operator=(const Unit&) = delete;
 
-  /// `start` [s]; `notice`: what the user must know of it. The unit outlives it. @throws ParameterError where these
-  /// values have no twin.
+  /// Starts a simulation. `start` [s]; `notice` receives messages for the user. The unit must outlive it. @throws
+  /// ParameterError if these values are invalid for a twin.
   virtual std::unique_ptr<Simulation> start(const Values& values, double start, const Notice& notice) const = 0;
 
   const std::vector<FmuVariable>& variables() const { return variables_; }
@@ -70,6 +69,6 @@ protected:
   std::vector<FmuVariable> variables_;
 };
 
-/// The unit of this library. `resources`: its folder. @throws InputError, also if the token is another.
+/// The unit of this library. `resources`: its directory. @throws InputError, also for another token.
 std::unique_ptr<Unit> openUnit(const std::string& resources, const std::string& token);
 }  // namespace hjt::fmu

@@ -21,7 +21,8 @@ namespace hjt::fmu
 {
 namespace
 {
-/// Of an operating twin or of what it publishes; the last four are an input, or change what the description states.
+/// Parameters that are not variables: of an operating twin and its topics; the last four are an input or change the
+/// description.
 constexpr std::array LEFT_OUT{ "joint.",
                                "life.",
                                "input.",
@@ -36,7 +37,7 @@ constexpr std::array LEFT_OUT{ "joint.",
                                "gear.teeth_flexspline",
                                "gear.teeth_circular_spline" };
 
-/// What the arm around a drive gives, or needs as it is.
+/// Parameters that are not variables within an arm, because the arm determines them.
 constexpr std::array LEFT_OUT_IN_ARM{ "output.load_inertia", "output.gravity_" };
 
 double finite(double value)
@@ -120,7 +121,7 @@ struct ParameterMaker
   std::vector<FmuVariable>& all;
 };
 
-/// The configured fault of a kind that the twin starts with, if any; else none at the first place allowed.
+/// Configured fault of a kind that is active at the start; otherwise none, at the least place allowed.
 Fault startingFault(FaultKind kind, const Parameters& parameters)
 {
   const auto found = std::find_if(parameters.faults.begin(), parameters.faults.end(),
@@ -137,11 +138,11 @@ void addInputs(const Parameters& parameters, const std::string& prefix, std::vec
     all.back().is_clamped = all.back().unit == "N.m";
   };
   add("motor_torque", "N.m",
-      prefix.empty() ? "torque commanded of the motor; clamped to motor.torque_limit" :
-                       "torque commanded of the motor where the arm has no controller; clamped to motor.torque_limit",
+      prefix.empty() ? "commanded torque of the motor, clamped to motor.torque_limit" :
+                       "commanded torque of the motor if the arm has no controller, clamped to motor.torque_limit",
       0.0, { -1e6, 1e6 });
   add("load_torque", "N.m", "external torque at the output, > 0 resists positive motion", 0.0, { -load, load });
-  add("temperature", "degC", "of the drive, or with thermal.model = two_nodes of its surroundings",
+  add("temperature", "degC", "temperature of the drive, or of its surroundings with thermal.model = two_nodes",
       parameters.input.temperature, { MIN_TEMPERATURE, MAX_TEMPERATURE });
   all.push_back({ prefix + "brake",
                   "-",
@@ -189,76 +190,81 @@ std::vector<ScalarOutput> driveOutputs()
   using O = const JointOutputs&;
   constexpr Type F = Type::FLOAT64;
   return {
-    { "motor_angle", "rad", "of the wave generator, true", F, [](T, O o) { return o.motor_angle; } },
-    { "motor_velocity", "rad/s", "of the wave generator, true", F, [](T, O o) { return o.motor_velocity; } },
-    { "output_angle", "rad", "of the circular spline, true", F, [](T, O o) { return o.output_angle; } },
-    { "output_velocity", "rad/s", "of the circular spline, true", F, [](T, O o) { return o.output_velocity; } },
-    { "motor_angle_encoder", "rad", "as the motor's encoder reads it", F,
+    { "motor_angle", "rad", "true angle of the wave generator", F, [](T, O o) { return o.motor_angle; } },
+    { "motor_velocity", "rad/s", "true speed of the wave generator", F, [](T, O o) { return o.motor_velocity; } },
+    { "output_angle", "rad", "true angle of the circular spline", F, [](T, O o) { return o.output_angle; } },
+    { "output_velocity", "rad/s", "true speed of the circular spline", F, [](T, O o) { return o.output_velocity; } },
+    { "motor_angle_encoder", "rad", "reading of the motor's encoder", F,
       [](T t, O) { return t.encoders().motor_angle; } },
-    { "motor_velocity_encoder", "rad/s", "difference of its readings", F,
+    { "motor_velocity_encoder", "rad/s", "difference quotient of the motor encoder's readings", F,
       [](T t, O) { return t.encoders().motor_velocity; } },
-    { "output_angle_encoder", "rad", "as the output's encoder reads it, unwrapped", F,
+    { "output_angle_encoder", "rad", "unwrapped reading of the output's encoder", F,
       [](T t, O) { return t.encoders().output_angle; } },
-    { "output_velocity_encoder", "rad/s", "difference of its readings", F,
+    { "output_velocity_encoder", "rad/s", "difference quotient of the output encoder's readings", F,
       [](T t, O) { return t.encoders().output_velocity; } },
-    { "motor_current", "A", "that the drive reads, by telemetry.torque_per_current", F, motorCurrent },
-    { "motor_torque_reading", "N.m", "motor torque by the current, as read", F,
+    { "motor_current", "A", "current of the motor as the drive reads it, by telemetry.torque_per_current", F,
+      motorCurrent },
+    { "motor_torque_reading", "N.m", "motor torque as the drive estimates it from the current", F,
       [](T t, O) { return t.motorTorqueReading(); } },
-    { "motor_torque_applied", "N.m", "after limits and current loop", F, [](T, O o) { return o.motor_torque; } },
-    { "wave_generator_torque", "N.m", "of the wave generator on the flexspline", F,
+    { "motor_torque_applied", "N.m", "torque of the motor after limits and current loop", F,
+      [](T, O o) { return o.motor_torque; } },
+    { "wave_generator_torque", "N.m", "torque of the wave generator on the flexspline", F,
       [](T, O o) { return o.wave_generator_torque; } },
-    { "joint_torque", "N.m", "of the mesh on the circular spline", F, [](T, O o) { return o.joint_torque; } },
-    { "friction_torque", "N.m", "all friction at the motor shaft, by power", F,
+    { "joint_torque", "N.m", "torque of the mesh on the circular spline", F, [](T, O o) { return o.joint_torque; } },
+    { "friction_torque", "N.m", "all friction as a torque at the motor shaft, by power", F,
       [](T, O o) { return o.friction_torque; } },
-    { "torsional_stiffness", "N.m/rad", "local, wave generator locked", F,
+    { "torsional_stiffness", "N.m/rad", "local stiffness with the wave generator locked", F,
       [](T, O o) { return o.torsional_stiffness; } },
-    { "energy_residual", "J", "energy in less stored, dissipated and released since the start", F,
+    { "energy_residual", "J", "supplied energy less stored, dissipated and released energy since the start", F,
       [](T, O o) { return o.energy_residual; } },
-    { "grease_temperature", "degC", "that the friction has", F, [](T, O o) { return o.temperature; } },
-    { "housing_temperature", "degC", "of the housing", F, [](T, O o) { return o.housing_temperature; } },
-    { "brake_engaged", "-", "the brake holds the motor, but for its play", Type::BOOLEAN,
+    { "grease_temperature", "degC", "temperature of the grease, which determines the friction", F,
+      [](T, O o) { return o.temperature; } },
+    { "housing_temperature", "degC", "temperature of the housing", F, [](T, O o) { return o.housing_temperature; } },
+    { "brake_engaged", "-", "whether the brake holds the motor within its play", Type::BOOLEAN,
       [](T, O o) { return o.brake_engaged ? 1.0 : 0.0; } },
-    { "converged", "-", "false: the ring found no equilibrium and the last good state is held", Type::BOOLEAN,
+    { "converged", "-", "false: the ring has no equilibrium, and the last converged state is kept", Type::BOOLEAN,
       [](T, O o) { return o.converged ? 1.0 : 0.0; } },
   };
 }
 
-/// What health, assessment and indicators say of it.
+/// Outputs of health, assessment and indicators.
 std::vector<ScalarOutput> healthOutputs()
 {
   using T = const Twin&;
   using O = const JointOutputs&;
   using S = ScalarIndicator;
   constexpr Type F = Type::FLOAT64;
-  constexpr const char* LAST_WINDOW = "of the last window that tells it; 0: none yet";
+  constexpr const char* LAST_WINDOW = "value of the last window that determines it; 0: none yet";
   return {
-    { "transmission_ratio", "-", "over the last motor turn; 0: none yet", F,
+    { "transmission_ratio", "-", "transmission ratio over the last motor turn; 0: none yet", F,
       [](T t, O) { return t.health().motion.transmission_ratio.value; } },
     { "torsion", "rad", "motor angle over nominal ratio less output angle", F,
       [](T t, O) { return t.health().motion.torsion; } },
-    { "running_stiffness", "N.m/rad", "slope of torque over torsion in the motion; 0: none yet", F,
+    { "running_stiffness", "N.m/rad", "slope of the torque over the torsion during motion; 0: none yet", F,
       [](T t, O) { return t.health().motion.torsional_stiffness.value; } },
-    { "running_efficiency", "-", "of the last motion; 0: none yet", F,
+    { "running_efficiency", "-", "efficiency of the last motion; 0: none yet", F,
       [](T t, O) { return t.health().motion.efficiency.value; } },
-    { "running_kinematic_error", "rad", "peak to peak over the last motor turn; 0: none yet", F,
+    { "running_kinematic_error", "rad", "kinematic error, peak to peak over the last motor turn; 0: none yet", F,
       [](T t, O) { return t.health().motion.kinematic_error.value; } },
-    { "teeth_loaded", "-", "teeth that carry mesh force", Type::INT32,
+    { "teeth_loaded", "-", "number of teeth that carry mesh force", Type::INT32,
       [](T t, O) { return static_cast<double>(t.health().lobes.teeth_loaded); } },
-    { "lobe_force_0", "N", "mesh force about lobe 0", F, [](T t, O) { return t.health().lobes.mesh_force[0]; } },
-    { "lobe_force_1", "N", "mesh force about lobe 1", F, [](T t, O) { return t.health().lobes.mesh_force[1]; } },
-    { "bearing_force", "N", "load of the wave generator's bearing, sum over the teeth", F,
+    { "lobe_force_0", "N", "sum of mesh forces near lobe 0", F, [](T t, O) { return t.health().lobes.mesh_force[0]; } },
+    { "lobe_force_1", "N", "sum of mesh forces near lobe 1", F, [](T t, O) { return t.health().lobes.mesh_force[1]; } },
+    { "bearing_force", "N", "load of the wave generator's bearing: sum over the teeth", F,
       [](T t, O) { return t.health().lobes.wave_generator_force; } },
-    { "assessment_level", "-", "of the assessment by the readings: 0 OK, 1 WARN, 2 ERROR", Type::INT32,
+    { "assessment_level", "-", "level of the assessment: 0 OK, 1 WARN, 2 ERROR", Type::INT32,
       [](T t, O) { return static_cast<double>(t.assessment().level); }, true },
-    { "assessment_state", "-", "0 waiting, 1 learning, 2 assessed, 3 no reference, 4 too few windows", Type::INT32,
+    { "assessment_state", "-",
+      "state of the assessment: 0 waiting, 1 learning, 2 assessed, 3 no reference, 4 too few windows", Type::INT32,
       [](T t, O) { return static_cast<double>(t.assessment().state); }, true },
-    { "assessment_cause", "-", "most likely: 0 none, then the inputs fault_* from 1 on, last a circular spline tooth",
-      Type::INT32, [](T t, O) { return static_cast<double>(t.assessment().cause); }, true },
-    { "assessment_confidence", "-", "probability of that cause", F, [](T t, O) { return t.assessment().confidence; },
-      true },
-    { "assessment_severity", "-", "of the fault if that is the cause", F,
+    { "assessment_cause", "-",
+      "most likely cause: 0 none, then the inputs fault_* from 1 on, last a circular spline tooth", Type::INT32,
+      [](T t, O) { return static_cast<double>(t.assessment().cause); }, true },
+    { "assessment_confidence", "-", "probability of assessment_cause", F,
+      [](T t, O) { return t.assessment().confidence; }, true },
+    { "assessment_severity", "-", "mean severity of the fault, if assessment_cause is the cause", F,
       [](T t, O) { return t.assessment().severity; }, true },
-    { "indicator_windows", "-", "windows that the indicators were made of", Type::INT32,
+    { "indicator_windows", "-", "number of windows for which indicators were computed", Type::INT32,
       [](T t, O) { return static_cast<double>(t.signalIndicators().windows); }, true },
     { "indicator_kinematic_error", "rad", LAST_WINDOW, F, indicator<S::KINEMATIC_ERROR>, true },
     { "indicator_torsional_stiffness", "N.m/rad", LAST_WINDOW, F, indicator<S::TORSIONAL_STIFFNESS>, true },
@@ -289,11 +295,11 @@ const std::vector<ScalarOutput>& scalarOutputs()
 const std::vector<ToothOutput>& toothOutputs()
 {
   static const std::vector<ToothOutput> OUTPUTS{
-    { "tooth_mesh_force", "normal to the flank of each tooth, > 0 leading, < 0 trailing flank",
+    { "tooth_mesh_force", "normal force on the flank of each tooth, > 0 leading, < 0 trailing flank",
       &ToothForces::mesh_force },
-    { "tooth_wave_generator_force", "of the wave generator on each tooth", &ToothForces::wave_generator_force },
-    { "tooth_rim_tension", "of the rim from each tooth to the next", &ToothForces::rim_tension },
-    { "tooth_bending_force", "of the rim from each tooth to the next", &ToothForces::bending_force },
+    { "tooth_wave_generator_force", "force of the wave generator on each tooth", &ToothForces::wave_generator_force },
+    { "tooth_rim_tension", "tension of the rim from each tooth to the next", &ToothForces::rim_tension },
+    { "tooth_bending_force", "bending force of the segment from each tooth to the next", &ToothForces::bending_force },
   };
   return OUTPUTS;
 }

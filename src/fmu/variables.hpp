@@ -12,7 +12,7 @@
 
 namespace hjt::fmu
 {
-/// Of FMI 3.0, by the names of its elements in the description.
+/// Types of FMI 3.0, named as the elements of the description.
 enum class Type
 {
   FLOAT64,
@@ -29,43 +29,42 @@ enum class Causality
   PARAMETER
 };
 
-/// A value of a variable: numbers, one where it is no array, or a text.
+/// Value of a variable: a text, or numbers, one unless it is an array.
 struct Value
 {
   std::vector<double> numbers{ 0.0 };
   std::string text{};
 };
 
-/// A variable of the unit, for its description and calls; its value reference is its place in the list.
+/// A variable of the unit, for its description and calls; its value reference is its index in the list.
 struct FmuVariable
 {
   std::string name;
-  std::string unit;  ///< "-": none
+  std::string unit;  ///< "-": no unit
   std::string description;
   Causality causality{};
   Type type{};
-  Value start{};  ///< of inputs and parameters
+  Value start{};  ///< start value of inputs and parameters
   std::optional<Range> range{};
   bool is_array{};
-  bool is_discrete{};  ///< of inputs of type FLOAT64
-  bool is_clamped{};   ///< of inputs: a number beyond the range is taken and clamped
+  bool is_discrete{};  ///< of an input of type FLOAT64: it changes at discrete times
+  bool is_clamped{};   ///< of an input: a number out of range is clamped
 };
 
-constexpr std::size_t TIME = 0;  ///< value reference in every unit
+constexpr std::size_t TIME = 0;  ///< value reference of the time in every unit
 
-/// The variables of a drive, counted from its first one on: inputs, scalar outputs, tooth outputs, places of the
-/// faults, then the parameters that shape it.
+/// Variables of a drive, counted from its first one: inputs, scalar outputs, outputs of the teeth, places of the
+/// faults, then the parameters of the drive.
 enum DriveReference : unsigned
 {
   MOTOR_TORQUE,
   LOAD_TORQUE,
   TEMPERATURE,
   BRAKE,
-  FIRST_FAULT,  ///< severity, one for each FaultKind
+  FIRST_FAULT,  ///< severities, one for each FaultKind
   FIRST_OUTPUT = FIRST_FAULT + FAULT_KINDS
 };
 
-/// An output that is one number.
 struct ScalarOutput
 {
   const char* name;
@@ -73,11 +72,10 @@ struct ScalarOutput
   const char* description;
   Type type;
   double (*of)(const Twin&, const JointOutputs&);
-  bool watches{};  ///< it is of indicators or assessment: Twin::watchSignals
+  bool watches{};  ///< needs Twin::watchSignals, because it belongs to indicators or assessment
 };
 const std::vector<ScalarOutput>& scalarOutputs();
 
-/// An output with a number for each tooth.
 struct ToothOutput
 {
   const char* name;
@@ -88,22 +86,22 @@ const std::vector<ToothOutput>& toothOutputs();
 
 FmuVariable timeVariable();
 
-/// Adds those of a drive, with this prefix of their names. What the twin is beside a robot or publishes is left out,
-/// and what sizes or steps would change with; within an arm also what the arm gives.
+/// Adds the variables of a drive with this prefix. Excluded are parameters of the twin beside a robot, of publishing,
+/// and those that would change sizes or steps; within an arm also those that the arm determines.
 void addDrive(const Parameters& parameters, const std::string& prefix, std::vector<FmuVariable>& all);
 
-/// All variables of a unit that is one drive: time, then the drive.
+/// All variables of a unit for one drive: time, then the drive.
 std::vector<FmuVariable> driveVariables(const Parameters& parameters);
 
-/// Of the place of a kind of fault, counted from the drive's first variable on.
+/// Index of the place of a kind of fault, counted from the drive's first variable.
 std::size_t placeReference(std::size_t kind);
 
-/// Of the texts of the resources in this version: ties description, library and resources to each other.
+/// Token of the resources' texts and this version, which ties description, library and resources to each other.
 std::string instantiationToken(const std::string& text);
-void requireToken(const std::string& token, const std::string& text);  ///< @throws InputError if it is another
+void requireToken(const std::string& token, const std::string& text);  ///< @throws InputError for another token
 
-/// Parameters that name a file, which lies with the description; their values then are file names.
+/// Parameters that name a file. The file is in the unit, and the value is its name.
 constexpr const char* FILE_PARAMETERS[]{ "indicators.signatures", "manufacture.flexspline_pitch_table",
                                          "manufacture.circular_spline_pitch_table" };
-constexpr const char* PARAMETER_FILE = "parameters.yaml";  ///< among the resources
+constexpr const char* PARAMETER_FILE = "parameters.yaml";  ///< file in the resources
 }  // namespace hjt::fmu

@@ -5,16 +5,16 @@
 
 namespace hjt
 {
-/// Foot of the normal from a point to an ellipse, in the ellipse's own axes.
+/// Foot of the normal from a point to an ellipse, in the axes of the ellipse.
 struct EllipseFoot
 {
   double normal_x;  ///< outward unit normal at the foot [-]
   double normal_y;
   double depth;      ///< distance of the point inside the ellipse along the normal; < 0 outside [m]
-  double curvature;  ///< of the ellipse at the foot [1/m]
+  double curvature;  ///< curvature of the ellipse at the foot [1/m]
 };
 
-/// Foot at the eccentric angle given by its cosine and sine.
+/// Foot for the cosine and sine of the eccentric angle.
 inline EllipseFoot footAt(double a, double b, double x, double y, double c, double s) noexcept
 {
   const double nx = b * c;
@@ -28,7 +28,7 @@ inline EllipseFoot footAt(double a, double b, double x, double y, double c, doub
   return foot;
 }
 
-/// One Newton step on the eccentric angle from (c, s) towards the closest point [rad].
+/// One Newton step of the eccentric angle from (c, s) towards the closest point [rad].
 inline double closestPointStep(double a, double b, double x, double y, double c, double s) noexcept
 {
   const double focal = a * a - b * b;
@@ -37,7 +37,8 @@ inline double closestPointStep(double a, double b, double x, double y, double c,
   return -slope / bend;
 }
 
-/// Whether `closestPointNear` holds: relative to the semi-axes a point may lie half of this from the ellipse [-].
+/// Whether the point is near enough for `closestPointNear`: half this distance from the ellipse, relative to the
+/// semi-axes.
 inline bool isNear(double a, double b, double x, double y) noexcept
 {
   constexpr double NEAR_POINT = 0.04;
@@ -46,17 +47,18 @@ inline bool isNear(double a, double b, double x, double y) noexcept
   return std::abs(c * c + s * s - 1.0) < NEAR_POINT;
 }
 
-/// Closest point of the ellipse with semi-axes a, b to a point (x, y) near it (thesis eq. 5.8, solved instead of
-/// approximated). Newton on the eccentric angle, kept as a unit vector so that no trigonometry is needed.
+/// Closest point of the ellipse with semi-axes a, b to a nearby point (x, y). This solves thesis eq. 5.8, which the
+/// thesis approximates, by Newton's method on the eccentric angle. The angle is a unit vector, so that no trigonometry
+/// is needed.
 ///
-/// The start is off by the relative depth times the squared eccentricity, some 1e-5 rad on a real wave generator, and a
-/// step of size e leaves an error of 0.02 e^2, so one step reaches 1e-10 rad. Straight-line code with few divisions,
-/// for the compiler to vectorise.
+/// The start has an error of relative depth times squared eccentricity, about 1e-5 rad on a real wave generator. A step
+/// of size e leaves an error of 0.02 e^2, so that one step reaches 1e-10 rad. The code has no branches and few
+/// divisions, so that the compiler vectorises it.
 inline EllipseFoot closestPointNear(double a, double b, double x, double y) noexcept
 {
   const double c0 = x * (1.0 / a);
   const double s0 = y * (1.0 / b);
-  // (c0, s0) has length sqrt(1 + q): the series of its inverse is off by q^4 / 4.
+  // (c0, s0) has length sqrt(1 + q). The series of the inverse length has an error of q^4 / 4.
   const double q = c0 * c0 + s0 * s0 - 1.0;
   const double inverse = 1.0 - q * (0.5 - q * (0.375 - q * 0.3125));
   const double c = c0 * inverse;
@@ -66,7 +68,7 @@ inline EllipseFoot closestPointNear(double a, double b, double x, double y) noex
   return footAt(a, b, x, y, scale * (c - step * s), scale * (s + step * c));
 }
 
-/// The same for any point but the ellipse's centre.
+/// Closest point of the ellipse to any point except the centre.
 inline EllipseFoot closestPoint(double a, double b, double x, double y) noexcept
 {
   constexpr int MAX_STEPS = 30;

@@ -5,8 +5,8 @@
 
 namespace hjt
 {
-/// Ratio motor angle over output angle that the tooth numbers prescribe with the flexspline fixed (thesis §3.1) [-].
-/// Never imposed on the model: only the yardstick that torsion and kinematic error are measured against.
+/// Ratio of motor angle to output angle by the numbers of teeth, with the flexspline fixed (thesis section 3.1) [-].
+/// The model does not impose it; torsion and kinematic error are deviations from it.
 inline double nominalRatio(const GearParameters& gear) noexcept
 {
   return static_cast<double>(gear.teeth_circular_spline) / (gear.teeth_circular_spline - gear.teeth_flexspline);

@@ -13,8 +13,8 @@
 
 namespace hjt
 {
-/// Tooth points of the flexspline on its inner rim at rest: a regular polygon of radius r0, tooth 0 on the x axis.
-/// All vectors of the ring are interleaved: x of tooth i at 2i, y at 2i+1.
+/// Tooth points of the flexspline on its inner rim at rest: a regular polygon of radius r0 with tooth 0 on the x axis.
+/// All vectors of the ring are interleaved: x of tooth i at index 2i, y at 2i+1.
 class ToothRing
 {
 public:
@@ -36,11 +36,13 @@ public:
   }
 
   int teeth() const noexcept { return static_cast<int>(points_.size()) / 2; }
-  double pitchAngle() const noexcept { return pitch_angle_; }             ///< [rad]
-  double segmentLength() const noexcept { return segment_length_; }       ///< tooth i to i+1 [m]
-  const Eigen::VectorXd& points() const noexcept { return points_; }      ///< 2 N [m]
-  const Eigen::VectorXd& radial() const noexcept { return radial_; }      ///< 2 N, unit vectors to each tooth [-]
-  const Eigen::VectorXd& segments() const noexcept { return segments_; }  ///< 2 N, unit vectors from i to i+1 [-]
+  double pitchAngle() const noexcept { return pitch_angle_; }         ///< angle between neighbouring teeth [rad]
+  double segmentLength() const noexcept { return segment_length_; }   ///< distance from tooth i to tooth i+1 [m]
+  const Eigen::VectorXd& points() const noexcept { return points_; }  ///< 2 N, tooth points [m]
+  /// 2 N, unit vectors from the centre to each tooth [-]
+  const Eigen::VectorXd& radial() const noexcept { return radial_; }
+  /// 2 N, unit vectors from tooth i to tooth i+1 [-]
+  const Eigen::VectorXd& segments() const noexcept { return segments_; }
 
 private:
   double pitch_angle_;
@@ -50,12 +52,12 @@ private:
   Eigen::VectorXd segments_;
 };
 
-/// Angles of the rigid parts and the wave's amplitude: the arguments of the ring's shape.
+/// Arguments of the ring's shape: angles of wave generator and circular spline, and amplitude of the wave.
 struct DrivePosition
 {
-  double wave_generator_angle{};  ///< [rad]
-  double output_angle{};          ///< circular spline [rad]
-  double wave_amplitude{};        ///< w, grows from 0 to w0 during the insertion [m]
+  double wave_generator_angle{};  ///< angle of the wave generator [rad]
+  double output_angle{};          ///< angle of the circular spline [rad]
+  double wave_amplitude{};        ///< amplitude w, which grows from 0 to w0 during the insertion [m]
 
   bool operator==(const DrivePosition& other) const noexcept
   {
@@ -64,10 +66,10 @@ struct DrivePosition
   }
 };
 
-/// Chord from the tooth before to the tooth after, and its outward unit normal: how a tooth is tilted.
+/// Chord from the preceding to the next tooth. Its outward unit normal is the direction of the tooth.
 struct Chord
 {
-  Eigen::Vector2d normal;  ///< [-]
+  Eigen::Vector2d normal;  ///< outward unit normal [-]
   double length;           ///< [m]
 };
 
@@ -79,24 +81,25 @@ void repeatHalf(Values& values) noexcept
   std::copy(values.data(), values.data() + half, values.data() + half);
 }
 
-/// Whether both halves have the same values.
+/// Whether both halves of the values are equal.
 inline bool halvesAgree(const Eigen::VectorXd& values) noexcept
 {
   const Eigen::Index half = values.size() / 2;
   return values.size() == 2 * half && values.head(half) == values.tail(half);
 }
 
-/// `repeatHalf` for vectors in the plane, x and y a tooth: half a turn reverses them.
+/// Copies the first half of planar vectors (x and y of each tooth) to the second half, with opposite sign.
 inline void repeatHalfTurned(Eigen::VectorXd& vectors) noexcept
 {
   const Eigen::Index half = vectors.size() / 2;
   vectors.tail(half) = -vectors.head(half);
 }
 
-/// Deformed ring: the tooth points, what follows from them for every element, and the space each tooth is paired with.
+/// Deformed ring: the tooth points, the segments between them, and the space of the circular spline that each tooth
+/// faces.
 ///
-/// If the drive repeats after half a turn, the ring does too: the `solved` teeth are then the first half. All elements
-/// loop over these alone; the other half has the same points with the opposite sign.
+/// If the drive has the same state after half a turn, so has the ring. Then `solved` is N/2, and all elements compute
+/// the first half of the teeth only. The points of the other half have the opposite sign.
 struct RingShape
 {
   explicit RingShape(int teeth)
@@ -105,8 +108,8 @@ struct RingShape
   }
 
   int teeth() const noexcept { return static_cast<int>(lengths.size()); }
-  int copies() const noexcept { return solved < teeth() ? 2 : 1; }  ///< of the solved teeth in the ring
-  /// The same ring with all of its teeth solved.
+  int copies() const noexcept { return solved < teeth() ? 2 : 1; }  ///< copies of the solved teeth in the ring
+  /// The ring with all of its teeth solved.
   RingShape whole() const
   {
     RingShape shape = *this;
@@ -116,10 +119,11 @@ struct RingShape
   int next(int i) const noexcept { return i + 1 == teeth() ? 0 : i + 1; }
   int previous(int i) const noexcept { return i == 0 ? teeth() - 1 : i - 1; }
 
-  /// Brings directions and lengths up to date with the points of the solved teeth, and the other half with these.
+  /// Computes directions and lengths from the points of the solved teeth, and the other half by symmetry.
   void updateGeometry() noexcept;
 
-  /// The spaces of the other half after those of the solved teeth; `spaces`: of the circular spline.
+  /// Computes the spaces of the other half from those of the solved teeth; `spaces`: number of the circular spline's
+  /// spaces.
   void repeatSpaces(int spaces) noexcept;
 
   Chord chord(int i) const noexcept
@@ -136,7 +140,7 @@ struct RingShape
   Eigen::VectorXd points;      ///< 2 N, tooth points on the inner rim [m]
   Eigen::VectorXd directions;  ///< 2 N, unit vectors from tooth i to i+1 [-]
   Eigen::VectorXd lengths;     ///< N, distance from tooth i to i+1 [m]
-  std::vector<int> space;      ///< N, circular-spline space each tooth is paired with [-]
-  int solved;                  ///< teeth, N or N/2 [-]
+  std::vector<int> space;      ///< N, space of the circular spline that each tooth faces [-]
+  int solved;                  ///< number of solved teeth, N or N/2 [-]
 };
 }  // namespace hjt

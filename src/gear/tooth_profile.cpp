@@ -15,8 +15,8 @@ double involuteFunction(double angle)
   return std::tan(angle) - angle;
 }
 
-/// Half thickness at a radius of a gear cut with involutes; radial below the base circle. `reference`: radius of the
-/// pressure angle, where tooth and space are equally wide. [m]
+/// Half thickness of an involute gear at a radius; below the base circle the flank is radial. `reference`: radius of
+/// the pressure angle, where tooth and space have equal width. [m]
 double involuteHalfWidth(double radius, double reference, double pressure_angle, int teeth)
 {
   const double at_radius = std::acos(std::min(1.0, reference * std::cos(pressure_angle) / radius));
@@ -24,7 +24,7 @@ double involuteHalfWidth(double radius, double reference, double pressure_angle,
   return radius * std::sin(half_angle);
 }
 
-/// Fall of a double arc's half thickness between mid-height and the height `y` above it, both ways alike [m].
+/// Reduction of a double arc's half thickness from mid-height to the height `y`; it is symmetric about mid-height.
 class DoubleArc
 {
 public:
@@ -33,7 +33,7 @@ public:
   {
     const double arc_height = 0.5 * gear.tooth_height_flexspline - half_tangent_;
     const double tip_sine = std::sin(std::atan(path.slope(path.entry())));
-    // A tangent steeper than the path, or as long as the tooth, leaves no arc: the flank is straight.
+    // If the tangent is steeper than the path or as long as the tooth, there is no arc and the flank is straight.
     curvature_ = arc_height > 0.0 ? std::max(0.0, tip_sine - sine_) / arc_height : 0.0;
   }
 
@@ -125,7 +125,7 @@ FlankShapes::FlankShapes(const MeshParameters& mesh, const GearParameters& gear,
       const DoubleArc arc(mesh, gear, path);
       sample([&](double down) { return -arc.fall(tip - down); },
              [](double) { return -std::numeric_limits<double>::infinity(); });
-      // The space is the envelope of the tooth along its path; where not even the tip comes, as wide as the tip.
+      // The space is the envelope of the tooth along its path. Beyond the reach of the tip it has the width of the tip.
       space.tail(beyond).setConstant(tooth[0]);
       for (int drop = 0; drop <= intervals; ++drop)
       {
@@ -143,11 +143,11 @@ FlankShapes::FlankShapes(const MeshParameters& mesh, const GearParameters& gear,
 
 namespace
 {
-constexpr int ENGAGEMENT_INTERVALS = 128;  // of the table, from entry to full engagement
-constexpr int BEYOND_INTERVALS = 16;       // and beyond, where a loaded tooth may be pushed
-constexpr int SAMPLES = 4;                 // of the flanks per interval of the table
+constexpr int ENGAGEMENT_INTERVALS = 128;  // intervals of the table from entry to full engagement
+constexpr int BEYOND_INTERVALS = 16;       // intervals beyond full engagement, where a load may push a tooth
+constexpr int SAMPLES = 4;                 // samples of the flanks in an interval of the table
 
-/// Half clearance with the tip at sample `tip` of the space [m].
+/// Half clearance if the tip is at sample `tip` of the space [m].
 double clearanceOf(const FlankShapes& flanks, Eigen::Index tip)
 {
   const Eigen::Index beside = std::min(tip + 1, flanks.tooth.size());
@@ -159,7 +159,7 @@ double clearanceOf(const FlankShapes& flanks, Eigen::Index tip)
   return clearance;
 }
 
-/// Second derivatives of the C2 spline through equidistant values, zero at both ends: Thomas' algorithm.
+/// Second derivatives, zero at both ends, of the C2 spline through equidistant values, by Thomas' algorithm.
 std::vector<double> secondDerivatives(const std::vector<double>& values, double interval)
 {
   std::vector<double> bend(values.size(), 0.0);

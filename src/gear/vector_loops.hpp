@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <array>
 
-/// Before a function whose loops over the teeth vectorise: compiled for every x86-64 and for AVX2; the processor
-/// decides when the library is loaded, before the thread sanitizer could watch it. Elsewhere it says nothing. Not for
-/// AVX-512, which brings FMA: GCC 12 makes vfmaddsub of a product's sum beside its difference, whatever -ffp-contract
-/// says.
+/// Attribute of a function with loops over the teeth: the compiler makes a version for every x86-64 and one for AVX2,
+/// and the loader of the library selects one. On other platforms, and with the thread sanitizer, which cannot watch
+/// that selection, it is empty. AVX-512 is excluded because it implies FMA: GCC 12 then fuses a product with a sum even
+/// with -ffp-contract=off.
 #if defined(HJT_AVX2) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_THREAD__)
 #define HJT_VECTOR_CLONES __attribute__((target_clones("avx2", "default")))
 #else
@@ -16,14 +16,14 @@
 
 namespace hjt
 {
-/// Sums over teeth or terms of friction, whose bits do not depend on the width of the processor's vectors. A simd
-/// reduction adds in an order that the width decides; here the terms are computed in vectors, put down, and added in an
-/// order of their own. `terms(i, rows, k)` writes N terms of place i to rows[0 ... N-1][k]; what else it writes, it
-/// writes at no place of another i. A local array of them, and GCC makes no vectors of the loop.
+/// Sums over teeth or friction terms whose bits do not depend on the width of the processor's vectors. A SIMD reduction
+/// would add in an order that depends on the width. These sums store the vectorised terms and add them in a fixed
+/// order. `terms(i, rows, k)` writes N terms of index i to rows[0 ... N-1][k] and must not write to data of another i.
+/// A local array of terms would prevent GCC from vectorising the loop.
 namespace block_sums
 {
 constexpr int BLOCK = 32;
-constexpr int LANES = 8;  // partial sums: as many as the widest vector has numbers
+constexpr int LANES = 8;  // number of partial sums, equal to the largest vector width
 
 template <int N, int SIZE, class Terms>
 inline __attribute__((always_inline)) void fill(int first, int count, const Terms& terms, double (&block)[N][SIZE])
@@ -49,7 +49,7 @@ inline __attribute__((always_inline)) void add(const double (&block)[N][BLOCK], 
 }
 }  // namespace block_sums
 
-/// N sums of `count` terms each, from place `first` on.
+/// N sums of `count` terms each, from index `first` on.
 template <int N, class Terms>
 inline __attribute__((always_inline)) std::array<double, N> blockSums(int first, int count, const Terms& terms) noexcept
 {
@@ -80,14 +80,14 @@ inline __attribute__((always_inline)) std::array<double, N> blockSums(int first,
   return sums;
 }
 
-/// The same of one term a place, which `term(i)` returns.
+/// Sum of one term `term(i)` for each index.
 template <class Term>
 inline __attribute__((always_inline)) double blockSum(int first, int count, const Term& term) noexcept
 {
   return blockSums<1>(first, count, [&](int i, auto& rows, int k) { rows[0][k] = term(i); })[0];
 }
 
-/// The same of a few terms, a dozen or so: added one after the other.
+/// Sums of about a dozen terms or fewer, added one after the other.
 template <int N, class Terms>
 inline __attribute__((always_inline)) std::array<double, N> fewSums(int count, const Terms& terms) noexcept
 {

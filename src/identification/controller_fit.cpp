@@ -13,22 +13,23 @@ namespace hjt
 namespace
 {
 constexpr int COLUMNS = 6;
-constexpr int PIECES = 10;             // each left out in turn, for the intervals
-constexpr double QUANTILE = 2.26;      // of Student's distribution, 95 %, of so many pieces
+constexpr int PIECES = 10;             // number of pieces, each of which is left out in turn for the intervals
+constexpr double QUANTILE = 2.26;      // 97.5 % quantile of Student's distribution for this number of pieces
 constexpr double LONGEST_LAG = 0.016;  // [s]
 constexpr double LAG_STEP = 0.001;     // [s]
 constexpr double SLOWEST = 1.0;        // [s]
-constexpr double AT_REST = 0.01;       // at which the sign of the speed turns smoothly [rad/s]
+constexpr double AT_REST = 0.01;       // width of the smooth change of the speed's sign [rad/s]
 constexpr double LEAST_MOTION = 5.0;   // [s]
 constexpr double LEAST_EXPLAINED = 1.0 / 3.0;
-constexpr double WIDEST_RATIO = 0.5;  // half width of the ratio of both gains, of it
-constexpr double JUMP = 0.1;          // of the set point's speed in a row, beyond its neighbours' changes [rad/s]
-constexpr double AT_LIMIT = 0.95;     // share of the limit
-constexpr double TRANSIENT = 0.25;    // left out to both sides of a jump or a limit [s]
+constexpr double WIDEST_RATIO = 0.5;  // largest half width of the ratio of both gains, relative to the ratio
+// change of the set point's speed in a row that counts as a jump, beyond the changes beside it [rad/s]
+constexpr double JUMP = 0.1;
+constexpr double AT_LIMIT = 0.95;   // share of the limit
+constexpr double TRANSIENT = 0.25;  // time that is excluded on either side of a jump or limit [s]
 
 using Column = Eigen::VectorXd;
 
-/// Less its mean over `width` rows about each.
+/// Values minus their moving mean over `width` rows.
 Column withoutSlow(const Column& values, Eigen::Index width)
 {
   Column sums(values.size() + 1);
@@ -47,7 +48,7 @@ Column withoutSlow(const Column& values, Eigen::Index width)
   return fast;
 }
 
-/// Values `rows` earlier, interpolated between the rows.
+/// Values `rows` earlier, by interpolation.
 Column delayed(const Column& values, double rows)
 {
   Column before(values.size());
@@ -61,7 +62,6 @@ Column delayed(const Column& values, double rows)
   return before;
 }
 
-/// Contents of the rows, in columns.
 struct Record
 {
   Record(const std::vector<ControllerRow>& rows, double period)
@@ -97,7 +97,7 @@ struct Record
   Column current;
 };
 
-/// 1 for rows in which the control is linear, else 0. `limit`: of the current beside the target's, 0: none [A].
+/// 1 for rows in which the control is linear, else 0. `limit`: of the current minus the target's; 0: none [A].
 Column linearRows(const std::vector<ControllerRow>& rows, double period, double limit)
 {
   const auto count = static_cast<Eigen::Index>(rows.size());
@@ -118,7 +118,7 @@ Column linearRows(const std::vector<ControllerRow>& rows, double period, double 
   return linear;
 }
 
-/// Half widths of the first two coefficients and of their ratio, by leaving out each piece in turn.
+/// Half widths of the first two coefficients and of their ratio, by leaving out each piece in turn (jackknife).
 Eigen::Vector3d halfWidths(const Eigen::MatrixXd& columns, const Column& values)
 {
   Eigen::Matrix<double, 3, PIECES> found;
@@ -139,7 +139,7 @@ Eigen::Vector3d halfWidths(const Eigen::MatrixXd& columns, const Column& values)
          ((PIECES - 1.0) / PIECES * (found.colwise() - mean).rowwise().squaredNorm()).array().sqrt().matrix();
 }
 
-/// Friction that is fed forward: constant and by speed [A], [A.s/rad].
+/// Friction in the feedforward: constant part and part by speed [A], [A.s/rad].
 Eigen::Vector2d fedForward(const std::vector<ControllerRow>& rows)
 {
   Eigen::MatrixXd columns(rows.size(), 4);
@@ -191,10 +191,10 @@ ControllerFit fitController(const std::vector<ControllerRow>& rows, double perio
   fit.speed_half_width = half_widths[1];
   fit.position_half_width = half_widths[2];
   fit.explained = 1.0 - least / values.squaredNorm();
-  // Written so that NaN is refused.
+  // This form of the comparison rejects NaN.
   if (!(fit.angle_half_width < fit.angle_current && fit.speed_half_width < fit.speed_current))
   {
-    fit.refusal = "its interval holds zero";
+    fit.refusal = "its interval contains zero";
   }
   else if (!(fit.explained > LEAST_EXPLAINED))
   {
@@ -203,9 +203,9 @@ ControllerFit fitController(const std::vector<ControllerRow>& rows, double perio
   else if (const double sum = fit.angle_current / fit.speed_current;
            !(fit.position_half_width < std::min(WIDEST_RATIO * sum, sum - 1.0 / usual.integral_time)))
   {
-    fit.refusal = "the recording does not tell the gain of its angle: with the integral's " + roundedText(sum, 3) +
-                  " +- " + roundedText(fit.position_half_width, 3) + " 1/s, the integral's alone " +
-                  roundedText(1.0 / usual.integral_time, 3);
+    fit.refusal = "the recording does not determine the gain of its angle. With the integral's gain it is " +
+                  roundedText(sum, 3) + " +- " + roundedText(fit.position_half_width, 3) +
+                  " 1/s, and the integral's gain alone is " + roundedText(1.0 / usual.integral_time, 3);
   }
   else
   {

@@ -17,19 +17,19 @@ namespace hjt
 {
 namespace
 {
-/// In the order of TorqueRipple's lines.
+/// Keys in the order of TorqueRipple's lines.
 constexpr std::array<const char*, TorqueRipple::LINES> RIPPLE_KEYS{ "telemetry.ripple_circular_spline_2",
                                                                     "telemetry.ripple_flexspline_2",
                                                                     "telemetry.ripple_circular_spline_4",
                                                                     "telemetry.ripple_flexspline_4" };
-constexpr std::size_t MAX_RIPPLE_ROWS = 5000;  // in one fit; a longer recording is thinned out
+constexpr std::size_t MAX_RIPPLE_ROWS = 5000;  // of one fit; a longer recording is thinned out
 
 bool isMoving(const MotionSample& sample)
 {
   return std::abs(sample.velocity) > FrictionFit::MOVING;
 }
 
-/// Sums up squares of an error over all, moving and resting rows.
+/// Sums squares of an error over all, moving and resting rows.
 class ErrorSum
 {
 public:
@@ -68,7 +68,7 @@ Parameters withoutRipple(Parameters parameters)
   return parameters;
 }
 
-/// Errors of the motion-driven twin with these parameters: without ripple, with it.
+/// Errors of the motion-driven twin with these parameters: without ripple, with ripple.
 std::array<CurrentError, 2> errorsOf(const Parameters& parameters, const JudgedPart& judge,
                                      const std::function<void()>& look)
 {
@@ -91,7 +91,7 @@ std::array<CurrentError, 2> errorsOf(const Parameters& parameters, const JudgedP
   return { sums[0].result(), sums[1].result() };
 }
 
-/// The usual model: current by load, sign of the speed and speed, fitted to all rows.
+/// The usual model, fitted to all rows: current by load, sign of the speed and speed.
 CurrentError simpleModelError(const std::vector<MotionSample>& train, const JudgedPart& judge)
 {
   constexpr double STANDSTILL = 0.005;  // [rad/s]
@@ -120,7 +120,8 @@ CurrentError simpleModelError(const std::vector<MotionSample>& train, const Judg
   return sum.result();
 }
 
-/// Without inertia beside the load, all of it is in the load. Neither part can be negative.
+/// Stores the inertia. If the load contains no separate inertia, all of it is in the load. Neither part can be
+/// negative.
 void storeInertia(const FrictionFit& fit, bool load_recorded, Identification& result)
 {
   constexpr double LEAST = 1e-9;
@@ -136,7 +137,7 @@ void storeInertia(const FrictionFit& fit, bool load_recorded, Identification& re
   };
   if (value < 0.0)
   {
-    // The motion contradicts the configured one: of what can be, the least is nearest.
+    // The motion contradicts the configured value; the nearest possible one is the least.
     const bool contradicted = found.refusal.empty() && value + found.half_width < parameter && !load_recorded;
     found.value = contradicted ? LEAST : parameter;
     if (!contradicted)
@@ -171,7 +172,7 @@ void storeFriction(const FrictionFit& fit, bool load_recorded, Identification& r
   add(FrictionFit::PRELOAD, "Coulomb friction (bearing preload)", "bearing.race_preload", "N", p.bearing.race_preload,
       found(FrictionFit::PRELOAD), width(FrictionFit::PRELOAD));
   p.bearing.race_preload = found(FrictionFit::PRELOAD);
-  // The grease's friction grows with the viscosity to the power of 2/3.
+  // The friction of the grease is in proportion to the power 2/3 of the viscosity.
   const double grease = found(FrictionFit::GREASE);
   const double viscosity = p.bearing.viscosity * std::pow(grease, 1.5);
   add(FrictionFit::GREASE, "friction by speed to the power 2/3 (viscosity)", "bearing.viscosity", "m^2/s",
@@ -200,12 +201,12 @@ double rowPeriod(const std::vector<MotionSample>& samples)
   return upperMedian(steps.begin(), steps.end());
 }
 
-/// What the motion-driven twin without ripple lacks.
+/// Differences of the motion-driven twin without ripple from the recording.
 struct Lacking
 {
-  std::vector<double> friction;   // the most that it could be, of each row [A]
-  std::vector<double> missing;    // measured current less predicted without friction, of each row [A]
-  std::vector<RippleRow> moving;  // measured torque less predicted
+  std::vector<double> friction;   // upper bound of the friction in each row [A]
+  std::vector<double> missing;    // measured current minus the predicted one without friction, in each row [A]
+  std::vector<RippleRow> moving;  // rows of measured minus predicted torque
 };
 
 Lacking lackingOf(const Parameters& parameters, const std::vector<MotionSample>& samples)
@@ -233,7 +234,7 @@ Lacking lackingOf(const Parameters& parameters, const std::vector<MotionSample>&
   return lacking;
 }
 
-/// Presliding angle and lasting share by the error over all rows, resting ones too: the other values are known by then.
+/// Fit of presliding angle and lasting share over all rows, resting ones included, with the other values known.
 class PreslidingFit
 {
 public:
@@ -270,25 +271,25 @@ public:
     {
       share.value = share.configured;
       share.half_width = 0.0;
-      share.refusal = trial.share <= 0.0 ? "its estimate is zero" : "no rest of this motion shows it";
+      share.refusal = trial.share <= 0.0 ? "its estimate is zero" : "the joint does not rest long enough to show it";
     }
     result.values.push_back(share);
     result.parameters.telemetry.lasting_share = share.value;
   }
 
 private:
-  static constexpr double WIDEST_SHARE = 0.25;  // half width of its interval
-  static constexpr double WIDEST = 0.5;         // half width of the angle's interval over the angle
+  static constexpr double WIDEST_SHARE = 0.25;  // largest half width of its interval
+  static constexpr double WIDEST = 0.5;         // largest half width of the angle's interval over the angle
 
   struct Trial
   {
     double angle;
     double share;
-    double squares;  // of the error
-    double size;     // squares of what a share of 1 adds
+    double squares;  // sum of squared errors
+    double size;     // sum of squares of the effect of a share of 1
   };
 
-  /// Gives for each row, at these angles, what a lasting share of 1 adds and what is missing at 0.
+  /// Visits each row with the effect of a lasting share of 1 and the residual at 0, for these angles.
   template <class Visit>
   void walk(const Eigen::ArrayXd& angles, const Visit& visit) const
   {
@@ -304,7 +305,7 @@ private:
       }
       else
       {
-        // As Presliding::move.
+        // As in Presliding::move.
         const double turn = ratio_ * (samples_[i].position - samples_[i - 1].position);
         const double end = std::copysign(1.0, turn);
         const double kept = std::exp((samples_[i - 1].time - samples_[i].time) / Presliding::RELAXATION);
@@ -315,7 +316,7 @@ private:
     }
   }
 
-  /// The best lasting share at each presliding angle: the error is linear in it.
+  /// Best lasting share at each presliding angle; the error is linear in it.
   std::vector<Trial> fitted(const Eigen::ArrayXd& angles) const
   {
     Eigen::ArrayXd columns = Eigen::ArrayXd::Zero(angles.size());
@@ -338,7 +339,7 @@ private:
     return trials;
   }
 
-  /// Rows of the error that count as one.
+  /// Number of correlated rows of the error that count as one.
   double correlation(const Trial& trial) const
   {
     Eigen::VectorXd error(static_cast<Eigen::Index>(samples_.size()));
@@ -368,7 +369,7 @@ private:
     {
       return value;
     }
-    // A parabola through the best point and its neighbours, in the logarithm.
+    // Vertex of the parabola through the best point and its neighbours, in the logarithm.
     const double below = (best - 1)->squares;
     const double above = (best + 1)->squares;
     const double curvature = (above - 2.0 * best->squares + below) / (step * step);
@@ -387,8 +388,8 @@ private:
   TelemetryParameters telemetry_;
   double ratio_;
   const std::vector<MotionSample>& samples_;
-  std::vector<double> friction_;  // as Lacking
-  std::vector<double> missing_;   // as Lacking, with the ripple
+  std::vector<double> friction_;  // see Lacking
+  std::vector<double> missing_;   // see Lacking, with the ripple
 };
 }  // namespace
 
@@ -414,7 +415,7 @@ Identification identify(const Parameters& parameters, const std::vector<MotionSa
   result.values.push_back(
       { "temperature of the friction", "bearing.viscosity_slope", "-", parameters.bearing.viscosity_slope,
         parameters.bearing.viscosity_slope, 0.0,
-        is_warmed ? "not identified; the slope of the oil is taken" : "the recording has no temperature" });
+        is_warmed ? "not identified; the slope of the oil is used" : "the recording has no temperature" });
   result.values.push_back({ "torsional stiffness", "cup.torsion_stiffness", "N.m/rad",
                             parameters.cup.torsion_stiffness[0], parameters.cup.torsion_stiffness[0], 0.0,
                             "not identified; `joint_twin compare` measures it if both angles are recorded" });
@@ -429,7 +430,7 @@ Identification identify(const Parameters& parameters, const std::vector<MotionSa
 
 namespace
 {
-/// Errors of several judged parts as one.
+/// Pools the errors of several judged parts.
 void addError(const CurrentError& part, CurrentError& sum)
 {
   const auto rms = [](double a, std::size_t n, double b, std::size_t m)
@@ -446,10 +447,10 @@ void addError(const CurrentError& part, CurrentError& sum)
   sum.moving_rows += part.moving_rows;
 }
 
-/// Times between which the joint goes equal ways: the joints of a check-up move one after the other.
+/// Times that divide the motion into pieces of equal travel, because the joints of a check-up move one after the other.
 std::vector<double> endsOfPieces(const std::vector<MotionSample>& samples, const Span& train, int pieces)
 {
-  std::vector<double> ways(1, 0.0);  // up to each sample but the first [rad]
+  std::vector<double> ways(1, 0.0);  // travel up to each sample but the first [rad]
   for (std::size_t i = 1; i < samples.size(); ++i)
   {
     ways.push_back(ways.back() + std::abs(samples[i].position - samples[i - 1].position));

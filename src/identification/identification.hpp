@@ -11,27 +11,27 @@
 
 namespace hjt
 {
-/// One quantity that was looked for in a recording.
+/// A quantity that the identification estimates from a recording.
 struct IdentifiedValue
 {
   std::string name;
-  std::string key;  ///< of the parameter it is; empty: the twin has none for it
+  std::string key;  ///< key of the parameter; empty: the twin has no parameter for it
   std::string unit;
-  double configured{};    ///< before
-  double value{};         ///< identified, or the configured one where `refusal` says why
-  double half_width{};    ///< of the 95 % confidence interval; 0 where refused
-  std::string refusal{};  ///< empty: identified
+  double configured{};    ///< configured value
+  double value{};         ///< identified value; the configured one if there is a `refusal`
+  double half_width{};    ///< half width of the 95 % confidence interval; 0 if refused
+  std::string refusal{};  ///< reason of a refusal; empty: identified
 };
 
-/// A line of the current in the joint's angle, as TorqueRipple has it.
+/// A line of the current's spectrum over the joint's angle, as in TorqueRipple.
 struct RippleLine
 {
-  std::string key;                 ///< of the parameter it is
-  std::array<double, 2> torque{};  ///< cos and sin; zero where refused [N.m at the joint]
-  double order{};                  ///< per turn of the joint
+  std::string key;                 ///< key of the parameter
+  std::array<double, 2> torque{};  ///< cosine and sine amplitude; zero if refused [N.m at the joint]
+  double order{};                  ///< cycles in a turn of the joint
   double amplitude{};              ///< [N.m at the joint]
-  double half_width{};             ///< of its 95 % confidence interval [N.m]
-  double phase{};                  ///< of the cosine at joint angle 0 [rad]
+  double half_width{};             ///< half width of its 95 % confidence interval [N.m]
+  double phase{};                  ///< phase of the cosine at joint angle 0 [rad]
   std::string refusal{};
 };
 
@@ -46,13 +46,13 @@ struct CurrentError
   double signal{};  ///< rms of the measured current
 };
 
-/// Of the part to judge on.
+/// Errors on the judged part of the recording.
 struct JudgedErrors
 {
-  CurrentError configured;            ///< as configured
-  CurrentError without_ripple;        ///< with the identified parameters but the ripple's
-  CurrentError identified;            ///< with all identified parameters, which is what the overlay gives
-  CurrentError gain_coulomb_viscous;  ///< for comparison: three numbers fitted to the same training part
+  CurrentError configured;            ///< with the configured parameters
+  CurrentError without_ripple;        ///< with the identified parameters except the ripple's
+  CurrentError identified;            ///< with all identified parameters, as in the overlay
+  CurrentError gain_coulomb_viscous;  ///< for comparison: a model of three numbers fitted to the training part
 };
 
 struct Identification
@@ -64,28 +64,28 @@ struct Identification
   Parameters parameters;  ///< with the identified values
 };
 
-/// Errors by which the identified parameters are judged.
+/// Part of the recording on which the identified parameters are judged.
 struct JudgedPart
 {
   std::vector<MotionSample> samples;
-  double from{ -1e300 };  ///< earlier samples only lead up to it [s]
+  double from{ -1e300 };  ///< time from which samples are judged; earlier ones only set the state [s]
 };
 
-/// Friction, inertia, gain and ripple of a joint that a motion shows; the model is the one of MotionDriven, its
-/// parameters are the twin's. In this order, each with what came before: FrictionFit and RippleFit on the rows that
-/// move, presliding on all.
+/// Estimates friction, inertia, gain and ripple of a joint from a motion. The model is MotionDriven, the parameters are
+/// those of the twin. The order is FrictionFit and RippleFit on the moving rows, then presliding on all rows; each uses
+/// the earlier results.
 ///
-/// Intervals are widened by the correlation of the residual. A quantity is refused, and stays as configured, if the
-/// motion does not move its column, if others explain it, if its interval is too wide or if it leaves the range that it
-/// can have. `train` and `judge`: samples of one stream each, in the order of time. `load_recorded`: their load comes
-/// from the recording, which may hold a part of the motor's inertia; that part is identified then, else the rotor's
-/// inertia. `look` is called every few tenths of a second, at half an hour of rows; what it throws ends the fit.
+/// The correlation of the residual widens the intervals. A quantity is refused and keeps its configured value if the
+/// motion does not excite it, if others explain its effect, if its interval is too wide, or if it leaves its possible
+/// range. `train` and `judge`: samples of one stream each, ordered by time. `load_recorded`: the recording contains the
+/// load, which may include a part of the motor's inertia; then that part is identified, else the rotor's inertia. The
+/// fit calls `look` every few tenths of a second for half an hour of rows; an exception of `look` ends the fit.
 /// @throws InputError if the training part hardly moves.
 Identification identify(
     const Parameters& parameters, const std::vector<MotionSample>& train, const JudgedPart& judge, bool load_recorded,
     const std::function<void()>& look = [] {});
 
-/// A stretch of a recording [s].
+/// An interval of a recording [s].
 struct Span
 {
   double from{};
@@ -94,11 +94,12 @@ struct Span
   bool contains(double time) const { return time >= from && time < to; }
 };
 
-/// Samples within `span` and not within `hole`; the first one after the hole follows a gap.
+/// Samples within `span` and outside `hole`. The first one after the hole is marked as after a gap.
 std::vector<MotionSample> samplesWithin(const std::vector<MotionSample>& all, const Span& span, const Span& hole = {});
 
-/// `train`, which has samples, is cut into `folds` pieces in which the joint goes equal ways. Each is judged by what
-/// the others give; the errors are pooled. 0 folds: no rows. `fitted` is called after each, `look` as in identify.
+/// Divides `train`, which must have samples, into `folds` pieces of equal travel. Each is judged by the fit to the
+/// others, and the errors are pooled. 0 folds: no rows. The function calls `fitted` after each fold, and `look` as in
+/// identify.
 /// @throws InputError as identify.
 JudgedErrors leaveOneOut(const Parameters& parameters, const std::vector<MotionSample>& all, const Span& train,
                          int folds, bool load_recorded, const std::function<void()>& fitted,

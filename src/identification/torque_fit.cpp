@@ -61,7 +61,7 @@ Eigen::VectorXd leastCost(const Eigen::VectorXd& start, const Eigen::VectorXd& l
                           const std::function<NormalEquations(const Eigen::VectorXd& values)>& equations)
 {
   constexpr int MOST_STEPS = 100;
-  constexpr double SMALL = 1e-9;  // change of the cost over it
+  constexpr double SMALL = 1e-9;  // change of the cost relative to the cost
   Eigen::VectorXd values = start.cwiseMax(lowest).cwiseMin(highest);
   NormalEquations here = equations(values);
   double damping = 1e-4;
@@ -70,7 +70,7 @@ Eigen::VectorXd leastCost(const Eigen::VectorXd& start, const Eigen::VectorXd& l
   {
     for (Eigen::Index i = 0; i < values.size(); ++i)
     {
-      // A value at its bound stays there while the cost falls beyond it.
+      // A value at its bound stays there while the cost decreases beyond the bound.
       if (here.gradient[i] > 0.0 ? values[i] <= lowest[i] : values[i] >= highest[i])
       {
         here.normal.row(i).setZero();
@@ -110,7 +110,7 @@ Eigen::VectorXd halfWidths(const Eigen::VectorXd& errors, const Eigen::MatrixXd&
 
 namespace
 {
-constexpr double OUTLIER = 3.0;        // blocks that many deviations off count less
+constexpr double OUTLIER = 3.0;        // in deviations; blocks further off have less weight
 constexpr double LEAST_GREASE = 0.05;  // least share of the configured viscosity
 constexpr double NARROWED = 0.5;       // deviation after the motion over that before
 constexpr Eigen::Index MIN_BLOCKS = 12;
@@ -122,7 +122,7 @@ FrictionFit::FrictionFit(const Parameters& parameters, const FrictionMap& fricti
   addBlocks(parameters, friction, samples);
   if (blocks_.rows() < MIN_BLOCKS)
   {
-    throw InputError("the joint hardly moves in the part to identify on: " + std::to_string(blocks_.rows()) +
+    throw InputError("the joint hardly moves in the part for the identification: " + std::to_string(blocks_.rows()) +
                      " stretches of " + numberText(BLOCK) + " s are faster than " + numberText(MOVING) + " rad/s, " +
                      std::to_string(MIN_BLOCKS) + " are needed");
   }
@@ -135,7 +135,7 @@ FrictionFit::FrictionFit(const Parameters& parameters, const FrictionMap& fricti
   {
     if (share(i) > NARROWED)
     {
-      refusal_[i] = "the motion narrows what was known before to " + roundedText(100.0 * share(i), 2) + " % only";
+      refusal_[i] = "the motion reduces the prior deviation only to " + roundedText(100.0 * share(i), 2) + " %";
       asked_[i] = false;
       values_[i] = start_[i];
       half_width_[i] = 0.0;
@@ -143,7 +143,8 @@ FrictionFit::FrictionFit(const Parameters& parameters, const FrictionMap& fricti
   }
   solve(look);
 
-  // Reported beside the result, not used: on other motions of a recorded arm it made wrist_3 worse by a half.
+  // Reported with the result, but not used: it made the prediction of wrist_3 in other motions of a recorded arm 50 %
+  // worse.
   const Values found = values_;
   const Values width = half_width_;
   asked_[STRIBECK] = true;
@@ -155,11 +156,11 @@ FrictionFit::FrictionFit(const Parameters& parameters, const FrictionMap& fricti
   half_width_ = width;
   values_[STRIBECK] = rise;
   half_width_[STRIBECK] = rise_width;
-  refusal_[STRIBECK] = is_there ? "" : "its 95 % interval holds zero";
+  refusal_[STRIBECK] = is_there ? "" : "its 95 % interval contains zero";
 }
 
-/// Sets the prior, a joint of this type: gain within 10 %; offset 0.03 A; the motor's inertia within
-/// half of it; parts of its friction within half of all friction at 1 rad/s of the joint and without load.
+/// Sets the prior for a joint of this type, as standard deviations: gain 10 %, offset 0.03 A, inertia of the motor 50
+/// %, parts of its friction 50 % of the whole friction at 1 rad/s of the joint without load.
 void FrictionFit::setKnown(const Parameters& parameters, const FrictionMap& friction)
 {
   const double inertia = Motor(parameters.motor).inertia();
@@ -205,7 +206,7 @@ void FrictionFit::addBlocks(const Parameters& parameters, const FrictionMap& fri
   std::vector<Row> blocks;
   for (auto from = samples.begin(); from != samples.end();)
   {
-    // As many rows as follow each other, move one way and fit into a block.
+    // Takes successive rows with motion in one direction that fit into a block.
     auto to = from + 1;
     while (to != samples.end() && !to->after_gap && moving(*to) && to->velocity * from->velocity > 0.0 &&
            to->time < from->time + BLOCK)
@@ -238,7 +239,7 @@ FrictionFit::Row FrictionFit::factors(const Values& values)
   return factors;
 }
 
-/// Of the factors in the values.
+/// Derivatives of the factors by the values.
 Eigen::Matrix<double, FrictionFit::QUANTITIES + 1, FrictionFit::QUANTITIES> FrictionFit::slopes(const Values& values)
 {
   Eigen::Matrix<double, QUANTITIES + 1, QUANTITIES> slopes = Eigen::Matrix<double, QUANTITIES + 1, QUANTITIES>::Zero();
@@ -249,7 +250,7 @@ Eigen::Matrix<double, FrictionFit::QUANTITIES + 1, FrictionFit::QUANTITIES> Fric
   return slopes;
 }
 
-/// The values, then their deviation and correlation, by which they are fitted again.
+/// Fits the values, then their deviation and correlation, and the values again with these.
 void FrictionFit::solve(const std::function<void()>& look)
 {
   double correlation_rows = 1.0;
@@ -264,11 +265,11 @@ void FrictionFit::solve(const std::function<void()>& look)
   }
 }
 
-/// @param deviation of the blocks, outliers left out [A]
+/// @param deviation of the blocks without outliers [A]
 void FrictionFit::solveOnce(double deviation, double correlation_rows)
 {
   const double weight = 1.0 / (deviation * deviation * correlation_rows);
-  const Values prior = known_.cwiseAbs2().cwiseInverse();  // its weight
+  const Values prior = known_.cwiseAbs2().cwiseInverse();  // weight of the prior
   Values lowest = values_;
   Values highest = values_;
   for (int i = 0; i < QUANTITIES; ++i)
@@ -293,7 +294,7 @@ void FrictionFit::solveOnce(double deviation, double correlation_rows)
                         all.normal.diagonal() += prior;
                         return all;
                       });
-  // From what was known before and what the blocks say of it, each with this weight.
+  // Combines the prior and the blocks by their weights.
   Values scale = known_;
   for (int i = 0; i < QUANTITIES; ++i)
   {
@@ -305,7 +306,7 @@ void FrictionFit::solveOnce(double deviation, double correlation_rows)
   half_width_ = NORMAL_95 * scale.cwiseProduct(information.ldlt().solve(Normal::Identity()).diagonal().cwiseSqrt());
 }
 
-/// Of the deviation before that is left after the motion.
+/// Share of the prior deviation that remains after the motion.
 double FrictionFit::share(std::size_t quantity) const
 {
   return half_width_[quantity] / (NORMAL_95 * known_[quantity]);
@@ -313,8 +314,8 @@ double FrictionFit::share(std::size_t quantity) const
 
 namespace
 {
-constexpr double WIDEST = 0.5;  // half width of an interval over the amplitude
-// Resonance [Hz], damping [-] and lag [s].
+constexpr double WIDEST = 0.5;  // largest half width of an interval over the amplitude
+// Least resonance [Hz], damping [-] and lag [s].
 const Eigen::Vector3d LOWEST(2.0, 0.05, -0.02);
 const Eigen::Vector3d HIGHEST(100.0, 1.0, 0.02);
 }  // namespace
@@ -340,7 +341,7 @@ RippleFit::RippleFit(std::vector<RippleRow> rows, double period, const Telemetry
   for (std::size_t i = 0; i < TorqueRipple::LINES; ++i)
   {
     present_[i] = orders_[i] * fastest_ * period <= M_PI;
-    refusal_[i] = present_[i] ? "" : "the rows are too far apart for it";
+    refusal_[i] = present_[i] ? "" : "the sampling period is too long for this line";
   }
   values_.tail<3>() << start.ripple_resonance, start.ripple_damping, start.ripple_lag;
   const Values configured = values_;
@@ -365,7 +366,7 @@ bool RippleFit::anyLine() const
   return std::any_of(present_.begin(), present_.end(), [](bool present) { return present; });
 }
 
-/// Of each row, as TorqueRipple has them, real and imaginary part of each line; 0 where it is not present.
+/// Real and imaginary part of each line in each row, as in TorqueRipple; 0 if the line is not present.
 Eigen::MatrixXd RippleFit::waves(const double* response) const
 {
   Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(torque_.size(), RESONANCE);
@@ -382,7 +383,7 @@ Eigen::MatrixXd RippleFit::waves(const double* response) const
   return columns;
 }
 
-/// Of the torque of each row in each value.
+/// Derivative of the torque in each row by each value.
 Eigen::MatrixXd RippleFit::slopes(const Values& values) const
 {
   const double* response = values.data() + RESONANCE;
@@ -406,7 +407,7 @@ Eigen::MatrixXd RippleFit::slopes(const Values& values) const
   return slopes;
 }
 
-/// The start: the best of a coarse grid, cos and sin of the lines fitted to each by one linear solve.
+/// Chooses the start: the best of a coarse grid, with the lines fitted linearly at each grid point.
 void RippleFit::chooseResonance(const std::function<void()>& look)
 {
   double most = -1.0;
@@ -452,7 +453,7 @@ void RippleFit::solve()
   half_width_ = halfWidths(errors(columns, values_), columns);
 }
 
-/// True if a line was dropped, so that the rest must be refitted.
+/// @returns true if a line was dropped, so that the others must be fitted again.
 bool RippleFit::refuseWorst()
 {
   double worst = WIDEST;
@@ -470,7 +471,7 @@ bool RippleFit::refuseWorst()
   {
     return false;
   }
-  refusal_[line] = "lost in the residual";
+  refusal_[line] = "below the residual";
   present_[line] = false;
   values_.segment<2>(2 * line).setZero();
   half_width_.segment<2>(2 * line).setZero();

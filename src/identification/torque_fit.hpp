@@ -15,11 +15,11 @@
 
 namespace hjt
 {
-/// 1 + 2 sum of the correlations until they first turn negative: rows that tell as much as one. Takes as long as a
-/// Fourier transform of the rows.
+/// Number of correlated rows that carry as much information as one independent row: 1 + 2 times the sum of the
+/// autocorrelations up to their first negative value. Takes as long as a Fourier transform of the rows.
 double correlationRows(const Eigen::VectorXd& residuals);
 
-/// A cost near some values: that of the model which is linear there, its slopes and its curvature.
+/// Normal equations of a cost near some values: slopes and curvature of the linearised model.
 struct NormalEquations
 {
   double cost{};
@@ -27,41 +27,41 @@ struct NormalEquations
   Eigen::MatrixXd normal;
 };
 
-/// Of errors that are linear in some columns, those beyond `outlier` counting by their size alone (Huber).
+/// Normal equations for errors that are linear in the columns. Errors beyond `outlier` have linear weight (Huber).
 /// `products`: transposed columns times columns.
 NormalEquations huberEquations(const Eigen::VectorXd& errors, const Eigen::MatrixXd& columns, Eigen::MatrixXd products,
                                double outlier);
 
-/// Values of least cost between bounds, from these on (Levenberg and Marquardt). Equal bounds hold a value.
+/// Values of least cost between bounds, from a start (Levenberg and Marquardt). Equal bounds fix a value.
 Eigen::VectorXd leastCost(const Eigen::VectorXd& start, const Eigen::VectorXd& lowest, const Eigen::VectorXd& highest,
                           const std::function<NormalEquations(const Eigen::VectorXd& values)>& equations);
 
-/// Half widths of the 95 % intervals of what the columns belong to, widened by the errors' correlation; rows in the
-/// order of time. 0 of a column that is zero.
+/// Half widths of the 95 % intervals of the columns' coefficients, widened by the correlation of the errors; rows
+/// ordered by time. 0 for a column that is zero.
 Eigen::VectorXd halfWidths(const Eigen::VectorXd& errors, const Eigen::MatrixXd& columns);
 
-/// Gain, offset, inertia and friction of a joint from the rows that move: the most probable values after what is known
-/// before (maximum a posteriori).
+/// Gain, offset, inertia and friction of a joint from the moving rows: the most probable values with a prior (maximum a
+/// posteriori).
 ///
 ///   current = (load + J n^2 a + s (rest + P preload + G grease + F flanks + V n |w|)) / gain + offset
-/// with the shares of FrictionMap, w the motor's speed, s its sign. Each row of the fit is the mean over BLOCK, in
-/// which the ripple of the teeth cancels out; it counts by the deviation of the rows, outliers less (Huber), and by the
-/// correlation of their residual. Known before is each value as configured, normally distributed with the deviation of
-/// `known`: what a motion hardly shows stays near it, and others do not run away in its place. No friction can be
-/// negative. A quantity whose deviation the motion does not halve is refused and stays as configured; the others are
-/// fitted again; last with a Stribeck term, S n exp(-(w/v)^2), v motor.stribeck_velocity, which stays if its interval
-/// does not hold zero.
+/// with the shares of FrictionMap, w = motor speed, s = its sign. Each row of the fit is the mean over BLOCK, in which
+/// the ripple of the teeth averages out. The rows are weighted by their deviation, with less weight for outliers
+/// (Huber), and by the correlation of their residual. The prior of each value is normal about the configured one with
+/// the deviation `known`: a value that the motion hardly shows stays near it and does not distort others. No friction
+/// can be negative. A quantity whose deviation the motion does not halve is refused and keeps its configured value; the
+/// others are fitted again. The last fit adds a Stribeck term, S n exp(-(w/v)^2) with v = motor.stribeck_velocity,
+/// which stays if its interval does not contain zero.
 class FrictionFit
 {
 public:
   enum Quantity
   {
-    GAIN,      ///< its inverse [A/(N.m)]
+    GAIN,      ///< inverse gain [A/(N.m)]
     OFFSET,    ///< [A]
-    INERTIA,   ///< of the motor, less what the load holds [kg.m^2]
+    INERTIA,   ///< inertia of the motor, minus the part in the load [kg.m^2]
     PRELOAD,   ///< [N]
-    GREASE,    ///< of the configured [-]
-    FLANKS,    ///< of the configured [-]
+    GREASE,    ///< relative to the configured one [-]
+    FLANKS,    ///< relative to the configured one [-]
     VISCOUS,   ///< at the motor [N.m.s/rad]
     STRIBECK,  ///< at the motor [N.m]
     QUANTITIES
@@ -69,19 +69,21 @@ public:
   using Values = Eigen::Matrix<double, QUANTITIES, 1>;
 
   static constexpr double MOVING = 0.01;  ///< joint speed from which a row counts as moving [rad/s]
-  static constexpr double BLOCK = 0.1;    ///< [s]
+  static constexpr double BLOCK = 0.1;    ///< duration of a block [s]
 
   /// `look` as in identify. @throws InputError if the samples hardly move.
   FrictionFit(const Parameters& parameters, const FrictionMap& friction, const std::vector<MotionSample>& samples,
               const std::function<void()>& look);
 
   double value(Quantity quantity) const { return values_[quantity]; }
-  double halfWidth(Quantity quantity) const { return half_width_[quantity]; }  ///< of the 95 % interval; 0 if refused
-  const std::string& refusal(Quantity quantity) const { return refusal_[quantity]; }  ///< empty: identified
+  /// half width of the 95 % interval; 0 if refused
+  double halfWidth(Quantity quantity) const { return half_width_[quantity]; }
+  /// reason of a refusal; empty: identified
+  const std::string& refusal(Quantity quantity) const { return refusal_[quantity]; }
 
 private:
-  /// Of a block: the torque at the joint by each quantity, at GAIN the known one [N.m], at OFFSET 1, and the current
-  /// [A]. Times `factors` it is the residual.
+  /// Row of a block: the torque at the joint per unit of each quantity, at GAIN the known torque [N.m], at OFFSET 1,
+  /// and the current [A]. Its product with `factors` is the residual.
   using Row = Eigen::Matrix<double, QUANTITIES + 1, 1>;
 
   static Row factors(const Values& values);
@@ -92,49 +94,49 @@ private:
   void solveOnce(double deviation, double correlation_rows);
   double share(std::size_t quantity) const;
 
-  Eigen::MatrixXd blocks_;    // a row each
-  Eigen::MatrixXd products_;  // transposed times blocks
+  Eigen::MatrixXd blocks_;    // a row for each block
+  Eigen::MatrixXd products_;  // transposed blocks times blocks
   Values values_ = Values::Zero();
-  Values start_ = Values::Zero();       // as configured
-  Values known_ = Values::Zero();       // its deviation
-  Values half_width_ = Values::Zero();  // of the 95 % interval
+  Values start_ = Values::Zero();       // configured values
+  Values known_ = Values::Zero();       // prior deviation of each value
+  Values half_width_ = Values::Zero();  // half width of each 95 % interval
   std::array<bool, QUANTITIES> asked_{};
   std::array<std::string, QUANTITIES> refusal_;
 };
 
-/// Motor torque less load, inertia and friction, at one instant.
+/// Motor torque minus load, inertia and friction at one instant.
 struct RippleRow
 {
-  double position;  ///< of the joint [rad]
-  double velocity;  ///< [rad/s]
-  double torque;    ///< at the joint [N.m]
+  double position;  ///< angle of the joint [rad]
+  double velocity;  ///< speed of the joint [rad/s]
+  double torque;    ///< torque at the joint [N.m]
 };
 
-/// The lines of TorqueRipple in that torque, by least squares, outliers less (Huber), with the resonance of what the
-/// joint carries. A line that is lost in the residual is refused, and zero. Rows count up to the speed of KNOWN of
-/// them, and to that at which a wave of two a turn of the motor still has two rows. Four a turn are refused if they
-/// have fewer there.
+/// Fit of the lines of TorqueRipple, with the resonance of the load, to that torque by least squares with less weight
+/// for outliers (Huber). A line below the residual is refused and zero. The fit uses rows up to the speed that a share
+/// KNOWN of them does not exceed, and up to the speed at which a wave of two in a turn of the motor has two rows. Lines
+/// of four in a turn are refused if they have fewer than two rows there.
 class RippleFit
 {
 public:
-  static constexpr double KNOWN = 0.95;  ///< of the rows
+  static constexpr double KNOWN = 0.95;  ///< share of the rows
 
-  /// `rows`: rows that move, every `period` [s] where no row is lost. `start`: what is configured, which the resonance
-  /// falls back to without a line. `look` as in identify.
+  /// `rows`: moving rows with the sampling period `period` [s]. `start`: configured values, to which the resonance
+  /// returns if there is no line. `look` as in identify.
   RippleFit(std::vector<RippleRow> rows, double period, const TelemetryParameters& start, double ratio,
             const std::function<void()>& look);
 
   const TorqueRipple::Orders& orders() const { return orders_; }
   std::array<double, 2> line(std::size_t line) const { return { values_[2 * line], values_[2 * line + 1] }; }
-  double amplitude(std::size_t line) const;  ///< [N.m at the joint]
-  double halfWidth(std::size_t line) const;  ///< of its 95 % interval [N.m]
-  double phase(std::size_t line) const;      ///< of the cosine at joint angle 0 [rad]
+  double amplitude(std::size_t line) const;  ///< amplitude [N.m at the joint]
+  double halfWidth(std::size_t line) const;  ///< half width of its 95 % interval [N.m]
+  double phase(std::size_t line) const;      ///< phase of the cosine at joint angle 0 [rad]
   const std::string& refusal(std::size_t line) const { return refusal_[line]; }
 
-  void store(TelemetryParameters& parameters) const;  ///< writes the lines and their resonance
+  void store(TelemetryParameters& parameters) const;  ///< stores the lines and their resonance
 
 private:
-  static constexpr std::size_t RESONANCE = 2 * TorqueRipple::LINES;  // where the response stands behind the lines
+  static constexpr std::size_t RESONANCE = 2 * TorqueRipple::LINES;  // index of the resonance, after the lines
   static constexpr std::size_t VALUES = RESONANCE + 3;
   using Values = Eigen::Matrix<double, VALUES, 1>;
 
@@ -146,9 +148,9 @@ private:
   bool refuseWorst();
 
   std::vector<RippleRow> rows_;
-  Eigen::VectorXd torque_;  // of the rows
+  Eigen::VectorXd torque_;  // torque of each row
   TorqueRipple::Orders orders_;
-  double fastest_;  // [rad/s]
+  double fastest_;  // speed limit of the fit [rad/s]
   Values values_ = Values::Zero();
   Values half_width_ = Values::Zero();
   std::array<bool, TorqueRipple::LINES> present_{};

@@ -17,19 +17,20 @@
 
 namespace hjt
 {
-/// Load of one turn of the wave generator at a steady load: forces, slips and stresses of the tooth
-/// model, friction coefficients left out.
+/// Forces, slips and stresses of the tooth model over one turn of the wave generator at constant load, for unit
+/// coefficients of friction.
 struct RevolutionLoad
 {
-  double flank_sliding{};      ///< force times sliding on the flanks of one tooth of the flexspline [N.m]
-  double interface_sliding{};  ///< the same between the bearing's outer race and the whole rim [N.m]
-  double race_creep{};         ///< way of the outer race round in the rim, > 0: as the wave generator turns [m]
-  std::array<StressCycle, STRESS_PLACES> stress{};  ///< by place
-  double bending_range{};  ///< of the bending stress in the tooth space, largest less smallest, nominal [Pa]
-  double tension_range{};  ///< of the rim's tension likewise [Pa]
+  double flank_sliding{};  ///< integral of force times sliding on the flanks of one tooth of the flexspline [N.m]
+  /// integral of force times sliding between the bearing's outer race and the whole rim [N.m]
+  double interface_sliding{};
+  double race_creep{};  ///< creep of the outer race in the rim, > 0 in the direction of the wave generator [m]
+  std::array<StressCycle, STRESS_PLACES> stress{};  ///< stress cycle at each place
+  double bending_range{};  ///< largest minus smallest nominal bending stress in the tooth space [Pa]
+  double tension_range{};  ///< largest minus smallest nominal tension stress of the rim [Pa]
 };
 
-/// `of(x, y)` of all numbers of two loads.
+/// Applies `of(x, y)` to all numbers of two loads.
 template <class Of>
 RevolutionLoad combined(const RevolutionLoad& a, const RevolutionLoad& b, Of&& of)
 {
@@ -45,34 +46,33 @@ RevolutionLoad combined(const RevolutionLoad& a, const RevolutionLoad& b, Of&& o
   return result;
 }
 
-// How a drive ages: rates by the turns of the wave generator.
+// Laws of ageing: rates per turn of the wave generator.
 
-/// Archard's law: depth worn off a surface, k F s / A.
-/// `coefficient` k [1/Pa], `sliding`: force times way [N.m], `area` [m^2]; [m].
+/// Archard's law: wear depth of a surface, k F s / A [m].
+/// `coefficient`: k [1/Pa], `sliding`: force times distance [N.m], `area` [m^2].
 inline double archardDepth(double coefficient, double sliding, double area)
 {
   return coefficient * sliding / area;
 }
 
-/// Share of the grease's life that one turn takes at a temperature [degC], up to the rated torque: the maker's turns
-/// between two changes, halved by every `grease_halving` kelvin above the temperature they hold for.
+/// Share of the grease's life that one turn uses at a temperature [degC], up to the rated torque. The life is the
+/// maker's number of turns, halved for every `grease_halving` kelvin above `grease_temperature`.
 double greaseAgeing(const LifeParameters& parameters, double temperature);
 
-/// How many times as fast grease ages under a torque: the maker's (T_av / T_N)^3 above the rated torque [-].
-/// `mean_cube`: of the torque over the rated one.
+/// Factor on the ageing of grease under load: the maker's (T_av / T_N)^3 above the rated torque [-].
+/// `mean_cube`: mean cube of the torque over the rated torque.
 inline double greaseLoadFactor(double mean_cube)
 {
   return std::max(1.0, mean_cube);
 }
 
-/// By how much grease of an age wears the surfaces faster than fresh grease does: 1 when fresh, `grease_wear_factor` at
-/// the change that is due, and on along the same straight line.
+/// Factor of wear relative to fresh grease: 1 for fresh grease, `grease_wear_factor` when a change is due, linear in
+/// the age.
 inline double greaseWearFactor(const LifeParameters& parameters, double age)
 {
   return 1.0 + (parameters.grease_wear_factor - 1.0) * age;
 }
 
-/// The groups of a drive's parameters that the laws of ageing need.
 struct AgeingParameters
 {
   AgeingParameters(const Parameters& of) : gear(of.gear), stress(of.stress), life(of.life) {}
@@ -82,71 +82,75 @@ struct AgeingParameters
   LifeParameters life;
 };
 
-/// Range of the stress intensity at a crack across the tooth space [Pa sqrt(m)]: an edge crack in a strip (Tada). The
-/// wave generator prescribes the rim's shape, so that a deeper crack leaves less bending to the section; the tension
-/// stays. The notch raises the stress of a crack that is short against its radius (Lukas and Klesnil).
-/// `depth` of the crack, >= 0 [m].
+/// Range of the stress intensity at a crack across the tooth space [Pa sqrt(m)], for an edge crack in a strip (Tada).
+/// The wave generator prescribes the rim's shape, so that a deeper crack reduces the bending moment of the section, but
+/// not the tension. The notch increases the stress of a crack that is short compared with its radius (Lukas and
+/// Klesnil). `depth` of the crack, >= 0 [m].
 double stressIntensityRange(const AgeingParameters& parameters, const RevolutionLoad& revolution_load, double depth);
 
-/// Paris' law with a threshold: growth of a crack by one turn [m]. The rim is bent twice a turn.
+/// Growth of a crack in one turn by Paris' law with a threshold [m]. The rim bends twice in a turn.
 double crackGrowth(const AgeingParameters& parameters, const RevolutionLoad& revolution_load, double depth);
 
-/// Turns at the catalogue's rated torque and speed that one turn under `load_torque` [N.m] is worth to the wave
-/// generator's bearing: its life falls with the cube of the torque.
+/// Turns at rated torque and speed that wear the wave generator's bearing as one turn under `load_torque` [N.m] does.
+/// The life is in inverse proportion to the cube of the torque.
 double bearingWear(const LifeParameters& parameters, double load_torque);
 
-/// Life of the bearing in such turns: L10 and L50 of the catalogue fix a Weibull distribution.
+/// Life of the bearing in turns at rated torque: a Weibull distribution with the catalogue's L10 and L50.
 struct BearingLife
 {
   double shape;  ///< Weibull slope [-]
-  double scale;  ///< characteristic life: 63.2 % have failed [turns at rated torque]
+  double scale;  ///< characteristic life, at which 63.2 % have failed [turns at rated torque]
 
   explicit BearingLife(const LifeParameters& parameters);
 
-  /// Turns by which a share `failed` of all bearings has failed, 0 < failed < 1.
+  /// Life that a share `failed` of all bearings does not exceed, 0 < failed < 1.
   double quantile(double failed) const;
-  /// Share of all bearings that has failed by then.
+  /// Share of all bearings that have failed after a number of turns.
   double failedBy(double turns) const;
 };
 
-/// How old a drive is, by every way in which it ages.
+/// Age of a drive by each mechanism of ageing.
 struct DriveAge
 {
-  double turns{};  ///< of the wave generator
-  /// Depth worn off both flanks of a pair, by the direction of the load that presses them: > 0, < 0 [m]
+  double turns{};  ///< turns of the wave generator
+  /// Wear depth of both flanks of a pair, for loads > 0 and loads < 0 [m].
   std::array<double, 2> flank_wear{};
-  double interface_wear{};  ///< depth worn off outer race and rim [m]
-  double grease{};          ///< share of its life that the grease has behind it; 1: a change is due [-]
-  double flaw_depth{};      ///< of the deepest crack at a tooth root; 0: none [m]
-  double bearing_turns{};   ///< of the wave generator's bearing, in turns at rated torque
+  double interface_wear{};  ///< wear depth of outer race and rim [m]
+  double grease{};          ///< used share of the grease's life; 1: a change is due [-]
+  double flaw_depth{};      ///< depth of the deepest crack at a tooth root; 0: none [m]
+  double bearing_turns{};   ///< turns at rated torque that wear the wave generator's bearing as much
   std::array<double, STRESS_PLACES> fatigue{};  ///< Miner's sum of the flexspline by place; 1: broken [-]
-  double filling_factor{ 1.0 };  ///< of the rates of wear in the present filling of grease, over the drive's median [-]
+  double filling_factor{ 1.0 };  ///< rate of wear in the present filling of grease over the drive's median [-]
 
-  double worstFlank() const { return std::max(flank_wear[0], flank_wear[1]); }  ///< [m]
-  double meanFlank() const { return 0.5 * (flank_wear[0] + flank_wear[1]); }    ///< half the play's growth [m]
+  /// larger wear depth of both load directions [m]
+  double worstFlank() const { return std::max(flank_wear[0], flank_wear[1]); }
+  /// mean wear depth of both load directions: half of the growth of the play [m]
+  double meanFlank() const { return 0.5 * (flank_wear[0] + flank_wear[1]); }
 };
 
-/// Standard deviation of the logarithm of a drive's rate of wear from one filling of grease to the next [-]. Assumed:
-/// repeated wear tests of one pairing differ by factors of 1.3 to 2; 0.25 is about half of the logarithm of such.
+/// Standard deviation of the logarithm of a drive's rate of wear from one filling of grease to the next [-].
+/// Assumption: repeated wear tests of one pairing differ by factors of 1.3 to 2; 0.25 is about half of that factor's
+/// logarithm.
 constexpr double RATE_SCATTER = 0.25;
 
-/// Standard deviation of the logarithm of the strength that the transition to the cup has beside the tooth space [-].
-/// Its stress goes with stress.coning_restraint, which is known to 0.05: 0.34 of the logarithm (docs/life.md).
+/// Standard deviation of the logarithm of the transition's strength relative to that of the tooth space [-]. The stress
+/// at the transition depends on stress.coning_restraint, whose uncertainty of 0.05 changes the logarithm by 0.34
+/// (docs/life.md).
 constexpr double TRANSITION_SCATTER = 0.3;
 
-/// Differences of one drive from the nominal one: unknown from outside.
+/// Differences of one drive from the nominal drive, which cannot be measured from outside.
 struct UnitVariation
 {
-  double flank_factor{ 1.0 };      ///< its flank wear over that of the nominal drive [-]
-  double interface_factor{ 1.0 };  ///< its interface wear over that of the nominal drive [-]
+  double flank_factor{ 1.0 };      ///< flank wear over that of the nominal drive [-]
+  double interface_factor{ 1.0 };  ///< interface wear over that of the nominal drive [-]
   double bearing_life{};           ///< turns at rated torque until the bearing's first spall
-  double spall_growth{};           ///< share of that life from the first spall to the end [-]
-  double strength{ 1.0 };          ///< its flexspline's fatigue strength over the median's [-]
-  double transition{ 1.0 };        ///< strength of the transition to its cup over that of the rest [-]
-  std::uint32_t fillings{};        ///< seed of what differs from one filling of grease to the next; 0: nothing does
+  double spall_growth{};           ///< turns from the first spall to the end of use, as a share of bearing_life [-]
+  double strength{ 1.0 };          ///< fatigue strength of the flexspline over the median [-]
+  double transition{ 1.0 };        ///< strength of the transition to the cup over that of the rest [-]
+  std::uint32_t fillings{};        ///< seed of the differences between fillings of grease; 0: no differences
 };
 
-/// Of the drive's rates of wear in its n-th filling of grease, from 0 on, over its median [-].
+/// Rates of wear in the drive's n-th filling of grease, from 0 on, over the median [-].
 inline double fillingFactor(const UnitVariation& variation, std::uint32_t number)
 {
   if (variation.fillings == 0)
@@ -158,21 +162,21 @@ inline double fillingFactor(const UnitVariation& variation, std::uint32_t number
   return boost::random::lognormal_distribution<double>(0.0, RATE_SCATTER)(random);
 }
 
-/// Fatigue strength of a drive at a place, over the median's [-].
+/// Fatigue strength of a drive at a place over the median [-].
 inline double strengthOf(const UnitVariation& variation, std::size_t place)
 {
   return place == static_cast<std::size_t>(StressPlace::TRANSITION) ? variation.strength * variation.transition :
                                                                       variation.strength;
 }
 
-/// Ends of a drive's use.
+/// Mechanisms that end a drive's use.
 enum class EndOfLife
 {
   FLANK_WEAR,
   INTERFACE_WEAR,
   ROOT_CRACK,
   BEARING,
-  TOOTH_SPACE_FATIGUE,  // the fatigue of the places follows in their order
+  TOOTH_SPACE_FATIGUE,  // followed by the fatigue of the other places, in their order
   TRANSITION_FATIGUE,
   FLANGE_FATIGUE
 };
@@ -184,7 +188,7 @@ inline EndOfLife fatigueAt(std::size_t place)
   return static_cast<EndOfLife>(static_cast<std::size_t>(EndOfLife::TOOTH_SPACE_FATIGUE) + place);
 }
 
-/// Names: flank wear, interface wear, root crack, bearing, fatigue of tooth space, transition, flange; still in use.
+/// Name of the end of life; "still in use" if there is none.
 inline const char* nameOf(const std::optional<EndOfLife>& end) noexcept
 {
   constexpr std::array<const char*, ENDS_OF_LIFE> NAMES{ "flank wear",    "interface wear",      "root crack",
@@ -193,8 +197,8 @@ inline const char* nameOf(const std::optional<EndOfLife>& end) noexcept
   return end ? NAMES[static_cast<std::size_t>(*end)] : "still in use";
 }
 
-/// One drive out of many: factors of wear and strength log-normal, the bearing's life after the catalogue's Weibull
-/// distribution.
+/// Draws a drive at random: log-normal factors of wear and strength, and the bearing's life from the catalogue's
+/// Weibull distribution.
 template <class Engine>
 UnitVariation drawVariation(const LifeParameters& parameters, const BearingLife& bearing, Engine& engine)
 {
@@ -212,8 +216,8 @@ UnitVariation drawVariation(const LifeParameters& parameters, const BearingLife&
   return variation;
 }
 
-/// Size of the bearing's spall: 0 up to `bearing_life`, 1 at the end of use, between them as the square of the turns,
-/// for a spall grows the faster the larger it is (assumed) [-].
+/// Severity of the bearing's spall [-]: 0 up to `bearing_life`, 1 at the end of use. In between it is quadratic in the
+/// turns, because a larger spall grows faster (assumption).
 inline double spallSize(const UnitVariation& variation, double bearing_turns)
 {
   const double grown = (bearing_turns / variation.bearing_life - 1.0) / variation.spall_growth;

@@ -12,16 +12,16 @@ namespace hjt
 {
 namespace
 {
-// A drive's age as the integrator sees it, each entry in units of its own limit.
+// A drive's age for the integrator, each entry divided by its limit.
 enum Entry
 {
   TURNS,
-  FLANK,  // under a load > 0; the other direction follows
+  FLANK,  // for loads > 0, followed by the other direction
   INTERFACE = FLANK + 2,
   GREASE,
   FLAW,
   BEARING,
-  FATIGUE,  // of the first place; the others follow
+  FATIGUE,  // for the first place, followed by the other places
   ENTRIES = FATIGUE + STRESS_PLACES
 };
 using Entries = std::array<double, ENTRIES>;
@@ -65,7 +65,7 @@ struct Scale
   }
 
   Entries by;
-  double filling_factor{ 1.0 };  // of DriveAge
+  double filling_factor{ 1.0 };  // see DriveAge
 };
 }  // namespace
 
@@ -121,7 +121,8 @@ DriveAge DriveAgeing::rates(const UnitVariation& variation, const DriveAge& age)
     const double turns = phase.turns();
     time += phase.duration;
     rate.turns += turns;
-    // Each of the two surfaces loses its own depth: those of a pair share force and way. The load presses one side.
+    // Both surfaces of a pair have equal force and sliding, but each loses its own depth. The sign of the load selects
+    // the flank.
     rate.flank_wear[phase.load_torque < 0.0 ? 1 : 0] +=
         turns * 2.0 * variation.flank_factor * grease_factor *
         archardDepth(life.flank_wear_coefficient, revolution_load.flank_sliding, flank_area);
@@ -213,7 +214,7 @@ DriveAgeing::Life DriveAgeing::live(const UnitVariation& variation, double hours
     const bool stopping = stops(end);
     if (stopping)
     {
-      // The first instant at which anything stops; only one thing does so within a step this short.
+      // Finds the first instant at which an event occurs; a step this short has only one.
       for (int i = 0; i < BISECTIONS; ++i)
       {
         const double middle = 0.5 * (begin + end);

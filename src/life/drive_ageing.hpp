@@ -12,10 +12,10 @@
 
 namespace hjt
 {
-/// The drive that the parameters describe: no factors, the median bearing.
+/// The nominal drive: all factors are 1, and the bearing has the median life.
 UnitVariation nominalDrive(const LifeParameters& parameters);
 
-/// A drive's use over years: the laws of ageing along a duty cycle, fed by the loads per revolution of the tooth model.
+/// Integrates the laws of ageing over years of a duty cycle, with the loads per turn of the tooth model.
 class DriveAgeing
 {
 public:
@@ -24,10 +24,10 @@ public:
   {
   }
 
-  /// Change of the age by hour, at an age.
+  /// Rates of ageing for a given age [1/h].
   DriveAge rates(const UnitVariation& variation, const DriveAge& age) const;
 
-  /// Miner's sums by hour of a new drive whose fatigue strength is `strength` times the median's.
+  /// Rates of Miner's sums of a new drive [1/h]; `strength`: fatigue strength over the median.
   std::array<double, STRESS_PLACES> fatigueRates(double strength) const;
 
   /// The first limit that an age has reached.
@@ -35,14 +35,14 @@ public:
 
   struct Life
   {
-    double hours{};                ///< until the end of use, or the requested time
-    std::optional<EndOfLife> end;  ///< none: still in use
+    double hours{};                ///< time of the end of use, or the requested time
+    std::optional<EndOfLife> end;  ///< reason; empty if the drive is still in use
     DriveAge age;
   };
 
-  /// Ages a new drive up to `hours`, or to the end of use if that comes first. `visit(hours, age)` at every multiple of
-  /// `every` hours and at the end. `grease_changes`: the grease is changed when it is due. Runge-Kutta of Dormand and
-  /// Prince with its own steps, 1e-8 of the limits.
+  /// Ages a new drive for `hours`, or until the end of use. The function calls `visit(hours, age)` at every multiple of
+  /// `every` hours and at the end. `grease_changes`: the grease is changed when due. The integrator is the Runge-Kutta
+  /// method of Dormand and Prince with step control, tolerance 1e-8 of the limits.
   Life live(const UnitVariation& variation, double hours, double every, bool grease_changes,
             const std::function<void(double, const DriveAge&)>& visit) const;
 

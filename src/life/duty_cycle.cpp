@@ -11,11 +11,11 @@ namespace hjt
 namespace
 {
 constexpr double LOAD_STEPS = 16.0;         // steps of load up to the rated torque
-constexpr double NO_LOAD = 64.0;            // its node
+constexpr double NO_LOAD = 64.0;            // index of the node without load
 constexpr double TEMPERATURE_CLASS = 10.0;  // [K]
 
-/// The two nodes around a place on the grid, and what the upper one gets. A place that is a node but for rounding is
-/// one; NaN counts as the first.
+/// The two grid nodes around a value, with the share of the upper one. A value that equals a node within rounding is
+/// that node; NaN counts as the first node.
 struct Share
 {
   Share(double place, std::size_t nodes) noexcept

@@ -13,27 +13,27 @@
 
 namespace hjt
 {
-/// A stretch of steady work.
+/// A period of constant work.
 struct DutyPhase
 {
   double duration{};     ///< > 0 [s]
-  double motor_speed{};  ///< its magnitude counts [rad/s]
-  double load_torque{};  ///< at the output [N.m]
-  double temperature{};  ///< of the drive [degC]
+  double motor_speed{};  ///< only the magnitude counts [rad/s]
+  double load_torque{};  ///< load torque at the output [N.m]
+  double temperature{};  ///< temperature of the drive [degC]
 
-  double turns() const { return duration * motor_speed / TWO_PI; }  ///< of the wave generator, >= 0
+  double turns() const { return duration * motor_speed / TWO_PI; }  ///< turns of the wave generator, >= 0
 };
 
-/// The repeated motion of the joint.
+/// The motion that the joint repeats.
 struct DutyCycle
 {
   std::vector<DutyPhase> phases;
 
-  /// CSV with the columns duration (1e-9 ... 1e10 s), motor_speed (-1e5 ... 1e5 rad/s), load_torque (-1e6 ... 1e6 N.m)
-  /// and temperature (-40 ... 150 degC). @throws InputError naming line, column, value, unit and range.
+  /// Reads a CSV file with the columns duration (1e-9 ... 1e10 s), motor_speed (-1e5 ... 1e5 rad/s), load_torque (-1e6
+  /// ... 1e6 N.m) and temperature (-40 ... 150 degC). @throws InputError with line, column, value, unit and range.
   static DutyCycle fromFile(const std::string& path)
   {
-    // Beyond these no drive lives or works; sums over as many rows as a file may have stay finite.
+    // The ranges contain all real drives, and sums over the largest file stay finite.
     constexpr Range ALLOWED[] = { { 1e-9, 1e10 }, { -1e5, 1e5 }, { -1e6, 1e6 }, { MIN_TEMPERATURE, MAX_TEMPERATURE } };
     constexpr const char* UNITS[] = { "s", "rad/s", "N.m", "degC" };
     NumberTable<4> table = tableOf(path);
@@ -53,7 +53,7 @@ struct DutyCycle
     return duty;
   }
 
-  /// Whether the file can be read and its first line names these columns, whatever follows.
+  /// Whether the file can be read and its first line has these columns.
   static bool isOne(const std::string& path)
   {
     try
@@ -86,26 +86,27 @@ private:
   }
 };
 
-/// How a drive has been used: time and turns by load and temperature, in fixed memory however long that was.
+/// Use of a drive: time and turns by load and temperature, in storage of fixed size.
 ///
-/// The nodes lie every sixteenth of the rated torque, up to four times it either way, and every 10 K. A stretch of use
-/// is shared among the four nodes around it so that time, turns, mean load and temperature of both stay as they were.
+/// The grid has a node at every sixteenth of the rated torque, up to four times the rated torque in both directions,
+/// and at every 10 K. A period of use is divided among the four nodes around it such that time, turns, mean load and
+/// mean temperature are conserved.
 class UsageHistory
 {
 public:
   explicit UsageHistory(const LifeParameters& life);
 
-  /// From a file that holds `text`, or any other duty cycle. @throws InputError.
+  /// Reads a file with `text`, or another duty cycle. @throws InputError.
   UsageHistory(const LifeParameters& life, const std::string& path);
 
   void clear() noexcept;
-  void add(const DutyPhase& use) noexcept;  ///< values beyond the nodes count as the outermost ones
+  void add(const DutyPhase& use) noexcept;  ///< values beyond the grid count for the outermost nodes
   void add(const UsageHistory& other) noexcept;
 
   double hours() const noexcept;
-  double turns() const noexcept;  ///< of the wave generator, both ways
+  double turns() const noexcept;  ///< turns of the wave generator in both directions
 
-  /// A phase for each node in use: the duty cycle that has been gone through once.
+  /// Duty cycle with a phase for each used node, which has been done once.
   DutyCycle duty() const;
 
   /// The use as a duty cycle that `joint_twin life` reads.
@@ -117,10 +118,10 @@ private:
   struct Node
   {
     double time{};    // [s]
-    double travel{};  // of the wave generator [rad]
+    double travel{};  // angle of the wave generator [rad]
   };
 
-  double load_step_;  // [N.m]
+  double load_step_;  // distance of the nodes in load [N.m]
   std::array<std::array<Node, TEMPERATURES>, LOADS> nodes_{};
 };
 }  // namespace hjt

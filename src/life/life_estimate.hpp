@@ -13,25 +13,24 @@
 
 namespace hjt
 {
-/// State of the drive by a record of use.
+/// State of the drive by its record of use.
 struct LifeEstimate
 {
-  double hours{};            ///< of use so far
-  double turns{};            ///< of the wave generator so far
-  RemainingHours remaining;  ///< of such drives that are in use still, if they go on being used like this
-  std::array<double, ENDS_OF_LIFE> used{};  ///< share of each limit that the nominal drive has behind it [-]
-  double grease_used{};                     ///< share of the grease's life since the change that was due last [-]
+  double hours{};            ///< hours of use so far
+  double turns{};            ///< turns of the wave generator so far
+  RemainingHours remaining;  ///< distribution for drives that are still in use, if the use continues in the same way
+  std::array<double, ENDS_OF_LIFE> used{};  ///< used share of each limit for the nominal drive [-]
+  double grease_used{};                     ///< used share of the grease's life since the last due change [-]
 
   double usedOf(EndOfLife limit) const { return used[static_cast<std::size_t>(limit)]; }
 
-  /// The limit that is closest to being reached.
   EndOfLife nearest() const
   {
     return static_cast<EndOfLife>(std::max_element(used.begin(), used.end()) - used.begin());
   }
 };
 
-/// Ages a drive by its record of use. Its grease is taken to be changed when it is due.
+/// Ages a drive by its record of use. The grease is assumed to be changed when due.
 class LifeEstimator
 {
 public:
@@ -43,9 +42,10 @@ public:
   {
   }
 
-  /// `record`: with turns in it. `assessment`: the last one that compared a window, null: none; `reference_hours`: of
-  /// use when its sound reference was learned, 0: new [h]. Takes seconds where the record holds loads that were not met
-  /// before. @throws ParameterError if the ring finds no equilibrium under one of its loads.
+  /// Estimates the remaining life. `record`: must contain turns. `assessment`: the last one of a compared window, null:
+  /// none; `reference_hours`: hours of use when the sound reference was learned, 0: new [h]. New loads in the record
+  /// take seconds.
+  /// @throws ParameterError if the ring has no equilibrium at one of the loads.
   LifeEstimate estimate(const UsageHistory& record, const Assessment* assessment, double reference_hours,
                         const ReadWear& read = {})
   {
@@ -80,7 +80,7 @@ public:
   }
 
 private:
-  static constexpr int POSITIONS = 8;  // of the wave generator in a tooth pitch
+  static constexpr int POSITIONS = 8;  // positions of the wave generator in a tooth pitch
   static constexpr int STRETCHES = 400;
   static constexpr double GREASE_CHANGES_AHEAD = 20.0;
   static constexpr bool GREASE_IS_CHANGED = true;

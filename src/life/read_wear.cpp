@@ -12,12 +12,12 @@ namespace hjt
 {
 namespace
 {
-/// Change of a number by one kind of wear, over the severities of its signatures; 0 at 0, and on along the first and
-/// the last stretch.
+/// Change of an indicator by one kind of wear as a function of the severity, from the signatures: 0 at severity 0,
+/// linear between the severities and beyond them.
 class Response
 {
 public:
-  /// `scale`: of the signatures' changes, to the drive at hand.
+  /// `scale`: factor on the signatures' changes for this drive.
   Response(const SignatureSet& set, const OperatingPoint& point, FaultKind kind, ScalarIndicator indicator,
            double scale) noexcept
   {
@@ -25,13 +25,14 @@ public:
     for (const Signature& signature : set.signatures)
     {
       const bool counts = signature.cause == causeOf(kind) && signature.severity > 0.0 &&
-                          signature.change[indexOf(indicator)] != 0.0;  // 0: the motion does not determine it
+                          // 0: the motion does not determine the indicator
+                          signature.change[indexOf(indicator)] != 0.0;
       const std::size_t node = counts ? nodeOf(signature.severity, weights) : MAX_NODES;
       if (node == MAX_NODES)
       {
         continue;
       }
-      OperatingPoint to_and_fro = point;  // the load goes both ways: how far the motion does changes nothing
+      OperatingPoint to_and_fro = point;  // with loads in both directions, the share of directions does not matter
       to_and_fro.direction = signature.motion.direction;
       const double alike = likeness(signature.motion, to_and_fro);
       const double weight = OTHER_MOTION * OTHER_MOTION + alike;
@@ -46,7 +47,7 @@ public:
   }
 
   bool isKnown() const noexcept { return nodes_ > 2; }
-  double alike() const noexcept { return alike_; }  ///< of the motion most like the window's
+  double alike() const noexcept { return alike_; }  ///< similarity of the most similar motion
   double lastSlope() const noexcept { return slope(nodes_ - 2); }
 
   double at(double severity) const noexcept
@@ -62,7 +63,7 @@ public:
 private:
   static constexpr std::size_t MAX_NODES = 32;
 
-  /// That of a severity, made where there is none; MAX_NODES: no room.
+  /// Index of the node of a severity, which is made if missing; MAX_NODES if there is no room.
   std::size_t nodeOf(double severity, std::array<double, MAX_NODES>& weights) noexcept
   {
     std::size_t node = 1;
@@ -102,7 +103,7 @@ private:
   std::array<double, MAX_NODES> change_{};
 };
 
-/// Where a function that rises or falls throughout is `value`.
+/// Solves a monotone function for `value`.
 template <class Of>
 double whereIs(double value, double farthest, Of&& of) noexcept
 {

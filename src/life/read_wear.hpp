@@ -14,8 +14,8 @@
 
 namespace hjt
 {
-/// How reliable assessments of wear are, by the runs of docs/health.md. As they are few, a share is the mean of what
-/// they leave open: one more counts on either side (Laplace's rule of succession).
+/// Reliability of assessments of wear in the runs of docs/health.md. Because the runs are few, a share is the posterior
+/// mean with one additional success and failure (Laplace's rule of succession).
 namespace assessment_errors
 {
 constexpr double shareOf(double found, double runs) noexcept
@@ -23,8 +23,8 @@ constexpr double shareOf(double found, double runs) noexcept
   return (found + 1.0) / (runs + 2.0);
 }
 
-/// Share of drives whose wear of a kind is found at all: of the runs judged at severities 0.2 and 0.5, check-up and
-/// work together. 0: never, spalls among them [-].
+/// Share of drives whose wear of a kind is found, in the runs at severities 0.2 and 0.5, check-ups and work together.
+/// 0: never, for example spalls [-].
 constexpr double detectionShare(FaultKind kind) noexcept
 {
   switch (kind)
@@ -40,71 +40,75 @@ constexpr double detectionShare(FaultKind kind) noexcept
   }
 }
 
-/// Smallest severity that is found, log-normal from drive to drive: median, standard deviation of the logarithm.
-/// Assumed: the smallest severity of a signature; 0.2 is found.
+/// Median of the smallest severity that is found, log-normal over the drives; below it the standard deviation of the
+/// logarithm. Assumption: the smallest severity of a signature, because 0.2 is found.
 constexpr double DETECTED_SEVERITY = 0.1;
 constexpr double DETECTED_SPREAD = 0.3;
 
-/// Of the alarms at severity >= 0.3 by these three kinds: the first cause is right, one of the reported set.
+/// Shares of the alarms by faults of these kinds from severity 0.3 on: those with the right first cause, and those with
+/// the right cause in the reported set.
 constexpr double RIGHT_CAUSE = shareOf(assessment_counts::RIGHT_CAUSES, assessment_counts::ALARMS);
 constexpr double IN_SET = shareOf(assessment_counts::IN_SETS, assessment_counts::ALARMS);
 
-/// Of check-ups and runs at work of sound gears that end with an alarm.
+/// Share of check-ups and runs at work of sound gears that end with an alarm.
 constexpr double FALSE_ALARMS = shareOf(assessment_counts::SOUND_ALARMS, assessment_counts::SOUND_RUNS);
 
-/// How WearReadings depart from the wear of flanks and interface, counted on lives with signals (seeds 11 and 421 of
-/// lab/lives_judged.py). In a motion like one of the signatures' the gain of the flanks differs by 0.06 from gear
-/// to gear.
+/// Errors of WearReadings for flanks and interface, counted on lives with signals (seeds 11 and 421 of
+/// lab/lives_judged.py). In a motion similar to one of the signatures, the gain of the flanks differs by 0.06 between
+/// gears.
 constexpr ReadingErrors FLANK_READING{ 0.06, 0.012, 0.005, 0.03 };
 constexpr ReadingErrors INTERFACE_READING{ 0.2, 0.08, 0.015, 0.03 };
-/// Standard deviation of the gain in a motion unlike all of them, as `motion_error` of the signatures [-].
+/// Standard deviation of the gain in a motion unlike those of the signatures, equal to `motion_error` of the signatures
+/// [-].
 constexpr double OTHER_MOTION_GAIN = 0.25;
-/// Wear of the flanks first takes up the preload and opens no play: mean of what readings are short by, as a severity;
-/// its standard deviation from drive to drive is FLANK_READING.offset.
+/// Mean shortfall of the readings as a severity, because the first flank wear reduces the preload and opens no play.
+/// Its standard deviation between drives is FLANK_READING.offset.
 constexpr double FLANK_SHORT = 0.012;
-/// Bias of the interface's reading by the flanks' wear, over the flanks' reading: mean, standard deviation [-].
+/// Bias of the interface's reading by flank wear, relative to the flanks' reading: mean and standard deviation [-].
 constexpr double INTERFACE_SHORT = 0.55;
 constexpr double FLANK_IN_INTERFACE = 0.2;
 
 }  // namespace assessment_errors
 
-/// How far windows say that a drive has worn since its reference was learned, as severities of the faults. Below what
-/// shows it may be negative.
+/// Wear of a drive since its reference was learned, measured by windows, as severities of faults. Values below the
+/// resolution may be negative.
 struct WearReading
 {
-  bool is_read{};              ///< false: the load did not go both ways, or nothing is known of what wear changes
-  double flank{};              ///< tooth_wear [-]
-  double interface = 0.0;      ///< interface_wear [-]
-  double alike{};              ///< how far the motion is like one that the signatures are known in, 0 ... 1 [-]
-  double lost_motion{};        ///< of the windows [rad]
-  double lost_motion_slope{};  ///< that one unit of `flank` adds, at the largest severities of the signatures [rad]
+  bool is_read{};          ///< false: the load did not change its sign, or there are no signatures of wear
+  double flank{};          ///< severity of tooth_wear [-]
+  double interface = 0.0;  ///< severity of interface_wear [-]
+  double alike{};          ///< similarity of the motion to those of the signatures, 0 ... 1 [-]
+  double lost_motion{};    ///< lost motion of the windows [rad]
+  /// increase of the lost motion per unit of `flank`, at the largest severities of the signatures [rad]
+  double lost_motion_slope{};
 };
 
-/// Reads the mean of the last windows, whatever the verdict.
+/// Measures the wear from the mean of the last windows, independent of the verdict.
 ///
 /// Law:   w(s_f) = d_w,   sum over K1, K2 of (k(s_f) + l_k(s_i)) / k_0 = sum of d_k / k_0
-/// where  w, k, l  change of lost motion and of a stiffness by worn teeth, of a stiffness by a worn interface: means of
-///                 the signatures, weighted by how far their motions are alike, straight between their severities
+/// where  w, k, l  change of lost motion and of a stiffness by tooth wear, and of a stiffness by interface wear: means
+///                 of the signatures, weighted by the similarity of their motions, linear between their severities
 ///        d, k_0   differences from the reference; stiffness of the sound drive
-/// Lost motion is worn teeth's alone: no other wear moves it by a tenth as much. Of the stiffness both softenings
-/// together are taken: how they are shared by K1 and K2 depends on how far the load reaches.
+/// Only tooth wear changes the lost motion: other wear has less than a tenth of its effect. Both stiffnesses enter as a
+/// sum, because the share of each in the softening depends on the largest load.
 WearReading readWear(const WindowResidual& residual, const OperatingPoint& point, const SignatureSet& set) noexcept;
 
-/// Wear as it was read at some hours of use.
+/// Measured wear with the hours of use.
 struct DatedReading
 {
   double hours;
   WearReading reading;
 };
 
-/// Wear that was read over the use.
+/// All measured wear over the use.
 struct ReadWear
 {
-  std::vector<DatedReading> readings;    ///< in the order of hours
-  double lost_motion_limit{ HUGE_VAL };  ///< at which the drive is at its end, as the windows have it [rad]
+  std::vector<DatedReading> readings;    ///< ordered by hours
+  double lost_motion_limit{ HUGE_VAL };  ///< measured lost motion at which the drive's use ends [rad]
 };
 
-/// Wear by readings, over the nominal use. `reference_hours`: of use when the reference was learned [h].
+/// Trends of wear from the readings and the nominal use. `reference_hours`: hours of use when the reference was learned
+/// [h].
 inline WearTrends trendsOf(const ReadWear& read, const NominalUse& use, const FaultScaleParameters& fault_scale,
                            double reference_hours)
 {
@@ -142,7 +146,7 @@ inline WearTrends trendsOf(const ReadWear& read, const NominalUse& use, const Fa
     const double at_end = last.flank + assessment_errors::FLANK_SHORT +
                           (read.lost_motion_limit - last.lost_motion) / last.lost_motion_slope;
     const Usage now = use.until(read.readings.back().hours);
-    // Nominal severities are of the mean of both flanks, the depth at the end of the worse.
+    // Nominal severities are means of both flanks, but the depth at the end is that of the worse flank.
     trends.flank_depth = now.mean_flank > 0.0 ? flank * now.flank_wear / now.mean_flank : flank;
     trends.reading_at_end = use.flank().of(at_end * flank) / flank;
   }

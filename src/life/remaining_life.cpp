@@ -14,9 +14,9 @@ using namespace assessment_errors;
 
 constexpr double SEVERITY_RANGE = 0.9;  // range of the signatures' severities: 0.1 to 1
 constexpr double LEAST_FATIGUE_SPREAD = 1e-6;
-constexpr double LEAST_SPREAD = 0.1;  // of a severity's logarithm, from one assessment to the next
+constexpr double LEAST_SPREAD = 0.1;  // of the logarithm of a severity, between two assessments
 
-/// Hours until the use ahead has grown by `left`, of what `of` takes from a usage.
+/// Hours until the future use has increased a quantity by `left`; `of` takes the quantity from a usage.
 template <class Of>
 double hoursUntil(const FutureLoad& future_load, double left, Of&& of)
 {
@@ -32,7 +32,8 @@ double hoursUntil(const FutureLoad& future_load, double left, Of&& of)
   return stretch > 0.0 ? future_load.step * (begin + (left - of(*before)) / stretch) : HUGE_VAL;
 }
 
-/// Miner's sum of a place by a use. @param strength logarithm of the flexspline's there, over the median's
+/// Miner's sum at a place after a use. @param strength logarithm of the flexspline's strength at the place over the
+/// median
 double fatigueBy(const Usage& usage, double strength, std::size_t place) noexcept
 {
   constexpr double LAST = STRENGTHS - 1;
@@ -45,24 +46,24 @@ double fatigueBy(const Usage& usage, double strength, std::size_t place) noexcep
                                           (1.0 - share) * weaker + share * stronger;
 }
 
-/// Variance of the logarithm of the mean rate of wear ahead over that so far, for a scatter of 1 from filling to
-/// filling of grease: the present one counts to both. @param so_far,ahead fillings
+/// Variance of the logarithm of the ratio of future to past mean rates of wear, for unit scatter between fillings of
+/// grease. The present filling belongs to both. @param so_far,ahead numbers of fillings
 double changeOfRate(double so_far, double ahead) noexcept
 {
   if (ahead <= 0.0)
   {
     return 0.0;
   }
-  const auto squares = [](double fillings)  // of their lengths
+  const auto squares = [](double fillings)  // of the fillings' lengths
   { return std::floor(fillings) + squared(fillings - std::floor(fillings)); };
   const double begun = so_far - std::floor(so_far);
   const double left = std::min(1.0 - begun, ahead);
-  const double of_one = so_far > 0.0 ? 1.0 / so_far : 0.0;  // share of the use so far
+  const double of_one = so_far > 0.0 ? 1.0 / so_far : 0.0;  // share of one filling in the use so far
   return std::floor(so_far) * squared(of_one) + squared(left / ahead - begun * of_one) +
          squares(ahead - left) / squared(ahead);
 }
 
-/// Wear of a particle as the severity of a fault, and the chance that it is found.
+/// Wear of a particle as a severity, and the probability that it is found.
 struct Wear
 {
   Wear(FaultKind kind, double size) noexcept
@@ -75,7 +76,7 @@ struct Wear
   double found;
 };
 
-/// Density of an estimate if the severity is this one, log-normal, over that of any estimate [-].
+/// Density of an estimate for a log-normal error about this severity, over that of any estimate [-].
 double estimateDensity(const Alternative& estimate, double severity) noexcept
 {
   if (severity <= 0.0 || estimate.severity <= 0.0)
@@ -91,7 +92,7 @@ double estimateDensity(const Alternative& estimate, double severity) noexcept
 
 double RemainingHours::crps(double hours) const noexcept
 {
-  // On each stretch of (F - H)^2 with F straight from a to b: length (a^2 + a b + b^2) / 3, a and b less H.
+  // Integral of (F - H)^2 for F linear from a to b: length (a^2 + a b + b^2) / 3, with H subtracted from a and b.
   double sum = 0.0;
   double reached = 0.0;
   const auto add = [&](double from, double to, double at_from, double at_to, double step)
@@ -139,7 +140,7 @@ RemainingLife::RemainingLife(const Parameters& parameters)
   }
 }
 
-/// The strength, by place, of which the use so far breaks all that are weaker: logarithm over the median's.
+/// Strength at each place below which the use so far would have broken the drive: logarithm over the median.
 RemainingLife::Weakest RemainingLife::weakestLeft(const Usage& so_far) const noexcept
 {
   Weakest weakest{};
@@ -175,7 +176,8 @@ RemainingLife::Drive RemainingLife::drive(const Point& point, const Usage& so_fa
   }
   drive.variation.spall_growth =
       parameters_.spall_growth * factorBelow(HUGE_VAL, parameters_.spall_spread, point[SPALL_GROWTH]);
-  // -ln of Weibull's share of bearings that last: to the life that would have ended by now, and to a first spall now.
+  // -ln of the Weibull share of remaining bearings, for the life that would have ended by now and for a first spall
+  // now.
   const auto lasting = [this](double turns) { return std::pow(turns / bearing_.scale, bearing_.shape); };
   const double least = lasting(so_far.bearing_turns / (1.0 + drive.variation.spall_growth));
   const double whole = lasting(so_far.bearing_turns);
@@ -188,7 +190,7 @@ RemainingLife::Drive RemainingLife::drive(const Point& point, const Usage& so_fa
   drive.strength = {};
   drive.strength[AT_TRANSITION] = TRANSITION_SCATTER * normalAt(point[TRANSITION]);
   const double spread = std::max(parameters_.fatigue_spread, LEAST_FATIGUE_SPREAD);
-  double weakest_left = -FARTHEST;  // standard deviations: what is weaker has broken
+  double weakest_left = -FARTHEST;  // in standard deviations; a weaker drive has broken
   for (std::size_t place = 0; place < STRESS_PLACES; ++place)
   {
     weakest_left = std::max(weakest_left, (weakest[place] - drive.strength[place]) / spread);
@@ -229,7 +231,7 @@ double RemainingLife::likelihood(const Assessment& assessment, const Usage& so_f
         (item.cause == causeOf(FaultKind::TOOTH_WEAR) || item.cause == causeOf(FaultKind::INTERFACE_WEAR)))
     {
       known += item.confidence;
-      sum += item.confidence;  // the readings have said it: the same of all drives
+      sum += item.confidence;  // the readings already contain this evidence, which is equal for all drives
       return;
     }
     if (item.cause == causeOf(FaultKind::TOOTH_WEAR))
@@ -267,7 +269,7 @@ std::array<double, RemainingHours::CAUSES.size()> RemainingLife::hoursLeft(const
     return hoursUntil(future_load, 1.0 - fatigueBy(so_far, strength, place),
                       [&](const Usage& usage) { return fatigueBy(usage, strength, place); });
   };
-  // Both wear faster or slower than so far: the same grease.
+  // Both rates change by the same factor, that of the grease.
   const auto until_worn = [&](double end, double now, auto&& of)
   {
     const double ahead = so_far.fillings * (end / std::max(now, 1e-300) - 1.0);
@@ -294,7 +296,7 @@ RemainingHours RemainingLife::remaining(const Usage& so_far, const FutureLoad& f
   interface_factors_.given(trends.interface, parameters_.wear_spread, interface_limit_ / so_far.interface_wear);
   const bool wear_is_read = trends.flank.isKnown() && trends.interface.isKnown();
   const Weakest weakest = weakestLeft(so_far);
-  double largest = -HUGE_VAL;  // no weight is lost to the range of doubles
+  double largest = -HUGE_VAL;  // logarithms prevent an underflow of the weights
   for (std::size_t i = 0; i < PARTICLES; ++i)
   {
     const bool is_spalled = static_cast<double>(i) < SPALLED * static_cast<double>(PARTICLES);
@@ -323,7 +325,7 @@ RemainingHours RemainingLife::remaining(const Usage& so_far, const FutureLoad& f
   return result;
 }
 
-/// Bins and quantiles of the ends. `sum`: of their weights.
+/// Bins and quantiles of the ends; `sum`: sum of their weights.
 void RemainingLife::summarize(RemainingHours& result, double sum) noexcept
 {
   std::sort(ends_.begin(), ends_.end(), [](const End& a, const End& b) { return a.hours < b.hours; });
@@ -343,7 +345,7 @@ void RemainingLife::summarize(RemainingHours& result, double sum) noexcept
       result.quantile[quantile] = end.hours;
     }
   }
-  for (; quantile < result.quantile.size(); ++quantile)  // the weights' sum falls short of 1 by rounding
+  for (; quantile < result.quantile.size(); ++quantile)  // the sum of the weights may be less than 1 by rounding
   {
     result.quantile[quantile] = ends_.back().hours;
   }

@@ -16,7 +16,7 @@
 
 namespace hjt
 {
-constexpr double FARTHEST = 30.0;  // standard deviations: the normal distribution ends where doubles do
+constexpr double FARTHEST = 30.0;  // standard deviations: the limit of the normal distribution in doubles
 
 inline double squared(double value)
 {
@@ -28,30 +28,31 @@ inline double normalShare(double deviation) noexcept
   return 0.5 * std::erfc(-deviation / std::sqrt(2.0));
 }
 
-/// The deviation below `most` of which a share `share` of the normal distribution's part below `most` lies.
+/// Deviate below which a share `share` of the normal distribution truncated at `most` lies.
 inline double normalBelow(double most, double share) noexcept
 {
   const double part = share * normalShare(std::clamp(most, -FARTHEST, FARTHEST));
   return -std::sqrt(2.0) * boost::math::erfc_inv(2.0 * std::clamp(part, 1e-300, 1.0 - 1e-16));
 }
 
-/// Factor, log-normal about 1, of a drive that `ends_at` or more would have ended.
+/// Log-normal factor about 1 of a drive, truncated at `ends_at`, where the drive would have ended.
 inline double factorBelow(double ends_at, double spread, double share) noexcept
 {
   return spread > 0.0 ? std::exp(spread * normalBelow(std::log(ends_at) / spread, share)) : 1.0;
 }
 
-/// Standard normal deviate of a share of all.
+/// Quantile of the standard normal distribution.
 inline double normalAt(double share) noexcept
 {
   return normalBelow(FARTHEST, share);
 }
 
-/// Factors of wear, as a table of their distribution.
+/// Tabulated distribution of a factor of wear.
 class FactorTable
 {
 public:
-  /// Given the readings, of a drive that `ends_at` or more would have ended. `spread`: of the logarithm beforehand.
+  /// Computes the distribution for a drive truncated at `ends_at`, given the readings. `spread`: prior standard
+  /// deviation of the logarithm.
   void given(const WearTrend& trend, double spread, double ends_at) noexcept
   {
     constexpr double REACH = 6.5;  // standard deviations
@@ -99,35 +100,35 @@ public:
 private:
   static constexpr std::size_t NODES = 4096;
 
-  std::vector<double> reached_ = std::vector<double>(NODES);  // share of the distribution up to each node
-  double first_{};                                            // logarithm of the first node's factor
+  std::vector<double> reached_ = std::vector<double>(NODES);  // cumulative distribution at each node
+  double first_{};                                            // logarithm of the factor at the first node
   double step_{};
   double spread_{};
   double ends_at_{};
   bool is_read_{};
 };
 
-/// Fatigue strengths at which the fatigue by a use is known, evenly spaced in their logarithm; straight in the
-/// logarithms between them.
+/// Number of fatigue strengths in the table of fatigue. They are evenly spaced in the logarithm; between them the
+/// logarithm of the fatigue is linear.
 constexpr std::size_t STRENGTHS = 49;
-constexpr double STRENGTH_REACH = 1.5;  // reach in the logarithm, below and above the median
+constexpr double STRENGTH_REACH = 1.5;  // range of the logarithm on either side of the median
 
-/// Of entry i, over the median's.
+/// Strength of entry i over the median.
 inline double strengthAt(std::size_t i)
 {
   return std::exp(STRENGTH_REACH * (2.0 * static_cast<double>(i) / static_cast<double>(STRENGTHS - 1) - 1.0));
 }
 
-/// How much a drive has been used: what the nominal drive would have aged by it.
+/// Use of a drive, as the ageing of the nominal drive.
 struct Usage
 {
-  double flank_wear{};      ///< of the nominal drive, worse side [m]
-  double mean_flank{};      ///< the same, mean of both sides: half the play's growth [m]
-  double interface_wear{};  ///< of the nominal drive [m]
+  double flank_wear{};      ///< wear of the nominal drive's worse side [m]
+  double mean_flank{};      ///< mean wear of both sides of the nominal drive: half of the growth of the play [m]
+  double interface_wear{};  ///< wear of the nominal drive [m]
   double bearing_turns{};   ///< [turns at rated torque]
-  /// Miner's sums by strength and place: fatigue does not grow in proportion to the nominal drive's.
+  /// Miner's sums by strength and place, because fatigue is not in proportion to that of the nominal drive.
   std::array<std::array<double, STRESS_PLACES>, STRENGTHS> fatigue{};
-  double fillings{};  ///< of grease that were used up [-]
+  double fillings{};  ///< number of used fillings of grease [-]
 
   Usage operator-(const Usage& other) const noexcept
   {
@@ -148,18 +149,17 @@ struct Usage
   }
 };
 
-/// The use ahead, from now on: entry i after i times `step` hours. The last stretch goes on for ever.
+/// Future use from now: entry i is the use after i times `step` hours. The last interval continues without end.
 struct FutureLoad
 {
   double step{};             ///< [h]
-  std::vector<Usage> usage;  ///< from now on, ascending, the first 0; two or more
-  /// Depths at which flanks and interface are at their end, as the loads of the new drive would wear them [m]; 0:
-  /// those of the parameters.
+  std::vector<Usage> usage;  ///< use from now, ascending, the first 0; at least two entries
+  /// Wear depths of flanks and interface at the end of life, reduced to the loads of the new drive [m]; 0: those of the
+  /// parameters.
   double flank_limit{};
   double interface_limit{};
 };
 
-/// Hours of use that are left, as a distribution.
 struct RemainingHours
 {
   static constexpr std::array<double, 5> SHARES{ 0.05, 0.1, 0.5, 0.9, 0.95 };
@@ -171,23 +171,23 @@ struct RemainingHours
   static constexpr double FIRST_EDGE = 10.0;  // [h]
   static constexpr double BINS_PER_DECADE = 20.0;
 
-  /// Lower end of bin `i`: 0, then from 10 h to 1e6 h twenty to the decade. The last one has no end [h].
+  /// Lower edge of bin `i` [h]: 0, then twenty edges in a decade from 10 h to 1e6 h. The last bin has no upper edge.
   static double edge(std::size_t i) noexcept
   {
     return i == 0 ? 0.0 : FIRST_EDGE * std::pow(10.0, (static_cast<double>(i) - 1.0) / BINS_PER_DECADE);
   }
 
-  /// Continuous ranked probability score of the bins' distribution, even within each, against `hours` that came; what
-  /// lies in the last bin counts as its beginning [h].
+  /// Continuous ranked probability score of the distribution, uniform within each bin, for the true `hours`. The
+  /// probability of the last bin counts at its lower edge [h].
   double crps(double hours) const noexcept;
 
-  std::array<double, BINS> probability{};        ///< that the end comes within each bin [-]
-  std::array<double, SHARES.size()> quantile{};  ///< by which these shares have ended [h]
-  std::array<double, CAUSES.size()> by_cause{};  ///< that it ends so, in the order of CAUSES [-]
+  std::array<double, BINS> probability{};        ///< probability that the end is in each bin [-]
+  std::array<double, SHARES.size()> quantile{};  ///< hours by which these shares have ended [h]
+  std::array<double, CAUSES.size()> by_cause{};  ///< probability of each cause of the end, in the order of CAUSES [-]
 };
 
-/// Whether an assessment replaces the one `before`. It does if its window was compared. A window without a departure
-/// that does not show play does not replace one that does.
+/// Whether an assessment replaces an earlier one. It must have compared its window. A window without deviation that
+/// does not show play does not replace one that shows it.
 inline bool supersedes(const Assessment& assessment, const Assessment& before) noexcept
 {
   const bool says_less = assessment.level == HealthLevel::OK && !assessment.shows_play &&
@@ -195,41 +195,42 @@ inline bool supersedes(const Assessment& assessment, const Assessment& before) n
   return assessment.state == AssessmentState::ASSESSED && !says_less;
 }
 
-/// The remaining life as a distribution over what cannot be seen of one drive, its variation.
+/// Distribution of the remaining life over the unknown variation of one drive.
 ///
-/// A particle is a drive with factors of wear, a life of its bearing and a fatigue strength of its own, drawn from what
-/// the literature and the catalogue leave open (log-normal; the Weibull distribution of the bearing's life), given
-/// that its use so far has not ended it: each is drawn from its distribution beyond that limit. The points are Sobol's.
-/// Use ages every particle by the same laws. An assessment weighs it by how likely its wear, as severities of faults,
-/// makes what it reports:
+/// A particle is a drive with its own factors of wear, bearing life and fatigue strength. They are drawn from the
+/// spread of literature and catalogue (log-normal; the Weibull distribution of the bearing's life), truncated by the
+/// condition that the use so far has not ended the drive. The points are a Sobol sequence. Use ages all particles by
+/// the same laws. An assessment weights each particle by the likelihood of the report, given the particle's wear as
+/// severities of faults:
 ///
-///   no fault found   prod_k (1 - D_k(s_k)); 1 of a window whose load did not go both ways, which shows little wear
+///   no fault found   prod_k (1 - D_k(s_k)); 1 for a window whose load did not change sign, which shows little wear
 ///   fault found      sum_k p_k D_k(s_k) f(e_k; s_k) / u + r max(1 - sum_k p_k, q)
 ///
-/// k: tooth_wear, interface_wear, a spall at a race or ball; s_k the particle's severity since the reference was
-/// learned; p_k, e_k the assessment's probability and severity, f log-normal about s_k with the assessment's deviation,
-/// u the density of severities beforehand; D_k the chance that such wear is found (1 of a spall that is named); r: how
-/// often the cause is in no set; q: false alarms (life/assessment_errors). The errors of the assessments of one drive
-/// are mostly those of its signatures and stay, so that the last counts alone.
+/// k: tooth_wear, interface_wear, spall of a race or ball; s_k: severity of the particle since the reference was
+/// learned; p_k, e_k: probability and severity in the assessment; f: log-normal density about s_k with the assessment's
+/// deviation; u: prior density of severities; D_k: probability that such wear is found (1 for a named spall); r: share
+/// of cases in which the cause is in no set; q: share of false alarms (life/read_wear.hpp). Errors of the assessments
+/// of one drive are mostly those of its signatures and persist, so that only the last assessment counts.
 ///
-/// Of wear that was read over the use (WearTrends) a particle's factor is drawn from its distribution given the
-/// readings, and the assessment tells of spalls alone: D_k f / u of wear is 1. How fast it wears from now on differs
-/// from how fast it has by a factor that is log-normal: each filling of grease has a rate of its own (RATE_SCATTER),
-/// and the present one goes on to its end.
+/// For wear with readings (WearTrends) the factor of a particle is drawn from its distribution given the readings, and
+/// the assessment informs about spalls only: D_k f / u of wear is 1. The future rate of wear differs from the past one
+/// by a log-normal factor, because each filling of grease has a rate of its own (RATE_SCATTER); the present filling
+/// continues until its end.
 class RemainingLife
 {
 public:
   explicit RemainingLife(const Parameters& parameters);
 
-  /// Of a drive that is in use still after `so_far`, with this use ahead; `assessment`: the last one that
-  /// counts, null: none; `at_reference`: the use when the sound reference of that window was learned, 0: new.
-  /// Allocates nothing.
+  /// Remaining life of a drive that is in use after `so_far`, with this future use. `assessment`: the last valid one,
+  /// null: none; `at_reference`: use when the sound reference of its window was learned, 0: new. The function does not
+  /// allocate.
   RemainingHours remaining(const Usage& so_far, const FutureLoad& future_load, const Assessment* assessment,
                            const Usage& at_reference, const WearTrends& trends = {}) noexcept;
 
 private:
   static constexpr std::size_t PARTICLES = 4096;
-  static constexpr double SPALLED = 0.25;  // share of drives with a spall, which come first, however rare spalls are
+  // share of drives with a spall, which come first; independent of the probability of spalls
+  static constexpr double SPALLED = 0.25;
   enum Nature
   {
     FLANK,
@@ -243,16 +244,16 @@ private:
     READING_OFFSET,
     NATURES
   };
-  using Point = std::array<double, NATURES>;  // evenly within 0 ... 1
+  using Point = std::array<double, NATURES>;  // uniform in 0 ... 1
 
-  /// One that `so_far` has not ended.
+  /// A drive that `so_far` has not ended.
   struct Drive
   {
     UnitVariation variation;
-    std::array<double, STRESS_PLACES> strength;  // logarithms, over the median's
-    double log_weight;  // logarithm of the chance of such a bearing and flexspline, to last and to have a spall or none
-    double rate_ahead;  // standard normal, of its rate of wear from now on
-    double flank_end;   // depth of the flanks at its end, as the loads of the new drive would wear them [m]
+    std::array<double, STRESS_PLACES> strength;  // logarithms over the median
+    double log_weight;  // logarithm of the probability that bearing and flexspline last, with or without a spall
+    double rate_ahead;  // standard normal deviate of the future rate of wear
+    double flank_end;   // flank wear at the end of life, reduced to the loads of the new drive [m]
   };
   struct End
   {
@@ -274,16 +275,16 @@ private:
   FaultScaleParameters fault_scale_;
   BearingLife bearing_;
   std::vector<Point> points_;
-  double flank_limit_{};           // of the present call, as in FutureLoad [m]
-  double interface_limit_{};       // likewise
-  FactorTable flank_factors_;      // scratch
-  FactorTable interface_factors_;  // scratch
-  std::vector<Drive> drives_;      // scratch
-  std::vector<End> ends_;          // scratch
+  double flank_limit_{};           // flank limit of the present call, see FutureLoad [m]
+  double interface_limit_{};       // interface limit of the present call, see FutureLoad [m]
+  FactorTable flank_factors_;      // working memory
+  FactorTable interface_factors_;  // working memory
+  std::vector<Drive> drives_;      // working memory
+  std::vector<End> ends_;          // working memory
 };
 
-/// Wear of the nominal drive by a duty cycle, in closed form: loads per revolution of the new drive, grease that
-/// ages.
+/// Wear of the nominal drive by a duty cycle in closed form, with the loads per turn of the new drive and ageing
+/// grease.
 class NominalUse
 {
 public:
@@ -319,14 +320,14 @@ public:
     interface_limit_ = interface_.of(life.interface_wear_limit);
   }
 
-  /// Depths as the loads of the new drive would have worn them, of the mean of both flanks and of the interface.
+  /// Wear depths reduced to the loads of the new drive: of the mean of both flanks, and of the interface.
   const LoadFeedback& flank() const { return flank_; }
   const LoadFeedback& interface() const { return interface_; }
 
-  /// From new
+  /// Use of a new drive.
   Usage until(double hours) const
   {
-    // Mean of the wear factor: grease of age g wears 1 + (factor - 1) g times as fast, g linear in time.
+    // Mean factor of wear: grease of age g wears 1 + (factor - 1) g times as fast, with g linear in time.
     const double age = grease_rate_ * hours;
     const double changes = grease_changes_ ? std::floor(age) : 0.0;
     const double left = age - changes;
@@ -349,7 +350,7 @@ public:
     return usage;
   }
 
-  /// `hours`: how far it looks; the use goes on as in its last stretch.
+  /// `hours`: length of the forecast; beyond it the use continues as in the last interval.
   FutureLoad from(double now, double hours, int stretches) const
   {
     FutureLoad future_load;
@@ -367,18 +368,18 @@ public:
 private:
   static constexpr double FARTHEST = 1.5;  // share of the limits
 
-  static constexpr double SLOWEST = 1e-3;  // share of the new drive's rate: a depth that wears no longer stays defined
+  static constexpr double SLOWEST = 1e-3;  // share of the new drive's rate, which keeps a depth without wear defined
 
-  /// Of two rates; 1 of a use that does not wear.
+  /// Ratio of two rates; 1 for a use without wear.
   static double share(double rate, double of) { return of > 0.0 ? std::max(rate / of, SLOWEST) : 1.0; }
 
-  Usage hourly_;        // in fresh grease
-  double grease_rate_;  // share of the grease's life by hour
+  Usage hourly_;        // use in an hour with fresh grease
+  double grease_rate_;  // share of the grease's life in an hour
   double grease_factor_;
   bool grease_changes_;
   LoadFeedback flank_;
   LoadFeedback interface_;
-  double flank_limit_{};  // as the loads of the new drive would wear them [m]
+  double flank_limit_{};  // flank wear at the end of life, reduced to the loads of the new drive [m]
   double interface_limit_{};
 };
 }  // namespace hjt

@@ -38,7 +38,7 @@ Cell cellOf(double value, double step, int stages)
   return { static_cast<std::size_t>(index), place - index };
 }
 
-/// Entry by entry, in magnitude.
+/// Larger magnitude of each entry.
 RevolutionLoad larger(const RevolutionLoad& a, const RevolutionLoad& b)
 {
   return combined(a, b, [](double x, double y) { return std::max(std::abs(x), std::abs(y)); });
@@ -112,7 +112,7 @@ RevolutionLoadAnalysis::RevolutionLoadAnalysis(const JointModel& joint, const So
 RevolutionLoad RevolutionLoadAnalysis::under(double load_torque)
 {
   const int teeth = walk_.model().ring.gear.teeth_flexspline;
-  const double step = TWO_PI / teeth / positions_;  // of the wave generator [rad]
+  const double step = TWO_PI / teeth / positions_;  // step of the wave generator [rad]
   RevolutionLoad revolution_load;
   constexpr double NONE = std::numeric_limits<double>::infinity();
   revolution_load.stress.fill({ NONE, -NONE, 0.0 });
@@ -159,7 +159,7 @@ RevolutionLoad RevolutionLoadAnalysis::under(double load_torque)
   return revolution_load;
 }
 
-/// Of the drive with the wear of its age.
+/// Analysis of the drive with the wear of an age.
 RevolutionLoadAnalysis RevolutionLoadMap::analysisOf(const DriveAge& age) const
 {
   FaultList faults = faults_at_start_;

@@ -18,62 +18,63 @@
 
 namespace hjt
 {
-/// How the outer race of the wave generator's bearing creeps round in the rim, and how far the two slip as it does.
+/// Creep of the outer race of the wave generator's bearing in the rim, and the slip between them.
 ///
-/// The race rolls in the rim, pressed on at the lobes. Held, its surface would slip there at
-///   q_i = l psi_i' - r eps_i + f - g_i                  [m/rad, by the wave generator's angle]
-/// where  l      contact.slip_lever; psi_i' rate at which the chord at tooth i tilts, against the wave's turning [-]
-///        r, eps_i  bore radius [m]; strain of the rim there [-]: the race does not stretch
-///        f, g_i  raceFit; worn off rim and race [m]
-/// Nothing holds it: the friction of the balls on it is a hundredth of that on the rim. It creeps at the rate c at
-/// which friction loses least, where the forces of friction cancel: the median of q_i weighted by the normal forces.
-/// Two surfaces that roll wear by sum F_i |q_i - c|, whatever c is.
+/// The race rolls in the rim, pressed on at the lobes. If the race were held, its surface would slip with
+///   q_i = l psi_i' - r eps_i + f - g_i                  [m/rad, per wave generator angle]
+/// where  l      contact.slip_lever; psi_i' rate of the chord's tilt at tooth i against the turning of the wave [-]
+///        r, eps_i  bore radius [m]; strain of the rim at tooth i [-], while the race does not stretch
+///        f, g_i  raceFit; wear of rim and race [m]
+/// The race is free, because the friction of the balls on it is a hundredth of that of the rim. It creeps at the rate c
+/// of least friction loss, at which the friction forces cancel: the median of q_i weighted by the normal forces. The
+/// two rolling surfaces wear by sum F_i |q_i - c|.
 class RaceCreep
 {
 public:
   explicit RaceCreep(const Parameters& parameters);
 
-  /// By the wave generator's angle.
+  /// Rates per wave generator angle.
   struct Rates
   {
-    double advance{};  ///< of the race's surface in the rim, the wave generator's way; 0 without contact [m/rad]
-    double sliding{};  ///< normal force times slip, of the whole rim; friction coefficient left out [N.m/rad]
+    /// advance of the race in the rim in the direction of the wave generator; 0 without contact [m/rad]
+    double advance{};
+    double sliding{};  ///< sum of normal force times slip over the rim, for unit friction coefficient [N.m/rad]
   };
 
-  /// `running`: 2 N, rates of the ring's points by the motor angle, the output following [m/rad].
+  /// `running`: 2 N, derivatives of the ring's points by the motor angle if the output follows [m/rad].
   Rates at(const RingEquilibrium& ring, const Eigen::VectorXd& running);
 
 private:
   struct Slip
   {
-    double rate;   // [m/rad]
-    double force;  // [N]
+    double rate;   // slip rate of a tooth [m/rad]
+    double force;  // normal force of a tooth [N]
   };
 
-  double lever_;        // [m]
-  double radius_;       // [m]
-  double fit_;          // [m]
-  double rest_length_;  // of a segment [m]
+  double lever_;        // lever of the slip [m]
+  double radius_;       // bore radius [m]
+  double fit_;          // fit of the race [m]
+  double rest_length_;  // length of a segment at rest [m]
   std::vector<Slip> slips_;
 };
 
-/// Measures on the tooth model what turning does to the drive. One drive, any number of loads.
+/// Computes with the tooth model the load of one turn for one drive at any number of loads.
 class RevolutionLoadAnalysis
 {
 public:
-  /// `positions`: wave generator angles per tooth pitch, >= 1. @throws ParameterError if the parameters have no
-  /// equilibrium.
+  /// `positions`: number of wave generator angles in a tooth pitch, >= 1. @throws ParameterError if the parameters have
+  /// no equilibrium.
   RevolutionLoadAnalysis(const Parameters& parameters, int positions)
     : RevolutionLoadAnalysis(startingJoint(parameters), parameters.solver, FlexsplineStress(parameters),
                              RaceCreep(parameters), positions)
   {
   }
-  /// The same of a joint of that drive with other faults.
+  /// Analysis of a joint of that drive with other faults.
   RevolutionLoadAnalysis(const JointModel& joint, const SolverParameters& solver, const FlexsplineStress& stress,
                          const RaceCreep& creep, int positions);
 
-  /// One turn of the wave generator under `load_torque` [N.m].
-  /// @throws ParameterError if the ring finds no equilibrium under it.
+  /// Load of one turn of the wave generator under `load_torque` [N.m].
+  /// @throws ParameterError if the ring has no equilibrium.
   RevolutionLoad under(double load_torque);
 
 private:
@@ -82,31 +83,32 @@ private:
   FlexsplineStress flexspline_stress_;
   ToothStress tooth_stress_;
   RaceCreep race_creep_;
-  Eigen::VectorXd running_;  // of the teeth, by the wave generator's angle
+  Eigen::VectorXd running_;  // derivatives of the teeth by the wave generator's angle
 };
 
-/// The bridge between seconds and years: what turning under a load does to the drive, measured on the tooth model at
-/// some stages of wear, bilinear between them.
+/// Loads of one turn as a function of load torque and wear, computed with the tooth model at some stages of wear,
+/// bilinear between them.
 class RevolutionLoadMap
 {
 public:
-  /// `positions`: wave generator angles per tooth pitch.
+  /// `positions`: number of wave generator angles in a tooth pitch.
   RevolutionLoadMap(const Parameters& parameters, int positions);
 
-  /// Solves the tooth model at every stage for the loads it does not know yet (some seconds).
-  /// @throws ParameterError where the ring has no equilibrium.
+  /// Computes the loads of the duty cycle that are missing, at every stage of wear; takes some seconds.
+  /// @throws ParameterError if the ring has no equilibrium.
   void cover(const DutyCycle& duty, const std::function<void(double)>& progress);
 
-  /// Under a load that is covered [N.m], at a stage of wear [m]. Wear beyond its limits counts as wear at the limits.
+  /// Load of one turn at a covered load torque [N.m] and a wear [m]. Wear beyond its limits counts as wear at the
+  /// limits.
   RevolutionLoad at(double load_torque, double flank_wear, double interface_wear) const;
 
-  /// Largest difference to the tooth model itself in the middle of all cells, over the largest value of the same
-  /// quantity under any load [-]. Slow.
+  /// Largest difference from the tooth model at the centres of all cells, over the largest value of the quantity at any
+  /// load [-]. Slow.
   double largestError() const;
 
 private:
-  static constexpr int STAGES = 4;  // of each kind of wear, the new drive and the limit included
-  using Stages = std::array<std::array<RevolutionLoad, STAGES>, STAGES>;  // by flank, by interface
+  static constexpr int STAGES = 4;  // stages of each kind of wear, from the new drive to the limit
+  using Stages = std::array<std::array<RevolutionLoad, STAGES>, STAGES>;  // by flank wear, by interface wear
 
   RevolutionLoadAnalysis analysisOf(const DriveAge& age) const;
 
@@ -117,8 +119,8 @@ private:
   FlexsplineStress stress_;
   RaceCreep creep_;
   int positions_;
-  double flank_step_;               // [m]
-  double interface_step_;           // [m]
-  std::map<double, Stages> nodes_;  // by load
+  double flank_step_;               // difference between stages [m]
+  double interface_step_;           // difference between stages [m]
+  std::map<double, Stages> nodes_;  // by load torque
 };
 }  // namespace hjt

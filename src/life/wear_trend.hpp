@@ -8,30 +8,30 @@
 
 namespace hjt
 {
-/// How readings of one kind of wear depart from it.
+/// Errors of the readings of one kind of wear.
 struct ReadingErrors
 {
-  double gain;         ///< of the readings of one drive, stays: standard deviation, as a share
-  double offset;       ///< the same, as a severity
-  double noise;        ///< from reading to reading, as a severity
-  double noise_share;  ///< the same, as a share of the reading
+  double gain;         ///< relative gain error of a drive's readings, constant: standard deviation
+  double offset;       ///< offset of a drive's readings as a severity, constant: standard deviation
+  double noise;        ///< noise of a reading as a severity
+  double noise_share;  ///< noise of a reading as a share of it
 };
 
-/// A reading of wear beside that of the nominal drive by the same use, both as severities, both as the loads of the new
-/// drive would have worn it.
+/// A reading of wear and the wear of the nominal drive after the same use, both as severities reduced to the loads of
+/// the new drive.
 struct WearPoint
 {
   double nominal;
   double reading;
 };
 
-/// Rate of wear of a drive from readings over its use.
+/// Rate of wear of a drive, from readings over its use.
 ///
 /// Law:   r_i = g u_i + d + n_i,   g = f (1 + b),   n_i^2 = a^2 + (c r_i)^2 + (v (r - r_i))^2
-/// where  u, r  WearPoint, of the last one without index;  f  factor of the drive's wear over the nominal drive's
+/// where  u, r  WearPoint, without index the last one;  f  wear of the drive over that of the nominal drive
 ///        b, d  ReadingErrors::gain and offset, normal about 0;  a, c  noise and noise_share
-///        v     RATE_SCATTER: the rate was another once, the more so the longer ago
-/// d is integrated out; g is normal.
+///        v     RATE_SCATTER: the rate may have changed, the more the older the reading is
+/// The likelihood is integrated over d; g is normal.
 class WearTrend
 {
 public:
@@ -60,7 +60,7 @@ public:
 
   bool isKnown() const noexcept { return is_known_; }
 
-  /// Logarithm of the readings' density, were this the drive's factor, less what is the same for all.
+  /// Logarithm of the readings' density for a factor of the drive, without the part common to all factors.
   double logDensity(double factor) const noexcept
   {
     const double variance = variance_ + gain_ * gain_ * factor * factor;
@@ -68,8 +68,8 @@ public:
     return -0.5 * (off * off / variance + std::log(variance));
   }
 
-  /// Severity of the nominal drive at which the readings will show `reading`, of a drive of this factor. `by_gain`,
-  /// `by_offset`: standard normal, how its readings depart.
+  /// Severity of the nominal drive at which the readings of a drive with this factor will show `reading`. `by_gain`,
+  /// `by_offset`: standard normal deviates of the readings' errors.
   double nominalAt(double reading, double factor, double by_gain, double by_offset) const noexcept
   {
     const double prior = gain_ * gain_ * factor * factor;
@@ -89,23 +89,23 @@ private:
   double ones_{};
 };
 
-/// Trends of both kinds of wear, from readings.
+/// Trends of both kinds of wear from readings.
 struct WearTrends
 {
   WearTrend flank;
   WearTrend interface;
-  double flank_depth{ 1.0 };          ///< of a severity of 1 [m]
-  double reading_at_end{ HUGE_VAL };  ///< of the flanks, at which lost motion ends the drive's use [-]
+  double flank_depth{ 1.0 };          ///< wear depth at severity 1 [m]
+  double reading_at_end{ HUGE_VAL };  ///< reading of the flanks at which the lost motion ends the drive's use [-]
 };
 
-/// Wear changes the loads that wear: the depth that a use would have worn off under the loads of the new drive, by the
-/// depth that it did. Straight between nodes and beyond.
+/// Effect of wear on the loads that cause it: wear depth reduced to the loads of the new drive as a function of the
+/// real depth, linear between nodes and beyond.
 class LoadFeedback
 {
 public:
   static constexpr std::size_t NODES = 9;
 
-  /// @param farthest depth of the last node [m]  @param rate_at over that of the new drive, at a depth [-]
+  /// @param farthest depth of the last node [m]  @param rate_at rate of wear at a depth over that of the new drive [-]
   template <class RateAt>
   LoadFeedback(double farthest, RateAt&& rate_at) : step_(farthest / static_cast<double>(NODES - 1))
   {

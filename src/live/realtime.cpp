@@ -20,7 +20,7 @@ std::string userName()
   return entry != nullptr ? entry->pw_name : std::to_string(geteuid());
 }
 
-/// A limit of this process, in units of `unit`.
+/// Limit of this process in units of `unit`.
 std::string limitText(decltype(RLIMIT_RTPRIO) resource, rlim_t unit)
 {
   rlimit limit{};
@@ -28,11 +28,11 @@ std::string limitText(decltype(RLIMIT_RTPRIO) resource, rlim_t unit)
   return limit.rlim_cur == RLIM_INFINITY ? "unlimited" : std::to_string(limit.rlim_cur / unit);
 }
 
-/// How to be permitted what was refused.
+/// Text on how to permit a refused request.
 std::string remedy(const std::string& limits_line, const std::string& capability)
 {
-  return ". To permit it, add to /etc/security/limits.conf the line '" + userName() + " - " + limits_line +
-         "' and log in again, or run with " + capability + ". The node continues without it";
+  return ". To permit it, add this line to /etc/security/limits.conf: '" + userName() + " - " + limits_line +
+         "' and log in again. Or run the node with " + capability + ". The node continues without it";
 }
 
 void applyPriority(int priority, pthread_t loop_thread, RealtimeState& state)
@@ -52,9 +52,9 @@ void applyPriority(int priority, pthread_t loop_thread, RealtimeState& state)
     return;
   }
   state.scheduling += ", " + wanted + " refused";
-  state.refusals.push_back("realtime.priority = " + std::to_string(priority) + " [-]: refused, " +
-                           std::strerror(error) + "; RLIMIT_RTPRIO is " + limitText(RLIMIT_RTPRIO, 1) +
-                           remedy("rtprio " + std::to_string(priority), "CAP_SYS_NICE"));
+  state.refusals.push_back("realtime.priority = " + std::to_string(priority) +
+                           " [-] was refused: " + std::strerror(error) + "; RLIMIT_RTPRIO is " +
+                           limitText(RLIMIT_RTPRIO, 1) + remedy("rtprio " + std::to_string(priority), "CAP_SYS_NICE"));
 }
 
 void applyMemoryLock(bool lock_memory, RealtimeState& state)
@@ -64,7 +64,7 @@ void applyMemoryLock(bool lock_memory, RealtimeState& state)
   {
     return;
   }
-  // Later memory is not of the loop, which allocates nothing; locking it would fail where the limit is low.
+  // Later memory is not that of the loop, which does not allocate; locking all future memory would fail at a low limit.
   if (mlockall(MCL_CURRENT) == 0)
   {
     state.memory = "locked";
@@ -73,7 +73,7 @@ void applyMemoryLock(bool lock_memory, RealtimeState& state)
   const std::string reason = std::strerror(errno);
   state.memory += ", refused";
   constexpr rlim_t KIBIBYTE = 1024;
-  state.refusals.push_back("realtime.lock_memory = true [-]: refused, " + reason + "; RLIMIT_MEMLOCK is " +
+  state.refusals.push_back("realtime.lock_memory = true [-] was refused: " + reason + "; RLIMIT_MEMLOCK is " +
                            limitText(RLIMIT_MEMLOCK, KIBIBYTE) + " [KiB]" +
                            remedy("memlock unlimited", "CAP_IPC_LOCK"));
 }
@@ -96,7 +96,7 @@ void applyProcessor(int processor, pthread_t loop_thread, RealtimeState& state)
     return;
   }
   state.processor += ", " + wanted + " refused";
-  state.refusals.push_back("realtime.processor = " + wanted + " [-]: refused, " + std::strerror(error) +
+  state.refusals.push_back("realtime.processor = " + wanted + " [-] was refused: " + std::strerror(error) +
                            "; this machine has " + std::to_string(sysconf(_SC_NPROCESSORS_ONLN)) +
                            " processors, counted from 0. The node continues without it");
 }

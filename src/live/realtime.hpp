@@ -10,17 +10,17 @@
 
 namespace hjt
 {
-/// The granted parameters below `realtime`, in words.
+/// Descriptions of the granted parameters in section realtime.
 struct RealtimeState
 {
   std::string scheduling;  ///< policy and priority of the loop's thread
-  std::string memory;      ///< whether it is locked
-  std::string processor;   ///< that the loop's thread is bound to
-  /// For each refused request: its name, the reason, and the change of the system that permits it.
+  std::string memory;      ///< whether the memory is locked
+  std::string processor;   ///< processor of the loop's thread
+  /// Text of each refused request: its name, the reason, and the system setting that permits it.
   std::vector<std::string> refusals;
 };
 
-/// Gives the loop's thread its priority and processor, and locks all memory the process has by now: to be called when
-/// everything the loop uses exists. What is refused is left as it was.
+/// Sets priority and processor of the loop's thread, and locks all memory that the process has. It must be called when
+/// all objects of the loop exist. A refused request changes nothing.
 RealtimeState applyRealtime(const RealtimeParameters& parameters, pthread_t loop_thread);
 }  // namespace hjt

@@ -13,19 +13,19 @@
 
 namespace hjt
 {
-/// An input of a loop, which may advance several twins.
+/// An input of a loop that advances one or more twins.
 struct LiveInput
 {
   TwinInput input;
-  std::size_t joint{};  ///< whose input it is; 0 where there is one twin
+  std::size_t joint{};  ///< index of the joint; 0 with one twin
 
   Stamp stamp() const noexcept { return stampOf(input); }
-  const Input* value() const noexcept { return std::get_if<Input>(&input); }  ///< null: it is a fault
+  const Input* value() const noexcept { return std::get_if<Input>(&input); }  ///< null: the input is a fault
   bool isOf(InputKind kind) const noexcept { return value() != nullptr && value()->kind == kind; }
 };
 
-/// Inputs from the callbacks until the loop hands them to its twin. Callbacks may wait for each other and for the loop,
-/// which never waits.
+/// Queue of inputs from the callbacks to the loop. Callbacks may wait for each other and for the loop; the loop never
+/// waits.
 class Inbox
 {
 public:
@@ -33,7 +33,8 @@ public:
 
   Inbox() { inputs_.reserve(CAPACITY); }
 
-  /// From any thread. Values that are not finite are refused, those beyond the capacity dropped; both are counted.
+  /// Queues an input; thread-safe. Values that are not finite are refused, and inputs beyond the capacity dropped. Both
+  /// are counted.
   void push(const TwinInput& input, std::size_t joint = 0)
   {
     if (const auto* value = std::get_if<Input>(&input); value != nullptr && !std::isfinite(value->value))
@@ -50,8 +51,9 @@ public:
     inputs_.push_back({ input, joint });
   }
 
-  /// From the loop only: calls `use(inputs)` with those that wait, in order of arrival; what it leaves there goes on
-  /// waiting. Allocates nothing. @returns false if a callback holds the lock: nothing was done.
+  /// Calls `use(inputs)` with the waiting inputs in order of arrival; inputs that `use` leaves stay in the queue. Only
+  /// the loop may call this function. It does not allocate. @returns false and does nothing if a callback holds the
+  /// lock.
   template <class Use>
   bool use(Use&& use) noexcept
   {
@@ -73,15 +75,15 @@ private:
   std::atomic<std::uint64_t> overflow_{ 0 };
 };
 
-/// Ring of ready-made messages between one writer and one reader; neither ever waits.
-/// Slots are filled and read in place: messages with arrays are never copied, moved or resized.
+/// Ring buffer of preallocated messages between one writer and one reader, neither of which ever waits. Slots are
+/// filled and read in place, so that messages with arrays are never copied, moved or resized.
 template <class Message>
 class SlotRing
 {
 public:
   SlotRing(std::size_t slots, const Message& prototype) : slots_(slots, prototype) {}
 
-  /// Writer: the next free slot, or nullptr if the reader has fallen behind by the whole ring.
+  /// For the writer: the next free slot; nullptr if the buffer is full.
   Message* claim() noexcept
   {
     const std::size_t written = written_.load(std::memory_order_relaxed);
@@ -89,17 +91,17 @@ public:
     return full ? nullptr : &slots_[written % slots_.size()];
   }
 
-  /// Writer: hands over the claimed slot.
+  /// For the writer: hands the claimed slot to the reader.
   void commit() noexcept { written_.fetch_add(1, std::memory_order_release); }
 
-  /// Reader: the oldest message, or nullptr if there is none.
+  /// For the reader: the oldest message; nullptr if there is none.
   const Message* front() const noexcept
   {
     const std::size_t read = read_.load(std::memory_order_relaxed);
     return read == written_.load(std::memory_order_acquire) ? nullptr : &slots_[read % slots_.size()];
   }
 
-  /// Reader: gives the slot of `front` back.
+  /// For the reader: releases the slot of `front`.
   void pop() noexcept { read_.fetch_add(1, std::memory_order_release); }
 
 private:

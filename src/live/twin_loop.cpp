@@ -18,21 +18,21 @@ namespace
 using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
-/// Of the loop, by the wall clock.
+/// Period of the loop in wall clock time.
 constexpr milliseconds CYCLE_PERIOD{ 1 };
-/// Upper bound of the shortest sleep: messages of several instants go out together, and threads are woken less often.
+/// Upper bound of the shortest sleep. Messages of several instants then go out together, and threads wake less often.
 constexpr milliseconds SHORT_PAUSE{ 4 };
-/// The longest sleep, while nobody awaits an instant: how long a request may wait for its answer.
+/// Longest sleep while no output is due; it bounds the time until a request is answered.
 constexpr milliseconds MAX_PAUSE{ 50 };
-/// Simulated at most in one cycle, more than MAX_PAUSE, so that the loop stays responsive while it catches up [ns].
+/// Largest simulated time in one cycle [ns]. It exceeds MAX_PAUSE, and the loop stays responsive while it catches up.
 constexpr Stamp MAX_CATCH_UP = 60'000'000;
-/// A cycle begins no further step after that long: one that the solver is slow at does not keep requests waiting.
+/// Time after which a cycle begins no further step, so that a slow solver does not delay requests.
 constexpr milliseconds LONGEST_WORK{ 100 };
-/// A smaller step back, as time synchronisation makes, is waited out [ns].
+/// Largest backward step of the clock that counts as time synchronisation [ns]. The loop waits until it has passed.
 constexpr Stamp CLOCK_JUMP_TOLERANCE = 100'000'000;
-/// How long a request waits for the loop.
+/// Longest time that a request waits for the loop.
 constexpr milliseconds REQUEST_TIMEOUT{ 2000 };
-/// More than the loop ever has on its stack [bytes].
+/// Upper bound of the loop's use of its stack [bytes].
 constexpr std::size_t STACK_SIZE = 256 * 1024;
 
 Stamp nanoseconds(steady_clock::duration duration)
@@ -40,7 +40,7 @@ Stamp nanoseconds(steady_clock::duration duration)
   return std::chrono::duration_cast<std::chrono::nanoseconds>(duration).count();
 }
 
-/// Between two cycles whose messages are awaited: short beside the delay that the twin keeps anyway.
+/// Pause between two cycles whose messages are due, short compared with the twin's delay.
 steady_clock::duration shortestPause(Stamp input_delay)
 {
   constexpr int SHARE = 5;
@@ -48,7 +48,7 @@ steady_clock::duration shortestPause(Stamp input_delay)
                                             CYCLE_PERIOD, SHORT_PAUSE);
 }
 
-/// Has the pages of the stack mapped before the first cycle needs them.
+/// Maps the pages of the stack before the first cycle needs them.
 __attribute__((noinline)) void touchStack()
 {
   std::array<volatile char, STACK_SIZE> stack;
@@ -113,12 +113,12 @@ void TwinLoop::run()
     const auto end = steady_clock::now();
     keepTimes(begin, end);
     shown_status_.tryWrite(status_);
-    // Without a sleep while it catches up, however short those cycles: they add nothing to the sleep after them.
+    // Cycles without sleep while the loop catches up do not prolong the next sleep.
     const auto length = pause(after_cycle_ ? after_cycle_(twin_.stamp()) : twin_.stamp());
     wake_up = status_.lag < MAX_CATCH_UP ? std::max(wake_up + length, end) : end;
     if (wake_up > end)
     {
-      // Instants that nobody awaits are due with the one that ends the sleep.
+      // Instants without output are due with the instant that ends the sleep.
       if (length > CYCLE_PERIOD)
       {
         released_ = std::max(released_, status_.clock + nanoseconds(wake_up - begin - CYCLE_PERIOD));
@@ -129,7 +129,7 @@ void TwinLoop::run()
   }
 }
 
-/// From one wake-up to the next: to the next awaited instant, in whole periods.
+/// Time from one wake-up to the next: until the next output, in whole periods.
 steady_clock::duration TwinLoop::pause(Stamp next_awaited) const noexcept
 {
   if (clock_kind_ == ClockKind::STEPPED || status_.state != LoopState::RUNNING)
@@ -143,13 +143,13 @@ steady_clock::duration TwinLoop::pause(Stamp next_awaited) const noexcept
 
 void TwinLoop::cycle(steady_clock::time_point begin) noexcept
 {
-  // Without a time there is nothing to restart, and inputs cannot be ordered yet.
+  // Without a time there is nothing to restart, and inputs cannot be ordered.
   if (clock_() == 0)
   {
     resets_done_ = resets_requested_.load();
     return;
   }
-  // While a callback holds the inbox the twin only goes on; the next cycle sees to the rest.
+  // While a callback holds the inbox, the twin only advances; the next cycle handles the inputs.
   if (!inbox_.use([this](Inputs& inputs) { heed(inputs); }))
   {
     const Stamp now = clock_();
@@ -163,7 +163,7 @@ void TwinLoop::cycle(steady_clock::time_point begin) noexcept
   twin_.show(status_);
 }
 
-/// The clock after the inputs: what comes after a jump is not mistaken for what came before it.
+/// Reads the clock after the inputs, so that inputs after a jump are not treated as earlier ones.
 void TwinLoop::heed(Inputs& inputs) noexcept
 {
   if (readClock(clock_()))
@@ -183,7 +183,7 @@ void TwinLoop::heed(Inputs& inputs) noexcept
   waiting_ = inputs.size();
 }
 
-/// The first time that is seen is none.
+/// Whether the clock has jumped. The first time that the loop reads is no jump.
 bool TwinLoop::isJump(Stamp now) const noexcept
 {
   const Stamp step = now - status_.clock;
@@ -218,15 +218,15 @@ void TwinLoop::answerRequests(Inputs& inputs) noexcept
   }
 }
 
-/// Those that had arrived before this cycle.
+/// Removes the inputs that arrived before this cycle.
 void TwinLoop::forgetInputs(Inputs& inputs) noexcept
 {
   inputs.erase(inputs.begin(), inputs.begin() + static_cast<std::ptrdiff_t>(waiting_));
   waiting_ = 0;
 }
 
-/// Stamps the inputs that arrived in this cycle. A stamp of zero, given before there was a time, becomes now. An input
-/// whose stamp is far from the clock is refused.
+/// Stamps the inputs that arrived in this cycle. A stamp of zero, from before the first time, becomes now. An input
+/// with a stamp far from the clock is refused.
 void TwinLoop::stampInputs(Inputs& inputs) noexcept
 {
   const auto fresh = inputs.begin() + static_cast<std::ptrdiff_t>(waiting_);
@@ -242,8 +242,8 @@ void TwinLoop::stampInputs(Inputs& inputs) noexcept
   inputs.erase(kept_end, inputs.end());
 }
 
-/// Of those that wait for the start and are due the last of a kind acts then. The others go: what comes again and again
-/// must not fill the inbox, which the torque that starts the twin has to get into.
+/// Keeps only the last due input of each kind while the twin waits for its start. Repeated inputs must not fill the
+/// inbox, which has to accept the torque that starts the twin.
 void TwinLoop::thinOut(Inputs& inputs) noexcept
 {
   const Stamp due = limit();
@@ -271,7 +271,7 @@ bool TwinLoop::tryStart(Inputs& inputs) noexcept
     start(status_.clock, inputs);
     return true;
   }
-  // Several topics may bring the first input, in any order: the earliest stamp counts once the clock has passed it.
+  // Several topics may bring the first input in any order. The earliest stamp counts once the clock has passed it.
   status_.state = LoopState::WAITING_FOR_INPUT;
   Stamp first = std::numeric_limits<Stamp>::max();
   for (const LiveInput& input : inputs)
@@ -300,7 +300,7 @@ void TwinLoop::start(Stamp stamp, Inputs& inputs) noexcept
   released_ = status_.clock;
   start_stamp_ = stamp;
   start_time_ = steady_clock::now();
-  // The twin was not there yet when these were due: they act from its first instant and are not late.
+  // These inputs were due before the twin existed. They act from its first instant and do not count as late.
   for (LiveInput& input : inputs)
   {
     stampOf(input.input) = std::max(input.stamp(), stamp);

@@ -19,18 +19,18 @@
 
 namespace hjt
 {
-/// Counts latencies in bins of fixed relative width, eight to a doubling, from a microsecond to 17 s. Fixed size:
-/// adding allocates nothing and costs the same whatever comes.
+/// Histogram of latencies in bins of constant relative width, eight in an octave, from a microsecond to 17 s. Its size
+/// is fixed: adding does not allocate and has a constant cost.
 class LatencyHistogram
 {
 public:
-  static constexpr int BIN_BITS = 3;  ///< of a latency, below its leading one, that choose the bin within the octave
+  static constexpr int BIN_BITS = 3;  ///< number of bits below the leading one that select the bin within the octave
   static constexpr int BINS_PER_OCTAVE = 1 << BIN_BITS;
-  static constexpr int FIRST_OCTAVE = 10;  ///< below 2^10 ns everything falls into the first bin
-  static constexpr int END_OCTAVE = 34;    ///< beyond 2^34 ns everything falls into the last
+  static constexpr int FIRST_OCTAVE = 10;  ///< all values below 2^10 ns are in the first bin
+  static constexpr int END_OCTAVE = 34;    ///< all values beyond 2^34 ns are in the last bin
   static constexpr std::size_t BIN_COUNT = 1 + BINS_PER_OCTAVE * (END_OCTAVE - FIRST_OCTAVE);
 
-  /// @param latency [ns]; less than zero counts as zero.
+  /// Counts a latency. @param latency [ns]; a negative one counts as zero.
   void add(Stamp latency) noexcept
   {
     ++bins_[binOf(latency)];
@@ -39,10 +39,10 @@ public:
   }
 
   std::uint64_t count() const noexcept { return count_; }
-  Stamp largest() const noexcept { return largest_; }  ///< [ns]
+  Stamp largest() const noexcept { return largest_; }  ///< largest latency [ns]
 
-  /// Latency [ns] that `share` (0 ... 1) of those counted do not exceed, rounded up to the end of its bin; 0 if there
-  /// are none.
+  /// Latency [ns] that a share of 0 ... 1 of the counted ones do not exceed, rounded up to the upper edge of its bin; 0
+  /// without any.
   Stamp quantile(double share) const noexcept
   {
     std::uint64_t counted = 0;
@@ -59,7 +59,7 @@ public:
 
   const std::array<std::uint64_t, BIN_COUNT>& bins() const noexcept { return bins_; }
 
-  /// Upper end of a bin [ns].
+  /// Upper edge of a bin [ns].
   static Stamp binEnd(std::size_t bin) noexcept
   {
     const auto octave = static_cast<int>(FIRST_OCTAVE * BINS_PER_OCTAVE + bin) / BINS_PER_OCTAVE;
@@ -85,7 +85,7 @@ private:
   Stamp largest_{};
 };
 
-/// A small value the loop shows to other threads. The writer never waits: it skips a write while somebody reads.
+/// A small value that the loop publishes to other threads. The writer never waits: it skips a write during a read.
 template <class Value>
 class TryLockValue
 {
@@ -112,25 +112,25 @@ private:
 
 enum class LoopState : std::uint8_t
 {
-  WAITING_FOR_CLOCK,  ///< no time has been seen yet
-  WAITING_FOR_INPUT,  ///< input.wait_for_first_input: at rest until a torque arrives
+  WAITING_FOR_CLOCK,  ///< no time has been read yet
+  WAITING_FOR_INPUT,  ///< input.wait_for_first_input: the twin is at rest until a torque arrives
   RUNNING
 };
 
-/// How the loop keeps up, since the last start or reset.
+/// Timing of the loop since the last start or reset.
 struct LoopTiming
 {
-  LatencyHistogram wake_up;          ///< how late a cycle began after the loop had asked to be woken, by the wall clock
-  LatencyHistogram lateness;         ///< how late the oldest instant of a cycle was simulated after it was due
-  std::uint64_t missed_deadlines{};  ///< cycles in which that was more than realtime.deadline
-  Stamp longest_cycle{};             ///< by the wall clock [ns]
-  Stamp busy{};                      ///< sum of all cycles, by the wall clock [ns]
-  Stamp elapsed{};                   ///< by the wall clock [ns]
-  Stamp simulated{};                 ///< [ns]
+  LatencyHistogram wake_up;          ///< delay of a cycle's beginning after the requested wake-up, in wall clock time
+  LatencyHistogram lateness;         ///< delay of the oldest instant of a cycle after it was due
+  std::uint64_t missed_deadlines{};  ///< number of cycles whose lateness exceeded realtime.deadline
+  Stamp longest_cycle{};             ///< longest cycle in wall clock time [ns]
+  Stamp busy{};                      ///< sum of all cycles in wall clock time [ns]
+  Stamp elapsed{};                   ///< elapsed wall clock time [ns]
+  Stamp simulated{};                 ///< simulated time [ns]
 
-  /// Simulated over wall time; 0 at the start [-].
+  /// Simulated time over wall clock time; 0 at the start [-].
   double realTimeFactor() const noexcept { return shareOfElapsed(simulated); }
-  /// Share of the wall time in which the loop worked [-].
+  /// Share of the wall clock time in which the loop worked [-].
   double load() const noexcept { return shareOfElapsed(busy); }
 
 private:
@@ -140,36 +140,35 @@ private:
   }
 };
 
-/// Kind of the clock that the loop follows.
 enum class ClockKind : std::uint8_t
 {
-  RUNNING,  ///< runs on by itself: every instant is due at a time of its own
-  STEPPED   ///< driven by /clock: all instants of a step are due once the step has been read
+  RUNNING,  ///< continuous clock: every instant is due at its own time
+  STEPPED   ///< clock driven by /clock: all instants of a step are due when the step has been read
 };
 
-/// What the loop shows of itself once per cycle.
+/// Status that the loop publishes once in a cycle.
 struct LoopStatus
 {
   LoopState state{};
-  Stamp clock{};        ///< time read last [ns]
+  Stamp clock{};        ///< last time that was read [ns]
   Stamp twin_stamp{};   ///< simulated instant [ns]
-  Stamp lag{};          ///< how far the twin is behind the instant it should have reached [ns]
-  Stamp largest_lag{};  ///< since the last start or reset [ns]
+  Stamp lag{};          ///< time by which the twin is behind the instant that it should have reached [ns]
+  Stamp largest_lag{};  ///< largest lag since the last start or reset [ns]
   std::uint64_t cycles{};
-  std::uint64_t overruns{};     ///< cycles whose work took longer than their period
-  std::uint64_t clock_jumps{};  ///< times the clock jumped, back or ahead
-  Stamp last_jump{};            ///< by how much then; > 0 ahead [ns]
-  std::uint64_t resets{};       ///< resets on request
-  std::uint64_t far_stamps{};   ///< inputs refused: stamped further than FAR_STAMP from the clock
-  bool command_seen{};          ///< a motor torque command has come since the last start or reset
-  Stamp last_command{};         ///< latest stamp of one [ns]
+  std::uint64_t overruns{};     ///< cycles that worked longer than their period
+  std::uint64_t clock_jumps{};  ///< jumps of the clock in either direction
+  Stamp last_jump{};            ///< size of the last jump; > 0 forwards [ns]
+  std::uint64_t resets{};       ///< resets by request
+  std::uint64_t far_stamps{};   ///< inputs refused because their stamp differs from the clock by more than FAR_STAMP
+  bool command_seen{};          ///< a motor torque command has arrived since the last start or reset
+  Stamp last_command{};         ///< latest stamp of a motor torque command [ns]
   JointOutputs outputs;
   TwinCounters counters;
   Assessment assessment;
   LoopTiming timing;
 };
 
-/// What a loop advances: a twin, or several that step together. Nothing may wait or allocate.
+/// Interface of what a loop advances: one twin, or several that step together. No member may block or allocate.
 class Advanced
 {
 public:
@@ -179,7 +178,8 @@ public:
   virtual void push(const LiveInput& input) noexcept = 0;  ///< as Twin::push
   virtual bool step(Stamp until) noexcept = 0;             ///< as Twin::step
   virtual Stamp stamp() const noexcept = 0;                ///< as Twin::stamp
-  virtual void show(LoopStatus& status) noexcept = 0;      ///< once a cycle: fills in what the status has of one twin
+  /// called once in a cycle; sets the parts of the status that belong to one twin
+  virtual void show(LoopStatus& status) noexcept = 0;
 
 protected:
   Advanced() = default;
@@ -187,7 +187,7 @@ protected:
   Advanced& operator=(const Advanced&) = default;
 };
 
-/// One twin.
+/// Adapter for one twin.
 class AdvancedTwin : public Advanced
 {
 public:
@@ -208,40 +208,41 @@ private:
   Twin& twin_;
 };
 
-/// Advances the twin to the clock in a thread of its own: no allocation, no log, no lock that anybody holds for long.
+/// Advances the twin to the clock in a separate thread, without allocation, logging, or locks that are held for long.
 ///
-/// The twin stays `input.delay` behind the clock. It never skips time: after a step ahead of up to MAX_CLOCK_STEP it
-/// catches up, a bounded stretch per cycle so that inputs, requests and the stop are still heard. A clock that jumps
-/// back, or further ahead, restarts it.
+/// The twin stays `input.delay` behind the clock. It never skips time: after a forward step of up to MAX_CLOCK_STEP it
+/// catches up, with a bounded interval in each cycle so that inputs, requests and the stop are handled. A clock that
+/// jumps back or further forwards restarts the twin.
 ///
-/// On a clock that runs, the loop sleeps until the next output is due, at least a fifth of `input.delay`
-/// (one to SHORT_PAUSE), at most MAX_PAUSE. What it simulates then is what it would have simulated in between: inputs
-/// act by their stamps.
+/// With a continuous clock the loop sleeps until the next output is due, at least a fifth of `input.delay` (one
+/// millisecond to SHORT_PAUSE) and at most MAX_PAUSE. The results do not depend on the sleep, because inputs act by
+/// their stamps.
 class TwinLoop
 {
 public:
-  using Clock = std::function<Stamp()>;     ///< now [ns]; 0 while there is no time yet
-  using AfterStep = std::function<void()>;  ///< called at every simulated instant; must not wait or allocate
-  /// Called after each cycle with the instant it has reached; returns the instant of the next output [ns].
-  /// Must not wait or allocate.
+  using Clock = std::function<Stamp()>;     ///< time now [ns]; 0 if there is no time yet
+  using AfterStep = std::function<void()>;  ///< called at every simulated instant; must not block or allocate
+  /// Called after each cycle with the instant that it reached. Returns the instant of the next output [ns]. It must not
+  /// block or allocate.
   using AfterCycle = std::function<Stamp(Stamp)>;
 
-  /// From one reading of the clock to the next; more is a jump, of another recording or a machine that slept [ns].
+  /// Largest difference of two readings of the clock [ns]. A larger one is a jump: another recording, or a suspended
+  /// machine.
   static constexpr Stamp MAX_CLOCK_STEP = 10'000'000'000;
 
-  /// Starts the thread. Without `after_cycle` every instant is an output. `parameters`: of the twin or one of several.
+  /// Starts the thread. Without `after_cycle` every instant is an output. `parameters`: those of the twin, or of one of
+  /// several.
   TwinLoop(Advanced& twin, const Parameters& parameters, Inbox& inbox, Clock clock, ClockKind clock_kind,
            AfterStep after_step, AfterCycle after_cycle = {});
 
-  /// Stops the thread.
   ~TwinLoop();
 
-  /// From any thread: restarts the twin at the current instant. Waits for it. False: the loop did not answer.
+  /// Restarts the twin at the current instant and waits for it; thread-safe. @returns false if the loop did not answer.
   bool reset();
 
   LoopStatus status() const { return shown_status_.read(); }
 
-  /// The loop's thread, for its priority and processor.
+  /// Handle of the loop's thread, for its priority and processor.
   std::thread::native_handle_type thread() { return thread_.native_handle(); }
 
 private:
@@ -273,11 +274,11 @@ private:
   AfterCycle after_cycle_;
   const Stamp input_delay_;
   const std::chrono::steady_clock::duration shortest_pause_;
-  const Stamp deadline_;     ///< for each instant, after it was due [ns]
-  const Stamp step_length_;  ///< [ns]
+  const Stamp deadline_;     ///< largest lateness of an instant [ns]
+  const Stamp step_length_;  ///< length of a step [ns]
   const bool wait_for_first_input_;
-  std::size_t waiting_{};  ///< inputs of earlier cycles that wait for the start
-  Stamp released_{};       ///< no instant simulated now was due before this time of the clock [ns]
+  std::size_t waiting_{};  ///< number of inputs of earlier cycles that wait for the start
+  Stamp released_{};       ///< earliest time of the clock at which the present instants were due [ns]
   Stamp start_stamp_{};    ///< first instant since the last start or reset [ns]
   std::chrono::steady_clock::time_point start_time_;
   LoopStatus status_;

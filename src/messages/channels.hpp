@@ -15,29 +15,30 @@
 
 namespace hjt
 {
-/// One topic that the twin puts out at a fixed rate. The node, the recorder and the diagnostics go over CHANNELS: a new
-/// topic needs a row there and its fill function.
+/// A topic that the twin publishes at a fixed rate. Node, recorder and diagnostics iterate over CHANNELS, so that a new
+/// topic needs a row there and a fill function.
 template <class MessageType>
 struct Channel
 {
   using Message = MessageType;
 
-  const char* name;                    ///< of the topic; the diagnostics count under it
-  double PublishParameters::*rate;     ///< [Hz]; divides solver.rate
-  std::size_t slots;                   ///< messages that may wait for the publisher's thread
-  Message (*make)(const Parameters&);  ///< with names and arrays in place
-  /// Fills the message at the twin's current instant. No allocation, no throw. False: there is nothing to publish.
+  const char* name;                    ///< name of the topic, also in the diagnostics
+  double PublishParameters::*rate;     ///< rate [Hz]; divides solver.rate
+  std::size_t slots;                   ///< number of messages that can wait for the publisher's thread
+  Message (*make)(const Parameters&);  ///< makes a message with names and arrays
+  /// Fills the message at the twin's current instant without allocation or exception. @returns false if there is
+  /// nothing to publish.
   bool (*fill)(Twin&, const SinceMessage&, Message&);
-  bool of_signals{};  ///< filled only while the twin watches its signals
-  bool summarises{};  ///< `fill` gets the spans of the signals since the last message
+  bool of_signals{};  ///< the twin must watch its signals
+  bool summarises{};  ///< `fill` gets the ranges of the signals since the last message
 };
 
-/// Slots for messages of a few numbers: seconds of joint states at 1 kHz.
+/// Slots for messages with a few numbers: seconds of joint states at 1 kHz.
 constexpr std::size_t SMALL_MESSAGE_SLOTS = 4096;
 /// Slots for messages with arrays.
 constexpr std::size_t LARGE_MESSAGE_SLOTS = 256;
 
-/// All channels, in the order in which the messages of one instant go out.
+/// All channels, in the order in which the messages of an instant are published.
 inline constexpr auto CHANNELS = std::make_tuple(
     Channel<sensor_msgs::JointState>{ topics::JOINT_STATES, &PublishParameters::joint_states_rate, SMALL_MESSAGE_SLOTS,
                                       makeJointStates, fillJointStates },
@@ -56,12 +57,12 @@ inline constexpr auto CHANNELS = std::make_tuple(
 
 constexpr std::size_t CHANNEL_COUNT = std::tuple_size_v<decltype(CHANNELS)>;
 
-/// All channels of one twin, each with a `Sink<Message>` that its messages go to. A topic is due when the instant is a
-/// whole multiple of its publishPeriod, counted from the epoch and not from the start: the same input gives messages at
-/// the same instants however it was cut, live, replayed or offline.
+/// All channels of one twin, each with a `Sink<Message>` for its messages. A topic is due when the instant is a
+/// multiple of its publishPeriod, counted from the epoch. Equal inputs therefore give messages at equal instants live,
+/// replayed or offline, independent of the start.
 ///
-/// A sink is constructed from (context, channel, first message) and has `bool isWanted()` and `write(fill)`, which
-/// calls `bool fill(Message&)` with the message to be filled and drops it if that returns false.
+/// A sink is constructed from (context, channel, first message). It has `bool isWanted()` and `write(fill)`, which
+/// calls `bool fill(Message&)` and drops the message if that returns false.
 template <template <class> class Sink>
 class Outputs
 {
@@ -76,7 +77,7 @@ public:
   {
   }
 
-  /// To be called after every step of the twin: fills the messages that are due and wanted.
+  /// Must be called after every step of the twin: fills the messages that are due and wanted.
   void offer(Twin& twin)
   {
     forEach(
@@ -107,7 +108,7 @@ public:
         });
   }
 
-  /// The next instant after this one at which a message is due and wanted [ns].
+  /// Next instant after this one at which a wanted message is due [ns].
   Stamp nextDue(Stamp instant) const noexcept
   {
     Stamp next = std::numeric_limits<Stamp>::max() / 2;

@@ -37,7 +37,7 @@ EffortStatus readEffort(const sensor_msgs::JointState& message, const std::strin
   return EffortStatus::FOUND;
 }
 
-/// A number that may be missing: 0 and false where it is.
+/// A number that may be missing, which is then 0 with the flag false.
 template <class Flag>
 void fillOptional(double value, double& field, Flag& valid) noexcept
 {
@@ -142,7 +142,7 @@ bool fillContactForces(Twin& twin, const SinceMessage& /*since*/, harmonic_joint
   message.mesh_force_error = expectedMeshForceError(twin.parameters().ring, twin.parameters().gear,
                                                     outputs.motor_velocity, outputs.joint_torque);
   ToothForces forces;
-  swapArrays(forces, message);  // the twin writes into the message's own
+  swapArrays(forces, message);  // the twin writes into the arrays of the message
   const bool found = twin.toothForces(forces);
   swapArrays(forces, message);
   return found;
@@ -163,7 +163,7 @@ harmonic_joint_twin::Stress makeStress(const Parameters& parameters)
 {
   auto message = makeMessage<harmonic_joint_twin::Stress>(parameters);
   message.places.assign(STRESS_PLACE_NAMES.begin(), STRESS_PLACE_NAMES.end());
-  message.place.assign(std::strlen(STRESS_PLACE_NAMES[0]), ' ');  // the longest
+  message.place.assign(std::strlen(STRESS_PLACE_NAMES[0]), ' ');  // length of the longest text
   for (auto* array : { &message.amplitudes, &message.means, &message.shears, &message.endurance_shares })
   {
     array->resize(STRESS_PLACES);
@@ -177,7 +177,7 @@ harmonic_joint_twin::Stress makeStress(const Parameters& parameters)
 
 namespace
 {
-/// `source(stress)`: fills the arrays. False: they could not be filled.
+/// `source(stress)` fills the arrays. @returns false if it could not.
 template <class Source>
 bool fillStress(Stamp stamp, const StressParameters& parameters, const FatigueLaw& fatigue_law,
                 harmonic_joint_twin::Stress& message, const Source& source) noexcept
@@ -189,7 +189,7 @@ bool fillStress(Stamp stamp, const StressParameters& parameters, const FatigueLa
     stress.normal[1].swap(message.transition);
     stress.normal[2].swap(message.flange);
   };
-  swap_arrays();  // the source writes into the message's own
+  swap_arrays();  // the source writes into the arrays of the message
   const bool found = source(stress);
   message.header.stamp = toRosTime(stamp);
   message.largest = 0.0;
@@ -331,7 +331,7 @@ std::size_t writeEvidence(const Assessment& assessment, char* text, std::size_t 
   for (std::size_t i = 0; i < assessment.evidence_count && length < size; ++i)
   {
     const Evidence& evidence = assessment.evidence[i];
-    // Short texts are not allocated.
+    // Short strings are not allocated.
     const std::string value = roundedText(evidence.value, 3);
     const std::string expected = roundedText(evidence.expected, 3);
     const std::string score = fixedText(std::min(evidence.score, 1e9), 1);

@@ -23,7 +23,7 @@
 
 namespace hjt
 {
-/// Least, mean and greatest value of a signal; of no value all are 0.
+/// Least, mean and greatest value of a signal; all are 0 without values.
 class SignalSpan
 {
 public:
@@ -49,11 +49,11 @@ private:
   std::uint64_t count_{};
 };
 
-/// Range of a signal since a topic's last message, over the steps in which somebody listened to a topic
-/// that summarises them.
+/// Ranges of signals since the last message of a topic, over the steps in which a topic with such ranges had
+/// subscribers.
 struct SinceMessage
 {
-  SinceMessage(Stamp last = 0) : stamp(last) {}  // NOLINT(google-explicit-constructor): a stamp says all of most topics
+  SinceMessage(Stamp last = 0) : stamp(last) {}  // most topics need only the stamp
 
   void add(const Twin& twin) noexcept
   {
@@ -63,13 +63,13 @@ struct SinceMessage
     joint_torque.add(outputs.joint_torque);
   }
 
-  Stamp stamp;              ///< of the last message [ns]
+  Stamp stamp;              ///< stamp of the last message [ns]
   SignalSpan torsion;       ///< [rad]
   SignalSpan motor_torque;  ///< [N.m]
   SignalSpan joint_torque;  ///< [N.m]
 };
 
-/// Names under which the joint appears in JointState messages.
+/// Names of the joint in JointState messages.
 struct JointNames
 {
   explicit JointNames(const std::string& joint_name) : joint(joint_name), motor(joint_name + "_motor") {}
@@ -78,14 +78,14 @@ struct JointNames
   std::string motor;
 };
 
-/// Place of a name in the message; beyond every array if it is not there.
+/// Index of a name in the message; beyond all arrays if the name is missing.
 std::size_t placeOf(const sensor_msgs::JointState& message, const std::string& name) noexcept;
 
-// make*: a message with names and arrays in place, allocated once. fill*: the values of one instant; allocates nothing.
-// As functions of a Channel they also get what passed since the topic's last message, and return false if there is
-// nothing to say.
+// Functions make* return a message with names and arrays, which they allocate. Functions fill* write the values of one
+// instant and do not allocate. As members of a Channel they also get the ranges since the topic's last message, and
+// return false if there is nothing to publish.
 
-/// A message without arrays.
+/// Makes a message without arrays.
 template <class Message>
 Message makeMessage(const Parameters& parameters)
 {
@@ -94,23 +94,24 @@ Message makeMessage(const Parameters& parameters)
   return message;
 }
 
-/// With a position, a velocity and an effort of each.
+/// Message with a position, a velocity and an effort for each name.
 sensor_msgs::JointState jointStatesOf(std::vector<std::string> names);
 
-/// Order of the entries: motor, joint.
+/// The entries are motor, joint.
 sensor_msgs::JointState makeJointStates(const Parameters& parameters);
 
-/// Positions and velocities as the encoders see them; efforts are the applied motor torque and the joint torque [N.m].
+/// Positions and velocities are readings of the encoders; efforts are the applied motor torque and the joint torque
+/// [N.m].
 bool fillJointStates(Twin& twin, const SinceMessage& since, sensor_msgs::JointState& message) noexcept;
 
 bool fillEncoders(Twin& twin, const SinceMessage& since, harmonic_joint_twin::Encoders& message) noexcept;
-/// The angles are the true ones [rad].
+/// `motor_angle` and `output_angle` are the true angles [rad].
 void fillEncoders(Stamp stamp, const EncoderReadings& readings, double motor_angle, double output_angle,
                   harmonic_joint_twin::Encoders& message) noexcept;
 
-/// One entry per tooth in every array.
+/// All arrays have one entry for each tooth.
 harmonic_joint_twin::ContactForces makeContactForces(const Parameters& parameters);
-/// False: the full ring found no equilibrium.
+/// @returns false if the full ring has no equilibrium.
 bool fillContactForces(Twin& twin, const SinceMessage& since, harmonic_joint_twin::ContactForces& message) noexcept;
 void fillContactForces(Stamp stamp, const MeasuredGear& gear, harmonic_joint_twin::ContactForces& message) noexcept;
 
@@ -120,7 +121,7 @@ void fillStress(Stamp stamp, const MeasuredGear& gear, const StressParameters& p
                 const FatigueLaw& fatigue_law, harmonic_joint_twin::Stress& message) noexcept;
 
 void fillSpan(const SignalSpan& span, double& least, double& mean, double& greatest) noexcept;
-/// The solver's state and the spans are those of the steps after `since`.
+/// The state of the solver and the ranges are those of the steps after `since`.
 bool fillHealth(Twin& twin, const SinceMessage& since, harmonic_joint_twin::Health& message) noexcept;
 
 harmonic_joint_twin::Indicators makeIndicators(const Parameters& parameters);
@@ -130,15 +131,16 @@ inline bool fillIndicators(Twin& twin, const SinceMessage& /*since*/, harmonic_j
   fillIndicators(twin.stamp(), twin.signalIndicators(), message);
   return true;
 }
-/// All but the uncertainties, which the message does not hold; NaN where it says not valid. Unknown names are left out.
+/// Values of a message without uncertainties, which it does not contain; NaN if not valid. Unknown names are ignored.
 SignalIndicators readIndicators(const harmonic_joint_twin::Indicators& message);
 
-constexpr std::size_t EVIDENCE_LENGTH = 400;  ///< characters at most, the closing zero included
+constexpr std::size_t EVIDENCE_LENGTH = 400;  ///< largest number of characters, with the closing zero
 
-/// "torque_outer 0.0041 N.m, healthy 0.0003 (score 9.1); ..." into `text`; returns the length. Empty at level OK.
+/// Writes a text such as "torque_outer 0.0041 N.m, healthy 0.0003 (score 9.1); ..." and returns its length. Empty at
+/// level OK.
 std::size_t writeEvidence(const Assessment& assessment, char* text, std::size_t size) noexcept;
 
-/// "pitting 21 %; tooth_tip_crack 9 %", the same way.
+/// Writes a text such as "pitting 21 %; tooth_tip_crack 9 %" and returns its length.
 std::size_t writeAlternatives(const Assessment& assessment, char* text, std::size_t size) noexcept;
 
 harmonic_joint_twin::Assessment makeAssessment(const Parameters& parameters);
@@ -149,25 +151,25 @@ inline bool fillAssessment(Twin& twin, const SinceMessage& /*since*/, harmonic_j
   return true;
 }
 
-/// Allocates.
+/// Allocates the message.
 harmonic_joint_twin::Faults makeFaults(const JointNames& names, Stamp stamp, const FaultList& faults);
 
-/// The fault in a message, one that grows in steps; onsets count from the stamp. @returns what is wrong with it, or
-/// nothing.
+/// Reads a fault from a message; a growing one becomes several steps. Onsets count from the stamp. @returns the error;
+/// empty if the message is valid.
 std::string readFault(const harmonic_joint_twin::Fault& message, const Parameters& parameters,
                       std::vector<Fault>& steps);
 
-/// Contents of a stamped torque message.
+/// Result of reading a torque message.
 enum class EffortStatus
 {
   FOUND,
-  UNKNOWN_JOINT,  ///< no entry for this joint
-  MISSING_EFFORT  ///< the joint is named, but the effort array does not reach it
+  UNKNOWN_JOINT,  ///< the message does not name this joint
+  MISSING_EFFORT  ///< the message names the joint, but the effort array is too short
 };
 
-/// Motor torque [N.m] in a stamped command: the effort of the joint or, if only that is named, of its motor.
+/// Reads the motor torque [N.m] of a command: the effort of the joint, or of its motor if only the motor is named.
 EffortStatus readMotorTorque(const sensor_msgs::JointState& message, const JointNames& names, double& torque) noexcept;
 
-/// Load torque [N.m] in a stamped load: the effort of the joint.
+/// Reads the load torque [N.m]: the effort of the joint.
 EffortStatus readLoadTorque(const sensor_msgs::JointState& message, const JointNames& names, double& torque) noexcept;
 }  // namespace hjt

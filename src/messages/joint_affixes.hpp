@@ -6,7 +6,7 @@
 
 namespace hjt
 {
-/// Prefix and suffix of the joints' names in messages: "left_", "".
+/// Prefix and suffix of the joints' names in messages, for example "left_" and "".
 struct JointAffixes
 {
   std::string prefix;
@@ -17,16 +17,16 @@ struct JointAffixes
   bool empty() const { return prefix.empty() && suffix.empty(); }
 };
 
-/// " --prefix left_ --suffix _r", as options of a command; empty: none is needed.
+/// Text of the options, for example " --prefix left_ --suffix _r"; empty if none is needed.
 std::string optionsOf(const JointAffixes& affixes);
 
-/// Those with which all of `joints` are in `names`, in the order of the names.
+/// Affixes with which `names` contains all of `joints`, in the order of the names.
 std::vector<JointAffixes> findAffixes(const std::vector<std::string>& joints, const std::vector<std::string>& names);
 
-/// Of the sensors of one joint, `NAME_motor` is that of joint NAME: the names without those.
+/// The names without motors: in messages on one joint, `NAME_motor` is the motor of joint NAME.
 std::vector<std::string> withoutMotors(const std::vector<std::string>& names);
 
-/// The joints of `joints` that messages with `names` lack, as a clause, and the prefix or suffix that would find them,
-/// spelled as options; empty: they name all.
+/// Clause that lists the joints that are missing in `names`, with the options that would find them; empty if none is
+/// missing.
 std::string lackText(const std::vector<std::string>& joints, const std::vector<std::string>& names);
 }  // namespace hjt

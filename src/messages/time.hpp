@@ -13,12 +13,12 @@
 
 namespace hjt
 {
-// Differences of times are taken of stamps: those of ros::Time throw beyond 68 years.
+// Time differences are computed from stamps, because those of ros::Time throw beyond 68 years.
 
-/// Last time that ROS can express [ns].
+/// Last time that ROS can represent [ns].
 constexpr Stamp LAST_ROS_STAMP = 4'294'967'295'999'999'999;
 
-/// ROS time of a stamp [ns]; one that ROS cannot express becomes the nearest it can.
+/// ROS time of a stamp [ns], limited to the range of ROS.
 inline ros::Time toRosTime(Stamp stamp)
 {
   ros::Time time;
@@ -26,19 +26,19 @@ inline ros::Time toRosTime(Stamp stamp)
   return time;
 }
 
-/// Stamp [ns] of a ROS time, also of one that came with more than a second of nanoseconds.
+/// Stamp [ns] of a ROS time, which may contain more than 1e9 nanoseconds.
 inline Stamp fromRosTime(const ros::Time& time)
 {
   return std::min(static_cast<Stamp>(time.toNSec()), LAST_ROS_STAMP);
 }
 
-/// Stamp of a header, or of the reception where the header has none [ns].
+/// Stamp of a header; the time of reception if the header has none [ns].
 inline Stamp stampOr(const ros::Time& header_stamp, const ros::Time& received)
 {
   return fromRosTime(header_stamp.isZero() ? received : header_stamp);
 }
 
-/// Of a date [ns], in UTC. @param format of strftime, 31 letters at most
+/// Text of a date [ns] in UTC. @param format of strftime; the text has at most 31 characters
 inline std::string dateText(Stamp date, const char* format)
 {
   constexpr Stamp SECOND = 1'000'000'000;

@@ -3,20 +3,20 @@
 
 namespace hjt
 {
-/// Of the node by default.
+/// Default namespace of the node.
 constexpr const char* DEFAULT_NAMESPACE = "/joint_twin";
 
-/// Names of the twin's topics, relative to the node's private namespace, live and in bags. Those of CHANNELS that
-/// nothing else uses stand there.
+/// Names of the twin's topics, relative to the node's private namespace, live and in bags. Topics without other users
+/// are named in CHANNELS only.
 namespace topics
 {
 constexpr const char* MOTOR_TORQUE_COMMAND = "motor_torque_command";  ///< in, std_msgs/Float64 [N.m]
-constexpr const char* COMMAND = "command";                            ///< in, sensor_msgs/JointState, its stamped form
-constexpr const char* LOAD_TORQUE = "load_torque";                    ///< in, std_msgs/Float64 [N.m]
-constexpr const char* LOAD = "load";                                  ///< in, sensor_msgs/JointState, its stamped form
-constexpr const char* INJECT_FAULT = "inject_fault";                  ///< in, harmonic_joint_twin/Fault
-constexpr const char* MEASURED = "joint_states_measured";             ///< in, sensor_msgs/JointState, effort in A
-constexpr const char* JOINT_TEMPERATURES = "joint_temperatures";  ///< in, sensor_msgs/Temperature, frame_id the joint
+constexpr const char* COMMAND = "command";  ///< in, sensor_msgs/JointState, stamped form of motor_torque_command
+constexpr const char* LOAD_TORQUE = "load_torque";         ///< in, std_msgs/Float64 [N.m]
+constexpr const char* LOAD = "load";                       ///< in, sensor_msgs/JointState, stamped form of load_torque
+constexpr const char* INJECT_FAULT = "inject_fault";       ///< in, harmonic_joint_twin/Fault
+constexpr const char* MEASURED = "joint_states_measured";  ///< in, sensor_msgs/JointState, effort in A
+constexpr const char* JOINT_TEMPERATURES = "joint_temperatures";  ///< in, sensor_msgs/Temperature, frame_id = joint
 constexpr const char* JOINT_STATES = "joint_states";              ///< out, sensor_msgs/JointState
 constexpr const char* ENCODERS = "encoders";                      ///< out, harmonic_joint_twin/Encoders
 constexpr const char* CONTACT_FORCES = "contact_forces";          ///< out, harmonic_joint_twin/ContactForces

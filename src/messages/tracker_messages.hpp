@@ -21,51 +21,52 @@
 
 namespace hjt
 {
-/// Values of a joint in a robot's telemetry.
+/// Result of reading a joint from a robot's telemetry.
 enum class TelemetryStatus
 {
   FOUND,
-  UNKNOWN_JOINT,  ///< no entry for this joint
-  INCOMPLETE,     ///< named, but without a position or an effort
-  NOT_FINITE,     ///< the position is NaN or Inf
-  WITHOUT_EFFORT  ///< a position, but the effort is NaN or Inf: the row holds all but the current
+  UNKNOWN_JOINT,  ///< the message does not name this joint
+  INCOMPLETE,     ///< the message names the joint without a position or an effort
+  NOT_FINITE,     ///< the position is NaN or infinite
+  WITHOUT_EFFORT  ///< the effort is NaN or infinite: the row contains everything but the current
 };
 
-/// Position [rad], velocity if there is one [rad/s] and effort, as current, of the joint; where the message names its
-/// motor too, that one's position. Times and load of the row stay as they are.
+/// Reads position [rad], velocity if present [rad/s] and effort, as a current, of the joint, and the position of its
+/// motor if the message names it. Times and load of the row do not change.
 TelemetryStatus readTelemetry(const sensor_msgs::JointState& message, const JointNames& names, MotionRow& row) noexcept;
 
-/// @param stamp of the row [ns].
+/// @param stamp stamp of the row [ns].
 void fillComparison(Stamp stamp, const Comparison& comparison, harmonic_joint_twin::Comparison& message) noexcept;
 
-/// @param stamp of the last row that was judged [ns]. Allocates.
+/// @param stamp stamp of the last judged row [ns]. Allocates.
 void fillVerdict(Stamp stamp, const Verdict& verdict, harmonic_joint_twin::Verdict& message);
 
-/// The drive of a measured joint, and what its messages hold: the gear at the measured angle under the joint's torque
-/// of the moment.
+/// The drive of a measured joint with the content of its messages: the gear at the measured angle and the present
+/// torque.
 class MeasuredDrive
 {
 public:
   /// @throws ParameterError as MeasuredGear.
   explicit MeasuredDrive(const Parameters& parameters);
 
-  /// To the row of a comparison; `fill` is of that one. False: no equilibrium, counted. Neither throws nor allocates.
+  /// Moves to the row of a comparison, which the next `fill` publishes. @returns false, and counts, without an
+  /// equilibrium. The function neither throws nor allocates.
   bool moveTo(const Comparison& comparison) noexcept;
   std::uint64_t failures() const noexcept { return failures_; }
 
-  /// Takes the torques of a row into those of the next Health; where none is wanted they are forgotten.
+  /// Adds the torques of a row to the ranges of the next Health; resets the ranges if no message is wanted.
   void note(const Comparison& comparison, bool is_wanted) noexcept;
 
   void fill(Stamp stamp, harmonic_joint_twin::ContactForces& message) noexcept;
   void fill(Stamp stamp, harmonic_joint_twin::Stress& message) noexcept;
-  /// The noise of the sensors is that of the sample in the stamp's period of publish.encoders_rate.
+  /// The sensor noise is that of the sample in the period of publish.encoders_rate that contains the stamp.
   void fill(Stamp stamp, harmonic_joint_twin::Encoders& message) noexcept;
-  /// Values of one instant; those that take a turn of the drive are not valid.
+  /// Writes values of one instant; values that need a turn of the drive are marked as not valid.
   void fill(Stamp stamp, harmonic_joint_twin::Health& message) noexcept;
 
 private:
   double motorTorque(const Comparison& comparison) const noexcept;
-  double meshForceError() const noexcept;  // [N]
+  double meshForceError() const noexcept;  // expected error [N]
 
   const GearParameters dimensions_;
   const RingParameters ring_;
@@ -78,31 +79,31 @@ private:
   JointSensors sensors_;
   Comparison now_;
   double motor_torque_{};  // [N.m]
-  SinceMessage since_;     // that of Health
+  SinceMessage since_;     // ranges for Health
   std::uint64_t failures_{};
 };
 
-/// Periods of a topic, counted from the epoch: the same stamps begin the same periods, live and replayed.
+/// Periods of a topic, counted from the epoch: equal stamps begin equal periods, live and replayed.
 class StampPeriods
 {
 public:
   explicit StampPeriods(double rate) : length_(toStampLength(1.0 / rate)) {}  ///< [Hz]
 
-  /// Whether a stamp is the first in its period.
+  /// Whether the stamp is the first one in its period.
   bool begins(Stamp stamp)
   {
     const std::int64_t number = stamp / length_;
     return std::exchange(number_, number) != number;
   }
 
-  std::int64_t number() const { return number_; }  ///< of the last stamp's period
+  std::int64_t number() const { return number_; }  ///< number of the last stamp's period
 
 private:
   Stamp length_;  // [ns]
   std::int64_t number_{};
 };
 
-/// Names of the topics of TrackerOutputs below `joint_namespace`.
+/// Names of the topics of TrackerOutputs in `joint_namespace`.
 inline std::vector<std::string> trackerTopics(const std::string& joint_namespace)
 {
   std::vector<std::string> names;
@@ -114,11 +115,11 @@ inline std::vector<std::string> trackerTopics(const std::string& joint_namespace
   return names;
 }
 
-/// The topics of one joint beside a robot, each with a `Sink<Message>` that its messages go to. The ring is solved only
-/// for messages that are due and wanted.
+/// The topics of one joint beside a robot, each with a `Sink<Message>` for its messages. The ring is solved only for
+/// messages that are due and wanted.
 ///
-/// A sink is constructed from (context, topic's name, first message) and has `bool isWanted()`, `Message& message()`,
-/// to be filled, and `send()`.
+/// A sink is constructed from (context, topic name, first message). It has `bool isWanted()`, `Message& message()` to
+/// be filled, and `send()`.
 template <template <class> class Sink>
 class TrackerOutputs
 {
@@ -146,7 +147,7 @@ public:
   {
   }
 
-  /// After each comparison of the tracker.
+  /// Must be called after each comparison of the tracker.
   void offer(Stamp stamp, const Comparison& comparison, const Tracker& tracker)
   {
     if (comparison_.isWanted())
@@ -184,17 +185,17 @@ public:
     std::apply([&](auto&... topic) { (send(topic), ...); }, ring_topics_);
   }
 
-  /// `stamp`: of the last row that was judged.
+  /// `stamp`: stamp of the last judged row.
   void offer(Stamp stamp, const Verdict& verdict)
   {
     fillVerdict(stamp, verdict, verdict_.message());
     verdict_.send();
   }
 
-  std::uint64_t failures() const { return drive_.failures(); }  ///< instants without an equilibrium
+  std::uint64_t failures() const { return drive_.failures(); }  ///< number of instants without an equilibrium
 
 private:
-  /// A topic that the ring is solved for.
+  /// A topic whose messages need a solved ring.
   template <class Message>
   struct RingTopic
   {

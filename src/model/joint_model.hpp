@@ -11,26 +11,27 @@
 
 namespace hjt
 {
-/// External inputs of the joint, constant over a step.
+/// External inputs of the joint, constant during a step.
 struct JointInputs
 {
-  double load() const noexcept { return load_torque + arm_torque; }  ///< on the output [N.m]
+  double load() const noexcept { return load_torque + arm_torque; }  ///< sum of the torques on the output [N.m]
 
-  double motor_torque{};  ///< wanted of the drive at 25 degC, within its torque limit [N.m]
-  double load_torque{};   ///< external, at the output; > 0 resists positive motion [N.m]
+  double motor_torque{};  ///< torque wanted of the drive at 25 degC, within its torque limit [N.m]
+  double load_torque{};   ///< external torque at the output; > 0 resists positive motion [N.m]
   bool brake_engaged{};
-  double temperature{};  ///< of the grease [degC]
-  double arm_torque{};   ///< likewise of an arm around the joint, as it is at the step's end [N.m]
+  double temperature{};  ///< temperature of the grease [degC]
+  double arm_torque{};   ///< torque of the arm on the output at the end of the step; > 0 resists positive motion [N.m]
 };
 
-/// The whole joint: ring, motor, bearing, load, frictions. Solvers hold it const; JointFaults keeps one that changes.
+/// The whole joint: ring, motor, bearing, load, frictions. Solvers use it unchanged; JointFaults changes its own copy.
 struct JointModel
 {
   explicit JointModel(const Parameters& parameters);
 
-  Eigen::Vector2d inertia() const noexcept { return { motor.inertia(), load.inertia() }; }  ///< [kg.m^2]
+  /// moments of inertia of motor and output [kg.m^2]
+  Eigen::Vector2d inertia() const noexcept { return { motor.inertia(), load.inertia() }; }
 
-  /// Stored in ring, gravity and between magnets and slots [J].
+  /// Energy stored in ring, gravity and cogging [J].
   double storedEnergy(const RingForces& forces, const DrivePosition& position) const noexcept
   {
     return storedEnergy(summary(forces), position);
@@ -41,7 +42,7 @@ struct JointModel
            motor.coggingEnergy(position.wave_generator_angle);
   }
 
-  /// All torques but friction, on motor and output. `motor_torque`: of the drive; `load_torque`: as in JointInputs
+  /// All torques on motor and output except friction. `motor_torque`: of the drive; `load_torque`: as in JointInputs
   /// [N.m].
   Eigen::Vector2d torque(const RingResponse& ring_response, const DrivePosition& position, double motor_torque,
                          double load_torque) const noexcept
@@ -60,35 +61,36 @@ struct JointModel
     return response;
   }
 
-  /// Inputs of the friction besides the ring.
+  /// Inputs of the friction that the ring does not determine.
   struct Running
   {
-    Eigen::Vector2d speeds;  ///< of motor and output [rad/s]
-    double brake_torque;     ///< that the brake holds with now, motor side [N.m]
-    double viscosity;        ///< of the bearing's grease [m^2/s]
+    Eigen::Vector2d speeds;  ///< speeds of motor and output [rad/s]
+    double brake_torque;     ///< torque that the brake holds with at this instant, at the motor [N.m]
+    double viscosity;        ///< effective viscosity of the bearing's grease [m^2/s]
   };
 
-  /// Friction of outer race and flexing rim at the motor shaft [N.m]. `running`: rates of the ring's points by motor
-  /// angle while the output follows [m/rad].
+  /// Friction of outer race and flexing rim at the motor shaft [N.m]. `running`: derivatives of the ring's points by
+  /// motor angle if the output follows [m/rad].
   double ringTorque(const RingShape& shape, const RingForces& forces, const Eigen::VectorXd& running) const noexcept
   {
     return interface_friction.torque(shape, forces.of<WaveGeneratorContact>(), running) +
            flexing_loss.torque(shape, forces.of<RimBending>(), running);
   }
 
-  /// All friction but that of a cup with a state. `forces`: at the shape of the rates; `velocity_ratio`: output speed
-  /// over motor speed at constant load, from the ring's own stiffness [-].
+  /// All friction except that of a cup with a state. `forces`: at the shape of `rates`; `velocity_ratio`: output speed
+  /// over motor speed at constant load, from the stiffness of the ring [-].
   void friction(const RingForces& forces, const RingRates& rates, double velocity_ratio, const Running& running,
                 JointFriction& friction) const noexcept;
 
-  /// The same for other inputs at the same ring.
+  /// Updates the friction for other inputs at the same ring.
   void frictionAt(const Running& running, JointFriction& friction) const noexcept;
 
-  /// The same from a summary of the ring. `cup_slip`: mean rotation of the rim by motor and output angle [-].
+  /// All friction from a summary of the ring. `cup_slip`: derivatives of the rim's mean rotation by motor and output
+  /// angle [-].
   void friction(const RingFrictionResponse& ring_response, const Eigen::Vector2d& cup_slip, const Running& running,
                 JointFriction& friction) const noexcept;
 
-  /// Dry friction of the output's bearing and seals.
+  /// Adds the dry friction of the output's bearing and seals.
   void addOutput(JointFriction& friction) const noexcept;
 
   RingModel ring;

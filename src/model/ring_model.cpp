@@ -14,7 +14,7 @@ std::tuple<Elements...> makeElements(const Parameters& parameters, const ToothRi
   return std::tuple<Elements...>(Elements(parameters, rest)...);
 }
 
-/// Calls `add` with each of the elements, with the teeth only if they are in.
+/// Calls `add` with each element, with the teeth only if the circular spline is present.
 template <class Add>
 void forEach(const RingElements& elements, bool with_mesh, const Add& add) noexcept
 {
@@ -71,7 +71,7 @@ void RingModel::tangent(const RingShape& shape, const RingForces& forces, RingTa
 
 int RingModel::solvedTeeth() const noexcept
 {
-  constexpr int FEWEST = 16;  // fewest teeth of a half for CyclicSolver
+  constexpr int FEWEST = 16;  // least number of teeth of a half for CyclicSolver
   const bool repeats = std::apply([](const auto&... element) { return (element.repeats() && ...); }, elements_) &&
                        rest.teeth() >= FEWEST;
   return repeats ? rest.teeth() / 2 : rest.teeth();

@@ -17,20 +17,20 @@
 
 namespace hjt
 {
-/// All conservative elements of the ring, in the order in which they are summed. One is a class that has
+/// All conservative elements of the ring, in the order of summation. An element is a class with
 ///
 ///   constructor (const Parameters&, const ToothRing& rest)
 ///   struct Scratch { explicit Scratch(int teeth); void setZero() noexcept; void repeat() noexcept; }
 ///   void addForces(const RingShape&, const DrivePosition&, Scratch&, ForceSum&) const noexcept
 ///   void addTangent(const RingShape&, const Scratch&, RingTangent&) const noexcept: for the forces' shape
-///   bool repeats() const noexcept: it is the same again after half a turn, and adds what the solved teeth alone do;
-///                                  one that does not has the whole ring solved. `repeat` fills in the other half.
+///   bool repeats() const noexcept: whether its state repeats after half a turn, so that it adds for the solved teeth
+///                                  only. Otherwise the whole ring is solved. `repeat` computes the other half.
 ///
-/// where the scratch carries what the forces found over to the tangent, to friction and to outputs. docs/extending.md
-/// adds one.
+/// The scratch carries results of the forces to tangent, friction and outputs. docs/extending.md describes how to add
+/// an element.
 using RingElements = std::tuple<RimTension, RimBending, WaveGeneratorContact, CupTorsion, ToothMesh>;
 
-/// Sum over the elements, with the scratch of each.
+/// Sum over the elements, with the intermediate results of each.
 struct RingForces : ForceSum
 {
   explicit RingForces(int count) : ForceSum(count), scratch_(Scratches<RingElements>::make(count)) {}
@@ -41,7 +41,7 @@ struct RingForces : ForceSum
     std::apply([](auto&... scratch) { (scratch.setZero(), ...); }, scratch_);
   }
 
-  /// The whole ring's from those of its first half.
+  /// Extends the forces of the first half of the ring to the whole.
   void repeat() noexcept
   {
     ForceSum::repeat();
@@ -60,14 +60,14 @@ struct RingForces : ForceSum
     return std::get<typename Element::Scratch>(scratch_);
   }
 
-  /// Notes the shape that the forces are of; only in builds with assertions.
+  /// Stores a hash of the shape of these forces, in builds with assertions.
   void stamp([[maybe_unused]] const RingShape& shape) noexcept
   {
 #ifndef NDEBUG
     stamp_ = hash(shape);
 #endif
   }
-  /// Whether they are of this shape; always true in builds without assertions.
+  /// Whether the forces belong to this shape; always true in builds without assertions.
   bool areOf([[maybe_unused]] const RingShape& shape) const noexcept
   {
 #ifndef NDEBUG
@@ -87,7 +87,7 @@ private:
     static Type make(int teeth) { return Type(typename Elements::Scratch(teeth)...); }
   };
 
-  /// FNV-1a of the tooth points, bit by bit.
+  /// FNV-1a hash of the tooth points' bits.
   static std::uint64_t hash(const RingShape& shape) noexcept
   {
     std::uint64_t hash = 14695981039346656037U;
@@ -104,13 +104,13 @@ private:
   std::uint64_t stamp_{};
 };
 
-/// Another number after every change of a model, and after every assignment to it.
+/// A number that differs after every change of a model and after every assignment to it.
 class ModelVersion
 {
 public:
   ModelVersion() = default;
   ModelVersion(const ModelVersion&) = default;
-  ModelVersion& operator=(const ModelVersion&) noexcept  // NOLINT(cert-oop54-cpp): to itself is a change too
+  ModelVersion& operator=(const ModelVersion&) noexcept  // self-assignment is a change too
   {
     next();
     return *this;
@@ -125,28 +125,28 @@ private:
   std::uint64_t number_{};
 };
 
-/// All conservative elements on the ring.
+/// Sum of all conservative elements of the ring.
 ///
-/// Assignment, `edit` and `setMeshed` change the model, and each change gives it another version. Solvers compare
-/// versions to drop results of the model before.
+/// Assignment, `edit` and `setMeshed` change the model and its version. Solvers compare versions to discard results of
+/// an earlier model.
 class RingModel
 {
 public:
-  /// @throws ParameterError on a bad table of pitch errors.
+  /// @throws ParameterError if a table of pitch errors is invalid.
   explicit RingModel(const Parameters& parameters);
 
-  /// Forces and stored energy; of the teeth too unless the circular spline is not in yet. The shape's geometry must be
-  /// up to date.
+  /// Forces and stored energy, without the teeth while the circular spline is absent. The shape's geometry must be up
+  /// to date.
   void forces(const RingShape& shape, const DrivePosition& position, RingForces& forces,
               bool circular_spline_in = true) const noexcept;
 
-  /// Hessian of the stored energy, over the solved teeth; `forces` of the same shape.
+  /// Hessian of the stored energy by the solved teeth; `forces` must be of the same shape.
   void tangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const noexcept;
 
-  /// Teeth after which the drive repeats, turned by half a turn: N/2; or all N where it does not.
+  /// Number of teeth to solve: N/2 if the drive repeats after half a turn, else N.
   int solvedTeeth() const noexcept;
 
-  /// The ring at rest, every tooth paired with its nearest space.
+  /// The ring at rest, where every tooth faces its nearest space.
   RingShape restShape(const DrivePosition& position) const;
 
   template <class Element>
@@ -155,7 +155,7 @@ public:
     return std::get<Element>(elements_);
   }
 
-  /// An element, to change it now: the reference is good until the model is solved.
+  /// An element to be changed; the reference is valid until the next solve.
   template <class Element>
   Element& edit() noexcept
   {
@@ -163,7 +163,7 @@ public:
     return std::get<Element>(elements_);
   }
 
-  /// Whether the circular spline is there at all.
+  /// Whether the circular spline is present.
   bool meshed() const noexcept { return meshed_; }
   void setMeshed(bool meshed) noexcept
   {
@@ -182,31 +182,31 @@ private:
   ModelVersion version_;
 };
 
-/// Torques and stiffness of the ring in equilibrium at the joint's two angles, without friction.
+/// Torques and stiffness of the ring in equilibrium at the two angles of the joint, without friction.
 struct RingResponse
 {
-  double energy{};                 ///< stored [J]
-  double wave_generator_torque{};  ///< on the wave generator [N.m]
-  double output_torque{};          ///< on the circular spline [N.m]
+  double energy{};                 ///< stored energy [J]
+  double wave_generator_torque{};  ///< torque on the wave generator [N.m]
+  double output_torque{};          ///< torque on the circular spline [N.m]
   double velocity_ratio{};         ///< output speed over motor speed at constant load [-]
-  double output_stiffness{};       ///< of the output, the wave generator held [N.m/rad]
-  double motor_stiffness{};        ///< of the wave generator, the output held [N.m/rad]
+  double output_stiffness{};       ///< stiffness of the output with the wave generator held [N.m/rad]
+  double motor_stiffness{};        ///< stiffness of the wave generator with the output held [N.m/rad]
 };
 
-/// Friction of the ring in equilibrium, as it acts on the joint's two speeds.
+/// Friction of the ring in equilibrium, with respect to the two speeds of the joint.
 struct RingFrictionResponse
 {
-  /// Loaded flanks that slide alike, taken together: sum_i |F_i| |slip_i . (motor, output speed)|, exact while all
-  /// flanks of a group slide the same way.
+  /// Groups of loaded flanks with similar sliding: sum_i |F_i| |slip_i . (motor, output speed)|, exact if all flanks of
+  /// a group slide in the same direction.
   static constexpr int FLANK_GROUPS = 6;
   using Groups = Eigen::Array<double, FLANK_GROUPS, 1>;
 
-  double contact_force{};     ///< sum over all teeth: load of the wave generator's bearing [N]
-  double ring_torque{};       ///< at the motor shaft: outer race in the rim, flexing rim [N.m]
-  Eigen::Vector3d viscous;    ///< dashpots: motor-motor, motor-output, output-output [N.m.s/rad]
-  Groups flank_by_motor;      ///< sum of force times slip by motor angle [N.m]
-  Groups flank_by_output;     ///< by output angle
-  Groups rms_slip_by_motor;   ///< root mean square slip by motor angle [m/rad]
-  Groups rms_slip_by_output;  ///< by output angle
+  double contact_force{};     ///< load of the wave generator's bearing: sum over all teeth [N]
+  double ring_torque{};       ///< torque at the motor shaft of outer race and flexing rim [N.m]
+  Eigen::Vector3d viscous;    ///< damping of the dashpots: motor-motor, motor-output, output-output [N.m.s/rad]
+  Groups flank_by_motor;      ///< sum of force times slip per motor speed [N.m]
+  Groups flank_by_output;     ///< sum of force times slip per output speed [N.m]
+  Groups rms_slip_by_motor;   ///< root mean square slip per motor speed [m/rad]
+  Groups rms_slip_by_output;  ///< root mean square slip per output speed [m/rad]
 };
 }  // namespace hjt

@@ -9,7 +9,7 @@
 
 namespace hjt
 {
-/// Into the library's own value.
+/// Converts a Json to the library's value.
 struct JsonWriter
 {
   using Library = OrderedJson;

@@ -14,7 +14,7 @@
 
 namespace hjt
 {
-/// A JSON value to be written; objects keep the order of their members. A number that is not finite is written as null.
+/// A JSON value for output. Objects keep the order of their members. A number that is not finite is written as null.
 class Json
 {
 public:
@@ -49,10 +49,11 @@ public:
   {
   }
 
-  /// The member of this name, dots going deeper ("peak.torque"); made where it is missing.
+  /// The member of this name, made if missing; dots lead to members of members ("peak.torque").
   Json& operator[](const std::string& path);
 
-  /// Calls `visitor` with what it is: nullptr, bool, std::int64_t, double, text, std::vector<Json> or
+  /// Calls `visitor` with the content: nullptr, bool, std::int64_t, double, text, std::vector<Json> or
+  /// std::vector<Member>.
   /// std::vector<Member>.
   template <class Visitor>
   decltype(auto) visit(const Visitor& visitor) const
@@ -61,8 +62,8 @@ public:
   }
 
   std::string dump() const;       ///< indented document
-  double number() const;          ///< of a number or a truth value; else NaN
-  std::string shortText() const;  ///< for people: numbers with seven digits, truth as yes or no
+  double number() const;          ///< value of a number or truth value; else NaN
+  std::string shortText() const;  ///< text for people: numbers with seven digits, truth values as yes or no
 
 private:
   friend struct JsonWriter;

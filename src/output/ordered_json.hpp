@@ -14,18 +14,18 @@
 
 namespace hjt
 {
-/// The members of a JSON object in the order of their insertion. The library has such a map from 3.9 on; Ubuntu 20.04's
-/// is 3.7.
+/// Members of a JSON object in the order of insertion. The JSON library has such a map from version 3.9 on, but Ubuntu
+/// 20.04 has 3.7.
 template <class Key, class Value, class, class Allocator>
 class OrderedMembers : public std::list<std::pair<const Key, Value>, Allocator>
 {
 public:
-  // Names that the library prescribes.
+  // Names that the JSON library prescribes.
   // NOLINTBEGIN(readability-identifier-naming)
   using List = std::list<std::pair<const Key, Value>, Allocator>;
   using key_type = Key;
   using mapped_type = Value;
-  using key_compare = std::equal_to<Key>;  // keys are found by this alone
+  using key_compare = std::equal_to<Key>;  // comparison of keys
   using iterator = typename List::iterator;
   using const_iterator = typename List::const_iterator;
   // NOLINTEND(readability-identifier-naming)

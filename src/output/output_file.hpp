@@ -10,20 +10,20 @@
 
 namespace hjt
 {
-/// @throws InputError if `path` exists and `force` is not given, or is the file that is read from. An empty one, of an
-/// option that was left out, is none.
+/// @throws InputError if `path` is the input file, or exists and `force` is not given. An empty path, of an option that
+/// was
+/// not given, is accepted.
 void requireWritable(const std::string& path, bool force, const std::string& input = "");
 
-/// Makes the folder of a report, which has the file `data` and a page. @throws InputError if it cannot be made, or
-/// holds files and `force` is not given: an earlier report, or somebody's own.
+/// Makes the directory of a report, for the file `data` and a page. @throws InputError if it cannot be made, or
+/// contains files and `force` is not given.
 void prepareReport(const std::string& folder, const std::string& data, bool force);
 
-/// Brings what was printed to where it goes. @throws InputError if not all could be written.
+/// Flushes standard output. @throws InputError if not everything could be written.
 void finishStandardOutput();
 
-/// Writes a CSV file of numbers, each of which can be read back exactly. The file is named `PATH.NUMBER.part` until
-/// `close` gives it its name; without `close` the rows stay in the `.part`. A device, a pipe and standard output are
-/// written directly.
+/// Writes a CSV file of numbers that read back exactly. The file is named `PATH.NUMBER.part` until `close` renames it;
+/// without `close` the rows stay there. A device, a pipe and standard output are written directly.
 class CsvWriter
 {
 public:
@@ -35,24 +35,24 @@ public:
 
   void writeRow(const std::vector<double>& values);
 
-  /// @throws InputError if not all could be written.
+  /// @throws InputError if not everything could be written.
   void close();
 
 private:
-  /// @throws InputError if something was not written, for the reason in errno.
+  /// @throws InputError with the reason in errno if something was not written.
   void require(bool written) const;
 
-  /// A number as it was last written in a column, with the separator behind it.
+  /// Last text of a column's number, with the separator after it.
   struct Text
   {
     double value;
-    std::array<char, 32> digits;  // at most 24, and the separator
-    std::size_t size{};           // zero: none yet
+    std::array<char, 32> digits;  // at most 24 digits, and the separator
+    std::size_t size{};           // zero: no text yet
   };
 
   const std::string path_;
-  std::string target_;   // behind links
-  std::string written_;  // where it is written
+  std::string target_;   // target after resolving links
+  std::string written_;  // path of the file that is written
   bool has_rows_{};
   std::vector<Text> texts_;
   std::vector<char> line_;

@@ -50,7 +50,7 @@ void InterruptScope::catchSignal(Caught& caught, int signal)
   action.sa_handler = [](int number) { g_signal = number; };
   action.sa_flags = SA_RESETHAND;
   sigaction(signal, nullptr, &caught.before);
-  if (signal != SIGHUP || caught.before.sa_handler != SIG_IGN)  // which it is below nohup
+  if (signal != SIGHUP || caught.before.sa_handler != SIG_IGN)  // nohup ignores SIGHUP
   {
     sigaction(signal, &action, nullptr);
     caught.signal = signal;
@@ -67,17 +67,17 @@ void warn(std::uint64_t count, const std::string& what)
 
 void warnOf(const TwinCounters& counters)
 {
-  warn(counters.input.not_finite, "inputs were not finite and refused");
-  warn(counters.input.overflow, "inputs were dropped: more than the queue holds");
+  warn(counters.input.not_finite, "inputs were refused because they were not finite");
+  warn(counters.input.overflow, "inputs were dropped because the queue was full");
   warn(counters.torque_clamped, "steps had a motor torque command beyond motor.torque_limit; it was clamped");
   warn(counters.load_clamped, "steps had a load torque beyond output.load_torque_limit; it was clamped");
   warn(counters.overloads, "steps had a torque at the joint beyond output.torque_limit");
-  warn(counters.speed_limited, "steps at motor.speed_limit; the drive held torque back");
+  warn(counters.speed_limited, "steps were at motor.speed_limit, where the drive reduces its torque");
   warn(counters.command_timeouts, "times the motor torque command timed out (input.command_timeout) and became zero");
   warn(counters.step_cuts, "steps needed a shorter path to converge");
-  warn(counters.jumps, "steps made a tooth jump to another space, through a tip");
+  warn(counters.jumps, "steps had a tooth that jumped through a tip to another space");
   warn(counters.coarse_steps, "steps were too long for the joint's fastest natural mode; raise solver.rate");
-  warn(counters.solver_failures, "steps did not converge; the last good state was held");
+  warn(counters.solver_failures, "steps did not converge; the last converged state was kept");
 }
 
 int RunSummary::report(const Twin& twin, bool json) const

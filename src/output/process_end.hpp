@@ -11,23 +11,22 @@
 
 namespace hjt
 {
-/// The process' answer to the shell.
 enum ExitCode : int
 {
   EXIT_DONE = 0,
   EXIT_FAILED = 1,
   EXIT_USAGE = 2,
-  EXIT_DEPARTS = 3,     ///< a verdict is as bad as the user asked to be told
-  EXIT_NOT_JUDGED = 4,  ///< nothing could be judged, and the user asked for a verdict
-  EXIT_STOPPED = 5,     ///< the arm stopped by itself
-  EXIT_BY_SIGNAL = 128  ///< plus the signal's number
+  EXIT_DEPARTS = 3,     ///< a verdict has at least the level of the user's option
+  EXIT_NOT_JUDGED = 4,  ///< nothing could be judged, although the user's option requires a verdict
+  EXIT_STOPPED = 5,     ///< the arm has stopped itself
+  EXIT_BY_SIGNAL = 128  ///< plus the number of the signal
 };
 
-/// The signal that came within an InterruptScope, or 0.
+/// Signal that arrived within an InterruptScope, or 0.
 int interruptSignal();
 
-/// While it lives, SIGINT, SIGTERM and SIGHUP end loops that ask for `interruptSignal` instead of the process, so
-/// that files are closed; a second one ends the process. A scope within another changes nothing.
+/// During its lifetime, SIGINT, SIGTERM and SIGHUP end loops that check `interruptSignal`, so that files are closed. A
+/// second signal ends the process. A nested scope has no effect.
 class InterruptScope
 {
 public:
@@ -48,30 +47,29 @@ private:
   static void catchSignal(Caught& caught, int signal);
 
   const bool is_outer_;
-  std::array<Caught, 3> caught_{};  // an entry with signal 0 catches nothing
+  std::array<Caught, 3> caught_{};  // signal 0: no signal is caught
 };
 
-/// Start of the simulated time where no recording gives one, so that stamps are valid ROS times: 2001-09-09 01:46:40
-/// UTC.
+/// Start of the simulated time without a recording: 2001-09-09 01:46:40 UTC, so that stamps are valid ROS times.
 constexpr Stamp SIMULATION_EPOCH = 1'000'000'000'000'000'000;
 
-/// Tells on stderr of a number of things, unless it is 0.
+/// Warns on stderr of a number of events, unless it is 0.
 void warn(std::uint64_t count, const std::string& what);
 
-/// Tells on stderr of all that was not as it should be.
+/// Warns on stderr of all counted events of a run.
 void warnOf(const TwinCounters& counters);
 
-/// How a run of the twin ended, for the user and for programs.
+/// Report on the end of a twin's run, for people and programs.
 struct RunSummary
 {
-  std::string output;  ///< file written
+  std::string output;  ///< path of the written file
   Stamp begin{};
   std::chrono::steady_clock::time_point started{ std::chrono::steady_clock::now() };
 
-  /// Prints (JSON on stdout if asked), warns on stderr of all that was not as it should be, and gives the exit code.
+  /// Prints the report (as JSON on stdout if `json`), warns on stderr, and returns the exit code.
   int report(const Twin& twin, bool json) const;
 };
 
-/// Names the file that was written to people, tells of an interrupt, and gives the exit code.
+/// Tells people the name of the written file and an interrupt, and returns the exit code.
 int reportWritten(const std::string& output, bool json);
 }  // namespace hjt

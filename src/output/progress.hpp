@@ -9,8 +9,8 @@
 
 namespace hjt
 {
-/// Prints the progress of a long step to stderr: a bar on a terminal, else a line every few seconds; nothing if it is
-/// quick.
+/// Prints the progress of a long step to stderr: a bar on a terminal, otherwise a line every few seconds; nothing for a
+/// quick step.
 class Progress
 {
 public:
@@ -32,32 +32,33 @@ private:
   const Clock::time_point start_{ Clock::now() };
   Clock::time_point next_;
   Clock::time_point last_look_{ start_ };
-  unsigned calls_{};  // since then
+  unsigned calls_{};  // calls since the last reading of the clock
   unsigned calls_per_look_{ 1 };
   bool bar_shown_{};
 };
 
-/// A progress that lasts as long as the function: `result = analyse(..., showProgress("turning"));`
+/// A progress for the duration of a call: `result = analyse(..., showProgress("turning"));`
 std::function<void(double)> showProgress(const std::string& what);
 
-/// How the caller of a long function follows and ends it. What a function of these throws ends it at once.
+/// Callbacks by which the caller follows and ends a long function. An exception of a callback ends the function at
+/// once.
 struct Watch
 {
-  /// A step of this name begins; gives the function that is told how far it is, 0 ... 1.
+  /// Called when a step with this name begins; returns the function that receives the step's progress, 0 ... 1.
   std::function<std::function<void(double)>(const std::string&)> progress{ [](const std::string&)
                                                                            { return [](double) {}; } };
-  /// Asked at every row and between the steps; true: the rest is left out and files are closed.
+  /// Called at every row and between steps; true ends the function with closed files.
   std::function<bool()> stopped{ [] { return false; } };
-  /// A remark for the user, in a sentence without a full stop.
+  /// Receives a note for the user: a sentence without full stop.
   std::function<void(const std::string&)> notice{ [](const std::string&) {} };
 };
 
-/// The caller stopped a step that has no result.
+/// Thrown if the caller stops a step without a result.
 struct Stopped
 {
 };
 
-/// Response surfaces from the user's cache. Building throws `Stopped`.
+/// Response surfaces from the user's cache. Building them throws `Stopped` if the watch stops.
 inline SurfaceSource surfaceSource(const Watch& watch)
 {
   const auto show = [update = watch.progress("building the response surface"), stopped = watch.stopped](double done)

@@ -39,7 +39,7 @@ void printWrapped(const std::string& text, std::size_t indent)
   {
     const std::size_t room = WIDTH - margin.size();
     const std::size_t blank = text.size() - begin > room ? text.rfind(' ', begin + room) : text.size();
-    // A word longer than the line stays whole.
+    // A word longer than the line is not divided.
     const std::size_t end = blank == std::string::npos || blank <= begin ? text.find(' ', begin) : blank;
     std::cout << margin << text.substr(begin, end - begin) << '\n';
     begin = end == std::string::npos ? text.size() : end + 1;

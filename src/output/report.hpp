@@ -11,10 +11,10 @@
 
 namespace hjt
 {
-/// A number for people: seven digits.
+/// Text of a number for people: seven digits.
 std::string shortNumber(double value);
 
-/// Prints named values with units, one a line.
+/// Named values with units, printed one a line.
 struct NamedValue
 {
   std::string name;
@@ -23,26 +23,25 @@ struct NamedValue
 };
 void printValues(const std::vector<NamedValue>& values);
 
-/// Prints a text in lines of at most 100 columns, those after the first indented by `indent` more than it.
+/// Prints a text in lines of at most 100 columns. All lines except the first have `indent` more columns of indentation.
 void printWrapped(const std::string& text, std::size_t indent);
 
-/// Width of a column of numbers.
 constexpr std::size_t NUMBER_WIDTH = 14;
 
-/// Prints rows under headings ("torque [N.m]"), columns aligned, each at least so wide.
+/// Prints rows under headings ("torque [N.m]") in aligned columns of at least this width.
 void printTable(const std::vector<std::string>& headings, const std::vector<std::vector<std::string>>& rows,
                 std::size_t least_width = NUMBER_WIDTH);
 
-/// One column of a table of `Row`s.
+/// A column of a table with rows of type `Row`.
 template <class Row>
 struct Column
 {
-  std::string key;                        ///< in documents and files; empty: left out there
-  std::function<Json(const Row&)> value;  ///< a member, or what a function makes of the row
-  std::string heading{};                  ///< for people, with the unit: "torque [N.m]"; empty: left out there
+  std::string key;                        ///< key in documents and files; empty: not there
+  std::function<Json(const Row&)> value;  ///< member of the row, or a function of it
+  std::string heading{};                  ///< heading for people, with the unit: "torque [N.m]"; empty: not shown
 };
 
-/// Rows of named values, for people, as a document or as a file.
+/// A table with named columns, for people, as a document or as a file.
 class Table
 {
 public:
@@ -65,9 +64,9 @@ public:
   }
 
   bool empty() const { return cells_.empty(); }
-  Json rows() const;                                         ///< one object a row
-  Json columns() const;                                      ///< one array a column
-  void print(std::size_t least_width = NUMBER_WIDTH) const;  ///< each column at least so wide
+  Json rows() const;                                         ///< one object for each row
+  Json columns() const;                                      ///< one array for each column
+  void print(std::size_t least_width = NUMBER_WIDTH) const;  ///< columns of at least this width
 
 private:
   std::vector<std::string> keys_;
@@ -75,7 +74,7 @@ private:
   std::vector<std::vector<Json>> cells_;
 };
 
-/// Columns of numbers as a CSV file, row by row.
+/// A CSV file of numbers, written row by row.
 template <class Row>
 class TableFile
 {
@@ -96,7 +95,7 @@ public:
     csv_.writeRow(values);
   }
 
-  /// @throws InputError if not all could be written.
+  /// @throws InputError if not everything could be written.
   void close() { csv_.close(); }
 
 private:
@@ -114,8 +113,8 @@ private:
   CsvWriter csv_;
 };
 
-/// All rows as a CSV file; none if the path is empty, of an option that was left out. @throws InputError if it cannot
-/// be written.
+/// Writes all rows to a CSV file, unless the path is empty because the option was not given. @throws InputError if that
+/// fails.
 template <class Row, class Rows>
 void writeTable(const std::string& path, const std::vector<Column<Row>>& columns, const Rows& rows)
 {
@@ -131,11 +130,10 @@ void writeTable(const std::string& path, const std::vector<Column<Row>>& columns
   file.close();
 }
 
-/// One value of a report.
 struct ReportLine
 {
-  std::string key;    ///< in the document, dots going deeper; empty: for people only
-  std::string label;  ///< for people; empty: in the document only
+  std::string key;    ///< key in the document, with dots for members of members; empty: only for people
+  std::string label;  ///< label for people; empty: only in the document
   Json value;
   std::string unit{};
 };
@@ -146,7 +144,6 @@ struct ReportTable
   Table table;
 };
 
-/// Result of a function.
 struct Report
 {
   std::vector<ReportLine> lines;
@@ -155,6 +152,6 @@ struct Report
 
 Json documentOf(const Report& report);
 
-/// On stdout as lines and tables for people, or as one JSON document.
+/// Prints to stdout, as lines and tables for people or as one JSON document.
 void printReport(bool json, const std::vector<ReportLine>& lines, const std::vector<ReportTable>& tables = {});
 }  // namespace hjt

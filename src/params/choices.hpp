@@ -8,7 +8,7 @@
 
 namespace hjt
 {
-/// How each choice is spelt in configuration; the overload is picked by the enumeration's type.
+/// Spelling of each choice in the configuration. The type of the enumeration selects the overload.
 template <class Choice, std::size_t N>
 using ChoiceNames = std::array<std::pair<const char*, Choice>, N>;
 

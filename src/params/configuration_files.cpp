@@ -27,7 +27,7 @@ namespace
 {
 namespace fs = std::filesystem;
 
-/// List of the default configuration's files, in their directory.
+/// File in the configuration's directory that lists the files of the default configuration.
 constexpr const char* STAGES = "stages";
 
 fs::path findDirectory(const std::string& given)
@@ -53,9 +53,8 @@ fs::path libraryDirectory()
 
 fs::path packageDirectory()
 {
-  // PREFIX/share/harmonic_joint_twin belongs to the executable PREFIX/lib/harmonic_joint_twin/joint_twin, and to the
-  // library PREFIX/lib/libharmonic_joint_twin_core.so where another program has loaded it. In a development space its
-  // config is a link to that of the sources.
+  // The executable PREFIX/lib/harmonic_joint_twin/joint_twin and the library PREFIX/lib/libharmonic_joint_twin_core.so
+  // belong to PREFIX/share/harmonic_joint_twin. In a development space its config is a link to that of the sources.
   std::error_code error;
   const fs::path executable = fs::read_symlink("/proc/self/exe", error);
   const fs::path libraries = libraryDirectory();
@@ -67,9 +66,9 @@ fs::path packageDirectory()
       return config.parent_path();
     }
   }
-  throw ParameterError("neither " + executable.string() + " nor " + libraries.string() +
-                       " lies in an installation or development space of harmonic_joint_twin: no default configuration "
-                       "found; name its directory with --config-dir or HJT_CONFIG_DIR");
+  throw ParameterError("no default configuration found: neither " + executable.string() + " nor " + libraries.string() +
+                       " is in an installation or development space of harmonic_joint_twin; give the configuration's "
+                       "directory with --config-dir or HJT_CONFIG_DIR");
 }
 
 fs::path configurationDirectory(const std::string& given)
@@ -78,7 +77,7 @@ fs::path configurationDirectory(const std::string& given)
   if (!fs::exists(directory / STAGES))
   {
     throw ParameterError("no default configuration in '" + directory.string() +
-                         "': name its directory with --config-dir or HJT_CONFIG_DIR");
+                         "'; give its directory with --config-dir or HJT_CONFIG_DIR");
   }
   return fs::absolute(directory);
 }
@@ -117,7 +116,7 @@ namespace
 {
 using Value = decltype(ParameterValue::value);
 
-/// PyYAML reads these as numbers, though hardly the ones that were meant: octal, hexadecimal, binary, 1_000, 1:30.
+/// Whether PyYAML reads the text as a number that a user rarely means: octal, hexadecimal, binary, 1_000, 1:30.
 bool isTreacherous(const std::string& text)
 {
   static const std::regex NUMBER(R"([-+]?(0[0-7_]+|0b[01_]+|0x[0-9a-fA-F_]+|[0-9][0-9_]*(:[0-5]?[0-9])+(\.[0-9_]*)?)"
@@ -130,7 +129,7 @@ bool isOneOf(const std::string& text, std::initializer_list<const char*> spellin
   return std::find(spellings.begin(), spellings.end(), text) != spellings.end();
 }
 
-/// `text` between "deg(" and ")": rosparam's own addition for angles.
+/// The number in "deg(...)", rosparam's extension for angles in degrees.
 std::optional<double> degrees(const std::string& text)
 {
   const std::string begin = "deg(";
@@ -149,8 +148,8 @@ std::string originOf(const std::string& source, const YAML::Node& node)
   return source + ":" + std::to_string(node.Mark().line + 1);
 }
 
-/// The value of an unquoted text: by rosparam's rules, but that every decimal number is one. rosparam takes 1e-6 for a
-/// text, which FieldReader reads alike.
+/// Value of an unquoted text. The rules are those of rosparam, except that every decimal number is a number: rosparam
+/// reads 1e-6 as a text.
 Value plainValue(const std::string& text, const std::string& origin, const std::string& key)
 {
   if (isOneOf(text, { "", "~", "null", "Null", "NULL" }))
@@ -193,7 +192,7 @@ Value plainValue(const std::string& text, const std::string& origin, const std::
 
 Value scalarValue(const YAML::Node& node, const std::string& origin, const std::string& key)
 {
-  // yaml-cpp tags a quoted text "!", a plain one "?".
+  // yaml-cpp gives a quoted text the tag "!" and a plain one "?".
   return parseScalar(node.Scalar(), node.Tag() == "!", key, origin).value;
 }
 
@@ -246,12 +245,12 @@ void readSection(const std::string& source, const std::string& section, const YA
     const std::string key = section + "." + keyText(entry.first, origin);
     if (!read.emplace(key, readValue(entry.second, origin, key)).second)
     {
-      fail(origin, key + " stands twice in this file (first at " + read.at(key).origin + ")");
+      fail(origin, key + " occurs twice in this file (first at " + read.at(key).origin + ")");
     }
   }
 }
 
-/// The list of faults: FAULTS.N.key each, N from 0 on. It replaces a list read before.
+/// Reads the list of faults as FAULTS.N.key, N from 0. It replaces an earlier list.
 void readFaults(const std::string& source, const YAML::Node& list, ParameterMap& read)
 {
   int number = 0;
@@ -266,12 +265,12 @@ void readFaults(const std::string& source, const YAML::Node& list, ParameterMap&
   }
 }
 
-/// What a file says.
+/// Content of a configuration file.
 struct Document
 {
   std::string text;
   ParameterMap values;
-  bool has_faults{};  // a list of them, which may be empty
+  bool has_faults{};  // the file has a list of faults, which may be empty
 };
 
 Document readDocument(const std::string& source, const YAML::Node& root)
@@ -345,7 +344,7 @@ void readYamlFile(const std::string& path, ParameterMap& map)
   {
     fail(path, "cannot be read: " + reason);
   }
-  // An arm's joints, and all arms, read the same files.
+  // All joints of an arm, and all arms, read the same files.
   thread_local std::map<std::string, Document> known;
   Document& document = known[path];
   if (document.text != *text)

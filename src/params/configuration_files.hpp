@@ -8,25 +8,25 @@
 
 namespace hjt
 {
-/// Folder of the library that this function is in.
+/// Directory of the library that contains this function.
 std::filesystem::path libraryDirectory();
 
-/// Folder with config/ and scripts/: in the installation, or in the sources of a development space.
-/// @throws ParameterError if the program lies in neither.
+/// Directory with config/ and scripts/: that of the installation, or the sources of a development space.
+/// @throws ParameterError if the program is in neither.
 std::filesystem::path packageDirectory();
 
-/// The directory of the default configuration: as given, else HJT_CONFIG_DIR, else of the package.
+/// Directory of the default configuration: `given`, else HJT_CONFIG_DIR, else the package's.
 /// @throws ParameterError if there is none.
 std::filesystem::path configurationDirectory(const std::string& given);
 
-/// A configuration file as given, else beside the default configuration: `config/x.yaml` and `joints/x.yaml` work from
-/// anywhere.
+/// Finds a configuration file: the path as given, else relative to the default configuration. `config/x.yaml` and
+/// `joints/x.yaml` therefore work in any working directory.
 std::string findConfiguration(const std::string& name, const std::filesystem::path& directory);
 
-/// Puts the values over those of `map`.
+/// Replaces the values of `map` by `values`.
 void putOver(const ParameterMap& values, ParameterMap& map);
 
-/// Where the default configuration is another than this process finds by itself: files that parameters name are looked
-/// for beside it too.
+/// Registers a default configuration that the process would not find itself, so that files named by parameters are
+/// found beside it.
 void findNamedFiles(const std::filesystem::path& directory, ParameterMap& map);
 }  // namespace hjt

@@ -23,11 +23,11 @@ namespace hjt
 /// Allowed form of each entry of FAULTS.
 constexpr const char* FAULT_FORM = "{kind: ..., severity: ..., place: ..., onset: ...}";
 
-/// Fills one field after the other from the map; collects what is wrong, so that the user sees all of it at once.
+/// Fills the fields from the map and collects all errors, so that the user sees them at once.
 class FieldReader
 {
 public:
-  /// `file`: of the map's values, where all are of one; for what is missing.
+  /// `file`: source of the map's values if it is a single one; texts on missing keys name it.
   explicit FieldReader(const ParameterMap& map, std::string file = "") : map_(map), file_(std::move(file)) {}
 
   void operator()(const std::string& key, const char* unit, double& field, const Range& range, const Meaning& meaning)
@@ -66,7 +66,7 @@ public:
     readList(key, unit, field.data(), N, range, meaning);
   }
 
-  /// Reads as many numbers as the field has.
+  /// Reads as many numbers as `field` has.
   void operator()(const std::string& key, const char* unit, std::vector<double>& field, const Range& range,
                   const Meaning& meaning)
   {
@@ -109,7 +109,6 @@ public:
     mistyped(key, map_.at(key), names);
   }
 
-  /// The list of faults, its numbers in a row from 0 on.
   void readFaults(std::vector<Fault>& faults)
   {
     for (int number = 0;; ++number)
@@ -132,13 +131,14 @@ public:
         }
       }
       (*this)(key + "severity", "-", fault.severity, Range{ 0.0, 1.0 }, "severity, see fault_scale");
-      (*this)(key + "place", "-", fault.place, Range{ WHOLE_MEMBER, 4000 }, "where; -1: the whole member");
-      (*this)(key + "onset", "s", fault.onset, Range{ 0.0, 1e9 }, "after the start");
+      (*this)(key + "place", "-", fault.place, Range{ WHOLE_MEMBER, 4000 },
+              "tooth, segment, lobe or ball; -1: the whole member");
+      (*this)(key + "onset", "s", fault.onset, Range{ 0.0, 1e9 }, "delay after the start");
       faults.push_back(fault);
     }
   }
 
-  /// The configured value of `key` must be something else: `what`.
+  /// Adds the error that the value of `key` must be `what`.
   void refuse(const std::string& key, const std::string& what) { mustBe(key, map_.at(key), what); }
 
   void refuseUnknownKeys()
@@ -164,14 +164,14 @@ public:
 private:
   static std::string withoutSection(const std::string& key) { return key.substr(key.find('.') + 1); }
 
-  /// " (did you mean gear.wave_amplitude?)", or nothing if no key is near.
+  /// Suggestion " (did you mean gear.wave_amplitude?)"; empty if no key is similar.
   static std::string suggestion(const std::string& unknown, const std::set<std::string>& known)
   {
     std::string nearest;
     std::size_t distance = std::max<std::size_t>(2, withoutSection(unknown).size() / 3) + 1;
     for (const std::string& key : known)
     {
-      // The right name in the wrong section counts as one edit.
+      // The right name in a wrong section counts as one edit.
       const bool other_section = withoutSection(key) == withoutSection(unknown);
       const std::size_t edits = other_section ? 1 : editDistance(unknown, key);
       if (edits < distance)
@@ -183,13 +183,13 @@ private:
     return nearest.empty() ? "" : " (did you mean " + nearest + "?)";
   }
 
-  /// Allowed form of `key`, if known keys stand below it or it is the list of faults; else nothing.
+  /// Allowed form of `key` if it is a section or the list of faults; else empty.
   std::string groupKind(const std::string& key) const
   {
     const auto below = known_.lower_bound(key + '.');
     if (below != known_.end() && below->rfind(key + '.', 0) == 0)
     {
-      return "keys and values, e.g. " + *below;
+      return "keys and values, for example " + *below;
     }
     return key == FAULTS ? std::string("a list of ") + FAULT_FORM : "";
   }
@@ -271,7 +271,7 @@ private:
   bool inRange(const std::string& key, const char* unit, const ParameterValue& configured, double value,
                const Range& range)
   {
-    // Written so that NaN fails.
+    // This form of the comparison rejects NaN.
     if (std::isfinite(value) && value >= range.min && value <= range.max)
     {
       return true;
@@ -300,7 +300,7 @@ private:
   std::vector<std::string> errors_;
 };
 
-/// @throws ParameterError of all the errors, one a line.
+/// @throws ParameterError with all errors, one per line.
 inline void throwIfAny(const std::vector<std::string>& errors)
 {
   if (!errors.empty())

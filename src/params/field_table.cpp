@@ -15,7 +15,7 @@ namespace hjt
 {
 namespace
 {
-/// Makes a row of each field.
+/// Makes a FieldRow of each field.
 class RowMaker
 {
 public:
@@ -57,7 +57,7 @@ public:
   std::vector<FieldRow> rows;
 };
 
-/// `section.key: value  # [unit] meaning`.
+/// Line `section.key: value  # [unit] meaning`.
 std::string lineOf(const FieldRow& row)
 {
   return row.key + ": " + row.value + "  # [" + row.unit + "] " + row.meaning.text + '\n';
@@ -90,8 +90,9 @@ std::string describeParameters(const Parameters& parameters)
     const std::string key = faultKey(number++) + '.';
     maker(key + "kind", std::string(describe(fault.kind).name), "kind of the fault");
     maker(key + "severity", "-", fault.severity, {}, "severity");
-    maker(key + "place", placeName(describe(fault.kind).place), fault.place, {}, "where; -1: the whole member");
-    maker(key + "onset", "s", fault.onset, {}, "after the start");
+    maker(key + "place", placeName(describe(fault.kind).place), fault.place, {},
+          "tooth, segment, lobe or ball; -1: the whole member");
+    maker(key + "onset", "s", fault.onset, {}, "delay after the start");
   }
   std::string text;
   for (const FieldRow& row : maker.rows)
@@ -125,7 +126,7 @@ std::string parameterTableMarkdown()
 
 namespace
 {
-/// Hashes the values of the requested fields; their order stands for their keys.
+/// Hashes the values of the requested fields in a fixed order, without their keys.
 class FieldHasher
 {
 public:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// @file Rows of the field table (params/field_table.hpp): of the gear, its stress and its faults.
+/// @file Rows of the table of parameters (params/field_table.hpp) for the gear, its stress and its faults.
 
 #include <limits>
 
@@ -10,18 +10,18 @@
 
 namespace hjt
 {
-/// Which response surface tables depend on a parameter.
+/// Response surfaces that depend on a parameter.
 enum class Shapes
 {
-  SURFACE,  ///< all: it changes the equilibrium of the ring, or its friction by angle
-  FAULTS,   ///< those of a drive with faults
-  OTHERS    ///< none, or it is a friction that is added after a table is read
+  SURFACE,  ///< all: the parameter changes the ring's equilibrium, or friction that depends on the angle
+  FAULTS,   ///< only those of a drive with faults
+  OTHERS    ///< none: the parameter does not matter, or is a friction that the step adds to the table's values
 };
 
-/// Meaning of a parameter, and the tables that depend on it: all unless stated otherwise.
+/// Meaning of a parameter, and the response surfaces that depend on it. The default is all surfaces.
 struct Meaning
 {
-  // NOLINTNEXTLINE(google-explicit-constructor): most rows of the table give a text alone
+  // most rows of the table give only a text
   Meaning(const char* meaning, Shapes shaped = Shapes::SURFACE) : text(meaning), shapes(shaped) {}
 
   const char* text;
@@ -39,19 +39,21 @@ inline Meaning ofOthers(const char* text)
 }
 
 constexpr double NO_LIMIT = std::numeric_limits<double>::max();
-constexpr Range ERROR_SHIFT{ -1e-4, 1e-4 };  ///< for errors of manufacture and fit [m]
+constexpr Range ERROR_SHIFT{ -1e-4, 1e-4 };  ///< range of errors of manufacture and fit [m]
 
 template <class P, class Visitor>
 void visitGear(P& p, Visitor& visit)
 {
-  visit("gear.teeth_flexspline", "-", p.gear.teeth_flexspline, Range{ 8, 4000 }, "teeth of the flexspline, even");
+  visit("gear.teeth_flexspline", "-", p.gear.teeth_flexspline, Range{ 8, 4000 },
+        "number of teeth of the flexspline, even");
   visit("gear.teeth_circular_spline", "-", p.gear.teeth_circular_spline, Range{ 10, 4002 },
-        "teeth of the circular spline: two more than the flexspline");
+        "number of teeth of the circular spline: two more than the flexspline");
   visit("gear.flexspline_inner_radius", "m", p.gear.flexspline_inner_radius, Range{ 1e-3, 1.0 },
         "inner radius of the undeformed flexspline, also the mean radius of the wave generator");
   visit("gear.wave_amplitude", "m", p.gear.wave_amplitude, Range{ 0.0, 1e-2 },
         "w0: the wave generator's semi-axes are the inner radius plus and minus w0");
-  visit("gear.rim_thickness", "m", p.gear.rim_thickness, Range{ 1e-5, 1e-1 }, "flexspline rim under the teeth");
+  visit("gear.rim_thickness", "m", p.gear.rim_thickness, Range{ 1e-5, 1e-1 },
+        "thickness of the flexspline's rim under the teeth");
   visit("gear.tooth_height_flexspline", "m", p.gear.tooth_height_flexspline, Range{ 1e-5, 1e-1 },
         "height of a flexspline tooth");
   visit("gear.tip_radius_circular_spline", "m", p.gear.tip_radius_circular_spline, Range{ 1e-3, 1.0 },
@@ -66,67 +68,70 @@ void visitManufacture(P& p, Visitor& visit)
   visit("manufacture.flexspline_pitch_deviation", "m", p.manufacture.flexspline_pitch.deviation, pitch_deviation,
         "total cumulative pitch deviation Fp of the flexspline's teeth at mid-height");
   visit("manufacture.flexspline_pitch_seed", "-", p.manufacture.flexspline_pitch.seed, seed,
-        "which of the gears with that deviation");
+        "seed of the pitch deviations: each seed stands for one gear");
   visit("manufacture.flexspline_pitch_table", p.manufacture.flexspline_pitch.table,
-        "none, or the absolute path of a CSV file (tooth, deviation [m]) in place of deviation and seed");
+        "none, or the absolute path of a CSV file (tooth, deviation [m]) that replaces deviation and seed");
   visit("manufacture.circular_spline_pitch_deviation", "m", p.manufacture.circular_spline_pitch.deviation,
-        pitch_deviation, "total cumulative pitch deviation Fp of the circular spline's spaces");
+        pitch_deviation, "total cumulative pitch deviation Fp of the circular spline's spaces at mid-height");
   visit("manufacture.circular_spline_pitch_seed", "-", p.manufacture.circular_spline_pitch.seed, seed,
-        "which of the gears with that deviation");
+        "seed of the pitch deviations: each seed stands for one gear");
   visit("manufacture.circular_spline_pitch_table", p.manufacture.circular_spline_pitch.table,
-        "none, or the absolute path of a CSV file (tooth, deviation [m]) in place of deviation and seed");
+        "none, or the absolute path of a CSV file (space, deviation [m]) that replaces deviation and seed");
   visit("manufacture.flexspline_eccentricity", "m", p.manufacture.flexspline_eccentricity, ERROR_SHIFT,
-        "run-out: centre of the flexspline's teeth from the axis of its bore, at rest with the housing: x, y");
+        "x and y of the centre of the flexspline's teeth from the axis of its bore, in the axes of the housing");
   visit("manufacture.circular_spline_eccentricity", "m", p.manufacture.circular_spline_eccentricity, ERROR_SHIFT,
-        "centre of the spaces from the output's axis, turning with the output: x, y at output angle 0");
-  visit(
-      "manufacture.circular_spline_ellipticity", "m", p.manufacture.circular_spline_ellipticity, ERROR_SHIFT,
-      "out-of-round: the radius grows by first cos 2a + second sin 2a, a the angle from space 0; bent, not stretched");
+        "x and y of the centre of the circular spline's spaces from the output's axis, at output angle 0");
+  visit("manufacture.circular_spline_ellipticity", "m", p.manufacture.circular_spline_ellipticity, ERROR_SHIFT,
+        "out-of-round of the bent circular spline: first cos 2a + second sin 2a of the radius, a = angle from space 0");
   visit("manufacture.wave_generator_eccentricity", "m", p.manufacture.wave_generator_eccentricity, ERROR_SHIFT,
-        "centre of the ellipse from the motor's axis, turning with the motor: along the major, along the minor axis");
+        "centre of the wave generator's ellipse from the motor's axis, along the major and the minor axis");
   visit("manufacture.wave_generator_ellipticity", "m", p.manufacture.wave_generator_ellipticity, ERROR_SHIFT,
-        "excess of the wave generator's amplitude over gear.wave_amplitude, for which the teeth were cut");
+        "amplitude of the wave generator minus gear.wave_amplitude, to which the teeth were cut");
 }
 
 template <class P, class Visitor>
 void visitRing(P& p, Visitor& visit)
 {
   visit("ring.mass", "kg", p.ring.mass, Range{ 1e-9, 1e3 },
-        ofOthers("mass of the toothed rim, shared by the teeth alike; only the dynamic ring knows it"));
+        ofOthers("mass of the toothed rim, equal for all teeth; only the dynamic ring uses it"));
   visit("ring.tension_stiffness", "N/m", p.ring.tension_stiffness, Range{ 1.0, 1e13 },
         "axial stiffness of the rim between neighbouring teeth");
-  visit("ring.tension_damping", "N.s/m", p.ring.tension_damping, Range{ 0.0, 1e6 }, "dashpot beside it");
-  visit("ring.tooth_damping", "N.s/m", p.ring.tooth_damping, Range{ 0.0, 1e6 }, "dashpot of each tooth to the housing");
+  visit("ring.tension_damping", "N.s/m", p.ring.tension_damping, Range{ 0.0, 1e6 },
+        "damping of the rim between neighbouring teeth");
+  visit("ring.tooth_damping", "N.s/m", p.ring.tooth_damping, Range{ 0.0, 1e6 },
+        "damping of each tooth against the housing");
   visit("ring.bending_stiffness", "N.m/rad", p.ring.bending_stiffness, Range{ 0.0, 1e8 },
-        "bending stiffness of the rim per segment");
+        "bending stiffness of a segment of the rim");
   visit("ring.bending_law", p.ring.bending_law,
-        "curvature: between neighbouring segments, frame-indifferent; absolute: of each segment from rest");
+        "rotation that bending resists; curvature: between neighbouring segments; absolute: of each segment from rest");
   visit("ring.loss_factor", "-", p.ring.loss_factor, Range{ 0.0, 1.0 },
-        "of rim and outer race in bending: energy lost in a cycle over 2 pi times the largest that they store; 0 = "
-        "elastic");
+        "loss factor of rim and outer race in bending: energy lost in a cycle over 2 pi times the largest stored "
+        "energy; 0 = elastic");
 }
 
 template <class P, class Visitor>
 void visitContact(P& p, Visitor& visit)
 {
-  visit(
-      "contact.support", p.contact.support,
-      "springs: a spring at each tooth on a rigid ellipse; balls: the balls of the bearing after Hertz, spread evenly "
-      "around the ring; single_balls: each ball at its place");
+  visit("contact.support", p.contact.support,
+        "springs: a spring at each tooth on a rigid ellipse; balls: the balls of the bearing by Hertz' law, spread "
+        "evenly "
+        "around the ring; single_balls: each ball at its own angle");
   visit("contact.stiffness", "N/m", p.contact.stiffness, Range{ 1.0, 1e12 },
-        "support springs: wave generator to flexspline, per tooth");
+        "stiffness between wave generator and flexspline for each tooth, with contact.support = springs");
   visit("contact.fit", "m", p.contact.fit, ERROR_SHIFT,
-        "mean radius of the wave generator over the flexspline's inner radius; > 0 interference, < 0 clearance");
+        "mean radius of the wave generator minus the flexspline's inner radius; > 0 interference, < 0 clearance");
   visit("contact.temperature_difference", "K", p.contact.temperature_difference, Range{ -100.0, 100.0 },
-        "wave generator above the flexspline's rim, which adds its thermal growth to the fit");
-  visit("contact.damping", "N.s/m", p.contact.damping, Range{ 0.0, 1e6 }, "dashpot of the same contact");
-  visit("contact.law", p.contact.law, "normal: along the true normal of the ellipse; polar: the thesis' point");
+        "temperature of the wave generator minus that of the flexspline's rim; thermal expansion then changes the fit");
+  visit("contact.damping", "N.s/m", p.contact.damping, Range{ 0.0, 1e6 },
+        "damping between wave generator and flexspline for each tooth");
+  visit("contact.law", p.contact.law,
+        "direction of the force; normal: along the true normal of the ellipse; polar: through the thesis' polar point");
   visit("contact.smoothing", "m", p.contact.smoothing, Range{ 0.0, 1e-4 },
-        "support springs: C1 ramp of the contact; 0 = exact law");
+        "width of the contact's smooth (C1) onset, with contact.support = springs; 0 = exact law");
   visit("contact.friction_coefficient", "-", p.contact.friction_coefficient, Range{ 0.0, 2.0 },
-        "friction between the bearing's outer race and the flexspline");
+        "coefficient of friction between the bearing's outer race and the flexspline");
   visit("contact.slip_lever", "m", p.contact.slip_lever, Range{ 0.0, 1e-1 },
-        "distance between the neutral fibres of rim and outer race: lever of the slip between them");
+        "distance between the neutral fibres of rim and outer race, the lever of the slip between them");
 }
 
 template <class P, class Visitor>
@@ -135,87 +140,91 @@ void visitMesh(P& p, Visitor& visit)
   visit("mesh.profile", p.mesh.profile, "shape of the tooth flanks (thesis section 3.2)");
   visit("mesh.stiffness", "N/m", p.mesh.stiffness, Range{ 0.0, 1e12 },
         "stiffness of a tooth pair along the flank normal");
-  visit("mesh.flank_angle", "rad", p.mesh.flank_angle, Range{ 0.0, 1.4 }, "angle of the flank from the tooth's axis");
+  visit("mesh.flank_angle", "rad", p.mesh.flank_angle, Range{ 0.0, 1.4 }, "angle between flank and axis of the tooth");
   visit("mesh.tangent_angle", "rad", p.mesh.tangent_angle, Range{ 0.0, 1.4 },
-        "double arc: angle of the common tangent of both arcs from the tooth's axis");
+        "double arc: angle between the common tangent of both arcs and the axis of the tooth");
   visit("mesh.tangent_length", "m", p.mesh.tangent_length, Range{ 0.0, 1e-2 },
-        "double arc: height of the common tangent, at mid-height of the tooth");
+        "double arc: length of the common tangent in the tooth's height, at mid-height");
   visit("mesh.flank_clearance", "m", p.mesh.flank_clearance, Range{ -1e-3, 1e-3 },
-        "half clearance at full engagement; negative = interference");
+        "half the clearance at full engagement; < 0 interference");
   visit("mesh.engagement_depth", "m", p.mesh.engagement_depth, Range{ 1e-9, 1e-2 },
-        "depth over which a tooth's stiffness grows from none to full");
-  visit("mesh.smoothing", "m", p.mesh.smoothing, Range{ 0.0, 1e-4 }, "C1 ramp of the contact; 0 = exact law");
-  visit("mesh.friction_static", "-", p.mesh.friction_static, Range{ 0.0, 2.0 }, "flank friction at rest");
+        "depth of engagement over which a tooth's stiffness grows from zero to mesh.stiffness");
+  visit("mesh.smoothing", "m", p.mesh.smoothing, Range{ 0.0, 1e-4 },
+        "width of the contact's smooth (C1) onset; 0 = exact law");
+  visit("mesh.friction_static", "-", p.mesh.friction_static, Range{ 0.0, 2.0 },
+        "coefficient of flank friction at rest");
   visit("mesh.friction_kinetic", "-", p.mesh.friction_kinetic, Range{ 0.0, 2.0 },
-        ofOthers("flank friction when sliding"));
+        ofOthers("coefficient of flank friction in sliding"));
   visit("mesh.stribeck_velocity", "m/s", p.mesh.stribeck_velocity, Range{ 1e-9, 1e3 },
-        ofOthers("sliding speed at which static has turned into kinetic friction"));
+        ofOthers("sliding speed of the transition from static to kinetic friction"));
 }
 
 template <class P, class Visitor>
 void visitCup(P& p, Visitor& visit)
 {
   visit("cup.torsion_stiffness", "N.m/rad", p.cup.torsion_stiffness, Range{ 1.0, 1e9 },
-        "slopes of the cup's torque over its mean rotation: below the first, between, above the second breakpoint");
+        "slopes of the cup's torque over its mean rotation: below, between and above the breakpoints");
   visit("cup.torsion_breakpoints", "N.m", p.cup.torsion_breakpoints, Range{ 0.0, 1e6 },
-        "torques at which the slope changes, ascending");
+        "torques at which the slope of the cup changes, ascending");
   visit("cup.wall_stiffness", "N.m/rad", p.cup.wall_stiffness, Range{ 1.0, 1e9 },
-        "part of the cup's compliance that is its wall's and diaphragm's: what cracks and buckles of the cup act on; "
-        "more than torsion_stiffness");
+        "stiffness of the cup's wall and diaphragm, which cracks and buckling of the cup reduce; more than "
+        "cup.torsion_stiffness");
   visit("cup.friction_torque", "N.m", p.cup.friction_torque, Range{ 0.0, 1e4 },
-        ofOthers("dry friction beside the cup's spring: half the height of its torsion loop"));
+        ofOthers("dry friction in parallel to the cup's spring: half the height of its torsion loop"));
   visit("cup.friction_angle", "rad", p.cup.friction_angle, Range{ 0.0, 1.0 },
-        ofOthers("twist after a reversal over which that friction builds up; 0 = at once"));
+        ofOthers("twist after a reversal over which cup.friction_torque builds up; 0 = at once"));
 }
 
 template <class P, class Visitor>
 void visitBearing(P& p, Visitor& visit)
 {
   visit("bearing.lubricant_factor", "-", p.bearing.lubricant_factor, Range{ 0.0, 100.0 },
-        ofOthers("f0 of Palmgren's law"));
-  visit("bearing.load_factor", "-", p.bearing.load_factor, Range{ 0.0, 1.0 }, "f1 of Palmgren's law");
-  visit(
-      "bearing.race_preload", "N", p.bearing.race_preload, Range{ 0.0, 1e6 },
-      "sum of the ball forces beside those under the rim: the fit of the bearing's outer race, and its bending unless "
-      "race_bending_stiffness has it");
+        ofOthers("f0 of Palmgren's law of rolling friction"));
+  visit("bearing.load_factor", "-", p.bearing.load_factor, Range{ 0.0, 1.0 },
+        "f1 of Palmgren's law of rolling friction");
+  visit("bearing.race_preload", "N", p.bearing.race_preload, Range{ 0.0, 1e6 },
+        "sum of the ball forces that do not bend the rim: of the fit of the bearing's outer race, and of its bending "
+        "if race_bending_stiffness is 0");
   visit("bearing.race_bending_stiffness", "N.m/rad", p.bearing.race_bending_stiffness, Range{ 0.0, 1e8 },
-        "bending stiffness of the bearing's outer race per segment of the rim, with which it bends");
+        "bending stiffness of the bearing's outer race for a segment of the rim");
   visit("bearing.pitch_diameter", "m", p.bearing.pitch_diameter, Range{ 1e-3, 1.0 }, "pitch diameter of the balls");
-  visit("bearing.balls", "-", p.bearing.balls, Range{ 3, 1000 }, "balls of the bearing");
+  visit("bearing.balls", "-", p.bearing.balls, Range{ 3, 1000 }, "number of balls of the bearing");
   visit("bearing.ball_diameter", "m", p.bearing.ball_diameter, Range{ 1e-4, 1.0 },
-        "diameter of a ball, below pitch_diameter");
+        "diameter of a ball, less than bearing.pitch_diameter");
   visit("bearing.cage_slip", "-", p.bearing.cage_slip, Range{ 0.0, 0.2 },
-        ofFaults("share by which cage and balls turn slower than without slip"));
+        ofFaults("relative reduction of the speed of cage and balls by slip"));
   visit("bearing.viscosity", "m^2/s", p.bearing.viscosity, Range{ 1e-7, 1e-1 },
-        ofOthers("kinematic viscosity that the grease acts with at viscosity_temperature"));
+        ofOthers("effective kinematic viscosity of the grease at bearing.viscosity_temperature"));
   visit("bearing.oil_viscosity", "m^2/s", p.bearing.oil_viscosity, Range{ 1e-6, 1e-1 },
-        ofOthers("kinematic viscosity of the grease's base oil there: with the slope, how the grease thins"));
+        ofOthers("kinematic viscosity of the grease's base oil at bearing.viscosity_temperature; with the slope it "
+                 "gives the effect of temperature"));
   visit("bearing.viscosity_temperature", "degC", p.bearing.viscosity_temperature, Range{ -60.0, 200.0 },
-        ofOthers("temperature both viscosities are given at"));
+        ofOthers("temperature for which both viscosities hold"));
   visit("bearing.viscosity_slope", "-", p.bearing.viscosity_slope, Range{ 0.0, 10.0 },
         ofOthers("slope m of the base oil in the viscosity-temperature chart (Walther, ASTM D341)"));
   visit("bearing.constant_share", "-", p.bearing.constant_share, Range{ 0.0, 1.0 },
-        ofOthers("share of the friction by speed at viscosity_temperature that no temperature changes"));
+        ofOthers("share of the viscous friction at bearing.viscosity_temperature that does not depend on temperature"));
 }
 
 template <class P, class Visitor>
 void visitStress(P& p, Visitor& visit)
 {
   visit("stress.tooth_base", "-", p.stress.tooth_base, Range{ 0.0, 0.99 },
-        ofOthers("share of the pitch that a tooth of the flexspline takes at its base"));
-  visit("stress.wall_thickness", "m", p.stress.wall_thickness, Range{ 1e-5, 0.1 }, ofOthers("of the cup"));
+        ofOthers("width of a flexspline tooth at its base as a share of the pitch"));
+  visit("stress.wall_thickness", "m", p.stress.wall_thickness, Range{ 1e-5, 0.1 },
+        ofOthers("thickness of the cup's wall"));
   visit("stress.cup_length", "m", p.stress.cup_length, Range{ 1e-3, 1.0 },
-        ofOthers("from the open end to the flange, teeth included; more than life.face_width"));
+        ofOthers("length of the cup from the open end to the flange, teeth included; more than life.face_width"));
   visit("stress.coning_restraint", "-", p.stress.coning_restraint, Range{ 0.0, 1.0 },
-        ofOthers("how far the bearing holds the toothed rim from coning: 0 not at all, 1 entirely"));
+        ofOthers("restraint of the toothed rim's coning by the bearing: 0 none, 1 complete"));
   visit("stress.warping_restraint", "-", p.stress.warping_restraint, Range{ 0.0, 1.0 },
-        ofOthers("how far the flange holds the cup's end from warping: 0 not at all, 1 as if built in"));
+        ofOthers("restraint of the cup's warping by the flange: 0 none, 1 built in"));
   visit(
       "stress.concentration", "-", p.stress.concentration, Range{ 1.0, 10.0 },
       ofOthers("largest stress over the nominal one in the tooth space, at the transition from the toothed rim to the "
                "cup, and at the flange"));
   visit("stress.notch_radius", "m", p.stress.notch_radius, Range{ 1e-6, 0.1 },
-        ofOthers("of the fillets at these places"));
+        ofOthers("radii of the fillets at the places of stress.concentration"));
 }
 
 template <class P, class Visitor>
@@ -226,54 +235,55 @@ void visitFaultScale(P& p, Visitor& visit)
   const Range part{ 0.0, 1.0 };
   const Range factor{ 1.0, 100.0 };
   visit("fault_scale.interface_wear_depth", "m", scale.interface_wear_depth, depth,
-        ofFaults("interface_wear at severity 1: radial wear of rim and outer race together"));
+        ofFaults("interface_wear at severity 1: sum of the radial wear of rim and outer race"));
   visit("fault_scale.interface_friction_factor", "-", scale.interface_friction_factor, factor,
-        ofFaults("interface_wear at severity 1: contact.friction_coefficient times this"));
+        ofFaults("interface_wear at severity 1: factor on contact.friction_coefficient"));
   visit("fault_scale.cup_crack_fraction", "-", scale.cup_crack_fraction, Range{ 0.0, 0.99 },
-        ofFaults("rear_section_crack, flange_crack at severity 1: part of the circumference that is cracked"));
+        ofFaults("rear_section_crack, flange_crack at severity 1: cracked part of the circumference"));
   visit("fault_scale.rear_section_share", "-", scale.rear_section_share, part,
-        ofFaults("part of the compliance of the cup's wall and diaphragm in torsion that lies behind the teeth"));
+        ofFaults("part of the torsional compliance of the cup's wall and diaphragm that is behind the teeth"));
   visit("fault_scale.flange_share", "-", scale.flange_share, part,
-        ofFaults("part of that compliance that lies at the cup's flange"));
+        ofFaults("part of the torsional compliance of the cup's wall and diaphragm that is at the flange"));
   visit("fault_scale.cup_crack_friction_factor", "-", scale.cup_crack_friction_factor, factor,
-        ofFaults("rear_section_crack, flange_crack at severity 1: cup.friction_torque times this"));
+        ofFaults("rear_section_crack, flange_crack at severity 1: factor on cup.friction_torque"));
   visit("fault_scale.viscosity_factor", "-", scale.viscosity_factor, Range{ 0.01, 100.0 },
-        ofFaults("lubricant_degradation at severity 1: viscosity of the grease times this"));
+        ofFaults("lubricant_degradation at severity 1: factor on the viscosity of the grease"));
   visit("fault_scale.boundary_friction_factor", "-", scale.boundary_friction_factor, factor,
-        ofFaults("lubricant_degradation at severity 1: friction of flanks and of race in rim times this"));
+        ofFaults("lubricant_degradation at severity 1: factor on the friction of the flanks and of the outer race"));
   visit("fault_scale.tooth_wear_depth", "m", scale.tooth_wear_depth, depth,
-        ofFaults("tooth_wear at severity 1: material off each flank, along its normal"));
+        ofFaults("tooth_wear at severity 1: wear of each flank along its normal"));
   visit("fault_scale.tooth_compliance_share", "-", scale.tooth_compliance_share, Range{ 0.01, 1.0 },
-        ofFaults("part of a tooth pair's compliance that is bending of the flexspline's tooth"));
+        ofFaults("share of the flexspline's tooth bending in the compliance of a tooth pair"));
   visit("fault_scale.pitted_fraction", "-", scale.pitted_fraction, part,
-        ofFaults("pitting at severity 1: part of the flank's width that carries no more"));
+        ofFaults("pitting at severity 1: part of the flank's width that no longer carries load"));
   visit("fault_scale.pitted_friction_factor", "-", scale.pitted_friction_factor, factor,
-        ofFaults("pitting at severity 1: friction of that tooth's flanks times this"));
+        ofFaults("pitting at severity 1: factor on the friction of the pitted tooth's flanks"));
   visit("fault_scale.wave_generator_wear_depth", "m", scale.wave_generator_wear_depth, depth,
-        ofFaults("wave_generator_wear at severity 1: loss of the major semi-axis"));
+        ofFaults("wave_generator_wear at severity 1: reduction of the major semi-axis"));
   visit("fault_scale.race_fit_stiffness", "N/m", scale.race_fit_stiffness, Range{ 0.0, 1e12 },
-        ofFaults("decrease of bearing.race_preload per decrease of the wave generator's mean radius"));
+        ofFaults("reduction of bearing.race_preload per reduction of the wave generator's mean radius"));
   visit("fault_scale.race_bending_preload", "N", scale.race_bending_preload, Range{ 0.0, 1e6 },
-        ofFaults("part of bearing.race_preload that bends the race, which wear does not take away"));
+        ofFaults("part of bearing.race_preload that bends the race; wear does not reduce it"));
   visit("fault_scale.rim_crack_depth", "-", scale.rim_crack_depth, Range{ 0.0, 0.99 },
-        ofFaults("cracks of the rim at severity 1: depth over the rim's thickness"));
+        ofFaults("cracks of the rim at severity 1: ratio of depth to the rim's thickness"));
   visit("fault_scale.rim_crack_segments", "-", scale.rim_crack_segments, Range{ 1, 100 },
-        ofFaults("flexspline_crack: segments to either side over which the crack fades out"));
+        ofFaults("flexspline_crack: number of segments on either side over which the crack depth decreases to zero"));
   visit("fault_scale.buckling_stiffness_loss", "-", scale.buckling_stiffness_loss, Range{ 0.0, 0.99 },
-        ofFaults("buckling at severity 1: part of the stiffness of the cup's wall that is lost"));
+        ofFaults("buckling at severity 1: relative reduction of the stiffness of the cup's wall"));
   visit("fault_scale.buckling_out_of_round", "m", scale.buckling_out_of_round, depth,
-        ofFaults("buckling at severity 1: radial amplitude of the waves that the free rim would keep"));
+        ofFaults("buckling at severity 1: radial amplitude of the permanent waves of the free rim"));
   visit("fault_scale.buckling_waves", "-", scale.buckling_waves, Range{ 2, 20 },
-        ofFaults("waves round the buckled rim"));
-  visit("fault_scale.ratcheting_eccentricity", "m", scale.ratcheting_eccentricity, Range{ 0.0, 1e-4 },
-        ofFaults("ratcheting at severity 1: centre of the circular spline off its axis, towards its space 0"));
+        ofFaults("number of waves around the buckled rim"));
+  visit(
+      "fault_scale.ratcheting_eccentricity", "m", scale.ratcheting_eccentricity, Range{ 0.0, 1e-4 },
+      ofFaults("ratcheting at severity 1: offset of the circular spline's centre from its axis, towards its space 0"));
   visit("fault_scale.ratcheting_tip_loss", "m", scale.ratcheting_tip_loss, depth,
-        ofFaults("ratcheting at severity 1: height that every tooth has lost"));
+        ofFaults("ratcheting at severity 1: reduction of the height of every tooth"));
   visit("fault_scale.spall_depth", "m", scale.spall_depth, depth,
         ofFaults("spalls in the bearing at severity 1: depth"));
   visit("fault_scale.spall_length", "m", scale.spall_length, Range{ 1e-5, 1e-2 },
         ofFaults("spalls in the bearing: length along the race or on the ball"));
   visit("fault_scale.cage_deflection", "m", scale.cage_deflection, depth,
-        ofFaults("bearing_cage at severity 1: sag of the outer race at the ball that does not carry"));
+        ofFaults("bearing_cage at severity 1: deflection of the outer race at the ball that does not carry"));
 }
 }  // namespace hjt

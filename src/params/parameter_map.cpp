@@ -17,14 +17,14 @@ namespace
 {
 constexpr double NANOSECONDS_PER_SECOND = 1e9;
 
-/// True if `rate` fits a whole number of times into `of`.
+/// Whether `of` is a whole multiple of `rate`.
 bool divides(double rate, double of)
 {
   const double times = std::round(of / rate);
   return times >= 1.0 && std::abs(times * rate - of) <= 1e-9 * of;
 }
 
-/// "do: " and the rates beside `rate` that divide `of`.
+/// Text of the rates nearest to `rate` that divide `of`.
 std::string nearestDivisors(double rate, double of)
 {
   const double times = std::floor(of / rate);
@@ -32,13 +32,13 @@ std::string nearestDivisors(double rate, double of)
                        "do: " + numberText(of / (times + 1.0)) + ", " + numberText(of / times);
 }
 
-/// Collects contradictions, each with the places of the keys it is about.
+/// Collects contradictions, each with the origins of its keys.
 class Contradictions
 {
 public:
   explicit Contradictions(const ParameterMap& map) : map_(map) {}
 
-  /// `what`: makes the text where it does not hold.
+  /// `what` makes the text of the contradiction.
   template <class What>
   void require(bool holds, const std::vector<std::string>& keys, const What& what)
   {
@@ -87,7 +87,7 @@ void checkPitch(const PitchParameters& pitch, const std::string& member, Contrad
   const std::string table_key = "manufacture." + member + "_pitch_table";
   const std::string deviation_key = "manufacture." + member + "_pitch_deviation";
   const bool from_table = pitch.table != NO_FILE;
-  // A node does not know where its configuration lay, so there is no directory a path could be relative to.
+  // A node does not know the directory of its configuration, so a relative path has no base.
   check.require(!from_table || pitch.table.front() == '/', { table_key },
                 [&] { return table_key + " = '" + pitch.table + "' must be an absolute path, or " + NO_FILE; });
   check.require(!from_table || pitch.deviation == 0.0, { table_key, deviation_key },
@@ -105,7 +105,7 @@ void checkElements(const Parameters& p, Contradictions& check)
                 [&]
                 {
                   return "cup.torsion_breakpoints = [" + numberText(breakpoints[0]) + ", " +
-                         numberText(breakpoints[1]) + "] [N.m] must ascend";
+                         numberText(breakpoints[1]) + "] [N.m] must be ascending";
                 });
   const auto& slopes = p.cup.torsion_stiffness;
   const double steepest = *std::max_element(slopes.begin(), slopes.end());
@@ -120,7 +120,7 @@ void checkElements(const Parameters& p, Contradictions& check)
                 { "mesh.profile", "gear.tip_radius_circular_spline" },
                 [&]
                 {
-                  return "mesh.profile needs teeth that reach into the circular spline: they end " +
+                  return "mesh.profile needs teeth that reach into the circular spline, but they end " +
                          numberText(-p.gear.engagementDepth()) + " [m] short of it";
                 });
   check.require(p.mesh.friction_kinetic <= p.mesh.friction_static, { "mesh.friction_kinetic", "mesh.friction_static" },
@@ -198,7 +198,7 @@ void checkFaults(const Parameters& p, Contradictions& check)
 
 void checkRates(const Parameters& p, Contradictions& check)
 {
-  // The clock of the messages counts nanoseconds; a step that is no whole number of them would drift.
+  // The clock of the messages counts nanoseconds. Steps of another length would drift.
   const double step = std::round(NANOSECONDS_PER_SECOND / p.solver.rate);
   check.require(step * p.solver.rate == NANOSECONDS_PER_SECOND, { "solver.rate" },
                 [&]
@@ -218,7 +218,7 @@ void checkRates(const Parameters& p, Contradictions& check)
                   });
   };
   check_rate("indicators.sample_rate", p.indicators.sample_rate);
-  // Every number below publish is the rate of a topic.
+  // Every number in section publish is the rate of a topic.
   visitFields(p,
               [&check_rate](const std::string& key, const auto&... rest)
               {
@@ -236,7 +236,7 @@ void checkRates(const Parameters& p, Contradictions& check)
               });
 }
 
-/// Contradictions between parameters that are each in range; one text each. `map` has their origins.
+/// Texts of contradictions between parameters that are each in range. `map` gives their origins.
 std::vector<std::string> contradictions(const Parameters& parameters, const ParameterMap& map)
 {
   Contradictions check(map);
@@ -288,7 +288,7 @@ Parameters parseParameters(const ParameterMap& map)
   reader.readFaults(parameters.faults);
   reader.refuseUnknownKeys();
   throwIfAny(reader.errors());
-  // Only values that are each in range can be compared with each other.
+  // Values can be compared only if each is in range.
   throwIfAny(contradictions(parameters, map));
   return parameters;
 }

@@ -8,10 +8,10 @@
 
 namespace hjt
 {
-/// Of a fault's severity, which no gear need be known for, as faultErrors has it; empty if it is valid.
+/// Error text of a severity out of range, as in faultErrors but without a gear; empty if the severity is valid.
 inline std::string severityErrors(const Fault& fault, const std::string& key)
 {
-  // Written so that NaN fails.
+  // This form of the comparison rejects NaN.
   return fault.severity >= 0.0 && fault.severity <= 1.0 ?
              "" :
              key + "severity = " + numberText(fault.severity) + " [-] of " + describe(fault.kind).name +

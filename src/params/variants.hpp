@@ -3,24 +3,25 @@
 
 #include "harmonic_joint_twin/params/parameters.hpp"
 
-// Drives that differ from a configured one in a single respect.
+// Variants of a configured drive that differ in one respect.
 namespace hjt
 {
-/// Nothing hangs on the output: for a load torque that holds the weight already.
+/// Drive without load at the output, for a load torque that already contains the weight.
 inline Parameters withoutWeight(Parameters parameters)
 {
   parameters.output.gravity_torque = 0.0;
   return parameters;
 }
 
-/// The drive has the temperature it is given.
+/// Drive whose temperature is given instead of computed.
 inline Parameters withoutHeat(Parameters parameters)
 {
   parameters.thermal.model = ThermalModel::NONE;
   return parameters;
 }
 
-/// Coefficients of friction 1 at flanks and outer race: friction is then the force by which it is to be multiplied.
+/// Drive with friction coefficients 1 at flanks and outer race. Its friction torque is the normal force's share by
+/// which the coefficient is multiplied.
 inline Parameters withUnitFriction(Parameters parameters)
 {
   parameters.mesh.friction_static = 1.0;
@@ -29,7 +30,7 @@ inline Parameters withUnitFriction(Parameters parameters)
   return parameters;
 }
 
-/// All teeth are alike, and all spaces; the wave generator keeps its errors.
+/// Drive with equal teeth and equal spaces. The wave generator keeps its errors.
 inline Parameters withEqualTeeth(Parameters parameters)
 {
   ManufactureParameters& errors = parameters.manufacture;
@@ -44,7 +45,7 @@ inline Parameters withEqualTeeth(Parameters parameters)
   return parameters;
 }
 
-/// Whether each tooth meets with what any other does, a pitch of the wave generator's turn later.
+/// Whether every tooth has the same contacts as the others, shifted by its pitch.
 inline bool teethAreAlike(const Parameters& parameters)
 {
   const ManufactureParameters& errors = parameters.manufacture;
@@ -55,7 +56,7 @@ inline bool teethAreAlike(const Parameters& parameters)
          is_zero(errors.circular_spline_ellipticity) && parameters.faults.empty();
 }
 
-/// The gear as drawn.
+/// Drive without errors of manufacture and fit.
 inline Parameters withoutErrors(const Parameters& parameters)
 {
   Parameters drawn = withEqualTeeth(parameters);

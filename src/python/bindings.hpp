@@ -14,12 +14,12 @@
 #include "harmonic_joint_twin/solver/solve_status.hpp"
 #include "twin/step_counters.hpp"
 
-// The module as a user sees it: names, units and shapes in python/harmonic_joint_twin/_hjt.pyi.
+// The module as its user sees it. Names, units and shapes are in python/harmonic_joint_twin/_hjt.pyi.
 namespace hjt
 {
 namespace py = pybind11;
 
-// Subjects of the module, in the order in which their types need each other.
+// Parts of the module, in the order in which their types depend on each other.
 void bindParameters(py::module& module);
 void bindHealth(py::module& module);
 void bindToothValues(py::module& module);
@@ -28,7 +28,7 @@ void bindTwinBatch(py::module& module);
 void bindStatics(py::module& module);
 void bindTracking(py::module& module);
 
-/// By name: dict of str to int.
+/// Counts by name: dict of str to int.
 inline py::dict stepCounters(const TwinCounters& counters)
 {
   py::dict named;
@@ -39,7 +39,7 @@ inline py::dict stepCounters(const TwinCounters& counters)
   return named;
 }
 
-/// No equilibrium was found; in Python a RuntimeError.
+/// Error without an equilibrium; in Python a RuntimeError.
 class NotConverged : public std::runtime_error
 {
 public:
@@ -50,19 +50,19 @@ public:
   explicit NotConverged(const std::string& text) : std::runtime_error(text) {}
 };
 
-/// A signal came whose handler raised: Python's error is set already.
+/// Thrown if a signal handler of Python raised; Python's error is already set.
 struct Interrupted
 {
 };
 
-/// Throws `Interrupted` if a signal handler of Python raised, Ctrl-C's as a rule. Looks at most twenty times a second:
-/// taking the interpreter's lock can cost more than many steps.
+/// Throws `Interrupted` if a signal handler of Python raised, for example that of Ctrl-C. It checks at most twenty
+/// times a second, because taking the interpreter's lock can cost more than many steps.
 class InterruptCheck
 {
 public:
   InterruptCheck() : next_(now() + PERIOD) {}
 
-  /// @returns whether it has looked.
+  /// @returns whether it has checked.
   bool operator()()
   {
     const double time = now();
@@ -90,14 +90,14 @@ private:
   double next_;  // [s]
 };
 
-/// The same of a run, which also tells a function how far it is.
+/// InterruptCheck of a run with a progress callback.
 class RunCheck
 {
 public:
   /// `progress`: called with 0 ... 1, or Python's None.
   explicit RunCheck(const py::object& progress) : progress_(progress) {}
 
-  /// Of `all` steps so many are done.
+  /// Reports that `done` of `all` steps are finished.
   void operator()(py::ssize_t done, py::ssize_t all)
   {
     if (check_() && !progress_.is_none())
@@ -106,7 +106,6 @@ public:
     }
   }
 
-  /// The run is at its end.
   void end()
   {
     if (!progress_.is_none())
@@ -126,8 +125,7 @@ private:
   InterruptCheck check_;
 };
 
-/// Calls `work` without the interpreter's lock and gives what it returns. An `Interrupted` out of it becomes Python's
-/// error.
+/// Calls `work` without the interpreter's lock and returns its result. An `Interrupted` becomes Python's error.
 template <class Work>
 auto withoutLock(const Work& work)
 {
@@ -142,10 +140,10 @@ auto withoutLock(const Work& work)
   }
 }
 
-/// An array of `owner`'s memory, which it keeps alive; not writable.
+/// A read-only array of `owner`'s memory, which it keeps alive.
 py::array_t<double> viewOf(const std::vector<double>& values, const py::object& owner);
 
-/// Name and values of all attributes that `object` has as properties.
+/// Text of the names and values of all properties of `object`.
 std::string describeObject(const py::object& object);
 
 /// Adds a text to a class of plain values.
@@ -155,12 +153,12 @@ void addText(Class& type)
   type.def("__repr__", [](const py::object& self) { return describeObject(self); });
 }
 
-/// Whether a call without the interpreter's lock works on an object of Python, which no other call may touch then.
-/// Itself guarded by the interpreter's lock.
+/// Whether a call without the interpreter's lock uses a Python object, which other calls may not use then. The
+/// interpreter's lock protects this flag.
 class InUse
 {
 public:
-  /// Marks the object as in use while it lives; constructed and destroyed with the interpreter's lock.
+  /// Marks the object as in use during its lifetime. Constructor and destructor need the interpreter's lock.
   class Hold
   {
   public:
@@ -179,10 +177,10 @@ public:
     bool* used_;
   };
 
-  /// `what`: name of the object in the error's text.
+  /// `what`: name of the object in the error text.
   explicit InUse(const char* what) : what_(what) {}
 
-  /// @throws std::runtime_error while it is held.
+  /// @throws std::runtime_error while the object is in use.
   void refuse() const
   {
     if (used_)
@@ -191,7 +189,7 @@ public:
     }
   }
 
-  /// @throws std::runtime_error while it is held already.
+  /// @throws std::runtime_error if the object is already in use.
   [[nodiscard]] Hold hold()
   {
     refuse();

@@ -5,7 +5,7 @@
 
 namespace hjt
 {
-/// Measured joint and prediction of a healthy one. Names as in Comparison.msg.
+/// Measured joint and prediction for a healthy one. Names are those of Comparison.msg.
 struct ComparisonRow
 {
   double time;

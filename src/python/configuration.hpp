@@ -9,31 +9,31 @@
 
 namespace hjt
 {
-constexpr const char* ORIGIN = "Python";  ///< of values, for error texts
+constexpr const char* ORIGIN = "Python";  ///< origin of values from Python in error texts
 
-/// Puts keys and values into the map, unchecked. @throws ParameterError where one is no value.
+/// Adds keys and values to the map without checks of range. @throws ParameterError if a value has no valid type.
 void put(const py::dict& values, ParameterMap& map);
 
-/// Reads one overlay, a file as given or beside `directory`, or a dict, over the map, unchecked.
+/// Reads an overlay into the map without checks of range: a file, as given or in `directory`, or a dict.
 /// @throws ParameterError, Python's TypeError.
 void readOverlay(const py::handle& what, const std::string& directory, ParameterMap& map);
 
-/// All parameters, and the map that they were read from: what is set is checked with all the others, and an error
-/// leaves everything as it was.
+/// All parameters and the map they were read from. Setting a value checks all parameters; an error leaves everything
+/// unchanged.
 class Configuration
 {
 public:
-  /// The default configuration with the overlays over it, files or dicts, later wins.
+  /// The default configuration, changed by overlays (files or dicts); later ones win.
   /// `directory`: of the default configuration; empty: found as the tool does. @throws ParameterError.
   Configuration(const py::args& overlays, const std::string& directory);
 
   const Parameters& values() const { return values_; }
   const ParameterMap& map() const { return map_; }
-  /// The same with other values. @throws ParameterError.
+  /// A copy with other values. @throws ParameterError.
   Configuration with(const ParameterMap& map) const;
-  Configuration copy() const;                         ///< that may be changed
-  Configuration frozen() const;                       ///< that refuses to be changed: of a twin that has been made
-  bool operator==(const Configuration& other) const;  ///< the same values and faults
+  Configuration copy() const;                         ///< copy that can be changed
+  Configuration frozen() const;                       ///< copy that cannot be changed: that of a twin
+  bool operator==(const Configuration& other) const;  ///< whether values and faults are equal
 
   py::object value(const std::string& key) const;  ///< @throws py::key_error
   bool contains(const std::string& key) const;
@@ -41,9 +41,9 @@ public:
   void update(const py::dict& changes);
 
   py::list faults() const;
-  void setFaults(const py::object& faults);  ///< one, or several
+  void setFaults(const py::object& faults);  ///< sets one or several faults
 
-  /// Every key with its value, for another process.
+  /// All keys and values, for another process.
   py::tuple state() const;
   static Configuration fromState(const py::tuple& state);
 
@@ -60,6 +60,6 @@ private:
   Parameters values_;
 };
 
-/// A fault as an object or as the tool's KIND:SEVERITY[:PLACE[:ONSET]], checked. @throws ParameterError.
+/// A checked fault from an object or from the tool's text KIND:SEVERITY[:PLACE[:ONSET]]. @throws ParameterError.
 Fault faultOf(const py::handle& fault, const Parameters& parameters);
 }  // namespace hjt

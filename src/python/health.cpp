@@ -82,7 +82,8 @@ py::dict alternativesOf(const Assessment& assessment)
 void bindReport(py::module& module)
 {
   auto health = py::class_<HealthReport>(
-      module, "Health", "Health of the simulated drive at one instant, as Health.msg; None: not valid yet.");
+      module, "Health",
+      "Health of the simulated drive at one instant, as in Health.msg. A value is None while it is not valid.");
   health
       .def_property_readonly(
           "transmission_ratio", [](const HealthReport& self) { return optional(self.motion.transmission_ratio); },
@@ -92,30 +93,32 @@ void bindReport(py::module& module)
           "motor angle / nominal ratio - joint angle [rad]")
       .def_property_readonly(
           "torsional_stiffness", [](const HealthReport& self) { return optional(self.motion.torsional_stiffness); },
-          "slope of joint torque over torsion, by regression [N.m/rad] or None")
+          "slope of the joint torque over the torsion, by regression [N.m/rad] or None")
       .def_property_readonly(
           "efficiency", [](const HealthReport& self) { return optional(self.motion.efficiency); },
-          "power out over power in [-] or None")
+          "output power over input power [-] or None")
       .def_property_readonly(
           "kinematic_error", [](const HealthReport& self) { return optional(self.motion.kinematic_error); },
           "peak to peak of the torsion over the last motor turn [rad] or None")
       .def_property_readonly(
           "teeth_loaded", [](const HealthReport& self) { return self.lobes.teeth_loaded; },
-          "teeth that carry mesh force [-]")
+          "number of teeth that carry mesh force [-]")
       .def_property_readonly(
           "lobe_mesh_force", [](const HealthReport& self) { return py::tuple(py::cast(self.lobes.mesh_force)); },
           "sum of mesh forces at each lobe of the wave generator [N]: tuple of 2")
       .def_property_readonly(
           "lobe_asymmetry", [](const HealthReport& self) { return self.lobes.asymmetry; },
-          "(first - second) / (first + second), 0 when unloaded [-]")
-      .def_readonly("mesh_force_error", &HealthReport::mesh_force_error,
-                    "expected error of a loaded tooth's force at this speed and load, rms: its inertia is left out [N]")
+          "(first - second) / (first + second) mesh force, 0 without load [-]")
+      .def_readonly(
+          "mesh_force_error", &HealthReport::mesh_force_error,
+          "expected rms error of a loaded tooth's force at this speed and load, because the ring has no inertia [N]")
       .def_property_readonly(
           "wave_generator_load", [](const HealthReport& self) { return self.lobes.wave_generator_force; },
           "sum of the wave generator's contact forces [N]")
       .def_property_readonly(
           "solver_state", [](const HealthReport& self) { return solverStateName(self.solver_state); },
-          "'OK'; 'DEGRADED': steps were cut, too long, or a tooth jumped; 'FAILED': a step did not converge");
+          "state of the solver: 'OK'; 'DEGRADED': steps were cut, too long, or a tooth jumped; 'FAILED': a step did "
+          "not converge");
   addText(health);
 }
 
@@ -123,39 +126,41 @@ void bindIndicators(py::module& module)
 {
   auto indicators = py::class_<SignalIndicators>(
       module, "SignalIndicators",
-      "Indicators of one window out of encoders and torque alone, as Indicators.msg (docs/indicators.md).");
+      "Indicators of one window, computed from encoders and torque, as in Indicators.msg (docs/indicators.md).");
   indicators.def_readonly("stamp", &SignalIndicators::stamp, "end of the window [ns]")
-      .def_readonly("windows", &SignalIndicators::windows, "completed since start or reset; 0: none yet [-]")
-      .def_readonly("turns", &SignalIndicators::turns, "of the motor at steady speed in the window [-]")
+      .def_readonly("windows", &SignalIndicators::windows,
+                    "number of windows completed since start or reset; 0: none yet [-]")
+      .def_readonly("turns", &SignalIndicators::turns, "turns of the motor at constant speed in the window [-]")
       .def_property_readonly(
-          "speed", [](const SignalIndicators& self) { return self.point.speed; }, "magnitude, motor, mean [rad/s]")
+          "speed", [](const SignalIndicators& self) { return self.point.speed; },
+          "mean magnitude of the motor's speed [rad/s]")
       .def_property_readonly(
           "direction", [](const SignalIndicators& self) { return self.point.direction; },
-          "share of travel forward less share back, -1 ... 1 [-]")
+          "share of forward travel less share of backward travel, -1 ... 1 [-]")
       .def_property_readonly(
           "load", [](const SignalIndicators& self) { return self.point.load; },
-          "magnitude of the load torque, mean; nan: unknown [N.m]")
+          "mean magnitude of the load torque; nan: unknown [N.m]")
       .def_property_readonly(
           "load_constant", [](const SignalIndicators& self) { return self.point.load_constant; },
-          "of the load torque, what does not depend on the output angle; nan: unknown [N.m]")
+          "part of the load torque that does not depend on the output angle; nan: unknown [N.m]")
       .def_property_readonly(
           "load_sine", [](const SignalIndicators& self) { return self.point.load_sine; },
-          "of the load torque over the sine of the output angle; nan: unknown [N.m]")
+          "coefficient of the load torque for the sine of the output angle; nan: unknown [N.m]")
       .def_property_readonly(
           "load_cosine", [](const SignalIndicators& self) { return self.point.load_cosine; },
-          "of the load torque over the cosine of the output angle; nan: unknown [N.m]")
+          "coefficient of the load torque for the cosine of the output angle; nan: unknown [N.m]")
       .def_property_readonly(
           "inertia", [](const SignalIndicators& self) { return self.point.inertia; },
-          "motor torque over the acceleration, the drive's own included, at the joint [kg.m^2]")
+          "inertia at the joint, the drive's own included: motor torque over acceleration [kg.m^2]")
       .def_property_readonly(
           "temperature", [](const SignalIndicators& self) { return self.point.temperature; },
-          "mean; nan: not measured [degC]")
+          "mean temperature; nan: not measured [degC]")
       .def_property_readonly(
           "values", [](const SignalIndicators& self) { return byName(self.values); },
-          "dict of indicator name to value, in the units of indicator_units(); nan: the window did not tell")
+          "dict of indicator name to value, in the units of indicator_units(); nan: not determined by the window")
       .def_property_readonly(
           "uncertainty", [](const SignalIndicators& self) { return byName(self.uncertainty); },
-          "dict of indicator name to standard error by the fit; 0: not known");
+          "dict of indicator name to standard error of the fit; 0: not known");
   addText(indicators);
   module.def(
       "indicator_units",
@@ -168,7 +173,7 @@ void bindIndicators(py::module& module)
         }
         return units;
       },
-      "Names of all signal indicators with their units: dict of str to str (docs/indicators.md).");
+      "Returns the names of all signal indicators with their units: dict of str to str (docs/indicators.md).");
 }
 
 void bindAssessment(py::module& module)
@@ -177,36 +182,42 @@ void bindAssessment(py::module& module)
       py::class_<Evidence>(module, "Evidence", "An indicator whose deviation supports the level of an Assessment.");
   evidence
       .def_property_readonly(
-          "indicator", [](const Evidence& self) { return indicatorName(self.indicator); }, "its name")
-      .def_readonly("value", &Evidence::value, "unit of the indicator")
-      .def_readonly("expected", &Evidence::expected, "healthy mean there, unit of the indicator")
+          "indicator", [](const Evidence& self) { return indicatorName(self.indicator); }, "name of the indicator")
+      .def_readonly("value", &Evidence::value, "value in the indicator's unit")
+      .def_readonly("expected", &Evidence::expected,
+                    "mean of a sound drive at this operating point, in the indicator's unit")
       .def_readonly("score", &Evidence::score, "normal score of the deviation [-]");
   addText(evidence);
 
   auto assessment =
-      py::class_<Assessment>(module, "Assessment", "What the indicators say of the drive, as Assessment.msg.");
+      py::class_<Assessment>(module, "Assessment", "Assessment of the drive by its indicators, as in Assessment.msg.");
   assessment.def_readonly("stamp", &Assessment::stamp, "end of the last window [ns]")
-      .def_readonly("windows", &Assessment::windows, "windows seen [-]")
+      .def_readonly("windows", &Assessment::windows, "number of completed windows [-]")
       .def_property_readonly(
           "state", [](const Assessment& self) { return assessmentStateName(self.state); },
           "'WAITING', 'LEARNING', 'ASSESSED', 'NO_REFERENCE', 'TOO_FEW_WINDOWS' or 'OTHER_PAYLOAD': level 'OK' is a "
           "verdict in 'ASSESSED' only")
-      .def_readonly("windows_here", &Assessment::windows_here,
-                    "at the last operating point: in the reference if there is no more, else compared [-]")
-      .def_readonly("windows_needed", &Assessment::windows_needed, "of those, for a reference or a verdict [-]")
+      .def_readonly(
+          "windows_here", &Assessment::windows_here,
+          "number of windows at the last operating point: in its reference while learning, then compared with it [-]")
+      .def_readonly("windows_needed", &Assessment::windows_needed,
+                    "number of windows that a reference or a verdict needs [-]")
       .def_property_readonly(
           "level", [](const Assessment& self) { return levelName(self.level); }, "'OK', 'WARN' or 'ERROR'")
       .def_property_readonly(
           "cause", [](const Assessment& self) { return causeName(self.cause); },
-          "most likely cause; 'none' at level OK, or if no known fault explains the departure")
-      .def_readonly("confidence", &Assessment::confidence, "its probability, 0 at level OK [-]")
-      .def_readonly("severity", &Assessment::severity, "of the fault if this is the cause, mean; 0 with 'none' [-]")
-      .def_readonly("severity_deviation", &Assessment::severity_deviation, "standard deviation of that [-]")
-      .def_property_readonly("alternatives", &alternativesOf,
-                             "further causes that show alike, until 90 % are reached: {cause: probability [-]}")
+          "most likely cause; 'none' at level OK, or if no known fault explains the deviation")
+      .def_readonly("confidence", &Assessment::confidence, "probability of the cause, 0 at level OK [-]")
+      .def_readonly("severity", &Assessment::severity,
+                    "mean severity of the fault, if this is the cause; 0 with 'none' [-]")
+      .def_readonly("severity_deviation", &Assessment::severity_deviation, "standard deviation of the severity [-]")
+      .def_property_readonly(
+          "alternatives", &alternativesOf,
+          "further causes with similar effect, until 90 % probability is reached: {cause: probability [-]}")
       .def_readonly("largest_score", &Assessment::largest_score,
-                    "of the last window over the threshold; beyond 1 is out of the ordinary [-]")
-      .def_property_readonly("evidence", &evidenceOf, "strongest first: list of Evidence");
+                    "largest score of the last windows' mean over the threshold; beyond 1 it is an alarm [-]")
+      .def_property_readonly("evidence", &evidenceOf,
+                             "indicators beyond the threshold, strongest first: list of Evidence");
   addText(assessment);
 }
 }  // namespace

@@ -8,14 +8,15 @@ namespace
 {
 void bindErrors(py::module& module)
 {
-  // The one registered last is asked first.
+  // The error that is registered last is tried first.
   const auto input = py::register_exception<InputError>(module, "InputError", PyExc_ValueError);
   py::register_exception<ParameterError>(module, "ParameterError", input.ptr());
   py::register_exception<NotConverged>(module, "NotConverged", PyExc_RuntimeError);
-  module.attr("InputError").attr("__doc__") = "Bad input: the text names key, value, unit and range, or file and line.";
+  module.attr("InputError").attr("__doc__") =
+      "Invalid input; the text names key, value, unit and range, or file and line.";
   module.attr("ParameterError").attr("__doc__") =
       "A parameter that is missing, misspelt, mistyped or out of range, or two that contradict each other.";
-  module.attr("NotConverged").attr("__doc__") = "No equilibrium of the ring was found; the text tells what to do.";
+  module.attr("NotConverged").attr("__doc__") = "The ring has no equilibrium; the text gives advice.";
 }
 }  // namespace
 

@@ -15,12 +15,12 @@ double numberFrom(const py::handle& value, const std::string& key)
   {
     PyErr_Clear();
     throw ParameterError(std::string(ORIGIN) + ": " + key + " = " + py::cast<std::string>(py::repr(value)) +
-                         " is neither a number, a text, a truth value nor a list of numbers");
+                         " must be a number, a text, a truth value or a list of numbers");
   }
   return number;
 }
 
-/// A zero-dimensional array is a number, not a list.
+/// Whether the value is a list. A zero-dimensional array is a number.
 bool isList(const py::handle& value)
 {
   const bool is_list = PySequence_Check(value.ptr()) != 0 && PySequence_Size(value.ptr()) >= 0;
@@ -51,13 +51,13 @@ ParameterValue parameterValue(const py::handle& value, const std::string& key)
   }
   if (PyIndex_Check(value.ptr()))
   {
-    // A numpy scalar is no Python int.
+    // A numpy scalar is not a Python int.
     const auto whole = py::reinterpret_steal<py::object>(PyNumber_Index(value.ptr()));
     if (whole)
     {
       return { py::cast<std::int64_t>(whole), ORIGIN };
     }
-    PyErr_Clear();  // an array without dimensions that holds no whole number
+    PyErr_Clear();  // an array without dimensions that contains no whole number
   }
   return { numberFrom(value, key), ORIGIN };
 }
@@ -71,7 +71,7 @@ void put(const py::dict& values, ParameterMap& map)
     if (!py::isinstance<py::str>(item.first))
     {
       throw ParameterError(std::string(ORIGIN) + ": key " + py::cast<std::string>(py::repr(item.first)) +
-                           " is no text 'section.name'");
+                           " must be a text 'section.name'");
     }
     const auto key = py::cast<std::string>(item.first);
     map[key] = parameterValue(item.second, key);

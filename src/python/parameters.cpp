@@ -16,7 +16,7 @@ namespace hjt
 {
 namespace
 {
-/// One parameter, whatever its value.
+/// A parameter with a value of any type.
 struct Field
 {
   std::string key;
@@ -90,14 +90,14 @@ std::enable_if_t<std::is_enum<Choice>::value, py::object> toPython(Choice value)
   return py::none();
 }
 
-/// Calls `take(key, value)` for each field, whose value may be of any type.
+/// Calls `take(key, value)` for each field, whose value may have any type.
 template <class Take>
 void visitValues(const Parameters& parameters, const Take& take)
 {
   visitFields(parameters,
               [&](const std::string& key, const auto& first, const auto& second, const auto&... rest)
               {
-                // Numbers come as (unit, value, range, meaning), all else as (value, meaning).
+                // Numbers have (unit, value, range, meaning), all other fields (value, meaning).
                 if constexpr (sizeof...(rest) == 0)
                 {
                   take(key, first);
@@ -151,38 +151,42 @@ Fault faultFrom(const py::tuple& parts)
 
 void bindFaults(py::module& module)
 {
-  auto fault = py::class_<Fault>(module, "Fault", "A fault of the gear, known by its kind and place.");
+  auto fault = py::class_<Fault>(module, "Fault", "A fault of the gear, which its kind and place identify.");
   fault
       .def(py::init(&makeFault), py::arg("kind"), py::arg("severity"), py::arg("place") = py::none(),
            py::arg("onset") = 0.0,
-           "kind: see fault_kinds(); severity: 0 none ... 1 [-]; place: tooth, segment, lobe or ball from 0 on, -1 the "
-           "whole member, None the first that the kind allows; onset: after the start, or after the stamp that it was "
-           "injected with [s].")
+           "kind: see fault_kinds(); severity: 0 (none) ... 1 [-]; place: number of tooth, segment, lobe or ball from "
+           "0 on, -1: the "
+           "whole member, None: the first place that the kind allows; onset: delay after the start, or after the stamp "
+           "of its "
+           "injection [s].")
       .def_property_readonly(
           "kind", [](const Fault& self) { return describe(self.kind).name; }, "name of the kind")
       .def_readonly("severity", &Fault::severity, "0 none ... 1 [-]")
-      .def_readonly("place", &Fault::place, "from 0 on; -1: the whole member [-]")
-      .def_readonly("onset", &Fault::onset, "after the start, or after the stamp it was injected with [s]")
+      .def_readonly("place", &Fault::place,
+                    "number of tooth, segment, lobe or ball from 0 on; -1: the whole member [-]")
+      .def_readonly("onset", &Fault::onset, "delay after the start, or after the stamp of the injection [s]")
       .def(
           "__eq__", [](const Fault& self, const Fault& other) { return partsOf(self).equal(partsOf(other)); },
-          py::is_operator(), py::arg("other"), "Whether kind, severity, place and onset are the same.")
+          py::is_operator(), py::arg("other"), "Whether kind, severity, place and onset are equal.")
       .def("__hash__", [](const Fault& self) { return py::hash(partsOf(self)); })
       .def(py::pickle(&partsOf, &faultFrom));
   addText(fault);
 
-  auto kind = py::class_<FaultDescription>(module, "FaultKind", "What a kind of fault is.");
+  auto kind = py::class_<FaultDescription>(module, "FaultKind", "Description of a kind of fault.");
   kind.def_property_readonly(
-          "name", [](const FaultDescription& self) { return self.name; }, "for Fault and the tool's --fault")
+          "name", [](const FaultDescription& self) { return self.name; }, "name for Fault and the tool's --fault")
       .def_property_readonly(
-          "place", [](const FaultDescription& self) { return placeName(self.place); }, "what its place counts")
-      .def_readonly("whole", &FaultDescription::whole, "place -1, the whole member, is allowed")
+          "place", [](const FaultDescription& self) { return placeName(self.place); },
+          "kind of the place: tooth, segment, lobe, ball or -")
+      .def_readonly("whole", &FaultDescription::whole, "whether place -1, the whole member, is allowed")
       .def_property_readonly(
-          "severity", [](const FaultDescription& self) { return self.severity; }, "what severity 1 is")
+          "severity", [](const FaultDescription& self) { return self.severity; }, "size of the fault at severity 1")
       .def(
           "shows",
           [](const FaultDescription& self, const Configuration& parameters)
           { return shownFirst(self.kind, parameters.values()); },
-          py::arg("parameters"), "Where it shows first in this drive.");
+          py::arg("parameters"), "Returns the signal that shows the fault first in this drive.");
   addText(kind);
   module.def(
       "fault_kinds",
@@ -195,7 +199,7 @@ void bindFaults(py::module& module)
         }
         return kinds;
       },
-      "All kinds of faults by name (docs/faults.md): dict of str to FaultKind.");
+      "Returns all kinds of faults by name (docs/faults.md): dict of str to FaultKind.");
 }
 }  // namespace
 
@@ -240,7 +244,8 @@ void Configuration::requireChangeable() const
 {
   if (is_frozen_)
   {
-    throw py::type_error("a twin keeps its parameters: set values in parameters.copy() and make a new twin of it");
+    throw py::type_error(
+        "the parameters of a twin cannot be changed; set values in parameters.copy() and make a new twin of it");
   }
 }
 
@@ -379,16 +384,17 @@ Configuration configurationOf(const py::args& overlays, const py::kwargs& option
 
 void bindField(py::module& module)
 {
-  auto field = py::class_<Field>(module, "Field", "A parameter: what docs/parameters.md says of it.");
+  auto field = py::class_<Field>(module, "Field", "Description of a parameter, as in docs/parameters.md.");
   field.def_readonly("key", &Field::key, "section.name")
-      .def_readonly("type", &Field::type, "float, int, bool, str, or e.g. '3 floats'")
-      .def_readonly("unit", &Field::unit, "SI; '-': none")
-      .def_readonly("minimum", &Field::minimum, "least allowed; None: no number")
-      .def_readonly("maximum", &Field::maximum, "largest allowed; None: no number")
+      .def_readonly("type", &Field::type, "type: float, int, bool, str, or for example '3 floats'")
+      .def_readonly("unit", &Field::unit, "SI unit; '-': no unit")
+      .def_readonly("minimum", &Field::minimum, "least allowed value; None: not a number")
+      .def_readonly("maximum", &Field::maximum, "largest allowed value; None: not a number")
       .def_readonly("choices", &Field::choices, "allowed texts; empty: any")
-      .def_readonly("meaning", &Field::meaning, "what it is");
+      .def_readonly("meaning", &Field::meaning, "meaning of the parameter");
   addText(field);
-  module.def("parameter_fields", &allFields, "All parameters, in the order of docs/parameters.md: list of Field.");
+  module.def("parameter_fields", &allFields,
+             "Returns all parameters, in the order of docs/parameters.md: list of Field.");
 }
 }  // namespace
 
@@ -398,15 +404,16 @@ void bindParameters(py::module& module)
   py::class_<Configuration>(module, "Parameters",
                             "All parameters of a joint, by their keys 'section.name' (docs/parameters.md), in SI "
                             "units, temperatures in degC.\n\n"
-                            "Parameters(*overlays, config_dir=''): the default configuration with the overlays over "
-                            "it, later wins. An overlay is a YAML file as for the tool's --config, e.g. "
+                            "Parameters(*overlays, config_dir=''): the default configuration, changed by the overlays; "
+                            "later ones win. An overlay is a YAML file as for the tool's --config, for example "
                             "'joints/elbow.yaml', or a dict of keys "
                             "and values, as for --set. "
-                            "config_dir: of another default configuration.\n\n"
-                            "A value that is set is checked at once, with all the others; ParameterError names key, "
-                            "value, unit and range, and nothing has changed.")
+                            "config_dir: directory of another default configuration.\n\n"
+                            "Setting a value checks all parameters at once. ParameterError names key, "
+                            "value, unit and range, and leaves everything unchanged.")
       .def(py::init(&configurationOf), "Parameters(*overlays, config_dir='')")
-      .def("__getitem__", &Configuration::value, py::arg("key"), "Value of a key; a list of numbers is a tuple.")
+      .def("__getitem__", &Configuration::value, py::arg("key"),
+           "Returns the value of a key; a list of numbers is a tuple.")
       .def(
           "__setitem__",
           [](Configuration& self, const py::str& key, const py::object& value)
@@ -415,28 +422,31 @@ void bindParameters(py::module& module)
             changes[key] = value;
             self.update(changes);
           },
-          py::arg("key"), py::arg("value"), "Sets one key. ParameterError.")
+          py::arg("key"), py::arg("value"), "Sets the value of one key. Raises ParameterError.")
       .def("__contains__", &Configuration::contains, py::arg("key"), "Whether there is such a key.")
       .def(
-          "__len__", [](const Configuration& self) { return self.keys().size(); }, "How many keys there are.")
+          "__len__", [](const Configuration& self) { return self.keys().size(); }, "Number of keys.")
       .def(
-          "__iter__", [](const Configuration& self) { return py::iter(py::cast(self.keys())); }, "Over all keys.")
-      .def("keys", &Configuration::keys, "All keys: list of str; dict(parameters) has their values too.")
+          "__iter__", [](const Configuration& self) { return py::iter(py::cast(self.keys())); },
+          "Iterates over all keys.")
+      .def("keys", &Configuration::keys, "Returns all keys: list of str; dict(parameters) also has their values.")
       .def(
           "items", [](const Configuration& self) { return self.state()[1].attr("items")(); },
-          "All keys with their values, as of a dict.")
+          "Returns all keys with their values, as for a dict.")
       .def(py::self == py::self)
       .def("update", &Configuration::update, py::arg("changes"),
-           "Sets the keys of a dict together, where one alone would contradict another. ParameterError.")
-      .def_static("field", &fieldOf, py::arg("key"), "Unit, range and meaning of a key: Field. KeyError.")
-      .def_property(
-          "faults", &Configuration::faults, &Configuration::setFaults,
-          "Faults that the twin starts with, or gets on its way: list of Fault, to be set as a whole, one or several; "
-          "texts 'KIND:SEVERITY[:PLACE[:ONSET]]' are taken too.")
+           "Sets the keys of a dict together, for values that would contradict each other if set alone. Raises "
+           "ParameterError.")
+      .def_static("field", &fieldOf, py::arg("key"),
+                  "Returns unit, range and meaning of a key as a Field. Raises KeyError.")
+      .def_property("faults", &Configuration::faults, &Configuration::setFaults,
+                    "Faults that are active at the start or set in later: list of Fault. It is set as a whole, to one "
+                    "or several; "
+                    "texts 'KIND:SEVERITY[:PLACE[:ONSET]]' are accepted too.")
       .def(
           "describe", [](const Configuration& self) { return describeParameters(self.values()); },
-          "All keys, values, units and meanings, one a line.")
-      .def("copy", &Configuration::copy, "Another object with the same values.")
+          "Returns a text of all keys, values, units and meanings, one a line.")
+      .def("copy", &Configuration::copy, "Returns another object with equal values.")
       .def("__copy__", &Configuration::copy)
       .def(
           "__deepcopy__", [](const Configuration& self, const py::dict&) { return self.copy(); }, py::arg("memo"))

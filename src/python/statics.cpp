@@ -19,7 +19,7 @@
 
 namespace hjt
 {
-/// One row of quasi-static turning.
+/// A row of quasi-static turning.
 struct TurnValues
 {
   double wave_generator_angle;
@@ -29,7 +29,7 @@ struct TurnValues
   double housing_torque;
 };
 
-/// One row of the losses. Names as in `joint_twin losses --json`.
+/// A row of the losses. Names are those of `joint_twin losses --json`.
 struct LossValues
 {
   double motor_speed;
@@ -49,7 +49,7 @@ struct LossValues
 
 namespace
 {
-/// Adds a vector of a class as an array that is a view of it.
+/// Adds a vector of a class as an array that is a view of the vector.
 template <class Class, class Values>
 void addArray(Class& type, const char* name, std::vector<double> Values::*values, const char* meaning)
 {
@@ -57,7 +57,7 @@ void addArray(Class& type, const char* name, std::vector<double> Values::*values
       name, [values](const py::object& self) { return viewOf(self.cast<const Values&>().*values, self); }, meaning);
 }
 
-/// By its name. @throws InputError.
+/// Index of a place by its name. @throws InputError.
 std::size_t stressPlace(const std::string& name)
 {
   std::string names;
@@ -72,7 +72,7 @@ std::size_t stressPlace(const std::string& name)
   throw InputError("place = '" + name + "' must be one of " + names);
 }
 
-/// @throws InputError.
+/// Checks that all values are finite. @throws InputError.
 void requireFinite(const char* name, const std::vector<double>& values)
 {
   for (const double value : values)
@@ -84,7 +84,7 @@ void requireFinite(const char* name, const std::vector<double>& values)
   }
 }
 
-/// The parameters, for an analysis that honours their faults. @throws ParameterError if one cannot act in it.
+/// Parameters for an analysis with faults. @throws ParameterError if a fault cannot act in it.
 Parameters analysed(const Configuration& parameters, Analysis analysis)
 {
   requireFaultsAct(parameters.values(), analysis);
@@ -126,7 +126,7 @@ std::vector<StiffnessRow> stiffness(const Configuration& parameters, const std::
       [&, given = analysed(parameters, Analysis::RING)]
       {
         InterruptCheck check;
-        // No row depends on another.
+        // The rows are independent of each other.
         for (const double torque : torques)
         {
           rows.push_back(std::move(analyseStiffness(given, angle, { torque }).front()));
@@ -218,7 +218,6 @@ TorsionLoop torsionLoop(const Configuration& parameters, double amplitude, doubl
   return loop;
 }
 
-/// One value of all points of a loop.
 template <double TorsionPoint::*VALUE>
 py::array_t<double> pointsOf(const TorsionLoop& loop)
 {
@@ -234,58 +233,65 @@ py::array_t<double> pointsOf(const TorsionLoop& loop)
 void bindTeeth(py::module& module)
 {
   auto teeth = py::class_<ToothTable>(module, "ToothTable",
-                                      "Every tooth of one equilibrium: arrays of shape (teeth,), index = tooth, views "
-                                      "of the result's memory, which they "
-                                      "keep alive.");
-  addArray(teeth, "tooth_x", &ToothTable::tooth_x, "of the tooth point [m]");
-  addArray(teeth, "tooth_y", &ToothTable::tooth_y, "of the tooth point [m]");
-  addArray(teeth, "radius", &ToothTable::radius, "of the tooth point [m]");
-  addArray(teeth, "angle_deviation", &ToothTable::angle_deviation, "of the tooth point's angle from rest [rad]");
+                                      "Values of every tooth in one equilibrium: arrays of shape (teeth,), index = "
+                                      "tooth. They are views of the result's memory, which they keep alive.");
+  addArray(teeth, "tooth_x", &ToothTable::tooth_x, "x of the tooth point [m]");
+  addArray(teeth, "tooth_y", &ToothTable::tooth_y, "y of the tooth point [m]");
+  addArray(teeth, "radius", &ToothTable::radius, "distance of the tooth point from the axis [m]");
+  addArray(teeth, "angle_deviation", &ToothTable::angle_deviation,
+           "deviation of the tooth point's angle from rest [rad]");
   addArray(teeth, "wave_generator_force", &ToothTable::wave_generator_force, "[N]");
-  addArray(teeth, "rim_tension", &ToothTable::rim_tension, "to the next tooth [N]");
-  addArray(teeth, "bending_force", &ToothTable::bending_force, "of the segment to the next tooth [N]");
+  addArray(teeth, "rim_tension", &ToothTable::rim_tension, "tension of the rim to the next tooth [N]");
+  addArray(teeth, "bending_force", &ToothTable::bending_force, "bending force of the segment to the next tooth [N]");
   addArray(teeth, "mesh_force", &ToothTable::mesh_force,
            "normal force on the flank, > 0 leading, < 0 trailing flank [N]");
-  addArray(teeth, "stress_tooth_space", &ToothTable::stress_tooth_space, "nominal normal stress [Pa]");
-  addArray(teeth, "stress_transition", &ToothTable::stress_transition, "nominal normal stress [Pa]");
-  addArray(teeth, "stress_flange", &ToothTable::stress_flange, "nominal normal stress [Pa]");
-  addArray(teeth, "across", &ToothTable::across, "place in its space of the circular spline; empty without one [m]");
+  addArray(teeth, "stress_tooth_space", &ToothTable::stress_tooth_space,
+           "nominal normal stress in the tooth space [Pa]");
+  addArray(teeth, "stress_transition", &ToothTable::stress_transition, "nominal normal stress at the transition [Pa]");
+  addArray(teeth, "stress_flange", &ToothTable::stress_flange, "nominal normal stress at the flange [Pa]");
+  addArray(teeth, "across", &ToothTable::across,
+           "position across its space of the circular spline; empty without one [m]");
   addArray(teeth, "depth", &ToothTable::depth, "likewise [m]");
-  addArray(teeth, "tilt", &ToothTable::tilt, "likewise [rad]");
-  addArray(teeth, "gap", &ToothTable::gap, "to the nearer flank; likewise [m]");
+  addArray(teeth, "tilt", &ToothTable::tilt, "angle against the axis of the space; empty without one [rad]");
+  addArray(teeth, "gap", &ToothTable::gap, "distance to the nearer flank; empty without circular spline [m]");
   addText(teeth);
 }
 
 void bindInsertion(py::module& module)
 {
   auto result = py::class_<InsertionResult>(
-      module, "InsertionResult", "Equilibrium after the wave generator's insertion, circular spline left out.");
+      module, "InsertionResult", "Equilibrium after the wave generator's insertion, without circular spline.");
   result.def_readonly("wave_generator_force_max", &InsertionResult::wave_generator_force_max, "[N]")
       .def_readonly("wave_generator_force_min", &InsertionResult::wave_generator_force_min, "[N]")
       .def_readonly("wave_generator_force_sum", &InsertionResult::wave_generator_force_sum, "[N]")
-      .def_readonly("teeth_in_contact", &InsertionResult::teeth_in_contact, "with the wave generator [-]")
-      .def_readonly("tension_min", &InsertionResult::tension_min, "of the rim [N]")
-      .def_readonly("tension_max", &InsertionResult::tension_max, "of the rim [N]")
-      .def_readonly("radius_major_axis", &InsertionResult::radius_major_axis, "of tooth 0 [m]")
-      .def_readonly("radius_minor_axis", &InsertionResult::radius_minor_axis, "of tooth N/4 [m]")
+      .def_readonly("teeth_in_contact", &InsertionResult::teeth_in_contact,
+                    "number of teeth in contact with the wave generator [-]")
+      .def_readonly("tension_min", &InsertionResult::tension_min, "least tension of the rim [N]")
+      .def_readonly("tension_max", &InsertionResult::tension_max, "largest tension of the rim [N]")
+      .def_readonly("radius_major_axis", &InsertionResult::radius_major_axis, "radius of tooth 0 [m]")
+      .def_readonly("radius_minor_axis", &InsertionResult::radius_minor_axis, "radius of tooth N/4 [m]")
       .def_readonly("bending_force_max", &InsertionResult::bending_force_max, "[N]")
       .def_readonly("teeth", &InsertionResult::teeth, "ToothTable");
   addText(result);
   module.def("analyse_insertion", &insertion, py::arg("parameters"),
-             "Static equilibrium after the insertion, without circular spline: InsertionResult. NotConverged.");
+             "Computes the static equilibrium after the insertion, without circular spline. Returns InsertionResult. "
+             "Raises NotConverged.");
 
-  auto check = py::class_<FitCheck>(module, "FitCheck", "Whether the teeth have room where the gear carries no load.");
-  check.def_readonly("teeth_loaded", &FitCheck::teeth_loaded, "without load [-]")
-      .def_readonly("wave_generator_force", &FitCheck::wave_generator_force, "sum over the teeth, without load [N]")
+  auto check = py::class_<FitCheck>(module, "FitCheck", "Check whether the teeth fit into each other without load.");
+  check.def_readonly("teeth_loaded", &FitCheck::teeth_loaded, "number of teeth that carry mesh force without load [-]")
+      .def_readonly("wave_generator_force", &FitCheck::wave_generator_force,
+                    "sum of the wave generator's forces over the teeth, without load [N]")
       .def_readonly("wave_generator_force_insertion", &FitCheck::wave_generator_force_insertion,
-                    "the same without the circular spline [N]")
-      .def_property_readonly("jams", &FitCheck::jams, "the teeth press harder on the wave generator than the bent rim");
+                    "that sum without the circular spline [N]")
+      .def_property_readonly("jams", &FitCheck::jams,
+                             "whether the teeth load the wave generator more than the bent rim does");
   addText(check);
   module.def("check_fit", &fit, py::arg("parameters"),
-             "Whether the teeth have room: FitCheck; worth a look after every change of a gear. NotConverged.");
+             "Checks whether the teeth fit without load, for use after every change of a gear. Returns FitCheck. "
+             "Raises NotConverged.");
 }
 
-/// The parameters of the gear wanted, and by what rule each of its parameters follows.
+/// Parameters of the wanted gear, with the rule for each of its parameters.
 py::tuple design(const Configuration& parameters, double size, int ratio, const std::optional<double>& bore_radius,
                  const std::optional<double>& rim_thickness, const std::optional<double>& face_width,
                  const std::vector<double>& stiffness, const std::vector<double>& breakpoints,
@@ -311,32 +317,34 @@ void bindDesign(py::module& module)
       py::arg("stiffness") = std::vector<double>(), py::arg("breakpoints") = std::vector<double>(),
       py::arg("ratings") = std::vector<double>(), py::arg("starting_torque") = py::none(),
       py::arg("no_load_torque") = py::none(),
-      "A whole gear of the family by size (25: that of parameters, 5 ... 100) and ratio (circular spline held, 30 ... "
-      "320), as the tool's gear (docs/own_gear.md). parameters: Parameters of HFUS-25-2SH, ratio 100, or a variant. "
-      "bore_radius and rim_thickness of the flexspline, face_width of the teeth: where they are known [m]. Of a "
+      "Designs a gear of the family by size (25: that of parameters, 5 ... 100) and ratio (circular spline held, 30 "
+      "... "
+      "320), as `joint_twin gear` does (docs/own_gear.md). parameters: Parameters of HFUS-25-2SH, ratio 100, or a "
+      "variant. "
+      "bore_radius and rim_thickness of the flexspline, face_width of the teeth [m], if known. From a "
       "catalogue of your own: "
       "stiffness K1, K2, K3 [N.m/rad], breakpoints T1, T2, ratings (rated, average, repeated peak, momentary peak), "
       "starting_torque, no_load_torque [N.m].\n\n"
-      "Returns Parameters, all of the joint included, and a dict of the parameters that were derived: key to rule. "
+      "Returns Parameters of the whole joint and a dict of the derived parameters: key to rule. Raises "
       "ParameterError.");
   module.def(
       "gear_warnings",
       [](const Configuration& parameters)
       { return withoutLock([&, values = parameters.values()] { return gearWarnings(values); }); },
       py::arg("parameters"),
-      "What of the gear does not go with the rest, as the tool warns at the start: list of str, each with key, value "
+      "Warnings of inconsistent values of the gear, as the tool prints them: list of str, each with key, value "
       "and "
-      "what it should be near.");
+      "expected value.");
 }
 
 void bindStiffness(py::module& module)
 {
   auto row = py::class_<StiffnessRow>(module, "StiffnessRow", "The gear under one load, wave generator locked.");
-  row.def_readonly("torque", &StiffnessRow::torque, "load; > 0 turns the output backwards [N.m]")
-      .def_readonly("output_angle", &StiffnessRow::output_angle, "relative to zero load [rad]")
+  row.def_readonly("torque", &StiffnessRow::torque, "load on the circular spline; > 0 turns the output backwards [N.m]")
+      .def_readonly("output_angle", &StiffnessRow::output_angle, "angle of the output relative to zero load [rad]")
       .def_readonly("wave_generator_torque", &StiffnessRow::wave_generator_torque,
-                    "of the flexspline on the wave generator [N.m]")
-      .def_readonly("housing_torque", &StiffnessRow::housing_torque, "of the housing on the flexspline [N.m]")
+                    "torque of the flexspline on the wave generator [N.m]")
+      .def_readonly("housing_torque", &StiffnessRow::housing_torque, "torque of the housing on the flexspline [N.m]")
       .def_readonly("cup_rotation", &StiffnessRow::cup_rotation, "mean rotation of the teeth from rest [rad]")
       .def_readonly("teeth_loaded", &StiffnessRow::teeth_loaded, "[-]")
       .def_readonly("mesh_force_max", &StiffnessRow::mesh_force_max, "[N]")
@@ -344,15 +352,15 @@ void bindStiffness(py::module& module)
       .def_property_readonly(
           "residual", [](const StiffnessRow& self) { return self.status.residual; },
           "largest out-of-balance force on a tooth [N]")
-      .def_readonly("stress", &StiffnessRow::stress, "nominal, without the notch: ToothStress")
+      .def_readonly("stress", &StiffnessRow::stress, "nominal stresses without notch factor: ToothStress")
       .def_readonly("teeth", &StiffnessRow::teeth, "ToothTable");
   addArray(row, "ball_force", &StiffnessRow::ball_force,
-           "of each ball of the bearing, shape (balls,); empty unless contact.support = single_balls [N]");
+           "force on each ball of the bearing, shape (balls,); empty unless contact.support = single_balls [N]");
   addText(row);
-  module.def(
-      "analyse_stiffness", &stiffness, py::arg("parameters"), py::arg("torques"), py::arg("angle") = 0.0,
-      "Torsion under load, wave generator locked at angle [rad], friction left out: list of StiffnessRow, one for "
-      "each of the torques, loads on the circular spline [N.m]. NotConverged.");
+  module.def("analyse_stiffness", &stiffness, py::arg("parameters"), py::arg("torques"), py::arg("angle") = 0.0,
+             "Computes the torsion under load without friction, wave generator locked at angle [rad]. Returns a list "
+             "of StiffnessRow, one for "
+             "each of the torques, loads on the circular spline [N.m]. Raises NotConverged.");
   module.def(
       "endurance_share",
       [](const Configuration& parameters, const std::string& place, const StressCycle& cycle) {
@@ -360,7 +368,8 @@ void bindStiffness(py::module& module)
             .enduranceShare(stressPlace(place), cycle);
       },
       py::arg("parameters"), py::arg("place"), py::arg("cycle"),
-      "Share of the endurance limit that a StressCycle uses at the notch of 'tooth space', 'transition' or 'flange', "
+      "Ratio of a StressCycle's equivalent amplitude to the endurance limit, at the notch of 'tooth space', "
+      "'transition' or 'flange', "
       "by "
       "Goodman and Peterson [-] (docs/life.md): float.");
 }
@@ -372,38 +381,42 @@ void bindSlowMotion(py::module& module)
   PYBIND11_NUMPY_DTYPE(LossValues, motor_speed, load_torque, load_reduced, bearing, interface, flexing, mesh, cup,
                        damping, output, motor, gear_loss, gear_efficiency);
   module.def("analyse_turn", &turn, py::arg("parameters"), py::arg("load"), py::arg("angle_range"), py::arg("steps"),
-             "Quasi-static turning from 0 to angle_range [rad] at a constant load [N.m], friction left out.\n\n"
+             "Computes quasi-static turning from 0 to angle_range [rad] at a constant load [N.m], without friction.\n\n"
              "Returns a structured array of shape (steps + 1,): wave_generator_angle, output_angle, kinematic_error "
-             "[rad], wave_generator_torque, housing_torque [N.m]. NotConverged.");
+             "[rad], wave_generator_torque, housing_torque [N.m]. Raises NotConverged.");
   module.def(
       "analyse_losses", &losses, py::arg("parameters"), py::arg("speeds"), py::arg("loads"), py::arg("positions") = 16,
-      "Friction and efficiency of steady turning at motor speeds [rad/s] against loads [N.m]; positions: wave "
-      "generator angles per tooth pitch.\n\n"
+      "Computes friction and efficiency at constant motor speeds [rad/s] and loads [N.m]; positions: number of wave "
+      "generator angles in a tooth pitch.\n\n"
       "Returns a structured array of shape (loads, speeds): motor_speed [rad/s], load_torque, load_reduced [N.m]; "
       "bearing, interface, flexing, mesh, cup, damping, output, motor, gear_loss: torques at the motor shaft "
-      "[N.m]; gear_efficiency [-]. NotConverged.");
+      "[N.m]; gear_efficiency [-]. Raises NotConverged.");
 
   auto result = py::class_<Breakaway>(module, "Breakaway",
-                                      "Torques at which the gear without its motor's friction begins to move.");
-  result.def_readonly("starting", &Breakaway::starting, "at the wave generator, no load [N.m]")
-      .def_readonly("back_driving", &Breakaway::back_driving, "at the output, wave generator free [N.m]");
+                                      "Torques at which the gear begins to move, without friction of the motor.");
+  result.def_readonly("starting", &Breakaway::starting, "torque at the wave generator, without load [N.m]")
+      .def_readonly("back_driving", &Breakaway::back_driving, "load at the output, with the wave generator free [N.m]");
   addText(result);
   module.def("analyse_breakaway", &breakaway, py::arg("parameters"), py::arg("positions") = 16,
-             "Torques at which the gear begins to move: Breakaway. NotConverged.");
+             "Computes the torques at which the gear begins to move. Returns Breakaway. Raises NotConverged.");
 
-  auto loop = py::class_<TorsionLoop>(module, "TorsionLoop", "Torsion to and fro with the friction of the teeth.");
+  auto loop =
+      py::class_<TorsionLoop>(module, "TorsionLoop", "Torsion under a cycling load, with the friction of the teeth.");
   loop.def_property_readonly("torque", &pointsOf<&TorsionPoint::torque>,
                              "loads, from +amplitude to -amplitude and back, shape (points,) [N.m]")
-      .def_property_readonly("output_angle", &pointsOf<&TorsionPoint::output_angle>,
-                             "from the place without load, > 0 with the load, shape (points,) [rad]")
+      .def_property_readonly(
+          "output_angle", &pointsOf<&TorsionPoint::output_angle>,
+          "angles from the position without load, > 0 in the load's direction, shape (points,) [rad]")
       .def_readonly("hysteresis", &TorsionLoop::hysteresis, "width of the loop at no load [rad]")
       .def_readonly("lost_motion", &TorsionLoop::lost_motion,
-                    "between the middles of the loop at plus and minus the lost motion torque [rad]");
+                    "angle between the middles of the loop at plus and minus the lost motion torque [rad]");
   addText(loop);
-  module.def("analyse_torsion_loop", &torsionLoop, py::arg("parameters"), py::arg("amplitude"),
-             py::arg("lost_motion_torque"), py::arg("steps") = 200,
-             "Wave generator locked, load swept slowly between plus and minus amplitude [N.m]; steps: of a sweep; "
-             "lost_motion_torque: e.g. 4 % of the rated torque [N.m]. Returns TorsionLoop. NotConverged.");
+  module.def(
+      "analyse_torsion_loop", &torsionLoop, py::arg("parameters"), py::arg("amplitude"), py::arg("lost_motion_torque"),
+      py::arg("steps") = 200,
+      "Computes the torsion with locked wave generator for a load that cycles slowly between plus and minus amplitude "
+      "[N.m]; steps: number of angles of a sweep; "
+      "lost_motion_torque: for example 4 % of the rated torque [N.m]. Returns TorsionLoop. Raises NotConverged.");
 }
 
 template <std::size_t PLACE>
@@ -426,7 +439,7 @@ void bindToothValues(py::module& module)
 {
   auto forces = py::class_<ToothForces, std::shared_ptr<ToothForces>>(
       module, "ToothForces",
-      "Forces on every tooth of the flexspline at one instant, as ContactForces.msg. Arrays of shape (teeth,), "
+      "Forces on every tooth of the flexspline at one instant, as in ContactForces.msg: arrays of shape (teeth,), "
       "index = tooth, counter-clockwise from the flexspline's x axis. They are views of the twin's memory: the next "
       "call of Twin.tooth_forces() overwrites them; copy() keeps them.");
   addArray(forces, "wave_generator_force", &ToothForces::wave_generator_force,
@@ -436,49 +449,52 @@ void bindToothValues(py::module& module)
            "restoring force of the bending couple of the segment to the next tooth [N]");
   addArray(forces, "mesh_force", &ToothForces::mesh_force,
            "normal force of the circular spline on the flank; > 0 leading, < 0 trailing flank [N]");
-  addArray(forces, "tooth_x", &ToothForces::tooth_x, "of the tooth point on the inner rim [m]");
-  addArray(forces, "tooth_y", &ToothForces::tooth_y, "of the tooth point on the inner rim [m]");
+  addArray(forces, "tooth_x", &ToothForces::tooth_x, "x of the tooth point on the inner rim [m]");
+  addArray(forces, "tooth_y", &ToothForces::tooth_y, "y of the tooth point on the inner rim [m]");
   forces.def(
       "copy", [](const ToothForces& self) { return std::make_shared<ToothForces>(self); },
-      "The same values in memory of their own: ToothForces.");
+      "Returns ToothForces with equal values in separate memory.");
   addText(forces);
 
   auto cycle = py::class_<StressCycle>(
       module, "StressCycle",
-      "What one place of the flexspline goes through in a turn of the wave generator, nominal: without the notch.");
-  cycle.def_readonly("lowest", &StressCycle::lowest, "normal stress [Pa]")
-      .def_readonly("highest", &StressCycle::highest, "normal stress [Pa]")
-      .def_readonly("shear", &StressCycle::shear, "constant over the turn [Pa]")
+      "Nominal stress (without notch factor) at one place of the flexspline over a turn of the wave generator.");
+  cycle.def_readonly("lowest", &StressCycle::lowest, "least normal stress [Pa]")
+      .def_readonly("highest", &StressCycle::highest, "largest normal stress [Pa]")
+      .def_readonly("shear", &StressCycle::shear, "shear stress, constant over the turn [Pa]")
       .def_property_readonly("amplitude", &StressCycle::amplitude, "half of highest less lowest [Pa]")
       .def_property_readonly("mean", &StressCycle::mean, "mean of highest and lowest [Pa]")
-      .def_property_readonly("largest", &StressCycle::largest, "largest equivalent stress after von Mises [Pa]");
+      .def_property_readonly("largest", &StressCycle::largest, "largest equivalent stress by von Mises [Pa]");
   addText(cycle);
 
   auto stress = py::class_<ToothStress, std::shared_ptr<ToothStress>>(
       module, "ToothStress",
-      "Nominal stress of the flexspline, without the notch, as Stress.msg. Arrays of shape (teeth,) are views: those "
+      "Nominal stress of the flexspline (without notch factor), as in Stress.msg: arrays of shape (teeth,), which are "
+      "views. Those "
       "of "
       "a twin are overwritten by the next call of Twin.tooth_stress(); copy() keeps them.");
   stress
       .def_property_readonly("tooth_space", &stressView<0>,
                              "normal stress around the rim in the spaces beside each tooth [Pa]")
-      .def_property_readonly("transition", &stressView<1>, "along the axis where the toothed rim ends [Pa]")
-      .def_property_readonly("flange", &stressView<2>, "along the axis where the cup is held [Pa]")
+      .def_property_readonly("transition", &stressView<1>,
+                             "normal stress along the axis, at the end of the toothed rim [Pa]")
+      .def_property_readonly("flange", &stressView<2>, "normal stress along the axis, at the flange of the cup [Pa]")
       .def_property_readonly(
           "shear", [](const ToothStress& self) { return py::tuple(py::cast(self.shear)); },
-          "by place, the same all around [Pa]: tuple of 3, in the order tooth space, transition, flange")
+          "shear stress by place, constant around the circumference [Pa]: tuple of 3, for tooth space, transition, "
+          "flange")
       .def(
           "cycle", [](const ToothStress& self, const std::string& place) { return self.cycle(stressPlace(place)); },
           py::arg("place"),
-          "What one tooth goes through in a turn, all teeth being alike: StressCycle. place: 'tooth space', "
-          "'transition' or 'flange'. At the notch it is larger by stress.concentration.")
+          "Returns the StressCycle of one tooth in a turn, for equal teeth. place: 'tooth space', "
+          "'transition' or 'flange'. The stress at the notch is larger by stress.concentration.")
       .def(
           "worst_tooth",
           [](const ToothStress& self, const std::string& place) { return self.worstTooth(stressPlace(place)); },
-          py::arg("place"), "Where the normal stress is largest in magnitude: int.")
+          py::arg("place"), "Returns the tooth with the largest magnitude of the normal stress: int.")
       .def(
           "copy", [](const ToothStress& self) { return std::make_shared<ToothStress>(self); },
-          "The same values in memory of their own: ToothStress.");
+          "Returns ToothStress with equal values in separate memory.");
   addText(stress);
 }
 }  // namespace hjt

@@ -18,11 +18,11 @@ namespace
 {
 using Values = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-/// A column of a recording; none: not recorded.
+/// A column of a recording; empty if it was not recorded.
 class Recorded
 {
 public:
-  /// @throws InputError if it has not `rows` values.
+  /// @throws InputError if the column does not have `rows` values.
   Recorded(const char* name, const std::optional<Values>& values, py::ssize_t rows) : values_(values)
   {
     if (values_ && (values_->ndim() != 1 || values_->size() != rows))
@@ -155,39 +155,41 @@ void bindTracking(py::module& module)
 
   py::class_<TrackerObject>(
       module, "Tracker",
-      "A healthy joint beside a recorded one, as the tool's follow and the node beside a robot.\n\n"
+      "A healthy joint beside a recorded one, as in `joint_twin follow` and the node beside a robot.\n\n"
       "Tracker(parameters, mode='motion', cache=None, progress=None). mode: 'motion' predicts the current of the "
       "recorded motion, "
       "'torque' the motion of the recorded current, 'observer' corrects the twin towards the recorded angles. "
-      "parameters: those of the joint, e.g. Parameters('joints/elbow.yaml', 'beside_robot.yaml'); telemetry.load says "
-      "what the load is. cache, progress: as of Twin. ParameterError.")
+      "parameters: of the joint, for example Parameters('joints/elbow.yaml', 'beside_robot.yaml'); telemetry.load "
+      "tells "
+      "the source of the load. cache, progress: as for Twin. Raises ParameterError.")
       .def(py::init<const Configuration&, const std::string&, const std::optional<std::string>&, const py::object&>(),
            py::arg("parameters"), py::arg("mode") = "motion", py::arg("cache") = py::none(),
            py::arg("progress") = py::none())
       .def("follow", &TrackerObject::follow, py::arg("time"), py::arg("position"), py::arg("current"),
            py::arg("load") = py::none(), py::arg("temperature") = py::none(), py::arg("motor_angle") = py::none(),
            py::arg("at_end") = true, py::arg("progress") = py::none(),
-           "Takes rows of a recording, without the interpreter's lock: arrays of shape (rows,). time [s], ascending; "
+           "Processes rows of a recording without the interpreter's lock, as arrays of shape (rows,): time [s], "
+           "ascending; "
            "position of the joint [rad]; current of the motor [A]; load at the output, > 0 resists positive motion "
            "[N.m]; temperature of the drive [degC]; motor_angle [rad]; None: not recorded. at_end: no row follows; "
            "False "
-           "keeps the last 36 ms for the next call. progress: as of Twin.run.\n\n"
-           "Returns a structured array of shape (compared rows,) with dtype COMPARISON_DTYPE. Rows that cannot be are "
-           "left out and counted. InputError.")
+           "keeps the last 36 ms for the next call. progress: as for Twin.run.\n\n"
+           "Returns a structured array of shape (compared rows,) with dtype COMPARISON_DTYPE. Impossible rows are "
+           "ignored and counted. Raises InputError.")
       .def(
-          "reset", [](TrackerObject& self) { self.tracker().reset(); }, "Another recording follows.")
-      .def_property_readonly("counters", &countersOf, "by name: dict of str to int")
+          "reset", [](TrackerObject& self) { self.tracker().reset(); }, "Prepares for another recording.")
+      .def_property_readonly("counters", &countersOf, "counts by name: dict of str to int")
       .def_property_readonly(
           "lag", [](TrackerObject& self) { return self.tracker().lag(); },
           "delay of the recorded current, or speed, behind its prediction [s] or None")
       .def_property_readonly(
           "outside_share", [](TrackerObject& self) { return self.tracker().outsideShare(); },
-          "of the last 30 s, rows whose current lies outside its band [-]")
+          "share of the rows in the last 30 s whose current is outside its band [-]")
       .def_property_readonly(
           "signal_indicators", [](TrackerObject& self) { return self.tracker().signalIndicators(); },
-          "of the recorded joint's last window: SignalIndicators")
+          "indicators of the recorded joint's last window: SignalIndicators")
       .def_property_readonly(
           "assessment", [](TrackerObject& self) { return self.tracker().assessment(); },
-          "what the indicators say of the recorded joint: Assessment");
+          "assessment of the recorded joint by its indicators: Assessment");
 }
 }  // namespace hjt

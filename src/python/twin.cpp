@@ -13,9 +13,9 @@ namespace hjt
 {
 namespace
 {
-constexpr double LARGEST_TIME = 9e9;  // that a stamp can hold [s]
+constexpr double LARGEST_TIME = 9e9;  // [s]; the range of a stamp
 
-/// @throws InputError beyond +-MAX_STAMP.
+/// Checks a stamp. @throws InputError beyond +-MAX_STAMP.
 Stamp checked(Stamp stamp)
 {
   if (!isStamp(stamp))
@@ -26,7 +26,7 @@ Stamp checked(Stamp stamp)
   return stamp;
 }
 
-/// Stamp of an input: given, or the twin's next instant.
+/// Stamp of an input: the given one, or the twin's next instant.
 Stamp stampOf(const Twin& twin, const std::optional<Stamp>& stamp)
 {
   return checked(stamp.value_or(twin.stamp()));
@@ -87,15 +87,16 @@ void bindInputs(py::class_<TwinObject>& twin)
           [](TwinObject& self, double torque, const std::optional<Stamp>& at)
           { push(self, InputKind::MOTOR_TORQUE, torque, at, "torque"); },
           py::arg("torque"), stamp,
-          "Motor torque from stamp on [N.m]; it falls back to zero after input.command_timeout. stamp [ns]: None is "
+          "Commands the motor torque from stamp on [N.m]; it becomes zero after input.command_timeout. stamp [ns]: "
+          "None is "
           "the "
-          "next step; in the past it counts as late and acts at once.")
+          "next step; an input in the past counts as late and acts at once.")
       .def(
           "command_load_torque",
           [](TwinObject& self, double torque, const std::optional<Stamp>& at)
           { push(self, InputKind::LOAD_TORQUE, torque, at, "torque"); },
           py::arg("torque"), stamp,
-          "External torque at the output, within output.load_torque_limit; > 0 resists positive motion [N.m].")
+          "Sets the external torque at the output, within output.load_torque_limit; > 0 resists positive motion [N.m].")
       .def(
           "command_brake",
           [](TwinObject& self, bool engaged, const std::optional<Stamp>& at)
@@ -106,17 +107,20 @@ void bindInputs(py::class_<TwinObject>& twin)
           [](TwinObject& self, double degrees, const std::optional<Stamp>& at)
           { push(self, InputKind::TEMPERATURE, degrees, at, "degrees"); },
           py::arg("degrees"), stamp,
-          "Of the drive, or with thermal.model = two_nodes of its surroundings [degC], -40 ... 150.")
+          "Sets the temperature of the drive, or of its surroundings with thermal.model = two_nodes [degC], -40 ... "
+          "150.")
       .def("inject_fault", &injectFault, py::arg("fault"), stamp,
-           "A Fault, or its text 'KIND:SEVERITY[:PLACE[:ONSET]]'; sets in onset after stamp. Severity 0 takes it away. "
-           "While any is active that was not there from the start all teeth are solved at every step. ParameterError.");
+           "Injects a Fault, or its text 'KIND:SEVERITY[:PLACE[:ONSET]]', which sets in onset after stamp. Severity 0 "
+           "removes it. "
+           "While a fault is active that was not active at the start, all teeth are solved at every step. Raises "
+           "ParameterError.");
 }
 
 void bindMarch(py::class_<TwinObject>& twin)
 {
   const auto none = [](const char* name) { return py::arg(name) = py::none(); };
   twin.def(
-          "step", [](TwinObject& self) { self.run(1, {}, 2); }, "One step of 1 / solver.rate.")
+          "step", [](TwinObject& self) { self.run(1, {}, 2); }, "Advances by one step of 1 / solver.rate.")
       .def(
           "run",
           [](TwinObject& self, const std::optional<py::ssize_t>& steps, const py::object& motor_torque,
@@ -126,15 +130,16 @@ void bindMarch(py::class_<TwinObject>& twin)
           },
           none("steps"), none("motor_torque"), none("load_torque"), none("brake"), none("temperature"),
           py::arg("every") = 1, none("out"), none("progress"),
-          "A block of steps, without the interpreter's lock; Ctrl-C gets through and leaves the twin at the step it "
+          "Advances by a block of steps without the interpreter's lock. Ctrl-C works and leaves the twin at the step "
+          "that it "
           "had reached.\n\n"
-          "steps: how many; None: as many as the arrays have. motor_torque [N.m], clamped to motor.torque_limit and "
+          "steps: their number; None: the length of the arrays. motor_torque [N.m], clamped to motor.torque_limit and "
           "counted; load_torque [N.m], within output.load_torque_limit; brake (0 or 1); temperature [degC], "
-          "-40 ... 150: a number, or an array of shape (steps,) with the value of each step; None: what was "
-          "commanded before. A given torque does not time out during the run. every: steps from one row to the next. "
-          "out: an array of an earlier run, to be overwritten; None: a new one. progress: called with 0 ... 1, at most "
+          "-40 ... 150: a number, or an array of shape (steps,) with the value of each step; None: the value that was "
+          "commanded before. A given torque does not time out during the run. every: number of steps between two rows. "
+          "out: array of an earlier run that is overwritten; None: a new array. progress: called with 0 ... 1, at most "
           "twenty times a second and at the end.\n\n"
-          "Returns a structured array of shape (steps // every,) with dtype STEP_DTYPE. InputError.")
+          "Returns a structured array of shape (steps // every,) with dtype STEP_DTYPE. Raises InputError.")
       .def(
           "run_to",
           [](TwinObject& self, double time, const py::object& motor_torque, const py::object& load_torque,
@@ -143,7 +148,8 @@ void bindMarch(py::class_<TwinObject>& twin)
             return runTo(self, time, { motor_torque, load_torque, brake, temperature }, every, out, progress);
           },
           py::arg("time"), none("motor_torque"), none("load_torque"), none("brake"), none("temperature"),
-          py::arg("every") = 1, none("out"), none("progress"), "As run, up to the last instant not after time [s].");
+          py::arg("every") = 1, none("out"), none("progress"),
+          "Advances as run does, up to the last instant not after time [s].");
 }
 
 void bindReadings(py::class_<TwinObject>& twin)
@@ -158,38 +164,40 @@ void bindReadings(py::class_<TwinObject>& twin)
                              "all outputs and readings of the present instant: one row of dtype STEP_DTYPE")
       .def_property_readonly(
           "on_surface", [](TwinObject& self) { return self.twin().onSurface(); },
-          "the present instant comes from the response surface, not from all teeth")
+          "whether the present instant was computed from the response surface instead of all teeth")
       .def_property_readonly(
           "counters", [](TwinObject& self) { return namedCounters(self.twin().counters()); },
-          "since reset, by name: dict of str to int")
+          "counts since reset by name: dict of str to int")
       .def_property_readonly("active_faults", &activeFaults, "list of Fault, by kind and place")
       .def_property_readonly(
           "parameters", [](const TwinObject& self) { return self.parameters(); },
-          "Parameters that do not change: set values in a copy and make a Twin of it")
+          "Parameters that cannot be changed; set values in a copy and make a Twin of it")
       .def("tooth_forces", &TwinObject::toothForces,
-           "Forces on every tooth at the present instant: ToothForces, views that the next call overwrites. On the "
-           "response surface this solves a full ring. NotConverged.")
+           "Returns the forces on every tooth at the present instant as ToothForces, views that the next call "
+           "overwrites. On the "
+           "response surface this solves a full ring. Raises NotConverged.")
       .def("tooth_stress", &TwinObject::toothStress,
-           "Stress of the flexspline at every tooth at the present instant: ToothStress, views that the next call "
-           "overwrites. NotConverged.")
+           "Returns the stress of the flexspline at every tooth at the present instant as ToothStress, views that the "
+           "next call "
+           "overwrites. Raises NotConverged.")
       .def(
           "health",
           [](TwinObject& self, const std::optional<Stamp>& since)
           { return self.twin().health(since.value_or(std::numeric_limits<Stamp>::min())); },
           py::arg("since") = py::none(),
-          "Health at the present instant: Health. since [ns]: the solver's state is that of the steps after it; None: "
+          "Returns the Health at the present instant. since [ns]: the solver's state covers the steps after it; None: "
           "of "
-          "all since reset.")
+          "all steps since reset.")
       .def_property(
           "watch_signals", [](TwinObject& self) { return self.twin().watchesSignals(); },
           [](TwinObject& self, bool on) { self.twin().watchSignals(on); },
-          "whether indicators and assessment are made of the sensors' readings; False at first")
+          "whether indicators and assessment are computed from the sensors' readings; initially False")
       .def_property_readonly(
           "signal_indicators", [](TwinObject& self) { return self.twin().signalIndicators(); },
-          "of the last window: SignalIndicators")
+          "indicators of the last window: SignalIndicators")
       .def_property_readonly(
           "assessment", [](TwinObject& self) { return self.twin().assessment(); },
-          "what the indicators say of the drive: Assessment");
+          "assessment of the drive by its indicators: Assessment");
 }
 }  // namespace
 
@@ -217,33 +225,34 @@ void bindTwin(py::module& module)
 
   py::class_<TwinObject> twin(
       module, "Twin",
-      "The joint's twin: torques in, encoder angles, tooth forces and health out.\n\n"
+      "Twin of a joint: torques are its inputs; encoder angles, tooth forces and health are its outputs.\n\n"
       "Twin(parameters, cache=None, progress=None) inserts the wave generator; with solver.scene = auto it builds the "
-      "response surface (seconds) or takes it from the cache. parameters: Parameters, copied. cache: directory of "
-      "response surfaces; None: the tool's, '': none. progress: called with 0 ... 1 while one is built. "
+      "response surface (seconds) or reads it from the cache. parameters: Parameters, copied. cache: directory of "
+      "response surfaces; None: that of the tool, '': none. progress: called with 0 ... 1 during a build. "
       "ParameterError.\n\n"
-      "Time is counted in steps of one length: the same inputs give the same numbers, step by step or in blocks, and "
+      "All steps have equal length: equal inputs give equal numbers, step by step or in blocks, and "
       "as "
-      "the tool and the node. A twin belongs to one thread at a time; several twins run side by side in threads.");
+      "the tool and the node. Only one thread at a time may use a twin; several twins may run in different threads.");
   twin.def(py::init<const Configuration&, const std::optional<std::string>&, const py::object&>(),
            py::arg("parameters"), py::arg("cache") = py::none(), py::arg("progress") = py::none())
       .def(
           "reset", [](TwinObject& self, Stamp stamp) { self.twin().reset(checked(stamp)); }, py::arg("stamp") = 0,
           "Restarts at rest, zero angles, at the first instant not before stamp [ns], with the configured faults.")
       .def("__copy__", &copyOf,
-           "A twin at the same instant, with what waits and what was learned: both go on with the same numbers.")
+           "Returns a copy at the same instant, with waiting inputs and learned references; both continue with equal "
+           "numbers.")
       .def(
           "__deepcopy__", [](TwinObject& self, const py::dict&) { return copyOf(self); }, py::arg("memo"),
-          "As copy.copy.")
+          "Returns a copy, as copy.copy.")
       .def(
           "__reduce__",
           [](TwinObject&) -> py::object
           {
             throw py::type_error(
-                "a Twin cannot be pickled: copy.copy(twin) keeps its state within this process; for another process "
+                "a Twin cannot be pickled; copy.copy(twin) copies its state within this process; for another process "
                 "pickle twin.parameters");
           },
-          "TypeError: the state of a twin does not leave its process.")
+          "Raises TypeError, because the state of a twin cannot leave its process.")
       .def("__repr__",
            [](TwinObject& self)
            {

@@ -26,7 +26,7 @@ namespace hjt
 {
 namespace
 {
-/// Spins for about as long as it takes to wake a thread.
+/// Spins for about the time that waking a thread takes.
 template <class Condition>
 void spin(const Condition& condition)
 {
@@ -36,13 +36,13 @@ void spin(const Condition& condition)
   }
 }
 
-/// Threads that stay between the pieces of work that they share, and sleep then.
+/// Threads that sleep between the tasks that they share.
 class ThreadTeam
 {
 public:
   using Task = std::function<void(std::size_t)>;
 
-  /// `threads`: the caller's among them; fewer where the system gives no more.
+  /// `threads`: their number with the caller's; fewer if the system allows fewer.
   explicit ThreadTeam(std::size_t threads) : work_(std::make_shared<Work>()), process_(::getpid())
   {
     try
@@ -54,7 +54,7 @@ public:
     }
     catch (const std::system_error&)
     {
-      // No more threads are to be had: those there are do the work.
+      // The system allows no more threads; the existing ones do the work.
     }
   }
 
@@ -65,7 +65,7 @@ public:
   {
     if (::getpid() != process_)
     {
-      // The threads are in the parent process, and what they wait for stays, unused.
+      // The threads belong to the parent process; their data stay unused.
       for (std::thread& other : others_)
       {
         other.detach();
@@ -85,9 +85,9 @@ public:
 
   std::size_t size() const noexcept { return others_.size() + 1; }
 
-  /// Calls `task`, which must not throw, with each of 0 ... count - 1, in no fixed order, and returns when all are
-  /// done; a thread takes `portion` of them at once. From one thread at a time. Does not wait for threads that have not
-  /// woken up when all is taken; so it also works in a forked process, where the caller is alone.
+  /// Calls `task`, which must not throw, with each of 0 ... count - 1 in no fixed order, and returns when all are done.
+  /// A thread takes `portion` of them at once. Only one thread at a time may call this function. It does not wait for
+  /// threads that have not woken up when all tasks are taken, so that it also works in a forked process without them.
   void run(std::size_t count, std::size_t portion, const Task& task)
   {
     {
@@ -116,11 +116,11 @@ private:
     std::mutex mutex;
     std::condition_variable begun;
     std::condition_variable left;
-    const Task* task{};  // null: none that a thread may still join
+    const Task* task{};  // null: no task that a thread can still join
     std::size_t count{};
     std::size_t portion{};
     std::atomic<std::uint64_t> number{ 0 };
-    std::atomic<std::size_t> busy{ 0 };  // of the other threads
+    std::atomic<std::size_t> busy{ 0 };  // number of busy threads without the caller's
     std::atomic<bool> ends{ false };
     std::atomic<std::size_t> next{ 0 };
 
@@ -151,7 +151,7 @@ private:
         const Task* const todo = task;
         if (todo == nullptr)
         {
-          continue;  // done without this thread
+          continue;  // the work was done without this thread
         }
         ++busy;
         lock.unlock();
@@ -167,29 +167,28 @@ private:
 
   std::shared_ptr<Work> work_;
   std::vector<std::thread> others_;
-  long process_;  // that has the threads
+  long process_;  // process of the threads
 };
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::chrono::milliseconds BLOCK_TIME{ 25 };  // that a block of steps may take, before it is not lengthened
-constexpr py::ssize_t FIRST_BLOCK = 16384;             // steps of all twins together
-constexpr py::ssize_t PORTION = 32;  // steps that a thread takes at least at once: on the surface some 10 us
+constexpr std::chrono::milliseconds BLOCK_TIME{ 25 };  // duration up to which blocks are lengthened
+constexpr py::ssize_t FIRST_BLOCK = 16384;             // number of steps of all twins together
+constexpr py::ssize_t PORTION = 32;  // least number of steps that a thread takes at once: about 10 us on the surface
 
 using Twins = std::vector<std::pair<py::object, TwinObject*>>;
 
-/// How the twins of a batch are made.
 class BatchBuilder
 {
 public:
-  /// `given`: Parameters or a Twin, for `count` twins alike; or several of them. @throws InputError.
+  /// `given`: Parameters or a Twin for `count` equal twins, or several of them. @throws InputError.
   BatchBuilder(const py::object& given, const std::optional<py::ssize_t>& count)
     : alike_(py::isinstance<Configuration>(given) || py::isinstance<TwinObject>(given))
   {
     if (alike_ != count.has_value())
     {
-      throw InputError(alike_ ? "n is missing: how many twins there are to be" :
-                                "n is for one Parameters or one Twin, not for several");
+      throw InputError(alike_ ? "n, the number of twins, is missing" :
+                                "n is only allowed with one Parameters or one Twin");
     }
     requireAtLeast("n", count.value_or(1), 1);
     for (py::ssize_t i = 0; alike_ && i < *count; ++i)
@@ -273,14 +272,14 @@ private:
       if (before[j].second == &twin)
       {
         throw InputError("twins" + placeText(i) + " is the same Twin as twins" + placeText(j) +
-                         "; copy.copy makes another");
+                         "; copy.copy makes a copy");
       }
     }
     if (!before.empty() && twin.twin().stepLength() != before.front().second->twin().stepLength())
     {
       throw InputError("twins" + placeText(i) + " steps by " + std::to_string(twin.twin().stepLength()) +
                        " ns, twins[0] by " + std::to_string(before.front().second->twin().stepLength()) +
-                       " ns (solver.rate): they cannot step together");
+                       " ns (solver.rate), so that they cannot step together");
     }
   }
 
@@ -296,7 +295,7 @@ std::size_t threadCount(const std::optional<int>& threads, std::size_t twins)
   return std::min<std::size_t>(threads ? static_cast<unsigned>(*threads) : processors(), twins);
 }
 
-/// Twins that step together, and the threads that they share.
+/// Twins that step together, with the threads that they share.
 class TwinBatch
 {
 public:
@@ -367,7 +366,7 @@ public:
   }
 
 private:
-  /// The largest of the twins [N.m].
+  /// Largest limit of the twins [N.m].
   double loadTorqueLimit() const
   {
     double limit = 0.0;
@@ -378,7 +377,7 @@ private:
     return limit;
   }
 
-  /// In blocks of steps, after which all twins are at the same one.
+  /// Steps in blocks, after which all twins are at the same step.
   void march(const RunInputs& inputs, py::ssize_t steps, py::ssize_t every, StepRow* rows, const py::object& progress)
   {
     std::vector<Twin*> twins;
@@ -428,7 +427,6 @@ private:
   Twins twins_;
   ThreadTeam team_;
 };
-/// An argument that may be left out.
 py::arg_v none(const char* name)
 {
   return py::arg(name) = py::none();
@@ -445,9 +443,10 @@ void bindSteps(py::class_<TwinBatch>& batch)
           },
           none("motor_torque"), none("load_torque"), none("brake"), none("temperature"), py::arg("steps") = 1,
           none("out"),
-          "Steps of 1 / solver.rate with inputs that stay: the inside of a closed loop.\n\n"
+          "Advances by steps of 1 / solver.rate with constant inputs, for use in a closed loop.\n\n"
           "motor_torque, load_torque [N.m], brake (0 or 1), temperature [degC]: a number for all, or an array of shape "
-          "(n,); None: what was commanded before. A given torque does not time out during the steps. out: as of "
+          "(n,); None: the value that was commanded before. A given torque does not time out during the steps. out: as "
+          "for "
           "run.\n\n"
           "Returns a structured array of shape (n,) with dtype STEP_DTYPE: the twins after the last step. InputError.")
       .def(
@@ -459,13 +458,14 @@ void bindSteps(py::class_<TwinBatch>& batch)
           },
           none("steps"), none("motor_torque"), none("load_torque"), none("brake"), none("temperature"),
           py::arg("every") = 1, none("out"), none("progress"),
-          "A block of steps of all twins. Ctrl-C gets through and leaves all at the same step.\n\n"
-          "steps, every: as of Twin.run. motor_torque, load_torque [N.m], brake (0 or 1), temperature [degC]: a "
+          "Advances all twins by a block of steps. Ctrl-C works and leaves all twins at the same step.\n\n"
+          "steps, every: as for Twin.run. motor_torque, load_torque [N.m], brake (0 or 1), temperature [degC]: a "
           "number; "
-          "an array of shape (steps,) for all twins, (n, 1) or (n, steps); None: what was commanded before. A given "
-          "torque does not time out during the run. out: an array of an earlier call, to be overwritten; None: a new "
-          "one. progress: as of Twin.run.\n\n"
-          "Returns a structured array of shape (n, steps // every) with dtype STEP_DTYPE. InputError.");
+          "an array of shape (steps,) for all twins, (n, 1) or (n, steps); None: the value that was commanded before. "
+          "A given "
+          "torque does not time out during the run. out: array of an earlier call that is overwritten; None: a new "
+          "array. progress: as for Twin.run.\n\n"
+          "Returns a structured array of shape (n, steps // every) with dtype STEP_DTYPE. Raises InputError.");
 }
 }  // namespace
 
@@ -478,11 +478,13 @@ void bindTwinBatch(py::module& module)
       "copies "
       "are made, alike to the noise of their sensors; or several of them, each with its own parameters and faults: "
       "Parameters make a twin, a Twin is taken as it is. All with the same solver.rate. Equal response surfaces are "
-      "shared. cache: as of Twin. progress: called with 0 ... 1 while the twins are made. threads: how many work, the "
-      "caller's among them; None: one for each processor. InputError, ParameterError.\n\n"
-      "batch[i] is the i-th Twin itself, to be reset, read, given a fault. Each has the same numbers as by itself. One "
-      "that finds no equilibrium stays where it was, with converged = False, and counts that in "
-      "counters['solver_failures']; the others go on.");
+      "shared. cache: as for Twin. progress: called with 0 ... 1 while the twins are made. threads: number of threads "
+      "with the "
+      "caller's; None: one for each processor. Raises InputError, ParameterError.\n\n"
+      "batch[i] is the i-th Twin, which may be reset, read or given a fault. Each twin gives the numbers that it would "
+      "give alone. A twin "
+      "without equilibrium keeps its state, with converged = False, and counts this in "
+      "counters['solver_failures']; the others continue.");
   batch
       .def(py::init(
                [](const py::object& twins, const std::optional<py::ssize_t>& n, const std::optional<std::string>& cache,
@@ -495,17 +497,17 @@ void bindTwinBatch(py::module& module)
                  return std::make_unique<TwinBatch>(std::move(built), count);
                }),
            py::arg("twins"), none("n"), none("cache"), none("progress"), none("threads"))
-      .def("__len__", &TwinBatch::size, "How many twins.")
+      .def("__len__", &TwinBatch::size, "Number of twins.")
       .def("__getitem__", &TwinBatch::at, py::arg("twin"), "The Twin of this number. IndexError.")
       .def(
           "__reduce__",
           [](const TwinBatch&) -> py::object
           {
             throw py::type_error(
-                "a TwinBatch can be neither copied nor pickled: TwinBatch([copy.copy(twin) for twin in batch]) is "
+                "a TwinBatch can be neither copied nor pickled; TwinBatch([copy.copy(twin) for twin in batch]) is "
                 "another at the same instant");
           },
-          "TypeError: copy the twins.")
+          "Raises TypeError; copy the twins instead.")
       .def("__repr__",
            [](const TwinBatch& self)
            {
@@ -515,8 +517,8 @@ void bindTwinBatch(py::module& module)
       .def_property_readonly("outputs", &TwinBatch::outputs,
                              "all outputs and readings of the present instant: array of shape (n,), dtype STEP_DTYPE")
       .def_property_readonly("counters", &TwinBatch::counters,
-                             "since reset, by name: dict of str to int array of shape (n,)")
-      .def_property_readonly("threads", &TwinBatch::threads, "how many work, the caller's among them [-]");
+                             "counts since reset by name: dict of str to int array of shape (n,)")
+      .def_property_readonly("threads", &TwinBatch::threads, "number of threads with the caller's [-]");
   bindSteps(batch);
 }
 }  // namespace hjt

@@ -21,8 +21,9 @@
 
 namespace hjt
 {
-/// `load_torque_limit`: of the twin; `name`: makes the text of the value's place. @throws InputError for what a twin
-/// would clamp; a motor's drive clamps its torque, too, and counts it.
+/// Checks a value. `load_torque_limit`: of the twin; `name`: makes the text of the value's place. @throws InputError
+/// for a load or temperature that a twin would clamp. The motor's torque may be clamped, because its drive does so and
+/// counts it.
 template <class Name>
 void requireInput(InputKind kind, double value, double load_torque_limit, const Name& name)
 {
@@ -51,10 +52,9 @@ void requireInput(InputKind kind, double value, double load_torque_limit, const 
   }
 }
 
-/// What the inputs of a run are for.
 struct RunShape
 {
-  /// Axes that an array may have beside none: one value for a step, for a twin, or for a step of each twin.
+  /// Possible axes of an array: a value for each step, for each twin, or for each step of each twin.
   enum class Axes
   {
     STEPS,
@@ -63,12 +63,12 @@ struct RunShape
   };
 
   Axes axes{};
-  double load_torque_limit{};  ///< of twins that differ the largest [N.m]
+  double load_torque_limit{};  ///< for different twins the largest one [N.m]
   py::ssize_t twins{ 1 };
-  std::optional<py::ssize_t> steps;  ///< empty: set by the first array that has as many
+  std::optional<py::ssize_t> steps;  ///< empty: set by the length of the first array with steps
 };
 
-/// An input of a run: none, a number, or an array.
+/// An input of a run: None, a number, or an array.
 class InputColumn
 {
 public:
@@ -80,14 +80,14 @@ public:
     {
       return;
     }
-    // Truth values, whole and real numbers, objects that are such; no times, no complex numbers.
+    // Accepts truth values, whole and real numbers and their objects, but no times and no complex numbers.
     const py::array array = py::array::ensure(given);
     const bool is_real = array && std::string("biufO").find(array.dtype().kind()) != std::string::npos;
     const py::handle taken = is_real ? py::handle(array) : py::handle();
     values_ = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(taken);
     if (!values_)
     {
-      throw InputError(name_ + " is neither a number nor an array of numbers");
+      throw InputError(name_ + " must be a number or an array of numbers");
     }
     takeAxes(shape);
     for (py::ssize_t i = 0; i < values_.size(); ++i)
@@ -99,7 +99,7 @@ public:
 
   bool given() const { return given_; }
 
-  /// Only the motor's torque times out and is commanded at every step.
+  /// Only the motor's torque can time out, so it is commanded at every step.
   void push(Twin& twin, Stamp stamp, py::ssize_t step, py::ssize_t twin_number) const noexcept
   {
     const double* value = data_ + twin_stride_ * twin_number + step_stride_ * step;
@@ -144,7 +144,7 @@ private:
     }
   }
 
-  /// Of a value, by its number, as Python writes it.
+  /// Text of a value's place, as Python writes it.
   std::string placeText(py::ssize_t i) const
   {
     switch (values_.ndim())
@@ -167,7 +167,7 @@ private:
   py::ssize_t step_stride_{};
 };
 
-/// Inputs of a run as Python gives them: None, numbers or arrays.
+/// Inputs of a run from Python: None, numbers or arrays.
 struct GivenInputs
 {
   py::object motor_torque = py::none();
@@ -176,7 +176,6 @@ struct GivenInputs
   py::object temperature = py::none();
 };
 
-/// What a run is given beside its steps.
 class RunInputs
 {
 public:
@@ -189,7 +188,6 @@ public:
     add(InputColumn(InputKind::TEMPERATURE, "temperature", given.temperature, shape));
   }
 
-  /// One step of a twin with its inputs.
   void step(Twin& twin, py::ssize_t step, py::ssize_t twin_number) const noexcept
   {
     const Stamp begin = twin.stamp();
@@ -212,19 +210,19 @@ private:
   std::vector<InputColumn> columns_;
 };
 
-/// @returns how many steps. @throws InputError.
+/// @returns the number of steps. @throws InputError.
 inline py::ssize_t requireSteps(const std::optional<py::ssize_t>& steps, py::ssize_t every)
 {
   if (!steps)
   {
-    throw InputError("steps is missing: give it, or an input as an array with a value for each step");
+    throw InputError("steps is missing; give it, or give an input as an array with a value for each step");
   }
   requireAtLeast("steps", *steps, 0);
   requireAtLeast("every", every, 1);
   return *steps;
 }
 
-/// One row of a run: all outputs and readings of an instant. Names as in the columns of `joint_twin simulate`.
+/// A row of a run: all outputs and readings of an instant. Names are those of the columns of `joint_twin simulate`.
 struct StepRow
 {
   std::int64_t stamp;
@@ -325,7 +323,6 @@ inline StepRows rowsFor(const std::vector<py::ssize_t>& shape, const py::object&
   return rows;
 }
 
-/// A twin, and the arrays of its teeth.
 class TwinObject
 {
 public:
@@ -342,7 +339,7 @@ public:
   {
   }
 
-  /// @throws std::runtime_error while another thread runs it.
+  /// @throws std::runtime_error while another thread uses it.
   Twin& twin()
   {
     in_use_.refuse();
@@ -423,6 +420,6 @@ private:
   InUse in_use_{ "twin" };
 };
 
-/// By name: dict of str to int.
+/// Counts by name: dict of str to int.
 py::dict namedCounters(const TwinCounters& counters);
 }  // namespace hjt

@@ -154,7 +154,8 @@ void ArmPublishers::drain()
 
 namespace
 {
-// github.com/UniversalRobots/Universal_Robots_ROS_Driver, ur_dashboard_msgs/msg: the texts, which the sums are of.
+// Message definitions of ur_dashboard_msgs (github.com/UniversalRobots/Universal_Robots_ROS_Driver), which give the
+// md5sums.
 constexpr const char* ROBOT_MODE =
     "int8 NO_CONTROLLER=-1\nint8 DISCONNECTED=0\nint8 CONFIRM_SAFETY=1\nint8 BOOTING=2\n"
     "int8 POWER_OFF=3\nint8 POWER_ON=4\nint8 IDLE=5\nint8 BACKDRIVE=6\nint8 RUNNING=7\n"
@@ -170,7 +171,7 @@ constexpr const char* SAFETY_MODE_SUM = "5da08725a63d4237bad689481131a84b";
 constexpr std::uint8_t NORMAL = 1;
 constexpr std::uint8_t PROTECTIVE_STOP = 3;
 
-/// A mode is its one byte.
+/// Message of a mode, whose content is one byte.
 topic_tools::ShapeShifter makeMode(const char* sum, const char* type, const char* definition, std::uint8_t mode)
 {
   topic_tools::ShapeShifter message;
@@ -193,13 +194,13 @@ topic_tools::ShapeShifter makeSafetyMode(bool protective_stop)
 constexpr const char* WRENCH = "wrench";
 constexpr const char* PAYLOAD = "payload";
 constexpr const char* UNLOCK = "unlock_protective_stop";
-/// Between two warnings of the same kind [s].
+/// Time between two warnings of one kind [s].
 constexpr double ARM_WARNING_PERIOD = 1.0;
-/// Between two looks at a protective stop [s].
+/// Time between two checks for a protective stop [s].
 constexpr double STATE_PERIOD = 0.05;
 
-/// Those of the drives as they start are waited for: so many rings would not keep up with the clock. Those of faults
-/// that come later are built beside the running arm.
+/// The node waits for the surfaces of the start, because as many full rings would be too slow. The surfaces of later
+/// faults are built while the arm runs.
 SurfaceSource armSurfaces(const std::vector<Parameters>& drives)
 {
   SurfaceSource source = nodeSurfaceSource(false);
@@ -212,7 +213,7 @@ SurfaceSource armSurfaces(const std::vector<Parameters>& drives)
   return source;
 }
 
-/// The loop does not wait for torques of others.
+/// Parameters of the loop, which does not wait for an input.
 Parameters loopParameters(Parameters drive)
 {
   drive.input.wait_for_first_input = false;
@@ -252,7 +253,7 @@ void ArmDiagnostics::look()
   tasks_.look();
 }
 
-/// Of the joints with recent events; empty: none.
+/// Names of the joints with recent events; empty: none.
 std::string ArmDiagnostics::namesOf(const std::vector<RecentEvents>& events) const
 {
   std::vector<std::string> names;
@@ -271,12 +272,12 @@ DiagnosticVerdict ArmDiagnostics::judge() const
   using D = diagnostic_msgs::DiagnosticStatus;
   const std::string failed = namesOf(failures_);
   const std::string overloaded = namesOf(overloads_);
-  return firstOf(
-      { { !snapshot_.stop_reason.empty(), { D::ERROR, "Protective stop: " + snapshot_.stop_reason } },
-        { !failed.empty(), { D::ERROR, "The solver did not converge: " + failed } },
-        { !overloaded.empty(),
-          { D::WARN, "Torque beyond output.torque_limit, where a step costs more than its time: " + overloaded } } },
-      { D::OK, "Moves" });
+  return firstOf({ { !snapshot_.stop_reason.empty(), { D::ERROR, "Protective stop: " + snapshot_.stop_reason } },
+                   { !failed.empty(), { D::ERROR, "The solver did not converge: " + failed } },
+                   { !overloaded.empty(),
+                     { D::WARN, "Torque beyond output.torque_limit, where a step takes longer than its period: " +
+                                    overloaded } } },
+                 { D::OK, "Moves" });
 }
 
 void ArmDiagnostics::report(diagnostic_updater::DiagnosticStatusWrapper& status) const
@@ -429,8 +430,7 @@ void ArmNode::tellOfStop()
   const std::string reason = stopReason();
   if (!reason.empty() && !told_of_stop_)
   {
-    ROS_ERROR_STREAM("Protective stop: " << reason << "; the arm stands in its brakes until ~" << UNLOCK
-                                         << " or ~reset");
+    ROS_ERROR_STREAM("Protective stop: " << reason << "; the brakes hold the arm until ~" << UNLOCK << " or ~reset");
   }
   told_of_stop_ = !reason.empty();
   driver_states_.show(told_of_stop_);
@@ -455,11 +455,11 @@ std::string ArmNode::command(const trajectory_msgs::JointTrajectory& message, Ar
 {
   if (advance_.stop_reason != nullptr)
   {
-    return std::string("protective stop; ~") + UNLOCK + " ends it";
+    return std::string("the arm is in a protective stop, which ~") + UNLOCK + " ends";
   }
   if (message.points.empty())
   {
-    // As joint_trajectory_controller does, whichever joints it names.
+    // As in joint_trajectory_controller, independent of the named joints.
     give(stopFrom(advance_.shown.read()), goal);
     return "";
   }
@@ -534,8 +534,8 @@ void ArmNode::receiveTemperature(const sensor_msgs::Temperature& message)
                                   [&](const ArmJoint& each) { return each.name == message.header.frame_id; });
   if (joint == description_.joints.end())
   {
-    ROS_INFO_STREAM_ONCE("Left alone on ~" << topics::JOINT_TEMPERATURES << ": frame_id = '"
-                                           << printable(message.header.frame_id) << "' is no joint of this arm");
+    ROS_INFO_STREAM_ONCE("Ignored a message on ~" << topics::JOINT_TEMPERATURES << ": frame_id = '"
+                                                  << printable(message.header.frame_id) << "' is no joint of this arm");
     return;
   }
   if (const Range range{ MIN_TEMPERATURE, MAX_TEMPERATURE }; !isWithin(message.temperature, range))
@@ -554,7 +554,7 @@ void ArmNode::receiveTemperature(const sensor_msgs::Temperature& message)
 bool ArmNode::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response)
 {
   response.success = loop_.reset();
-  response.message = response.success ? "the arm restarts where it began" : "the loop does not answer";
+  response.message = response.success ? "the arm restarts where it began" : "the loop does not respond";
   return true;
 }
 
@@ -569,9 +569,9 @@ bool ArmNode::unlock(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& r
   }
   const Unlock answer = advance_.unlock.exchange(Unlock::NOT_ASKED);
   response.success = answer == Unlock::DONE;
-  response.message = answer == Unlock::DONE  ? "the arm is held where it stands" :
-                     answer == Unlock::MOVES ? "the arm still moves" :
-                                               "the loop does not answer";
+  response.message = answer == Unlock::DONE  ? "the arm holds its present position" :
+                     answer == Unlock::MOVES ? "the arm is still moving" :
+                                               "the loop does not respond";
   return true;
 }
 }  // namespace hjt

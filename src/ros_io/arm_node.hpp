@@ -38,7 +38,7 @@
 
 namespace hjt
 {
-/// How far a joint may be off its set point.
+/// Largest deviation of a joint from its set point that a goal permits.
 struct JointTolerance
 {
   double position{ HUGE_VAL };  ///< [rad]
@@ -48,39 +48,39 @@ struct JointTolerance
 /// Tolerances of a commanded motion.
 struct ArmGoal
 {
-  std::uint64_t number{};            ///< of the command; later ones have larger numbers
-  std::vector<JointTolerance> path;  ///< of each joint on the way; empty: nobody asks
-  std::vector<JointTolerance> end;   ///< and when it is to be there
-  double patience{};                 ///< how long after the motion's end that may be [s]
+  std::uint64_t number{};            ///< number of the command; later commands have larger numbers
+  std::vector<JointTolerance> path;  ///< tolerances of the joints during the motion; empty: no goal
+  std::vector<JointTolerance> end;   ///< tolerances of the joints at the end of the motion
+  double patience{};                 ///< time after the end of the motion by which the arm must be there [s]
 };
 
 enum class GoalState : std::uint8_t
 {
-  NONE,       ///< nobody asks
-  UNDER_WAY,  ///< on the way or not there yet
-  REACHED,    ///< there in time
-  OFF_PATH,   ///< beyond a tolerance on the way
-  NOT_THERE,  ///< beyond a tolerance when the patience ended
-  STOPPED,    ///< by a protective stop
-  FORGOTTEN   ///< the arm was reset
+  NONE,       ///< no goal
+  UNDER_WAY,  ///< the arm moves, or has not arrived yet
+  REACHED,    ///< the arm arrived in time
+  OFF_PATH,   ///< a joint exceeded its tolerance during the motion
+  NOT_THERE,  ///< a joint exceeded its tolerance when the patience ended
+  STOPPED,    ///< a protective stop ended the motion
+  FORGOTTEN   ///< a reset of the arm ended the motion
 };
 
-/// How it follows. Of the last command taken.
+/// How the arm follows the last command that it took.
 struct GoalReport
 {
   std::uint64_t number{};
   GoalState state{};
-  Stamp stamp{};                    ///< at which all this was [ns]
-  std::size_t joint{};              ///< the one beyond its tolerance
-  bool is_speed{};                  ///< it was its speed's
-  double error{};                   ///< by which it was off [rad], [rad/s]
-  double tolerance{};               ///< likewise
-  std::vector<JointMotion> wanted;  ///< set point
-  std::vector<JointMotion> actual;  ///< reported by the controller, without accelerations
+  Stamp stamp{};                    ///< time of these states [ns]
+  std::size_t joint{};              ///< joint that exceeds its tolerance
+  bool is_speed{};                  ///< whether its speed exceeds the tolerance, not its angle
+  double error{};                   ///< deviation of that joint [rad], [rad/s]
+  double tolerance{};               ///< tolerance of that joint [rad], [rad/s]
+  std::vector<JointMotion> wanted;  ///< set points of the joints
+  std::vector<JointMotion> actual;  ///< states of the joints as the controller reports them, without accelerations
 };
 
-/// Judges at the arm's states whether it follows what it was commanded, as joint_trajectory_controller does. After
-/// construction nothing throws or allocates.
+/// Judges at each state of the arm whether the arm follows its command, as joint_trajectory_controller does. After
+/// construction no function throws or allocates.
 class GoalWatch
 {
 public:
@@ -91,7 +91,7 @@ public:
     report_.actual.resize(twin.joints());
   }
 
-  /// Of a motion that the arm follows from now on; in exchange for the last one.
+  /// Takes the goal of a motion that the arm follows from now on, and returns the last goal in `goal`.
   void begin(ArmGoal& goal) noexcept
   {
     std::swap(goal_, goal);
@@ -104,7 +104,7 @@ public:
     report_.state = report_.state == GoalState::UNDER_WAY ? GoalState::FORGOTTEN : report_.state;
   }
 
-  /// To be called at every step.
+  /// Updates the report. Must be called at every step of the arm.
   void look(MovingArm& arm) noexcept
   {
     if (report_.state != GoalState::UNDER_WAY || arm.twin().stamp() % period_ != 0)
@@ -140,7 +140,7 @@ public:
   const GoalReport& report() const noexcept { return report_; }
 
 private:
-  /// The first joint that is, in the report.
+  /// Whether a joint exceeds its tolerance; the report then has the first such joint.
   bool isBeyond(const std::vector<JointTolerance>& tolerances) noexcept
   {
     for (std::size_t i = 0; i < tolerances.size(); ++i)
@@ -162,25 +162,25 @@ private:
     return false;
   }
 
-  Stamp period_;  // of the states [ns]
+  Stamp period_;  // period of the states [ns]
   ArmGoal goal_;
   GoalReport report_;
 };
 
-/// What the twin of an arm publishes: joint_states as the robot's driver does, the tool's pose and the wanted one, and
-/// of each drive what the twin of a joint publishes, below its own name.
+/// The topics of an arm's twin: joint_states as of the robot's driver, actual and wanted pose of the tool, and for each
+/// drive the topics of a joint's twin in its own namespace.
 class ArmPublishers
 {
 public:
   ArmPublishers(ros::NodeHandle& node, const ArmDescription& arm, const ArmTwin& twin);
 
-  /// Loop: fills the messages due at the present instant that somebody hears. No allocation, no lock.
+  /// For the loop: fills the due messages that have subscribers. It neither allocates nor locks.
   void offer(MovingArm& arm) noexcept;
 
-  /// Loop: as OutputPublishers::finishCycle.
+  /// For the loop: as OutputPublishers::finishCycle.
   Stamp finishCycle(Stamp instant) noexcept;
 
-  /// Messages that could not be published.
+  /// Number of messages that could not be published.
   std::uint64_t dropped() const noexcept;
 
 private:
@@ -190,28 +190,28 @@ private:
   void drain();
 
   ros::NodeHandle parent_;
-  std::vector<std::size_t> order_;  // joints in that of the driver's messages
-  Stamp period_;                    // [ns]
+  std::vector<std::size_t> order_;  // indices of the joints in the order of the driver's messages
+  Stamp period_;                    // period of joint_states [ns]
   ArmDynamics dynamics_;
   std::vector<JointMotion> wanted_;
   std::vector<std::unique_ptr<OutputPublishers>> drives_;
   OutputChannel<sensor_msgs::JointState> states_;
   OutputChannel<Pose> tool_;
   OutputChannel<Pose> wanted_tool_;
-  PublisherThread thread_;  // last: it uses the rest
+  PublisherThread thread_;  // last, because it uses the other members
 };
 
-/// What the twin of an arm says of itself to /diagnostics: whether it moves, what its drives cannot bear, and whether
-/// it keeps up with the clock.
+/// State of the arm's twin in /diagnostics: whether it moves, which drives are overloaded, and whether the loop is in
+/// time.
 class ArmDiagnostics
 {
 public:
-  /// Read once a look, from whoever spins.
+  /// State at one update, read in the caller's thread.
   struct Snapshot
   {
     LoopStatus loop;
     std::vector<TwinCounters> drives;
-    std::string stop_reason;  ///< of a protective stop; empty: it moves
+    std::string stop_reason;  ///< reason of a protective stop; empty: no stop
     std::uint64_t dropped{};  ///< messages that could not be published
   };
   using Read = std::function<Snapshot()>;
@@ -228,21 +228,21 @@ private:
   const ArmDescription& arm_;
   const Read read_;
   Snapshot snapshot_;
-  std::vector<RecentEvents> failures_;   // of each joint
-  std::vector<RecentEvents> overloads_;  // likewise
+  std::vector<RecentEvents> failures_;   // for each joint
+  std::vector<RecentEvents> overloads_;  // for each joint
   TimingTask timing_;
   DiagnosticTasks tasks_;
   ros::WallTimer timer_;
 };
 
-/// The newest of some values from callbacks to a loop, which never waits and frees nothing.
+/// Passes the newest value from callbacks to a loop that neither waits nor frees memory.
 template <class Value>
 class Handover
 {
 public:
   explicit Handover(Value unused) : value_(std::move(unused)) {}
 
-  /// From any thread, in place of one that was not taken.
+  /// Sets the value, which replaces one that was not taken; thread-safe.
   void give(Value value)
   {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -250,7 +250,7 @@ public:
     is_new_ = true;
   }
 
-  /// From the loop: calls `use(Value&)` if there is a new one. What is in the value then is freed by the next `give`.
+  /// For the loop: calls `use(Value&)` if there is a new value. The next `give` frees the content of the used one.
   template <class Use>
   void take(Use&& use) noexcept
   {
@@ -268,12 +268,12 @@ private:
   bool is_new_{};
 };
 
-/// State of the robot as ur_robot_driver publishes it, by its names, latched: robot and safety mode, whether it takes
-/// commands, the share of its speed. The modes are messages of ur_dashboard_msgs, which need not be there.
+/// State of the robot with the topic names of ur_robot_driver, latched: robot mode, safety mode, whether it accepts
+/// commands, and the speed scaling. The modes are messages of ur_dashboard_msgs, which need not be installed.
 class DriverStates
 {
 public:
-  /// `parent`: of the driver's names.
+  /// `parent`: namespace of the driver's names.
   explicit DriverStates(const ros::NodeHandle& parent);
 
   /// Publishes what has changed.
@@ -288,28 +288,28 @@ private:
   ros::Publisher speed_scaling_;
 };
 
-/// The live twin of a whole arm, in place of a robot: moves gently until somebody commands a trajectory, publishes
-/// what the robot's driver would, and takes faults of every joint.
+/// The live twin of a whole arm without a robot. It moves gently until a trajectory is commanded, publishes the topics
+/// of the robot's driver, and accepts faults of every joint.
 class ArmNode
 {
 public:
-  /// A motion and what counts as following it.
   struct Command
   {
     ArmMotion motion;
     ArmGoal goal;
   };
 
-  /// `drives`: as ArmTwin takes them. Waits for their response surfaces, then starts. @throws ParameterError.
+  /// `drives`: parameters as for ArmTwin. The constructor waits for the response surfaces and starts the arm. @throws
+  /// ParameterError.
   ArmNode(ros::NodeHandle& node, const ArmDescription& arm, const std::vector<Parameters>& drives);
 
-  /// From any thread: sets out on a trajectory, in place of what the arm did; without points it comes to rest. The goal
-  /// gets its number. @returns why not, or nothing.
+  /// Begins a trajectory that replaces the present motion; without points the arm comes to rest. `goal` receives its
+  /// number. Thread-safe. @returns the reason of a refusal; empty if the trajectory is accepted.
   std::string command(const trajectory_msgs::JointTrajectory& message, ArmGoal& goal);
-  /// How the last command that the loop has taken is followed.
+  /// Report on the last command that the loop has taken.
   GoalReport report() const { return advance_.report.read(); }
   const ArmDescription& description() const noexcept { return description_; }
-  /// From any thread: in a protective stop why, else nothing.
+  /// Reason of a protective stop; empty without a stop. Thread-safe.
   std::string stopReason() const;
 
 private:
@@ -321,7 +321,7 @@ private:
     MOVES
   };
 
-  /// What the loop advances.
+  /// The object that the loop advances.
   class Advance : public Advanced
   {
   public:
@@ -337,11 +337,11 @@ private:
     Handover<Command> command;
     Handover<ArmWrench> wrench;
     Handover<Payload> payload;
-    TryLockValue<std::vector<JointMotion>> shown;      ///< present set point
-    TryLockValue<std::vector<TwinCounters>> counters;  ///< of each drive
+    TryLockValue<std::vector<JointMotion>> shown;      ///< present set points
+    TryLockValue<std::vector<TwinCounters>> counters;  ///< counts of each drive
     TryLockValue<GoalReport> report;
-    std::atomic<const char*> stop_reason{ nullptr };  ///< of a protective stop; none: it moves
-    std::atomic<std::size_t> stopped_joint{};         ///< of which joint
+    std::atomic<const char*> stop_reason{ nullptr };  ///< reason of a protective stop; null: no stop
+    std::atomic<std::size_t> stopped_joint{};         ///< joint of the protective stop
     std::atomic<Unlock> unlock{ Unlock::NOT_ASKED };
 
   private:
@@ -370,8 +370,8 @@ private:
   std::atomic<std::uint64_t> too_large_{ 0 };
   std::mutex command_mutex_;
   MotionLimits limits_;
-  std::uint64_t commands_{};                              // given to the loop
-  std::vector<std::unique_ptr<FaultSubscriber>> faults_;  // of each joint
+  std::uint64_t commands_{};                              // number of commands given to the loop
+  std::vector<std::unique_ptr<FaultSubscriber>> faults_;  // for each joint
   ros::Subscriber command_subscriber_;
   ros::Subscriber wrench_subscriber_;
   ros::Subscriber payload_subscriber_;
@@ -383,11 +383,11 @@ private:
   ros::WallTimer stop_timer_;
 };
 
-/// Offers the action FollowJointTrajectory below the controller's name, `~controller`, as the arm's driver does, for as
-/// long as what it returns lives. Where control_msgs was not found nothing, and the log says so.
+/// Offers the action FollowJointTrajectory in the namespace of `~controller`, as the robot's driver does, during the
+/// lifetime of the result. Without control_msgs at build time it offers nothing and logs this.
 std::shared_ptr<void> offerArmAction(ros::NodeHandle& node, ArmNode& arm);
 
-/// The live twin of an arm with its action.
+/// The live twin of an arm with its action server.
 class ArmWithAction
 {
 public:

@@ -18,12 +18,13 @@ using trajectory_msgs::JointTrajectory;
 using trajectory_msgs::JointTrajectoryPoint;
 
 constexpr double SAME_PLACE = 0.01;       // largest distance of a point at time 0 from the present set point [rad]
-constexpr std::size_t MAX_SHOWN = 300;    // length of the names of a message that is shown [bytes]
+constexpr std::size_t MAX_SHOWN = 300;    // largest shown length of the names in a message [bytes]
 constexpr double SPEED_TOLERANCE = 1e-6;  // [-]
 
 constexpr std::size_t NOT_NAMED = static_cast<std::size_t>(-1);
 
-/// Place of each joint of the arm in the message, or NOT_NAMED. @returns what is wrong with its names, or nothing.
+/// Index of each joint of the arm in the message, or NOT_NAMED. @returns the error of the names; empty if they are
+/// valid.
 std::string placesOf(const JointTrajectory& message, const ArmDescription& arm, std::vector<std::size_t>& places)
 {
   const std::vector<std::string>& names = message.joint_names;
@@ -36,7 +37,7 @@ std::string placesOf(const JointTrajectory& message, const ArmDescription& arm, 
     std::size_t* const its = is_known ? &places[static_cast<std::size_t>(joint - arm.joints.begin())] : nullptr;
     if (its == nullptr || *its != NOT_NAMED)
     {
-      return (is_known ? "it names more than once " : "no joint of the arm is ") + printable(names[place], MAX_SHOWN) +
+      return (is_known ? "it names more than once " : "the arm has no joint ") + printable(names[place], MAX_SHOWN) +
              "; it names " + printable(joined(names, ", "), MAX_SHOWN);
     }
     *its = place;
@@ -44,8 +45,8 @@ std::string placesOf(const JointTrajectory& message, const ArmDescription& arm, 
   return names.empty() ? "it names no joint" : "";
 }
 
-/// Where a joint comes to rest that slows down for so long [s], evenly less: its speed falls with the square of what is
-/// left of the time, as the cubic between has it.
+/// Position at which a joint comes to rest after `length` [s] of deceleration. The speed decreases with the square of
+/// the remaining time, as in the cubic between the set points.
 JointMotion restOf(const JointMotion& joint, double length)
 {
   return { joint.position + joint.velocity * length / 3.0, 0.0, 0.0 };
@@ -68,7 +69,7 @@ std::string sizeErrors(const JointTrajectoryPoint& point, std::size_t joints)
              "not all values are finite";
 }
 
-/// Of a joint between two set points, at most [rad/s].
+/// Largest speed of a joint between two set points [rad/s].
 double greatestSpeed(const JointMotion& from, const JointMotion& to, double length)
 {
   const double way = (to.position - from.position) / length;
@@ -83,8 +84,8 @@ double greatestSpeed(const JointMotion& from, const JointMotion& to, double leng
   return greatest;
 }
 
-/// Velocities where the message has none: the slopes through both neighbours; 0 at the end, and of joints that it does
-/// not name.
+/// Sets missing velocities: the slopes over both neighbours; 0 at the end, and for joints that the message does not
+/// name.
 void fillVelocities(const JointTrajectory& message, const std::vector<std::size_t>& places,
                     std::vector<ArmSetPoint>& points)
 {
@@ -115,11 +116,11 @@ std::string speedErrors(const std::vector<ArmSetPoint>& points, const ArmDescrip
       const double limit = arm.joints[i].speed_limit;
       const double speed =
           greatestSpeed(points[k - 1].joints[i], points[k].joints[i], points[k].time - points[k - 1].time);
-      // Written so that NaN fails.
+      // This form of the comparison rejects NaN.
       if (limit > 0.0 && !(speed <= limit * (1.0 + SPEED_TOLERANCE)))
       {
-        return arm.joints[i].name + " would reach " + roundedText(speed, 3) + " rad/s before " +
-               roundedText(points[k].time, 4) + " s, its limit is " + roundedText(limit, 4);
+        return arm.joints[i].name + " would reach " + roundedText(speed, 3) + " rad/s between the set point at " +
+               roundedText(points[k].time, 4) + " s and the one before; its limit is " + roundedText(limit, 4);
       }
     }
   }
@@ -129,8 +130,9 @@ std::string speedErrors(const std::vector<ArmSetPoint>& points, const ArmDescrip
 
 std::vector<ArmSetPoint> stopFrom(const std::vector<JointMotion>& present)
 {
-  constexpr double ACCELERATION = 4.0;  // of the fastest joint, first trial; the gentle motion has half of it [rad/s^2]
-  constexpr double SHORTEST = 0.2;      // [s]
+  // first trial for the fastest joint; the gentle motion uses half of it [rad/s^2]
+  constexpr double ACCELERATION = 4.0;
+  constexpr double SHORTEST = 0.2;  // [s]
   double fastest = 0.0;
   for (const JointMotion& joint : present)
   {
@@ -158,7 +160,7 @@ std::string readTrajectory(const JointTrajectory& message, const ArmDescription&
     return errors;
   }
   points.assign(1, { 0.0, present });
-  std::vector<JointMotion> rest = present;  // of the joints that it does not name
+  std::vector<JointMotion> rest = present;  // set points of the joints that the message does not name
   for (const JointTrajectoryPoint& point : message.points)
   {
     const std::string place = "points[" + std::to_string(&point - message.points.data()) + "]: ";
@@ -185,20 +187,21 @@ std::string readTrajectory(const JointTrajectory& message, const ArmDescription&
         continue;
       }
       return place + "time_from_start = " + numberText(point.time_from_start.toSec()) + " s" +
-             (points.size() == 1 ? ", but it is " + roundedText(farthest, 3) + " rad from where the arm stands" :
-                                   " is not after the point before");
+             (points.size() == 1 ?
+                  ", but the point is " + roundedText(farthest, 3) + " rad from the arm's present position" :
+                  " is not after the point before");
     }
     points.push_back(set_point);
   }
   if (points.size() == 1)
   {
-    return "it does not move";
+    return "the trajectory does not move the arm";
   }
   fillVelocities(message, places, points);
   const auto is_moving = [](const JointMotion& joint) { return joint.velocity != 0.0; };
   if (std::any_of(points.back().joints.begin(), points.back().joints.end(), is_moving))
   {
-    return "it does not end at rest";
+    return "the trajectory does not end at rest";
   }
   const std::string errors = motionErrors(points, arm);
   return errors.empty() ? speedErrors(points, arm) : errors;

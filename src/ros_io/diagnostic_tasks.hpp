@@ -22,14 +22,14 @@
 
 namespace hjt
 {
-/// Level and text of one diagnostic task.
+/// Level and text of a diagnostic task.
 struct DiagnosticVerdict
 {
   std::uint8_t level{};
   std::string text;
 };
 
-/// The verdict of the first condition that holds, else `otherwise`.
+/// Verdict of the first true condition; `otherwise` if none is true.
 inline DiagnosticVerdict firstOf(const std::vector<std::pair<bool, DiagnosticVerdict>>& conditions,
                                  DiagnosticVerdict otherwise)
 {
@@ -43,15 +43,15 @@ inline DiagnosticVerdict firstOf(const std::vector<std::pair<bool, DiagnosticVer
   return otherwise;
 }
 
-/// Tasks of /diagnostics, each with a verdict and values: reported every `~diagnostic_period`, 1 s if that is not set,
-/// by the wall clock, since a simulated one may stand, and at once when a level changes. diagnostic_updater::Updater
-/// cannot serve: it adds to the time of the clock, and throws where that is near the last one.
+/// Tasks of /diagnostics, each with a verdict and values. They are reported every `~diagnostic_period` (default 1 s)
+/// and when a level changes. The period is wall clock time, because a simulated clock may stop.
+/// diagnostic_updater::Updater is unsuitable: it uses the ROS clock and throws near the end of its range.
 class DiagnosticTasks
 {
 public:
-  static constexpr double LOOK_PERIOD = 0.2;  ///< between two calls of `look` [s]
+  static constexpr double LOOK_PERIOD = 0.2;  ///< period for calls of `look` [s]
 
-  /// `name`: of the twin, before that of each task.
+  /// `name`: name of the twin, which precedes that of each task.
   DiagnosticTasks(const std::string& name, const std::string& hardware_id)
     : name_(name)
     , hardware_id_(hardware_id)
@@ -60,7 +60,7 @@ public:
   {
   }
 
-  /// A task judged and reported by two members of its owner, which lives as long as this.
+  /// Adds a task that two members of its owner judge and report; the owner must outlive this object.
   template <class Owner>
   void add(const std::string& name, const Owner* owner, DiagnosticVerdict (Owner::*judge)() const,
            void (Owner::*report)(diagnostic_updater::DiagnosticStatusWrapper&) const)
@@ -71,7 +71,7 @@ public:
                        {} });
   }
 
-  /// Judges every task, and reports if it is time.
+  /// Judges every task, and reports when due.
   void look()
   {
     bool changed = false;
@@ -114,7 +114,7 @@ private:
     publisher_.publish(message);
   }
 
-  static constexpr unsigned QUEUE_SIZE = 20;  // the joints of an arm report at once
+  static constexpr unsigned QUEUE_SIZE = 20;  // all joints of an arm report at once
 
   const std::string name_;
   const std::string hardware_id_;
@@ -124,11 +124,11 @@ private:
   ros::Publisher publisher_;
 };
 
-/// Whether a counter has grown lately by the wall clock. Keeps a single event in sight of whoever reads once a second.
+/// Whether a counter has increased recently in wall clock time. A single event thus stays visible to a reader at 1 Hz.
 class RecentEvents
 {
 public:
-  static constexpr double MEMORY = 3.0;  ///< an event counts as recent for so long [s]
+  static constexpr double MEMORY = 3.0;  ///< duration for which an event counts as recent [s]
 
   void update(std::uint64_t count, const ros::WallTime& now)
   {
@@ -136,7 +136,7 @@ public:
     {
       last_event_ = now;
     }
-    // A reset of what is counted is no event.
+    // A reset of the counter is no event.
     count_ = count;
     recent_ = !last_event_.isZero() && (now - last_event_).toSec() < MEMORY;
   }
@@ -149,8 +149,8 @@ private:
   bool recent_{};
 };
 
-/// Whether a loop keeps up with the clock, as a task of /diagnostics. Also logs each jump of the clock, and when the
-/// loop falls behind and is in time again.
+/// Task of /diagnostics on whether a loop is in time with the clock. It also logs jumps of the clock, and when the loop
+/// falls behind or is in time again.
 class TimingTask
 {
 public:
@@ -160,7 +160,7 @@ public:
   {
   }
 
-  /// Once a look. `dropped`: messages that could not be published.
+  /// Updates the task. `dropped`: messages that could not be published.
   void update(const LoopStatus& loop, std::uint64_t dropped)
   {
     loop_ = loop;
@@ -182,12 +182,14 @@ public:
     return firstOf(
         { { loop_.clock == 0, { D::WARN, "No time on /clock yet" } },
           { clock_jumps_.areRecent(), { D::WARN, jumpText(loop_) + ": restarted" } },
-          { drops_.areRecent(), { D::WARN, "Messages dropped: publishing cannot keep up" } },
-          { is_behind_, { D::WARN, "Behind the clock and catching up; ~reset restarts at the current instant" } },
+          { drops_.areRecent(), { D::WARN, "Messages are dropped because publishing is too slow" } },
+          { is_behind_,
+            { D::WARN, "The twin is behind the clock and catches up; ~reset restarts it at the current instant" } },
           { missed_deadlines_.areRecent(),
-            { D::WARN, "Deadlines missed: instants simulated late by more than realtime.deadline" } },
+            { D::WARN, "Deadlines were missed: instants were later than realtime.deadline allows" } },
           { (ros::WallTime::now() - clock_moved_).toSec() > CLOCK_STANDS_AFTER, { D::WARN, "The clock has stopped" } },
-          { !realtime_.refusals.empty(), { D::WARN, "In time, but a request of realtime was refused: see the log" } } },
+          { !realtime_.refusals.empty(),
+            { D::WARN, "In time, but the system refused a request of section realtime; see the log" } } },
         { D::OK, "In time" });
   }
 
@@ -218,11 +220,11 @@ public:
   }
 
 private:
-  // Report the ROS clock as stopped after this long without a change [s, wall time].
+  // Time without a change of the ROS clock after which it counts as stopped [s, wall clock].
   static constexpr double CLOCK_STANDS_AFTER = 1.0;
-  // Warn when the twin is further behind than this [s].
+  // Lag of the twin above which it is reported [s].
   static constexpr double LAG_WARNING = 1.0;
-  // In time again below this [s].
+  // Lag of the twin below which it counts as in time again [s].
   static constexpr double CAUGHT_UP = 0.1;
 
   static std::string jumpText(const LoopStatus& loop)
@@ -243,8 +245,8 @@ private:
     if (!is_behind_ && lag > LAG_WARNING)
     {
       ROS_WARN_STREAM("The twin is " << roundedText(lag, 3)
-                                     << " s behind the clock: it computes longer than it simulates, "
-                                        "or was not run; ~reset restarts it at the current instant");
+                                     << " s behind the clock. Its steps take longer than they simulate, "
+                                        "or the process was suspended. ~reset restarts it at the current instant");
     }
     if (is_behind_ && lag < CAUGHT_UP)
     {

@@ -15,7 +15,7 @@ namespace
 using diagnostic_msgs::DiagnosticStatus;
 using diagnostic_updater::DiagnosticStatusWrapper;
 
-/// Warn when a command's stamp is further ahead of the clock than this [s].
+/// Lead of a command's stamp over the clock above which the node warns [s].
 constexpr double AHEAD_WARNING = 1.0;
 
 const char* stateText(LoopState state)
@@ -29,7 +29,7 @@ std::string verdictText(const Assessment& assessment)
 {
   if (assessment.level != HealthLevel::OK && assessment.cause == Cause::NONE)
   {
-    return "The indicators depart from the reference in a way that no known fault explains";
+    return "The indicators deviate from the reference in a way that no known fault explains";
   }
   if (assessment.level != HealthLevel::OK)
   {
@@ -41,7 +41,7 @@ std::string verdictText(const Assessment& assessment)
   std::string text = whyNotJudged(assessment);
   if (text.empty())
   {
-    return "Nothing out of the ordinary";
+    return "The indicators agree with the reference";
   }
   text[0] = static_cast<char>(std::toupper(text[0]));
   return text;
@@ -122,13 +122,13 @@ DiagnosticVerdict Diagnostics::judgeDrive() const
 {
   using D = DiagnosticStatus;
   return firstOf({ { !snapshot_.loop.outputs.converged || solver_failures_.areRecent(),
-                     { D::ERROR, "The solver did not converge: the last good state is held" } },
-                   { step_cuts_.areRecent(), { D::WARN, "Steps had to be cut to converge" } },
+                     { D::ERROR, "The solver did not converge; the last converged state is kept" } },
+                   { step_cuts_.areRecent(), { D::WARN, "Some steps converged only with a shorter path" } },
                    { jumps_.areRecent(), { D::WARN, "Teeth jumped to another space" } },
                    { coarse_steps_.areRecent(),
-                     { D::WARN, "Time step too long for the joint's fastest natural mode: raise solver.rate" } },
-                   { overloads_.areRecent(), { D::WARN, "Torque at the joint beyond output.torque_limit" } },
-                   { speed_limits_.areRecent(), { D::WARN, "Motor at its speed limit" } } },
+                     { D::WARN, "The time step is too long for the joint's fastest natural mode; raise solver.rate" } },
+                   { overloads_.areRecent(), { D::WARN, "The torque at the joint exceeds output.torque_limit" } },
+                   { speed_limits_.areRecent(), { D::WARN, "The motor is at its speed limit" } } },
                  { D::OK, stateText(snapshot_.loop.state) });
 }
 
@@ -141,12 +141,12 @@ DiagnosticVerdict Diagnostics::judgeInput() const
           { D::WARN,
             "Inputs refused: not finite, not for this joint, no such fault, too large, or stamped far from the "
             "clock" } },
-        { lost_inputs_.areRecent(), { D::WARN, "Inputs lost: more came than can be kept" } },
-        { clamps_.areRecent(), { D::WARN, "Torque beyond its limit, clamped" } },
-        { late_inputs_.areRecent(), { D::WARN, "Inputs came too late for their stamp: raise input.delay" } },
+        { lost_inputs_.areRecent(), { D::WARN, "Inputs were lost because the queue was full" } },
+        { clamps_.areRecent(), { D::WARN, "A torque exceeded its limit and was clamped" } },
+        { late_inputs_.areRecent(), { D::WARN, "Inputs arrived too late for their stamp; raise input.delay" } },
         { !snapshot_.loop.command_seen, { D::WARN, "No motor torque command yet" } },
         { age > command_timeout_ || timeouts_.areRecent(),
-          { D::WARN, "Motor torque commands stop for longer than input.command_timeout: the torque is then zero" } },
+          { D::WARN, "No motor torque command for longer than input.command_timeout; the torque is zero" } },
         { age < -AHEAD_WARNING, { D::WARN, "Command stamps are ahead of the clock" } } },
       { D::OK, "Commands arrive" });
 }

@@ -18,14 +18,14 @@
 
 namespace hjt
 {
-/// State of the indicators, also if they are not up to date. A reported fault remains until windows contradict it.
+/// Text of the indicators' state, up to date or not. A reported fault remains until windows contradict it.
 std::string verdictText(const Assessment& assessment);
 
-/// Cause, evidence and windows of a verdict.
+/// Adds cause, evidence and windows of an assessment.
 void addAssessment(const Assessment& assessment, diagnostic_updater::DiagnosticStatusWrapper& status);
 
-/// Publishes the state of drive, input, timing and health on /diagnostics: about once a second by the wall clock, and
-/// at once when a level changes.
+/// Publishes the state of drive, input, timing and health on /diagnostics, about once a second in wall clock time and
+/// when a level changes.
 class Diagnostics
 {
 public:
@@ -33,7 +33,7 @@ public:
               const Inbox& inbox, const InputSubscribers& subscribers, const OutputPublishers& publishers);
 
 private:
-  /// What the tasks speak of, read once per look.
+  /// Data of the tasks, read once for each update.
   struct Snapshot
   {
     LoopStatus loop;

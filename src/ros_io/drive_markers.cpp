@@ -20,12 +20,12 @@ using Point = Eigen::Vector2d;
 
 constexpr double LINE_WIDTH = 0.2e-3;   // [m]
 constexpr double TEXT_HEIGHT = 1.8e-3;  // [m]
-constexpr double ARROW_WIDTH = 0.2e-3;  // of the shaft [m]
+constexpr double ARROW_WIDTH = 0.2e-3;  // width of the shaft [m]
 constexpr double ARROW_HEAD = 0.7e-3;   // length and width [m]
-constexpr double MIN_ARROW = 0.2e-3;    // shorter ones are left out [m]
+constexpr double MIN_ARROW = 0.2e-3;    // shorter arrows are not drawn [m]
 constexpr double TIP_SHARE = 0.12;      // half width of a drawn tooth at tip and root, in pitches
 constexpr double ROOT_SHARE = 0.28;
-constexpr double RING_HEIGHTS = 2.0;    // circular spline behind its roots, in tooth heights
+constexpr double RING_HEIGHTS = 2.0;    // height of the circular spline behind its roots, in tooth heights
 constexpr double ROOT_CLEARANCE = 1.2;  // depth of its spaces, in tooth heights
 constexpr int ELLIPSE_POINTS = 180;
 
@@ -47,7 +47,7 @@ const std_msgs::ColorRGBA ORANGE = color(0.95F, 0.55F, 0.10F);
 const std_msgs::ColorRGBA BLUE = color(0.20F, 0.45F, 0.90F);
 const std_msgs::ColorRGBA BLACK = color(0.05F, 0.05F, 0.05F);
 
-/// From steel at nothing to `full` at a share of 1 and beyond.
+/// Colour between steel at 0 and `full` at a share of 1 or more.
 std_msgs::ColorRGBA shareColor(double of, const std_msgs::ColorRGBA& full)
 {
   const auto share = static_cast<float>(std::min(1.0, of));
@@ -75,7 +75,7 @@ void addPoint(Marker& marker, const Point& at)
   marker.points.push_back(point);
 }
 
-/// Both faces: rviz does not draw the back of a triangle.
+/// Adds both faces, because rviz does not draw the back of a triangle.
 void addTriangle(Marker& marker, const Point& a, const Point& b, const Point& c, const std_msgs::ColorRGBA& made)
 {
   for (const Point* corner : { &a, &b, &c, &a, &c, &b })
@@ -92,7 +92,7 @@ void addQuad(Marker& marker, const Point& a, const Point& b, const Point& c, con
   addTriangle(marker, a, c, d, made);
 }
 
-/// An arrow that ends at `tip`, `along` long and directed [m].
+/// Adds an arrow that ends at `tip`; `along`: its length and direction [m].
 void addArrow(Marker& marker, const Point& tip, const Point& along)
 {
   const double length = along.norm();
@@ -114,7 +114,7 @@ Point direction(double angle)
   return { std::cos(angle), std::sin(angle) };
 }
 
-/// Stretches distances from a circle around the origin.
+/// Stretches distances from a circle about the origin.
 struct Stretch
 {
   double radius;  // of the circle [m]
@@ -139,7 +139,7 @@ DriveMarkers::DriveMarkers(const Parameters& parameters, const MarkerStyle& styl
 {
 }
 
-/// Rim, teeth and forces, and what the text says of them.
+/// Rim, teeth and forces, with the numbers for the text.
 struct DriveMarkers::Teeth
 {
   Marker flexspline;
@@ -151,7 +151,7 @@ struct DriveMarkers::Teeth
   double largest_pressing{};  // [N]
 };
 
-/// The ellipse, and its major axis.
+/// The ellipse and its major axis.
 std::pair<Marker, Marker> DriveMarkers::drawWaveGenerator(const std_msgs::Header& header, double angle) const
 {
   const Stretch drawn{ fixed_radius_, style_.exaggeration };
@@ -176,7 +176,7 @@ std::pair<Marker, Marker> DriveMarkers::drawWaveGenerator(const std_msgs::Header
   return { std::move(wave), std::move(axis) };
 }
 
-/// A tooth on its piece of the rim, with its forces.
+/// Draws a tooth on its segment of the rim, with its forces.
 void DriveMarkers::drawTooth(const harmonic_joint_twin::ContactForces& forces, std::size_t i, Teeth& teeth) const
 {
   const Stretch drawn{ fixed_radius_, style_.exaggeration };
@@ -226,7 +226,7 @@ Marker DriveMarkers::drawCircularSpline(const std_msgs::Header& header, double o
   const double pitch = TWO_PI / gear_.teeth_circular_spline;
   for (int i = 0; i < gear_.teeth_circular_spline; ++i)
   {
-    // A tooth stands half a pitch from the space of the same number.
+    // A tooth is half a pitch from the space of equal number.
     const double middle = output_angle + (i + 0.5) * pitch;
     const auto at = [&](double radius, double pitches) { return drawn(radius * direction(middle + pitches * pitch)); };
     addQuad(circular, at(tip, -TIP_SHARE), at(tip, TIP_SHARE), at(root, ROOT_SHARE), at(root, -ROOT_SHARE), DARK_STEEL);
@@ -241,7 +241,7 @@ visualization_msgs::MarkerArray DriveMarkers::draw(const harmonic_joint_twin::Co
   if (forces.tooth_x.size() != count || forces.tooth_y.size() != count || forces.mesh_force.size() != count ||
       forces.wave_generator_force.size() != count || forces.rim_tension.size() != count)
   {
-    throw std::invalid_argument("contact forces of " + std::to_string(forces.tooth_x.size()) +
+    throw std::invalid_argument("contact forces have " + std::to_string(forces.tooth_x.size()) +
                                 " teeth, but gear.teeth_flexspline is " + std::to_string(count));
   }
   std_msgs::Header header = forces.header;
@@ -269,7 +269,7 @@ visualization_msgs::MarkerArray DriveMarkers::draw(const harmonic_joint_twin::Co
                     std::move(teeth.flexspline), std::move(circular),
                     std::move(teeth.pressing),   std::move(teeth.leading),
                     std::move(teeth.trailing),   std::move(text) };
-  // rviz takes a list of triangles without any for an error.
+  // rviz reports a list of triangles without points as an error.
   for (Marker& marker : array.markers)
   {
     marker.action = marker.points.empty() && marker.text.empty() ? Marker::DELETE : Marker::ADD;

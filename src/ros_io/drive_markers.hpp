@@ -13,19 +13,18 @@
 
 namespace hjt
 {
-/// How the drive is drawn.
 struct MarkerStyle
 {
-  std::string frame;    ///< of the markers: the drive's axis is its z axis
-  double exaggeration;  ///< radial distances from the middle of the engaged teeth are drawn this many times as long [-]
-  double arrow_length;  ///< of a force [m/N]
-  double full_force;    ///< force of a tooth drawn in full colour [N]
+  std::string frame;    ///< frame of the markers, whose z axis is the drive's axis
+  double exaggeration;  ///< factor on radial distances from the middle of the engaged teeth [-]
+  double arrow_length;  ///< length of an arrow per force [m/N]
+  double full_force;    ///< force of a tooth with full colour [N]
 };
 
-/// The drive as seen along its axis, for rviz, out of one message of contact forces.
+/// Markers for rviz of the drive, seen along its axis, from one message of contact forces.
 ///
-/// Points are where the message says, in the plane z = 0, with radii stretched. Teeth are drawn as plain trapezoids:
-/// the flanks' shape is not shown.
+/// Points are those of the message, in the plane z = 0, with stretched radii. Teeth are plain trapezoids, which do not
+/// show the shape of the flanks.
 ///
 /// | namespace of the marker | shows |
 /// |---|---|
@@ -43,7 +42,7 @@ public:
   const MarkerStyle& style() const { return style_; }
   void setStyle(const MarkerStyle& style) { style_ = style; }
 
-  /// @throws std::invalid_argument unless every array has as many entries as the flexspline has teeth.
+  /// @throws std::invalid_argument unless every array has one entry for each tooth of the flexspline.
   visualization_msgs::MarkerArray draw(const harmonic_joint_twin::ContactForces& forces) const;
 
 private:
@@ -57,8 +56,8 @@ private:
   GearParameters gear_;
   double flank_angle_;
   FlexsplineStress stress_;
-  double full_stress_;  // nominal, the endurance limit at the notch [Pa]
+  double full_stress_;  // nominal stress with full colour: the endurance limit at the notch [Pa]
   MarkerStyle style_;
-  double fixed_radius_;  // drawn where it is [m]
+  double fixed_radius_;  // radius that the stretching does not change [m]
 };
 }  // namespace hjt

@@ -26,16 +26,16 @@
 
 namespace hjt
 {
-/// Between two warnings of the same kind [s].
+/// Time between two warnings of one kind [s].
 constexpr double WARNING_PERIOD = 5.0;
 
-/// Subscribes topics that anybody may publish on. A message of more than MAX_BYTES bytes is counted and not read: what
-/// it would hold in memory is a multiple of its length.
+/// Subscribes topics on which anybody may publish. A message of more than MAX_BYTES bytes is counted and not
+/// deserialised, because its content takes a multiple of its length in memory.
 struct InputTopics
 {
-  /// Of the JointState of 1000 joints, twice over [bytes].
+  /// Twice the size of a JointState of 1000 joints [bytes].
   static constexpr std::size_t MAX_BYTES = 128 * 1024;
-  /// Seconds of messages at 1 kHz: a fast bag brings chunks, and a twin that catches up takes them later; none may be
+  /// Seconds of messages at 1 kHz. A fast bag sends bursts, and a twin that catches up reads them later; none may be
   /// lost.
   static constexpr std::uint32_t QUEUE_SIZE = 4096;
 
@@ -52,7 +52,7 @@ struct InputTopics
     options.md5sum = ros::message_traits::md5sum<Message>();
     options.datatype = ros::message_traits::datatype<Message>();
     options.helper = boost::make_shared<Reader<Message>>(receive, too_large);
-    // Small messages at a high rate: without the delay that the transport would gather them with.
+    // Without the transport's delay for collecting small messages.
     options.transport_hints = ros::TransportHints().tcpNoDelay();
     return node.subscribe(options);
   }
@@ -85,11 +85,11 @@ private:
   };
 };
 
-/// Puts the faults that come on ~inject_fault into the inbox; one that is not valid is refused, with a warning.
+/// Puts faults of ~inject_fault into the inbox. An invalid one is refused with a warning.
 class FaultSubscriber
 {
 public:
-  /// `twin`: whose faults they are; `joint`: its number in the inbox.
+  /// `twin`: the twin that gets the faults; `joint`: its number in the inbox.
   FaultSubscriber(const InputTopics& inputs, const Twin& twin, Inbox& inbox, std::size_t joint = 0)
     : twin_(twin)
     , inbox_(inbox)
@@ -99,12 +99,12 @@ public:
   {
   }
 
-  std::uint64_t refused() const noexcept { return refused_; }  ///< since start
+  std::uint64_t refused() const noexcept { return refused_; }  ///< number since start
 
 private:
   void receive(const harmonic_joint_twin::Fault& message)
   {
-    // Faults come one by one, and each warning has a reason of its own [s].
+    // Faults are single events, and each warning has its own reason [s].
     constexpr double WARNING_PERIOD = 1.0;
     std::vector<Fault> steps;
     const std::string errors = readFault(message, twin_.parameters(), steps);
@@ -129,17 +129,17 @@ private:
   ros::Subscriber subscriber_;
 };
 
-/// Messages that held no torque or fault for this joint, since start.
+/// Number of messages since start without a torque or fault for this joint.
 struct MessageCounters
 {
-  std::uint64_t unknown_joint{};   ///< neither the joint nor, in a command, its motor was named
-  std::uint64_t missing_effort{};  ///< named, but without an effort
-  std::uint64_t refused_fault{};   ///< of unknown kind, or severity or place out of its range
-  std::uint64_t too_large{};       ///< of more bytes than InputTopics reads
+  std::uint64_t unknown_joint{};   ///< message names neither the joint nor, for a command, its motor
+  std::uint64_t missing_effort{};  ///< message names the joint without an effort
+  std::uint64_t refused_fault{};   ///< unknown kind, or severity or place out of range
+  std::uint64_t too_large{};       ///< more bytes than InputTopics::MAX_BYTES
 };
 
-/// Subscribes the topics of torques and faults and puts what they bring, stamped, into the inbox.
-/// A message without a stamp counts as made when it is received.
+/// Subscribes the topics of torques and faults, and puts their content with stamps into the inbox. A message without a
+/// stamp gets the time of its reception.
 class InputSubscribers
 {
 public:

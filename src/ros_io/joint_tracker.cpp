@@ -16,12 +16,12 @@ namespace
 {
 using diagnostic_msgs::DiagnosticStatus;
 
-/// Report the telemetry as stopped after this long without a row [s].
+/// Time without a row after which the telemetry counts as stopped [s].
 constexpr double STOPPED_AFTER = 0.5;
-/// Warn when a stamp differs from the clock by more than this [s].
+/// Difference of a stamp from the clock above which the node warns [s].
 constexpr double OFFSET_WARNING = 0.5;
 
-/// Texts of diagnostics end without a full stop.
+/// Removes the full stop, because texts of diagnostics have none.
 std::string withoutStop(std::string sentences)
 {
   if (!sentences.empty() && sentences.back() == '.')
@@ -53,7 +53,7 @@ JointTracker::JointTracker(ros::NodeHandle& node, const Parameters& parameters, 
   , ratio_(nominalRatio(parameters.gear))
   , greatest_speed_(hjt::greatestSpeed(parameters))
   , current_per_effort_(hjt::currentPerEffort(parameters))
-  // Built before the first row is read, so that the same rows give the same numbers.
+  // Built before the first row, so that equal rows give equal numbers.
   , tracker_(parameters, parameters.input.mode, nodeSurfaceSource(false))
   , verdict_(tracker_, { sound.own, is_identified })
   , outputs_(node, parameters)
@@ -120,7 +120,7 @@ void JointTracker::start(bool reset)
   }
 }
 
-/// The verdict too, at once.
+/// Forgets everything, including the verdict.
 void JointTracker::forgetAll()
 {
   tracker_.reset();
@@ -185,8 +185,8 @@ void JointTracker::takeLoad(const LoadAt& load)
   }
 }
 
-/// Once there is a zero: a load by another clock than the rows is refused. Received without a stamp, it is valid from
-/// the instant on that the rows' clock shows then.
+/// Handles a load once there is a zero of time. It is refused if its clock is not that of the rows. A load without
+/// stamp is valid from the present time of the rows' clock.
 void JointTracker::passLoad(const LoadAt& load)
 {
   const Stamp stamp = load.stamp.value_or(stream_.clock.at(load.received));
@@ -218,7 +218,7 @@ void JointTracker::receiveTemperature(const sensor_msgs::Temperature& message, S
   }
 }
 
-/// As a load.
+/// Handles a temperature as passLoad does a load.
 void JointTracker::passTemperature(const TemperatureAt& temperature)
 {
   const Stamp stamp = temperature.stamp.value_or(stream_.clock.at(temperature.received));
@@ -246,7 +246,7 @@ bool JointTracker::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Respons
   const std::lock_guard<std::mutex> lock(mutex_);
   forgetAll();
   response.success = true;
-  response.message = "the twin restarts with the next row";
+  response.message = "the twin will restart with the next row";
   return true;
 }
 
@@ -267,7 +267,7 @@ void JointTracker::look(const ros::WallTime& now)
   logState();
 }
 
-/// A line when telemetry arrives, and whenever the worst level changes.
+/// Logs the arrival of telemetry, and changes of the worst level.
 void JointTracker::logState()
 {
   if (tracker_.counters().compared == 0)
@@ -293,7 +293,7 @@ bool JointTracker::hasStopped() const
   return toSeconds(fromRosTime(ros::Time::now()) - stream_.last_received) > STOPPED_AFTER;
 }
 
-/// That of the rows, or that the twin fails.
+/// Verdict on the rows, or that the twin fails.
 Verdict JointTracker::verdictNow() const
 {
   Verdict verdict = verdict_.now();
@@ -305,7 +305,7 @@ Verdict JointTracker::verdictNow() const
   return verdict;
 }
 
-/// At once when it changes, else when more rows were judged. The last one stays.
+/// Publishes a verdict when it changes or covers more rows. The last one stays latched.
 void JointTracker::publishVerdict()
 {
   if (tracker_.counters().compared == 0)
@@ -331,26 +331,25 @@ DiagnosticVerdict JointTracker::judgeTelemetry() const
   return firstOf(
       { { ros::Time::isSimTime() && ros::Time::now().isZero(), { D::WARN, "No time on /clock yet" } },
         { !stream_.lack.empty() && (timing.rows == 0 || hasStopped()),
-          { D::WARN, "Messages arrive on " + stream_.topic + " without a usable row: " + stream_.lack } },
+          { D::WARN, "Messages on " + stream_.topic + " contain no usable row: " + stream_.lack } },
         { timing.rows == 0,
           { D::WARN, refused ? "No usable row of " + names_.joint + " yet" : "No telemetry yet on " + stream_.topic } },
         { hasStopped(), { D::WARN, "The telemetry has stopped" } },
-        { recent_restarts_.areRecent(), { D::WARN, "Stamps jumped back: restarted" } },
+        { recent_restarts_.areRecent(), { D::WARN, "Stamps jumped back; the twin has restarted" } },
         { refused,
           { D::WARN,
-            "Messages refused: incomplete, not finite, efforts all zero, too large, stamped far off, a temperature "
-            "that no drive has, or "
-            "a load beside the arm's" } },
-        { recent_disorder_.areRecent(), { D::WARN, "Stamps repeat or go back: those rows are left out" } },
+            "Messages were refused: incomplete, not finite, all efforts zero, too large, a stamp far from the clock, "
+            "an impossible temperature, or a load although the arm gives it" } },
+        { recent_disorder_.areRecent(), { D::WARN, "Stamps repeat or go back; these rows are ignored" } },
         { recent_missing_.areRecent(), { D::WARN, "Rows are missing" } },
-        { std::abs(timing.offset) > OFFSET_WARNING, { D::WARN, "Stamps are off this machine's clock" } },
+        { std::abs(timing.offset) > OFFSET_WARNING, { D::WARN, "Stamps differ from this machine's clock" } },
         { verdict_.misfit().exists(),
-          { D::OK, "Telemetry arrives; friction and faults are not judged: " + verdict_.misfit().clause } },
+          { D::OK, "Telemetry arrives; friction and faults are not judged, because " + verdict_.misfit().clause } },
         { !stream_.mounting.empty(), { D::OK, "Telemetry arrives; " + stream_.mounting + "; judged with it" } },
         { !stream_.drag.empty(), { D::OK, "Telemetry arrives; " + stream_.drag + "; judged with it" } },
         { !stream_.payload.empty(), { D::OK, "Telemetry arrives; " + stream_.payload + "; judged with it" } },
         { !tracker_.isLoadKnown(),
-          { D::OK, "Telemetry arrives; the load is unknown: friction and faults are not judged" } } },
+          { D::OK, "Telemetry arrives; friction and faults are not judged, because the load is unknown" } } },
       { D::OK, "Telemetry arrives" });
 }
 
@@ -358,7 +357,7 @@ DiagnosticVerdict JointTracker::judgeComparison() const
 {
   if (tracker_.counters().compared == 0)
   {
-    return { DiagnosticStatus::STALE, "Nothing to compare with" };
+    return { DiagnosticStatus::STALE, "There is nothing to compare" };
   }
   const Verdict verdict = verdictNow();
   const std::string text = withoutStop(verdictText(verdict));
@@ -375,7 +374,7 @@ DiagnosticVerdict JointTracker::judgeHealth() const
   const Assessment& assessment = tracker_.assessment();
   if (tracker_.counters().compared == 0 && hasStopped())
   {
-    return { DiagnosticStatus::STALE, "Nothing to assess" };
+    return { DiagnosticStatus::STALE, "There is nothing to assess" };
   }
   if (hasStopped())
   {
@@ -386,7 +385,7 @@ DiagnosticVerdict JointTracker::judgeHealth() const
     return { DiagnosticStatus::OK, notJudged(*misfit) };
   }
   const Verdict& confirmed = verdict_.confirmed();
-  if (!confirmed.fits && confirmed.reason == Reason::EFFORT_UNIT)  // the signals are of the same efforts
+  if (!confirmed.fits && confirmed.reason == Reason::EFFORT_UNIT)  // the indicators use the same efforts
   {
     return { DiagnosticStatus::OK, notJudged({ confirmed.reason, confirmed.misfit }) };
   }

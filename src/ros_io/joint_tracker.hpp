@@ -36,16 +36,16 @@
 
 namespace hjt
 {
-/// Zero of a robot's telemetry, the stamp of its first row, and whether stamps are of the same clock.
+/// Zero of a robot's telemetry time, the stamp of its first row, and check whether stamps are of one clock.
 class TelemetryClock
 {
 public:
   enum class Row
   {
     TAKEN,
-    FIRST,    ///< sets the zero
-    MOVED,    ///< the clock of the robot or this machine's was set: a new zero
-    REFUSED,  ///< far from where the rows before lead to; the next one like it counts as MOVED
+    FIRST,    ///< the first row, which sets the zero
+    MOVED,    ///< the clock of the robot or of this machine has been set; there is a new zero
+    REFUSED,  ///< far from the clock of the preceding rows; a second one like it counts as MOVED
   };
 
   Row take(Stamp stamp, Stamp received)
@@ -73,39 +73,39 @@ public:
 
   /// Time of this clock at a time of reception [ns].
   Stamp at(Stamp received) const { return received - offset_; }
-  /// Whether a stamp received then can be of this clock.
+  /// Whether a stamp received at that time can be of this clock.
   bool isOf(Stamp stamp, Stamp received) const { return agree(received - stamp, offset_); }
 
 private:
   static bool agree(Stamp a, Stamp b) { return std::abs(a - b) <= FAR_STAMP; }
 
   std::optional<Stamp> zero_;            // [ns]
-  Stamp offset_{};                       // of the last row taken: reception less stamp [ns]
-  std::optional<Stamp> refused_offset_;  // of the last row, if its stamp was refused [ns]
+  Stamp offset_{};                       // reception minus stamp of the last accepted row [ns]
+  std::optional<Stamp> refused_offset_;  // reception minus stamp of the last row, if it was refused [ns]
 };
 
-/// The messages of one topic, which all joints of a robot share. Guarded by the node's mutex but for `too_large`.
+/// Messages of one topic for all joints of a robot. The node's mutex protects all except `too_large`.
 struct TelemetryStream
 {
   std::string topic;
   TelemetryClock clock;
   StreamTiming timing;
-  Stamp last_received{};               ///< [ns]
-  std::uint64_t far_stamps{};          ///< messages refused for their stamp
-  std::uint64_t clock_changes{};       ///< restarts because all stamps had moved far
-  std::uint64_t other_temperatures{};  ///< received whose frame_id is none of the joints
-  std::string found_names;             ///< in the last message that lacks a joint
-  std::string lack;                    ///< missing parts of the messages since the last row, a clause; empty: none
-  std::string mounting;                ///< that the currents show and is not configured, a clause; empty: none
-  std::string drag;                    ///< of the tool, likewise
-  std::string payload;                 ///< that the currents show and is not configured, a clause; empty: none
-  LeftOutRows left_out;                ///< by the filter
-  std::uint64_t folds{};               ///< jumps by a turn that were taken out of the angles
-  std::uint64_t without_effort{};      ///< messages refused for efforts all zero
+  Stamp last_received{};               ///< time of the last reception [ns]
+  std::uint64_t far_stamps{};          ///< messages refused because of their stamp
+  std::uint64_t clock_changes{};       ///< restarts because all stamps had moved
+  std::uint64_t other_temperatures{};  ///< temperatures whose frame_id is not a joint
+  std::string found_names;             ///< names in the last message that lacks a joint
+  std::string lack;                    ///< clause on the missing parts of messages since the last row; empty: none
+  std::string mounting;  ///< clause on a mounting that the currents show and that is not configured; empty: none
+  std::string drag;     ///< clause on a drag of the tool that the currents show and that is not configured; empty: none
+  std::string payload;  ///< clause on a payload that the currents show and that is not configured; empty: none
+  LeftOutRows left_out;            ///< rows that the filter removed
+  std::uint64_t folds{};           ///< jumps by a turn that were removed from the angles
+  std::uint64_t without_effort{};  ///< messages refused because all efforts are zero
   std::atomic<std::uint64_t> too_large{ 0 };
 };
 
-/// Sink of a topic that is published live.
+/// Sink of a live topic.
 template <class Message>
 class PublishedTopic
 {
@@ -117,14 +117,14 @@ public:
     publisher_ = node.advertise<Message>(name, QUEUE_SIZE, count(1), count(-1), ros::VoidConstPtr(), IS_LATCHED);
   }
 
-  /// Counted, because to ask roscpp takes its lock and a search of all topics.
+  /// Uses a count of subscribers, because roscpp's own takes a lock and searches all topics.
   bool isWanted() const noexcept { return IS_LATCHED || *subscribers_ > 0; }
 
   Message& message() { return message_; }
   void send() { publisher_.publish(message_); }
 
 private:
-  // Comparisons come in bursts.
+  // Comparisons arrive in bursts.
   static constexpr std::uint32_t QUEUE_SIZE =
       std::is_same_v<Message, harmonic_joint_twin::Comparison> ? InputTopics::QUEUE_SIZE : 100;
   static constexpr bool IS_LATCHED = std::is_same_v<Message, harmonic_joint_twin::Verdict>;
@@ -134,56 +134,56 @@ private:
   ros::Publisher publisher_;
 };
 
-/// The twin of one joint beside a robot, live: a `Tracker` with its topics, diagnostics and service. Whatever a message
-/// brings is worked off in its callback: nothing here waits for a clock. The node's mutex guards everything.
+/// The live twin of one joint beside a robot: a `Tracker` with its topics, diagnostics and service. A callback
+/// processes its message completely, without waiting for a clock. The node's mutex protects everything.
 class JointTracker
 {
 public:
-  /// `node`: its topics lie below. `sound`: what is known of this joint. `is_identified`: the friction of the
-  /// parameters is that of this joint. @throws ParameterError.
+  /// `node`: namespace of the topics. `sound`: reference figures of this joint. `is_identified`: the parameters contain
+  /// the identified friction of this joint. @throws ParameterError.
   JointTracker(ros::NodeHandle& node, const Parameters& parameters, const SoundJoint& sound, bool is_identified,
                TelemetryStream& stream, std::mutex& mutex);
 
   const std::string& joint() const { return names_.joint; }
   double currentPerEffort() const { return current_per_effort_; }  ///< [A], [A/(N.m)]
   double greatestSpeed() const { return greatest_speed_; }         ///< [rad/s]
-  /// Its load comes with `pushLoad` from the motion of the whole arm.
+  /// Whether the load comes from the motion of the whole arm by `pushLoad`.
   bool takesArmLoad() const { return takes_arm_load_; }
 
-  /// The row of this joint in a message; anything else is counted and logged. A joint of an arm that has sent no effort
-  /// in its first messages is read with current 0: it is not judged, and the others are not held up.
+  /// Reads the row of this joint from a message; counts and logs anything else. A joint of an arm without efforts in
+  /// its first messages is read with current 0: it is not judged, and the other joints continue.
   TelemetryStatus read(const sensor_msgs::JointState& message, MotionRow& row);
 
-  /// A new zero of the stream's time; `reset`: what was before is of another clock.
+  /// Sets a new zero of the stream's time. `reset`: the earlier rows are of another clock.
   void start(bool reset);
 
   void pushLoad(double time, double torque) { tracker_.pushLoad(time, torque); }
-  void push(const MotionRow& row);        ///< of a single joint
-  void compare(const MotionSample& row);  ///< of an arm's
+  void push(const MotionRow& row);        ///< row of a single joint
+  void compare(const MotionSample& row);  ///< row of a joint of an arm
 
-  /// Misfit of its telemetry; none: it fits, or that is not yet `settled`.
+  /// Sets a misfit of the telemetry. None: it fits, or the check is not yet `settled`.
   void setMisfit(const Misfit& misfit, bool settled);
   void setFitted(const FittedFriction& friction) { verdict_.setFitted(friction); }
 
   Tracker& tracker() { return tracker_; }
 
-  /// Common factor of the friction of the arm's joints now, as a multiple of the expected of this one [-]; 1:
-  /// nothing, or the twin predicts with it.
+  /// Sets the present common factor of friction of the arm's joints relative to this joint's expectation [-]. 1: none,
+  /// or the twin already predicts with it.
   void setArmFriction(double ratio) { arm_friction_ = ratio; }
 
   VerdictWatch& verdict() { return verdict_; }
   bool isTouched() const { return tracker_.evidence().isTouched(); }
-  /// A message on the load's topic.
+  /// Reads a message on the topic of the load.
   void receiveLoad(const sensor_msgs::JointState& message, Stamp received);
 
-  /// A message of this joint on the temperatures' topic.
+  /// Reads a message for this joint on the topic of temperatures.
   void receiveTemperature(const sensor_msgs::Temperature& message, Stamp received);
 
   /// Judges, reports and logs changes of the state.
   void look(const ros::WallTime& now);
 
 private:
-  /// Messages that brought nothing.
+  /// Number of messages without use.
   struct Refusals
   {
     std::uint64_t unknown_joint{};
@@ -228,32 +228,32 @@ private:
 
   TelemetryStream& stream_;
   std::mutex& mutex_;
-  const std::string name_;  // of the twin in the graph
+  const std::string name_;  // name of the twin in the ROS graph
   const JointNames names_;
   const bool takes_arm_load_;
   const ThermalModel thermal_model_;
-  const double ratio_;                          // of motor to output
+  const double ratio_;                          // motor angle over output angle
   const double greatest_speed_;                 // [rad/s]
   const double current_per_effort_;             // [A], [A/(N.m)]
-  static constexpr std::uint64_t SILENT = 100;  // messages
-  std::uint64_t without_effort_{};              // messages one after the other
-  bool has_effort_{};                           // of a message
+  static constexpr std::uint64_t SILENT = 100;  // number of messages
+  std::uint64_t without_effort_{};              // successive messages
+  bool has_effort_{};                           // a message had an effort
   double arm_friction_{ 1.0 };
   Tracker tracker_;
   VerdictWatch verdict_;
   TrackerOutputs<PublishedTopic> outputs_;
   LifePublisher life_;
   std::optional<Stamp> last_load_stamp_;            // [ns]
-  std::deque<LoadAt> early_loads_;                  // received before the start
-  std::optional<TemperatureAt> early_temperature_;  // the last received before the start
+  std::deque<LoadAt> early_loads_;                  // loads received before the start
+  std::optional<TemperatureAt> early_temperature_;  // last temperature received before the start
   Refusals refusals_;
-  Comparison comparison_;  // the last one
+  Comparison comparison_;  // last comparison
   RecentEvents recent_refusals_;
   RecentEvents recent_disorder_;
   RecentEvents recent_missing_;
   RecentEvents recent_restarts_;
   RecentEvents recent_failures_;
-  std::optional<std::pair<VerdictLevel, Reason>> published_;  // the last one
+  std::optional<std::pair<VerdictLevel, Reason>> published_;  // last published verdict
   double published_row_{};                                    // time of its last row [s]
   std::optional<std::uint8_t> logged_level_;
   DiagnosticTasks tasks_;

@@ -19,13 +19,13 @@ namespace hjt
 {
 namespace
 {
-/// Between two counts of the loop [ns].
+/// Time between two counts of the loop [ns].
 constexpr Stamp COUNT_PERIOD = 1'000'000;
-/// Length of the stretches handed over [ns]; a longer gap between two instants is no use of the drive.
+/// Length of the intervals that are handed over [ns]. A longer gap between two instants is not use of the drive.
 constexpr Stamp STRETCH = 1'000'000'000;
 constexpr std::size_t STRETCH_SLOTS = 2;
 
-/// `path`, or PATH.1, PATH.2 ... where that exists: no file that was set aside is lost.
+/// `path`, or PATH.1, PATH.2 ... if it exists, so that no file is overwritten.
 std::string unusedName(const std::string& path)
 {
   std::string name = path;
@@ -76,7 +76,7 @@ void LifePublisher::readRecord()
   const std::filesystem::file_status status = std::filesystem::status(path_, error);
   if (status.type() == std::filesystem::file_type::not_found)
   {
-    ROS_INFO_STREAM("No record of the drive's use at " << path_ << " yet: it is counted from new");
+    ROS_INFO_STREAM("There is no record of the drive's use at " << path_ << " yet; the count begins with a new drive");
     return;
   }
   const auto require = [this](bool good, const std::string& why)
@@ -87,12 +87,13 @@ void LifePublisher::readRecord()
     }
   };
   require(std::filesystem::status_known(status), "cannot be reached: " + error.message());
-  require(std::filesystem::is_regular_file(status), "must be a file, not a folder, a device or a pipe");
-  require(DutyCycle::isOne(path_), "is no record of a drive's use, or cannot be read: another file is not replaced");
+  require(std::filesystem::is_regular_file(status), "must be a file, not a directory, a device or a pipe");
+  require(DutyCycle::isOne(path_),
+          "is not a record of a drive's use or cannot be read; the node does not replace another file");
   try
   {
     record_ = UsageHistory(parameters_, path_);
-    ROS_INFO_STREAM("The drive has " << record_.hours() << " h of use behind it (" << path_ << ")");
+    ROS_INFO_STREAM("The drive has been used for " << record_.hours() << " h (" << path_ << ")");
   }
   catch (const InputError& error)
   {
@@ -100,8 +101,8 @@ void LifePublisher::readRecord()
     std::error_code refused;
     std::filesystem::rename(path_, aside, refused);
     ROS_ERROR_STREAM("The record of the drive's use cannot be read: "
-                     << error.what() << ". It is counted from new; "
-                     << (refused ? "the file stays, and nothing is written" : "the file is kept as " + aside));
+                     << error.what() << ". The count begins with a new drive; "
+                     << (refused ? "the file stays, and the node writes nothing" : "the file is kept as " + aside));
     path_ = refused ? "" : path_;
   }
 }
@@ -117,7 +118,7 @@ void LifePublisher::offer(Stamp instant, double motor_velocity, double joint_tor
   last_ = instant;
   if (elapsed < 0 || elapsed > STRETCH)
   {
-    return;  // restarted at another instant
+    return;  // the twin has restarted at another instant
   }
   counted_.use.add({ toSeconds(elapsed), std::abs(motor_velocity), joint_torque, temperature });
   counted_.until = instant;
@@ -204,7 +205,7 @@ void LifePublisher::publish()
     message.grease_used = estimate.grease_used;
     publisher_.publish(message);
   }
-  catch (const std::exception& error)  // the thread's border, as below
+  catch (const std::exception& error)  // a thread must not throw
   {
     ROS_WARN_STREAM_ONCE("No forecast of the remaining life: " << error.what());
   }
@@ -222,7 +223,7 @@ void LifePublisher::write()
   }
   catch (const std::exception& error)
   {
-    ROS_WARN_STREAM_THROTTLE(60.0, "The record of the drive's use is not kept: " << error.what());
+    ROS_WARN_STREAM_THROTTLE(60.0, "The record of the drive's use is not written: " << error.what());
   }
 }
 }  // namespace hjt

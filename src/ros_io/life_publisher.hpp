@@ -17,23 +17,21 @@
 
 namespace hjt
 {
-/// Keeps the drive's record of use and publishes what is left of its life. The thread that runs the twin counts the
-/// use. A thread of this class forecasts, publishes and writes the file every life.forecast_period by the wall clock,
-/// and at the end.
+/// Counts the drive's use and publishes its remaining life. The thread that runs the twin counts the use. A thread of
+/// this class forecasts, publishes and writes the file every life.forecast_period in wall clock time, and at the end.
 ///
-/// A record with a row that cannot be read is renamed, and the count restarts.
+/// A record with an unreadable row is renamed, and the count starts again.
 class LifePublisher
 {
 public:
-  /// @throws ParameterError if life.use_record is there and no record.
+  /// @throws ParameterError if life.use_record exists and is not a record.
   LifePublisher(ros::NodeHandle& node, const Parameters& parameters);
 
-  /// After the last `offer`: takes in what was counted, and writes.
+  /// Must follow the last `offer`: adds the remaining use and writes the file.
   ~LifePublisher();
 
-  /// One thread, the loop's: counts the time since the last call. No allocation, no lock.
-  /// Speed of the motor [rad/s], torque at the joint [N.m], temperature of the drive [degC]; the assessment counts if
-  /// it `supersedes` those before.
+  /// For the loop: adds the use since the last call, without allocation or lock. Speed of the motor [rad/s], torque at
+  /// the joint [N.m], temperature of the drive [degC]. The assessment is stored if it `supersedes` the earlier ones.
   void offer(Stamp instant, double motor_velocity, double joint_torque, double temperature,
              const Assessment& assessment) noexcept;
 
@@ -42,8 +40,8 @@ private:
   {
     Stamp until;
     UsageHistory use;
-    Assessment assessment;  // the last one that counts; of none its state is WAITING
-    std::uint64_t windows;  // of the assessment: fewer than before after a reset
+    Assessment assessment;  // last stored assessment; its state is WAITING without one
+    std::uint64_t windows;  // window count of the assessment; a smaller one follows a reset
   };
   void readRecord();
   void run();
@@ -53,15 +51,15 @@ private:
 
   const std::string joint_;
   const LifeParameters parameters_;
-  std::string path_;  // of the record; empty: none
-  Stretch counted_;   // by the loop, not yet handed over
+  std::string path_;  // path of the record; empty: none
+  Stretch counted_;   // use counted by the loop and not yet handed over
   Stamp counted_from_{};
   Stamp last_{};
   SlotRing<Stretch> stretches_;
   UsageHistory record_;
   Assessment assessment_;
   std::uint64_t windows_{};
-  double reference_hours_{};  // of use, when the assessment began to learn its reference
+  double reference_hours_{};  // hours of use when the assessment began to learn its reference
   Stamp until_{};
   LifeEstimator estimator_;
   ros::Publisher publisher_;

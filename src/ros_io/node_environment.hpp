@@ -17,19 +17,19 @@
 
 namespace hjt
 {
-/// By the clock of ROS [ns].
+/// Time of the ROS clock [ns].
 inline Stamp rosNow()
 {
   return fromRosTime(ros::Time::now());
 }
 
-/// Whether the clock is the system's or somebody's on /clock, which is settled once the node runs.
+/// Whether the clock is the system's, or simulated on /clock; known once the node runs.
 inline ClockKind rosClockKind()
 {
   return ros::Time::isSimTime() ? ClockKind::STEPPED : ClockKind::RUNNING;
 }
 
-/// Requests the parameters below `realtime` from the system; refusals are logged.
+/// Requests the parameters of section realtime from the system; refusals are logged.
 inline RealtimeState requestRealtime(const RealtimeParameters& parameters, TwinLoop& loop)
 {
   RealtimeState state = applyRealtime(parameters, loop.thread());
@@ -40,7 +40,7 @@ inline RealtimeState requestRealtime(const RealtimeParameters& parameters, TwinL
   return state;
 }
 
-/// The user's cache of response surfaces, with progress and notices in the node's log. `background`: see SurfaceSource.
+/// The user's cache of response surfaces, with progress and notices in the log. `background`: see SurfaceSource.
 inline SurfaceSource nodeSurfaceSource(bool background)
 {
   return { surfaceCacheDirectory(),
@@ -50,8 +50,8 @@ inline SurfaceSource nodeSurfaceSource(bool background)
            background };
 }
 
-/// SIGTERM and SIGHUP end a node as SIGINT does, which is all that roscpp catches. A SIGHUP that is ignored, as below
-/// nohup, stays ignored. SIGXFSZ is ignored: beyond a limit of size, writing fails as on a full disk. Call after
+/// Lets SIGTERM and SIGHUP end a node as SIGINT does; roscpp handles only SIGINT. A SIGHUP ignored by nohup stays
+/// ignored. SIGXFSZ is ignored, so that writing beyond a size limit fails as on a full disk. Must be called after
 /// ros::init.
 inline void shutDownOnSignals()
 {
@@ -64,7 +64,7 @@ inline void shutDownOnSignals()
   }
 }
 
-/// Name of a joint of an arm in the graph: NAMESPACE/SHORT_NAME/NODE. Its topics lie below.
+/// Namespace of a joint of an arm in the ROS graph: NAMESPACE/SHORT_NAME/NODE.
 inline std::string jointName(const ArmJoint& joint)
 {
   const std::string& name = ros::this_node::getName();

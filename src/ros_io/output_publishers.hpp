@@ -32,17 +32,17 @@
 
 namespace hjt
 {
-/// Sends what a loop has filled: serialising and sending allocate and lock, so they have a thread of their own.
+/// Sends the messages that a loop has filled, in a thread of its own because serialising and sending allocate and lock.
 class PublisherThread
 {
 public:
-  /// `drain`: sends all that waits, called from the thread; `is_heard`: whether anybody listens.
+  /// `drain`: sends all waiting messages, called in the thread; `is_heard`: whether there are subscribers.
   PublisherThread(std::function<void()> drain, std::function<bool()> is_heard)
     : drain_(std::move(drain)), is_heard_(std::move(is_heard)), thread_([this] { run(); })
   {
   }
 
-  /// Stops the thread after what is filled by now.
+  /// Sends the remaining messages and stops the thread.
   ~PublisherThread()
   {
     {
@@ -53,13 +53,13 @@ public:
     thread_.join();
   }
 
-  /// Loop: has what is filled sent. No allocation, no lock that anybody holds for long.
+  /// For the loop: starts sending. It does not allocate and takes no lock that is held for long.
   void wakeUp() noexcept { wake_up_.notify_one(); }
 
 private:
-  // How long a message waits at most if the loop's wake-up was missed: it does not wait for the mutex.
+  // Longest delay of a message if the loop's wake-up was missed, because the loop does not wait for the mutex.
   static constexpr std::chrono::milliseconds DRAIN_PERIOD{ 20 };
-  // The same for a change of the faults while there are no subscribers.
+  // Longest delay for a change of the faults without subscribers.
   static constexpr std::chrono::milliseconds IDLE_PERIOD{ 100 };
 
   void run()
@@ -77,7 +77,7 @@ private:
       {
         drain_();
       }
-      catch (const std::exception& error)  // the thread's border: the next round goes on
+      catch (const std::exception& error)  // a thread must not throw; the next round continues
       {
         ROS_WARN_STREAM_THROTTLE(60.0, "Messages of the twin are not published: " << error.what());
       }
@@ -89,7 +89,7 @@ private:
   std::function<bool()> is_heard_;
   std::mutex mutex_;
   std::condition_variable wake_up_;
-  bool stopping_{};  // under mutex_
+  bool stopping_{};  // protected by mutex_
   std::thread thread_;
 };
 
@@ -97,10 +97,10 @@ struct ChannelCounters
 {
   const char* name{};
   std::uint64_t computed{};  ///< messages filled since start
-  std::uint64_t dropped{};   ///< messages due but not filled: the publisher had fallen behind by the whole ring
+  std::uint64_t dropped{};   ///< messages that were due but not filled because the ring buffer was full
 };
 
-/// Sink of a live topic: filled by the loop into preallocated slots, published by another thread.
+/// Sink of a live topic: the loop fills preallocated slots, and another thread publishes them.
 template <class Message>
 class OutputChannel
 {
@@ -113,10 +113,10 @@ public:
     publisher_ = node->advertise<Message>(channel.name, static_cast<std::uint32_t>(channel.slots), count(1), count(-1));
   }
 
-  /// Whether anybody listens.
   bool isWanted() const noexcept { return subscribers_.load(std::memory_order_relaxed) > 0; }
 
-  /// Loop: lets `fill(Message&)` write the next message, unless it returns false. A full ring drops it and counts.
+  /// For the loop: `fill(Message&)` writes the next message unless it returns false. If the buffer is full, the message
+  /// is dropped and counted.
   template <class Fill>
   void write(Fill&& fill) noexcept
   {
@@ -133,7 +133,7 @@ public:
     }
   }
 
-  /// Publisher thread: publishes what is waiting.
+  /// For the publisher's thread: publishes all waiting messages.
   void drain()
   {
     for (const Message* message = ring_.front(); message != nullptr; message = ring_.front())
@@ -150,10 +150,10 @@ private:
   std::atomic<int> subscribers_{ 0 };
   std::atomic<std::uint64_t> computed_{ 0 };
   std::atomic<std::uint64_t> dropped_{ 0 };
-  ros::Publisher publisher_;  // last: its callbacks use the rest
+  ros::Publisher publisher_;  // last, because its callbacks use the other members
 };
 
-/// Everything the twin publishes. The loop fills the messages that are due and have subscribers; a thread sends them.
+/// All topics of the twin. The loop fills due messages that have subscribers, and a thread sends them.
 class OutputPublishers
 {
 public:
@@ -173,15 +173,16 @@ public:
   {
   }
 
-  /// Loop: fills the messages due at the twin's current instant that somebody hears. No allocation, no lock.
+  /// For the loop: fills the messages that are due at the twin's current instant and have subscribers, without
+  /// allocation or lock.
   void offer(Twin& twin) noexcept
   {
     offerFaults(twin);
     outputs_.offer(twin);
   }
 
-  /// Loop: has the messages filled since the last call sent. Returns the next instant after this one whose messages
-  /// somebody hears [ns]. No allocation, no lock that anybody holds for long.
+  /// For the loop: starts sending the filled messages. @returns the next instant with a message for a subscriber [ns].
+  /// It does not allocate and takes no lock that is held for long.
   Stamp finishCycle(Stamp instant) noexcept
   {
     if (isHeard())
@@ -191,21 +192,21 @@ public:
     return outputs_.nextDue(instant);
   }
 
-  /// The faults published last, for a human reader.
+  /// Text of the last published faults.
   std::string activeFaults() const
   {
     const std::lock_guard<std::mutex> lock(text_mutex_);
     return active_faults_;
   }
 
-  /// Counters of the channels, in the order of CHANNELS.
+  /// Counts of the channels, in the order of CHANNELS.
   std::array<ChannelCounters, CHANNEL_COUNT> counters() const noexcept
   {
     return outputs_.collect([](const auto& channel, const auto& sink) { return sink.counters(channel.name); });
   }
 
 private:
-  // Slots for lists of faults: one more change has to wait for the next instant.
+  // Slots for lists of faults. Further changes wait for the next instant.
   static constexpr std::size_t FAULT_SLOTS = 16;
 
   struct FaultsAt
@@ -214,7 +215,7 @@ private:
     FaultList faults;
   };
 
-  /// The list of faults, once after each change.
+  /// Offers the list of faults once after each change.
   void offerFaults(const Twin& twin) noexcept
   {
     const FaultList& faults = twin.activeFaults();
@@ -258,13 +259,13 @@ private:
   const JointNames names_;
   SlotRing<FaultsAt> faults_;
   ros::Publisher faults_publisher_;
-  std::uint64_t offered_faults_;  // version of the list that was offered last
+  std::uint64_t offered_faults_;  // version of the last offered list
   mutable std::mutex text_mutex_;
   std::string active_faults_;
-  PublisherThread thread_;  // last: it uses the rest
+  PublisherThread thread_;  // last, because it uses the other members
 };
 
-/// Publishes how the loop keeps up, once a second by the wall clock, to those who listen.
+/// Publishes the loop's timing once a second in wall clock time, if there are subscribers.
 class TimingPublisher
 {
 public:
@@ -281,7 +282,7 @@ public:
   }
 
 private:
-  static constexpr double PERIOD = 1.0;  // by the wall clock [s]
+  static constexpr double PERIOD = 1.0;  // in wall clock time [s]
   static constexpr std::uint32_t QUEUE_LENGTH = 10;
 
   void publish()

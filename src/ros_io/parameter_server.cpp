@@ -20,10 +20,10 @@ namespace
 {
 using XmlRpc::XmlRpcValue;
 
-/// Read by diagnostic_updater itself from the same namespace.
+/// Parameter that diagnostic_updater reads from this namespace.
 constexpr const char* DIAGNOSTIC_PERIOD = "diagnostic_period";
 
-// XmlRpcValue converts by reference to non-const only.
+// XmlRpcValue converts only non-const references.
 template <class T>
 T valueOf(XmlRpcValue& value)
 {
@@ -32,7 +32,7 @@ T valueOf(XmlRpcValue& value)
 
 using Value = decltype(ParameterValue::value);
 
-/// Nothing if `leaf` is no boolean, number or text.
+/// Empty if `leaf` is not a boolean, a number or a text.
 std::optional<Value> scalarValue(XmlRpcValue& leaf)
 {
   switch (leaf.getType())
@@ -75,7 +75,7 @@ void addFaults(XmlRpcValue& list, const std::string& origin, ParameterMap& map)
   {
     if (list[i].getType() != XmlRpcValue::TypeStruct)
     {
-      throw ParameterError(faultKey(i) + ": " + origin + " holds no fault {kind, severity, place, onset}");
+      throw ParameterError(faultKey(i) + ": " + origin + " is not a fault {kind, severity, place, onset}");
     }
     addTree(faultKey(i), list[i], origin, map);
   }
@@ -90,7 +90,7 @@ void addLeaf(const std::string& key, XmlRpcValue& leaf, const std::string& origi
   }
   if (!value)
   {
-    throw ParameterError(key + ": " + origin + " holds neither a number, a text, a boolean nor a list of numbers");
+    throw ParameterError(key + ": " + origin + " must be a number, a text, a boolean or a list of numbers");
   }
   map[key] = { *value, origin };
 }
@@ -115,7 +115,6 @@ void addTree(const std::string& prefix, XmlRpcValue& tree, const std::string& or
   }
 }
 
-/// Nothing is left out.
 ParameterMap readAll(const std::string& parameter_namespace)
 {
   ParameterMap map;
@@ -127,7 +126,7 @@ ParameterMap readAll(const std::string& parameter_namespace)
   return map;
 }
 
-/// Of one meaning to `parseParameters`.
+/// Whether `parseParameters` treats both values alike.
 bool areAlike(const Value& a, const Value& b)
 {
   const std::optional<double> number_a = numberOf(a);

@@ -23,14 +23,14 @@ namespace hjt
 {
 namespace
 {
-/// Between two verdicts [s].
+/// Time between two verdicts [s].
 constexpr double VERDICT_PERIOD = 1.0;
-/// Wait for the first message before it is missed [s].
+/// Time without a first message after which the node warns [s].
 constexpr double MESSAGE_PATIENCE = 10.0;
-/// Of the names in a message without a joint that are shown [bytes].
+/// Largest shown length of the names in a message without a joint [bytes].
 constexpr std::size_t MAX_NAMES = 500;
 
-/// Where such messages come from instead; empty: from nowhere, or no master answers.
+/// Topics on which JointState messages are published; empty: none, or the master does not respond.
 std::vector<std::string> publishedJointStates()
 {
   XmlRpc::XmlRpcValue arguments;
@@ -119,7 +119,7 @@ void TrackerNode::subscribe(ros::NodeHandle& node)
       topics::JOINT_TEMPERATURES, [this](const auto& event) { receiveTemperature(event); });
 }
 
-/// Why there is no row in it, as a clause.
+/// Reason why a message contains no row, as a clause.
 std::string TrackerNode::lackOf(const sensor_msgs::JointState& message) const
 {
   std::vector<std::string> names;
@@ -130,16 +130,17 @@ std::string TrackerNode::lackOf(const sensor_msgs::JointState& message) const
   const std::string unnamed = lackText(names, message.name);
   if (!unnamed.empty())
   {
-    return printable(unnamed, MAX_NAMES) + (joints_.size() > 1 ? "; one message has to hold them all" : "");
+    return printable(unnamed, MAX_NAMES) + (joints_.size() > 1 ? "; each message must contain all of them" : "");
   }
   const std::size_t size = message.name.size();
-  return "their " +
-         std::string(message.position.size() < size ? "position is empty or too short" :
-                     message.effort.size() < size   ? "effort is empty or too short: it has to be the motors' current" :
-                                                      "position or effort is not finite (NaN)");
+  return "their " + std::string(message.position.size() < size ?
+                                    "position is empty or too short" :
+                                message.effort.size() < size ?
+                                    "effort is empty or too short; it must contain the motors' currents" :
+                                    "position or effort is not finite (NaN)");
 }
 
-/// Of all joints of an arm at once, which no measurement gives.
+/// Whether the efforts of all joints of an arm are exactly zero, which no measurement gives.
 bool TrackerNode::isWithoutEffort() const
 {
   return rows_.size() > 1 &&
@@ -162,7 +163,7 @@ void TrackerNode::receiveTelemetry(const JointStateEvent& event)
   {
     stream_.found_names = printable(joined(message.name), MAX_NAMES);
   }
-  // Others may publish on the same topic: a gripper beside the arm is no reason to warn.
+  // Others may publish on this topic: a message of a gripper must not cause a warning.
   if (unknown > 0 && (unknown < joints_.size() || !stream_.clock.hasStarted()))
   {
     ROS_WARN_STREAM_THROTTLE(WARNING_PERIOD, "Messages on " << stream_.topic << " lack " << unknown << " of "
@@ -186,7 +187,7 @@ void TrackerNode::receiveTelemetry(const JointStateEvent& event)
   push(stamp);
 }
 
-/// The rows at hand.
+/// Pushes the rows of the present message.
 void TrackerNode::push(Stamp stamp)
 {
   const TelemetryClock::Row taken = stream_.clock.take(stamp, stream_.last_received);
@@ -228,7 +229,7 @@ void TrackerNode::push(Stamp stamp)
   if (stream_.folds > 0)
   {
     ROS_WARN_STREAM_ONCE("Angles on " << stream_.topic
-                                      << " are folded into one turn: their jumps by 2 pi are taken out");
+                                      << " are folded into one turn; the node removes their jumps by 2 pi");
   }
   stream_.timing.add(time, rows_.front().received);
   filter_->push(rows_,
@@ -312,7 +313,7 @@ void TrackerNode::receiveTemperature(const ros::MessageEvent<const sensor_msgs::
   stream_.other_temperatures += is_of_joint ? 0 : 1;
 }
 
-/// Each joint after what the friction of all has in common, as `joint_twin compare` judges a recording.
+/// Judges each joint after the friction common to all, as `joint_twin compare` does with a recording.
 void TrackerNode::judge(const ros::WallTime& now)
 {
   if (now < next_verdict_)
@@ -362,15 +363,15 @@ void TrackerNode::missTelemetry()
   {
     others.erase(own);
   }
-  ROS_WARN_STREAM("No message on " << stream_.topic << " yet. "
-                                   << (is_announced   ? "Its publisher sends none" :
-                                       others.empty() ? "Nobody publishes a JointState: does the driver run?" :
-                                                        "A JointState is published on " +
-                                                            printable(joined(others), MAX_NAMES) +
-                                                            ": choose it by measured:="));
+  ROS_WARN_STREAM(
+      "No message on " << stream_.topic << " yet. "
+                       << (is_announced   ? "Its publisher does not send messages" :
+                           others.empty() ? "No node publishes a JointState; check whether the driver runs" :
+                                            "A JointState is published on " + printable(joined(others), MAX_NAMES) +
+                                                "; select it with measured:="));
 }
 
-/// Other rows follow.
+/// Prepares for rows of another clock.
 void TrackerNode::restart()
 {
   resetFit();
@@ -400,7 +401,7 @@ void TrackerNode::updateFit(const ArmSample& sample)
   lookAtFit();
 }
 
-/// What fits and what does not, of the rows so far.
+/// Checks the fit of the rows so far.
 void TrackerNode::lookAtFit()
 {
   const bool settled = fit_->isSettled() && (!load_ || load_->isSettled()) && (!arm_ || arm_->isSettled());
@@ -419,7 +420,7 @@ void TrackerNode::lookAtFit()
   }
 }
 
-/// The rows that the ranking of arms is made of.
+/// Adds the rows to the ranking of arms.
 void TrackerNode::watchArm(const std::vector<MotionRow>& rows)
 {
   if (!arm_)
@@ -434,7 +435,7 @@ void TrackerNode::watchArm(const std::vector<MotionRow>& rows)
   tryOnArm([this] { arm_->add(efforts_); });
 }
 
-/// By the law of `joint_twin compare`. Its answer counts when it comes, whether rows still come or not.
+/// Takes the result of the ranking by the law of `joint_twin compare`, whether rows still arrive or not.
 void TrackerNode::lookAtArm()
 {
   if (!arm_)
@@ -450,7 +451,7 @@ void TrackerNode::lookAtArm()
   }
   if (arm_ && arm_->other() != before)
   {
-    ROS_WARN_STREAM((arm_->other().empty() ? "No other arm explains the currents clearly better any more" :
+    ROS_WARN_STREAM((arm_->other().empty() ? "The currents no longer fit another arm clearly better" :
                                              "Not judged: " + otherArmText(arm_->other())));
   }
   lookAtFit();
@@ -462,14 +463,14 @@ void TrackerNode::tryOnArm(const std::function<void()>& act)
   {
     act();
   }
-  catch (const std::exception& error)  // files of the arms, or no thread
+  catch (const std::exception& error)  // unreadable files of the arms, or no thread
   {
-    ROS_WARN_STREAM("Whether the arm is another is not looked at: " << error.what());
+    ROS_WARN_STREAM("The check for another type of arm failed: " << error.what());
     arm_.reset();
   }
 }
 
-/// When the payload became another; empty: it is the one of all rows.
+/// Text on the time at which the payload changed; empty if the payload is equal in all rows.
 std::string TrackerNode::sinceText(double since) const
 {
   return std::isinf(since) ? "" : "; since " + dateText(stream_.clock.stamp(since), "%H:%M:%S") + " UTC";
@@ -485,7 +486,7 @@ JudgedJoints TrackerNode::judgedJoints() const
   return { *fit_, fit_->whyNotJudged(), std::move(frictions), repeat_tolerance_ };
 }
 
-/// Uses the load that the currents show in place of the configured one, by the test of `joint_twin compare`.
+/// Uses the load that the currents show instead of the configured one, by the test of `joint_twin compare`.
 void TrackerNode::lookAtLoad()
 {
   if (!load_ || !load_->isDue())
@@ -511,10 +512,12 @@ void TrackerNode::lookAtLoad()
   }
   if (is_other)
   {
-    ROS_INFO_STREAM((load_->isTrying() ? "Another load than configured is tried: no WARN until it is known to fit" :
-                     !std::isinf(assumed.since) ? "The payload changed: the joints start again" :
-                     assumed.isConfigured()     ? "The configured load counts again" :
-                                                  "The load that stood before counts again"));
+    ROS_INFO_STREAM(
+        (load_->isTrying() ?
+             "The twin tries another load than the configured one; there is no WARN until the test is finished" :
+         !std::isinf(assumed.since) ? "The payload has changed; the joints are judged from now on" :
+         assumed.isConfigured()     ? "The twin uses the configured load again" :
+                                      "The twin uses the earlier load again"));
     arm_load_.emplace(load_->arm());
     resetFit();
     for (const auto& joint : joints_)

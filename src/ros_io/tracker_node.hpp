@@ -23,27 +23,26 @@
 
 namespace hjt
 {
-/// Twins beside a robot, live: of one joint, or of all joints of an arm, whose load then follows from the motion of
-/// all. Each message is read once.
+/// Live twins beside a robot: of one joint, or of all joints of an arm, whose motion then gives the load. Each message
+/// is read once.
 class TrackerNode
 {
 public:
-  /// Of one joint. @param parameters with input.mode other than commands. @throws ParameterError.
+  /// For one joint. @param parameters input.mode must not be commands. @throws ParameterError.
   TrackerNode(ros::NodeHandle& node, const Parameters& parameters);
 
-  /// The arm beside the node.
   struct Arm
   {
     ArmDescription description;
     std::vector<Parameters> joints;
-    std::vector<SoundJoint> sound;        ///< figures of each joint when it was sound
-    bool is_identified{};                 ///< the joints' friction is that of this very arm
-    std::string name;                     ///< of a shipped one that may be another
-    ArmWatch::MakeCandidates candidates;  ///< none: it is taken at its word
-    bool unit_is_given{};                 ///< of the efforts: it is no open question
+    std::vector<SoundJoint> sound;        ///< reference figures of each joint
+    bool is_identified{};                 ///< the parameters contain the identified friction of this arm
+    std::string name;                     ///< name of a shipped arm that may be another one
+    ArmWatch::MakeCandidates candidates;  ///< candidates for the check of the arm's type; null: no check
+    bool unit_is_given{};                 ///< the user has given the unit of the efforts
   };
 
-  /// @throws ParameterError.
+  /// For all joints of an arm. @throws ParameterError.
   TrackerNode(ros::NodeHandle& node, const Arm& arm);
 
 private:
@@ -73,24 +72,24 @@ private:
   void look();
   void missTelemetry();
 
-  std::mutex mutex_;  // of everything below: callbacks run in several threads
+  std::mutex mutex_;  // protects everything below, because callbacks run in several threads
   TelemetryStream stream_;
   std::vector<std::unique_ptr<JointTracker>> joints_;
-  std::optional<RowFilter> filter_;  // of all joints together
+  std::optional<RowFilter> filter_;  // for all joints together
   std::optional<ArmLoad> arm_load_;
-  std::optional<RecordingFit> fit_;  // of an arm
+  std::optional<RecordingFit> fit_;  // only for an arm
   std::optional<LoadWatch> load_;
-  std::optional<ArmWatch> arm_;  // which it is
+  std::optional<ArmWatch> arm_;  // check of the arm's type
   std::vector<MotionRow> efforts_;
   const double repeat_tolerance_;  // comparison.repeat_tolerance [-]
   ros::WallTime next_verdict_;
-  double next_fit_{};            // when its findings are looked at [s]
-  std::vector<MotionRow> rows_;  // of the joints, in the message at hand
+  double next_fit_{};            // time of the next check of the fit [s]
+  std::vector<MotionRow> rows_;  // rows of the joints in the present message
   std::vector<UnfoldedAngle> angles_;
-  bool has_efforts_{};  // a row had
-  double last_time_{};  // [s]
+  bool has_efforts_{};  // a row had an effort
+  double last_time_{};  // time of the last row [s]
   ros::WallTimer timer_;
-  ros::WallTimer patience_;  // until the first message is missed
+  ros::WallTimer patience_;  // waits for the first message
   ros::Subscriber telemetry_subscriber_;
   ros::Subscriber load_subscriber_;
   ros::Subscriber temperature_subscriber_;

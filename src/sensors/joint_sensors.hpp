@@ -23,9 +23,8 @@ namespace hjt
 ///        N    counts per turn                   [-]
 ///        n    count, 0 ... N - 1                [counts]
 ///
-/// The count says nothing about whole turns. A drive counts them by watching the count jump, which fails when it looks
-/// less than twice a turn; here the turn is taken from the true angle, so that the unwrapped angle is right however
-/// seldom it is read.
+/// The count does not contain whole turns. A real drive counts them by the jumps of the count, which fails with fewer
+/// than two readings a turn. This model takes the turns from the true angle instead.
 class AbsoluteEncoder
 {
 public:
@@ -40,7 +39,7 @@ public:
     return static_cast<std::uint32_t>(in_turn < 0 ? in_turn + counts_per_turn_ : in_turn);
   }
 
-  /// Turns of the true angle plus the count's part of a turn [rad].
+  /// Whole turns of the true angle plus the count's part of a turn [rad].
   double unwrappedAngle(double output_angle) const noexcept
   {
     return static_cast<double>(stepsFromZero(output_angle)) * quantum_;
@@ -56,7 +55,7 @@ private:
   double quantum_;  // one count [rad]
 };
 
-/// Optical encoder on the motor shaft: counts up and down without end from the angle at reset.
+/// Optical encoder on the motor shaft. It counts in both directions from the angle at reset.
 ///
 /// Law:   n = floor(theta / q),  q = 2 pi / C
 /// where  theta  motor angle since reset                                             [rad]
@@ -75,7 +74,7 @@ public:
     return static_cast<std::int64_t>(std::floor(motor_angle * counts_per_radian_));
   }
 
-  /// Angle at which the encoder changed to this count from below [rad].
+  /// Lower edge of this count [rad].
   double angle(std::int64_t count) const noexcept { return static_cast<double>(count) * quantum_; }
 
 private:
@@ -83,17 +82,17 @@ private:
   double quantum_;  // one count [rad]
 };
 
-/// Pairs of independent standard normal numbers, each a function of seed, channel and index alone: whatever is asked
-/// for first, a reading has the same noise live, replayed, offline and on any number of threads.
+/// Pairs of independent standard normal numbers. Each is a function of seed, channel and index, so that a reading has
+/// the same noise live, replayed, offline and in any number of threads.
 ///
-/// Philox4x32-10 (Salmon, Moraes, Dror, Shaw: Parallel random numbers, as easy as 1, 2, 3. SC 2011), then Box and
-/// Muller.
+/// Source: Philox4x32-10 (Salmon, Moraes, Dror, Shaw: Parallel random numbers, as easy as 1, 2, 3. SC 2011), then the
+/// Box-Muller transform.
 class CounterNoise
 {
 public:
   explicit CounterNoise(std::uint32_t seed) : seed_(seed) {}
 
-  /// [-]
+  /// Two standard normal numbers [-].
   std::array<double, 2> normals(std::uint32_t channel, std::int64_t index) const noexcept
   {
     const auto counter = static_cast<std::uint64_t>(index);
@@ -105,7 +104,7 @@ public:
   }
 
 private:
-  /// Two words as a number in (0, 1).
+  /// Converts two words to a number in the open interval (0, 1).
   static double unitInterval(std::uint32_t high, std::uint32_t low) noexcept
   {
     constexpr double STEP = 1.0 / 9007199254740992.0;  // 2^-53
@@ -116,29 +115,30 @@ private:
   std::uint32_t seed_;
 };
 
-/// The sensors of a joint: both encoders and the motor's current, which is read as a torque.
+/// Sensors of a joint: the encoders of motor and output, and the motor's current, from which the drive estimates a
+/// torque.
 ///
 /// Law:   a' = a + e sin a + e_2 sin 2 a + e_4 sin 4 a + s n
-///                                   angle that an encoder resolves into counts   [rad]
-///        T' = T + s_T n, rounded    torque estimated from the current [N.m]
-/// where  e    amplitude that an eccentric disc or magnet brings, once a turn     [rad]
-///        e_2, e_4  those of an oval disc and of a read head's two signals          [rad]
-///        s    noise, root mean square, s_T of the torque                         [rad], [N.m]
-///        n standard normal, a new number at every step: of seed, sensor and step      [-]
-/// All readings have the same delay, in whole steps. An effect set to zero costs nothing and changes no bit.
+///                                   angle that an encoder resolves into counts          [rad]
+///        T' = T + s_T n, rounded    torque estimated from the current                   [N.m]
+/// where  e         amplitude of the error once a turn, of an eccentric disc or magnet   [rad]
+///        e_2, e_4  amplitudes of the errors of an oval disc and of the read head         [rad]
+///        s, s_T    rms noise of the angle and of the torque                             [rad], [N.m]
+///        n         standard normal number, a function of seed, sensor and step          [-]
+/// All readings have the same delay in whole steps. An effect of size zero changes no bit of a reading.
 ///
-/// A velocity is the difference of two readings of an angle, as a drive takes it:
+/// A velocity is the difference quotient of two readings of an angle, as in a drive:
 /// Law:   v = (a_k - a_(k-n)) / (n P),  n = sensors.velocity_window / P rounded, at least 1
 /// where  P    time between two steps                                                [s]
-/// Until n + 1 angles have been read, the difference is taken over what there is; with one angle, and before the delay
-/// is over, the velocity is zero.
+/// With fewer than n + 1 readings, the difference covers the available ones. Before two readings, and before the end of
+/// the delay, the velocity is zero.
 ///
-/// Steps are only kept: errors are those of what is read, of the encoders once for each step. Between two updates any
-/// number of threads may read.
+/// `update` only stores the true values. The first reading of a step computes its errors. Between two updates several
+/// threads may read.
 class JointSensors
 {
 public:
-  /// `period`: between two updates [s].
+  /// `period`: time between two updates [s].
   JointSensors(const SensorParameters& parameters, double period)
     : parameters_(parameters)
     , period_(period)
@@ -153,7 +153,7 @@ public:
 
   void reset() noexcept { count_ = 0; }
 
-  /// Once every period. `step`: number of the instant, the same for the same stamp; angles [rad], torque [N.m].
+  /// Stores the values of a step. `step`: number of the instant, a function of its stamp; angles [rad], torque [N.m].
   void update(std::int64_t step, double motor_angle, double output_angle, double motor_torque) noexcept
   {
     newest_ = newest_ + 1 == instants_.size() ? 0 : newest_ + 1;
@@ -165,7 +165,7 @@ public:
     count_ = std::min(count_ + 1, instants_.size());
   }
 
-  /// After an update.
+  /// Readings of the encoders; requires an update.
   EncoderReadings encoders() const noexcept
   {
     const std::size_t intervals = std::min(window_, count_ - 1 - std::min(delay_, count_ - 1));
@@ -186,7 +186,7 @@ public:
     return readings;
   }
 
-  /// After an update [N.m].
+  /// Torque estimated from the current [N.m]; requires an update.
   double motorTorque() const noexcept
   {
     const Instant& now = instant(delay_);
@@ -215,7 +215,7 @@ private:
   struct Instant
   {
     Instant() = default;
-    Instant(const Instant& other) noexcept  // a reading of the copy finds the same errors
+    Instant(const Instant& other) noexcept  // a reading of the copy computes the same errors
       : step(other.step), angles(other.angles), motor_torque(other.motor_torque)
     {
     }
@@ -224,13 +224,13 @@ private:
     std::int64_t step{};
     Angles angles;
     double motor_torque{};  // [N.m]
-    // With the encoders' errors, from the first reading on. Readers that meet store the same.
+    // Angles with errors, set by the first reading. Concurrent readers store equal values.
     mutable std::atomic<bool> sensed{};
     mutable std::atomic<double> sensed_motor{};   // [rad]
     mutable std::atomic<double> sensed_output{};  // [rad]
   };
 
-  /// The instant `back` steps ago, or the first one.
+  /// The instant `back` steps ago, or the oldest one.
   const Instant& instant(std::size_t back) const noexcept
   {
     const std::size_t kept = std::min(back, count_ - 1);
@@ -259,7 +259,7 @@ private:
     return angles;
   }
 
-  /// Error of an encoder that comes back every turn [rad].
+  /// Periodic error of an encoder, by orders 1, 2 and 4 of its turn [rad].
   static double lines(double angle, double eccentricity, const std::array<double, 2>& others) noexcept
   {
     double error = 0.0;
@@ -281,10 +281,10 @@ private:
   CounterNoise noise_;
   IncrementalEncoder motor_encoder_;
   AbsoluteEncoder output_encoder_;
-  std::size_t delay_;              // of the readings [steps]
-  std::size_t window_;             // of the velocities [steps]
+  std::size_t delay_;              // delay of the readings [steps]
+  std::size_t window_;             // window of the velocities [steps]
   std::vector<Instant> instants_;  // ring of the last
   std::size_t newest_{};
-  std::size_t count_{};  // instants held
+  std::size_t count_{};  // number of stored instants
 };
 }  // namespace hjt

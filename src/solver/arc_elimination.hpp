@@ -3,88 +3,92 @@
 
 namespace hjt
 {
-/// The ring cut into four arcs by four separators of two teeth each. All four arcs are eliminated at once, one in each
-/// lane of a vector of four numbers: no shuffling, and four chains of dependent operations side by side.
+/// Elimination of the ring, which four separators of two teeth each cut into four arcs. The four lanes of a vector
+/// eliminate the four arcs at once: no shuffling, and four independent chains of operations.
 ///
-/// Rows and arrays of lanes: number of lane k of entry e at [4 e + k]. All arrays are the caller's, aligned to 32
-/// bytes.
+/// In arrays of lanes, the number of lane k and entry e has the index 4 e + k. The caller owns all arrays and aligns
+/// them to 32 bytes.
 namespace arcs
 {
 constexpr int COUNT = 4;
-constexpr int BORDER = 5;  ///< columns every tooth of an arc couples to: the separator before the arc, and the cup
+/// number of columns that couple to every tooth of an arc: those of the preceding separator, and the cup
+constexpr int BORDER = 5;
 
-// Factors of an eliminated tooth for the substitutions, in entries of lanes.
+// Size of the factors of an eliminated tooth, in entries of lanes.
 constexpr int FACTOR_ENTRIES = 21;
-// Sums over an arc for the separators: their own block with the cup's, the one after the arc, and between the two.
+// Sizes of the sums over an arc for the separators: block of the preceding one with the cup, block of the next one, and
+// the block between them.
 constexpr int BEFORE_ENTRIES = BORDER * (BORDER + 1) / 2;
 constexpr int AFTER_ENTRIES = 10;
 constexpr int BETWEEN_ENTRIES = 4 * BORDER;
 
-constexpr int SCHUR = 4 * COUNT;  ///< unknowns of the separators
+constexpr int SCHUR = 4 * COUNT;  ///< number of unknowns of the separators
 
-/// Layout of the arcs. Lane k eliminates tooth first[k] + t at step t; its separator is the two teeth before its arc.
+/// Layout of the arcs. Step t eliminates tooth first[k] + t in lane k. The separator of lane k is the two teeth before
+/// its arc.
 struct Layout
 {
   int steps;         ///< length of the longest arc
-  int first[COUNT];  ///< at the first step
-  bool idle[COUNT];  ///< a shorter arc has nothing to eliminate at the first step: first[k] is its separator's end
+  int first[COUNT];  ///< tooth of the first step
+  /// the arc is shorter and has no tooth at the first step: first[k] is the last tooth of its separator
+  bool idle[COUNT];
 };
 
-/// Entries of the ring's tangent, one array each.
+/// Entries of the ring's tangent, one array for each.
 struct Tangent
 {
   const double* diagonal[3];  ///< xx, xy, yy
   const double* next[4];      ///< xx, xy, yx, yy
   const double* second[4];    ///< xx, xy, yx, yy
-  const double* cup;          ///< 2 a tooth
+  const double* cup;          ///< two for each tooth
 };
 
 struct Sums
 {
-  double* before;  ///< BEFORE_ENTRIES: upper triangle by columns, to add
-  double*
-      after;  ///< AFTER_ENTRIES: first tooth xx, xy, yy; first with second xx, xy, yx, yy; second xx, xy, yy; to add
-  double* between;  ///< BETWEEN_ENTRIES: four rows of the separator after the arc by BORDER columns
+  double* before;   ///< BEFORE_ENTRIES sums, upper triangle by columns
+  double* after;    ///< AFTER_ENTRIES sums: first tooth xx, xy, yy; first with second xx, xy, yx, yy; second xx, xy, yy
+  double* between;  ///< BETWEEN_ENTRIES sums: four rows of the next separator by BORDER columns
 };
 
-/// Of the symmetric matrix of the separators; the unit triangle's diagonal and what is beyond it are left out, as
-/// zeros.
+/// Factors of the symmetric matrix of the separators. The entries on and beyond the unit triangle's diagonal are not
+/// stored and are zero.
 struct alignas(32) SchurFactors
 {
   double upper[SCHUR][SCHUR];
-  double lower[SCHUR][SCHUR];  ///< its transpose
+  double lower[SCHUR][SCHUR];  ///< transpose of the upper factor
   double inverse_pivots[SCHUR];
 };
 
-/// Code for one kind of processor. What is solved has the same bits by each.
+/// The functions, compiled for one kind of processor. All kinds give bitwise equal results.
 struct Kernels
 {
   void (*factor)(const Layout& layout, const Tangent& tangent, double* factors, const Sums& sums);
 
-  /// Eliminates right-hand sides `b` (a pointer each to 2 rows a tooth; [0], [1], [2] for 1, 2, 3 of them).
-  /// `rows`: 2 entries a step and column. `before`: BORDER entries a column, `after`: 4 entries a column; to add.
+  /// Eliminates 1, 2 or 3 right-hand sides `b`, each with 2 rows for each tooth. `rows`: 2 entries for each step and
+  /// column. `before`, `after`: sums with BORDER and 4 entries for each column.
   void (*forward[3])(const Layout& layout, const double* factors, const double* const* b, double* rows, double* before,
                      double* after);
 
-  /// Solutions of the arcs from those of the separators. `before`, `after`: as above, the values themselves.
+  /// Computes the solutions of the arcs from those of the separators. `before`, `after`: solutions of the separators.
   void (*backward[3])(const Layout& layout, const double* factors, const double* rows, const double* before,
                       const double* after, double* const* x);
 
-  /// U^T D U of the symmetric matrix of the separators, SCHUR x SCHUR, of which the upper triangle is read and
-  /// destroyed. Without pivoting: false if a pivot is not positive, which it is while the matrix is positive definite.
+  /// Factors the symmetric matrix of the separators, SCHUR x SCHUR, as U^T D U. It reads and overwrites the upper
+  /// triangle. There is no pivoting: @returns false if a pivot is not positive, that is, if the matrix is not positive
+  /// definite.
   bool (*factor_schur)(double* matrix, SchurFactors& factors);
 
-  /// Solves for SCHUR unknowns, in place.
+  /// Solves for the SCHUR unknowns in place.
   void (*solve_schur)(const SchurFactors& factors, double* b);
 };
 
 extern const Kernels BASELINE;  ///< for every processor of the architecture
 #ifdef HJT_AVX2
 extern const Kernels AVX2;    ///< x86-64 with AVX2
-extern const Kernels AVX512;  ///< with AVX-512 VL and DQ: the same vectors, twice the registers
+extern const Kernels AVX512;  ///< x86-64 with AVX-512 VL and DQ: vectors as in AVX2, twice as many registers
 #endif
 
-/// The fastest that this processor can run.
+/// Kernels of the fastest kind that this processor supports.
 const Kernels& fastest() noexcept;
 }  // namespace arcs
 }  // namespace hjt

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// The elimination itself, its number type and the matrix that it leaves. Included once for each kind of processor, in a
-// file compiled for it; hence all in an unnamed namespace, and nothing of any library: the linker must not mix the
-// kinds.
+// The elimination with its number type and matrix. One file for each kind of processor includes this file and is
+// compiled for that kind. Therefore all names are in an unnamed namespace and nothing is from a library: the linker
+// must not mix the kinds.
 
 #include "solver/arc_elimination.hpp"
 
@@ -13,7 +13,7 @@ namespace arcs
 {
 namespace
 {
-/// One number for each arc; the compiler takes as many instructions as the processor's vectors need.
+/// One number for each arc. The compiler uses as many instructions as the processor's vectors need.
 typedef double Lanes __attribute__((vector_size(32), may_alias));
 
 typedef long long Choice __attribute__((vector_size(32)));
@@ -30,7 +30,7 @@ inline const Lanes* lanes(const double* values)
 
 inline bool factorSchur(double* matrix, SchurFactors& factors)
 {
-  constexpr int LANES = SCHUR / COUNT;  // a row
+  constexpr int LANES = SCHUR / COUNT;  // lanes in a row
   bool positive = true;
 #pragma GCC unroll 16
   for (int k = 0; k < SCHUR; ++k)
@@ -38,7 +38,7 @@ inline bool factorSchur(double* matrix, SchurFactors& factors)
     const double* row = matrix + SCHUR * k;
     const double pivot = row[k];
     const double inverse = 1.0 / pivot;
-    positive = positive && pivot > 0.0 && inverse > 0.0;  // and not infinite
+    positive = positive && pivot > 0.0 && inverse > 0.0;  // positive and not infinite
     factors.inverse_pivots[k] = inverse;
     for (int i = 0; i < SCHUR; ++i)
     {
@@ -89,7 +89,7 @@ inline void solveSchur(const SchurFactors& factors, double* b)
   }
 }
 
-/// values[stride * tooth] of each lane's tooth.
+/// Collects values[stride * tooth] of the tooth in each lane.
 inline Lanes gather(const Layout& layout, const double* values, int stride = 1)
 {
   const int* first = layout.first;
@@ -97,14 +97,14 @@ inline Lanes gather(const Layout& layout, const double* values, int stride = 1)
                 values[stride * first[3]] };
 }
 
-/// The same with `value` in the lanes that idle at the first step.
+/// Replaces the lanes without a tooth at the first step by `value`.
 inline Lanes patch(const Layout& layout, Lanes values, double value)
 {
   const Choice idle{ -layout.idle[0], -layout.idle[1], -layout.idle[2], -layout.idle[3] };
   return idle ? value + Lanes{} : values;
 }
 
-/// Factors of a tooth: the inverse of its block, and that times its couplings to the teeth.
+/// Factors of a tooth: the inverse of its block, and the products of the inverse and its couplings to the teeth.
 struct Weights
 {
   Lanes inverse_xx, inverse_xy, inverse_yy;
@@ -112,14 +112,14 @@ struct Weights
   Lanes second_xx, second_xy, second_yx, second_yy;
 };
 
-/// The same with those to the border.
+/// Factors of a tooth, including the products of the inverse and its couplings to the border.
 struct Factors : Weights
 {
   Lanes border_x[BORDER], border_y[BORDER];
 };
 static_assert(sizeof(Factors) == FACTOR_ENTRIES * sizeof(Lanes), "entries a tooth");
 
-/// Couplings of the first two teeth of each arc to the separator before it, at the first three steps.
+/// Couplings of the first two teeth of each arc to the preceding separator, for the first three steps.
 struct Seeds
 {
   Seeds(const Layout& layout, const Tangent& tangent) : x{}, y{}
@@ -148,16 +148,16 @@ struct Seeds
   Lanes y[3][BORDER];
 };
 
-/// Rows of a tooth before any other is eliminated.
+/// Rows of a tooth before the elimination of other teeth.
 struct Fresh
 {
-  Lanes xx, xy, yy;  // its block
-  Lanes next[4];     // couplings to the next tooth, and to the second
+  Lanes xx, xy, yy;  // block of the tooth
+  Lanes next[4];     // couplings to the next tooth and to the one after it
   Lanes second[4];
-  Lanes cup_x, cup_y;  // to the cup
+  Lanes cup_x, cup_y;  // couplings to the cup
 };
 
-/// Contributions of the eliminated teeth to the next two: blocks, and couplings to the border.
+/// Contributions of the eliminated teeth to the next two teeth: blocks, and couplings to the border.
 struct Carried
 {
   Lanes d_xx{}, d_xy{}, d_yy{};
@@ -195,7 +195,7 @@ inline __attribute__((always_inline)) Fresh freshRows(const Layout& layout, cons
   return fresh;
 }
 
-/// Inverse of a tooth's block, and that times its couplings to the teeth.
+/// Computes the inverse of a tooth's block, and the products of the inverse and its couplings to the teeth.
 inline __attribute__((always_inline)) void factorTooth(const Fresh& fresh, Carried& carried, Weights& out)
 {
   const Lanes a = fresh.xx + carried.d_xx;
@@ -224,7 +224,7 @@ inline __attribute__((always_inline)) void factorTooth(const Fresh& fresh, Carri
   out.second_yy = i_xy * fresh.second[1] + i_yy * fresh.second[3];
 }
 
-/// The tooth's couplings to the border: into the sums, and on to the two teeth that come next.
+/// Adds the tooth's couplings to the border to the sums, and to those of the next two teeth.
 inline __attribute__((always_inline)) void factorBorder(const Weights& own, Carried& carried, Factors& out, Lanes* sum)
 {
   for (int col = 0; col < BORDER; ++col)
@@ -237,7 +237,7 @@ inline __attribute__((always_inline)) void factorBorder(const Weights& own, Carr
     out.border_y[col] = wy;
     for (int row = 0; row <= col; ++row)
     {
-      // (row, col) of the upper triangle by columns
+      // (row, col) runs over the upper triangle by columns
       *sum++ -= (row == col ? x : carried.bx[row]) * wx + (row == col ? y : carried.by[row]) * wy;
     }
   }
@@ -252,7 +252,7 @@ inline __attribute__((always_inline)) void factorBorder(const Weights& own, Carr
   }
 }
 
-/// The tooth's couplings to the teeth, on to the two that come next.
+/// Adds the tooth's couplings to the teeth to the next two teeth.
 inline __attribute__((always_inline)) void carryOn(const Fresh& fresh, const Weights& out, Carried& carried)
 {
   const Lanes n_xx = carried.n_xx;
@@ -274,7 +274,7 @@ inline __attribute__((always_inline)) void carryOn(const Fresh& fresh, const Wei
 
 inline void factor(const Layout& where, const Tangent& entries, double* factors, const Sums& sums)
 {
-  // Copies: what is stored through a vector's pointer might else be them.
+  // Copies, because the compiler must assume that a store through a vector's pointer changes the originals.
   const Layout layout = where;
   const Tangent tangent = entries;
   const Seeds seeds(layout, tangent);
@@ -420,7 +420,7 @@ void backward(const Layout& where, const double* factors, const double* rows, co
         vx -= f->border_x[e] * lanes(before)[BORDER * c + e];
         vy -= f->border_y[e] * lanes(before)[BORDER * c + e];
       }
-      // Last come the values that the next step depends on.
+      // The values that the next step depends on come last.
       vx -= f->second_xx * qx[c] + f->second_xy * qy[c];
       vy -= f->second_yx * qx[c] + f->second_yy * qy[c];
       vx -= f->next_xx * px[c] + f->next_xy * py[c];

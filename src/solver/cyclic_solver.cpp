@@ -45,11 +45,11 @@ bool CyclicSolver::factor(const RingTangent& tangent) noexcept
   return factorSchur(tangent, before, after, between);
 }
 
-/// The matrix of the separators and the cup: their own entries, and what the arcs add.
+/// Assembles and factors the matrix of separators and cup: their own entries, and the sums of the arcs.
 bool CyclicSolver::factorSchur(const RingTangent& tangent, const Entry* before, const Entry* after,
                                const Entry* between) noexcept
 {
-  alignas(32) SchurComplement schur = SchurComplement::Zero();  // the upper triangle
+  alignas(32) SchurComplement schur = SchurComplement::Zero();  // upper triangle
   Separators cup = Separators::Zero();
   double pivot = -1.0 / tangent.cup_stiffness;
   for (int k = 0; k < COUNT; ++k)
@@ -109,7 +109,7 @@ bool CyclicSolver::factorSchur(const RingTangent& tangent, const Entry* before, 
   return lu.allFinite() && (lu.diagonal().array() != 0.0).all();
 }
 
-/// Separators and the cup's multiplier, in place.
+/// Solves for the separators and the cup's multiplier in place.
 void CyclicSolver::solveSchur(Separators& x, double& multiplier) const noexcept
 {
   if (pivoting_)

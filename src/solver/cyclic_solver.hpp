@@ -12,29 +12,29 @@
 
 namespace hjt
 {
-/// Direct solver for the ring's tangent: symmetric, cyclic, each tooth coupled to two on either side, plus the rank-one
-/// cup.
+/// Direct solver for the ring's tangent: a symmetric cyclic matrix, where each tooth couples to two on either side,
+/// plus the rank-one term of the cup.
 ///
-/// Four separators of two teeth cut the ring into arcs, which are eliminated side by side (arc_elimination). What is
-/// left is dense: the separators and the cup's multiplier, 17 unknowns. Without the cup the ring may turn inside the
-/// wave generator almost freely (like a tank's track); pinning the separators keeps the elimination well conditioned,
-/// where a rank-one correction afterwards would lose all digits. Of the 17 the cup goes first; while the ring is stable
-/// the rest is positive definite and needs no pivoting, else it is done with pivoting. Cost: linear in the number of
-/// teeth. No allocation after construction.
+/// Four separators of two teeth cut the ring into arcs, which are eliminated simultaneously (arc_elimination). A dense
+/// system of 17 unknowns remains: the separators and the cup's multiplier. Without the cup the ring turns almost freely
+/// in the wave generator. Fixed separators keep the elimination well conditioned, whereas a later rank-one correction
+/// would lose all digits. The cup's unknown is eliminated first. While the ring is stable, the rest is positive
+/// definite and needs no pivoting; otherwise the solver pivots. The cost is linear in the number of teeth. Only the
+/// constructor allocates.
 class CyclicSolver
 {
 public:
-  /// @param teeth at least 8
+  /// @param teeth number of teeth, at least 8
   explicit CyclicSolver(int teeth, const arcs::Kernels& kernels = arcs::fastest());
 
-  /// Factors K. False if it is singular or not finite.
+  /// Factors the matrix K. @returns false if it is singular or not finite.
   bool factor(const RingTangent& tangent) noexcept;
 
-  /// Solves K x = b in place for the columns of `b` (2 N rows): 1 to 3 of them.
+  /// Solves K x = b in place for 1 to 3 columns of `b` with 2 N rows.
   template <int COLUMNS>
   void solve(Eigen::Matrix<double, Eigen::Dynamic, COLUMNS>& b) noexcept
   {
-    static_assert(COLUMNS <= MAX_COLUMNS, "no kernel for so many columns");
+    static_assert(COLUMNS <= MAX_COLUMNS, "no kernel for this number of columns");
     double* columns[COLUMNS];
     for (int c = 0; c < COLUMNS; ++c)
     {
@@ -43,7 +43,7 @@ public:
     solve(columns, COLUMNS);
   }
 
-  /// The same for three right-hand sides of their own.
+  /// Solves for three separate right-hand sides.
   void solve(Eigen::VectorXd& a, Eigen::VectorXd& b, Eigen::VectorXd& c) noexcept
   {
     double* columns[MAX_COLUMNS] = { a.data(), b.data(), c.data() };
@@ -68,13 +68,13 @@ private:
 
   const arcs::Kernels& kernels_;
   arcs::Layout layout_;
-  std::array<int, arcs::COUNT> separator_;  // first tooth of each
-  Entries factors_;                         // never empty: their first lanes are handed on
+  std::array<int, arcs::COUNT> separator_;  // first tooth of each separator
+  Entries factors_;                         // never empty; the kernels get pointers to the first lanes
   Entries rows_;
-  arcs::SchurFactors schur_;  // of the separators, the cup eliminated
-  Separators cup_;            // its column
-  double cup_inverse_{};      // and its pivot's inverse
+  arcs::SchurFactors schur_;  // factors of the separators' matrix after elimination of the cup
+  Separators cup_;            // column of the cup
+  double cup_inverse_{};      // inverse of the cup's pivot
   bool pivoting_{};
-  Eigen::PartialPivLU<SchurWithCup> lu_;  // if pivoting
+  Eigen::PartialPivLU<SchurWithCup> lu_;  // factors with pivoting
 };
 }  // namespace hjt

@@ -12,14 +12,15 @@ namespace hjt
 {
 namespace
 {
-constexpr double STICK_RANGE = 1e3;   // in regularisation speeds: slower, the motor may really be at rest
-constexpr double SLIDING = 3e4;       // slip over the regularisation's width, far from standing still
-constexpr double MOVING = 30.0;       // likewise, no creeping: friction is full to 6e-4
-constexpr double MIN_WIDTH = 1e-100;  // of a term without slip: its square and the inverse stay finite
+constexpr double STICK_RANGE = 1e3;  // in regularisation speeds: below it the motor may be exactly at rest
+constexpr double SLIDING = 3e4;      // slip over the regularisation's width, from which a term is far from rest
+// slip over the regularisation's width, from which a term does not creep: friction is full to 6e-4
+constexpr double MOVING = 30.0;
+constexpr double MIN_WIDTH = 1e-100;  // width of a term without slip, whose square and inverse are finite
 
-/// How far to go from `v` along `change`: all the way if the function still falls there, else to where it stops
-/// falling, to a slope of `flat` times the first. Looks at slopes only: values near a minimum differ by less than their
-/// rounding. Leaves the gradient there in `slope`.
+/// Length of the step from `v` along `change`: the whole if the function still falls there, else up to a slope of
+/// `flat` times the first one. Only slopes are compared, because values near a minimum differ by less than their
+/// rounding. `slope` receives the gradient at the end.
 template <class Gradient>
 double searchLine(Gradient& gradient, const Eigen::Vector2d& v, const Eigen::Vector2d& change, double flat,
                   Eigen::Vector2d& slope)
@@ -41,7 +42,7 @@ double searchLine(Gradient& gradient, const Eigen::Vector2d& v, const Eigen::Vec
   return length;
 }
 
-/// Newton's step towards no slope; with the motor at rest over the output's speed alone.
+/// Newton step; with the motor at rest it changes only the output's speed.
 Eigen::Vector2d newtonStep(const Eigen::Matrix2d& hessian, const Eigen::Vector2d& slope, bool motor_free)
 {
   if (!motor_free)
@@ -53,7 +54,7 @@ Eigen::Vector2d newtonStep(const Eigen::Matrix2d& hessian, const Eigen::Vector2d
            -(hessian(0, 0) * slope[1] - hessian(1, 0) * slope[0]) / determinant };
 }
 
-/// Friction that acts on the motor shaft alone [N.m].
+/// Friction that acts only on the motor shaft [N.m].
 double shaftStrength(const JointFriction& friction) noexcept
 {
   double strength = 0.0;
@@ -64,13 +65,14 @@ double shaftStrength(const JointFriction& friction) noexcept
   return strength;
 }
 
-/// One slip s under regularised friction:  s + most r(s) = free,  r = s / sqrt(s^2 + e^2).  Leaves r in `share`.
-/// False: not found in a few steps.
+/// Solves for one slip s under regularised friction:  s + most r(s) = free,  r = s / sqrt(s^2 + e^2).  `share` receives
+/// r.
+/// @returns false if a few steps do not converge.
 bool solveSlip(double free, double most, double e, double& share)
 {
   constexpr int MAX_ITERATIONS = 12;
   constexpr double ENOUGH = 1e-12;
-  // From the side of the law without regularisation: sliding, or standing with what is needed to hold.
+  // Starts from the law without regularisation: the slip slides, or the friction holds it.
   const double held = most > 0.0 ? free / most : 2.0;
   double slip = std::abs(held) < 1.0 ? e * held / std::sqrt(1.0 - held * held) : free - std::copysign(most, free);
   for (int i = 0; i < MAX_ITERATIONS; ++i)
@@ -88,18 +90,18 @@ bool solveSlip(double free, double most, double e, double& share)
   return false;
 }
 
-/// A few terms that go on as they slid. Its functions are part of `slide` for each kind of processor.
+/// A few terms that continue to slide. Its functions are inlined into `slide` for each kind of processor.
 class SlidingTerms
 {
 public:
-  /// Those that do not go on.
+  /// Terms that do not continue to slide.
   struct Stops
   {
     double number{};
-    double places{};  // sum of their places
+    double places{};  // sum of their indices
   };
 
-  /// `strength`: of all against the old slips, by motor and output. False: too many terms, or none.
+  /// `strength`: sum of all against the old slips, by motor and output. @returns false for too many terms, or none.
   inline __attribute__((always_inline)) bool take(const FrictionTerms& terms, const Eigen::Vector2d& old_speeds,
                                                   double follow, double width, Eigen::Vector2d& strength)
   {
@@ -149,7 +151,7 @@ public:
     return by_motor_[place] * old_speeds[0] + by_output_[place] * old_speeds[1] >= MOVING / SLIDING * least_[place];
   }
 
-  /// Counts no more. @returns the sense in which it slid.
+  /// Removes a term. @returns the sign of its slip.
   double leaveOut(int place)
   {
     least_[static_cast<std::size_t>(place)] = -HUGE_VAL;
@@ -162,14 +164,14 @@ private:
 
   int count_{};
   alignas(32) Numbers sense_;
-  alignas(32) Numbers by_motor_;   // of the slips, positive as they were
-  alignas(32) Numbers by_output_;  // likewise
-  alignas(32) Numbers least_;      // slip at which a term goes on
+  alignas(32) Numbers by_motor_;   // slips by motor speed, with the old sign positive
+  alignas(32) Numbers by_output_;  // slips by output speed, with the old sign positive
+  alignas(32) Numbers least_;      // least slip of a term that continues to slide
 };
 }  // namespace
 
-/// Slip speed at which a term is half way to full friction: what it sees at the regularising motor speed, the output
-/// following or held, whichever slips more.
+/// Slip speed at which a term has half of its friction: the slip at the regularising motor speed, with the output
+/// following or held, whichever is larger.
 double DryFriction::width(const FrictionTerm& term, double velocity_ratio) const noexcept
 {
   return width_ * (std::abs(term.slip[0]) + std::abs(velocity_ratio * term.slip[1])) + MIN_WIDTH;
@@ -213,9 +215,9 @@ bool DryFriction::solve(const JointFriction& friction, double velocity_ratio, co
   constexpr int MAX_ITERATIONS = 100;
   constexpr int FEW = 15;           // iterations; 1 of 300 random problems needs more
   constexpr double ENOUGH = 1e-12;  // relative change of the speeds
-  constexpr double ROUNDED = 1e-9;  // the same of speeds that keep changing in their last digits
-  constexpr double FLAT = 0.1;      // share of the first slope
-  constexpr double FLATTER = 1e-3;  // the same: a term that sticks is a kink, on which a search has to end
+  constexpr double ROUNDED = 1e-9;  // relative change of speeds that differ in their last digits only
+  constexpr double FLAT = 0.1;      // final slope of a search over its first slope
+  constexpr double FLATTER = 1e-3;  // the same ratio for a search that must end at a kink, where a term sticks
   Eigen::Matrix2d linear = 0.5 * step * friction.viscous;
   const Eigen::Vector2d drag = linear * old_speeds - inertia_.cwiseProduct(free_speeds);
   linear.diagonal() += inertia_;
@@ -227,7 +229,7 @@ bool DryFriction::solve(const JointFriction& friction, double velocity_ratio, co
     return linear * v + drag + step * dry.first;
   };
 
-  // Down to the minimum, or with the motor at rest to the minimum over the output's speed alone.
+  // Minimises over both speeds or, with the motor at rest, over the output's speed.
   Eigen::Vector2d slope;
   const auto descend = [&](Eigen::Vector2d& v, bool motor_free)
   {
@@ -247,7 +249,7 @@ bool DryFriction::solve(const JointFriction& friction, double velocity_ratio, co
     return !changes(ROUNDED);
   };
 
-  // With the motor at rest if friction can hold it there.
+  // Sets the motor at rest if friction can hold it.
   const auto rests = [&](Eigen::Vector2d& v)
   {
     v[0] = 0.0;
@@ -291,15 +293,15 @@ HJT_VECTOR_CLONES bool DryFriction::slide(const JointFriction& friction, double 
   {
     return false;
   }
-  if (stops.number > 0.0)  // it may be the one unknown
+  if (stops.number > 0.0)  // this term may be the unknown
   {
     const auto nearest = static_cast<int>(stops.places);
     const FrictionTerm term = friction.terms[nearest];
     const double strongest = step * term.strength;
     const Eigen::Vector2d response = answer(term.slip);
-    v += strongest * sliding.leaveOut(nearest) * response;    // without this term
-    const double most = strongest * term.slip.dot(response);  // of its slip, that this term can take
-    double share = 0.0;                                       // of its strength that it acts with
+    v += strongest * sliding.leaveOut(nearest) * response;    // speeds without this term
+    const double most = strongest * term.slip.dot(response);  // slip that this term can remove
+    double share = 0.0;                                       // mobilised share of its strength
     if (!solveSlip(term.slip.dot(v), most, width(term, velocity_ratio), share))
     {
       return false;
@@ -318,7 +320,7 @@ HJT_VECTOR_CLONES bool DryFriction::slide(const JointFriction& friction, double 
   return true;
 }
 
-/// Whether a term moves before, and after no more, or the other way.
+/// Whether a term moves before the step and is at rest or reversed after it, or the opposite.
 HJT_VECTOR_CLONES bool DryFriction::anyStops(const FrictionTerms& terms, double follow, const Eigen::Vector2d& before,
                                              const Eigen::Vector2d& after) const noexcept
 {
@@ -344,10 +346,10 @@ KickedSpeeds DryFriction::stopOrSlide(const JointFriction& friction, double velo
                                       const Eigen::Vector2d& old_speeds, const Eigen::Vector2d& free_momentum,
                                       double step, JointFriction& sticking) const noexcept
 {
-  constexpr int MAX_PARTS = 16;  // teeth stop one after the other: ten are seen
-  const Eigen::Vector2d gained = free_momentum.cwiseQuotient(inertia_) - old_speeds;  // without friction, in the step
+  constexpr int MAX_PARTS = 16;  // teeth stop one after the other, up to ten in a step
+  const Eigen::Vector2d gained = free_momentum.cwiseQuotient(inertia_) - old_speeds;  // in the step without friction
   KickedSpeeds speeds{ old_speeds, old_speeds };
-  double rest = 1.0;  // of the step
+  double rest = 1.0;  // remaining part of the step
   const auto go_on = [&](double share, const Eigen::Vector2d& to)
   {
     if (rest >= 0.5 && rest * (1.0 - share) <= 0.5)
@@ -391,7 +393,7 @@ KickedSpeeds DryFriction::stopOrSlide(const JointFriction& friction, double velo
     }
     Eigen::Vector2d onward;
     const bool found = solve(sticking, velocity_ratio, speeds.after, free, rest * step, onward);
-    double share = 1.0;  // of the rest, up to the first stop
+    double share = 1.0;  // part of the rest, up to the first stop
     for (const FrictionTerm term : friction.terms)
     {
       const double before = term.slip.dot(speeds.after);

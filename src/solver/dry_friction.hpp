@@ -7,21 +7,21 @@
 
 namespace hjt
 {
-/// Speeds of motor and output after a time step and half way through it [rad/s].
+/// Speeds of motor and output at the end and in the middle of a time step [rad/s].
 struct KickedSpeeds
 {
   Eigen::Vector2d after;
   Eigen::Vector2d halfway;
-  bool solved{ true };  ///< false: friction was not; the speeds are anything
+  bool solved{ true };  ///< false: the friction problem was not solved and the speeds are invalid
 };
 
-/// Speeds after a time step with all friction taken implicitly: the minimum of
+/// Speeds after a time step with implicit friction. They minimise
 ///
 ///   1/2 (v - v_free)^T M (v - v_free) + h/4 (v + v_old)^T D (v + v_old) + h sum_j c_j sqrt((a_j v)^2 + e_j^2)
 ///
-/// Convex, so it has one solution whatever the step: friction sticks, slides and reverses without a mode switch.
-/// e_j regularises the kink at the motor speed `stiction_velocity`; Newton with line search, 2 x 2. A motor that
-/// friction on its shaft can hold comes to rest exactly.
+/// The function is convex, so it has one minimum for any step: friction sticks, slides and reverses without a change of
+/// mode. e_j regularises the kink at the motor speed `stiction_velocity`. The method is Newton's with line search in 2
+/// unknowns. A motor that friction on its shaft can hold comes to rest exactly.
 class DryFriction
 {
 public:
@@ -29,32 +29,33 @@ public:
   {
   }
 
-  /// The same with another inertia of the motor [kg.m^2].
+  /// A copy with another inertia of the motor [kg.m^2].
   DryFriction withMotor(double inertia) const { return { Eigen::Vector2d(inertia, inertia_[1]), width_ }; }
 
-  void setOutput(double inertia) noexcept { inertia_[1] = inertia; }  ///< another inertia of the output [kg.m^2]
+  void setOutput(double inertia) noexcept { inertia_[1] = inertia; }  ///< sets the inertia of the output [kg.m^2]
 
-  /// `velocity_ratio`: output speed over motor speed in plain running; scales the regularisation of slips at the
-  /// output. False: the minimum was not found; `speeds` are anything.
+  /// Solves for `speeds`. `velocity_ratio`: output speed over motor speed while the drive runs; it scales the
+  /// regularisation of slips at the output. @returns false if the minimum was not found; `speeds` are then invalid.
   [[nodiscard]] bool solve(const JointFriction& friction, double velocity_ratio, const Eigen::Vector2d& old_speeds,
                            const Eigen::Vector2d& free_speeds, double step, Eigen::Vector2d& speeds) const noexcept;
 
-  /// The same in parts where a term that moves comes to rest within the step: up to there it slides, and those that do
-  /// not move at the old speeds stick. `free_momentum`: M v_free [N.m.s]; `sticking`: room.
+  /// Solves in parts if a moving term comes to rest within the step. Until then the term slides, and terms at rest
+  /// stick. `free_momentum`: M v_free [N.m.s]; `sticking`: working memory.
   KickedSpeeds stopOrSlide(const JointFriction& friction, double velocity_ratio, const Eigen::Vector2d& old_speeds,
                            const Eigen::Vector2d& free_momentum, double step, JointFriction& sticking) const noexcept;
 
-  /// The same minimum where every term, or every one but one that stood, slides as it did at the old speeds, far from
-  /// standing still: linear but for one unknown. False, and nothing done, elsewhere, at rest above all. Differs from
-  /// `solve` by the tails of the regularisation, less than 1e-9 of the friction. `free_momentum`: M v_free [N.m.s].
+  /// Solves for the case that every term, except perhaps one at rest, slides far from rest in its old direction. The
+  /// problem is then linear with at most one unknown. @returns false and does nothing in other cases, for example at
+  /// rest. The result differs from that of `solve` by the tails of the regularisation, less than 1e-9 of the friction.
+  /// `free_momentum`: M v_free [N.m.s].
   bool slide(const JointFriction& friction, double velocity_ratio, const Eigen::Vector2d& old_speeds,
              const Eigen::Vector2d& free_momentum, double step, Eigen::Vector2d& speeds) const noexcept;
 
-  /// Friction torque on motor and output at given speeds, explicit [N.m].
+  /// Friction torque on motor and output for given speeds [N.m].
   Eigen::Vector2d torque(const JointFriction& friction, double velocity_ratio,
                          const Eigen::Vector2d& speeds) const noexcept;
 
-  const Eigen::Vector2d& inertia() const noexcept { return inertia_; }  ///< [kg.m^2]
+  const Eigen::Vector2d& inertia() const noexcept { return inertia_; }  ///< of motor and output [kg.m^2]
 
 private:
   /// Derivatives of sum_j c_j sqrt((a_j v)^2 + e_j^2) by the speeds.

@@ -22,7 +22,7 @@ SolveStatus JointDynamics::solveAtRest() noexcept
 {
   constexpr int MAX_ITERATIONS = 50;
   SolveStatus result = ring_.insert({ 0.0, 0.0, model_->ring.gear.wave_amplitude });
-  // Gravity changes with the output angle; the joint is stiff, so taking it as constant and repeating converges fast.
+  // Gravity changes with the output angle. The joint is stiff, so that iterating with constant gravity converges fast.
   double torque = 0.0;
   for (int i = 0; result.ok(); ++i)
   {
@@ -74,7 +74,7 @@ SolveStatus JointDynamics::place(double motor_angle, double output_angle) noexce
   {
     return {};
   }
-  if (on_surface_ && !bringRing())  // a short way then remains to what is asked for
+  if (on_surface_ && !bringRing())  // the rest of the way is short
   {
     return status;
   }
@@ -108,15 +108,16 @@ SolveStatus JointDynamics::updateModel() noexcept
   if (result.ok() &&
       (ring_.position().wave_generator_angle != motor_angle_ || ring_.position().output_angle != output_angle_))
   {
-    result = ring_.reach(position()).addEffort(result);  // it could not be brought there before
+    result = ring_.reach(position()).addEffort(result);  // the attempt before had failed
   }
   viscosity_ = model_->bearing.viscosity(temperature_);
   takeRing();
-  accept();  // slip in this step is part of the energy that the edit releases
+  accept();  // slip in this step is part of the energy that the change releases
   return result;
 }
 
-/// From where the full ring was left to the surface's present angles. False: no equilibrium, it stays.
+/// Moves the full ring from its last position to the present angles on the surface. @returns false without an
+/// equilibrium.
 bool JointDynamics::bringRing() noexcept
 {
   const SolveStatus brought = ring_.reach(position());
@@ -125,7 +126,7 @@ bool JointDynamics::bringRing() noexcept
   return brought.ok();
 }
 
-/// Keeps why a solve failed, if it did.
+/// Stores the reason of a failed solve.
 void JointDynamics::note(const SolveStatus& solved) noexcept
 {
   if (!solved.ok())
@@ -135,7 +136,7 @@ void JointDynamics::note(const SolveStatus& solved) noexcept
   }
 }
 
-/// The full ring's equilibrium is the present one.
+/// Takes over the full ring's equilibrium as the present one.
 void JointDynamics::takeRing() noexcept
 {
   friction_is_of_ring_ = false;
@@ -157,13 +158,13 @@ void JointDynamics::takeRing() noexcept
   slideShaft();
 }
 
-/// Sets the internal state of the friction from the surface's response at the present angles.
+/// Sets the internal state of the friction by the surface's response at the present angles.
 void JointDynamics::takeSurface() noexcept
 {
   friction_is_of_ring_ = false;
   if (model_->cup_friction.hasState())
   {
-    // The rim turns with the torque that it leans on the housing with.
+    // The rim rotates by the torque between it and the housing.
     const auto& cup = model_->ring.of<CupTorsion>();
     const double torque = -(response_.wave_generator_torque + response_.output_torque);
     turnCup(cup.rotationAtTorque(torque), housing_stiffness_ * cup.complianceAtTorque(torque));
@@ -195,7 +196,7 @@ double JointDynamics::accept() noexcept
   }
   const double slipped = now_.cup.slipped;
   now_.cup.slipped = 0.0;
-  // Only what is remembered: a copy of all has to wait for what was written last.
+  // Copies only the state, because a copy of the whole must wait for the last stores.
   accepted_.cup.twist = now_.cup.twist;
   accepted_.cup.rotation = now_.cup.rotation;
   if (model_->motor.preslidingAngle() > 0.0)
@@ -210,13 +211,13 @@ double JointDynamics::accept() noexcept
   return slipped;
 }
 
-/// Whether the surface gives the full ring's torque at the present angles, well inside its edges. It does not where the
-/// teeth have jumped.
+/// Whether the surface has the torque of the full ring at the present angles, well within its edges. After a jump of
+/// teeth it has not.
 bool JointDynamics::surfaceAgrees() const noexcept
 {
   constexpr double MARGIN = 0.05;   // share of the surface's range
-  constexpr double TABLED = 2e-6;   // of the output's angle at given torque [rad]
-  constexpr double BETWEEN = 2e-5;  // the same of a surface that lies between others; a tooth's jump is 3e-2
+  constexpr double TABLED = 2e-6;   // error of the output's angle at given torque [rad]
+  constexpr double BETWEEN = 2e-5;  // the same error of an interpolated surface; a jump of a tooth is 3e-2
   ResponseSurface::Place place;
   if (!surface_->locate(motor_angle_, output_angle_, place) || surface_->nearEdge(place, MARGIN))
   {
@@ -263,7 +264,7 @@ void JointDynamics::updateFriction(const Eigen::Vector2d& speeds) noexcept
   friction_is_of_ring_ = true;
 }
 
-/// That the brake holds the shaft with, at the present angle.
+/// Torque that the brake holds the shaft with, at the present angle.
 double JointDynamics::brakeTorque(double motor_speed) noexcept
 {
   now_.pin = accepted_.pin;
@@ -271,7 +272,7 @@ double JointDynamics::brakeTorque(double motor_speed) noexcept
   return model_->brake.hold(inputs.brake_engaged, motor_angle_, push, now_.pin);
 }
 
-/// Of the bearing's grease, at the present temperature.
+/// Effective viscosity of the bearing's grease at the present temperature.
 double JointDynamics::viscosity() noexcept
 {
   if (inputs.temperature != temperature_)
@@ -304,7 +305,7 @@ void JointDynamics::operator()(const JointState& x, JointState& rate, double) no
   {
     return;
   }
-  // Of the current as part of the state, or where it follows at once.
+  // The torque of the current is a state, or follows at once.
   drive_torque =
       model_->motor.currentRate() > 0.0 ? x[DRIVE_TORQUE] : model_->motor.limited(inputs.motor_torque, x[MOTOR_SPEED]);
   updateFriction(speeds);

@@ -13,8 +13,8 @@ namespace hjt
 {
 namespace
 {
-/// Speeds for the strength of friction in a kick: of each speed the mean amount over it, by the line through the
-/// speeds at its begin and half a kick earlier [rad/s].
+/// Speeds for the strength of friction in a kick: means of their magnitude over the kick, by linear extrapolation from
+/// the speeds at its beginning and half a kick earlier [rad/s].
 Eigen::Vector2d rubbingSpeeds(const Eigen::Vector2d& before, const Eigen::Vector2d& earlier) noexcept
 {
   Eigen::Vector2d mean;
@@ -29,8 +29,8 @@ Eigen::Vector2d rubbingSpeeds(const Eigen::Vector2d& before, const Eigen::Vector
   return mean;
 }
 
-/// Speeds after a kick that without friction would bring a momentum [N.m.s]. On the surface the friction is in few
-/// terms, and all is done to be quick.
+/// Speeds after a kick, given the momentum after it without friction [N.m.s]. On the surface the friction has few terms
+/// and this function is the time-critical one.
 KickedSpeeds rub(JointDynamics& system, const DryFriction& friction, const Eigen::Vector2d& before,
                  const Eigen::Vector2d& momentum, double dt) noexcept
 {
@@ -42,11 +42,11 @@ KickedSpeeds rub(JointDynamics& system, const DryFriction& friction, const Eigen
   return system.stopOrSlide(friction, before, momentum, dt);
 }
 
-/// Speeds after a kick in which the drive's torque fades with the speed, as it is at the kick's end: one solution,
-/// approached without overshoot however steep the fading. Leaves the drive's torque in `system`.
+/// Speeds after a kick in which the drive's torque decreases with the speed at the kick's end. The iteration has one
+/// solution and does not overshoot, however steep the decrease. `system` receives the drive's torque.
 ///
-/// `others`: torques but the drive's and friction [N.m]; `kept`: of the drive's old torque [N.m]; `share`: of the
-/// wanted torque that the current takes [-].
+/// `others`: torques except the drive's and friction [N.m]; `kept`: remaining part of the drive's old torque [N.m];
+/// `share`: part of the wanted torque that the current reaches [-].
 KickedSpeeds fade(JointDynamics& system, const Eigen::Vector2d& others, double kept, double share,
                   const Eigen::Vector2d& before, double dt) noexcept
 {
@@ -55,7 +55,7 @@ KickedSpeeds fade(JointDynamics& system, const Eigen::Vector2d& others, double k
   const double gain = std::max(system.driveGain(), 0.0);
   const auto kick = [&](double torque, double slope)
   {
-    // A torque that falls with the speed at the end is a larger inertia.
+    // A torque that decreases with the final speed acts as additional inertia.
     Eigen::Vector2d inertia = system.inertia();
     const Eigen::Vector2d momentum = inertia.cwiseProduct(before) + dt * (others + Eigen::Vector2d(gain * torque, 0.0));
     inertia[0] += dt * gain * slope;
@@ -70,8 +70,8 @@ KickedSpeeds fade(JointDynamics& system, const Eigen::Vector2d& others, double k
   return speeds;
 }
 
-/// Speeds after a kick by `others`, as of `fade`, and a drive that holds its torque back by the speed at the end or has
-/// all of it, `full` [N.m]. Nearly always it is as it was at the start.
+/// Speeds after a kick by `others` (see `fade`) and by a drive that either reduces its torque by the final speed or has
+/// the whole, `full` [N.m]. The case of the kick's beginning is tried first.
 KickedSpeeds drive(JointDynamics& system, const Eigen::Vector2d& others, double full, double kept, double share,
                    const Eigen::Vector2d& before, double dt) noexcept
 {
@@ -93,8 +93,8 @@ KickedSpeeds drive(JointDynamics& system, const Eigen::Vector2d& others, double 
 }
 }  // namespace
 
-/// Speeds after a kick over `dt`. `rubbing`: speeds that friction's strength is taken at [rad/s]; `lag`: what is left
-/// of the drive's torque that the last kick had [-].
+/// Speeds after a kick over `dt`. `rubbing`: speeds for the friction's strength [rad/s]; `lag`: remaining part of the
+/// drive's torque in the last kick [-].
 KickedSpeeds Leapfrog::kick(JointDynamics& system, JointState& x, const Eigen::Vector2d& before,
                             const Eigen::Vector2d& rubbing, double lag, double dt) noexcept
 {
@@ -120,8 +120,8 @@ KickedSpeeds Leapfrog::kick(JointDynamics& system, JointState& x, const Eigen::V
   return speeds;
 }
 
-/// The present inputs act on the speeds otherwise than those of the last kick. A current that lags does not
-/// jump; the arm's load belongs to a step's end.
+/// Whether the present inputs act differently from those of the last kick. A current that lags does not jump; the arm's
+/// load belongs to the end of a step.
 bool Leapfrog::actOtherwise(const JointDynamics& system) const noexcept
 {
   const JointInputs& now = system.inputs;
@@ -154,7 +154,7 @@ void Leapfrog::do_step(JointDynamics& system, JointState& x, double, double dt) 
   x.segment<2>(MOTOR_ANGLE) = angles;
   x.segment<2>(MOTOR_SPEED) = after;
 
-  // The work over half of the way belongs before the instant, the rest after: then the ledger's only error is the
+  // The work over half the way belongs before the instant, the rest after it. The only error of the account is then the
   // quadrature.
   const Eigen::Vector3d until = works(system, before, dt);
   rest_ = works(system, after, dt);
@@ -165,7 +165,7 @@ void Leapfrog::do_step(JointDynamics& system, JointState& x, double, double dt) 
   x.segment<3>(MOTOR_WORK) += until + rest_;
 }
 
-/// Of the last kick's torques over half a step at these speeds, in the order of the state [J].
+/// Works of the last kick's torques over half a step at these speeds, in the order of the state [J].
 Eigen::Vector3d Leapfrog::works(const JointDynamics& system, const Eigen::Vector2d& speeds, double dt) const noexcept
 {
   return 0.5 * dt *
@@ -187,7 +187,7 @@ void Leapfrog::retake(JointDynamics& system, JointState& x, double dt) noexcept
   }
   x.segment<3>(MOTOR_WORK) -= rest_;
   retaken_ += 0.5 * inertia_.cwiseProduct(half_kick_.cwiseAbs2());
-  // Where something stopped within the kick, the speed half way is not the mean that its works are of.
+  // If something stopped within the kick, the speed in the middle is not the mean that the works belong to.
   x[DISSIPATED] += 0.5 * inertia_.dot(speeds_.cwiseAbs2() - halfway_.cwiseAbs2());
   // An arm changed the output's inertia at the speeds that are taken back.
   x[LOAD_WORK] += 0.5 * (inertia - inertia_).dot(x.segment<2>(MOTOR_SPEED).cwiseAbs2() - halfway_.cwiseAbs2());
@@ -206,7 +206,7 @@ void Leapfrog::retake(JointDynamics& system, JointState& x, double dt) noexcept
   system.inputs.arm_torque = arm_torque;
 }
 
-/// At the last instant.
+/// Sets the joint to rest at the last instant.
 void Leapfrog::stop(const JointDynamics& system, JointState& x) noexcept
 {
   using namespace joint_state;
@@ -227,7 +227,8 @@ using namespace joint_state;
 
 namespace
 {
-constexpr double AIM = 0.8;  // share of the phase limit for a substep: friction under load stiffens the joint [-]
+// substep's phase as a share of the limit, because friction under load stiffens the joint [-]
+constexpr double AIM = 0.8;
 }  // namespace
 
 JointStepper::JointStepper(const Parameters& parameters, const JointModel& model)
@@ -237,7 +238,7 @@ JointStepper::JointStepper(const Parameters& parameters, const JointModel& model
   {
     throw ParameterError(
         "these parameters have no equilibrium: the insertion of the wave generator did not converge "
-        "(gear.*, ring.*, contact.*, mesh.*, cup.*; largest force left " +
+        "(gear.*, ring.*, contact.*, mesh.*, cup.*; largest remaining force " +
         roundedText(dynamics_.status.residual, 6) + " N)");
   }
   prepareDivision(parameters);
@@ -246,10 +247,10 @@ JointStepper::JointStepper(const Parameters& parameters, const JointModel& model
   if (fastest * step_ > longest)
   {
     TextStream text;
-    text << "solver.rate = " << parameters.solver.rate << " Hz is too low: with inertias of " << dynamics_.inertia()[0]
-         << " kg.m^2 at the motor and " << dynamics_.inertia()[1] << " kg.m^2 at the output the joint can swing at "
-         << fastest << " rad/s, which needs at least " << fastest / longest
-         << " Hz (or a larger output.load_inertia, cup.friction_angle or motor.presliding_angle)";
+    text << "solver.rate = " << parameters.solver.rate << " Hz is too low. With inertias of " << dynamics_.inertia()[0]
+         << " kg.m^2 at the motor and " << dynamics_.inertia()[1] << " kg.m^2 at the output the joint can oscillate at "
+         << fastest << " rad/s. This needs at least " << fastest / longest
+         << " Hz, or a larger output.load_inertia, cup.friction_angle or motor.presliding_angle";
     throw ParameterError(text.str());
   }
   substeps_ = substepsFor(fastest * step_);
@@ -265,23 +266,23 @@ void JointStepper::prepareDivision(const Parameters& parameters) noexcept
   motor_square_ = stiffest_ / (motor * ratio * ratio) + dynamics_.model().motor.coggingStiffness() / motor;
   if (parameters.motor.presliding_angle > 0.0)
   {
-    // Just after a reversal, from full friction.
+    // After a reversal, from full friction.
     dynamics_.updateFriction({ 0.0, 0.0 });
     motor_square_ += 2.0 * dynamics_.friction().presliding / parameters.motor.presliding_angle / motor;
   }
 }
 
-/// Of the fastest motion: output and motor, reduced to the joint, swing against each other on the stiffest slope of the
+/// Angular frequency of the fastest motion: output and motor oscillate against each other on the stiffest slope of the
 /// cup [rad/s].
 double JointStepper::frequency(double output_inertia) const noexcept
 {
   return std::sqrt(stiffest_ / output_inertia + motor_square_);
 }
 
-/// `phase`: of that swing in a step [rad].
+/// `phase`: of that oscillation in an undivided step [rad].
 int JointStepper::substepsFor(double phase) const noexcept
 {
-  constexpr double LENGTH = 1e-4;  // longest substep that contacts and friction allow at any swing [s]
+  constexpr double LENGTH = 1e-4;  // longest substep that contacts and friction allow, for any phase [s]
   if (phase <= phase_limit_)
   {
     return 1;
@@ -323,13 +324,13 @@ void JointStepper::setOutputInertia(double inertia) noexcept
     phase_limit_ = MAX_PHASE_ADVANCE_IN_ARM;
     divideAgain(inertia);
   }
-  // The speed stays, and with it the energy of the output changes: what the arm does to it.
+  // The speed does not change, so the energy of the output changes by the work of the arm.
   const double speed = x_[OUTPUT_SPEED];
   x_[LOAD_WORK] -= 0.5 * (inertia - dynamics_.inertia()[1]) * speed * speed;
   dynamics_.setOutputInertia(inertia);
 }
 
-/// More substeps once the phase is beyond its limit, fewer once fewer have it where it is aimed at.
+/// Increases the number of substeps if the phase exceeds its limit, and reduces it if fewer meet the aim.
 void JointStepper::divideAgain(double output_inertia) noexcept
 {
   const double phase = frequency(output_inertia) * step_;
@@ -346,7 +347,7 @@ void JointStepper::divideAgain(double output_inertia) noexcept
 
 bool JointStepper::staysAtRest(const JointInputs& inputs) const noexcept
 {
-  constexpr double SETTLED = 1e-9;  // share of the wanted torque by which the current may differ
+  constexpr double SETTLED = 1e-9;  // relative difference between the current's torque and the wanted one
   const JointInputs& last = dynamics_.inputs;
   return rest_steps_ * step_ >= REST_TIME && inputs.motor_torque == last.motor_torque &&
          std::abs(x_[DRIVE_TORQUE] - inputs.motor_torque) <= SETTLED * std::abs(inputs.motor_torque) &&
@@ -396,7 +397,7 @@ bool JointStepper::substep() noexcept
   return dynamics_.status.ok();
 }
 
-/// Of motor and of output, each with the other held: squares of the angular frequencies [rad^2/s^2].
+/// Squared angular frequencies of motor and output, each with the other held [rad^2/s^2].
 Eigen::Vector2d JointStepper::swingSquares() const noexcept
 {
   const RingResponse& ring = dynamics_.response();
@@ -418,7 +419,7 @@ double JointStepper::phaseAdvance() const noexcept
 
 bool JointStepper::isCoarse() const noexcept
 {
-  // The square of the fastest swing is at most the sum of the squares.
+  // The square of the highest frequency is at most the sum of the squares.
   return substep_ * substep_ * swingSquares().sum() > phase_limit_ * phase_limit_ && phaseAdvance() > phase_limit_;
 }
 

@@ -8,17 +8,17 @@
 
 namespace hjt
 {
-/// Staggered leapfrog with implicit friction; meets Boost.odeint's stepper concept.
+/// Staggered leapfrog with implicit friction. It fulfils Boost.odeint's stepper concept.
 ///
-/// Between two calls the speeds of the state belong half a step ahead of its angles (Moreau's time stepping):
-///   angles += h speeds;  ring at the new angles;  speeds: kicked by the torques there, friction implicit
-/// One ring solve a step, order 2, symplectic without friction; a joint that sticks keeps its angle to the last bit,
-/// because the speeds that move it have already seen friction.
+/// Between two calls the speeds of the state are half a step ahead of its angles (Moreau's time stepping):
+///   angles += h speeds;  ring at the new angles;  speeds: changed by the torques there, with implicit friction
+/// A step needs one solve of the ring. The method has order 2 and is symplectic without friction. The angle of a joint
+/// that sticks is constant to the last bit, because its speeds already include friction.
 ///
-/// `system` is a JointDynamics; its inputs act from the instant on that a step begins at. Half of each kick belongs to
-/// the step after it: where inputs jump, that half is done again with the new ones. The first step begins with speeds
-/// at the instant of the angles. If the ring does not converge the angles stay, the joint stands, what it moved with is
-/// dissipated, and `system.status` says so.
+/// `system` is a JointDynamics whose inputs act from the beginning of a step. Half of each kick, the change of the
+/// speeds, belongs to the following step; if the inputs jump, that half is repeated with the new inputs. The first step
+/// begins with speeds at the instant of the angles. If the ring does not converge, the angles stay, the joint is set to
+/// rest, its kinetic energy counts as dissipated, and `system.status` says so.
 class Leapfrog
 {
 public:
@@ -33,10 +33,10 @@ public:
 
   void do_step(JointDynamics& system, JointState& x, double t, double dt) noexcept;
 
-  /// Does the half of the last kick that belongs after the instant again: ring, inputs or step are others from here on.
+  /// Repeats the second half of the last kick after a change of ring, inputs or step.
   void retake(JointDynamics& system, JointState& x, double dt) noexcept;
 
-  /// Speeds at the instant of the angles, mean of before and after the kick [rad/s].
+  /// Speeds at the instant of the angles, means over the kick [rad/s].
   const Eigen::Vector2d& speeds() const noexcept { return speeds_; }
 
   /// Friction torque of the last kick on motor and output [N.m].
@@ -48,10 +48,10 @@ public:
   /// Work on the load and kinetic energy of the output, at the instant of the angles [J].
   double deliveredEnergy() const noexcept { return delivered_; }
 
-  /// Of the gear and all friction on what hangs on the output, at the instant of the angles [N.m].
+  /// Torque of the gear and all friction on load and arm, at the instant of the angles [N.m].
   double linkTorque() const noexcept { return link_torque_; }
 
-  /// Before a first step, at rest under the load of an arm [N.m]: nothing is delivered.
+  /// Resets to rest under the load of an arm [N.m], before the first step; the delivered energy becomes zero.
   void reset(double arm_torque) noexcept
   {
     *this = {};
@@ -67,42 +67,43 @@ private:
   void stop(const JointDynamics& system, JointState& x) noexcept;
 
   Eigen::Vector2d speeds_{ 0.0, 0.0 };
-  Eigen::Vector2d halfway_{ 0.0, 0.0 };  // through the last kick, at the instant of the angles [rad/s]
+  Eigen::Vector2d halfway_{ 0.0, 0.0 };  // speeds in the middle of the last kick, at the instant of the angles [rad/s]
   Eigen::Vector2d friction_{ 0.0, 0.0 };
   double balance_{};
   double delivered_{};
   double link_torque_{};
-  Eigen::Vector3d rest_{ 0.0, 0.0, 0.0 };  // of the last kick's works, after the instant [J]
-  Eigen::Vector2d inertia_{ 0.0, 0.0 };    // that it moved [kg.m^2]
+  Eigen::Vector3d rest_{ 0.0, 0.0, 0.0 };  // works of the last kick after the instant [J]
+  Eigen::Vector2d inertia_{ 0.0, 0.0 };    // inertia in the last kick [kg.m^2]
   Eigen::Vector2d half_kick_{ 0.0, 0.0 };  // change of the speeds after the instant [rad/s]
-  /// The ledger takes the kinetic energy at an instant from the product of the speeds half a step before and after it.
-  /// Where a half is done again, that changes though no speed at the instant does: by motor and output, summed [J].
+  /// The energy account takes the kinetic energy at an instant from the product of the speeds half a step before and
+  /// after it. A repeated half kick changes this product, although no speed at the instant changes: sum by motor and
+  /// output [J].
   Eigen::Vector2d retaken_{ 0.0, 0.0 };
-  JointInputs acted_;  // in the last kick
-  bool moves_{};       // a kick was done: speeds are half a step ahead
+  JointInputs acted_;  // inputs of the last kick
+  bool moves_{};       // speeds are half a step ahead because a kick was done
 };
 
-/// Marches the joint by the leapfrog, in equal steps, and keeps its energy ledger.
+/// Integrates the joint by the leapfrog in equal steps and keeps its energy account.
 class JointStepper
 {
 public:
-  /// Largest phase of a swing per step. The leapfrog then runs ahead by phase^2 / 24 = 0.04 %: after four swings its
-  /// error is a hundredth of the swing's height [rad].
+  /// Largest phase of an oscillation in a step [rad]. The leapfrog then runs ahead by phase^2 / 24 = 0.04 %, so that
+  /// the error after four oscillations is a hundredth of the amplitude.
   static constexpr double MAX_PHASE_ADVANCE = 0.1;
-  /// Within an arm, whose light links swing at kilohertz that nothing of it excites: 0.7 % ahead [rad].
+  /// Within an arm [rad]. Its light links have kilohertz modes that nothing in the arm excites; 0.7 % ahead.
   static constexpr double MAX_PHASE_ADVANCE_IN_ARM = 0.4;
   static constexpr int MAX_SUBSTEPS = 31;
-  /// Of the output, 0.4 seconds of arc a second. Held by the friction of its flanks alone, regularised at the shipped
-  /// speed, it creeps with up to 8e-7 [rad/s].
+  /// Speed of an output at rest, 0.4 seconds of arc a second [rad/s]. An output that only the regularised friction of
+  /// its flanks holds creeps with up to 8e-7 rad/s at the shipped stiction_velocity.
   static constexpr double REST_SPEED = 2e-6;
   static constexpr double REST_TIME = 0.1;  ///< [s]
 
   /// @throws ParameterError if the step is too long for the stiffest motion of the joint.
   JointStepper(const Parameters& parameters, const JointModel& model);
-  JointStepper(const JointStepper&) = default;  ///< to be followed by setModel
+  JointStepper(const JointStepper&) = default;  ///< requires setModel afterwards
   JointStepper& operator=(const JointStepper&) = delete;
 
-  void setModel(const JointModel& copied) noexcept  ///< see RingEquilibrium
+  void setModel(const JointModel& copied) noexcept  ///< see RingEquilibrium::setModel
   {
     dynamics_.setModel(copied);
   }
@@ -110,49 +111,53 @@ public:
   /// Puts the joint at rest where it settles under an arm's load [N.m]. @returns false if it does not settle.
   bool reset(double arm_torque = 0.0) noexcept;
 
-  /// One step under `inputs`, which act from its begin on; the drive's speed limit and current loop take from the
-  /// torque wanted. False: the ring did not converge; the last good angles stay, at rest.
+  /// Advances one step under `inputs`, which act from its beginning. The drive's speed limit and current loop reduce
+  /// the wanted torque. @returns false if the ring did not converge; the last angles then stay, at rest.
   ///
-  /// A step that is too long for the joint's fastest swing is done in `substeps()` equal ones. Their number is
-  /// fixed by the parameters and an arm's inertia, so that live equals offline, and odd: the arm's load then acts from
-  /// half a step before its instant on, as in a step that is not divided.
+  /// A step that is too long for the joint's fastest oscillation is divided into `substeps()` equal ones. Parameters
+  /// and an arm's inertia determine their number, so that live and offline runs are equal. The number is odd: the arm's
+  /// load then acts from half a step before its instant on, as in an undivided step.
   ///
-  /// A joint at rest stays as it is until an input changes: its motor sticks, and for REST_TIME its output has moved
-  /// slower than regularised friction creeps, or than counts. Then nothing is solved.
+  /// A joint at rest is not solved until an input changes. It is at rest if its motor sticks and, for REST_TIME, its
+  /// output has moved slower than REST_SPEED.
   bool step(const JointInputs& inputs) noexcept;
 
-  /// After an edit of the model between two steps, the full ring in use: what its stored energy changes by is set free,
-  /// or taken up, by the fault. False: the ring did not converge and is still the old one.
+  /// Solves the full ring after a change of the model between two steps. The fault releases or absorbs the change of
+  /// the stored energy. @returns false if the ring did not converge; the old ring then stays.
   bool updateModel() noexcept;
-  double releasedEnergy() const noexcept { return released_; }  ///< by edits of the model since reset [J]
+  /// energy released by changes of the model since the reset [J]
+  double releasedEnergy() const noexcept { return released_; }
 
-  /// Within an arm: inertia of the output from the next step on [kg.m^2].
+  /// Sets the output's inertia within an arm, from the next step on [kg.m^2].
   void setOutputInertia(double inertia) noexcept;
 
-  /// See JointDynamics.
+  /// See JointDynamics::useSurface.
   [[nodiscard]] bool useSurface(const ResponseSurface* surface) noexcept;
 
   double motorAngle() const noexcept { return x_[joint_state::MOTOR_ANGLE]; }    ///< [rad]
   double outputAngle() const noexcept { return x_[joint_state::OUTPUT_ANGLE]; }  ///< [rad]
-  const Eigen::Vector2d& speeds() const noexcept { return speeds_; }             ///< motor, output [rad/s]
+  const Eigen::Vector2d& speeds() const noexcept { return speeds_; }             ///< speeds of motor and output [rad/s]
   const Eigen::Vector2d& frictionTorque() const noexcept { return friction_; }   ///< on motor and output [N.m]
-  double driveTorque() const noexcept { return x_[joint_state::DRIVE_TORQUE]; }  ///< of the current, at 25 degC [N.m]
-  /// The drive holds torque back at its speed limit.
+  /// torque of the current at 25 degC [N.m]
+  double driveTorque() const noexcept { return x_[joint_state::DRIVE_TORQUE]; }
+  /// Whether the drive reduces its torque at the speed limit.
   bool isSpeedLimited() const noexcept
   {
     return dynamics_.model().motor.fades(dynamics_.inputs.motor_torque, speeds_[0]);
   }
-  double energyResidual() const noexcept;  ///< energy in - stored - dissipated - released since reset [J]
-  double dissipatedEnergy() const noexcept { return x_[joint_state::DISSIPATED]; }  ///< by all friction [J]
-  double energyThroughput() const noexcept { return throughput_; }  ///< sum of |work| of motor, load, friction [J]
+  double energyResidual() const noexcept;  ///< energy since the reset: supplied - stored - dissipated - released [J]
+  /// energy that all friction has dissipated [J]
+  double dissipatedEnergy() const noexcept { return x_[joint_state::DISSIPATED]; }
+  double energyThroughput() const noexcept { return throughput_; }  ///< sum of |work| of motor, load and friction [J]
   int substeps() const noexcept { return substeps_; }               ///< 1 ... MAX_SUBSTEPS
-  /// Of the joint's fastest swing in one substep, motor against output on the ring's present stiffness [rad].
+  /// Phase of the joint's fastest oscillation, motor against output, in a substep at the ring's present stiffness
+  /// [rad].
   double phaseAdvance() const noexcept;
-  bool isCoarse() const noexcept;  ///< the phase advance is beyond MAX_PHASE_ADVANCE
-  /// To what hangs on the output, since reset: work on load and arm, and the output's kinetic energy [J].
+  bool isCoarse() const noexcept;  ///< whether the phase advance exceeds MAX_PHASE_ADVANCE
+  /// Work on load and arm plus kinetic energy of the output since the reset [J].
   double deliveredEnergy() const noexcept { return leapfrog_.deliveredEnergy(); }
-  double linkTorque() const noexcept { return leapfrog_.linkTorque(); }    ///< see Leapfrog
-  const SolveStatus& status() const noexcept { return dynamics_.status; }  ///< of the last step
+  double linkTorque() const noexcept { return leapfrog_.linkTorque(); }    ///< see Leapfrog::linkTorque
+  const SolveStatus& status() const noexcept { return dynamics_.status; }  ///< status of the last step
   const JointDynamics& dynamics() const noexcept { return dynamics_; }
 
 private:
@@ -164,13 +169,13 @@ private:
   int substepsFor(double phase) const noexcept;
   void divideAgain(double output_inertia) noexcept;
 
-  int rest_steps_{};  // in a row at whose end the joint was at rest
+  int rest_steps_{};  // successive steps after which the joint was at rest
   int substeps_{ 1 };
   double step_;     // [s]
   double substep_;  // [s]
   double phase_limit_{ MAX_PHASE_ADVANCE };
-  double stiffest_{};      // slope of the cup, with its friction's [N.m/rad]
-  double motor_square_{};  // of the motor's part in the fastest swing [rad^2/s^2]
+  double stiffest_{};      // slope of the cup with its friction [N.m/rad]
+  double motor_square_{};  // motor's part of the squared frequency of the fastest oscillation [rad^2/s^2]
   JointDynamics dynamics_;
   Leapfrog leapfrog_;
   JointState x_{ JointState::Zero() };

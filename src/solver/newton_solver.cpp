@@ -8,7 +8,7 @@ namespace hjt
 {
 namespace
 {
-/// How often the teeth that a tangent is of stand in the ring.
+/// Number of copies of the tangent's teeth in the ring.
 int copiesOf(const RingTangent& tangent) noexcept
 {
   return tangent.solved < tangent.teeth() ? 2 : 1;
@@ -144,7 +144,7 @@ EnergyDescent::EnergyDescent(const RingModel& model, double tolerance)
 {
 }
 
-/// Leaves the step in `step_`, its start in `start_points_`.
+/// Stores the step in `step_` and its start in `start_points_`.
 bool EnergyDescent::findWayDown(RingLinearisation& system, const RingState& state) noexcept
 {
   constexpr int MAX_SHIFTS = 30;
@@ -171,7 +171,7 @@ bool EnergyDescent::findWayDown(RingLinearisation& system, const RingState& stat
   return false;
 }
 
-/// Moves to `length` steps from the start. @returns how steeply the energy falls there along the step [J].
+/// Moves to `length` steps from the start. @returns the slope of the energy along the step [J].
 double EnergyDescent::slopeAt(double length, RingLinearisation& system, RingState& state) noexcept
 {
   state.shape.points = start_points_ + length * step_;
@@ -206,7 +206,7 @@ bool EnergyDescent::step(RingLinearisation& system, RingState& state) noexcept
   return false;
 }
 
-/// Taken if it lowers the energy (or, at the level of rounding, the forces).
+/// The step is taken if it lowers the energy or, at the level of rounding, the forces.
 bool EnergyDescent::dampedStep(double damping, RingLinearisation& system, RingState& state) noexcept
 {
   constexpr double ROUNDING = 1e-12;  // share of the energy
@@ -233,7 +233,7 @@ bool EnergyDescent::dampedStep(double damping, RingLinearisation& system, RingSt
   return false;
 }
 
-/// Whether teeth that have been lifted out are nearer to other spaces now.
+/// Assigns teeth that have left their space to the nearest one. @returns whether a space changed.
 bool EnergyDescent::pairsAgain(RingState& state) noexcept
 {
   old_space_ = state.shape.space;
@@ -246,8 +246,8 @@ bool EnergyDescent::pairsAgain(RingState& state) noexcept
 
 SolveStatus EnergyDescent::descend(RingLinearisation& system, RingState& state) noexcept
 {
-  constexpr int MAX_STEPS = 200;         // snaps of teeth take up to 34; a step of a twin that runs must end
-  constexpr double FIRST_DAMPING = 1e6;  // N/m, added to every tooth's stiffness
+  constexpr int MAX_STEPS = 200;         // a snap of teeth takes up to 34; a step of a running twin must end
+  constexpr double FIRST_DAMPING = 1e6;  // [N/m], added to every tooth's stiffness
   constexpr double MIN_DAMPING = 1e-3;
   constexpr double MAX_DAMPING = 1e16;
   SolveStatus status;
@@ -288,7 +288,7 @@ SolveStatus NewtonSolver::solve(const EquilibriumGoal& goal, RingLinearisation& 
   if (status.residual <= goal.guess && !system.slopesChanged(state, goal.present_rates))
   {
     state.residual = status.residual;
-    return status;  // the tangent of the last solve is good enough to have predicted this
+    return status;  // the tangent of the last solve predicted this well enough
   }
   status.code = iterate(goal, system, state, descent, status);
   if (status.ok() && system.slopesChanged(goal.present_rates) && !system.refactor(state))
@@ -306,8 +306,8 @@ SolveStatus NewtonSolver::solve(const EquilibriumGoal& goal, RingLinearisation& 
 SolveCode NewtonSolver::iterate(const EquilibriumGoal& goal, RingLinearisation& system, RingState& state,
                                 EnergyDescent* descent, SolveStatus& status) noexcept
 {
-  constexpr double GOOD_CONTRACTION = 0.1;  // better than this, the factors serve another iteration
-  constexpr int DESCENT = 5;                // times as many iterations: one for every few teeth that touch or let go
+  constexpr double GOOD_CONTRACTION = 0.1;  // with a smaller ratio, the factors serve another iteration
+  constexpr int DESCENT = 5;  // factor on the iterations: one for every few teeth that begin or end contact
   const int max_iterations = (descent != nullptr ? DESCENT : 1) * max_iterations_;
   bool fresh = false;
   while (std::isfinite(status.residual))
@@ -339,7 +339,7 @@ SolveCode NewtonSolver::iterate(const EquilibriumGoal& goal, RingLinearisation& 
   return SolveCode::NOT_FINITE;
 }
 
-/// One Newton step, shortened until the largest force falls (or is at the level of rounding).
+/// One Newton step, shortened until the largest force decreases or is at the level of rounding.
 bool NewtonSolver::searchLine(double residual, double enough, RingLinearisation& system, RingState& state) noexcept
 {
   constexpr int MAX_HALVINGS = 7;

@@ -11,37 +11,37 @@
 
 namespace hjt
 {
-/// Forces on the ring at a state, their tangent and its factors.
+/// Forces on the ring at a state, with their tangent and its factors.
 class RingLinearisation
 {
 public:
   explicit RingLinearisation(const RingModel& model);
 
-  void setModel(const RingModel& copied) noexcept { model_ = &copied; }  ///< see RingEquilibrium
+  void setModel(const RingModel& copied) noexcept { model_ = &copied; }  ///< see RingEquilibrium::setModel
 
-  /// Forces at `state`; without the circular spline while `circular_spline_in` is false.
+  /// Computes the forces at `state`; without those of the circular spline while `circular_spline_in` is false.
   void updateForces(const RingState& state) noexcept;
-  void updateTangent(const RingState& state) noexcept;  ///< with the forces of the same state
-  void shift(double stiffness) noexcept;                ///< adds to every tooth's own stiffness [N/m]
+  void updateTangent(const RingState& state) noexcept;  ///< requires the forces of this state
+  void shift(double stiffness) noexcept;                ///< adds a stiffness to the diagonal of every tooth [N/m]
   bool factor() noexcept { return solver().factor(tangent_); }
 
-  /// Tangent and factors of a state whose forces are the present ones. False: it has no inverse.
+  /// Computes tangent and factors for the state of the present forces. @returns false if the tangent has no inverse.
   bool refactor(const RingState& state) noexcept;
 
-  /// Whether the cup has come to another slope since the rates of `state` were found, or a tooth on a ball, or any of
-  /// `all_teeth`, has begun or ceased to touch since `refactor`.
+  /// Whether the tangent's slopes changed: the cup is on another slope than for the rates of `state`, or since
+  /// `refactor` the contact of a tooth on a ball, or of any tooth if `all_teeth`, has begun or ended.
   bool slopesChanged(const RingState& state, bool all_teeth) const noexcept;
-  /// The same since `refactor` alone.
+  /// Whether the slopes changed since `refactor`.
   bool slopesChanged(bool all_teeth) const noexcept;
 
-  /// Steps of the tooth points that the factored tangent answers the present forces with [m].
+  /// Solves for the step of the tooth points by the factored tangent [m].
   void solve(Eigen::VectorXd& step) noexcept;
 
-  /// The same after `refactor`; with the first step come the rates by both angles: a sweep costs little more for three
-  /// columns.
+  /// Step after `refactor`. The first one also computes the rates by both angles, because a solve with three columns
+  /// costs little more.
   const Eigen::VectorXd& newtonStep() noexcept;
 
-  /// Rates and stiffness of the last `refactor`, handed over to the state.
+  /// Moves rates and stiffness of the last `refactor` to the state.
   void moveSensitivities(RingState& state) noexcept;
 
   const RingForces& forces() const noexcept { return forces_; }
@@ -57,36 +57,36 @@ private:
 
   const RingModel* model_;
   CyclicSolver solver_;
-  CyclicSolver half_solver_;  // of a ring that repeats after half a turn
+  CyclicSolver half_solver_;  // for a ring that repeats after half a turn
   RingTangent tangent_;
   RingForces forces_;
-  // When the tangent was factored.
+  // State of the contacts in the factored tangent.
   std::vector<char> factored_meshed_;
-  Eigen::VectorXd factored_depth_;  // of the wave generator's contact
-  // Of the last factored tangent, once known.
+  Eigen::VectorXd factored_depth_;  // depths in the wave generator's contact
+  // Results of the last factored tangent, if computed.
   bool rates_known_{};
   Eigen::VectorXd step_;
   Eigen::VectorXd by_wave_generator_;
   Eigen::VectorXd by_output_;
 };
 
-/// Ways down the ring's stored energy where Newton's method on the forces fails. Slower, but teeth that touch and let
-/// go by the dozen do not stop them.
+/// Minimisation of the ring's stored energy for cases where Newton's method on the forces fails. It is slower, but
+/// robust if dozens of teeth begin and end contact.
 class EnergyDescent
 {
 public:
   /// `tolerance`: largest out-of-balance force of an equilibrium [N].
   EnergyDescent(const RingModel& model, double tolerance);
 
-  void setModel(const RingModel& copied) noexcept { model_ = &copied; }  ///< see RingEquilibrium
+  void setModel(const RingModel& copied) noexcept { model_ = &copied; }  ///< see RingEquilibrium::setModel
 
-  /// One Newton step on a factored tangent, which is shifted where it is not positive along the step: all the way if
-  /// that is still downhill or nearly level, else to where the energy is lowest. Looks at slopes only: energies near a
-  /// minimum differ by less than their rounding. False: no way down.
+  /// One Newton step on a factored tangent, which is shifted until it is positive along the step. The step is complete
+  /// if it still goes downhill or nearly level at its end, else it goes to the lowest energy. Only slopes are compared,
+  /// because energies near a minimum differ by less than their rounding. @returns false if no step goes downhill.
   bool step(RingLinearisation& system, RingState& state) noexcept;
 
-  /// To the next minimum at the state's position, by damped steps that lower the energy; teeth that are lifted out of
-  /// their spaces pair again on the way. `iterations` counts the steps. On failure the state is anywhere.
+  /// Moves to the next minimum at the state's position by damped steps that lower the energy. Teeth that leave their
+  /// space are assigned their nearest one. `iterations` counts the steps. On failure the state is undefined.
   SolveStatus descend(RingLinearisation& system, RingState& state) noexcept;
 
 private:
@@ -97,30 +97,29 @@ private:
 
   const RingModel* model_;
   double tolerance_;  // [N]
-  // Scratch, sized once.
+  // Working memory.
   Eigen::VectorXd start_points_;
   Eigen::VectorXd start_forces_;
   Eigen::VectorXd step_;
   std::vector<int> old_space_;
 };
 
-/// What is asked of an equilibrium.
 struct EquilibriumGoal
 {
   double residual;     ///< largest out-of-balance force component on a tooth [N]
-  double guess;        ///< the same of a first guess that is taken as it is [N]
-  bool present_rates;  ///< rates and stiffness with the teeth that touch now
+  double guess;        ///< largest force of a first guess that is accepted without a step [N]
+  bool present_rates;  ///< rates and stiffness must belong to the teeth in contact now
 };
 
-/// Newton's method on the forces of the ring with the analytic tangent and line search. The factors serve on while the
-/// forces contract well.
+/// Newton's method on the forces of the ring with the analytic tangent and a line search. It keeps the factors while
+/// the forces contract well.
 class NewtonSolver
 {
 public:
   NewtonSolver(const RingModel& model, int max_iterations);
 
-  /// To the equilibrium at the state's position, from a state whose forces are the present ones.
-  /// `descent`: takes the steps instead, down the energy; null: Newton's own. On failure the state is anywhere.
+  /// Solves for the equilibrium at the state's position; the state must have up-to-date forces. `descent`: minimises
+  /// the energy instead; null: Newton's method. On failure the state is undefined.
   SolveStatus solve(const EquilibriumGoal& goal, RingLinearisation& system, RingState& state,
                     EnergyDescent* descent) noexcept;
 

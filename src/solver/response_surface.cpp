@@ -36,7 +36,7 @@ LineIndex::LineIndex(const std::vector<double>& lines)
 
 HJT_VECTOR_CLONES SurfaceEnergy SurfaceCell::energy() const noexcept
 {
-  // Two cubics side by side along v: of the energy and of its slope by u. By the place within the cell.
+  // Two cubics along v, of the energy and of its slope by u, at the position within the cell.
   using Pair = Eigen::Array2d;
   const double h = 1.0 / per_height_;
   const double v = v_;
@@ -118,7 +118,7 @@ ResponseSurface::ResponseSurface(std::vector<Share> shares)
 
 bool ResponseSurface::locate(double motor_angle, double output_angle, Place& place) const noexcept
 {
-  constexpr double MAX_PITCHES = 1e15;  // beyond it an angle has no place within a pitch
+  constexpr double MAX_PITCHES = 1e15;  // beyond this an angle has no position within a pitch
   const double pitches = motor_angle * pitches_per_radian_;
   const double v = output_angle - motor_angle * inverse_ratio_;
   if (!(v >= lowest_ && v <= highest_ && std::abs(pitches) < MAX_PITCHES))
@@ -165,7 +165,7 @@ void ResponseSurface::Tables::locate(double pitches, double v, Cells& cells) con
   }
 }
 
-/// `part` of a pitch beyond a whole one.
+/// `part`: fraction of a pitch.
 void ResponseSurface::Tables::locateDeviation(std::int64_t pitch, double part, double v, Cells& cells) const noexcept
 {
   const auto count = static_cast<std::int64_t>(deviations.pitches.size());
@@ -246,14 +246,14 @@ RingResponse ResponseSurface::response(const Place& place, Eigen::Vector2d& hous
   response.output_torque = -energy.by_v;
   response.wave_generator_torque = energy.by_v * inverse_ratio_ - energy.by_u * per_pitch;
   response.motor_stiffness = k_uu - inverse_ratio_ * (2.0 * k_uv - inverse_ratio_ * energy.by_vv);
-  // The housing holds what wave generator and output bring: (1 - 1/ratio) dU/dv + dU/du.
+  // The housing carries the sum of wave generator and output torque: (1 - 1/ratio) dU/dv + dU/du.
   const double by_output = (1.0 - inverse_ratio_) * energy.by_vv + k_uv;
   housing_stiffness[0] = (1.0 - inverse_ratio_) * k_uv + k_uu - inverse_ratio_ * by_output;
   housing_stiffness[1] = by_output;
   return response;
 }
 
-/// The weighted sum of the first share, as given, and the others.
+/// Adds the weighted values of the other shares to those of the first.
 void ResponseSurface::addOthers(const Place& place, SurfaceEnergy& energy, RingResponse& response) const noexcept
 {
   energy *= place.weight;
@@ -274,7 +274,7 @@ void ResponseSurface::addOthers(const Place& place, SurfaceEnergy& energy, RingR
   }
 }
 
-/// The energy's own curvature changes stiffness and velocity ratio: the stiffness between motor and output is minus
+/// The curvature of the energy changes stiffness and velocity ratio. The stiffness between motor and output is minus
 /// ratio times that of the output.
 void ResponseSurface::stiffen(const SurfaceEnergy& change, RingResponse& response) const noexcept
 {
@@ -291,7 +291,7 @@ HJT_VECTOR_CLONES void ResponseSurface::friction(const Place& place, RingFrictio
 {
   using Value = SurfaceNode::Value;
   constexpr int GROUPS = RingFrictionResponse::FLANK_GROUPS;
-  constexpr int COUNT = Value::LOBE_FORCE - Value::BILINEAR;  // a few more than needed: whole vectors
+  constexpr int COUNT = Value::LOBE_FORCE - Value::BILINEAR;  // a few more than needed, to fill whole vectors
   constexpr int VISCOUS = Value::VISCOUS - Value::BILINEAR;
   constexpr int FLANKS = Value::FLANKS - Value::BILINEAR;
   Eigen::Array<float, COUNT, 1> x = place.cell.values<COUNT>();

@@ -16,27 +16,27 @@
 
 namespace hjt
 {
-/// Values of the ring in equilibrium at a node of its table. Energy and torques in double precision, which their
-/// derivatives need; what is bilinear in single precision, which halves what a step reads.
+/// Values of the ring in equilibrium at a node of its table. Energy and torques have double precision because of their
+/// derivatives. The bilinear values have single precision, which halves the memory traffic of a step.
 class SurfaceNode
 {
 public:
-  /// Values of a node, in this order.
+  /// Indices of a node's values.
   enum Value : std::uint8_t
   {
     ENERGY,                    // U [J]
     ENERGY_BY_U,               // dU/du, u in pitches [J]
     ENERGY_BY_V,               // dU/dv [J/rad]
     ENERGY_BY_UV,              // [J/rad]
-    BILINEAR,                  // the first of these
+    BILINEAR,                  // index of the first bilinear value
     CONTACT_FORCE = BILINEAR,  // [N]
-    RING_TORQUE,               // of outer race and flexing rim at the motor [N.m]
+    RING_TORQUE,               // torque of outer race and flexing rim at the motor [N.m]
     VISCOUS,                   // motor-motor, motor-output, output-output [N.m.s/rad]
-    FLANKS = VISCOUS + 3,      // slip (2) and rms slip (2) a group [N.m], [m/rad]
+    FLANKS = VISCOUS + 3,      // slip (2) and rms slip (2) for each group [N.m], [m/rad]
     VELOCITY_RATIO = FLANKS + 4 * RingFrictionResponse::FLANK_GROUPS,  // [-]
     OUTPUT_STIFFNESS,                                                  // [N.m/rad]
     TEETH_LOADED,                                                      // [-]
-    LOBE_FORCE,                                                        // of both lobes [N]
+    LOBE_FORCE,                                                        // mesh force of both lobes [N]
     VALUES = LOBE_FORCE + 2
   };
   using Energies = std::array<double, BILINEAR>;
@@ -84,46 +84,46 @@ private:
 using SurfaceNodes = SharedValues<SurfaceNode>;
 
 /// Values of the ring in equilibrium over  u = wave generator angle within a tooth pitch  and  v = output angle - wave
-/// generator angle / ratio. Plain data: what is built, cached and read.
+/// generator angle / ratio. The table is built, stored in the cache and read as plain data.
 struct SurfaceTable
 {
-  double pitch{};             ///< of the flexspline's teeth [rad]
-  double ratio{};             ///< nominal: v stays the same when the drive has turned by a tooth pitch [-]
-  int columns{};              ///< intervals of u over a pitch, equal
+  double pitch{};             ///< tooth pitch of the flexspline [rad]
+  double ratio{};             ///< nominal ratio: v does not change when the drive turns by a tooth pitch [-]
+  int columns{};              ///< equal intervals of u in a pitch
   std::vector<double> lines;  ///< v of the lines, ascending [rad]
-  SurfaceNodes nodes;         ///< (columns + 1) a line; the last is the first again
-  ToothResponse teeth;        ///< over the same range, on lines of its own
+  SurfaceNodes nodes;         ///< (columns + 1) for each line; the last equals the first
+  ToothResponse teeth;        ///< over the same range, with lines of its own
   GridChecks checks{};
 };
 
-/// Difference between a gear with unequal teeth and the ideal gear at the same angles, over one period of the pattern:
-/// one table per tooth pitch. At the edge between two pitches both tables
-/// are the same function of v, so that energy and torques are continuous.
+/// Difference of a gear with unequal teeth from the ideal gear at the same angles, over one period of the pattern, with
+/// one table for each tooth pitch. At the edge between two pitches both tables are the same function of v, so that
+/// energy and torques are continuous.
 struct DeviationTable
 {
   struct Pitch
   {
-    int columns{};              ///< intervals of u, equal
+    int columns{};              ///< equal intervals of u
     std::vector<double> lines;  ///< v of the lines, ascending [rad]; empty: no deviation
-    SurfaceNodes nodes;         ///< (columns + 1) a line
+    SurfaceNodes nodes;         ///< (columns + 1) for each line
   };
   std::vector<Pitch> pitches;  ///< empty: no deviations
-  bool swaps_lobes{};          ///< the gear is the same again with its lobes having changed places
-  int shift{};                 ///< of the pattern against that of the table [teeth]; >= 0
+  bool swaps_lobes{};          ///< at the end of the period the lobes have exchanged their places
+  int shift{};                 ///< shift of the gear's pattern against the table's [teeth]; >= 0
   GridChecks checks{};
 };
 
-/// Which of ascending values lies below a given one, in constant time.
+/// Finds the largest of ascending values that is not above a given one, in constant time.
 class LineIndex
 {
 public:
   /// `lines`: none, or at least two.
   explicit LineIndex(const std::vector<double>& lines);
 
-  /// `v` between the first and the last line. Never the last line itself.
+  /// Index of the line below `v`, which must be between the first and the last line. Never the last line.
   std::size_t below(const std::vector<double>& lines, double v) const noexcept
   {
-    // Bins are narrower than the intervals between lines, so at most one line lies within a bin.
+    // Bins are narrower than the intervals between lines, so that a bin contains at most one line.
     const std::size_t line = line_[static_cast<std::size_t>((v - lines.front()) * bins_per_unit_)];
     return line + (line + 2 < lines.size() && v >= lines[line + 1] ? 1 : 0);
   }
@@ -133,16 +133,15 @@ private:
   std::vector<std::uint32_t> line_;  // line below the lower edge of each bin
 };
 
-/// The part of a table between two columns and two lines.
+/// Cell of a table between two columns and two lines.
 class SurfaceCell
 {
 public:
-  /// Of no table.
   SurfaceCell() = default;
 
-  /// `below`: node at its lower u on the line below; the next in memory is at the higher u. `above`: likewise.
-  /// `u`, `v`: of a place within the cell, 0 ... 1. `per_width`, `per_height`: over its width in u [pitches] and its
-  /// height in v [rad].
+  /// `below`: node at the lower u on the line below; the node at the higher u follows in memory. `above`: node at the
+  /// lower u on the line above. `u`, `v`: position within the cell, 0 ... 1. `per_width`, `per_height`: inverse of the
+  /// cell's width in u [pitches] and height in v [rad].
   SurfaceCell(const SurfaceNode* below, const SurfaceNode* above, double u, double v, double per_width,
               double per_height) noexcept
     : below_(below), above_(above), u_(u), v_(v), per_width_(per_width), per_height_(per_height)
@@ -151,10 +150,10 @@ public:
 
   bool empty() const noexcept { return below_ == nullptr; }
 
-  /// Bicubic after Hermite.
+  /// Energy by bicubic Hermite interpolation.
   SurfaceEnergy energy() const noexcept;
 
-  /// Bilinear, of any value but the energy's.
+  /// A value other than the energy, by bilinear interpolation.
   double value(int which) const noexcept
   {
     const double low = (1.0 - u_) * below_[0][which] + u_ * below_[1][which];
@@ -162,7 +161,7 @@ public:
     return (1.0 - v_) * low + v_ * high;
   }
 
-  /// The first COUNT of them at once.
+  /// The first COUNT bilinear values.
   template <int COUNT>
   inline __attribute__((always_inline)) Eigen::Array<float, COUNT, 1> values() const noexcept
   {
@@ -186,59 +185,60 @@ private:
   double per_height_{};
 };
 
-/// The ring in equilibrium as a table over the two angles of the joint: for a gear of equal teeth, which is the same
-/// again after one tooth pitch; with deviations, for one that is the same again after more; with drops of balls, for
-/// one whose bearing is faulty; as a sum of shares, for one between those of other surfaces.
+/// The ring in equilibrium as a table over the two angles of the joint. With equal teeth the table repeats after one
+/// tooth pitch. Deviations describe a gear that repeats after more pitches, BallDrops a faulty bearing, and shares a
+/// gear between those of other surfaces.
 ///
-/// The stored energy is one function, piecewise bicubic after Hermite, from its values, slopes and mixed derivative at
-/// the nodes; both torques are its derivatives, so what goes in comes out again. What friction needs is bilinear.
+/// The stored energy is a function: a piecewise bicubic Hermite interpolation of its values, slopes and mixed
+/// derivative at the nodes. Both torques are its derivatives, so that energy is conserved. The data of friction are
+/// bilinear.
 class ResponseSurface
 {
 public:
-  /// `table`: at least two lines. The lines of a pitch of `deviations` span those of the table. `balls`: of the same
-  /// gear, if its bearing is faulty.
+  /// `table`: at least two lines. The lines of a pitch of `deviations` span those of the table. `balls`: of this gear,
+  /// if its bearing is faulty.
   explicit ResponseSurface(SurfaceTable table, DeviationTable deviations = {}, std::optional<BallDrops> balls = {});
 
   static constexpr std::size_t MAX_SHARES = 4;
 
-  /// Of another surface in one that lies between several.
+  /// Share of another surface in an interpolated one.
   struct Share
   {
-    std::shared_ptr<const ResponseSurface> surface;  ///< without shares and balls
+    std::shared_ptr<const ResponseSurface> surface;  ///< surface without shares and balls
     double weight{};                                 ///< [-]
   };
 
-  /// One to MAX_SHARES of them, of gears with the same teeth; their weights sum up to 1. It is where all of them are.
+  /// One to MAX_SHARES surfaces of gears with equal numbers of teeth; the weights sum up to 1. The
+  /// range is the common part of their ranges.
   explicit ResponseSurface(std::vector<Share> shares);
 
-  /// On the table and its deviations.
+  /// Position on the table and its deviations.
   struct Cells
   {
     SurfaceCell cell;
-    SurfaceCell deviation;  ///< empty: no deviation here
-    bool lobes_swapped{};   ///< against how the deviations were measured
-    double weight{ 1.0 };   ///< of the values here in those of the surface
+    SurfaceCell deviation;  ///< empty: no deviation at this position
+    bool lobes_swapped{};   ///< relative to the deviations' measurement
+    double weight{ 1.0 };   ///< weight of these values in the sum of the shares
 
     double value(int which) const noexcept
     {
       return cell.value(which) + (deviation.empty() ? 0.0 : deviation.value(which));
     }
-    std::array<double, 2> lobeForces() const noexcept;  ///< mesh force of both lobes [N]
+    std::array<double, 2> lobeForces() const noexcept;  ///< mesh forces of both lobes [N]
   };
 
-  /// A place on the surface.
   struct Place : Cells
   {
     double at{};  ///< v [rad]
     BallDrops::Change balls;
-    std::array<Cells, MAX_SHARES - 1> others;  ///< of the shares but the first
+    std::array<Cells, MAX_SHARES - 1> others;  ///< positions on all shares except the first
     std::size_t other_count{};
   };
 
-  /// False, and nothing done, outside the table or at angles that are no numbers.
+  /// Finds a position. @returns false and does nothing outside the table or for angles that are NaN.
   bool locate(double motor_angle, double output_angle, Place& place) const noexcept;
 
-  /// Whether a place lies within a share of the range from its ends.
+  /// Whether a position is within a share of the range from its ends.
   bool nearEdge(const Place& place, double share) const noexcept
   {
     return place.at < lowest() + share * (highest() - lowest()) ||
@@ -255,7 +255,7 @@ public:
 
   void friction(const Place& place, RingFrictionResponse& friction) const noexcept;
 
-  /// Bilinear, of any value but the energy's.
+  /// A value other than the energy, by bilinear interpolation.
   static double value(const Place& place, int which) noexcept
   {
     double sum = place.weight * place.Cells::value(which);
@@ -266,7 +266,6 @@ public:
     return sum + (which == SurfaceNode::CONTACT_FORCE ? place.balls.contact_force : 0.0);
   }
 
-  /// All of these, without those of the energy.
   static SurfaceNode bilinear(const Place& place) noexcept
   {
     SurfaceNode node;
@@ -277,24 +276,24 @@ public:
     return node;
   }
 
-  /// Mesh force of both lobes [N].
+  /// Mesh forces of both lobes [N].
   static std::array<double, 2> lobeForces(const Place& place) noexcept;
 
-  /// Of the first share, where there are several.
+  /// Table of the surface or, with several shares, of the first share.
   const SurfaceTable& table() const noexcept { return tables_->table; }
   const DeviationTable& deviations() const noexcept { return tables_->deviations; }
-  /// The table has forces of teeth, and no fault or error of single teeth or balls changes them.
+  /// Whether the table contains forces of the teeth that no fault or error of single teeth or balls changes.
   bool hasTeeth() const noexcept
   {
     return shares_.empty() && !balls_ && tables_->deviations.pitches.empty() && !tables_->table.teeth.lines.empty();
   }
   const std::optional<BallDrops>& balls() const noexcept { return balls_; }
-  const std::vector<Share>& shares() const noexcept { return shares_; }  ///< none: the tables are its own
-  double lowest() const noexcept { return lowest_; }                     ///< of v [rad]
-  double highest() const noexcept { return highest_; }                   ///< [rad]
+  const std::vector<Share>& shares() const noexcept { return shares_; }  ///< empty: the surface has tables of its own
+  double lowest() const noexcept { return lowest_; }                     ///< least v [rad]
+  double highest() const noexcept { return highest_; }                   ///< largest v [rad]
 
 private:
-  /// Tables and how to find places in them; never changed.
+  /// Tables and their indices; never changed.
   struct Tables
   {
     Tables(SurfaceTable of_gear, DeviationTable of_teeth);
@@ -304,8 +303,8 @@ private:
     SurfaceTable table;
     DeviationTable deviations;
     LineIndex line_index;
-    std::vector<double> per_height;          // of the intervals between lines [1/rad]
-    std::vector<LineIndex> deviation_index;  // one a pitch
+    std::vector<double> per_height;          // inverse intervals between lines [1/rad]
+    std::vector<LineIndex> deviation_index;  // one for each pitch
   };
 
   void addOthers(const Place& place, SurfaceEnergy& energy, RingResponse& response) const noexcept;

@@ -39,8 +39,8 @@ RingEquilibrium::RingEquilibrium(const RingModel& model, const SolverParameters&
 {
 }
 
-/// Less than the shipped tolerance by a factor of 1000; it counts for rims much stiffer or teeth much finer than the
-/// shipped gear's.
+/// The rounding is a thousandth of the shipped tolerance. It matters for rims much stiffer, or teeth much finer, than
+/// the shipped gear's.
 double RingEquilibrium::measureRounding() noexcept
 {
   system_.updateForces(now_);
@@ -68,7 +68,7 @@ SolveStatus RingEquilibrium::insert(const DrivePosition& target) noexcept
   return status;
 }
 
-/// A round ring that wedges in an eccentric circular spline goes nearly the whole way without it.
+/// A round ring that jams in an eccentric circular spline is inserted nearly completely without it.
 SolveStatus RingEquilibrium::insertWedged(const DrivePosition& target) noexcept
 {
   constexpr double NEARLY = 0.99;
@@ -93,7 +93,7 @@ SolveStatus RingEquilibrium::solveFrom(const Eigen::VectorXd& points, const Driv
   return moveTo(position);
 }
 
-/// The round ring about the wave generator's centre, before the insertion.
+/// Sets the round ring about the wave generator's centre, as before the insertion.
 void RingEquilibrium::beginRound(const DrivePosition& target) noexcept
 {
   const Eigen::Vector2d centre = model_->of<WaveGeneratorContact>().centre(target);
@@ -104,7 +104,7 @@ void RingEquilibrium::beginRound(const DrivePosition& target) noexcept
   begin(round_, { target.wave_generator_angle, target.output_angle, 0.0 });
 }
 
-/// The ring at these points, in equilibrium or not.
+/// Sets the ring at these points, whether in equilibrium or not.
 void RingEquilibrium::begin(const Eigen::VectorXd& points, const DrivePosition& position) noexcept
 {
   now_.position = position;
@@ -120,7 +120,7 @@ void RingEquilibrium::begin(const Eigen::VectorXd& points, const DrivePosition& 
   now_.residual = system_.residual();
 }
 
-/// Notes the model's version, and how much of the ring there is to solve.
+/// Stores the model's version and determines the number of teeth to solve.
 void RingEquilibrium::followModel() noexcept
 {
   model_version_ = model_->version();
@@ -129,7 +129,6 @@ void RingEquilibrium::followModel() noexcept
   now_.shape.repeatSpaces(model_->gear.teeth_circular_spline);
 }
 
-/// Back to an equilibrium of before.
 void RingEquilibrium::restore(const RingState& state) noexcept
 {
   now_ = state;
@@ -246,15 +245,15 @@ SolveStatus RingEquilibrium::reach(const DrivePosition& target) noexcept
 
 SolveStatus RingEquilibrium::follow(const DrivePosition& target) noexcept
 {
-  constexpr double FOLLOWED = 10.0;  // times the tolerance
+  constexpr double FOLLOWED = 10.0;  // factor on the tolerance
   goal_ = { FOLLOWED * tolerance_, tolerance_, false };
   const SolveStatus status = moveTo(target);
   goal_ = { tolerance_, tolerance_, true };
   return reachAfter(status, target);
 }
 
-/// On balls, teeth that begin to touch have no stiffness yet: an equilibrium may be near where Newton's method fails. A
-/// ring inserted again beyond half a pitch of twist would stand in the next spaces.
+/// On balls, teeth that begin to touch have no stiffness yet, so that an equilibrium may be near where Newton's method
+/// fails. A new insertion beyond half a pitch of twist would move the ring to the next spaces.
 SolveStatus RingEquilibrium::reachAfter(SolveStatus status, const DrivePosition& target) noexcept
 {
   if (status.ok() || !std::isfinite(target.wave_generator_angle) || !std::isfinite(target.output_angle))
@@ -268,7 +267,7 @@ SolveStatus RingEquilibrium::reachAfter(SolveStatus status, const DrivePosition&
   return status.ok() ? status : reinsert(target).addEffort(status);
 }
 
-/// Straight to the target; where that fails, by halved paths that grow again.
+/// Goes directly to the target and, if that fails, over halved paths that grow again.
 SolveStatus RingEquilibrium::approach(const DrivePosition& target) noexcept
 {
   SolveStatus total;
@@ -310,7 +309,7 @@ SolveStatus RingEquilibrium::solve(const DrivePosition& target) noexcept
   return solvePredicted();
 }
 
-/// Starts from the present state.
+/// Solves from the prediction at the present state.
 SolveStatus RingEquilibrium::solvePredicted() noexcept
 {
   const int jumps = model_->meshed() ? model_->of<ToothMesh>().pairNearest(now_.position, now_.shape) : 0;
@@ -318,8 +317,8 @@ SolveStatus RingEquilibrium::solvePredicted() noexcept
   goal_.guess = tolerance_;
   if (prediction_.fromKept())
   {
-    goal_.guess = goal_.residual;  // its error is not handed on to the next guess
-    now_.cup_stiffness = 0.0;      // the rates are not those of the present teeth
+    goal_.guess = goal_.residual;  // the next guess does not use the error of this one
+    now_.cup_stiffness = 0.0;      // marks the rates as not those of the present teeth
     if (!goal_.present_rates)
     {
       prediction_.takeKeptRates(now_);
@@ -350,7 +349,7 @@ SolveStatus turnWaveGenerator(RingEquilibrium& ring, double angle) noexcept
     return {};
   }
   target.wave_generator_angle = angle;
-  // The output follows at constant load; one that hangs free in its backlash is carried along with the teeth.
+  // The output follows at constant load. Free in its backlash, it moves with the teeth.
   const double stiffness = ring.stiffness()(1, 1);
   target.output_angle +=
       stiffness > 0.0 ? -turn * ring.stiffness()(1, 0) / stiffness : turn / nominalRatio(ring.model().gear);
@@ -369,17 +368,17 @@ SolveCode codeOfFailure(const RingEquilibrium& ring, double load_torque) noexcep
 
 double balanceTolerance(const RingEquilibrium& ring) noexcept
 {
-  constexpr double SHARE = 1e-11;  // share of a tooth space: a few roundings of an angle of some radians
+  constexpr double SHARE = 1e-11;  // share of a tooth space: a few rounding errors of an angle of some radians
   return std::max(SHARE * toothSpace(ring) * ring.stiffness()(1, 1),
                   ring.rounding() * ring.model().gear.flexspline_inner_radius);
 }
 
 SolveStatus balanceOutput(RingEquilibrium& ring, double wave_generator_angle, double load_torque) noexcept
 {
-  constexpr int MAX_IDLE = 20;          // iterations in a row that come no closer
-  constexpr double CLOSER = 0.999;      // the excess has to fall below this share of the least one so far
-  constexpr double FIRST_REACH = 0.01;  // of a tooth space
-  constexpr double MAX_REACH = 0.25;    // farther, teeth would pair with other spaces
+  constexpr int MAX_IDLE = 20;          // successive iterations without progress
+  constexpr double CLOSER = 0.999;      // progress is an excess below this share of the least one so far
+  constexpr double FIRST_REACH = 0.01;  // in tooth spaces
+  constexpr double MAX_REACH = 0.25;    // in tooth spaces; farther, teeth would get other spaces
   SolveStatus total = turnWaveGenerator(ring, wave_generator_angle);
   double reach = FIRST_REACH * toothSpace(ring);
   double excess = ring.forces().output_torque - load_torque;

@@ -13,54 +13,54 @@
 
 namespace hjt
 {
-/// The ring in equilibrium for a position of wave generator and circular spline.
+/// The ring in equilibrium at a position of wave generator and circular spline.
 ///
-/// Starts Newton's method (NewtonSolver) from a prediction (RingPrediction); a target that is not reached directly is
-/// approached over halved paths. Tooth pairing changes only between solves and out of contact. On failure the last good
-/// state stays. An insertion that fails so is done once more down the stored energy (EnergyDescent).
+/// Newton's method (NewtonSolver) starts from a prediction (RingPrediction). If it fails, the target is approached over
+/// halved paths. The spaces of the teeth change only between solves and out of contact. On failure the last state
+/// stays. An insertion that fails is repeated by minimisation of the energy (EnergyDescent).
 class RingEquilibrium
 {
 public:
   RingEquilibrium(const RingModel& model, const SolverParameters& parameters);
 
-  /// Cold start: the radial deflection is raised from zero with the circular spline in place; if that does not
-  /// converge, without it, and the circular spline is added afterwards.
+  /// Solves without a guess: the radial deflection grows from zero with the circular spline present. If that fails, it
+  /// grows without the circular spline, which is then added.
   SolveStatus insert(const DrivePosition& target) noexcept;
 
-  /// Solves from a guess at the tooth points [2 N, m]; every tooth pairs with the space nearest to it at rest.
+  /// Solves from a guess of the tooth points [2 N, m]; every tooth gets the space nearest to it at rest.
   SolveStatus solveFrom(const Eigen::VectorXd& points, const DrivePosition& position) noexcept;
 
-  /// Repeats the insertion during a run after `moveTo` failed: the teeth are paired again. On failure the state is
-  /// unchanged.
+  /// Repeats the insertion during a run after `moveTo` failed, with new spaces for the teeth. On failure the state does
+  /// not change.
   SolveStatus reinsert(const DrivePosition& target) noexcept;
 
-  /// After a change of the model: solves for its equilibrium at the present position and, if that fails, repeats the
-  /// insertion. `moveTo` calls it if it was not called since the change.
+  /// Solves at the present position after a change of the model and, if that fails, repeats the insertion. `moveTo`
+  /// calls this function if the caller did not.
   SolveStatus updateModel() noexcept;
 
-  /// Computes rates and stiffness at the present shape itself; `moveTo` leaves those of one Newton step before it.
-  /// False: the tangent has no inverse; rates and stiffness stay as they are.
+  /// Computes rates and stiffness at the present shape; those of `moveTo` belong to one Newton step before. @returns
+  /// false and changes nothing if the tangent has no inverse.
   bool refreshSensitivities() noexcept;
 
-  /// Solves for the equilibrium at another position, from the present one.
+  /// Solves for the equilibrium at another position from the present one.
   SolveStatus moveTo(const DrivePosition& target) noexcept;
 
-  /// The same from a guess at the tooth points there, of a model that has not changed since the last move.
+  /// Solves at another position from a guess of its tooth points. The model must not have changed since the last move.
   SolveStatus moveTo(const DrivePosition& target, const Eigen::VectorXd& guess) noexcept;
 
-  /// After `moveTo` failed because the ring snaps: descends in energy to the next equilibrium; teeth that leave their
-  /// spaces are paired again on the way. Slow; `iterations` counts its steps. On failure the state is unchanged.
+  /// Minimises the energy at the target after `moveTo` failed because the ring snaps. Teeth that leave their space get
+  /// the nearest one. The method is slow; `iterations` counts its steps. On failure the state does not change.
   SolveStatus descend(const DrivePosition& target) noexcept;
 
-  /// `moveTo`; where that fails `descend`, and where that fails too, or cannot help, `reinsert`.
+  /// Calls `moveTo`, then on failure `descend`, and then `reinsert`.
   SolveStatus reach(const DrivePosition& target) noexcept;
 
-  /// The same near enough for `torques` to be right, ten times the tolerance: a step of a joint's motion. Rates and
-  /// stiffness may be those of a state nearby.
+  /// Solves as `moveTo`, but with ten times the tolerance, which suffices for `torques` in a step of motion. Rates and
+  /// stiffness may belong to a nearby state.
   SolveStatus follow(const DrivePosition& target) noexcept;
 
   const RingModel& model() const noexcept { return *model_; }
-  /// A copy refers to the same model, until it gets a copy of that.
+  /// Refers a copy of this object to a copy of its model.
   void setModel(const RingModel& copied) noexcept
   {
     model_ = &copied;
@@ -72,23 +72,22 @@ public:
   const DrivePosition& position() const noexcept { return now_.position; }
   const RingForces& forces() const noexcept { return system_.forces(); }
 
-  /// Rounding of a coordinate as a force [N], the lower limit of any solve.
+  /// Rounding error of a coordinate as a force [N]: the least tolerance of a solve.
   double rounding() const noexcept { return rounding_; }
 
-  /// On wave generator and output, as in equilibrium to the first order: with what the forces that are left over would
-  /// do as the teeth give way to them [N.m].
+  /// Torques on wave generator and output, corrected to first order for the remaining out-of-balance forces of the
+  /// teeth [N.m].
   Eigen::Vector2d torques() const noexcept;
 
-  /// Rates of the tooth points by wave generator angle and by output angle, the ring staying in equilibrium [m/rad].
-  /// Of the last factored tangent: with the teeth that touch now, at a shape at most a Newton step away.
+  /// Derivatives of the tooth points by wave generator angle and by output angle in equilibrium [m/rad]. They are those
+  /// of the last factored tangent: with the present contacts, at a shape at most a Newton step away.
   const Eigen::VectorXd& byWaveGenerator() const noexcept { return now_.by_wave_generator; }
   const Eigen::VectorXd& byOutput() const noexcept { return now_.by_output; }
 
-  /// Second derivatives of the stored energy by (wave generator, output) angle, the ring following [N.m/rad].
+  /// Second derivatives of the stored energy by (wave generator, output) angle, with the ring in equilibrium [N.m/rad].
   const Eigen::Matrix2d& stiffness() const noexcept { return now_.stiffness; }
 
-  /// Output speed over wave generator speed at constant load: from the stiffness, not from the tooth numbers; 0 where
-  /// the output hangs free [-].
+  /// Output speed over wave generator speed at constant load, from the stiffness; 0 if the output is free [-].
   double velocityRatio() const noexcept
   {
     return now_.stiffness(1, 1) > 0.0 ? -now_.stiffness(1, 0) / now_.stiffness(1, 1) : 0.0;
@@ -107,11 +106,11 @@ private:
   double measureRounding() noexcept;
 
   const RingModel* model_;
-  std::uint64_t model_version_;  // that the present state is of
+  std::uint64_t model_version_;  // version of the model for the present state
   RingState now_;
-  RingState start_;    // of the present move; its directions and lengths are not known
+  RingState start_;    // start of the present move; its directions and lengths are not computed
   RingState halfway_;  // the farthest point of the present move
-  RingState kept_;     // before the insertion was repeated
+  RingState kept_;     // state before the insertion was repeated
   RingLinearisation system_;
   double rounding_;   // [N]
   double tolerance_;  // largest out-of-balance force of an equilibrium [N]
@@ -120,22 +119,22 @@ private:
   EquilibriumGoal goal_;
   NewtonSolver newton_;
   EnergyDescent descent_;
-  bool descending_{ false };  // down the energy, not by Newton's method
-  Eigen::VectorXd round_;     // scratch
+  bool descending_{ false };  // minimises the energy instead of Newton's method
+  Eigen::VectorXd round_;     // working memory
 };
 
 /// Moves the ring to a wave generator angle [rad] and the output to the angle at which the mesh balances `load_torque`
-/// [N.m] (> 0 resists positive rotation): Newton on the output angle with the ring's condensed stiffness.
+/// [N.m] (> 0 resists positive rotation), by Newton's method with the ring's condensed stiffness.
 ///
-/// A step is bounded by a trust region, which begins at a hundredth of a tooth space, grows while the torque comes
-/// closer and shrinks where it does not. Without stiffness (backlash) a step is as long as the region. On failure
-/// `unbalanced_torque` is what the mesh lacks at the last angle.
+/// A trust region limits the step. It begins at a hundredth of a tooth space, grows while the torque approaches the
+/// load, and shrinks otherwise. Without stiffness (backlash) a step has the length of the region. On failure
+/// `unbalanced_torque` is the difference at the last angle.
 SolveStatus balanceOutput(RingEquilibrium& ring, double wave_generator_angle, double load_torque) noexcept;
 
 /// Inserts the wave generator at its full amplitude and balances the load.
 SolveStatus insertUnderLoad(RingEquilibrium& ring, double wave_generator_angle, double load_torque) noexcept;
 
-/// Torque at the output that counts as balanced [N.m]: 1e-11 of the torque which turns the output by a tooth space on
-/// the present stiffness, or what rounding leaves of the ring's forces.
+/// Torque at the output that counts as balanced [N.m]: 1e-11 of the torque that turns the output by a tooth space at
+/// the present stiffness, or the rounding error of the ring's forces.
 double balanceTolerance(const RingEquilibrium& ring) noexcept;
 }  // namespace hjt

@@ -11,36 +11,36 @@ namespace hjt
 {
 /// First guess of the ring's equilibrium at a new position.
 ///
-/// Whole tooth pitches of wave generator travel renumber the teeth. What is left of a pitch is a cubic between the
-/// state and its copy one pitch on, forwards or back, with the tangents at both ends; the rest of the output's angle
-/// goes along its own tangent. Where the ring repeats after half a turn, the states of the last pitches are kept by
-/// their place in the pitch: the guess goes along the tangents of the nearest one. The error of the last guess
-/// corrects the next one, as far as the last two errors were similar: errors of single teeth stay where they are,
-/// while the guess takes them for turning with the wave generator.
+/// Whole tooth pitches of wave generator travel renumber the teeth. Over the remaining fraction of a pitch the guess is
+/// a cubic between the state and its copy one pitch further, forwards or backwards, with the tangents at both ends. The
+/// rest of the output's angle follows its own tangent. If the ring repeats after half a turn, the prediction stores the
+/// states of the last pitches by their position in the pitch and uses the tangents of the nearest one. The error of the
+/// last guess corrects the next one to the extent to which the last two errors were similar, because errors of single
+/// teeth do not turn with the wave generator.
 class RingPrediction
 {
 public:
   explicit RingPrediction(const RingModel& model);
 
-  void setModel(const RingModel& copied) noexcept { model_ = &copied; }  ///< see RingEquilibrium
+  void setModel(const RingModel& copied) noexcept { model_ = &copied; }  ///< see RingEquilibrium::setModel
 
-  /// Predicts from the equilibrium that the last prediction has led to.
+  /// Predicts from the equilibrium that the last prediction led to.
   void predict(const DrivePosition& target, RingState& state) noexcept;
 
-  /// To be called if the state was reached otherwise than by `predict`.
+  /// Must be called if `predict` did not lead to the state.
   void forget() noexcept;
 
-  /// The last guess started from a state that was kept: the rates of `state` are not of its teeth.
+  /// Whether the last guess started from a stored state. Then the rates of `state` do not belong to its teeth.
   bool fromKept() const noexcept { return from_.kept >= 0; }
 
-  /// Gives `state` those of the kept state that the last guess started from, and its stiffness.
+  /// Copies rates and stiffness of that stored state to `state`.
   void takeKeptRates(RingState& state) const noexcept;
 
-  /// Keeps a solved state for guesses to come.
+  /// Stores a solved state for later guesses.
   void keep(const RingState& state) noexcept;
 
 private:
-  /// A solved state, but for its points, rates and spaces.
+  /// A solved state without its points, rates and spaces.
   struct Kept
   {
     bool known{ false };
@@ -48,11 +48,11 @@ private:
     Eigen::Matrix2d stiffness;
     double cup_stiffness{};
   };
-  /// A kept state turned by whole pitches.
+  /// A stored state that is turned by whole pitches.
   struct Source
   {
     int kept{ -1 };  // -1: none
-    int places{};    // of the half ring's teeth
+    int places{};    // number of teeth of the half ring by which it is turned
     double cosine{};
     double sine{};
   };
@@ -67,17 +67,17 @@ private:
   const RingModel* model_;
   double pitch_cos_;
   double pitch_sin_;
-  double pitch_output_angle_;  // the output's turn that renumbers the spaces along with one tooth pitch [rad]
+  double pitch_output_angle_;  // turn of the output that renumbers the spaces by one, for one tooth pitch [rad]
   bool guessed_{ false };
-  Source from_;             // of the last guess
-  std::vector<Kept> kept_;  // over one pitch
+  Source from_;             // source of the last guess
+  std::vector<Kept> kept_;  // states over one pitch
   // Of a state that is known, else not set: points of the first half of the teeth and their rates by wave generator and
   // by output, a column each; spaces of all teeth.
   Eigen::MatrixXd kept_vectors_;
   Eigen::MatrixXi kept_spaces_;
   Eigen::VectorXd guess_;        // the last, not corrected
   Eigen::VectorXd guess_error_;  // of the one before
-  // Scratch, sized once.
+  // Working memory.
   Eigen::VectorXd scratch_;
   std::vector<int> old_space_;
 };

@@ -9,8 +9,8 @@
 
 namespace hjt
 {
-/// Loops over the coordinates of the first `teeth` teeth, which the solver goes through at every step, for the compiler
-/// to vectorise. Vectors of one call have one size and are not the same, unless stated.
+/// Vectorised loops over the coordinates of the first `teeth` teeth, which the solver uses at every step. Vectors of
+/// one call have equal size and must be different objects, unless stated.
 namespace ring_vectors
 {
 /// Largest absolute value; NaN if one is not finite.
@@ -22,13 +22,13 @@ void addScaled(const Eigen::VectorXd& start, double length, const Eigen::VectorX
 
 double dot(const Eigen::VectorXd& a, const Eigen::VectorXd& b, int teeth) noexcept;
 
-/// How many signs of one value a tooth differ: positive in one, not in the other.
+/// Number of values whose sign differs: positive in one vector and not in the other.
 int signsChanged(const Eigen::VectorXd& a, const Eigen::VectorXd& b, int teeth) noexcept;
 
-/// x and y of all teeth, turned by an angle of cosine c and sine s, to the tooth `places` further (0 ... N - 1).
+/// Turns x and y of all teeth by an angle of cosine c and sine s, to the tooth `places` further (0 ... N - 1).
 void turn(const Eigen::VectorXd& values, int places, double c, double s, Eigen::VectorXd& turned) noexcept;
 
-/// A sum of three vectors with a factor each.
+/// A linear combination of three vectors.
 struct Combination
 {
   const double* a;
@@ -43,18 +43,18 @@ struct Combination
   };
 };
 
-/// result = sum with these factors, turned to the tooth `places` further (0 ... teeth - 1), on half a ring of `teeth`
-/// teeth: those that leave it at its end come in at its start reversed.
+/// result = the combination, turned to the tooth `places` further (0 ... teeth - 1), on a half ring of `teeth` teeth:
+/// values that leave it at its end enter at its start with opposite sign.
 void turnHalf(const Combination& vectors, const Combination::Factors& factors, int places, double c, double s,
               Eigen::VectorXd& result, int teeth) noexcept;
 
-/// result = sum with the first factors + the sum with the others, turned to the tooth `places` further as by `turn`.
-/// The vectors are whole, of the result its first `teeth` teeth.
+/// result = the combination with factors `here` + the one with the other factors, turned to the tooth `places` further
+/// as in `turn`. The vectors have all teeth; of the result the first `teeth` are computed.
 void addTurned(const Combination& vectors, const Combination::Factors& here, const Combination::Factors& turned,
                int places, double c, double s, Eigen::VectorXd& result, int teeth) noexcept;
 }  // namespace ring_vectors
 
-/// The ring at a position, and how it follows both angles from there: all that a failed move must restore.
+/// The ring at a position with its derivatives by both angles: all data that a failed move must restore.
 struct RingState
 {
   explicit RingState(const RingModel& model)
@@ -65,7 +65,7 @@ struct RingState
   {
   }
 
-  /// Takes over another state but for the directions and lengths of its shape (RingShape::updateGeometry).
+  /// Copies another state without directions and lengths of its shape, which RingShape::updateGeometry computes.
   void keep(const RingState& other) noexcept
   {
     const auto copy = [](const Eigen::VectorXd& from, Eigen::VectorXd& to)
@@ -83,10 +83,12 @@ struct RingState
 
   RingShape shape;
   DrivePosition position;
-  Eigen::VectorXd by_wave_generator;  ///< rates of the tooth points in equilibrium [m/rad]
-  Eigen::VectorXd by_output;          ///< [m/rad]
-  Eigen::Matrix2d stiffness;          ///< by (wave generator, output) angle, the ring following [N.m/rad]
-  double cup_stiffness{};  ///< slope of the cup that rates and stiffness are of; 0: they are of no tangent [N.m/rad]
-  double residual{};       ///< largest out-of-balance force component on a tooth [N]
+  /// derivatives of the tooth points in equilibrium by wave generator angle [m/rad]
+  Eigen::VectorXd by_wave_generator;
+  Eigen::VectorXd by_output;  ///< derivatives of the tooth points in equilibrium by output angle [m/rad]
+  Eigen::Matrix2d stiffness;  ///< by (wave generator, output) angle, with the ring in equilibrium [N.m/rad]
+  /// slope of the cup for which rates and stiffness hold; 0: they belong to no tangent [N.m/rad]
+  double cup_stiffness{};
+  double residual{};  ///< largest out-of-balance force component on a tooth [N]
 };
 }  // namespace hjt

@@ -18,14 +18,14 @@ const char* failureOf(SolveStage stage) noexcept
   return TEXTS[static_cast<std::size_t>(stage)];
 }
 
-/// solver.max_iterations of config/solver.yaml: all shipped gears are solved with it.
+/// solver.max_iterations of config/solver.yaml, which suffices for all shipped gears.
 constexpr int SHIPPED_MAX_ITERATIONS = 20;
 
 std::string adviceOf(const SolveStatus& status)
 {
   if (status.code == SolveCode::NOT_FINITE)
   {
-    return "a number overflowed; look for extreme parameters or angles";
+    return "a number overflowed; check for extreme parameters or angles";
   }
   if (status.max_iterations > 0 && status.max_iterations < SHIPPED_MAX_ITERATIONS)
   {
@@ -40,7 +40,7 @@ std::string adviceOf(const SolveStatus& status)
   }
   if (status.stage == SolveStage::BALANCE)
   {
-    return "the teeth do not carry it; reduce the load";
+    return "the teeth do not carry the load; reduce it";
   }
   return status.code == SolveCode::ITERATION_LIMIT ?
              "take smaller steps, or raise solver.max_step_cuts" :

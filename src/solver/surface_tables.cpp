@@ -9,14 +9,14 @@ namespace hjt
 {
 namespace
 {
-/// Four nodes around a place, and what each counts there [-].
+/// The four nodes around a position with their weights [-].
 struct Corners
 {
   std::array<const float*, 4> node;
   std::array<float, 4> weight;
 };
 
-/// Blends `count` stored teeth from `first` on.
+/// Interpolates `count` stored teeth from `first` on.
 void blend(const Corners& from, std::size_t first, std::size_t count, double* out) noexcept
 {
   const float* a = from.node[0] + first;
@@ -65,7 +65,7 @@ bool ToothResponse::at(double motor_angle, double output_angle, double* const* o
                    { weight(1.0 - across, 1.0 - along), weight(across, 1.0 - along), weight(1.0 - across, along),
                      weight(across, along) } };
 
-  // Stored tooth i is tooth i + turned now; of its copy half a turn on the places have the opposite sign.
+  // Stored tooth i has become tooth i + turned. In its copy half a turn away the positions have the opposite sign.
   const auto count = static_cast<std::size_t>(stored);
   const auto all = static_cast<std::size_t>(teeth);
   const auto turned = static_cast<std::size_t>(whole - std::floor(whole / teeth) * teeth);
@@ -79,7 +79,7 @@ bool ToothResponse::at(double motor_angle, double output_angle, double* const* o
     {
       const double sign = quantity == X || quantity == Y ? -1.0 : 1.0;
       const std::size_t edge = turned % count;
-      const std::size_t from = turned < count ? 0 : count;  // of those from the edge on
+      const std::size_t from = turned < count ? 0 : count;  // index of the stored tooth, from the edge on
       repeat(of_quantity + from + edge, count - edge, sign, of_quantity + (count - from) + edge);
       repeat(of_quantity + (count - from), edge, sign, of_quantity + from);
     }
@@ -106,7 +106,7 @@ namespace
 {
 using Weights = std::array<double, 4>;
 
-/// Cubic B-splines of the four nearest knots and their derivatives, `t` from the second to the third one.
+/// Cubic B-splines of the four nearest knots with derivatives; `t` goes from the second to the third knot.
 struct Spline
 {
   explicit Spline(double t) noexcept
@@ -122,7 +122,7 @@ struct Spline
   Weights second;
 };
 
-/// A place on an even grid that is the same again after `count` intervals.
+/// A position on an even grid with a period of `count` intervals.
 struct RoundPlace
 {
   RoundPlace(double at, int count) noexcept
@@ -143,7 +143,7 @@ struct RoundPlace
 
 using Energies = Eigen::Array4d;
 
-/// Energy by the numbers of derivatives, of u, w, chi, and forces: coefficients of the powers of the drop.
+/// Energy and forces by the numbers of derivatives by u, w and chi: coefficients of the powers of the drop.
 struct TableEnergies
 {
   Energies e000{ Energies::Zero() };
@@ -159,7 +159,7 @@ struct TableEnergies
   Energies forces{ Energies::Zero() };
 };
 
-/// `w`: between the lines `below` and the next.
+/// `w`: position between the line `below` and the next.
 TableEnergies energiesIn(const BallTable& table, const RoundPlace& u, double w, int below,
                          const RoundPlace& chi) noexcept
 {
@@ -213,7 +213,7 @@ BallDrops::Change BallDrops::at(double motor_angle, double v) const noexcept
   return drop.value != 0.0 ? ofBall(motor_angle, v, bearing_.ballPlace(ball, motor_angle), drop) : Change{};
 }
 
-/// Drop of one ball at a place in the housing [rad].
+/// Change by the drop of one ball at an angle in the housing [rad].
 BallDrops::Change BallDrops::ofBall(double motor_angle, double v, double place,
                                     const RaceDeflection::Drop& drop) const noexcept
 {
@@ -231,10 +231,10 @@ BallDrops::Change BallDrops::ofBall(double motor_angle, double v, double place,
   const auto times = [](const Energies& a, const Energies& b) { return (a * b).sum(); };
 
   const double root = 1.0 / std::sqrt(v * v + table.scale * table.scale);
-  const double w_v = root / table.step;  // of w, in lines, by v
+  const double w_v = root / table.step;  // derivative of w, in lines, by v
   const double w_vv = -v * root * root * root / table.step;
-  const double u_u = table.columns;  // of u, in columns, by pitches
-  // The ball's place against the wave generator, in grid intervals, and its drop by pitches.
+  const double u_u = table.columns;  // derivative of u, in columns, by pitches
+  // Derivative by pitches of the ball's angle relative to the wave generator in grid intervals, and of its drop.
   const double chi_u = (bearing_.cageRate() - 1.0) * table.pitch * table.places / table.turn;
   const double h_u = drop.rate * table.pitch;
   const double h_uu = drop.second * table.pitch * table.pitch;

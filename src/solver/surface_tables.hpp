@@ -13,8 +13,7 @@
 
 namespace hjt
 {
-/// Values one after the other, which nobody changes any more: those of a vector, or what lies in a file in memory.
-/// Copies share them.
+/// Constant values, from a vector or from a file mapped into memory. Copies share them.
 template <class T>
 class SharedValues
 {
@@ -48,7 +47,7 @@ private:
   std::size_t size_{};
 };
 
-/// Stored energy of the ring on its table [J], and its derivatives by u [pitches] and v [rad].
+/// Stored energy of the ring in its table [J], with derivatives by u [pitches] and v [rad].
 struct SurfaceEnergy
 {
   double value{}, by_u{}, by_v{}, by_uu{}, by_uv{}, by_vv{};
@@ -75,12 +74,12 @@ struct SurfaceEnergy
   }
 };
 
-/// How a table was tried against the ring, up to the torque limit, where its grid was not refined any further: half way
-/// between columns, and half way between lines. A miss is the largest difference over its tolerance [-]. Plain data.
+/// Checks of a table against the ring up to the torque limit, halfway between columns and halfway between lines where
+/// the grid was not refined further. A miss is the largest difference over its tolerance [-].
 struct GridChecks
 {
-  int made{};      ///< checks
-  int missed{};    ///< of these with a miss above 1: the grid is as fine there as it may be
+  int made{};      ///< number of checks
+  int missed{};    ///< number of checks with a miss above 1, where the grid has its finest interval
   double worst{};  ///< largest miss
 
   void add(double miss) noexcept
@@ -91,76 +90,76 @@ struct GridChecks
   }
 };
 
-/// Forces and places of all teeth of the ring in equilibrium, for a gear of equal teeth: over u and v, as SurfaceTable.
-/// A pitch further on, each tooth is as the one before it was. Plain data: what is built, cached and read.
+/// Forces and positions of all teeth of the ring in equilibrium, for a gear of equal teeth, over u and v as in
+/// SurfaceTable. One pitch further, each tooth has the values of the preceding one. The table is plain data.
 struct ToothResponse
 {
-  /// What is stored of each tooth, in the order of storage.
+  /// Quantities of each tooth, in the order of storage.
   enum Quantity : unsigned char
   {
     WAVE_GENERATOR_FORCE,  ///< [N]
-    RIM_TENSION,           ///< to the next tooth [N]
-    BENDING_FORCE,         ///< of the segment to the next tooth [N]
+    RIM_TENSION,           ///< tension to the next tooth [N]
+    BENDING_FORCE,         ///< force of the segment to the next tooth [N]
     MESH_FORCE,            ///< > 0 leading, < 0 trailing flank [N]
-    X,                     ///< of the tooth point, with the wave generator within the first pitch [m]
-    Y,                     ///< [m]
+    X,                     ///< x of the tooth point, with the wave generator within the first pitch [m]
+    Y,                     ///< y of the tooth point [m]
     QUANTITIES
   };
 
-  int teeth{};                 ///< of the flexspline
-  int stored{};                ///< of these; half, if half a turn changes nothing but the sign of the places
-  int columns{};               ///< intervals of u over a pitch, equal
-  double pitch{};              ///< [rad]
-  double ratio{};              ///< nominal [-]
-  std::vector<double> lines;   ///< v of the lines, ascending [rad]; empty: there is no table
-  SharedValues<float> values;  ///< a quantity's stored teeth, a node's quantities, columns + 1 nodes a line
+  int teeth{};                ///< teeth of the flexspline
+  int stored{};               ///< stored teeth: half of them if half a turn changes only the sign of the positions
+  int columns{};              ///< equal intervals of u in a pitch
+  double pitch{};             ///< [rad]
+  double ratio{};             ///< nominal ratio [-]
+  std::vector<double> lines;  ///< v of the lines, ascending [rad]; empty: there is no table
+  /// the stored teeth of a quantity, the quantities of a node, and columns + 1 nodes for each line
+  SharedValues<float> values;
   GridChecks checks{};
 
   std::size_t nodeSize() const noexcept { return static_cast<std::size_t>(QUANTITIES) * static_cast<unsigned>(stored); }
 
-  /// `out`: by quantity, as long as there are teeth. False, and nothing done, outside the table.
+  /// `out`: for each quantity an array of all teeth. @returns false and does nothing outside the table.
   bool at(double motor_angle, double output_angle, double* const* out) const noexcept;
 };
 
-/// By how much the ring in equilibrium changes where one ball of the wave generator's bearing drops by h, as a table
-/// over
+/// Table of the change of the ring in equilibrium if one ball of the wave generator's bearing drops by h, over
 ///
 ///   u    wave generator angle [tooth pitches], period 1
 ///   v    output angle - wave generator angle / ratio [rad]
-///   chi  place of the ball less the wave generator's angle [rad]
+///   chi  angle of the ball minus the wave generator's angle [rad]
 ///
-/// Each value is a polynomial in x = h / deepest without a constant, its coefficients cubic B-splines of u, chi and
-/// w = asinh(v / scale) on even grids.
+/// Each value is a polynomial in x = h / deepest without a constant term. Its coefficients are cubic B-splines of u,
+/// chi and w = asinh(v / scale) on even grids.
 struct BallTable
 {
   enum Value
   {
-    ENERGY,             // of x, x^2, x^3, x^4 [J]
-    CONTACT_FORCE = 4,  // of x, x^2 [N]
-    FLANKS = 6,         // of x, x^2: friction of the flanks as the drive runs, to that of the sound gear [-]
+    ENERGY,             // coefficients of x, x^2, x^3, x^4 [J]
+    CONTACT_FORCE = 4,  // coefficients of x, x^2 [N]
+    FLANKS = 6,         // coefficients of x, x^2: relative change of the flank friction as the drive runs [-]
     VALUES = 8
   };
   using Coefficients = Eigen::Array<double, VALUES, 1>;
 
-  double pitch{};    ///< of the flexspline's teeth [rad]
-  double ratio{};    ///< nominal [-]
-  double deepest{};  ///< drop up to which it holds [m]
+  double pitch{};    ///< tooth pitch of the flexspline [rad]
+  double ratio{};    ///< nominal ratio [-]
+  double deepest{};  ///< largest drop of the table [m]
   double turn{};     ///< period of chi [rad]
-  double scale{};    ///< of v [rad]
+  double scale{};    ///< scale of v [rad]
   double lowest{};   ///< w of the first line [-]
-  double step{};     ///< of w between lines [-]
+  double step{};     ///< difference of w between lines [-]
   int lines{};       ///< intervals of w; there are lines + 3 coefficients
-  int columns{};     ///< intervals of u over a pitch
-  int places{};      ///< intervals of chi over a turn
-  /// Coefficients of line i (-1 ... lines + 1), column j, place k have the index ((i + 1) columns + j) places + k.
+  int columns{};     ///< intervals of u in a pitch
+  int places{};      ///< intervals of chi in a turn
+  /// Coefficients of line i (-1 ... lines + 1), column j and place k have the index ((i + 1) columns + j) places + k.
   std::vector<Coefficients> coefficients;
 };
 
-/// A gear's table with the faults of its bearing.
+/// The table of a gear's balls with the faults of its bearing.
 class BallDrops
 {
 public:
-  /// `bearing`: of a gear with the table; its balls drop no deeper than that says, and one at a time.
+  /// `bearing`: bearing of the table's gear, of which one ball at a time drops, by no more than `deepest`.
   BallDrops(std::shared_ptr<const BallTable> table, const RaceDeflection& bearing)
     : table_(std::move(table)), bearing_(bearing)
   {
@@ -168,15 +167,15 @@ public:
 
   const std::shared_ptr<const BallTable>& table() const noexcept { return table_; }
 
-  /// Change of the gear by the ball that has dropped. The wave generator takes the balls along: derivatives by u are
-  /// at the same v. The friction of the outer race, a hundredth of the flanks', is left as it is.
+  /// Change of the gear by the ball that has dropped. The wave generator moves the balls, so derivatives by u are at
+  /// constant v. The change of the outer race's friction, a hundredth of that of the flanks, is neglected.
   struct Change
   {
     SurfaceEnergy energy;
     double contact_force{};  ///< [N]
-    double flanks{};         ///< part of their friction [-]
+    double flanks{};         ///< relative change of the flank friction [-]
   };
-  /// `v` on the table.
+  /// `v` must be in the range of the table.
   Change at(double motor_angle, double v) const noexcept;
 
 private:

@@ -18,14 +18,14 @@ namespace hjt
 {
 namespace
 {
-/// One size of the catalogue. Stiffness and ratings: Harmonic Drive, CSF/HFUS; friction, ratio 100: Schaeffler TPI 275
-/// (RT1-H-CS), which has no size 11 and no size 32. Size 11: from the catalogue as known, not checked.
+/// One size of the catalogue. Stiffness and ratings: Harmonic Drive, CSF/HFUS. Friction at ratio 100: Schaeffler TPI
+/// 275 (RT1-H-CS), which lacks sizes 11 and 32. The figures of size 11 have not been checked against the catalogue.
 struct CatalogueSize
 {
   double size;
   std::array<double, 2> breakpoints;       // [N.m]
   std::array<double, 3> stiffness_of_50;   // [N.m/rad]
-  std::array<double, 3> stiffness;         // of ratio 80 and more [N.m/rad]
+  std::array<double, 3> stiffness;         // at ratio 80 and more [N.m/rad]
   double starting_torque, no_load_torque;  // [N.m]
 };
 
@@ -64,13 +64,13 @@ constexpr double CONFIGURED_SIZE = 25.0;
 constexpr double TORSION_ERROR = 1e-4;  // relative error of a fitted twist
 constexpr int TORSION_TRIALS = 30;
 constexpr int FITTED_BITS = 12;          // bits of a fitted torque's parameter
-constexpr double LEAST_OF_START = 1e-3;  // least value of it tried, over where the fit starts
-constexpr int CATALOGUE_RATIO = 100;     // whose friction the catalogue has
+constexpr double LEAST_OF_START = 1e-3;  // least tried value relative to the start of the fit
+constexpr int CATALOGUE_RATIO = 100;     // ratio of the catalogue's friction
 constexpr const char* ORIGIN = "gear";
 constexpr const char* PRELOAD = "bearing.race_preload";
 constexpr const char* VISCOSITY = "bearing.viscosity";
 
-/// Writes parameters by their keys, each with its rule.
+/// Sets parameters by their keys, each with its rule.
 class Designer
 {
 public:
@@ -125,12 +125,12 @@ void requireInRange(const GearRequest& request)
 {
   if (!(request.size >= 5.0 && request.size <= 100.0) || request.ratio < 30 || request.ratio > 320)
   {
-    throw ParameterError("gear: size = " + numberText(request.size) + ", ratio = " + std::to_string(request.ratio) +
-                         " [-] out of range, allowed: size 5 ... 100, ratio 30 ... 320");
+    throw ParameterError("gear: size = " + numberText(request.size) + " [-], ratio = " + std::to_string(request.ratio) +
+                         " [-] is out of range, allowed: size 5 ... 100, ratio 30 ... 320");
   }
 }
 
-/// Given figures are those of a gear. @throws ParameterError.
+/// Checks whether the given figures are possible for a gear. @throws ParameterError.
 void requireFigures(const GearRequest& request)
 {
   const auto require = [](const std::vector<double>& values, std::size_t count, bool rising, const char* what)
@@ -144,14 +144,14 @@ void requireFigures(const GearRequest& request)
       throw ParameterError(std::string("gear: ") + what);
     }
   };
-  require(request.stiffness, 3, false, "stiffness: K1, K2, K3 > 0 are wanted [N.m/rad]");
-  require(request.breakpoints, 2, true, "breakpoints: 0 < T1 < T2 are wanted [N.m]");
+  require(request.stiffness, 3, false, "stiffness needs three values K1, K2, K3 > 0 [N.m/rad]");
+  require(request.breakpoints, 2, true, "breakpoints needs two values 0 < T1 < T2 [N.m]");
   require(request.ratings, 4, false,
-          "ratings: rated, average, repeated peak and momentary peak torque > 0 are wanted [N.m]");
+          "ratings needs four values > 0: rated, average, repeated peak and momentary peak torque [N.m]");
   for (const std::optional<double>& torque : { request.starting_torque, request.no_load_torque })
   {
     require(torque ? std::vector<double>{ *torque } : std::vector<double>{}, 1, false,
-            "starting and no-load torque > 0 are wanted [N.m]");
+            "starting and no-load torque must be > 0 [N.m]");
   }
 }
 
@@ -180,7 +180,8 @@ void applyRules(const Parameters& from, const GearRequest& request, Designer& de
   const auto given = [](const std::optional<double>& value, const char* rule) { return value ? "given" : rule; };
 
   designer.set("gear.teeth_flexspline", std::int64_t{ gear.teeth_flexspline }, "twice the ratio");
-  designer.set("gear.teeth_circular_spline", std::int64_t{ gear.teeth_circular_spline }, "two more");
+  designer.set("gear.teeth_circular_spline", std::int64_t{ gear.teeth_circular_spline },
+               "two more than the flexspline");
   designer.set("gear.flexspline_inner_radius", gear.flexspline_inner_radius, given(request.bore_radius, by_size));
   designer.set("gear.rim_thickness", gear.rim_thickness, given(request.rim_thickness, by_size));
   designer.set("gear.tooth_height_flexspline", gear.tooth_height_flexspline, "in proportion to the pitch");
@@ -219,9 +220,9 @@ void applyRatings(const Parameters& from, const GearRequest& request, const Gear
   const std::string rule = rule_of(request.ratings);
   designer.set("cup.torsion_breakpoints", { figures.breakpoints[0], figures.breakpoints[1] },
                rule_of(request.breakpoints));
-  // The same share of the torsion as in the configured gear.
+  // The share of cup friction in the torsion is that of the configured gear.
   designer.scale("cup.friction_torque", figures.breakpoints[0] / from.cup.torsion_breakpoints[0],
-                 "in proportion to T1, at which the torsion is alike");
+                 "in proportion to T1, at which gears have about equal torsion");
   designer.set("life.rated_torque", figures.rated_torque, rule);
   designer.set("life.repeated_peak_torque", figures.repeated_peak_torque, rule);
   designer.set("life.momentary_peak_torque", figures.momentary_peak_torque, rule);
@@ -231,7 +232,7 @@ void applyRatings(const Parameters& from, const GearRequest& request, const Gear
   designer.set("indicators.lost_motion_torque", 0.04 * figures.rated_torque, "4 % of the rated torque");
 }
 
-/// Fits the cup's three slopes: cup, rim and teeth are in series, so what the twist misses is put into the cup.
+/// Fits the three slopes of the cup. Cup, rim and teeth are in series, so the cup gets the missing compliance.
 void fitTorsion(const GearFigures& figures, Designer& designer)
 {
   const std::vector<double> torques{ figures.breakpoints[0], figures.breakpoints[1], figures.repeated_peak_torque };
@@ -268,10 +269,12 @@ void fitTorsion(const GearFigures& figures, Designer& designer)
     }
     designer.set("cup.torsion_stiffness", std::move(slopes), "fitted: the whole gear twists as in the catalogue");
   }
-  throw ParameterError("the cup cannot be fitted to the torsion of the catalogue: rim and teeth alone twist more");
+  throw ParameterError(
+      "the cup cannot be fitted to the torsion of the catalogue, because rim and teeth alone twist more");
 }
 
-/// Fits a parameter > 0 until a torque that grows with it is as wanted. `torque`: of the parameters [N.m].
+/// Fits a parameter > 0 until the torque that increases with it has the wanted value. `torque`: function of the
+/// parameters [N.m].
 template <class Torque>
 void fitTorque(const std::string& key, double start, double wanted, const std::string& rule, Torque&& torque,
                Designer& designer)
@@ -287,7 +290,7 @@ void fitTorque(const std::string& key, double start, double wanted, const std::s
   if (least > wanted)
   {
     throw ParameterError("gear: " + key + " cannot be fitted to " + numberText(wanted) +
-                         " N.m: the gear's other friction alone makes " + roundedText(least, 4) + " N.m");
+                         " N.m, because the gear's other friction alone is " + roundedText(least, 4) + " N.m");
   }
   std::uintmax_t trials = 60;
   const auto [low, high] = boost::math::tools::bracket_and_solve_root(
@@ -385,8 +388,8 @@ GearDesign designGear(const ParameterMap& configured, const GearRequest& request
   if (const GearFigures known_figures = gearFigures(known); !has_friction && known_figures.starting_torque > 0.0)
   {
     const Parameters fitted = parseParameters(designGear(configured, known, known_figures).map);
-    designer.set(PRELOAD, fitted.bearing.race_preload, "that of ratio 100, which has the same bearing");
-    designer.set(VISCOSITY, fitted.bearing.viscosity, "that of ratio 100, which has the same bearing");
+    designer.set(PRELOAD, fitted.bearing.race_preload, "as for ratio 100, which has the same bearing");
+    designer.set(VISCOSITY, fitted.bearing.viscosity, "as for ratio 100, which has the same bearing");
   }
   if (figures.starting_torque > 0.0)
   {

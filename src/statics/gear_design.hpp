@@ -11,28 +11,28 @@
 
 namespace hjt
 {
-/// Conditions under which a catalogue gives its torques of friction.
+/// Conditions of the friction torques in a catalogue.
 constexpr double CATALOGUE_SPEED = 2000.0 * PI / 30.0;  // [rad/s]
 constexpr double CATALOGUE_TEMPERATURE = 20.0;          // [degC]
-constexpr int FRICTION_POSITIONS = 8;                   // in a tooth pitch, over which friction is averaged
+constexpr int FRICTION_POSITIONS = 8;                   // positions in a tooth pitch over which friction is averaged
 
-/// Requested gear. Values that are left out follow from the size.
+/// Requested gear. Values that are not given follow from the size.
 struct GearRequest
 {
-  double size{ 25.0 };                  ///< as catalogues count: 25 has the configured dimensions [-]
-  int ratio{ 100 };                     ///< with the circular spline held: half the flexspline's teeth [-]
-  std::optional<double> bore_radius;    ///< of the flexspline [m]
+  double size{ 25.0 };  ///< size in a catalogue's numbers: 25 has the configured dimensions [-]
+  int ratio{ 100 };     ///< ratio with the circular spline held: half the number of the flexspline's teeth [-]
+  std::optional<double> bore_radius;    ///< bore radius of the flexspline [m]
   std::optional<double> rim_thickness;  ///< [m]
-  std::optional<double> face_width;     ///< of the teeth [m]
-  // Figures of a catalogue of its own; empty: as far as known.
+  std::optional<double> face_width;     ///< face width of the teeth [m]
+  // Figures of the gear's own catalogue; empty: those of the family.
   std::vector<double> stiffness;          ///< K1, K2, K3 of the whole gear [N.m/rad]
   std::vector<double> breakpoints;        ///< T1, T2 [N.m]
   std::vector<double> ratings;            ///< rated, average, repeated peak, momentary peak torque [N.m]
-  std::optional<double> starting_torque;  ///< at the wave generator, 20 degC [N.m]
-  std::optional<double> no_load_torque;   ///< at the wave generator, 2000 rpm, 20 degC [N.m]
+  std::optional<double> starting_torque;  ///< starting torque at the wave generator at 20 degC [N.m]
+  std::optional<double> no_load_torque;   ///< no-load torque at the wave generator at 2000 rpm and 20 degC [N.m]
 };
 
-/// Figures of a maker's catalogue for a gear; 0: not given.
+/// Figures of a maker's catalogue for a gear; 0: not known.
 struct GearFigures
 {
   std::array<double, 3> stiffness{};    ///< K1, K2, K3 of the whole gear [N.m/rad]
@@ -41,34 +41,34 @@ struct GearFigures
   double average_torque{};              ///< [N.m]
   double repeated_peak_torque{};        ///< [N.m]
   double momentary_peak_torque{};       ///< [N.m]
-  double starting_torque{};             ///< at the wave generator, 20 degC [N.m]
-  double no_load_torque{};              ///< at the wave generator, 2000 rpm, 20 degC [N.m]
+  double starting_torque{};             ///< starting torque at the wave generator at 20 degC [N.m]
+  double no_load_torque{};              ///< no-load torque at the wave generator at 2000 rpm and 20 degC [N.m]
   std::string source;                   ///< source of the figures that were not given
 
-  double torsion(double torque) const;  ///< [rad], of a torque >= 0 [N.m]
+  double torsion(double torque) const;  ///< torsion [rad] under a torque >= 0 [N.m]
 };
 
-/// Figures of the request; else those of the catalogue of the family HFUS/CSF. A ratio that it does not have is scaled
-/// from the next ratio of that size, a size that it does not have from size 25.
-/// @throws ParameterError if a given figure is none that a gear can have.
+/// Figures of the request, completed by those of the catalogue of the family HFUS/CSF. A ratio that the catalogue lacks
+/// is scaled from the next ratio of that size, and a size that it lacks from size 25.
+/// @throws ParameterError if a given figure is impossible for a gear.
 GearFigures gearFigures(const GearRequest& request);
 
-/// A parameter of the gear and the rule by which it follows from the configured gear.
+/// A parameter of the gear with the rule that gave its value.
 struct DesignedParameter
 {
   std::string key;
   std::string rule;
 };
 
-/// A gear of the family: every parameter of the configured one that depends on size, teeth or rim, by rules of
-/// similarity; then slopes of the cup, race preload and viscosity fitted to the figures.
+/// A gear of the family. Rules of similarity scale every configured parameter that depends on size, teeth or rim. Then
+/// the cup's slopes, the race preload and the viscosity are fitted to the figures.
 struct GearDesign
 {
-  ParameterMap map;  ///< whole
+  ParameterMap map;  ///< complete configuration
   std::vector<DesignedParameter> parameters;
 };
 
-/// `configured`: HFUS-25-2SH, ratio 100, or a variant of it, whole.
-/// @throws ParameterError if the parameters leave their ranges, or the gear has no equilibrium.
+/// Designs a gear. `configured`: complete configuration of HFUS-25-2SH with ratio 100, or of a variant.
+/// @throws ParameterError if parameters are out of range or the gear has no equilibrium.
 GearDesign designGear(const ParameterMap& configured, const GearRequest& request, const GearFigures& figures);
 }  // namespace hjt

@@ -15,7 +15,7 @@ namespace hjt
 {
 namespace
 {
-/// The effect of a fault that an analysis lacks; nullptr if it has part of the effect.
+/// The effect of a fault that an analysis lacks; nullptr if the analysis has at least a part of the effect.
 const char* missingFor(const Fault& fault, const Parameters& parameters, Analysis analysis)
 {
   const unsigned changed = partsOf(fault, parameters.gear);
@@ -40,26 +40,26 @@ void requireFaultsAct(const Parameters& parameters, Analysis analysis)
     if (fault.severity > 0.0 && fault.onset > 0.0)
     {
       throw ParameterError(name + " sets in at " + numberText(fault.onset) +
-                           " s, but this analysis has no time: give it onset 0 or leave it out");
+                           " s, but this analysis has no time; set its onset to 0 or remove the fault");
     }
     const char* missing = missingFor(fault, parameters, analysis);
     if (missing != nullptr)
     {
-      throw ParameterError(name + " cannot act here: this analysis leaves out " + missing);
+      throw ParameterError(name + " cannot act in this analysis, which does not contain " + missing);
     }
   }
 }
 
 namespace
 {
-constexpr int EFFICIENCY_POSITIONS = 4;  // in a tooth pitch, for the efficiency
+constexpr int EFFICIENCY_POSITIONS = 4;  // wave generator positions in a tooth pitch for the efficiency
 
 std::string shortNumber(double value)
 {
   return roundedText(value, 5);
 }
 
-/// The drive that is checked: nothing on it that is meant to be wrong.
+/// The drive to be checked, without intended faults and errors.
 Parameters soundGear(const Parameters& parameters)
 {
   Parameters sound = withoutHeat(withoutWeight(withoutErrors(parameters)));
@@ -68,7 +68,7 @@ Parameters soundGear(const Parameters& parameters)
   return sound;
 }
 
-/// Adds a warning where a value is further from what it should be near than by a factor.
+/// Adds a warning if a value differs from the expected one by more than a factor.
 class Nearness
 {
 public:
@@ -87,7 +87,7 @@ public:
 private:
   std::vector<std::string>& warnings_;
 };
-/// Of a sound gear and its fit.
+/// Text of the jam of a sound gear with this fit.
 std::string jamText(const Parameters& sound, const FitCheck& fit)
 {
   if (!fit.jams())
@@ -96,8 +96,8 @@ std::string jamText(const Parameters& sound, const FitCheck& fit)
   }
   const GearParameters& gear = sound.gear;
   return "the teeth jam without load: " + std::to_string(fit.teeth_loaded) + " of " +
-         std::to_string(gear.teeth_flexspline) + " loaded, " + shortNumber(fit.wave_generator_force) +
-         " N on the wave generator, " + shortNumber(fit.wave_generator_force_insertion) +
+         std::to_string(gear.teeth_flexspline) + " teeth are loaded, and the wave generator carries " +
+         shortNumber(fit.wave_generator_force) + " N instead of " + shortNumber(fit.wave_generator_force_insertion) +
          " N without the circular spline. gear.wave_amplitude = " + shortNumber(gear.wave_amplitude) +
          " [m] should be near " + shortNumber(fittingWaveAmplitude(gear)) +
          " [m], gear.tip_radius_circular_spline = " + shortNumber(gear.tip_radius_circular_spline) + " [m] near " +
@@ -125,14 +125,14 @@ std::vector<std::string> gearWarnings(const Parameters& parameters)
   std::vector<std::string> warnings;
   Nearness near(warnings);
   near.check("gear.wave_amplitude", gear.wave_amplitude, "m", fittingWaveAmplitude(gear), 1.03,
-             "the teeth roll in their spaces then");
+             "then the teeth roll in their spaces");
   near.check("gear.tip_radius_circular_spline", gear.tip_radius_circular_spline, "m", fittingTipRadius(gear),
              1.0 + 0.25 * gear.tooth_height_flexspline / fittingTipRadius(gear),
-             "bore radius, rim and tooth height; the teeth engage to the depth of the wave then");
+             "by bore radius, rim and tooth height; then the teeth engage to the depth of the wave");
   near.check("ring.bending_stiffness", sound.ring.bending_stiffness, "N.m/rad", rimBendingStiffness(sound), 2.0,
-             "that of gear.rim_thickness, life.face_width and the number of teeth");
+             "by gear.rim_thickness, life.face_width and the number of teeth");
   near.check("ring.tension_stiffness", sound.ring.tension_stiffness, "N/m", 2.5 * rimTensionStiffness(sound), 2.5,
-             "2.5 times the section of the rim under the teeth, which bear a part");
+             "2.5 times the section of the rim under the teeth, because the teeth carry a part");
   if (!fit.status.ok())
   {
     warnings.push_back("no equilibrium without load: " + explanationOf(fit.status));
@@ -141,8 +141,8 @@ std::vector<std::string> gearWarnings(const Parameters& parameters)
   if (fit.teeth_loaded == 0)
   {
     warnings.push_back("mesh.flank_clearance = " + shortNumber(sound.mesh.flank_clearance) +
-                       " [m] leaves no tooth in contact without load: the output is free by that much. A preloaded "
-                       "gear has some 5 % of its teeth in contact");
+                       " [m] leaves no tooth in contact without load, so that the output has backlash. In a preloaded "
+                       "gear about 5 % of the teeth are in contact");
   }
   if (const LossRow row =
           analyseLosses(sound, { sound.life.rated_speed }, { sound.life.rated_torque }, EFFICIENCY_POSITIONS, nullptr)
@@ -151,8 +151,8 @@ std::vector<std::string> gearWarnings(const Parameters& parameters)
   {
     warnings.push_back("efficiency of the gear at life.rated_torque = " + shortNumber(sound.life.rated_torque) +
                        " [N.m]: " + shortNumber(row.gear_efficiency) +
-                       " [-], out of the 0.55 ... 0.92 of such gears: look at bearing.race_preload, "
-                       "bearing.viscosity, mesh.friction_kinetic and the rated torque");
+                       " [-], outside the 0.55 ... 0.92 of such gears; check bearing.race_preload, "
+                       "bearing.viscosity, mesh.friction_kinetic and life.rated_torque");
   }
   return warnings;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Rules between the parameters of a gear: docs/gear_study.md derives it.
+// Rules for the parameters of a gear; docs/gear_study.md derives them.
 
 #include <cmath>
 #include <string>
@@ -12,8 +12,8 @@
 
 namespace hjt
 {
-/// w0 at which the teeth roll in their spaces without jamming [m]: a tooth at mid-height z above the bore moves by
-/// w0 (1/2 - 3 z / (2 r0)) along the circumference, and the pitch of the spaces asks for (r0 + z) / (N + 2).
+/// Amplitude w0 at which the teeth roll in their spaces without jamming [m]. A tooth at mid-height z above the bore
+/// moves by w0 (1/2 - 3 z / (2 r0)) along the circumference, and the pitch of the spaces requires (r0 + z) / (N + 2).
 inline double fittingWaveAmplitude(const GearParameters& gear) noexcept
 {
   const double radius = gear.flexspline_inner_radius;
@@ -21,7 +21,7 @@ inline double fittingWaveAmplitude(const GearParameters& gear) noexcept
   return (radius + height) / ((gear.teeth_flexspline + 2) * (0.5 - 1.5 * height / radius));
 }
 
-/// Tip radius of the circular spline at which the teeth engage to the depth w0 [m].
+/// Tip radius of the circular spline for which the teeth engage to the depth w0 [m].
 inline double fittingTipRadius(const GearParameters& gear) noexcept
 {
   return gear.flexspline_inner_radius + gear.rim_thickness + gear.tooth_height_flexspline;
@@ -33,14 +33,14 @@ inline double segmentLength(const GearParameters& gear) noexcept
   return 2.0 * gear.flexspline_inner_radius * std::sin(PI / gear.teeth_flexspline);
 }
 
-/// E b t / p, of the rim between two teeth, which bear nothing [N/m].
+/// Axial stiffness E b t / p of the rim between two teeth that carry nothing [N/m].
 inline double rimTensionStiffness(const Parameters& parameters) noexcept
 {
   const GearParameters& gear = parameters.gear;
   return parameters.life.elastic_modulus * parameters.life.face_width * gear.rim_thickness / segmentLength(gear);
 }
 
-/// E b t^3 / (12 p (1 - c)), of rigid teeth with the rim bending between them: the stiffest that it can be [N.m/rad].
+/// Bending stiffness E b t^3 / (12 p (1 - c)) of the rim between rigid teeth, an upper bound [N.m/rad].
 inline double rimBendingStiffness(const Parameters& parameters) noexcept
 {
   const GearParameters& gear = parameters.gear;
@@ -48,22 +48,22 @@ inline double rimBendingStiffness(const Parameters& parameters) noexcept
          (12.0 * segmentLength(gear) * (1.0 - parameters.stress.tooth_base));
 }
 
-/// How much of the joint an analysis has.
+/// Extent of the joint in an analysis.
 enum class Analysis
 {
-  INSERTION,     ///< the ring on the wave generator, without circular spline and friction
+  INSERTION,     ///< ring on the wave generator, without circular spline and friction
   RING,          ///< the whole ring without friction
-  WITH_FRICTION  ///< all of the joint
+  WITH_FRICTION  ///< the whole joint
 };
 
-/// An analysis has the faults that the joint starts with, and no time for others to set in.
-/// @throws ParameterError for a configured fault that cannot act in it.
+/// Checks that all faults can act in an analysis, which has no time for later onsets.
+/// @throws ParameterError for a configured fault that cannot act.
 void requireFaultsAct(const Parameters& parameters, Analysis analysis);
 
-/// Why the gear cannot turn, sound and as drawn: its teeth jam without load. Empty if they do not.
+/// Reason why the sound gear without errors cannot turn: its teeth jam without load. Empty if they do not.
 std::string jamOf(const Parameters& parameters);
 
-/// Inconsistent values, one text each: key, value, and what it should be near; a jam comes alone. They take a few
-/// equilibria, some 10 ms.
+/// Warnings of inconsistent values: key, value and expected value. A jam is the only warning. The function solves a few
+/// equilibria in about 10 ms.
 std::vector<std::string> gearWarnings(const Parameters& parameters);
 }  // namespace hjt

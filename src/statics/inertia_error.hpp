@@ -7,14 +7,15 @@
 
 namespace hjt
 {
-/// Error of a ring without inertia: error of the flank forces, root mean square over the loaded teeth, as
-/// it is to be expected near a motor speed [rad/s] under a torque at the output [N.m]. [N]
+/// Expected error of a ring model without inertia near a motor speed [rad/s] and a torque at the output [N.m]: root
+/// mean square error of the flank forces over the loaded teeth [N].
 ///
 ///   E = a m w^2 r0 sqrt(1 + (T / (p r0^3))^4)
 /// where  m  mass of the toothed rim, r0 its inner radius, w motor speed, T torque
 ///        a, p  fitted to the dynamic ring of the shipped gear, 20 and 100 N.m, up to 317 rad/s (docs/model.md)
 ///
-/// Where the teeth meet in time with a mode of the ring it is several times larger, at most speeds smaller.
+/// At speeds at which the tooth engagement excites a mode of the ring the error is several times larger, at most speeds
+/// smaller.
 inline double expectedMeshForceError(const RingParameters& ring, const GearParameters& gear, double motor_speed,
                                      double torque) noexcept
 {

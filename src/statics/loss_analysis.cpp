@@ -12,7 +12,7 @@ namespace hjt
 {
 namespace
 {
-/// The frictions of the joint along its walk through one tooth pitch.
+/// Friction of the joint on its way through one tooth pitch.
 class LossMeter
 {
 public:
@@ -26,10 +26,10 @@ public:
   PitchWalk& walk() { return walk_; }
   const SolveStatus& status() const { return walk_.status(); }
 
-  /// Torque of each friction at this position, per motor speed [N.m].
+  /// Torque of each friction at this position, reduced to the motor [N.m].
   LossShares shares(double speed, double velocity_ratio)
   {
-    const Eigen::Vector2d rates(1.0, velocity_ratio);  // of both angles by the motor's
+    const Eigen::Vector2d rates(1.0, velocity_ratio);  // speeds of motor and output over the motor's speed
     const JointModel& model = walk_.model();
     const RingEquilibrium& ring = walk_.ring();
     const RingRates by_angle{ ring.shape(), ring.byWaveGenerator(), ring.byOutput() };
@@ -60,7 +60,7 @@ private:
   double temperature_;
 };
 
-/// Friction of the gear at the wave generator as motion begins: the largest over a tooth pitch [N.m].
+/// Largest friction of the gear over a tooth pitch, at the wave generator as motion begins [N.m].
 double breakaway(LossMeter& meter, double load)
 {
   double largest = 0.0;
@@ -128,7 +128,7 @@ Breakaway analyseBreakaway(const Parameters& parameters, int positions)
   LossMeter meter(parameters, positions);
   Breakaway result;
   result.starting = breakaway(meter, 0.0);
-  // The load that the friction just holds: friction grows slowly with the load, so repeating converges.
+  // The load that the friction just holds. Friction grows slowly with the load, so that the iteration converges.
   const double ratio = nominalRatio(parameters.gear);
   double load = ratio * result.starting;
   double change = load;

@@ -55,7 +55,7 @@ ToothStress stressOf(const RingEquilibrium& ring, const Parameters& parameters)
   return stress;
 }
 
-/// Of each ball, on single balls [N].
+/// Force on each ball with single balls [N].
 std::vector<double> ballForces(const RingEquilibrium& ring, const Parameters& parameters)
 {
   std::vector<double> forces;
@@ -68,7 +68,7 @@ std::vector<double> ballForces(const RingEquilibrium& ring, const Parameters& pa
   return forces;
 }
 
-/// Of the housing on the flexspline [N.m].
+/// Torque of the housing on the flexspline [N.m].
 double housingTorque(const RingEquilibrium& ring)
 {
   return -ring.model().of<CupTorsion>().torque(ring.forces().of<CupTorsion>().rotation);

@@ -10,21 +10,21 @@
 
 namespace hjt
 {
-/// Statics are solved to rounding, whatever the running twin is content with.
+/// Statics are solved to rounding, whatever the tolerance of the running twin.
 inline SolverParameters staticSolver(SolverParameters parameters)
 {
-  constexpr double STATIC_TOLERANCE = 5e-7;  // N; the tension stiffness times the rounding of a coordinate is 2e-8 N
+  constexpr double STATIC_TOLERANCE = 5e-7;  // [N]; the tension stiffness times the rounding of a coordinate is 2e-8 N
   parameters.force_tolerance = std::min(parameters.force_tolerance, STATIC_TOLERANCE);
   return parameters;
 }
 
-/// The joint, with the faults it starts with, led quasi-statically through one tooth pitch of the wave generator at
-/// constant load. With all teeth alike that is the whole turn: what one tooth goes through in a turn, all teeth go
-/// through side by side in a pitch.
+/// The joint with the faults of its start, moved quasi-statically through one tooth pitch of the wave generator at
+/// constant load. With equal teeth this represents a whole turn: what a tooth goes through in a turn, all teeth
+/// together go through in a pitch.
 class PitchWalk
 {
 public:
-  /// `positions`: wave generator angles per tooth pitch, >= 1.
+  /// `positions`: number of wave generator angles in a tooth pitch, >= 1.
   PitchWalk(const Parameters& parameters, int positions)
     : PitchWalk(startingJoint(parameters), parameters.solver, positions)
   {
@@ -38,7 +38,7 @@ public:
   {
   }
 
-  /// Calls `visit(output speed over motor speed)` with the ring in equilibrium at each position. On failure it stops.
+  /// Calls `visit(output speed over motor speed)` with the ring in equilibrium at each position. It stops on failure.
   template <class Visit>
   void under(double load, Visit&& visit)
   {

@@ -17,26 +17,26 @@
 
 namespace hjt
 {
-/// Torsion of the gear under load, wave generator locked, friction left out: an odd function, linear between the
-/// solutions of the ring at torques in proportion to cup.torsion_breakpoints; the last slope goes on beyond them.
+/// Torsion of the gear under load with the wave generator locked and without friction. The curve is odd and linear
+/// between solutions of the ring at multiples of cup.torsion_breakpoints; its last slope continues beyond.
 class TorsionCurve
 {
 public:
   struct Piece
   {
-    double torque{};     ///< at its beginning [N.m]
-    double torsion{};    ///< at its beginning [rad]
+    double torque{};     ///< torque at the piece's beginning [N.m]
+    double torsion{};    ///< torsion at the piece's beginning [rad]
     double stiffness{};  ///< [N.m/rad]
   };
 
-  /// Solves the ring at some ten torques. @throws ParameterError if it finds no equilibrium under one of them.
+  /// Solves the ring at about ten torques. @throws ParameterError if it has no equilibrium at one of them.
   explicit TorsionCurve(const Parameters& parameters)
   {
     for (const StiffnessRow& row : analyseStiffness(parameters, 0.0, torquesOf(parameters.cup)))
     {
       if (!row.status.ok())
       {
-        throw ParameterError("the ring finds no equilibrium under a load of " + numberText(row.torque) +
+        throw ParameterError("the ring has no equilibrium under a load of " + numberText(row.torque) +
                              " N.m at the output: " + explanationOf(row.status));
       }
       if (!pieces_.empty())
@@ -51,7 +51,7 @@ public:
 
   const std::vector<Piece>& pieces() const noexcept { return pieces_; }  ///< for torques >= 0, ascending
 
-  /// number of the piece that holds a torsion [rad]
+  /// index of the piece that contains a torsion [rad]
   std::size_t pieceAt(double torsion) const noexcept
   {
     std::size_t piece = 0;
@@ -62,14 +62,14 @@ public:
     return piece;
   }
 
-  /// [N.m]
+  /// torque for a torsion [N.m]
   double torque(double torsion) const noexcept
   {
     const Piece& piece = pieces_[pieceAt(torsion)];
     return std::copysign(piece.torque + piece.stiffness * (std::abs(torsion) - piece.torsion), torsion);
   }
 
-  /// [rad]
+  /// torsion for a torque [rad]
   double torsion(double torque) const noexcept
   {
     std::size_t number = 0;
@@ -82,7 +82,7 @@ public:
   }
 
 private:
-  /// Within the first slope of the cup, up to its end; then up to the end of the second and beyond.
+  /// Torques within the first slope of the cup and at its end, to the end of the second slope, and beyond.
   static std::vector<double> torquesOf(const CupParameters& cup)
   {
     std::vector<double> torques{ 0.0 };
@@ -102,7 +102,7 @@ private:
     }
     if (torques.size() == 1)
     {
-      torques.push_back(1.0);  // no slope but the last
+      torques.push_back(1.0);  // the curve has only the last slope
     }
     return torques;
   }
@@ -110,12 +110,12 @@ private:
   std::vector<Piece> pieces_;
 };
 
-/// Torsion of the gear along a course of loads, wave generator locked: the curve's, less what the friction of the cup
-/// carries that has a state (CupFriction). From rest without load on.
+/// Torsion of the gear over a course of loads with the wave generator locked. It is that of the curve, reduced by the
+/// torque of the cup's friction with a state (CupFriction). The course begins at rest without load.
 class TorsionCourse
 {
 public:
-  /// @throws ParameterError if the ring finds no equilibrium under load.
+  /// @throws ParameterError if the ring has no equilibrium under load.
   explicit TorsionCourse(const Parameters& parameters)
     : curve_(parameters)
     , cup_(parameters, ToothRing(parameters.gear))
@@ -128,7 +128,7 @@ public:
   /// Puts the joint at rest without load.
   void reset() noexcept { state_ = CupFriction::State(); }
 
-  /// @returns the torsion [rad] under the next load, reached from the last one without a reversal [N.m].
+  /// @returns the torsion [rad] under the next load [N.m], to which the load moved without a reversal.
   double to(double torque)
   {
     if (!friction_.hasState())
@@ -153,7 +153,7 @@ private:
   TorsionCurve curve_;
   CupTorsion cup_;
   CupFriction friction_;
-  double cup_share_;  // of a load at the output that the cup carries, the wave generator the rest [-]
+  double cup_share_;  // share of a load at the output that the cup carries; the wave generator carries the rest [-]
   double friction_torque_;
   CupFriction::State state_;
 };

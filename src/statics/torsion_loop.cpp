@@ -10,7 +10,7 @@ namespace hjt
 {
 namespace
 {
-/// @throws InputError.
+/// @throws InputError if the value is not positive.
 void requirePositive(const char* name, double value)
 {
   if (!(value > 0.0))
@@ -19,7 +19,7 @@ void requirePositive(const char* name, double value)
   }
 }
 
-/// Where the polyline (torque ascending) passes a torque [rad].
+/// Angle at which the polyline, in ascending order of torque, has a torque [rad].
 double angleAt(const std::vector<TorsionPoint>& sweep, double torque)
 {
   for (std::size_t i = 1; i < sweep.size(); ++i)
@@ -33,8 +33,8 @@ double angleAt(const std::vector<TorsionPoint>& sweep, double torque)
   }
   return sweep.back().output_angle;
 }
-/// The cup's springs and sliders: to the first point of the sweep, along it and back. `rotations`: of the rim at each
-/// angle [rad], and its rate by the output's [-].
+/// Adds the friction of the cup's springs and sliders, from rest to the first point of the sweep and along the sweep.
+/// `rotations`: rotation of the rim at each angle [rad], with its derivative by the output's angle [-].
 void addCupFriction(const CupFriction& friction, double unloaded_rotation,
                     const std::vector<Eigen::Vector2d>& rotations, std::vector<TorsionPoint>& up,
                     std::vector<TorsionPoint>& down)
@@ -77,8 +77,8 @@ TorsionLoop analyseTorsionLoop(const Parameters& parameters, double amplitude, d
   loop.status = insertUnderLoad(ring, 0.0, 0.0);
   const double unloaded = ring.position().output_angle;
   const double unloaded_rotation = ring.forces().of<CupTorsion>().rotation;
-  std::vector<TorsionPoint> up;    // load growing, torque ascending
-  std::vector<TorsionPoint> down;  // load falling
+  std::vector<TorsionPoint> up;    // increasing load, torque ascending
+  std::vector<TorsionPoint> down;  // decreasing load
   std::vector<Eigen::Vector2d> rotations;
   for (int i = 0; i <= steps && loop.status.ok(); ++i)
   {

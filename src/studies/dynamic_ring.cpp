@@ -74,7 +74,7 @@ void DynamicRing::evaluate(const Eigen::VectorXd& q, const Eigen::VectorXd& v, d
   power_.supplied = dashpots.supplied + contact.force.dot(growth_) +
                     model_.motor.rippled(drive_.motor_torque, position_.wave_generator_angle) * motor_speed -
                     drive_.load_torque * output_speed;
-  // Whatever keeps a driven body at its speed has to balance all that acts on it.
+  // The reaction of the drive balances all other forces on a driven body.
   for (const int k : { waveGenerator(), output() })
   {
     power_.supplied -= driven(k) ? force_[k] * v[k] : 0.0;

@@ -12,8 +12,8 @@
 
 namespace hjt
 {
-/// Every entry of a tangent over all coordinates as (row, column, value); the order does not depend on the values.
-/// Visits the entries without the cup's, whose matrix of rank one is dense.
+/// Visits every entry of a tangent over all coordinates as (row, column, value), in an order that does not depend on
+/// the values. The entries of the cup, a dense matrix of rank one, are excluded.
 template <class Visitor>
 void visitEntries(const RingTangent& tangent, Visitor&& visit)
 {
@@ -52,41 +52,41 @@ void visitEntries(const RingTangent& tangent, Visitor&& visit)
   visit(output, output, tangent.output_stiffness);
 }
 
-/// The wave's amplitude over time: grows at a constant speed. Where the speed changes a step has to end.
+/// Amplitude of the wave over time, with constant speed of growth. A step must end where the speed changes.
 struct WaveGrowth
 {
-  double begin{};      ///< [s]
+  double begin{};      ///< time of the beginning [s]
   double amplitude{};  ///< at `begin` [m]
-  double speed{};      ///< [m/s]
+  double speed{};      ///< speed of growth [m/s]
 
-  double at(double time) const noexcept { return amplitude + speed * (time - begin); }  ///< [m]
+  double at(double time) const noexcept { return amplitude + speed * (time - begin); }  ///< amplitude at a time [m]
 };
 
-/// External drive of a dynamic ring. A driven body keeps its speed, whatever acts on it.
+/// External drive of a dynamic ring. A driven body has a prescribed constant speed.
 struct RingDrive
 {
   WaveGrowth wave;
   bool wave_generator_driven{};
   bool output_driven{};
-  double motor_torque{};  ///< on a wave generator that is not driven [N.m]
-  double load_torque{};   ///< on an output that is not driven; > 0 resists positive motion [N.m]
+  double motor_torque{};  ///< torque on a wave generator that is not driven [N.m]
+  double load_torque{};   ///< torque on an output that is not driven; > 0 resists positive motion [N.m]
 };
 
 /// Powers at one instant [W].
 struct RingPower
 {
-  double supplied{};    ///< by motor or drive, load and the wave generator's growth
-  double dissipated{};  ///< in dashpots and viscous friction
+  double supplied{};    ///< power of motor or drive, load, and growth of the wave generator
+  double dissipated{};  ///< power dissipated by dashpots and viscous friction
 };
 
-/// The ring with a mass at every tooth, wave generator and circular spline as two more bodies: M q'' = f(q, q', t).
+/// The ring with a mass at every tooth, and wave generator and circular spline as two more bodies: M q'' = f(q, q', t).
 ///
-/// Coordinates q: 2 N of the tooth points [m], wave generator angle, output angle [rad]; M is diagonal.
-/// State: q and then q', 4 N + 4 values. Forces: those of the ring's elements with their dashpots, the motor's and the
-/// load's viscous friction, gravity on the load. Dry friction is left out.
+/// Coordinates q: 2 N of the tooth points [m], wave generator angle, output angle [rad]; M is diagonal. The state is q
+/// followed by q', 4 N + 4 values. Forces are those of the ring's elements and dashpots, viscous friction of motor and
+/// load, and gravity on the load. Dry friction is neglected.
 ///
-/// Teeth and spaces are paired by `pairTeeth`, between steps and never within one: between two pairings the right-hand
-/// side is a fixed function of state and time. For solvers from outside there are `rates` and `jacobian`.
+/// `pairTeeth` assigns spaces to teeth between steps. The right-hand side is therefore a fixed function of state and
+/// time within a step. External solvers use `rates` and `jacobian`.
 class DynamicRing
 {
 public:
@@ -95,42 +95,42 @@ public:
   int teeth() const noexcept { return shape_.teeth(); }
   int coordinates() const noexcept { return static_cast<int>(mass_.size()); }  ///< 2 N + 2
   int states() const noexcept { return 2 * coordinates(); }
-  int waveGenerator() const noexcept { return coordinates() - 2; }  ///< index of its angle
-  int output() const noexcept { return coordinates() - 1; }         ///< index of its angle
+  int waveGenerator() const noexcept { return coordinates() - 2; }  ///< index of the wave generator's angle
+  int output() const noexcept { return coordinates() - 1; }         ///< index of the output's angle
 
   const RingDrive& drive() const noexcept { return drive_; }
   void setWave(const WaveGrowth& wave) noexcept { drive_.wave = wave; }
   bool driven(int coordinate) const noexcept { return inverse_mass_[coordinate] == 0.0; }
   const Eigen::VectorXd& mass() const noexcept { return mass_; }                 ///< [kg], [kg.m^2]
-  const Eigen::VectorXd& inverseMass() const noexcept { return inverse_mass_; }  ///< 0 where driven
+  const Eigen::VectorXd& inverseMass() const noexcept { return inverse_mass_; }  ///< 0 for a driven body
 
-  /// Pairs every tooth out of contact with its nearest space.
+  /// Assigns the nearest space to every tooth out of contact.
   void pairTeeth(const Eigen::VectorXd& q, double time) noexcept;
   void setSpaces(const std::vector<int>& spaces) noexcept { shape_.space = spaces; }
 
-  /// Brings everything below up to date with a state.
+  /// Computes the results below for a state.
   void evaluate(const Eigen::VectorXd& q, const Eigen::VectorXd& v, double time) noexcept;
 
-  const Eigen::VectorXd& force() const noexcept { return force_; }  ///< on every coordinate [N], [N.m]
+  const Eigen::VectorXd& force() const noexcept { return force_; }  ///< force on every coordinate [N], [N.m]
   const RingShape& shape() const noexcept { return shape_; }
   const DrivePosition& position() const noexcept { return position_; }
-  const RingForces& forces() const noexcept { return forces_; }  ///< of the elements, without the dashpots
+  const RingForces& forces() const noexcept { return forces_; }  ///< forces of the elements without the dashpots
   double storedEnergy() const noexcept { return model_.storedEnergy(forces_, position_); }  ///< [J]
-  /// Of all coordinates; that of a driven body is constant and counts as its inertia says [J].
+  /// Kinetic energy of all coordinates; that of a driven body is constant [J].
   double kineticEnergy(const Eigen::VectorXd& v) const noexcept { return 0.5 * v.cwiseAbs2().dot(mass_); }
   const RingPower& power() const noexcept { return power_; }
 
-  /// Minus the derivative of the force at the state last evaluated: K + `by_speed` C, K by the coordinates, C by their
-  /// speeds; `by_speed` [1/s]. What the dashpots change by the turning of their directions is left out, and so is the
-  /// unsymmetric part of the polar contact: both only cost an iteration some digits.
+  /// Minus the derivative of the force at the last evaluated state: K + `by_speed` C, with K by the coordinates and C
+  /// by their speeds; `by_speed` [1/s]. It omits the change of the dashpots' directions and the unsymmetric part of the
+  /// polar contact, which only slows the convergence of an iteration.
   void tangent(double by_speed, RingTangent& tangent) const noexcept;
 
-  /// The right-hand side for any solver: derivative of the state. Both of `states()` values.
+  /// Right-hand side for any solver: derivative of the state. Both arrays have `states()` values.
   void rates(const double* state, double time, double* derivative) noexcept;
 
-  /// Its derivative by the state, at the state last evaluated. The cup couples every tooth with every other by a matrix
-  /// of rank one; without it the pattern, the same at every call, has some 20 entries a tooth and what is left out is
-  /// - M^-1 k d d^T, from `cup_stiffness` and `cup_direction` of `tangent`.
+  /// Derivative of the right-hand side at the last evaluated state. The cup couples all teeth by a matrix of rank one.
+  /// Without the cup the pattern is constant, with about 20 entries for a tooth, and the missing part is - M^-1 k d d^T
+  /// with `cup_stiffness` and `cup_direction` of `tangent`.
   enum class Cup
   {
     DENSE,
@@ -146,10 +146,10 @@ private:
   RingShape shape_;
   DrivePosition position_;
   RingForces forces_;
-  Eigen::VectorXd growth_;  // N, of the wave generator's surface along each tooth's normal [m/s]
+  Eigen::VectorXd growth_;  // N, speed of the wave generator's surface along each tooth's normal by its growth [m/s]
   Eigen::VectorXd force_;
   RingPower power_;
-  Eigen::VectorXd q_;  // scratch
+  Eigen::VectorXd q_;  // working memory
   Eigen::VectorXd v_;
 };
 }  // namespace hjt

@@ -16,13 +16,13 @@ namespace hjt
 {
 namespace
 {
-/// Steps of equal length, none longer than wanted, that end exactly with a phase.
+/// Number of equal steps, none longer than `step`, that fill a duration.
 long stepsIn(double duration, double step)
 {
   return std::max(1L, std::lround(std::ceil(duration / step - 1e-6)));
 }
 
-/// Gathers rows and the window's sums from step to step.
+/// Collects rows and the sums of the window.
 class TransientRecord
 {
 public:
@@ -122,7 +122,6 @@ TransientResult analyseTransient(const Parameters& parameters, const TransientSe
 
 namespace
 {
-/// Sums up differences.
 class ErrorSum
 {
 public:
@@ -136,7 +135,7 @@ public:
     loaded_ += quasi_static != 0.0 ? 1 : 0;
   }
 
-  /// `among_loaded`: quantities that are zero on most teeth count only where they are not.
+  /// `among_loaded`: for quantities that are zero on most teeth, only values other than zero count.
   DynamicError error(bool among_loaded = false) const noexcept
   {
     const double n = static_cast<double>(among_loaded ? loaded_ : count_);
@@ -156,13 +155,13 @@ std::vector<double> toVector(const Eigen::VectorXd& values)
   return { values.data(), values.data() + values.size() };
 }
 
-/// The comparisons of one run.
 class Comparison
 {
 public:
   explicit Comparison(const RingModel& model) : model_(model), rest_(model.rest.points()) {}
 
-  /// `same`: equilibrium at the angles of the dynamic ring; `balanced`: that under the load at the same motor angle.
+  /// `same`: equilibrium at the angles of the dynamic ring; `balanced`: equilibrium under the load at the same motor
+  /// angle.
   void add(const DynamicRing& ring, double time, const RingEquilibrium& same, const RingEquilibrium& balanced,
            QuasiStaticResult& result)
   {
@@ -228,7 +227,7 @@ RingDrive driveOf(const Parameters& parameters, const QuasiStaticSetup& setup)
   return drive;
 }
 
-/// The equilibria of the dynamic ring's position: at the same angles, and under the same load.
+/// Solves both equilibria at the dynamic ring's position: at the same angles, and under the same load.
 SolveStatus follow(const DrivePosition& position, double load, RingEquilibrium& same, RingEquilibrium& balanced)
 {
   const SolveStatus status = same.moveTo(position);
@@ -289,7 +288,7 @@ QuasiStaticResult checkQuasiStatic(const Parameters& parameters, const QuasiStat
       comparison.add(ring, motion.time, same, balanced, result);
       due += setup.compare_period;
     }
-    else  // the equilibrium finds its way over less than a turn: it must not be left behind
+    else  // an equilibrium can follow less than a turn, so both are moved along
     {
       due = std::min(setup.settle_time, due + half_turn_time);
     }

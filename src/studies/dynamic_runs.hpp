@@ -10,95 +10,99 @@
 
 namespace hjt
 {
-/// Insertion of the wave generator as motion (thesis ch. 6): the wave's amplitude grows at constant speed from 0 to w0,
-/// then stays; circular spline left out, wave generator held.
+/// Insertion of the wave generator as a motion (thesis ch. 6): the amplitude of the wave grows at constant speed from 0
+/// to w0 and then stays constant. There is no circular spline, and the wave generator is held.
 struct TransientSetup
 {
   RingMethod method{ RingMethod::ESDIRK4 };
-  double step{ 5e-6 };           ///< [s]
-  double duration{ 0.05 };       ///< [s]
-  double growth_time{ 5e-3 };    ///< in which the amplitude grows [s]
-  double window_start{ 0.03 };   ///< from here to the end the largest force is summed up [s]
-  double sample_period{ 5e-5 };  ///< of the rows [s]
-  double tolerance{};  ///< of a tooth's position by one step, which is then at most `step`; 0: every step is it [m]
+  double step{ 5e-6 };           ///< length of a step [s]
+  double duration{ 0.05 };       ///< length of the run [s]
+  double growth_time{ 5e-3 };    ///< time in which the amplitude grows [s]
+  double window_start{ 0.03 };   ///< begin of the window for statistics of the largest force; it lasts to the end [s]
+  double sample_period{ 5e-5 };  ///< time between two rows [s]
+  /// largest error of a tooth's position in one step, whose length is then at most `step`; 0: all steps have this
+  /// length [m]
+  double tolerance{};
 };
 
-/// Largest force of the wave generator on a tooth, and where the energy is.
+/// Largest force of the wave generator on a tooth, and the energies.
 struct TransientRow
 {
   double time{};          ///< [s]
-  double force_max{};     ///< on any tooth at this instant [N]
-  double force_lowest{};  ///< of it since the row before [N]
+  double force_max{};     ///< largest force on a tooth at this instant [N]
+  double force_lowest{};  ///< least value of the largest force since the preceding row [N]
   double force_highest{};
-  double radius_major_axis{};  ///< of tooth 0 [m]
-  double stored{};             ///< since the start [J]
-  double kinetic{};            ///< [J]
-  double supplied{};           ///< by the wave generator's growth [J]
-  double dissipated{};         ///< by the dashpots [J]
+  double radius_major_axis{};  ///< radius of tooth 0 [m]
+  double stored{};             ///< stored energy since the start [J]
+  double kinetic{};            ///< kinetic energy [J]
+  double supplied{};           ///< energy supplied by the growth of the wave generator [J]
+  double dissipated{};         ///< energy dissipated by the dashpots [J]
 };
 
 struct TransientResult
 {
   bool finished{};
-  double stopped_at{};  ///< [s]
+  double stopped_at{};  ///< time of the failure [s]
   std::vector<TransientRow> rows;
-  double window_lowest{};   ///< of the largest force, over all steps of the window [N]
-  double window_highest{};  ///< [N]
-  double window_mean{};     ///< [N]
+  double window_lowest{};   ///< least value of the largest force over all steps of the window [N]
+  double window_highest{};  ///< largest value over the window [N]
+  double window_mean{};     ///< mean value over the window [N]
   StepCounts counts;
-  double solve_time{};          ///< [s]
-  std::vector<double> tooth_x;  ///< at the end, per tooth [m]
+  double solve_time{};          ///< computing time [s]
+  std::vector<double> tooth_x;  ///< x of each tooth at the end [m]
   std::vector<double> tooth_y;
 };
 
-/// `progress` is called with the part done, 0 ... 1.
+/// Simulates the insertion. The function calls `progress` with the finished fraction, 0 ... 1.
 TransientResult analyseTransient(const Parameters& parameters, const TransientSetup& setup,
                                  const std::function<void(double)>& progress);
 
-/// The working drive with a dynamic ring, compared with the ring in equilibrium: the wave generator turns at a constant
-/// speed, the circular spline is a free body under a constant load. Dry friction is left out on both sides.
+/// The working drive with a dynamic ring, compared with the ring in equilibrium. The wave generator turns at a constant
+/// speed, and the circular spline is a free body under a constant load. Both sides neglect dry friction.
 ///
-/// It starts from the travelling equilibrium: positions and speeds of the ring that follows the wave generator in
-/// equilibrium. What is left of a start transient is given `settle_time` to die out.
+/// The run starts from the travelling equilibrium, with positions and speeds of the ring in equilibrium. The remaining
+/// start transient decays in `settle_time`.
 struct QuasiStaticSetup
 {
   RingMethod method{ RingMethod::TR_BDF2 };
-  double speed{ 317.0 };           ///< of the wave generator [rad/s]
-  double load{ 20.0 };             ///< on the circular spline [N.m]
-  double step{ 2e-6 };             ///< [s]
-  double settle_time{ 5e-3 };      ///< not compared [s]
-  double duration{ 5e-3 };         ///< compared [s]
-  double compare_period{ 37e-6 };  ///< between two comparisons [s]
-  double tolerance{};  ///< of a tooth's position by one step, which is then at most `step`; 0: every step is it [m]
+  double speed{ 317.0 };           ///< speed of the wave generator [rad/s]
+  double load{ 20.0 };             ///< load on the circular spline [N.m]
+  double step{ 2e-6 };             ///< length of a step [s]
+  double settle_time{ 5e-3 };      ///< time before the first comparison [s]
+  double duration{ 5e-3 };         ///< duration of the comparison [s]
+  double compare_period{ 37e-6 };  ///< time between two comparisons [s]
+  /// largest error of a tooth's position in one step, whose length is then at most `step`; 0: all steps have this
+  /// length [m]
+  double tolerance{};
 };
 
-/// Difference of a quantity from its quasi-static value.
+/// Error of a quantity relative to its quasi-static value.
 struct DynamicError
 {
-  double size{};  ///< root mean square of the quasi-static quantity: what errors are relative to
+  double size{};  ///< root mean square of the quasi-static quantity, the reference of relative errors
   double rms{};
   double max{};
 };
 
-/// One comparison, the last: force per tooth on both sides.
+/// Forces on each tooth in the last comparison, for both rings.
 struct ToothForceComparison
 {
   double time{};                             ///< [s]
-  std::vector<double> contact_dynamic;       ///< [N]
-  std::vector<double> contact_quasi_static;  ///< [N]
-  std::vector<double> mesh_dynamic;          ///< [N]
-  std::vector<double> mesh_quasi_static;     ///< [N]
+  std::vector<double> contact_dynamic;       ///< force of the wave generator, dynamic ring [N]
+  std::vector<double> contact_quasi_static;  ///< force of the wave generator, ring in equilibrium [N]
+  std::vector<double> mesh_dynamic;          ///< mesh force, dynamic ring [N]
+  std::vector<double> mesh_quasi_static;     ///< mesh force, ring in equilibrium [N]
 };
 
 struct QuasiStaticRow
 {
-  double time{};                           ///< [s]
-  double torsion_dynamic{};                ///< output angle less wave generator angle over the ratio [rad]
-  double torsion_quasi_static{};           ///< of the equilibrium that balances the load at the same angle [rad]
-  double wave_generator_torque_dynamic{};  ///< [N.m]
+  double time{};                  ///< [s]
+  double torsion_dynamic{};       ///< output angle minus wave generator angle over the ratio [rad]
+  double torsion_quasi_static{};  ///< torsion of the equilibrium under the same load at the same motor angle [rad]
+  double wave_generator_torque_dynamic{};  ///< torque on the wave generator, dynamic ring [N.m]
   double wave_generator_torque_quasi_static{};
-  double contact_error_rms{};  ///< over the teeth [N]
-  double mesh_error_rms{};     ///< over the teeth [N]
+  double contact_error_rms{};  ///< rms error of the wave generator's forces over the teeth [N]
+  double mesh_error_rms{};     ///< rms error of the mesh forces over the teeth [N]
 };
 
 enum class QuasiStaticOutcome
@@ -108,26 +112,26 @@ enum class QuasiStaticOutcome
   NO_EQUILIBRIUM
 };
 
-/// Forces, torques and positions are compared with the ring in equilibrium at the same two angles, which is what the
-/// twin computes; the torsion with that of the equilibrium under the same load.
+/// Forces, torques and positions are compared with the ring in equilibrium at the same two angles, as the twin computes
+/// them, and the torsion with that of the equilibrium under the same load.
 struct QuasiStaticResult
 {
   QuasiStaticOutcome outcome{ QuasiStaticOutcome::NO_EQUILIBRIUM };
-  SolveStatus status;                  ///< of the last equilibrium that was sought
-  double stopped_at{};                 ///< [s]
-  DynamicError contact_force;          ///< per tooth [N]
-  DynamicError mesh_force;             ///< per tooth; size over the loaded ones [N]
-  DynamicError position;               ///< per tooth point; size: the displacement from rest [m]
+  SolveStatus status;                  ///< status of the last equilibrium
+  double stopped_at{};                 ///< time of the failure [s]
+  DynamicError contact_force;          ///< of each tooth [N]
+  DynamicError mesh_force;             ///< of each tooth; the size is that of the loaded teeth [N]
+  DynamicError position;               ///< of each tooth point; the size is the displacement from rest [m]
   DynamicError wave_generator_torque;  ///< [N.m]
   DynamicError output_torque;          ///< [N.m]
   DynamicError torsion;                ///< [rad]
   long force_evaluations{};
-  double solve_time{};  ///< of the dynamic ring [s]
+  double solve_time{};  ///< computing time of the dynamic ring [s]
   std::vector<QuasiStaticRow> rows;
   ToothForceComparison last;
 };
 
-/// `progress` is called with the part done, 0 ... 1.
+/// Runs the comparison. The function calls `progress` with the finished fraction, 0 ... 1.
 QuasiStaticResult checkQuasiStatic(const Parameters& parameters, const QuasiStaticSetup& setup,
                                    const std::function<void(double)>& progress);
 }  // namespace hjt

@@ -18,9 +18,10 @@ namespace
 {
 using namespace assessment_errors;
 
-/// Assessments of one drive with the errors of assessment_errors and those below. A drive's errors stay, those of one
-/// estimate are small. Of several kinds that are found the one furthest beyond where it is found is the cause. Wear
-/// whose cause is mistaken is taken for that of the wave generator, which shows alike.
+/// Simulated assessments of one drive with the errors of assessment_errors and those below. The drive's errors are
+/// constant, those of one estimate are small. Of several found kinds, the cause is the one that exceeds its detection
+/// limit most. If the cause is wrong, the wear counts as that of the wave generator, which changes the indicators in a
+/// similar way.
 class SimulatedAssessments
 {
 public:
@@ -71,22 +72,22 @@ public:
 private:
   static constexpr std::array KINDS{ FaultKind::TOOTH_WEAR, FaultKind::INTERFACE_WEAR,
                                      FaultKind::LUBRICANT_DEGRADATION };
-  static constexpr double OLD_GREASE = 0.3;  // severity of grease whose change is due, as in a plan of lives
+  static constexpr double OLD_GREASE = 0.3;  // severity of grease that is due for a change, as in a plan of lives
   static constexpr std::array<double, 3> ESTIMATE_MEAN{ assessment_counts::TOOTH_WEAR_ESTIMATE,
                                                         assessment_counts::INTERFACE_WEAR_ESTIMATE,
                                                         assessment_counts::LUBRICANT_DEGRADATION_ESTIMATE };
-  static constexpr double ESTIMATE_NOISE = 0.1;             // of the logarithm, from one to the next; assumed
-  static constexpr double STATED_CONFIDENCE = RIGHT_CAUSE;  // as calibrated ones are
+  static constexpr double ESTIMATE_NOISE = 0.1;             // of the logarithm, between two assessments; an assumption
+  static constexpr double STATED_CONFIDENCE = RIGHT_CAUSE;  // confidence of a calibrated assessment
 
   FaultScaleParameters scale_;
   boost::random::mt19937 random_;
   boost::random::normal_distribution<double> normal_;
-  std::array<double, 3> found_from_;  // severity
+  std::array<double, 3> found_from_;  // severities of the detection limits
   std::array<double, 3> estimate_factor_;
-  std::array<double, 3> mistaken_;  // evenly within 0 ... 1
+  std::array<double, 3> mistaken_;  // uniform in 0 ... 1
 };
 
-/// Readings of one drive's wear with the errors of assessment_errors.
+/// Simulated readings of one drive's wear with the errors of assessment_errors.
 class SimulatedReadings
 {
 public:
@@ -136,7 +137,7 @@ private:
   double of_flank_;
 };
 
-/// Forecasts of one life by one who knows the use and the assessments.
+/// Forecasts of one life from its use and its assessments.
 class Watch
 {
 public:
@@ -153,7 +154,7 @@ public:
   LifeForecast forecast(double hours, double remaining, const DriveAge& age)
   {
     constexpr int STRETCHES = 400;
-    constexpr double HORIZON = 3.0;  // in present ages; later use is as in the last stretch
+    constexpr double HORIZON = 3.0;  // in present ages; later use continues as in the last interval
     const Usage so_far = use_.until(hours);
     const FutureLoad ahead = use_.from(hours, HORIZON * (hours + options_.every), STRETCHES);
     const Assessment assessment = assessments_.of(age);

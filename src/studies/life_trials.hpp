@@ -18,17 +18,17 @@ struct LifeTrialOptions
   bool grease_changes{};
 };
 
-/// A forecast at one assessment, and the true life.
+/// A forecast at one assessment, with the true life.
 struct LifeForecast
 {
-  double hours{};      ///< of use when the forecast was made
+  double hours{};      ///< hours of use at the forecast
   double remaining{};  ///< true remaining life [h]
   Assessment assessment;
-  RemainingHours forecast;  ///< by it
-  RemainingHours read;      ///< by what all check-ups so far read of wear
-  RemainingHours prior;     ///< of who knows the use alone
+  RemainingHours forecast;  ///< forecast from the assessment
+  RemainingHours read;      ///< forecast from all wear readings so far
+  RemainingHours prior;     ///< forecast from the use alone
 
-  /// The interval from the 10 to the 90 % quantile of the readings' forecast holds the truth.
+  /// Whether the interval from the 10 % to the 90 % quantile of `read` contains the truth.
   bool held() const { return remaining >= read.quantile[1] && remaining <= read.quantile[3]; }
 };
 
@@ -36,10 +36,10 @@ struct LifeTrial
 {
   UnitVariation variation;
   DriveAgeing::Life life;
-  std::vector<LifeForecast> forecasts;  ///< none if the life did not end
+  std::vector<LifeForecast> forecasts;  ///< empty if the life did not end
 };
 
-/// How often an interval that should hold 80 % of all outcomes did.
+/// How often an 80 % interval contained the truth.
 struct Coverage
 {
   int forecasts{};
@@ -48,12 +48,12 @@ struct Coverage
   double share() const { return forecasts > 0 ? static_cast<double>(held) / forecasts : 0.0; }
 };
 
-/// Over all forecasts from a share `from` of each life on.
+/// Coverage over all forecasts after a share `from` of each life.
 Coverage coverage(const std::vector<LifeTrial>& trials, double from);
 
-/// Drives drawn from the spread of the parameters, each worn by the laws until its end, and forecast by one who knows
-/// its use and what assessments with their errors say of its wear, but neither its variation nor its wear.
-/// `longest`: a life still going on then is left out [h].
+/// Simulates drives drawn from the spread of the parameters until the end of their lives, and forecasts their remaining
+/// life. The forecasts use the drive's use and assessments with errors, but neither its variation nor its true wear.
+/// `longest`: lives that have not ended by then are excluded [h].
 std::vector<LifeTrial> runLifeTrials(const Parameters& parameters, const DriveAgeing& ageing,
                                      const LifeTrialOptions& options, double longest,
                                      const std::function<void(double)>& progress);

@@ -11,7 +11,7 @@ namespace hjt
 {
 namespace
 {
-/// The ring on a wave generator whose lobes give way.
+/// The ring on a wave generator with elastic lobes.
 class CompliantDrive
 {
 public:
@@ -24,7 +24,7 @@ public:
   {
   }
 
-  /// Moves the output; the amplitude follows into its own balance.
+  /// Moves the output; the amplitude follows to its balance.
   SolveStatus moveOutput(double output_angle)
   {
     DrivePosition target = ring_.position();
@@ -35,11 +35,11 @@ public:
 
   int snaps() const { return snaps_; }
 
-  /// Of the ring on each lobe, beyond no load [N].
+  /// Force of the ring on each lobe minus that without load [N].
   double lobeForce() { return 0.5 * (amplitudeForce() - unloaded_); }
 
 private:
-  /// Derivative of the stored energy by the wave amplitude: force with which the ring presses it in [N].
+  /// Derivative of the stored energy by the wave amplitude: inward force of the ring [N].
   double amplitudeForce()
   {
     ring_.model().of<WaveGeneratorContact>().surfaceByAmplitude(ring_.position(),
@@ -47,14 +47,13 @@ private:
     return ring_.forces().of<WaveGeneratorContact>().force.dot(surface_);
   }
 
-  /// Force on the amplitude that is not balanced [N]. The lobes' springs alone give it a slope of 2 k over the
-  /// amplitude.
+  /// Unbalanced force on the amplitude [N]. The springs of the lobes give it a slope of at least 2 k by the amplitude.
   double excess()
   {
     return amplitudeForce() - unloaded_ - 2.0 * stiffness_ * (amplitude_ - ring_.position().wave_amplitude);
   }
 
-  /// On, or over a snap of single teeth to the next equilibrium.
+  /// Moves to the target or, if single teeth snap, to the next equilibrium.
   SolveStatus move(const DrivePosition& target)
   {
     const SolveStatus status = ring_.moveTo(target);
@@ -73,7 +72,7 @@ private:
     return move(target);
   }
 
-  /// False position (Illinois) between the present amplitude and one on the other side of the balance.
+  /// Solves by the Illinois variant of false position between the present amplitude and one beyond the balance.
   SolveStatus balanceAmplitude()
   {
     constexpr int MAX_ITERATIONS = 60;
@@ -95,7 +94,7 @@ private:
       other_excess = excess();
       if (other == 0.0)
       {
-        status.code = SolveCode::UNBALANCED;  // the lobes are gone
+        status.code = SolveCode::UNBALANCED;  // the lobes have collapsed
       }
     }
     for (int i = 0; i < MAX_ITERATIONS && status.ok() && std::abs(excess()) > FORCE_TOLERANCE; ++i)
@@ -125,7 +124,7 @@ private:
   RingEquilibrium& ring_;
   double stiffness_;
   double amplitude_;
-  Eigen::VectorXd surface_;  // scratch
+  Eigen::VectorXd surface_;  // working memory
   double unloaded_;
   int snaps_{};
 };
@@ -155,7 +154,7 @@ RatchetRow rowOf(const RingEquilibrium& ring, CompliantDrive& drive, double unlo
 RatchetResult analyseRatchet(const Parameters& parameters, double wave_generator_angle, double lobe_stiffness,
                              double angle_step, double torque_limit, const std::function<void(double)>& progress)
 {
-  constexpr double FALL = 0.9;  // share of the largest torque: a larger fall is a jump and no ripple
+  constexpr double FALL = 0.9;  // share of the largest torque: a larger decrease is a jump, a smaller one a ripple
   RatchetResult result;
   const RingModel model = startingJoint(parameters).ring;
   RingEquilibrium ring(model, parameters.solver);

@@ -95,7 +95,7 @@ bool ImplicitRingStepper::attempt(RingMotion& motion, double length) noexcept
         q_bar_ += length * tableau_.before[k][j] * speeds_[j];
         v_bar_ += length * tableau_.before[k][j] * accelerations_[j];
       }
-      // Guess: on from the stage before with its acceleration. A driven body keeps its speed exactly.
+      // The guess continues from the preceding stage with its acceleration. A driven body keeps its speed exactly.
       if (i > 0)
       {
         v_ += (tableau_.times[k] - tableau_.times[k - 1]) * length * accelerations_[k - 1];
@@ -130,7 +130,7 @@ bool ImplicitRingStepper::attempt(RingMotion& motion, double length) noexcept
   return true;
 }
 
-/// The explicit first stage, from the forces the ring was last evaluated at.
+/// Computes the explicit first stage from the last evaluated forces.
 void ImplicitRingStepper::begin(const Eigen::VectorXd& speeds) noexcept
 {
   speeds_.front() = speeds;
@@ -143,13 +143,13 @@ void ImplicitRingStepper::accept() noexcept
 {
   if (tableau_.explicit_first)
   {
-    begin(v_);  // the last stage was the step's end
+    begin(v_);  // the last stage was the end of the step
   }
 }
 
-/// Out-of-balance force at the speeds v_, into residual_; q_ follows. The speeds are the unknowns because they keep
-/// their digits in short steps, where differences of positions would lose them. @returns its Euclidean length, torques
-/// as forces at the rim [N].
+/// Computes the out-of-balance force for the speeds v_, with q_ from them, into residual_. The unknowns are speeds,
+/// because differences of positions lose digits in short steps. @returns the Euclidean norm, with torques as forces at
+/// the rim [N].
 double ImplicitRingStepper::residual(double time) noexcept
 {
   q_ = q_bar_ + stage_step_ * v_;
@@ -178,10 +178,10 @@ bool ImplicitRingStepper::factor() noexcept
 
 bool ImplicitRingStepper::solveStage(double time) noexcept
 {
-  constexpr double GOOD_CONTRACTION = 0.01;  // better than this, the factors serve on
+  constexpr double GOOD_CONTRACTION = 0.01;  // with a smaller ratio the factors serve another iteration
   double norm = residual(time);
   bool useful = factored_;
-  bool own = false;  // the factors are of this very point
+  bool own = false;  // the factors belong to this point
   for (int i = 0; i < parameters_.max_iterations; ++i)
   {
     if (!std::isfinite(norm))
@@ -204,7 +204,7 @@ bool ImplicitRingStepper::solveStage(double time) noexcept
       {
         return false;
       }
-      useful = false;  // stale factors may point nowhere: once more with those of this point
+      useful = false;  // old factors may give no descent, so the iteration is repeated with new ones
       continue;
     }
     useful = norm < GOOD_CONTRACTION * before;
@@ -212,7 +212,7 @@ bool ImplicitRingStepper::solveStage(double time) noexcept
   return largest_ <= parameters_.force_tolerance;
 }
 
-/// One Newton step, shortened until the out-of-balance force falls.
+/// One Newton step, shortened until the out-of-balance force decreases.
 bool ImplicitRingStepper::searchLine(double time, double& norm) noexcept
 {
   constexpr int MAX_HALVINGS = 7;
@@ -238,15 +238,15 @@ bool ImplicitRingStepper::searchLine(double time, double& norm) noexcept
 
 namespace
 {
-/// Marches a dynamic ring in steps of its own choice, so that no tooth is further off by one step than the tolerance.
+/// Integrates a dynamic ring with step control: the error of every tooth in one step is within the tolerance.
 ///
-/// Proportional and integral control of the step's length (Gustafsson 1991; Hairer and Wanner IV.2):
+/// Proportional-integral control of the step length (Gustafsson 1991; Hairer and Wanner IV.2):
 ///   next / present = 0.9 e_n^(-0.7 / k) e_(n-1)^(0.4 / k),   0.2 ... 5
-/// where   e_n   error estimate of step n over the tolerance, at most 1; k   the power of the step it goes with
+/// where   e_n   error estimate of step n over the tolerance, at most 1; k   its order in the step length
 ///
-/// A step whose e_n is above 1 is done again, shorter, and the one after it does not grow. Where a tooth touches or
-/// lets go the forces have a kink: no event is looked for, the estimate sees it and the step shrinks for as long as it
-/// must. No allocation after construction.
+/// A step with e_n > 1 is repeated with a shorter length, and the step after it does not grow. The forces have a kink
+/// where a tooth begins or ends contact. There is no event detection: the estimate increases and the steps become
+/// shorter. Only the constructor allocates.
 class AdaptiveRingStepper : public RingStepper
 {
 public:
@@ -261,8 +261,8 @@ public:
   {
   }
 
-  /// Covers `length` in as many steps as it takes; what the last of them taught is kept for the next call. False if
-  /// they became shorter than a billionth of it.
+  /// Integrates over `length` in as many steps as needed. The step length is kept for the next call. @returns false if
+  /// the steps become shorter than SHORTEST of the length.
   bool step(RingMotion& motion, double length) noexcept override
   {
     constexpr double SHORTEST = 1e-9;  // share of the whole length
@@ -276,7 +276,7 @@ public:
     double rest = length;
     while (rest > 0.0)
     {
-      // The remaining time is divided evenly: no tiny step at the end.
+      // The remaining time is divided evenly, which avoids a tiny last step.
       const double stride = rest / std::max(1.0, std::ceil(rest / next_ - 1e-9));
       before_ = motion;
       ring_.pairTeeth(motion.q, motion.time);
@@ -295,7 +295,7 @@ public:
         just_rejected_ = true;
         motion = before_;
         const double change = SAFETY * std::pow(ratio, -1.0 / method_.errorPower());
-        next_ = stride * (change > MIN_CHANGE ? change : MIN_CHANGE);  // also if it is not a number
+        next_ = stride * (change > MIN_CHANGE ? change : MIN_CHANGE);  // also for NaN
       }
       else
       {
@@ -320,7 +320,7 @@ private:
   static constexpr double SAFETY = 0.9;
   static constexpr double MIN_CHANGE = 0.2;
   static constexpr double MAX_CHANGE = 5.0;
-  static constexpr double MIN_RATIO = 1e-6;  // an error of nothing is not taken for more than luck
+  static constexpr double MIN_RATIO = 1e-6;  // lower limit of an error that is small by chance
 
   /// Length in which the present accelerations move no tooth by more than the tolerance [s].
   double firstStep(const RingMotion& motion, double length) noexcept
@@ -329,10 +329,10 @@ private:
     const int teeth = 2 * ring_.teeth();
     const double largest = ring_.force().cwiseProduct(ring_.inverseMass()).head(teeth).lpNorm<Eigen::Infinity>();
     const double step = std::sqrt(tolerance_ / largest);
-    return step < length ? step : length;  // the whole length where nothing accelerates
+    return step < length ? step : length;  // the whole length without acceleration
   }
 
-  /// Of the step after an accepted one.
+  /// Factor on the step length after an accepted step.
   double growth(double ratio) noexcept
   {
     const double power = 1.0 / method_.errorPower();
@@ -347,15 +347,15 @@ private:
   DynamicRing& ring_;
   ImplicitRingStepper method_;
   double tolerance_;
-  double next_{};           // step that the control asks for; 0: none yet [s]
+  double next_{};           // next step of the control; 0: not determined yet [s]
   double previous_{ 1.0 };  // e of the last accepted step
   bool just_rejected_{};
   RingMotion begin_;
   RingMotion before_;
 };
 
-/// The classical Runge-Kutta method of Boost.odeint: no damping of its own worth speaking of, but the step is bounded
-/// by the stiffest mode (2.8 over its angular frequency). The reference for the implicit methods.
+/// The classical Runge-Kutta method of Boost.odeint. It has little numerical damping, but the stiffest mode limits the
+/// step to 2.8 over its angular frequency. It is the reference for the implicit methods.
 class ExplicitRingStepper : public RingStepper
 {
 public:
@@ -364,7 +364,7 @@ public:
     method_.adjust_size(state_);
   }
 
-  /// False if a value ceased to be finite.
+  /// @returns false if a value became infinite or NaN.
   bool step(RingMotion& motion, double length) noexcept override
   {
     const int n = ring_.coordinates();
@@ -397,7 +397,7 @@ public:
   }
 
 private:
-  using State = std::vector<double>;  // the ring's, energy supplied, energy dissipated
+  using State = std::vector<double>;  // state of the ring, supplied energy, dissipated energy
 
   DynamicRing& ring_;
   boost::numeric::odeint::runge_kutta4<State> method_;

@@ -14,35 +14,34 @@
 
 namespace hjt
 {
-/// State of a dynamic ring, with its energy ledger.
+/// State of a dynamic ring with its energy account.
 struct RingMotion
 {
   explicit RingMotion(int coordinates) : q(Eigen::VectorXd::Zero(coordinates)), v(Eigen::VectorXd::Zero(coordinates)) {}
 
   Eigen::VectorXd q;    ///< tooth points [m], wave generator angle, output angle [rad]
-  Eigen::VectorXd v;    ///< their speeds
+  Eigen::VectorXd v;    ///< speeds of `q`
   double time{};        ///< [s]
-  double supplied{};    ///< energy from outside since the start [J]
-  double dissipated{};  ///< by dashpots and viscous friction [J]
+  double supplied{};    ///< energy supplied since the start [J]
+  double dissipated{};  ///< energy dissipated by dashpots and viscous friction [J]
 };
 
-/// Cost of a run.
 struct StepCounts
 {
   long steps{};
   long force_evaluations{};
   long factorisations{};
-  long halvings{};    ///< of steps that did not converge
-  long rejections{};  ///< of steps whose error was too large
+  long halvings{};    ///< steps that did not converge and were halved
+  long rejections{};  ///< steps whose error was too large
 };
 
-/// A method of marching a dynamic ring.
+/// Interface of the integration methods of a dynamic ring.
 class RingStepper
 {
 public:
   virtual ~RingStepper() = default;
 
-  /// One step; teeth and spaces are paired at its start. On failure the motion stays as it was.
+  /// Advances one step; the teeth get their spaces at its start. On failure the motion does not change.
   virtual bool step(RingMotion& motion, double length) noexcept = 0;
 
   const StepCounts& counts() const noexcept { return counts_; }
@@ -51,7 +50,6 @@ protected:
   StepCounts counts_;
 };
 
-/// The ways to march a dynamic ring.
 enum class RingMethod
 {
   RUNGE_KUTTA4,
@@ -60,18 +58,18 @@ enum class RingMethod
   ESDIRK4
 };
 
-/// Has it an estimate of its error? Only then its steps can follow a tolerance.
+/// Whether the method has an error estimate, which step control needs.
 bool judgesItsError(RingMethod method);
 
-/// `force_tolerance`: out-of-balance force of an implicit stage [N], not below what the rounding of coordinates allows.
-/// `tolerance` > 0, for methods that judge their error: largest error of a tooth's position by one step, the steps
-/// being of its own choice [m]; 0: steps of the requested length.
+/// `force_tolerance`: out-of-balance force of an implicit stage [N], at least the rounding error of the coordinates.
+/// `tolerance` > 0: largest error of a tooth's position in one step, for methods with step control [m]; 0: steps of the
+/// requested length.
 std::unique_ptr<RingStepper> makeRingStepper(RingMethod method, DynamicRing& ring, const SolverParameters& solver,
                                              double tolerance = 0.0);
 
-/// Positions and speeds of a ring that travels in equilibrium while the wave generator turns at `speed` [rad/s] under a
-/// constant `load` [N.m]. `ring`: in equilibrium under that load. The output, too heavy to follow the drive within a
-/// tooth pitch, turns at its mean speed over one. @returns false if an equilibrium was not found.
+/// Positions and speeds of a ring in equilibrium while the wave generator turns at `speed` [rad/s] under a constant
+/// `load` [N.m]. `ring`: in equilibrium under that load. The output turns at its mean speed over a tooth pitch, because
+/// its inertia does not let it follow faster. @returns a status that is not ok() if an equilibrium was not found.
 inline SolveStatus travelInEquilibrium(const RingEquilibrium& ring, double speed, double load, RingMotion& motion)
 {
   const double pitch = ring.model().rest.pitchAngle();
@@ -87,8 +85,8 @@ inline SolveStatus travelInEquilibrium(const RingEquilibrium& ring, double speed
   return status;
 }
 
-/// Direct solver for the ring's tangent over all coordinates: the cyclic tooth part bordered by the two angles, which
-/// are condensed to 2 x 2 by two more right-hand sides. No allocation after construction.
+/// Direct solver for the ring's tangent over all coordinates: the cyclic part of the teeth with a border of the two
+/// angles, which two more right-hand sides condense to 2 x 2. Only the constructor allocates.
 class BorderedRingSolver
 {
 public:
@@ -97,7 +95,8 @@ public:
   {
   }
 
-  /// Factors. `held`: wave generator, output; a held angle's solution is zero. False if singular or not finite.
+  /// Factors the tangent. `held`: wave generator and output, whose solution is then zero. @returns false if the tangent
+  /// is singular or not finite.
   bool factor(const RingTangent& tangent, const std::array<bool, 2>& held) noexcept
   {
     held_ = held;
@@ -129,7 +128,7 @@ public:
     return corner_inverse_.allFinite();
   }
 
-  /// Solves in place: 2 N of the teeth, wave generator, output.
+  /// Solves in place for 2 N of the teeth, wave generator and output.
   void solve(Eigen::VectorXd& b) noexcept
   {
     scratch_ = b.head(scratch_.size());
@@ -157,47 +156,47 @@ private:
 
   CyclicSolver teeth_;
   std::array<bool, 2> held_{};
-  Columns border_;     // tooth part by the angles
+  Columns border_;     // couplings of the teeth and the angles
   Columns condensed_;  // teeth_^-1 border_
   Eigen::Matrix2d corner_inverse_{ Eigen::Matrix2d::Identity() };
   Eigen::VectorXd scratch_;
 };
 
-/// Coefficients of a diagonally implicit Runge-Kutta method, stiffly accurate: the last stage is the step's end.
+/// Coefficients of a diagonally implicit, stiffly accurate Runge-Kutta method: the last stage is the end of the step.
 ///
-/// All implicit stages share the diagonal gamma, so one factored matrix serves them all. The first stage may be
+/// All implicit stages have the diagonal gamma, so that one factored matrix serves them. The first stage may be
 /// explicit.
 struct RungeKuttaTableau
 {
   int order;
   double gamma;                             ///< diagonal of the implicit stages [-]
-  bool explicit_first;                      ///< the first stage is the step's start
-  std::vector<std::vector<double>> before;  ///< row per stage: weights of the stages before it [-]
-  std::vector<double> times;                ///< of the stages, in steps [-]
+  bool explicit_first;                      ///< the first stage is the start of the step
+  std::vector<std::vector<double>> before;  ///< weights of the preceding stages, one row for each stage [-]
+  std::vector<double> times;                ///< times of the stages in steps [-]
   std::vector<double> error;                ///< weights of the embedded error estimate; empty: none [-]
-  int error_power;                          ///< of the step that the estimate goes with; 0: none
+  int error_power;                          ///< order of the estimate in the step length; 0: none
 
   int stages() const { return static_cast<int>(times.size()); }
-  /// Weight of stage i in the step: the last row.
+  /// Weight of stage i in the step, from the last row.
   double weight(int i) const { return i + 1 == stages() ? gamma : before.back()[static_cast<std::size_t>(i)]; }
 };
 
-/// Order 1, L-stable: what ode14x of the thesis' chapter 6 extrapolates from.
+/// Order 1, L-stable; ode14x in the thesis' chapter 6 extrapolates it.
 inline const RungeKuttaTableau& implicitEuler()
 {
   static const RungeKuttaTableau TABLEAU{ 1, 1.0, false, { {} }, { 1.0 }, {}, 0 };
   return TABLEAU;
 }
 
-/// Order 2, L-stable, stage order 2: trapezoidal rule and BDF2 as one method (Bank et al. 1985; embedded estimate of
-/// order 3 of Hosea and Shampine 1996).
+/// Order 2, L-stable, stage order 2: trapezoidal rule and BDF2 in one method (Bank et al. 1985) with an embedded method
+/// of order 3 (Hosea and Shampine 1996).
 inline const RungeKuttaTableau& trBdf2()
 {
   static const RungeKuttaTableau TABLEAU = []
   {
     const double g = 1.0 - std::sqrt(0.5);
     const double w = 0.25 * std::sqrt(2.0);
-    // Weights of the step less those of the embedded method of order 3.
+    // Weights of the step minus those of the embedded method.
     const std::vector<double> error{ w - (1.0 - w) / 3.0, w - (3.0 * w + 1.0) / 3.0, g - g / 3.0 };
     return RungeKuttaTableau{ 2, g, true, { {}, { g }, { w, w } }, { 0.0, 2.0 * g, 1.0 }, error, 3 };
   }();
@@ -236,33 +235,31 @@ inline const RungeKuttaTableau& esdirk4()
   return TABLEAU;
 }
 
-/// Diagonally implicit Runge-Kutta on the ring's own structure.
+/// Diagonally implicit Runge-Kutta method with the structure of the ring.
 ///
-/// A stage at time t solves for the coordinates q, with q_bar and v_bar from the stages before and g = gamma h:
+/// A stage at time t solves for the coordinates q, with q_bar and v_bar of the preceding stages and g = gamma h:
 ///   f(q, v, t) - M (v - v_bar) / g = 0,   v = (q - q_bar) / g
-/// by Newton with the matrix K + C / g + M / g^2, which is the cyclic block-tridiagonal one of the equilibrium with a
-/// larger diagonal. Its factors serve all stages of a step while they contract well; line search on the out-of-balance
-/// force; a step that does not converge is done in halves. No allocation after construction.
+/// by Newton's method with the matrix K + C / g + M / g^2: that of the equilibrium with a larger diagonal. Its factors
+/// serve all stages of a step while they contract well. The line search uses the out-of-balance force. A step that does
+/// not converge is halved. Only the constructor allocates.
 class ImplicitRingStepper : public RingStepper
 {
 public:
-  /// Of `solver` it takes the force tolerance, the bound on iterations and that on halvings.
+  /// `solver` gives the force tolerance and the limits on iterations and halvings.
   ImplicitRingStepper(DynamicRing& ring, const RungeKuttaTableau& tableau, const SolverParameters& solver);
 
   bool step(RingMotion& motion, double length) noexcept override;
 
-  /// One step of just this length, teeth and spaces as they are. False: the motion stays.
+  /// Attempts one step of this length with the present spaces of the teeth. @returns false without changing the motion.
   bool attempt(RingMotion& motion, double length) noexcept;
-  /// To be called before the first attempt from a motion, and whenever motion or drive were changed from outside.
+  /// Must be called before the first attempt, and after external changes of motion or drive.
   void restart() noexcept { begun_ = false; }
-  /// The last attempt stands: the next one goes on from its end. Otherwise the next one starts where that did.
+  /// Accepts the last attempt, whose end is the start of the next one. Otherwise the next one starts where the last
+  /// did.
   void accept() noexcept;
-  /// Of the last attempt in the positions, by the tableau's embedded method: the largest over the teeth [m].
+  /// Error of the last attempt by the embedded method: the largest of the teeth's positions [m].
   double errorEstimate() const noexcept { return error_; }
-  int errorPower() const noexcept
-  {
-    return tableau_.error_power;
-  }  ///< of the step's length that the estimate goes with
+  int errorPower() const noexcept { return tableau_.error_power; }  ///< order of the estimate in the step length
 
 private:
   void begin(const Eigen::VectorXd& speeds) noexcept;
@@ -274,18 +271,18 @@ private:
   DynamicRing& ring_;
   const RungeKuttaTableau& tableau_;
   SolverParameters parameters_;
-  Eigen::VectorXd weight_;  // of the coordinates' forces, so that torques count as forces at the rim [-], [1/m]
+  Eigen::VectorXd weight_;  // weights of the forces, by which torques count as forces at the rim [-], [1/m]
   Eigen::VectorXd free_;    // 1, or 0 for a driven body [-]
   RingTangent tangent_;
   BorderedRingSolver solver_;
-  double stage_step_{};  // gamma h of the present step [s]
+  double stage_step_{};  // gamma h of the step [s]
   bool factored_{};      // in this step
-  bool begun_{};         // the explicit first stage is at hand
-  double largest_{};     // component of the out-of-balance force [N]
+  bool begun_{};         // the explicit first stage is computed
+  double largest_{};     // largest component of the out-of-balance force [N]
   double error_{};       // [m]
-  // Scratch, sized once.
-  std::vector<Eigen::VectorXd> speeds_;         // per stage: derivative of q
-  std::vector<Eigen::VectorXd> accelerations_;  // per stage: derivative of v
+  // Working memory.
+  std::vector<Eigen::VectorXd> speeds_;         // derivative of q at each stage
+  std::vector<Eigen::VectorXd> accelerations_;  // derivative of v at each stage
   std::vector<RingPower> powers_;
   Eigen::VectorXd q_bar_;
   Eigen::VectorXd v_bar_;

@@ -16,17 +16,17 @@ namespace hjt
 namespace
 {
 constexpr int LINES = 48;         // intervals of w
-constexpr int COLUMNS = 8;        // of u over a pitch
-constexpr int PLACES = 80;        // of chi over half a turn
-constexpr double SCALE = 1e-3;    // of v: lines are equidistant below it and geometric above [rad]
-constexpr double LONGEST = 1e-3;  // way of v at once [rad]
+constexpr int COLUMNS = 8;        // of u in a pitch
+constexpr int PLACES = 80;        // of chi in half a turn
+constexpr double SCALE = 1e-3;    // scale of v: lines are equidistant below it and geometric above [rad]
+constexpr double LONGEST = 1e-3;  // largest single step of v [rad]
 
 using Coefficients = BallTable::Coefficients;
 
-/// Coefficients of the cubic spline through values on an even grid that is the same again after them.
+/// Coefficients of the cubic spline through values on an even periodic grid.
 void makeRoundSpline(std::vector<Coefficients>& values)
 {
-  // (c[i-1] + 4 c[i] + c[i+1]) / 6 = value[i]: the inverse is a sum of powers of this, both ways round.
+  // (c[i-1] + 4 c[i] + c[i+1]) / 6 = value[i]. The inverse is a sum of powers of the pole in both directions.
   const double pole = std::sqrt(3.0) - 2.0;
   const std::size_t count = values.size();
   const double closed = 1.0 / (1.0 - std::pow(pole, static_cast<double>(count)));
@@ -35,7 +35,7 @@ void makeRoundSpline(std::vector<Coefficients>& values)
   {
     sum = values[i] + pole * sum;
   }
-  sum *= closed;  // of all before the first
+  sum *= closed;  // sum over all values before the first
   for (Coefficients& value : values)
   {
     sum = value + pole * sum;
@@ -54,11 +54,11 @@ void makeRoundSpline(std::vector<Coefficients>& values)
   }
 }
 
-/// Of the spline without curvature at its ends: two coefficients more than values.
+/// Coefficients of the spline without curvature at its ends; there are two more than values.
 std::vector<Coefficients> naturalSpline(const std::vector<Coefficients>& values)
 {
   const std::size_t last = values.size() - 1;
-  std::vector<Coefficients> inner = values;  // at the ends the coefficient is the value
+  std::vector<Coefficients> inner = values;  // the coefficients at the ends equal the values
   std::vector<double> factor(values.size());
   for (std::size_t i = 1; i < last; ++i)
   {
@@ -80,7 +80,7 @@ std::vector<Coefficients> naturalSpline(const std::vector<Coefficients>& values)
   return all;
 }
 
-/// One line of the table: a ring from cold, led to it.
+/// One line of the table, with a ring that starts from a new insertion.
 class BallLine
 {
 public:
@@ -94,7 +94,7 @@ public:
   {
   }
 
-  /// `values`: column by column, place by place. False: no equilibrium.
+  /// `values`: by column, then by place. @returns false without an equilibrium.
   bool measure(double v, int columns, int places, std::vector<Coefficients>& values)
   {
     bool good = ring_.insert();
@@ -118,7 +118,7 @@ public:
         }
         const double by_drop = -deepest_ * force.dot(share_);
         values.emplace_back(Coefficients::Zero());
-        // A ball that carries nothing may drop.
+        // Only a ball that carries no load may drop without effect.
         good = by_drop == 0.0 || measureBall(angle, v, sound, by_drop, values.back());
       }
     }
@@ -131,7 +131,7 @@ private:
     double energy, by_drop, contact_force, flanks;
   };
 
-  /// The ring where it is. `by_drop` is known of the present `share_`.
+  /// Sample of the ring at its present position. `by_drop` must belong to the present `share_`.
   Sample sample()
   {
     const SurfaceNode node = ring_.measure();
@@ -139,14 +139,14 @@ private:
              ring_.flankFriction(node) };
   }
 
-  /// With the ball dropped by a part of the deepest.
+  /// Solves with the ball dropped by `part` of the largest drop.
   bool dropTo(double part, double angle, double v)
   {
     ring_.editModel().ring.edit<WaveGeneratorContact>().gap() = sound_gap_ + part * deepest_ * share_;
     return ring_.moveTo(angle, v);
   }
 
-  /// `c1`: derivative of the energy by x in the sound gear [J].
+  /// `c1`: derivative of the sound gear's energy by x [J].
   bool measureBall(double angle, double v, const Sample& sound, double c1, Coefficients& coefficients)
   {
     if (!dropTo(0.5, angle, v))
@@ -159,7 +159,7 @@ private:
       return false;
     }
     const Sample whole = sample();
-    // U = c1 x + c2 x^2 + c3 x^3 + c4 x^4 with its slopes at 0 and 1 and its values at 1/2 and 1.
+    // U = c1 x + c2 x^2 + c3 x^3 + c4 x^4, from its slopes at 0 and 1 and its values at 1/2 and 1.
     const double at_half = 16.0 * (half.energy - sound.energy - 0.5 * c1);
     const double at_whole = whole.energy - sound.energy - c1;
     const double c2 = at_half - 5.0 * at_whole + whole.by_drop - c1;
@@ -182,7 +182,7 @@ private:
   double deepest_;
   double turn_;
   double ball_pitch_;
-  Eigen::VectorXd share_;  // share of the drop by which the race sags over each tooth
+  Eigen::VectorXd share_;  // sag of the race over each tooth as a share of the drop
 };
 using Lines = std::array<std::vector<Coefficients>, LINES + 1>;
 
@@ -205,7 +205,7 @@ BallTable emptyTable(const Parameters& parameters, const JointModel& sound, doub
   return table;
 }
 
-/// False if a ring finds no equilibrium.
+/// @returns false if a ring has no equilibrium.
 bool measureLines(const Parameters& parameters, const JointModel& sound, const BallTable& table,
                   const std::function<void(double)>& progress, unsigned threads, Lines& lines)
 {
@@ -232,7 +232,7 @@ bool measureLines(const Parameters& parameters, const JointModel& sound, const B
   return !failed;
 }
 
-/// Splines along both round directions of a line.
+/// Splines along both periodic directions of a line.
 void makeSplines(std::size_t columns, std::size_t places, std::vector<Coefficients>& line)
 {
   for (std::size_t j = 0; j < columns; ++j)
@@ -257,7 +257,6 @@ void makeSplines(std::size_t columns, std::size_t places, std::vector<Coefficien
   }
 }
 
-/// Splines from line to line.
 std::vector<Coefficients> acrossLines(const Lines& lines)
 {
   const std::size_t size = lines.front().size();
@@ -287,7 +286,7 @@ BallBuild buildBallTable(const Parameters& parameters, const JointModel& sound, 
   Lines lines;
   if (!measureLines(parameters, sound, result.table, progress, threads, lines))
   {
-    result.failure_reason = "the ring finds no equilibrium where a ball drops";
+    result.failure_reason = "the ring has no equilibrium at a drop of a ball";
     return result;
   }
   for (std::vector<Coefficients>& line : lines)

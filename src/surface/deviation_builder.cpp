@@ -21,7 +21,7 @@ namespace hjt
 {
 namespace
 {
-/// A pitch whose edges are yet to be joined.
+/// A pitch whose edges are not yet joined to its neighbours.
 struct OpenPitch
 {
   int columns{};
@@ -32,7 +32,7 @@ struct OpenPitch
 void levelEdge(OpenPitch& pitch, std::size_t column, const std::vector<double>& common)
 {
   const std::size_t stride = static_cast<std::size_t>(pitch.columns) + 1;
-  std::size_t kept = 0;  // the last line in common
+  std::size_t kept = 0;  // last line of both
   for (std::size_t i = 0, in_common = 0; i < pitch.lines.size(); ++i)
   {
     if (in_common == common.size() || pitch.lines[i] != common[in_common])
@@ -62,8 +62,8 @@ void levelEdge(OpenPitch& pitch, std::size_t column, const std::vector<double>& 
   }
 }
 
-/// Makes the end of a pitch and the start of the next one the same function of v: on lines that only one of them has,
-/// what lies between those that both have.
+/// Makes the end of a pitch and the start of the next one equal functions of v. A line that only one pitch has gets
+/// values interpolated between the lines that both have.
 void joinPitches(OpenPitch& before, OpenPitch& after)
 {
   std::vector<double> common;
@@ -77,7 +77,7 @@ void joinPitches(OpenPitch& before, OpenPitch& after)
   levelEdge(after, 0, common);
 }
 
-/// The table of all pitches, the last one joined to the first.
+/// The table of all pitches; the last pitch is joined to the first.
 DeviationTable tableOf(std::vector<OpenPitch> pitches, bool swaps_lobes)
 {
   for (std::size_t number = 0; number < pitches.size(); ++number)
@@ -93,13 +93,13 @@ DeviationTable tableOf(std::vector<OpenPitch> pitches, bool swaps_lobes)
   return table;
 }
 
-/// Whether a grid of deviations gives what the ring has between its nodes.
+/// Check of a grid of deviations against the ring between its nodes.
 class DeviationCheck
 {
 public:
   using Torques = Eigen::Array2d;  ///< on output and motor [N.m]
 
-  /// `ring` knows its limits and is not solved.
+  /// `ring` gives the limits and is not solved.
   explicit DeviationCheck(const SurfaceRing& ring) : ring_(ring) {}
 
   Torques torques(const SurfaceNode& deviation) const
@@ -109,12 +109,12 @@ public:
 
   bool departs(const SurfaceNode& node) const
   {
-    constexpr double ROUNDING = 1e-8;  // of the torque limit; the rings are solved to a tenth of that
+    constexpr double ROUNDING = 1e-8;  // share of the torque limit; the rings are solved to a tenth of it
     const Torques torque = torques(node).abs();
     return std::max(torque[0], torque[1] * ring_.ratio()) > ROUNDING * ring_.torqueLimit();
   }
 
-  /// By how much every so manyth node of a strip misses those between, root mean square over the tolerance [-].
+  /// Miss of a strip with `columns` columns at the nodes between them: root mean square over the tolerance [-].
   double missOfColumns(const Strip& strip, int columns, const Torques& tolerance) const
   {
     const std::size_t stride = (strip.size() - 1) / static_cast<std::size_t>(columns);
@@ -132,8 +132,8 @@ public:
     return largest(squares / (static_cast<double>(columns) * (static_cast<double>(stride) - 1.0)), tolerance);
   }
 
-  /// By how much two lines' strips of a pitch, `height` apart [rad], miss that of the line half way between them, root
-  /// mean square over the tolerance [-]. Single kinks, where a tooth begins to touch, no grid has.
+  /// Miss of two lines' strips of a pitch, `height` apart [rad], at the line halfway between them: root mean square
+  /// over the tolerance [-]. No grid resolves single kinks where a tooth begins to touch.
   double missBetween(const Strip& below, const Strip& above, double height, const Strip& middle,
                      const Torques& tolerance) const
   {
@@ -155,7 +155,7 @@ private:
 
   Torques torques(double by_u, double by_v) const { return { -by_v, by_v / ring_.ratio() - by_u / ring_.pitch() }; }
 
-  /// By how much what lies in a cell misses the deviation measured there.
+  /// Difference between a cell's value and the measured deviation.
   Torques miss(const SurfaceCell& cell, const SurfaceNode& measured) const
   {
     const SurfaceEnergy energy = cell.energy();
@@ -167,21 +167,23 @@ private:
 
 using Node = SurfaceNode;
 using Line = DeviationLine;
-using Lines = std::map<double, Line>;  // by their v [rad]
+using Lines = std::map<double, Line>;  // key: v [rad]
 using Rings = DeviationRings;
 using Torques = DeviationCheck::Torques;
 
-constexpr double SMALLEST = 0.1;  // a line's largest deviation counts as at least this part of the largest of all [-]
-constexpr double FINEST = 0.3;    // of the surface's tolerance; no deviation needs to be finer [-]
-constexpr double WIDEST = 3.0;    // largest factor by which that may raise a deviation's own tolerance [-]
-constexpr int COARSE_LINES = 12;  // a side, before refinement; denser towards no load
-constexpr int MAX_HALVINGS = 5;   // of an interval between two lines
-constexpr double SAME_TORQUE = 1e-7;  // difference of equal torques, as a share of the torque limit [-]
+constexpr double SMALLEST = 0.1;  // least share of a line's largest deviation in the largest of all lines [-]
+constexpr double FINEST = 0.3;    // least tolerance of a deviation, as a share of the surface's tolerance [-]
+// largest factor by which the surface's tolerance may increase a deviation's tolerance [-]
+constexpr double WIDEST = 3.0;
+// coarse lines on either side of no load, before refinement; they are denser near no load
+constexpr int COARSE_LINES = 12;
+constexpr int MAX_HALVINGS = 5;       // largest number of halvings of an interval between two lines
+constexpr double SAME_TORQUE = 1e-7;  // largest difference of equal torques, as a share of the torque limit [-]
 constexpr int MIN_COLUMNS = 4;
 constexpr int MAX_COLUMNS = 16;
 
-/// Every coarse line, and every interval between two of them, is a task for itself that begins with rings from cold:
-/// the bits of a table do not depend on the number of threads.
+/// Every coarse line, and every interval between two of them, is a separate task that begins with newly inserted rings.
+/// The bits of a table therefore do not depend on the number of threads.
 class DeviationBuilder
 {
 public:
@@ -217,7 +219,7 @@ public:
     if (failed_)
     {
       result.failure_reason = too_many_ ? tooManyPoints(parameters_, max_points_) :
-                                          "the ring finds no equilibrium at some angles within a turn";
+                                          "the ring has no equilibrium at some angles within a turn";
     }
     else
     {
@@ -229,12 +231,12 @@ public:
   }
 
 private:
-  using Set = std::vector<char>;  // which pitches
+  using Set = std::vector<char>;  // flags of the wanted pitches
 
   std::size_t next(std::size_t pitch) const { return pitch + 1 < pitches_ ? pitch + 1 : 0; }
   std::size_t last(std::size_t pitch) const { return pitch > 0 ? pitch - 1 : pitches_ - 1; }
 
-  /// Of a line's strips.
+  /// Number of points of a line's strips.
   std::size_t pointsOf(const Set& wanted) const
   {
     std::size_t points = 0;
@@ -245,8 +247,8 @@ private:
     return points;
   }
 
-  /// Deviations on a line for some of the pitches: first at their edges, then, on the way back, within those where, or
-  /// beside which, there are any. False, and everything ends: no equilibrium.
+  /// Measures the deviations on a line for some pitches: first at their edges, then, on the way back, within pitches
+  /// that have deviations or a neighbour with deviations. @returns false and ends everything without an equilibrium.
   bool measureLine(Rings& rings, double v, const Set& wanted, Line& line)
   {
     const bool there = !failed_ && rings.leadTo(v, longest_way_);
@@ -311,7 +313,7 @@ private:
     return good;
   }
 
-  /// The same for a line of the table, if there is room.
+  /// Measures a line and adds it to the table, if there is room.
   bool addLine(Rings& rings, double v, const Set& wanted, Line& line)
   {
     const std::size_t size = pointsOf(wanted) * (mirror_ ? 2 : 1);
@@ -323,15 +325,15 @@ private:
     return measureLine(rings, v, wanted, line);
   }
 
-  /// Of a line, by its own largest deviation and that of the coarse lines; wider for one that is small beside what the
-  /// surface may miss anyway.
+  /// Tolerance on a line by its largest deviation and that of the coarse lines. It is wider for a deviation that is
+  /// small compared with the surface's own tolerance.
   Torques toleranceOf(const Line& line) const
   {
     const Torques own = line.overload * share_ * line.largest.max(SMALLEST * largest_);
     return own.max((FINEST * line.of_the_surface).min(WIDEST * own));
   }
 
-  /// For each pitch the fewest columns that give the deviations half way between them.
+  /// Chooses for each pitch the fewest columns that resolve the deviations halfway between them.
   void chooseColumns(double lowest, double highest)
   {
     const std::array<double, 6> places{ 0.02 * highest, 0.1 * highest, 0.3 * highest,
@@ -373,7 +375,7 @@ private:
         note(line, miss());
       }
     }
-    // The effect may move to the next pitch with the load.
+    // With the load, the effect may move to the next pitch.
     for (std::size_t pitch = 0; pitch < pitches_; ++pitch)
     {
       columns_[pitch] = std::max({ enough[last(pitch)], enough[pitch], enough[next(pitch)] });
@@ -386,7 +388,7 @@ private:
     }
   }
 
-  /// Coarse lines, denser towards no load; one way where the other is its mirror image.
+  /// Measures the coarse lines, denser near no load; one direction only if the other is its mirror image.
   void coverRange(double lowest, double highest)
   {
     for (int i = mirror_ ? 0 : -COARSE_LINES; i <= COARSE_LINES; ++i)
@@ -438,7 +440,8 @@ private:
     const Line& line;
   };
 
-  /// A line between two for the pitches `wanted`, and further lines for those that it shows to be too coarse.
+  /// Measures a line between two others for the pitches `wanted`, and further lines where the check shows too coarse a
+  /// grid.
   void refine(Rings& rings, const Placed& below, const Placed& above, const Set& wanted, int halvings, Lines& found)
   {
     const double middle = 0.5 * (below.v + above.v);
@@ -471,7 +474,7 @@ private:
     }
   }
 
-  /// Beyond the torque limit teeth may snap: nothing is promised there.
+  /// Stores a check. Beyond the torque limit teeth may snap, so that no accuracy is claimed.
   void note(const Line& line, double miss)
   {
     if (line.overload == 1.0)
@@ -509,7 +512,7 @@ private:
 
   bool swapsLobes() const { return static_cast<int>(pitches_) <= model_.ring.rest.teeth() / 2 + 1; }
 
-  /// Tasks of these numbers, from the first up to the second.
+  /// Runs the tasks with these numbers, the second one excluded.
   void run(std::pair<std::size_t, std::size_t> numbers, double from, double to,
            const std::function<void(Rings&, std::size_t)>& task)
   {
@@ -540,21 +543,21 @@ private:
   std::function<void(double)> progress_;
   std::size_t max_points_;
   unsigned threads_;
-  const SurfaceRing ring_;  // knows limits and tolerances, is not solved
+  const SurfaceRing ring_;  // gives limits and tolerances and is not solved
   const DeviationCheck check_;
   std::size_t pitches_;
-  std::vector<int> columns_;    // of each pitch
-  std::vector<double> coarse_;  // lines, ascending
+  std::vector<int> columns_;    // columns of each pitch
+  std::vector<double> coarse_;  // v of the coarse lines, ascending
   Lines lines_;
-  std::optional<DeviationMirror> mirror_;  // then only lines of v >= 0 are measured
-  const Torques share_{ 5e-3, 7e-3 };      // of the largest deviation on a line, that the table may miss [-]
-  Torques largest_{ Torques::Zero() };     // deviations of the coarse lines
-  double longest_way_{};                   // between two solves, in v [rad]
-  std::atomic<std::size_t> points_{ 0 };   // of all lines
+  std::optional<DeviationMirror> mirror_;  // if set, only lines of v >= 0 are measured
+  const Torques share_{ 5e-3, 7e-3 };      // allowed miss as a share of the largest deviation on a line [-]
+  Torques largest_{ Torques::Zero() };     // largest deviations of the coarse lines
+  double longest_way_{};                   // largest change of v between two solves [rad]
+  std::atomic<std::size_t> points_{ 0 };   // points of all lines
   std::atomic<int> solves_{ 0 };
   std::atomic<bool> failed_{ false };
   std::atomic<bool> too_many_{ false };
-  std::mutex mutex_;  // of the checks
+  std::mutex mutex_;  // protects the checks
   GridChecks checks_;
 };
 }  // namespace

@@ -14,20 +14,20 @@
 
 namespace hjt
 {
-/// Nodes of one tooth pitch on one line, with both its ends.
+/// Nodes of one tooth pitch on one line, both ends included.
 using Strip = std::vector<SurfaceNode>;
 
-/// Deviations from the gear of equal teeth on one line.
+/// Deviations from the gear with equal teeth on one line.
 struct DeviationLine
 {
-  std::vector<Strip> strips;                                ///< one a pitch; none where the line is not needed
-  Eigen::Array2d largest{ Eigen::Array2d::Zero() };         ///< torques on output and motor [N.m]
-  double overload{};                                        ///< by how much its tolerances are wider [-]
-  Eigen::Array2d of_the_surface{ Eigen::Array2d::Zero() };  ///< tolerances of the gear of equal teeth [N.m]
+  std::vector<Strip> strips;                         ///< one for each pitch; empty where the line is not needed
+  Eigen::Array2d largest{ Eigen::Array2d::Zero() };  ///< largest deviations of the torques on output and motor [N.m]
+  double overload{};                                 ///< factor by which the tolerances are wider [-]
+  Eigen::Array2d of_the_surface{ Eigen::Array2d::Zero() };  ///< tolerances of the gear with equal teeth [N.m]
 };
 
-/// A ring of equal teeth and the gear's own, side by side. The guess of the latter's shape departs from the former's at
-/// the same angles as it did at the node before: that changes less than either shape.
+/// A ring with equal teeth and the gear's own ring. The guess of the latter's shape is the former's shape at the
+/// present angles plus their difference at the preceding node, because the difference changes less than either shape.
 struct DeviationRings
 {
   DeviationRings(const SurfaceParameters& parameters, const JointModel& equal_model, const JointModel& actual_model)
@@ -37,7 +37,7 @@ struct DeviationRings
 
   bool insert() { return equal.insert() && actual.insert(); }
 
-  /// Both to another line at the angles where they are, in pieces no longer than a `longest` way.
+  /// Moves both rings to another line at constant motor angle, in steps of at most `longest`.
   bool leadTo(double target, double longest)
   {
     const int pieces = std::max(1, static_cast<int>(std::ceil(std::abs(target - v) / longest)));
@@ -52,7 +52,7 @@ struct DeviationRings
     return good;
   }
 
-  /// The gear of equal teeth at these columns. Empty: no equilibrium.
+  /// Measures the gear with equal teeth at these columns. Empty: no equilibrium.
   Strip measureEqual(int columns)
   {
     Strip nodes;
@@ -69,7 +69,7 @@ struct DeviationRings
     return nodes;
   }
 
-  /// The gear's own at a column of those that `measureEqual` was at last. False: no equilibrium.
+  /// Measures the gear's own ring at one of the last columns of `measureEqual`. @returns false without an equilibrium.
   bool measureActual(std::size_t pitch, std::size_t column, SurfaceNode& node)
   {
     constexpr double NEAR = 0.6;  // share of a pitch
@@ -93,22 +93,22 @@ struct DeviationRings
 
   SurfaceRing equal;
   SurfaceRing actual;
-  double v{};  // where they are [rad]
+  double v{};  // present v [rad]
 
 private:
   struct Shape
   {
-    Eigen::VectorXd points;  // [m]
-    Eigen::VectorXd rates;   // by the motor's angle, at the same v [m/rad]
+    Eigen::VectorXd points;  // tooth points [m]
+    Eigen::VectorXd rates;   // derivatives by the motor's angle at constant v [m/rad]
   };
-  std::vector<Shape> shapes_;  // of the ring of equal teeth, a column each
+  std::vector<Shape> shapes_;  // shapes of the ring with equal teeth, one for each column
   Shape base_{ equal.points(), equal.points() };
   Shape departure_;
   bool departure_known_{ false };
 };
 
-/// Deviations that are their own mirror image: the energy's at x pitches and v is that at (centre - x) and -v. So it is
-/// for a fault that looks the same from both sides, of a gear of equal teeth that does.
+/// Symmetry of deviations: the energy at x pitches and v equals that at (centre - x) and -v. It exists for a fault with
+/// mirror symmetry in a gear of equal teeth with mirror symmetry.
 class DeviationMirror
 {
 public:
@@ -118,8 +118,8 @@ public:
     double by_u, by_v;
   };
 
-  /// As two lines at opposite v tell, measured at all pitches with the same columns. `swaps_lobes`: beyond the last
-  /// pitch the lobes have changed places.
+  /// Finds the symmetry from two lines at opposite v, measured at all pitches with equal columns. `swaps_lobes`: after
+  /// the last pitch the lobes have exchanged their places.
   static std::optional<DeviationMirror> find(const DeviationLine& line, const DeviationLine& opposite, bool swaps_lobes,
                                              const Same& same)
   {
@@ -134,10 +134,10 @@ public:
     return std::nullopt;
   }
 
-  /// Which pitch a pitch is the image of.
+  /// The pitch of which a pitch is the mirror image.
   std::size_t imageOf(std::size_t pitch) const noexcept { return (centre_ + 2 * pitches_ - 1 - pitch) % pitches_; }
 
-  /// The line at the opposite v.
+  /// The line at the opposite v, by the symmetry.
   DeviationLine image(const DeviationLine& line) const
   {
     DeviationLine image = line;
@@ -172,10 +172,12 @@ private:
     return node;
   }
 
-  /// Torques at every node; what friction and lobes need in the mean: where a tooth begins to touch, rates jump.
+  /// Compares the torques at every node, and means of friction and lobe forces, whose rates jump where a tooth begins
+  /// to touch.
   bool gives(const DeviationLine& line, const DeviationLine& opposite, const Same& same) const
   {
-    constexpr double SAME_FRICTION = 0.01;  // difference of equal friction, as a share of the mean deviation [-]
+    // largest difference of equal friction, as a share of the mean deviation [-]
+    constexpr double SAME_FRICTION = 0.01;
     constexpr std::array VALUES{ SurfaceNode::CONTACT_FORCE, SurfaceNode::RING_TORQUE, SurfaceNode::VISCOUS,
                                  SurfaceNode::OUTPUT_STIFFNESS, SurfaceNode::LOBE_FORCE };
     std::array<double, VALUES.size()> misses{};

@@ -11,7 +11,7 @@ namespace hjt
 {
 namespace
 {
-/// The faults, for the cache of surfaces; empty without.
+/// Text of the faults for the key of the cache; empty without faults.
 std::string keyOf(const FaultList& faults)
 {
   TextStream text;
@@ -23,7 +23,7 @@ std::string keyOf(const FaultList& faults)
   return text.str();
 }
 
-/// The one fault of a gear of equal teeth that sits on a tooth or segment of the flexspline; null: it is not so.
+/// The only fault of a gear with equal teeth, if it is at a tooth or segment of the flexspline; otherwise null.
 const Fault* singleFaultOfATooth(const Parameters& parameters, const FaultList& faults)
 {
   Parameters without = parameters;
@@ -35,7 +35,7 @@ const Fault* singleFaultOfATooth(const Parameters& parameters, const FaultList& 
   return local && teethAreAlike(without) ? fault : nullptr;
 }
 
-/// The surface of a fault of tooth 0 serves for all: the gear is the same, turned by so many pitches.
+/// Surface of the fault at tooth 0, which serves for all teeth: the gear is only turned by a number of pitches.
 SurfacePool::Surface shiftedSurface(const Parameters& parameters, Fault fault, const SurfaceSource& source)
 {
   const int place = fault.place;
@@ -57,7 +57,7 @@ SurfacePool::Surface none(const std::string& why, const SurfaceSource& source)
 {
   if (source.notice)
   {
-    source.notice("no response surface " + why + ": the twin solves the full ring at every step");
+    source.notice("no response surface " + why + "; the twin solves the full ring at every step");
   }
   return nullptr;
 }
@@ -74,7 +74,7 @@ SurfacePool::Surface surfaceWithFaults(const Parameters& parameters, const Fault
 {
   if (parameters.contact.support == SupportKind::SINGLE_BALLS)
   {
-    return none("on single balls", source);
+    return none("for single balls", source);
   }
   FaultList of_the_balls;
   FaultList others;
@@ -97,9 +97,9 @@ SurfacePool::Surface surfaceWithFaults(const Parameters& parameters, const Fault
       JointFaults(parameters, of_the_balls).model().ring.of<WaveGeneratorContact>().bearing();
   if (!bearing.dropsOneBall())
   {
-    return none("with more than one fault of the bearing, or a spall longer than from ball to ball", source);
+    return none("with more than one fault of the bearing, or a spall longer than the distance of two balls", source);
   }
-  // One tooth alone changes little in what a ball does.
+  // A single tooth has little influence on the effect of a ball.
   const bool adds_up = of_a_tooth != nullptr && describe(of_a_tooth->kind).place == FaultPlace::TOOTH;
   const FaultList felt_by_balls = adds_up ? FaultList() : others;
   const SurfacePool::Surface balls =

@@ -7,10 +7,11 @@
 
 namespace hjt
 {
-/// Of the wave generator's bearing: a table over the angles of motor and output does not contain them.
+/// Whether the fault is one of the bearing's balls and races, which a table over motor and output angle does not
+/// contain.
 bool isOfTheBalls(const Fault& fault) noexcept;
 
-/// The response surface of the drive with these faults; if there is none, the source gets the reason.
+/// Response surface of the drive with these faults. If there is none, the source's `notice` gets the reason.
 SurfacePool::Surface surfaceWithFaults(const Parameters& parameters, const FaultList& faults,
                                        const SurfaceSource& source);
 }  // namespace hjt

@@ -16,15 +16,15 @@ namespace
 {
 using Node = SurfaceNode;
 using Line = SurfaceLine;
-using Lines = std::map<double, Line>;  // by their v [rad]
+using Lines = std::map<double, Line>;  // key: v [rad]
 
-constexpr double TORQUE_MARGIN = 2.0;  // the table reaches to this times the torque limits
-constexpr int COARSE_LINES = 32;       // a side, before refinement, about
-constexpr int MAX_HALVINGS = 9;        // of an interval between two lines
+constexpr double TORQUE_MARGIN = 2.0;  // range of the table over the torque limits
+constexpr int COARSE_LINES = 32;  // approximate number of coarse lines on either side of no load, before refinement
+constexpr int MAX_HALVINGS = 9;   // largest number of halvings of an interval between two lines
 constexpr int MIN_COLUMNS = 16;
 constexpr int MAX_COLUMNS = 64;
 
-/// The line at the opposite v, of a gear whose mirror image is the gear itself.
+/// The line at the opposite v for a gear with mirror symmetry.
 Line mirrorImage(const Line& line)
 {
   Line image(line.rbegin(), line.rend());
@@ -36,8 +36,8 @@ Line mirrorImage(const Line& line)
   return image;
 }
 
-/// Every coarse line, and every interval between two of them, is a task for itself that begins with a ring from cold:
-/// the bits of a table do not depend on the number of threads.
+/// Every coarse line, and every interval between two of them, is a separate task that begins with a newly inserted
+/// ring. The bits of a table therefore do not depend on the number of threads.
 class SurfaceBuilder
 {
 public:
@@ -56,7 +56,8 @@ public:
     step_ = ring.twist(TORQUE_MARGIN * limit_) / COARSE_LINES;
     if (!(limit_ > 0.0))
     {
-      failure_reason_ = "motor.torque_limit and output.load_torque_limit are both 0: there is no range to tabulate";
+      failure_reason_ =
+          "motor.torque_limit and output.load_torque_limit are both 0, so that there is no range to tabulate";
     }
     else if (!ring.insert())
     {
@@ -86,7 +87,7 @@ public:
 private:
   bool good() const { return failure_reason_.empty(); }
 
-  /// Fewest columns that give a line's torques between them, at loads that the ring reaches.
+  /// Fewest columns that resolve a line's torques between them, at loads that the ring reaches.
   int fewestColumns(LineRing& ring)
   {
     int columns = MIN_COLUMNS;
@@ -107,8 +108,8 @@ private:
     return columns;
   }
 
-  /// Coarse lines until the torque limits with margin are reached both ways; one way where the other is its mirror
-  /// image.
+  /// Measures coarse lines up to the torque limits with margin in both directions; one direction only if the other is
+  /// its mirror image.
   void coverRange(LineRing& ring)
   {
     for (const double direction : { 1.0, -1.0 })
@@ -142,7 +143,7 @@ private:
     keepRange(lines);
   }
 
-  /// The lines from no load outwards, up to where there is no equilibrium any more.
+  /// Keeps the lines from no load outwards, up to the first without an equilibrium.
   void keepRange(std::vector<Line>& lines)
   {
     const auto none = static_cast<std::size_t>(std::find(coarse_.begin(), coarse_.end(), 0.0) - coarse_.begin());
@@ -161,8 +162,8 @@ private:
     if (good() && least < limit_)
     {
       TextStream text;
-      text << "no equilibrium of the teeth is found above " << least
-           << " N.m at the output, but load or motor can bring " << limit_ << " N.m";
+      text << "the teeth have no equilibrium above " << least << " N.m at the output, but load or motor can apply "
+           << limit_ << " N.m";
       failure_reason_ = text.str();
     }
     coarse_ = { coarse_.begin() + static_cast<std::ptrdiff_t>(first),
@@ -173,7 +174,7 @@ private:
     }
   }
 
-  /// Of the coarse lines, those up to the first beyond the torque limit each way.
+  /// v of the coarse lines up to the first beyond the torque limit in each direction.
   std::vector<double> withinLimit() const
   {
     const auto beyond = [&](double v) { return std::abs(lines_.at(v).front()[SurfaceNode::ENERGY_BY_V]) >= limit_; };
@@ -204,7 +205,7 @@ private:
           }
           else
           {
-            fail("the ring did not come back to an equilibrium that it had been in");
+            fail("the ring did not return to an earlier equilibrium");
           }
           solves_ += own.ring().solves();
         });
@@ -226,7 +227,7 @@ private:
     const Line& line = found[middle] = measure(ring, middle);
     if (line.empty())
     {
-      fail("the ring found no equilibrium between two that it had been in");
+      fail("the ring has no equilibrium between two earlier ones");
       return;
     }
     const double miss = LineCheck(ring.ring(), columns_).miss(below.v, below.line, above.v, above.line, middle, line);
@@ -242,7 +243,7 @@ private:
     note(line, miss);
   }
 
-  /// Beyond the torque limit teeth may snap: nothing is promised there.
+  /// Stores a check. Beyond the torque limit teeth may snap, so that no accuracy is claimed.
   void note(const Line& line, double miss)
   {
     if (std::abs(line.front()[SurfaceNode::ENERGY_BY_V]) <= limit_)
@@ -252,7 +253,7 @@ private:
     }
   }
 
-  /// A line of the table. Empty: no equilibrium, too many points, or another task has failed.
+  /// Measures a line of the table. Empty: no equilibrium, too many points, or another task has failed.
   Line measure(LineRing& ring, double v)
   {
     const std::size_t size = (static_cast<std::size_t>(columns_) + 1) * (mirrored_ ? 2 : 1);
@@ -263,7 +264,7 @@ private:
     return failed_ ? Line{} : ring.measure(v, columns_);
   }
 
-  /// The first reason counts.
+  /// Stores the reason of the first failure.
   void fail(const std::string& reason)
   {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -312,15 +313,15 @@ private:
   std::size_t max_points_;
   unsigned threads_;
   int columns_{};
-  double limit_{};              // torque [N.m]
-  double step_{};               // between coarse lines [rad]
-  bool mirrored_{};             // only the half of v >= 0 is measured
-  std::vector<double> coarse_;  // lines, ascending
+  double limit_{};              // torque limit [N.m]
+  double step_{};               // distance of coarse lines in v [rad]
+  bool mirrored_{};             // only lines of v >= 0 are measured
+  std::vector<double> coarse_;  // v of the coarse lines, ascending
   Lines lines_;
   std::atomic<std::size_t> points_{ 0 };
   std::atomic<int> solves_{ 0 };
   std::atomic<bool> failed_{ false };
-  std::mutex mutex_;  // of reason and checks
+  std::mutex mutex_;  // protects reason and checks
   GridChecks checks_;
   std::string failure_reason_;
 };

@@ -78,7 +78,7 @@ SurfacePool::Surface SurfacePool::obtain(const std::string& key, const std::func
     }
     catch (...)
     {
-      // The reason that stopped the other thread, perhaps only a request, need not stop this one.
+      // The reason that stopped the other thread, perhaps a request, need not apply to this thread.
     }
   }
 }
@@ -128,7 +128,7 @@ std::string makeCacheFolder(const std::string& directory)
   {
     return directory + (!S_ISDIR(status.st_mode) ? " is no directory" :
                         !is_own                  ? " belongs to another user" :
-                                                   " may be written to by everybody");
+                                                   " is writable for everybody");
   }
   return "";
 }
@@ -141,7 +141,7 @@ std::uintmax_t cacheLimit()
   const std::optional<double> limit = given == nullptr ? DEFAULT : decimalNumber(given);
   if (!limit || !(*limit >= RANGE.min && *limit <= RANGE.max))
   {
-    throw ParameterError("HJT_CACHE_LIMIT = " + std::string(given) + " [MB] is no number in the allowed range " +
+    throw ParameterError("HJT_CACHE_LIMIT = " + std::string(given) + " [MB] is not a number in the allowed range " +
                          rangeText(RANGE) + " [MB]");
   }
   return static_cast<std::uintmax_t>(*limit * MEGABYTE);
@@ -153,7 +153,7 @@ std::string tidyCache(const std::string& directory, const std::string& kept, std
   std::vector<CachedFile> tables;
   std::uintmax_t total = 0;
   std::error_code error;
-  // Others may remove files at the same time: what is gone is passed over.
+  // Other processes may remove files at the same time; missing files are skipped.
   for (fs::directory_iterator entry(directory, error), end; !error && entry != end; entry.increment(error))
   {
     std::error_code gone;
@@ -194,13 +194,13 @@ std::string tidyCache(const std::string& directory, const std::string& kept, std
 
 namespace
 {
-/// First line of a file, before the hash of the code that made it.
+/// First line of a file, followed by the hash of the code that made it.
 constexpr const char* FIRST_WORDS = "harmonic_joint_twin response surface ";
 const std::string NO_SURFACE = "no response surface: ";
 const std::string FULL_RING_INSTEAD = "; the twin solves the full ring at every step";
 
-/// Head of a file: all that its table depends on. Code, parameters, faults, and what stands in files that
-/// the parameters name.
+/// Header of a file with all that determines its table: code, parameters, faults, and the content of files that
+/// parameters name.
 std::string header(const Parameters& parameters, const std::string& faults)
 {
   std::string text =
@@ -215,7 +215,7 @@ std::string header(const Parameters& parameters, const std::string& faults)
     }
     text += '\n';
   }
-  // The numbers that follow lie as they do in memory.
+  // Aligns the numbers that follow.
   text.append((sizeof(double) - text.size() % sizeof(double)) % sizeof(double), '\n');
   return text;
 }
@@ -237,7 +237,7 @@ void tell(const SurfaceSource& source, const std::string& what)
 
 void tellMisses(const std::string& what, const GridChecks& checks, const SurfaceSource& source)
 {
-  constexpr double MUCH = 5.0;  // times the tolerance
+  constexpr double MUCH = 5.0;  // factor on the tolerance
   if (checks.worst > MUCH)
   {
     tell(source, what + ": " + std::to_string(checks.missed) + " of " + std::to_string(checks.made) +
@@ -246,7 +246,7 @@ void tellMisses(const std::string& what, const GridChecks& checks, const Surface
   }
 }
 
-/// Where a new table misses much of what it was built to.
+/// Reports a new table whose error is much larger than its tolerance.
 void tellMisses(const SurfaceTable& table, const SurfaceSource& source)
 {
   tellMisses("response surface", table.checks, source);
@@ -260,7 +260,7 @@ void tellMisses(const DeviationTable& table, const SurfaceSource& source)
 
 void tellMisses(const BallTable& /*table*/, const SurfaceSource& /*source*/) {}
 
-/// A table from the cache, or built and stored there. Empty: it could not be built, and the reason was reported.
+/// A table from the cache, or built and stored there. Empty: the build failed, and the reason was reported.
 template <class Table, class Build>
 std::optional<Table> obtain(const std::string& kind, const std::string& key, const SurfaceSource& source, Build build)
 {
@@ -269,7 +269,7 @@ std::optional<Table> obtain(const std::string& kind, const std::string& key, con
   const std::string unfit = directory.empty() ? "" : makeCacheFolder(directory);
   if (!unfit.empty())
   {
-    tell(source, "response surface not kept: " + unfit);
+    tell(source, "response surface not stored: " + unfit);
   }
   const bool kept = !directory.empty() && unfit.empty();
   const std::string path = fileOf(kind, key, directory);
@@ -290,7 +290,7 @@ std::optional<Table> obtain(const std::string& kind, const std::string& key, con
     const std::string problem = writeTable(path, key, built.table);
     if (!problem.empty())
     {
-      tell(source, "response surface not kept: " + problem);
+      tell(source, "response surface not stored: " + problem);
     }
     else
     {
@@ -299,7 +299,7 @@ std::optional<Table> obtain(const std::string& kind, const std::string& key, con
       {
         tell(source, removed);
       }
-      // Out of the file, where all processes have it in common.
+      // Read from the file, whose memory all processes share.
       Table shared;
       if (readTable(path, key, shared))
       {
@@ -310,13 +310,13 @@ std::optional<Table> obtain(const std::string& kind, const std::string& key, con
   return std::move(built.table);
 }
 
-/// Beside a twin that runs, one processor is left to it.
+/// Number of threads; a running twin keeps one processor.
 unsigned threadsFor(const SurfaceSource& source)
 {
   return std::max(1u, processors() - (source.background ? 1u : 0u));
 }
 
-/// That a fault of the bearing can bring about at severity 1 [m].
+/// Largest drop by a fault of the bearing at severity 1 [m].
 double deepestDrop(const Parameters& parameters)
 {
   RaceDeflection spalled(parameters.bearing);
@@ -324,13 +324,13 @@ double deepestDrop(const Parameters& parameters)
   return std::max(spalled.deepest(), parameters.fault_scale.cage_deflection);
 }
 
-/// Of a table of balls, which the scales of their faults shape.
+/// Header of a table of balls, which depends on the scales of their faults.
 std::string ballHeader(const Parameters& parameters, const std::string& faults)
 {
   return header(parameters, faults + "a ball that drops by " + numberText(deepestDrop(parameters)));
 }
 
-/// From the cache, or built and put there.
+/// A table of balls from the cache, or built and stored there.
 std::optional<BallTable> obtainBallTable(const Parameters& parameters, const JointModel& model,
                                          const std::string& faults, const SurfaceTable& surface,
                                          const SurfaceSource& source)
@@ -343,29 +343,29 @@ std::optional<BallTable> obtainBallTable(const Parameters& parameters, const Joi
                            });
 }
 
-/// SurfaceRing::repetition. The ring is solved for it only if the teeth may differ; else it is 1.
+/// SurfaceRing::repetition. The ring is solved only if the teeth may differ; otherwise the result is 1.
 int repetition(const Parameters& parameters, const JointModel& model, const std::string& faults)
 {
   const bool alike = faults.empty() && teethAreAlike(parameters) && !model.ring.of<WaveGeneratorContact>().hasKinks();
   return alike ? 1 : SurfaceRing(parameters, model).repetition();
 }
 
-/// See obtainSurface. `teeth_alike`: it is wanted without deviations only.
+/// See obtainSurface. `teeth_alike`: only a surface without deviations is wanted.
 std::optional<SurfaceTables> obtainTables(const Parameters& parameters, const JointModel& model,
                                           const std::string& faults, const SurfaceSource& source, bool teeth_alike)
 {
-  // The cache is asked only for gears that repeat: what stops others is not in its keys.
+  // The cache is used only for gears that repeat, because its keys do not contain the reasons of others.
   const int pitches = repetition(parameters, model, faults);
   const Parameters equal_parameters = pitches == 1 ? parameters : withEqualTeeth(parameters);
   const JointModel equal = pitches == 1 ? model : JointModel(equal_parameters);
   if (pitches == 0 || (pitches > 1 && repetition(equal_parameters, equal, {}) != 1))
   {
-    tell(source, NO_SURFACE + "the gear is not the same again after a turn of the motor" + FULL_RING_INSTEAD);
+    tell(source, NO_SURFACE + "the gear does not repeat after a turn of the motor" + FULL_RING_INSTEAD);
     return std::nullopt;
   }
   if (pitches > 1 && teeth_alike)
   {
-    tell(source, NO_SURFACE + "the bearing is faulty and teeth differ" + FULL_RING_INSTEAD);
+    tell(source, NO_SURFACE + "the bearing is faulty and the teeth differ" + FULL_RING_INSTEAD);
     return std::nullopt;
   }
   const std::string key = pitches == 1 ? header(parameters, faults) : header(equal_parameters, {});

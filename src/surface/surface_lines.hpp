@@ -22,7 +22,8 @@ public:
   const SurfaceRing& ring() const noexcept { return ring_; }
   SurfaceRing& ring() noexcept { return ring_; }
 
-  /// From cold to an output angle by steps of the coarse lines, so that it stays on their branch. False: no way.
+  /// Moves from a new insertion to an output angle by steps of the coarse lines, to stay on their branch. @returns
+  /// false on failure.
   bool leadTo(double v, double step)
   {
     const int steps = static_cast<int>(std::lround(std::abs(v) / step));
@@ -34,7 +35,7 @@ public:
     return good;
   }
 
-  /// The nodes at one v, to and fro so that the ring never moves far. Empty: no equilibrium.
+  /// Measures the nodes at one v, in alternating direction for short moves. Empty: no equilibrium.
   SurfaceLine measure(double v, int columns)
   {
     SurfaceLine line(static_cast<std::size_t>(columns) + 1);
@@ -56,14 +57,14 @@ private:
   SurfaceRing ring_;
 };
 
-/// By how much the table over two lines misses a line half way between them, over the tolerances [-].
+/// Misses of a table over two lines at the line halfway between them, over the tolerances [-].
 class LineCheck
 {
 public:
   LineCheck(const SurfaceRing& ring, int columns) : ring_(ring), columns_(columns) {}
 
-  /// The torques at every column; the friction in the mean over the line. Where a tooth begins to touch, the rates of
-  /// all teeth jump and with them the friction, at another place on every line: between two lines no grid has that.
+  /// Miss of the torques at every column and of the mean friction. Where a tooth begins to touch, the rates of all
+  /// teeth and the friction jump. The place differs from line to line, and no grid between two lines resolves it.
   double miss(double v_below, const SurfaceLine& below, double v_above, const SurfaceLine& above, double v,
               const SurfaceLine& line) const
   {
@@ -86,7 +87,7 @@ public:
     return std::max(largest, friction_misses / columns_);
   }
 
-  /// By how much the columns of a line miss its torques between them. `finer`: the line on a multiple of columns.
+  /// Miss of the columns of a line for the torques between them. `finer`: the line with a multiple of the columns.
   double missOfColumns(double v, const SurfaceLine& finer) const
   {
     const std::size_t stride = (finer.size() - 1) / static_cast<std::size_t>(columns_);
@@ -99,7 +100,7 @@ public:
     double largest = 0.0;
     for (std::size_t i = 0; i + 1 < finer.size(); ++i)
     {
-      // With the same line twice the slope by v is flattened away: the part along u is what is tried here.
+      // Two equal lines have no slope by v, so that only the interpolation along u is checked.
       ResponseSurface::Place place;
       const double motor_angle = ring_.pitch() * static_cast<double>(i) / static_cast<double>(finer.size() - 1);
       if (surface.locate(motor_angle, v + motor_angle / ring_.ratio(), place))

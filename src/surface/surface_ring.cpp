@@ -18,29 +18,30 @@ namespace
 {
 using Node = SurfaceNode;
 
-constexpr double ANGLE_TOLERANCE = 1e-8;   // of the output at given torque [rad]; 0.002 seconds of arc
-constexpr double MOTOR_TOLERANCE = 1e-4;   // of the motor's torque limit [-]
-constexpr double SAME_TORQUE = 1e-6;       // difference of equal torques, as a share of the torque limit [-]
-constexpr double OVERLOAD_FACTOR = 10.0;   // beyond the torque limits the tolerances are this much wider
-constexpr double COLLISION_MARGIN = 1.25;  // over the gear's momentary peak torque [-]
+constexpr double ANGLE_TOLERANCE = 1e-8;   // error of the output angle at given torque [rad]; 0.002 seconds of arc
+constexpr double MOTOR_TOLERANCE = 1e-4;   // share of the motor's torque limit [-]
+constexpr double SAME_TORQUE = 1e-6;       // largest difference of equal torques, as a share of the torque limit [-]
+constexpr double OVERLOAD_FACTOR = 10.0;   // factor on the tolerances beyond the torque limits
+constexpr double COLLISION_MARGIN = 1.25;  // factor on the gear's momentary peak torque [-]
 
-/// Flanks in two groups by the sense in which they slide as the drive runs and as its output twists, each again in
-/// three by the size of the slip. `terms`: forces and slips by motor and output; `follow`: output speed over motor
+/// Divides the flanks into two groups by their direction of sliding, running and twisting, and each group into three by
+/// the size of the slip. `terms`: forces and slips by motor and output; `velocity_ratio`: output speed over motor
 /// speed.
 ///
-/// While the drive runs, and while the motor stands and the output swings, all flanks of a group slide the same way, so
-/// their sum is exact. The coefficient of friction, which falls with the slip, is taken at the group's root mean
-/// square.
+/// While the drive runs, or the output moves with the motor at rest, all flanks of a group slide in the same direction,
+/// so that their sum is exact. The coefficient of friction, which decreases with the slip, is that of the group's root
+/// mean square slip.
 void groupFlanks(const FrictionTerms& terms, double velocity_ratio, double* groups)
 {
   constexpr int SIZES = RingFrictionResponse::FLANK_GROUPS / 2;
-  constexpr double LOW = 0.25;   // slip, as a share of the mean, that counts to the slowest group only
-  constexpr double HIGH = 1.25;  // likewise to the fastest; between them it is shared by two
+  constexpr double LOW = 0.25;  // share of the mean slip up to which a flank counts for the slowest group alone
+  // share of the mean slip from which a flank counts for the fastest group alone; in between, two groups share it
+  constexpr double HIGH = 1.25;
   struct Sums
   {
     double force{};
-    Eigen::Vector2d slip{ 0.0, 0.0 };     // running, twisting
-    Eigen::Vector2d squares{ 0.0, 0.0 };  // running squared, running times twisting
+    Eigen::Vector2d slip{ 0.0, 0.0 };     // running and twisting
+    Eigen::Vector2d squares{ 0.0, 0.0 };  // square of running, product of running and twisting
   };
   std::array<Sums, RingFrictionResponse::FLANK_GROUPS> sums;
   std::array<double, 2> first{};
@@ -74,7 +75,7 @@ void groupFlanks(const FrictionTerms& terms, double velocity_ratio, double* grou
     const double size = group.force > 0.0 ? std::sqrt(group.squares[0] / group.force) : 0.0;
     const Eigen::Vector2d rms =
         size > 0.0 ? Eigen::Vector2d(group.squares / (group.force * size)) : Eigen::Vector2d(0.0, 0.0);
-    // From (motor speed, output speed less what follows) to (motor speed, output speed).
+    // Converts (motor speed, output speed beyond the following one) to (motor speed, output speed).
     groups[0] = group.slip[0] - velocity_ratio * group.slip[1];
     groups[2 * SIZES] = group.slip[1];
     groups[4 * SIZES] = rms[0] - velocity_ratio * rms[1];
@@ -83,18 +84,19 @@ void groupFlanks(const FrictionTerms& terms, double velocity_ratio, double* grou
   }
 }
 
-/// The same for all drives: what stops a step of the joint in time does not stop a table, whose key does not hold it.
-/// Torques are then right to rounding: RingEquilibrium::torques adds what the forces that are left over change in them.
+/// Solver of tables for all drives, because the key of a table does not contain the parameters of a step. Torques are
+/// then right to rounding: RingEquilibrium::torques corrects them for the remaining forces.
 SolverParameters solverOfTables()
 {
   SolverParameters solver;
-  solver.force_tolerance = 1e-4;  // N
+  solver.force_tolerance = 1e-4;  // [N]
   solver.max_iterations = 20;
   solver.max_step_cuts = 8;
   return solver;
 }
 
-/// The motor of a wrist, held fast, would bring 2.6 times what breaks its gear, which no table holds within its size.
+/// Torque limit of a table. A blocked wrist's motor could apply 2.6 times the gear's momentary peak, too much for a
+/// table.
 double tabulatedTorque(const SurfaceParameters& parameters)
 {
   const double of_motor = parameters.motor.torque_limit * nominalRatio(parameters.gear);
@@ -118,10 +120,9 @@ SurfaceParameters::SurfaceParameters(const Parameters& of)
 std::string tooManyPoints(const SurfaceParameters& parameters, std::size_t most)
 {
   const auto named = [](const char* key, double value) { return std::string(key) + " = " + numberText(value); };
-  return "a table as fine as its tolerances ask for would have more than " + std::to_string(most) +
+  return "a table as fine as its tolerances require would have more than " + std::to_string(most) +
          " points; fewer teeth, a smaller wave, smaller torque limits or, where teeth differ, smaller errors and "
-         "faults "
-         "need fewer (" +
+         "faults need fewer points (" +
          named("gear.teeth_flexspline", parameters.gear.teeth_flexspline) + ", " +
          named("gear.wave_amplitude", parameters.gear.wave_amplitude) + ", " +
          named("motor.torque_limit", parameters.motor.torque_limit) + ", " +
@@ -261,8 +262,8 @@ double SurfaceRing::frictionTorque(const Node& node) const noexcept
 
 bool SurfaceRing::isMirrored()
 {
-  constexpr double SAME_FRICTION = 1e-5;  // relative difference of equal friction [-]
-  constexpr int PLACES = 8;               // in a pitch
+  constexpr double SAME_FRICTION = 1e-5;  // largest relative difference of equal friction [-]
+  constexpr int PLACES = 8;               // places in a pitch
   std::vector<Node> nodes;
   bool mirrored = true;
   for (const double direction : { 1.0, -1.0 })
@@ -273,7 +274,7 @@ bool SurfaceRing::isMirrored()
     {
       for (int i = 0; i < PLACES && mirrored; ++i)
       {
-        // Not in the middle of a pitch, nor where it begins: there is each its own mirror image at no load.
+        // Neither the middle nor the beginning of a pitch, which are their own mirror images at no load.
         const double angle = pitch_ * (i + 0.3) / PLACES;
         mirrored = moveTo(direction * angle, direction * twist(load * torque_limit_));
         const Node node = mirrored ? measure() : Node{};
@@ -299,12 +300,12 @@ int SurfaceRing::repetition()
 {
   constexpr double LOAD = 0.25;  // share of the torque limit [-]
   const int teeth = model_.ring.rest.teeth();
-  // A turn of the wave generator by half brings the lobes to the flexspline's same teeth; half a turn and a pitch to
-  // the circular spline's. Where its lobes differ, twice as much.
+  // Half a turn of the wave generator moves the lobes to the same teeth of the flexspline, half a turn and a pitch to
+  // those of the circular spline. If the lobes differ, the period is twice as long.
   const std::array<int, 5> candidates{ 1, teeth / 2, teeth / 2 + 1, teeth, teeth + 2 };
   std::array<bool, candidates.size()> repeats;
   repeats.fill(true);
-  std::vector<Eigen::Vector2d> sampled(2 * static_cast<std::size_t>(teeth) + 2);  // torques, at the output [N.m]
+  std::vector<Eigen::Vector2d> sampled(2 * static_cast<std::size_t>(teeth) + 2);  // torques at the output [N.m]
   for (const double direction : { -1.0, 1.0 })
   {
     if (!insert())

@@ -10,14 +10,14 @@
 
 namespace hjt
 {
-/// The groups of a drive's parameters that a response surface is built with, beside its model.
+/// The parameters that a response surface needs besides its model.
 struct SurfaceParameters
 {
   SurfaceParameters(const Parameters& of);
 
   GearParameters gear;
   MeshParameters mesh;
-  MeshParameters unit_friction;  ///< the mesh with coefficients of 1
+  MeshParameters unit_friction;  ///< mesh with coefficients of friction 1
   CupParameters cup;
   MotorParameters motor;
   OutputParameters output;
@@ -25,13 +25,13 @@ struct SurfaceParameters
   double momentary_peak_torque;  ///< [N.m]
 };
 
-/// No table of the ring has more: 85 MB; the shipped gear needs a tenth of it.
+/// Largest number of points of a table of the ring: 85 MB. The shipped gear needs a tenth of it.
 constexpr std::size_t MAX_SURFACE_POINTS = 500000;
 
-/// Why there is no table of more than `most` points, with the parameters that its size depends on.
+/// Reason why there is no table of more than `most` points, with the parameters that determine its size.
 std::string tooManyPoints(const SurfaceParameters& parameters, std::size_t most);
 
-/// A ring in equilibrium that is led over the nodes of a response surface and measured there.
+/// A ring in equilibrium that moves over the nodes of a response surface and is measured there.
 class SurfaceRing
 {
 public:
@@ -40,67 +40,68 @@ public:
   SurfaceRing(const SurfaceRing&) = delete;  // the ring refers to the model
   SurfaceRing& operator=(const SurfaceRing&) = delete;
 
-  /// Solves at angle 0 of both, without a guess. False: not converged.
+  /// Solves at angle 0 of motor and output without a guess. @returns false if it did not converge.
   bool insert();
 
-  /// To v = output angle - motor angle / ratio [rad]. False: the ring found no equilibrium there.
+  /// Moves to v = output angle - motor angle / ratio [rad]. @returns false without an equilibrium.
   bool moveTo(double motor_angle, double v);
 
-  /// The same, with initial tooth points as a guess.
+  /// Moves with initial tooth points as a guess.
   bool moveTo(double motor_angle, double v, const Eigen::VectorXd& guess);
 
-  /// Tooth points, and after `measure` their rates by the motor's angle at the same v [m], [m/rad].
+  /// Tooth points [m] and, after `measure`, their derivatives by the motor's angle at constant v [m/rad].
   const Eigen::VectorXd& points() const noexcept { return ring_.shape().points; }
   Eigen::VectorXd rates() const { return ring_.byWaveGenerator() + ring_.byOutput() / ratio_; }
 
-  /// All values of a node at the present place.
+  /// All values of a node at the present position.
   SurfaceNode measure();
 
-  /// Those of a node of the ToothResponse; `values`: as many as the solved teeth have quantities.
+  /// Values of a node of the ToothResponse; `values` has room for all quantities of the solved teeth.
   void measureTeeth(float* values) const noexcept;
   int teeth() const noexcept { return ring_.shape().teeth(); }
   int solvedTeeth() const noexcept
   {
     return ring_.shape().solved;
-  }  ///< half of them, if the other half is the same; once inserted
+  }  ///< half of the teeth if the other half is equal; valid after insertion
 
   double motorAngle() const noexcept { return ring_.position().wave_generator_angle; }  ///< [rad]
   double pitch() const noexcept { return pitch_; }                                      ///< of the teeth [rad]
   double ratio() const noexcept { return ratio_; }                                      ///< nominal [-]
-  /// Of load or motor, at the output; of a motor beyond what the gear bears in a collision, a quarter more than that
-  /// [N.m].
+  /// Torque limit of load or motor at the output [N.m], at most COLLISION_MARGIN times the momentary peak torque for
+  /// the motor.
   double torqueLimit() const noexcept { return torque_limit_; }
   const JointModel& model() const noexcept { return model_; }
-  JointModel& editModel() noexcept { return model_; }  ///< between two moves
-  /// Of the wave generator on each tooth, N, at the present place [N].
+  JointModel& editModel() noexcept { return model_; }  ///< call between two moves
+  /// Forces of the wave generator on the teeth at the present position, N [N].
   const Eigen::VectorXd& contactForce() const noexcept { return ring_.forces().of<WaveGeneratorContact>().force; }
 
-  /// Departure from no load that brings about this torque on the softest slope of the cup [rad].
+  /// Change of v from no load under this torque at the softest slope of the cup [rad].
   double twist(double torque) const noexcept { return torque / softest_; }
 
-  /// Largest error of a table's output torque at a node: the torque of 0.002 seconds of arc [N.m].
+  /// Tolerance of a table's output torque at a node [N.m]: the torque of 0.002 seconds of arc.
   double outputTolerance(const SurfaceNode& node) const noexcept;
 
-  /// The same for the motor's torque: a share of the motor's torque limit or, without one, of the load's limit
-  /// reduced to the motor [N.m].
+  /// Tolerance of the motor's torque [N.m]: a share of the motor's torque limit or, without one, of the load's limit
+  /// reduced to the motor.
   double motorTolerance(const SurfaceNode& node) const noexcept;
 
-  /// The same for the friction at the motor: as for its torque. On balls at least 1 % of the friction: each tooth that
-  /// begins to touch changes the rates of all balls by some per cent, which no grid resolves [N.m].
+  /// Tolerance of the friction at the motor [N.m]: that of the motor's torque. On balls it is at least 1 % of the
+  /// friction, because a tooth that begins to touch changes the rates of all balls by some per cent, which no grid
+  /// resolves.
   double frictionTolerance(const SurfaceNode& node) const noexcept;
 
-  /// Friction of ring and bearing at the motor as the drive runs, slowly and with static flanks [N.m].
+  /// Friction of ring and bearing at the motor for slow running, with static flank friction [N.m].
   double frictionTorque(const SurfaceNode& node) const noexcept;
 
-  /// Of the flanks alone, per unit of their coefficient [N.m].
+  /// Friction of the flanks per unit of their coefficient [N.m].
   static double flankFriction(const SurfaceNode& node) noexcept;
 
-  /// Teeth that the gear must turn by to be the same again at the same v: 1 where all teeth are equal, half a turn or a
-  /// whole one where those of one member differ; 0: none of these. As torques of both signs tell, sampled once a pitch.
+  /// Number of teeth after which the gear repeats at constant v: 1 with equal teeth, half a turn or a turn if those of
+  /// one part differ; 0: none of these. Torques of both signs, sampled once a pitch, decide.
   int repetition();
 
-  /// Whether the gear is its own mirror image: same friction and opposite torques at opposite angles of both. As places
-  /// at three loads tell. False also where one has no equilibrium.
+  /// Whether the gear has mirror symmetry: equal friction and opposite torques at opposite angles. Positions at three
+  /// loads decide. False also without an equilibrium.
   bool isMirrored();
 
   int solves() const noexcept { return solves_; }
@@ -119,7 +120,7 @@ private:
   double wave_amplitude_;
   double torque_limit_;
   double motor_limit_;  // [N.m]
-  double softest_;      // slope of the cup [N.m/rad]
+  double softest_;      // softest slope of the cup [N.m/rad]
   double static_friction_;
   double temperature_;
   int solves_{};

@@ -26,14 +26,14 @@ namespace hjt
 {
 namespace
 {
-/// A file in memory, read-only and shared: all processes that map it have one copy. It stays as long as the object,
-/// also where the file's name is removed or given to another file.
+/// A file mapped into memory, read-only and shared by all processes. The mapping stays valid if the file's name is
+/// removed or given to another file.
 class MappedFile
 {
 public:
-  /// Maps a regular file that belongs to this user and that others cannot write. Null for any other file, and for one
-  /// that is empty or larger than `most` bytes. Never waits, not even for the writer of a FIFO. Sets the times of the
-  /// file to now, so that it counts as used.
+  /// Maps a regular file of this user that others cannot write. Null for any other file, and for a file that is empty
+  /// or larger than `most` bytes. It does not block, even on a FIFO. It sets the times of the file to now, which marks
+  /// it as used.
   static std::shared_ptr<const MappedFile> ofOwn(const std::string& path, std::size_t most);
 
   ~MappedFile();
@@ -41,7 +41,7 @@ public:
   MappedFile(const MappedFile&) = delete;
   MappedFile& operator=(const MappedFile&) = delete;
 
-  /// Begins at a multiple of a page.
+  /// The first byte is at the beginning of a page.
   std::string_view bytes() const noexcept { return { static_cast<const char*>(start_), size_ }; }
 
 private:
@@ -67,7 +67,7 @@ std::shared_ptr<const MappedFile> MappedFile::ofOwn(const std::string& path, std
   {
     size = static_cast<std::size_t>(status.st_size);
     start = mmap(nullptr, size, PROT_READ, MAP_SHARED, descriptor, 0);
-    futimens(descriptor, nullptr);  // without effect on a disk that is only read
+    futimens(descriptor, nullptr);  // no effect on a read-only file system
   }
   close(descriptor);
   return start == MAP_FAILED ? nullptr : std::shared_ptr<const MappedFile>(new MappedFile(start, size));
@@ -78,7 +78,7 @@ MappedFile::~MappedFile()
   munmap(start_, size_);
 }
 
-/// Upper limit of a table's file; the shipped gear's has 8 MB [bytes].
+/// Largest size of a table's file [bytes]; the shipped gear's has 8 MB.
 constexpr std::size_t MAX_FILE = std::size_t{ 1 } << 30;
 
 template <class T>
@@ -94,7 +94,7 @@ void append(std::string& bytes, const GridChecks& checks)
   append(bytes, numbers.data(), numbers.size());
 }
 
-/// The table's numbers as they lie in memory: the cache is for this machine.
+/// The table's numbers in the machine's format, because the cache is for this machine.
 std::string body(const SurfaceTable& table)
 {
   std::string bytes;
@@ -148,14 +148,14 @@ std::string body(const BallTable& table)
   return bytes;
 }
 
-/// Takes a body to pieces; whether there were enough bytes and numbers is known in the end.
+/// Parses a body. `complete` tells at the end whether the bytes and numbers sufficed.
 class BodyReader
 {
 public:
-  /// `bytes` of the file, behind a multiple of the size of a number.
+  /// `bytes` of the file, which begin at a multiple of the size of a number.
   BodyReader(std::shared_ptr<const MappedFile> file, std::string_view bytes) : file_(std::move(file)), bytes_(bytes) {}
 
-  /// A whole number not below `least`.
+  /// Reads a whole number that is at least `least`.
   std::size_t size(double least)
   {
     constexpr double MAX_VALUE = 1e6;
@@ -190,7 +190,7 @@ public:
     }
   }
 
-  /// Where they lie. `count` below 1e12.
+  /// Address of the next `count` values, count < 1e12.
   template <class T>
   SharedValues<T> shared(std::size_t count)
   {
@@ -202,7 +202,7 @@ public:
   bool complete() const { return good_ && bytes_.empty(); }
 
 private:
-  /// The next bytes; null if there are not enough.
+  /// The next `size` bytes; null if there are not enough.
   const char* take(std::size_t size)
   {
     good_ = good_ && bytes_.size() >= size;
@@ -227,7 +227,7 @@ bool finite(const SurfaceNodes& nodes)
                      });
 }
 
-/// Each above the one before, all finite.
+/// Whether the lines are finite and ascending.
 bool ascending(const std::vector<double>& lines)
 {
   return std::all_of(lines.begin(), lines.end(), [](double line) { return std::isfinite(line); }) &&
@@ -256,7 +256,7 @@ bool parseBody(BodyReader& reader, SurfaceTable& table)
   teeth.values = reader.shared<float>(tooth_lines * (static_cast<std::size_t>(teeth.columns) + 1) * teeth.nodeSize());
   const bool teeth_fit = tooth_lines == 0 || (tooth_lines > 1 && teeth.columns > 0 && teeth.stored > 0 &&
                                               teeth.teeth % teeth.stored == 0 && teeth.teeth <= 2 * teeth.stored);
-  // Written so that NaN fails.
+  // This form of the comparison rejects NaN.
   return reader.complete() && teeth_fit && ascending(teeth.lines) &&
          std::all_of(teeth.values.begin(), teeth.values.end(), [](float x) { return std::isfinite(x); }) &&
          table.pitch > 0.0 && table.pitch < TWO_PI && std::abs(table.ratio) >= 1.0 && std::isfinite(table.ratio) &&
@@ -311,7 +311,7 @@ bool parseBody(BodyReader& reader, BallTable& table)
   return true;
 }
 
-/// The table's nodes stay in the file.
+/// Reads the table; its nodes stay in the file.
 template <class Table>
 bool read(const std::string& path, const std::string& header, Table& table)
 {
@@ -349,7 +349,7 @@ std::string write(const std::string& path, const std::string& header, const Tabl
 std::uint64_t tableChecksum(std::string_view bytes)
 {
   constexpr std::uint64_t PRIME = 1099511628211ull;
-  constexpr int TURN = 29;  // [bits] what differs in a word's highest bit alone would stay there
+  constexpr int TURN = 29;  // [bits]; without rotation a difference in a word's highest bit alone would stay there
   std::array<std::uint64_t, 4> rows{ 1, 2, 3, 4 };
   std::array<std::uint64_t, 4> words{};
   while (bytes.size() >= sizeof(words))

@@ -21,9 +21,8 @@ constexpr int MAX_COLUMNS = 32;
 constexpr int MAX_HALVINGS = 4;
 
 using Values = std::vector<float>;
-using Lines = std::map<double, Values>;  // by their v [rad]
+using Lines = std::map<double, Values>;  // key: v [rad]
 
-/// As in ToothResponse, node by node.
 class ToothResponseBuilder
 {
 public:
@@ -95,7 +94,8 @@ public:
 private:
   std::size_t nodeSize() const { return ToothResponse::QUANTITIES * stored_; }
 
-  /// The nodes at one v; the last is the first with the teeth one further. Empty: no equilibrium, or too many.
+  /// The nodes at one v; the last has the values of the first, shifted by one tooth. Empty: no equilibrium, or too many
+  /// points.
   Values measure(LineRing& line_ring, double v, int columns)
   {
     SurfaceRing& ring = line_ring.ring();
@@ -119,7 +119,7 @@ private:
     return line;
   }
 
-  /// By how much the middle between two nodes misses `middle`, over the tolerance [-].
+  /// Difference between the mean of two nodes and `middle`, over the tolerance [-].
   double miss(const float* below, const float* above, const float* middle) const
   {
     double worst = 0.0;
@@ -220,12 +220,13 @@ private:
     table.values = SharedValues<float>(std::move(all));
   }
 
-  /// At the opposite v. A pitch less u is the place in the mirror, whose teeth count the other way round.
+  /// The line at the opposite v. In the mirror, u becomes a pitch minus u, and the teeth count in the opposite
+  /// direction.
   Values mirrorImage(const Values& line, const ToothResponse& table) const
   {
     const double cosine = std::cos(table.pitch);
     const double sine = std::sin(table.pitch);
-    // Half a turn further the places have the opposite sign.
+    // Half a turn further the positions have the opposite sign.
     const auto tooth = [&](int number, double& sign)
     {
       const int whole = (number % table.teeth + table.teeth) % table.teeth;
@@ -265,12 +266,12 @@ private:
 
   const SurfaceParameters& parameters_;
   const JointModel& model_;
-  double step_;  // between coarse lines [rad]
+  double step_;  // distance of coarse lines in v [rad]
   std::size_t stored_{};
   int columns_{ MIN_COLUMNS };
   std::atomic<std::size_t> values_{ 0 };
   std::atomic<bool> failed_{ false };
-  std::mutex mutex_;  // of the checks
+  std::mutex mutex_;  // protects the checks
   GridChecks checks_;
 };
 }  // namespace

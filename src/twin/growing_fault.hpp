@@ -7,22 +7,22 @@
 
 namespace hjt
 {
-/// A fault that grows evenly from its onset on to its severity.
+/// A fault whose severity grows linearly with time from its onset.
 struct GrowingFault
 {
-  static constexpr int STEPS = 40;         ///< of the staircase that the twin gets, at most half a step off
+  static constexpr int STEPS = 40;  ///< number of steps that approximate the growth, with an error of half a step
   static constexpr double MAX_RAMP = 1e9;  ///< [s]
 
   Fault fault;
-  double ramp{};  ///< time of growth; 0: at once [s]
+  double ramp{};  ///< duration of the growth; 0: at once [s]
 
-  double severityAt(double time) const  ///< `time` since the start [s]
+  double severityAt(double time) const  ///< severity at `time` since the start [s]
   {
     const double gone = time - fault.onset;
     return gone < 0.0 ? 0.0 : gone < ramp ? fault.severity * gone / ramp : fault.severity;
   }
 
-  /// The staircase: one fault for each step, by its onset.
+  /// The growth in steps: one fault for each step, ordered by onset.
   std::vector<Fault> steps() const
   {
     if (ramp <= 0.0)

@@ -24,7 +24,7 @@ void InputQueue::push(const Input& input, Stamp now) noexcept
     ++counters_.overflow;
     if (input.stamp < inputs_[first_].stamp)
     {
-      return;  // the oldest is the new one
+      return;  // the new input is older than all in the queue
     }
     first_ = (first_ + 1) % CAPACITY;
     --size_;
@@ -35,7 +35,7 @@ void InputQueue::push(const Input& input, Stamp now) noexcept
     ++counters_.late;
   }
 
-  // From the back: stamps nearly always ascend.
+  // Searches from the end, because stamps are nearly always ascending.
   std::size_t place = size_;
   while (place > 0)
   {
@@ -59,7 +59,8 @@ bool InputQueue::pop(Stamp instant, Input& input) noexcept
   }
   input = inputs_[first_];
   --size_;
-  first_ = size_ == 0 ? 0 : (first_ + 1) % CAPACITY;  // a queue that is emptied again and again stays in the cache
+  // an empty queue starts again at 0, so that it stays in the processor's cache
+  first_ = size_ == 0 ? 0 : (first_ + 1) % CAPACITY;
   return true;
 }
 }  // namespace hjt

@@ -15,7 +15,7 @@ namespace hjt
 {
 namespace
 {
-/// Numbers for which `holds`, else "'TEXT' WRONG".
+/// Check for numbers that fulfil `holds`; otherwise the error is "'TEXT' WRONG".
 Option::Check bound(const std::function<bool(double)>& holds, const std::string& wrong)
 {
   return [=](const std::string& text)
@@ -320,10 +320,14 @@ namespace fs = std::filesystem;
 
 void addOptions(OptionTable& table, ConfigurationOptions& options)
 {
-  table.add("--config", options.configs, "YAML overlay over the default configuration; repeatable, later wins")
+  table
+      .add("--config", options.configs,
+           "YAML file whose values replace those of the default configuration; repeatable, later files win")
       .type("FILE")
       .group(COMMON_GROUP);
-  table.add("--set", options.assignments, "one parameter, over all files; repeatable, later wins")
+  table
+      .add("--set", options.assignments,
+           "value of one parameter, which replaces that of all files; repeatable, later ones win")
       .type("section.key=value")
       .group(COMMON_GROUP);
   table.add("--config-dir", options.config_dir, "directory of the default configuration [or HJT_CONFIG_DIR]")
@@ -341,7 +345,7 @@ void addFaultOption(OptionTable& table, ConfigurationOptions& options)
 {
   table
       .add("--fault", options.faults,
-           "a fault of the gear in addition to the configured ones, see `joint_twin faults`; repeatable")
+           "fault of the gear in addition to the configured ones, see `joint_twin faults`; repeatable")
       .type("KIND:SEVERITY[:PLACE[:ONSET]]");
 }
 

@@ -8,7 +8,7 @@
 
 namespace hjt
 {
-/// One of the counters of steps, and its name in records and in Python.
+/// A counter of steps with its name in records and in Python.
 struct StepCounter
 {
   const char* name;

@@ -10,7 +10,7 @@
 
 namespace hjt
 {
-/// The forces of a ring, as that of tooth i + `shift`, turned by as many pitches about the axis.
+/// Copies the forces of a ring. Those of tooth i become those of tooth i + `shift`, turned by as many pitches.
 inline void fillToothForces(const RingEquilibrium& ring, int shift, ToothForces& out) noexcept
 {
   const RingModel& model = ring.model();
@@ -33,7 +33,8 @@ inline void fillToothForces(const RingEquilibrium& ring, int shift, ToothForces&
   }
 }
 
-/// The same at the joint's present angles, where it runs on the table of a gear of equal teeth. False elsewhere.
+/// Copies the forces at the joint's present angles from the table of a gear with equal teeth. @returns false if the
+/// joint does not use such a table.
 inline bool fillToothForces(const JointDynamics& joint, ToothForces& out) noexcept
 {
   const ResponseSurface* surface = joint.surface();
@@ -41,7 +42,7 @@ inline bool fillToothForces(const JointDynamics& joint, ToothForces& out) noexce
   {
     return false;
   }
-  // In the order of ToothResponse::Quantity.
+  // The order of ToothResponse::Quantity.
   const std::array<double*, ToothResponse::QUANTITIES> arrays{
     out.wave_generator_force.data(), out.rim_tension.data(), out.bending_force.data(),
     out.mesh_force.data(),           out.tooth_x.data(),     out.tooth_y.data(),
@@ -52,27 +53,27 @@ inline bool fillToothForces(const JointDynamics& joint, ToothForces& out) noexce
 
 /// All teeth at the joint's present angles, for output.
 ///
-/// While the joint runs on the response surface its own ring stays where it was: a second ring is brought to the
-/// present angles instead, so that looking changes nothing in the run. Allocates at construction only.
+/// While the joint uses the response surface, its own ring stays at an earlier position. A second ring moves to the
+/// present angles instead, so that the output does not change the run. Only construction allocates.
 class ObservedRing
 {
 public:
-  /// `model` must outlive this.
+  /// `model` must outlive this object.
   ObservedRing(const RingModel& model, const SolverParameters& parameters) : ring_(model, parameters) {}
 
-  void setModel(const RingModel& copied) noexcept { ring_.setModel(copied); }  ///< see RingEquilibrium
+  void setModel(const RingModel& copied) noexcept { ring_.setModel(copied); }  ///< see RingEquilibrium::setModel
 
-  /// To be called after a reset of the joint or an edit of its model.
+  /// Must be called after a reset of the joint or a change of its model.
   void restart() noexcept { started_ = false; }
 
-  /// The ring in equilibrium at the present angles; null: none was found. Valid until the joint's next step.
+  /// The ring in equilibrium at the present angles; null without an equilibrium. Valid until the joint's next step.
   const RingEquilibrium* at(const JointDynamics& joint) noexcept
   {
     if (!joint.onSurface())
     {
       return &joint.ring();
     }
-    // From the joint's own ring, which is in equilibrium at the angles of its last use.
+    // Starts from the joint's own ring, which is in equilibrium at an earlier position.
     started_ = started_ || ring_.solveFrom(joint.ring().shape().points, joint.ring().position()).ok();
     return started_ && ring_.moveTo(joint.position()).ok() ? &ring_ : nullptr;
   }

@@ -21,7 +21,7 @@ Twin::Twin(const Parameters& parameters, const SurfaceSource& surface_source)
   if (parameters.contact.law == ContactLaw::POLAR)
   {
     throw ParameterError(
-        "contact.law = polar is not the gradient of an energy: only the insertion analysis may use it; "
+        "contact.law = polar has no potential energy, so that only the insertion analysis may use it; "
         "allowed for the running twin: normal");
   }
   if (const std::string jam = jamOf(parameters); !jam.empty())
@@ -254,7 +254,7 @@ Twin::Impl::Impl(const Parameters& given, const SurfaceSource& surface_source)
   }
   if (!reset(0))
   {
-    throw ParameterError("the twin has no equilibrium to start from, with the faults it starts with (faults.*): " +
+    throw ParameterError("the twin has no equilibrium at its start, with the faults that are active then (faults.*): " +
                          explanationOf(stepper.status()));
   }
 }
@@ -269,7 +269,7 @@ std::unique_ptr<Twin::Impl> Twin::Impl::copyOf(const Impl& other)
 
 bool Twin::Impl::reset(Stamp stamp) noexcept
 {
-  static_cast<void>(stepper.useSurface(nullptr));  // the ring is inserted again
+  static_cast<void>(stepper.useSurface(nullptr));  // the ring is inserted again without the surface
   scheduleConfigured(stamp);
   faults.apply(active);
   useSurface();
@@ -302,7 +302,7 @@ bool Twin::Impl::reset(Stamp stamp) noexcept
   return settled;
 }
 
-/// The configured faults: those from the start on are there, the others wait.
+/// Activates the configured faults of the start and schedules the others.
 void Twin::Impl::scheduleConfigured(Stamp stamp) noexcept
 {
   active.clear();
@@ -320,7 +320,7 @@ void Twin::Impl::scheduleConfigured(Stamp stamp) noexcept
   }
 }
 
-/// Faults whose time has come. @returns false if the ring found no equilibrium with them.
+/// Activates or removes the faults that are due. @returns false if the ring has no equilibrium with them.
 bool Twin::Impl::takeFaults() noexcept
 {
   const std::uint64_t version = active.version();
@@ -341,7 +341,7 @@ bool Twin::Impl::takeFaults() noexcept
   return useSurface() && good;
 }
 
-/// Takes the inputs of the step from `begin` to now, each acting from its stamp on.
+/// Applies the inputs of the step from `begin` to now, each from its stamp on.
 void Twin::Impl::takeInputs(Stamp begin) noexcept
 {
   motor_torque.begin(begin);
@@ -355,13 +355,13 @@ void Twin::Impl::takeInputs(Stamp begin) noexcept
   while (queue.pop(now - 1, input))
   {
     Stamp& since = in_force_since[static_cast<std::size_t>(input.kind)];
-    if (input.stamp >= since)  // else late, and a newer one is in force
+    if (input.stamp >= since)  // otherwise the input is late and a newer one already acts
     {
       since = input.stamp;
       takeInput(input, std::max(input.stamp, begin));
     }
   }
-  timeOutCommand(begin);  // one that came too late
+  timeOutCommand(begin);  // for a command that arrived too late
 }
 
 void Twin::Impl::takeInput(const Input& input, Stamp at) noexcept
@@ -391,11 +391,11 @@ void Twin::Impl::takeInput(const Input& input, Stamp at) noexcept
   }
 }
 
-/// A command that is older than the timeout at the step's begin is zero.
+/// Sets a command to zero that is older than the timeout at the step's beginning.
 void Twin::Impl::timeOutCommand(Stamp begin) noexcept
 {
   const Stamp since = in_force_since[static_cast<std::size_t>(InputKind::MOTOR_TORQUE)];
-  // The other way round, the age of a command from the earliest stamp does not fit into one.
+  // The age of a command with the earliest stamp would overflow in the other form of this comparison.
   if (commanded && since < begin - toStampLength(parameters.input.command_timeout))
   {
     commanded = false;
@@ -436,7 +436,7 @@ void Twin::Impl::step() noexcept
   observe();
 }
 
-/// Carries out the last command of the brake at the first instant at which its delay is over.
+/// Executes the last command of the brake at the first instant after its delay.
 void Twin::Impl::moveBrake(Stamp begin) noexcept
 {
   if (brake_commanded != brake_engaged && begin >= brake_moves)
@@ -466,7 +466,7 @@ void Twin::Impl::resetHeat() noexcept
   }
 }
 
-/// Books the losses of a step; they warm the drive at the end of each period of the heat, counted from the epoch.
+/// Adds the losses of a step. They warm the drive at the end of each heat period, counted from the epoch.
 void Twin::Impl::takeHeat(double motor_torque) noexcept
 {
   if (!heat)
@@ -514,7 +514,7 @@ JointOutputs Twin::Impl::outputs() const noexcept
   return outputs;
 }
 
-/// Updates the observers of the joint, in every step: sensors and health.
+/// Updates sensors and health at every step.
 void Twin::Impl::observe() noexcept
 {
   const JointDynamics& dynamics = stepper.dynamics();
@@ -528,7 +528,7 @@ void Twin::Impl::observe() noexcept
   assessor.advance(searched_per_step);
 }
 
-/// Signals known to a drive: readings, received load, temperature beside the motor.
+/// Passes on the signals that a drive knows: readings, received load, temperature at the motor.
 void Twin::Impl::takeReadings() noexcept
 {
   const EncoderReadings readings = sensors.encoders();
@@ -552,7 +552,7 @@ SolverState Twin::Impl::solverState(Stamp since) const noexcept
   return last_failed > after ? SolverState::FAILED : last_doubtful > after ? SolverState::DEGRADED : SolverState::OK;
 }
 
-/// How the load is shared at the current instant.
+/// Loads of the lobes at the current instant.
 LobeLoads Twin::Impl::lobes() const noexcept
 {
   const JointDynamics& dynamics = stepper.dynamics();

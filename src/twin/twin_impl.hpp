@@ -18,7 +18,7 @@
 
 namespace hjt
 {
-/// A torque that inputs set, held from stamp to stamp. Over a step its mean acts.
+/// A torque that inputs set, constant between their stamps. Its mean acts over a step.
 class HeldTorque
 {
 public:
@@ -33,20 +33,20 @@ public:
     from_ = at;
     value_ = value;
   }
-  double value() const noexcept { return value_; }  ///< in force at last [N.m]
-  double mean(Stamp end) const noexcept             ///< from the step's begin [N.m]
+  double value() const noexcept { return value_; }  ///< present value [N.m]
+  double mean(Stamp end) const noexcept             ///< mean from the step's beginning to `end` [N.m]
   {
     return from_ == begin_ ? value_ : (sum_ + value_ * toSeconds(end - from_)) / toSeconds(end - begin_);
   }
 
 private:
   double value_{};
-  double sum_{};  // up to from_ [N.m.s]
+  double sum_{};  // integral up to from_ [N.m.s]
   Stamp begin_{};
-  Stamp from_{};  // in force since then, of this step
+  Stamp from_{};  // time in this step from which the present value acts
 };
 
-/// The twin's parts and what happens in one of its steps.
+/// The parts of the twin and the sequence of its steps.
 struct Twin::Impl
 {
   Impl(const Parameters& given, const SurfaceSource& surface_source);
@@ -55,7 +55,7 @@ struct Twin::Impl
 
   static Stamp delayOf(const Fault& fault) noexcept { return static_cast<Stamp>(std::llround(1e9 * fault.onset)); }
 
-  /// @returns false if the joint found no equilibrium.
+  /// @returns false if the joint has no equilibrium.
   bool reset(Stamp stamp) noexcept;
   const JointModel& model() const noexcept { return faults.model(); }
   void step() noexcept;
@@ -67,33 +67,34 @@ struct Twin::Impl
   JointFaults faults;
   FaultList active;
   FaultSchedule waiting;
-  SurfaceStages stages;      // where the twin waits for its surfaces
-  FaultList surface_faults;  // of the surface requested, where it does not
+  SurfaceStages stages;      // if the twin waits for its surfaces
+  FaultList surface_faults;  // faults of the requested surface, if the twin does not wait
   std::optional<SurfaceWorker> surface_worker;
   bool surface_awaited{};
   JointStepper stepper;
   ObservedRing observed_ring;
   Stamp step_length;
-  std::int64_t instant{};  // number of the present one, from the epoch on
+  std::int64_t instant{};  // number of the present instant since the epoch
   Stamp now{};
-  Stamp simulated_until{};  // an input with an earlier stamp is late: now, or the start if that is not on the grid
+  // an input with an earlier stamp is late: the present instant, or the start if that is not a multiple of the step
+  Stamp simulated_until{};
   InputQueue queue;
-  std::array<Stamp, INPUT_KINDS> in_force_since{};  // stamp of the input in force, by kind
+  std::array<Stamp, INPUT_KINDS> in_force_since{};  // stamp of the acting input, by kind
   TwinCounters counters;
-  HeldTorque motor_torque;  // as commanded, within the motor's limit
-  bool command_clamped{};   // by that limit
-  bool commanded{};         // a command is in force, not timed out
-  HeldTorque load_torque;   // clamped
+  HeldTorque motor_torque;  // commanded torque, limited to the motor's limit
+  bool command_clamped{};   // the motor's limit reduced the command
+  bool commanded{};         // a command acts that has not timed out
+  HeldTorque load_torque;   // limited external torque
   bool load_clamped{};
-  double arm_torque{};   // of an arm around the joint, beside its inertia [N.m]
-  double temperature{};  // received or configured: of the drive, or of its surroundings [degC]
+  double arm_torque{};   // torque of a coupled arm without its inertia [N.m]
+  double temperature{};  // received or configured temperature of the drive or its surroundings [degC]
   std::optional<DriveHeat> heat;
-  Stamp heat_stamp{};    // up to where the losses are in it
-  double heat_booked{};  // of the dissipated energy [J]
-  double copper_heat{};  // not yet in it [J]
+  Stamp heat_stamp{};    // end of the losses that it contains
+  double heat_booked{};  // part of the dissipated energy that it contains [J]
+  double copper_heat{};  // copper losses that it does not contain yet [J]
   bool brake_engaged{};
   bool brake_commanded{};
-  Stamp brake_moves{};  // when the command is carried out
+  Stamp brake_moves{};  // time at which the command is executed
   bool converged{ true };
   JointSensors sensors;
   HealthMonitor monitor;
@@ -101,15 +102,16 @@ struct Twin::Impl
   Assessor assessor;
   Stamp steps_per_sample;
   static constexpr double CAUSE_SEARCH_TIME = 0.05;  // half the shortest window [s]
-  std::size_t searched_per_step;                     // signatures
+  std::size_t searched_per_step;                     // number of signatures
   Stamp steps_per_heat;
-  bool watching{};               // indicators are made of the readings
-  Eigen::VectorXd tooth_angles;  // at rest [rad]
-  Stamp last_failed{};           // instant of the last step that did not converge; before any: the earliest
-  Stamp last_doubtful{};         // likewise of one that was cut, too long, or in which a tooth jumped
+  bool watching{};               // indicators are computed from the readings
+  Eigen::VectorXd tooth_angles;  // angles at rest [rad]
+  Stamp last_failed{};           // instant of the last step that did not converge; initially the earliest stamp
+  // instant of the last step that was cut, too long, or with a jump of a tooth; initially the earliest stamp
+  Stamp last_doubtful{};
 
 private:
-  Impl(const Impl&) = default;  // its parts refer to the model of the other: copyOf
+  Impl(const Impl&) = default;  // the parts of the copy refer to the other's model, see copyOf
 
   void prepareSurface(const SurfaceSource& source);
   const ResponseSurface* presentSurface() const noexcept;

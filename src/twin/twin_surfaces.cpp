@@ -15,7 +15,7 @@ namespace hjt
 {
 namespace
 {
-/// Thrown out of the report of progress to end the building.
+/// Thrown in the progress callback to end the build.
 struct GivenUp : std::exception
 {
 };
@@ -47,8 +47,8 @@ bool hasBearingFaults(const FaultList& faults) noexcept
                      [](const ActiveFault& active) { return isOfTheBalls(active.fault); });
 }
 
-/// The fault that alone changes from one list to the next, with its severity there. False: it is not one alone, or one
-/// of the bearing, whose table serves for all severities.
+/// Finds the only fault that changes from one list to the next, with its later severity. @returns false if several
+/// change, or if the fault is one of the bearing, whose table serves for all severities.
 bool grows(const FaultList& before, const FaultList& after, Fault& growing)
 {
   for (const FaultList* list : { &after, &before })
@@ -66,7 +66,7 @@ bool grows(const FaultList& before, const FaultList& after, Fault& growing)
   return false;
 }
 
-/// Lagrange's weights at `x` of a polynomial through these places.
+/// Weights at `x` of Lagrange's polynomial through these nodes.
 std::vector<double> lagrangeWeights(const std::vector<double>& places, double x)
 {
   std::vector<double> weights(places.size(), 1.0);
@@ -137,7 +137,7 @@ void SurfaceWorker::run()
     {
       obtain(taken, faults);
     }
-    catch (const std::exception&)  // the thread's border: not even the reason could be told
+    catch (const std::exception&)  // the thread must not throw; even the notice failed
     {
       surface_ = nullptr;
     }
@@ -188,7 +188,7 @@ void SurfaceStages::prepare(const Parameters& parameters, const FaultList& activ
 {
   if (!source.pool)
   {
-    // Faults of the bearing that grow have the tables of gear and balls in common.
+    // Growing faults of the bearing share the tables of gear and balls.
     source.pool = std::make_shared<SurfacePool>(2);
   }
   parameters_ = &parameters;

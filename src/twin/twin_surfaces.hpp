@@ -15,25 +15,26 @@
 
 namespace hjt
 {
-/// Obtains response surfaces in a thread of its own, beside a twin that runs.
+/// Builds or reads response surfaces in a separate thread while the twin runs.
 class SurfaceWorker
 {
 public:
-  /// Starts the thread with a first request.
+  /// Starts the thread with the first request.
   SurfaceWorker(const Parameters& parameters, const FaultList& faults, const SurfaceSource& source);
 
-  /// Shares the other's surface if it is ready; else the new thread obtains it. Call it from the thread that calls
+  /// Shares the other's surface if it is ready; otherwise the new thread obtains it. Call it in the thread that calls
   /// `request`.
   SurfaceWorker(const SurfaceWorker& other);
 
-  /// Gives up what is not finished.
+  /// Abandons an unfinished surface.
   ~SurfaceWorker();
 
-  /// Asks for the surface of the drive with these faults in place of the last one, which must not be in use any more.
-  /// False: not now, ask again. Neither waits nor allocates.
+  /// Requests the surface of the drive with these faults. It replaces the last surface, which must not be in use.
+  /// @returns false if the thread is busy; then the caller must request again. The function neither blocks nor
+  /// allocates.
   bool request(const FaultList& faults) noexcept;
 
-  /// The surface requested last, once it is ready; null until then or if there is none. Neither waits nor allocates.
+  /// The last requested surface; null if it is not ready or does not exist. The function neither blocks nor allocates.
   const ResponseSurface* surface() const noexcept { return isDone() ? surface_.get() : nullptr; }
 
 private:
@@ -47,40 +48,41 @@ private:
   const Parameters parameters_;
   const SurfaceSource source_;
   std::mutex mutex_;
-  FaultList faults_;  // requested last
+  FaultList faults_;  // of the last request
   SurfacePool::Surface surface_;
-  std::atomic<std::uint64_t> asked_{ 1 };  // requests so far
-  std::atomic<std::uint64_t> done_{ 0 };   // the request that surface_ is for
+  std::atomic<std::uint64_t> asked_{ 1 };  // number of requests
+  std::atomic<std::uint64_t> done_{ 0 };   // number of the request that surface_ belongs to
   std::atomic<bool> stopping_{ false };
   std::condition_variable wake_up_;
   std::thread thread_;
 };
 
-/// Whether both hold the same faults with the same severities, since whenever.
+/// Whether both lists have equal faults with equal severities, whatever their times.
 bool isSame(const FaultList& one, const FaultList& other) noexcept;
 
-/// The response surfaces of a twin that waits for them: one for each set of faults that the configured ones make as
-/// they set in one after the other. Where these are many, each table but the first and the last being a build: of a
-/// fault that grows in more steps than NODES tables of some of them, and for those between a sum of the nearest, cubic
-/// in the severity; of others none.
+/// Response surfaces of a twin that waits for them: one for each set of faults between the onsets of the configured
+/// faults. Each table except the first and the last takes a build. With many sets, a fault that grows in more than
+/// NODES steps has tables at some severities and cubic interpolation in the severity between them. Other sets have no
+/// surface.
 class SurfaceStages
 {
 public:
-  /// `later`: what sets in after `active`.
+  /// `later`: faults that set in after `active`.
   void prepare(const Parameters& parameters, const FaultList& active, FaultSchedule later, SurfaceSource source);
 
-  /// Null: there is none.
+  /// Surface for a set of faults; null if there is none.
   const ResponseSurface* of(const FaultList& faults) const noexcept;
 
 private:
-  static constexpr int MAX_TABLES = 4;         // with more, those between the first and the last are left out
-  static constexpr std::size_t NODES = 8;      // intervals that a growth is divided into, of a gear of equal teeth
-  static constexpr std::size_t FEW_NODES = 4;  // where teeth differ: each table takes several times as long
+  static constexpr int MAX_TABLES = 4;     // with more tables, those between the first and the last are not built
+  static constexpr std::size_t NODES = 8;  // intervals of a growth for a gear with equal teeth
+  // intervals of a growth if the teeth differ, because each table takes several times as long
+  static constexpr std::size_t FEW_NODES = 4;
 
   struct Stage
   {
     FaultList faults;
-    SurfacePool::Surface surface;  ///< may be none
+    SurfacePool::Surface surface;  ///< may be null
   };
 
   int list(const FaultList& active, FaultSchedule later);
@@ -89,7 +91,7 @@ private:
   void interpolate(std::size_t first, std::size_t last, const Fault& growing);
 
   std::vector<Stage> stages_;
-  const Parameters* parameters_{};  // while it prepares
+  const Parameters* parameters_{};  // set during preparation
   const SurfaceSource* source_{};
 };
 }  // namespace hjt

@@ -284,7 +284,8 @@ TEST(FaultDescriptions, GiveTheOrdersOfTheGearInQuestion)
   const Parameters parameters = shippedParameters();
   EXPECT_EQ(shownFirst(FaultKind::BEARING_INNER_RACE, parameters), "order 12.68");
   EXPECT_EQ(shownFirst(FaultKind::BEARING_BALL, parameters), "orders 9.65 and 1.10");
-  EXPECT_EQ(shownFirst(FaultKind::BEARING_CAGE, parameters), "order 1.10: twice 1 less the cage's 0.45");
+  EXPECT_EQ(shownFirst(FaultKind::BEARING_CAGE, parameters),
+            "order 1.10: twice the difference of 1 and the cage's order 0.45");
   EXPECT_EQ(shownFirst(FaultKind::RATCHETING, parameters), "running torque, orders 2 and 1.98");
   // 15 balls, 7 mm on 50 mm: the cage turns at 0.43.
   const Parameters other =

@@ -97,7 +97,7 @@ TEST(PitchTable, IsTakenAsItIs)
 
 TEST(PitchTable, WhatIsWrongIsNamedWithItsLine)
 {
-  EXPECT_THAT(TableFile("tooth,deviation\n0,0.0\n1,0.0\n").complaint(), HasSubstr("csv:3: 2 teeth, not 3"));
+  EXPECT_THAT(TableFile("tooth,deviation\n0,0.0\n1,0.0\n").complaint(), HasSubstr("csv:3: 2 teeth instead of 3"));
   EXPECT_THAT(TableFile("tooth,deviation\n0,0.0\n2,0.0\n1,0.0\n").complaint(),
               HasSubstr("csv:3: column 'tooth' must count from 0 to 2"));
   EXPECT_THAT(TableFile("tooth,deviation\n0,0\n1,0\n2,0\n3,0\n").complaint(), HasSubstr("csv:5: column 'tooth'"));

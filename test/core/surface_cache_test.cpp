@@ -62,7 +62,7 @@ TEST(SurfaceBuilder, AGearWithErrorsOnBothMembersHasNone)
   Twin twin(shippedParameters({ "solver.scene=auto", "manufacture.flexspline_pitch_deviation=2.0e-6",
                                 "manufacture.circular_spline_pitch_deviation=2.0e-6" }),
             { cacheDirectory(), {}, [&](const std::string& what) { notice = what; } });
-  EXPECT_NE(notice.find("not the same again"), std::string::npos);
+  EXPECT_NE(notice.find("does not repeat after a turn"), std::string::npos);
   twin.commandMotorTorque(0, 0.5);
   advance(twin, SECOND / 100);
   EXPECT_FALSE(twin.onSurface());
@@ -223,7 +223,7 @@ TEST(SurfaceCache, KeepsNothingWhereEverybodyMayWrite)
   std::string notice;
   const SurfaceSource source{ folder.path().string(), {}, [&](const std::string& text) { notice += text; } };
   ASSERT_TRUE(obtainSurface(narrowParameters(), JointModel(narrowParameters()), "", source));
-  EXPECT_THAT(notice, testing::HasSubstr(folder.path().string() + " may be written to by everybody"));
+  EXPECT_THAT(notice, testing::HasSubstr(folder.path().string() + " is writable for everybody"));
   EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 

@@ -67,7 +67,7 @@ class Analyses(unittest.TestCase):
                     except hjt.NotConverged:
                         continue
                     except hjt.ParameterError as error:
-                        self.assertRegex(str(error), f"faults: {name} cannot act here: this analysis leaves out ")
+                        self.assertRegex(str(error), f"faults: {name} cannot act in this analysis, which does not ")
                         continue
                     self.assertNotEqual(result, sound)
 
@@ -77,7 +77,7 @@ class Analyses(unittest.TestCase):
             for name, kind in hjt.fault_kinds().items():
                 other = hjt.Parameters()
                 other.faults = [f"{name}:0.5" + ("" if kind.whole else ":0")]
-                if b"cannot act here" in outcome(analysis, other):
+                if b"cannot act in this analysis" in outcome(analysis, other):
                     refused[analysis].add(name)
         self.assertEqual(refused["losses"] | refused["breakaway"] | refused["hysteresis"], set())
         self.assertEqual(refused["stiffness"], {"lubricant_degradation"})
@@ -98,7 +98,7 @@ class Analyses(unittest.TestCase):
         done = subprocess.run([*command, "lubricant_degradation:0.5"], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                               universal_newlines=True, check=False)
         self.assertEqual(done.returncode, 1, done.stderr)
-        self.assertIn("lubricant_degradation cannot act here: this analysis leaves out friction", done.stderr)
+        self.assertIn("lubricant_degradation cannot act in this analysis, which does not contain friction", done.stderr)
         given = hjt.Parameters()
         given.faults = ["tooth_wear:1"]
         worn = subprocess.run([*command, "tooth_wear:1"], stdout=subprocess.PIPE, universal_newlines=True, check=True)

@@ -71,7 +71,7 @@ class DataSets(unittest.TestCase):
             np.testing.assert_array_equal(samples["motor_angle_encoder"], file["signals/motor_angle_encoder"][:])
         with self.assertRaisesRegex(hjt.InputError, "no group 'signal'; it holds .*signals"):
             hjt.load("old", "signal")
-        with self.assertRaisesRegex(hjt.InputError, "index.csv is not there"):
+        with self.assertRaisesRegex(hjt.InputError, "index.csv does not exist"):
             hjt.load("nothing")
 
     def test_columns_are_chosen_and_labels_stand_apart(self):
@@ -115,7 +115,7 @@ class DataSets(unittest.TestCase):
         index.to_csv("published/index.csv", index=False)
         with warnings.catch_warnings(record=True) as said:
             warnings.simplefilter("always")
-            with self.assertRaisesRegex(hjt.InputError, "1 of 2 runs are there; a card is of a complete set"):
+            with self.assertRaisesRegex(hjt.InputError, "1 of 2 runs are present, but a card needs"):
                 hjt.write_card("published", licence="CC-BY-4.0", authors="A. Author")
         self.assertIn("published is unfinished: 1 of 2 runs are missing", str(said[0].message))
 
@@ -193,7 +193,7 @@ class DataSets(unittest.TestCase):
         with open("brief.yaml", "w", encoding="utf-8") as file:
             file.write((PLAN % (1, "healthy: []")).replace("duration: 7.1", "duration: 2.0"))
         hjt.sweep("brief.yaml", "brief")
-        with self.assertRaisesRegex(hjt.InputError, "no run holds a row of 'indicators'; is a window"):
+        with self.assertRaisesRegex(hjt.InputError, "no run contains a row of 'indicators'; either a window"):
             hjt.load("brief")
 
     def test_signatures_of_another_gear_are_told(self):
@@ -328,7 +328,7 @@ class DataSets(unittest.TestCase):
         self.assertEqual(list(train.columns), ["unit", "cycle", "hours", "speed", "load", "temperature", "stiffness"])
         self.assertEqual(list(train.cycle), [1, 2, 3])
         self.assertEqual(list(left.RUL), [100.0 * (4 - len(test) + 1)])
-        with self.assertRaisesRegex(hjt.InputError, "holds no lives"):
+        with self.assertRaisesRegex(hjt.InputError, "contains no lives"):
             hjt.write_cmapss("sound", "none")
 
 

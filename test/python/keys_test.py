@@ -86,7 +86,7 @@ def result(analysis, parameters):
     try:
         return analysis(parameters)
     except (hjt.InputError, hjt.NotConverged) as error:
-        return None if "cannot act here" in str(error) else str(error)
+        return None if "cannot act in this analysis" in str(error) else str(error)
 
 
 def differ(one, other):

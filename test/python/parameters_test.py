@@ -121,9 +121,9 @@ class Errors(unittest.TestCase):
         self.refuse({"solver.scene": "quick"}, "must be full_ring or auto")
         self.refuse({"cup.torsion_stiffness": [1.0, 2.0]}, "must be a list of 3 numbers [N.m/rad]")
         self.refuse({"gear.teeth_flexspline": 200.5}, "gear.teeth_flexspline = 200.5 must be a whole number")
-        self.refuse({"mesh.stiffness": object()}, "mesh.stiffness = <object", "neither a number")
+        self.refuse({"mesh.stiffness": object()}, "mesh.stiffness = <object", "must be a number")
         self.refuse({"mesh.stiffness": float("nan")}, "not a finite number")
-        self.refuse({1: 2.0}, "key 1 is no text")
+        self.refuse({1: 2.0}, "key 1 must be a text")
         # Each alone is in range.
         self.refuse({"gear.teeth_circular_spline": 206}, "gear.teeth_circular_spline")
 

@@ -113,8 +113,8 @@ class Making(unittest.TestCase):
     def test_mistakes_are_named(self):
         shipped, twin = hjt.Parameters(), hjt.Twin(hjt.Parameters())
         for error, arguments, words in (
-                (hjt.InputError, {"twins": shipped}, "n is missing"),
-                (hjt.InputError, {"twins": [shipped], "n": 1}, "n is for one Parameters or one Twin"),
+                (hjt.InputError, {"twins": shipped}, "n, the number of twins, is missing"),
+                (hjt.InputError, {"twins": [shipped], "n": 1}, "n is only allowed with one Parameters or one Twin"),
                 (hjt.InputError, {"twins": shipped, "n": 0}, r"n = 0 \[-\] is out of range"),
                 (hjt.InputError, {"twins": []}, "twins has no items"),
                 (hjt.InputError, {"twins": [shipped], "threads": 0}, r"threads = 0 \[-\] is out of range"),
@@ -140,7 +140,7 @@ class Inputs(unittest.TestCase):
                 (batch.step, {"motor_torque": np.zeros((3, 1))},
                  r"motor_torque has 2 dimensions, allowed: a number, or an array of shape \(twins,\)"),
                 (batch.step, {"load_torque": [0.0, nan, 0.0]}, r"load_torque\[1\] = \.nan is not a finite number"),
-                (batch.step, {"brake": "on"}, "brake is neither a number nor an array"),
+                (batch.step, {"brake": "on"}, "brake must be a number or an array"),
                 (batch.step, {"steps": 0}, r"steps = 0 \[-\] is out of range"),
                 (batch.step, {"out": np.zeros(4, hjt.STEP_DTYPE)},
                  r"out has shape \(4,\), expected: \(3,\), writeable"),

@@ -71,7 +71,7 @@ class Run(unittest.TestCase):
             self.assertEqual([(fault.severity, fault.place) for fault in each.active_faults], [(0.3, 20)])
 
     def test_that_is_pickled_is_an_error_with_a_way_out(self):
-        with self.assertRaisesRegex(TypeError, r"copy\.copy\(twin\) keeps its state within this process"):
+        with self.assertRaisesRegex(TypeError, r"copy\.copy\(twin\) copies its state within this process"):
             pickle.dumps(hjt.Twin(hjt.Parameters()))
 
     def test_to_a_time_ends_at_the_last_instant_before(self):
@@ -129,9 +129,9 @@ class Run(unittest.TestCase):
                 ({"motor_torque": np.zeros(5), "steps": 6}, "motor_torque has 5 values for 6 steps"),
                 ({"motor_torque": np.zeros(5), "load_torque": np.zeros(4)}, "load_torque has 4 values for 5 steps"),
                 ({"motor_torque": np.zeros((5, 2))}, r"motor_torque has 2 dimensions"),
-                ({"motor_torque": "much", "steps": 3}, "motor_torque is neither a number nor an array"),
-                ({"motor_torque": np.array([1j])}, "motor_torque is neither a number nor an array"),
-                ({"motor_torque": np.array([0], "M8[s]")}, "motor_torque is neither a number nor an array"),
+                ({"motor_torque": "much", "steps": 3}, "motor_torque must be a number or an array"),
+                ({"motor_torque": np.array([1j])}, "motor_torque must be a number or an array"),
+                ({"motor_torque": np.array([0], "M8[s]")}, "motor_torque must be a number or an array"),
                 ({"motor_torque": 0.1}, "steps is missing"),
                 ({"temperature": -300.0, "steps": 3}, r"temperature = -300\.0 \[degC\] is out of range, allowed: -40"),
                 ({"load_torque": [0.0, 1e7]}, r"load_torque\[1\] = .* \[N.m\] is out of range, allowed: -284"),

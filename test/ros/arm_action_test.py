@@ -132,7 +132,7 @@ class ArmAction(unittest.TestCase):
         first = self.send(FAR, 8.0)
         self.goes_on(first)
         second = self.send(START, 2.0)
-        self.ends(first, GoalStatus.PREEMPTED, 0, "another goal took its place")
+        self.ends(first, GoalStatus.PREEMPTED, 0, "another goal has replaced this goal")
         self.ends(second, GoalStatus.SUCCEEDED, Result.SUCCESSFUL)
         self.assertLess(self.off(START), 2e-3)
 
@@ -140,7 +140,7 @@ class ArmAction(unittest.TestCase):
         handle = self.send(FAR, 8.0)
         self.goes_on(handle)
         handle.cancel()
-        self.ends(handle, GoalStatus.PREEMPTED, 0, "it was cancelled")
+        self.ends(handle, GoalStatus.PREEMPTED, 0, "the client has cancelled the goal")
         wait_until(lambda: self.speed() < 2e-3, "the arm at rest")
         self.assertGreater(self.off(FAR), 0.3)
 
@@ -148,7 +148,7 @@ class ArmAction(unittest.TestCase):
         handle = self.send(FAR, 8.0)
         self.goes_on(handle)
         self.command.publish(trajectory(START, 2.0))
-        self.ends(handle, GoalStatus.PREEMPTED, 0, "a trajectory on ~command took its place")
+        self.ends(handle, GoalStatus.PREEMPTED, 0, "a trajectory on ~command has replaced the goal")
         wait_until(lambda: self.off(START) < 2e-3, "the arm where the topic wanted it")
 
     def test_5_one_that_leaves_its_path_is_aborted_and_the_arm_rests(self):
@@ -178,7 +178,7 @@ class ArmAction(unittest.TestCase):
         self.wrench.publish(push)
         self.ends(handle, GoalStatus.ABORTED, Result.PATH_TOLERANCE_VIOLATED, "protective stop: ")
         self.wrench.publish(WrenchStamped())
-        self.ends(self.send(START, 2.0), GoalStatus.REJECTED, Result.INVALID_GOAL, "~unlock_protective_stop ends it")
+        self.ends(self.send(START, 2.0), GoalStatus.REJECTED, Result.INVALID_GOAL, "which ~unlock_protective_stop ends")
         wait_until(lambda: self.states_of_driver() == (7, 3, False, 0.0), "the driver's states in the stop")
         unlock = rospy.ServiceProxy("/arm_twin/unlock_protective_stop", Trigger)
         wait_until(lambda: unlock().success, "the end of the stop")
@@ -225,7 +225,7 @@ class ArmAction(unittest.TestCase):
 
     def test_9_what_it_cannot_follow_is_rejected(self):
         cases = (
-            (Result.INVALID_JOINTS, "no joint of the arm is knee_joint", 2.0,
+            (Result.INVALID_JOINTS, "the arm has no joint knee_joint", 2.0,
              dict(names=NAMES[:5] + ("knee_joint",))),
             (Result.INVALID_GOAL, "its limit is 3.142", 0.05, {}),
             (Result.INVALID_GOAL, "rad/s^2; it", None, {}),

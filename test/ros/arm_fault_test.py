@@ -135,7 +135,7 @@ class ArmFault(unittest.TestCase):
         last = self.states.messages()[-1]
         point = JointTrajectoryPoint(positions=list(last.position), time_from_start=rospy.Duration(2))
         command.publish(JointTrajectory(joint_names=last.name, points=[point]))
-        self.wait_for_log("Refused a trajectory on ~command: protective stop; ~unlock_protective_stop ends it")
+        self.wait_for_log("Refused a trajectory on ~command: the arm is in a protective stop")
         self.assertTrue(rospy.ServiceProxy(f"{NODE}/reset", Trigger)().success)
         wait_until(lambda: min(self.speeds()) > 0.05, "all six joints in motion again")
 

@@ -117,7 +117,7 @@ class ArmTwin(unittest.TestCase):
 
     def test_4_what_it_cannot_follow_is_refused_and_said(self):
         self.send((dict(START, knee_joint=0.0), 2.0), names=NAMES[:2] + ["knee_joint"])
-        self.said("Refused a trajectory on ~command: no joint of the arm is knee_joint; it names elbow_joint, ")
+        self.said("Refused a trajectory on ~command: the arm has no joint knee_joint; it names elbow_joint, ")
         time.sleep(1.1)  # one warning a second
         self.send((START, 2.0), names=NAMES + NAMES[:1])
         self.said("Refused a trajectory on ~command: it names more than once elbow_joint; it names elbow_joint,")
@@ -126,7 +126,8 @@ class ArmTwin(unittest.TestCase):
         self.said("Refused a trajectory on ~command: its stamp is more than a day ahead of the clock")
         time.sleep(1.1)
         self.send((dict(START, elbow_joint=START["elbow_joint"] + 3.0), 1.0))
-        self.said("elbow_joint would reach 4.2 rad/s before 1 s, its limit is 3.142")
+        self.said("elbow_joint would reach 4.2 rad/s between the set point at 1 s and the one before; "
+                  "its limit is 3.142")
         time.sleep(1.1)
         self.send((dict(START, elbow_joint=float("nan")), 5.0))
         self.said("points[0]: not all values are finite")
@@ -168,7 +169,7 @@ class ArmTwin(unittest.TestCase):
             message = Temperature(temperature=degrees)
             message.header.frame_id = joint
             self.temperature.publish(message)
-        self.said("Left alone on ~joint_temperatures: frame_id = 'left_elbow_joint' is no joint of this arm")
+        self.said("Ignored a message on ~joint_temperatures: frame_id = 'left_elbow_joint' is no joint of this arm")
         self.said("Refused a temperature on ~joint_temperatures: temperature = 200.0 [degC] is out of range")
         wait_until(lambda: health.messages() and health.messages()[-1].grease_temperature == 32.0, "the temperature")
 
@@ -217,7 +218,7 @@ class ArmTwin(unittest.TestCase):
             wrench.wrench.force.y, wrench.wrench.torque.y = -side, side
             self.wrench.publish(wrench)
             time.sleep(0.05)
-            if "Behind the clock" in diagnostics.statuses("Timing")[-1].message:
+            if "behind the clock" in diagnostics.statuses("Timing")[-1].message:
                 break
         self.said("s behind the clock")
         self.assertLess(Listener(f"{NODE}/timing", Timing).wait_for(1)[-1].real_time_factor, 0.99)

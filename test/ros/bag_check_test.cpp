@@ -247,7 +247,7 @@ TEST(BagDamage, IsNamedWithItsPlace)
   }
   catch (const InputError& error)
   {
-    EXPECT_NE(std::string(error.what()).find("longer than what is left"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("longer than the remaining"), std::string::npos) << error.what();
     EXPECT_NE(std::string(error.what()).find(" at byte "), std::string::npos) << error.what();
   }
 }

@@ -104,7 +104,7 @@ class Launches(unittest.TestCase):
         if port:
             wait_until(lambda: not UP[name] & connections(launch.master), f"the nodes of {name}.launch to leave")
         log = launch.log()
-        self.assertNotIn("Found on the parameter server", log)
+        self.assertNotIn("The parameter server has values from before this start", log)
         self.assertNotIn("FATAL", log)
         return (by_nodes(parameters), re.findall(r"\w+ is \w+: .* degC", log),
                 {node for node, topic in state if topic == "/clock"})

@@ -126,8 +126,9 @@ class Life(unittest.TestCase):
             file.write("duration of the trip: 3 h\n")
         os.mkfifo(pipe)
         os.symlink(loop, loop)
-        for path, reason in ((text, "is no record of a drive's use"), (pipe, "must be a file, not a folder, a device"),
-                             (folder, "must be a file, not a folder"), (loop, "cannot be reached"),
+        for path, reason in ((text, "is not a record of a drive's use"),
+                             (pipe, "must be a file, not a directory, a device"),
+                             (folder, "must be a file, not a directory"), (loop, "cannot be reached"),
                              (os.path.join(folder, 300 * "a"), "cannot be reached")):
             with self.subTest(path=path):
                 node = self.start(**{"life/use_record": path})

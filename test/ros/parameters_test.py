@@ -124,7 +124,7 @@ class Parameters(unittest.TestCase):
                 ("cup/torsion_breakpoints", [14.0, "high"], "not a number"),
                 ("cup/torsion_stiffness", [31.0e3, 50.0e3], "[N.m/rad]"),
                 ("manufacture/flexspline_pitch_table", "/nowhere.csv", "/nowhere.csv", "cannot be read"),
-                ("solver", 3, "= 3 must be keys and values, e.g. solver."),
+                ("solver", 3, "= 3 must be keys and values, for example solver."),
                 ("faults", 3, "= 3 must be a list of {kind:"),
                 ("publish/encoders_rate", 3000, "3000", "[Hz]", "10000")):
             with self.subTest(key=key, value=value):
@@ -144,21 +144,22 @@ class Parameters(unittest.TestCase):
         """The line about what the server had before, of a node that ends at once."""
         self.start(files, changes, arguments)
         self.assertEqual(self.node.wait_for_exit(), 1)
-        lines = [line for line in self.node.output().splitlines() if "Found on the parameter server" in line]
+        lines = [line for line in self.node.output().splitlines() if "has values from before this start" in line]
         return "\n".join(lines)
 
     def test_what_the_server_had_before_is_named_where_it_departs_from_the_shipped_files(self):
         changes = {"telemetry/effort": "joint_torque", "motor/torqe_limit": 1.0}
         files = configuration_files()[:-1]  # without the joint's own
         named = "motor/torqe_limit = 1.0, telemetry/effort = 'joint_torque'. "
-        self.assertIn(f"other than as shipped: {named}", self.warning(files, changes))
-        self.assertIn("other than as shipped: motor/torqe_limit = 1.0. ",
+        self.assertIn(f"that differ from the shipped ones: {named}", self.warning(files, changes))
+        self.assertIn("that differ from the shipped ones: motor/torqe_limit = 1.0. ",
                       self.warning(files, changes, "_telemetry/effort:=joint_torque"))
         self.assertEqual(self.warning(files, changes, "--params-cleared"), "")
 
     def test_what_the_server_had_before_is_named_for_an_arm(self):
         left = {"arm": "ur5", "input/mode": "still", "telemetry/torque_per_current": 10.7}
-        self.assertIn("other than as shipped: arm = 'ur5', input/mode = 'still', telemetry/torque_per_current = 10.7. ",
+        self.assertIn("that differ from the shipped ones: arm = 'ur5', input/mode = 'still', "
+                      "telemetry/torque_per_current = 10.7. ",
                       self.warning([], left))
         many = configuration_files("elbow", ["size_11.yaml"])
         self.assertRegex(self.warning(many, left), "shipped: arm = 'ur5', (.* = .*, ){11}[0-9]+ more[.] ")
@@ -180,7 +181,7 @@ class Parameters(unittest.TestCase):
         for text, expected in ((joint + "'a b'}", "arm.yaml:3: joints.0.short_name = 'a b' must be a name"),
                                (joint + "base, parameters: [1, 2]}", "arm.yaml:3: joints.0.parameters = [1.0, 2.0]"),
                                (like + "payload: {mass: .nan, centre: [0, 0, 0]}", "arm.yaml:2: payload.mass = .nan"),
-                               (like + "description: pipe.urdf", "pipe.urdf cannot be read: it is a folder, a device")):
+                               (like + "description: pipe.urdf", "pipe.urdf cannot be read: it is a directory")):
             with self.subTest(text=text):
                 self.check_arm_refusal(text, expected)
 

@@ -92,7 +92,7 @@ class Realtime(unittest.TestCase):
     def test_a_processor_that_is_not_there_is_said(self):
         self.start({"realtime/processor": 1023})
         self.assertEqual(self.diagnostics.values("Timing")["Processor"], "any, 1023 refused")
-        self.assertIn("realtime.processor = 1023 [-]: refused", self.node.output())
+        self.assertIn("realtime.processor = 1023 [-] was refused", self.node.output())
         self.check_running()
 
     def test_a_stall_is_counted_as_missed_and_warned_of(self):

@@ -123,7 +123,7 @@ class Replay(unittest.TestCase):
         begin = time.monotonic()
         launch = self.launch()
         launch.process.wait(timeout=LAUNCH_TIMEOUT)
-        self.assertIn("exists already", launch.log())
+        self.assertIn("exists and is not overwritten", launch.log())
         with open(self.live) as file:
             self.assertEqual(file.read(), "not to be lost")
         self.assertLess(time.monotonic() - begin, 2.0 * PATIENCE)

@@ -169,7 +169,7 @@ class ArmTwin(tool.ToolTest):
             for value, half_width in (("speed_current", "speed_half_width"), ("position", "position_half_width")):
                 self.assertLess(abs(joint[value] - before[value]), joint[half_width] + before[half_width], value)
         for option in (("--judge", 0, 1), ("--folds", 3), ("--load", "target_moment")):
-            self.fail_with(1, ["--controller takes", option[0]], "identify", "run.csv", "--arm", "ur5", "--controller",
+            self.fail_with(1, ["--controller uses", option[0]], "identify", "run.csv", "--arm", "ur5", "--controller",
                            *option)
         self.fail_with(1, ["no column target_qd_0"], "identify", self.write("few.csv", "timestamp,target_q_0\n0,0\n"),
                        "--arm", "ur5", "--controller")
@@ -219,10 +219,10 @@ class ArmTwin(tool.ToolTest):
             self.fail_with(1, [f"moves{value}", "must be a list of one move or more"], "arm", "none.yaml", "--arm",
                            "ur5", "--out", "no.csv")
         self.write("a.bag", "#ROSBAG V2.0\n")
-        self.fail_with(1, ["a.bag holds messages, which have no targets: set points"], "arm", "a.bag", "--arm", "ur5",
-                       "--out", "no.csv")
-        self.fail_with(1, ["a.bag holds messages, which have no targets: the controller's gains"], "identify", "a.bag",
-                       "--arm", "ur5", "--controller")
+        self.fail_with(1, ["a.bag contains messages, which have no targets; set points"], "arm", "a.bag",
+                       "--arm", "ur5", "--out", "no.csv")
+        self.fail_with(1, ["a.bag contains messages, which have no targets; the controller's gains"], "identify",
+                       "a.bag", "--arm", "ur5", "--controller")
         self.write("few.csv", "timestamp,target_q_0\n0,0\n")
         self.fail_with(1, ["no column target_q_1 or shoulder_position, target_q_2 or elbow_position"], "arm", "few.csv",
                        "--arm", "ur5", "--out", "no.csv")

@@ -72,7 +72,7 @@ class Options(tool.ToolTest):
                 ("--angle: '1e400' is not a finite number", [*stiffness, "5", "--angle", "1e400"]),
                 ("--angle: 1 required FLOAT missing", [*stiffness, "5", "--angle", "--json"]),
                 ("--angle: At Most 1 required but received 2", [*stiffness, "5", "--angle", "1", "--angle", "2"]),
-                ("--json takes no value", [*stiffness, "5", "--json=no"]),
+                ("--json does not take a value", [*stiffness, "5", "--json=no"]),
                 ("--hours: '0' is not within 0.001 ... 1e+09", [*age, "--hours", "0"]),
                 ("--positions: '1.5' is not a whole number within -2147483648 ... 2147483647",
                  [*age, "--positions", "1.5"]),
@@ -128,11 +128,11 @@ class Options(tool.ToolTest):
                                  "\nOptions:\n  -h,--help                   Print this help message and exit\n",
                                  f"\n  --torques FLOAT ... REQUIRED{column}loads on",
                                  "\n  --angle FLOAT=0             wave generator angle [rad]\n",
-                                 "\n  --teeth Needs: --json       every tooth's",
-                                 "\nCommon options:\n  --config FILE ...           YAML overlay"]),
+                                 "\n  --teeth Needs: --json       with --json, add every tooth's",
+                                 "\nCommon options:\n  --config FILE ...           YAML file"]),
                 (["life", "trials"], ["Usage: joint_twin life trials [OPTIONS] DUTY\n",
                                       "\nPositionals:\n  DUTY TEXT:FILE REQUIRED     CSV file",
-                                      "\n  --hours FLOAT=1e+06         longest use [h]\n"]),
+                                      "\n  --hours FLOAT=1e+06         longest duration of use [h]\n"]),
                 (["remaining"], ["Usage: joint_twin remaining [OPTIONS] recordings...\n"]),
                 (["identify"], ["\n  --train FLOAT x 2           from,to: part to identify on",
                                 f"\n  --load TEXT:{{arm,target_moment}}=arm Needs: --arm{column}load of",
@@ -222,7 +222,7 @@ class InputFiles(tool.ToolTest):
         with open(os.path.join(arms, "ur5.yaml"), encoding="utf-8") as file:
             arm = file.read().replace("ur5.urdf", os.path.join(arms, "ur5.urdf"))
         self.write("rows.csv", "time\n0\n")
-        for name, reason in (("pipe", "cannot be read: it is a folder, a device or a pipe"),
+        for name, reason in (("pipe", "cannot be read: it is a directory, a device or a pipe"),
                              ("sparse", "cannot be read: it is larger than 10000000 bytes")):
             path = self.path(name)
             self.write("arm.yaml", arm.replace("[joints/base.yaml, ", f"[{path}, "))
@@ -239,7 +239,7 @@ class OutputFiles(tool.ToolTest):
 
     def test_a_failure_keeps_the_earlier_file(self):
         self.write("out.csv", "precious")
-        self.fail_with(1, ["out.csv holds nothing"], *self.SIMULATE, "0.02", "--set", "publish.joint_states_rate=10")
+        self.fail_with(1, ["out.csv would be empty"], *self.SIMULATE, "0.02", "--set", "publish.joint_states_rate=10")
         self.assertEqual(os.listdir(self.directory), ["out.csv"])
         self.assertEqual(tool.read_bytes(self.path("out.csv")), b"precious")
 
@@ -276,7 +276,7 @@ class OutputFiles(tool.ToolTest):
         self.write("victim", "precious")
         os.symlink("victim", self.path("link.bag.active"))
         os.mkfifo(self.path("pipe.bag.active"))
-        for name, reason in (("link", ""), ("pipe", ": it is no regular file")):
+        for name, reason in (("link", ""), ("pipe", ", because it is not a regular file")):
             self.fail_with(1, [f"{name}.bag.active cannot be written{reason}"], "simulate", "--torque", "0.2",
                            "--duration", "0.02", "--out", f"{name}.bag")
         self.assertEqual(tool.read_bytes(self.path("victim")), b"precious")

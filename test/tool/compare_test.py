@@ -80,8 +80,8 @@ class Compare(tool.ToolTest):
                 folder = "of_" + name
                 os.mkdir(self.path(folder))
                 self.write(os.path.join(folder, name), "precious")
-                self.fail_with(1, [f"holds files already, {name} among them", "--force"], "compare", "a.bag", *OPTIONS,
-                               "--report", folder)
+                self.fail_with(1, [f"already contains files, {name} among them", "--force"], "compare", "a.bag",
+                               *OPTIONS, "--report", folder)
                 self.assertEqual(tool.read_bytes(self.path(os.path.join(folder, name))), b"precious")
                 self.assertEqual(os.listdir(self.path(folder)), [name])
         self.fail_with(1, ["joints found: elbow_joint, wrist_1_joint"], "compare", "a.bag", "--joint", "shoulder",
@@ -256,7 +256,7 @@ class Compare(tool.ToolTest):
         robot.write_bag(self.path("a.bag"), 60.0)
         data = tool.read_bytes(self.path("a.bag"))
         for name, content, note in (("cut.bag", data[:len(data) * 2 // 3], "cut.bag"),
-                                    ("open.bag", self.without_index(data), "`rosbag reindex` may mend it"),
+                                    ("open.bag", self.without_index(data), "`rosbag reindex` may repair it"),
                                     ("none.bag", b"not a bag", "cannot be read as a bag")):
             with open(self.path(name), "wb") as file:
                 file.write(content)

@@ -279,12 +279,12 @@ class States(Fmu):
         self.assertEqual(unit.outputs(), before)
         self.assertEqual(unit.call("load", 0, 1, self.path("state")), OK)
         said = unit.close()
-        for part in "ends too early", "cut or damaged":
+        for part in "is incomplete", "incomplete or damaged":
             self.assertIn(part, said)
         other = self.unit("--set", "motor.torque_limit=1.0")
         self.assertEqual(other.call("new", 0), OK)
         self.assertEqual(other.call("load", 0, 0, self.path("state")), ERROR)
-        self.assertIn("is of the unit", other.close())
+        self.assertIn("belongs to the unit", other.close())
 
     def test_a_reset_instance_is_as_new(self):
         unit = self.unit()

@@ -106,8 +106,8 @@ class Gear(tool.ToolTest):
 
     def test_bad_requests_are_named(self):
         for options, reason in ((("--stiffness", "9e3,15e3"), "K1, K2, K3 > 0"), (("--breakpoints", "14,4"), "T1 < T2"),
-                                (("--starting-torque", "1e-4"), "other friction alone makes"),
-                                (("--ratings", "21,30,60,0"), "momentary peak torque > 0")):
+                                (("--starting-torque", "1e-4"), "other friction alone is"),
+                                (("--ratings", "21,30,60,0"), "ratings needs four values > 0")):
             self.fail_with(1, [reason], "gear", *options, "--out", "gear.yaml")
         self.fail_with(2, ["--ratio", "30 ... 320"], "gear", "--ratio", "7", "--out", "gear.yaml")
         self.fail_with(2, ["--size"], "gear", "--size", "1000", "--out", "gear.yaml")

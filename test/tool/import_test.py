@@ -67,7 +67,7 @@ class Import(tool.ToolTest):
                             (good[:11] + [good[11][:40]], "too few columns")]:
             with self.subTest(part):
                 self.write("a.csv", "\n".join(lines) + "\n")
-                self.fail_with(1, ["a.csv:12: ", part, "a.bag is readable and holds the 10 rows before it"],
+                self.fail_with(1, ["a.csv:12: ", part, "a.bag is readable and contains the 10 rows before it"],
                                "import", "a.csv", "--joint", 0, "--out", "a.bag", "--force", "--json")
                 self.assertEqual(len(tool.series(self.path("a.bag"), "/joint_twin/command")), 10)
                 self.assertFalse(os.path.exists(self.path("a.bag.active")))
@@ -78,10 +78,10 @@ class Import(tool.ToolTest):
                              ["a.csv:1: column 'actual_q_3' is missing"]),
                             ("time,motor_torque\n0,1\n", ["columns 'timestamp', ", "are missing"]),
                             (good[0].replace("target_q_1", "actual_q_1") + "\n",
-                             ["a.csv:1: column 'actual_q_1' is there twice"]),
+                             ["a.csv:1: column 'actual_q_1' occurs twice"]),
                             (good[0] + "\n", ["a.csv has no rows"]),
                             (good[0] + "\n" + ",".join(["x"] * 31) + "\n", ["a.csv:2: ", "nothing was written"]),
-                            (good[0] + "\n" + good[1] + "\0\n", ["a.csv:2: a zero byte"]),
+                            (good[0] + "\n" + good[1] + "\0\n", ["a.csv:2: the file contains a zero byte"]),
                             ("", ["a.csv:1: the header is missing"]), ("#ROSBAG V2.0\n\0\1\2", ["a.csv"])]:
             with self.subTest(parts):
                 self.write("a.csv", text)

@@ -170,7 +170,7 @@ class Lives(tool.ToolTest):
                 ("[rated.csv]", "[none.csv]", ["none.csv cannot be read"]),
                 ("duty:\n", "classes: {a: []}\nduty:\n", ["classes is not allowed in a plan of lives"]),
                 ("duty:\n", "drives: {number: 2}\nduty:\n",
-                 ["drives is not allowed in a plan of lives: lives.drives are its drives"]),
+                 ["drives is not allowed in a plan of lives, where lives.drives gives the drives"]),
                 ("{log_uniform: [2.0e-4, 8.0e-4]}", "{grid: [2.0e-4, 8.0e-4]}", ["give a distribution or one value"])]:
             with self.subTest(new):
                 self.assertIn(old, PLAN)

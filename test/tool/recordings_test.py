@@ -186,11 +186,12 @@ class Recordings(RecordingTest):
                        "a.csv", "--arm", "ur5")
         with open(self.path("b.csv"), "w", encoding="ascii") as file:
             file.write("0.0,1.0,1.0\n0.1,1.0,1.0\n")
-        self.fail_with(1, ["first line holds numbers", "header"], "check", "b.csv")
+        self.fail_with(1, ["first line contains numbers", "header"], "check", "b.csv")
         with open(self.path("c.csv"), "w", encoding="ascii") as file:
             file.write(",".join(["timestamp"] + [f"actual_{what}_{i}" for what in ("q", "current") for i in range(6)]))
             file.write("\n" + ",".join(["0.5"] * 15) + "\n")
-        self.fail_with(1, ["c.csv has no rows; between commas the header has 13 columns, a row 15"], "check", "c.csv")
+        self.fail_with(1, ["c.csv has no rows; the header has 13 columns, separated by commas, but a row has 15"],
+                       "check", "c.csv")
         with open(self.path("c.csv"), "a", encoding="ascii") as file:
             file.write(3 * (",".join(["0.5"] * 6 + ["none"] + ["0.5"] * 6) + "\n"))
         self.fail_with(1, ["none of 4 rows holds a finite number in 'actual_q_5'"], "check", "c.csv")

@@ -132,7 +132,7 @@ class Rows(RecordingTest):
             database.execute(f"CREATE VIEW {name} {endless}{columns}")
             database.commit()
             database.close()
-            self.fail_with(1, [f"without a table '{name}'"], "check", path)
+            self.fail_with(1, [f"without the table '{name}'"], "check", path)
 
     def test_chunks_of_an_mcap_take_no_memory_without_end(self):
         deep = b""

@@ -29,7 +29,7 @@ class Simulate(tool.ToolTest):
             self.assertEqual(message.name, ["joint_motor", "joint"])
 
     def test_an_output_without_a_row_is_an_error(self):
-        self.fail_with(1, ["a.csv holds nothing: the run of 0.2 s is shorter than a period of "
+        self.fail_with(1, ["a.csv would be empty, because the run of 0.2 s is shorter than a period of "
                            "publish.joint_states_rate = 0.001 Hz"], "simulate", "--duration", 0.2, "--torque", 0.4,
                        "--set", "publish.joint_states_rate=0.001", "--out", "a.csv")
 
@@ -126,8 +126,8 @@ class Simulate(tool.ToolTest):
                             ("time,motor_torque\n0,0.1,7\n", [":2: too many columns"]),
                             ("time,motor_torque\n0,nan\n", [":2: column 'motor_torque': 'nan' is not a finite"]),
                             ("time,motor_torque\n0,zero\n", ["'zero' is not a finite number"]),
-                            ("time,motor_torque\n0,1\n0,1\n", [":3: column 'time' must start at 0 or later"]),
-                            ("time,motor_torque\n-1,1\n", [":2: column 'time' must start at 0 or later"]),
+                            ("time,motor_torque\n0,1\n0,1\n", [":3: column 'time' must be >= 0"]),
+                            ("time,motor_torque\n-1,1\n", [":2: column 'time' must be >= 0"]),
                             ("time,motor_torque\n0,1\n9.3e9,1\n",
                              [":3: column 'time' = 9.3e+9 [s] is out of range, allowed: 0 ... 1.0e+9 [s]"]),
                             ("time,motor_torque\n0,1\n1e300,1\n", [":3: column 'time' = 1.0e+300 [s] is out of range"]),

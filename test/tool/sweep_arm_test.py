@@ -173,12 +173,12 @@ class SweepArm(SweepTest):
 
     def test_what_is_wrong_is_refused_with_its_place(self):
         for change, said in {
-                ("joint: elbow", "joint: knee"): "is no joint of the arm; there are base, shoulder, elbow",
-                ("joint: elbow, ", ""): "lacks the key 'joint'",
+                ("joint: elbow", "joint: knee"): "is not a joint of the arm; its joints are base, shoulder, elbow",
+                ("joint: elbow, ", ""): "needs the key 'joint'",
                 ("arm: ur5", "arm: ur6"): "arm ur6: neither a file nor an arm",
                 ("motion: nod.csv", "motion: none.csv"): "none.csv",
                 ("payload: {grid: [0.0, 4.0]}", "payload: -1.0"): "payload = -1.0 [kg] is out of range",
-                ("[target_q,", "[motor_angle,"): "is no column; there are target_q, target_qd",
+                ("[target_q,", "[motor_angle,"): "is not a column; allowed: target_q, target_qd",
                 ("start: 0.1", "start: 0.1\n  indicators: true"): "are those of one drive",
                 ("duration: 0.3\n", "duration: 0.3\nlives: {drives: 2}\n"): "is not allowed in a plan of arms",
         }.items():

@@ -231,7 +231,7 @@ record:
         few, enough = self.index("a")
         self.assertEqual((few["status"], enough["status"], enough["rows_without_forces"]), ("ok", "ok", "0"))
         self.assertGreater(int(few["rows_without_forces"]), 0)
-        self.assertIn(few["rows_without_forces"] + " rows without forces on the teeth", done.stderr)
+        self.assertIn(few["rows_without_forces"] + " rows have no tooth forces", done.stderr)
         for row in (few, enough):
             with h5py.File(self.path("a/" + row["file"]), "r") as file:
                 unknown = numpy.isnan(file["teeth/mesh_force"])

@@ -175,7 +175,7 @@ class Sweep(SweepTest):
                 ("seed: 7", "sead: 7", ["plan.yaml:3: sead = 7 is unknown; allowed: name, seed"]),
                 ("    speed: {sinus:", "    sped: {sinus:", ["plan.yaml:12: duty.0.sped is unknown; allowed: name"]),
                 ("speed: {sinus:", "speed: {square:", ["duty.0.speed.square is unknown; allowed: constant, sinus"]),
-                ("mesh_force,", "mesh_forces,", ["record.groups.teeth.columns.0 = 'mesh_forces' is no column"]),
+                ("mesh_force,", "mesh_forces,", ["record.groups.teeth.columns.0 = 'mesh_forces' is not a column"]),
                 ("rate: 500.0", "rate: 333.0", ["rate = 333.0 [Hz] must divide solver.rate = 10000"]),
                 ("float32", "float16", ["type = 'float16' is unknown; allowed: float32, float64"]),
                 ("format: hdf5", "format: hdf6", ["record.format = 'hdf6' is unknown; allowed: hdf5, bag"]),
@@ -196,8 +196,8 @@ class Sweep(SweepTest):
                 ("name: test", "name: &a [1, 1, 1, 1, 1, 1, 1, 1, 1, 1]\n" + "".join(
                     f"l{level}: &{name} [{', '.join(['*' + before] * 10)}]\n"
                     for level, (before, name) in enumerate(zip("abcdefgh", "bcdefghi"))), ["makes the plan too large"]),
-                ("log_uniform: [0.5, 2.0]", "normal: [1.0, 0.1, 1.0, 1.0]", ["must leave at least 0.001"]),
-                ("log_uniform: [0.5, 2.0]", "normal: [1.0, 0.1, 1.0, 1.00001]", ["must leave at least 0.001"]),
+                ("log_uniform: [0.5, 2.0]", "normal: [1.0, 0.1, 1.0, 1.0]", ["must contain at least 0.001"]),
+                ("log_uniform: [0.5, 2.0]", "normal: [1.0, 0.1, 1.0, 1.00001]", ["must contain at least 0.001"]),
                 ("log_uniform: [0.5, 2.0]", "integer: [0, 1.0e+300]", ["must be two whole numbers"]),
                 ("seed: 7", "seed: 7\nseed: 8", ["seed"]),
                 ("name: test", "name: [", ["plan.yaml:"])]:
@@ -219,7 +219,7 @@ class Sweep(SweepTest):
                 ("number: 4", "number: 4, tests: 0.5", "drives.tests = 0.5 is unknown; allowed: number, test, set"),
                 ("bearing.viscosity", "bearing.viscosit", "unknown parameter bearing.viscosit"),
                 ("[1.0e-4, 2.0e-4]", "[1.0e+4, 2.0e+4]", "bearing.viscosity = "),
-                ("bearing.viscosity", "input.temperature", "drives.set.input.temperature stands in set too"),
+                ("bearing.viscosity", "input.temperature", "drives.set.input.temperature is also in set"),
                 ("log_uniform", "grid", "drives.set.bearing.viscosity cannot be a grid over drives"),
                 ("{log_uniform: [1.0e-4, 2.0e-4]}", "1.0e-4", "drives.set must draw at least one parameter")]:
             with self.subTest(new):
@@ -229,8 +229,8 @@ class Sweep(SweepTest):
                 self.assertFalse(os.path.exists(self.path("a")))
 
     def test_a_directory_with_files_of_something_else_is_left_as_it_is(self):
-        for name, said in (("index.csv", "index.csv is of something else"), ("plan.json", "plan.json"),
-                           ("runs/run_000000.h5", "holds files of something else")):
+        for name, said in (("index.csv", "index.csv belongs to something else"), ("plan.json", "plan.json"),
+                           ("runs/run_000000.h5", "contains other files")):
             with self.subTest(name):
                 folder = self.path("of_" + os.path.basename(name))
                 os.makedirs(os.path.dirname(os.path.join(folder, name)))
@@ -301,16 +301,18 @@ class Sweep(SweepTest):
         self.sweep("a")
         before = tree(self.path("a"))
         self.write("plan.yaml", PLAN.replace("seed: 7", "seed: 8"))
-        self.fail_with(1, ["a/plan.json is of another plan; give another --out"], "sweep", "plan.yaml", "--out", "a")
+        self.fail_with(1, ["a/plan.json belongs to another plan; give another --out"], "sweep", "plan.yaml", "--out",
+                       "a")
         self.write("plan.yaml", PLAN)
-        self.fail_with(1, ["a/plan.json is of another configuration"], "sweep", "plan.yaml", "--out", "a",
+        self.fail_with(1, ["a/plan.json belongs to another configuration"], "sweep", "plan.yaml", "--out", "a",
                        "--set", "output.load_inertia=2.0")
         with open(self.path("a/plan.json")) as file:
             text = file.read()
         version = json.loads(text)["version"]
         self.write("a/plan.json", text.replace(f'"version": "{version}"', '"version": "0.0.1"'))
         before["plan.json"] = tool.read_bytes(self.path("a/plan.json"))
-        self.fail_with(1, ["a/plan.json is of another version of the software"], "sweep", "plan.yaml", "--out", "a")
+        self.fail_with(1, ["a/plan.json belongs to another version of the software"], "sweep", "plan.yaml", "--out",
+                       "a")
         self.assertEqual(tree(self.path("a")), before)
 
     def test_dry_run_tells_runs_and_size_and_writes_nothing(self):

@@ -10,34 +10,36 @@
 
 namespace hjt
 {
-/// Which arm, and how it begins.
+/// Choice of an arm, its faults and its initial state.
 struct ArmOptions
 {
-  std::string arm{ "ur5" };         ///< name or file
-  std::string config_dir;           ///< the package's folder config; empty: found by itself
-  std::string identified;           ///< directory of overlays by `joint_twin identify --arm`; empty: none
+  std::string arm{ "ur5" };         ///< name of a shipped arm, or path of its file
+  std::string config_dir;           ///< the package's folder config; empty: found automatically
+  std::string identified;           ///< directory of overlays that `joint_twin identify --arm` wrote; empty: none
   std::vector<std::string> faults;  ///< JOINT:KIND:SEVERITY[:PLACE[:ONSET]]
-  std::vector<double> start;        ///< angles of the joints, where it stands in its brakes; empty: 0 [rad]
-  SurfaceSource surface_source{ surfaceCacheDirectory() };  ///< of its drives' response surfaces
+  std::vector<double> start;        ///< initial angles of the joints, which their brakes hold; empty: all 0 [rad]
+  SurfaceSource surface_source{ surfaceCacheDirectory() };  ///< where the drives' response surfaces come from
 };
 
-/// All drives of an arm, coupled by its links, without a controller: the motors' torques are commanded, as those of a
-/// single Twin. In the library harmonic_joint_twin_arm. After construction no member throws or allocates.
+/// All drives of an arm without a controller. The links couple the drives. The caller commands the motors' torques, as
+/// for a single Twin. The class is in the library harmonic_joint_twin_arm. After construction no member throws or
+/// allocates.
 class ArmDrives
 {
 public:
-  /// Builds the drives' response surfaces, or takes them from the cache. @throws ParameterError.
+  /// Builds the drives' response surfaces or reads them from the cache. @throws ParameterError.
   explicit ArmDrives(const ArmOptions& options);
   ~ArmDrives();
   ArmDrives(ArmDrives&&) noexcept;
 
-  const std::vector<std::string>& names() const noexcept;  ///< of the joints, as in the messages
+  const std::vector<std::string>& names() const noexcept;  ///< names of the joints, as in the messages
   std::size_t joints() const noexcept { return names().size(); }
-  Twin& drive(std::size_t joint) noexcept;              ///< to command and to read; not to step
-  double startAngle(std::size_t joint) const noexcept;  ///< joint angle where the drive's encoders read 0 [rad]
+  /// drive of one joint; the caller commands and reads it, but must not step it
+  Twin& drive(std::size_t joint) noexcept;
+  double startAngle(std::size_t joint) const noexcept;  ///< joint angle at which the drive's encoders read 0 [rad]
 
-  bool reset(Stamp stamp) noexcept;  ///< to the start, as Twin::reset
-  bool step(Stamp until) noexcept;   ///< all drives, as Twin::step
+  bool reset(Stamp stamp) noexcept;  ///< returns all drives to the initial state, as Twin::reset does
+  bool step(Stamp until) noexcept;   ///< advances all drives by one solver step, as Twin::step does
   Stamp stamp() const noexcept;
 
 private:

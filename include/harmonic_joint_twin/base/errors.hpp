@@ -6,8 +6,8 @@
 
 namespace hjt
 {
-/// The one exception of the package: bad user input, thrown once, at construction or while a file is read.
-/// The text names the key, the value, the unit and the range (or the file and the line).
+/// The package's only exception: invalid user input. It is thrown at construction or while a file is read.
+/// The text names the key, the value, the unit and the range, or the file and the line.
 class InputError : public std::runtime_error
 {
 public:

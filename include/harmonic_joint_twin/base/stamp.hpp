@@ -9,22 +9,23 @@ namespace hjt
 /// Time of a message or of a simulated instant [ns since the epoch of the messages].
 using Stamp = std::int64_t;
 
-/// Longest stamp difference [ns]: it can still be added to any time that a message can have.
+/// Longest stamp difference [ns]. Its sum with any stamp of a message does not overflow.
 constexpr Stamp MAX_STAMP_LENGTH = std::numeric_limits<Stamp>::max() / 2;
 
-/// Largest magnitude of a stamp that a MAX_STAMP_LENGTH is added to [ns]; messages stay below.
+/// Largest magnitude of a stamp [ns]. Its sum with MAX_STAMP_LENGTH does not overflow.
 constexpr Stamp MAX_STAMP = std::numeric_limits<Stamp>::max() / 2;
 
-/// A stamp further from the clock than this is damaged, or of a clock that was never set [ns]: a day.
+/// Largest plausible distance of a stamp from the clock: one day [ns]. A stamp further away is damaged, or its clock
+/// was never set.
 constexpr Stamp FAR_STAMP = 86'400'000'000'000;
 
-/// Whether a stamp is within +-MAX_STAMP.
+/// Whether a stamp is between -MAX_STAMP and MAX_STAMP.
 constexpr bool isStamp(Stamp stamp)
 {
   return stamp >= -MAX_STAMP && stamp <= MAX_STAMP;
 }
 
-/// Stamp difference [ns] of a duration [s], >= 0; MAX_STAMP_LENGTH for what is longer, and for NaN.
+/// Converts a duration >= 0 [s] to a stamp difference [ns]. The result is at most MAX_STAMP_LENGTH, also for NaN.
 inline Stamp toStampLength(double duration)
 {
   const double length = duration * 1e9 + 0.5;

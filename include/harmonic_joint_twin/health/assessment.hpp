@@ -10,7 +10,7 @@
 
 namespace hjt
 {
-/// Level with the values of diagnostic_msgs/DiagnosticStatus.
+/// Level of the drive's health, with the values of diagnostic_msgs/DiagnosticStatus.
 enum class HealthLevel : std::uint8_t
 {
   OK = 0,
@@ -18,27 +18,27 @@ enum class HealthLevel : std::uint8_t
   ERROR = 2
 };
 
-const char* levelName(HealthLevel level) noexcept;  ///< "WARN"
+const char* levelName(HealthLevel level) noexcept;  ///< name of a level, for example "WARN"
 
 /// One indicator that departs from its reference.
 struct Evidence
 {
   std::size_t indicator{};
-  double value{};     ///< unit of the indicator
-  double expected{};  ///< healthy mean there
-  double score{};     ///< normal score of the deviation [-]
+  double value{};     ///< value of the indicator in its unit
+  double expected{};  ///< mean of a sound drive at this operating point, in the indicator's unit
+  double score{};     ///< normal score of the deviation from `expected` [-]
 };
 
 /// Another cause that would have a similar effect.
 struct Alternative
 {
   Cause cause{};
-  double confidence{};          ///< its probability [-]
+  double confidence{};          ///< probability of the cause [-]
   double severity{};            ///< mean severity of the fault, if this is the cause; 0 with NONE [-]
-  double severity_deviation{};  ///< standard deviation of that [-]
+  double severity_deviation{};  ///< standard deviation of that severity [-]
 };
 
-/// State of the drive by its indicators.
+/// State of the drive according to its indicators.
 struct Assessment
 {
   static constexpr std::size_t MAX_EVIDENCE = 3;
@@ -46,7 +46,7 @@ struct Assessment
   static constexpr double SET = 0.9;  ///< least probability of cause and alternatives together [-]
 
   std::int64_t stamp{};     ///< end of the last window [ns]
-  std::uint64_t windows{};  ///< windows seen
+  std::uint64_t windows{};  ///< number of completed windows
   AssessmentState state{};
   int windows_here{};    ///< windows at the last operating point: those compared, or those in the reference
   int windows_needed{};  ///< windows that a reference or a verdict takes
@@ -59,12 +59,14 @@ struct Assessment
   double severity_deviation{};  ///< standard deviation of that [-]
   double largest_score{};       ///< largest score of the last windows' mean, over the threshold; > 1: alarm [-]
   std::size_t alternative_count{};
-  std::array<Alternative, MAX_ALTERNATIVES> alternatives;  ///< most likely first, until SET is reached
+  /// most likely first; with the cause they reach the probability SET
+  std::array<Alternative, MAX_ALTERNATIVES> alternatives;
   std::size_t evidence_count{};
-  std::array<Evidence, MAX_EVIDENCE> evidence;  ///< beyond the threshold, strongest first; in alarm at least one
+  /// indicators beyond the threshold, strongest first; at least one in an alarm
+  std::array<Evidence, MAX_EVIDENCE> evidence;
 };
 
-/// Why the last window has no verdict, as a clause; empty: it has one.
+/// Reason why the last window has no verdict, as a clause; empty if it has a verdict.
 std::string whyNotJudged(const Assessment& assessment);
 
 /// Makes one verdict of the windows: level, most likely cause and evidence. Memory is fixed.
@@ -79,7 +81,7 @@ std::string whyNotJudged(const Assessment& assessment);
 class Assessor
 {
 public:
-  /// @throws ParameterError if the file of indicators.signatures cannot be used (loadSignatures).
+  /// @throws ParameterError if the file of indicators.signatures is invalid (loadSignatures).
   explicit Assessor(const Parameters& parameters);
 
   void reset() noexcept;
@@ -105,8 +107,9 @@ public:
   const Assessment& assessment() const noexcept { return settled_; }
   const Baseline& baseline() const noexcept { return baseline_; }
   const SignatureSet& signatures() const noexcept { return *signatures_; }
-  std::size_t searchLength() const noexcept { return cause_search_.signatures(); }  ///< of a search, for `advance`
-  const Deviations& deviations() const noexcept { return deviations_; }             ///< of the last window
+  /// Number of steps of a search, for `advance`.
+  std::size_t searchLength() const noexcept { return cause_search_.signatures(); }
+  const Deviations& deviations() const noexcept { return deviations_; }  ///< deviations of the last window
 
 private:
   void judge(const SignalIndicators& indicators, const SignalIndicators* model) noexcept;
@@ -122,11 +125,11 @@ private:
   const double error_factor_;
   Baseline baseline_;
   Deviations deviations_;
-  Assessment assessment_;  // of the last window, without its cause during the search
+  Assessment assessment_;  // of the last window; its cause is missing during the search
   Assessment settled_;     // of the last window, with its cause
   CausePatterns patterns_;
   CauseSearch cause_search_;
-  OperatingPoint point_;  // of the search
+  OperatingPoint point_;  // operating point of the window whose cause is being searched
   bool is_searching_{};
   OperatingBin shown_in_;  // class that the level was last seen in
   int worse_{};            // windows in a row that show more than the level

@@ -17,13 +17,14 @@ struct SignatureSet;
 /// Difference of an indicator of a sound drive, less the model's, from one motion to another.
 struct CarriedError
 {
-  double deviation{ 1e30 };  ///< rms of a drive like the model, unit of the indicator; 1e30: not known
-  double share{};            ///< share of the difference of drive and model, of a line of all lines of its signal [-]
-  double freedom{ 1.0 };     ///< degrees of freedom both are known with [-]
+  double deviation{ 1e30 };  ///< rms of a drive like the model, in the indicator's unit; 1e30: not known
+  double share{};  ///< share of the difference between drive and model; of a line: share of all lines of its signal [-]
+  double freedom{ 1.0 };  ///< degrees of freedom from which both were estimated [-]
 };
 
-/// Class of operating points that are compared with each other: octave of speed, direction (-1 back, 0 both, 1
-/// forward), steps of three eighths of the gear's rated torque and of 10 K. What is not measured counts as 0.
+/// Class of operating points whose windows are compared: octave of speed, direction (-1 backward, 0 both, 1 forward),
+/// load in steps of three eighths of the gear's rated torque, and temperature in steps of 10 K. A missing measurement
+/// counts as 0.
 struct OperatingBin
 {
   int speed{};
@@ -49,33 +50,33 @@ double loadStep(const Parameters& parameters) noexcept;
 constexpr std::size_t PLACES = 7;
 constexpr std::size_t OWN_PLACES = 2;  ///< number of the first covariates, for which each class has slopes of its own
 using Place = std::array<double, PLACES>;
-using PlaceSquares = std::array<Place, PLACES>;  ///< by pairs of coordinates
+using PlaceSquares = std::array<Place, PLACES>;  ///< products of two covariates, by pairs
 
 /// Deviations of a sound drive from one recording to the next, beside those in its reference.
 struct Repeatability
 {
-  double share{};            ///< indicators.least_spread [-]
-  double friction_share{};   ///< of the friction, at any speed [-]
-  double friction_torque{};  ///< of the friction too, at the motor [N.m]
+  double share{};            ///< share of each indicator, indicators.least_spread [-]
+  double friction_share{};   ///< share of the friction, at any speed [-]
+  double friction_torque{};  ///< additional part of the friction, at the motor [N.m]
 };
 
 /// Largest number of common causes, which change several healthy indicators together from window to window.
 constexpr std::size_t COMMON_CAUSES = 3;
 
-/// One healthy indicator, over the windows that determined it.
+/// Reference of one indicator: its statistics over the windows that determined it.
 struct Reference
 {
   int count{};
-  double mean{};             // unit of the indicator; from fitReference on at the mean place of the class
-  double variance{};         // about the mean, from fitReference on about what the place makes of it
-  double within{};           // half the mean square of what successive windows differ by; 0: not known
-  double relative_square{};  // mean square of the windows' relativeErrors; 0: not known [-]
-  double scale{};            // mean magnitude, what was subtracted included; unit of the indicator
-  bool fitted{};             // has slopes and shares of common causes
-  double ridge{};            // lambda: information of the slopes before any window, in windows at place 1 [-]
-  double slopes_freedom{};   // degrees of freedom that the slopes take [-]
-  Place slopes{};            // over the place, unit of the indicator
-  /// Shares of the spread that go with each common cause, of unit variance [-]
+  double mean{};             // in the indicator's unit; after fitReference at the mean covariates of the class
+  double variance{};         // about the mean; after fitReference about the regression on the covariates
+  double within{};           // half the mean square of differences of successive windows; 0: not known
+  double relative_square{};  // mean square of relativeErrors over the windows; 0: not known [-]
+  double scale{};            // mean magnitude with the subtracted model included, in the indicator's unit
+  bool fitted{};             // fitReference has set slopes and common causes
+  double ridge{};            // lambda: prior information of the slopes, as a number of windows at covariate 1 [-]
+  double slopes_freedom{};   // degrees of freedom that the slopes use [-]
+  Place slopes{};            // slopes over the covariates, in the indicator's unit
+  /// Loadings of the spread on the common causes, each of variance 1 [-].
   std::array<double, COMMON_CAUSES> common{};
 };
 
@@ -84,7 +85,7 @@ struct Reference
 struct IndicatorSums
 {
   int count{};
-  double square{};  // of the indicator
+  double square{};  // of the indicator alone
   Place mixed{};
   PlaceSquares places{};
 };
@@ -95,8 +96,8 @@ struct ReferenceSums
   std::array<IndicatorSums, INDICATOR_COUNT> by_indicator{};
   std::array<double, INDICATOR_COUNT> means{};
   std::array<Place, INDICATOR_COUNT> mean_places{};
-  PlaceSquares places{};  // of all windows
-  /// Of all windows, row by row up to the diagonal.
+  PlaceSquares places{};  // over all windows
+  /// Products of two indicators over all windows, as the rows of a lower triangle.
   std::array<double, INDICATOR_COUNT*(INDICATOR_COUNT + 1) / 2> indicators{};
 };
 
@@ -104,7 +105,7 @@ struct ReferenceSums
 struct StepSums
 {
   std::array<IndicatorSums, INDICATOR_COUNT> by_indicator{};
-  std::uint64_t last_window{};  // SignalIndicators::windows, of the last one learned
+  std::uint64_t last_window{};  // SignalIndicators::windows of the last learned window
   std::array<double, INDICATOR_COUNT> last{};
   Place last_place{};
 };
@@ -120,10 +121,11 @@ struct ReferenceBin
 {
   OperatingBin bin;
   int windows{};
-  int runs{};  // stretches of windows that follow each other
+  int runs{};  // number of uninterrupted sequences of windows
   Place mean_place{};
-  PlaceSquares information{};        // of the slopes by the windows' places, without ridge; from fitReference
-  std::array<double, TAILS> tail{};  // 1/degrees of freedom of the windows' own distribution, 0: normal; likewise
+  PlaceSquares information{};  // of the slopes from the covariates, without the ridge; set by fitReference
+  // inverse degrees of freedom of the windows' distribution, 0: normal; set by fitReference
+  std::array<double, TAILS> tail{};
   std::array<Reference, INDICATOR_COUNT> references;
 };
 
@@ -136,7 +138,7 @@ struct KeptWindows
   std::array<std::array<float, INDICATOR_COUNT>, MOST> values{};
 };
 
-/// Sums that the reference of a class is fitted to, in addition to its ReferenceBin.
+/// Sums that fitReference needs in addition to the ReferenceBin of a class.
 struct LearnedSums
 {
   ReferenceSums windows;
@@ -150,7 +152,7 @@ struct FitRoom
   std::vector<double> correlations = std::vector<double>(INDICATOR_COUNT * INDICATOR_COUNT);
 };
 
-/// One indicator against its reference.
+/// Deviation of one indicator from its reference.
 struct Deviation
 {
   double expected{};
@@ -171,22 +173,24 @@ using Deviations = std::array<Deviation, INDICATOR_COUNT>;
 /// Change of an amplitude as a nearly normal number. The amplitude of noise alone has Rayleigh's distribution, whose
 /// tail is far longer than that of the normal distribution. Its power 2/3 has no such tail (Wilson and Hilferty 1931).
 ///
-/// Law:   c = 3/2 m^(1/3) ((m + x)^(2/3) - m^(2/3)),  to first order x;  x where m is none
-/// where  m  sound amplitude;  x  change of it, not below -m;  in the unit of the amplitude
+/// Law:   c = 3/2 m^(1/3) ((m + x)^(2/3) - m^(2/3)),  to first order x;  c = x if m = 0
+/// where  m  sound amplitude;  x  its change, at least -m;  both in the unit of the amplitude
 double amplitudeChange(double sound, double change) noexcept;
 
 /// Difference of the last windows of a class from their reference, and the covariance D + F F' of sound windows.
 /// F  Reference::common times the reference's share of a score's spread;  D  square of the spread that F leaves
 struct WindowResidual
 {
-  int windows{};                                     ///< number of windows averaged [-]
-  std::array<double, INDICATOR_COUNT> sound{};       ///< reference with what was subtracted, units of the indicators
-  std::array<double, INDICATOR_COUNT> difference{};  ///< from it; of what isFreeAmplitude by amplitudeChange
-  std::array<double, INDICATOR_COUNT> own{};         ///< diagonal of D; 0: not compared
+  int windows{};  ///< number of averaged windows [-]
+  /// reference with the subtracted model included, in the indicators' units
+  std::array<double, INDICATOR_COUNT> sound{};
+  /// difference from the reference; of an isFreeAmplitude by amplitudeChange
+  std::array<double, INDICATOR_COUNT> difference{};
+  std::array<double, INDICATOR_COUNT> own{};                                ///< diagonal of D; 0: not compared
   std::array<std::array<double, COMMON_CAUSES>, INDICATOR_COUNT> common{};  ///< rows of F
-  double freedom{};                                                         ///< v: of the reference's spreads [-]
-  double pattern_freedom{};                                                 ///< v' of what scalars have together [-]
-  double pattern_stretch{ 1.0 };                                            ///< its spread in Student's unit [-]
+  double freedom{};               ///< v: degrees of freedom of the reference's spreads [-]
+  double pattern_freedom{};       ///< v' of a pattern of scalars [-]
+  double pattern_stretch{ 1.0 };  ///< spread of a pattern in the unit of Student's distribution [-]
 };
 
 enum class AssessmentState : std::uint8_t
@@ -199,21 +203,21 @@ enum class AssessmentState : std::uint8_t
   OTHER_PAYLOAD = 5     ///< not compared: the reference knows no such payload or load
 };
 
-/// Indicators of a healthy joint by operating point: learned from the first windows there, or given. Compared is the
-/// trimmed mean over the last indicators.evidence_windows windows of a class: a fifth of them, one at least of three or
-/// more, is left out at either end.
+/// Indicators of a sound joint by operating point, learned from the first windows there or given. The class compares
+/// the trimmed mean of the last indicators.evidence_windows windows of an operating point. The trimmed mean omits a
+/// fifth of the windows at either end, at least one of three or more.
 ///
 /// Law:   S^2 = p (r + 1/(e n)) + max(p (1 - r), w^2) / k + R^2 + q^2 + (p + R^2) (z - z_0)' L (z - z_0) / e
 ///        t = g mean(x - m - b (z - z_0)) / S,   g^2 = 1 / (1 - 2 y^2 a / k)
 ///        p = (v s^2 + v_0 s_0^2) / (v + v_0) max(c^2 / c_0^2, 1)
 ///        score = sign(t) sqrt(v' log(1 + t^2 / v')) (8 v' + 1) / (8 v' + 3)
 ///        1 / v' = y^2 ((1 + 3 a / (1 - 4 a)) / (v + v_0) + a / k),   v = e n - 1 - d, at least 1
-/// where  m, s, n  mean, standard deviation and number of the healthy windows
-///        z, z_0   place of the window in its class, mean of the healthy ones;  b, s  slopes over it and what they
-///                 leave, by ridge regression (fitReference);  L, d  covariance of the slopes where s = 1, degrees of
-///                 freedom they take
-///        y        share of S^2 that is learned: of p and w^2 (Satterthwaite 1946)
-///        a        1 / degrees of freedom of one window's own distribution, by the healthy ones; 0: normal
+/// where  m, s, n  mean, standard deviation and number of the sound windows
+///        z, z_0   covariates of the window (placeIn), their mean over the sound ones
+///        b        slopes over the covariates by ridge regression (fitReference);  s is then the deviation from them
+///        L, d     covariance of the slopes where s = 1, degrees of freedom that they use
+///        y        share of S^2 that was learned, as p and w^2 (Satterthwaite 1946)
+///        a        inverse degrees of freedom of one window's distribution, from the sound ones; 0: normal
 ///        R        repeatability of the drive from one recording to the next (Repeatability)
 ///        k        windows averaged, less those left out at one end
 ///        w^2      half the mean square of the steps from each to the next, without the two largest: of more than
@@ -248,7 +252,7 @@ public:
   /// Least number of windows for a spread, and least value of indicators.baseline_windows.
   static constexpr int MIN_WINDOWS = 8;
 
-  /// `signatures`: its CarriedErrors are used.
+  /// `signatures` gives the CarriedErrors.
   Baseline(const Parameters& parameters, std::shared_ptr<const SignatureSet> signatures);
 
   /// Sets the reference of a file; learning stops. `carried`: the reference is of another motion.
@@ -261,10 +265,10 @@ public:
   AssessmentState update(const SignalIndicators& indicators, const SignalIndicators* model,
                          Deviations& deviations) noexcept;
 
-  double threshold() const noexcept { return threshold_; }                 ///< of |score| [-]
-  Deviation pattern(double student) const noexcept;                        ///< scores that, along a pattern
-  double patternThreshold() const noexcept { return pattern_threshold_; }  ///< of the score of a pattern [-]
-  const WindowResidual& residual() const noexcept { return residual_; }    ///< of the class of the last window
+  double threshold() const noexcept { return threshold_; }  ///< threshold of |score| [-]
+  Deviation pattern(double student) const noexcept;         ///< scores a value of Student's t along a pattern
+  double patternThreshold() const noexcept { return pattern_threshold_; }  ///< threshold of the score of a pattern [-]
+  const WindowResidual& residual() const noexcept { return residual_; }    ///< for the class of the last window
   const OperatingBin& bin() const noexcept { return bin_; }                ///< class of the last window
   const std::vector<ReferenceBin>& bins() const noexcept { return bins_; }
   const std::vector<LearnedSums>& sums() const noexcept
@@ -274,27 +278,27 @@ public:
   int windowsHere() const noexcept { return windows_here_; }  ///< windows in the reference, or compared since reset
   /// Windows that a reference needs.
   int windowsNeeded() const noexcept { return given_ ? MIN_WINDOWS : windows_; }
-  bool given() const noexcept { return given_; }           ///< by setReference: there are no sums to fit again
-  double loadStep() const noexcept { return load_step_; }  ///< [N.m]
+  bool given() const noexcept { return given_; }  ///< setReference has given the reference, so that it has no sums
+  double loadStep() const noexcept { return load_step_; }  ///< width of a class of load [N.m]
   const Repeatability& repeatability() const noexcept { return repeatability_; }
 
 private:
-  /// One window against its reference.
+  /// Difference of one window from its reference.
   struct Compared
   {
     std::array<double, INDICATOR_COUNT> difference{};  // NaN: not compared
-    std::array<double, INDICATOR_COUNT> relative{};    // relativeErrors
-    Place along{};                                     // z - z_0 along the axes of the slopes' information, squared
+    std::array<double, INDICATOR_COUNT> relative{};    // by relativeErrors
+    Place along{};  // squares of z - z_0 along the principal axes of the slopes' information
   };
 
-  /// The last windows of a class, oldest overwritten.
+  /// Positions of the last windows of a class; the oldest is overwritten.
   struct Recent
   {
     std::size_t count{};
     std::size_t next{};
   };
 
-  /// A difference of several windows.
+  /// Mean difference of several windows.
   struct Average
   {
     double difference{};
@@ -308,27 +312,27 @@ private:
   {
     double stays{};
     double varies{};
-    double slopes{};   // by the uncertainty of the slopes
-    double carried{};  // added by carrying [unit of the indicator squared]
+    double slopes{};   // factor for the uncertainty of the slopes
+    double carried{};  // added for a carried reference, in the indicator's unit squared
   };
 
-  /// Variance of a difference [unit of the indicator squared].
+  /// Variance of a difference, in the indicator's unit squared.
   struct Variance
   {
     double all{};
-    double learned{};  // part of the variance that was learned: from the reference's windows and their scatter
+    double learned{};  // part that was learned from the reference's windows and from the scatter of the last ones
   };
 
   ReferenceBin* find(const OperatingPoint& point) noexcept;
   ReferenceBin* findCarried(const OperatingBin& bin) noexcept;
   void makeRoom(std::size_t bins);
-  /// The window's place less the reference's mean one, as it is compared.
+  /// Covariates of the window minus their mean in the reference.
   Place placeFrom(const ReferenceBin& bin, const OperatingPoint& point) const noexcept;
   bool isOtherPayload(const ReferenceBin& bin, const Place& place) const noexcept;
   void take(const ReferenceBin& bin, const Place& place, const SignalIndicators& indicators,
             const SignalIndicators* model, Compared& window) noexcept;
   Average average(std::size_t first, std::size_t count, std::size_t indicator) const noexcept;
-  /// `left`: of the reference [unit of the indicator squared].
+  /// `left`: variance of the reference after the regression, in the indicator's unit squared.
   Variance variance(std::size_t indicator, const ReferenceBin& bin, const Average& average, double left,
                     const Widening& widening) const noexcept;
   void compare(const ReferenceBin& bin, std::size_t first, std::size_t count, Deviations& deviations) noexcept;
@@ -340,18 +344,18 @@ private:
   const double load_step_;  // [N.m]
   double threshold_{};
   double pattern_threshold_{};
-  std::array<double, INDICATOR_COUNT> floor_{};  // q
-  Place axes_sizes_{};                           // information along its axes, of the last window's class
+  std::array<double, INDICATOR_COUNT> floor_{};  // least spreads q
+  Place axes_sizes_{};  // information along its principal axes for the class of the last window
   WindowResidual residual_;
-  std::array<double, INDICATOR_COUNT> expected_{};  // of the last window, without the model's indicators
+  std::array<double, INDICATOR_COUNT> expected_{};  // for the last window, without the model's indicators
   OperatingBin bin_;
   int windows_here_{};
   bool given_{};
   bool carried_{};
-  std::vector<ReferenceBin> bins_;  // never beyond its first capacity
-  std::vector<LearnedSums> sums_;   // likewise
+  std::vector<ReferenceBin> bins_;  // capacity is fixed
+  std::vector<LearnedSums> sums_;   // capacity is fixed
   FitRoom fit_room_;
-  std::vector<Recent> recent_;      // by bin
-  std::vector<Compared> compared_;  // evidence_windows_ by bin
+  std::vector<Recent> recent_;      // by class
+  std::vector<Compared> compared_;  // evidence_windows_ for each class
 };
 }  // namespace hjt

@@ -31,7 +31,7 @@ constexpr Cause causeOf(FaultKind kind)
   return static_cast<Cause>(static_cast<std::size_t>(Cause::FIRST_FAULT) + static_cast<std::size_t>(kind));
 }
 
-const char* causeName(Cause cause) noexcept;  ///< "tooth_root_crack"
+const char* causeName(Cause cause) noexcept;  ///< name of the cause, for example "tooth_root_crack"
 
 /// Groups of indicators that show the same property of the drive. In each group the strongest indicator counts.
 enum class Feature : std::size_t
@@ -61,30 +61,30 @@ enum class Feature : std::size_t
 };
 constexpr auto FEATURE_COUNT = static_cast<std::size_t>(Feature::COUNT);
 
-/// The strongest of a group's deviations.
+/// Largest deviation within a group of indicators.
 struct FeatureScore
 {
-  double score{};             ///< signed; of a line with a phase the length of its change, > 0; 0: not compared
+  double score{};             ///< signed score; of a phase-locked line the length of its change, > 0; 0: not compared
   double threshold_factor{};  ///< as in Deviation
-  std::size_t indicator{};    ///< whose
+  std::size_t indicator{};    ///< index of that indicator
   bool compared{};
 };
 using FeatureScores = std::array<FeatureScore, FEATURE_COUNT>;
 
 FeatureScores featureScores(const Deviations& deviations) noexcept;
 
-/// Numbers of a signature: the scalar indicators, then the amplitudes of each signal's lines. Of a line whose phase
-/// stays the amplitude is the length of its change: the phase depends on the fault's place.
+/// Numbers of a signature: the scalar indicators, then the amplitudes of the lines by signal. Of a phase-locked line
+/// the number is the length of its complex change, because the phase depends on the fault's place.
 constexpr std::size_t SIGNATURE_SIZE = SCALAR_COUNT + LINE_SIGNALS * FIRST_LOADED + LOADED_COUNT;
 
-constexpr std::size_t signatureNumber(LineSignal signal, std::size_t line)  ///< hasLine
+constexpr std::size_t signatureNumber(LineSignal signal, std::size_t line)  ///< for lines with hasLine
 {
   return SCALAR_COUNT + static_cast<std::size_t>(signal) * FIRST_LOADED + line;
 }
 static_assert(signatureNumber(LineSignal::MOTOR_RIPPLE, LINE_COUNT) == SIGNATURE_SIZE);
 
-/// Whether a signature gives a change as a share of the sound value: stiffness and play go with the size of the cup,
-/// thicker grease multiplies the friction there is, and the lag is what the controller's gains leave.
+/// Whether a signature gives a change as a share of the sound value. Stiffness and play scale with the size of the cup,
+/// thicker grease multiplies the friction, and the lag depends on the gains of the controller.
 constexpr bool isShare(Cause cause, ScalarIndicator indicator)
 {
   switch (indicator)
@@ -134,7 +134,7 @@ struct RobotSignature
 /// Speed and direction of a motion.
 struct MotionKind
 {
-  double speed;      ///< magnitude, motor [rad/s]
+  double speed;      ///< magnitude of the motor's speed [rad/s]
   double direction;  ///< magnitude of OperatingPoint::direction, 0 ... 1 [-]
 };
 constexpr MotionKind ANY_MOTION{ 0.0, 0.0 };
@@ -145,7 +145,7 @@ struct Signature
   Cause cause;
   double severity;  ///< 0 ... 1 [-]
   MotionKind motion;
-  std::array<double, SIGNATURE_SIZE> change{};  ///< units of the indicators; of what isShare [-]
+  std::array<double, SIGNATURE_SIZE> change{};  ///< in the units of the indicators; as a share if isShare [-]
 };
 
 /// One signature, or several that come together. The first one is that of the cause; null: none.
@@ -157,34 +157,33 @@ struct SignatureSet
 {
   SignatureSet() { sound.fill(std::numeric_limits<double>::quiet_NaN()); }
 
-  std::string gear;                       ///< whose, for people
-  double number_error{};                  ///< r of CauseSearch [-]
-  double motion_error{};                  ///< m [-]
-  double line_error{};                    ///< l [-]
-  double evidence_weight{};               ///< b_0 [-]
-  double misfit_weight{};                 ///< w_1 [-]
-  double severity_error{};                ///< of the severity by the signatures, as a share of it [-]
-  double severity_misfit{};               ///< the same where no signature fits, beside it [-]
-  std::vector<Signature> signatures;      ///< those of robots in their own numbers
-  std::vector<RobotSignature> of_robots;  ///< by cause, severities rise
-  std::array<bool, SIGNATURE_SIZE>
-      fitted{};  ///< numbers that the signatures are known for; the others count for nothing
+  std::string gear;                           ///< name of the gear, for the user
+  double number_error{};                      ///< r of CauseSearch [-]
+  double motion_error{};                      ///< m [-]
+  double line_error{};                        ///< l [-]
+  double evidence_weight{};                   ///< b_0 [-]
+  double misfit_weight{};                     ///< w_1 [-]
+  double severity_error{};                    ///< relative error of the severity by the signatures [-]
+  double severity_misfit{};                   ///< additional relative error of the severity if no signature fits [-]
+  std::vector<Signature> signatures;          ///< with the indicators of a robot
+  std::vector<RobotSignature> of_robots;      ///< by cause, in ascending order of severity
+  std::array<bool, SIGNATURE_SIZE> fitted{};  ///< indicators that the signatures contain; the search ignores the others
   std::array<double, SCALAR_COUNT>
-      sound{};  ///< of the sound drive in the check-up, units of the indicators; NaN: not known
+      sound{};  ///< indicators of the sound drive in the check-up, in their units; NaN: not known
   std::array<CarriedError, INDICATOR_COUNT> carried{};
   std::array<double, CAUSE_COUNT> occurrence{};  ///< rating of how often a cause occurs; 0: not rated [-]
 };
 
-/// Causes that move an indicator at severity 1 by `share` of its sound value or more; `sign`: +1 up, -1 down.
+/// Causes that change an indicator by at least `share` of its sound value at severity 1; `sign`: +1 up, -1 down.
 std::vector<Cause> causesThatMove(const SignatureSet& set, ScalarIndicator indicator, double sign, double share);
 
-std::size_t patternCount(const SignatureSet& set) noexcept;  ///< causes with signatures
+std::size_t patternCount(const SignatureSet& set) noexcept;  ///< number of causes that have signatures
 
 /// The cause whose pattern a window shows most clearly.
 struct PatternScore
 {
-  Cause cause{};     ///< NONE: of no cause
-  double student{};  ///< of Student's t with WindowResidual::freedom, one-sided [-]
+  Cause cause{};     ///< NONE: no cause
+  double student{};  ///< Student's t with WindowResidual::freedom, one-sided [-]
 };
 
 /// The window's differences d along the pattern of each cause. Many small changes that belong together show along a
@@ -192,7 +191,7 @@ struct PatternScore
 ///
 /// Law:   t = p' C^-1 d / sqrt(p' C^-1 p),  C = D + F F',  p_i = sum_h P(h) mu_i / |mu|,  |mu|^2 = sum_i mu_i^2 / D_ii
 /// where  h        over the signatures of the cause whose severity is nearest to 0.4
-///        others   of CauseSearch; lines are left out: neighbouring ones share their noise, which F has little of
+/// others   as in CauseSearch; lines are excluded, because F contains little of the noise that neighbouring lines share
 class CausePatterns
 {
 public:
@@ -202,16 +201,16 @@ public:
 
 private:
   std::shared_ptr<const SignatureSet> set_;
-  std::array<std::vector<std::size_t>, CAUSE_COUNT> rows_;  // of the set
+  std::array<std::vector<std::size_t>, CAUSE_COUNT> rows_;  // indices in the set
 };
 
 /// Probability and severity of each cause by a window.
 struct CausePosterior
 {
-  /// Given that something is wrong; entry NONE: that no fault of the table is the cause [-]
+  /// Probability, given that the drive is not sound; entry NONE: no fault of the table is the cause [-].
   std::array<double, CAUSE_COUNT> probability{};
   std::array<double, CAUSE_COUNT> severity{};            ///< mean, given the cause [-]
-  std::array<double, CAUSE_COUNT> severity_deviation{};  ///< standard deviation of that [-]
+  std::array<double, CAUSE_COUNT> severity_deviation{};  ///< standard deviation of the severity [-]
 };
 
 /// Searches for the cause by the likelihood of the window's differences d from the reference under every signature.
@@ -255,42 +254,43 @@ public:
   std::size_t signatures() const noexcept
   {
     return 2 * likelihoods_.size();
-  }  ///< that a search goes through, both passes
+  }  ///< steps of a search: both passes over the signatures
 
-  void start() noexcept;  ///< with the next window
+  void start() noexcept;  ///< begins a search for the next window
   bool isDone() const noexcept { return next_ == signatures(); }
 
-  /// Goes through up to `count` signatures more. Residual and point are the same from `start` until it is done.
+  /// Advances by up to `count` signatures. Residual and point must not change before the search is done.
   void advance(const WindowResidual& residual, const OperatingPoint& point, std::size_t count) noexcept;
 
-  CausePosterior posterior() const noexcept;  ///< once it is done
+  CausePosterior posterior() const noexcept;  ///< result; valid after the search
 
 private:
   struct Row
   {
     SignatureParts parts{};
-    double prior{ 1.0 };  // beside that of a signature alone
+    double prior{ 1.0 };  // prior relative to that of a single signature
   };
   static std::vector<Row> rowsOf(const SignatureSet& set);
   static std::array<double, CAUSE_COUNT> priorsOf(const SignatureSet& set);
 
-  /// Over the signatures of one cause.
+  /// Sums over the signatures of one cause.
   struct Sum
   {
-    /// `weighted`: logarithm of the likelihood, times the weight of the evidence.
+    /// `weighted`: logarithm of the likelihood times the weight of the evidence.
     void add(double weighted, double prior, double severity) noexcept;
 
     double priors{};
-    double total{};   // by prior and weight of the evidence
-    double first{};   // of the severity
-    double second{};  // of its square
+    double total{};   // sum of prior times weighted likelihood
+    double first{};   // first moment of the severity
+    double second{};  // second moment of the severity
   };
 
   std::shared_ptr<const SignatureSet> set_;
   std::vector<Row> rows_;
-  std::array<double, CAUSE_COUNT> beforehand_;  // (1 + O / O_m) / 2
-  std::vector<double> likelihoods_;  // logarithms; of the rows, then of what is in none; after the first pass times b
-  double misfit_{ 1.0 };             // f, after the first pass
+  std::array<double, CAUSE_COUNT> beforehand_;  // priors (1 + O / O_m) / 2
+  // logarithms, of the rows, then of the unknown causes; after the first pass times b
+  std::vector<double> likelihoods_;
+  double misfit_{ 1.0 };  // f, after the first pass
   std::array<Sum, CAUSE_COUNT> sums_{};
   std::size_t next_{};
 };

@@ -100,7 +100,7 @@ enum class ScalarIndicator : std::size_t
   COUNT
 };
 
-/// Signal that a line is taken from.
+/// Signal whose spectrum contains the lines.
 enum class LineSignal : std::size_t
 {
   KINEMATIC_ERROR,
@@ -120,19 +120,20 @@ constexpr bool hasLine(LineSignal signal, std::size_t line)
 
 constexpr auto SCALAR_COUNT = static_cast<std::size_t>(ScalarIndicator::COUNT);
 constexpr std::size_t LINE_BLOCK = FIRST_LOADED + 2 * FIRST_LOCKED;
-constexpr std::size_t LOADED_BLOCK = SCALAR_COUNT + LINE_SIGNALS * LINE_BLOCK;  ///< where it begins
+/// index of the first line in proportion to the load
+constexpr std::size_t LOADED_BLOCK = SCALAR_COUNT + LINE_SIGNALS * LINE_BLOCK;
 constexpr std::size_t INDICATOR_COUNT = LOADED_BLOCK + 3 * LOADED_COUNT;
 
 constexpr std::size_t indexOf(ScalarIndicator indicator)
 {
   return static_cast<std::size_t>(indicator);
 }
-constexpr std::size_t amplitudeIndex(LineSignal signal, std::size_t line)  ///< hasLine
+constexpr std::size_t amplitudeIndex(LineSignal signal, std::size_t line)  ///< for lines with hasLine
 {
   return line < FIRST_LOADED ? SCALAR_COUNT + static_cast<std::size_t>(signal) * LINE_BLOCK + line :
                                LOADED_BLOCK + line - FIRST_LOADED;
 }
-constexpr std::size_t cosineIndex(LineSignal signal, std::size_t line)  ///< hasLine, isPhaseLocked
+constexpr std::size_t cosineIndex(LineSignal signal, std::size_t line)  ///< for lines with hasLine and isPhaseLocked
 {
   return line < FIRST_LOADED ? amplitudeIndex(signal, 0) + FIRST_LOADED + 2 * line :
                                LOADED_BLOCK + LOADED_COUNT + 2 * (line - FIRST_LOADED);
@@ -142,7 +143,7 @@ constexpr std::size_t sineIndex(LineSignal signal, std::size_t line)
   return cosineIndex(signal, line) + 1;
 }
 
-/// Whether it is the amplitude of a line whose phase is free.
+/// Whether the indicator is the amplitude of a line that is not phase-locked.
 constexpr bool isFreeAmplitude(std::size_t indicator)
 {
   return indicator >= SCALAR_COUNT && indicator < LOADED_BLOCK &&
@@ -150,8 +151,8 @@ constexpr bool isFreeAmplitude(std::size_t indicator)
          (indicator - SCALAR_COUNT) % LINE_BLOCK < FIRST_LOADED;
 }
 
-/// Snake case, as in Indicators.msg: "torsional_stiffness", "error_wave_generator_2", "torque_wave_generator_2_cos".
-/// Lives as long as the program.
+/// Name in snake case, as in Indicators.msg: "torsional_stiffness", "error_wave_generator_2",
+/// "torque_wave_generator_2_cos". The text is static.
 const char* indicatorName(std::size_t indicator) noexcept;
 const char* indicatorUnit(std::size_t indicator) noexcept;
 
@@ -178,11 +179,12 @@ struct SignalIndicators
   double phase(LineSignal signal, Line line) const noexcept;  ///< phase of a cosine at motor angle 0; NaN: free [rad]
 
   std::int64_t stamp{};     ///< end of the window [ns]
-  std::uint64_t windows{};  ///< completed since start or reset, this one included; 0: none yet
-  double turns{};           ///< of the motor at steady speed in the window [-]
+  std::uint64_t windows{};  ///< windows completed since start or reset, this one included; 0: none yet
+  double turns{};           ///< turns of the motor at constant speed in the window [-]
   OperatingPoint point;
   std::array<double, INDICATOR_COUNT> values{};
-  std::array<double, INDICATOR_COUNT> uncertainty{};  ///< standard error by the fit, 0: not known; units as values
+  /// standard error of the fit in the unit of the value; 0: not known
+  std::array<double, INDICATOR_COUNT> uncertainty{};
 };
 
 /// Indicators `measured` less those of a model with the same inputs. The amplitude of a phase-locked line is that of

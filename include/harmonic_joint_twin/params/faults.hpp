@@ -11,7 +11,7 @@ namespace hjt
 {
 struct Parameters;
 
-/// The rows of the thesis' FMECA (Table 3.7), and the wave generator's bearing.
+/// Kinds of faults: the rows of the thesis' FMECA (Table 3.7), and damage of the wave generator's bearing.
 enum class FaultKind : std::uint8_t
 {
   INTERFACE_WEAR,
@@ -34,89 +34,91 @@ enum class FaultKind : std::uint8_t
 };
 constexpr std::size_t FAULT_KINDS = static_cast<std::size_t>(FaultKind::COUNT);  ///< number of kinds
 
-/// Value of Fault::place for a fault of the whole member.
+/// Value of Fault::place for a fault of the whole part, not of one of its teeth, segments, lobes or balls.
 constexpr int WHOLE_MEMBER = -1;
 
-/// Most faults that can be active at once, and be configured.
+/// Largest number of faults that can be active or configured at once.
 constexpr std::size_t MAX_FAULTS = 256;
 
-/// One fault of the gear. It is known by kind and place: the same once more replaces its severity.
+/// One fault of the gear. Its kind and place identify it: a second fault of this kind and place replaces its severity.
 struct Fault
 {
   FaultKind kind{};
-  double severity{};  ///< 0 none ... 1, see FaultDescription::severity [-]
+  double severity{};  ///< size from 0 (no fault) to 1, see FaultDescription::severity [-]
   int place{
     WHOLE_MEMBER
-  };               ///< tooth, segment, lobe or ball by kind, from 0 on; WHOLE_MEMBER where the kind allows it
-  double onset{};  ///< after the start, or after the stamp that it was injected with; >= 0 [s]
+  };               ///< number of the tooth, segment, lobe or ball from 0 on; WHOLE_MEMBER where the kind allows it
+  double onset{};  ///< delay after the start, or after the stamp of the injection; >= 0 [s]
 
-  /// Whether a twin with this fault in its configuration starts with it.
+  /// Whether a configured fault is active from the start.
   bool isActiveAtStart() const noexcept { return severity > 0.0 && onset == 0.0; }
 };
 
-/// Parts that Fault::place numbers.
+/// Parts that Fault::place counts.
 enum class FaultPlace : std::uint8_t
 {
-  MEMBER,      ///< the whole member only
+  MEMBER,      ///< no parts: the fault is always of the whole part
   TOOTH,       ///< teeth of the flexspline
-  SEGMENT,     ///< of the rim, from a tooth to the next
-  LOBE,        ///< of the wave generator: 0 at its angle, 1 opposite
-  INNER_RACE,  ///< tooth pitches along the inner race from lobe 0
-  OUTER_RACE,  ///< tooth pitches along the outer race from tooth 0
-  BALL         ///< balls, or pockets of the cage
+  SEGMENT,     ///< segments of the rim, each from one tooth to the next
+  LOBE,        ///< lobes of the wave generator: 0 at the wave generator's angle, 1 opposite
+  INNER_RACE,  ///< tooth pitches along the inner race, counted from lobe 0
+  OUTER_RACE,  ///< tooth pitches along the outer race, counted from tooth 0
+  BALL         ///< balls of the bearing, or pockets of its cage
 };
 
 /// Description of a kind of fault: a row of FAULT_DESCRIPTIONS.
 struct FaultDescription
 {
   FaultKind kind;
-  const char* name;      ///< of the kind, in files and messages
-  FaultPlace place;      ///< parts that Fault::place numbers
-  bool whole;            ///< WHOLE_MEMBER is allowed
+  const char* name;      ///< name of the kind in files and messages
+  FaultPlace place;      ///< parts that Fault::place counts
+  bool whole;            ///< the kind allows WHOLE_MEMBER
   const char* severity;  ///< size of the fault at severity 1
-  const char* shows;     ///< where it shows first; orders by a name in braces, see shownFirst
+  const char* shows;     ///< signal that shows the fault first; shownFirst replaces the names in braces by orders
 };
 
-/// All kinds, in the order of FaultKind.
+/// Descriptions of all kinds, in the order of FaultKind.
 inline constexpr std::array FAULT_DESCRIPTIONS{
-  FaultDescription{ FaultKind::INTERFACE_WEAR, "interface_wear", FaultPlace::SEGMENT, true,
-                    "rim and outer race worn by fault_scale.interface_wear_depth, rougher by its friction factor",
-                    "stiffness and lost motion about zero torque" },
+  FaultDescription{
+      FaultKind::INTERFACE_WEAR, "interface_wear", FaultPlace::SEGMENT, true,
+      "rim and outer race worn by fault_scale.interface_wear_depth, friction times interface_friction_factor",
+      "stiffness and lost motion about zero torque" },
   FaultDescription{ FaultKind::REAR_SECTION_CRACK, "rear_section_crack", FaultPlace::MEMBER, true,
                     "crack behind the teeth over fault_scale.cup_crack_fraction of the circumference",
                     "torsion loop, torsional stiffness" },
   FaultDescription{ FaultKind::LUBRICANT_DEGRADATION, "lubricant_degradation", FaultPlace::MEMBER, true,
-                    "viscosity and boundary friction times the factors of fault_scale", "running torque" },
+                    "viscosity and boundary friction multiplied by their factors of fault_scale", "running torque" },
   FaultDescription{ FaultKind::TOOTH_WEAR, "tooth_wear", FaultPlace::TOOTH, true,
-                    "fault_scale.tooth_wear_depth off both flanks, along their normal", "lost motion" },
+                    "both flanks worn by fault_scale.tooth_wear_depth along their normal", "lost motion" },
   FaultDescription{
       FaultKind::TOOTH_ROOT_CRACK, "tooth_root_crack", FaultPlace::TOOTH, false,
-      "crack through the tooth (broken off), or fault_scale.rim_crack_depth into the rim, by the backup ratio",
+      "tooth broken off, or crack of fault_scale.rim_crack_depth in the rim, depending on the backup ratio",
       "orders 2, 4, 6 ... of the kinematic error" },
   FaultDescription{ FaultKind::FLANGE_CRACK, "flange_crack", FaultPlace::MEMBER, true,
                     "crack at the cup's flange over fault_scale.cup_crack_fraction of the circumference",
                     "torsional stiffness, torsion loop" },
   FaultDescription{ FaultKind::TOOTH_TIP_CRACK, "tooth_tip_crack", FaultPlace::TOOTH, false,
-                    "crack along the tooth's middle as long as the tooth is high: two leaves",
+                    "crack in the tooth's middle over the whole tooth height, which leaves two halves",
                     "orders 2, 4, 6 ... of the kinematic error" },
   FaultDescription{
       FaultKind::PITTING, "pitting", FaultPlace::TOOTH, true,
-      "fault_scale.pitted_fraction of the flank's width lost, its friction times fault_scale.pitted_friction_factor",
+      "fault_scale.pitted_fraction of the flank's width lost, friction times fault_scale.pitted_friction_factor",
       "one tooth: orders 2, 4, 6 ... of the kinematic error" },
   FaultDescription{ FaultKind::WAVE_GENERATOR_WEAR, "wave_generator_wear", FaultPlace::LOBE, true,
-                    "major semi-axis less by fault_scale.wave_generator_wear_depth",
+                    "major semi-axis smaller by fault_scale.wave_generator_wear_depth",
                     "lost motion, stiffness, lower running torque" },
   FaultDescription{
       FaultKind::FLEXSPLINE_CRACK, "flexspline_crack", FaultPlace::SEGMENT, false,
-      "rim cracked by fault_scale.rim_crack_depth here, fading out over fault_scale.rim_crack_segments either side",
+      "crack of fault_scale.rim_crack_depth in the rim, decreasing to zero over fault_scale.rim_crack_segments",
       "orders 2, 4, 6 ... of the kinematic error" },
   FaultDescription{
       FaultKind::BUCKLING, "buckling", FaultPlace::MEMBER, true,
-      "cup softer by fault_scale.buckling_stiffness_loss, rim bent to waves of fault_scale.buckling_out_of_round",
+      "cup softer by fault_scale.buckling_stiffness_loss, rim out of round by fault_scale.buckling_out_of_round",
       "torsional stiffness, torsion loop" },
-  FaultDescription{ FaultKind::RATCHETING, "ratcheting", FaultPlace::MEMBER, true,
-                    "circular spline off centre by fault_scale.ratcheting_eccentricity, tips shorter by its tip loss",
-                    "running torque, orders 2 and {spline}" },
+  FaultDescription{
+      FaultKind::RATCHETING, "ratcheting", FaultPlace::MEMBER, true,
+      "circular spline off centre by fault_scale.ratcheting_eccentricity, tips shorter by ratcheting_tip_loss",
+      "running torque, orders 2 and {spline}" },
   FaultDescription{ FaultKind::BEARING_INNER_RACE, "bearing_inner_race", FaultPlace::INNER_RACE, false,
                     "spall of fault_scale.spall_depth and spall_length on the inner race", "order {inner}" },
   FaultDescription{ FaultKind::BEARING_OUTER_RACE, "bearing_outer_race", FaultPlace::OUTER_RACE, false,
@@ -124,12 +126,13 @@ inline constexpr std::array FAULT_DESCRIPTIONS{
                     "order {outer} and its sidebands at 2" },
   FaultDescription{ FaultKind::BEARING_BALL, "bearing_ball", FaultPlace::BALL, false,
                     "spall of fault_scale.spall_depth and spall_length on a ball", "orders {ball} and {lobe}" },
-  FaultDescription{ FaultKind::BEARING_CAGE, "bearing_cage", FaultPlace::BALL, false,
-                    "the ball of a broken pocket lets the outer race down by fault_scale.cage_deflection",
-                    "order {lobe}: twice 1 less the cage's {cage}" }
+  FaultDescription{
+      FaultKind::BEARING_CAGE, "bearing_cage", FaultPlace::BALL, false,
+      "outer race lower by fault_scale.cage_deflection where a ball's broken pocket does not hold the ball",
+      "order {lobe}: twice the difference of 1 and the cage's order {cage}" }
 };
 
-/// Whether the rows of a table with one for each kind of fault stand in the order of FaultKind.
+/// Whether a table has one row for each kind of fault, in the order of FaultKind.
 template <class Table>
 constexpr bool hasRowsInOrder(const Table& table) noexcept
 {
@@ -142,30 +145,33 @@ constexpr bool hasRowsInOrder(const Table& table) noexcept
 }
 static_assert(hasRowsInOrder(FAULT_DESCRIPTIONS), "one row for each FaultKind, in its order");
 
-constexpr const FaultDescription& describe(FaultKind kind) noexcept  ///< row of the table; `kind` is not COUNT
+/// Row of FAULT_DESCRIPTIONS; `kind` must not be COUNT.
+constexpr const FaultDescription& describe(FaultKind kind) noexcept
 {
   return FAULT_DESCRIPTIONS[static_cast<std::size_t>(kind)];
 }
-/// Signal in which it shows first in this drive, with the orders of its own bearing and teeth.
+
+/// Signal that shows a fault of this kind first, with the orders of this drive's bearing and teeth.
 std::string shownFirst(FaultKind kind, const Parameters& parameters);
-std::optional<FaultKind> faultNamed(const std::string& name);  ///< nothing if no kind has this name
-std::string faultNames();                                      ///< all, for an error text
+std::optional<FaultKind> faultNamed(const std::string& name);  ///< kind with this name; nothing if there is none
+std::string faultNames();                                      ///< names of all kinds, for an error text
 
-/// Word for a place of this kind, for a table: tooth, segment, lobe, ball or -.
+/// Word for a place in a table: tooth, segment, lobe, ball or -.
 const char* placeName(FaultPlace place) noexcept;
-/// Number of such places in this gear.
+/// Number of places of this sort in the gear.
 int placesOf(FaultPlace place, const Parameters& parameters) noexcept;
-int firstPlace(FaultKind kind) noexcept;                               ///< the least allowed: WHOLE_MEMBER or 0
-int lastPlace(FaultKind kind, const Parameters& parameters) noexcept;  ///< the greatest allowed in this gear
+int firstPlace(FaultKind kind) noexcept;  ///< least place that the kind allows: WHOLE_MEMBER or 0
+/// Greatest place that the kind allows in this gear.
+int lastPlace(FaultKind kind, const Parameters& parameters) noexcept;
 
-/// The places of a kind: "tooth 0 ... 199 or -1 (the whole member)".
+/// Text of the places that a kind allows, for example "tooth 0 ... 199 or -1 (the whole member)".
 std::string placeText(FaultKind kind, const Parameters& parameters);
 
-/// Whether severity, place and onset are within their ranges.
+/// Whether severity, place and onset of the fault are within their ranges.
 bool isValid(const Fault& fault, const Parameters& parameters) noexcept;
-/// Errors of the fault, with values and ranges, one a line; empty if it is valid. `key` begins each line.
+/// Error texts of the fault with values and ranges, one per line; empty if the fault is valid. `key` begins each line.
 std::string faultErrors(const Fault& fault, const Parameters& parameters, const std::string& key);
 
-/// Reads KIND:SEVERITY[:PLACE[:ONSET]]; without a place it is the first allowed. @throws ParameterError.
+/// Parses KIND:SEVERITY[:PLACE[:ONSET]]. The default of PLACE is the least allowed place. @throws ParameterError.
 Fault parseFault(const std::string& text, const Parameters& parameters);
 }  // namespace hjt

@@ -6,7 +6,7 @@
 
 namespace hjt
 {
-/// @file Sections of the configuration that describe the gear (params/parameters.hpp).
+/// @file Sections of the configuration that describe the gear. docs/parameters.md gives units and ranges.
 
 struct GearParameters
 {
@@ -21,7 +21,7 @@ struct GearParameters
   /// Distance from the inner rim to mid-height of a tooth [m].
   double toothMidHeight() const { return rim_thickness + 0.5 * tooth_height_flexspline; }
 
-  /// How far a tooth's tip reaches into the circular spline at the major axis [m].
+  /// Overlap of a flexspline tooth with the circular spline at the major axis [m].
   double engagementDepth() const
   {
     return flexspline_inner_radius + wave_amplitude + rim_thickness + tooth_height_flexspline -
@@ -29,8 +29,8 @@ struct GearParameters
   }
 };
 
-/// Rotation that the rim's bending resists: of each segment from rest (thesis 5.47-5.53), or between neighbouring
-/// segments.
+/// Rotation that the bending stiffness of the rim resists: that of each segment from rest (thesis 5.47-5.53), or that
+/// between neighbouring segments.
 enum class BendingLaw
 {
   ABSOLUTE,
@@ -48,19 +48,19 @@ struct RingParameters
   double loss_factor{};
 };
 
-/// Line of the wave generator's push: to the thesis' polar point (eq. 5.11), or along the true normal.
+/// Direction of the wave generator's force: through the thesis' polar point (eq. 5.11), or along the true normal.
 enum class ContactLaw
 {
   POLAR,
   NORMAL
 };
 
-/// Support of the rim.
+/// How the wave generator supports the rim.
 enum class SupportKind
 {
-  SPRINGS,      ///< a spring at each tooth on a rigid ellipse
-  BALLS,        ///< the balls of the bearing after Hertz, spread evenly around the ring
-  SINGLE_BALLS  ///< the same balls, each at its place
+  SPRINGS,      ///< a spring at each tooth, on a rigid ellipse
+  BALLS,        ///< the balls of the bearing by Hertz' law, spread evenly around the ring
+  SINGLE_BALLS  ///< the same law for each ball at its own angle
 };
 
 struct ContactParameters
@@ -76,7 +76,7 @@ struct ContactParameters
   double slip_lever{};
 };
 
-/// Shape of the teeth's flanks, thesis section 3.2.
+/// Shape of the flanks of the teeth, thesis section 3.2.
 enum class ProfileKind
 {
   TRAPEZOID,
@@ -100,10 +100,10 @@ struct MeshParameters
   double stribeck_velocity{};
 };
 
-/// Value of a parameter that names a file: no file.
+/// Value of a file parameter that names no file.
 constexpr const char* NO_FILE = "none";
 
-/// Pitch errors of one toothed member: seeded, or from a table.
+/// Pitch errors of one toothed part, from a seeded random sequence or from a table.
 struct PitchParameters
 {
   double deviation{};

@@ -12,63 +12,61 @@
 
 namespace hjt
 {
-/// One configured value and where it came from, for the error text ("config/gear.yaml:12", "--set", "parameter
-/// server").
+/// One configured value and its origin for error texts, for example "config/gear.yaml:12" or "--set".
 struct ParameterValue
 {
   std::variant<bool, std::int64_t, double, std::string, std::vector<double>> value;
-  std::string origin;  ///< file and line, option or server
+  std::string origin;  ///< file and line, option, or "parameter server"
 };
 
-/// Flat `section.key` to value; the common form of a YAML file, `--set` and the ROS parameter server.
+/// Flat map from `section.key` to value: common form of YAML files, `--set` and the ROS parameter server.
 using ParameterMap = std::map<std::string, ParameterValue>;
 
-/// Top-level key of the list of faults. In the map they are `faults.N.kind`, `faults.N.severity` ..., N from 0 on.
+/// Top-level key of the list of faults. The map holds `faults.N.kind`, `faults.N.severity` and so on, N from 0.
 constexpr const char* FAULTS = "faults";
-std::string faultKey(int number);     ///< `faults.N`
-void eraseFaults(ParameterMap& map);  ///< a list of faults replaces the one before it as a whole
+std::string faultKey(int number);     ///< key of fault N: `faults.N`
+void eraseFaults(ParameterMap& map);  ///< removes all faults; a new list of faults replaces the old list as a whole
 
-/// Reads a YAML file of the form `section: {key: value}`, and the list `faults`, over `map`; later files win.
-/// Numbers in any decimal spelling, 1e-3 as well as 1.0e-3.
-/// @throws ParameterError naming file and line.
+/// Reads a YAML file of the form `section: {key: value}`, with the list `faults`. Its values replace those in `map`.
+/// Numbers may have any decimal spelling, 1e-3 as well as 1.0e-3.
+/// @throws ParameterError that names file and line.
 void readYamlFile(const std::string& path, ParameterMap& map);
 
-/// Reads the default configuration over `map`: the files that `directory`/stages lists, in that order.
-/// @throws ParameterError naming file and line.
+/// Reads the default configuration: the files that `directory`/stages lists, in that order, as readYamlFile does.
+/// @throws ParameterError that names file and line.
 void readDefaultConfiguration(const std::string& directory, ParameterMap& map);
 
-/// The value of one scalar of a YAML file, by rosparam's rules; a quoted one is a text whatever it looks like. `key`
-/// and `origin` are for the error text. @throws ParameterError.
+/// Value of one YAML scalar by the rules of rosparam; a `quoted` scalar is always a text. The error text contains
+/// `key` and `origin`. @throws ParameterError.
 ParameterValue parseScalar(const std::string& text, bool quoted, const std::string& key, const std::string& origin);
 
-/// The number that a value is, or that a text spells: on the parameter server 1e-3 is a text. Nothing if it is none.
+/// The number in `value`, also if a text spells it: the parameter server holds 1e-3 as a text. Nothing if it is no
+/// number.
 std::optional<double> numberOf(const decltype(ParameterValue::value)& value);
 
-/// The value as error texts spell it.
+/// The value as error texts print it.
 std::string valueText(const ParameterValue& value);
 
-/// Reads one `section.key=value` (value in YAML) over `map`. @throws ParameterError.
+/// Reads one `section.key=value`, its value in YAML, into `map`. @throws ParameterError.
 void readAssignment(const std::string& assignment, ParameterMap& map);
 
-/// Fills and checks the parameters.
-/// @throws ParameterError on a missing, unknown, mistyped or out-of-range key, and where two keys contradict each
-/// other.
+/// Converts a complete map to checked parameters.
+/// @throws ParameterError if a key is missing, unknown, mistyped or out of range, or if two keys contradict each other.
 Parameters parseParameters(const ParameterMap& map);
 
-/// Fills the fields that the map names, adds its faults, and checks all: for many sets of parameters that differ in a
-/// few. @throws ParameterError.
+/// Changes the parameters that the map names, adds its faults, and checks all parameters. @throws ParameterError.
 void changeParameters(Parameters& parameters, const ParameterMap& changes);
 
 /// Hash of all values (FNV-1a, 64 bits).
 std::uint64_t parametersHash(const Parameters& parameters);
 
-/// All keys, values and units, one a line, as `section.key: value  # [unit] meaning`.
+/// Text of all parameters, one per line: `section.key: value  # [unit] meaning`.
 std::string describeParameters(const Parameters& parameters);
 
-/// Reads such a text over `map`; its faults replace those of `map`. `source`: whose, for the error text.
-/// @throws ParameterError naming source and line.
+/// Reads a text of describeParameters into `map`; its faults replace those of `map`. Error texts name `source`.
+/// @throws ParameterError that names source and line.
 void readDescription(const std::string& text, const std::string& source, ParameterMap& map);
 
-/// The table of docs/parameters.md: key, unit, range, meaning.
+/// The table of docs/parameters.md with key, unit, range and meaning.
 std::string parameterTableMarkdown();
 }  // namespace hjt

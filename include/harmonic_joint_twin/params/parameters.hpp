@@ -11,8 +11,9 @@
 
 namespace hjt
 {
-/// @file Plain values, one struct per section of the configuration, in SI units. No defaults: every key is read.
-/// Unit, range and meaning of each field stand in one place, docs/parameters.md (params/field_table.hpp).
+/// @file Parameters as plain values in SI units, one struct for each section of the configuration. No field has a
+/// default.
+/// docs/parameters.md gives unit, range and meaning of each field; its source is params/field_table.hpp.
 
 struct MotorParameters
 {
@@ -56,11 +57,11 @@ struct BrakeParameters
   bool engaged_at_start{};
 };
 
-/// Whether the drive warms up by its own losses.
+/// Whether the drive's losses warm it.
 enum class ThermalModel
 {
-  NONE,      ///< it has the configured or received temperature
-  TWO_NODES  ///< grease and housing, fed by the losses
+  NONE,      ///< the drive has the configured or received temperature
+  TWO_NODES  ///< two heat capacities, grease and housing, which the losses heat
 };
 
 struct ThermalParameters
@@ -75,7 +76,7 @@ struct ThermalParameters
   double housing_rise{};
 };
 
-/// How the ring's equilibrium is computed: always with all teeth, or from a response surface where one holds.
+/// How the twin computes the ring's equilibrium: always from all teeth, or from a response surface where it is valid.
 enum class SceneKind
 {
   FULL_RING,
@@ -109,7 +110,7 @@ struct SensorParameters
   int noise_seed{};
 };
 
-/// Health indicators out of the drive's own signals, and what is made of them.
+/// Computation of the indicators from the drive's signals, and their assessment.
 struct IndicatorParameters
 {
   double sample_rate{};
@@ -134,16 +135,16 @@ struct HealthParameters
   double averaging_time{};
 };
 
-/// Places of the flexspline with the largest stresses, in the order of all arrays by place.
+/// Places of the flexspline with the largest stresses. All arrays by place have this order.
 enum class StressPlace
 {
   TOOTH_SPACE,  ///< rim between two teeth
-  TRANSITION,   ///< wall of the cup where the toothed rim ends
-  FLANGE        ///< wall of the cup where it is held
+  TRANSITION,   ///< wall of the cup, at the end of the toothed rim
+  FLANGE        ///< wall of the cup, at the flange
 };
 constexpr std::size_t STRESS_PLACES = 3;
 
-/// Coefficients that give the stress from the shape of the flexspline (statics/flexspline_stress.hpp).
+/// Coefficients of the stress that follows from the shape of the flexspline (statics/flexspline_stress.hpp).
 struct StressParameters
 {
   double tooth_base{};
@@ -155,7 +156,7 @@ struct StressParameters
   std::array<double, STRESS_PLACES> notch_radius{};
 };
 
-/// How fast the drive ages, and when it is worn out (life/ageing_laws.hpp).
+/// Coefficients of ageing, and limits of wear (life/ageing_laws.hpp).
 struct LifeParameters
 {
   double rated_torque{};
@@ -191,34 +192,34 @@ struct LifeParameters
   double forecast_period{};
 };
 
-/// Temperatures that the drive can have [degC].
+/// Range of the drive's temperature [degC].
 constexpr double MIN_TEMPERATURE = -40.0;
 constexpr double MAX_TEMPERATURE = 150.0;
 
 /// Input of the node.
 enum class InputMode
 {
-  COMMANDS,  ///< commanded torques: the twin alone
-  TORQUE,    ///< beside a robot: its measured current drives the twin, open loop
-  MOTION,    ///< beside a robot: predicts torque and current of a healthy joint from the measured motion
-  OBSERVER   ///< beside a robot: both, the joint's states corrected towards the encoders
+  COMMANDS,  ///< commanded torques; no robot is measured
+  TORQUE,    ///< the measured current of a robot drives the twin, open loop
+  MOTION,    ///< the twin predicts torque and current of a healthy joint from the measured motion
+  OBSERVER   ///< the measured current drives the twin, and the measured angles correct its states
 };
 
 /// Source of the torque at the output of a measured joint.
 enum class LoadSource
 {
-  MODEL,          ///< weight and inertia as configured below output
-  LOAD_TORQUE,    ///< the same plus the received external torque
-  TARGET_MOMENT,  ///< only the received torque, as a controller's rigid-body torque
-  ARM             ///< of links and payload, from the motion of all joints of the arm
+  MODEL,          ///< weight and inertia from section output of the configuration
+  LOAD_TORQUE,    ///< weight and inertia from section output, plus the received external torque
+  TARGET_MOMENT,  ///< only the received torque, for example a controller's rigid-body torque
+  ARM             ///< torque of links and payload, from the motion of all joints of the arm
 };
 
 /// Quantity that a robot publishes as the effort of a joint.
 enum class EffortUnit
 {
-  CURRENT,       ///< of the motor [A]
-  JOINT_TORQUE,  ///< of the motor through the gear without its losses, at the joint [N.m]
-  MOTOR_TORQUE   ///< of the motor, at its shaft [N.m]
+  CURRENT,       ///< current of the motor [A]
+  JOINT_TORQUE,  ///< torque of the motor times the ratio, without the losses of the gear [N.m]
+  MOTOR_TORQUE   ///< torque of the motor at its shaft [N.m]
 };
 
 struct InputParameters
@@ -250,7 +251,7 @@ struct TelemetryParameters
   LoadSource load{};
 };
 
-/// Noise of the observer's sensors and of the unmodelled torque. The gains follow from nothing else.
+/// Standard deviations of the observer's measurements and disturbance. They alone determine the gains.
 struct ObserverParameters
 {
   double output_angle_noise{};
@@ -260,7 +261,7 @@ struct ObserverParameters
   double disturbance_growth{};
 };
 
-/// How far a sound joint may lie from the twin of its kind, and from itself.
+/// Tolerances of a sound joint: against the twin of its kind, and from one recording to the next.
 struct ComparisonParameters
 {
   double friction_tolerance{};
@@ -292,7 +293,7 @@ struct JointParameters
   std::string hardware_id{};
 };
 
-/// Size of severity 1, by kind of fault.
+/// Size of a fault at severity 1, by kind of fault.
 struct FaultScaleParameters
 {
   double interface_wear_depth{};
@@ -322,7 +323,7 @@ struct FaultScaleParameters
   double cage_deflection{};
 };
 
-/// Everything the twin is made from.
+/// All parameters of a twin.
 struct Parameters
 {
   JointParameters joint;
@@ -349,7 +350,7 @@ struct Parameters
   ComparisonParameters comparison;
   PublishParameters publish;
   FaultScaleParameters fault_scale;
-  std::vector<Fault> faults;  ///< present at the start, or set in during the run
+  std::vector<Fault> faults;  ///< faults that are present at the start or that set in later
   RealtimeParameters realtime;
 };
 }  // namespace hjt

@@ -17,19 +17,20 @@
 
 namespace hjt
 {
-/// A twin, or those of an arm, as hardware of ros_control: states and effort commands of its joints.
+/// One twin, or the twins of an arm, as hardware of ros_control: states and effort commands of the joints.
 ///
-///   position  of the joint, by the encoder at the output [rad]
-///   velocity  of the joint, by that at the motor, over the ratio [rad/s]
-///   effort    of the motor, at its shaft: commanded, and as the drive estimates it from its current [N.m]
+///   position  joint angle by the encoder at the output [rad]
+///   velocity  joint speed: speed by the encoder at the motor over the ratio [rad/s]
+///   effort    torque of the motor at its shaft: the command, and the drive's estimate from the current [N.m]
 ///
-/// Time is the loop's: `read` brings the twin to its time, however far that is; what `write` gives acts from its time
-/// on. The first `read`, and one whose time goes back, restarts the twin there at rest. Brakes that are engaged are
-/// released by the first `write`. After construction nothing but the base class throws or allocates.
+/// Time is the time of the control loop. `read` advances the twin to its time, over any interval. A command of `write`
+/// acts from the time of that `write`. The first `read` starts the twin at rest, and so does a `read` whose time goes
+/// back. The first `write` after a start releases engaged brakes. After construction only the base class throws or
+/// allocates.
 class TwinHardware : public hardware_interface::RobotHW
 {
 public:
-  /// The twin lives longer than this.
+  /// `twin` must outlive this object.
   TwinHardware(const std::string& joint, Twin& twin)
     : TwinHardware(
           { { joint, twin, 0.0 } }, [&twin](Stamp stamp) { return twin.reset(stamp); },
@@ -44,7 +45,7 @@ public:
   {
   }
 
-  TwinHardware(const TwinHardware&) = delete;  // the handles point into it
+  TwinHardware(const TwinHardware&) = delete;  // the handles point into this object
   TwinHardware& operator=(const TwinHardware&) = delete;
 
   void read(const ros::Time& time, const ros::Duration& /*period*/) override

@@ -5,14 +5,14 @@
 
 namespace hjt
 {
-/// Readings of both encoders.
+/// Readings of the encoders at the motor and at the output.
 struct EncoderReadings
 {
-  std::int64_t motor_count{};    ///< counts since the start
-  double motor_angle{};          ///< [rad]
-  double motor_velocity{};       ///< difference over the velocity window [rad/s]
-  std::uint32_t output_count{};  ///< absolute, within a turn
-  double output_angle{};         ///< unwrapped [rad]
-  double output_velocity{};      ///< [rad/s]
+  std::int64_t motor_count{};    ///< counts of the motor's encoder since the start
+  double motor_angle{};          ///< angle of the motor since the start [rad]
+  double motor_velocity{};       ///< mean speed of the motor over sensors.velocity_window [rad/s]
+  std::uint32_t output_count{};  ///< absolute count of the output's encoder within a turn
+  double output_angle{};         ///< angle of the output over several turns [rad]
+  double output_velocity{};      ///< mean speed of the output over sensors.velocity_window [rad/s]
 };
 }  // namespace hjt

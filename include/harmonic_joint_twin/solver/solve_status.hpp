@@ -8,39 +8,39 @@ namespace hjt
 /// How a solve ended.
 enum class SolveCode
 {
-  CONVERGED,        ///< within solver.force_tolerance
-  ITERATION_LIMIT,  ///< solver.max_iterations ran out, on the shortest path too
-  NO_DESCENT,       ///< no step reduced the forces, on the shortest path neither
-  SINGULAR,         ///< the tangent has no inverse
-  NOT_FINITE,       ///< NaN or Inf came up
+  CONVERGED,        ///< out-of-balance forces are within solver.force_tolerance
+  ITERATION_LIMIT,  ///< solver.max_iterations was reached, even on the shortest path
+  NO_DESCENT,       ///< no step reduced the out-of-balance forces, even on the shortest path
+  SINGULAR,         ///< the tangent matrix has no inverse
+  NOT_FINITE,       ///< a value became NaN or infinite
   UNBALANCED,       ///< no output angle within reach balances the load
-  DISENGAGED        ///< no tooth touches, at any output angle within reach
+  DISENGAGED        ///< no tooth touches at any output angle within reach
 };
 
 /// Task of the solver.
 enum class SolveStage
 {
-  INSERTION,  ///< of the wave generator
-  MOTION,     ///< to given angles of wave generator and output
-  BALANCE,    ///< of the load, by turning the output
-  FRICTION    ///< in a step of the joint: speeds at which it balances the other torques
+  INSERTION,  ///< insertion of the wave generator
+  MOTION,     ///< motion of wave generator and output to given angles
+  BALANCE,    ///< balance of the load by an output angle
+  FRICTION    ///< friction in a step of the joint: speeds at which it balances the other torques
 };
 
-/// Outcome of a solve; the caller must look.
+/// Outcome of a solve. The caller must check it.
 struct [[nodiscard]] SolveStatus
 {
-  SolveCode code{ SolveCode::CONVERGED };  ///< how it ended
-  SolveStage stage{ SolveStage::MOTION };  ///< task that ended so
-  int iterations{};                        ///< Newton iterations, all attempts
-  int cuts{};                              ///< halvings of the path
-  int max_iterations{};                    ///< solver.max_iterations, if the last attempt ran out of them; else 0
-  int jumps{};                 ///< teeth that changed their space through a tip: ratcheting, or too long a move
+  SolveCode code{ SolveCode::CONVERGED };  ///< how the solve ended
+  SolveStage stage{ SolveStage::MOTION };  ///< task in which the solve ended
+  int iterations{};                        ///< Newton iterations of all attempts
+  int cuts{};                              ///< number of times that the solver halved the path
+  int max_iterations{};                    ///< solver.max_iterations if the last attempt reached it; else 0
+  int jumps{};                 ///< teeth that changed their space through a tip: by ratcheting, or by too long a move
   double residual{};           ///< largest out-of-balance force component on a tooth [N]
-  double unbalanced_torque{};  ///< part of the load that the mesh did not carry in the last balance [N.m]
+  double unbalanced_torque{};  ///< part of the load that the mesh did not balance [N.m]
 
-  bool ok() const noexcept { return code == SolveCode::CONVERGED; }  ///< it converged
+  bool ok() const noexcept { return code == SolveCode::CONVERGED; }  ///< whether the solve converged
 
-  /// Adds the effort of an earlier attempt.
+  /// Adds the iterations and cuts of an earlier attempt.
   SolveStatus& addEffort(const SolveStatus& before) noexcept
   {
     iterations += before.iterations;
@@ -49,9 +49,9 @@ struct [[nodiscard]] SolveStatus
   }
 };
 
-/// Name of the status as in the source, e.g. "NO_DESCENT".
+/// Name of the code as in the source, for example "NO_DESCENT".
 const char* nameOf(SolveCode code) noexcept;
 
-/// Message for the user: the stage that failed, the code, what was left unbalanced and what to do.
+/// Message for the user: the stage that failed, the code, the remaining forces and advice.
 std::string explanationOf(const SolveStatus& status);
 }  // namespace hjt

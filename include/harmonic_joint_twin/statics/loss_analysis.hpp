@@ -9,49 +9,49 @@
 
 namespace hjt
 {
-/// Parts of the friction, each as a torque at the motor shaft, averaged over a tooth pitch [N.m].
+/// Shares of the friction, each as a mean torque at the motor shaft over a tooth pitch [N.m].
 struct LossShares
 {
-  double bearing{};  ///< of the wave generator, Palmgren
+  double bearing{};  ///< rolling friction of the wave generator's bearing, Palmgren
   double interface {
-  };                 ///< outer race in the rim
-  double flexing{};  ///< steel of the rim, bent twice a turn
-  double mesh{};     ///< tooth flanks
-  double cup{};      ///< dry friction beside the cup's spring
+  };                 ///< friction of the outer race in the rim
+  double flexing{};  ///< hysteresis of the rim's steel, which bends twice a turn
+  double mesh{};     ///< friction of the tooth flanks
+  double cup{};      ///< dry friction in parallel to the cup's spring
   double damping{};  ///< dashpots of the ring
   double output{};   ///< dry friction of the output's bearing and seals
-  double motor{};    ///< dry and viscous of the motor, and viscous of the output
+  double motor{};    ///< dry and viscous friction of the motor, and viscous friction of the output
 
-  /// Loss of the gear with the output's bearing and seals.
+  /// Loss of the gear, including the output's bearing and seals.
   double gear() const { return bearing + interface + flexing + mesh + cup + damping + output; }
 };
 
-/// Steady turning at constant motor speed against a constant load.
+/// Losses at constant motor speed and constant load.
 struct LossRow
 {
-  SolveStatus status;     ///< of the ring; the numbers hold if ok()
-  double motor_speed{};   ///< [rad/s]
-  double load_torque{};   ///< at the output, > 0 resists [N.m]
-  double load_reduced{};  ///< torque of the load at the motor without friction, mean of load x d(output)/d(motor) [N.m]
-  LossShares loss;        ///< [N.m]
-  double gear_efficiency{};  ///< load power over motor power, the motor's own friction left out; 0 without load [-]
+  SolveStatus status;     ///< status of the ring's solve; the numbers are valid if ok()
+  double motor_speed{};   ///< speed of the motor [rad/s]
+  double load_torque{};   ///< load at the output, > 0 resists [N.m]
+  double load_reduced{};  ///< torque of the load at the motor without friction: mean of load x d(output)/d(motor) [N.m]
+  LossShares loss;        ///< shares of the friction [N.m]
+  double gear_efficiency{};  ///< load power over motor power without the motor's own friction; 0 without load [-]
 };
 
-/// One row for every speed [rad/s of the motor] and load [N.m at the output]: all speeds of the first load, then of the
-/// next. Laws and sources: docs/model.md, Friction.
-/// `positions`: wave generator angles per tooth pitch, >= 1. `progress`: called with the loads done.
-/// @throws InputError if positions < 1.
+/// Returns one row for every pair of speed [rad/s of the motor] and load [N.m at the output]: all speeds of the first
+/// load, then all speeds of the next. Laws and sources: docs/model.md, Friction. `positions`: number of wave generator
+/// angles in a tooth pitch, >= 1. The function calls `progress` with the number of finished loads. @throws InputError
+/// if positions < 1.
 std::vector<LossRow> analyseLosses(const Parameters& parameters, const std::vector<double>& speeds,
                                    const std::vector<double>& loads, int positions,
                                    const std::function<void(int)>& progress);
 
-/// Torques at which the gear without its motor's own friction begins to move, at the temperature of the input section.
+/// Torques at which the gear begins to move, without friction of the motor, at input.temperature.
 struct Breakaway
 {
-  SolveStatus status;     ///< of the ring; the numbers hold if ok()
-  double starting{};      ///< at the wave generator, no load: the largest over a tooth pitch [N.m]
-  double back_driving{};  ///< at the output, wave generator free: the load whose own pull overcomes the friction [N.m]
+  SolveStatus status;     ///< status of the ring's solve; the numbers are valid if ok()
+  double starting{};      ///< largest torque at the wave generator over a tooth pitch, without load [N.m]
+  double back_driving{};  ///< load at the output whose torque on the free wave generator overcomes the friction [N.m]
 };
-/// `positions`: as of analyseLosses. @throws InputError if positions < 1.
+/// `positions`: number of wave generator angles in a tooth pitch, >= 1. @throws InputError if positions < 1.
 Breakaway analyseBreakaway(const Parameters& parameters, int positions);
 }  // namespace hjt

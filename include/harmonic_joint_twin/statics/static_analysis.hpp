@@ -10,96 +10,97 @@
 
 namespace hjt
 {
-/// Every tooth of one equilibrium, index = tooth.
+/// Positions, forces and stresses of every tooth in one equilibrium. The index is the tooth.
 struct ToothTable
 {
-  std::vector<double> tooth_x;               ///< of the tooth point [m]
-  std::vector<double> tooth_y;               ///< of the tooth point [m]
-  std::vector<double> radius;                ///< of the tooth point [m]
-  std::vector<double> angle_deviation;       ///< psi - psi0 [rad]
-  std::vector<double> wave_generator_force;  ///< [N]
-  std::vector<double> rim_tension;           ///< to the next tooth [N]
-  std::vector<double> bending_force;         ///< of the segment to the next tooth [N]
+  std::vector<double> tooth_x;          ///< x of the tooth point [m]
+  std::vector<double> tooth_y;          ///< y of the tooth point [m]
+  std::vector<double> radius;           ///< distance of the tooth point from the axis [m]
+  std::vector<double> angle_deviation;  ///< polar angle of the tooth point minus its angle at rest, psi - psi0 [rad]
+  std::vector<double> wave_generator_force;  ///< force of the wave generator on the tooth [N]
+  std::vector<double> rim_tension;           ///< tension of the rim to the next tooth [N]
+  std::vector<double> bending_force;         ///< bending force of the segment to the next tooth [N]
   std::vector<double> mesh_force;            ///< normal force on the flank, > 0 leading, < 0 trailing flank [N]
-  // Nominal normal stress by place, see ToothStress.
+  // Nominal normal stress at each place of ToothStress.
   std::vector<double> stress_tooth_space;  ///< [Pa]
   std::vector<double> stress_transition;   ///< [Pa]
   std::vector<double> stress_flange;       ///< [Pa]
-  // Where it stands in its space of the circular spline, see ToothPlace.
+  // Position of the tooth in its space of the circular spline, see ToothPlace.
   std::vector<double> across;  ///< [m]
   std::vector<double> depth;   ///< [m]
   std::vector<double> tilt;    ///< [rad]
   std::vector<double> gap;     ///< [m]
 };
 
-/// Static equilibrium after the insertion, circular spline left out (thesis ch. 5-6).
+/// Static equilibrium of the flexspline on the wave generator, without the circular spline (thesis ch. 5-6).
 struct InsertionResult
 {
-  SolveStatus status;                 ///< the numbers hold if ok()
-  double wave_generator_force_max{};  ///< [N]
-  double wave_generator_force_min{};  ///< [N]
-  double wave_generator_force_sum{};  ///< [N]
-  int teeth_in_contact{};             ///< with the wave generator
-  double tension_min{};               ///< [N]
-  double tension_max{};               ///< [N]
-  double radius_major_axis{};         ///< of tooth 0 [m]
-  double radius_minor_axis{};         ///< of tooth N/4 [m]
-  double bending_force_max{};         ///< [N]
-  double solve_time{};                ///< [s]
+  SolveStatus status;                 ///< the numbers are valid if ok()
+  double wave_generator_force_max{};  ///< largest force of the wave generator on a tooth [N]
+  double wave_generator_force_min{};  ///< least force of the wave generator on a tooth [N]
+  double wave_generator_force_sum{};  ///< sum of the forces of the wave generator over all teeth [N]
+  int teeth_in_contact{};             ///< teeth that touch the wave generator
+  double tension_min{};               ///< least tension of the rim [N]
+  double tension_max{};               ///< largest tension of the rim [N]
+  double radius_major_axis{};         ///< radius of tooth 0, at the major axis [m]
+  double radius_minor_axis{};         ///< radius of tooth N/4, at the minor axis [m]
+  double bending_force_max{};         ///< largest bending force of a segment [N]
+  double solve_time{};                ///< computing time [s]
   ToothTable teeth;                   ///< every tooth
 };
-/// A solve that fails is told by `status`; the other numbers mean nothing then.
+/// Computes the insertion. If the solve fails, `status` says so and the other numbers are invalid.
 InsertionResult analyseInsertion(const Parameters& parameters);
 
-/// Whether the teeth have room where the gear carries no load.
+/// Check whether the teeth fit into each other without load.
 struct FitCheck
 {
-  SolveStatus status;                       ///< the numbers hold if ok()
-  int teeth_loaded{};                       ///< without load
-  double wave_generator_force{};            ///< sum over the teeth, without load [N]
-  double wave_generator_force_insertion{};  ///< the same without the circular spline [N]
+  SolveStatus status;                       ///< the numbers are valid if ok()
+  int teeth_loaded{};                       ///< number of teeth that carry mesh force without load
+  double wave_generator_force{};            ///< sum of the wave generator's forces over the teeth, without load [N]
+  double wave_generator_force_insertion{};  ///< the same sum without the circular spline [N]
 
-  /// The teeth press harder on the wave generator than the bent rim does.
+  /// Whether the teeth load the wave generator more than the bent rim alone does.
   bool jams() const noexcept { return status.ok() && wave_generator_force > 2.0 * wave_generator_force_insertion; }
 };
-/// Two insertions, without and with the circular spline; a solve that fails is told by `status`.
+/// Computes two insertions, without and with the circular spline. If a solve fails, `status` says so.
 FitCheck checkFit(const Parameters& parameters);
 
-/// Wave generator locked, load on the circular spline, friction left out.
+/// Equilibrium with the wave generator locked and a load on the circular spline, without friction.
 struct StiffnessRow
 {
-  SolveStatus status;                 ///< the numbers hold if ok()
-  double torque{};                    ///< load [N.m]
-  double output_angle{};              ///< relative to zero load [rad]
-  double wave_generator_torque{};     ///< of the flexspline on the wave generator, about -torque over the ratio [N.m]
-  double housing_torque{};            ///< of the housing on the flexspline, through its cup [N.m]
+  SolveStatus status;     ///< the numbers are valid if ok()
+  double torque{};        ///< load on the circular spline [N.m]
+  double output_angle{};  ///< angle of the output relative to zero load [rad]
+  /// torque of the flexspline on the wave generator, about -torque over the ratio [N.m]
+  double wave_generator_torque{};
+  double housing_torque{};            ///< torque of the housing on the flexspline, through its cup [N.m]
   double cup_rotation{};              ///< mean rotation of the teeth from rest [rad]
   int teeth_loaded{};                 ///< teeth that carry mesh force
-  double mesh_force_max{};            ///< [N]
-  double wave_generator_force_sum{};  ///< [N]
-  std::vector<double> ball_force;     ///< of each ball of the bearing [N]; empty unless on single balls
-  ToothStress stress;                 ///< of the flexspline
-  ToothTable teeth;                   ///< every tooth
+  double mesh_force_max{};            ///< largest mesh force of a tooth [N]
+  double wave_generator_force_sum{};  ///< sum of the wave generator's forces over the teeth [N]
+  /// force on each ball of the bearing [N]; empty unless contact.support is single balls
+  std::vector<double> ball_force;
+  ToothStress stress;  ///< stresses of the flexspline
+  ToothTable teeth;    ///< every tooth
 };
-/// One row a torque, in their order; each is approached from no load, so that no row depends on another.
-/// `wave_generator_angle`: any [rad]; `torques`: at the output, > 0 resists positive motion, any finite size [N.m].
-/// Source: thesis 7.1 to 7.5; what a row says of a failed solve is `status`.
+/// Returns one row for each torque, in their order. Each solve starts from no load, so that no row depends on another.
+/// `wave_generator_angle`: any [rad]; `torques`: at the output, > 0 resists positive motion, any finite value [N.m].
+/// `status` of a row tells whether its solve failed. Source: thesis 7.1 to 7.5.
 std::vector<StiffnessRow> analyseStiffness(const Parameters& parameters, double wave_generator_angle,
                                            const std::vector<double>& torques);
 
-/// Quasi-static turning at constant load, friction left out.
+/// Equilibrium at one angle of a quasi-static turn at constant load, without friction.
 struct TurnRow
 {
-  SolveStatus status;              ///< the numbers hold if ok()
-  double wave_generator_angle{};   ///< [rad]
-  double output_angle{};           ///< [rad]
-  double kinematic_error{};        ///< of the output against the wave generator's angle over the nominal ratio [rad]
-  double wave_generator_torque{};  ///< of the flexspline on the wave generator [N.m]
-  double housing_torque{};         ///< of the housing on the flexspline, through its cup [N.m]
+  SolveStatus status;             ///< the numbers are valid if ok()
+  double wave_generator_angle{};  ///< angle of the wave generator [rad]
+  double output_angle{};          ///< angle of the output [rad]
+  double kinematic_error{};  ///< deviation of the output from the wave generator's angle over the nominal ratio [rad]
+  double wave_generator_torque{};  ///< torque of the flexspline on the wave generator [N.m]
+  double housing_torque{};         ///< torque of the housing on the flexspline, through its cup [N.m]
 };
-/// Rows 0 ... `steps` from angle 0 to `angle_range` [rad], steps >= 1; `load_torque` at the output [N.m]. `progress` is
-/// called with each step done.
-/// @throws InputError if steps < 1.
+/// Returns rows 0 ... `steps` of a turn from angle 0 to `angle_range` [rad], steps >= 1; `load_torque` acts at the
+/// output [N.m]. The function calls `progress` with each finished step. @throws InputError if steps < 1.
 std::vector<TurnRow> analyseTurn(const Parameters& parameters, double load_torque, double angle_range, int steps,
                                  const std::function<void(int)>& progress);
 }  // namespace hjt

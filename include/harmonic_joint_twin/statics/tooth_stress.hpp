@@ -11,49 +11,49 @@
 
 namespace hjt
 {
-/// Names of the places, in the order of the arrays by place. Laws and sources: docs/life.md.
+/// Names of the places, in the order of StressPlace. Laws and sources: docs/life.md.
 constexpr std::array<const char*, STRESS_PLACES> STRESS_PLACE_NAMES{ "tooth space", "transition", "flange" };
 
-/// Stress of one place of the flexspline over a turn of the wave generator at a steady load: nominal stresses,
-/// without the notch.
+/// Nominal stress (without notch factor) at one place of the flexspline over a turn of the wave generator at constant
+/// load.
 struct StressCycle
 {
-  double lowest{};   ///< normal stress [Pa]
-  double highest{};  ///< [Pa]
-  double shear{};    ///< constant over the turn [Pa]
+  double lowest{};   ///< least normal stress [Pa]
+  double highest{};  ///< largest normal stress [Pa]
+  double shear{};    ///< shear stress, constant over the turn [Pa]
 
-  double amplitude() const noexcept { return 0.5 * (highest - lowest); }  ///< [Pa]
-  double mean() const noexcept { return 0.5 * (highest + lowest); }       ///< [Pa]
-  /// Largest equivalent stress after von Mises [Pa].
+  double amplitude() const noexcept { return 0.5 * (highest - lowest); }  ///< amplitude of the normal stress [Pa]
+  double mean() const noexcept { return 0.5 * (highest + lowest); }       ///< mean of the normal stress [Pa]
+  /// Largest equivalent stress by von Mises [Pa].
   double largest() const noexcept { return equivalent(std::max(highest, -lowest), shear); }
 
-  /// Equivalent stress after von Mises of a normal and a shear stress [Pa].
+  /// Equivalent stress by von Mises of a normal and a shear stress [Pa].
   static double equivalent(double normal, double shear) noexcept
   {
     return std::sqrt(normal * normal + 3.0 * shear * shear);
   }
 };
 
-/// Stress of the flexspline at every tooth at one instant, nominal: without the notch.
+/// Nominal stress (without notch factor) of the flexspline at every tooth at one instant.
 struct ToothStress
 {
   explicit ToothStress(int teeth = 0) { normal.fill(std::vector<double>(static_cast<std::size_t>(teeth))); }
 
-  /// Normal stress by place and tooth [Pa]: around the rim in the tooth spaces beside the tooth, along the axis at the
-  /// transition and the flange.
+  /// Normal stress by place and tooth [Pa]. Its direction is around the rim in the tooth spaces beside the tooth, and
+  /// along the axis at the transition and the flange.
   std::array<std::vector<double>, STRESS_PLACES> normal;
-  /// By place, the same all around [Pa].
+  /// Shear stress by place, constant around the circumference [Pa].
   std::array<double, STRESS_PLACES> shear{};
 
-  /// Stress of one tooth over a turn: that of all teeth at one instant, if they are equal. `place`:
-  /// below STRESS_PLACES.
+  /// Stress cycle of one tooth over a turn. With equal teeth it has the same values as all teeth at one instant.
+  /// `place`: less than STRESS_PLACES.
   StressCycle cycle(std::size_t place) const noexcept
   {
     const auto [lowest, highest] = std::minmax_element(normal[place].begin(), normal[place].end());
     return { *lowest, *highest, shear[place] };
   }
 
-  /// Tooth where the normal stress of a place is largest in magnitude.
+  /// Tooth with the largest magnitude of the normal stress at a place.
   std::size_t worstTooth(std::size_t place) const noexcept
   {
     const auto worst = std::max_element(normal[place].begin(), normal[place].end(),

@@ -8,23 +8,26 @@
 
 namespace hjt
 {
-/// One point of the loop.
+/// One point of the torsion loop.
 struct TorsionPoint
 {
-  double torque{};        ///< load on the circular spline that moves it there [N.m]
-  double output_angle{};  ///< circular spline from its place without load, > 0 with the load [rad]
+  double torque{};  ///< load on the circular spline [N.m]
+  /// angle of the circular spline from its position without load, > 0 in the direction of the load [rad]
+  double output_angle{};
 };
 
-/// Wave generator locked, load swept slowly to and fro: torsion with the friction of the teeth.
+/// Torsion with friction of the teeth, for a locked wave generator and a load that cycles slowly.
 struct TorsionLoop
 {
-  SolveStatus status;                ///< the numbers hold if ok()
-  std::vector<TorsionPoint> points;  ///< from +amplitude to -amplitude and back
-  double hysteresis{};               ///< width of the loop at no load [rad]
-  double lost_motion{};              ///< angle between the middles of the loop at + and - the lost motion torque [rad]
+  SolveStatus status;                ///< the numbers are valid if ok()
+  std::vector<TorsionPoint> points;  ///< points from +amplitude to -amplitude and back
+  double hysteresis{};               ///< width of the loop at zero load [rad]
+  /// angle between the middles of the loop at the positive and the negative lost motion torque [rad]
+  double lost_motion{};
 };
 
-/// `amplitude`: largest load, > 0 [N.m]; `lost_motion_torque`: e.g. 4 % of the rated torque, > 0, at most the amplitude
-/// [N.m]; `steps`: angles of one sweep, >= 2. @throws InputError if one is out of range.
+/// Computes the loop. `amplitude`: largest load, > 0 [N.m]; `lost_motion_torque`: for example 4 % of the rated torque,
+/// > 0 and at most the amplitude [N.m]; `steps`: number of angles of one sweep, >= 2. @throws InputError if one is out
+/// of range.
 TorsionLoop analyseTorsionLoop(const Parameters& parameters, double amplitude, double lost_motion_torque, int steps);
 }  // namespace hjt

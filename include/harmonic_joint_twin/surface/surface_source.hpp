@@ -9,18 +9,19 @@ namespace hjt
 {
 class SurfacePool;
 
-/// Where a twin takes response surfaces from, and callbacks for progress.
+/// Where a twin gets its response surfaces, and callbacks for progress.
 struct SurfaceSource
 {
-  std::string cache_directory;                       ///< made if missing; empty: nothing is kept
-  std::function<void(double)> progress{};            ///< of building, 0 ... 1
-  std::function<void(const std::string&)> notice{};  ///< why there is no surface, or why it could not be kept
-  std::shared_ptr<SurfacePool> pool{};               ///< asked before the cache; may be none
-  /// The twin does not wait for it but solves the full ring until it is there. From when on the surface is used then
-  /// depends on how long that takes. `progress` and `notice` are called from another thread.
+  std::string cache_directory;  ///< directory of stored surfaces, made if missing; empty: surfaces are not stored
+  std::function<void(double)> progress{};  ///< called with the built fraction, 0 ... 1
+  /// called with the reason why there is no surface, or why it was not stored
+  std::function<void(const std::string&)> notice{};
+  std::shared_ptr<SurfacePool> pool{};  ///< surfaces in memory, searched before the cache; may be null
+  /// If true, the twin solves the full ring until the surface is built. The instant of the change then depends on the
+  /// computing time. Another thread calls `progress` and `notice`.
   bool background{};
 };
 
-/// $XDG_CACHE_HOME/harmonic_joint_twin, or ~/.cache/harmonic_joint_twin; empty if there is no home.
+/// $XDG_CACHE_HOME/harmonic_joint_twin or ~/.cache/harmonic_joint_twin; empty if there is no home directory.
 std::string surfaceCacheDirectory();
 }  // namespace hjt

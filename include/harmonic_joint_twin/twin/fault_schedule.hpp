@@ -11,31 +11,31 @@
 
 namespace hjt
 {
-/// Faults that were injected, since reset.
+/// Counts of injected faults since the last reset.
 struct FaultCounters
 {
-  std::uint64_t accepted{};  ///< queued
-  std::uint64_t refused{};   ///< severity, place or onset out of its range
-  std::uint64_t late{};      ///< stamp before the instant already simulated: sets in at once
-  std::uint64_t no_room{};   ///< too many waiting or active: refused
+  std::uint64_t accepted{};  ///< faults that were queued
+  std::uint64_t refused{};   ///< faults whose severity, place or onset is out of range
+  std::uint64_t late{};      ///< faults with a stamp before the simulated instant; they set in at once
+  std::uint64_t no_room{};   ///< faults that were refused because too many wait or are active
 };
 
-/// Faults that are to set in or to be taken away, in order of time, in a fixed store. Equal stamps keep the order of
-/// arrival.
+/// Faults that will set in or end, ordered by time; equal stamps keep their order of arrival. The storage has a fixed
+/// size.
 class FaultSchedule
 {
 public:
-  static constexpr std::size_t CAPACITY = 2 * MAX_FAULTS;  ///< most that wait
+  static constexpr std::size_t CAPACITY = 2 * MAX_FAULTS;  ///< largest number of waiting faults
 
-  explicit FaultSchedule(const Parameters& parameters);  ///< allocates; later members do not
+  explicit FaultSchedule(const Parameters& parameters);  ///< allocates; the other members do not
 
-  void clear() noexcept;  ///< forgets all
-  /// `fault` valid. @returns false if it is full.
+  void clear() noexcept;  ///< removes all waiting faults
+  /// Queues a valid fault. @returns false if the schedule is full.
   bool push(const Fault& fault, Stamp stamp) noexcept;
-  /// Whether one has a stamp not after `instant`.
+  /// Whether a fault has a stamp not after `instant`.
   bool isDue(Stamp instant) const noexcept { return size_ > 0 && waiting_[size_ - 1].stamp <= instant; }
-  /// Takes the earliest that is due. False: there is none. One that comes late, after a newer one of its kind and place
-  /// was taken, is dropped.
+  /// Takes the earliest fault that is due. @returns false if none is due. Drops a late fault if a newer one of its kind
+  /// and place was already taken.
   bool pop(Stamp instant, Fault& fault, Stamp& stamp) noexcept;
 
 private:
@@ -48,6 +48,7 @@ private:
 
   std::array<Waiting, CAPACITY> waiting_{};  // latest first
   std::size_t size_{};
-  std::array<std::vector<Stamp>, FAULT_KINDS> last_taken_;  // by kind and place, the whole member first
+  // stamp of the last fault taken, by kind and place, with the whole part first
+  std::array<std::vector<Stamp>, FAULT_KINDS> last_taken_;
 };
 }  // namespace hjt

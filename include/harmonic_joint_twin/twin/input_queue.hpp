@@ -18,27 +18,27 @@ enum class InputKind : std::uint8_t
   BRAKE,
   TEMPERATURE
 };
-constexpr std::size_t INPUT_KINDS = 4;  ///< number of kinds
+constexpr std::size_t INPUT_KINDS = 4;  ///< number of values of InputKind
 
 /// One stamped input of a twin.
 struct Input
 {
-  Stamp stamp{};     ///< acts from here on [ns]
+  Stamp stamp{};     ///< time from which the input acts [ns]
   InputKind kind{};  ///< meaning of `value`
   double value{};    ///< torque [N.m], temperature [degC], or 1 for an engaged brake
 };
 
-/// A fault that sets in at a time.
+/// A fault with the time at which it sets in.
 struct StampedFault
 {
   Stamp stamp{};  ///< time from which the fault is active [ns]
   Fault fault{};
 };
 
-/// An input of the twin, with the time from which it acts.
+/// Any input of the twin, with the time from which it acts.
 using TwinInput = std::variant<Input, StampedFault>;
 
-/// When it acts [ns].
+/// Time from which the input acts [ns].
 inline Stamp& stampOf(TwinInput& input) noexcept
 {
   auto* fault = std::get_if<StampedFault>(&input);
@@ -50,34 +50,34 @@ inline Stamp stampOf(const TwinInput& input) noexcept
   return fault != nullptr ? fault->stamp : std::get_if<Input>(&input)->stamp;
 }
 
-/// Inputs of a queue since it was cleared.
+/// Counts of the queue's inputs since it was cleared.
 struct InputCounters
 {
-  std::uint64_t accepted{};    ///< queued, late ones too
-  std::uint64_t not_finite{};  ///< NaN or Inf: refused
-  std::uint64_t late{};        ///< stamp before the instant already simulated: acts at once
-  std::uint64_t overflow{};    ///< queue full: oldest dropped
+  std::uint64_t accepted{};    ///< inputs that were queued, late ones included
+  std::uint64_t not_finite{};  ///< inputs that were refused because they are NaN or infinite
+  std::uint64_t late{};        ///< inputs with a stamp before the simulated instant; they act at once
+  std::uint64_t overflow{};    ///< inputs that were dropped because the queue was full; the queue drops the oldest
 };
 
-/// Stamped inputs in order of time, in a fixed store. Equal stamps keep the order of arrival.
+/// Stamped inputs, ordered by time; equal stamps keep their order of arrival. The storage has a fixed size.
 class InputQueue
 {
 public:
-  static constexpr std::size_t CAPACITY = 4096;  ///< most that wait
+  static constexpr std::size_t CAPACITY = 4096;  ///< largest number of waiting inputs
 
-  void clear() noexcept;                              ///< forgets all, and the counters
-  bool empty() const noexcept { return size_ == 0; }  ///< none waits
+  void clear() noexcept;                              ///< removes all inputs and resets the counters
+  bool empty() const noexcept { return size_ == 0; }  ///< whether no input waits
 
-  /// `now`: up to where has been simulated; an earlier stamp is late.
+  /// Queues an input. `now`: simulated instant; an input with an earlier stamp counts as late.
   void push(const Input& input, Stamp now) noexcept;
 
   /// Whether an input has a stamp not after `instant`.
   bool isDue(Stamp instant) const noexcept { return size_ > 0 && inputs_[first_].stamp <= instant; }
 
-  /// Takes the earliest input that is due. False: there is none.
+  /// Takes the earliest input that is due. @returns false if none is due.
   bool pop(Stamp instant, Input& input) noexcept;
 
-  const InputCounters& counters() const noexcept { return counters_; }  ///< since clear
+  const InputCounters& counters() const noexcept { return counters_; }  ///< counts since the last clear
 
 private:
   std::array<Input, CAPACITY> inputs_{};

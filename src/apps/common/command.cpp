@@ -21,12 +21,11 @@
 
 namespace hjt
 {
-/// A command as it is declared.
 struct CommandNode
 {
-  std::string name;  ///< behind those of the commands that it belongs to: "joint_twin life age"
+  std::string name;  ///< full name, with those of the commands above it: "joint_twin life age"
   std::string help;
-  std::string heading{};  ///< where the command that it belongs to lists it
+  std::string heading{};  ///< heading under which the command above lists it
   std::string version{};
   OptionTable table{};
   std::list<CommandNode> subcommands{};
@@ -35,20 +34,20 @@ struct CommandNode
 
 namespace
 {
-/// Wrong usage; the text is what the user reads.
+/// Error in the command line; the text is for the user.
 struct UsageError : std::runtime_error
 {
   using std::runtime_error::runtime_error;
 };
 
-/// Request of a command line.
+/// Parsed command line.
 struct Request
 {
   const CommandNode* command;
-  std::string text;  ///< to print instead of running the command: help or version
+  std::string text;  ///< text that is printed instead of running the command: help or version
 };
 
-constexpr int FIRST_COLUMN = 30;  // its width
+constexpr int FIRST_COLUMN = 30;  // width of the first column
 
 void printRow(std::ostream& text, const std::string& label, const std::string& help)
 {
@@ -99,7 +98,7 @@ void printUsage(std::ostream& text, const CommandNode& command)
   text << (command.subcommands.empty() ? "\n" : " SUBCOMMAND\n");
 }
 
-/// Arguments, then the groups of options in the order of their first ones.
+/// Prints the arguments, then the groups of options in the order of their first ones.
 void printOptions(std::ostream& text, const CommandNode& command)
 {
   std::vector<std::string> groups;
@@ -160,7 +159,7 @@ using Words = std::vector<std::string>;
   throw UsageError(reason + "\nRun with --help for more information.");
 }
 
-/// Arguments have no names on the command line.
+/// Finds an option; arguments have no names on the command line.
 Option* findOption(CommandNode& command, const std::string& name)
 {
   Option* option = command.table.find(name);
@@ -198,7 +197,7 @@ void addValues(Option& option, const std::string& text)
          " missing");
 }
 
-/// Words that may be the values behind an option's name: at most so many.
+/// Semantics of an option with up to `most` values after its name.
 class Values : public po::typed_value<Words>
 {
 public:
@@ -222,7 +221,7 @@ const po::value_semantic* valuesOf(const Option& option)
   return new Values(option.commas || option.follows ? option.most : 1);
 }
 
-/// Options with their values as Boost tells them apart. Whole names only; negative numbers are values.
+/// Splits the words into options with values, by Boost. Names must be complete; negative numbers are values.
 std::vector<po::option> split(CommandNode& command, const Words& words)
 {
   po::options_description known;
@@ -253,13 +252,13 @@ std::vector<po::option> split(CommandNode& command, const Words& words)
     }
     if (option->most == 0)
     {
-      refuse(name + " takes no value");
+      refuse(name + " does not take a value");
     }
     refuseMissing(*option);
   }
 }
 
-/// Gives options and arguments their values. @returns the words that belong to none.
+/// Passes their values to the options. @returns the words that belong to none.
 Words distribute(CommandNode& command, Words words)
 {
   std::replace(words.begin(), std::find(words.begin(), words.end(), "--"), std::string("-h"), std::string("--help"));
@@ -288,7 +287,7 @@ Words distribute(CommandNode& command, Words words)
     }
     option->given = true;
     const std::size_t before = option->values.size();
-    const bool follow = found.original_tokens.size() > 1;  // behind the name, else behind an equals sign
+    const bool follow = found.original_tokens.size() > 1;  // the value follows the name, not an equals sign
     for (const std::string& value : found.value)
     {
       if (follow && findOption(command, value) != nullptr)
@@ -320,10 +319,10 @@ CommandNode& subcommand(CommandNode& command, const std::string& given)
                    " --help` lists all");
 }
 
-/// Fills the fields of the command that the words behind the program's name choose. @throws UsageError.
+/// Parses the words after the program's name into the fields of the chosen command. @throws UsageError.
 Request parseWords(CommandNode& command, const Words& words)
 {
-  // The options of a command that has subcommands take no values.
+  // Options of a command with subcommands have no values.
   const auto end = std::find_if(words.begin(), words.end(),
                                 [&](const std::string& word)
                                 { return !command.subcommands.empty() && (word.empty() || word[0] != '-'); });
@@ -406,7 +405,7 @@ void CommandLine::addSubcommands()
             { return std::pair(a->subject_, a->name_) < std::pair(b->subject_, b->name_); });
   for (const Subcommand* subcommand : all)
   {
-    // "life age" comes after "life".
+    // "life age" must come after "life".
     const bool inner = subcommand->name_.find(' ') != std::string::npos;
     CommandNode& parent = inner ? root_->subcommands.back() : *root_;
     CommandNode& node = parent.subcommands.emplace_back();

@@ -22,14 +22,14 @@ enum class Subject
   DATA_SET
 };
 
-/// A subcommand of the tool. A static object of this type, at the end of the file that has its code, is all it takes to
-/// add one. "life age" is the subcommand `age` of the subcommand `life`.
+/// A subcommand of the tool. A static object of this type, at the end of the file with its code, adds the subcommand.
+/// "life age" is the subcommand `age` of the subcommand `life`.
 class Subcommand
 {
 public:
-  using Run = std::function<int()>;  ///< gives the exit code
+  using Run = std::function<int()>;  ///< returns the exit code
 
-  /// A subcommand with subcommands of its own.
+  /// Declares a subcommand that has subcommands.
   Subcommand(Subject subject, const char* name, const char* help)
     : Subcommand(subject, name, help, std::function<Run(OptionTable&)>())
   {
@@ -55,10 +55,9 @@ private:
   const Subject subject_;
   const std::string name_;
   const std::string help_;
-  const std::function<Run(OptionTable&)> declare_;  // empty: has subcommands
+  const std::function<Run(OptionTable&)> declare_;  // empty if it has subcommands
 };
 
-/// The command line of a program.
 class CommandLine
 {
 public:
@@ -68,14 +67,14 @@ public:
   OptionTable& root();
   void addSubcommands();
 
-  /// The subcommand given is one of this program, or only the version is asked for.
+  /// Whether the command line has a subcommand of this program, or asks only for the version.
   static bool knows(int argc, char** argv);
 
-  /// Fills the fields. @returns the exit code if the process ends here: help, version or wrong usage, which are
-  /// printed.
+  /// Parses the command line. @returns the exit code if the process ends here: after help, version or an error, which
+  /// are printed.
   std::optional<int> parse(int argc, char** argv);
 
-  /// Runs the subcommand that was chosen. @returns its exit code.
+  /// Runs the chosen subcommand. @returns its exit code.
   int run() const { return run_(); }
 
 private:

@@ -9,7 +9,7 @@ namespace hjt
 {
 void addJsonOption(OptionTable& table, bool& json)
 {
-  table.flag("--json", json, "one JSON document on stdout and nothing else there").group(COMMON_GROUP);
+  table.flag("--json", json, "print one JSON document on stdout and nothing else").group(COMMON_GROUP);
 }
 
 void addCommonOptions(OptionTable& table, CommonOptions& options)

@@ -21,15 +21,15 @@ struct CommonOptions : ConfigurationOptions
 void addJsonOption(OptionTable& table, bool& json);
 void addCommonOptions(OptionTable& table, CommonOptions& options);
 
-/// A warning on stderr for each value of the gear that does not go with the others.
+/// Prints a warning on stderr for each inconsistent value of the gear.
 void printGearWarnings(const Parameters& parameters);
 
-/// The parameters, with those warnings. @throws ParameterError.
+/// Loads the parameters and prints these warnings. @throws ParameterError.
 Parameters loadGear(const ConfigurationOptions& options);
 
-/// The same for an analysis, with the faults that it honours. @throws ParameterError if one cannot act in it.
+/// Loads the parameters for an analysis. @throws ParameterError if a fault cannot act in it.
 Parameters loadAnalysed(const ConfigurationOptions& options, Analysis analysis);
 
-/// Reports that no equilibrium was found for `what`, and why. @returns the exit code.
+/// Reports that there is no equilibrium for `what`, with the reason. @returns the exit code.
 int notConverged(const std::string& what, const SolveStatus& status);
 }  // namespace hjt

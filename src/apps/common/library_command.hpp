@@ -7,14 +7,14 @@
 
 namespace hjt
 {
-/// Options of a function of a library, on the command line.
+/// Options of a library function on the command line.
 template <class Options>
 struct Printed : Options
 {
-  bool json{};  ///< the result is printed as one document
+  bool json{};  ///< print the result as one document
 };
 
-/// The function's own options, and `--json`.
+/// Adds the function's options and `--json`.
 template <class Options>
 void declarePrinted(OptionTable& table, Printed<Options>& options)
 {
@@ -22,13 +22,13 @@ void declarePrinted(OptionTable& table, Printed<Options>& options)
   addJsonOption(table, options.json);
 }
 
-/// Progress and notices on stderr, of a command that writes no file: a signal ends its process at once.
+/// Watch with progress and notices on stderr, for a command that writes no file: a signal ends its process at once.
 Watch readingWatch();
-/// As `readingWatch`; signals that end the process otherwise stop the function, as long as it is kept.
+/// Watch like `readingWatch`; during its lifetime signals stop the function instead of the process.
 Watch consoleWatch();
 
-/// Gives the result of FUNCTION to PRINT, which gives the exit code. A signal ends FUNCTION; PARTS: what it has by then
-/// is printed too.
+/// Passes the result of FUNCTION to PRINT, which returns the exit code. A signal ends FUNCTION. PARTS: an incomplete
+/// result is printed too.
 template <auto FUNCTION, auto PRINT, bool PARTS, class Options>
 int runWatched(const Options& given)
 {

@@ -16,15 +16,16 @@ int printArmRun(const PrintedArmRun& options, const ArmRun& found)
 {
   if (found.joints.empty())
   {
-    std::cerr << "joint_twin: interrupted; " << options.out << " is not written\n";
+    std::cerr << "joint_twin: interrupted; " << options.out << " was not written\n";
     return EXIT_DONE;
   }
   Report report = reportOf(found);
   report.lines.insert(report.lines.begin(), { "output", "", options.out });
   printReport(options.json, report.lines, report.tables);
   warnOf(found.counters);
-  warn(found.feedback_limited, "times a joint's controller was at its limit (limits: feedback of the arm's file)");
-  warn(found.stop ? 1 : 0, "protective stop: the arm stands in its brakes from there on");
+  warn(found.feedback_limited,
+       "times the controller of a joint reached its limit (feedback in the limits of the arm's file)");
+  warn(found.stop ? 1 : 0, "protective stop; from then on the brakes hold the arm");
   const int written = reportWritten(options.out, options.json);
   return written == EXIT_DONE && found.stop ? EXIT_STOPPED : written;
 }
@@ -35,8 +36,9 @@ void declare(OptionTable& table, PrintedArmRun& options)
   table.find("--out")->required();
 }
 
-const Subcommand ARM{ Subject::JOINT, "arm", "run a whole arm in closed loop: its drives, links and controller",
-                      declare, runWatched<runArm, printArmRun, true, PrintedArmRun> };
+const Subcommand ARM{ Subject::JOINT, "arm",
+                      "simulate a whole arm in closed loop with its drives, links and controller", declare,
+                      runWatched<runArm, printArmRun, true, PrintedArmRun> };
 
 int checkup(const Printed<CheckUpOptions>& options)
 {
@@ -45,7 +47,7 @@ int checkup(const Printed<CheckUpOptions>& options)
 }
 
 const Subcommand CHECKUP{ Subject::JOINT, "checkup",
-                          "motion of an arm in which faults are seen best, within its limits of speed and torque",
+                          "motion of an arm that shows faults best, within its limits of speed and torque",
                           declarePrinted<CheckUpOptions>, checkup };
 }  // namespace
 }  // namespace hjt

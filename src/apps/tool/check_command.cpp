@@ -25,7 +25,7 @@ bool stops(const std::vector<RecordingFinding>& findings)
                      [](const RecordingFinding& finding) { return finding.stops.has_value(); });
 }
 
-/// Of a share, without a power of ten.
+/// Text of a percentage without a power of ten.
 std::string percentText(double share)
 {
   const double percent = 100.0 * share;
@@ -98,7 +98,7 @@ std::string textOfEffort(const CheckedContents& contents, const CheckedArm& arm)
              "changes with the load " + factor + " times as " + effortUnitName(arm.configured_effort) + " would";
 }
 
-/// Of the joints whose gains the recording states.
+/// Text on the joints whose gains the recording states.
 std::string textOfGains(const CheckedArm& arm)
 {
   std::string text;
@@ -145,7 +145,7 @@ void printLine(const char* label, const std::string& text)
   printWrapped(std::string(label) + std::string(12 - std::string(label).size(), ' ') + text, 0);
 }
 
-/// "fits" where nothing stands against the joint.
+/// "fits" if there is no finding on the joint.
 std::string textOfFinding(const CheckedArm& arm, const CheckedJoint& joint)
 {
   const auto first = std::find_if(joint.findings.begin(), joint.findings.end(),
@@ -189,10 +189,10 @@ void printJoints(const CheckedArm& arm)
 struct OpenJoints
 {
   std::vector<std::string> names;
-  std::string text;  ///< of all, or what comes before the first joint's numbers
+  std::string text;  ///< text for all, or the part before the first joint's numbers
 };
 
-/// Which joints a verdict will be of, and why not of the others; the numbers of several are those of `--json`.
+/// Prints which joints will have a verdict, and the reasons for the others; `--json` has the numbers of all.
 void printJudged(const CheckedArm& arm)
 {
   std::vector<std::string> judged;

@@ -26,7 +26,7 @@ Json toJson(const Parameters& parameters)
               [&](const std::string& key, const auto& first, const auto& second, const auto&... rest)
               {
                 Json& entry = json[key];
-                // Numbers come as (unit, value, range, meaning), all else as (value, meaning).
+                // Numbers have (unit, value, range, meaning), all other fields (value, meaning).
                 if constexpr (std::is_enum_v<std::decay_t<decltype(first)>>)
                 {
                   for (const auto& [name, choice] : choiceNames(first))
@@ -68,12 +68,12 @@ int describe(const ParametersOptions& options)
 
 void declare(OptionTable& table, ParametersOptions& options)
 {
-  table.flag("--markdown", options.markdown, "the table of keys, ranges and meanings instead");
+  table.flag("--markdown", options.markdown, "print the table of keys, ranges and meanings instead");
   addCommonOptions(table, options);
 }
 
-const Subcommand PARAMETERS{ Subject::DATA_SET, "parameters", "all parameters in force, with unit and meaning", declare,
-                             describe };
+const Subcommand PARAMETERS{ Subject::DATA_SET, "parameters", "print all parameters with value, unit and meaning",
+                             declare, describe };
 
 int faults(const CommonOptions& options)
 {

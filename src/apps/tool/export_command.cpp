@@ -37,22 +37,22 @@ struct ExportOptions : CommonOptions
   std::string identified;
 };
 
-/// What other simulators can hold of the joint; all at the joint.
+/// Properties of the joint that other simulators can represent, all at the joint.
 struct ExportedJoint
 {
-  std::string name;             ///< as XML writes it
-  double friction{};            ///< dry, of a straight line through the friction over the speed [N.m]
+  std::string name;             ///< name in XML
+  double friction{};            ///< dry part of the straight line through the friction over the speed [N.m]
   double damping{};             ///< slope of that line [N.m.s/rad]
-  double friction_deviation{};  ///< largest of the twin's friction from it [N.m]
-  double armature{};            ///< of motor and wave generator [kg.m^2]
-  double stiffness{};           ///< in series, secant between plus and minus the rated torque [N.m/rad]
-  double hysteresis{};          ///< dry friction beside it: half the height of the torsion loop [N.m]
-  double inertia{};             ///< of circular spline and load [kg.m^2]
+  double friction_deviation{};  ///< largest deviation of the twin's friction from the line [N.m]
+  double armature{};            ///< inertia of motor and wave generator at the joint [kg.m^2]
+  double stiffness{};           ///< series stiffness: secant between plus and minus the rated torque [N.m/rad]
+  double hysteresis{};          ///< dry friction in parallel to it: half the height of the torsion loop [N.m]
+  double inertia{};             ///< inertia of circular spline and load [kg.m^2]
   double effort{};              ///< largest torque [N.m]
   double velocity{};            ///< largest speed [rad/s]
 };
 
-/// Straight line through the friction without load, over the speeds that the joint can have.
+/// Fits a straight line to the friction without load over the speeds of the joint.
 void fitFriction(const Parameters& parameters, ExportedJoint& joint)
 {
   constexpr int SPEEDS = 20;
@@ -71,11 +71,11 @@ void fitFriction(const Parameters& parameters, ExportedJoint& joint)
   joint.friction_deviation = (line * fitted - friction).cwiseAbs().maxCoeff();
 }
 
-/// What the formats leave out, as the text of an XML comment.
+/// Comment of the XML file on what its format cannot represent.
 std::string missing(const ExportedJoint& joint, const Parameters& parameters, bool has_armature, bool has_stiffness)
 {
   const auto text = [](double value) { return roundedText(value, 4); };
-  std::string lines = "  Left out: friction by load and temperature (here: no load, " +
+  std::string lines = "  Not represented: friction by load and temperature (here: no load, " +
                       text(parameters.input.temperature) + " degC) and off its straight line (up to " +
                       text(joint.friction_deviation) + " N.m);\n  stiffness that grows with the torque, " +
                       (has_stiffness ? "hysteresis of small swings" : "hysteresis") +
@@ -110,13 +110,13 @@ std::string urdf(const ExportedJoint& joint, const Parameters& parameters)
 
 std::string sdfLink(const char* name, double inertia)
 {
-  // The mass turns about its own axis and counts for nothing.
+  // The mass rotates about its own axis and has no effect.
   return std::string("    <link name=\"") + name + "\">\n      <inertial><mass>1</mass><inertia>" +
          element("ixx", inertia) + element("iyy", inertia) + element("izz", inertia) +
          "<ixy>0</ixy><ixz>0</ixz><iyz>0</iyz></inertia></inertial>\n    </link>\n";
 }
 
-/// The motor's inertia is a link of its own, before the spring of the gear.
+/// The motor's inertia is a separate link before the spring of the gear.
 std::string sdf(const ExportedJoint& joint, const Parameters& parameters)
 {
   const std::string axis = "      <axis>\n        <xyz>0 0 1</xyz>\n        ";
@@ -144,7 +144,8 @@ std::string mjcfFriction(double friction)
   return attribute("frictionloss", friction) + " solimpfriction=\"0.9999 0.9999 0.001 0.5 2\"";
 }
 
-/// MuJoCo's own step, or a shorter one: 4 % of a period of motor against output on the spring. Stable is a third.
+/// Time step: that of MuJoCo, or 4 % of the period of motor against output on the spring if that is shorter. A third of
+/// the period is the limit of stability.
 double mjcfTimeStep(const ExportedJoint& joint)
 {
   constexpr double OWN = 0.002;
@@ -168,8 +169,8 @@ std::string mjcf(const ExportedJoint& joint, const Parameters& parameters)
          "\"/>\n  </actuator>\n</mujoco>\n";
 }
 
-/// Those libraries, by the beginning of their names, that this program has loaded and another system may lack; none
-/// where they are linked in.
+/// Paths of those libraries, by the beginnings of their names, that this program has loaded and another system may
+/// lack; empty if they are linked statically.
 std::vector<std::string> loadedLibraries(const std::vector<std::string>& names)
 {
   struct Search
@@ -262,14 +263,13 @@ void declare(OptionTable& table, ExportOptions& options)
 {
   table
       .add("--format", options.format,
-           "urdf, sdf, mjcf: a joint with its damping and friction, to stdout; fmu, fmu2: the twin itself as a "
-           "co-simulation unit of FMI 3.0 or 2.0, to --out")
+           "urdf, sdf, mjcf: a joint with its damping and friction, printed to stdout; fmu, fmu2: the twin itself as a "
+           "co-simulation unit of FMI 3.0 or 2.0, written to --out")
       .required()
       .choice({ "urdf", "sdf", "mjcf", "fmu", "fmu2" });
   table.add("--out", options.out, "file of the unit").type("FILE.fmu");
-  table.add("--arm", options.arm, "the unit is this whole arm, its drives, links and controller")
-      .type("NAME|FILE.yaml");
-  table.add("--identified", options.identified, "overlays of its joints, as `joint_twin identify --arm` writes them")
+  table.add("--arm", options.arm, "export this whole arm with its drives, links and controller").type("NAME|FILE.yaml");
+  table.add("--identified", options.identified, "directory of overlays that `joint_twin identify --arm` wrote")
       .type("DIR")
       .existingDirectory();
   table.flag("--force", options.force, "overwrite an existing file");

@@ -26,7 +26,7 @@ namespace hjt
 namespace
 {
 constexpr double ARCMIN = PI / 180.0 / 60.0;
-constexpr int DIGITS = 6;  // of a written value
+constexpr int DIGITS = 6;  // significant digits of a written value
 
 struct GearOptions : CommonOptions
 {
@@ -34,11 +34,10 @@ struct GearOptions : CommonOptions
   std::string out;
 };
 
-/// A figure of the catalogue beside that of the gear.
 struct Figure
 {
   std::string name;
-  double catalogue;  // 0: it has none
+  double catalogue;  // 0: the catalogue has none
   double gear;
   std::string unit;
 };
@@ -70,7 +69,7 @@ std::string yamlValue(const ParameterValue& value)
   return number ? rounded(*number) : valueText(value);
 }
 
-/// Of every parameter: meaning and unit.
+/// Meaning and unit of every parameter.
 std::map<std::string, std::string> meanings(const Parameters& parameters)
 {
   std::map<std::string, std::string> texts;
@@ -86,7 +85,7 @@ std::map<std::string, std::string> meanings(const Parameters& parameters)
   return texts;
 }
 
-/// The overlay, a comment above each value. @throws InputError if it cannot be written.
+/// Writes the overlay, with a comment above each value. @throws InputError if it cannot be written.
 void write(const GearOptions& options, const GearDesign& design, const Parameters& parameters, const std::string& title)
 {
   std::map<std::string, std::vector<DesignedParameter>> sections;
@@ -123,7 +122,8 @@ std::vector<Figure> figuresOf(const Parameters& designed, const GearFigures& cat
   {
     if (!row.status.ok())
     {
-      throw ParameterError("no equilibrium under " + numberText(row.torque) + " N.m: " + explanationOf(row.status));
+      throw ParameterError("there is no equilibrium under " + numberText(row.torque) +
+                           " N.m: " + explanationOf(row.status));
     }
     if (row.torque > 0.0)
     {
@@ -173,26 +173,34 @@ std::string invalidRatio(const std::string& text)
 
 void declare(OptionTable& table, GearOptions& options)
 {
-  table.add("--size", options.request.size, "of the gear, as catalogues count: 11, 14, 17, 20, 25, 32 ...")
+  table.add("--size", options.request.size, "size of the gear in a catalogue's numbers: 11, 14, 17, 20, 25, 32 ...")
       .range(5, 100);
-  table.add("--ratio", options.request.ratio, "with the circular spline held: half the flexspline's teeth")
+  table
+      .add("--ratio", options.request.ratio,
+           "ratio with the circular spline held: half the number of the flexspline's teeth")
       .check(invalidRatio);
   table.add("--bore-radius", options.request.bore_radius, "inner radius of the flexspline [m]").positive();
-  table.add("--rim-thickness", options.request.rim_thickness, "of the flexspline under the teeth [m]").positive();
+  table.add("--rim-thickness", options.request.rim_thickness, "thickness of the flexspline's rim under the teeth [m]")
+      .positive();
   table.add("--face-width", options.request.face_width, "length of the teeth [m]").positive();
-  table.add("--stiffness", options.request.stiffness, "K1,K2,K3 of your catalogue [N.m/rad]; else those known here");
-  table.add("--breakpoints", options.request.breakpoints, "T1,T2 of your catalogue [N.m]");
+  table.add("--stiffness", options.request.stiffness,
+            "K1,K2,K3 of your catalogue [N.m/rad]; default: those of the catalogue HFUS/CSF");
+  table.add("--breakpoints", options.request.breakpoints,
+            "torques T1,T2 of your catalogue, at which the stiffness changes [N.m]");
   table.add("--ratings", options.request.ratings,
             "torques of your catalogue: rated, average, repeated peak, momentary peak [N.m]");
-  table.add("--starting-torque", options.request.starting_torque, "of your catalogue, 20 degC [N.m]").positive();
-  table.add("--no-load-torque", options.request.no_load_torque, "of your catalogue, 2000 rpm, 20 degC [N.m]")
+  table.add("--starting-torque", options.request.starting_torque, "starting torque of your catalogue at 20 degC [N.m]")
       .positive();
-  table.add("--out", options.out, "overlay to write, for --config").type("FILE").required();
+  table
+      .add("--no-load-torque", options.request.no_load_torque,
+           "no-load torque of your catalogue at 2000 rpm and 20 degC [N.m]")
+      .positive();
+  table.add("--out", options.out, "file for the overlay, to be used with --config").type("FILE").required();
   addCommonOptions(table, options);
 }
 
-const Subcommand GEAR{ Subject::GEAR, "gear", "a whole gear by its size and ratio, as a configuration overlay", declare,
-                       gear };
+const Subcommand GEAR{ Subject::GEAR, "gear", "design a gear by its size and ratio, as a configuration overlay",
+                       declare, gear };
 
 std::vector<double> steps(Eigen::Index count, double step)
 {
@@ -273,7 +281,7 @@ std::vector<double> list(const Eigen::VectorXd& values)
   return { values.data(), values.data() + values.size() };
 }
 
-/// Fp: largest less smallest cumulative deviation [m].
+/// Fp: largest minus smallest cumulative deviation [m].
 double totalDeviation(const Eigen::VectorXd& pitch)
 {
   return pitch.maxCoeff() - pitch.minCoeff();
@@ -290,7 +298,7 @@ double singleDeviation(const Eigen::VectorXd& pitch)
   return largest;
 }
 
-/// In the form the parameters of the tables take.
+/// Writes the deviations in the form that the parameters of the tables need.
 void writePitch(const std::string& path, const Eigen::VectorXd& pitch)
 {
   CsvWriter csv(path, { "tooth", "deviation" });
@@ -335,8 +343,8 @@ int manufacture(const ManufactureOptions& options)
 
 void declare(OptionTable& table, ManufactureOptions& options)
 {
-  table.add("--flexspline-csv", options.flexspline_csv, "write the flexspline's pitch deviations").type("FILE");
-  table.add("--circular-spline-csv", options.circular_spline_csv, "write the circular spline's pitch deviations")
+  table.add("--flexspline-csv", options.flexspline_csv, "file for the flexspline's pitch deviations").type("FILE");
+  table.add("--circular-spline-csv", options.circular_spline_csv, "file for the circular spline's pitch deviations")
       .type("FILE");
   addCommonOptions(table, options);
 }

@@ -28,8 +28,8 @@ namespace
 {
 constexpr int JOINTS = 6;
 constexpr const char* TELEMETRY_TOPIC = "/joint_states";
-constexpr Stamp TEMPERATURE_PERIOD = 1'000'000'000;  // they hardly change [ns]
-/// Torque at the joint per motor current, of the size 3 joints, measured at rest [N.m/A].
+constexpr Stamp TEMPERATURE_PERIOD = 1'000'000'000;  // [ns]; temperatures change slowly
+/// Torque at the joint per motor current of the size 3 joints, measured at rest [N.m/A].
 constexpr double DEFAULT_GAIN = 10.7;
 
 struct ImportOptions : CommonOptions
@@ -43,8 +43,8 @@ struct ImportOptions : CommonOptions
   std::string joint_namespace{ DEFAULT_NAMESPACE };
 };
 
-/// The columns of a UR controller's real-time interface: timestamp, then per joint position, speed, current, torque
-/// and, where it was recorded, temperature.
+/// Columns of a UR controller's real-time interface: timestamp, then for each joint position, speed, current, torque
+/// and, if recorded, temperature.
 constexpr std::array<const char*, 5> QUANTITIES{ "actual_q", "actual_qd", "actual_current", "target_moment",
                                                  "joint_temperatures" };
 enum Quantity
@@ -77,7 +77,7 @@ NumberTable<ROW_COLUMNS>::Names columnNames()
   return names;
 }
 
-/// Turns rows into messages: telemetry and temperatures of all joints, the motor torque command and the load of one.
+/// Converts rows to messages: telemetry and temperatures of all joints, and motor torque command and load of one joint.
 class RowWriter
 {
 public:
@@ -99,7 +99,6 @@ public:
     load_ = command_;
   }
 
-  /// `temperatures`: the row has a column of them, by joint.
   void write(const Row& row, const std::array<bool, JOINTS>& temperatures)
   {
     const Stamp stamp = start_ + static_cast<Stamp>(std::llround(row[0] * 1e9));
@@ -108,7 +107,7 @@ public:
       const auto i = static_cast<std::size_t>(joint);
       telemetry_.position[i] = row[column(POSITION, joint)];
       telemetry_.velocity[i] = row[column(VELOCITY, joint)];
-      telemetry_.effort[i] = row[column(CURRENT, joint)];  // [A], as UR's driver publishes it
+      telemetry_.effort[i] = row[column(CURRENT, joint)];  // [A], as the driver of a UR publishes it
     }
     command_.effort[0] = row[column(CURRENT, joint_)] * torque_per_current_;
     load_.effort[0] = row[column(MOMENT, joint_)];
@@ -163,7 +162,7 @@ double countLines(const std::string& path)
   return static_cast<double>(std::count(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>(), '\n'));
 }
 
-/// All rows into the bag; the number of rows written. On an error the rows before it stay in a readable bag.
+/// Writes all rows to the bag. @returns the number of rows. On an error the rows before it stay in a readable bag.
 std::uint64_t importRows(const ImportOptions& options, const UrJoint& joint, double ratio,
                          NumberTable<ROW_COLUMNS>& table, BagWriter& bag)
 {
@@ -188,7 +187,7 @@ std::uint64_t importRows(const ImportOptions& options, const UrJoint& joint, dou
       }
       if (options.start_time + row[0] < 1e-9)
       {
-        throw InputError(table.place() + ": timestamp " + shortNumber(row[0]) + " s lies before the ROS epoch");
+        throw InputError(table.place() + ": timestamp " + shortNumber(row[0]) + " s is before the ROS epoch");
       }
       writer.write(row, temperatures);
       ++rows;
@@ -203,7 +202,7 @@ std::uint64_t importRows(const ImportOptions& options, const UrJoint& joint, dou
     }
     bag.close();
     throw InputError(std::string(error.what()) + (rows == 0 ? "; nothing was written" :
-                                                              "; " + options.out + " is readable and holds the " +
+                                                              "; " + options.out + " is readable and contains the " +
                                                                   std::to_string(rows) + " rows before it"));
   }
   bag.close();
@@ -244,18 +243,19 @@ void declare(OptionTable& table, ImportOptions& options)
                                            "' is no joint: base, shoulder, elbow, wrist_1, wrist_2, wrist_3, or "
                                            "0 ... 5";
           });
-  table.add("--out", options.out, "the bag").required().type("FILE.bag").endsIn({ ".bag" });
-  table.add("--gain", options.gain, "torque at the joint per current [N.m/A]");
-  table.add("--ratio", options.ratio, "of the recorded gear [-]; default: that of the configured one").positive();
+  table.add("--out", options.out, "file for the bag").required().type("FILE.bag").endsIn({ ".bag" });
+  table.add("--gain", options.gain, "torque at the joint per ampere of motor current [N.m/A]");
+  table.add("--ratio", options.ratio, "ratio of the recorded gear [-]; default: that of the configured gear")
+      .positive();
   table.add("--start-time", options.start_time, "ROS time of timestamp 0 [s]").range(0.0, 4e9);
   addNamespaceOption(table, options.joint_namespace);
   addCommonOptions(table, options);
 }
 
 const Subcommand IMPORT{ Subject::RECORDING, "import",
-                         "turn a UR controller's CSV recording (columns timestamp, actual_q_N, actual_qd_N, "
+                         "convert a UR controller's CSV recording (columns timestamp, actual_q_N, actual_qd_N, "
                          "actual_current_N, target_moment_N) "
-                         "into a bag for replay",
+                         "to a bag for replay",
                          declare, import };
 }  // namespace
 }  // namespace hjt

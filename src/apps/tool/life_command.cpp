@@ -20,7 +20,7 @@ namespace hjt
 namespace
 {
 const Subcommand LIFE{ Subject::STUDY, "life",
-                       "wear over years of a duty cycle, and how well remaining life is forecast" };
+                       "wear over years of a duty cycle, and accuracy of the forecast of remaining life" };
 
 struct LifeOptions : CommonOptions
 {
@@ -42,7 +42,6 @@ struct TrialsOptions : LifeOptions
   LifeTrialOptions trials;
 };
 
-/// Everything a life is computed from.
 struct LifeBench
 {
   explicit LifeBench(const LifeOptions& options)
@@ -66,7 +65,7 @@ struct LifeBench
   DriveAgeing ageing;
 };
 
-/// The nominal drive at one time of its use.
+/// The nominal drive at a time of its use.
 struct AgeRow
 {
   double hours{};
@@ -99,16 +98,16 @@ const std::vector<Column<AgeRow>> AGE_COLUMNS{
   fatigueColumn("fatigue_flange", StressPlace::FLANGE)
 };
 
-/// One place under one load: what the new flexspline bears in a turn, and for how long.
+/// Stress of the new flexspline at one place under one load over a turn, and the cycles to failure.
 struct FatigueRow
 {
   double torque{};
   std::size_t place{};
   StressCycle cycle;
-  double equivalent{};   ///< amplitude without mean stress, at the notch [Pa]
-  double cycles{};       ///< of half of all flexsplines; infinite below the endurance limit
-  double cycles_weak{};  ///< of the weakest hundredth
-  double allowed{};      ///< by the catalogue; infinite up to the repeated peak torque
+  double equivalent{};   ///< amplitude at zero mean stress that does the same damage at the notch [Pa]
+  double cycles{};       ///< cycles that half of all flexsplines endure; infinite below the endurance limit
+  double cycles_weak{};  ///< cycles that 99 % of all flexsplines endure
+  double allowed{};      ///< cycles that the catalogue allows; infinite up to the repeated peak torque
 };
 const std::vector<Column<FatigueRow>> FATIGUE_COLUMNS{
   { "torque", &FatigueRow::torque, "torque [N.m]" },
@@ -124,7 +123,7 @@ const std::vector<Column<FatigueRow>> FATIGUE_COLUMNS{
 
 std::vector<FatigueRow> fatigueRows(const Parameters& parameters, double torque, const RevolutionLoad& revolution_load)
 {
-  constexpr double WEAKEST_HUNDREDTH = -2.326;  // standard deviations
+  constexpr double WEAKEST_HUNDREDTH = -2.326;  // in standard deviations
   const FatigueLaw fatigue_law(parameters.life, parameters.stress);
   const double weak = std::exp(WEAKEST_HUNDREDTH * parameters.life.fatigue_spread);
   const auto lasts = [&](double share) { return 1.0 / fatigue_law.damage(share, false); };
@@ -143,7 +142,7 @@ std::vector<FatigueRow> fatigueRows(const Parameters& parameters, double torque,
   return rows;
 }
 
-/// A phase of the duty cycle and what the fresh drive bears in it.
+/// A phase of the duty cycle with the load of the new drive.
 struct FreshPhase
 {
   DutyPhase phase;
@@ -189,12 +188,12 @@ void declareFatigue(OptionTable& table, FatigueOptions& options)
 {
   table.add("--torques", options.torques,
             "loads at the output [N.m]; default: rated, repeated and momentary peak torque of the catalogue");
-  table.add("--positions", options.positions, "wave generator angles per tooth pitch").range(1, 100000);
+  table.add("--positions", options.positions, "number of wave generator angles in a tooth pitch").range(1, 100000);
   addCommonOptions(table, options);
 }
 
 const Subcommand FATIGUE{ Subject::STUDY, "life fatigue",
-                          "stress of the flexspline over a turn, and the cycles that it lasts", declareFatigue,
+                          "stress of the flexspline over a turn, and the cycles that it endures", declareFatigue,
                           fatigue };
 
 int age(const AgeOptions& options)
@@ -236,7 +235,7 @@ int age(const AgeOptions& options)
   return EXIT_DONE;
 }
 
-/// Every forecast of every drive that came to its end.
+/// Writes all forecasts of the drives whose life ended.
 void writeForecasts(const std::string& path, const std::vector<LifeTrial>& lives)
 {
   CsvWriter csv(path,
@@ -323,19 +322,20 @@ void declareLife(OptionTable& table, LifeOptions& options)
            "temperature [degC]")
       .required()
       .existingFile();
-  table.add("--hours", options.hours, "longest use [h]").range(1e-3, 1e9);
-  table.add("--positions", options.positions, "wave generator angles per tooth pitch that are averaged over")
+  table.add("--hours", options.hours, "longest duration of use [h]").range(1e-3, 1e9);
+  table.add("--positions", options.positions, "number of wave generator angles in a tooth pitch for the averages")
       .range(1, 100000);
-  table.flag("--grease-changes", options.grease_changes, "the grease is changed whenever it is due");
-  table.add("--csv", options.csv, "file to write the rows to");
+  table.flag("--grease-changes", options.grease_changes, "change the grease whenever it is due");
+  table.add("--csv", options.csv, "file for the rows");
   addCommonOptions(table, options);
 }
 
 void declareAge(OptionTable& table, AgeOptions& options)
 {
   declareLife(table, options);
-  table.add("--every", options.every, "hours between rows").range(1e-3, 1e9);
-  table.flag("--check", options.check, "also measure how far the map between the stages of wear is off (some seconds)");
+  table.add("--every", options.every, "hours of use between two rows").range(1e-3, 1e9);
+  table.flag("--check", options.check,
+             "also compute the error of the map between the stages of wear (takes some seconds)");
 }
 
 const Subcommand AGE{ Subject::STUDY, "life age", "the nominal drive, from new to the end of its use", declareAge,
@@ -346,14 +346,12 @@ void declareTrials(OptionTable& table, TrialsOptions& options)
   declareLife(table, options);
   LifeTrialOptions& trial = options.trials;
   table.add("--lives", trial.lives, "drives").range(1, 1000000);
-  table.add("--seed", trial.seed, "of all that is drawn");
+  table.add("--seed", trial.seed, "seed of all random draws");
   table.add("--every", trial.every, "hours of use between two assessments").range(1e-3, 1e9);
 }
 
-const Subcommand TRIALS{
-  Subject::STUDY, "life trials",
-  "drives drawn from the spread of the parameters, each watched by the forecast of its remaining life", declareTrials,
-  trials
-};
+const Subcommand TRIALS{ Subject::STUDY, "life trials",
+                         "drives drawn from the spread of the parameters, each with forecasts of its remaining life",
+                         declareTrials, trials };
 }  // namespace
 }  // namespace hjt

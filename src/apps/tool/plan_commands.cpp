@@ -38,9 +38,9 @@ namespace hjt
 {
 namespace
 {
-constexpr double SAMPLE = 1.0;  // length of a trial run by the clock [s]
+constexpr double SAMPLE = 1.0;  // computing time of a trial run [s]
 
-/// Notes which surfaces a twin asks for, and makes none.
+/// Records the surfaces that a twin requests, and makes none.
 class AskedSurfaces : public SurfacePool
 {
 public:
@@ -64,12 +64,12 @@ std::set<std::string> surfacesOf(const Parameters& parameters)
   }
   catch (const ParameterError&)
   {
-    // No equilibrium: a run that fails.
+    // The run has no equilibrium and will fail.
   }
   return asked->keys;
 }
 
-/// Surfaces that runs need and that are neither kept nor of runs before.
+/// Counts surfaces that runs need, that the cache lacks and that no earlier run needs.
 class MissingSurfaces
 {
 public:
@@ -78,11 +78,11 @@ public:
   struct OfBlock
   {
     double count{};
-    std::uint64_t first_run;     ///< the first that needs a surface; if none does, the block's first
-    std::size_t of_first_run{};  ///< surfaces that this run needs
+    std::uint64_t first_run;     ///< first run that needs a surface; if none does, the first run of the block
+    std::size_t of_first_run{};  ///< number of surfaces that this run needs
   };
 
-  /// Every run is looked at for a few seconds; those after are like the ones before.
+  /// Checks every run for a few seconds; the later ones are assumed to be like the earlier ones.
   OfBlock of(const Plan& plan, const Plan::Block& block)
   {
     using Clock = std::chrono::steady_clock;
@@ -119,11 +119,11 @@ public:
 
 private:
   std::string directory_;
-  std::set<std::uint64_t> drives_;  // looked at, by what shapes their surfaces
+  std::set<std::uint64_t> drives_;  // hashes of the checked drives
   std::set<std::string> known_;
 };
 
-/// Two digits, or the whole number.
+/// Two significant digits, or all digits of a large number.
 std::string rounded(double number)
 {
   constexpr double THREE_DIGITS = 99.5;
@@ -134,7 +134,7 @@ std::string shortTime(double seconds)
 {
   constexpr double MINUTE = 60.0;
   constexpr double HOUR = 3600.0;
-  constexpr double MANY = 100.0;  // larger values are shown in the next unit
+  constexpr double MANY = 100.0;  // larger values have the next unit
   return seconds < MANY          ? rounded(seconds) + " s" :
          seconds < MANY * MINUTE ? rounded(seconds / MINUTE) + " min" :
                                    rounded(seconds / HOUR) + " h";
@@ -145,8 +145,8 @@ void printWarning(const std::string& text)
   std::cerr << "warning: " << text << '\n';
 }
 
-/// Prints number, time and size of the plan's runs, tried on one of each class and duty cycle. Their response surfaces
-/// are built for it, and kept where the source keeps them. @throws InputError, ParameterError if one has no
+/// Prints number, time and size of the plan's runs from a trial of one run for each class and duty cycle. The
+/// trial builds the response surfaces, which the source may store. @throws InputError, ParameterError if a run has no
 /// equilibrium.
 void printExpectation(const Plan& plan, unsigned jobs)
 {
@@ -173,7 +173,7 @@ void printExpectation(const Plan& plan, unsigned jobs)
     const RunSpec spec = plan.run(block.first);
     const MissingSurfaces::OfBlock needed = missing.of(plan, block);
     const RunCost cost = simulation.sample(needed.first_run, SAMPLE);
-    // Those of the tried run are there from now on, unless none are kept.
+    // The surfaces of the trial run then exist, unless none are stored.
     const auto tried = static_cast<double>(needed.of_first_run);
     const double to_build = needed.count - (source.cache_directory.empty() ? 0.0 : tried);
     surfaces += to_build;
@@ -185,7 +185,7 @@ void printExpectation(const Plan& plan, unsigned jobs)
     std::cout << "runs " << block.first << " ... " << block.run(block.size - 1) << ": class " << spec.fault_class
               << ", duty " << spec.duty_name << ", " << rounded(cost.real_time_factor) << " times real time\n";
   }
-  // A surface is built on all processors.
+  // All processors build one surface.
   const double together = std::min<double>(
       { static_cast<double>(jobs), static_cast<double>(processors()), static_cast<double>(plan.runs()) });
   std::vector<NamedValue> values{ { "runs", std::to_string(plan.runs()), "" } };
@@ -236,9 +236,10 @@ void printList(const Plan& plan, const SweepCommandOptions& options)
 void declare(OptionTable& table, SweepCommandOptions& options)
 {
   addOptions(table, static_cast<SweepOptions&>(options));
-  table.flag("--dry-run", options.dry_run, "check every run, tell time and size to expect, run nothing");
-  table.flag("--list", options.list, "print the index with every run of the plan, run nothing");
-  table.flag("--json", options.json, "print the numbers of runs done, found and failed as one JSON document on stdout");
+  table.flag("--dry-run", options.dry_run, "check every run and print the expected time and size, without simulating");
+  table.flag("--list", options.list, "print the index with every run of the plan, without simulating");
+  table.flag("--json", options.json,
+             "print the numbers of done, present and failed runs as one JSON document on stdout");
 }
 
 void tellResult(const SweepCommandOptions& options, const SweepResult& result)
@@ -255,7 +256,7 @@ void tellResult(const SweepCommandOptions& options, const SweepResult& result)
   warn(result.rows_without_forces, WITHOUT_FORCES);
 }
 
-/// Of `work` or, where that is asked for, of the plan alone.
+/// Runs `work` on the plan, or only what the options ask for.
 int workOff(const SweepCommandOptions& given, SweepResult (*work)(const SweepOptions&))
 {
   if (given.list || given.dry_run)
@@ -296,9 +297,10 @@ int runLives(const SweepCommandOptions& options)
   return workOff(options, sweepLives);
 }
 
-const Subcommand SWEEP{ Subject::DATA_SET, "sweep", "run a plan of many runs: a labelled data set", declare, runPlan };
+const Subcommand SWEEP{ Subject::DATA_SET, "sweep", "simulate the runs of a plan: a labelled data set", declare,
+                        runPlan };
 const Subcommand LIVES{ Subject::DATA_SET, "lives",
-                        "drives from new to their end, with a check-up every so often: a data set of run to failure",
+                        "simulate lives of drives with check-ups at intervals of use: a run-to-failure data set",
                         declare, runLives };
 
 struct SignaturesOptions : CommonOptions
@@ -310,7 +312,7 @@ struct SignaturesOptions : CommonOptions
   unsigned jobs{ SweepOptions().jobs };
 };
 
-/// The runs of all plans; finished ones are kept. An interrupt ends it early.
+/// Simulates the runs of all plans; finished ones are kept. An interrupt ends it early.
 SweepResult workOff(const SignaturesOptions& options, const std::string& runs, const Watch& watch, SignatureRuns& found)
 {
   SweepOptions sweeping;
@@ -369,22 +371,21 @@ void declare(OptionTable& table, SignaturesOptions& options)
 {
   table
       .add("plans", options.plans,
-           "as of sweep, in bags: a class without faults, then classes of one fault each; several for motions or gears "
-           "of their own (docs/own_gear.md)")
+           "plans as for sweep, with format bag: a class without faults, then classes of one fault each; several plans "
+           "for motions or gears "
+           "that differ (docs/own_gear.md)")
       .required()
       .type("PLAN.yaml");
-  table.add("--out", options.out, "for parameter indicators.signatures").required().type("FILE.yaml");
-  table.add("--runs", options.runs, "directory of the runs; those that stand there finished are kept; default: none")
-      .type("DIR");
-  table.add("--add", options.add, "file of signatures that stay, those of the plans behind them; default: none")
+  table.add("--out", options.out, "file for parameter indicators.signatures").required().type("FILE.yaml");
+  table.add("--runs", options.runs, "directory of the runs; finished runs in it are kept; default: none").type("DIR");
+  table.add("--add", options.add, "file of signatures to which those of the plans are appended; default: none")
       .type("FILE.yaml");
   addJobsOption(table, options.jobs);
   addCommonOptions(table, options);
 }
 
-const Subcommand SIGNATURES{
-  Subject::DATA_SET, "signatures",
-  "what each fault changes in the health indicators of a gear, from runs with and without it", declare, signatures
-};
+const Subcommand SIGNATURES{ Subject::DATA_SET, "signatures",
+                             "changes of a gear's health indicators by each fault, from runs with and without it",
+                             declare, signatures };
 }  // namespace
 }  // namespace hjt

@@ -63,30 +63,31 @@ int printRemaining(const PrintedRemaining& options, const Remaining& found)
 }
 
 const Subcommand REMAINING{ Subject::RECORDING, "remaining",
-                            "use of a recorded joint, and how long a drive lasts that is used so",
+                            "use of a recorded joint, and the life of a drive with this use",
                             declarePrinted<RemainingOptions>,
                             runWatched<remaining, printRemaining, false, PrintedRemaining> };
 
-/// Options of a function that judges.
+/// Options of a function with a verdict.
 template <class Options>
 struct Judging : Printed<Options>
 {
-  std::string fail_on;  ///< warn, error or not-judged; empty: the exit code is no verdict
+  std::string fail_on;  ///< warn, error or not-judged; empty: the exit code does not depend on the verdict
 };
 
-/// The function's own options, `--json` and `--fail-on`.
+/// Adds the function's options, `--json` and `--fail-on`.
 template <class Options>
 void declareJudging(OptionTable& table, Judging<Options>& options)
 {
   declarePrinted<Options>(table, options);
   table
       .add("--fail-on", options.fail_on,
-           "exit code 3 if the verdict is this or worse, 4 if nothing can be judged; with not-judged 3 for a warning "
-           "and 4 for a joint that is not judged. Without it the verdict changes none")
+           "exit code 3 for this verdict or a worse one, 4 if nothing can be judged; with not-judged: 3 for a warning "
+           "or an error "
+           "and 4 for a joint that is not judged; default: the exit code does not depend on the verdict")
       .choice({ "warn", "error", "not-judged" });
 }
 
-/// Exit code of the process for a verdict.
+/// Exit code for a verdict.
 template <class Judged>
 int exitCodeOf(const std::string& fail_on, const Judged& found)
 {
@@ -99,7 +100,7 @@ int exitCodeOf(const std::string& fail_on, const Judged& found)
   return found.health >= least ? EXIT_DEPARTS : is_enough ? EXIT_DONE : EXIT_NOT_JUDGED;
 }
 
-/// The level, and for how many joints it does not speak.
+/// Text of the level, with the number of joints that are not judged.
 template <class Judged>
 std::string headlineOf(const Judged& found)
 {
@@ -156,7 +157,7 @@ int printCompared(const JudgedComparison& options, const ComparedRecording& comp
 }
 
 const Subcommand COMPARE{ Subject::RECORDING, "compare",
-                          "compares a recorded joint or arm with the twin: verdict, figures and data as a page",
+                          "compare a recorded joint or arm with the twin: verdict, figures and data as a page",
                           declareJudging<ComparisonOptions>,
                           runWatched<compare, printCompared, false, JudgedComparison> };
 
@@ -197,8 +198,8 @@ int printTrend(const JudgedTrend& options, const Trend& found)
 }
 
 const Subcommand TREND{ Subject::RECORDING, "trend",
-                        "friction of each joint over the recordings of months: whether it changes. The verdict is the "
-                        "worse of that and the latest recording's",
+                        "change of each joint's friction over recordings of months. The verdict is the "
+                        "worse one of this trend's and the latest recording's",
                         declareJudging<TrendOptions>, runWatched<trend, printTrend, false, JudgedTrend> };
 
 struct PrintedIdentify : Printed<IdentifyOptions>
@@ -216,7 +217,7 @@ int printIdentified(const PrintedIdentify& options, const Identified& identified
     printReport(options.json, whole.lines, whole.tables);
     return code;
   }
-  // The errors are a block of their own: its values are long, the names above are.
+  // The errors are a separate block, because their values are long and the names above are not.
   printReport(false, report.values.lines);
   std::cout << '\n';
   printReport(false, report.errors);
@@ -235,11 +236,11 @@ int runOfController(const PrintedIdentify& options)
 {
   if (options.train || options.judge || options.folds != 0)
   {
-    throw InputError("--controller takes all rows: none of --train, --judge and --folds");
+    throw InputError("--controller uses all rows and excludes --train, --judge and --folds");
   }
   if (options.load != LOAD_OF_ARM)
   {
-    throw InputError("--controller takes target_moment of the recording: no --load");
+    throw InputError("--controller uses the recording's target_moment and excludes --load");
   }
   const std::vector<IdentifiedController> joints = identifyController(options, options.out);
   const Report report = reportOf(joints);
@@ -249,7 +250,7 @@ int runOfController(const PrintedIdentify& options)
   return any ? EXIT_DONE : EXIT_FAILED;
 }
 
-/// The overload of a recording.
+/// Selects the overload for a recording.
 Identified identifyRecorded(const IdentifyOptions& options)
 {
   return identify(options);
@@ -266,8 +267,9 @@ void declare(OptionTable& table, PrintedIdentify& options)
   declarePrinted<IdentifyOptions>(table, options);
   table
       .flag("--controller", options.controller,
-            "in place of the drives: gains of the arm's controller, from a table that holds target and actual of all "
-            "joints, into DIR/controller.yaml, which `joint_twin arm --identified DIR` takes")
+            "identify the gains of the arm's controller instead of the drives, from a table with target and actual "
+            "values of all "
+            "joints; the result is DIR/controller.yaml for `joint_twin arm --identified DIR`")
       .needs("--arm");
 }
 

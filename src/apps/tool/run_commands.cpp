@@ -38,13 +38,13 @@ enum ProfileColumn
   COLUMNS
 };
 
-constexpr Range TIMES{ 0.0, 1e9 };  // a stamp holds them [s]
+constexpr Range TIMES{ 0.0, 1e9 };  // [s]; the range of a stamp
 
-/// Inputs of a simulation: motor torque, load and brake over time, each held until the next entry.
+/// Inputs of a simulation: motor torque, load and brake over time, each constant until the next entry.
 class TorqueProfile
 {
 public:
-  /// A constant torque from t = 0 on [N.m].
+  /// A constant torque from t = 0 [N.m].
   static TorqueProfile constant(double motor_torque)
   {
     TorqueProfile profile;
@@ -52,8 +52,8 @@ public:
     return profile;
   }
 
-  /// CSV with columns time [s, from 0 on, ascending], motor_torque [N.m] and, if wanted, load_torque [N.m] and brake (0
-  /// or 1). @throws InputError naming line and column.
+  /// Reads a CSV file with columns time [s, from 0, ascending], motor_torque [N.m] and optionally load_torque [N.m] and
+  /// brake (0 or 1). @throws InputError with line and column.
   static TorqueProfile fromFile(const std::string& path)
   {
     constexpr std::size_t OPTIONAL_COLUMNS = 2;
@@ -65,7 +65,7 @@ public:
     {
       if (row[TIME] < 0.0 || row[TIME] <= last)
       {
-        throw InputError(table.place() + ": column 'time' must start at 0 or later and ascend");
+        throw InputError(table.place() + ": column 'time' must be >= 0 and ascending");
       }
       table.requireRange(TIME, row[TIME], TIMES, "s");
       const auto stamp = static_cast<Stamp>(std::llround(row[TIME] * 1e9));
@@ -92,19 +92,19 @@ public:
 
   bool hasLoad() const { return has_load_; }
 
-  /// At t = 0 [N.m]
+  /// Sets the load at t = 0 [N.m].
   void setLoad(double load_torque)
   {
     has_load_ = true;
     inputs_.insert(inputs_.begin(), { 0, InputKind::LOAD_TORQUE, load_torque });
   }
 
-  Stamp duration() const { return inputs_.back().stamp; }  ///< up to the last entry [ns]
+  Stamp duration() const { return inputs_.back().stamp; }  ///< time of the last entry [ns]
 
-  /// Gives the twin, standing at its instant, what acts in its next step. `begin`: the instant of t = 0.
+  /// Commands what acts in the twin's next step. `begin`: instant of t = 0.
   void feed(Twin& twin, Stamp begin)
   {
-    // A profile holds its torque for any time; the command is repeated at every instant, so it does not time out.
+    // A profile holds its torque for any time. The command is repeated at every instant, so that it does not time out.
     twin.commandMotorTorque(twin.stamp(), motor_torque_);
     const Stamp end = twin.stamp() + twin.stepLength();
     for (; next_ < inputs_.size() && begin + inputs_[next_].stamp < end; ++next_)
@@ -116,7 +116,7 @@ public:
   }
 
 private:
-  std::vector<Input> inputs_;  ///< stamps from t = 0 on
+  std::vector<Input> inputs_;  ///< stamps from t = 0
   std::size_t next_{};
   bool has_load_{};
   double motor_torque_{};
@@ -140,14 +140,14 @@ TorqueProfile makeProfile(const SimulateOptions& options)
   {
     if (profile.hasLoad())
     {
-      throw InputError(options.profile + " has a column 'load_torque'; leave out --load");
+      throw InputError(options.profile + " has a column 'load_torque'; remove --load");
     }
     profile.setLoad(*options.load);
   }
   return profile;
 }
 
-/// One row per instant of joint_states.
+/// Writes one row for each instant of joint_states.
 class CsvRecorder
 {
 public:
@@ -253,7 +253,8 @@ int simulate(const SimulateOptions& options)
   }
   if (recorded == 0 && interruptSignal() == 0)
   {
-    throw InputError(options.out + " holds nothing: the run of " + shortNumber(toSeconds(end - summary.begin)) +
+    throw InputError(options.out + " would be empty, because the run of " +
+                     shortNumber(toSeconds(end - summary.begin)) +
                      " s is shorter than a period of publish.joint_states_rate = " +
                      shortNumber(parameters.publish.joint_states_rate) + " Hz");
   }
@@ -266,12 +267,13 @@ void declare(OptionTable& table, SimulateOptions& options)
   table.add("--torque", options.torque, "constant motor torque [N.m]").needs("--duration");
   table
       .add("--profile", options.profile,
-           "CSV with columns time [s], motor_torque [N.m] and, if wanted, load_torque [N.m], brake (0 or 1); each row "
-           "holds until the next")
+           "CSV file with columns time [s], motor_torque [N.m] and optionally load_torque [N.m], brake (0 or 1); each "
+           "row "
+           "is valid until the next")
       .type("FILE.csv");
   table.oneOf({ "--torque", "--profile" });
   table.add("--load", options.load, "constant external torque at the output; > 0 resists positive motion [N.m]");
-  table.add("--out", options.out, "bag with the node's topics, or CSV with a row per joint_states")
+  table.add("--out", options.out, "bag with the node's topics, or CSV file with a row for each instant of joint_states")
       .required()
       .type("FILE.bag|FILE.csv")
       .endsIn({ ".bag", ".csv" });
@@ -282,7 +284,7 @@ void declare(OptionTable& table, SimulateOptions& options)
 
 const Subcommand SIMULATE{ Subject::JOINT, "simulate", "run the twin under a given torque", declare, simulate };
 
-/// Of a recording; more is a damaged time of recording, and the twin would simulate years [s].
+/// Longest recording [s]. A longer one has a damaged time of recording, and the twin would simulate years.
 constexpr double MAX_RECORDING = 1e6;
 
 struct ReplayOptions : CommonOptions
@@ -293,8 +295,8 @@ struct ReplayOptions : CommonOptions
   bool without_command{};
 };
 
-/// The response surface is off by less than the topics' sensors resolve, and a hundred times as fast: replayed on it
-/// unless a file or --set says otherwise. Each Health message tells which it was.
+/// Default configuration of a replay: the response surface, whose error is below the resolution of the topics' sensors,
+/// and which is a hundred times as fast. A file or --set may change it. Each Health message says which was used.
 ParameterMap replayedMap(const ReplayOptions& options)
 {
   ParameterMap map = defaultParameterMap(options);
@@ -303,7 +305,7 @@ ParameterMap replayedMap(const ReplayOptions& options)
   return map;
 }
 
-/// True if a file or --set other than the default configuration names the joint.
+/// Whether a file or --set other than the default configuration names the joint.
 bool jointIsChosen(const ReplayOptions& options, const ParameterMap& map)
 {
   CommonOptions defaults;
@@ -316,8 +318,9 @@ bool jointIsChosen(const ReplayOptions& options, const ParameterMap& map)
 {
   if (!found.other_joints.empty())
   {
-    throw InputError(options.bag + " commands other joints (" + joined(found.other_joints) + ") than joint.name = " +
-                     joint + "; choose one with --set joint.name=NAME or an overlay of config/joints");
+    throw InputError(options.bag + " contains commands for other joints ( " + joined(found.other_joints) +
+                     ") than joint.name = " + joint +
+                     "; choose one with --set joint.name=NAME or an overlay of config/joints");
   }
   throw InputError(options.bag + " has no motor torque on an input topic (" +
                    joined(inputTopics(options.joint_namespace)) +
@@ -326,7 +329,7 @@ bool jointIsChosen(const ReplayOptions& options, const ParameterMap& map)
                    listTopics(bag));
 }
 
-/// Whether the bag holds what is replayed: a motor torque, or any input if that is left out on purpose.
+/// Whether the bag contains what is replayed: a motor torque or, with --without-command, any input.
 bool suffices(const BagInputs& found, const ReplayOptions& options)
 {
   return std::any_of(found.inputs.begin(), found.inputs.end(),
@@ -337,7 +340,7 @@ bool suffices(const BagInputs& found, const ReplayOptions& options)
                      });
 }
 
-/// @throws InputError where damage makes the recording last for years.
+/// @throws InputError if the recording lasts for years because of damage.
 void checkSpan(const rosbag::Bag& bag, const std::string& path)
 {
   rosbag::View view(bag);
@@ -349,7 +352,7 @@ void checkSpan(const rosbag::Bag& bag, const std::string& path)
   }
 }
 
-/// The torques of the bag. If it commands one joint only and the user has not named one, `parameters` takes its name.
+/// Inputs of the bag. If it commands only one joint and the user has named none, `parameters` gets its name.
 BagInputs requireInputs(const rosbag::Bag& bag, const ReplayOptions& options, const ParameterMap& map,
                         Parameters& parameters)
 {
@@ -375,14 +378,14 @@ BagInputs requireInputs(const rosbag::Bag& bag, const ReplayOptions& options, co
   return found;
 }
 
-/// The twin beside the recording: copies each original message, and up to its time the simulated ones.
+/// A twin along a recording: copies each original message, after the simulated ones up to its time.
 class Replay
 {
 public:
   Replay(const rosbag::Bag& bag, Twin& twin, const std::vector<TwinInput>& inputs, const ReplayOptions& options)
     : view_(bag), twin_(twin), inputs_(inputs), writer_(options.out), recorder_(twin, options.joint_namespace, writer_)
   {
-    // The last input may be stamped after the last message was recorded, but the recording ends there.
+    // The last input may have a stamp after the last time of recording, but the recording ends there.
     end_ = fromRosTime(view_.getEndTime());
     begin_ = twin.stamp();
   }
@@ -417,7 +420,7 @@ private:
     }
   }
 
-  /// Feeds the messages that are due at the twin's next instant.
+  /// Passes on the inputs that are due at the twin's next instant.
   void feed()
   {
     const Stamp instant = twin_.stamp() + twin_.stepLength();
@@ -462,11 +465,11 @@ int replay(const ReplayOptions& options)
   {
     if (!run.isOpen())
     {
-      throw;  // the output itself
+      throw;  // an error of the output itself
     }
     run.close();
     throw InputError(options.bag + ": replay stopped: " + error.what() + "; " + options.out +
-                     " is readable and holds what came before");
+                     " is readable and contains the messages before");
   }
   return summary.report(twin, options.json);
 }
@@ -479,13 +482,13 @@ void declare(OptionTable& table, ReplayOptions& options)
       .type("OUT.bag")
       .endsIn({ ".bag" });
   table.flag("--without-command", options.without_command,
-             "replay a bag without motor torque: its load torques and faults alone");
+             "replay a bag without motor torque: only its load torques and faults");
   addNamespaceOption(table, options.joint_namespace);
   addFaultOption(table, options);
   addCommonOptions(table, options);
 }
 
 const Subcommand REPLAY{ Subject::RECORDING, "replay",
-                         "run the twin through a bag; every original message is kept as it is", declare, replay };
+                         "run the twin along a bag; every original message is kept unchanged", declare, replay };
 }  // namespace
 }  // namespace hjt

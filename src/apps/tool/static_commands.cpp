@@ -16,7 +16,7 @@ namespace hjt
 {
 namespace
 {
-/// One quantity of every tooth: its name in files and documents, its place in the table.
+/// A quantity of every tooth: its name in files and documents, and its member of the table.
 struct ToothColumn
 {
   const char* name;
@@ -33,7 +33,7 @@ const std::vector<ToothColumn> RING_COLUMNS{ { "tooth_x", &ToothTable::tooth_x }
                                              { "stress_tooth_space", &ToothTable::stress_tooth_space },
                                              { "stress_transition", &ToothTable::stress_transition },
                                              { "stress_flange", &ToothTable::stress_flange } };
-/// Only where there is a circular spline.
+/// Only with a circular spline.
 const std::vector<ToothColumn> SPACE_COLUMNS{ { "across", &ToothTable::across },
                                               { "depth", &ToothTable::depth },
                                               { "tilt", &ToothTable::tilt },
@@ -56,7 +56,7 @@ std::vector<std::string> headings(std::vector<std::string> leading, const std::v
   return leading;
 }
 
-/// One line a tooth, each begun with `leading`.
+/// Writes one line for each tooth, each beginning with `leading`.
 void writeTeeth(CsvWriter& csv, const std::vector<double>& leading, const ToothTable& teeth,
                 const std::vector<ToothColumn>& columns)
 {
@@ -110,13 +110,13 @@ int insert(const InsertOptions& options)
 
 void declareInsert(OptionTable& table, InsertOptions& options)
 {
-  table.add("--csv", options.csv, "write positions and forces of every tooth").type("FILE");
+  table.add("--csv", options.csv, "file for positions and forces of every tooth").type("FILE");
   addFaultOption(table, options);
   addCommonOptions(table, options);
 }
 
 const Subcommand INSERT{ Subject::GEAR, "insert",
-                         "static equilibrium after the wave generator's insertion, circular spline left out",
+                         "static equilibrium after the wave generator's insertion, without circular spline",
                          declareInsert, insert };
 
 struct StiffnessOptions : CommonOptions
@@ -159,7 +159,7 @@ void writeTeeth(const std::string& path, const std::vector<StiffnessRow>& rows)
   csv.close();
 }
 
-/// The three places of a row, each with its nominal stresses and those at the notch.
+/// The three places of a row, each with its nominal stresses and the stresses at the notch.
 Json stressJson(const Parameters& parameters, const StiffnessRow& row)
 {
   const FatigueLaw fatigue_law(parameters.life, parameters.stress);
@@ -177,7 +177,7 @@ Json stressJson(const Parameters& parameters, const StiffnessRow& row)
   return json;
 }
 
-/// The largest stress at a notch [Pa].
+/// Largest stress at a notch [Pa].
 double largestStress(const Parameters& parameters, const StiffnessRow& row)
 {
   double largest = 0.0;
@@ -223,17 +223,19 @@ void declareStiffness(OptionTable& table, StiffnessOptions& options)
 {
   table
       .add("--torques", options.torques,
-           "loads on the circular spline, e.g. 5,14,48 [N.m]; > 0 turns the output towards negative angles, as a load "
+           "loads on the circular spline, for example 5,14,48 [N.m]; > 0 turns the output towards negative angles, as "
+           "a load "
            "that resists positive motion does")
       .required();
   table.add("--angle", options.angle, "wave generator angle [rad]");
-  table.add("--csv", options.csv, "write positions and forces of every tooth at every torque").type("FILE");
+  table.add("--csv", options.csv, "file for positions and forces of every tooth at every torque").type("FILE");
   addFaultOption(table, options);
   addCommonOptions(table, options);
   table
       .flag("--teeth", options.teeth,
-            "every tooth's forces [N], nominal stresses [Pa], place in its space [m], tilt [rad] and gap to the nearer "
-            "flank [m]; with --json")
+            "with --json, add every tooth's forces [N], nominal stresses [Pa], position in its space [m], tilt [rad] "
+            "and gap to the nearer "
+            "flank [m]")
       .needs("--json");
 }
 
@@ -275,23 +277,23 @@ int turn(const TurnOptions& options)
 void declareTurn(OptionTable& table, TurnOptions& options)
 {
   table.add("--load", options.load, "load on the circular spline [N.m]").required();
-  table.add("--angle-range", options.angle_range, "wave generator turns from 0 to this [rad]").required();
-  table.add("--steps", options.steps, "steps of equal size").required().range(1, 1e8);
+  table.add("--angle-range", options.angle_range, "angle to which the wave generator turns from 0 [rad]").required();
+  table.add("--steps", options.steps, "number of equal steps").required().range(1, 1e8);
   addFaultOption(table, options);
   addCommonOptions(table, options);
 }
 
-const Subcommand TURN{ Subject::GEAR, "turn", "quasi-static turning at constant load, friction left out", declareTurn,
+const Subcommand TURN{ Subject::GEAR, "turn", "quasi-static turning at constant load, without friction", declareTurn,
                        turn };
 
 struct PitchOptions : CommonOptions
 {
-  int positions{ 16 };  // wave generator angles per tooth pitch
+  int positions{ 16 };  // wave generator angles in a tooth pitch
 };
 
 void declarePitch(OptionTable& table, PitchOptions& options)
 {
-  table.add("--positions", options.positions, "wave generator angles per tooth pitch that are averaged over")
+  table.add("--positions", options.positions, "number of wave generator angles in a tooth pitch for the averages")
       .range(1, 100000);
   addFaultOption(table, options);
   addCommonOptions(table, options);
@@ -340,8 +342,8 @@ int losses(const LossesOptions& options)
 
 void declareLosses(OptionTable& table, LossesOptions& options)
 {
-  table.add("--speeds", options.speeds, "motor speeds, e.g. 50,209.4 [rad/s]").required();
-  table.add("--loads", options.loads, "loads on the circular spline, e.g. 0,20,87 [N.m]").required();
+  table.add("--speeds", options.speeds, "motor speeds, for example 50,209.4 [rad/s]").required();
+  table.add("--loads", options.loads, "loads on the circular spline, for example 0,20,87 [N.m]").required();
   declarePitch(table, options);
 }
 
@@ -364,8 +366,8 @@ int breakaway(const PitchOptions& options)
 }
 
 const Subcommand BREAKAWAY{ Subject::GEAR, "breakaway",
-                            "torques at which the gear begins to move: started and driven back", declarePitch,
-                            breakaway };
+                            "torques at which the gear begins to move, from the wave generator and from the output",
+                            declarePitch, breakaway };
 
 struct HysteresisOptions : CommonOptions
 {
@@ -400,16 +402,16 @@ void declareHysteresis(OptionTable& table, HysteresisOptions& options)
   table.add("--amplitude", options.amplitude, "largest load [N.m]").required().positive();
   table
       .add("--lost-motion-torque", options.lost_motion_torque,
-           "lost motion is taken between plus and minus this load, e.g. 4 % of the rated one [N.m]")
+           "load of the lost motion, plus and minus, for example 4 % of the rated torque [N.m]")
       .required()
       .positive();
-  table.add("--steps", options.steps, "angles of one sweep").range(2, 1000000);
+  table.add("--steps", options.steps, "number of angles of one sweep").range(2, 1000000);
   addFaultOption(table, options);
   addCommonOptions(table, options);
 }
 
 const Subcommand HYSTERESIS{ Subject::GEAR, "hysteresis",
-                             "torsion to and fro, wave generator locked, with the friction of the teeth",
+                             "torsion under a load that cycles, wave generator locked, with the friction of the teeth",
                              declareHysteresis, hysteresis };
 }  // namespace
 }  // namespace hjt

@@ -26,7 +26,7 @@ const std::map<std::string, RingMethod> METHODS{ { "rk4", RingMethod::RUNGE_KUTT
 
 int stopped(double time)
 {
-  std::cerr << "joint_twin: the ring could not be marched beyond " << time
+  std::cerr << "joint_twin: the integration of the ring failed at " << time
             << " s; a shorter --step may help (rk4 needs less than 2.8 over the stiffest mode's angular frequency)\n";
   return EXIT_FAILED;
 }
@@ -36,7 +36,7 @@ void requireEstimate(const std::string& method, double tolerance)
   if (tolerance > 0.0 && !judgesItsError(METHODS.at(method)))
   {
     throw InputError("--tolerance " + shortNumber(tolerance) + " [m]: " + method +
-                     " does not judge its error; tr_bdf2 and esdirk4 do");
+                     " has no error estimate; tr_bdf2 and esdirk4 have one");
   }
 }
 
@@ -51,10 +51,11 @@ void declareMethod(OptionTable& table, std::string& method, double& step, double
       .add("--method", method,
            "rk4: explicit of order 4 (Boost.odeint); implicit_euler, tr_bdf2, esdirk4: implicit of order 1, 2, 4")
       .choice(names);
-  table.add("--step", step, "of time [s]").positive();
+  table.add("--step", step, "time step [s]").positive();
   table
       .add("--tolerance", tolerance,
-           "error of a tooth's position by one step [m]: the steps are chosen by it, --step is the longest")
+           "largest error of a tooth's position in one step [m]; the step length follows from it, and --step is the "
+           "largest one")
       .positive();
 }
 
@@ -83,7 +84,7 @@ int transient(const TransientOptions& options)
   requireEstimate(options.method, setup.tolerance);
   if (setup.window_start >= setup.duration)
   {
-    throw InputError("--window " + shortNumber(setup.window_start) + " [s] must lie before the end, --duration " +
+    throw InputError("--window " + shortNumber(setup.window_start) + " [s] must be before the end, --duration " +
                      shortNumber(setup.duration) + " [s]");
   }
   requireWritable(options.csv, options.force);
@@ -125,15 +126,18 @@ void declareTransient(OptionTable& table, TransientOptions& options)
   TransientSetup& setup = options.setup;
   declareMethod(table, options.method, setup.step, setup.tolerance);
   table.add("--duration", setup.duration, "simulated time [s]").positive();
-  table.add("--window", setup.window_start, "from here to the end the largest force is summed up [s]").positive();
+  table
+      .add("--window", setup.window_start,
+           "beginning of the window for statistics of the largest force; it lasts to the end [s]")
+      .positive();
   table.add("--sample", setup.sample_period, "time between two rows of the series [s]").positive();
-  table.add("--csv", options.csv, "write the series").type("FILE");
+  table.add("--csv", options.csv, "file for the series").type("FILE");
   addCommonOptions(table, options);
 }
 
 const Subcommand TRANSIENT{ Subject::STUDY, "transient",
-                            "insertion of the wave generator as motion, every tooth a mass: the amplitude grows at "
-                            "constant speed, then stays; circular spline left out",
+                            "insertion of the wave generator with a mass at every tooth: the amplitude grows at "
+                            "constant speed and then stays constant; without circular spline",
                             declareTransient, transient };
 
 struct DynamicsOptions : CommonOptions
@@ -210,11 +214,11 @@ int dynamics(const DynamicsOptions& options)
 void declareDynamics(OptionTable& table, DynamicsOptions& options)
 {
   QuasiStaticSetup& setup = options.setup;
-  table.add("--speed", setup.speed, "of the wave generator [rad/s]");
-  table.add("--load", setup.load, "on the circular spline [N.m]");
+  table.add("--speed", setup.speed, "speed of the wave generator [rad/s]");
+  table.add("--load", setup.load, "load on the circular spline [N.m]");
   declareMethod(table, options.method, setup.step, setup.tolerance);
-  table.add("--settle", setup.settle_time, "time before the comparison starts [s]").range(0.0, 1e9);
-  table.add("--duration", setup.duration, "time over which is compared [s]").positive();
+  table.add("--settle", setup.settle_time, "time before the first comparison [s]").range(0.0, 1e9);
+  table.add("--duration", setup.duration, "duration of the comparison [s]").positive();
   table.add("--every", setup.compare_period, "time between two comparisons [s]").positive();
   addCommonOptions(table, options);
 }
@@ -222,7 +226,7 @@ void declareDynamics(OptionTable& table, DynamicsOptions& options)
 const Subcommand DYNAMICS{
   Subject::STUDY, "dynamics",
   "turning with a mass at every tooth, compared with the ring in equilibrium; wave generator at "
-  "constant speed, constant load, dry friction left out",
+  "constant speed, constant load, without dry friction",
   declareDynamics, dynamics
 };
 
@@ -278,9 +282,10 @@ int ratchet(const RatchetOptions& options)
                               { "rows", "", Table(RATCHET_COLUMNS, result.rows).rows() } });
   if (result.end == RatchetEnd::NO_EQUILIBRIUM)
   {
-    std::cerr << "joint_twin: the search gave up: no equilibrium found a step of " << shortNumber(options.angle_step)
-              << " rad beyond " << shortNumber(result.rows.empty() ? 0.0 : result.rows.back().output_angle)
-              << " rad; the torque has not fallen, the largest is a lower bound of the jump\n";
+    std::cerr << "joint_twin: the search ended, because the ring has no equilibrium one step of "
+              << shortNumber(options.angle_step) << " rad beyond "
+              << shortNumber(result.rows.empty() ? 0.0 : result.rows.back().output_angle)
+              << " rad; the torque has not decreased, so its largest value is a lower bound of the jump\n";
     return EXIT_FAILED;
   }
   return EXIT_DONE;
@@ -290,19 +295,21 @@ void declare(OptionTable& table, RatchetOptions& options)
 {
   table
       .add("--lobe-stiffness", options.lobe_stiffness,
-           "radial stiffness of each lobe with plug and circular spline in its housing, some 1e8 at size 25 "
-           "(docs/model.md, Jump) [N/m]; default rigid, which makes the largest torque an upper bound")
+           "radial stiffness of each lobe with its support in plug, circular spline and housing, about 1e8 at size 25 "
+           "(docs/model.md, Jump) [N/m]; default: rigid, for which the largest torque is an upper bound")
       .range(1e3, 1e15);
   table.add("--angle", options.angle, "wave generator angle [rad]");
   table.add("--angle-step", options.angle_step, "step of the output angle [rad]").range(1e-6, 1e-2);
-  table.add("--torque-limit", options.torque_limit, "ends the search if nothing has jumped [N.m]").range(1.0, 1e6);
+  table.add("--torque-limit", options.torque_limit, "torque at which the search ends without a jump [N.m]")
+      .range(1.0, 1e6);
   addFaultOption(table, options);
   addCommonOptions(table, options);
 }
 
 const Subcommand RATCHET{
   Subject::GEAR, "ratchet",
-  "jump of the teeth: wave generator locked, output driven until the torque falls, friction left out", declare, ratchet
+  "jump of the teeth: wave generator locked, output moved until the torque decreases, without friction", declare,
+  ratchet
 };
 }  // namespace
 }  // namespace hjt

@@ -12,7 +12,7 @@ namespace hjt
 {
 namespace
 {
-/// Applies `change` to the entry of a place, or to all for WHOLE_MEMBER.
+/// Applies `change` to the entry of a place, or to all entries for WHOLE_MEMBER.
 template <class Change>
 void atPlace(int place, Eigen::VectorXd& values, const Change& change) noexcept
 {
@@ -25,9 +25,9 @@ void atPlace(int place, Eigen::VectorXd& values, const Change& change) noexcept
   }
 }
 
-// The rim.
+// Faults of the rim.
 
-/// A crack into the rim behind a tooth, `severity` times fault_scale.rim_crack_depth of its thickness.
+/// A crack in the rim behind a tooth, with the depth `severity` times fault_scale.rim_crack_depth of the thickness.
 void crackRim(int segment, double severity, const Parameters& parameters, RingModel& ring) noexcept
 {
   const double left = 1.0 - severity * parameters.fault_scale.rim_crack_depth;
@@ -50,7 +50,7 @@ void crackFlexspline(const Fault& fault, const Parameters& parameters, JointMode
   }
 }
 
-/// Worn rim and race stand back from each other, and slip more roughly: over one segment in proportion.
+/// Wear leaves a gap between rim and race and increases their friction. A worn segment contributes its share.
 void wearInterface(const Fault& fault, const Parameters& parameters, JointModel& joint) noexcept
 {
   const double part = fault.place == WHOLE_MEMBER ? 1.0 : 1.0 / parameters.gear.teeth_flexspline;
@@ -60,7 +60,7 @@ void wearInterface(const Fault& fault, const Parameters& parameters, JointModel&
                                  fault.severity * part * (parameters.fault_scale.interface_friction_factor - 1.0));
 }
 
-/// The free rim would stand in waves e cos(n psi): its curvature changes by (n^2 - 1) e cos(n psi) / r^2.
+/// The free rim would have waves e cos(n psi), which change its curvature by (n^2 - 1) e cos(n psi) / r^2.
 void buckle(const Fault& fault, const Parameters& parameters, JointModel& joint) noexcept
 {
   const FaultScaleParameters& scale = parameters.fault_scale;
@@ -76,10 +76,10 @@ void buckle(const Fault& fault, const Parameters& parameters, JointModel& joint)
   joint.ring.edit<CupTorsion>().scaleWall(1.0 - fault.severity * scale.buckling_stiffness_loss);
 }
 
-// The cup.
+// Faults of the cup.
 
-/// A crack round a part x of the circumference: the rest carries the torque, so the part of the wall that it lies in is
-/// softer by 1/(1 - x). `share`: of that part in the wall's compliance. The faces of the crack rub on each other.
+/// A crack around a part x of the circumference. The rest carries the torque, so that the cracked part of the wall is
+/// softer by 1/(1 - x). `share`: share of that part in the wall's compliance. The faces of the crack rub on each other.
 void crackCup(const Fault& fault, double share, const Parameters& parameters, JointModel& joint) noexcept
 {
   const double cracked = fault.severity * parameters.fault_scale.cup_crack_fraction;
@@ -97,7 +97,7 @@ void crackFlange(const Fault& fault, const Parameters& parameters, JointModel& j
   crackCup(fault, parameters.fault_scale.flange_share, parameters, joint);
 }
 
-// The grease.
+// Faults of the grease.
 
 void degradeLubricant(const Fault& fault, const Parameters& parameters, JointModel& joint) noexcept
 {
@@ -107,24 +107,24 @@ void degradeLubricant(const Fault& fault, const Parameters& parameters, JointMod
   joint.interface_friction.scale(friction);
 }
 
-// The teeth.
+// Faults of the teeth.
 
-/// Stiffness of a tooth pair, to that of a sound one, whose flexspline tooth has `bending` of its stiffness in bending
-/// left: that part of the pair's compliance grows, the rest stays.
+/// Stiffness of a tooth pair relative to a sound one, if the bending stiffness of the flexspline's tooth is reduced to
+/// `bending`. `share`: share of that bending in the pair's compliance.
 double softened(double bending, double share) noexcept
 {
   return bending / (bending + share * (1.0 - bending));
 }
 
-/// Stiffness in bending left of a tooth, a cantilever, that has lost `loss` of its thickness.
+/// Remaining bending stiffness of a tooth, a cantilever, with its thickness reduced by `loss`.
 double thinned(double loss) noexcept
 {
   const double left = loss < 1.0 ? 1.0 - loss : 0.0;
   return left * left * left;
 }
 
-/// The same of one that a crack along its middle has split over `length` of its height from the tip on: there two
-/// leaves of half its thickness bend, four times as much, under a force at the tip.
+/// Remaining bending stiffness of a tooth that a crack along its middle has split over `length` of its height from the
+/// tip. The two leaves of half the thickness bend four times as much under a force at the tip.
 double split(double length) noexcept
 {
   return 1.0 / (1.0 + 3.0 * length * length * length);
@@ -134,7 +134,7 @@ void wearTeeth(const Fault& fault, const Parameters& parameters, JointModel& joi
   const GearParameters& gear = parameters.gear;
   const double across =
       fault.severity * parameters.fault_scale.tooth_wear_depth / std::cos(parameters.mesh.flank_angle);
-  // Half the pitch at mid-height.
+  // Half the pitch at mid-height of the tooth.
   const double thickness = PI * (gear.flexspline_inner_radius + gear.toothMidHeight()) / gear.teeth_flexspline;
   const double factor = softened(thinned(2.0 * across / thickness), parameters.fault_scale.tooth_compliance_share);
   ToothMesh& mesh = joint.ring.edit<ToothMesh>();
@@ -169,7 +169,7 @@ void pit(const Fault& fault, const Parameters& parameters, JointModel& joint) no
   atPlace(fault.place, joint.mesh_friction.toothFactor(), [&](double& factor) { factor *= friction; });
 }
 
-/// Damage after a jump: worn tips, and a circular spline that is no longer coaxial.
+/// Damage after a jump of the teeth: worn tips, and a circular spline that is no longer coaxial.
 void ratchet(const Fault& fault, const Parameters& parameters, JointModel& joint) noexcept
 {
   ToothMesh& mesh = joint.ring.edit<ToothMesh>();
@@ -177,9 +177,9 @@ void ratchet(const Fault& fault, const Parameters& parameters, JointModel& joint
   mesh.tipLoss().array() += fault.severity * parameters.fault_scale.ratcheting_tip_loss;
 }
 
-// The wave generator and its bearing.
+// Faults of the wave generator and its bearing.
 
-/// The lobes press hardest and wear; the bearing's races then sit looser on the plug by its smaller mean radius.
+/// The lobes carry the largest force and wear. The smaller mean radius of the plug then loosens the bearing's races.
 void wearWaveGenerator(const Fault& fault, const Parameters& parameters, JointModel& joint) noexcept
 {
   const FaultScaleParameters& scale = parameters.fault_scale;
@@ -231,7 +231,7 @@ struct Edit
 {
   FaultKind kind;
   void (*edit)(const Fault& fault, const Parameters& parameters, JointModel& joint) noexcept;
-  unsigned parts;  // FaultPart
+  unsigned parts;  // bits of FaultPart
 };
 constexpr std::array EDITS{
   Edit{ FaultKind::INTERFACE_WEAR, wearInterface, GENERATOR_PART | FRICTION_PART },

@@ -7,27 +7,28 @@
 
 namespace hjt
 {
-/// Edits a joint to one fault more, a valid one. Several on one part compose: factors multiply, lengths and forces add.
-/// docs/faults.md says what each kind stands for.
+/// Adds a valid fault to a joint. Several faults of one part combine: factors multiply, lengths and forces add.
+/// docs/faults.md describes each kind.
 void addFault(const Fault& fault, const Parameters& parameters, JointModel& joint) noexcept;
 
-/// Parts of the joint that a fault changes: bits of partsOf.
+/// Parts of the joint that a fault changes, as bits of partsOf.
 enum FaultPart : unsigned
 {
   RIM_PART = 1,        ///< stiffness or free shape of the flexspline's rim
-  CUP_PART = 2,        ///< wall of its cup
+  CUP_PART = 2,        ///< wall of the flexspline's cup
   MESH_PART = 4,       ///< teeth
-  GENERATOR_PART = 8,  ///< wave generator with its bearing, or how the rim lies on it
+  GENERATOR_PART = 8,  ///< wave generator with its bearing, or its contact with the rim
   FRICTION_PART = 16
 };
 unsigned partsOf(const Fault& fault, const GearParameters& gear) noexcept;
 
-/// Whether a crack at a tooth's root runs through the tooth (true) or into the rim, by the backup ratio rim thickness /
-/// tooth height (thesis 3.4.2): through the tooth above 1, into the rim below 0.4. Between both the worse is taken.
+/// Whether a crack at a tooth's root runs through the tooth (true) or into the rim (false), by the backup ratio rim
+/// thickness / tooth height (thesis 3.4.2): through the tooth above 1, into the rim below 0.4. In between, the worse
+/// case is assumed.
 bool rootCrackRunsThroughTooth(const GearParameters& gear) noexcept;
 
-/// Keeps a joint with the faults that are active. It is made again from the sound joint, so a fault that has gone
-/// leaves nothing behind. Allocates on construction only.
+/// A joint with its active faults. Each change starts from the sound joint, so that a removed fault leaves no trace.
+/// Only the construction allocates.
 class JointFaults
 {
 public:
@@ -37,17 +38,17 @@ public:
     apply(faults);
   }
 
-  /// Gives the joint these faults, each valid, in place of those before.
+  /// Replaces the faults of the joint by these valid ones.
   void apply(const FaultList& faults) noexcept
   {
-    model_ = sound_;  // vectors of equal size: nothing is allocated
+    model_ = sound_;  // the vectors have equal size, so nothing is allocated
     for (const ActiveFault& active : faults)
     {
       addFault(active.fault, parameters_, model_);
     }
   }
 
-  /// The joint as it is now: the same object for good.
+  /// The joint with its present faults; the reference stays valid.
   const JointModel& model() const noexcept { return model_; }
 
 private:
@@ -56,7 +57,7 @@ private:
   JointModel model_;
 };
 
-/// The faults that a joint of these parameters has from the start.
+/// The faults that a joint with these parameters has at the start.
 inline FaultList faultsAtStart(const Parameters& parameters)
 {
   FaultList faults;
@@ -70,7 +71,7 @@ inline FaultList faultsAtStart(const Parameters& parameters)
   return faults;
 }
 
-/// The joint with them.
+/// The joint with the faults of the start.
 inline JointModel startingJoint(const Parameters& parameters)
 {
   return JointFaults(parameters, faultsAtStart(parameters)).model();

@@ -22,8 +22,8 @@ namespace hjt
 {
 namespace
 {
-/// Set points of columns, `position` and, if there, `velocity` and `acceleration` of shape (rows, joints).
-/// @throws InputError if columns are missing or not of one shape.
+/// Set points from columns: `position` and optionally `velocity` and `acceleration`, of shape (rows, joints).
+/// @throws InputError if columns are missing or differ in shape.
 std::vector<ArmSetPoint> setPointsOf(const py::object& columns)
 {
   requireColumns(columns, "motion");
@@ -37,7 +37,8 @@ std::vector<ArmSetPoint> setPointsOf(const py::object& columns)
       (accelerations && !fits(accelerations)))
   {
     throw InputError(
-        "motion: columns 'time', of shape (rows,), and 'position', of shape (rows, joints), are needed; 'velocity' and "
+        "motion: columns 'time', of shape (rows,), and 'position', of shape (rows, joints), are required; 'velocity' "
+        "and "
         "'acceleration' have the shape of 'position'");
   }
   std::vector<ArmSetPoint> points(static_cast<std::size_t>(times.rows()));
@@ -59,7 +60,7 @@ std::vector<ArmSetPoint> setPointsOf(const py::object& columns)
   return points;
 }
 
-/// Rows as arrays by their quantities, of shape (rows,), (rows, joints) or (rows, 3).
+/// Rows as arrays by quantity, of shape (rows,), (rows, joints) or (rows, 3).
 class RowArrays
 {
 public:
@@ -89,7 +90,7 @@ private:
   ArmRow values_;
 };
 
-/// A file's name, or columns.
+/// Set points from a file or from columns.
 std::vector<ArmSetPoint> setPointsIn(const py::object& motion, const ArmDescription& arm)
 {
   std::vector<ArmSetPoint> points =
@@ -114,7 +115,6 @@ void warnPython(const std::vector<std::string>& notices)
   }
 }
 
-/// An arm that is run piece by piece.
 class ArmObject
 {
 public:
@@ -145,7 +145,7 @@ public:
     }
     if (start.size() != arm_.joints.size())
     {
-      throw InputError("start: " + std::to_string(arm_.joints.size()) + " finite angles are needed [rad]");
+      throw InputError("start: " + std::to_string(arm_.joints.size()) + " finite angles are required [rad]");
     }
     ArmSetPoint point;
     for (const double angle : start)
@@ -161,7 +161,7 @@ public:
     }
     catch (const Stopped&)
     {
-      // For what Python raised, which `finish` throws.
+      // Ends with what Python raised, which `finish` throws.
     }
     warnPython(watch.finish());
     recorder_.emplace(arm_, *moving_);
@@ -185,7 +185,7 @@ public:
 
   double move(const py::object& motion)
   {
-    const InUse::Hold hold = in_use_.hold();  // reading and warning may let other threads in
+    const InUse::Hold hold = in_use_.hold();  // reading and warning may let other threads run
     std::vector<ArmSetPoint> points = setPointsIn(motion, arm_);
     requireRates(points, arm_, "motion");
     const double change = straightenTimes(points);
@@ -225,7 +225,8 @@ public:
         });
     if (const std::uint64_t more = countersOf(twin).solver_failures - failures; more > 0)
     {
-      warnPython({ "no equilibrium found in " + std::to_string(more) + " steps, whose last good state was held" });
+      warnPython({ "there was no equilibrium in " + std::to_string(more) +
+                   " steps, in which the last converged state was kept" });
     }
     return rows.arrays(arm_.joints.size());
   }
@@ -256,7 +257,7 @@ public:
     {
       if (!(std::abs(force[k]) <= MAX_WRENCH && std::abs(moment[k]) <= MAX_WRENCH))
       {
-        throw InputError("wrench: each of force [N] and moment [N.m] must be within +-1000");
+        throw InputError("wrench: each of force [N] and moment [N.m] must be within -1000 ... 1000");
       }
     }
     moving_->twin().setWrench({ force, moment });
@@ -325,7 +326,7 @@ public:
   }
 
 private:
-  static constexpr double MAX_WRENCH = 1000.0;  // as of the node's ~wrench [N], [N.m]
+  static constexpr double MAX_WRENCH = 1000.0;  // limit of the node's ~wrench [N], [N.m]
   static constexpr double LONGEST = 1e6;        // [s]
 
   static void requirePayload(const Payload& payload)
@@ -368,7 +369,8 @@ Answer armIn(const py::dict& arguments)
 
 void bindArm(py::module& module)
 {
-  py::class_<ArmObject>(module, "Arm", "An arm in closed loop, run piece by piece: behind harmonic_joint_twin.Arm.")
+  py::class_<ArmObject>(module, "Arm",
+                        "An arm in closed loop that is simulated in pieces, used by harmonic_joint_twin.Arm.")
       .def(py::init<const py::dict&>(), py::arg("arguments"))
       .def("move", &ArmObject::move, py::arg("motion"))
       .def("run", &ArmObject::run, py::arg("duration"), py::arg("rate") = py::none())

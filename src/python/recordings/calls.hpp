@@ -20,7 +20,7 @@
 #include "python/configuration.hpp"
 #include "twin/options.hpp"
 
-// What the functions of the module _recordings share: options by name in, a document and the notices out.
+// Common part of the functions of the module _recordings: options by name as input, a document and notices as output.
 namespace hjt
 {
 py::object toPython(const Json& json);
@@ -62,16 +62,16 @@ inline py::object toPython(const Json& json)
   return json.visit(ToPython());
 }
 
-/// As Python writes it, not too long.
+/// Text of an object as Python writes it, with limited length.
 inline std::string shortText(const py::handle& value)
 {
-  constexpr py::ssize_t LONGEST = 60;  // characters, which may be of several bytes
+  constexpr py::ssize_t LONGEST = 60;  // characters, each of one or more bytes
   const py::object text = py::repr(value);
   const py::object begin = text[py::slice(0, LONGEST, 1)];
   return py::cast<std::string>(begin) + (begin.equal(text) ? "" : "...");
 }
 
-/// What is given for an option of this kind must be.
+/// Required type of an option's value.
 inline const char* kindText(const Option& option)
 {
   const bool is_number = option.kind == Option::Kind::NUMBER;
@@ -82,13 +82,13 @@ inline const char* kindText(const Option& option)
                                               (is_number ? "a list of numbers" : "a list of texts");
 }
 
-/// A function's options by their names.
+/// Options of a function by their names.
 class Given
 {
 public:
   explicit Given(const py::dict& values) : values_(values) {}
 
-  /// Fills the fields of the options; names are as on the command line, but as Python writes them.
+  /// Stores the options in their fields. Names are those of the command line in Python's spelling.
   /// @throws InputError.
   void take(OptionTable table) const
   {
@@ -108,7 +108,7 @@ public:
     table.take();
   }
 
-  /// Columns in place of a file's name, which is then the argument's; null: it is a file.
+  /// Columns that replace a file, whose name is then that of the argument; null if a file is given.
   py::object columns(const char* name) const
   {
     const py::object given = (*this)[name];
@@ -125,7 +125,7 @@ public:
     return values_.contains(name) ? py::object(values_[name]) : py::none();
   }
 
-  /// "--time-scale" is time_scale.
+  /// Name of an option in Python: "--time-scale" is time_scale.
   static std::string nameOf(const std::string& option)
   {
     static const std::map<std::string, std::string> OTHERS{ { "--fault", "faults" },
@@ -168,7 +168,7 @@ private:
     }
     if (option.is_required && !option.given)
     {
-      throw InputError(option.name + ": there is none");
+      throw InputError(option.name + ": there is no such option");
     }
     if (option.most == 2 && option.values.size() != 2)
     {
@@ -179,7 +179,7 @@ private:
   py::dict values_;
 };
 
-/// How Python follows a function: Ctrl-C, an error out of `progress`, and the notices that become warnings.
+/// Connects a function to Python: Ctrl-C, exceptions of `progress`, and notices that become warnings.
 class PythonWatch
 {
 public:
@@ -198,7 +198,7 @@ public:
              [this](const std::string& text) { notices_.push_back(text); } };
   }
 
-  /// @throws what Python raised meanwhile.
+  /// @throws what Python raised during the call.
   std::vector<std::string> finish()
   {
     if (error_)
@@ -213,7 +213,7 @@ public:
   }
 
 private:
-  /// Nothing of Python is called once it has raised: files are closed first.
+  /// After Python has raised, nothing of it is called until files are closed.
   void look(const std::string& what, double done)
   {
     if (ended_)
@@ -251,7 +251,7 @@ private:
   std::vector<std::string> notices_;
 };
 
-/// @throws InputError, ParameterError.
+/// Reads `overlays` into the options. @throws InputError, ParameterError.
 inline void takeOverlays(const Given& given, ConfigurationOptions& options)
 {
   const py::object overlays = given["overlays"];
@@ -261,7 +261,7 @@ inline void takeOverlays(const Given& given, ConfigurationOptions& options)
   }
 }
 
-/// Options by the names that a function of the library declares, and `overlays` over the configuration.
+/// Reads options by the names that a library function declares, and `overlays` for the configuration.
 /// @throws InputError, ParameterError.
 template <class Options>
 void takeOptions(const Given& given, Options& options)
@@ -272,7 +272,7 @@ void takeOptions(const Given& given, Options& options)
   given.take(table);
 }
 
-/// Names of the options, for those who compare signatures.
+/// Names of the options, for tests of signatures.
 template <class Options>
 void listOptions(const py::module& module, const char* function)
 {
@@ -289,7 +289,7 @@ void listOptions(const py::module& module, const char* function)
 
 using Values = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-/// @throws InputError unless `columns` has columns by name. `what`: its name in the error.
+/// @throws InputError unless `columns` has columns by name. `what`: name of the argument in the error text.
 inline void requireColumns(const py::object& columns, const std::string& what)
 {
   const bool is_structured = py::hasattr(columns, "dtype") && !columns.attr("dtype").attr("names").is_none();
@@ -301,8 +301,8 @@ inline void requireColumns(const py::object& columns, const std::string& what)
   }
 }
 
-/// A column of a mapping of arrays or a structured array, of shape (rows,) or, of an arm, (rows, joints); none: it is
-/// not there.
+/// A column of a mapping of arrays or a structured array, of shape (rows,) or, for an arm, (rows, joints); empty if
+/// missing.
 class MotionColumn
 {
 public:
@@ -321,7 +321,7 @@ public:
   double at(std::size_t row, std::size_t joint) const { return data_[row * static_cast<std::size_t>(width()) + joint]; }
 
 private:
-  /// Dates and times of numpy or pandas are seconds.
+  /// Dates and times of numpy or pandas in seconds.
   static py::object inSeconds(const py::object& column, const std::string& name)
   {
     const py::object kind = py::getattr(py::getattr(column, "dtype", py::none()), "kind", py::none());
@@ -332,7 +332,7 @@ private:
     }
     if (name != "time")
     {
-      throw InputError("column '" + name + "' must be numbers, it holds times");
+      throw InputError("column '" + name + "' must contain numbers, but contains times");
     }
     const py::module numpy = py::module::import("numpy");
     const py::object times = numpy.attr("asarray")(column);
@@ -348,7 +348,7 @@ private:
     }
     catch (const py::error_already_set& error)
     {
-      throw InputError("column '" + name + "' must be numbers: " + error.what());
+      throw InputError("column '" + name + "' must contain numbers: " + error.what());
     }
     if (values_.ndim() != 1 && values_.ndim() != 2)
     {
@@ -364,8 +364,8 @@ private:
 
 using Answer = std::pair<py::object, std::vector<std::string>>;
 
-/// Calls `function` with the options, without the interpreter's lock; gives what `document` makes of its result, and
-/// the notices.
+/// Calls `function` with the options without the interpreter's lock. Returns the document that `document` makes of its
+/// result, and the notices.
 template <class Options, class Function, class Document>
 Answer call(const Given& given, Options& options, const Function& function, const Document& document)
 {
@@ -379,12 +379,12 @@ Answer call(const Given& given, Options& options, const Function& function, cons
   }
   catch (const InputError& error)
   {
-    const std::vector<std::string> notices = watch.finish();  // half of the work is no error of the user's
+    const std::vector<std::string> notices = watch.finish();  // an incomplete result is not the user's error
     if (dynamic_cast<const ParameterError*>(&error) != nullptr || notices.empty())
     {
       throw;
     }
-    // What was remarked before it may be its reason.
+    // Earlier notices may explain the error.
     throw InputError(error.what() + ("\n" + joined(notices, "\n")));
   }
 }

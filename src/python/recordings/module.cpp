@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Functions on recordings and data sets within Python: the module _recordings, behind
-// python/harmonic_joint_twin/_commands.py, which has their signatures.
+// Functions on recordings and data sets in Python: the module _recordings. Their signatures are in
+// python/harmonic_joint_twin/_commands.py.
 #include <algorithm>
 #include <array>
 #include <map>
@@ -27,7 +27,7 @@ namespace hjt
 {
 namespace
 {
-/// @throws InputError if columns are missing or not of one shape.
+/// @throws InputError if columns are missing or differ in shape.
 void takeRows(const py::object& columns, RecordingOptions& options)
 {
   struct Choice
@@ -47,7 +47,7 @@ void takeRows(const py::object& columns, RecordingOptions& options)
   const MotionColumn positions(columns, "position");
   if (!times || !positions || times.width() != 1 || times.rows() == 0)
   {
-    throw InputError("recording: columns 'time', of shape (rows,), and 'position' are needed");
+    throw InputError("recording: columns 'time', of shape (rows,), and 'position' are required");
   }
   std::vector<std::vector<MotionRow>> rows(static_cast<std::size_t>(times.rows()),
                                            std::vector<MotionRow>(static_cast<std::size_t>(positions.width())));
@@ -78,7 +78,7 @@ void takeRows(const py::object& columns, RecordingOptions& options)
   options.rows_have_load = static_cast<bool>(MotionColumn(columns, "load"));
 }
 
-/// How a recording is read, and of what; the recording is a file or columns. @throws InputError.
+/// Options for reading a recording, which is a file or columns. @throws InputError.
 template <class Options>
 void takeRecording(const Given& given, Options& options)
 {
@@ -90,7 +90,7 @@ void takeRecording(const Given& given, Options& options)
   }
 }
 
-/// `at_hand`: names to columns of arrays, of shape (rows,).
+/// `at_hand`: arrays of shape (rows,) by the names of the columns.
 template <class Options>
 void takeSignals(const Given& given, Options& options)
 {
@@ -162,7 +162,7 @@ SweepResult sweepAndTell(const SweepOptions& asked)
   return found;
 }
 
-/// A function of the module: `take` gives the options of `function`, `document` makes JSON of what that finds.
+/// Defines a function of the module. `take` reads the options of `function`, `document` makes JSON of its result.
 template <class Options, class Result, class Document>
 void define(py::module& module, const char* name, const char* text, void (*take)(const Given&, Options&),
             Result (*function)(const Options&), const Document& document)
@@ -178,7 +178,7 @@ void define(py::module& module, const char* name, const char* text, void (*take)
   listOptions<Options>(module, name);
 }
 
-/// Of one whose document is its report.
+/// Defines a function whose document is its report.
 template <class Options, class Result>
 void define(py::module& module, const char* name, const char* text, void (*take)(const Given&, Options&),
             Result (*function)(const Options&))
@@ -188,25 +188,26 @@ void define(py::module& module, const char* name, const char* text, void (*take)
 
 void define(py::module& module)
 {
-  define(module, "check", "What of an arm's recording is usable.", takeRecording<RecordingOptions>, checkRecording,
-         [](const RecordingCheck& found) { return documentOf(found); });
-  define(module, "identify", "Gain, friction, inertia and ripple.", takeRecording<IdentifyOptions>, identify,
+  define(module, "check", "Checks which parts of an arm's recording are usable.", takeRecording<RecordingOptions>,
+         checkRecording, [](const RecordingCheck& found) { return documentOf(found); });
+  define(module, "identify", "Identifies gain, friction, inertia and ripple.", takeRecording<IdentifyOptions>, identify,
          [](const Identified& found) { return documentOf(reportOf(found).whole()); });
-  define(module, "compare", "Verdict and page.", takeRecording<ComparisonOptions>, compare,
+  define(module, "compare", "Computes verdict and report page.", takeRecording<ComparisonOptions>, compare,
          [](const ComparedRecording& found) { return found.document; });
-  define(module, "trend", "Friction over many recordings.", takeOptions<TrendOptions>, trend,
+  define(module, "trend", "Computes the trend of friction over many recordings.", takeOptions<TrendOptions>, trend,
          [](const Trend& found) { return documentOf(found); });
-  define(module, "indicators", "Windows and their assessment.", takeSignals<IndicatorsOptions>, indicators);
-  define(module, "remaining", "Use and remaining life.", takeSignals<RemainingOptions>, remaining);
-  define(module, "sweep", "A plan of many runs.", takeOptions<SweepOptions>, sweepAndTell<sweep>,
+  define(module, "indicators", "Computes windows of indicators and their assessment.", takeSignals<IndicatorsOptions>,
+         indicators);
+  define(module, "remaining", "Computes use and remaining life.", takeSignals<RemainingOptions>, remaining);
+  define(module, "sweep", "Simulates a plan of many runs.", takeOptions<SweepOptions>, sweepAndTell<sweep>,
          [](const SweepResult& found) { return documentOf(found); });
-  define(module, "lives", "A plan of lives.", takeOptions<SweepOptions>, sweepAndTell<sweepLives>,
+  define(module, "lives", "Simulates a plan of lives.", takeOptions<SweepOptions>, sweepAndTell<sweepLives>,
          [](const SweepResult& found) { return documentOf(found); });
-  module.def("follow", followIn, py::arg("arguments"), "Joints beside their twins, and their rows.");
+  module.def("follow", followIn, py::arg("arguments"), "Compares joints with their twins, row by row.");
   listOptions<FollowOptions>(module, "follow");
-  module.def("checkup", checkUpIn, py::arg("arguments"), "The motion in which faults are seen best.");
+  module.def("checkup", checkUpIn, py::arg("arguments"), "Makes the motion that shows faults best.");
   listOptions<CheckUpOptions>(module, "checkup");
-  module.def("arm", armIn, py::arg("arguments"), "An arm in closed loop along its set points.");
+  module.def("arm", armIn, py::arg("arguments"), "Simulates an arm in closed loop along its set points.");
   listOptions<ArmRunOptions>(module, "arm");
 }
 }  // namespace
@@ -214,7 +215,7 @@ void define(py::module& module)
 
 PYBIND11_MODULE(_recordings, module)
 {
-  module.doc() = "Functions on recordings and data sets: options by name in, a document and the notices out.";
+  module.doc() = "Functions on recordings and data sets: options by name as input, a document and notices as output.";
   pybind11::module::import("harmonic_joint_twin._hjt");  // its errors and COMPARISON_DTYPE
   module.attr("OPTIONS") = pybind11::dict();
   hjt::define(module);

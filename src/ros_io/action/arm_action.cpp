@@ -28,7 +28,7 @@ using Point = trajectory_msgs::JointTrajectoryPoint;
 
 constexpr const char* DRIVERS_CONTROLLER = "scaled_pos_joint_traj_controller";
 constexpr const char* FOLLOW = "follow_joint_trajectory";
-// Where a goal gives none, as configured in ur_robot_driver, config/ur5_controllers.yaml.
+// Defaults of a goal, as in ur_robot_driver, config/ur5_controllers.yaml.
 constexpr double PATH_POSITION = 0.2;  // [rad]
 constexpr double END_POSITION = 0.1;   // [rad]
 constexpr double END_SPEED = 0.05;     // [rad/s]
@@ -37,13 +37,13 @@ constexpr double PATIENCE = 0.6;       // [s]
 constexpr double LOOK_PERIOD = 0.01;  // period of checking the report [s]
 constexpr int LOOKS_A_FEEDBACK = 5;
 
-/// As in JointTolerance.msg: 0 keeps the default, below 0 there is no tolerance.
+/// As in JointTolerance.msg: 0 keeps the default, a negative value means no tolerance.
 void take(double given, double& tolerance)
 {
   tolerance = given < 0.0 ? HUGE_VAL : given > 0.0 ? given : tolerance;
 }
 
-/// @returns what is wrong with them, or nothing. Accelerations are not seen.
+/// @returns the error of the tolerances; empty if they are valid. Accelerations are not checked.
 std::string takeTolerances(const std::vector<control_msgs::JointTolerance>& given, const char* what,
                            const ArmDescription& arm, std::vector<JointTolerance>& tolerances)
 {
@@ -85,7 +85,7 @@ Result makeResult(int code, const std::string& text)
   return result;
 }
 
-/// One goal at a time; the next one takes its place.
+/// Action server with one goal at a time; a new goal replaces the active one.
 class ArmAction
 {
 public:
@@ -126,7 +126,7 @@ private:
     }
     if (current_)
     {
-      setCancelled("another goal took its place");
+      setCancelled("another goal has replaced this goal");
     }
     handle.setAccepted();
     current_ = handle;
@@ -140,7 +140,7 @@ private:
     if (current_ && *current_ == handle)
     {
       rest();
-      setCancelled("it was cancelled");
+      setCancelled("the client has cancelled the goal");
     }
   }
 
@@ -150,11 +150,11 @@ private:
     const GoalReport report = arm_.report();
     if (!current_ || report.number < number_)
     {
-      return;  // the loop has not taken it yet
+      return;  // the loop has not taken the command yet
     }
     if (report.number > number_)
     {
-      setCancelled(std::string("a trajectory on ~") + topics::COMMAND + " took its place");
+      setCancelled(std::string("a trajectory on ~") + topics::COMMAND + " has replaced the goal");
       return;
     }
     if (++looks_ % LOOKS_A_FEEDBACK == 0)
@@ -237,7 +237,7 @@ private:
   ArmNode& arm_;
   std::mutex mutex_;
   std::optional<GoalHandle> current_;
-  std::uint64_t number_{};  // of its command
+  std::uint64_t number_{};  // number of the goal's command
   int looks_{};
   ros::NodeHandle parent_;
   Server server_;

@@ -9,31 +9,31 @@
 
 namespace hjt
 {
-/// A fault in force.
+/// A fault that is active.
 struct ActiveFault
 {
-  Fault fault;           ///< what it is
-  std::int64_t since{};  ///< stamp of its present severity [ns]
+  Fault fault;           ///< kind, severity and place
+  std::int64_t since{};  ///< time from which the fault has its present severity [ns]
 };
 
-/// Faults by kind and place, in that order whatever order they came in; in a fixed store.
+/// Active faults, ordered by kind and place. The storage has a fixed size.
 class FaultList
 {
 public:
-  /// Adds a fault, or replaces the severity of the one of its kind and place; severity 0 takes it away.
-  /// Faults that have these values already keep their stamp. @returns false if there is no room: nothing is changed.
+  /// Adds a fault, or changes the severity of the fault of this kind and place; severity 0 removes that fault.
+  /// A fault that does not change keeps its stamp. @returns false and changes nothing if the list is full.
   bool set(const Fault& fault, std::int64_t since) noexcept;
-  void clear() noexcept  ///< takes all away
+  void clear() noexcept  ///< removes all faults
   {
     version_ += size_ > 0 ? 1 : 0;
     size_ = 0;
   }
 
-  const ActiveFault* begin() const noexcept { return faults_.data(); }        ///< first
-  const ActiveFault* end() const noexcept { return faults_.data() + size_; }  ///< behind the last
-  std::size_t size() const noexcept { return size_; }                         ///< 0 ... MAX_FAULTS
+  const ActiveFault* begin() const noexcept { return faults_.data(); }        ///< first fault
+  const ActiveFault* end() const noexcept { return faults_.data() + size_; }  ///< end of the faults
+  std::size_t size() const noexcept { return size_; }                         ///< number of faults, 0 ... MAX_FAULTS
   bool empty() const noexcept { return size_ == 0; }                          ///< no fault is active
-  std::uint64_t version() const noexcept { return version_; }  ///< another one whenever the list has changed
+  std::uint64_t version() const noexcept { return version_; }                 ///< changes with every change of the list
 
 private:
   std::array<ActiveFault, MAX_FAULTS> faults_{};
