@@ -181,9 +181,9 @@ using Deviations = std::array<Deviation, INDICATOR_COUNT>;
 /// where  m  sound amplitude;  x  its change, at least -m;  both in the unit of the amplitude
 double amplitudeChange(double sound, double change) noexcept;
 
-/// Difference of the last windows of a class from their reference, with the covariance D + F F' of sound windows. F
-/// Reference::common times the reference's share of a score's spread,  D  diagonal: squared spread that F does not
-/// explain
+/// Difference of the last windows of a class from their reference, with the covariance D + F F' of sound windows,
+/// where  F  Reference::common times the reference's share of a score's spread
+///        D  diagonal matrix of the squared spreads that F does not explain
 struct WindowResidual
 {
   int windows{};  ///< number of averaged windows [-]
@@ -234,14 +234,15 @@ enum class BaselineState : std::uint8_t
 ///                 sound windows: the spread of a line is in proportion to c
 ///        q        a tenth of the effect of one encoder count; 0.3 for kurtosis, 0.5 for crest
 /// A carried reference is one of another motion, for windows from which a model is subtracted. They are compared with
-/// the class of both directions at their temperature that has most windows. Then b is over temperature alone and F is
-/// 0. The variance grows by the squares of CarriedError::deviation and of CarriedError::share of |m| (of a line: of all
-/// amplitudes of its signal together), both times 10/windows below ten windows. v is at most CarriedError::freedom. The
-/// score transforms Student's t into a normal deviate (Wallace 1959), so that few windows give no more alarms than
-/// many. The thresholds are normal quantiles of indicators.false_alarm_rate. All indicators share one half of the rate,
-/// two-sided, and the patterns of all causes share the other half, one-sided (Bonferroni). Without patterns the
-/// indicators share all. If a class has too few windows for a reference, a window at its edge counts for the class
-/// beyond that edge. A window whose payload or load increases S^2 by more than OTHER_PAYLOAD_WIDENING is not compared.
+/// the class of both directions at their temperature that has most windows. Then b is over temperature alone and
+/// WindowResidual::common is 0. The variance grows by the squares of CarriedError::deviation and of CarriedError::share
+/// of |m| (of a line: of all amplitudes of its signal together), both times 10/windows below ten windows. v is at most
+/// CarriedError::freedom. The score transforms Student's t into a normal deviate (Wallace 1959), so that few windows
+/// give no more alarms than many. The thresholds are normal quantiles of indicators.false_alarm_rate. All indicators
+/// share one half of the rate, two-sided, and the patterns of all causes share the other half, one-sided (Bonferroni).
+/// Without patterns the indicators share all. If a class has too few windows for a reference, a window at its edge
+/// counts for the class beyond that edge. A window whose payload or load increases S^2 by more than
+/// OTHER_PAYLOAD_WIDENING is not compared.
 ///
 /// Learning opens at most indicators.baseline_classes classes. The constructor allocates their memory of 0.2 MB each. A
 /// given reference needs 19 kB for a class and replaces that memory.
