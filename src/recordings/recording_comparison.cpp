@@ -165,7 +165,7 @@ Json verdictJson(const Verdict& verdict)
   };
   Json all = verdictFields(verdict);
   all["findings"] = Table(columns, verdict.findings).rows();
-  all["cannot_show"] = hiddenTexts(verdict);
+  all["cannot_show"] = verdict.cannot_show;
   return all;
 }
 
