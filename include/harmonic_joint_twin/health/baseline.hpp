@@ -177,14 +177,8 @@ using Deviations = std::array<Deviation, INDICATOR_COUNT>;
 /// where  m  sound amplitude;  x  its change, at least -m;  both in the unit of the amplitude
 double amplitudeChange(double sound, double change) noexcept;
 
-<<<<<<< HEAD
 /// Difference of the last windows of a class from their reference, and the covariance D + F F' of sound windows.
 /// F  Reference::common times the reference's share of a score's spread;  D  square of the spread that F leaves
-=======
-/// Difference of the last windows of a class from their reference, with the covariance D + F F' of sound windows,
-/// where  F  Reference::common times the reference's share of a score's spread
-///        D  diagonal matrix of the squared spreads that F does not explain
->>>>>>> 4abf415c4b3039b19309691c00c5df8714db8f54
 struct WindowResidual
 {
   int windows{};  ///< number of averaged windows [-]
@@ -225,7 +219,6 @@ enum class AssessmentState : std::uint8_t
 ///        y        share of S^2 that was learned, as p and w^2 (Satterthwaite 1946)
 ///        a        inverse degrees of freedom of one window's distribution, from the sound ones; 0: normal
 ///        R        repeatability of the drive from one recording to the next (Repeatability)
-<<<<<<< HEAD
 ///        k        windows averaged, less those left out at one end
 ///        w^2      half the mean square of the steps from each to the next, without the two largest: of more than
 ///                 three windows
@@ -249,29 +242,6 @@ enum class AssessmentState : std::uint8_t
 /// other by the patterns of all causes, one-sided (Bonferroni); without patterns all of it by the indicators.
 /// A window at the edge of a class with too few windows for a reference belongs to the class beyond that edge. A window
 /// whose payload or load makes S^2 more than OTHER_PAYLOAD_WIDENING times as large is not compared.
-=======
-///        k        averaged windows, minus those omitted at one end
-///        w^2      half the mean square of successive differences without the two largest, from four windows on
-///        r        share of s^2 common to successive windows: 1 minus half their mean square difference over s^2 (von
-///                 Neumann 1941). It is shrunk towards the mean of scalars or lines, and its uncertainty is added. 1
-///                 without successive windows
-///        e        share of the windows that count as independent, (1 - r') / (1 + r'), at least one in each sequence;
-///                 r' is r minus its error. 1 without successive windows
-///        s_0, v_0 spread by similar lines (varianceOfAlike) and ALIKE_FREEDOM; of scalars and if carried v_0 = 0
-///        c, c_0   rms factor of the motion on the fit's standard error (relativeErrors), of the averaged and of the
-///                 sound windows: the spread of a line is in proportion to c
-///        q        a tenth of the effect of one encoder count; 0.3 for kurtosis, 0.5 for crest
-/// A carried reference is one of another motion, for windows from which a model is subtracted. They are compared with
-/// the class of both directions at their temperature that has most windows. Then b is over temperature alone and
-/// WindowResidual::common is 0. The variance grows by the squares of CarriedError::deviation and of CarriedError::share
-/// of |m| (of a line: of all amplitudes of its signal together), both times 10/windows below ten windows. v is at most
-/// CarriedError::freedom. The score transforms Student's t into a normal deviate (Wallace 1959), so that few windows
-/// give no more alarms than many. The thresholds are normal quantiles of indicators.false_alarm_rate. All indicators
-/// share one half of the rate, two-sided, and the patterns of all causes share the other half, one-sided (Bonferroni).
-/// Without patterns the indicators share all. If a class has too few windows for a reference, a window at its edge
-/// counts for the class beyond that edge. A window whose payload or load increases S^2 by more than
-/// OTHER_PAYLOAD_WIDENING is not compared.
->>>>>>> 4abf415c4b3039b19309691c00c5df8714db8f54
 ///
 /// Learning opens indicators.baseline_classes classes at most. The constructor takes their memory, 0.2 MB for each. A
 /// given reference needs 19 kB for each class, and its memory replaces that of the learned classes.
