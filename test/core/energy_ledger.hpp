@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 #include "harmonic_joint_twin/params/parameters.hpp"
 #include "harmonic_joint_twin/solver/solve_status.hpp"
 #include "model/joint_model.hpp"
 #include "solver/joint_stepper.hpp"
+#include "test/support/seeded_random.hpp"
 
 namespace hjt
 {
@@ -16,7 +16,6 @@ struct RandomDriveSettings
 {
   unsigned seed{};
   double load{ 150.0 };  ///< largest, either way; by default the joint's rating [N.m]
-  bool brake{ true };
 };
 
 /// Torques as a rough user gives them: every few hundredths of a second another motor torque within the limit, and now
@@ -27,7 +26,6 @@ public:
   RandomDrive(const RandomDriveSettings& settings, const Parameters& parameters)
     : random_(settings.seed)
     , load_(settings.load)
-    , brake_(settings.brake)
     , rate_(parameters.solver.rate)
     , torque_limit_(parameters.motor.torque_limit)
   {
@@ -41,21 +39,20 @@ public:
     constexpr double BRAKE_CHANCE = 0.2;
     if (left_-- == 0)
     {
-      std::uniform_real_distribution<double> chance(0.0, 1.0);
       std::uniform_int_distribution<int> hold(10, 50);
       left_ = std::max(1, static_cast<int>(std::lround(rate_ * MILLISECOND * hold(random_)))) - 1;
-      command_ = torque_limit_ * (2.0 * chance(random_) - 1.0);
-      inputs_.load_torque = chance(random_) < 0.5 ? load_ * (2.0 * chance(random_) - 1.0) : inputs_.load_torque;
-      inputs_.brake_engaged = brake_ && chance(random_) < BRAKE_CHANCE;
+      command_ = torque_limit_ * (2.0 * random_.uniform(0.0, 1.0) - 1.0);
+      inputs_.load_torque =
+          random_.uniform(0.0, 1.0) < 0.5 ? load_ * (2.0 * random_.uniform(0.0, 1.0) - 1.0) : inputs_.load_torque;
+      inputs_.brake_engaged = random_.uniform(0.0, 1.0) < BRAKE_CHANCE;
     }
     inputs_.motor_torque = command_;
     return inputs_;
   }
 
 private:
-  std::mt19937 random_;
-  double load_;  // [N.m]
-  bool brake_;
+  SeededRandom random_;
+  double load_;          // [N.m]
   double rate_;          // [Hz]
   double torque_limit_;  // [N.m]
   int left_{};           // steps to the next change

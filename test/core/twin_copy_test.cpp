@@ -1,18 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <chrono>
-#include <cmath>
 #include <cstdint>
 #include <initializer_list>
 #include <memory>
 #include <ostream>
-#include <string>
 #include <thread>
-#include <vector>
-
-#include <gtest/gtest.h>
 
 #include "harmonic_joint_twin/surface/surface_source.hpp"
-#include "harmonic_joint_twin/twin/twin.hpp"
 #include "surface/surface_cache.hpp"
 #include "test_parameters.hpp"
 #include "twin_runs.hpp"
@@ -52,10 +46,7 @@ Twin makeTwin(const Kind& kind)
   source.pool = POOL;
   Twin twin(shippedParameters(assignments), source);
   twin.watchSignals(true);
-  for (const Input& input : randomInputs(29, END, 1.5, 60.0))
-  {
-    give(twin, input);
-  }
+  give(twin, randomInputs(29, END, 1.5, 60.0));
   if (!kind.fault.empty())
   {
     twin.injectFault(0, parseFault(kind.fault, twin.parameters()));
@@ -111,9 +102,7 @@ std::vector<std::vector<double>> runToEnd(Twin& twin)
   return rows;
 }
 
-class TwinCopy : public testing::TestWithParam<Kind>
-{
-};
+using TwinCopy = testing::TestWithParam<Kind>;
 INSTANTIATE_TEST_SUITE_P(
     Kinds, TwinCopy,
     testing::Values(Kind{ "ring", { "solver.scene=full_ring" } }, Kind{ "surface", { "solver.scene=auto" } },
