@@ -3,7 +3,6 @@
 
 #include "gear/angle.hpp"
 #include "ring_fixture.hpp"
-#include "test/support/seeded_random.hpp"
 
 namespace hjt
 {

@@ -10,7 +10,6 @@
 #include "solver/ring_state.hpp"
 #include "test/core/ring_fixture.hpp"
 #include "test/core/test_parameters.hpp"
-#include "test/support/seeded_random.hpp"
 
 namespace hjt
 {

@@ -3,7 +3,6 @@
 
 #include <cmath>
 
-#include <gtest/gtest.h>
 #include <Eigen/Core>
 
 #include "elements/ring_sums.hpp"
