@@ -1,22 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
+
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdlib>
 #include <functional>
-#include <vector>
 
-#include <gmock/gmock.h>
-#include <kdl/chainfksolverpos_recursive.hpp>
-#include <kdl_parser/kdl_parser.hpp>
-
-#include "arm/arm_dynamics.hpp"
-#include "arm/arm_load.hpp"
-#include "arm/load_fit.hpp"
 #include "arm/unit_loads.hpp"
-#include "base/csv_table.hpp"
+#include "base/statistics.hpp"
 #include "test/core/arm_support.hpp"
-#include "test/support/allocation_count.hpp"
+#include "test/support/seeded_random.hpp"
 
 namespace hjt
 {
@@ -78,6 +69,17 @@ protected:
     }
   }
 
+  /// Of a UR5, or of one whose third joint slides, on a slope.
+  static ArmDescription onASlope(LinkMotion third)
+  {
+    ArmDescription arm = shipped("ur5");
+    std::find_if(arm.links.begin() + 2, arm.links.end(),
+                 [](const ArmLink& link) { return link.motion == LinkMotion::TURNS; })
+        ->motion = third;
+    arm.gravity = { 1.0, -3.0, -9.0 };
+    return arm;
+  }
+
   /// A payload's torques are linear in its mass and moments, but for its inertia, which both sides of a centre share.
   static void expectPayloads(const ArmDescription& arm)
   {
@@ -111,11 +113,7 @@ TEST_F(UnitLoadsOf, TheArmsOwnAreTheRecursions)
 {
   for (const LinkMotion third : { LinkMotion::TURNS, LinkMotion::SLIDES })
   {
-    ArmDescription arm = shipped("ur5");
-    std::find_if(arm.links.begin() + 2, arm.links.end(),
-                 [](const ArmLink& link) { return link.motion == LinkMotion::TURNS; })
-        ->motion = third;
-    arm.gravity = { 1.0, -3.0, -9.0 };
+    ArmDescription arm = onASlope(third);
     arm.drag = 20.0;
     UnitLoads unit(arm);
     ArmDynamics dynamics(arm);
@@ -137,12 +135,7 @@ TEST_F(UnitLoadsOf, TheArmsOwnAreTheRecursions)
 TEST_F(UnitLoadsOf, PayloadsAreTheirsToTheRounding)
 {
   expectPayloads(shipped("ur5"));
-  ArmDescription slides = shipped("ur5");
-  ArmLink& third = *std::find_if(slides.links.begin() + 2, slides.links.end(),
-                                 [](const ArmLink& link) { return link.motion == LinkMotion::TURNS; });
-  third.motion = LinkMotion::SLIDES;
-  slides.gravity = { 1.0, -3.0, -9.0 };
-  expectPayloads(slides);
+  expectPayloads(onASlope(LinkMotion::SLIDES));
 }
 
 TEST_F(UnitLoadsOf, GravityIsThatOfLinksAndPayload)
@@ -242,20 +235,17 @@ TEST(ArmLoad, FollowsASwingWithUnevenRowsAndAGap)
   double worst = 0.0;
   int samples = 0;
   int gaps = 0;
-  const auto take = [&](bool at_end)
+  const auto take = [&](const ArmSample& ready)
   {
-    while (const ArmSample* ready = load.pop(at_end))
-    {
-      const double time = ready->joints.front().time;
-      const double speed = 0.5 * RATE * std::cos(RATE * time);
-      const double acceleration = -0.5 * RATE * RATE * std::sin(RATE * time);
-      const std::vector<double> expected =
-          torquesOf(dynamics, motionOf(swing(time), { 0.0, speed, -speed }, { 0.0, acceleration, -acceleration }));
-      const bool is_inside = (time > 0.11 && time < 1.9) || (time > 2.31 && time < 3.85);
-      worst = is_inside ? std::max(worst, std::abs(ready->torques[1] - expected[1])) : worst;
-      gaps += ready->joints.front().after_gap ? 1 : 0;
-      ++samples;
-    }
+    const double time = ready.joints.front().time;
+    const double speed = 0.5 * RATE * std::cos(RATE * time);
+    const double acceleration = -0.5 * RATE * RATE * std::sin(RATE * time);
+    const std::vector<double> expected =
+        torquesOf(dynamics, motionOf(swing(time), { 0.0, speed, -speed }, { 0.0, acceleration, -acceleration }));
+    const bool is_inside = (time > 0.11 && time < 1.9) || (time > 2.31 && time < 3.85);
+    worst = is_inside ? std::max(worst, std::abs(ready.torques[1] - expected[1])) : worst;
+    gaps += ready.joints.front().after_gap ? 1 : 0;
+    ++samples;
   };
   int pushed = 0;
   for (int i = 0; i < 500; ++i)
@@ -266,11 +256,11 @@ TEST(ArmLoad, FollowsASwingWithUnevenRowsAndAGap)
       continue;
     }
     pushed += load.push(rowsOf(time, swing(time))) ? 1 : 0;
-    take(false);
+    popAll(load, take);
   }
   EXPECT_FALSE(load.push(rowsOf(3.9, swing(3.9)))) << "earlier than the row before";
   EXPECT_FALSE(load.push(rowsOf(5.0, { std::nan("") })));
-  take(true);
+  popAll(load, take, true);
   EXPECT_EQ(samples, pushed);
   EXPECT_EQ(gaps, 1);
   EXPECT_LT(worst, 0.05);
@@ -300,27 +290,21 @@ double errorOfUnevenRows(bool with_velocity)
   std::vector<double> stamps;
   std::vector<double> expected;
   double worst = 0.0;
-  const auto take = [&](ArmLoad& from, const std::function<void(const ArmSample&)>& visit)
-  {
-    while (const ArmSample* sample = from.pop())
-    {
-      visit(*sample);
-    }
-  };
+
   std::size_t compared = 0;
   for (int i = 0; i < 400; ++i)
   {
     const double time = 0.016 * i + (i % 2 == 1 ? -0.004 : 0.004);
     exact.push(swinging(time, time, false));
     load.push(swinging(time, 0.016 * i, with_velocity));
-    take(exact, [&](const ArmSample& sample) { expected.push_back(sample.torques[2]); });
-    take(load,
-         [&](const ArmSample& sample)
-         {
-           EXPECT_NEAR(sample.joints[2].time, 0.016 * static_cast<double>(compared), 1e-9) << "stamps stay";
-           stamps.push_back(sample.torques[2]);
-           ++compared;
-         });
+    popAll(exact, [&](const ArmSample& sample) { expected.push_back(sample.torques[2]); });
+    popAll(load,
+           [&](const ArmSample& sample)
+           {
+             EXPECT_NEAR(sample.joints[2].time, 0.016 * static_cast<double>(compared), 1e-9) << "stamps stay";
+             stamps.push_back(sample.torques[2]);
+             ++compared;
+           });
   }
   for (std::size_t i = 20; i < std::min(stamps.size(), expected.size()); ++i)
   {
@@ -343,11 +327,12 @@ TEST(ArmLoad, UnevenRowsWithoutVelocitiesMakeNoVibration)
   for (int i = 0; i < 600; ++i)
   {
     load.push(swinging(0.016 * i + (i % 2 == 1 ? -0.004 : 0.004), 0.016 * i, false));
-    while (const ArmSample* sample = load.pop())
-    {
-      largest = sample->joints[2].time > 1.0 ? std::max(largest, std::abs(sample->own[2].vibration)) : 0.0;
-      ++samples;
-    }
+    popAll(load,
+           [&](const ArmSample& sample)
+           {
+             largest = sample.joints[2].time > 1.0 ? std::max(largest, std::abs(sample.own[2].vibration)) : 0.0;
+             ++samples;
+           });
   }
   EXPECT_GT(samples, 580);
   EXPECT_LT(largest, 3.0);
@@ -363,10 +348,7 @@ std::vector<double> torquesWith(const std::function<void(std::vector<MotionRow>&
     std::vector<MotionRow> rows = swinging(0.008 * i, 0.008 * i, true);
     change(rows);
     load.push(rows);
-    while (const ArmSample* sample = load.pop())
-    {
-      torques.push_back(sample->torques[2]);
-    }
+    popAll(load, [&](const ArmSample& sample) { torques.push_back(sample.torques[2]); });
   }
   return torques;
 }
@@ -398,9 +380,8 @@ TEST(ArmLoad, VibrationIsWhatFasterRatesTakeBeyondTheLoad)
   constexpr double SIZE = 2e-4;
   ArmDynamics dynamics(shipped("ur5"));
   ArmLoad load(shipped("ur5"));
-  Angles upward = BENT;
-  const std::vector<double> weight = torquesOf(dynamics, motionOf(upward));
-  const std::vector<double> unit = torquesOf(dynamics, motionOf(upward, {}, { 0.0, 1.0 }));
+  const std::vector<double> weight = torquesOf(dynamics, motionOf(BENT));
+  const std::vector<double> unit = torquesOf(dynamics, motionOf(BENT, {}, { 0.0, 1.0 }));
   const double inertia = unit[1] - weight[1];
   double in_phase = 0.0;
   double reference = 0.0;
@@ -410,13 +391,14 @@ TEST(ArmLoad, VibrationIsWhatFasterRatesTakeBeyondTheLoad)
     Angles angles = BENT;
     angles[1] += SIZE * std::sin(RATE * 0.008 * i);
     load.push(rowsOf(0.008 * i, angles));
-    while (const ArmSample* sample = load.pop())
-    {
-      const double expected = -inertia * SIZE * RATE * RATE * std::sin(RATE * sample->joints[1].time);
-      in_phase += sample->own[1].vibration * expected;
-      reference += expected * expected;
-      slow = std::max(slow, std::abs(sample->torques[1] - weight[1]));
-    }
+    popAll(load,
+           [&](const ArmSample& sample)
+           {
+             const double expected = -inertia * SIZE * RATE * RATE * std::sin(RATE * sample.joints[1].time);
+             in_phase += sample.own[1].vibration * expected;
+             reference += expected * expected;
+             slow = std::max(slow, std::abs(sample.torques[1] - weight[1]));
+           });
   }
   EXPECT_NEAR(in_phase / reference, 0.42, 0.02) << "of it, by the parabola over 72 ms";
   EXPECT_LT(slow, 0.3 * inertia * SIZE * RATE * RATE);
@@ -425,8 +407,7 @@ TEST(ArmLoad, VibrationIsWhatFasterRatesTakeBeyondTheLoad)
 TEST(ArmLoad, AllocatesNothingAfterConstruction)
 {
   ArmLoad load(shipped("ur5"));
-  const std::vector<MotionRow> rows = rowsOf(0.0, BENT);
-  std::vector<MotionRow> row = rows;
+  std::vector<MotionRow> row = rowsOf(0.0, BENT);
   const std::size_t before = allocationCount();
   for (int i = 0; i < 1000; ++i)
   {
@@ -435,11 +416,52 @@ TEST(ArmLoad, AllocatesNothingAfterConstruction)
       joint.time = 0.002 * i;
     }
     load.push(row);
-    while (load.pop() != nullptr)
-    {
-    }
+    popAll(load, [](const ArmSample&) {});
   }
   EXPECT_EQ(allocationCount(), before);
+}
+
+/// By the products of the definition.
+double directRows(const Eigen::VectorXd& residuals)
+{
+  const Eigen::Index rows = residuals.size();
+  double length = 1.0;
+  for (Eigen::Index lag = 1; lag < rows / 4; ++lag)
+  {
+    const double product = residuals.head(rows - lag).dot(residuals.tail(rows - lag));
+    if (product <= 0.0)
+    {
+      break;
+    }
+    length += 2.0 * product / residuals.squaredNorm();
+  }
+  return length;
+}
+
+TEST(CorrelationRows, AreThoseOfTheDefinition)
+{
+  SeededRandom engine(1);
+  for (const double memory : { 0.0, 0.5, 0.95, 0.999 })
+  {
+    for (const Eigen::Index rows : { 5, 100, 1000, 3001 })
+    {
+      Eigen::VectorXd residuals(rows);
+      double last = 0.0;
+      for (double& residual : residuals)
+      {
+        residual = last = memory * last + engine.normal();
+      }
+      EXPECT_NEAR(correlationRows(residuals), directRows(residuals), 1e-9 * directRows(residuals)) << memory;
+    }
+  }
+  EXPECT_EQ(correlationRows(Eigen::VectorXd::Zero(100)), 1.0);
+}
+
+/// A product for each lag of half an hour at 125 Hz would take a minute.
+TEST(CorrelationRows, TakeMuchLessThanTheDefinitionWhereAllRowsAreAlike)
+{
+  constexpr Eigen::Index ROWS = 225'000;
+  EXPECT_NEAR(correlationRows(Eigen::VectorXd::Ones(ROWS)), 1.0 + 2.0 * ROWS / 4.0 * 7.0 / 8.0, 2.0);
 }
 }  // namespace
 }  // namespace hjt

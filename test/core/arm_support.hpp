@@ -49,4 +49,48 @@ inline std::vector<double> torquesOf(ArmDynamics& dynamics, const std::vector<Jo
 }
 
 constexpr Angles BENT{ 0.1, -1.2, 0.7, -0.5, 0.9, 0.4 };
+
+/// Each joint to and fro about BENT at a rate of its own.
+inline std::vector<JointMotion> swingAt(double time)
+{
+  std::vector<JointMotion> motion(BENT.size());
+  for (std::size_t i = 0; i < motion.size(); ++i)
+  {
+    const double rate = 0.9 + 0.13 * static_cast<double>(i);
+    motion[i] = { BENT[i] + 0.8 * std::sin(rate * time), 0.8 * rate * std::cos(rate * time),
+                  -0.8 * rate * rate * std::sin(rate * time) };
+  }
+  return motion;
+}
+
+inline MotionSample sampleOf(const JointMotion& motion, double time)
+{
+  MotionSample sample;
+  sample.time = time;
+  sample.position = motion.position;
+  sample.velocity = motion.velocity;
+  sample.acceleration = motion.acceleration;
+  return sample;
+}
+
+/// Of the drives of an arm.
+inline std::vector<Parameters> drives(const ArmDescription& arm)
+{
+  std::vector<Parameters> joints;
+  for (const ArmJoint& joint : arm.joints)
+  {
+    takeInertiaInLoad(joints.emplace_back(parseParameters(armJointParameters(joint, HJT_TEST_CONFIG_DIR, ""))));
+  }
+  return joints;
+}
+
+/// All that is ready of a stream of rows.
+template <class Visit>
+void popAll(ArmLoad& load, const Visit& visit, bool at_end = false)
+{
+  while (const ArmSample* sample = load.pop(at_end))
+  {
+    visit(*sample);
+  }
+}
 }  // namespace hjt

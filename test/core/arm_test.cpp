@@ -1,31 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <array>
+
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 #include <iostream>
 #include <numeric>
-#include <random>
 #include <set>
-#include <string>
-#include <vector>
 
-#include <gmock/gmock.h>
-#include <kdl/chainfksolverpos_recursive.hpp>
-#include <kdl_parser/kdl_parser.hpp>
-
-#include "arm/arm_configuration.hpp"
-#include "arm/arm_dynamics.hpp"
-#include "arm/arm_load.hpp"
+#include "arm/arm_description.hpp"
 #include "arm/moving_arm.hpp"
-#include "base/csv_table.hpp"
+#include "arm/set_points.hpp"
 #include "elements/motor.hpp"
-#include "gear/ratio.hpp"
-#include "harmonic_joint_twin/base/errors.hpp"
-#include "statics/gear_rules.hpp"
 #include "test/core/arm_support.hpp"
 #include "test/core/complaint.hpp"
-#include "test/support/allocation_count.hpp"
+#include "test/support/temporary_folder.hpp"
 
 namespace hjt
 {
@@ -126,18 +112,6 @@ TEST(ArmDynamics, WeightIsTheSlopeOfThePotentialEnergy)
   }
 }
 
-TEST(ArmDynamics, StretchedArmWeighsWhatItsMassesDo)
-{
-  const ArmDescription arm = shipped("ur5");
-  ArmDynamics dynamics(arm);
-  const std::vector<double> level = torquesOf(dynamics, motionOf({}));
-  constexpr double WRISTS = 2.0 * 1.219 + 0.1879;
-  const double elbow = 9.82 * (2.275 * 0.27232 + WRISTS * 0.39225);
-  EXPECT_NEAR(std::abs(level[0]), 0.0, 1e-9);
-  EXPECT_NEAR(std::abs(level[1]), elbow + 9.82 * (8.393 * 0.2125 + (2.275 + WRISTS) * 0.425), 0.05);
-  EXPECT_NEAR(std::abs(level[2]), elbow, 0.05);
-}
-
 /// From the Newton-Euler recursion in Denavit-Hartenberg frames, which a controller's own torques agree with.
 TEST(ArmDynamics, MotionOfAllJointsCouples)
 {
@@ -145,10 +119,7 @@ TEST(ArmDynamics, MotionOfAllJointsCouples)
   const std::vector<double> torques =
       torquesOf(dynamics, motionOf(BENT, { 0.3, -0.5, 0.7, -0.2, 0.4, 0.6 }, { 1.0, -2.0, 1.5, 0.5, -1.0, 2.0 }));
   const std::array<double, 6> expected{ 1.896405, -34.223342, -16.950993, -1.37869, 0.155667, 0.000359 };
-  for (std::size_t i = 0; i < expected.size(); ++i)
-  {
-    EXPECT_NEAR(torques[i], expected[i], 2e-5) << "joint " << i;
-  }
+  EXPECT_THAT(torques, testing::Pointwise(testing::DoubleNear(2e-5), expected));
 }
 
 TEST(ArmDynamics, WorkOfASwingThatReturnsIsZero)
@@ -249,6 +220,173 @@ TEST(ArmDynamics, AgreesWithAController)
     std::cout << arm.joints[i].short_name << ": " << rms << " N.m rms\n";
     EXPECT_LT(rms, i < 3 ? 0.1 : 0.01) << arm.joints[i].short_name;
   }
+}
+
+constexpr const char* SHIPPED = HJT_TEST_CONFIG_DIR "/arms/ur5.yaml";
+
+/// `text` with its first `from` replaced.
+std::string replaced(std::string text, const std::string& from, const std::string& to)
+{
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+/// One change of a sound file, and what is said about it.
+struct Case
+{
+  const char* from;
+  const char* to;
+  const char* expected;
+};
+
+constexpr Case BAD_VALUES[] = {
+  { "torque: 150.0", "torque: .nan",
+    "arm.yaml:31: joints.0.limits.torque = .nan [N.m] is not a finite number, allowed: 0.001 ... 1.0e+6 [N.m]" },
+  { "feedback: 42.8", "feedback: 0.0", "joints.0.limits.feedback = 0.0 [N.m] is out of range, allowed: 0.001" },
+  { "torque: 150.0", "torque: -150.0", "joints.0.limits.torque = -150.0 [N.m] is out of range" },
+  { "speed: 3.141592653589793", "speed: 0",
+    "arm.yaml:31: joints.0.limits.speed = 0 [rad/s] is out of range, allowed: 0.001 ... 100 [rad/s]" },
+  { "{speed: 3.141592653589793, torque: 150.0, feedback: 42.8}", "3", "joints.0.limits = 3 must be keys and values" },
+  { "mass: 0.0", "mass: .nan", "arm.yaml:15: payload.mass = .nan [kg] is not a finite number, allowed: 0 ... 10000" },
+  { "mass: 0.0", "mass: -3", "payload.mass = -3 [kg] is out of range, allowed: 0 ... 10000 [kg]" },
+  { "mass: 0.0", "mass: 1.0e+300", "payload.mass = 1.0e+300 [kg] is out of range" },
+  { "  mass: 0.0", "  mas: 0.0", "arm.yaml:15: unknown parameter payload.mas = 0.0 (did you mean payload.mass?)" },
+  { "  mass: 0.0\n", "", "arm.yaml: parameter payload.mass is missing; expected a number [kg], 0 ... 10000" },
+  { "centre: [0.0, 0.0, 0.0]", "centre: [0.0, 1e3, 0.0]", "payload.centre = [0.0, 1000.0, 0.0] [m] is out of range" },
+  { "[0.0, 0.0, -9.82]", "[0.0, 0.0, .nan]", "arm.yaml:11: gravity = [0.0, 0.0, .nan] [m/s^2] is not a finite" },
+  { "[0.0, 0.0, -9.82]", "[0.0, -9.82]", "gravity = [0.0, -9.82] must be a list of 3 numbers [m/s^2]" },
+  { "[0.0, 0.0, -9.82]", "[0.0, down, -9.82]", "arm.yaml:11: gravity must be a list of numbers alone" },
+  { "check_up: [0.0, -0.35,", "check_up: [.nan, -0.35,", "arm.yaml:33: joints.0.check_up = [.nan, -0.35, 0.0," },
+  { "check_up: [0.0, -0.35,", "check_up: [100.0, -0.35,", "allowed: -6.283185307179586 ... 6.283185307179586 [rad]" },
+  { "check_up: [0.0, -0.35,", "check_up: [-0.35,", "must be a list of 6 numbers [rad]" },
+  { "short_name: base", "short_name: 'a b'",
+    "arm.yaml:28: joints.0.short_name = 'a b' must be a name: a letter, then letters, digits and underscores" },
+  { "short_name: base", "short_name: ../../../escaped", "joints.0.short_name = '../../../escaped' must be a name" },
+  { "short_name: shoulder", "short_name: base",
+    "arm.yaml:35: joints.1.short_name = 'base' must be another than joints.0.short_name" },
+  { "short_name: base", "short_name: 5", "joints.0.short_name = 5 must be a text" },
+  { "parameters: {telemetry.inertia_in_load: 1.877e-4}", "parameters: [1, 2]",
+    "arm.yaml:30: joints.0.parameters = [1.0, 2.0] must be keys and values" },
+  { "overlays: [joints/base.yaml, recorded_load.yaml, beside_robot.yaml]", "overlays: joints/base.yaml",
+    "arm.yaml:29: joints.0.overlays = 'joints/base.yaml' must be a list of configuration files" },
+  { "payload:\n", "payload:\n  mass: 1.0\n", "payload.mass stands twice in this file (first at" },
+  { "ur5.urdf", "/dev/zero", "arm.yaml:5: description: /dev/zero cannot be read: it is a folder, a device or a pipe" },
+};
+
+TEST(ArmDescription, WhatIsWrongIsNamedWithLineKeyValueUnitAndRange)
+{
+  const TemporaryFolder folder;
+  const std::string text = textOf(SHIPPED);
+  folder.write("ur5.urdf", readArmDescription(SHIPPED).urdf);
+  const auto complaint = [&](const Case& one)
+  {
+    const std::string path = folder.write("arm.yaml", replaced(text, one.from, one.to));
+    return complaintOf([&] { readArmDescription(path); });
+  };
+  for (const Case& one : BAD_VALUES)
+  {
+    EXPECT_THAT(complaint(one), testing::HasSubstr(one.expected)) << one.to;
+  }
+  EXPECT_EQ(complaint({ "mass: 0.0", "mass: 1e1", "" }), "");
+  folder.write("ur5.urdf", std::string(10'000'001, ' '));
+  EXPECT_THAT(complaint(BAD_VALUES[0]), testing::HasSubstr("joints.0.limits.torque"));
+  EXPECT_THAT(complaint({ "mass: 0.0", "mass: 1.0", "" }),
+              testing::HasSubstr("ur5.urdf cannot be read: it is larger than 10000000 bytes"));
+}
+
+TEST(ArmDescription, ParametersOfAJointAreNamedWithTheirLine)
+{
+  const TemporaryFolder folder;
+  const std::string text = textOf(SHIPPED);
+  folder.write("ur5.urdf", readArmDescription(SHIPPED).urdf);
+  const std::string path =
+      folder.write("arm.yaml", replaced(text, "telemetry.inertia_in_load: 1.877e-4", "motor.torqe_limit: 1.0"));
+  const ArmDescription arm = readArmDescription(path);
+  EXPECT_THAT(complaintOf([&] { parseParameters(armJointParameters(arm.joints[0], HJT_TEST_CONFIG_DIR, "")); }),
+              testing::HasSubstr("arm.yaml:30: unknown parameter motor.torqe_limit = 1.0 (did you mean"));
+}
+
+TEST(ArmDrives, KeepTheRotorThatARecordingDoesNotShow)
+{
+  const ArmDescription arm = readArmDescription(SHIPPED);
+  const TemporaryFolder folder;
+  const auto rotor_of = [&](const char* identified)
+  {
+    folder.write("wrist_3.yaml", std::string("motor: {rotor_inertia: ") + identified + "}\n");
+    return parseParameters(armDriveParameters(arm.joints[5], HJT_TEST_CONFIG_DIR, folder.path())).motor.rotor_inertia;
+  };
+  const double configured =
+      parseParameters(armJointParameters(arm.joints[5], HJT_TEST_CONFIG_DIR, "")).motor.rotor_inertia;
+  EXPECT_EQ(rotor_of("1.0e-9"), configured);
+  EXPECT_EQ(rotor_of("1.0e-3"), 1e-3) << "more than configured is taken";
+}
+
+TEST(ArmDynamics, RefusesLinksThatNoRobotHas)
+{
+  const ArmDescription sound = readArmDescription(SHIPPED);
+  for (const Case& one : {
+           Case{ "<axis xyz=\"0 0 1\"/>", "<axis xyz=\"0 0 0\"/>",
+                 "joint 'shoulder_pan_joint' with link 'shoulder_link': its axis has no direction" },
+           Case{ "<mass value=\"8.393\"/>", "<mass value=\"-3\"/>",
+                 "joint 'shoulder_lift_joint' with link 'upper_arm_link': mass = -3.0 [kg] is out of range, allowed: 0 "
+                 "..." },
+           Case{ "<mass value=\"8.393\"/>", "<mass value=\"1e300\"/>", "mass = 1.0e+300 [kg] is out of range" },
+           Case{ "ixx=\"", "ixx=\"-", "inertia = -" },
+           Case{ "<mass value=\"8.393\"/>", "<mass value=\"8,393\"/>", "URDF cannot be read: " },
+           Case{ "<mass value=\"8.393\"/>", "<mass value=\"8.393 kg\"/>", "URDF cannot be read: " },
+           Case{ "<mass value=\"8.393\"/>", "<mass valu=\"8.393\"/>", "URDF cannot be read: " },
+           Case{ "<mass value=\"8.393\"/>", "<mass value=\"nan\"/>", "URDF cannot be read: " },
+           Case{ "<mass value=\"8.393\"/>", "<mass value=\"0\"/>",
+                 "link 'upper_arm_link', which joint 'shoulder_lift_joint' moves, has no mass" },
+       })
+  {
+    ArmDescription arm = sound;
+    arm.urdf = replaced(arm.urdf, one.from, one.to);
+    EXPECT_THAT(complaintOf([&] { readLinks(arm); }), testing::HasSubstr(one.expected)) << one.to;
+  }
+  ArmDescription massless = sound;
+  for (std::size_t at = massless.urdf.find("<inertial>"); at != std::string::npos;
+       at = massless.urdf.find("<inertial>"))
+  {
+    massless.urdf.erase(at, massless.urdf.find("</inertial>") + std::string("</inertial>").size() - at);
+  }
+  EXPECT_THAT(complaintOf([&] { readLinks(massless); }), testing::HasSubstr("link 'shoulder_link', which joint"));
+  ArmDescription deep = sound;
+  std::string flat;  // a hundred of them, none within another
+  for (int i = 0; i < 100; ++i)
+  {
+    flat += "<!-- don't <a><b> --><b text='1 > 0'/>";
+  }
+  std::string nest;
+  for (int i = 0; i < 100; ++i)
+  {
+    nest = "<a>" + nest + "</a>";
+  }
+  deep.urdf = replaced(sound.urdf, "</robot>", flat + nest + "</robot>");
+  EXPECT_THAT(complaintOf([&] { readLinks(deep); }), testing::HasSubstr("more than 100 elements"));
+  deep.urdf = replaced(sound.urdf, "</robot>", flat + nest.substr(3, nest.size() - 7) + "<b/></robot>");
+  EXPECT_EQ(complaintOf([&] { readLinks(deep); }), "");
+}
+
+TEST(SetPoints, NoArmIsToldWhatItCannotDo)
+{
+  const ArmDescription arm = readArmDescription(SHIPPED);
+  const auto errors = [&](double angle, double end)
+  {
+    std::vector<ArmSetPoint> points{ { 0.0, std::vector<JointMotion>(6) }, { end, std::vector<JointMotion>(6) } };
+    points[1].joints[2].position = angle;
+    return motionErrors(points, arm);
+  };
+  EXPECT_EQ(errors(2.9, 1.0), "");
+  EXPECT_EQ(errors(6.3, 10.0), "");
+  EXPECT_THAT(errors(6.4, 10.0),
+              testing::HasSubstr("elbow_joint: angle = 6.4 [rad] is out of range, allowed: -6.3355 ... 6.3355"));
+  EXPECT_THAT(errors(1e300, 1.0), testing::HasSubstr("elbow_joint: angle = 1.0e+300 [rad] is out of range"));
+  EXPECT_THAT(errors(std::nan(""), 1.0), testing::HasSubstr("out of range"));
+  EXPECT_THAT(errors(2.9, 0.2), testing::HasSubstr("elbow_joint would turn at 14.5 rad/s at 0.2 s, its limit is 3.14"));
+  EXPECT_THAT(errors(2.9, 6e8), testing::HasSubstr("set point 2: it is 6.0e+8 s after the first"));
+  EXPECT_THAT(errors(0.0, 0.0), testing::HasSubstr("set point 2: the time does not go on"));
 }
 }  // namespace
 }  // namespace hjt

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "arm/arm_twin.hpp"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <functional>
-#include <string>
-#include <vector>
+#include <set>
 
 #include <gmock/gmock.h>
 
+#include "arm/arm_configuration.hpp"
+#include "arm/arm_controller.hpp"
 #include "arm/arm_motion.hpp"
-#include "arm/moving_arm.hpp"
-#include "harmonic_joint_twin/params/parameter_map.hpp"
+#include "arm/arm_twin.hpp"
+#include "arm/set_points.hpp"
+#include "gear/ratio.hpp"
 #include "test/core/complaint.hpp"
 #include "test/core/rods.hpp"
 #include "test/support/allocation_count.hpp"
+#include "tracking/friction_map.hpp"
 
 namespace hjt
 {
@@ -84,16 +84,14 @@ TEST(ArmTwin, WhatTheDrivesDeliverIsWhatTheArmHoldsUpToTheSquareOfTheStep)
 {
   const double coarse = couplingError(10e3, 10e3);
   const double fine = couplingError(20e3, 20e3);
-  EXPECT_GT(coarse / fine, 3.5);
-  EXPECT_LT(coarse / fine, 4.5);
+  EXPECT_NEAR(coarse / fine, 4.0, 0.5);
 }
 
 TEST(ArmTwin, AMassMatrixTakenLessOftenCostsInProportion)
 {
   const double seldom = couplingError(10e3, 500.0);
   const double often = couplingError(10e3, 1000.0);
-  EXPECT_GT(seldom / often, 1.5);
-  EXPECT_LT(seldom / often, 2.5);
+  EXPECT_NEAR(seldom / often, 2.0, 0.5);
 }
 
 /// Within an arm a step is divided by the inertia that the pose shows the joint, and less than of a drive alone.
@@ -153,13 +151,16 @@ TEST(ArmTwin, FrameAndGravityTurnedTogetherChangeNothing)
   EXPECT_NEAR(upright[1], hanging[1], 1e-9);
 }
 
-TEST(ArmTwin, StandsInItsBrakesAsItHangs)
+TEST(ArmTwin, StandsInItsBrakesAsItHangsAndAllocatesNothing)
 {
   ArmTwin arm(rods("0 1 0", 2), { drive(), drive() }, { 0.3, -0.8 });
-  for (int i = 0; i < 1000; ++i)
+  arm.step(toStampLength(1.0));
+  const std::size_t before = allocationCount();
+  for (int i = 1; i < 1000; ++i)
   {
     ASSERT_TRUE(arm.step(toStampLength(1.0)));
   }
+  EXPECT_EQ(allocationCount(), before);
   constexpr double CREEP = 2e-6;  // of an output that regularised friction holds, in this time [rad]
   EXPECT_NEAR(arm.motion()[0].position, 0.3, CREEP);
   EXPECT_NEAR(arm.motion()[1].position, -0.8, CREEP);
@@ -171,21 +172,15 @@ TEST(ArmTwin, StandsInItsBrakesAsItHangs)
 /// Two joints that go to and fro within a second.
 ArmMotion swing(bool repeats)
 {
-  std::vector<ArmSetPoint> points;
-  for (const double way : { 0.0, 0.1, 0.0 })
-  {
-    points.push_back(
-        { 0.5 * static_cast<double>(points.size()), { { 0.3 + way, 0.0, 0.0 }, { -0.8 - way, 0.0, 0.0 } } });
-  }
-  return ArmMotion(points, ArmAccelerations::OF_CUBICS, repeats);
+  const std::vector<JointMotion> away{ { 0.4, 0.0, 0.0 }, { -0.9, 0.0, 0.0 } };
+  return ArmMotion({ { 0.0, REST }, { 0.5, away }, { 1.0, REST } }, ArmAccelerations::OF_CUBICS, repeats);
 }
 
 TEST(ArmMotion, RatesAreThoseOfItsAngles)
 {
   constexpr double STEP = 1e-5;
   ArmMotion motion = swing(false);
-  std::array<std::vector<JointMotion>, 3> at{ std::vector<JointMotion>(2), std::vector<JointMotion>(2),
-                                              std::vector<JointMotion>(2) };
+  std::vector<std::vector<JointMotion>> at(3, REST);
   for (const double time : { 0.1, 0.3, 0.7, 0.95 })
   {
     for (std::size_t k = 0; k < at.size(); ++k)
@@ -214,8 +209,7 @@ TEST(ArmMotion, RepeatsOrStandsStillAtItsEnd)
 TEST(MovingArm, GoesToAnotherMotionFromWhereItIs)
 {
   constexpr double NEAR = 2e-3;  // of a set point [rad]
-  const ArmDescription description = rods("0 1 0", 2);
-  MovingArm arm(description, { drive(), drive() }, swing(true), {});
+  MovingArm arm = movingRods(swing(true));
   const auto expect_followed = [&](double until)
   {
     std::vector<JointMotion> wanted(2);
@@ -242,21 +236,12 @@ TEST(MovingArm, GoesToAnotherMotionFromWhereItIs)
 
 TEST(MovingArm, StopsWhereItCannotFollow)
 {
-  MovingArm arm(rods("0 1 0", 2), { drive(), drive() },
-                ArmMotion({ { 0.0, { { 0.3, 0.0, 0.0 }, { -0.8, 0.0, 0.0 } } },
-                            { 0.1, { { 0.3, 0.0, 0.0 }, { -0.8, 0.0, 0.0 } } },
-                            { 0.101, { { 0.3, 0.0, 0.0 }, { -0.6, 0.0, 0.0 } } } }),
-                {});
-  const auto run_to = [&](double time)
-  {
-    while (arm.step(toStampLength(time)))
-    {
-    }
-  };
-  run_to(MovingArm::SETTLING + 0.1);
+  MovingArm arm =
+      movingRods(ArmMotion({ { 0.0, REST }, { 0.1, REST }, { 0.101, { { 0.3, 0.0, 0.0 }, { -0.6, 0.0, 0.0 } } } }));
+  advance(arm, toStampLength(MovingArm::SETTLING + 0.1));
   EXPECT_FALSE(arm.protectiveStop());
   const std::size_t before = allocationCount();
-  run_to(MovingArm::SETTLING + 0.3);
+  advance(arm, toStampLength(MovingArm::SETTLING + 0.3));
   EXPECT_EQ(allocationCount(), before);
   ASSERT_TRUE(arm.protectiveStop());
   EXPECT_EQ(arm.protectiveStop()->joint, 1U);
@@ -275,15 +260,8 @@ TEST(MovingArm, StopsWhereItCannotFollow)
 /// It goes on from where a push has left it.
 TEST(MovingArm, IsUnlockedInPlace)
 {
-  MovingArm arm(rods("0 1 0", 2), { drive(), drive() },
-                ArmMotion({ { 0.0, { { 0.3, 0.0, 0.0 }, { -0.8, 0.0, 0.0 } } } }), {});
-  const auto run_for = [&](double time)
-  {
-    const Stamp end = arm.twin().stamp() + toStampLength(time);
-    while (arm.step(end))
-    {
-    }
-  };
+  MovingArm arm = movingRods(ArmMotion({ { 0.0, REST } }));
+  const auto run_for = [&](double time) { advance(arm, arm.twin().stamp() + toStampLength(time)); };
   run_for(MovingArm::SETTLING);
   EXPECT_TRUE(arm.unlock());  // there is nothing to unlock
   arm.twin().setWrench({ { 3000.0, 0.0, -3000.0 }, {} });
@@ -307,13 +285,12 @@ TEST(MovingArm, IsUnlockedInPlace)
   EXPECT_FALSE(arm.protectiveStop()) << waited;
   run_for(0.3);
   ASSERT_FALSE(arm.protectiveStop());
-  std::vector<ArmSetPoint> way{ { 0.0, stood }, { 0.5, { { 0.3, 0.0, 0.0 }, { -0.8, 0.0, 0.0 } } } };
   for (std::size_t i = 0; i < 2; ++i)
   {
     EXPECT_FALSE(arm.twin().drive(i).outputs().brake_engaged);
     EXPECT_NEAR(arm.twin().motion()[i].position, stood[i].position, 2e-3);
   }
-  ArmMotion back(way, ArmAccelerations::OF_CUBICS);
+  ArmMotion back({ { 0.0, stood }, { 0.5, REST } }, ArmAccelerations::OF_CUBICS);
   arm.follow(back);
   run_for(1.0);
   EXPECT_FALSE(arm.protectiveStop());
@@ -347,18 +324,6 @@ TEST(SampleMoves, LimitedJerkKeepsTheWayAndEveryLimit)
   }
 }
 
-TEST(ArmTwin, AllocatesNothingInAStep)
-{
-  ArmTwin arm(rods("0 1 0", 2), { drive(), drive() }, { 0.3, -0.8 });
-  arm.step(toStampLength(1.0));
-  const std::size_t before = allocationCount();
-  for (int i = 0; i < 100; ++i)
-  {
-    arm.step(toStampLength(1.0));
-  }
-  EXPECT_EQ(allocationCount(), before);
-}
-
 TEST(ArmTwin, RefusesWhatDoesNotFit)
 {
   const auto message = [](std::vector<Parameters> drives, double mass_rate = 1000.0) {
@@ -370,6 +335,114 @@ TEST(ArmTwin, RefusesWhatDoesNotFit)
   heavy.output.gravity_torque = 3.0;
   EXPECT_THAT(message({ heavy, drive() }), testing::HasSubstr("joint_0: output.gravity_torque = 3.0"));
   EXPECT_THAT(message({ drive(), drive() }, 2e4), testing::HasSubstr("mass matrix"));
+}
+
+/// Of every shipped arm: beyond a limit it throws.
+TEST(GentleMotion, TakesEveryJointBothWaysSlowlyAndFast)
+{
+  for (const char* name : { "ur3", "ur3e", "ur5", "ur5e", "ur10", "ur10e", "ur15", "ur16e", "ur18", "ur8long" })
+  {
+    const ArmDescription arm = readArmDescription(findArm(name, HJT_TEST_CONFIG_DIR));
+    const ArmMotion motion = gentleMotion(arm);
+    for (std::size_t i = 0; i < arm.joints.size(); ++i)
+    {
+      double slowest = 0.0;
+      double fastest = 0.0;
+      for (const ArmSetPoint& point : motion.points())
+      {
+        slowest = std::min(slowest, point.joints[i].velocity);
+        fastest = std::max(fastest, point.joints[i].velocity);
+      }
+      EXPECT_GT(fastest, 0.6) << name << ' ' << i;
+      EXPECT_LT(slowest, -0.6) << name << ' ' << i;
+      EXPECT_NEAR(motion.points().front().joints[i].position, motion.points().back().joints[i].position, 1e-12);
+    }
+  }
+}
+
+/// The scene is chosen for a joint whose files leave it as shipped, and for that alone.
+TEST(ArmDriveMaps, AJointsOwnSceneCounts)
+{
+  ArmDescription arm = readArmDescription(findArm("ur5", HJT_TEST_CONFIG_DIR));
+  arm.joints[2].parameters["solver.scene"] = { std::string("full_ring"), "the arm's file" };
+  ConfigurationOptions options;
+  options.config_dir = HJT_TEST_CONFIG_DIR;
+  const auto scene_of = [&](std::size_t joint)
+  { return parseParameters(armDriveMaps(arm, options, "")[joint]).solver.scene; };
+  EXPECT_EQ(scene_of(2), SceneKind::FULL_RING);
+  EXPECT_EQ(scene_of(1), SceneKind::AUTO);
+  options.assignments = { "solver.scene=full_ring" };
+  EXPECT_EQ(scene_of(1), SceneKind::FULL_RING);
+}
+
+/// A motor may hold more than its gear bears: those loads are left out.
+TEST(FrictionMap, IsMadeForEveryDriveOfEveryShippedArm)
+{
+  std::set<std::vector<std::string>> seen;
+  for (const char* name : { "ur3", "ur3e", "ur5", "ur5e", "ur10", "ur10e", "ur15", "ur16e", "ur18", "ur8long" })
+  {
+    for (const ArmJoint& joint : readArmDescription(findArm(name, HJT_TEST_CONFIG_DIR)).joints)
+    {
+      if (seen.insert(joint.overlays).second)
+      {
+        const Parameters parameters = parseParameters(armJointParameters(joint, HJT_TEST_CONFIG_DIR, ""));
+        const FrictionMap map(parameters);
+        const double bears = parameters.output.load_torque_limit;
+        EXPECT_GT(map.at(10.0, 0.8 * bears, 25.0).sum(), map.at(10.0, 0.0, 25.0).sum()) << name << joint.short_name;
+      }
+    }
+  }
+}
+
+TEST(GiveOwnSeeds, NoDriveIsAnotherAndPerfectOnesStayAlike)
+{
+  std::vector<Parameters> drives(6, shippedParameters());
+  giveOwnSeeds(drives);
+  EXPECT_EQ(drives[5].manufacture.circular_spline_pitch.seed, drives[0].manufacture.circular_spline_pitch.seed);
+  for (Parameters& each : drives)
+  {
+    each.manufacture.flexspline_pitch.deviation = 4e-6;
+    each.manufacture.circular_spline_pitch.deviation = 9.5e-6;
+  }
+  giveOwnSeeds(drives);
+  std::set<int> seeds;
+  for (const Parameters& each : drives)
+  {
+    seeds.insert({ each.manufacture.flexspline_pitch.seed, each.manufacture.circular_spline_pitch.seed });
+  }
+  EXPECT_EQ(seeds.size(), 12U);
+}
+
+using testing::HasSubstr;
+
+/// Two rods that turn about the vertical, so that nothing but inertia counts; the first joint goes that far in a tenth
+/// of a second, at an acceleration of 600 times the way at both ends.
+std::string errorsOf(const ArmDescription& arm, double way, const Payload& payload = {})
+{
+  MotionLimits limits(arm, { drive(), drive() });
+  limits.setPayload(payload);
+  return limits.errors({ { 0.0, { {}, {} } }, { 0.1, { { way, 0.0, 0.0 }, {} } } });
+}
+
+TEST(MotionLimits, HoldOfLinksAndOfTheMotor)
+{
+  ArmDescription arm = rods("0 0 1", 2);
+  ArmDynamics dynamics(arm);
+  std::vector<double> torques(2);
+  dynamics.torques({ { 0.0, 0.0, 1.0 }, {} }, torques);
+  const double inertia = torques[0];
+  const double motor_limit = nominalRatio(drive().gear) * drive().motor.torque_limit;
+  const double most = motor_limit / (inertia + ArmController::motorInertia(drive())) / 600.0;
+  EXPECT_EQ(errorsOf(arm, 0.99 * most), "");
+  EXPECT_THAT(errorsOf(arm, 1.01 * most), HasSubstr("joint_0 would need"));
+  EXPECT_THAT(errorsOf(arm, 1.01 * most), HasSubstr("N.m of its motor before 0.1 s, at"));
+  EXPECT_THAT(errorsOf(arm, -1.01 * most), HasSubstr("N.m of its motor"));
+  // What the joint may bear is less here.
+  arm.joints[0].torque_limit = 0.5 * inertia * most * 600.0;
+  EXPECT_EQ(errorsOf(arm, 0.49 * most), "");
+  EXPECT_THAT(errorsOf(arm, 0.51 * most), HasSubstr("its limit is"));
+  // A payload needs torque too.
+  EXPECT_THAT(errorsOf(arm, 0.49 * most, { 5.0, { 0.1, 0.0, 0.0 } }), HasSubstr("its limit is"));
 }
 }  // namespace
 }  // namespace hjt

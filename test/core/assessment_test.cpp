@@ -1,22 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "health/signal_monitor.hpp"
 
-#include <cmath>
-#include <random>
-#include <string>
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <utility>
 
-#include <gmock/gmock.h>
+#include <boost/math/distributions/normal.hpp>
 
-#include "gear/angle.hpp"
-#include "harmonic_joint_twin/health/assessment.hpp"
-#include "harmonic_joint_twin/twin/twin.hpp"
-#include "health/order_tracker.hpp"
-#include "health/signature_file.hpp"
 #include "health/signature_terms.hpp"
-#include "sensors/joint_sensors.hpp"
 #include "test/core/signal_monitor_support.hpp"
-#include "test/core/test_parameters.hpp"
-#include "test/support/allocation_count.hpp"
+#include "test/support/seeded_random.hpp"
 
 namespace hjt
 {
@@ -47,7 +40,7 @@ protected:
   Line faulty_{ Line::WAVE_GENERATOR_2 };
   double fault_amplitude_{};
   double drag_{ 1.0 };
-  std::mt19937 random_{ 11 };
+  SeededRandom random_{ 11 };
   std::normal_distribution<double> noise_{ 0.0, 1.0 };
   Synthetic joint_{ shippedParameters() };
   Assessor assessor_{ shippedParameters() };
@@ -86,15 +79,7 @@ TEST_F(Assessed, FewerWindowsThanAnotherLevelTakesAreNoVerdict)
   EXPECT_EQ(whyNotJudged(assessor_.assessment()), "");
 }
 
-TEST_F(Assessed, CheckUpThatIsMadeOnceIsJudgedByItsOneWindow)
-{
-  Assessor once(shippedParameters({ "indicators.evidence_windows=1" }));
-  windows(LEARNING);
-  once.setReference(assessor_.baseline().bins());
-  EXPECT_EQ(once.update(joint_.nextWindow()).state, AssessmentState::ASSESSED);
-}
-
-TEST_F(Assessed, ReferenceOfTooFewWindowsSaysHowManyItHas)
+TEST_F(Assessed, ReferenceOfTooFewWindowsSaysHowManyItHasAndAWholeOneServesACheckUpOfOneWindow)
 {
   windows(6);
   Assessor given(shippedParameters());
@@ -102,6 +87,10 @@ TEST_F(Assessed, ReferenceOfTooFewWindowsSaysHowManyItHas)
   const Assessment& assessment = given.update(joint_.nextWindow());
   EXPECT_EQ(assessment.state, AssessmentState::NO_REFERENCE);
   EXPECT_EQ(whyNotJudged(assessment), "the healthy reference needs 8 windows at this operating point, has 6");
+  windows(LEARNING - 6);
+  Assessor once(shippedParameters({ "indicators.evidence_windows=1" }));
+  once.setReference(assessor_.baseline().bins());
+  EXPECT_EQ(once.update(joint_.nextWindow()).state, AssessmentState::ASSESSED);
 }
 
 TEST_F(Assessed, LineOfTheOuterRaceIsToldAndGoesAwayAgain)
@@ -244,17 +233,15 @@ protected:
   {
     for (int window = 0; window < LEARNING; ++window)
     {
-      assess(normal_(random_), normal_(random_));
+      assess(random_.normal(), random_.normal());
     }
   }
 
   const Assessment& assess(double temperature, double stiffness)
   {
-    SignalIndicators window;
-    window.point = { 100.0, 1.0, 30.0, 25.0 };
-    window.values[indexOf(ScalarIndicator::RUNNING_TORQUE)] = 0.15 - 0.02 * temperature + noise();
-    window.values[indexOf(ScalarIndicator::COULOMB_TORQUE)] = 0.10 - 0.01 * temperature + noise();
-    window.values[indexOf(ScalarIndicator::TORSIONAL_STIFFNESS)] = 25000.0 + 300.0 * temperature + 10.0 * stiffness;
+    SignalIndicators window = torqueWindow({ 100.0, 1.0, 30.0, 25.0 }, 0.15 - 0.02 * temperature + noise());
+    valueOf(window, ScalarIndicator::COULOMB_TORQUE) = 0.10 - 0.01 * temperature + noise();
+    valueOf(window, ScalarIndicator::TORSIONAL_STIFFNESS) = 25000.0 + 300.0 * temperature + 10.0 * stiffness;
     const std::uint64_t before = allocationCount();
     assessor_.update(window);
     EXPECT_EQ(allocationCount(), before);
@@ -271,11 +258,10 @@ protected:
     return assessor_.assessment().level;
   }
 
-  double noise() { return 1e-4 * normal_(random_); }
+  double noise() { return 1e-4 * random_.normal(); }
 
   Assessor assessor_{ shippedParameters({ "indicators.least_spread=0.0" }) };
-  std::mt19937 random_{ 7 };
-  std::normal_distribution<double> normal_;
+  SeededRandom random_{ 7 };
 };
 
 TEST_F(AtAnyTemperature, WhatTemperatureMovesTogetherIsNoFault)
@@ -297,16 +283,12 @@ TEST_F(AtAnyTemperature, AMeanOfWindowsThatScatterFarMoreIsNone)
 TEST(Level, IsNotRefutedAtAnotherOperatingPoint)
 {
   Assessor assessor(shippedParameters({ "indicators.least_spread=0.0005" }));
-  std::mt19937 random(3);
-  std::normal_distribution<double> normal;
+  SeededRandom random(3);
   const auto assess = [&](int windows, double temperature, double beside)
   {
     for (int i = 0; i < windows; ++i)
     {
-      SignalIndicators window;
-      window.point = { 100.0, 1.0, 30.0, temperature };
-      window.values[indexOf(ScalarIndicator::RUNNING_TORQUE)] = 0.15 + 1e-4 * normal(random) + beside;
-      assessor.update(window);
+      assessor.update(torqueWindow({ 100.0, 1.0, 30.0, temperature }, 0.15 + 1e-4 * random.normal() + beside));
     }
     return assessor.assessment().level;
   };
@@ -316,6 +298,181 @@ TEST(Level, IsNotRefutedAtAnotherOperatingPoint)
   EXPECT_GE(assess(1, 25.0, 0.01), HealthLevel::WARN);
   EXPECT_GE(assess(20, 35.0, 0.0), HealthLevel::WARN);
   EXPECT_EQ(assess(12, 25.0, 0.0), HealthLevel::OK);
+}
+
+using Random = std::mt19937_64;
+
+/// Of mean 0 and variance 1, `before`: the last one of the same indicator.
+using Draw = std::function<double(Random&, double before)>;
+
+double gaussian(Random& random, double /*before*/)
+{
+  return std::normal_distribution<double>()(random);
+}
+
+Draw student(double freedom)
+{
+  return [freedom](Random& random, double /*before*/)
+  { return std::student_t_distribution<double>(freedom)(random) * std::sqrt((freedom - 2.0) / freedom); };
+}
+
+Draw correlated(double stays)
+{
+  return [stays](Random& random, double before)
+  { return stays * before + std::sqrt(1.0 - stays * stays) * gaussian(random, 0.0); };
+}
+
+/// Windows of sound drives whose indicators are independent numbers, at temperatures and payloads that move them.
+class SoundDrives
+{
+public:
+  SoundDrives(Draw draw, int reference, int evidence, double rate)
+    : draw_(std::move(draw))
+    , reference_(reference)
+    , evidence_(evidence)
+    , parameters_(shippedParameters({ "indicators.signatures=none", "indicators.least_spread=0.0",
+                                      "indicators.baseline_windows=" + std::to_string(reference),
+                                      "indicators.evidence_windows=" + std::to_string(evidence),
+                                      "indicators.false_alarm_rate=" + std::to_string(rate) }))
+  {
+  }
+
+  /// Share of verdicts, each of windows of its own, that are beyond the threshold.
+  double alarms(int drives, int verdicts)
+  {
+    int beyond = 0;
+    for (int drive = 0; drive < drives; ++drive)
+    {
+      Assessor assessor(parameters_);
+      before_ = {};
+      for (int i = 0; i < reference_; ++i)
+      {
+        assessor.update(window());
+      }
+      for (int i = 0; i < verdicts * evidence_; ++i)
+      {
+        const Assessment& assessment = assessor.update(window());
+        EXPECT_NE(assessment.state, AssessmentState::LEARNING);
+        beyond += (i + 1) % evidence_ == 0 && assessment.largest_score > 1.0 ? 1 : 0;
+      }
+    }
+    return static_cast<double>(beyond) / (drives * verdicts);
+  }
+
+  /// Score over the threshold of drives of which one indicator, that goes with the temperature, is so far off [spreads
+  /// of a window]: median.
+  double score(int drives, double off)
+  {
+    std::vector<double> scores;
+    for (int drive = 0; drive < drives; ++drive)
+    {
+      Assessor assessor(parameters_);
+      before_ = {};
+      for (int i = 0; i < reference_ + evidence_; ++i)
+      {
+        assessor.update(window(i < reference_ ? 0.0 : off));
+      }
+      scores.push_back(assessor.assessment().largest_score);
+    }
+    const auto middle = scores.begin() + drives / 2;
+    std::nth_element(scores.begin(), middle, scores.end());
+    return *middle;
+  }
+
+private:
+  SignalIndicators window(double off = 0.0)
+  {
+    const double temperature = std::uniform_real_distribution<double>(-4.0, 4.0)(random_);
+    const double weight = std::uniform_real_distribution<double>(-3.0, 3.0)(random_);
+    SignalIndicators window;
+    window.windows = ++windows_;
+    window.point = { 100.0, 0.0, 30.0, 25.0 + temperature, 0.0, 60.0 + weight, 0.0, 4.0 };
+    for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
+    {
+      before_[i] = draw_(random_, before_[i]);
+      const double sound = i % 3 == 0 ? 100.0 * (1.0 - 0.02 * temperature + 0.01 * weight) : 100.0;
+      window.values[i] = sound + before_[i];
+    }
+    window.values[indexOf(ScalarIndicator::TORSIONAL_STIFFNESS)] += off;
+    return window;
+  }
+
+  Draw draw_;
+  int reference_;
+  int evidence_;
+  Parameters parameters_;
+  std::array<double, INDICATOR_COUNT> before_{};
+  std::uint64_t windows_{};
+  Random random_{ 17 };
+};
+
+struct Case
+{
+  const char* name;
+  Draw draw;
+  int reference;
+  int evidence;
+  int drives;
+  int verdicts;  // of each
+};
+
+using FalseAlarms = testing::TestWithParam<Case>;
+
+constexpr double PROMISED = 0.01;
+
+TEST_P(FalseAlarms, AreAboutAsManyAsPromised)
+{
+  const Case& given = GetParam();
+  SoundDrives drives(given.draw, given.reference, given.evidence, PROMISED);
+  const double share = drives.alarms(given.drives, given.verdicts);
+  EXPECT_LE(share, 2.0 * PROMISED);
+  if (given.evidence == 1)
+  {
+    EXPECT_GE(share, 0.3 * PROMISED) << "nothing is given away";
+  }
+}
+
+// Those of one reference go together: many drives, few verdicts of each.
+INSTANTIATE_TEST_SUITE_P(Tails, FalseAlarms,
+                         testing::Values(Case{ "normal_one_of_10", gaussian, 10, 1, 1500, 2 },
+                                         Case{ "normal_one_of_40", gaussian, 40, 1, 700, 4 },
+                                         Case{ "normal_one_of_160", gaussian, 160, 1, 200, 15 },
+                                         Case{ "t10_one_of_40", student(10.0), 40, 1, 700, 4 },
+                                         Case{ "t10_one_of_160", student(10.0), 160, 1, 200, 15 },
+                                         Case{ "t5_one_of_40", student(5.0), 40, 1, 700, 4 },
+                                         Case{ "t5_one_of_160", student(5.0), 160, 1, 200, 15 },
+                                         Case{ "normal_ten_of_40", gaussian, 40, 10, 100, 10 },
+                                         Case{ "t5_ten_of_40", student(5.0), 40, 10, 100, 10 },
+                                         Case{ "stays_ten_of_40", correlated(0.5), 40, 10, 100, 10 },
+                                         Case{ "stays_much_ten_of_40", correlated(0.8), 40, 10, 100, 10 }),
+                         [](const testing::TestParamInfo<Case>& info) { return info.param.name; });
+
+TEST(MeansOfTen, NeedLittleMoreThanIndependentWindowsWould)
+{
+  constexpr int REFERENCE = 160;
+  constexpr int EVIDENCE = 10;
+  SoundDrives drives(gaussian, REFERENCE, EVIDENCE, PROMISED);
+  const double quantile = boost::math::quantile(
+      boost::math::complement(boost::math::normal(), 0.5 * PROMISED / static_cast<double>(INDICATOR_COUNT)));
+  const double least = quantile * std::sqrt(1.0 / EVIDENCE + 1.0 / REFERENCE);
+  EXPECT_GT(drives.score(51, 1.5 * least), 1.0);
+  EXPECT_LT(drives.score(51, 0.8 * least), 1.0);
+}
+
+TEST(SizeOfAReference, MakesNoStepInWhatIsFound)
+{
+  double before = 0.0;
+  for (const int reference : { 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 20, 24, 32 })
+  {
+    const double score = SoundDrives(gaussian, reference, 1, PROMISED).score(101, 25.0);
+    if (reference > 9)
+    {
+      EXPECT_GT(score, 0.95 * before) << reference;
+      EXPECT_LT(score, 1.25 * before) << reference;
+    }
+    before = score;
+  }
+  EXPECT_GT(before, 2.0);
 }
 }  // namespace
 }  // namespace hjt

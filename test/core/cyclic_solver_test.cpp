@@ -2,14 +2,10 @@
 #include "solver/cyclic_solver.hpp"
 
 #include <limits>
-#include <random>
 
-#include <gtest/gtest.h>
 #include <Eigen/LU>
 
 #include "random_ring.hpp"
-#include "ring_fixture.hpp"
-#include "solver/ring_equilibrium.hpp"
 #include "test_parameters.hpp"
 
 namespace hjt
@@ -18,14 +14,13 @@ namespace
 {
 using TwoColumns = Eigen::Matrix<double, Eigen::Dynamic, 2>;
 
-Eigen::MatrixXd randomMatrix(Eigen::Index rows, Eigen::Index columns, std::mt19937& random)
+Eigen::MatrixXd randomMatrix(Eigen::Index rows, Eigen::Index columns, SeededRandom& random)
 {
-  std::uniform_real_distribution<double> value(-1.0, 1.0);
-  return Eigen::MatrixXd::NullaryExpr(rows, columns, [&](Eigen::Index, Eigen::Index) { return value(random); });
+  return Eigen::MatrixXd::NullaryExpr(rows, columns, [&](Eigen::Index, Eigen::Index) { return random.uniform(); });
 }
 
 /// Symmetric, cyclic, five blocks a row, positive definite by dominance; with a cup.
-RingTangent randomTangent(int teeth, std::mt19937& random)
+RingTangent randomTangent(int teeth, SeededRandom& random)
 {
   RingTangent tangent(teeth);
   tangent.setZero();
@@ -42,7 +37,7 @@ RingTangent randomTangent(int teeth, std::mt19937& random)
 }
 
 /// Against a dense solver with pivoting, within what the condition of the matrix lets any solver know.
-void expectSolution(const RingTangent& tangent, const arcs::Kernels& kernels, std::mt19937& random)
+void expectSolution(const RingTangent& tangent, const arcs::Kernels& kernels, SeededRandom& random)
 {
   constexpr double ROUNDINGS = 200.0;  // that may add up; the elimination pivots within blocks only
   const int teeth = tangent.teeth();
@@ -55,29 +50,27 @@ void expectSolution(const RingTangent& tangent, const arcs::Kernels& kernels, st
   const double tolerance = ROUNDINGS * std::numeric_limits<double>::epsilon() * condition;
   ASSERT_LT(tolerance, 1e-3) << "the test says nothing: condition " << condition;
 
-  const Eigen::VectorXd load = randomMatrix(2 * teeth, 1, random);
-  const Eigen::VectorXd expected = lu.solve(load);
-  Eigen::VectorXd x = load;
+  const Eigen::MatrixXd loads = randomMatrix(2 * teeth, 3, random);
+  const Eigen::MatrixXd expected = lu.solve(loads);
+  const auto expect_solved = [&](const Eigen::MatrixXd& found, const Eigen::MatrixXd& wanted)
+  { EXPECT_LT((found - wanted).lpNorm<Eigen::Infinity>(), tolerance * wanted.lpNorm<Eigen::Infinity>()) << teeth; };
+  Eigen::VectorXd x = loads.col(0);
   solver.solve<1>(x);
-  EXPECT_LT((x - expected).lpNorm<Eigen::Infinity>(), tolerance * expected.lpNorm<Eigen::Infinity>()) << teeth;
-
-  const TwoColumns loads = randomMatrix(2 * teeth, 2, random);
-  const TwoColumns both = lu.solve(loads);
-  TwoColumns y = loads;
+  expect_solved(x, expected.col(0));
+  TwoColumns y = loads.leftCols<2>();
   solver.solve<2>(y);
-  EXPECT_LT((y - both).lpNorm<Eigen::Infinity>(), tolerance * both.lpNorm<Eigen::Infinity>()) << teeth;
-
-  Eigen::VectorXd a = loads.col(1);
-  Eigen::VectorXd b = load;
-  Eigen::VectorXd c = loads.col(0);
+  expect_solved(y, expected.leftCols<2>());
+  Eigen::VectorXd a = loads.col(0);
+  Eigen::VectorXd b = loads.col(1);
+  Eigen::VectorXd c = loads.col(2);
   solver.solve(a, b, c);
-  EXPECT_LT((a - both.col(1)).lpNorm<Eigen::Infinity>(), tolerance * both.lpNorm<Eigen::Infinity>()) << teeth;
-  EXPECT_LT((b - expected).lpNorm<Eigen::Infinity>(), tolerance * expected.lpNorm<Eigen::Infinity>()) << teeth;
-  EXPECT_LT((c - both.col(0)).lpNorm<Eigen::Infinity>(), tolerance * both.lpNorm<Eigen::Infinity>()) << teeth;
+  expect_solved(a, expected.col(0));
+  expect_solved(b, expected.col(1));
+  expect_solved(c, expected.col(2));
 }
 
 /// The same for the code of every kind of processor.
-void expectSolution(const RingTangent& tangent, std::mt19937& random)
+void expectSolution(const RingTangent& tangent, SeededRandom& random)
 {
   expectSolution(tangent, arcs::BASELINE, random);
 #ifdef HJT_AVX2
@@ -89,24 +82,18 @@ void expectSolution(const RingTangent& tangent, std::mt19937& random)
   expectSolution(tangent, arcs::fastest(), random);
 }
 
-class CyclicSolverOfSize : public testing::TestWithParam<int>
-{
-};
+using CyclicSolverOfSize = testing::TestWithParam<int>;
 INSTANTIATE_TEST_SUITE_P(Teeth, CyclicSolverOfSize, testing::Values(8, 10, 12, 14, 16, 50, 102, 200, 400));
 
 TEST_P(CyclicSolverOfSize, AgreesWithADenseSolverOnRandomTangents)
 {
-  constexpr unsigned SEED = 41;
-  SCOPED_TRACE("seed " + std::to_string(SEED));
-  std::mt19937 random(SEED);
+  SeededRandom random(41);
   expectSolution(randomTangent(GetParam(), random), random);
 }
 
 TEST_P(CyclicSolverOfSize, AgreesWithADenseSolverOnTangentsThatAreNotPositive)
 {
-  constexpr unsigned SEED = 45;
-  SCOPED_TRACE("seed " + std::to_string(SEED));
-  std::mt19937 random(SEED);
+  SeededRandom random(45);
   RingTangent tangent = randomTangent(GetParam(), random);
   for (const int tooth : { 0, GetParam() / 3, GetParam() / 2 })
   {
@@ -122,9 +109,7 @@ TEST_P(CyclicSolverOfSize, AgreesWithADenseSolverOnTangentsThatAreNotPositive)
 
 TEST_P(CyclicSolverOfSize, AgreesWithADenseSolverOnRingTangents)
 {
-  constexpr unsigned SEED = 42;
-  SCOPED_TRACE("seed " + std::to_string(SEED));
-  std::mt19937 random(SEED);
+  SeededRandom random(42);
   const RingModel model(shippedParameters({ "gear.teeth_flexspline=" + std::to_string(GetParam()),
                                             "gear.teeth_circular_spline=" + std::to_string(GetParam() + 2) }));
   // Pressed well into a wave generator of larger mean radius than the ring: every tooth in contact, K regular.
@@ -142,9 +127,7 @@ TEST_P(CyclicSolverOfSize, AgreesWithADenseSolverOnRingTangents)
 
 TEST(CyclicSolver, AgreesWithADenseSolverAtEquilibriumUnderLoad)
 {
-  constexpr unsigned SEED = 43;
-  SCOPED_TRACE("seed " + std::to_string(SEED));
-  std::mt19937 random(SEED);
+  SeededRandom random(43);
   const Parameters parameters = shippedParameters();
   const RingModel model(parameters);
   RingEquilibrium ring(model, parameters.solver);
@@ -165,7 +148,7 @@ TEST(CyclicSolver, GivesTheSameBitsOnEveryKindOfProcessor)
   {
     GTEST_SKIP() << "this processor runs one kind";
   }
-  std::mt19937 random(46);
+  SeededRandom random(46);
   const RingTangent tangent = randomTangent(200, random);
   const Eigen::VectorXd load = randomMatrix(400, 1, random);
   std::vector<Eigen::VectorXd> solutions;
@@ -183,9 +166,7 @@ TEST(CyclicSolver, GivesTheSameBitsOnEveryKindOfProcessor)
 
 TEST(CyclicSolver, SaysWhenThereIsNoSolution)
 {
-  constexpr unsigned SEED = 44;
-  SCOPED_TRACE("seed " + std::to_string(SEED));
-  std::mt19937 random(SEED);
+  SeededRandom random(44);
   CyclicSolver solver(20);
   const RingTangent good = randomTangent(20, random);
   EXPECT_TRUE(solver.factor(good));

@@ -4,9 +4,6 @@
 #include <algorithm>
 #include <functional>
 
-#include <gtest/gtest.h>
-
-#include "model/ring_model.hpp"
 #include "ring_fixture.hpp"
 
 namespace hjt

@@ -2,11 +2,10 @@
 #include "gear/ellipse.hpp"
 
 #include <cmath>
-#include <random>
-
-#include <gtest/gtest.h>
+#include <utility>
 
 #include "gear/angle.hpp"
+#include "test/support/seeded_random.hpp"
 #include "test_parameters.hpp"
 
 namespace hjt
@@ -53,21 +52,22 @@ void expectFoot(double a, double b, double x, double y, double angle_tolerance)
   EXPECT_NEAR(foot.depth, inside ? distance : -distance, a * angle_tolerance * angle_tolerance + 1e-15 * a);
 }
 
+/// Semi-axes of the shipped wave generator [m].
+std::pair<double, double> shippedAxes()
+{
+  const GearParameters gear = shippedParameters().gear;
+  return { gear.flexspline_inner_radius + gear.wave_amplitude, gear.flexspline_inner_radius - gear.wave_amplitude };
+}
+
 TEST(ClosestPointOfEllipse, AgreesWithBruteForceOnTheWaveGenerator)
 {
-  constexpr unsigned SEED = 31;
-  SCOPED_TRACE("seed " + std::to_string(SEED));
-  std::mt19937 random(SEED);
-  std::uniform_real_distribution<double> angle(-PI, PI);
-  std::uniform_real_distribution<double> exponent(-8.0, -3.3);
-  const GearParameters gear = shippedParameters().gear;
-  const double a = gear.flexspline_inner_radius + gear.wave_amplitude;
-  const double b = gear.flexspline_inner_radius - gear.wave_amplitude;
+  SeededRandom random(31);
+  const auto [a, b] = shippedAxes();
   for (int k = 0; k < 400; ++k)
   {
     // Up to half a millimetre inside and outside.
-    const double depth = (k % 2 == 0 ? 1.0 : -1.0) * std::pow(10.0, exponent(random));
-    const double t = angle(random);
+    const double depth = (k % 2 == 0 ? 1.0 : -1.0) * std::pow(10.0, random.uniform(-8.0, -3.3));
+    const double t = random.uniform(-PI, PI);
     // The last Newton step is below 1e-8 rad and leaves 0.02 (1e-8)^2: rounding remains, of scan and foot.
     expectFoot(a, b, (a - depth) * std::cos(t), (b - depth) * std::sin(t), 1e-13);
   }
@@ -75,18 +75,12 @@ TEST(ClosestPointOfEllipse, AgreesWithBruteForceOnTheWaveGenerator)
 
 TEST(ClosestPointNearEllipse, IsTheClosestPoint)
 {
-  constexpr unsigned SEED = 33;
-  SCOPED_TRACE("seed " + std::to_string(SEED));
-  std::mt19937 random(SEED);
-  std::uniform_real_distribution<double> angle(-PI, PI);
-  std::uniform_real_distribution<double> exponent(-9.0, std::log10(0.039));
-  const GearParameters gear = shippedParameters().gear;
-  const double a = gear.flexspline_inner_radius + gear.wave_amplitude;
-  const double b = gear.flexspline_inner_radius - gear.wave_amplitude;
+  SeededRandom random(33);
+  const auto [a, b] = shippedAxes();
   for (int k = 0; k < 4000; ++k)
   {
-    const double q = (k % 2 == 0 ? 1.0 : -1.0) * std::pow(10.0, exponent(random));
-    const double t = angle(random);
+    const double q = (k % 2 == 0 ? 1.0 : -1.0) * std::pow(10.0, random.uniform(-9.0, std::log10(0.039)));
+    const double t = random.uniform(-PI, PI);
     const double x = std::sqrt(1.0 + q) * a * std::cos(t);
     const double y = std::sqrt(1.0 + q) * b * std::sin(t);
     ASSERT_TRUE(isNear(a, b, x, y)) << q << " " << t;
@@ -163,15 +157,11 @@ TEST(ClosestPointOfEllipse, HoldsForASlimEllipseToo)
 
 TEST(ClosestPointOfEllipse, StaysFiniteFarAway)
 {
-  constexpr unsigned SEED = 32;
-  SCOPED_TRACE("seed " + std::to_string(SEED));
-  std::mt19937 random(SEED);
-  std::uniform_real_distribution<double> angle(-PI, PI);
-  std::uniform_real_distribution<double> exponent(-12.0, 6.0);
+  SeededRandom random(32);
   for (int k = 0; k < 2000; ++k)
   {
-    const double t = angle(random);
-    const double radius = std::pow(10.0, exponent(random));
+    const double t = random.uniform(-PI, PI);
+    const double radius = std::pow(10.0, random.uniform(-12.0, 6.0));
     const EllipseFoot foot = closestPoint(31e-3, 30.3e-3, radius * std::cos(t), radius * std::sin(t));
     ASSERT_TRUE(std::isfinite(foot.depth) && std::isfinite(foot.curvature)) << radius << " " << t;
     ASSERT_NEAR(std::hypot(foot.normal_x, foot.normal_y), 1.0, 1e-12) << radius << " " << t;

@@ -1,27 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "health/signal_monitor.hpp"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
-#include <functional>
-#include <memory>
 #include <numeric>
-#include <random>
-#include <string>
-#include <vector>
 
-#include <gmock/gmock.h>
-
-#include "gear/angle.hpp"
-#include "harmonic_joint_twin/health/assessment.hpp"
-#include "harmonic_joint_twin/twin/twin.hpp"
-#include "health/order_tracker.hpp"
-#include "health/signature_file.hpp"
-#include "sensors/joint_sensors.hpp"
 #include "test/core/signal_monitor_support.hpp"
-#include "test/core/test_parameters.hpp"
-#include "test/support/allocation_count.hpp"
+#include "test/core/twin_runs.hpp"
 
 namespace hjt
 {
@@ -51,7 +34,7 @@ protected:
     window.freedom = 40.0;
     const auto put = [&](std::size_t indicator, double value, double spread)
     {
-      window.difference[indicator] = value + spread * normal_(random_);
+      window.difference[indicator] = value + spread * random_.normal();
       window.own[indicator] = spread * spread;
     };
     for (std::size_t i = 0; i < SCALAR_COUNT; ++i)
@@ -67,7 +50,7 @@ protected:
         const std::size_t number = signatureNumber(signal, line);
         if (isPhaseLocked(line))
         {
-          const double phase = TWO_PI * phase_(random_);
+          const double phase = TWO_PI * random_.uniform(0.0, 1.0);
           put(cosineIndex(signal, line), change[number] * std::cos(phase), spread_[number]);
           put(sineIndex(signal, line), change[number] * std::sin(phase), spread_[number]);
         }
@@ -105,19 +88,15 @@ protected:
   /// Of its changes, in spreads: in some motions a fault changes next to nothing.
   double strength(const Signature& signature) const
   {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < SIGNATURE_SIZE; ++i)
-    {
-      sum = std::hypot(sum, spread_[i] > 0.0 ? signature.change[i] / spread_[i] : 0.0);
-    }
-    return sum;
+    return std::inner_product(
+        signature.change.begin(), signature.change.end(), spread_.begin(), 0.0,
+        [](double sum, double part) { return std::hypot(sum, part); },
+        [](double change, double spread) { return spread > 0.0 ? change / spread : 0.0; });
   }
 
   CauseSearch search_{ signatures_ };
   std::array<double, SIGNATURE_SIZE> spread_{};
-  std::mt19937 random_{ 5 };
-  std::normal_distribution<double> normal_;
-  std::uniform_real_distribution<double> phase_{ 0.0, 1.0 };
+  SeededRandom random_{ 5 };
 };
 
 TEST_F(AgainstSignatures, EveryCauseIsAmongTheMostLikelyOfItsOwnSignature)
@@ -244,10 +223,8 @@ SignalIndicators twinIndicators(std::vector<std::string> edits)
   {
     const double missing = 150.0 - twin.outputs().motor_velocity;
     held_back += 0.2 * missing * step;
-    twin.commandMotorTorque(twin.stamp() + twin.stepLength(), 0.02 * missing + held_back);
-    twin.commandLoadTorque(twin.stamp() + twin.stepLength(),
-                           12.0 * std::sin(TWO_PI * 3.0 * 1e-9 * static_cast<double>(twin.stamp())));
-    twin.step(twin.stamp() + twin.stepLength());
+    stepUnder(twin, 0.02 * missing + held_back,
+              12.0 * std::sin(TWO_PI * 3.0 * 1e-9 * static_cast<double>(twin.stamp())));
   }
   return twin.signalIndicators();
 }
@@ -367,6 +344,7 @@ TEST(OperatingBin, StepsWithTheGearsTorqueAndTakesAnyNumber)
     EXPECT_LE(std::abs(bin.speed), 1100) << huge;
   }
 }
+
 /// The teeth most, the interface as much, the grease less: no one signature is like it.
 TEST_F(AgainstSignatures, WearThatComesTogetherIsNoOtherFault)
 {

@@ -1,25 +1,60 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cmath>
-#include <string>
-#include <vector>
+
+#include <limits>
 
 #include <gmock/gmock.h>
 
-#include "element_under_test.hpp"
-#include "gear/angle.hpp"
 #include "gear/ratio.hpp"
-#include "harmonic_joint_twin/base/errors.hpp"
 #include "model/faults/joint_faults.hpp"
-#include "random_ring.hpp"
-#include "solver/ring_equilibrium.hpp"
-#include "test/core/faults_support.hpp"
-#include "test_parameters.hpp"
-#include "twin_runs.hpp"
+#include "test/core/element_under_test.hpp"
+#include "test/core/random_ring.hpp"
+#include "test/core/test_parameters.hpp"
+#include "test/core/twin_runs.hpp"
 
 namespace hjt
 {
 namespace
 {
+const std::vector<std::string> RUN{ "input.command_timeout=10.0" };
+
+/// A place in the loaded lobe, where every kind shows.
+int loadedPlace(FaultKind kind)
+{
+  return describe(kind).whole ? WHOLE_MEMBER : 0;
+}
+
+FaultList listOf(const std::vector<Fault>& faults)
+{
+  FaultList list;
+  for (const Fault& fault : faults)
+  {
+    list.set(fault, 0);
+  }
+  return list;
+}
+
+/// The ring of a gear with the faults that its parameters name, in equilibrium.
+class StandingGear
+{
+public:
+  explicit StandingGear(const Parameters& parameters)
+    : faults_(parameters, listOf(parameters.faults)), ring_(faults_.model().ring, parameters.solver)
+  {
+    EXPECT_TRUE(ring_.insert({ 0.0, 0.0, parameters.gear.wave_amplitude }).ok());
+  }
+
+  /// Wave generator at `angle` [rad], `torque` at the output [N.m].
+  const RingEquilibrium& at(double angle, double torque)
+  {
+    EXPECT_TRUE(balanceOutput(ring_, angle, torque).ok());
+    return ring_;
+  }
+
+private:
+  JointFaults faults_;
+  RingEquilibrium ring_;
+};
+
 /// A twin under torque and load: some tooth pitches on, then back.
 std::vector<double> historyOf(Twin& twin)
 {
@@ -35,9 +70,7 @@ std::vector<double> historyOf(Twin& twin)
   return history;
 }
 
-class EveryKind : public testing::TestWithParam<FaultKind>
-{
-};
+using EveryKind = testing::TestWithParam<FaultKind>;
 std::vector<FaultKind> allKinds()
 {
   std::vector<FaultKind> kinds;
@@ -83,16 +116,13 @@ TEST_P(EveryKind, ClearedLeavesTheSoundJointToTheLastBit)
   const JointModel sound(parameters);
   JointFaults faults(parameters);
   const JointModel& model = faults.model();
-  FaultList list;
-  list.set({ GetParam(), 0.7, loadedPlace(GetParam()), 0.0 }, 0);
+  FaultList list = listOf({ { GetParam(), 0.7, loadedPlace(GetParam()), 0.0 } });
   faults.apply(list);
   list.set({ GetParam(), 0.0, loadedPlace(GetParam()), 0.0 }, 1);
   EXPECT_TRUE(list.empty());
   faults.apply(list);
-  RingShape shape(sound.ring.rest.teeth());
-  DrivePosition position;
   RandomRing ring(3);
-  ring.draw(sound.ring, shape, position);
+  const auto [shape, position] = ring.draw(sound.ring);
   RingForces here(shape.teeth());
   RingForces there(shape.teeth());
   sound.ring.forces(shape, position, here);
@@ -107,21 +137,16 @@ TEST_P(EveryKind, RingOfAFaultyGearIsTheGradientOfItsEnergy)
 {
   const Parameters parameters =
       goldenParameters({ "contact.smoothing=20.0e-6", "mesh.smoothing=20.0e-6", "fault_scale.spall_length=5.0e-3" });
-  JointFaults faults(parameters);
+  const JointFaults faults(parameters, listOf({ { GetParam(), 0.7, loadedPlace(GetParam()), 0.0 } }));
   const JointModel& model = faults.model();
-  FaultList list;
-  list.set({ GetParam(), 0.7, loadedPlace(GetParam()), 0.0 }, 0);
-  faults.apply(list);
   const ElementUnderTest whole{ [&](auto& shape, auto& position, auto& forces)
                                 { model.ring.forces(shape, position, forces); },
                                 [&](auto& shape, auto& forces, auto& tangent)
                                 { model.ring.tangent(shape, forces, tangent); } };
   RandomRing ring(11);
-  RingShape shape(model.ring.rest.teeth());
-  DrivePosition position;
   for (int k = 0; k < 3; ++k)
   {
-    ring.draw(model.ring, shape, position);
+    const auto [shape, position] = ring.draw(model.ring);
     expectGradientAndTangent(whole, shape, position);
   }
 }
@@ -248,21 +273,13 @@ TEST(Faults, ThatComeLateDoNotUndoWhatIsNewer)
   EXPECT_EQ(twin.activeFaults().begin()->since, 9 * MILLISECOND);
   EXPECT_EQ(twin.counters().faults.late, 4U);
   twin.reset(0);
-  twin.injectFault(0, worn);
-  advance(twin, MILLISECOND);
-  EXPECT_EQ(twin.activeFaults().size(), 1U) << "reset forgets";
-}
-
-TEST(Faults, OfOneStampSetInAsTheyCame)
-{
-  Twin twin(shippedParameters());
-  for (const double severity : { 0.5, 0.2, 0.8 })
+  for (const Fault& fault : { worn, Fault{ FaultKind::TOOTH_WEAR, 0.2, 3, 0.0 }, worse })
   {
-    twin.injectFault(2 * MILLISECOND, { FaultKind::TOOTH_WEAR, severity, 3, 0.0 });
+    twin.injectFault(2 * MILLISECOND, fault);
   }
   advance(twin, 3 * MILLISECOND);
-  ASSERT_EQ(twin.activeFaults().size(), 1U);
-  EXPECT_EQ(twin.activeFaults().begin()->fault.severity, 0.8);
+  ASSERT_EQ(twin.activeFaults().size(), 1U) << "reset forgets";
+  EXPECT_EQ(twin.activeFaults().begin()->fault.severity, 0.8) << "of one stamp the last that came";
 }
 
 TEST(FaultList, HasRoomForSoMany)
@@ -303,15 +320,218 @@ TEST(RootCrack, GoesWhereTheBackupRatioSendsIt)
   // A thin rim hangs by what is left.
   Parameters parameters = goldenParameters();
   parameters.gear.rim_thickness = gear.rim_thickness;
-  JointFaults faults(parameters);
+  const JointFaults faults(parameters, listOf({ { FaultKind::TOOTH_ROOT_CRACK, 1.0, 40, 0.0 } }));
   const JointModel& model = faults.model();
-  FaultList list;
-  list.set({ FaultKind::TOOTH_ROOT_CRACK, 1.0, 40, 0.0 }, 0);
-  faults.apply(list);
   const double left = 1.0 - parameters.fault_scale.rim_crack_depth;
   EXPECT_DOUBLE_EQ(model.ring.of<RimTension>().stiffness()[40], left * parameters.ring.tension_stiffness);
   EXPECT_DOUBLE_EQ(model.ring.of<RimBending>().stiffness()[40], left * left * left * parameters.ring.bending_stiffness);
   EXPECT_EQ(model.ring.of<ToothMesh>().stiffness()[40], parameters.mesh.stiffness);
+}
+
+/// What a fault acts on, measured on the standing or slowly driven gear.
+struct Effect
+{
+  FaultKind kind;
+  const char* what;
+  std::function<double(const Parameters&)> measure;
+};
+
+double lostStiffness(const Parameters& parameters)
+{
+  return -StandingGear(parameters).at(0.0, 20.0).stiffness()(1, 1);
+}
+
+double lostMotion(const Parameters& parameters)
+{
+  StandingGear gear(parameters);
+  const double there = gear.at(0.0, 1.0).position().output_angle;
+  return std::abs(gear.at(0.0, -1.0).position().output_angle - there);
+}
+
+double unloadedWaveGenerator(const Parameters& parameters)
+{
+  return -StandingGear(parameters).at(0.0, 0.0).forces().of<WaveGeneratorContact>().force.sum();
+}
+
+/// What tooth 0 does not carry on the way of the wave generator past it.
+double idleTooth(const Parameters& parameters)
+{
+  StandingGear gear(parameters);
+  double carried = 0.0;
+  for (int k = -30; k <= 30; ++k)
+  {
+    carried += std::abs(gear.at(0.02 * k, 40.0).forces().of<ToothMesh>().flank_force[0]);
+  }
+  return -carried;
+}
+
+/// Most that a tooth point stands off where it stands in the sound gear.
+double ringShift(const Parameters& parameters)
+{
+  Parameters sound = parameters;
+  sound.faults.clear();
+  StandingGear gear(parameters);
+  StandingGear sound_gear(sound);
+  return (gear.at(0.3, 40.0).shape().points - sound_gear.at(0.3, 40.0).shape().points).lpNorm<Eigen::Infinity>();
+}
+
+/// Load that the teeth of the two lobes do not share alike, the largest over half a turn of the wave generator.
+double unequalLobes(const Parameters& parameters)
+{
+  StandingGear gear(parameters);
+  double largest = 0.0;
+  for (int k = 0; k < 8; ++k)
+  {
+    const double angle = PI * k / 8.0;
+    const Eigen::VectorXd& force = gear.at(angle, 40.0).forces().of<ToothMesh>().flank_force;
+    double difference = 0.0;
+    for (int i = 0; i < force.size(); ++i)
+    {
+      difference += std::copysign(std::abs(force[i]), std::cos(TWO_PI * i / static_cast<double>(force.size()) - angle));
+    }
+    largest = std::max(largest, std::abs(difference));
+  }
+  return largest;
+}
+
+double runningFriction(const Parameters& parameters)
+{
+  Twin twin(parameters);
+  twin.commandMotorTorque(0, 1.0);
+  twin.commandLoadTorque(0, 30.0);
+  advance(twin, 20 * MILLISECOND);
+  return twin.outputs().friction_torque;
+}
+
+/// Largest change of the load on the wave generator over a turn, the output free.
+double roughness(const Parameters& parameters)
+{
+  Twin twin(parameters);
+  twin.commandMotorTorque(0, 0.3);
+  double low = std::numeric_limits<double>::max();
+  double high = 0.0;
+  for (Stamp t = MILLISECOND; t < 100 * MILLISECOND; t += MILLISECOND)
+  {
+    advance(twin, t);
+    const double load = twin.health().lobes.wave_generator_force;
+    low = std::min(low, load);
+    high = std::max(high, load);
+  }
+  return high - low;
+}
+
+using Effects = testing::TestWithParam<Effect>;
+INSTANTIATE_TEST_SUITE_P(
+    Kinds, Effects,
+    testing::Values(Effect{ FaultKind::INTERFACE_WEAR, "load of the wave generator", unloadedWaveGenerator },
+                    Effect{ FaultKind::REAR_SECTION_CRACK, "stiffness", lostStiffness },
+                    Effect{ FaultKind::LUBRICANT_DEGRADATION, "friction", runningFriction },
+                    Effect{ FaultKind::TOOTH_WEAR, "lost motion", lostMotion },
+                    Effect{ FaultKind::TOOTH_ROOT_CRACK, "load of the tooth", idleTooth },
+                    Effect{ FaultKind::FLANGE_CRACK, "stiffness", lostStiffness },
+                    Effect{ FaultKind::TOOTH_TIP_CRACK, "load of the tooth", idleTooth },
+                    Effect{ FaultKind::PITTING, "stiffness", lostStiffness },
+                    Effect{ FaultKind::WAVE_GENERATOR_WEAR, "load of the wave generator", unloadedWaveGenerator },
+                    Effect{ FaultKind::FLEXSPLINE_CRACK, "shape of the ring", ringShift },
+                    Effect{ FaultKind::BUCKLING, "stiffness", lostStiffness },
+                    Effect{ FaultKind::RATCHETING, "load of the lobes", unequalLobes },
+                    Effect{ FaultKind::BEARING_INNER_RACE, "load over a turn", roughness },
+                    Effect{ FaultKind::BEARING_OUTER_RACE, "load over a turn", roughness },
+                    Effect{ FaultKind::BEARING_BALL, "load over a turn", roughness },
+                    Effect{ FaultKind::BEARING_CAGE, "load over a turn", roughness }),
+    [](const auto& effect) { return std::string(describe(effect.param.kind).name); });
+
+TEST_P(Effects, GrowWithSeverity)
+{
+  Parameters parameters = shippedParameters(RUN);
+  double last = GetParam().measure(parameters);
+  for (const double severity : { 0.1, 0.3, 0.6, 1.0 })
+  {
+    parameters.faults = { { GetParam().kind, severity, loadedPlace(GetParam().kind), 0.0 } };
+    const double value = GetParam().measure(parameters);
+    EXPECT_GT(value, last) << GetParam().what << " at severity " << severity;
+    last = value;
+  }
+}
+
+/// How often the sag over one tooth, or anywhere, has a maximum in `turns` of the wave generator.
+TEST(RaceDeflection, OrdersComeOutOfTheKinematics)
+{
+  Parameters parameters = shippedParameters();
+  const int teeth = parameters.gear.teeth_flexspline;
+  const auto events_per_turn = [&](const std::function<void(RaceDeflection&)>& damage)
+  {
+    RaceDeflection bearing(parameters.bearing);
+    damage(bearing);
+    Eigen::VectorXd sag(teeth);
+    Eigen::VectorXd rate(teeth);
+    Eigen::VectorXd second(teeth);
+    constexpr int TURNS = 200;
+    constexpr int STEPS = 1000;  // a turn
+    int events = 0;
+    bool sagged = true;
+    for (int k = 0; k < TURNS * STEPS; ++k)
+    {
+      bearing.at(TWO_PI * k / STEPS, sag, rate, second);
+      const bool sags = sag.maxCoeff() > 0.0;
+      events += sags && !sagged ? 1 : 0;
+      sagged = sags;
+    }
+    return static_cast<double>(events) / TURNS;
+  };
+  const double length = 1e-3;
+  EXPECT_NEAR(events_per_turn([&](RaceDeflection& b) { b.addInnerSpall(0.3, 1e-5, length); }), 12.6793, 0.006);
+  EXPECT_NEAR(events_per_turn([&](RaceDeflection& b) { b.addOuterSpall(0.3, 1e-5, length); }), 10.3207, 0.006);
+  EXPECT_NEAR(events_per_turn([&](RaceDeflection& b) { b.addBallSpall(4, 1e-5, length); }), 2.0 * 4.8244, 0.006);
+  EXPECT_NEAR(RaceDeflection(parameters.bearing).cageRate(), 0.4487, 5e-5);
+  // Balls and cage that lag pass the outer race less often and the inner one, which runs ahead, more often.
+  parameters.bearing.cage_slip = 0.02;
+  EXPECT_NEAR(events_per_turn([&](RaceDeflection& b) { b.addInnerSpall(0.3, 1e-5, length); }), 12.8857, 0.006);
+  EXPECT_NEAR(events_per_turn([&](RaceDeflection& b) { b.addOuterSpall(0.3, 1e-5, length); }), 10.1143, 0.006);
+  EXPECT_NEAR(events_per_turn([&](RaceDeflection& b) { b.addBallSpall(4, 1e-5, length); }), 2.0 * 4.7279, 0.006);
+}
+
+TEST(RaceDeflection, NoBallDropsButTheOneThatMay)
+{
+  const Parameters parameters = shippedParameters();
+  std::vector<RaceDeflection> bearings(5, RaceDeflection(parameters.bearing));
+  bearings[0].addInnerSpall(2.3, 1e-5, 2e-3);
+  bearings[1].addInnerSpall(-1.1, 1e-5, 4e-3);  // nearly from ball to ball
+  bearings[2].addOuterSpall(6.2, 1e-5, 2e-3);
+  bearings[3].addBallSpall(4, 1e-5, 2e-3);
+  bearings[4].addIdleBall(22, 1e-5);
+  for (const RaceDeflection& bearing : bearings)
+  {
+    ASSERT_TRUE(bearing.dropsOneBall());
+    int drops = 0;
+    for (double angle = -700.0; angle < 700.0; angle += 0.0713)
+    {
+      const int dropping = bearing.ballThatMayDrop(angle);
+      ASSERT_TRUE(dropping >= 0 && dropping < bearing.balls());
+      drops += bearing.drop(dropping, angle).value > 0.0 ? 1 : 0;
+      for (int ball = 0; ball < bearing.balls(); ++ball)
+      {
+        ASSERT_TRUE(ball == dropping || bearing.drop(ball, angle).value == 0.0) << ball << " at " << angle;
+      }
+    }
+    EXPECT_GT(drops, 100);
+  }
+}
+
+TEST(RaceDeflection, OfAllBallsIsTheSameAllRound)
+{
+  const Parameters parameters = shippedParameters();
+  RaceDeflection bearing(parameters.bearing);
+  for (int ball = 0; ball < parameters.bearing.balls; ++ball)
+  {
+    bearing.addIdleBall(ball, 3e-6);
+  }
+  Eigen::VectorXd sag(200);
+  Eigen::VectorXd rate(200);
+  Eigen::VectorXd second(200);
+  bearing.at(12.34, sag, rate, second);
+  EXPECT_NEAR(sag.minCoeff(), 3e-6, 1e-15);
+  EXPECT_NEAR(sag.maxCoeff(), 3e-6, 1e-15);
 }
 }  // namespace
 }  // namespace hjt

@@ -3,11 +3,11 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
-#include <random>
 #include <vector>
 
 #include <gmock/gmock.h>
 
+#include "test/support/seeded_random.hpp"
 #include "tracking/friction_trend.hpp"
 
 namespace hjt
@@ -59,12 +59,11 @@ TEST(FrictionTrend, HasTheTruthInItsIntervalAsOftenAsItSays)
 {
   constexpr int TRIALS = 4000;
   constexpr double SLOPE = 2e-5;
-  std::mt19937 engine(7);
-  std::normal_distribution<double> normal(0.0, 0.05);
+  SeededRandom engine(7);
   int inside = 0;
   for (int i = 0; i < TRIALS; ++i)
   {
-    const FrictionTrend trend = frictionTrend(recordings(12, SLOPE, 0.05, [&] { return normal(engine); }));
+    const FrictionTrend trend = frictionTrend(recordings(12, SLOPE, 0.05, [&] { return 0.05 * engine.normal(); }));
     inside += trend.slopeLow() <= SLOPE && SLOPE <= trend.slopeHigh() ? 1 : 0;
   }
   // 95 %, and something more, since a scatter above the stated one widens the interval.
@@ -76,16 +75,16 @@ TEST(FrictionTrend, HasTheTruthInItsIntervalAsOftenAsItSays)
 TEST(FrictionTrend, OfASoundJointThatScattersMoreThanStatedIsRarelyNamed)
 {
   constexpr int TRIALS = 4000;
-  std::mt19937 engine(8);
+  SeededRandom engine(8);
   for (const double scatter : { 0.05, 0.1 })
   {
-    std::normal_distribution<double> normal(0.0, scatter);
     for (const int count : { 4, 10, 40 })
     {
       int named = 0;
       for (int i = 0; i < TRIALS; ++i)
       {
-        named += frictionTrend(recordings(count, 0.0, 0.05, [&] { return normal(engine); })).departs() ? 1 : 0;
+        named +=
+            frictionTrend(recordings(count, 0.0, 0.05, [&] { return scatter * engine.normal(); })).departs() ? 1 : 0;
       }
       // Where the deviations are right less than the 5 % outside of an interval.
       EXPECT_LT(named, (scatter > 0.05 ? 0.1 : 0.03) * TRIALS) << scatter << ", " << count << " recordings";

@@ -81,6 +81,18 @@ struct FlankUse
   FutureLoad ahead{ 100.0, {} };
 };
 
+inline Assessment foundWear(double severity, double deviation)
+{
+  Assessment assessment;
+  assessment.state = AssessmentState::ASSESSED;
+  assessment.level = HealthLevel::WARN;
+  assessment.cause = causeOf(FaultKind::TOOTH_WEAR);
+  assessment.confidence = 1.0;
+  assessment.severity = severity;
+  assessment.severity_deviation = deviation;
+  return assessment;
+}
+
 inline double width(const RemainingHours& remaining)
 {
   return remaining.quantile[3] - remaining.quantile[1];

@@ -3,13 +3,10 @@
 #include <clocale>
 #include <cmath>
 #include <cstddef>
-#include <cstdlib>
-#include <filesystem>
 #include <locale>
 #include <map>
 #include <optional>
 #include <random>
-#include <string>
 
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Friction of the whole gear: what the analyses say, against closed forms and against the running joint.
-#include <cmath>
 
-#include <gtest/gtest.h>
+#include <cmath>
+#include <map>
 
 #include "elements/friction_laws.hpp"
 #include "gear/angle.hpp"
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/statics/loss_analysis.hpp"
 #include "harmonic_joint_twin/statics/torsion_loop.hpp"
-#include "solver/joint_stepper.hpp"
-#include "test_parameters.hpp"
+#include "statics/gear_design.hpp"
+#include "test/core/stepped_joint.hpp"
+#include "test/core/test_parameters.hpp"
 
 namespace hjt
 {
@@ -92,9 +93,7 @@ TEST(BearingFriction, ShippedOilIsThatOfItsGrease)
   EXPECT_NEAR(oil.viscosity(100.0), 5.9e-6, 0.03 * 5.9e-6);
 }
 
-class RunningJoint : public testing::TestWithParam<double>
-{
-};
+using RunningJoint = testing::TestWithParam<double>;
 INSTANTIATE_TEST_SUITE_P(Loads, RunningJoint, testing::Values(0.0, 20.0, 60.0));
 
 TEST_P(RunningJoint, RunsWhereMotorTorqueIsLoadAndLosses)
@@ -102,29 +101,24 @@ TEST_P(RunningJoint, RunsWhereMotorTorqueIsLoadAndLosses)
   // The motor is held at a speed by a stiff speed control; the torque it takes is what the analysis says.
   constexpr double SPEED = 60.0;  // [rad/s]
   const double load = GetParam();
-  const Parameters parameters = shippedParameters({ "output.load_inertia=0.1" });
-  const JointModel model(parameters);
-  JointStepper stepper(parameters, model);
-  JointInputs inputs;
-  inputs.temperature = parameters.input.temperature;
-  inputs.load_torque = load;
+  SteppedJoint joint(shippedParameters({ "output.load_inertia=0.1" }));
+  joint.inputs.load_torque = load;
   double work = 0.0;
-  double travel = 0.0;
-  for (int i = 0; i < 10000; ++i)
+  const auto control = [&](int /*step*/) { joint.inputs.motor_torque = 0.3 * (SPEED - joint.stepper.speeds()[0]); };
+  joint.run(5000, control);
+  const double start = joint.stepper.motorAngle();
+  for (int i = 0; i < 5000; ++i)
   {
-    inputs.motor_torque = 0.3 * (SPEED - stepper.speeds()[0]);
-    const double before = stepper.motorAngle();
-    ASSERT_TRUE(stepper.step(inputs));
-    if (i >= 5000)
-    {
-      travel += stepper.motorAngle() - before;
-      work += inputs.motor_torque * (stepper.motorAngle() - before);
-    }
+    const double before = joint.stepper.motorAngle();
+    joint.run(1, control);
+    work += joint.inputs.motor_torque * (joint.stepper.motorAngle() - before);
   }
+  const double travel = joint.stepper.motorAngle() - start;
   const double speed = travel / 0.5;
-  const LossRow row = analyseLosses(parameters, { speed }, { load }, 32, nullptr).front();
+  const LossRow row = analyseLosses(joint.parameters, { speed }, { load }, 32, nullptr).front();
   ASSERT_TRUE(row.status.ok());
-  EXPECT_NEAR(row.load_reduced, load / nominalRatio(parameters.gear), 2e-3 * load / nominalRatio(parameters.gear));
+  const double reduced = load / nominalRatio(joint.parameters.gear);
+  EXPECT_NEAR(row.load_reduced, reduced, 2e-3 * reduced);
   const double expected = row.load_reduced + row.loss.gear() + row.loss.motor;
   EXPECT_NEAR(work / travel, expected, 0.005 * expected);
 }
@@ -136,20 +130,13 @@ TEST(Breakaway, IsWhereTheJointBeginsToMove)
   ASSERT_TRUE(breakaway.status.ok());
   const auto travel = [&](double motor_torque, double load_torque)
   {
-    const JointModel model(parameters);
-    JointStepper stepper(parameters, model);
-    JointInputs inputs;
-    inputs.temperature = parameters.input.temperature;
-    inputs.motor_torque = motor_torque;
-    inputs.load_torque = load_torque;
-    // The first half second is for the load, put on at once, to stop swinging.
-    double start = 0.0;
-    for (int i = 0; i < 10000; ++i)
-    {
-      start = i == 5000 ? stepper.motorAngle() : start;
-      EXPECT_TRUE(stepper.step(inputs));
-    }
-    return std::abs(stepper.motorAngle() - start);
+    SteppedJoint joint(parameters);
+    joint.inputs.motor_torque = motor_torque;
+    joint.inputs.load_torque = load_torque;
+    joint.run(5000);  // for the load, put on at once, to stop swinging
+    const double start = joint.stepper.motorAngle();
+    joint.run(5000);
+    return std::abs(joint.stepper.motorAngle() - start);
   };
   constexpr double CREEP = 1e-3;  // rad: friction of a stuck gear is regularised
   EXPECT_LT(travel(0.95 * breakaway.starting, 0.0), CREEP);
@@ -175,5 +162,72 @@ TEST(TorsionLoop, IsAsWideAsTheFrictionOverTheStiffness)
   EXPECT_NEAR(closed.lost_motion, 2.0 * 2.68 / 31e3, 0.03 * closed.lost_motion);
 }
 
+ParameterMap configured()
+{
+  ParameterMap map;
+  readDefaultConfiguration(HJT_TEST_CONFIG_DIR, map);
+  return map;
+}
+
+double number(const ParameterMap& map, const std::string& key)
+{
+  return numberOf(map.at(key).value).value();
+}
+
+/// Of a size that no catalogue has, so that friction is not fitted.
+GearDesign designed(const GearRequest& request)
+{
+  return designGear(configured(), request, gearFigures(request));
+}
+
+TEST(GearDesign, OfAnotherSizeIsGeometricallySimilar)
+{
+  constexpr double SIZE = 30.0;
+  constexpr double FACTOR = SIZE / 25.0;
+  GearRequest request;
+  request.size = SIZE;
+  const GearDesign larger = designed(request);
+  const ParameterMap before = configured();
+  // A length by the first power; of one material a spring of bending by the third per angle, a mass by the third.
+  const std::map<std::string, int> powers{ { "gear.flexspline_inner_radius", 1 },
+                                           { "gear.rim_thickness", 1 },
+                                           { "gear.tooth_height_flexspline", 1 },
+                                           { "gear.tip_radius_circular_spline", 1 },
+                                           { "gear.wave_amplitude", 1 },
+                                           { "mesh.flank_clearance", 1 },
+                                           { "mesh.engagement_depth", 1 },
+                                           { "bearing.pitch_diameter", 1 },
+                                           { "bearing.ball_diameter", 1 },
+                                           { "contact.slip_lever", 1 },
+                                           { "stress.wall_thickness", 1 },
+                                           { "life.face_width", 1 },
+                                           { "ring.tension_stiffness", 1 },
+                                           { "ring.bending_stiffness", 3 },
+                                           { "ring.mass", 3 },
+                                           { "cup.wall_stiffness", 3 },
+                                           { "bearing.race_bending_stiffness", 3 },
+                                           { "bearing.race_preload", 2 },
+                                           { "motor.wave_generator_inertia", 5 } };
+  for (const auto& [key, power] : powers)
+  {
+    const double expected = number(before, key) * std::pow(FACTOR, power);
+    EXPECT_NEAR(number(larger.map, key), expected, 1e-9 * std::abs(expected)) << key;
+  }
+  EXPECT_EQ(number(larger.map, "gear.teeth_flexspline"), 200.0);
+}
+
+TEST(GearDesign, OfHalfTheRatioHasTeethOfTwiceTheHeight)
+{
+  GearRequest request;
+  request.size = 25.001;
+  request.ratio = 50;
+  const GearDesign coarse = designed(request);
+  const ParameterMap before = configured();
+  EXPECT_EQ(number(coarse.map, "gear.teeth_flexspline"), 100.0);
+  EXPECT_EQ(number(coarse.map, "gear.teeth_circular_spline"), 102.0);
+  const double height = number(before, "gear.tooth_height_flexspline");
+  EXPECT_NEAR(number(coarse.map, "gear.tooth_height_flexspline"), 2.0 * height, 1e-3 * height);
+  EXPECT_NEAR(number(coarse.map, "gear.flexspline_inner_radius"), number(before, "gear.flexspline_inner_radius"), 1e-5);
+}
 }  // namespace
 }  // namespace hjt

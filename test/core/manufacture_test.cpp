@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cmath>
 #include <complex>
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
 #include "element_under_test.hpp"
-#include "gear/angle.hpp"
 #include "gear/manufacture_errors.hpp"
 #include "random_ring.hpp"
-#include "solver/ring_equilibrium.hpp"
 #include "test/core/complaint.hpp"
 #include "test/support/temporary_folder.hpp"
 #include "test_parameters.hpp"
@@ -111,29 +107,21 @@ TEST(PitchTable, WhatIsWrongIsNamedWithItsLine)
   EXPECT_THROW(pitchDeviations(missing, 3, ""), ParameterError);
 }
 
-TEST(CircularSpline, EccentricityMovesAllSpacesByOneVector)
+TEST(Eccentricity, MovesAllTeethOrSpacesByOneVector)
 {
-  const Parameters parameters = shippedParameters({ "manufacture.circular_spline_eccentricity=[3.0e-6, -2.0e-6]" });
-  const ManufactureErrors errors(parameters.manufacture, parameters.gear);
-  for (int k = 0; k < 202; ++k)
+  for (const std::string member : { "flexspline", "circular_spline" })
   {
-    const double a = TWO_PI * k / 202;
-    const Eigen::Vector2d moved = errors.space_along[k] * Eigen::Vector2d(std::cos(a), std::sin(a)) +
-                                  errors.space_across[k] * Eigen::Vector2d(-std::sin(a), std::cos(a));
-    EXPECT_NEAR((moved - Eigen::Vector2d(3e-6, -2e-6)).norm(), 0.0, 1e-20);
-  }
-}
-
-TEST(Flexspline, EccentricityMovesAllTeethByOneVector)
-{
-  const Parameters parameters = shippedParameters({ "manufacture.flexspline_eccentricity=[3.0e-6, -2.0e-6]" });
-  const ManufactureErrors errors(parameters.manufacture, parameters.gear);
-  for (int i = 0; i < 200; ++i)
-  {
-    const double a = TWO_PI * i / 200;
-    const Eigen::Vector2d moved = errors.tooth_along[i] * Eigen::Vector2d(std::cos(a), std::sin(a)) +
-                                  errors.tooth_across[i] * Eigen::Vector2d(-std::sin(a), std::cos(a));
-    EXPECT_NEAR((moved - Eigen::Vector2d(3e-6, -2e-6)).norm(), 0.0, 1e-20);
+    const Parameters parameters = shippedParameters({ "manufacture." + member + "_eccentricity=[3.0e-6, -2.0e-6]" });
+    const ManufactureErrors errors(parameters.manufacture, parameters.gear);
+    const Eigen::VectorXd& along = member == "flexspline" ? errors.tooth_along : errors.space_along;
+    const Eigen::VectorXd& across = member == "flexspline" ? errors.tooth_across : errors.space_across;
+    ASSERT_EQ(along.size(), member == "flexspline" ? 200 : 202);
+    for (Eigen::Index k = 0; k < along.size(); ++k)
+    {
+      const Eigen::Rotation2Dd turn(TWO_PI * static_cast<double>(k) / static_cast<double>(along.size()));
+      const Eigen::Vector2d moved = turn * Eigen::Vector2d(along[k], across[k]);
+      EXPECT_NEAR((moved - Eigen::Vector2d(3e-6, -2e-6)).norm(), 0.0, 1e-20) << member;
+    }
   }
 }
 
@@ -171,8 +159,9 @@ class FaultyGear : public testing::Test
 protected:
   Parameters parameters_ = shippedParameters(allErrors());
   RingModel model_{ parameters_ };
-  RingShape shape_{ model_.rest.teeth() };
-  DrivePosition position_;
+  PlacedRing placed_{ RingShape(model_.rest.teeth()), {} };
+  RingShape& shape_ = placed_.shape;
+  DrivePosition& position_ = placed_.position;
 };
 
 TEST_F(FaultyGear, ContactsAreTheGradientsOfTheirEnergies)
@@ -182,7 +171,7 @@ TEST_F(FaultyGear, ContactsAreTheGradientsOfTheirEnergies)
   for (int k = 0; k < 8; ++k)
   {
     SCOPED_TRACE("shape " + std::to_string(k));
-    ring.draw(model_, shape_, position_);
+    placed_ = ring.draw(model_);
     const RingForces forces = elementOf<ToothMesh>(model_).forces(shape_, position_);
     meshed +=
         static_cast<int>(std::count(forces.of<ToothMesh>().meshed.begin(), forces.of<ToothMesh>().meshed.end(), 1));
@@ -212,7 +201,7 @@ TEST_F(FaultyGear, EccentricMemberIsTheCentredOneMoved)
   RandomRing ring(31);
   for (int k = 0; k < 20; ++k)
   {
-    ring.draw(perfect, shape_, position_);
+    placed_ = ring.draw(perfect);
     for (const auto& [faulty, centred, angle] :
          { std::make_tuple(elementOf<ToothMesh>(spline), elementOf<ToothMesh>(perfect), position_.output_angle),
            std::make_tuple(elementOf<WaveGeneratorContact>(generator), elementOf<WaveGeneratorContact>(perfect),
@@ -232,7 +221,7 @@ TEST_F(FaultyGear, EllipticityOfTheWaveGeneratorAddsToItsAmplitude)
   const RingModel perfect(shippedParameters());
   const RingModel faulty(shippedParameters({ "manufacture.wave_generator_ellipticity=-5.0e-6" }));
   RandomRing ring(32);
-  ring.draw(perfect, shape_, position_);
+  placed_ = ring.draw(perfect);
   const RingForces forces = elementOf<WaveGeneratorContact>(faulty).forces(shape_, position_);
   position_.wave_amplitude -= 5e-6;
   EXPECT_NEAR(forces.energy, elementOf<WaveGeneratorContact>(perfect).forces(shape_, position_).energy,
@@ -279,20 +268,17 @@ TEST(WholeRing, AnErrorCommonToAllTeethTurnsTheOutput)
 
 TEST(WholeRing, TorquesAreTheWorkOverAnyPath)
 {
-  const Parameters parameters = shippedParameters(allErrors());
-  const RingModel model(parameters);
-  SolverParameters solver = parameters.solver;
-  solver.force_tolerance = 1e-6;
-  RingEquilibrium ring(model, solver);
-  const double w = parameters.gear.wave_amplitude;
-  ASSERT_TRUE(ring.insert({ 0.0, 0.0, w }).ok());
+  std::vector<std::string> assignments = allErrors();
+  assignments.emplace_back("solver.force_tolerance=1.0e-6");
+  InsertedRing inserted(shippedParameters(assignments));
+  RingEquilibrium& ring = inserted.ring;
   // A loop of the two angles over some tooth pitches, under load on either flank.
   constexpr int STEPS = 2000;
   const auto place = [&](int step)
   {
     const double a = TWO_PI * step / STEPS;
     const double motor = 0.2 * (1.0 - std::cos(a));
-    return DrivePosition{ motor, motor / 101.0 + 1e-3 * std::sin(a), w };
+    return DrivePosition{ motor, motor / 101.0 + 1e-3 * std::sin(a), inserted.amplitude };
   };
   ASSERT_TRUE(ring.moveTo(place(0)).ok());
   const double start = ring.forces().energy;
@@ -319,18 +305,15 @@ TEST(WholeRing, TorquesAreTheWorkOverAnyPath)
 
 TEST(WholeRing, GearAsBuiltConvergesInFewIterations)
 {
-  const Parameters parameters = shippedParameters({}, { "as_built" });
-  const RingModel model(parameters);
-  RingEquilibrium ring(model, parameters.solver);
-  ASSERT_TRUE(ring.insert({ 0.0, 0.0, parameters.gear.wave_amplitude }).ok());
+  InsertedRing inserted(shippedParameters({}, { "as_built" }));
   // As at full speed: a tooth pitch a step, under load.
   constexpr int STEPS = 400;
   int iterations = 0;
   int cuts = 0;
   for (int i = 1; i <= STEPS; ++i)
   {
-    const double angle = i * model.rest.pitchAngle();
-    const SolveStatus status = ring.moveTo({ angle, angle / 101.0 - 1e-3, parameters.gear.wave_amplitude });
+    const double angle = i * inserted.model.rest.pitchAngle();
+    const SolveStatus status = inserted.moveTo(angle, angle / 101.0 - 1e-3);
     ASSERT_TRUE(status.ok());
     cuts += status.cuts;
     iterations += status.iterations;

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
-#include <string>
-#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "gear/ratio.hpp"
-#include "harmonic_joint_twin/base/errors.hpp"
 #include "model/faults/joint_faults.hpp"
 #include "solver/ring_equilibrium.hpp"
 #include "statics/static_solver.hpp"

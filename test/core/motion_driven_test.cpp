@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The twin driven by a measured motion, and what is identified from one. The robot measured is the twin itself, driven
 // by a servo, with parameters that the identification does not know and with the noise of real sensors.
+
 #include <algorithm>
 #include <cmath>
-#include <random>
-#include <vector>
+#include <limits>
 
 #include <gmock/gmock.h>
 
-#include "test/core/complaint.hpp"
-#include "test_parameters.hpp"
-
 #include "gear/angle.hpp"
 #include "gear/ratio.hpp"
-#include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/twin/twin.hpp"
+#include "identification/controller_fit.hpp"
 #include "identification/identification.hpp"
 #include "model/joint_model.hpp"
+#include "test/core/complaint.hpp"
+#include "test/core/test_parameters.hpp"
+#include "test/support/seeded_random.hpp"
 #include "tracking/friction_map.hpp"
 #include "tracking/motion_driven.hpp"
 
@@ -41,8 +41,7 @@ struct RobotRow
 /// The twin as a robot: a servo leads the motor through two sines, telemetry at 125 Hz.
 std::vector<RobotRow> runRobot(const Parameters& parameters, double duration, const SensorNoise& noise)
 {
-  std::mt19937 engine(7);
-  std::normal_distribution<double> unit;
+  SeededRandom engine(7);
   const double ratio = nominalRatio(parameters.gear);
   Twin twin(parameters);
   twin.reset(0);
@@ -68,10 +67,10 @@ std::vector<RobotRow> runRobot(const Parameters& parameters, double duration, co
       next += TELEMETRY_PERIOD;
       RobotRow row;
       row.row.time = static_cast<double>(twin.stamp()) / 1e9;
-      row.row.position = twin.outputs().motor_angle / ratio + noise.position * unit(engine);
+      row.row.position = twin.outputs().motor_angle / ratio + noise.position * engine.normal();
       row.motor_torque = twin.outputs().motor_torque;
       row.row.current =
-          ratio * row.motor_torque / parameters.telemetry.torque_per_current + noise.current * unit(engine);
+          ratio * row.motor_torque / parameters.telemetry.torque_per_current + noise.current * engine.normal();
       rows.push_back(row);
     }
   }
@@ -82,20 +81,20 @@ std::vector<MotionSample> smoothed(const std::vector<RobotRow>& rows, const Moti
 {
   MotionDifferentiator smoother(0.05);  // the output's swing, which the motor does not share, is less in it
   std::vector<MotionSample> samples;
-  for (const RobotRow& row : rows)
+  const auto take = [&](bool at_end)
   {
-    smoother.push(row.row);
-    while (auto sample = smoother.pop())
+    while (auto sample = smoother.pop(at_end))
     {
       sample->load = twin.modelledLoad(*sample);
       samples.push_back(*sample);
     }
-  }
-  while (auto sample = smoother.pop(true))
+  };
+  for (const RobotRow& row : rows)
   {
-    sample->load = twin.modelledLoad(*sample);
-    samples.push_back(*sample);
+    smoother.push(row.row);
+    take(false);
   }
+  take(true);
   return samples;
 }
 
@@ -113,15 +112,18 @@ Parameters knownParameters()
 
 const IdentifiedValue& valueOf(const Identification& found, const std::string& key)
 {
-  for (const IdentifiedValue& value : found.values)
-  {
-    if (value.key == key)
-    {
-      return value;
-    }
-  }
-  ADD_FAILURE() << key << " was not looked for";
-  return found.values.front();
+  const auto at = std::find_if(found.values.begin(), found.values.end(),
+                               [&](const IdentifiedValue& value) { return value.key == key || value.name == key; });
+  EXPECT_NE(at, found.values.end()) << key << " was not looked for";
+  return at == found.values.end() ? found.values.front() : *at;
+}
+
+/// By the first two thirds or so of the samples, judged by the rest.
+Identification identifiedBy(const Parameters& known, const std::vector<MotionSample>& samples, std::ptrdiff_t first,
+                            bool with_ripple = false)
+{
+  const auto middle = samples.begin() + first;
+  return identify(known, { samples.begin(), middle }, { { middle, samples.end() } }, with_ripple);
 }
 
 TEST(FrictionMap, OfAJointWithoutMotorReachesToTheLoadsOnIt)
@@ -203,16 +205,11 @@ TEST(Identification, ReportsTheStribeckRiseAndDoesNotTakeIt)
   Parameters known = knownParameters();
   known.motor.stribeck_velocity = robot.motor.stribeck_velocity;
   const std::vector<MotionSample> samples = smoothed(runRobot(robot, 18.0, { 3e-6, 0.02 }), MotionDriven(known));
-  const auto middle = samples.begin() + static_cast<std::ptrdiff_t>(samples.size() * 2 / 3);
-  const Identification found = identify(known, { samples.begin(), middle }, { { middle, samples.end() } }, false);
-  const auto at = std::find_if(found.values.begin(), found.values.end(),
-                               [](const IdentifiedValue& value) { return value.name == "Stribeck rise at the motor"; });
-  ASSERT_NE(at, found.values.end());
-  const IdentifiedValue& rise = *at;
+  const Identification found = identifiedBy(known, samples, static_cast<std::ptrdiff_t>(samples.size() * 2 / 3));
+  const IdentifiedValue& rise = valueOf(found, "Stribeck rise at the motor");
   EXPECT_EQ(rise.refusal, "");
   EXPECT_NEAR(rise.value, robot.motor.stribeck_torque, std::max(rise.half_width, 0.25 * robot.motor.stribeck_torque));
   EXPECT_EQ(found.parameters.motor.stribeck_torque, 0.0);
-  RecordProperty("rise", std::to_string(rise.value));
   // Where it is configured the prediction has it.
   Parameters with = found.parameters;
   with.motor.stribeck_torque = 0.04;
@@ -225,9 +222,8 @@ TEST(Identification, FindsHiddenParametersWithinTheirIntervals)
   const Parameters robot = shippedParameters(hiddenParameters());
   const std::vector<RobotRow> rows = runRobot(robot, 18.0, { 3e-6, 0.02 });
   const std::vector<MotionSample> samples = smoothed(rows, MotionDriven(knownParameters()));
-  const auto middle = samples.begin() + static_cast<std::ptrdiff_t>(samples.size() * 2 / 3);
   const Identification found =
-      identify(knownParameters(), { samples.begin(), middle }, { { middle, samples.end() } }, false);
+      identifiedBy(knownParameters(), samples, static_cast<std::ptrdiff_t>(samples.size() * 2 / 3));
 
   const auto expect_within = [&](const char* key, double truth)
   {
@@ -251,8 +247,7 @@ TEST(Identification, RefusesTheGainWhereNoLoadTellsIt)
   // A joint at constant speed, turning on without load: current and friction scale alike.
   const Parameters parameters = shippedParameters();
   MotionDriven twin(parameters);
-  std::mt19937 engine(3);
-  std::normal_distribution<double> unit;
+  SeededRandom engine(3);
   std::vector<MotionSample> samples;
   for (int i = 0; i < 2000; ++i)
   {
@@ -260,23 +255,18 @@ TEST(Identification, RefusesTheGainWhereNoLoadTellsIt)
     sample.time = 0.008 * i;
     sample.velocity = i < 1000 ? 0.5 : -0.5;
     sample.position = i < 1000 ? 0.004 * i : 0.004 * (2000 - i);
-    sample.current = twin.step(sample).current + 0.01 * unit(engine);
+    sample.current = twin.step(sample).current + 0.01 * engine.normal();
     samples.push_back(sample);
   }
   const Identification found = identify(parameters, samples, { samples }, false);
   EXPECT_NE(valueOf(found, "telemetry.torque_per_current").refusal, "");
   EXPECT_NE(valueOf(found, "motor.rotor_inertia").refusal, "");
   EXPECT_EQ(found.parameters.telemetry.torque_per_current, parameters.telemetry.torque_per_current);
-}
-
-TEST(Identification, SaysThatAJointAtRestTellsNothing)
-{
-  std::vector<MotionSample> samples(500);
-  for (std::size_t i = 0; i < samples.size(); ++i)
+  for (MotionSample& sample : samples)
   {
-    samples[i].time = 0.008 * static_cast<double>(i);
+    sample.velocity = sample.position = 0.0;
   }
-  EXPECT_THROW(identify(shippedParameters(), samples, { samples }, false), InputError);
+  EXPECT_THROW(identify(parameters, samples, { samples }, false), InputError) << "at rest nothing is told";
 }
 
 TEST(Presliding, BuildsUpAfterAReversalAndFadesAtRest)
@@ -346,8 +336,7 @@ TEST(Identification, FindsTheRippleOfACircularSplineAndNoneOfTheFlexspline)
   robot.telemetry.ripple_damping = 0.2;
   robot.telemetry.ripple_lag = 0.004;
   MotionDriven twin(robot);
-  std::mt19937 engine(5);
-  std::normal_distribution<double> unit;
+  SeededRandom engine(5);
   std::vector<MotionSample> samples;
   for (int i = 0; i < 5000; ++i)
   {
@@ -358,12 +347,10 @@ TEST(Identification, FindsTheRippleOfACircularSplineAndNoneOfTheFlexspline)
     sample.velocity = 1.2 * 0.6 * std::cos(phase);
     sample.acceleration = -1.2 * 0.36 * std::sin(phase);
     sample.load = 30.0 * std::sin(sample.position) + 2.0 * sample.acceleration;
-    sample.current = twin.step(sample).current + 0.02 * unit(engine);
+    sample.current = twin.step(sample).current + 0.02 * engine.normal();
     samples.push_back(sample);
   }
-  const auto middle = samples.begin() + 3000;
-  const Identification found =
-      identify(shippedParameters(), { samples.begin(), middle }, { { middle, samples.end() } }, true);
+  const Identification found = identifiedBy(shippedParameters(), samples, 3000, true);
   const RippleLine& line = found.lines[0];
   ASSERT_EQ(line.refusal, "");
   EXPECT_NEAR(line.amplitude, std::hypot(0.9, 0.7), 2.0 * line.half_width);
@@ -371,6 +358,133 @@ TEST(Identification, FindsTheRippleOfACircularSplineAndNoneOfTheFlexspline)
   EXPECT_NE(found.lines[1].refusal, "");
   EXPECT_EQ(found.parameters.telemetry.ripple_flexspline_2[0], 0.0);
   EXPECT_LT(found.judged.identified.moving, 0.5 * found.judged.without_ripple.moving);
+}
+
+TEST(MotionDifferentiator, KeepsToAParabolaThroughJitterRepeatsAndDropOuts)
+{
+  MotionDifferentiator smoother;
+  SeededRandom engine(11);
+  std::vector<MotionSample> samples;
+  const auto collect = [&](bool at_end)
+  {
+    while (const auto sample = smoother.pop(at_end))
+    {
+      samples.push_back(*sample);
+    }
+  };
+  const auto angle = [](double time) { return 0.3 + 0.7 * time - 0.9 * time * time; };
+  for (int i = 0; i < 500; ++i)
+  {
+    if (engine() % 100 == 0)
+    {
+      continue;  // dropped
+    }
+    const double time = 0.008 * i + 0.003 * static_cast<double>(engine() % 1000) / 1000.0 + (i >= 250 ? 1.0 : 0.0);
+    EXPECT_TRUE(smoother.push({ time, angle(time), 0.0, 0.0 }));
+    EXPECT_FALSE(smoother.push({ time, 1.0, 0.0, 0.0 }));  // its stamp repeated
+    collect(false);
+  }
+  constexpr double NONE = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(smoother.push({ NONE, 0.0, 0.0, 0.0 }));
+  EXPECT_FALSE(smoother.push({ 1e3, NONE, 0.0, 0.0 }));
+  EXPECT_FALSE(smoother.push({ 1e3, 0.0, NONE, 0.0 }));
+  EXPECT_FALSE(smoother.push({ 1e3, 0.0, 0.0, NONE }));
+  collect(true);
+  EXPECT_EQ(smoother.gaps(), 1u);
+  EXPECT_GT(samples.size(), 480u);
+  int cuts = 0;
+  for (const MotionSample& sample : samples)
+  {
+    cuts += sample.after_gap ? 1 : 0;
+    EXPECT_NEAR(sample.velocity, 0.7 - 1.8 * sample.time, 1e-6);
+    EXPECT_NEAR(sample.acceleration, -1.8, 1e-4);
+  }
+  EXPECT_EQ(cuts, 1);
+}
+
+TEST(MotionDifferentiator, TakesTwoRowsToEitherSideHoweverFarApart)
+{
+  MotionDifferentiator smoother;
+  int samples = 0;
+  for (int i = 0; i < 50; ++i)
+  {
+    const double time = 0.09 * i;
+    smoother.push({ time, 0.3 + 0.7 * time - 0.9 * time * time, 0.0, 0.0 });
+    while (const auto sample = smoother.pop())
+    {
+      if (samples > 0)  // the first has too few
+      {
+        EXPECT_NEAR(sample->velocity, 0.7 - 1.8 * sample->time, 1e-6);
+        EXPECT_NEAR(sample->acceleration, -1.8, 1e-6);
+      }
+      ++samples;
+    }
+  }
+  EXPECT_EQ(samples, 48);
+}
+
+constexpr double PERIOD = 0.002;           // [s]
+constexpr double TORQUE_PER_CURRENT = 10;  // [N.m/A]
+constexpr double ANGLE_CURRENT = 2000.0;   // [A/rad]
+constexpr double SPEED_CURRENT = 20.0;     // [A.s/rad]
+constexpr JointGains USUAL{ 40.0, 100.0, 0.05, 0.0, 0.0 };
+
+/// A joint that swings; its errors are noise, and so is `unexplained`, a share of the current's variance.
+std::vector<ControllerRow> recorded(double unexplained)
+{
+  SeededRandom random(64);
+  constexpr double ANGLE_ERROR = 1e-4;  // [rad]
+  constexpr double SPEED_ERROR = 0.01;  // [rad/s]
+  const double of_errors = std::hypot(ANGLE_CURRENT * ANGLE_ERROR, SPEED_CURRENT * SPEED_ERROR);
+  std::vector<ControllerRow> rows(10000);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+  {
+    ControllerRow& row = rows[i];
+    const double time = PERIOD * static_cast<double>(i);
+    row.angle_error = ANGLE_ERROR * random.normal();
+    row.speed_error = SPEED_ERROR * random.normal();
+    row.speed = std::sin(time);
+    row.rigid_current = 0.5 * std::cos(time);
+    row.target_current = row.rigid_current + 0.3 * std::tanh(row.speed / 0.01) + 0.2 * row.speed;
+    row.current = row.rigid_current + of_errors * std::sqrt(unexplained / (1.0 - unexplained)) * random.normal();
+    if (i >= 2)
+    {
+      row.current += ANGLE_CURRENT * rows[i - 2].angle_error + SPEED_CURRENT * rows[i - 2].speed_error;
+    }
+  }
+  return rows;
+}
+
+ControllerFit fitted(double unexplained)
+{
+  return fitController(recorded(unexplained), PERIOD, TORQUE_PER_CURRENT, USUAL, 0.0);
+}
+
+TEST(ControllerFit, FindsGainsLagAndFrictionThatIsFedForward)
+{
+  const ControllerFit found = fitted(0.05);
+  EXPECT_EQ(found.refusal, "");
+  EXPECT_NEAR(found.lag, 2.0 * PERIOD, 1e-9);
+  EXPECT_NEAR(found.angle_current, ANGLE_CURRENT, found.angle_half_width);
+  EXPECT_NEAR(found.speed_current, SPEED_CURRENT, found.speed_half_width);
+  EXPECT_LT(found.angle_half_width, 0.02 * ANGLE_CURRENT);
+  EXPECT_LT(found.speed_half_width, 0.02 * SPEED_CURRENT);
+  // a / b = k_p + 1 / T_i, of which the integral's time is the usual one's.
+  EXPECT_NEAR(found.gains.position, found.angle_current / found.speed_current - 1.0 / USUAL.integral_time, 1e-9);
+  EXPECT_NEAR(found.gains.speed, TORQUE_PER_CURRENT * found.speed_current, 1e-9);
+  EXPECT_NEAR(found.gains.integral_time, USUAL.integral_time, 1e-12);
+  EXPECT_NEAR(found.gains.coulomb, 3.0, 1e-6);
+  EXPECT_NEAR(found.gains.viscous, 2.0, 1e-6);
+}
+
+TEST(ControllerFit, RefusesWhereTheErrorsExplainLessThanAThird)
+{
+  const ControllerFit half = fitted(0.5);
+  EXPECT_EQ(half.refusal, "");
+  EXPECT_NEAR(half.explained, 0.5, 0.02);
+  const ControllerFit quarter = fitted(0.75);
+  EXPECT_THAT(quarter.refusal, testing::HasSubstr("explain less than a third"));
+  EXPECT_EQ(quarter.gains.speed, USUAL.speed);
 }
 }  // namespace
 }  // namespace hjt

@@ -1,10 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "arm/moving_arm.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <optional>
-#include <vector>
 
 #include <gmock/gmock.h>
 
@@ -16,6 +10,12 @@ namespace hjt
 {
 namespace
 {
+/// From the begin of the motion [s].
+void runTo(MovingArm& arm, double time)
+{
+  advance(arm, arm.motionBegin() + toStampLength(time));
+}
+
 /// Its points given one by one are the motion; a copy in between goes on as the arm does.
 TEST(MovingArm, APointAtATimeIsTheMotionAndACopyGoesOnAlike)
 {
@@ -26,15 +26,8 @@ TEST(MovingArm, APointAtATimeIsTheMotionAndACopyGoesOnAlike)
     const JointMotion joint{ 0.3 + 0.05 * std::sin(20.0 * time), std::cos(20.0 * time), -20.0 * std::sin(20.0 * time) };
     points.push_back({ time, { joint, { -0.8, 0.0, 0.0 } } });
   }
-  const ArmDescription description = rods("0 1 0", 2);
-  MovingArm whole(description, { drive(), drive() }, ArmMotion(points), {});
-  MovingArm piecewise(description, { drive(), drive() }, ArmMotion({ points[0], points[0] }), {});
-  const auto run_to = [](MovingArm& arm, double time)
-  {
-    while (arm.step(arm.motionBegin() + toStampLength(time)))
-    {
-    }
-  };
+  MovingArm whole = movingRods(ArmMotion(points));
+  std::vector<MovingArm> piecewise{ movingRods(ArmMotion({ points[0], points[0] })) };
   const auto expect_same = [](const MovingArm& one, const MovingArm& other)
   {
     ASSERT_EQ(one.twin().stamp(), other.twin().stamp());
@@ -44,50 +37,41 @@ TEST(MovingArm, APointAtATimeIsTheMotionAndACopyGoesOnAlike)
       EXPECT_EQ(one.reading(i).current, other.reading(i).current);
     }
   };
-  run_to(piecewise, 0.0);
-  std::optional<MovingArm> copy;
+  runTo(piecewise[0], 0.0);
   for (std::size_t k = 1; k < 25; ++k)
   {
-    for (MovingArm* arm : { &piecewise, copy ? &*copy : nullptr })
+    for (MovingArm& arm : piecewise)
     {
-      if (arm != nullptr)
-      {
-        arm->goOn(points[k].time, points[k].joints);
-        run_to(*arm, points[k].time);
-      }
+      arm.goOn(points[k].time, points[k].joints);
+      runTo(arm, points[k].time);
     }
     if (k == 10)
     {
-      copy.emplace(piecewise);
+      const MovingArm copy = piecewise[0];
+      piecewise.push_back(copy);
     }
   }
-  run_to(whole, points[24].time);
-  expect_same(piecewise, whole);
-  expect_same(*copy, whole);
+  runTo(whole, points[24].time);
+  expect_same(piecewise[0], whole);
+  expect_same(piecewise[1], whole);
   // A payload shows, and to the copy alone.
-  copy->setPayload({ 3.0, { 0.1, 0.0, 0.0 } });
-  run_to(*copy, points[24].time + 0.01);
-  run_to(whole, points[24].time + 0.01);
-  EXPECT_GT(std::abs(copy->reading(0).current - whole.reading(0).current), 0.1);
+  piecewise[1].setPayload({ 3.0, { 0.1, 0.0, 0.0 } });
+  runTo(piecewise[1], points[24].time + 0.01);
+  runTo(whole, points[24].time + 0.01);
+  EXPECT_GT(std::abs(piecewise[1].reading(0).current - whole.reading(0).current), 0.1);
 }
 
 /// As a robot's driver it reads the motor's current with an offset, which no torque has.
 TEST(MovingArm, TheCurrentThatItReadsHasAnOffset)
 {
   constexpr double OFFSET = 0.05;  // [A]
-  const ArmDescription description = rods("0 1 0", 2);
-  const ArmMotion rest(
-      { { 0.0, { { 0.3, 0.0, 0.0 }, { -0.8, 0.0, 0.0 } } }, { 1.0, { { 0.3, 0.0, 0.0 }, { -0.8, 0.0, 0.0 } } } });
+  const ArmMotion rest({ { 0.0, REST }, { 1.0, REST } });
   Parameters biased = drive();
   biased.telemetry.current_offset = OFFSET;
-  MovingArm with(description, { biased, drive() }, rest, {});
-  MovingArm without(description, { drive(), drive() }, rest, {});
-  for (MovingArm* arm : { &with, &without })
-  {
-    while (arm->step(arm->motionBegin() + toStampLength(0.01)))
-    {
-    }
-  }
+  MovingArm with(rods("0 1 0", 2), { biased, drive() }, rest, {});
+  MovingArm without = movingRods(rest);
+  runTo(with, 0.01);
+  runTo(without, 0.01);
   EXPECT_NEAR(with.reading(0).current, without.reading(0).current + OFFSET, 1e-12);
   EXPECT_EQ(with.reading(1).current, without.reading(1).current);
   EXPECT_EQ(with.twin().motion()[0].position, without.twin().motion()[0].position);
@@ -137,7 +121,7 @@ TEST(MovingArm, ItComesToAMotionThatBeginsInMotion)
   {
     points.push_back({ k / 125.0, { { 0.3 + k / 125.0, 1.0, 0.0 }, { -0.8, 0.0, 0.0 } } });
   }
-  MovingArm arm(rods("0 1 0", 2), { drive(), drive() }, ArmMotion(points), {});
+  MovingArm arm = movingRods(ArmMotion(points));
   double farthest = 0.0;
   while (arm.step(arm.motionBegin() + toStampLength(0.2)))
   {
@@ -179,8 +163,7 @@ TEST(MovingArm, AMotionOfAnglesAloneEndsAtRestWhereItCanStop)
 TEST(MovingArm, TheControllersFeedbackIsLimited)
 {
   constexpr double LIMIT = 5.0;  // [N.m]
-  const std::vector<JointMotion> at{ { 0.3, 0.0, 0.0 }, { -0.8, 0.0, 0.0 } };
-  std::vector<JointMotion> away = at;
+  std::vector<JointMotion> away = REST;
   away[0].position += 0.05;
   double most[2] = {};
   for (const bool is_limited : { false, true })
@@ -188,7 +171,7 @@ TEST(MovingArm, TheControllersFeedbackIsLimited)
     ArmDescription description = rods("0 1 0", 2);
     description.joints[0].feedback_limit = is_limited ? LIMIT : 0.0;
     MovingArm arm(description, { drive(), drive() },
-                  ArmMotion({ { 0.0, at }, { 0.1, at }, { 0.101, away }, { 0.3, away } }), {});
+                  ArmMotion({ { 0.0, REST }, { 0.1, REST }, { 0.101, away }, { 0.3, away } }), {});
     const double gain = arm.twin().drive(0).parameters().telemetry.torque_per_current;
     double fed_forward = 0.0;  // beside the current that an instant shows, which the control of before made
     for (; arm.step(arm.motionBegin() + toStampLength(0.3));
@@ -209,10 +192,9 @@ TEST(MovingArm, TheControllersFeedbackIsLimited)
 /// The speed that it shows is the one that its current was made of; where none controls, that of the instant.
 TEST(MovingArm, TheSpeedIsThatOfTheControl)
 {
-  const std::vector<JointMotion> from{ { 0.3, 0.0, 0.0 }, { -0.8, 0.0, 0.0 } };
-  std::vector<JointMotion> to = from;
+  std::vector<JointMotion> to = REST;
   to[0].position += 0.1;
-  MovingArm arm(rods("0 1 0", 2), { drive(), drive() }, ArmMotion({ { 0.0, from }, { 0.2, to } }), {});
+  MovingArm arm = movingRods(ArmMotion({ { 0.0, REST }, { 0.2, to } }));
   const auto speed = [&]
   {
     const Twin& twin = arm.twin().drive(0);
@@ -293,9 +275,7 @@ TEST(MovingArm, TheWindowOfTheSpeedMakesNoLead)
             { { 0.3 + 0.5 * ACCELERATION * time * time, ACCELERATION * time, ACCELERATION }, { -0.8, 0.0, 0.0 } } });
     }
     MovingArm arm(rods("0 0 1", 2), { smooth, smooth }, ArmMotion(points), {});
-    while (arm.step(arm.motionBegin() + toStampLength(0.35)))
-    {
-    }
+    runTo(arm, 0.35);
     angles[is_long] = arm.twin().motion()[0].position;
   }
   // 4.5 ms of the speed over a gain of 20 1/s would be 450 urad.
@@ -305,10 +285,8 @@ TEST(MovingArm, TheWindowOfTheSpeedMakesNoLead)
 /// The integral leaves what an encoder does not see: at rest the current stands.
 TEST(MovingArm, AtRestTheCurrentStands)
 {
-  const std::vector<JointMotion> from{ { 0.3, 0.0, 0.0 }, { -0.8, 0.0, 0.0 } };
   const std::vector<JointMotion> to{ { 0.4, 0.0, 0.0 }, { -0.7, 0.0, 0.0 } };
-  MovingArm arm(rods("0 1 0", 2), { drive(), drive() },
-                ArmMotion({ { 0.0, from }, { 0.3, to } }, ArmAccelerations::OF_CUBICS), {});
+  MovingArm arm = movingRods(ArmMotion({ { 0.0, REST }, { 0.3, to } }, ArmAccelerations::OF_CUBICS));
   double least[2] = { HUGE_VAL, HUGE_VAL };
   double most[2] = { -HUGE_VAL, -HUGE_VAL };
   while (arm.step(arm.motionBegin() + toStampLength(5.0)))

@@ -3,9 +3,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <random>
 #include <utility>
-#include <vector>
 
 #include <gmock/gmock.h>
 #include <Eigen/Eigenvalues>
@@ -16,6 +14,7 @@
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/twin/twin.hpp"
 #include "statics/torsion_curve.hpp"
+#include "test/support/seeded_random.hpp"
 #include "tracking/observer.hpp"
 
 namespace hjt
@@ -47,9 +46,7 @@ struct Seen : Observation
 std::vector<Seen> observe(const Parameters& real, const Parameters& believed, double duration,
                           const Torque& motor_torque, const Rows& rows = {})
 {
-  std::mt19937 engine(5);
-  std::normal_distribution<double> unit;
-  std::uniform_real_distribution<double> even(-1.0, 1.0);
+  SeededRandom engine(5);
   Twin robot(real);
   robot.reset(0);
   Observer observer(believed);
@@ -65,16 +62,17 @@ std::vector<Seen> observe(const Parameters& real, const Parameters& believed, do
     {
       continue;
     }
-    due = rows.period * (std::floor(stamp / rows.period + 0.5) + 1.0) + rows.jitter * even(engine);
-    if (0.5 * (1.0 + even(engine)) < rows.dropped)
+    due = rows.period * (std::floor(stamp / rows.period + 0.5) + 1.0) + rows.jitter * engine.uniform();
+    if (0.5 * (1.0 + engine.uniform()) < rows.dropped)
     {
       continue;
     }
     const double none = std::numeric_limits<double>::quiet_NaN();
     Seen at;
     static_cast<Observation&>(at) = observer.step(
-        { stamp, now.motor_torque, 0.0, now.output_angle + believed.observer.output_angle_noise * unit(engine),
-          rows.encoders == Encoders::BOTH ? now.motor_angle + believed.observer.motor_angle_noise * unit(engine) : none,
+        { stamp, now.motor_torque, 0.0, now.output_angle + believed.observer.output_angle_noise * engine.normal(),
+          rows.encoders == Encoders::BOTH ? now.motor_angle + believed.observer.motor_angle_noise * engine.normal() :
+                                            none,
           false });
     at.time = stamp;
     seen.push_back(at);

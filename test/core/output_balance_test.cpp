@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "solver/ring_equilibrium.hpp"
-
-#include <cmath>
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
+#include "ring_fixture.hpp"
 #include "test_parameters.hpp"
 
 namespace hjt
@@ -32,25 +29,19 @@ const std::vector<LoadedGear> GEARS{
 };
 
 /// The ring without load, solved as statics are.
-struct UnloadedRing
+struct UnloadedRing : InsertedRing
 {
-  explicit UnloadedRing(const LoadedGear& gear)
-    : parameters(goldenParameters(gear.assignments, gear.overlays)), model(parameters), ring(model, solver())
+  explicit UnloadedRing(const LoadedGear& gear) : InsertedRing(solvedTightly(gear))
   {
-    EXPECT_TRUE(ring.insert({ 0.0, 0.0, parameters.gear.wave_amplitude }).ok()) << gear.name;
     EXPECT_TRUE(balanceOutput(ring, 0.0, 0.0).ok()) << gear.name;
   }
 
-  SolverParameters solver() const
+  static Parameters solvedTightly(const LoadedGear& gear)
   {
-    SolverParameters tight = parameters.solver;
-    tight.force_tolerance = 5e-7;
-    return tight;
+    Parameters parameters = goldenParameters(gear.assignments, gear.overlays);
+    parameters.solver.force_tolerance = 5e-7;
+    return parameters;
   }
-
-  Parameters parameters;
-  RingModel model;
-  RingEquilibrium ring;
 };
 
 TEST(OutputBalance, FindsOneTorqueHoweverFarItTurnsTheOutput)
@@ -108,26 +99,19 @@ TEST(OutputBalance, OfTeethThatDoNotReachEachOtherSaysSo)
   EXPECT_EQ(explanationOf(status).find("solver.max_iterations"), std::string::npos);
 }
 
-/// What the user reads about an insertion of the golden gear with these parameters, which fails.
-std::string failedInsertion(const std::vector<std::string>& assignments)
-{
-  const Parameters parameters = goldenParameters(assignments);
-  const RingModel model(parameters);
-  const SolveStatus status =
-      RingEquilibrium(model, parameters.solver).insert({ 0.0, 0.0, parameters.gear.wave_amplitude });
-  EXPECT_EQ(status.code, SolveCode::ITERATION_LIMIT);
-  EXPECT_EQ(status.stage, SolveStage::INSERTION);
-  return explanationOf(status);
-}
-
 TEST(SolveStatus, NamesTheIterationsOnlyWhereTheShippedLimitIsHigher)
 {
   const std::string shipped = std::to_string(shippedParameters().solver.max_iterations);
-  const std::string lowered =
-      failedInsertion({ "contact.stiffness=1.0e+12", "solver.max_iterations=1", "solver.max_step_cuts=0" });
+  const Parameters parameters =
+      goldenParameters({ "contact.stiffness=1.0e+12", "solver.max_iterations=1", "solver.max_step_cuts=0" });
+  const RingModel model(parameters);
+  SolveStatus status = RingEquilibrium(model, parameters.solver).insert({ 0.0, 0.0, parameters.gear.wave_amplitude });
+  EXPECT_EQ(status.code, SolveCode::ITERATION_LIMIT);
+  EXPECT_EQ(status.stage, SolveStage::INSERTION);
+  const std::string lowered = explanationOf(status);
   EXPECT_THAT(lowered, testing::HasSubstr("raise solver.max_iterations from 1 to the shipped " + shipped));
   EXPECT_THAT(lowered, testing::Not(testing::HasSubstr("gear.wave_amplitude")));
-  SolveStatus status;
+  status = {};
   status.code = SolveCode::ITERATION_LIMIT;
   for (const SolveStage stage : { SolveStage::INSERTION, SolveStage::MOTION, SolveStage::BALANCE })
   {

@@ -3,10 +3,6 @@
 
 #include "solver/response_surface.hpp"
 
-#include <string>
-
-#include <gtest/gtest.h>
-
 #include "gear/angle.hpp"
 #include "model/faults/joint_faults.hpp"
 #include "model/joint_model.hpp"
@@ -43,12 +39,24 @@ inline SurfaceSource cached()
 
 constexpr const char* BROKEN_TOOTH = "tooth_root_crack:1:40";
 
+inline FaultList faultsOf(const std::vector<std::string>& texts)
+{
+  FaultList faults;
+  for (const std::string& text : texts)
+  {
+    faults.set(parseFault(text, surfaceParameters()), 0);
+  }
+  return faults;
+}
+
 inline JointModel brokenModel()
 {
-  const Parameters parameters = surfaceParameters();
-  FaultList faults;
-  faults.set(parseFault(BROKEN_TOOTH, parameters), 0);
-  return JointFaults(parameters, faults).model();
+  return JointFaults(surfaceParameters(), faultsOf({ BROKEN_TOOTH })).model();
+}
+
+inline SurfaceTables brokenTables(const SurfaceSource& source = cached())
+{
+  return obtainSurface(surfaceParameters(), brokenModel(), "broken tooth 40 ", source).value();
 }
 
 inline const ResponseSurface& surface()
@@ -58,11 +66,15 @@ inline const ResponseSurface& surface()
   return SHIPPED;
 }
 
-inline RingResponse at(double motor_angle, double output_angle)
+inline ResponseSurface::Place placeOn(const ResponseSurface& table, double motor_angle, double output_angle)
 {
   ResponseSurface::Place place;
-  EXPECT_TRUE(surface().locate(motor_angle, output_angle, place));
-  return surface().response(place);
+  EXPECT_TRUE(table.locate(motor_angle, output_angle, place)) << motor_angle << ' ' << output_angle;
+  return place;
 }
 
+inline RingResponse at(double motor_angle, double output_angle, const ResponseSurface& table = surface())
+{
+  return table.response(placeOn(table, motor_angle, output_angle));
+}
 }  // namespace hjt

@@ -1,26 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "solver/response_surface.hpp"
 
 #include <array>
-#include <cmath>
+#include <cstddef>
 #include <limits>
-#include <random>
-#include <string>
-#include <vector>
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include "gear/angle.hpp"
-#include "model/joint_model.hpp"
 #include "solver/ring_equilibrium.hpp"
+#include "solver/surface_tables.hpp"
 #include "statics/static_solver.hpp"
-#include "surface/faulty_surface.hpp"
 #include "surface/surface_builder.hpp"
 #include "surface/surface_ring.hpp"
 #include "test/core/response_surface_support.hpp"
-#include "test_parameters.hpp"
-#include "twin_runs.hpp"
+#include "twin/tooth_forces.hpp"
 
 namespace hjt
 {
@@ -29,12 +21,11 @@ namespace
 TEST(ResponseSurface, TorquesAreMinusTheEnergysDerivatives)
 {
   constexpr double STEP = 1e-7;
-  std::mt19937 random(5);
-  std::uniform_real_distribution<double> part(-1.0, 1.0);
+  SeededRandom random(5);
   for (int i = 0; i < 2000; ++i)
   {
-    const double motor = 3.0 * part(random);
-    const double output = motor / 101.0 + 5e-3 * part(random);
+    const double motor = 3.0 * random.uniform();
+    const double output = motor / 101.0 + 5e-3 * random.uniform();
     const RingResponse here = at(motor, output);
     const double by_motor = (at(motor + STEP, output).energy - at(motor - STEP, output).energy) / (2.0 * STEP);
     const double by_output = (at(motor, output + STEP).energy - at(motor, output - STEP).energy) / (2.0 * STEP);
@@ -48,10 +39,8 @@ TEST(ResponseSurface, HousingStiffnessIsTheTorquesDerivative)
   constexpr double STEP = 1e-9;
   const double motor = 0.3;
   const double output = motor / 101.0 + 1.7e-3;
-  ResponseSurface::Place place;
-  ASSERT_TRUE(surface().locate(motor, output, place));
   Eigen::Vector2d stiffness;
-  surface().response(place, stiffness);
+  surface().response(placeOn(surface(), motor, output), stiffness);
   const auto housing = [](const RingResponse& r) { return -r.wave_generator_torque - r.output_torque; };
   EXPECT_NEAR(stiffness[1], (housing(at(motor, output + STEP)) - housing(at(motor, output - STEP))) / (2.0 * STEP),
               1e-3 * stiffness[1]);
@@ -119,8 +108,7 @@ TEST(ResponseSurface, OfAGearThatIsNotItsMirrorImageIsMeasuredBothWays)
         const double motor = (0.123 + 1.7 * i) * ring.pitch();
         ASSERT_TRUE(ring.moveTo(motor, v));
         const SurfaceNode node = ring.measure();
-        ResponseSurface::Place place;
-        ASSERT_TRUE(table.locate(motor, v + motor / ring.ratio(), place));
+        const ResponseSurface::Place place = placeOn(table, motor, v + motor / ring.ratio());
         EXPECT_NEAR(table.response(place).output_torque, -node[SurfaceNode::ENERGY_BY_V], 1e-3);
         EXPECT_NEAR(table.response(place).energy, node[SurfaceNode::ENERGY], 1e-7);
         EXPECT_NEAR(ResponseSurface::value(place, SurfaceNode::CONTACT_FORCE), node[SurfaceNode::CONTACT_FORCE], 0.5);
@@ -193,19 +181,16 @@ void expectTheFullRing(const Parameters& parameters, const ResponseSurface& tabl
   const JointModel model(parameters);
   RingEquilibrium ring(model.ring, staticSolver(parameters.solver));
   ASSERT_TRUE(ring.insert({ 0.0, 0.0, parameters.gear.wave_amplitude }).ok());
-  std::mt19937 random(6);
-  std::uniform_real_distribution<double> part(-1.0, 1.0);
+  SeededRandom random(6);
   double v = 0.0;
   double motor = 0.0;
   int stiffness_misses = 0;
   for (int i = 0; i < places; ++i)
   {
-    v = i % 50 == 0 ? farthest * part(random) : v + 1e-5 * part(random);
-    motor += 0.05 * part(random);
+    v = i % 50 == 0 ? farthest * random.uniform() : v + 1e-5 * random.uniform();
+    motor += 0.05 * random.uniform();
     ASSERT_TRUE(ring.moveTo({ motor, v + motor / 101.0, parameters.gear.wave_amplitude }).ok());
-    ResponseSurface::Place place;
-    ASSERT_TRUE(table.locate(motor, v + motor / 101.0, place));
-    const RingResponse response = table.response(place);
+    const RingResponse response = at(motor, v + motor / 101.0, table);
     const double miss = response.output_torque - ring.forces().output_torque;
     EXPECT_LT(std::abs(miss), 1e-4 * RATED_TORQUE);
     EXPECT_LT(std::abs(miss) / ring.stiffness()(1, 1), 0.01 * ARC_SECOND);
@@ -238,35 +223,27 @@ TEST(ResponseSurface, OfAWristAgreesWithTheFullRing)
   SurfaceRing ring(parameters, JointModel(parameters));
   ASSERT_TRUE(ring.insert());
   const double farthest = 0.4 * table.highest();
-  std::mt19937 random(8);
-  std::uniform_real_distribution<double> part(-1.0, 1.0);
+  SeededRandom random(8);
   double v = 0.0;
   double motor = 0.0;
   double largest = 0.0;
-  std::array<double, 2> squares{};
-  constexpr int PLACES = 2000;
-  for (int i = 0; i < PLACES; ++i)
+  for (int i = 0; i < 2000; ++i)
   {
-    v = i % 50 == 0 ? farthest * part(random) : v + 1e-5 * part(random);
-    motor += 0.05 * part(random);
+    v = i % 50 == 0 ? farthest * random.uniform() : v + 1e-5 * random.uniform();
+    motor += 0.05 * random.uniform();
     ASSERT_TRUE(ring.moveTo(motor, v));
     const SurfaceNode node = ring.measure();
-    ResponseSurface::Place place;
-    ASSERT_TRUE(table.locate(motor, v + motor / ring.ratio(), place));
-    const RingResponse response = table.response(place);
+    const RingResponse response = at(motor, v + motor / ring.ratio(), table);
     const double output = response.output_torque + node[SurfaceNode::ENERGY_BY_V];
     const double shaft = response.wave_generator_torque + node[SurfaceNode::ENERGY_BY_U] / ring.pitch() -
                          node[SurfaceNode::ENERGY_BY_V] / ring.ratio();
     largest = std::max(largest, std::abs(node[SurfaceNode::ENERGY_BY_V]));
-    squares[0] += output * output;
-    squares[1] += shaft * shaft;
+
     // A tenth of a second of arc, a thousandth of the motor's torque limit.
     EXPECT_LT(std::abs(output) / node[SurfaceNode::OUTPUT_STIFFNESS], 0.1 * ARC_SECOND);
     EXPECT_LT(std::abs(shaft), 1e-3 * parameters.motor.torque_limit);
   }
   EXPECT_GT(largest, parameters.life.momentary_peak_torque);
-  RecordProperty("output_rms", std::to_string(1e6 * std::sqrt(squares[0] / PLACES)) + " uN.m");
-  RecordProperty("motor_rms", std::to_string(1e6 * std::sqrt(squares[1] / PLACES)) + " uN.m");
 }
 
 /// Of the golden gear; a part of the range is enough here.
@@ -286,8 +263,7 @@ TEST(ResponseSurface, FrictionIsThatOfTheFullRing)
   const Parameters parameters = surfaceParameters();
   SurfaceRing ring(parameters, JointModel(parameters));
   ASSERT_TRUE(ring.insert());
-  std::mt19937 random(7);
-  std::uniform_real_distribution<double> part(-1.0, 1.0);
+  SeededRandom random(7);
   double v = 0.0;
   double motor = 0.0;
   double sum = 0.0;
@@ -295,20 +271,16 @@ TEST(ResponseSurface, FrictionIsThatOfTheFullRing)
   double squares = 0.0;
   for (int i = 0; i < PLACES; ++i)
   {
-    v = i % 50 == 0 ? 4.3e-3 * part(random) : v + 1e-5 * part(random);
-    motor += 0.05 * part(random);
+    v = i % 50 == 0 ? 4.3e-3 * random.uniform() : v + 1e-5 * random.uniform();
+    motor += 0.05 * random.uniform();
     ASSERT_TRUE(ring.moveTo(motor, v));
-    const SurfaceNode node = ring.measure();
-    ResponseSurface::Place place;
-    ASSERT_TRUE(surface().locate(motor, v + motor / ring.ratio(), place));
-    const double friction = ring.frictionTorque(node);
+    const double friction = ring.frictionTorque(ring.measure());
+    const ResponseSurface::Place place = placeOn(surface(), motor, v + motor / ring.ratio());
     const double miss = ring.frictionTorque(ResponseSurface::bilinear(place)) - friction;
     sum += friction;
     misses += miss;
     squares += miss * miss;
   }
-  RecordProperty("mean_share", std::to_string(misses / sum));
-  RecordProperty("rms_share", std::to_string(std::sqrt(squares * PLACES) / sum));
   EXPECT_LT(std::abs(misses), 2e-4 * sum);
   EXPECT_LT(std::sqrt(squares * PLACES), 3e-3 * sum);
 }
@@ -321,6 +293,127 @@ TEST(ResponseSurface, IsNotOfSingleBalls)
   const Parameters parameters = shippedParameters({ "solver.scene=auto", "contact.support=single_balls" });
   EXPECT_EQ(surfaceWithFaults(parameters, {}, source), nullptr);
   EXPECT_THAT(notice, testing::HasSubstr("single balls"));
+}
+
+using Arrays = std::array<std::vector<double>, ToothResponse::QUANTITIES>;
+
+Arrays arraysFor(int teeth)
+{
+  Arrays arrays;
+  arrays.fill(std::vector<double>(static_cast<std::size_t>(teeth)));
+  return arrays;
+}
+
+bool read(const ToothResponse& table, double motor_angle, double output_angle, Arrays& arrays)
+{
+  std::array<double*, ToothResponse::QUANTITIES> out{};
+  std::transform(arrays.begin(), arrays.end(), out.begin(), [](std::vector<double>& values) { return values.data(); });
+  return table.at(motor_angle, output_angle, out.data());
+}
+
+double largest(const std::vector<double>& values)
+{
+  return std::abs(
+      *std::max_element(values.begin(), values.end(), [](double a, double b) { return std::abs(a) < std::abs(b); }));
+}
+
+/// Largest and root mean square error of each quantity over random places, over the largest of its kind there but at
+/// least `LEAST_TOOTH_FORCE / TOOTH_FORCE_SHARE`; of places in metres.
+struct Errors
+{
+  std::array<double, ToothResponse::QUANTITIES> most{};
+  std::array<double, ToothResponse::QUANTITIES> squares{};
+};
+
+Errors errorsOf(const Parameters& parameters, const ToothResponse& table, double v_limit, int places)
+{
+  const JointModel model(parameters);
+  RingEquilibrium ring(model.ring, parameters.solver);
+  EXPECT_TRUE(ring.insert({ 0.0, 0.0, parameters.gear.wave_amplitude }).ok());
+  SeededRandom random(12);
+  Arrays arrays = arraysFor(table.teeth);
+  ToothForces exact{ arrays[0], arrays[0], arrays[0], arrays[0], arrays[0], arrays[0] };
+  const std::array<const std::vector<double>*, ToothResponse::QUANTITIES> wanted{
+    &exact.wave_generator_force, &exact.rim_tension, &exact.bending_force,
+    &exact.mesh_force,           &exact.tooth_x,     &exact.tooth_y,
+  };
+  Errors errors;
+  for (int i = 0; i < places; ++i)
+  {
+    const double motor = 8.0 * random.uniform();
+    const double output =
+        motor / table.ratio + v_limit * std::pow(random.uniform(), 3.0);  // more of them at small loads
+    EXPECT_TRUE(ring.reach({ motor, output, parameters.gear.wave_amplitude }).ok());
+    fillToothForces(ring, 0, exact);
+    EXPECT_TRUE(read(table, motor, output, arrays));
+    for (std::size_t quantity = 0; quantity < arrays.size(); ++quantity)
+    {
+      const bool is_force = quantity < ToothResponse::X;
+      const double scale = is_force ? std::max(largest(*wanted[quantity]), LEAST_TOOTH_FORCE / TOOTH_FORCE_SHARE) : 1.0;
+      for (std::size_t tooth = 0; tooth < arrays[quantity].size(); ++tooth)
+      {
+        const double error = std::abs(arrays[quantity][tooth] - (*wanted[quantity])[tooth]) / scale;
+        errors.most[quantity] = std::max(errors.most[quantity], error);
+        errors.squares[quantity] += error * error / static_cast<double>(arrays[quantity].size()) / places;
+      }
+    }
+  }
+  return errors;
+}
+
+void expectSmall(const Errors& errors)
+{
+  for (std::size_t quantity = 0; quantity < ToothResponse::QUANTITIES; ++quantity)
+  {
+    const bool is_force = quantity < ToothResponse::X;
+    // Between lines and between columns the tolerance each; places to a ten-thousandth of the wave.
+    EXPECT_LT(errors.most[quantity], is_force ? 2.0 * TOOTH_FORCE_SHARE : 3.5e-8) << quantity;
+    EXPECT_LT(std::sqrt(errors.squares[quantity]), is_force ? 0.1 * TOOTH_FORCE_SHARE : 3.5e-9) << quantity;
+  }
+}
+
+/// Anywhere up to 260 N.m, many turns of the motor both ways.
+TEST(ToothResponse, IsTheRingAtRandomPlaces)
+{
+  const ToothResponse& table = surface().table().teeth;
+  ASSERT_FALSE(table.lines.empty());
+  EXPECT_EQ(table.stored, 100);
+  expectSmall(errorsOf(surfaceParameters(), table, 5e-3, 1000));
+}
+
+/// Its halves differ, and so do its mirror images.
+TEST(ToothResponse, OfAGearThatIsNotItsMirrorImageIsTheRingToo)
+{
+  const Parameters parameters = shippedParameters({ "output.load_torque_limit=40.0", "motor.torque_limit=0.39",
+                                                    "manufacture.wave_generator_eccentricity=[5.0e-6, 2.0e-6]" });
+  const ToothResponse table = buildSurface(parameters, JointModel(parameters), {}).table.teeth;
+  ASSERT_FALSE(table.lines.empty());
+  expectSmall(errorsOf(parameters, table, 0.9e-3, 200));
+}
+
+TEST(ToothResponse, RefusesWhatLiesOutside)
+{
+  const ToothResponse& table = surface().table().teeth;
+  Arrays arrays = arraysFor(table.teeth);
+  arrays[0][0] = 7.0;
+  for (const double output : { table.lines.back() + 1e-9, table.lines.front() - 1e-9, std::nan("") })
+  {
+    EXPECT_FALSE(read(table, 0.0, output, arrays));
+  }
+  EXPECT_FALSE(read(table, std::numeric_limits<double>::infinity(), 0.0, arrays));
+  EXPECT_FALSE(read(ToothResponse{}, 0.0, 0.0, arrays));
+  EXPECT_EQ(arrays[0][0], 7.0);
+}
+
+TEST(ToothResponse, BitsDoNotDependOnTheNumberOfThreads)
+{
+  const Parameters parameters = shippedParameters({ "output.load_torque_limit=40.0", "motor.torque_limit=0.39" });
+  const auto built = [&](unsigned threads)
+  { return buildSurface(parameters, JointModel(parameters), {}, MAX_SURFACE_POINTS, threads).table.teeth; };
+  const ToothResponse one = built(1);
+  const ToothResponse three = built(3);
+  EXPECT_EQ(one.lines, three.lines);
+  EXPECT_TRUE(one.values == three.values);
 }
 }  // namespace
 }  // namespace hjt

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cmath>
-#include <random>
 
 #include <Eigen/Core>
 
@@ -10,6 +9,7 @@
 #include "gear/ring_shape.hpp"
 #include "model/ring_model.hpp"
 #include "solver/ring_equilibrium.hpp"
+#include "test/support/seeded_random.hpp"
 
 namespace hjt
 {
@@ -30,12 +30,11 @@ inline void pressOnWaveGenerator(const ToothRing& rest, const DrivePosition& pos
 }
 
 /// Moves every coordinate of every tooth point by up to `amplitude` [m].
-inline void shake(double amplitude, std::mt19937& random, RingShape& shape)
+inline void shake(double amplitude, SeededRandom& random, RingShape& shape)
 {
-  std::uniform_real_distribution<double> by(-amplitude, amplitude);
   for (Eigen::Index k = 0; k < shape.points.size(); ++k)
   {
-    shape.points[k] += by(random);
+    shape.points[k] += random.uniform(-amplitude, amplitude);
   }
   shape.updateGeometry();
 }
@@ -76,6 +75,26 @@ inline bool allFinite(const RingForces& forces)
          forces.of<ToothMesh>().flank_force.allFinite() && std::isfinite(forces.wave_generator_torque) &&
          std::isfinite(forces.output_torque) && std::isfinite(forces.energy);
 }
+
+/// A ring inserted into its gear.
+struct InsertedRing
+{
+  explicit InsertedRing(const Parameters& given)
+    : parameters(given), amplitude(given.gear.wave_amplitude), model(given), ring(model, given.solver)
+  {
+    EXPECT_TRUE(ring.insert({ 0.0, 0.0, amplitude }).ok());
+  }
+
+  SolveStatus moveTo(double wave_generator_angle, double output_angle)
+  {
+    return ring.moveTo({ wave_generator_angle, output_angle, amplitude });
+  }
+
+  const Parameters parameters;
+  const double amplitude;  // of the wave [m]
+  RingModel model;
+  RingEquilibrium ring;
+};
 
 /// x, y of tooth i turned by `angle`, for every tooth.
 inline Eigen::VectorXd turned(const Eigen::VectorXd& vectors, double angle)

@@ -1,22 +1,38 @@
 // SPDX-License-Identifier: BSD-3-Clause
+
+#include <algorithm>
 #include <limits>
 #include <optional>
-
-#include <gtest/gtest.h>
 
 #include "gear/angle.hpp"
 #include "gear/ratio.hpp"
 #include "harmonic_joint_twin/statics/static_analysis.hpp"
-#include "ring_fixture.hpp"
-#include "solver/ring_equilibrium.hpp"
 #include "statics/static_solver.hpp"
-#include "test/core/ring_robustness_support.hpp"
-#include "test_parameters.hpp"
+#include "test/core/ring_fixture.hpp"
+#include "test/core/test_parameters.hpp"
 
 namespace hjt
 {
 namespace
 {
+void expectFinite(const RingEquilibrium& ring)
+{
+  EXPECT_TRUE(ring.shape().points.allFinite());
+  EXPECT_TRUE(allFinite(ring.forces()));
+  EXPECT_TRUE(ring.byWaveGenerator().allFinite() && ring.byOutput().allFinite() && ring.stiffness().allFinite());
+  EXPECT_TRUE(std::isfinite(ring.position().wave_generator_angle) && std::isfinite(ring.position().output_angle));
+}
+
+/// The ring is in equilibrium at the position it names, with the forces it names.
+void expectEquilibrium(const RingEquilibrium& ring, double tolerance)
+{
+  RingForces forces(ring.shape().teeth());
+  ring.model().forces(ring.shape(), ring.position(), forces);
+  EXPECT_LE(forces.teeth.lpNorm<Eigen::Infinity>(), tolerance);
+  EXPECT_TRUE(forces.teeth == ring.forces().teeth);
+  EXPECT_EQ(forces.energy, ring.forces().energy);
+}
+
 using Assignments = std::vector<std::string>;
 
 void expectInsertedOrSaid(const Assignments& assignments, bool must_converge)
@@ -52,9 +68,7 @@ std::string times(const std::string& key, double value, double factor)
   return text;
 }
 
-class StiffenedRing : public testing::TestWithParam<double>
-{
-};
+using StiffenedRing = testing::TestWithParam<double>;
 INSTANTIATE_TEST_SUITE_P(Factor, StiffenedRing, testing::Values(10.0, 100.0));
 
 TEST_P(StiffenedRing, IsInsertedOrSaysThatItIsNot)
@@ -128,9 +142,7 @@ TEST(UnusualRing, IsInsertedOrSaysThatItIsNot)
   expectInsertedOrSaid({ "mesh.flank_clearance=-200.0e-6" }, false);
 }
 
-class RingOfTeeth : public testing::TestWithParam<int>
-{
-};
+using RingOfTeeth = testing::TestWithParam<int>;
 INSTANTIATE_TEST_SUITE_P(Number, RingOfTeeth, testing::Values(8, 10, 12, 20, 50, 100, 160, 198, 202, 240, 320, 400));
 
 TEST_P(RingOfTeeth, IsInsertedOrSaysThatItIsNot)
@@ -187,12 +199,10 @@ TEST(FailedMove, LeavesTheLastGoodStateToTheLastBit)
 {
   constexpr double NOT_A_NUMBER = std::numeric_limits<double>::quiet_NaN();
   constexpr double ENDLESS = std::numeric_limits<double>::infinity();
-  const Parameters parameters = shippedParameters();
-  const double w = parameters.gear.wave_amplitude;
-  const RingModel model(parameters);
-  RingEquilibrium ring(model, parameters.solver);
-  ASSERT_TRUE(ring.insert({ 0.0, 0.0, w }).ok());
-  ASSERT_TRUE(ring.moveTo({ 0.02, -1e-3, w }).ok());
+  InsertedRing inserted(shippedParameters());
+  RingEquilibrium& ring = inserted.ring;
+  const double w = inserted.amplitude;
+  ASSERT_TRUE(inserted.moveTo(0.02, -1e-3).ok());
   const Snapshot good(ring);
   for (const DrivePosition& absurd :
        { DrivePosition{ NOT_A_NUMBER, 0.0, w }, DrivePosition{ 0.0, NOT_A_NUMBER, w },
@@ -206,12 +216,10 @@ TEST(FailedMove, LeavesTheLastGoodStateToTheLastBit)
     good.expectSame(ring);
   }
   // And it goes on from there as if nothing had been.
-  RingEquilibrium other(model, parameters.solver);
-  ASSERT_TRUE(other.insert({ 0.0, 0.0, w }).ok());
-  ASSERT_TRUE(other.moveTo({ 0.02, -1e-3, w }).ok());
-  ASSERT_TRUE(other.moveTo({ 0.03, -2e-3, w }).ok());
-  ASSERT_TRUE(ring.moveTo({ 0.03, -2e-3, w }).ok());
-  Snapshot(other).expectSame(ring);
+  InsertedRing other(inserted.parameters);
+  ASSERT_TRUE(other.moveTo(0.02, -1e-3).ok() && other.moveTo(0.03, -2e-3).ok());
+  ASSERT_TRUE(inserted.moveTo(0.03, -2e-3).ok());
+  Snapshot(other.ring).expectSame(ring);
 }
 
 TEST(FailedMove, ThatGotHalfWayLeavesAnEquilibriumToo)
@@ -311,6 +319,69 @@ TEST(FaultyTooth, LeavesARingThatStillTurns)
     ASSERT_EQ(ring.forces().of<ToothMesh>().flank_force[4], 0.0);
     expectEquilibrium(ring, parameters.solver.force_tolerance);
   }
+}
+
+TEST(PairedAtRest, IsEveryToothWithItsNearestSpaceHoweverDeepItStands)
+{
+  // A circular spline of smaller tip radius stands between the teeth of the flexspline before it is deformed.
+  for (const std::string tip : { "31.95e-3", "31.9e-3", "31.8e-3" })
+  {
+    const Parameters parameters = shippedParameters({ "gear.tip_radius_circular_spline=" + tip });
+    const RingModel model(parameters);
+    for (const double angle : { 0.0, 0.01, 2.0 })
+    {
+      const RingShape shape = model.restShape({ 0.0, angle, 0.0 });
+      for (int i = 0; i < shape.teeth(); ++i)
+      {
+        const double space = TWO_PI / parameters.gear.teeth_circular_spline;
+        const double off = std::remainder(i * model.rest.pitchAngle() - angle - shape.space[i] * space, TWO_PI);
+        ASSERT_LE(std::abs(off), 0.5 * space * (1.0 + 1e-9)) << "tooth " << i << " tip " << tip;
+      }
+    }
+  }
+}
+
+TEST(Backlash, IsCrossedByTheStaticAnalysesAtAnyAngle)
+{
+  // With clearance no tooth touches when the output is free: there is no stiffness to go by until one does.
+  const Parameters parameters = shippedParameters({ "mesh.flank_clearance=20.0e-6" });
+  for (const double angle : { 0.0, 0.3 })
+  {
+    const std::vector<StiffnessRow> rows = analyseStiffness(parameters, angle, { 5.0, -5.0, 48.0 });
+    ASSERT_TRUE(rows[0].status.ok() && rows[1].status.ok() && rows[2].status.ok()) << angle;
+    EXPECT_LT(rows[0].output_angle, -0.3e-3);
+    EXPECT_GT(rows[1].output_angle - rows[0].output_angle, 2.0 * 20e-6 / 32e-3);
+  }
+}
+
+TEST(Overload, MakesTheTeethOfASoftGearJump)
+{
+  // Flat flanks on a rim that gives way: under the circular spline turned on by three of its pitches the teeth climb
+  // out, and find the next space.
+  InsertedRing inserted(goldenParameters({ "contact.stiffness=1.0e+6", "ring.tension_stiffness=5.0e+7",
+                                           "mesh.flank_angle=1.0", "mesh.engagement_depth=200.0e-6" }));
+  const double space = TWO_PI / inserted.parameters.gear.teeth_circular_spline;
+  const RingEquilibrium& ring = inserted.ring;
+  const int first = ring.shape().space[0];
+  double highest = 0.0;
+  double last = 0.0;
+  int drops = 0;
+  for (int k = 1; k <= 900; ++k)
+  {
+    // At the instant of the jump there is no equilibrium near; the next step finds one beyond it.
+    const bool found = inserted.moveTo(0.0, -k * 1e-4).ok();
+    expectFinite(ring);
+    expectEquilibrium(ring, inserted.parameters.solver.force_tolerance);
+    const double torque = ring.forces().output_torque;
+    drops += found && torque < 0.5 * last ? 1 : 0;
+    highest = std::max(highest, torque);
+    last = torque;
+  }
+  EXPECT_GT(drops, 0);
+  // It holds some torque before it jumps, and less than a tenth of what teeth that never jump would have built up.
+  EXPECT_GT(highest, 50.0);
+  EXPECT_LT(highest, 0.1 * 31e3 * 0.09);
+  EXPECT_GT(ring.shape().space[0], first) << "a tooth stands " << 0.09 / space << " spaces behind";
 }
 }  // namespace
 }  // namespace hjt

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <string>
-
-#include "arm/arm_description.hpp"
-#include "harmonic_joint_twin/params/parameter_map.hpp"
+#include "arm/moving_arm.hpp"
+#include "test_parameters.hpp"
+#include "twin_runs.hpp"
 
 namespace hjt
 {
-inline constexpr const char* CONFIG = HJT_TEST_CONFIG_DIR;
 
 /// One joint about `axis` with a rod of 4 kg whose centre lies 0.3 m from it; a second one, of 2 kg, at its end.
 inline std::string urdf(const std::string& axis, int joints, const std::string& base_rpy = "0 0 0")
@@ -41,10 +39,8 @@ inline ArmDescription rods(const std::string& axis, int joints)
   arm.gravity = { 0.0, 0.0, -9.81 };
   for (int i = 0; i < joints; ++i)
   {
-    ArmJoint joint;
-    joint.name = "joint_" + std::to_string(i);
-    joint.short_name = joint.name;
-    arm.joints.push_back(joint);
+    ArmJoint& joint = arm.joints.emplace_back();
+    joint.name = joint.short_name = "joint_" + std::to_string(i);
   }
   readLinks(arm);
   return arm;
@@ -52,12 +48,19 @@ inline ArmDescription rods(const std::string& axis, int joints)
 
 inline Parameters drive(double rate = 10e3)
 {
-  ParameterMap map;
-  readDefaultConfiguration(CONFIG, map);
-  Parameters parameters = parseParameters(map);
+  Parameters parameters = shippedParameters();
   parameters.output.gravity_torque = 0.0;
   parameters.solver.rate = rate;
   parameters.brake.delay = 0.0;
   return parameters;
+}
+
+/// Where the two rods of a test mostly stand.
+inline const std::vector<JointMotion> REST{ { 0.3, 0.0, 0.0 }, { -0.8, 0.0, 0.0 } };
+
+/// Two rods that stand upright and fall.
+inline MovingArm movingRods(const ArmMotion& motion)
+{
+  return { rods("0 1 0", 2), { drive(), drive() }, motion, {} };
 }
 }  // namespace hjt

@@ -18,18 +18,23 @@ constexpr double PERIOD = 0.008;  // [s]
 constexpr int ROWS = 600;
 
 /// Of two joints that turn to and fro, up to 1 rad/s.
-Rows rowsAt(double time)
+Rows rowsAt(double time, double stamp)
 {
   Rows rows(2);
   for (std::size_t i = 0; i < rows.size(); ++i)
   {
     const double phase = 2.0 * time + static_cast<double>(i);
-    rows[i].time = time;
+    rows[i].time = stamp;
     rows[i].position = 0.5 * std::sin(phase);
     rows[i].recorded_velocity = std::cos(phase);
     rows[i].current = 2.0 + rows[i].recorded_velocity;
   }
   return rows;
+}
+
+Rows rowsAt(double time)
+{
+  return rowsAt(time, time);
 }
 
 struct Filtered
@@ -114,37 +119,18 @@ TEST(RowFilter, KeepsAJumpOfTheArmAndStampsOfAnotherUnit)
 
 TEST(RowFilter, LeavesOutValuesThatRepeatInMotion)
 {
-  const Filtered held = filtered(
-      [](int k, Rows& rows)
-      {
-        const double time = rows[0].time;
-        const int first = k / 4 * 4;
-        rows = rowsAt(PERIOD * first);
-        rows[0].time = rows[1].time = time;
-      });
+  const Filtered held = filtered([](int k, Rows& rows) { rows = rowsAt(PERIOD * (k - k % 4), rows[0].time); });
   EXPECT_EQ(held.left_out.repeated, 3U * ROWS / 4U);
   expectTrue(held);
   const Filtered stuck = filtered(
       [](int k, Rows& rows)
       {
-        const double time = rows[0].time;
-        rows = k > 300 && k <= 320 ? rowsAt(PERIOD * 300) : rows;
-        for (Rows::size_type i = 0; i < rows.size(); ++i)
-        {
-          rows[i].time = time;
-          rows[i].recorded_velocity = std::nan("");
-        }
+        rows = k > 300 && k <= 320 ? rowsAt(PERIOD * 300, rows[0].time) : rows;
+        rows[0].recorded_velocity = rows[1].recorded_velocity = std::nan("");
       });
   EXPECT_EQ(stuck.left_out.repeated, 20U);
   expectTrue(stuck);
-  const Filtered rest = filtered(
-      [](int, Rows& rows)
-      {
-        for (MotionRow& row : rows)
-        {
-          row = { row.time, 0.3, 1.0 };
-        }
-      });
+  const Filtered rest = filtered([](int, Rows& rows) { rows.assign(2, { rows[0].time, 0.3, 1.0 }); });
   EXPECT_EQ(rest.left_out.all(), 0U) << "an arm that stands repeats its values";
 }
 

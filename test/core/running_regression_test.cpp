@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "health/running_regression.hpp"
+#include "test/support/seeded_random.hpp"
 
-#include <random>
-
-#include <gtest/gtest.h>
+#include <functional>
 
 namespace hjt
 {
@@ -15,19 +14,17 @@ using Row = Eigen::Matrix<double, COLUMNS, 1>;
 using Target = Eigen::Matrix<double, 1, 1>;
 
 /// Rows at random and what they are weighted by, to be changed before they are added.
-template <typename Change>
-RunningRegression fitted(Change&& change)
+RunningRegression fitted(const std::function<void(RunningRegression& to, Row row, const Target& target)>& add)
 {
-  std::mt19937 random(11);
-  std::normal_distribution<double> normal;
+  SeededRandom random(11);
   RunningRegression regression(COLUMNS, 1);
   for (int i = 0; i < ROWS; ++i)
   {
     Row row;
-    row << 1.0, normal(random), normal(random), normal(random);
+    row << 1.0, random.normal(), random.normal(), random.normal();
     row[3] += 0.5 * row[1];
-    const Target target(2.0 + row[1] - 3.0 * row[2] + 0.5 * row[3] + 0.1 * normal(random));
-    change(regression, row, target);
+    const Target target(2.0 + row[1] - 3.0 * row[2] + 0.5 * row[3] + 0.1 * random.normal());
+    add(regression, row, target);
   }
   return regression;
 }
@@ -45,47 +42,41 @@ void expectAlike(RunningRegression one, RunningRegression other)
 
 TEST(RunningRegression, AWeightOfTwoIsARowAddedTwice)
 {
-  expectAlike(fitted([](RunningRegression& regression, const Row& row, const Target& target)
-                     { regression.add(row, target, row[1] > 0.0 ? 2.0 : 1.0); }),
-              fitted(
-                  [](RunningRegression& regression, const Row& row, const Target& target)
-                  {
-                    regression.add(row, target);
-                    if (row[1] > 0.0)
-                    {
-                      regression.add(row, target);
-                    }
-                  }));
+  const RunningRegression weighted = fitted([](RunningRegression& to, const Row& row, const Target& target)
+                                            { to.add(row, target, row[1] > 0.0 ? 2.0 : 1.0); });
+  const RunningRegression twice = fitted(
+      [](RunningRegression& to, const Row& row, const Target& target)
+      {
+        for (int k = 0; k < (row[1] > 0.0 ? 2 : 1); ++k)
+        {
+          to.add(row, target);
+        }
+      });
+  expectAlike(weighted, twice);
 }
 
-TEST(RunningRegression, SubtractedAfterwardsIsAsSubtractedFromEveryRow)
+/// A column that is dropped, or subtracted from by a factor, afterwards or in every row.
+TEST(RunningRegression, ChangedAfterwardsIsAsChangedInEveryRow)
 {
-  const auto plain = [](RunningRegression& regression, const Row& row, const Target& target)
-  { regression.add(row, target, 1.0 + row[2] * row[2]); };
-  RunningRegression afterwards = fitted(plain);
-  afterwards.subtract(3, 1, 0.7);
-  expectAlike(afterwards, fitted(
-                              [](RunningRegression& regression, Row row, const Target& target)
-                              {
-                                const double weight = 1.0 + row[2] * row[2];
-                                row[3] -= 0.7 * row[1];
-                                regression.add(row, target, weight);
-                              }));
-}
-
-TEST(RunningRegression, ADroppedColumnIsAsOneOfZeros)
-{
-  RunningRegression afterwards =
-      fitted([](RunningRegression& regression, const Row& row, const Target& target) { regression.add(row, target); });
-  afterwards.drop(2);
-  expectAlike(afterwards, fitted(
-                              [](RunningRegression& regression, Row row, const Target& target)
-                              {
-                                row[2] = 0.0;
-                                regression.add(row, target);
-                              }));
-  EXPECT_EQ(afterwards.fit(COLUMNS), true);
-  EXPECT_EQ(afterwards.coefficient(2, 0), 0.0);
+  const auto changed = [](double factor, bool is_dropped)
+  {
+    return fitted(
+        [=](RunningRegression& to, Row row, const Target& target)
+        {
+          const double weight = 1.0 + row[2] * row[2];
+          row[3] -= factor * row[1];
+          row[2] = is_dropped ? 0.0 : row[2];
+          to.add(row, target, weight);
+        });
+  };
+  RunningRegression subtracted = changed(0.0, false);
+  subtracted.subtract(3, 1, 0.7);
+  expectAlike(subtracted, changed(0.7, false));
+  RunningRegression dropped = changed(0.0, false);
+  dropped.drop(2);
+  expectAlike(dropped, changed(0.0, true));
+  EXPECT_TRUE(dropped.fit(COLUMNS));
+  EXPECT_EQ(dropped.coefficient(2, 0), 0.0);
 }
 
 TEST(RunningRegression, MeanIsWeighted)

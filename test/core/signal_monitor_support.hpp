@@ -92,6 +92,34 @@ private:
   std::int64_t stamp_{};
 };
 
+inline double& valueOf(SignalIndicators& window, ScalarIndicator indicator)
+{
+  return window.values[indexOf(indicator)];
+}
+
+/// A window in which nothing but the running torque [N.m] is known.
+inline SignalIndicators torqueWindow(const OperatingPoint& point, double torque)
+{
+  SignalIndicators window;
+  window.point = point;
+  valueOf(window, ScalarIndicator::RUNNING_TORQUE) = torque;
+  return window;
+}
+
+/// First window of samples that `fill` makes, by their number from 1 on.
+template <class Fill>
+SignalIndicators windowOfSamples(const std::vector<std::string>& assignments, const Fill& fill)
+{
+  SignalMonitor monitor(shippedParameters(assignments));
+  SignalSample sample;
+  int number = 0;
+  do
+  {
+    fill(++number, sample);
+  } while (!monitor.update(sample));
+  return monitor.indicators();
+}
+
 /// A joint that swings about its zero at `rate` [rad/s], a weight and an inertia on it; with `friction` [N.m] at its
 /// motor.
 inline OperatingPoint swing(double rate, double friction = 0.0, bool load_known = true)

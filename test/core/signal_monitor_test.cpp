@@ -1,22 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "health/signal_monitor.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <complex>
-#include <random>
+#include <map>
+#include <utility>
 
-#include <gmock/gmock.h>
-
-#include "gear/angle.hpp"
-#include "harmonic_joint_twin/health/assessment.hpp"
-#include "harmonic_joint_twin/twin/twin.hpp"
-#include "health/order_tracker.hpp"
-#include "health/signature_file.hpp"
-#include "sensors/joint_sensors.hpp"
 #include "test/core/signal_monitor_support.hpp"
-#include "test/core/test_parameters.hpp"
-#include "test/support/allocation_count.hpp"
+#include "test/support/seeded_random.hpp"
 
 namespace hjt
 {
@@ -42,14 +33,6 @@ TEST(SignalMonitor, TellsCoulombFromViscousFrictionBesideGravity)
   const SignalIndicators& found = joint.nextWindow();
   EXPECT_NEAR(found[ScalarIndicator::COULOMB_TORQUE], 0.08, 0.002);
   EXPECT_NEAR(found[ScalarIndicator::VISCOUS_FRICTION], 4e-4, 2e-5);
-}
-
-TEST(SignalMonitor, DoesNotTellCoulombFromViscousFrictionAtOneSpeed)
-{
-  Synthetic joint(shippedParameters());
-  const SignalIndicators& found = joint.nextWindow();
-  EXPECT_TRUE(std::isnan(found[ScalarIndicator::COULOMB_TORQUE]));
-  EXPECT_TRUE(std::isnan(found[ScalarIndicator::VISCOUS_FRICTION]));
 }
 
 /// Torsion with dry friction beside the spring: rising and falling branches `WIDTH` apart, from one to the other over
@@ -91,14 +74,17 @@ TEST_F(WithLoop, StiffnessesLostMotionHysteresisAndAreaAreFound)
   EXPECT_NEAR(found[ScalarIndicator::HYSTERESIS_AREA], WIDTH * 2.0 * SWING, 0.05 * WIDTH * 2.0 * SWING);
 }
 
-TEST(SignalMonitor, GivesNoStiffnessWithoutASwingingLoad)
+TEST(SignalMonitor, GivesNeitherStiffnessNorKindsOfFrictionAtOneLoadAndSpeed)
 {
   Synthetic joint(shippedParameters());
   joint.load = [](double) { return 5.0; };
   const SignalIndicators& found = joint.nextWindow();
-  EXPECT_TRUE(std::isnan(found[ScalarIndicator::TORSIONAL_STIFFNESS]));
-  EXPECT_TRUE(std::isnan(found[ScalarIndicator::LOST_MOTION]));
-  EXPECT_TRUE(std::isnan(found[ScalarIndicator::HYSTERESIS_AREA]));
+  for (const ScalarIndicator none :
+       { ScalarIndicator::TORSIONAL_STIFFNESS, ScalarIndicator::LOST_MOTION, ScalarIndicator::HYSTERESIS_AREA,
+         ScalarIndicator::COULOMB_TORQUE, ScalarIndicator::VISCOUS_FRICTION })
+  {
+    EXPECT_TRUE(std::isnan(found[none])) << indicatorName(indexOf(none));
+  }
 }
 
 TEST(SignalMonitor, FindsEfficiencyWhereTheLoadIsKnown)
@@ -115,10 +101,9 @@ TEST(SignalMonitor, ResidualOfNoiseIsGaussianAndOfImpulsesIsNot)
   {
     Synthetic joint(shippedParameters());
     joint.quantised = false;
-    std::mt19937 random(7);
-    std::normal_distribution<double> noise(0.0, 2e-6);
+    SeededRandom random(7);
     std::uint64_t count = 0;
-    joint.error = [&](double, double) { return noise(random) + (++count % 100 == 0 ? impulse : 0.0); };
+    joint.error = [&](double, double) { return 2e-6 * random.normal() + (++count % 100 == 0 ? impulse : 0.0); };
     joint.nextWindow();
     return joint.nextWindow();
   };
@@ -133,40 +118,36 @@ TEST(SignalMonitor, ResidualOfNoiseIsGaussianAndOfImpulsesIsNot)
 
 TEST(SignalMonitor, WorksWithTheOutputEncoderAlone)
 {
-  SignalMonitor monitor(shippedParameters());
-  SignalSample sample;
-  bool done = false;
-  for (int i = 1; !done; ++i)
-  {
-    sample.stamp = i * SAMPLE;
-    sample.output_angle = 100.0 / RATIO * 1e-9 * SAMPLE * i;
-    sample.motor_torque = 0.1 + 0.01 * std::cos(4.0 * RATIO * sample.output_angle);
-    done = monitor.update(sample);
-  }
-  EXPECT_NEAR(monitor.indicators().amplitude(LineSignal::MOTOR_TORQUE, Line::WAVE_GENERATOR_4), 0.01, 1e-5);
-  EXPECT_TRUE(std::isnan(monitor.indicators().amplitude(LineSignal::KINEMATIC_ERROR, Line::WAVE_GENERATOR_4)));
-  EXPECT_TRUE(std::isnan(monitor.indicators().amplitude(LineSignal::MOTOR_RIPPLE, Line::WAVE_GENERATOR_4)));
-  EXPECT_TRUE(std::isnan(monitor.indicators()[ScalarIndicator::KINEMATIC_ERROR]));
+  const SignalIndicators found = windowOfSamples({},
+                                                 [](int i, SignalSample& sample)
+                                                 {
+                                                   sample.stamp = i * SAMPLE;
+                                                   sample.output_angle = 100.0 / RATIO * 1e-9 * SAMPLE * i;
+                                                   sample.motor_torque =
+                                                       0.1 + 0.01 * std::cos(4.0 * RATIO * sample.output_angle);
+                                                 });
+  EXPECT_NEAR(found.amplitude(LineSignal::MOTOR_TORQUE, Line::WAVE_GENERATOR_4), 0.01, 1e-5);
+  EXPECT_TRUE(std::isnan(found.amplitude(LineSignal::KINEMATIC_ERROR, Line::WAVE_GENERATOR_4)));
+  EXPECT_TRUE(std::isnan(found.amplitude(LineSignal::MOTOR_RIPPLE, Line::WAVE_GENERATOR_4)));
+  EXPECT_TRUE(std::isnan(found[ScalarIndicator::KINEMATIC_ERROR]));
 }
 
 /// A robot's joint at 125 Hz, one encoder, to and fro at up to 120 rad/s of the motor under a load: friction by load.
 double loadFriction(double share)
 {
-  SignalMonitor monitor(shippedParameters({ "indicators.window_turns=1e5", "indicators.window_time=20.0" }));
-  SignalSample sample;
-  bool done = false;
-  for (int i = 1; !done; ++i)
-  {
-    const double time = 8e-3 * i;
-    sample.stamp = i * std::int64_t{ 8000000 };
-    sample.output_angle = std::sin(1.2 * time);
-    sample.load_torque = 60.0 * std::sin(sample.output_angle) + 8.0;
-    const double speed = 1.2 * RATIO * std::cos(1.2 * time);
-    sample.motor_torque = sample.load_torque / RATIO + 4e-4 * speed +
-                          std::copysign(0.1 + share * std::abs(sample.load_torque) / RATIO, speed);
-    done = monitor.update(sample);
-  }
-  return monitor.indicators()[ScalarIndicator::LOAD_FRICTION];
+  const SignalIndicators found =
+      windowOfSamples({ "indicators.window_turns=1e5", "indicators.window_time=20.0" },
+                      [share](int i, SignalSample& sample)
+                      {
+                        const double time = 8e-3 * i;
+                        sample.stamp = i * std::int64_t{ 8000000 };
+                        sample.output_angle = std::sin(1.2 * time);
+                        sample.load_torque = 60.0 * std::sin(sample.output_angle) + 8.0;
+                        const double speed = 1.2 * RATIO * std::cos(1.2 * time);
+                        sample.motor_torque = sample.load_torque / RATIO + 4e-4 * speed +
+                                              std::copysign(0.1 + share * std::abs(sample.load_torque) / RATIO, speed);
+                      });
+  return found[ScalarIndicator::LOAD_FRICTION];
 }
 
 TEST(SignalMonitor, FindsFrictionThatGrowsWithTheLoad)
@@ -180,20 +161,16 @@ TEST(SignalMonitor, FindsFrictionThatGrowsWithTheLoad)
 SignalIndicators windowWithLag(double line, double turns, bool has_set_points = true)
 {
   constexpr double SPEED = 100.0;
-  SignalMonitor monitor(shippedParameters({ "indicators.window_turns=240" }));
-  SignalSample sample;
-  bool done = false;
-  for (int i = 1; !done; ++i)
-  {
-    sample.stamp = i * SAMPLE;
-    const double angle = SPEED * 1e-9 * SAMPLE * i;
-    const double sign = std::fmod(angle / TWO_PI / turns, 2.0) < 1.0 ? 1.0 : -1.0;
-    sample.output_angle = (angle + sign * line * std::cos(2.0 * angle)) / RATIO;
-    sample.target_angle = has_set_points ? angle / RATIO : std::nan("");
-    sample.motor_torque = 0.1;
-    done = monitor.update(sample);
-  }
-  return monitor.indicators();
+  return windowOfSamples({ "indicators.window_turns=240" },
+                         [=](int i, SignalSample& sample)
+                         {
+                           sample.stamp = i * SAMPLE;
+                           const double angle = SPEED * 1e-9 * SAMPLE * i;
+                           const double sign = std::fmod(angle / TWO_PI / turns, 2.0) < 1.0 ? 1.0 : -1.0;
+                           sample.output_angle = (angle + sign * line * std::cos(2.0 * angle)) / RATIO;
+                           sample.target_angle = has_set_points ? angle / RATIO : std::nan("");
+                           sample.motor_torque = 0.1;
+                         });
 }
 
 TEST(SignalMonitor, FindsWhatAControllerLeavesOfItsSetPoints)
@@ -217,17 +194,14 @@ TEST(SignalMonitor, FindsWhatAControllerLeavesOfItsSetPoints)
 /// A UR controller's 125 Hz: lines that its samples cannot show do not take those that they can.
 TEST(SignalMonitor, FindsTheTeethOfTheCircularSplineInACurrentAt125Hz)
 {
-  SignalMonitor monitor(shippedParameters({ "indicators.window_turns=25.0" }));
-  SignalSample sample;
-  bool done = false;
-  for (int i = 1; !done; ++i)
-  {
-    sample.stamp = i * std::int64_t{ 8000000 };
-    sample.output_angle = 105.8 / RATIO * 8e-3 * i;
-    sample.motor_torque = 0.1 + 0.014 * std::cos(2.0 * (RATIO - 1.0) * sample.output_angle);
-    done = monitor.update(sample);
-  }
-  const SignalIndicators& found = monitor.indicators();
+  const SignalIndicators found =
+      windowOfSamples({ "indicators.window_turns=25.0" },
+                      [](int i, SignalSample& sample)
+                      {
+                        sample.stamp = i * std::int64_t{ 8000000 };
+                        sample.output_angle = 105.8 / RATIO * 8e-3 * i;
+                        sample.motor_torque = 0.1 + 0.014 * std::cos(2.0 * (RATIO - 1.0) * sample.output_angle);
+                      });
   EXPECT_NEAR(found.amplitude(LineSignal::MOTOR_TORQUE, Line::CIRCULAR_SPLINE_2), 0.014, 1e-4);
   EXPECT_NEAR(found.amplitude(LineSignal::MOTOR_TORQUE, Line::WAVE_GENERATOR_2), 0.0, 1e-4);
 }
@@ -258,6 +232,318 @@ TEST(SignalMonitor, AllocatesNothingOverWindowsAndVerdicts)
     assessor.update(joint.nextWindow());
   }
   EXPECT_EQ(allocationCount(), before);
+}
+
+TEST(OperatingPoint, HoldsWhatTheJointCarriesWhateverThePath)
+{
+  for (const double rate : { 1.2, 2.5 })
+  {
+    const OperatingPoint point = swing(rate);
+    EXPECT_NEAR(point.load_constant, 4.0, 0.3) << rate;
+    EXPECT_NEAR(point.load_sine, 30.0, 0.3) << rate;
+    EXPECT_NEAR(point.load_cosine, -20.0, 0.3) << rate;
+    EXPECT_NEAR(point.inertia, 3.5, 0.1) << rate;
+  }
+}
+
+/// Else a fault that changes the friction would pass for another payload, which the reference's slopes follow.
+TEST(OperatingPoint, HasNoFrictionInItsInertia)
+{
+  for (const bool load_known : { true, false })
+  {
+    const double without = swing(1.2, 0.0, load_known).inertia;
+    EXPECT_NEAR(swing(1.2, 0.3, load_known).inertia, without, 0.02) << load_known;
+  }
+}
+
+TEST(LoadOverAngle, IsConstantAtOneAngle)
+{
+  LoadOverAngle load;
+  for (int i = 0; i < 100; ++i)
+  {
+    load.add(0.7, 12.0, 0.1);
+  }
+  EXPECT_NEAR(load.coefficients()[0], 12.0, 1e-9);
+  EXPECT_NEAR(load.coefficients().tail<2>().norm(), 0.0, 1e-9);
+  EXPECT_TRUE(std::isnan(LoadOverAngle().coefficients()[0]));
+}
+
+TEST(AngleMultiples, AreCosineAndSineOfEveryTrackedOrder)
+{
+  const Parameters parameters = shippedParameters();
+  const LineOrders orders = trackedOrders(parameters.gear, parameters.bearing);
+  const AngleMultiples<LINE_COUNT> multiples(orders);
+  for (const double angle : { 0.0, 0.3, -2.7, 1e2, -3e4 })
+  {
+    std::array<double, 2 * LINE_COUNT> rotations{};
+    multiples.at(angle, rotations.data());
+    for (std::size_t line = 0; line < LINE_COUNT; ++line)
+    {
+      // Rounding of the order times the angle, and of two or three products.
+      const double tolerance = 1e-15 * (10.0 + std::abs(orders[line] * angle));
+      EXPECT_NEAR(rotations[2 * line], std::cos(orders[line] * angle), tolerance) << "order " << orders[line];
+      EXPECT_NEAR(rotations[2 * line + 1], std::sin(orders[line] * angle), tolerance) << "order " << orders[line];
+    }
+  }
+}
+
+TEST(TrackedOrders, OfABearingThatSlipsAreThoseOfSlowerCageAndBalls)
+{
+  constexpr double SLIP = 0.02;
+  const Parameters parameters = shippedParameters();
+  const LineOrders without = trackedOrders(parameters.gear, parameters.bearing);
+  const LineOrders with = trackedOrders(parameters.gear, parameters.bearing, SLIP);
+  const auto of = [](const LineOrders& orders, Line line) { return orders[index(line)]; };
+  EXPECT_NEAR(of(with, Line::OUTER), (1.0 - SLIP) * of(without, Line::OUTER), 1e-12);
+  EXPECT_NEAR(of(with, Line::BALL), (1.0 - SLIP) * of(without, Line::BALL), 1e-12);
+  EXPECT_NEAR(of(with, Line::OUTER) + of(with, Line::INNER), parameters.bearing.balls, 1e-12);
+  EXPECT_EQ(of(with, Line::WAVE_GENERATOR_2), of(without, Line::WAVE_GENERATOR_2));
+}
+
+/// Window of a joint in noise whose bearing slips, its outer race and its line two orders below at an amplitude [rad].
+class SlippingJoint
+{
+public:
+  /// `speed_change`: of the motor [rad/s].
+  SlippingJoint(bool is_sought, double slip, double amplitude, unsigned seed, double speed_change = 20.0)
+    : generator_(seed), orders_(trackedOrders(parameters().gear, parameters().bearing, slip)), joint_(parameters())
+  {
+    if (is_sought)
+    {
+      joint_.monitor.seekBearingSlip(parameters());
+    }
+    joint_.quantised = false;
+    joint_.speed = [speed_change](double time) { return 100.0 + speed_change * std::sin(3.0 * time); };
+    joint_.ripple = [this, amplitude](double angle, double, double)
+    {
+      return NOISE * generator_.normal() + amplitude * (std::cos(orders_[index(Line::OUTER)] * angle + 1.0) +
+                                                        std::cos(orders_[index(Line::OUTER_BELOW)] * angle));
+    };
+  }
+  /// Amplitude found of the outer race's line in the next window [rad].
+  double outer() { return joint_.nextWindow().amplitude(LineSignal::MOTOR_RIPPLE, Line::OUTER); }
+
+private:
+  static constexpr double NOISE = 1e-4;  // [rad]
+  static Parameters parameters() { return shippedParameters({ "indicators.window_turns=42.0" }); }
+
+  SeededRandom generator_;
+  LineOrders orders_;
+  Synthetic joint_;
+};
+
+TEST(BearingSlip, LinesOfABearingThatSlipsAreFoundWhereTheyAre)
+{
+  constexpr double AMPLITUDE = 2e-5;
+  for (const double slip : { 0.0, 0.004, 0.0131, 0.0257 })
+  {
+    EXPECT_NEAR(SlippingJoint(true, slip, AMPLITUDE, 3).outer(), AMPLITUDE, 0.2 * AMPLITUDE) << slip;
+    EXPECT_TRUE(slip == 0.0 || SlippingJoint(false, slip, AMPLITUDE, 3).outer() < 0.5 * AMPLITUDE) << slip;
+  }
+}
+
+/// Where lines of the teeth, folded by the sampling, would pass for those of a bearing that slips.
+TEST(BearingSlip, NoneIsSoughtAtAnEvenSpeed)
+{
+  EXPECT_EQ(SlippingJoint(true, 0.0131, 2e-5, 3, 1.0).outer(), SlippingJoint(false, 0.0131, 2e-5, 3, 1.0).outer());
+}
+
+TEST(BearingSlip, NoneIsFoundInNoise)
+{
+  SlippingJoint sought(true, 0.0, 0.0, 7);
+  SlippingJoint without(false, 0.0, 0.0, 7);
+  for (int window = 0; window < 100; ++window)
+  {
+    EXPECT_EQ(sought.outer(), without.outer()) << window;
+  }
+}
+
+TEST(TrackedOrders, AreThoseOfTheGearAndItsBearing)
+{
+  const Parameters parameters = shippedParameters();
+  const LineOrders orders = trackedOrders(parameters.gear, parameters.bearing);
+  EXPECT_NEAR(orders[index(Line::CIRCULAR_SPLINE_2)], 1.9802, 5e-5);
+  EXPECT_NEAR(orders[index(Line::CAGE_LOBES)], 1.10255, 5e-5);
+  EXPECT_NEAR(orders[index(Line::BALL)], 9.6488, 5e-5);
+  EXPECT_NEAR(orders[index(Line::BALL_FAR_BELOW)], 7.4437, 5e-5);
+  EXPECT_NEAR(orders[index(Line::OUTER)], 10.3207, 5e-5);
+  EXPECT_NEAR(orders[index(Line::INNER)], 12.6793, 5e-5);
+  EXPECT_NEAR(orders[index(Line::OUTER_FAR_BELOW)], 6.3207, 5e-5);
+}
+
+/// Lines of 0.3 to 5 arcsec below encoder counts of 3 and 2.5 arcsec, at a speed that varies, must come out within 0.1
+/// arcsec: eight standard errors.
+void expectLinesRecovered(const std::function<double(double)>& speed)
+{
+  Synthetic joint(shippedParameters());
+  joint.speed = speed;
+  const std::map<Line, std::pair<double, double>> lines{ // amplitude [arcsec] and phase [rad]
+                                                         { Line::WAVE_GENERATOR_1, { 2.0, 0.4 } },
+                                                         { Line::WAVE_GENERATOR_2, { 5.0, 1.0 } },
+                                                         { Line::WAVE_GENERATOR_4, { 1.5, -2.0 } },
+                                                         { Line::CIRCULAR_SPLINE_2, { 0.8, 2.5 } },
+                                                         { Line::CAGE_LOBES, { 0.5, 0.1 } },
+                                                         { Line::BALL, { 0.3, 0.7 } },
+                                                         { Line::OUTER, { 1.0, 0.0 } },
+                                                         { Line::INNER_DOUBLE, { 0.6, 3.0 } },
+                                                         { Line::BALL_BELOW, {} },
+                                                         { Line::OUTER_BELOW, {} },
+                                                         { Line::OUTER_ABOVE, {} },
+                                                         { Line::INNER, {} },
+                                                         { Line::WAVE_GENERATOR_8, {} }
+  };
+  joint.error = [&](double angle, double)
+  {
+    double sum = 0.0;
+    for (const auto& [line, wave] : lines)
+    {
+      sum += ARCSEC * joint.line(line, wave.first, wave.second, angle);
+    }
+    return sum;
+  };
+  const SignalIndicators& found = joint.nextWindow();
+  for (const auto& [line, wave] : lines)
+  {
+    EXPECT_NEAR(found.amplitude(LineSignal::KINEMATIC_ERROR, line) / ARCSEC, wave.first, 0.1) << "line " << index(line);
+  }
+  EXPECT_NEAR(found.phase(LineSignal::KINEMATIC_ERROR, Line::WAVE_GENERATOR_2), 1.0, 0.02);
+  EXPECT_NEAR(found.phase(LineSignal::KINEMATIC_ERROR, Line::CIRCULAR_SPLINE_2), 2.5, 0.12);
+}
+
+/// Turning on, and back and forth.
+TEST(SignalMonitor, RecoversLinesBelowTheEncodersCountsAtVaryingSpeed)
+{
+  expectLinesRecovered([](double time) { return 100.0 + 60.0 * std::sin(0.9 * time); });
+  expectLinesRecovered([](double time) { return 150.0 * std::sin(0.8 * time); });
+}
+
+TEST(SignalMonitor, LeavesOutLinesTheTravelCannotTellApart)
+{
+  Synthetic joint(shippedParameters({ "indicators.window_turns=12.0" }));
+  const SignalIndicators& found = joint.nextWindow();
+  EXPECT_TRUE(std::isnan(found.amplitude(LineSignal::KINEMATIC_ERROR, Line::WAVE_GENERATOR_2)));
+  EXPECT_TRUE(std::isnan(found.amplitude(LineSignal::KINEMATIC_ERROR, Line::CIRCULAR_SPLINE_2)));
+  EXPECT_FALSE(std::isnan(found.amplitude(LineSignal::KINEMATIC_ERROR, Line::OUTER)));
+}
+
+TEST(SignalMonitor, LeavesOutLinesBeyondHalfTheSamples)
+{
+  Synthetic joint(shippedParameters());
+  joint.speed = [](double) { return 230.0; };  // 55 samples a turn: orders up to 22
+  const SignalIndicators& found = joint.nextWindow();
+  EXPECT_TRUE(std::isnan(found.amplitude(LineSignal::MOTOR_TORQUE, Line::INNER_DOUBLE)));
+  EXPECT_FALSE(std::isnan(found.amplitude(LineSignal::MOTOR_TORQUE, Line::INNER)));
+}
+
+/// Strokes of a joint to and fro, with a ripple of the motor angle: what the third filter leaves of it, and of the
+/// changes of speed, a hundred thousand times as large, nothing.
+class Strokes : public testing::Test
+{
+protected:
+  static constexpr double SPEED = 35.0;   // [rad/s]
+  static constexpr double RISE = 0.07;    // [s]
+  static constexpr double STROKE = 4.0;   // [s]
+  static constexpr double RIPPLE = 5e-5;  // [rad]; a count has 1.5e-3
+  // A standard error of a line is 4e-6 rad: 4.2e-4 rad of a count, 20000 samples.
+  static constexpr double TOLERANCE = 1.5e-5;  // [rad]
+
+  Strokes()
+  {
+    joint_.speed = [](double time)
+    {
+      const double in_stroke = std::fmod(time, STROKE);
+      const double share = std::min({ 1.0, in_stroke / RISE, (STROKE - in_stroke) / RISE });
+      return (std::fmod(time, 2.0 * STROKE) < STROKE ? SPEED : -SPEED) * share;
+    };
+  }
+
+  double found(Line line) const { return joint_.monitor.indicators().amplitude(LineSignal::MOTOR_RIPPLE, line); }
+
+  /// Of a line's ripple, after the filter: what stays with the motor angle whichever way it turns (first), and what
+  /// changes its sign with the direction, as the filter leads.
+  std::array<double, 2> left(Line line)
+  {
+    const double filtered = joint_.orders[index(line)] * SPEED * 0.02;
+    const double amplitude = std::pow(1.0 + 1.0 / (filtered * filtered), -1.5);
+    const double lead = 3.0 * std::atan(1.0 / filtered);
+    return { amplitude * std::abs(std::cos(lead)), amplitude * std::sin(lead) };
+  }
+
+  Synthetic joint_{ shippedParameters({ "indicators.window_turns=150.0" }) };
+};
+
+TEST_F(Strokes, RippleIsFoundBesideChangesOfSpeed)
+{
+  joint_.ripple = [&](double angle, double, double) { return RIPPLE * joint_.line(Line::INNER, 1.0, 0.3, angle); };
+  joint_.nextWindow();
+  EXPECT_NEAR(found(Line::INNER), RIPPLE * left(Line::INNER)[0], TOLERANCE);
+  for (const Line line : { Line::WAVE_GENERATOR_2, Line::CAGE_LOBES, Line::BALL, Line::OUTER, Line::INNER_DOUBLE })
+  {
+    EXPECT_LT(found(line), TOLERANCE) << "line " << index(line);
+  }
+}
+
+/// What rings on after each change of speed is a hundred times as large as the line, and as fast as order 6.
+TEST_F(Strokes, RippleIsFoundBesideWhatRingsOn)
+{
+  joint_.ripple = [&](double angle, double, double time)
+  {
+    const double since = std::fmod(time, STROKE);
+    return RIPPLE * joint_.line(Line::WAVE_GENERATOR_8, 1.0, 0.3, angle) +
+           5e-3 * std::exp(-since / 0.45) * std::sin(6.0 * SPEED * since);
+  };
+  joint_.nextWindow();
+  EXPECT_NEAR(found(Line::WAVE_GENERATOR_8), RIPPLE * left(Line::WAVE_GENERATOR_8)[0], TOLERANCE);
+  for (const Line line : { Line::WAVE_GENERATOR_4, Line::WAVE_GENERATOR_6, Line::BALL, Line::OUTER })
+  {
+    EXPECT_LT(found(line), 2.0 * TOLERANCE) << "line " << index(line);
+  }
+}
+
+TEST_F(Strokes, RippleInProportionToTheLoadIsALineOfItsOwn)
+{
+  const double rated = shippedParameters().life.rated_torque;
+  constexpr double MEAN = 10.0;  // [N.m]
+  joint_.load = [](double time) { return MEAN + 40.0 * std::sin(TWO_PI * time / 7.3); };
+  joint_.ripple = [&](double angle, double load, double)
+  { return 4.0 * RIPPLE * load / rated * joint_.line(Line::WAVE_GENERATOR_6, 1.0, 0.3, angle); };
+  joint_.nextWindow();
+  const auto [stays, turns] = left(Line::WAVE_GENERATOR_6);
+  // The load spreads by 0.4 of the rated torque: the tolerance at that torque is larger by as much.
+  EXPECT_NEAR(found(Line::WAVE_GENERATOR_6_LOAD), 4.0 * RIPPLE * stays, 2.4 * TOLERANCE);
+  EXPECT_NEAR(found(Line::WAVE_GENERATOR_6_LOAD_LAG), 4.0 * RIPPLE * turns, 2.4 * TOLERANCE);
+  EXPECT_NEAR(found(Line::WAVE_GENERATOR_6), 4.0 * RIPPLE * stays * MEAN / rated, TOLERANCE);
+  EXPECT_LT(found(Line::WAVE_GENERATOR_4_LOAD), 2.4 * TOLERANCE);
+  EXPECT_LT(found(Line::WAVE_GENERATOR_8_LOAD), 2.4 * TOLERANCE);
+}
+
+TEST_F(Strokes, ALoadThatStaysShowsNoLineInProportionToIt)
+{
+  joint_.load = [](double) { return 30.0; };
+  joint_.nextWindow();
+  EXPECT_TRUE(std::isnan(found(Line::WAVE_GENERATOR_6_LOAD)));
+  EXPECT_FALSE(std::isnan(found(Line::WAVE_GENERATOR_6)));
+}
+
+TEST_F(Strokes, AMotionOneWayShowsNoLag)
+{
+  joint_.speed = [](double) { return SPEED; };
+  joint_.load = [](double time) { return 40.0 * std::sin(TWO_PI * time / 7.3); };
+  joint_.nextWindow();
+  EXPECT_FALSE(std::isnan(found(Line::WAVE_GENERATOR_6_LOAD)));
+  EXPECT_TRUE(std::isnan(found(Line::WAVE_GENERATOR_6_LOAD_LAG)));
+}
+
+TEST(SignalMonitor, FindsLinesInTheTorque)
+{
+  Synthetic joint(shippedParameters());
+  joint.torque = [&](double angle, double)
+  { return 0.15 + joint.line(Line::WAVE_GENERATOR_2, 0.004, 0.0, angle) + joint.line(Line::OUTER, 0.001, 0.0, angle); };
+  const SignalIndicators& found = joint.nextWindow();
+  EXPECT_NEAR(found.amplitude(LineSignal::MOTOR_TORQUE, Line::WAVE_GENERATOR_2), 0.004, 1e-6);
+  EXPECT_NEAR(found.amplitude(LineSignal::MOTOR_TORQUE, Line::OUTER), 0.001, 1e-6);
+  EXPECT_LT(found.amplitude(LineSignal::MOTOR_TORQUE, Line::INNER), 1e-6);
+  EXPECT_NEAR(found[ScalarIndicator::RUNNING_TORQUE], 0.15, 1e-4);
 }
 }  // namespace
 }  // namespace hjt

@@ -6,12 +6,9 @@
 #include <fstream>
 #include <iterator>
 #include <sstream>
-#include <string>
-#include <vector>
 
 #include <gmock/gmock.h>
 
-#include "harmonic_joint_twin/base/errors.hpp"
 #include "harmonic_joint_twin/health/assessment.hpp"
 #include "test/core/complaint.hpp"
 #include "test/core/test_parameters.hpp"

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <algorithm>
 #include <cmath>
-#include <string>
-#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -22,11 +19,6 @@ namespace
 constexpr std::size_t TOOTH_SPACE = 0;
 constexpr std::size_t TRANSITION = 1;
 constexpr std::size_t FLANGE = 2;
-
-double pitchOf(const GearParameters& gear)
-{
-  return ToothRing(gear).segmentLength();
-}
 
 /// Stress under one load, wave generator at 0.
 ToothStress stressUnder(const Parameters& parameters, double load)
@@ -51,7 +43,7 @@ struct Loaded
 /// What the rim's section between rigid teeth resists bending with [N.m/rad].
 double boundOfStiffness(const Parameters& parameters)
 {
-  const double space = pitchOf(parameters.gear) * (1.0 - parameters.stress.tooth_base);
+  const double space = ToothRing(parameters.gear).segmentLength() * (1.0 - parameters.stress.tooth_base);
   return parameters.life.elastic_modulus * parameters.life.face_width * std::pow(parameters.gear.rim_thickness, 3) /
          12.0 / space;
 }

@@ -1,41 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "solver/response_surface.hpp"
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <exception>
-#include <filesystem>
-#include <fstream>
 #include <functional>
 #include <iterator>
+#include <memory>
 #include <optional>
 #include <sstream>
-#include <string>
+#include <thread>
 #include <utility>
-#include <vector>
-
-#include <sys/stat.h>
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "base/hash.hpp"
-#include "gear/angle.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
-#include "harmonic_joint_twin/twin/twin.hpp"
-#include "model/joint_model.hpp"
 #include "params/field_table.hpp"
-#include "surface/faulty_surface.hpp"
+#include "surface/parallel_tasks.hpp"
 #include "surface/surface_builder.hpp"
-#include "surface/surface_cache.hpp"
 #include "surface/surface_ring.hpp"
 #include "surface/table_file.hpp"
 #include "test/core/response_surface_support.hpp"
-#include "test/support/temporary_folder.hpp"
-#include "test_parameters.hpp"
-#include "twin_runs.hpp"
 
 namespace hjt
 {
@@ -273,18 +261,15 @@ TEST(SurfaceCache, TakesOnlyRegularFilesThatNobodyElseWrites)
   EXPECT_FALSE(isTaken([](const std::string& path) { fs::create_symlink("/dev/zero", path); }));
   EXPECT_FALSE(isTaken([&](const std::string& path) { fs::create_symlink(good, path); }));
   EXPECT_FALSE(isTaken([](const std::string& path) { fs::create_directory(path); }));
-  EXPECT_FALSE(isTaken(
-      [&](const std::string& path)
-      {
-        fs::copy_file(good, path);
-        fs::permissions(path, fs::perms::others_write, fs::perm_options::add);
-      }));
-  EXPECT_FALSE(isTaken(
-      [&](const std::string& path)
-      {
-        fs::copy_file(good, path);
-        fs::permissions(path, fs::perms::group_write, fs::perm_options::add);
-      }));
+  for (const fs::perms writer : { fs::perms::others_write, fs::perms::group_write })
+  {
+    EXPECT_FALSE(isTaken(
+        [&](const std::string& path)
+        {
+          fs::copy_file(good, path);
+          fs::permissions(path, writer, fs::perm_options::add);
+        }));
+  }
   EXPECT_FALSE(isTaken(
       [&](const std::string& path)
       {
@@ -345,6 +330,89 @@ TEST(SurfaceCache, TheKeyHasEveryParameterThatShapesTheSurface)
   EXPECT_EQ(sound.find("joint.name: "), std::string::npos);
   EXPECT_EQ(sound.find("fault_scale."), std::string::npos);
   EXPECT_EQ(std::string(surfaceSourceHash()).size(), 16U);
+}
+
+TEST(ParallelTasks, PassOnWhatOneThrows)
+{
+  std::atomic<int> done{ 0 };
+  const auto fail_at = [&](std::size_t number)
+  {
+    return [&done, number](std::size_t i)
+    {
+      if (i == number)
+      {
+        throw std::runtime_error("of the task");
+      }
+      ++done;
+    };
+  };
+  for (const unsigned threads : { 1u, 3u })
+  {
+    EXPECT_THROW(runTasks(50, threads, fail_at(20), [](std::size_t) {}), std::runtime_error);
+    EXPECT_THROW(runTasks(50, threads, fail_at(99), [](std::size_t) -> void { throw std::logic_error("of any task"); }),
+                 std::logic_error);
+    done = 0;
+    std::size_t last = 0;
+    runTasks(50, threads, fail_at(99), [&last](std::size_t finished) { last = finished; });
+    EXPECT_EQ(done, 50);
+    EXPECT_EQ(last, 50U);
+  }
+}
+
+SurfacePool::Surface smallSurface()
+{
+  return std::make_shared<const ResponseSurface>(
+      SurfaceTable{ 1.0, 1.0, 1, { 0.0, 1.0 }, SurfaceNodes(std::vector<SurfaceNode>(4)), {} });
+}
+
+TEST(SurfacePool, TriesAgainWhereTheMakerFailed)
+{
+  SurfacePool pool(2);
+  std::atomic<bool> failing{ false };
+  const auto fail = [&]() -> SurfacePool::Surface
+  {
+    failing = true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    throw std::runtime_error("given up");
+  };
+
+  EXPECT_THROW(pool.obtain("a", fail), std::runtime_error);
+  EXPECT_TRUE(pool.obtain("a", smallSurface));
+  failing = false;
+  std::thread other([&] { EXPECT_THROW(pool.obtain("b", fail), std::runtime_error); });
+  while (!failing)
+  {
+    std::this_thread::yield();
+  }
+  EXPECT_TRUE(pool.obtain("b", smallSurface));  // waits for the other's, then makes its own
+  other.join();
+}
+
+TEST(SurfacePool, MakesEachSurfaceOnceForAllThreads)
+{
+  SurfacePool pool(2);
+  std::atomic<int> made{ 0 };
+  const auto make = [&made]
+  {
+    ++made;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    return smallSurface();
+  };
+  SurfacePool::Surface first;
+  std::thread other([&] { first = pool.obtain("a", make); });
+  const SurfacePool::Surface second = pool.obtain("a", make);
+  other.join();
+  EXPECT_EQ(made, 1);
+  EXPECT_TRUE(first);
+  EXPECT_EQ(first, second);
+
+  pool.obtain("b", make);
+  EXPECT_EQ(pool.obtain("a", make), first);
+  pool.obtain("c", make);  // b was asked for longest ago
+  EXPECT_EQ(pool.obtain("a", make), first);
+  EXPECT_EQ(made, 3);
+  pool.obtain("b", make);
+  EXPECT_EQ(made, 4);
 }
 }  // namespace
 }  // namespace hjt

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <string>
+
+#include <array>
+#include <limits>
 #include <tuple>
 
-#include <gtest/gtest.h>
-
-#include "element_under_test.hpp"
-#include "gear/angle.hpp"
-#include "random_ring.hpp"
-#include "test_parameters.hpp"
+#include "gear/tooth_profile.hpp"
+#include "test/core/element_under_test.hpp"
+#include "test/core/random_ring.hpp"
+#include "test/core/test_parameters.hpp"
 
 namespace hjt
 {
@@ -84,7 +84,7 @@ protected:
     double margin = 0.0;
     while (margin < 2e-8)
     {
-      ring.draw(model_, shape_, position_);
+      placed_ = ring.draw(model_);
       margin = 1.0;
       for (int i = 0; i < shape_.teeth(); ++i)
       {
@@ -99,8 +99,9 @@ protected:
       shippedParameters({ "mesh.smoothing=" + std::get<0>(GetParam()), "mesh.profile=" + std::get<1>(GetParam()) });
   ToothProfile profile_{ parameters_.mesh, parameters_.gear };
   RingModel model_{ parameters_ };
-  RingShape shape_{ model_.rest.teeth() };
-  DrivePosition position_;
+  PlacedRing placed_{ RingShape(model_.rest.teeth()), {} };
+  RingShape& shape_ = placed_.shape;
+  DrivePosition& position_ = placed_.position;
 };
 INSTANTIATE_TEST_SUITE_P(SmoothingAndProfile, Mesh,
                          testing::Combine(testing::Values("0.0", "20.0e-6"),
@@ -142,7 +143,7 @@ TEST_P(Mesh, HasTheEnergyAndTheForcesOfItsLaw)
   RandomRing ring(21);
   for (int k = 0; k < 50; ++k)
   {
-    ring.draw(model_, shape_, position_);
+    placed_ = ring.draw(model_);
     const RingForces forces = elementOf<ToothMesh>(model_).forces(shape_, position_);
     double energy = 0.0;
     for (int i = 0; i < shape_.teeth(); ++i)
@@ -160,7 +161,7 @@ TEST_P(Mesh, HasTheEnergyAndTheForcesOfItsLaw)
 TEST_P(Mesh, SaysWhereAToothStands)
 {
   RandomRing ring(25);
-  ring.draw(model_, shape_, position_);
+  placed_ = ring.draw(model_);
   for (int i = 0; i < shape_.teeth(); ++i)
   {
     const ToothByDefinition at = tooth(i);
@@ -199,7 +200,7 @@ TEST_P(Mesh, PairsTeethOutOfContactWithTheNearestSpaceAndNoOthers)
   int kept_in_contact = 0;
   for (int k = 0; k < 50; ++k)
   {
-    ring.draw(model_, shape_, position_);
+    placed_ = ring.draw(model_);
     // The circular spline turned on under the standing ring, by less than a space or by many.
     position_.output_angle += k % 2 == 0 ? ring.uniform(-0.02, 0.02) : ring.uniform(-PI, PI);
     std::vector<char> touched;
@@ -256,7 +257,7 @@ TEST_P(Mesh, SlidingSpeedIsTheChangeOfPlaceAlongTheFlank)
   int trailing = 0;
   for (int k = 0; k < 10; ++k)
   {
-    ring.draw(model_, shape_, position_);
+    placed_ = ring.draw(model_);
     const RingForces forces = elementOf<ToothMesh>(model_).forces(shape_, position_);
     for (const FlankContact& contact : forces.of<ToothMesh>().flanks)
     {
@@ -293,6 +294,200 @@ TEST(MeshGeometry, IsConjugateAtTheMajorAxis)
   EXPECT_LT(std::abs(second.xi - first.xi), 1.0e-6);
   EXPECT_EQ(shape.space[1], 1);
   EXPECT_EQ(shape.space[2], 2);
+}
+
+/// A profile and the path of a tooth along it.
+struct Flank
+{
+  explicit Flank(const Parameters& given) : parameters(given) {}
+
+  double fullEngagement() const
+  {
+    return parameters.gear.flexspline_inner_radius + parameters.gear.toothMidHeight() + parameters.gear.wave_amplitude;
+  }
+
+  /// Half clearance with its derivatives at a drop from full engagement.
+  HalfClearance at(double drop) const { return profile.at(fullEngagement() - drop); }
+
+  /// What the clearance is wider by than at full engagement [m].
+  double widening(double drop) const { return at(drop).value - parameters.mesh.flank_clearance; }
+
+  Parameters parameters;
+  ToothProfile profile{ parameters.mesh, parameters.gear };
+  EngagementPath path{ parameters.gear };
+};
+
+class Profiles : public testing::TestWithParam<std::string>, public Flank
+{
+protected:
+  Profiles() : Flank(shippedParameters({ "mesh.profile=" + GetParam() })) {}
+};
+INSTANTIATE_TEST_SUITE_P(All, Profiles, testing::Values("trapezoid", "involute", "cycloid", "double_arc"));
+
+TEST_P(Profiles, HasTheFlankClearanceAtFullEngagement)
+{
+  EXPECT_NEAR(at(0.0).value, parameters.mesh.flank_clearance, 1e-18);
+}
+
+TEST_P(Profiles, SlopeAndCurvatureAreItsDerivatives)
+{
+  constexpr double STEP = 1e-10;  // m
+  // From before the entry to beyond full engagement, off the points of the table.
+  for (double drop = -0.1e-3; drop < 1.2 * path.entry(); drop += 1.37e-6)
+  {
+    const HalfClearance flank = at(drop);
+    EXPECT_NEAR(flank.slope, (at(drop + STEP).value - at(drop - STEP).value) / (2.0 * STEP), 1e-7) << drop;
+    // At a corner of the law the curvature changes by 1e5 1/m over an interval of 2.7 um: by 4 over the step.
+    EXPECT_NEAR(flank.curvature, (at(drop - STEP).slope - at(drop + STEP).slope) / (2.0 * STEP), 5.0) << drop;
+    EXPECT_NEAR(flank.cosine, 1.0 / std::hypot(1.0, flank.slope), 1e-15) << drop;
+  }
+}
+
+TEST_P(Profiles, WidensFromFullEngagementToEntry)
+{
+  for (double drop = 0.0; drop < path.entry(); drop += 1e-6)
+  {
+    // A spline through a corner swings by a few percent of the corner.
+    EXPECT_GT(at(drop).slope, -0.01) << drop;
+    EXPECT_LT(at(drop).slope, 0.5) << drop;
+  }
+}
+
+TEST_P(Profiles, IsFiniteEverywhere)
+{
+  for (const double zeta : { -1.0, 0.0, 0.03, 0.04, 1.0 })
+  {
+    EXPECT_TRUE(std::isfinite(profile.at(zeta).value));
+    EXPECT_TRUE(std::isfinite(profile.at(zeta).slope));
+  }
+  // An angle that is no number must end in forces that are none, not in memory that is not ours.
+  EXPECT_FALSE(std::isfinite(profile.at(std::numeric_limits<double>::quiet_NaN()).value));
+}
+
+TEST(TrapezoidProfile, IsTheStraightFlank)
+{
+  const Flank flank(goldenParameters());
+  const MeshParameters& mesh = flank.parameters.mesh;
+  const double slope = std::tan(mesh.flank_angle);
+  for (double zeta = 31e-3; zeta < 33e-3; zeta += 7e-6)
+  {
+    // To the last bit: it is the profile of the golden numbers.
+    const HalfClearance found = flank.profile.at(zeta);
+    EXPECT_EQ(found.value, mesh.flank_clearance + (flank.fullEngagement() - zeta) * slope);
+    EXPECT_EQ(found.slope, slope);
+    EXPECT_EQ(found.curvature, 0.0);
+    EXPECT_EQ(found.cosine, std::cos(mesh.flank_angle));
+  }
+}
+
+TEST(EngagementPath, IsTheMotionOfTheIdealRing)
+{
+  const GearParameters gear = shippedParameters().gear;
+  const EngagementPath path(gear);
+  const double radius = gear.flexspline_inner_radius + gear.toothMidHeight();
+  // Radially w0 cos 2 psi; around: half of that by the ring, and the tooth lags its space by the pitches' difference.
+  for (double psi = 0.0; psi < 0.78; psi += 0.01)
+  {
+    const double drop = gear.wave_amplitude * (1.0 - std::cos(2.0 * psi));
+    const double pitches = radius * psi * (1.0 - 200.0 / 202.0);
+    const double around =
+        0.5 * gear.wave_amplitude * (1.0 - 3.0 * gear.toothMidHeight() / gear.flexspline_inner_radius);
+    // The measured gear is conjugate at its major axis but for 0.06 %: pitches 9.905e-3 against 9.901e-3 rad.
+    EXPECT_NEAR(path.across(drop), pitches - around * std::sin(2.0 * psi), 6e-4 * pitches + 1e-12);
+  }
+  EXPECT_NEAR(path.entry(), 0.35e-3, 1e-12);
+  const double step = 1e-9;
+  for (double drop = 1e-5; drop < path.entry(); drop += 1e-5)
+  {
+    EXPECT_NEAR(path.slope(drop), (path.across(drop + step) - path.across(drop - step)) / (2.0 * step), 1e-6);
+  }
+}
+
+TEST(InvoluteProfile, TouchesAtTheTipOfTheCircularSpline)
+{
+  const Flank flank(shippedParameters({ "mesh.profile=involute" }));
+  const GearParameters& gear = flank.parameters.gear;
+  const double flank_angle = flank.parameters.mesh.flank_angle;
+  // The circular spline's tip scrapes along the involute of the tooth: its half thickness by the textbook, thickness
+  // s = r (s0 / r0 + 2 (inv alpha0 - inv alpha)), a quarter of a pitch at the reference.
+  const double reference = gear.flexspline_inner_radius + gear.toothMidHeight();
+  const auto half_thickness = [&](double radius)
+  {
+    const double angle = std::acos(reference * std::cos(flank_angle) / radius);
+    const auto inv = [](double a) { return std::tan(a) - a; };
+    return radius * std::sin(std::acos(-1.0) / 400.0 + inv(flank_angle) - inv(angle));
+  };
+  // Of the tooth at rest, where the circular spline's tip is at full engagement.
+  const double full = gear.tip_radius_circular_spline - gear.wave_amplitude;
+  // The two involutes are so alike that the contact runs from the tooth's tip to the other's over the first 40 um.
+  const double first = 50e-6;
+  const double there = flank.widening(first);
+  for (double drop = first; drop < gear.wave_amplitude; drop += 10e-6)
+  {
+    const double expected = half_thickness(full + first) - half_thickness(full + drop);
+    EXPECT_NEAR(flank.widening(drop) - there, expected, 0.02e-6) << drop;
+  }
+  EXPECT_GT(there, 0.0);
+  EXPECT_LT(there, first * std::tan(flank_angle + 0.03));
+}
+
+TEST(CycloidProfile, FollowsThePathOfTheTooth)
+{
+  const Flank flank(shippedParameters({ "mesh.profile=cycloid" }));
+  for (double drop = 0.0; drop < flank.path.entry(); drop += 1e-6)
+  {
+    EXPECT_NEAR(flank.widening(drop), flank.path.across(drop), 0.02e-6) << drop;  // the table's points: 2.7 um apart
+  }
+}
+
+/// Largest gap between a double arc and the path of the tooth, in the first and the second half of the way out [m].
+std::array<double, 2> gapToPath(const Flank& flank)
+{
+  std::array<double, 2> largest{};
+  for (double drop = 0.0; drop < flank.path.entry(); drop += 1e-6)
+  {
+    const double gap = flank.widening(drop) - flank.path.across(drop);
+    EXPECT_GT(gap, -0.02e-6) << drop;  // the space is the envelope of the tooth: no interference anywhere
+    double& half = largest[drop < 0.5 * flank.path.entry() ? 0 : 1];
+    half = std::max(half, gap);
+  }
+  return largest;
+}
+
+TEST(DoubleArcProfile, NeverCrossesThePathAndLeavesLittleGap)
+{
+  const Parameters parameters = shippedParameters({ "mesh.profile=double_arc" });
+  const double straight = parameters.gear.wave_amplitude * (std::tan(parameters.mesh.flank_angle) - 0.256);
+  for (const double gap : gapToPath(Flank(parameters)))
+  {
+    EXPECT_GT(gap, 1e-6);
+    EXPECT_LT(gap, 0.5 * straight);  // 17 degrees over the 14.4 of the path's chord
+  }
+}
+
+TEST(DoubleArcProfile, TouchesThePathWhereTheArcIsAsSteepIfTheRootIsOutOfTheWay)
+{
+  // With the tangent down to where the circular spline's tip is at full engagement, the concave root cuts nothing.
+  const Flank flank(shippedParameters(
+      { "mesh.profile=double_arc", "mesh.tangent_angle=0.10471975511965977", "mesh.tangent_length=0.2e-3" }));
+  gapToPath(flank);
+  for (double drop = 0.3e-3; drop < flank.path.entry(); drop += 5e-6)
+  {
+    EXPECT_NEAR(flank.widening(drop), flank.path.across(drop), 0.5e-6) << drop;
+    EXPECT_NEAR(flank.at(drop).slope, flank.path.slope(drop), 0.01) << drop;
+  }
+}
+
+TEST(DoubleArcProfile, IsStraightWithATangentSteeperThanThePathOrAsLongAsTheTooth)
+{
+  for (const std::string tangent : { "mesh.tangent_angle=0.5", "mesh.tangent_length=0.5e-3" })
+  {
+    const Flank flank(shippedParameters({ "mesh.profile=double_arc", "mesh.tangent_angle=0.3", tangent }));
+    for (double drop = 0.0; drop < 0.34e-3; drop += 10e-6)
+    {
+      EXPECT_NEAR(flank.widening(drop), drop * std::tan(flank.parameters.mesh.tangent_angle), 1e-12);
+    }
+  }
 }
 }  // namespace
 }  // namespace hjt

@@ -1,13 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cmath>
-#include <string>
 #include <utility>
-#include <vector>
-
-#include <gtest/gtest.h>
 
 #include "gear/angle.hpp"
-#include "harmonic_joint_twin/base/errors.hpp"
 #include "test_parameters.hpp"
 #include "twin_runs.hpp"
 
@@ -76,9 +70,7 @@ TEST(TwinFailure, IsSaidOfARestartUnderMoreThanTheTeethBear)
   EXPECT_EQ(twin.health().solver_state, SolverState::OK);
 }
 
-class ViolentRun : public testing::TestWithParam<unsigned>
-{
-};
+using ViolentRun = testing::TestWithParam<unsigned>;
 INSTANTIATE_TEST_SUITE_P(Seeds, ViolentRun, testing::Values(91U, 92U, 93U));
 
 TEST_P(ViolentRun, StaysFiniteEverywhere)
@@ -86,10 +78,7 @@ TEST_P(ViolentRun, StaysFiniteEverywhere)
   // Loads of up to 1000 N.m and full motor torque to and fro.
   Twin twin(goldenParameters(SOFT_GEAR));
   ToothForces teeth = twin.makeToothForces();
-  for (const Input& input : randomInputs(GetParam(), SECOND / 5, 4.0, 1000.0))
-  {
-    give(twin, input);
-  }
+  give(twin, randomInputs(GetParam(), SECOND / 5, 4.0, 1000.0));
   double torsion = 0.0;
   while (twin.step(SECOND / 5))
   {
@@ -121,10 +110,7 @@ TEST(ViolentRunOfTheShippedJoint, ConvergesInEveryStepAndLosesNoEnergy)
   for (const unsigned seed : { 71U, 72U, 73U })
   {
     Twin twin(goldenParameters({ "input.command_timeout=10.0" }));
-    for (const Input& input : randomInputs(seed, SECOND / 2, 2.87, 150.0))
-    {
-      give(twin, input);
-    }
+    give(twin, randomInputs(seed, SECOND / 2, 2.87, 150.0));
     while (twin.step(SECOND / 2))
     {
       ASSERT_TRUE(twin.outputs().converged) << "seed " << seed << " at " << twin.stamp();

@@ -1,19 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harmonic_joint_twin/twin/twin.hpp"
 
-#include <cmath>
 #include <limits>
-#include <random>
+#include <memory>
 #include <utility>
-#include <vector>
-
-#include <gtest/gtest.h>
 
 #include "gear/angle.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
+#include "harmonic_joint_twin/twin/input_queue.hpp"
+#include "test/core/test_parameters.hpp"
+#include "test/core/twin_runs.hpp"
 #include "test/support/allocation_count.hpp"
-#include "test_parameters.hpp"
-#include "twin_runs.hpp"
 
 namespace hjt
 {
@@ -22,10 +18,7 @@ namespace
 /// Every output of a run with all inputs known from the start.
 std::vector<std::vector<double>> record(Twin& twin, const std::vector<Input>& inputs, Stamp duration)
 {
-  for (const Input& input : inputs)
-  {
-    give(twin, input);
-  }
+  give(twin, inputs);
   std::vector<std::vector<double>> rows;
   while (twin.step(duration))
   {
@@ -100,27 +93,23 @@ TEST(TwinRepeats, InChunksOfAnyLength)
 {
   const std::vector<Input> inputs = randomInputs(82, SECOND / 2, 1.5, 60.0);
   Twin whole(shippedParameters());
-  const auto rows = record(whole, inputs, SECOND / 2);
+  const auto all_rows = record(whole, inputs, SECOND / 2);
 
   // Inputs arrive little by little, each no later than the chunk that it acts in.
   Twin chunked(shippedParameters());
-  std::mt19937 random(83);
+  SeededRandom random(83);
   std::uniform_int_distribution<Stamp> length(1, 30 * MILLISECOND);
   std::vector<std::vector<double>> pieces;
-  std::size_t given = 0;
+  auto given = inputs.begin();
   for (Stamp until = 0; until < SECOND / 2;)
   {
     until = std::min(until + length(random), SECOND / 2);
-    for (; given < inputs.size() && inputs[given].stamp <= until; ++given)
-    {
-      give(chunked, inputs[given]);
-    }
-    while (chunked.step(until))
-    {
-      pieces.push_back(numbers(chunked.outputs()));
-    }
+    const auto later = std::find_if(given, inputs.end(), [&](const Input& input) { return input.stamp > until; });
+    const auto rows = record(chunked, { given, later }, until);
+    pieces.insert(pieces.end(), rows.begin(), rows.end());
+    given = later;
   }
-  EXPECT_TRUE(rows == pieces);
+  EXPECT_TRUE(all_rows == pieces);
 }
 
 TEST(TwinRepeats, AfterAReset)
@@ -187,6 +176,7 @@ TEST(TwinReset, ForgetsALoadThatWasTooLarge)
   EXPECT_EQ(twin.counters().load_clamped, 0U);
 }
 
+/// Late ones at once, and counted.
 TEST(TwinInputs, ActFromTheirStampOn)
 {
   Twin twin(shippedParameters());
@@ -200,6 +190,10 @@ TEST(TwinInputs, ActFromTheirStampOn)
   ASSERT_TRUE(twin.step(SECOND));
   EXPECT_EQ(twin.outputs().motor_torque, 0.5);
   EXPECT_EQ(twin.counters().input.late, 0U);
+  twin.commandMotorTorque(350000, 0.7);
+  ASSERT_TRUE(twin.step(SECOND));
+  EXPECT_EQ(twin.outputs().motor_torque, 0.7);
+  EXPECT_EQ(twin.counters().input.late, 1U);
 }
 
 TEST(TwinInputs, BetweenInstantsMoveTheMotorAsOnFinerInstants)
@@ -220,35 +214,19 @@ TEST(TwinInputs, BetweenInstantsMoveTheMotorAsOnFinerInstants)
   EXPECT_NEAR(angle("solver.rate=10000"), exact, 1e-5);
 }
 
-TEST(TwinInputs, LateOnesActAtOnceAndAreCounted)
-{
-  Twin twin(shippedParameters());
-  advance(twin, 10 * MILLISECOND);
-  twin.commandMotorTorque(5 * MILLISECOND, 0.5);
-  ASSERT_TRUE(twin.step(SECOND));
-  EXPECT_EQ(twin.outputs().motor_torque, 0.5);
-  EXPECT_EQ(twin.counters().input.late, 1U);
-}
-
 TEST(TwinInputs, NotFiniteOnesAreRefusedAndCounted)
 {
-  Twin twin(shippedParameters());
+  std::vector<Input> inputs{ { 0, InputKind::MOTOR_TORQUE, 0.5 }, { 0, InputKind::LOAD_TORQUE, 20.0 } };
   Twin untouched(shippedParameters());
-  const double infinity = std::numeric_limits<double>::infinity();
-  for (Twin* each : { &twin, &untouched })
+  const auto rows = record(untouched, inputs, 20 * MILLISECOND);
+  for (const double bad : { std::nan(""), HUGE_VAL, -HUGE_VAL })
   {
-    each->commandMotorTorque(0, 0.5);
-    each->commandLoadTorque(0, 20.0);
+    inputs.push_back({ MILLISECOND, InputKind::MOTOR_TORQUE, bad });
+    inputs.push_back({ MILLISECOND, InputKind::LOAD_TORQUE, bad });
   }
-  for (const double bad : { std::numeric_limits<double>::quiet_NaN(), infinity, -infinity })
-  {
-    twin.commandMotorTorque(MILLISECOND, bad);
-    twin.commandLoadTorque(MILLISECOND, bad);
-  }
-  advance(twin, 20 * MILLISECOND);
-  advance(untouched, 20 * MILLISECOND);
+  Twin twin(shippedParameters());
+  EXPECT_TRUE(record(twin, inputs, 20 * MILLISECOND) == rows);
   EXPECT_EQ(twin.counters().input.not_finite, 6U);
-  EXPECT_TRUE(numbers(twin.outputs()) == numbers(untouched.outputs()));
 }
 
 TEST(TwinInputs, ACommandTimesOutToZeroTorqueOnce)
@@ -266,15 +244,11 @@ TEST(TwinInputs, ACommandTimesOutToZeroTorqueOnce)
   EXPECT_EQ(twin.outputs().motor_torque, -0.5);
   advance(twin, 500 * MILLISECOND);
   EXPECT_EQ(twin.counters().command_timeouts, 2U);
-}
-
-TEST(TwinInputs, ACommandFromTheEarliestStampHasTimedOut)
-{
-  Twin twin(shippedParameters());
-  twin.commandMotorTorque(std::numeric_limits<Stamp>::min(), 0.5);
-  ASSERT_TRUE(twin.step(SECOND));
-  EXPECT_EQ(twin.outputs().motor_torque, 0.0);
-  EXPECT_EQ(twin.counters().command_timeouts, 1U);
+  Twin earliest(shippedParameters());
+  earliest.commandMotorTorque(std::numeric_limits<Stamp>::min(), 0.5);
+  ASSERT_TRUE(earliest.step(SECOND));
+  EXPECT_EQ(earliest.outputs().motor_torque, 0.0);
+  EXPECT_EQ(earliest.counters().command_timeouts, 1U);
 }
 
 TEST(TwinConstruction, RefusesWhatItCannotRun)
@@ -289,28 +263,6 @@ TEST(TwinConstruction, RefusesWhatItCannotRun)
   // A light motor on the gear swings as fast as a light output.
   EXPECT_THROW(Twin(shippedParameters({ "motor.rotor_inertia=1.0e-9", "motor.wave_generator_inertia=0.0" })),
                ParameterError);
-}
-
-TEST(TwinLoop, DoesNotAllocate)
-{
-  Twin twin(shippedParameters({ "input.command_timeout=10.0" }));
-  ToothForces teeth = twin.makeToothForces();
-  const std::vector<Input> inputs = randomInputs(95, SECOND / 5, 1.5, 60.0);
-  std::int64_t counts = 0;
-  const std::size_t before = allocationCount();
-  for (const Input& input : inputs)
-  {
-    give(twin, input);
-  }
-  while (twin.step(SECOND / 5))
-  {
-    twin.toothForces(teeth);
-    counts += twin.encoders().motor_count;
-    counts += twin.health().lobes.teeth_loaded;
-  }
-  twin.reset(SECOND);
-  EXPECT_EQ(allocationCount(), before);
-  EXPECT_NE(counts, 0);
 }
 
 TEST(TwinToothForces, GiveEveryToothItsPlace)
@@ -335,8 +287,9 @@ TEST(TwinRunning, MakesItsRatioOutOfTheContacts)
   Twin twin(shippedParameters({ "input.command_timeout=10.0" }));
   twin.commandMotorTorque(0, 0.4);
   twin.commandLoadTorque(0, 20.0);
-  while (twin.step(10 * SECOND) && twin.outputs().motor_angle < 30.0)
+  while (twin.outputs().motor_angle < 30.0)
   {
+    ASSERT_TRUE(twin.step(10 * SECOND));
   }
   const HealthReport health = twin.health();
   ASSERT_TRUE(health.motion.transmission_ratio.valid);
@@ -354,6 +307,194 @@ TEST(TwinRunning, MakesItsRatioOutOfTheContacts)
   const double motor_count = TWO_PI / 4320.0;
   EXPECT_NEAR(encoders.motor_angle, twin.outputs().motor_angle, motor_count);
   EXPECT_NEAR(encoders.output_angle, twin.outputs().output_angle, TWO_PI / (1 << 19));
+}
+
+TEST(TwinDrive, HoldsItsSpeedLimit)
+{
+  Twin twin(shippedParameters({ "input.command_timeout=10.0" }));
+  twin.commandMotorTorque(0, 2.87);
+  double highest = 0.0;
+  while (twin.step(SECOND))
+  {
+    highest = std::max(highest, twin.outputs().motor_velocity);
+  }
+  const double limit = twin.parameters().motor.speed_limit;
+  EXPECT_GT(twin.counters().speed_limited, 1000U);
+  EXPECT_NEAR(twin.outputs().motor_velocity, limit, 0.02 * limit);
+  // The output swings while the motor gets up to speed, and pushes the rotor some way beyond.
+  EXPECT_LT(highest, 1.1 * limit);
+}
+
+TEST(TwinBrake, HoldsBelowItsTorqueAndSlipsAboveIt)
+{
+  const Parameters parameters =
+      shippedParameters({ "motor.torque_limit=20.0", "input.command_timeout=10.0", "output.load_torque_limit=1000.0" });
+  Twin twin(parameters);
+  twin.commandBrake(0, true);
+  twin.commandMotorTorque(0, 0.9 * parameters.brake.holding_torque);
+  advance(twin, 200 * MILLISECOND);
+  EXPECT_TRUE(twin.outputs().brake_engaged);
+  // Stuck, friction still lets the shaft creep at the speed it is regularised at, 1e-6 rad/s, a few times over.
+  EXPECT_LT(std::abs(twin.outputs().motor_angle), 1e-6);
+  twin.commandMotorTorque(200 * MILLISECOND, 1.3 * parameters.brake.holding_torque);
+  advance(twin, 300 * MILLISECOND);
+  EXPECT_GT(twin.outputs().motor_angle, 1.0);
+  twin.commandBrake(300 * MILLISECOND, false);
+  advance(twin, 301 * MILLISECOND);
+  EXPECT_FALSE(twin.outputs().brake_engaged);
+}
+
+TEST(TwinBrake, LeavesTheShaftItsPlay)
+{
+  constexpr double PLAY = 0.4;
+  Twin twin(shippedParameters({ "brake.play=0.4", "brake.engaged_at_start=true", "input.command_timeout=10.0" }));
+  Stamp time = 0;
+  for (const double torque : { 0.3, -0.3, 0.3 })
+  {
+    twin.commandMotorTorque(time, torque);
+    time += 500 * MILLISECOND;
+    advance(twin, time);
+    // It stops within the step in which it meets the pin.
+    EXPECT_NEAR(twin.outputs().motor_angle, std::copysign(0.5 * PLAY, torque), 0.02);
+    EXPECT_LT(std::abs(twin.outputs().motor_velocity), 1e-6);
+  }
+}
+
+TEST(TwinBrake, ActsAfterItsDelay)
+{
+  Twin twin(shippedParameters({ "brake.delay=20.0e-3", "input.command_timeout=10.0" }));
+  twin.commandBrake(10 * MILLISECOND, true);
+  advance(twin, 30 * MILLISECOND);
+  EXPECT_FALSE(twin.outputs().brake_engaged);
+  advance(twin, 30 * MILLISECOND + twin.stepLength());
+  EXPECT_TRUE(twin.outputs().brake_engaged);
+  // One that is given again, as in a loop, is no other.
+  Twin told_often(shippedParameters({ "brake.delay=20.0e-3", "input.command_timeout=10.0" }));
+  for (Stamp time = 10; time <= 31; ++time)
+  {
+    told_often.commandBrake(time * MILLISECOND, true);
+    advance(told_often, time * MILLISECOND);
+    EXPECT_EQ(told_often.outputs().brake_engaged, time == 31) << time;
+  }
+  // A command that is taken back before its delay is over changes nothing.
+  twin.commandBrake(40 * MILLISECOND, false);
+  twin.commandBrake(50 * MILLISECOND, true);
+  for (Stamp time = 40; time < 100; ++time)
+  {
+    advance(twin, time * MILLISECOND);
+    ASSERT_TRUE(twin.outputs().brake_engaged) << time;
+  }
+}
+
+TEST(TwinDrive, FollowsItsCommandAsTheCurrentLoopLetsIt)
+{
+  constexpr double BANDWIDTH = 200.0;  // [Hz]
+  Twin twin(shippedParameters({ "motor.current_bandwidth=200.0", "input.command_timeout=10.0" }));
+  twin.commandMotorTorque(0, 1.0);
+  for (int step = 0; step <= 100; ++step)
+  {
+    advance(twin, step * MILLISECOND / 10);
+    const double expected = -std::expm1(-TWO_PI * BANDWIDTH * step * 1e-4);
+    ASSERT_NEAR(twin.outputs().motor_torque, expected, 1e-9) << step;
+  }
+}
+
+TEST(TwinDrive, GivesLessTorqueWithWarmMagnets)
+{
+  Twin twin(shippedParameters(
+      { "motor.torque_temperature_coefficient=-1.1e-3", "input.temperature=65.0", "input.command_timeout=10.0" }));
+  twin.commandMotorTorque(0, 1.0);
+  advance(twin, 10 * MILLISECOND);
+  EXPECT_NEAR(twin.outputs().motor_torque, 1.0 - 40.0 * 1.1e-3, 1e-12);
+}
+
+constexpr Stamp END = std::numeric_limits<Stamp>::max();
+
+Input torque(Stamp stamp, double value)
+{
+  return { stamp, InputKind::MOTOR_TORQUE, value };
+}
+
+std::vector<double> popAll(InputQueue& queue)
+{
+  std::vector<double> values;
+  Input input;
+  while (queue.pop(END, input))
+  {
+    values.push_back(input.value);
+  }
+  return values;
+}
+
+TEST(InputQueue, KeepsArrivalOrderOfEqualStampsOverManyTurnsOfItsStore)
+{
+  SeededRandom random(std::random_device{}());
+  std::uniform_int_distribution<Stamp> stamps(0, 50);
+  const auto queue = std::make_unique<InputQueue>();
+  for (int round = 0; round < 100; ++round)
+  {
+    std::vector<Input> sent(300);
+    for (std::size_t i = 0; i < sent.size(); ++i)
+    {
+      sent[i] = torque(stamps(random), static_cast<double>(i));
+      queue->push(sent[i], 0);
+    }
+    std::stable_sort(sent.begin(), sent.end(), [](const Input& a, const Input& b) { return a.stamp < b.stamp; });
+    Input input;
+    for (const Input& expected : sent)
+    {
+      ASSERT_TRUE(queue->pop(END, input));
+      ASSERT_EQ(input.stamp, expected.stamp);
+      ASSERT_EQ(input.value, expected.value);
+    }
+    ASSERT_FALSE(queue->pop(END, input));
+  }
+  EXPECT_EQ(queue->counters().accepted, 30000u);
+  EXPECT_EQ(queue->counters().overflow, 0u);
+}
+
+TEST(InputQueue, DropsTheOldestWhenFull)
+{
+  const auto queue = std::make_unique<InputQueue>();
+  const auto capacity = static_cast<Stamp>(InputQueue::CAPACITY);
+  for (Stamp stamp = 0; stamp < capacity + 3; ++stamp)
+  {
+    queue->push(torque(stamp, static_cast<double>(stamp)), 0);
+  }
+  queue->push(torque(0, -1.0), 0);  // older than all that is held: itself the oldest
+  EXPECT_EQ(queue->counters().overflow, 4u);
+  EXPECT_EQ(queue->counters().accepted, InputQueue::CAPACITY + 3);
+  const std::vector<double> values = popAll(*queue);
+  ASSERT_EQ(values.size(), InputQueue::CAPACITY);
+  EXPECT_EQ(values.front(), 3.0);
+  EXPECT_EQ(values.back(), static_cast<double>(capacity + 2));
+}
+
+TEST(InputQueue, ForgetsInputsAndCountersWhenCleared)
+{
+  const auto queue = std::make_unique<InputQueue>();
+  queue->push(torque(1, 1.0), 5);
+  queue->push(torque(1, std::numeric_limits<double>::quiet_NaN()), 5);
+  queue->clear();
+  EXPECT_TRUE(queue->empty());
+  EXPECT_TRUE(popAll(*queue).empty());
+  EXPECT_EQ(queue->counters().accepted + queue->counters().not_finite + queue->counters().late, 0u);
+}
+
+TEST(InputQueue, DoesNotAllocate)
+{
+  const auto queue = std::make_unique<InputQueue>();
+  const std::size_t before = allocationCount();
+  Input input;
+  for (Stamp stamp = 0; stamp < 3 * static_cast<Stamp>(InputQueue::CAPACITY); ++stamp)
+  {
+    queue->push(torque(stamp % 5000, 1.0), 100);
+    if (stamp % 3 == 0)
+    {
+      queue->pop(stamp, input);
+    }
+  }
+  EXPECT_EQ(allocationCount(), before);
 }
 }  // namespace
 }  // namespace hjt
