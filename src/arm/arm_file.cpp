@@ -77,7 +77,7 @@ private:
     }
     else if (!values_.emplace(key, valueOf(node, key, origin)).second)
     {
-      throw ParameterError(origin + ": " + key + " stands twice in this file (first at " + values_.at(key).origin +
+      throw ParameterError(origin + ": " + key + " occurs twice in this file (first at " + values_.at(key).origin +
                            ")");
     }
   }

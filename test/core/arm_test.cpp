@@ -270,8 +270,8 @@ constexpr Case BAD_VALUES[] = {
     "arm.yaml:30: joints.0.parameters = [1.0, 2.0] must be keys and values" },
   { "overlays: [joints/base.yaml, recorded_load.yaml, beside_robot.yaml]", "overlays: joints/base.yaml",
     "arm.yaml:29: joints.0.overlays = 'joints/base.yaml' must be a list of configuration files" },
-  { "payload:\n", "payload:\n  mass: 1.0\n", "payload.mass stands twice in this file (first at" },
-  { "ur5.urdf", "/dev/zero", "arm.yaml:5: description: /dev/zero cannot be read: it is a folder, a device or a pipe" },
+  { "payload:\n", "payload:\n  mass: 1.0\n", "payload.mass occurs twice in this file (first at" },
+  { "ur5.urdf", "/dev/zero", "arm.yaml:5: description: /dev/zero cannot be read: it is a directory, a device or a pipe" },
 };
 
 TEST(ArmDescription, WhatIsWrongIsNamedWithLineKeyValueUnitAndRange)

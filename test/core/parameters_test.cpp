@@ -457,7 +457,7 @@ std::vector<Contradiction> gearContradictions()
       "manufacture.circular_spline_pitch_deviation = 1.0e-9 [m] must be 0",
       { "manufacture.circular_spline_pitch_deviation=1e-9" } },
     { { "cup.torsion_breakpoints=[14.0, 14.0]" },
-      "cup.torsion_breakpoints = [14.0, 14.0] [N.m] must ascend",
+      "cup.torsion_breakpoints = [14.0, 14.0] [N.m] must be ascending",
       { "cup.torsion_breakpoints=[14.0, 14.001]" } },
     { { "cup.torsion_stiffness=[31.0e+3, 60.0e+3, 57.0e+3]", "cup.wall_stiffness=60.0e+3" },
       "cup.wall_stiffness = 60000.0 [N.m/rad] must exceed",
