@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The short page of the validation, and the values of its rows, against which test/lint/doc_values.py holds the numbers
+"""The short page of the validation, and the values of its rows, against which test/lint/pages.py holds the numbers
 of other pages."""
 import csv
 import os

@@ -354,7 +354,7 @@ TEST(YamlFiles, BrokenFilesAreRefusedWithPlace)
   EXPECT_THAT(YamlFile("- 1\n").complaint(), HasSubstr("expected `section: {key: value}`"));
   EXPECT_THAT(YamlFile("gear:\n  wave_amplitude:\n").complaint(), HasSubstr(":2: gear.wave_amplitude has no value"));
   EXPECT_THAT(YamlFile("gear:\n  wave_amplitude: {a: 1}\n").complaint(), HasSubstr(":2: gear.wave_amplitude must be"));
-  EXPECT_THAT(YamlFile("motor:\n  torque_limit: 1.0\n  torque_limit: 2.0\n").complaint(), HasSubstr("stands twice"));
+  EXPECT_THAT(YamlFile("motor:\n  torque_limit: 1.0\n  torque_limit: 2.0\n").complaint(), HasSubstr("occurs twice"));
   ParameterMap map;
   EXPECT_THROW(readYamlFile("/nonexistent.yaml", map), ParameterError);
 }

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Names and likely faults by clang-tidy (.clang-tidy) in the sources of src/, test/ and bench/ that the build compiles:
-those whose code changed in the working tree or within four hours before its commit, and a sixth of all, which the
-number of commits chooses. That sixth is read as the build compiles it, several sources at once: a third of the time;
+those whose code changed in the working tree or within four hours before its commit, and a twelfth of all, which the
+number of commits chooses. That twelfth is read as the build compiles it, several sources at once: a third of the time;
 so are three and more that changed of those compiled at once.
 --all, or sources without git: every one, by itself.
 
@@ -31,7 +31,7 @@ FOLDERS = ("src", "test", "bench")
 # The first that is installed. From 22 on, declarations of system headers are skipped: half the time.
 TOOLS = ("clang-tidy-22", "clang-tidy")
 VERSIONS = (14, 22)  # that the sources are written for: the checks of others differ
-PARTS = 6  # of all that the build compiles, one of which a commit has checked
+PARTS = 12  # of all that the build compiles, one of which a commit has checked
 TOGETHER = 3  # changed sources of one compiled file, from which on it is read as a whole
 CHANGED_BEFORE = 14400  # changed files: by how much their commit may be older than the last [s]
 KEPT_DAYS = 60  # what no run has asked for since then is removed

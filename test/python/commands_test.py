@@ -1,10 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The tool's commands from Python: its documents, its words, its files. Argument: the tool."""
+"""The tool's commands, and the tracker, from Python: the tool's documents, its words, its files. Argument: the tool."""
 import csv
 import inspect
 import json
-import locale
 import math
 import os
 import signal
@@ -24,7 +23,6 @@ import rosbag
 import harmonic_joint_twin as hjt
 
 sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
-import comma_locale  # noqa: E402
 from ur_recording import write_bag, write_csv  # noqa: E402
 
 TOOL = sys.argv.pop(1)
@@ -52,6 +50,11 @@ def motion(seconds=20.0):
     return times, 0.5 * (1.0 - np.cos(1.3 * times))[:, None] * ends
 
 
+def recording(seconds=6.0):
+    time = np.arange(0.0, seconds, 0.008)
+    return (time, 0.6 * np.sin(1.3 * time), 1.0 + 2.0 * np.cos(1.3 * time), 5.0 * np.sin(time))
+
+
 class Recordings(unittest.TestCase):
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()
@@ -72,6 +75,14 @@ class Recordings(unittest.TestCase):
         currents = np.column_stack([np.interp(times, rows[joint]["time"], rows[joint]["current_predicted"])
                                     for joint in ("base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3")])
         write(name, times, angles, currents)
+
+    @staticmethod
+    def columns():
+        """Of arm.csv as arrays."""
+        table = np.genfromtxt("arm.csv", delimiter=",", names=True)
+        return {"time": table["timestamp"],
+                **{name: np.column_stack([table[f"actual_{part}_{i}"] for i in range(6)])
+                   for name, part in (("position", "q"), ("current", "current"))}}
 
 
 class Commands(Recordings):
@@ -117,10 +128,7 @@ class Commands(Recordings):
 
     def test_arrays_at_hand_give_what_their_file_gives(self):
         self.record()
-        table = np.genfromtxt("arm.csv", delimiter=",", names=True)
-        columns = {"time": table["timestamp"],
-                   **{name: np.column_stack([table[f"actual_{part}_{i}"] for i in range(6)])
-                      for name, part in (("position", "q"), ("current", "current"))}}
+        columns = self.columns()
         of_file, of_arrays = (hjt.follow(recording, arm="ur5") for recording in ("arm.csv", columns))
         for joint, rows in of_file.pop("comparison").items():
             np.testing.assert_array_equal(of_arrays["comparison"][joint], rows, joint)
@@ -251,10 +259,7 @@ class Commands(Recordings):
 
     def test_check_of_arrays_gives_what_their_file_gives_and_tells_its_progress(self):
         self.record()
-        table = np.genfromtxt("arm.csv", delimiter=",", names=True)
-        columns = {"time": table["timestamp"],
-                   **{name: np.column_stack([table[f"actual_{part}_{i}"] for i in range(6)])
-                      for name, part in (("position", "q"), ("current", "current"))}}
+        columns = self.columns()
         steps = set()
         of_file, of_arrays = hjt.check("arm.csv"), hjt.check(columns, progress=lambda step, done: steps.add(step))
         self.assertEqual((of_arrays.pop("recording"), of_arrays.pop("next")), ("recording", []))
@@ -266,17 +271,6 @@ class Commands(Recordings):
         self.assertIn("reading", steps)
         with self.assertRaisesRegex(hjt.InputError, "recording has 1 joints, which no arm in config/arms has"):
             hjt.check({name: column[:, 2] if column.ndim > 1 else column for name, column in columns.items()})
-
-    def test_numbers_do_not_depend_on_the_locale(self):
-        expected = hjt.checkup("ur5", "point.script", joint="base", file_format="urscript")
-        with tempfile.TemporaryDirectory() as folder, unittest.mock.patch.dict(os.environ, LOCPATH=folder):
-            comma_locale.make(folder)
-            self.addCleanup(locale.setlocale, locale.LC_NUMERIC, locale.setlocale(locale.LC_NUMERIC))
-            locale.setlocale(locale.LC_NUMERIC, "comma")
-            found = hjt.checkup("ur5", "comma.script", joint="base", file_format="urscript")
-        self.assertEqual(found, {**expected, "output": "comma.script"})
-        with open("point.script", "rb") as point, open("comma.script", "rb") as comma:
-            self.assertEqual(point.read(), comma.read())
 
     def test_checkup_writes_its_motion(self):
         found = hjt.checkup("ur10e", "motion.csv", joint="wrist_1")
@@ -303,54 +297,93 @@ class Commands(Recordings):
             hjt.lives("plan.yaml", "lives")
 
 
+class Tracker(unittest.TestCase):
+    def follow_by_tool(self, mode, columns):
+        time, position, current, load = columns
+        with tempfile.TemporaryDirectory() as folder:
+            path, out = os.path.join(folder, "recording.csv"), os.path.join(folder, "followed.csv")
+            np.savetxt(path, np.column_stack([time, position, current, load]), fmt="%.17g", delimiter=",", comments="",
+                       header="timestamp,actual_q_2,actual_current_2,target_moment_2")
+            subprocess.run([TOOL, "follow", path, "--joint", "elbow", "--mode", mode, "--out", out, "--config",
+                            ELBOW[0]], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, check=True)
+            return np.genfromtxt(out, delimiter=",", names=True)
+
+    def test_gives_the_numbers_of_the_tool(self):
+        columns = recording()
+        for mode in ("motion", "torque", "observer"):
+            with self.subTest(mode):
+                expected = self.follow_by_tool(mode, columns)
+                time, position, current, load = columns
+                rows = hjt.Tracker(hjt.Parameters(ELBOW[0]), mode).follow(time, position, current, load=load)
+                self.assertEqual(len(rows), len(expected))
+                for name in expected.dtype.names:
+                    np.testing.assert_array_equal(rows[name], expected[name], name)
+                self.assertEqual(rows.dtype, hjt.COMPARISON_DTYPE)
+
+    def test_in_parts_is_the_same_as_at_once(self):
+        columns = recording()
+        whole = hjt.Tracker(hjt.Parameters(ELBOW[0])).follow(*columns)
+        tracker = hjt.Tracker(hjt.Parameters(ELBOW[0]))
+        parts = [tracker.follow(*[column[begin:begin + 100] for column in columns], at_end=begin + 100 >= len(whole))
+                 for begin in range(0, len(whole), 100)]
+        np.testing.assert_array_equal(np.concatenate(parts), whole)
+        self.assertEqual(tracker.counters["compared"], len(whole))
+
+    def test_bad_arguments_are_named(self):
+        tracker = hjt.Tracker(hjt.Parameters(ELBOW[0]))
+        time, position, current, _ = recording()
+        with self.assertRaisesRegex(hjt.InputError, "position has 3 values in 1 dimensions"):
+            tracker.follow(time, position[:3], current)
+        with self.assertRaisesRegex(hjt.InputError, "mode = 'commands' must be 'motion', 'torque' or 'observer'"):
+            hjt.Tracker(hjt.Parameters(ELBOW[0]), "commands")
+        self.assertEqual(len(tracker.follow(time, np.full_like(time, np.nan), current)), 0)
+        self.assertEqual(tracker.counters["refused"], len(time))
+
+
 class Errors(Recordings):
     def test_have_the_words_of_the_tool(self):
-        for call, error, words in (
-                (lambda: hjt.check("none.csv"), hjt.InputError, "none.csv"),
-                (lambda: hjt.follow("none.csv"), hjt.InputError, "joint"),
-                (lambda: hjt.follow("none.csv", joint="elbow", mode="backwards"), hjt.InputError, "mode = 'backwards'"),
-                (lambda: hjt.follow({"time": [0.0], "current": [0.0]}, joint="elbow"), hjt.InputError, "'position'"),
-                (lambda: hjt.follow(None, joint="elbow"), hjt.InputError, "recording = None must be the name of"),
-                (lambda: hjt.follow({"time": ["now"], "position": [0.0]}, joint="elbow"), hjt.InputError,
+        for call, words, *error in (
+                (lambda: hjt.check("none.csv"), "none.csv"),
+                (lambda: hjt.follow("none.csv"), "joint"),
+                (lambda: hjt.follow("none.csv", joint="elbow", mode="backwards"), "mode = 'backwards'"),
+                (lambda: hjt.follow({"time": [0.0], "current": [0.0]}, joint="elbow"), "'position'"),
+                (lambda: hjt.follow(None, joint="elbow"), "recording = None must be the name of"),
+                (lambda: hjt.follow({"time": ["now"], "position": [0.0]}, joint="elbow"),
                  "column 'time' must contain numbers"),
-                (lambda: hjt.check({"time": [0.0]}), hjt.InputError, "'position' are required"),
-                (lambda: hjt.follow({"time": [0.0], "position": np.array([0], "M8[s]")}, joint="elbow"), hjt.InputError,
+                (lambda: hjt.check({"time": [0.0]}), "'position' are required"),
+                (lambda: hjt.follow({"time": [0.0], "position": np.array([0], "M8[s]")}, joint="elbow"),
                  "column 'position' must contain numbers"),
-                (lambda: hjt.follow({"time": 0.0}, joint="elbow"), hjt.InputError, "'time' has 0 dimensions"),
-                (lambda: hjt.follow("a.csv", joint="elbow", time_scale="fast"), hjt.InputError,
-                 "time_scale = 'fast' must be a number"),
-                (lambda: hjt.identify("a.csv", joint="elbow", train=(1.0,)), hjt.InputError, "must be a pair of num"),
-                (lambda: hjt.indicators("a.csv", columns=["time"]), hjt.InputError, "columns = ['time'] must be a map"),
-                (lambda: hjt.indicators(SILENT, torque_scale=0.0), hjt.InputError, "torque_scale = 0"),
-                (lambda: hjt.indicators(SILENT), hjt.InputError, "3 samples without an angle, a torque"),
-                (lambda: hjt.Arm("ur5", "abc"), hjt.InputError, "start = 'abc' must be a list of numbers"),
-                (lambda: hjt.indicators("a.txt"), hjt.InputError, "'a.txt' must end in"),
-                (lambda: hjt.arm({"time": [0.0], "position": [0.0]}, "ur5"), hjt.InputError,
+                (lambda: hjt.follow({"time": 0.0}, joint="elbow"), "'time' has 0 dimensions"),
+                (lambda: hjt.follow("a.csv", joint="elbow", time_scale="fast"), "time_scale = 'fast' must be a number"),
+                (lambda: hjt.identify("a.csv", joint="elbow", train=(1.0,)), "must be a pair of num"),
+                (lambda: hjt.indicators("a.csv", columns=["time"]), "columns = ['time'] must be a map"),
+                (lambda: hjt.indicators(SILENT, torque_scale=0.0), "torque_scale = 0"),
+                (lambda: hjt.indicators(SILENT), "3 samples without an angle, a torque"),
+                (lambda: hjt.Arm("ur5", "abc"), "start = 'abc' must be a list of numbers"),
+                (lambda: hjt.indicators("a.txt"), "'a.txt' must end in"),
+                (lambda: hjt.arm({"time": [0.0], "position": [0.0]}, "ur5"),
                  "motion: set point 1: it is of 1 joints; the arm has 6"),
-                (lambda: hjt.arm({"time": [0.0, 0.0], "position": np.zeros((2, 6))}, "ur5"), hjt.InputError,
+                (lambda: hjt.arm({"time": [0.0, 0.0], "position": np.zeros((2, 6))}, "ur5"),
                  "motion: set point 2: the time does not go on"),
-                (lambda: hjt.arm({"time": [0.0]}, "ur5"), hjt.InputError, "'position', of shape (rows, joints)"),
-                (lambda: hjt.remaining({"time": [0.0]}), hjt.InputError, "recordings[0]: column 'motor_torque'"),
-                (lambda: hjt.remaining("a.csv", hours=0.0), hjt.InputError, "hours = 0"),
-                (lambda: hjt.checkup("ur5", "a.csv", joint="knee"), hjt.ParameterError, "has no joint 'knee'"),
-                (lambda: hjt.checkup("ur6", "a.csv"), hjt.ParameterError, "neither a file nor an arm"),
-                (lambda: hjt.checkup("ur5", "a.csv", file_format="txt"), hjt.InputError,
-                 "file_format = 'txt': txt not in {csv,"),
-                (lambda: hjt.sweep("no_plan.yaml", "data"), hjt.InputError, "no_plan.yaml"),
-                (lambda: hjt.sweep("no_plan.yaml", "data", jobs=0), hjt.InputError, "jobs = 0"),
-                (lambda: hjt.sweep("no_plan.yaml", "data", shard=(2, 2)), hjt.InputError, "'2/2' must be I/N with"),
+                (lambda: hjt.arm({"time": [0.0]}, "ur5"), "'position', of shape (rows, joints)"),
+                (lambda: hjt.remaining({"time": [0.0]}), "recordings[0]: column 'motor_torque'"),
+                (lambda: hjt.remaining("a.csv", hours=0.0), "hours = 0"),
+                (lambda: hjt.checkup("ur5", "a.csv", joint="knee"), "has no joint 'knee'", hjt.ParameterError),
+                (lambda: hjt.checkup("ur6", "a.csv"), "neither a file nor an arm", hjt.ParameterError),
+                (lambda: hjt.checkup("ur5", "a.csv", file_format="txt"), "file_format = 'txt': txt not in {csv,"),
+                (lambda: hjt.sweep("no_plan.yaml", "data"), "no_plan.yaml"),
+                (lambda: hjt.sweep("no_plan.yaml", "data", jobs=0), "jobs = 0"),
+                (lambda: hjt.sweep("no_plan.yaml", "data", shard=(2, 2)), "'2/2' must be I/N with"),
                 (lambda: hjt.identify("none.csv", joint="elbow", overlays=[{"mesh.stifness": 1.0}]),
-                 hjt.ParameterError, "did you mean mesh.stiffness"),
-                (lambda: hjt.identify("none.csv", joint="elbow", folds=1), hjt.InputError, "folds = 1"),
-                (lambda: hjt.follow("a.csv", joint="elbow", time_scale=0), hjt.InputError,
-                 "time_scale = 0: '0.0' is not"),
-                (lambda: hjt.follow("a.csv", joint="elbow", load="target_moment"), hjt.InputError, "load requires arm"),
-                (lambda: hjt.compare("a.csv", arm="ur5", identified="none"), hjt.InputError, "does not exist: none"),
-                (lambda: hjt.indicators("a.csv", carry=True), hjt.InputError, "carry requires baseline"),
-                (lambda: hjt.remaining("a.csv", lost_motion_limit=0.01), hjt.InputError, "requires baseline"),
-                (lambda: hjt.sweep("no_plan.yaml", "data", jobs=2.5), hjt.InputError,
-                 "jobs = 2.5 must be a whole number")):
-            with self.assertRaises(error) as caught:
+                 "did you mean mesh.stiffness", hjt.ParameterError),
+                (lambda: hjt.identify("none.csv", joint="elbow", folds=1), "folds = 1"),
+                (lambda: hjt.follow("a.csv", joint="elbow", time_scale=0), "time_scale = 0: '0.0' is not"),
+                (lambda: hjt.follow("a.csv", joint="elbow", load="target_moment"), "load requires arm"),
+                (lambda: hjt.compare("a.csv", arm="ur5", identified="none"), "does not exist: none"),
+                (lambda: hjt.indicators("a.csv", carry=True), "carry requires baseline"),
+                (lambda: hjt.remaining("a.csv", lost_motion_limit=0.01), "requires baseline"),
+                (lambda: hjt.sweep("no_plan.yaml", "data", jobs=2.5), "jobs = 2.5 must be a whole number")):
+            with self.assertRaises(*error or [hjt.InputError]) as caught:
                 call()
             self.assertIn(words, str(caught.exception))
             self.assertNotIn("joint_twin:", str(caught.exception))
@@ -385,14 +418,26 @@ class Interrupts(Recordings):
         with open("plan.yaml", "w", encoding="utf-8") as file:
             file.write(PLAN.replace("duration: 0.3", "duration: 200.0"))
 
-    def test_ctrl_c_gets_through_and_python_has_its_handler_back(self):
+    def test_ctrl_c_gets_through_and_python_has_its_threads_and_its_handler(self):
         self.plan()
         before = signal.getsignal(signal.SIGINT)
+        ticks, stop = [], threading.Event()
+
+        def tick():
+            while not stop.wait(0.01):
+                hjt.checkup("ur5", "motion.csv", joint="base", force=True)
+                ticks.append(1)
+
+        thread = threading.Thread(target=tick)
+        thread.start()
         threading.Timer(2.0, os.kill, (os.getpid(), signal.SIGINT)).start()
         start = time.monotonic()
         with self.assertRaises(KeyboardInterrupt):
             hjt.sweep("plan.yaml", "data", overlays=[{"solver.scene": "full_ring"}])
         self.assertLess(time.monotonic() - start, 60.0)
+        stop.set()
+        thread.join()
+        self.assertGreater(len(ticks), 20)
         self.assertIs(signal.getsignal(signal.SIGINT), before)
         with self.assertRaises(KeyboardInterrupt):
             os.kill(os.getpid(), signal.SIGINT)
@@ -415,25 +460,6 @@ class Interrupts(Recordings):
             with self.assertRaises(KeyboardInterrupt):
                 for _ in range(100):
                     function()
-
-    def test_other_threads_run_meanwhile(self):
-        self.plan()
-        ticks = []
-        stop = threading.Event()
-
-        def tick():
-            while not stop.wait(0.01):
-                hjt.checkup("ur5", "motion.csv", joint="base", force=True)
-                ticks.append(1)
-
-        thread = threading.Thread(target=tick)
-        thread.start()
-        threading.Timer(2.0, os.kill, (os.getpid(), signal.SIGINT)).start()
-        with self.assertRaises(KeyboardInterrupt):
-            hjt.sweep("plan.yaml", "data", overlays=[{"solver.scene": "full_ring"}])
-        stop.set()
-        thread.join()
-        self.assertGreater(len(ticks), 20)
 
 
 class Names(unittest.TestCase):

@@ -204,19 +204,6 @@ class DataSets(unittest.TestCase):
                            overlays=[{"indicators.signatures": f"signatures/{name}.yaml"}])
             self.assertEqual(["signatures of another gear" in str(one.message) for one in caught], [True] * told, name)
 
-    def test_each_file_is_read_with_its_own_parameters(self):
-        windows = hjt.indicators(list(hjt.load("sound", group=None).file[:2]))["windows"]
-        self.assertEqual([window["parameters"] for window in windows], ["run"] * 2)
-        loads = hjt.load("sound", group=None)["set.output.gravity_torque"]
-        self.assertNotEqual(loads[0], loads[1])
-
-    def test_too_few_windows_are_no_verdict(self):
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", RuntimeWarning)
-            verdict = hjt.assess("sound", "sound_reference.yaml").iloc[0]
-        self.assertEqual(verdict.state, "too few windows")
-        self.assertIsNone(verdict.level)
-
     def test_no_recordings_are_an_error(self):
         for function in (hjt.indicators, hjt.remaining, lambda none: hjt.assess(none, "sound.yaml"),
                          lambda none: hjt.reference(none, "sound.yaml"), lambda none: hjt.trend(none, arm="ur5")):

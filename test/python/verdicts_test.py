@@ -33,13 +33,15 @@ def last_verdicts(path):
 class Verdicts(VerdictCases, unittest.TestCase):
     tool_path = sys.argv.pop(1)
 
-    def judge_case(self, arm, rows, compared, every_way):
+    def judge_case(self, arm, rows, compared, every_way, reference):
         write_bag("arm.bag", *rows)
         expected = verdicts_in(compared)
+        arrays = dict(zip(("time", "position", "current"), rows))
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # remarks on the recording, which the tool's way has too
-            self.same("arrays", verdicts_in(hjt.compare(dict(zip(("time", "position", "current"), rows)), arm=arm)),
-                      expected)
+            self.same("arrays", verdicts_in(hjt.compare(arrays, arm=arm, reference=reference)), expected)
+            if reference:
+                return
             hjt.follow("arm.bag", arm=arm, bag="with_twin.bag", force=True, overlays=RARELY)
         self.same("follow", last_verdicts("with_twin.bag"), expected)
         if every_way:

@@ -15,7 +15,7 @@ from sensor_msgs.msg import JointState, Temperature
 from std_srvs.srv import Trigger
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-from harmonic_joint_twin.msg import Fault, Faults, Health, Timing
+from harmonic_joint_twin.msg import Health, Timing
 from ros_support import OK, PACKAGE, PATIENCE, SLOWNESS, STALE, Diagnostics, Listener, numbers_in, wait_until
 
 NODE = "/arm_twin"
@@ -58,10 +58,6 @@ class ArmTwin(unittest.TestCase):
         self.send((angles, duration))
         wait_until(lambda: max(abs(self.last()[name] - angles[name]) for name in NAMES) < 2e-3, f"the arm at {angles}")
 
-    def stands(self, names=NAMES):
-        return all(abs(message.velocity[NAMES.index(name)]) < 2e-3 for message in self.states.messages()[-50:]
-                   for name in names)
-
     def said(self, text):
         wait_until(lambda: any(text in message.msg for message in self.log.messages()), text)
 
@@ -103,31 +99,12 @@ class ArmTwin(unittest.TestCase):
         self.assertLess(apart, 2e-3)
         self.assertGreater(apart, 0.0)
 
-    def test_3_a_partial_goal_moves_its_joints_alone_and_an_empty_one_stops(self):
-        self.go(START, 2.0)
-        wait_until(self.stands, "the arm at rest")
-        self.send(({"elbow_joint": 0.3}, 1.5), names=["elbow_joint"])
-        there = dict(START, elbow_joint=0.3)
-        wait_until(lambda: max(abs(self.last()[name] - there[name]) for name in NAMES) < 2e-3, "the elbow alone")
-        self.send((dict(there, elbow_joint=2.3), 8.0))
-        wait_until(lambda: self.last()["elbow_joint"] > 0.6, "the elbow on its way")
-        self.send()
-        wait_until(lambda: self.stands(["elbow_joint"]), "the elbow at rest")
-        self.assertLess(self.last()["elbow_joint"], 2.0)
-
     def test_4_what_it_cannot_follow_is_refused_and_said(self):
         self.send((dict(START, knee_joint=0.0), 2.0), names=NAMES[:2] + ["knee_joint"])
         self.said("Refused a trajectory on ~command: the arm has no joint knee_joint; it names elbow_joint, ")
         time.sleep(1.1)  # one warning a second
-        self.send((START, 2.0), names=NAMES + NAMES[:1])
-        self.said("Refused a trajectory on ~command: it names more than once elbow_joint; it names elbow_joint,")
-        time.sleep(1.1)
         self.send((START, 2.0), stamp=rospy.Time.now() + rospy.Duration(90000))
         self.said("Refused a trajectory on ~command: its stamp is more than a day ahead of the clock")
-        time.sleep(1.1)
-        self.send((dict(START, elbow_joint=START["elbow_joint"] + 3.0), 1.0))
-        self.said("elbow_joint would reach 4.2 rad/s between the set point at 1 s and the one before; "
-                  "its limit is 3.142")
         time.sleep(1.1)
         self.send((dict(START, elbow_joint=float("nan")), 5.0))
         self.said("points[0]: not all values are finite")
@@ -172,32 +149,6 @@ class ArmTwin(unittest.TestCase):
         self.said("Ignored a message on ~joint_temperatures: frame_id = 'left_elbow_joint' is no joint of this arm")
         self.said("Refused a temperature on ~joint_temperatures: temperature = 200.0 [degC] is out of range")
         wait_until(lambda: health.messages() and health.messages()[-1].grease_temperature == 32.0, "the temperature")
-
-    def test_6_a_fault_is_taken_live_and_raises_its_joints_current(self):
-        faults = Listener("/elbow/arm_twin/faults", Faults)
-        health = Listener("/elbow/arm_twin/health", Health)
-        inject = rospy.Publisher("/elbow/arm_twin/inject_fault", Fault, queue_size=1)
-        wait_until(lambda: inject.get_num_connections() == 1, "the elbow's faults")
-
-        def currents():
-            """Mean amount of each joint while it goes to and fro [A]."""
-            self.go(START, 2.0)
-            there = {name: angle + 0.5 for name, angle in START.items()}
-            self.states.clear()
-            self.send((there, 1.5), (START, 3.0))
-            rows = self.states.wait_for(round(3.0 / PERIOD))
-            return {name: sum(abs(row.effort[k]) for row in rows) / len(rows) for k, name in enumerate(NAMES)}
-
-        sound = currents()
-        inject.publish(Fault(kind="lubricant_degradation", severity=1.0, place=-1))
-        wait_until(lambda: faults.messages() and [fault.kind for fault in faults.messages()[-1].faults] ==
-                   ["lubricant_degradation"], "the fault")
-        worn = currents()
-        more = {name: worn[name] - sound[name] for name in NAMES}
-        elbow = more.pop("elbow_joint")
-        self.assertGreater(elbow, 0.05, more)
-        self.assertLess(max(map(abs, more.values())), 0.3 * elbow, (elbow, more))
-        self.assertGreater(len(health.messages()), 10)
 
     def test_7_it_keeps_up_and_restarts_on_request(self):
         timing = Listener(f"{NODE}/timing", Timing).wait_for(2)[-1]

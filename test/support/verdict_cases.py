@@ -12,7 +12,10 @@ import harmonic_joint_twin as hjt
 from harmonic_joint_twin.msg import Verdict
 from ur_recording import write_csv
 
-ARM = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "config", "arms", "ur5.yaml")
+CHECKOUT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
+ARM = os.path.join(CHECKOUT, "config", "arms", "ur5.yaml")
+# With it `--report` writes its data and no page is drawn, which takes seconds for each joint.
+NO_PAGE = {"PYTHONPATH": os.path.join(CHECKOUT, "test", "support", "no_page")}
 JOINTS = ["base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3"]
 GAINS = np.array([10.7, 10.7, 10.7, 10.21, 11.9, 11.92])  # of config/arms/ur5.yaml [N.m/A]
 PERIOD, SECONDS = 1.0 / 64.0, 36.0  # of motion; stamps are the same in seconds and in whole nanoseconds
@@ -28,9 +31,9 @@ FIELDS = ("joint", "level", "reason", "friction_measured", "friction_factor", "f
 NUMBERS = ("friction_factor", "friction_lower", "friction_upper", "cause_weights", "evidence_values")
 
 
-def motion():
-    times = np.round(np.arange(0.0, SECONDS + REST, PERIOD), 9)
-    left = np.clip((SECONDS - times) / SLOWING, 0.0, 1.0)
+def motion(seconds=SECONDS):
+    times = np.round(np.arange(0.0, seconds + REST, PERIOD), 9)
+    left = np.clip((seconds - times) / SLOWING, 0.0, 1.0)
     way = np.cumsum(left * left * (3.0 - 2.0 * left)) * PERIOD
     middle, amplitude, frequency, phase = SWINGS.T
     at = frequency * way[:, None] + phase
@@ -77,7 +80,7 @@ class VerdictCases:
 
     def tool(self, *words):
         done = subprocess.run([self.tool_path, *map(str, words), "--json"], stdout=subprocess.PIPE,
-                              stderr=subprocess.PIPE, text=True, check=False)
+                              stderr=subprocess.PIPE, text=True, check=False, env={**os.environ, **NO_PAGE})
         if not done.stdout:
             raise AssertionError(done.stderr)
         return json.loads(done.stdout)
@@ -100,18 +103,19 @@ class VerdictCases:
                 else:
                     self.assertEqual(list(mine) if isinstance(mine, (list, tuple)) else mine, other, where)
 
-    def judge(self, levels, arm="ur5", times=None, angles=None, currents=None, says="", every_way=False):
+    def judge(self, levels, arm="ur5", times=None, angles=None, currents=None, says="", every_way=False,
+              reference=None):
         """`levels`: of compare, from the base on; one stands for all. `says`: is in its text. `every_way`: by check
-        and trend too, which are compare's own functions."""
+        and trend too, which are compare's own functions. `reference`: folder of a report."""
         rows = tuple(mine if given is None else given for mine, given in
                      ((self.times, times), (self.angles, angles), (self.currents, currents)))
         write_csv("arm.csv", *rows)
-        compared = self.tool("compare", "arm.csv", "--arm", arm)
+        compared = self.tool("compare", "arm.csv", "--arm", arm, *(["--reference", reference] if reference else []))
         expected = verdicts_in(compared)
         found = [verdict["level"] for verdict in expected.values()]
         self.assertEqual(found, levels if isinstance(levels, list) else [levels] * 6, compared["text"])
         self.assertIn(says, compared["text"])
-        self.judge_case(arm, rows, compared, every_way)
+        self.judge_case(arm, rows, compared, every_way, reference)
 
     def test_sound(self):
         self.judge("OK", every_way=True)
@@ -124,6 +128,9 @@ class VerdictCases:
         currents, _ = recorded(self.loaded, self.times, self.angles)
         self.judge("OK", currents=currents, says="payload of ", every_way=True)
 
+    def test_payload_that_is_configured_and_not_carried(self):
+        self.judge("OK", self.loaded, says="look like no payload")
+
     def test_pick_and_place(self):
         loaded, _ = recorded(self.loaded, self.times, self.angles)
         carried = (self.times // 10.0 % 2.0 == 1.0)[:, None]
@@ -132,6 +139,20 @@ class VerdictCases:
     def test_one_gain(self):
         self.judge(["OK", "OK", "NOT JUDGED", "OK", "OK", "OK"], currents=self.currents * [1, 1, 1.4, 1, 1, 1])
 
+    def test_currents_of_the_other_sign(self):
+        self.judge(["OK", "OK", "NOT JUDGED", "OK", "OK", "OK"], currents=self.currents * [1, 1, -1, 1, 1, 1],
+                   says="sign")
+
+    def test_efforts_in_newton_metres(self):
+        self.judge("NOT JUDGED", currents=self.currents * GAINS, says="telemetry.effort: joint_torque")
+
+    def test_currents_of_another_time(self):
+        late = np.column_stack([np.interp(self.times - 0.2, self.times, current) for current in self.currents.T])
+        self.judge("NOT JUDGED", currents=late, says="0.2 s later than the motion")
+
+    def test_another_arm(self):
+        self.judge("NOT JUDGED", "ur10", says="The arm may be a ur5")
+
     def test_cold_arm(self):
         currents, _ = recorded("ur5", self.times, self.angles, 5.0)
         self.judge("OK", currents=currents, says="degC")
@@ -139,6 +160,12 @@ class VerdictCases:
     def test_worn_joint(self):
         more = 0.5 * self.friction * [0, 1, 0, 0, 0, 0]
         self.judge(["OK", "WARN", "OK", "OK", "OK", "OK"], currents=self.currents + more, every_way=True)
+
+    def test_joint_worn_since_its_report(self):
+        write_csv("sound.csv", self.times, self.angles, self.currents)
+        self.tool("compare", "sound.csv", "--arm", "ur5", "--report", "sound")
+        more = 0.3 * self.friction * [1, 0, 0, 0, 0, 0]
+        self.judge(["WARN", "OK", "OK", "OK", "OK", "OK"], currents=self.currents + more, reference="sound")
 
     def test_arm_on_a_wall(self):
         currents, _ = recorded(arm_file("wall.yaml", "gravity: [0.0, -9.82, 0.0]"), self.times, self.angles)

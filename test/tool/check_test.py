@@ -4,13 +4,10 @@
 Recordings of a UR5 are used where they are at hand, in HJT_TELEMETRY_DIR, else in shared/telemetry beside the checkout.
 """
 import csv
-import functools
 import glob
 import json
 import os
 import shlex
-import subprocess
-import tempfile
 import unittest
 
 import genpy
@@ -21,57 +18,13 @@ from sensor_msgs.msg import JointState, Temperature
 from std_msgs.msg import Float64
 
 import tool
+from recorded import GAINS, NAMES, sound, swinging, write_csv
 
-NAMES = ["base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3"]
-GAINS = [10.7, 10.7, 10.7, 10.21, 11.9, 11.92]  # of config/arms/ur5.yaml [N.m/A]
 DRIVER_ORDER = [2, 1, 0, 3, 4, 5]
 DIRECTORY = os.environ.get("HJT_TELEMETRY_DIR", os.path.join(tool.CHECKOUT, "..", "shared", "telemetry"))
 RECORDINGS = {os.path.basename(path)[7:-4]: path
               for path in sorted(glob.glob(os.path.join(DIRECTORY, "ur5_cb", "*.csv")))}
 MAX_LINES, MAX_COLUMNS = 25, 100
-
-
-def swinging(seconds=40.0, period=0.008):
-    """A made-up arm's motion, with friction alone: columns as those of a controller."""
-    time = np.arange(0.0, seconds, period)
-    columns = {"timestamp": time}
-    noise = np.random.default_rng(3)
-    for joint in range(6):
-        rate = 0.7 + 0.17 * joint
-        columns[f"actual_q_{joint}"] = 0.6 * np.sin(rate * time)
-        columns[f"actual_qd_{joint}"] = 0.6 * rate * np.cos(rate * time)
-        friction = 10.0 * np.sign(columns[f"actual_qd_{joint}"])
-        columns[f"actual_current_{joint}"] = friction / GAINS[joint] + noise.normal(0.0, 0.05, len(time))
-    return columns
-
-
-@functools.lru_cache(maxsize=None)
-def predicted(executable, seconds, period, arm):
-    """The currents that the twins of an arm predict for that motion, by joint."""
-    columns = swinging(seconds, period)
-    with tempfile.TemporaryDirectory() as folder:
-        motion = write_csv(os.path.join(folder, "motion.csv"), columns)
-        subprocess.run([executable, "follow", motion, "--arm", arm, "--out", os.path.join(folder, "out")], check=True,
-                       stdout=subprocess.DEVNULL)
-        rows = [tool.read_columns(os.path.join(folder, "out", f"{name}.csv")) for name in NAMES]
-    return [np.interp(columns["timestamp"], own["time"], own["current_predicted"]) for own in rows]
-
-
-def sound(test, seconds=40.0, period=0.008, arm="ur5"):
-    """The same with the currents that the twins predict, and some noise."""
-    columns = swinging(seconds, period)
-    noise = np.random.default_rng(7)
-    for joint, current in enumerate(predicted(test.executable, seconds, period, arm)):
-        columns[f"actual_current_{joint}"] = current + noise.normal(0.0, 0.02, len(current))
-    return columns
-
-
-def write_csv(path, columns):
-    with open(path, "w", encoding="ascii") as file:
-        file.write(",".join(columns) + "\n")
-        for row in zip(*columns.values()):
-            file.write(",".join(f"{value:.9g}" for value in row) + "\n")
-    return path
 
 
 def read_csv(path):
@@ -134,61 +87,6 @@ class Check(tool.ToolTest):
             # identify answers 1 where nothing could be identified
             self.assertIn(done.returncode, (0, 1) if words[1] == "identify" else (0,), (command, done.stderr))
             self.assertTrue(done.returncode == 0 or "identif" in done.stdout + done.stderr, (command, done.stderr))
-
-    def test_the_arm_is_found_on_a_wall_and_no_other_is_judged(self):
-        arms = os.path.join(tool.CHECKOUT, "config", "arms")
-        wall = self.write("wall.yaml", f"like: {arms}/ur16e.yaml\ngravity: [0.0, -9.82, 0.0]\n")
-        write_csv(self.path("wall.csv"), sound(self, arm=self.path(wall)))
-        found = self.check("wall.csv")
-        self.assertEqual((found["arm"], found["arms_alike"]), ("ur16e", []))
-        self.assertAlmostEqual(found["gravity_tilt"], np.pi / 2.0, delta=0.03)
-        self.assertEqual([joint["judged"] for joint in found["joints"]], [True] * 6)
-        other = self.check("wall.csv", "--arm", "ur5", exit_code=1)
-        self.assertIn("the arm may be a ur16e", other["joints"][1]["verdict"]["text"])
-        done = self.run_tool("compare", "wall.csv", "--arm", "ur5", "--json", "--fail-on", "warn")
-        self.assertEqual((done.returncode, json.loads(done.stdout)["level"]), (4, "NOT JUDGED"), done.stderr)
-
-    def test_a_load_that_not_every_joint_fits_is_taken_back(self):
-        arms = os.path.join(tool.CHECKOUT, "config", "arms")
-        tooled = self.write("tooled.yaml", f"like: {arms}/ur5.yaml\npayload: {{mass: 3.0, centre: [0.0, 0.0, 0.08]}}\n")
-        columns = sound(self, arm=tooled)
-        write_csv(self.path("carried.csv"), columns)
-        self.assertAlmostEqual(self.check("carried.csv", "--arm", "ur5")["payload_mass"], 3.0, delta=0.3)
-        columns["actual_current_2"] = 3.0 * columns["actual_current_2"]
-        write_csv(self.path("other.csv"), columns)
-        done = self.run_tool("check", "other.csv", "--arm", "ur5", "--json")
-        self.assertIsNone(json.loads(done.stdout)["payload_mass"], done.stderr)
-
-    def test_each_part_is_judged_with_the_payload_that_is_carried_in_it(self):
-        arms = os.path.join(tool.CHECKOUT, "config", "arms")
-        empty, loaded = sound(self, seconds=90.0), {}
-        for mass in (3.0, 5.0):
-            arm = self.write(f"{mass}.yaml",
-                             f"like: {arms}/ur5.yaml\npayload: {{mass: {mass}, centre: [0.0, 0.0, 0.08]}}\n")
-            loaded[mass] = sound(self, seconds=90.0, arm=arm)
-        # The last makes more than twice the effort by the load of all rows, which is of no part.
-        for mass, changes, parts in ((3.0, [25.0], "1 of 2"), (3.0, [60.0], "1 of 2"),
-                                     (5.0, [12.0, 30.0, 50.0, 70.0], "2 of 5")):
-            carries = np.searchsorted(changes, empty["timestamp"], side="right") % 2 == 1
-            write_csv(self.path("changes.csv"),
-                      {name: np.where(carries, loaded[mass][name], column) for name, column in empty.items()})
-            found = json.loads(self.run_tool("compare", "changes.csv", "--arm", "ur5", "--json").stdout)
-            self.assertIn(f"The payload changes: in {parts} parts of the time", found["text"])
-            self.assertIn("in the others like the configured 0 kg", found["text"])
-            self.assertEqual({joint["level"] for joint in found["joints"]}, {"OK"}, found["text"])
-            self.assertAlmostEqual(found["payload_mass"], mass, delta=found["payload_half_width"])
-
-    def test_an_arm_without_its_configured_payload_is_no_other_arm(self):
-        arms = os.path.join(tool.CHECKOUT, "config", "arms")
-        self.write("tooled.yaml", f"like: {arms}/ur5.yaml\npayload: {{mass: 6.0, centre: [0.0, 0.0, 0.08]}}\n")
-        write_csv(self.path("arm.csv"), sound(self))
-        found = self.check("arm.csv", "--arm", "tooled.yaml")
-        for joint in found["joints"]:
-            self.assertNotIn("may be a", joint["verdict"]["text"])
-        self.assertEqual([joint["judged"] for joint in found["joints"]], [True] * 6)
-        self.assertAlmostEqual(found["payload_mass"], 0.0, delta=0.3)
-        done = self.run_tool("compare", "arm.csv", "--arm", "tooled.yaml", "--json")
-        self.assertIn("look like no payload", json.loads(done.stdout)["text"])
 
     def test_a_sound_recording_is_usable_as_it_is(self):
         write_csv(self.path("arm.csv"), sound(self))
@@ -342,33 +240,21 @@ class Check(tool.ToolTest):
             self.assertTrue(found["usable"] and found["load_recorded"], name)
             self.lines(path)
 
-    @unittest.skipUnless("no2" in RECORDINGS, "no recording of a UR5 stamped by another period")
-    def test_a_log_of_62_hz_stamped_as_125_is_recognised(self):
-        columns = read_csv(RECORDINGS["no2"])
-        columns["timestamp"] = 0.008 * np.arange(len(columns["timestamp"]))
-        write_csv(self.path("no2.csv"), columns)
-        found = self.check("no2.csv", exit_code=1)
-        self.assertEqual(self.kinds(found), ["stamps"])
-        self.assertIn("--time-scale 2", found["next"][0])
-        self.assertEqual(self.kinds(self.check("no2.csv", "--time-scale", 2)), [])
-
-    @unittest.skipUnless(RECORDINGS, f"no recordings of a UR5 in {DIRECTORY}; name it in HJT_TELEMETRY_DIR")
+    @unittest.skipUnless("no5" in RECORDINGS, f"no recordings of a UR5 in {DIRECTORY}; name it in HJT_TELEMETRY_DIR")
     def test_effort_in_newton_metres_is_recognised_from_gravity(self):
-        for name in ("no2", "no5", "no6"):
-            for unit, factors in (("joint_torque", GAINS), ("motor_torque", [gain / 101.0 for gain in GAINS])):
-                columns = read_csv(RECORDINGS[name])
-                for joint, factor in enumerate(factors):
-                    columns[f"actual_current_{joint}"] *= factor
-                write_csv(self.path("torque.csv"), columns)
-                found = self.check("torque.csv", exit_code=1)
-                print(f"{name:4} {unit:12} {found['effort_factor']:.3f} +- {found['effort_factor_uncertainty']:.3f}")
-                self.assertEqual((self.kinds(found), found["effort"]), (["effort_unit"], unit), name)
-                self.assertIn(f"--set telemetry.effort={unit}", found["next"][0])
-                mended = self.check("torque.csv", "--set", f"telemetry.effort={unit}")
-                self.assertEqual((self.kinds(mended), mended["effort"]), ([], unit))
+        for unit, factors in (("joint_torque", GAINS), ("motor_torque", [gain / 101.0 for gain in GAINS])):
+            columns = read_csv(RECORDINGS["no5"])
+            for joint, factor in enumerate(factors):
+                columns[f"actual_current_{joint}"] *= factor
+            write_csv(self.path("torque.csv"), columns)
+            found = self.check("torque.csv", exit_code=1)
+            self.assertEqual((self.kinds(found), found["effort"]), (["effort_unit"], unit))
+            self.assertIn(f"--set telemetry.effort={unit}", found["next"][0])
+            mended = self.check("torque.csv", "--set", f"telemetry.effort={unit}")
+            self.assertEqual((self.kinds(mended), mended["effort"]), ([], unit))
         follow = ("follow", "torque.csv", "--arm", "ur5", "--set", f"telemetry.effort={unit}")
         mended = self.succeed_json(*follow)["joints"]
-        for one, same in zip(self.succeed_json("follow", RECORDINGS[name], "--arm", "ur5")["joints"], mended):
+        for one, same in zip(self.succeed_json("follow", RECORDINGS["no5"], "--arm", "ur5")["joints"], mended):
             # The gains that the controller states are not in the other file: 0.3 % apart at most.
             self.assertAlmostEqual(one["current_residual_rms"] / same["current_residual_rms"], 1.0, delta=0.01)
 

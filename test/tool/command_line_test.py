@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The command line: kinds of options, what of it is refused, help, interrupts, what cannot be printed."""
+"""The command line: its name, kinds of options, what of it is refused, help, interrupts, what cannot be printed."""
 import glob
 import math
 import os
@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+import unittest
 
 import tool
 
@@ -93,6 +94,19 @@ class Options(tool.ToolTest):
                 ("--shard: 'x' must be I/N with 0 <= I < N", ["sweep", "plan.yaml", "--shard", "x"])]:
             with self.subTest(arguments):
                 self.refuse(reason, *arguments)
+
+    def test_values_out_of_range_are_refused_by_every_command(self):
+        self.write("duty.csv", "")
+        for line in ("losses --speeds 10", "losses --loads 1", "losses --speeds nan --loads 1",
+                     "losses --speeds 1 --loads 1 --positions 0", "hysteresis --amplitude -1 --lost-motion-torque 2",
+                     "hysteresis --amplitude 1 --lost-motion-torque 2", "ratchet --lobe-stiffness 0",
+                     "ratchet --lobe-stiffness nan", "ratchet --angle-step 0", "ratchet --torque-limit -5",
+                     "ratchet --angle inf", "life trials duty.csv --lives 0", "transient --method euler",
+                     "transient --step 0", "transient --step nan", "transient --duration -1", "dynamics --speed fast",
+                     "dynamics --settle -1", "dynamics --every 0", "dynamics --load inf", "export --format dae",
+                     "gear --size 1000 --out gear.yaml", "gear --ratio 7 --out gear.yaml"):
+            with self.subTest(line):
+                self.fail_with(2, [], *line.split())
 
     def test_wrong_combinations_are_refused(self):
         simulate = ["simulate", "--out", "a.bag"]
@@ -291,6 +305,26 @@ class OutputFiles(tool.ToolTest):
         self.assertIn("ring.csv cannot be written: File too large", done.stderr)
         self.assertNotIn("gear.yaml", os.listdir(self.directory))
         self.assertNotIn("ring.csv", os.listdir(self.directory))
+
+
+class Path(tool.ToolTest):
+    def source_and_run(self, command):
+        setup = os.path.join(os.path.dirname(self.executable), "..", "..", "setup.bash")
+        environment = {name: os.environ[name] for name in ("HOME", "PATH") if name in os.environ}
+        return subprocess.run(["bash", "-c", f"source '{setup}' && {command}"], stdin=subprocess.DEVNULL, text=True,
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment, check=False)
+
+    def assert_runs(self, command):
+        done = self.source_and_run(command)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertEqual(done.stdout, self.succeed("--help").stdout)
+
+    def test_shell(self):
+        self.assert_runs("joint_twin --help")
+
+    @unittest.skipIf(os.path.isdir(os.path.join(tool.CHECKOUT, "build-sanitize")), "two builds: rosrun would ask which")
+    def test_rosrun(self):
+        self.assert_runs("rosrun harmonic_joint_twin joint_twin --help")
 
 
 if __name__ == "__main__":

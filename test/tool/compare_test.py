@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""`joint_twin compare`: recordings of strangers, and damaged ones."""
+"""`joint_twin compare` and `identify`: recordings of strangers, damaged ones, long ones, and of robots with
+hidden faults."""
+import io
 import json
 import math
 import os
@@ -8,6 +10,8 @@ import re
 import struct
 
 import rosbag
+import yaml
+from sensor_msgs.msg import JointState
 
 import robot
 import tool
@@ -15,28 +19,17 @@ import tool
 OPTIONS = ["--joint", "elbow", "--config", "joints/elbow.yaml"]
 GAIN = ["--set", f"telemetry.torque_per_current={robot.GAIN}"]
 REPORT = ["--report", "report", "--force"]
+TELEMETRY = ["--joint", "joint", "--topic", "/joint_twin/joint_states", "--config", "real_sensors.yaml"]
+WEIGHT = ["--set", "output.gravity_torque=45.0"]
 FIGURES = ["course", "friction", "spectrum", "teeth"]
 
 
 class Compare(tool.ToolTest):
-    def compare(self, recording, *arguments):
-        return self.succeed_json("compare", recording, *OPTIONS, *GAIN, *arguments)
+    def compare(self, recording, *arguments, environment=None):
+        return self.succeed_json("compare", recording, *OPTIONS, *GAIN, *arguments, environment=environment)
 
     def finding(self, report, title):
         return next(finding for finding in report["verdict"]["findings"] if title in finding["title"])
-
-    def damage(self, name, share, topic, places):
-        """Turns over a byte inside of messages, where the file has them, at these places in turn; how many were hit."""
-        data = bytearray(tool.read_bytes(self.path(name)))
-        at, hit = 0, 0
-        for number, (_, _, _, _, message) in enumerate(tool.raw_messages(self.path(name), [topic])):
-            at = data.index(message, at)
-            if number % round(1.0 / share) == 17:
-                data[at + places[hit % len(places)] % len(message)] ^= 0xFF
-                hit += 1
-        with open(self.path(name), "wb") as file:
-            file.write(data)
-        return hit
 
     def test_a_matplotlibrc_in_the_folder_of_the_call_has_no_influence(self):
         robot.write_bag(self.path("a.bag"), 30.0)
@@ -64,6 +57,9 @@ class Compare(tool.ToolTest):
             self.assertIn(re.sub("'.*", "", finding["text"]), page)
         with open(self.path("report/comparison.json"), encoding="utf-8") as file:
             self.assertEqual(json.load(file), report)
+        before = set(os.listdir(self.directory))
+        self.assertEqual(self.compare("a.bag"), report)
+        self.assertEqual(set(os.listdir(self.directory)), before)
         found = {line["name"]: line["found"] for line in report["contents"]["topics"]}
         self.assertEqual(found, {"/joint_states": True, "/joint_states: elbow_joint_motor": False,
                                  "/joint_twin/load": True, "sensor_msgs/Temperature of elbow_joint": False,
@@ -153,70 +149,19 @@ class Compare(tool.ToolTest):
         self.fail_with(2, ["--fail-on", "{warn,error,not-judged}"], "compare", "sound.bag", *OPTIONS, "--json",
                        "--fail-on", "ok")
 
-    def test_json_needs_no_report_and_leaves_no_file(self):
-        robot.write_bag(self.path("a.bag"), 30.0)
-        with_page = self.compare("a.bag", *REPORT)
-        before = set(os.listdir(self.directory))
-        alone = self.compare("a.bag")
-        self.assertEqual(alone, with_page)
-        self.assertEqual(set(os.listdir(self.directory)), before)
-
     def test_several_sound_recordings_are_one_reference(self):
-        def factor_of(name, *references):
-            found = self.succeed_json("compare", name, *OPTIONS, *GAIN, "--reference", *references)
-            return found["friction_factor"], found["verdict"]["level"]
-
-        for name, friction in (("low", 0.75), ("usual", 1.0), ("high", 1.25), ("again", 1.01), ("worn", 1.4)):
+        found = {}
+        for name, friction in (("low", 0.75), ("usual", 1.0), ("high", 1.25), ("worn", 1.4)):
             robot.write_bag(self.path(f"{name}.bag"), 60.0, friction)
-            self.succeed("compare", f"{name}.bag", *OPTIONS, *GAIN, "--report", name, environment=tool.NO_PAGE)
-        one, level = factor_of("worn.bag", "usual")
-        self.assertAlmostEqual(one["value"], 1.4, delta=0.02)
-        self.assertEqual(one["reference"], "own")
-        self.assertEqual(level, "WARN")
-        alike, level = factor_of("worn.bag", "usual", "again")
-        self.assertEqual(level, "WARN")
-        self.assertLess(alike["high"] / alike["low"], one["high"] / one["low"])
-        # A joint that repeats so badly when it is sound shows no fault with this factor.
-        apart, level = factor_of("worn.bag", "low", "usual", "high")
-        self.assertAlmostEqual(apart["value"], 1.4, delta=0.03)
-        self.assertGreater(apart["high"] / apart["low"], one["high"] / one["low"])
-        self.assertEqual(level, "OK")
-
-    def test_a_reference_that_was_not_judged_is_none(self):
-        robot.write_bag(self.path("short.bag"), 2.0)
-        robot.write_bag(self.path("a.bag"), 60.0, 1.3)
-        self.succeed("compare", "short.bag", *OPTIONS, *GAIN, "--report", "short", environment=tool.NO_PAGE)
-        found = self.compare("a.bag", "--reference", "short")
-        self.assertEqual(found["friction_factor"]["reference"], "twin")
-        self.assertIn("The reference did not judge this joint's friction", self.finding(found, "Friction")["text"])
-
-    def test_dropped_and_damaged_messages_change_little(self):
-        robot.write_bag(self.path("sound.bag"), 120.0)
-        robot.write_bag(self.path("bad.bag"), 120.0, dropped=0.01)
-        # A stamp, a name's length, an array's length to its highest byte, an angle, a current; a load.
-        hit = self.damage("bad.bag", 0.001, robot.STATES_TOPIC, [4, 20, -44, -41, -25, -1])
-        self.damage("bad.bag", 0.001, robot.LOAD_TOPIC, [-1])
-        self.assertGreater(hit, 10)
-        sound, bad = self.compare("sound.bag"), self.compare("bad.bag")
-        self.assertEqual(sound["reading"]["unreadable_or_impossible"], 0)
-        self.assertGreater(bad["reading"]["unreadable_or_impossible"], hit // 2)
-        self.assertLess(bad["reading"]["unreadable_or_impossible"], 2 * hit)
-        self.assertGreater(bad["reading"]["rows"], 0.985 * sound["reading"]["rows"] - hit)
-        for name in ("friction_ratio", "current"):
-            one, other = sound[name], bad[name]
-            if isinstance(one, dict):
-                one, other = one["residual_rms"], other["residual_rms"]
-            self.assertAlmostEqual(one, other, delta=0.02 * abs(one))
-
-    def test_what_is_not_the_joints_current_is_not_judged(self):
-        robot.write_bag(self.path("sound.bag"), 60.0)
-        for name, factor, note in (("zero.bag", 0.0, "it is not the motor's current"),
-                                   ("torque.bag", robot.GAIN, "expected in A, not in N.m")):
-            self.rewrite("sound.bag", name, lambda state, factor=factor: [factor * value for value in state.effort])
-            verdict = self.compare(name)["verdict"]
-            self.assertEqual(verdict["level"], "NOT JUDGED", verdict)
-            self.assertIn(note, verdict["findings"][0]["text"])
-            self.assertEqual(verdict["findings"][0]["causes"], [])
+            self.compare(f"{name}.bag", "--report", name, environment=tool.NO_PAGE)
+        for references in (("usual",), ("low", "usual", "high")):
+            report = self.compare("worn.bag", "--reference", *references)
+            factor = found[len(references)] = report["friction_factor"]
+            self.assertAlmostEqual(factor["value"], 1.4, delta=0.03)
+            self.assertEqual(factor["reference"], "own")
+            # A joint that repeats so badly when it is sound shows no fault with this factor.
+            self.assertEqual(report["verdict"]["level"], "OK" if references[1:] else "WARN")
+        self.assertGreater(found[3]["high"] / found[3]["low"], found[1]["high"] / found[1]["low"])
 
     def test_a_load_that_does_not_fit_is_not_judged(self):
         robot.write_bag(self.path("sound.bag"), 60.0, with_load=False)
@@ -238,19 +183,25 @@ class Compare(tool.ToolTest):
                     message.effort = efforts(message)
                 changed.write(topic, message, time)
 
-    def test_stamps_that_disagree_with_the_velocities_are_said(self):
-        rows = ["timestamp,actual_q_2,actual_qd_2,actual_current_2,target_moment_2"]
-        generator = random.Random(3)
-        for row in range(3000):
-            seconds = row / robot.RATE
-            angle, current, load = robot.telemetry(seconds, generator)
-            speed = 0.63 * math.cos(0.9 * seconds) + 0.46 * math.cos(2.3 * seconds)
-            rows.append(f"{0.5 * seconds:.4f},{angle:.9f},{speed:.9f},{current:.6f},{load:.6f}")
-        self.write("fast.csv", "\n".join(rows) + "\n")
-        done = self.succeed("compare", "fast.csv", *OPTIONS, "--report", "r")
-        self.assertRegex(done.stderr, r"change (2|1\.99\d+|2\.0\d+) times as fast as the recorded velocities")
-        self.assertNotIn("Warning", done.stderr)  # of Python
-        self.assertLessEqual(max(map(len, done.stdout.splitlines())), 100, done.stdout)
+    def write_long_csv(self, name, duration):
+        """Hours of telemetry as a controller's table, with columns of other joints; the motion repeats itself."""
+        values = [f"{state.position[1]:.9f},{state.effort[1]:.6f}" for _, state, _ in robot.rows(20.0 * math.pi)]
+        with open(self.path(name), "w", encoding="ascii") as file:
+            joints = (2, 1, 0)
+            file.write(",".join(["timestamp", *(f"actual_q_{i},actual_current_{i}" for i in joints)]) + "\n")
+            for row in range(int(duration * robot.RATE)):
+                file.write(f"{row / robot.RATE:.3f}" + len(joints) * ("," + values[row % len(values)]) + "\n")
+
+    def test_a_table_takes_no_more_memory_the_longer_it_is(self):
+        peaks = []
+        # Below 48 MB, which is what the reader's own buffer holds, a table fills it the more the longer it is.
+        for hours in (2.0, 4.0):
+            self.write_long_csv("long.csv", 3600.0 * hours)
+            code, took, peak = self.measure("compare", "long.csv", *OPTIONS, *REPORT, environment=tool.NO_PAGE)
+            self.assertEqual(code, 0)
+            self.assertLess(took, 3600.0 * hours / 20.0)
+            peaks.append(peak)
+        self.assertLess(peaks[1] - peaks[0], 4 * 1024 ** 2)
 
     def test_a_bag_that_was_cut_off_is_told_from_one_that_is_none(self):
         robot.write_bag(self.path("a.bag"), 60.0)
@@ -267,6 +218,164 @@ class Compare(tool.ToolTest):
         """As a recorder that was killed leaves it: the place of the index in the bag's header still 0."""
         at = data.index(b"index_pos=") + len(b"index_pos=")
         return data[:at] + struct.pack("<Q", 0) + data[at + 8:len(data) * 2 // 3]
+
+
+class HiddenFault(tool.ToolTest):
+    """Robots with other errors of manufacture than the twin's and real sensors, made by `joint_twin sweep`, whose drive
+    control holds a speed as a robot's does."""
+
+    def robot(self, name, fault=None, weight=45.0, **changes):
+        """Bag of a robot as in plans/robot.yaml, but for these parts of the plan, with this fault from the start."""
+        with open(os.path.join(tool.CHECKOUT, "plans", "robot.yaml"), encoding="utf-8") as file:
+            plan = yaml.safe_load(file)
+        plan.update(changes)
+        plan["set"]["output.gravity_torque"] = weight
+        # Half the circumference of a flange softens a gear by 5 % at K1, less than the comparison can tell.
+        plan["set"]["fault_scale.cup_crack_fraction"] = 0.95
+        faults = [{"kind": fault[0], "severity": 1.0, "place": fault[1], "onset": 0.0}] if fault else []
+        plan["classes"] = {"robot": faults}
+        self.write("plan.yaml", yaml.safe_dump(plan, sort_keys=False))
+        self.succeed("sweep", "plan.yaml", "--out", name)
+        return f"{name}/runs/run_000000000.bag"
+
+    def compare(self, recording, *arguments):
+        return self.succeed_json("compare", recording, *TELEMETRY, "--set", "output.load_inertia=2.0", *arguments)
+
+    def causes(self, report, title):
+        return next(finding["causes"] for finding in report["verdict"]["findings"] if finding["title"] == title)
+
+    def test_what_a_swinging_load_shows_is_named(self):
+        sound = self.compare(self.robot("sound", duration=25.0), "--report", "r0", *WEIGHT)
+        self.assertEqual(sound["verdict"]["level"], "OK")
+        again = self.compare("sound/runs/run_000000000.bag", *WEIGHT, "--reference", "r0")
+        self.assertEqual(again["verdict"]["level"], "OK")
+
+        grease = self.robot("grease", ("lubricant_degradation", -1), duration=25.0)
+        alone = self.compare(grease, *WEIGHT)
+        self.assertIn("lubricant_degradation", self.causes(alone, "Friction"))
+        beside = self.compare(grease, *WEIGHT, "--reference", "r0")
+        self.assertIn("lubricant_degradation", self.causes(beside, "Friction"))
+        self.assertEqual(self.causes(beside, "Torsion"), [])
+
+        crack = self.compare(self.robot("crack", ("flange_crack", -1), duration=25.0), *WEIGHT, "--reference", "r0")
+        self.assertIn("flange_crack", self.causes(crack, "Torsion"))
+        self.assertEqual(self.causes(crack, "Friction"), [])
+
+    def test_a_spalled_race_is_seen_by_its_line(self):
+        duty = [{"name": "turning", "speed": {"constant": 0.2618}, "bandwidth": 8.0, "load": {"constant": 60.0}}]
+        windows = ["--set", "indicators.window_turns=25.0", "--set", "indicators.baseline_windows=16"]
+        # The load is not in the telemetry, nor is it given to the twin.
+        self.compare(self.robot("sound", duration=110.0, duty=duty, weight=0.0), "--report", "r0", *windows)
+        spall = self.robot("spall", ("bearing_outer_race", 0), duration=40.0, duty=duty, weight=0.0)
+        report = self.compare(spall, *windows, "--reference", "r0")
+        # A line that shows alone, in a motion like no signature's, is not put down to a cause with certainty.
+        self.assertLessEqual(set(self.causes(report, "Signals by windows")), {"bearing_outer_race"})
+        self.assertEqual(report["verdict"]["level"], "ERROR")
+        signals = next(found for found in report["verdict"]["findings"] if found["title"] == "Signals by windows")
+        self.assertRegex(signals["text"], "Strongest: (error|ripple|torque)_outer")
+
+
+def write_telemetry(path, duration, faults=True):
+    """With what real recordings have: messages dropped, cut short, without a number, repeated."""
+    generator = random.Random(6)
+    with rosbag.Bag(path, "w") as bag:
+        for row, (stamp, state, load) in enumerate(robot.rows(duration)):
+            if faults and generator.random() < 0.01:
+                continue  # dropped
+            bag.write(robot.LOAD_TOPIC, load, stamp)
+            if faults and row % 1000 == 500:
+                data = io.BytesIO()
+                state.serialize(data)
+                half = data.getvalue()[:len(data.getvalue()) // 2]
+                bag.write(robot.STATES_TOPIC, (state._type, half, state._md5sum, JointState), stamp, raw=True)
+            elif faults and row % 1000 == 700:
+                state.effort[1] = float("nan")
+                bag.write(robot.STATES_TOPIC, state, stamp)
+            else:
+                bag.write(robot.STATES_TOPIC, state, stamp)
+                if faults and row % 50 == 0:
+                    bag.write(robot.STATES_TOPIC, state, stamp)  # its stamp repeated
+
+
+class Identify(tool.ToolTest):
+    def test_a_bag_with_faults_gives_gain_and_friction_and_an_overlay_that_loads(self):
+        write_telemetry(self.path("a.bag"), 60.0)
+        found = self.succeed_json("identify", "a.bag", *OPTIONS, "--out", "found.yaml", "--folds", "4")
+        values = {value["key"]: value for value in found["values"]}
+        gain = values["telemetry.torque_per_current"]
+        self.assertEqual(gain["refusal"], "")
+        self.assertLess(abs(gain["value"] - robot.GAIN), gain["half_width"] + 0.01 * robot.GAIN)
+        self.assertIn("temperature", values["bearing.viscosity_slope"]["refusal"])
+        judged = found["judged"]
+        self.assertLess(judged["identified"]["all"], 0.5 * judged["configured"]["all"])
+        self.assertEqual(found["train"][1], found["judge"][0])
+        left_out = found["left_out"]["identified"]
+        self.assertLess(left_out["all"], 0.5 * judged["configured"]["all"])
+        self.assertLess(abs(left_out["rows"] - 0.5 * judged["identified"]["rows"]), 50)
+        with open(self.path("found.yaml")) as file:
+            overlay = yaml.safe_load(file)  # as rosparam reads it
+        for key in ("ripple_circular_spline_2", "ripple_flexspline_4"):
+            self.assertEqual([type(value) for value in overlay["telemetry"][key]], [float, float])
+        self.assertTrue(all(isinstance(value, float) for value in overlay["bearing"].values()))
+        loaded = self.succeed_json("parameters", "--config", "joints/elbow.yaml", "--config", self.path("found.yaml"))
+        self.assertIn(str(gain["value"])[:8], str(loaded))
+        given = ["--set", "telemetry.load=target_moment"]
+        before = self.succeed_json("follow", "a.bag", *OPTIONS, *given)
+        after = self.succeed_json("follow", "a.bag", *OPTIONS, *given, "--config", self.path("found.yaml"), "--out",
+                                  "a.csv")
+        self.assertLess(after["current_residual_rms"], 0.5 * before["current_residual_rms"])
+        self.assertIn(after["unreadable"], range(10, 15))  # of 14 some may have been dropped
+        with open(self.path("a.csv")) as file:
+            self.assertIn("current_predicted", file.readline())
+
+        # The torque-driven twin has the identified friction too.
+        speed = 0.6  # [rad/s]
+
+        def friction(*options):
+            rows = self.succeed_json("losses", "--speeds", str(robot.RATIO * speed), "--loads", "10", "--positions",
+                                     "4",
+                                     "--config", "joints/elbow.yaml", *options)["rows"]
+            return robot.RATIO * (rows[0]["gear_loss"] + rows[0]["motor"])
+        expected = robot.COULOMB + robot.VISCOUS * speed
+        self.assertLess(abs(friction("--config", self.path("found.yaml")) - expected), 0.12 * expected)
+        self.assertGreater(abs(friction() - expected), 0.12 * expected)
+
+    def test_a_recording_without_load_is_said_and_nothing_identified_is_no_success(self):
+        robot.write_bag(self.path("no_load.bag"), 30.0, with_load=False)
+        done = self.run_tool("identify", "no_load.bag", *OPTIONS)
+        self.assertIn("holds no load", done.stderr)
+        self.assertLessEqual(max(map(len, done.stdout.splitlines())), 100, done.stdout)
+        generator = random.Random(7)
+        rows = ["timestamp,actual_q_2,actual_current_2"]
+        for row in range(3000):
+            angle, _, _ = robot.telemetry(row / robot.RATE, generator)
+            rows.append(f"{row / robot.RATE:.3f},{angle:.9f},{generator.gauss(0.0, 5.0):.6f}")
+        self.write("noise.csv", "\n".join(rows) + "\n")
+        done = self.run_tool("identify", "noise.csv", *OPTIONS, "--out", "noise.yaml")
+        self.assertEqual(done.returncode, 1, done.stdout)
+        self.assertIn("nothing could be identified", done.stderr)
+        self.assertFalse(os.path.exists(self.path("noise.yaml")))
+
+    def test_a_joint_at_rest_tells_nothing(self):
+        rows = ["timestamp,actual_q_0,actual_current_0,target_moment_0"]
+        rows += [f"{0.008 * row:.3f},0.5,0.1,1.0" for row in range(400)]
+        self.write("a.csv", "\n".join(rows) + "\n")
+        self.fail_with(1, ["the joint hardly moves"], "identify", "a.csv", "--joint", "base")
+        self.fail_with(1, ["ends before it begins"], "identify", "a.csv", "--joint", "base", "--train", 5, 1)
+        for joint in ("7", "Elbow", "left_elbow_joint"):
+            for command in (("identify",), ("compare", "--json"), ("follow",)):
+                self.fail_with(1, ["a.csv", "wrist_3", f"'{joint}'"], *command, "a.csv", "--joint", joint)
+
+    def test_a_long_bag_costs_no_more_memory_and_a_small_part_of_its_time(self):
+        peaks = []
+        for duration in (30.0, 240.0):
+            write_telemetry(self.path("long.bag"), duration, faults=False)
+            code, took, peak = self.measure("follow", "long.bag", *OPTIONS)
+            self.assertEqual(code, 0)
+            self.assertLess(took, 5.0 + duration / 20.0)
+            peaks.append(peak)
+        # The bag's own index grows, by some hundred bytes a message; two topics.
+        self.assertLess(peaks[1] - peaks[0], 200 * 2 * 125 * 210 + 2 * 1024 ** 2, peaks)
 
 
 if __name__ == "__main__":

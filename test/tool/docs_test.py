@@ -93,11 +93,11 @@ class Pages(tool.ToolTest):
         with open(os.path.join(tool.CHECKOUT, name), encoding="utf-8") as file:
             return file.read()
 
-    def shell(self, script):
+    def shell(self, script, environment=None):
         path = f"{os.path.dirname(os.path.abspath(self.executable))}:{os.environ['PATH']}"
         return subprocess.run(["bash", "-c", script], cwd=self.folder, stdout=subprocess.PIPE,
                               stderr=subprocess.STDOUT, universal_newlines=True, timeout=600 * tool.SLOWER,
-                              env=dict(os.environ, PATH=path), check=False)
+                              env=dict(os.environ, PATH=path, **(environment or {})), check=False)
 
     def test_commands_print_what_the_page_shows(self):
         for name in SHOWN:
@@ -132,7 +132,7 @@ class Pages(tool.ToolTest):
         for line in [*tries, RECORDINGS, *hour]:
             command = line.split("#")[0].strip()
             if command not in printed:
-                done = self.shell(command)
+                done = self.shell(command, tool.NO_PAGE)
                 self.assertEqual(done.returncode, 0, f"{line}\n{done.stdout}")
                 printed[command] = done.stdout
         said = {command.split(" --arm")[0]: text for command, text in printed.items()}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Units of FMI 2.0 beside those of 3.0: loaded here by their C functions. Arguments: the tool, the importer of 3.0."""
+"""Units of FMI 2.0 beside those of 3.0: loaded here by their C functions. Arguments: those of fmu_unit."""
 import ctypes
 import glob
 import os

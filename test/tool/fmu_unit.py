@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the tests of co-simulation units share: units, unpacked and run by a small importer. Arguments: the tool, the
-importer. The schema is looked for in HJT_FMI_SCHEMAS, else in shared/fmi beside the checkout."""
-import csv
+library that counts allocations. The schema is looked for in HJT_FMI_SCHEMAS, else in shared/fmi beside the checkout."""
 import os
 import shutil
 import subprocess
@@ -11,7 +10,8 @@ import zipfile
 
 import tool
 
-IMPORTER = sys.argv.pop(2)
+IMPORTER = [sys.executable, os.path.join(os.path.dirname(os.path.abspath(__file__)), "fmu_importer.py")]
+COUNTED = {**os.environ, "LD_PRELOAD": sys.argv.pop(2)}
 SCHEMAS = os.environ.get("HJT_FMI_SCHEMAS", os.path.join(os.path.dirname(tool.CHECKOUT), "shared", "fmi"))
 RATE = 10000.0
 OK, ERROR = 0, 3
@@ -26,9 +26,10 @@ class Unit:
         model = self.root.find("CoSimulation").get("modelIdentifier")
         self.library = os.path.join(folder, "binaries", os.listdir(os.path.join(folder, "binaries"))[0], model + ".so")
         self.process = subprocess.Popen(
-            [IMPORTER, self.library, self.root.get("instantiationToken"),
+            [*IMPORTER, self.library, self.root.get("instantiationToken"),
              os.path.join(os.path.basename(folder), "resources", "")], cwd=os.path.dirname(folder),
-            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True)
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True,
+            env=COUNTED)
         self.version = self.process.stdout.readline().strip()
 
     def close(self):
@@ -100,10 +101,9 @@ class Fmu(tool.ToolTest):
     def simulated(self, *options):
         """Last row of a run of the tool by the names of the unit."""
         self.succeed("simulate", "--out", self.path("run.csv"), "--force", *options)
-        with open(self.path("run.csv"), encoding="ascii") as file:
-            row = list(csv.DictReader(file))[-1]
+        row = self.rows("run.csv")[-1]
         names = {"motor_torque": "motor_torque_applied", "temperature": "grease_temperature", "brake": "brake_engaged"}
-        return {names.get(name, name): [float(value)] for name, value in row.items()
+        return {names.get(name, name): [value] for name, value in row.items()
                 if name not in ("time", "load_torque")}
 
     def assert_same(self, unit, row, instance=0):

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """`joint_twin follow`: the twin beside a recorded robot, in each mode. The robots are twins, led by a speed control,
 with the noise of real sensors; `joint_twin sweep` runs them."""
-import csv
 import glob
 import math
 import os
@@ -28,22 +27,19 @@ duty:
     load: {constant: 0.0}
 classes:
   healthy: []
-  rubbing:
-    - {kind: lubricant_degradation, severity: 1.0, place: -1, onset: 0.0}
 record: {format: bag}
 """
 
 
-def as_ur_tells(source, target, lag=0.0, both=False, joint=JOINT, eccentricity=0.0):
+def as_ur_tells(source, target, both=False, joint=JOINT, eccentricity=0.0):
     """The robot's own joint states as a UR driver publishes them; received 4 ms after their stamps, one in 50 lost.
     `eccentricity`: further error of the output encoder once a turn [rad]."""
     with rosbag.Bag(source) as robot, rosbag.Bag(target, "w") as bag:
         states = [message for _, message, _ in robot.read_messages("/joint_twin/joint_states")]
-        behind = round(lag / 0.008)
         for row, state in enumerate(states):
-            if row < behind or row % 50 == 30:
+            if row % 50 == 30:
                 continue
-            current = states[row - behind].effort[0] * RATIO / GAIN
+            current = state.effort[0] * RATIO / GAIN
             angle = state.position[1] + eccentricity * math.sin(state.position[1])
             sent = JointState(name=["elbow_joint", joint, "wrist_3_joint"], position=[0.1, angle, 0.2],
                               velocity=[0.0] * 3, effort=[0.0, current, 0.0])
@@ -59,12 +55,8 @@ class Follow(tool.ToolTest):
         super().setUp()
         self.write("plan.yaml", PLAN)
         self.succeed("sweep", "plan.yaml", "--out", "robots")
-        self.healthy, self.rubbing = sorted(glob.glob(os.path.join(self.path("robots"), "runs", "*.bag")))
+        self.healthy, = glob.glob(os.path.join(self.path("robots"), "runs", "*.bag"))
         as_ur_tells(self.healthy, self.path("a.bag"))
-
-    def rows(self, name):
-        with open(self.path(name)) as file:
-            return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
 
     def test_every_mode_fills_the_same_fields_and_keeps_a_healthy_joint_within_its_band(self):
         fields = set()
@@ -86,16 +78,6 @@ class Follow(tool.ToolTest):
         torque = self.rows("torque.csv")
         self.assertLess(max(abs(row["velocity_residual"]) for row in torque), 0.2)
 
-    def test_a_fault_shows_in_the_residual_with_one_encoder_and_with_both(self):
-        as_ur_tells(self.rubbing, self.path("worn.bag"))
-        as_ur_tells(self.rubbing, self.path("both.bag"), both=True)
-        for bag, mode in (("worn.bag", "motion"), ("worn.bag", "observer"), ("both.bag", "observer")):
-            summary = self.succeed_json("follow", bag, *OPTIONS, "--mode", mode, "--out", "worn.csv", "--force")
-            moving = [row for row in self.rows("worn.csv") if abs(row["velocity_measured"]) > 0.6]
-            more = sum(math.copysign(1.0, row["velocity_measured"]) * row["current_residual"]
-                       for row in moving) / len(moving)
-            self.assertGreater(more, 0.3, (bag, mode, summary))
-
     def test_both_encoders_agree_within_the_band_of_the_angle(self):
         as_ur_tells(self.healthy, self.path("both.bag"), both=True)
         self.succeed("follow", "both.bag", *OPTIONS, "--mode", "observer", "--out", "both.csv")
@@ -103,11 +85,6 @@ class Follow(tool.ToolTest):
         inside = sum(abs(row["position_residual"]) < row["position_band"] for row in rows)
         self.assertGreater(inside, 0.97 * len(rows))
         self.assertEqual(sum(row["outside_band"] for row in rows), 0)
-
-    def test_a_current_that_comes_late_is_told(self):
-        as_ur_tells(self.healthy, self.path("late.bag"), lag=0.024)
-        lags = {bag: self.succeed_json("follow", bag, *OPTIONS)["lag"] for bag in ("a.bag", "late.bag")}
-        self.assertAlmostEqual(lags["late.bag"] - lags["a.bag"], 0.024, delta=0.008)
 
     def test_what_cannot_be_is_refused_with_its_reason(self):
         self.fail_with(2, ["--mode"], "follow", "a.bag", *OPTIONS, "--mode", "guess")
@@ -127,7 +104,7 @@ class SoundJoint(tool.ToolTest):
         options = ["--joint", joint, "--config", overlay, "--set", f"output.gravity_torque={weight}"]
         plan = PLAN.replace("joints/base.yaml", overlay).replace("duration: 8.0", "duration: 20.0")
         plan = plan.replace("set: {", f"set: {{output.gravity_torque: {weight}, sensors.output_eccentricity: 0.0, ")
-        self.write("plan.yaml", plan[:plan.index("  rubbing:")] + plan[plan.index("record:"):])
+        self.write("plan.yaml", plan)
         self.succeed("sweep", "plan.yaml", "--out", "robots")
         run, = glob.glob(os.path.join(self.path("robots"), "runs", "*.bag"))
         name = {"base": JOINT}.get(joint, joint + "_joint")
@@ -156,9 +133,6 @@ class SoundJoint(tool.ToolTest):
     def compare(self, report, *options):
         done = self.succeed_json("compare", "eccentric.bag", *options, "--report", report, environment=tool.NO_PAGE)
         return done["compliance_ratio"], done["verdict"]["level"], done["verdict"]["findings"][1]["text"]
-
-    def test_with_size_25_is_sound(self):
-        self.judge_joint("base", "joints/base.yaml", 45.0)
 
     def test_with_size_14_is_sound(self):
         """An output encoder's usual error is half the torsion of this gear by its weight."""

@@ -10,8 +10,7 @@ import subprocess
 import time
 
 import tool
-from check_test import swinging, write_csv
-from recorded import states, write_bag, write_db3, write_mcap
+from recorded import states, swinging, write_bag, write_csv, write_db3, write_mcap
 
 MEMORY = 4 << 30  # of a reader [byte]
 SECONDS = 20.0  # for a file
@@ -62,8 +61,12 @@ class Fuzz(tool.ToolTest):
         with open(os.path.join(CONFIG, "ur5.yaml"), encoding="utf-8") as file:
             self.write("arm.yaml", file.read())
         self.write("ur5.urdf", urdf.decode())
+        tool.write_recording(self.path("in.bag"))
         kinds = [(write_csv(self.path("a.csv"), columns), ["check", "a.csv", "--arm", "ur5", "--json"]),
                  (write_bag(self.path("a.bag"), states(columns)), ["check", "a.bag", "--arm", "ur5", "--json"]),
+                 (write_bag(self.path("a.bz2.bag"), states(columns), compression="bz2"), ["check", "a.bz2.bag"]),
+                 (write_bag(self.path("a.lz4.bag"), states(columns), compression="lz4"), ["check", "a.lz4.bag"]),
+                 (self.path("in.bag"), ["replay", "in.bag", "--out", "out.bag", "--force"]),
                  (write_db3(self.path("a.db3"), states(columns)), ["check", "a.db3", "--arm", "ur5", "--json"]),
                  (write_mcap(self.path("a.mcap"), states(columns)), ["check", "a.mcap", "--arm", "ur5", "--json"]),
                  (self.path("ur5.urdf"), ["checkup", "--arm", "arm.yaml", "--out", "motion.csv", "--force"]),

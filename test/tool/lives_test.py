@@ -64,13 +64,13 @@ class Lives(tool.ToolTest):
             self.lives(self.made, "--jobs", 1)
         os.symlink(self.made, self.path(out))
 
-    def rows(self, out):
+    def index(self, out):
         with open(self.path(out + "/index.csv")) as file:
             return list(csv.DictReader(file))
 
     def test_lives_go_from_new_to_the_end_with_the_wear_as_faults_and_labels(self):
         self.read_only("a")
-        rows = self.rows("a")
+        rows = self.index("a")
         drives = {}
         for row in rows:
             self.assertEqual((row["status"], row["class"]), ("ok", "life"))
@@ -122,8 +122,7 @@ class Lives(tool.ToolTest):
                    .replace("longest: 70000.0", f"longest: {longest}"))
         self.succeed("life", "age", "rated.csv", "--grease-changes", "--positions", 8, "--hours", longest,
                      "--every", every, "--csv", "nominal.csv")
-        with open(self.path("nominal.csv")) as file:
-            nominal = {float(row["hours"]): float(row["interface_wear"]) for row in csv.DictReader(file)}
+        nominal = {row["hours"]: row["interface_wear"] for row in self.rows("nominal.csv")}
         rows = list(csv.DictReader(self.lives("unused", "--list").stdout.splitlines()))
         check_ups = [{name[5:]: row[name] for name in row if name.startswith("life.")} for row in rows
                      if row["duty"] == "check_up" and float(row["life.interface_factor"]) < 1.0]

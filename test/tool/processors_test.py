@@ -11,29 +11,10 @@ import subprocess
 import sys
 
 import arm_twin_test
-import sweep_case
+import sweep_test
 import tool
 
-PLAN = """
-name: test
-seed: 7
-duration: 0.03
-overlays: [real_sensors.yaml]
-set:
-  output.load_inertia: {log_uniform: [0.5, 2.0]}
-repeats: 2
-duty:
-  - name: turning
-    speed: {sinus: {mean: 0.5, amplitude: {uniform: [0.5, 1.5]}, frequency: 8.0, phase: 0.0}}
-    bandwidth: 8.0
-    load: {constant: 5.0}
-record:
-  format: hdf5
-  start: 0.01
-  deflate: 0
-  groups:
-    signals: {rate: 500.0, type: float64, columns: [motor_angle_encoder, motor_torque_reading]}
-"""
+PLAN = sweep_test.PLAN.replace("duration: 0.06", "duration: 0.03").replace("repeats: 3", "repeats: 1")
 # A table of a small range, which is built as any other.
 NARROW = ["--set", "output.load_torque_limit=20.0", "--set", "motor.torque_limit=0.19"]
 # Of the C library the functions for processors without FMA, whose last digits are others.
@@ -59,7 +40,7 @@ class SameBytes(tool.ToolTest):
                 os.mkdir(self.path(folder))
                 self.run_on(place, *arguments, "--out", os.path.join(folder, out),
                             environment={**cache, **(environment if place is None else {})})
-                results.append(sweep_case.tree(self.path(folder)))
+                results.append(sweep_test.tree(self.path(folder)))
             self.assertTrue(any(name.startswith(out) for name in results[0]))
             self.assertEqual(any(name.endswith(".bin") for name in results[0]), own_cache)
             self.assertEqual(results[0].keys(), results[1].keys())

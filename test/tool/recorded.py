@@ -1,32 +1,87 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes recordings as ROS 1 and ROS 2 do: .bag, .db3, .mcap."""
+"""A made-up UR5 and its recordings, as a controller, ROS 1 and ROS 2 write them: tables, .bag, .db3, .mcap."""
+import functools
+import os
 import sqlite3
 import struct
+import subprocess
+import tempfile
 
 import genpy
+import numpy as np
 import rosbag
 from sensor_msgs.msg import JointState
 
 import tool
 
 JOINTS = tool.JOINT_NAMES
+NAMES = ["base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3"]
+GAINS = [10.7, 10.7, 10.7, 10.21, 11.9, 11.92]  # of config/arms/ur5.yaml [N.m/A]
 
 
-def states(columns, prefix="", suffix="", start=tool.START):
+def swinging(seconds=40.0, period=0.008):
+    """Its motion from the stretched, level pose, with friction alone: columns as those of a controller."""
+    time = np.arange(0.0, seconds, period)
+    columns = {"timestamp": time}
+    noise = np.random.default_rng(3)
+    for joint in range(6):
+        rate = 0.7 + 0.17 * joint
+        columns[f"actual_q_{joint}"] = 0.6 * np.sin(rate * time)
+        columns[f"actual_qd_{joint}"] = 0.6 * rate * np.cos(rate * time)
+        friction = 10.0 * np.sign(columns[f"actual_qd_{joint}"])
+        columns[f"actual_current_{joint}"] = friction / GAINS[joint] + noise.normal(0.0, 0.05, len(time))
+    return columns
+
+
+@functools.lru_cache(maxsize=None)
+def predicted(executable, seconds, period, arm, *changes):
+    """Currents that the twins of an arm predict for that motion, and the friction in them, by joint [A]. `changes`: of
+    their parameters."""
+    columns = swinging(seconds, period)
+    with tempfile.TemporaryDirectory() as folder:
+        motion = write_csv(os.path.join(folder, "motion.csv"), columns)
+        subprocess.run([executable, "follow", motion, "--arm", arm, "--out", os.path.join(folder, "out"),
+                        *(word for change in changes for word in ("--set", change))], check=True,
+                       stdout=subprocess.DEVNULL)
+        rows = [tool.read_columns(os.path.join(folder, "out", f"{name}.csv")) for name in NAMES]
+    return [[np.interp(columns["timestamp"], own["time"], values)
+             for values in (own["current_predicted"], own["friction_torque"] / gain)] for own, gain in zip(rows, GAINS)]
+
+
+def sound(test, seconds=40.0, period=0.008, arm="ur5", raised=(), share=0.3, changes=()):
+    """The same with the currents that the twins predict, friction of these joints raised by a share, and some noise."""
+    columns = swinging(seconds, period)
+    noise = np.random.default_rng(7)
+    for joint, (current, friction) in enumerate(predicted(test.executable, seconds, period, arm, *changes)):
+        more = share * friction if NAMES[joint] in raised else 0.0
+        columns[f"actual_current_{joint}"] = current + more + noise.normal(0.0, 0.02, len(current))
+    return columns
+
+
+def write_csv(path, columns):
+    with open(path, "w", encoding="ascii") as file:
+        file.write(",".join(columns) + "\n")
+        for row in zip(*columns.values()):
+            file.write(",".join(f"{value:.15g}" for value in row) + "\n")
+    return path
+
+
+def states(columns, prefix="", suffix="", start=tool.START, left_out=None):
     """(seconds, JointState) of each row."""
+    joints = [joint for joint in range(6) if joint != left_out]
     for row, seconds in enumerate(columns["timestamp"]):
-        of = {quantity: [columns[f"actual_{quantity}_{joint}"][row] for joint in range(6)]
+        of = {quantity: [columns[f"actual_{quantity}_{joint}"][row] for joint in joints]
               for quantity in ("q", "qd", "current")}
-        state = JointState(name=[prefix + name + suffix for name in JOINTS], position=of["q"], velocity=of["qd"],
-                           effort=of["current"])
+        state = JointState(name=[prefix + JOINTS[joint] + suffix for joint in joints], position=of["q"],
+                           velocity=of["qd"], effort=of["current"])
         state.header.stamp = genpy.Time(start) + genpy.Duration.from_sec(seconds)
         yield seconds, state
 
 
-def write_bag(path, messages, recorded_from=tool.START):
-    with rosbag.Bag(path, "w") as bag:
+def write_bag(path, messages, compression="none"):
+    with rosbag.Bag(path, "w", compression=compression) as bag:
         for seconds, state in messages:
-            bag.write("/joint_states", state, genpy.Time(recorded_from) + genpy.Duration.from_sec(seconds + 0.0005))
+            bag.write("/joint_states", state, genpy.Time(tool.START) + genpy.Duration.from_sec(seconds + 0.0005))
     return path
 
 

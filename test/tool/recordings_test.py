@@ -1,8 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Recordings as people have them: formats, names, tables, and what a recorder or a driver did to the rows."""
+"""Recordings as people have them: formats, names, tables, what a recorder or a driver did to the rows, and files made
+to exhaust a reader."""
 import io
 import json
 import os
+import shutil
+import sqlite3
+import struct
 import subprocess
 
 import genpy
@@ -11,8 +15,7 @@ import rosbag
 from sensor_msgs.msg import JointState
 
 import tool
-from check_test import sound, swinging, write_csv
-from recorded import states, write_bag, write_db3, write_mcap
+from recorded import record, sound, states, swinging, text, write_bag, write_csv, write_db3, write_mcap
 
 
 class RecordingTest(tool.ToolTest):
@@ -91,14 +94,17 @@ class Recordings(RecordingTest):
         self.fail_with(1, ["a.bag", "rosbag reindex"], "check", "a.bag")
 
     def test_tables_as_programs_write_them(self):
-        for separator in (" ", "\t", ";", "  ", ", "):
-            name = write_csv(self.path("a.csv"), self.columns)
-            with open(name, encoding="ascii") as file:
-                lines = file.read().splitlines()
-            for header in (str, lambda line: "# " + line, lambda line: '"' + line.replace(",", '","') + '"'):
-                with open(self.path("a.txt"), "w", encoding="utf-8") as file:
-                    file.write("\ufeff" + "\r\n".join([header(lines[0])] + lines[1:]).replace(",", separator) + "\r\n")
-                self.assert_as_plain(self.check("a.txt"))
+        with open(write_csv(self.path("a.csv"), self.columns), encoding="ascii") as file:
+            lines = file.read().splitlines()
+        headers = (str, lambda line: "# " + line, lambda line: '"' + line.replace(",", '","') + '"')
+        for separator, header in ((" ", headers[1]), ("\t", headers[2]), (";", headers[0]), ("  ", headers[0]),
+                                  (", ", headers[2])):
+            with open(self.path("a.txt"), "w", encoding="utf-8") as file:
+                file.write("\ufeff" + "\r\n".join([header(lines[0])] + lines[1:]).replace(",", separator) + "\r\n")
+            self.assert_as_plain(self.check("a.txt"))
+        with open(self.path("cr.csv"), "w", encoding="ascii", newline="") as file:
+            file.write("\r".join(lines))
+        self.assert_as_plain(self.check("cr.csv"))
         with open(self.path("comma.csv"), "w", encoding="ascii") as file:
             file.write("\n".join([lines[0].replace(",", ";")] +
                                  [line.replace(",", ";").replace(".", ",") for line in lines[1:]]))
@@ -143,27 +149,6 @@ class Recordings(RecordingTest):
                 self.assertFalse(found["usable"])
         whole = dict(self.columns, actual_q_4=np.full(len(times), np.nan))
         self.fail_with(1, ["'actual_q_4'"], "check", write_csv(self.path("a.csv"), whole), "--arm", "ur5")
-
-    def test_angles_in_degrees_are_no_second_source(self):
-        noise = np.random.default_rng(4)
-        rows = list(states(self.columns))
-        for _, state in rows:
-            state.position = [float(np.degrees(angle + noise.normal(0.0, 1e-4))) for angle in state.position]
-            state.velocity = list(np.degrees(state.velocity))
-        write_bag(self.path("a.bag"), rows)
-        found = self.check("a.bag", "--arm", "ur5")
-        self.assertEqual([finding["kind"] for finding in found["findings"]], ["angle_unit"])
-
-    def test_a_current_of_the_other_sign_is_named_and_no_payload(self):
-        changed = dict(self.columns)
-        for name in ("actual_current_2", "actual_q_3", "actual_qd_3"):
-            changed[name] = -changed[name]
-        write_csv(self.path("a.csv"), changed)
-        arm = self.succeed_json("compare", "a.csv", "--arm", "ur5")
-        levels = {joint["joint"]: joint["verdict"]["level"] for joint in arm["joints"]}
-        self.assertEqual((levels["elbow"], levels["wrist_1"]), ("NOT JUDGED", "NOT JUDGED"))
-        self.assertIn("sign", arm["text"])
-        self.assertIsNone(arm["payload_mass"])
 
     def test_a_cut_line_and_rows_without_numbers_are_left_out(self):
         name = write_csv(self.path("a.csv"), self.columns)
@@ -235,6 +220,29 @@ class Recordings(RecordingTest):
         write_bag(self.path("a.bag"), apart)
         self.fail_with(1, ["never in the same message"], "follow", "a.bag", "--arm", "ur5")
 
+    def test_a_joint_without_efforts_holds_up_no_other(self):
+        none = np.full(len(self.columns["timestamp"]), np.nan)
+        columns = dict(self.columns, actual_current_4=none)
+        arm = self.succeed_json("compare", write_csv(self.path("a.csv"), columns), "--arm", "ur5")
+        self.assertEqual([joint["level"] for joint in arm["joints"]], ["OK"] * 4 + ["NOT JUDGED", "OK"])
+        found = self.check(write_bag(self.path("a.bag"), states(columns)), "--arm", "ur5")
+        self.assertEqual([joint["name"] for joint in found["joints"] if not joint["judged"]], ["wrist_2"])
+        self.assertIn("never a number", " ".join(found["remarks"]))
+
+    def test_fewer_efforts_than_names_are_nobodys(self):
+        rows = list(states(self.columns))
+        for _, state in rows:
+            state.name = ["finger_joint"] + state.name
+            state.position = [0.3] + state.position
+            state.velocity = [0.0] + state.velocity
+        write_bag(self.path("a.bag"), rows)
+        self.fail_with(1, ["effort"], "compare", "a.bag", "--arm", "ur5", "--json")
+        self.fail_with(1, ["fewer efforts than names"], "compare", "a.bag", "--joint", "elbow", "--json")
+        for _, state in rows:  # the gripper last: whose they are is plain
+            for field in ("name", "position", "velocity"):
+                setattr(state, field, getattr(state, field)[1:] + getattr(state, field)[:1])
+        self.succeed("compare", write_bag(self.path("b.bag"), rows), "--joint", "elbow", "--json")
+
     def test_an_arm_in_parts_is_put_together(self):
         rows = []
         for row, (seconds, state) in enumerate(states(self.columns)):
@@ -249,19 +257,6 @@ class Recordings(RecordingTest):
         self.assertEqual([finding for finding in found["findings"] if finding["stops"]], [])
         self.assertTrue(found["usable"])
 
-    def test_folded_angles_are_unfolded(self):
-        for low in (-np.pi, 0.0):
-            rows = list(states(dict(self.columns, **{f"actual_q_{joint}": self.columns[f"actual_q_{joint}"] + 3.0
-                                                     for joint in (0, 4)})))
-            for _, state in rows:
-                state.position = [(angle - low) % (2.0 * np.pi) + low for angle in state.position]
-            write_bag(self.path("folded.bag"), rows)
-            found = self.check("folded.bag")
-            folded = np.array([state.position for _, state in rows])
-            jumps = int((np.abs(np.diff(folded, axis=0)) > np.pi).sum())
-            self.assertIn(f"folded into one turn: unwrapped, {jumps} jumps of 2 pi", found["remarks"][0])
-            self.assertLess(max(joint["most_speed"] for joint in found["joints"]), 2.0)
-
     def test_rows_that_no_source_measured_are_left_out(self):
         def spoil(joints, fields):
             rows = list(states(self.columns))
@@ -271,22 +266,12 @@ class Recordings(RecordingTest):
                     setattr(rows[row][1], field, [0.0 if i in joints else value for i, value in enumerate(values)])
             return rows, len(range(50, len(rows), 61))
         whole = ("position", "velocity", "effort")
-        for joints, fields in ((range(6), whole), ((2,), whole), (range(6), whole[1:]), (range(6), whole[:1])):
+        for joints, fields in (((2,), whole), (range(6), whole[1:])):
             rows, spoilt = spoil(joints, fields)
             write_bag(self.path("zeros.bag"), rows)
             found = self.check("zeros.bag")
             self.assertEqual(found["unreadable"], spoilt, (joints, fields))
             self.assert_as_plain(found, rows=len(rows) - spoilt)
-
-    def test_rows_of_a_table_without_currents_are_left_out(self):
-        count = len(self.columns["timestamp"])
-        spoilt = np.arange(50, count, 61)
-        columns = {name: values.copy() for name, values in self.columns.items()}
-        for joint in range(6):
-            columns[f"actual_current_{joint}"][spoilt] = 0.0
-        found = self.check(write_csv(self.path("zeros.csv"), columns))
-        self.assertEqual(found["unreadable"], len(spoilt))
-        self.assert_as_plain(found, rows=count - len(spoilt))
 
     def test_two_sources_are_told(self):
         rows = list(states(self.columns))
@@ -305,17 +290,6 @@ class Recordings(RecordingTest):
             self.assertIn(part, found["findings"][0]["text"])
             self.assertEqual(found["next"], [])
             self.assertIn(part, self.succeed_json("compare", "two.bag", "--arm", "ur5")["text"].lower())
-
-    def test_two_arms_under_the_same_names_are_two_sources(self):
-        rows = list(states(self.columns))
-        other = [(seconds + 0.003, state) for seconds, state in states(
-            {name: np.roll(values, 900) if name != "timestamp" else values for name, values in self.columns.items()})]
-        for _, state in other:
-            state.header.stamp += genpy.Duration.from_sec(0.003)
-        write_bag(self.path("two.bag"), sorted(rows + other[::2], key=lambda row: row[0]))
-        found = self.check("two.bag", "--arm", "ur5")
-        self.assertFalse(found["usable"])
-        self.assertIn("two sources", found["findings"][0]["text"])
 
     def test_rounds_of_a_loop_and_rows_before_the_time(self):
         rows = list(states(self.columns))[5:]  # in the first all angles are exactly zero
@@ -393,6 +367,102 @@ class Recordings(RecordingTest):
                 bag.write("/joint_states", (JointState._type, bytes_of, "d41d8cd98f00b204e9800998ecf8427e", JointState),
                           genpy.Time(tool.START) + genpy.Duration.from_sec(seconds), raw=True)
         self.assert_as_plain(self.check("md5.bag"))
+
+
+class Rows(RecordingTest):
+    def remark(self, found, part):
+        self.assertTrue([remark for remark in found["remarks"] if part in remark], found["remarks"])
+
+    def test_tables_of_other_programs_are_read_or_named(self):
+        names = {f"actual_{part}_{joint}": f"/joint_states/{name}/{quantity}"
+                 for part, quantity in (("q", "position"), ("qd", "velocity"), ("current", "effort"))
+                 for joint, name in enumerate(tool.JOINT_NAMES)}
+        names["timestamp"] = "__time"
+        juggler = {names[name]: values for name, values in self.columns.items()}
+        self.assert_as_plain(self.check(write_csv(self.path("juggler.csv"), juggler)))
+        for time in ("time", "t"):
+            columns = {time if name == "timestamp" else name: values for name, values in self.columns.items()}
+            self.assert_as_plain(self.check(write_csv(self.path("time.csv"), columns)))
+        self.write("echo.csv", "%time,field.header.seq,field.name0,field.position0\n1,2,elbow_joint,0.1\n")
+        self.write("bagpy.csv", "Time,header.seq,header.stamp.secs,name_0,position_0\n1,2,3,elbow_joint,0.1\n")
+        self.write("lists.csv", 'time,position,effort\n1,"[0.1, 0.2]","[1, 2]"\n')
+        for name, way in (("echo", "rostopic echo -p"), ("bagpy", "bagpy"), ("lists", "lists in its cells")):
+            self.fail_with(1, [way, "the bag"], "check", name + ".csv", "--arm", "ur5")
+            self.fail_with(1, [way, "the bag"], "compare", name + ".csv", "--arm", "ur5")
+
+    def test_names_that_tell_no_joint_and_angles_that_are_not_there_are_named(self):
+        messages = list(states(self.columns))[:1000]
+        for _, state in messages:
+            state.name = 6 * [""]
+        self.fail_with(1, ["the joints have no names"], "check", write_bag(self.path("blank.bag"), messages))
+        for _, state in messages:
+            state.name = [name + "/position" for name in tool.JOINT_NAMES]
+        self.fail_with(1, ["the names carry the quantity"], "check", write_bag(self.path("split.bag"), messages))
+        for _, state in messages:
+            state.name, state.position = tool.JOINT_NAMES, []
+        done = self.run_tool("check", write_bag(self.path("empty.bag"), messages))
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("their position is empty", done.stdout)
+
+    def test_a_payload_that_the_controller_states_counts(self):
+        columns = {**self.columns, "payload": np.full(len(self.columns["timestamp"]), 1.5),
+                   **{f"payload_cog_{i}": np.zeros(len(self.columns["timestamp"])) for i in range(3)}}
+        self.remark(self.check(write_csv(self.path("payload.csv"), columns), "--arm", "ur5"),
+                    "payload of 1.5 kg, as the controller states")
+
+    def test_a_database_is_read_without_writing_beside_it(self):
+        folder = self.path("disk")
+        os.mkdir(folder)
+        path = write_db3(os.path.join(folder, "a.db3"), states(self.columns))
+        database = sqlite3.connect(path)
+        database.execute("PRAGMA journal_mode=WAL")
+        database.close()
+        os.chmod(folder, 0o555)
+        self.addCleanup(os.chmod, folder, 0o755)
+        self.assert_as_plain(self.check(path))
+        self.assertEqual(os.listdir(folder), ["a.db3"])
+        os.chmod(folder, 0o755)
+        database = sqlite3.connect(path)  # as a recorder that was killed: rows in the -wal alone
+        database.execute("INSERT INTO messages(topic_id, timestamp, data) SELECT topic_id, timestamp + 1, x'00' FROM "
+                         "messages LIMIT 1")
+        database.commit()
+        os.mkdir(self.path("killed"))
+        for name in os.listdir(folder):
+            shutil.copy(os.path.join(folder, name), self.path("killed"))
+        database.close()
+        before = sorted(os.listdir(self.path("killed")))
+        self.assertIn("a.db3-wal", before)
+        self.assertEqual(self.check(self.path("killed/a.db3"))["unreadable"], 1)
+        self.assertEqual(sorted(os.listdir(self.path("killed"))), before)
+
+    def test_a_database_whose_tables_are_views_is_refused(self):
+        endless = "AS WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n) SELECT "
+        for name, columns in (("topics", "x AS id, 'a' AS name, 'b' AS type, 'cdr' AS serialization_format FROM n"),
+                              ("messages", "x AS id, 7 AS topic_id, x AS timestamp, zeroblob(99999) AS data FROM n")):
+            path = write_db3(self.path(name + ".db3"), list(states(self.columns))[:10])
+            database = sqlite3.connect(path)
+            database.execute(f"DROP TABLE {name}")
+            database.execute(f"CREATE VIEW {name} {endless}{columns}")
+            database.commit()
+            database.close()
+            self.fail_with(1, [f"without the table '{name}'"], "check", path)
+
+    def test_chunks_of_an_mcap_take_no_memory_without_end(self):
+        deep = b""
+        for _ in range(5000):
+            deep = record(6, struct.pack("<QQQI", 0, 0, len(deep), 0) + text("") + struct.pack("<Q", len(deep)) + deep)
+        files = [deep]
+        if shutil.which("zstd"):
+            zeros = subprocess.run(["zstd", "-q", "-c"], input=bytes(1 << 28), stdout=subprocess.PIPE,
+                                   check=True).stdout
+            files.append(record(6, struct.pack("<QQQI", 0, 0, 1 << 28, 0) + text("zstd") +
+                                struct.pack("<Q", len(zeros)) + zeros))
+        for data in files:
+            with open(self.path("bomb.mcap"), "wb") as file:
+                file.write(b"\x89MCAP0\r\n" + data + b"\x89MCAP0\r\n")
+            code, _, peak = self.measure("check", "bomb.mcap")
+            self.assertEqual(code, 1)
+            self.assertLess(peak, 200e6)
 
 
 if __name__ == "__main__":

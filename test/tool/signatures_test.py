@@ -49,7 +49,7 @@ class Signatures(tool.ToolTest):
         self.assertIn(old, PLAN)
         return self.write("other.yaml", PLAN.replace(old, new))
 
-    def rows(self, name):
+    def signatures(self, name):
         """(file, rows of a cause and motion: severity, change by indicator)."""
         with open(self.path(name), encoding="utf-8") as file:
             content = yaml.safe_load(file)
@@ -62,10 +62,10 @@ class Signatures(tool.ToolTest):
     def test_differences_between_faulty_and_sound_runs(self):
         report = self.succeed_json("signatures", "plan.yaml", "--out", "mine.yaml", "--runs", "runs")
         self.assertEqual((report["done"], report["failed"]), (8, 0))
-        content, rows = self.rows("mine.yaml")
+        content, rows = self.signatures("mine.yaml")
         self.assertEqual(content["gear"], "mine")
         self.assertEqual(sum(map(len, rows.values())), 12 + KINEMATIC_ROWS)
-        shipped, _ = self.rows(os.path.join(tool.CHECKOUT, "config/signatures/size_25.yaml"))
+        shipped, _ = self.signatures(os.path.join(tool.CHECKOUT, "config/signatures/size_25.yaml"))
         self.assertEqual((content["errors"], content["carried"]), (shipped["errors"], shipped["carried"]))
 
         grease = rows["lubricant_degradation", "rocking"]
@@ -95,11 +95,11 @@ class Signatures(tool.ToolTest):
                      f"indicators.signatures={self.path('mine.yaml')}")
         again = self.succeed_json("signatures", "plan.yaml", "--out", "again.yaml", "--runs", "runs")
         self.assertEqual((again["done"], again["present"]), (0, 8))
-        self.assertEqual(self.rows("again.yaml")[1], rows)
+        self.assertEqual(self.signatures("again.yaml")[1], rows)
 
         # Behind those of a file: of runs twice, of kinematics once.
         self.succeed("signatures", "plan.yaml", "--out", "both.yaml", "--runs", "runs", "--add", "mine.yaml")
-        both, added = self.rows("both.yaml")
+        both, added = self.signatures("both.yaml")
         self.assertEqual(added, {key: own * (1 if key[1] == "kinematics" else 2) for key, own in rows.items()})
         self.assertEqual(both["errors"], content["errors"])
         self.fail_with(1, ["none.yaml", "cannot be read"], "signatures", "plan.yaml", "--out", "x.yaml", "--add",
@@ -108,7 +108,7 @@ class Signatures(tool.ToolTest):
     def test_torque_of_kinematic_lines_goes_with_the_gear(self):
         plan = self.changed("{grid: [20.0, 40.0]}", "20.0")
         self.succeed("signatures", plan, "--out", "small.yaml", "--config", "size_14.yaml")
-        _, rows = self.rows("small.yaml")
+        _, rows = self.signatures("small.yaml")
         largest = max(change["torque_inner"] for _, change in rows["bearing_inner_race", "kinematics"])
         self.assertAlmostEqual(largest, 1e-2 * 7.8 / 67.0, delta=1e-5)
 

@@ -12,7 +12,7 @@ import numpy
 import rosbag
 
 import tool
-from sweep_case import SweepTest, tree
+from sweep_test import SweepTest, tree
 
 PLAN = """
 arm: ur5

@@ -7,11 +7,70 @@ import resource
 import shutil
 import signal
 import subprocess
+import time
 
 import h5py
 
 import tool
-from sweep_case import DRIVES, OF_DRIVES, PLAN, RUNS, SweepTest, tree
+
+PLAN = """
+name: test
+seed: 7
+duration: 0.06
+overlays: [real_sensors.yaml]
+set:
+  input.temperature: {grid: [10.0, 40.0]}
+  output.load_inertia: {log_uniform: [0.5, 2.0]}
+repeats: 3
+duty:
+  - name: turning
+    speed: {sinus: {mean: 0.5, amplitude: {uniform: [0.5, 1.5]}, frequency: 8.0, phase: 0.0}}
+    bandwidth: 8.0
+    load: {constant: 5.0}
+record:
+  format: hdf5
+  start: 0.01
+  deflate: 0
+  groups:
+    signals: {rate: 500.0, type: float32, columns: [motor_angle_encoder, motor_torque_reading]}
+    teeth: {rate: 100.0, type: float64, columns: [mesh_force, joint_torque]}
+"""
+RUNS = 6
+DRIVES = "drives: {number: 4, set: {bearing.viscosity: {log_uniform: [1.0e-4, 2.0e-4]}}}\n"
+OF_DRIVES = PLAN.replace("repeats: 3", DRIVES + "repeats: 3")
+
+
+def tree(directory):
+    """Bytes of every file below."""
+    return {os.path.relpath(os.path.join(path, name), directory): tool.read_bytes(os.path.join(path, name))
+            for path, _, names in os.walk(directory) for name in names}
+
+
+class SweepTest(tool.ToolTest):
+
+    def setUp(self):
+        super().setUp()
+        self.write("plan.yaml", PLAN)
+
+    def sweep(self, out, *arguments, plan="plan.yaml"):
+        return self.succeed("sweep", plan, "--out", out, *arguments)
+
+    def index(self, out):
+        with open(self.path(out + "/index.csv")) as file:
+            return list(csv.DictReader(file))
+
+    def start(self, plan, out, *arguments):
+        return subprocess.Popen([self.executable, "sweep", plan, "--out", out, *arguments], cwd=self.directory,
+                                stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+
+    def wait_for_runs(self, out, count):
+        deadline = time.monotonic() + 60.0 * tool.SLOWER
+        while time.monotonic() < deadline:
+            runs = self.path(out + "/runs")
+            if os.path.isdir(runs) and sum(name.endswith(".h5") for name in os.listdir(runs)) >= count:
+                return
+            time.sleep(0.005)
+        self.fail("no runs")
 
 
 class Sweep(SweepTest):
@@ -275,6 +334,17 @@ class Sweep(SweepTest):
                     self.assertIn("3 runs done, 3 were there, 0 failed, 3 damaged ones done again",
                                   self.sweep(name).stderr)
                     self.assertEqual(tree(self.path(name)), before)
+
+    def test_a_full_disk_leaves_no_half_run(self):
+        plan = PLAN.replace("0.06", "3.0").replace("100.0", "1000.0").replace("repeats: 3", "repeats: 1")
+        for name, text in (("hdf5", plan), ("bag", plan[:plan.index("  format:")] + "  format: bag\n")):
+            with self.subTest(name):
+                self.write("plan.yaml", text)
+                done = self.run_with_file_limit(2000000, "sweep", "plan.yaml", "--out", name, "--jobs", 1)
+                self.assertEqual((done.returncode, done.stdout), (1, ""), done.stderr)
+                self.assertRegex(done.stderr, "run_00000000.* cannot be written")
+                self.assertEqual(os.listdir(self.path(name + "/runs")), [])
+                self.sweep(name)  # with space again it goes on
 
     def test_goes_on_with_the_threads_that_there_are(self):
         def limit():

@@ -100,6 +100,11 @@ class ToolTest(unittest.TestCase):
         _, errors = process.communicate(timeout=30 * SLOWER)
         return process.returncode, errors
 
+    def rows(self, name):
+        """Of a table of numbers: by column."""
+        with open(self.path(name), encoding="utf-8", newline="") as file:
+            return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
+
     def write(self, name, text):
         with open(self.path(name), "w") as file:
             file.write(text)
@@ -147,12 +152,12 @@ def stamped_torque(joint, torque, seconds):
     return message
 
 
-def write_recording(path, duration=0.2, joint="elbow_joint", torque=0.4, load=5.0, delay=0.001):
+def write_recording(path, duration=0.2, joint="elbow_joint", torque=0.4, load=5.0):
     """A bag as a live recording leaves it: stamped command and load, recorded a little later, and foreign topics."""
     with rosbag.Bag(path, "w") as bag:
         for step in range(int(duration * 125) + 1):
             seconds = step * 0.008
-            recorded = genpy.Time(START) + genpy.Duration.from_sec(seconds + delay)
+            recorded = genpy.Time(START) + genpy.Duration.from_sec(seconds + 0.001)
             command = stamped_torque(joint, torque * math.sin(20.0 * seconds), seconds)
             bag.write("/joint_twin/command", command, recorded)
             bag.write("/joint_twin/load", stamped_torque(joint, load, seconds), recorded)
