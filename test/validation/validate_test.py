@@ -32,22 +32,28 @@ class Validate(unittest.TestCase):
         self.assertRegex(text, r"\d+ rows, \d+ hold, 0 fail")
 
     def test_wrong_parameters_fail_the_rows_that_they_should(self):
-        for assignment, sections, rows in (
-                ("contact.stiffness=1.1e+8", ["thesis"],
+        for assignments, sections, rows in (
+                (("contact.stiffness=1.1e+8",), ["thesis"],
                  {"thesis.force_max", "thesis.independent_operation_wave_generator_force", "thesis.locked_angle",
                   "thesis.locked_bearing"}),
-                ("contact.friction_coefficient=0.14", ["catalogue"], {"catalogue.interface_slip"}),
-                ("bearing.viscosity=300.0e-6", ["drives", "size14"], {"drives.ur5e.elbow.3.2", "size14.no_load"}),
-                ("mesh.stiffness=4.0e+7", ["stress"], {"stress.tooth_space_highest_150"}),
-                ("thermal.ambient_conductance=2.2", ["heat"],
+                # Of three parameters that no row shares.
+                (("contact.friction_coefficient=0.14", "bearing.viscosity_slope=3.5",
+                  "cup.torsion_stiffness=[31.0e+3, 50.0e+3, 57.0e+3]"), ["catalogue"],
+                 {"catalogue.interface_slip", "catalogue.oil.40", "catalogue.oil.100", "catalogue.torsion.14",
+                  "catalogue.torsion.150"}),
+                (("mesh.friction_static=0.2", "mesh.friction_kinetic=0.12"), ["catalogue"], {"catalogue.flank_slip"}),
+                (("bearing.viscosity=300.0e-6",), ["drives", "size14"], {"drives.ur5e.elbow.3.2", "size14.no_load"}),
+                (("mesh.stiffness=4.0e+7",), ["stress"], {"stress.tooth_space_highest_150"}),
+                (("thermal.ambient_conductance=2.2",), ["heat"],
                  {"heat.time_constant.size_25", "heat.time_constant.size_14"}),
-                ("manufacture.circular_spline_pitch_deviation=30.0e-6", ["manufacture"],
+                (("manufacture.circular_spline_pitch_deviation=30.0e-6",), ["manufacture"],
                  {"manufacture.perfect", "manufacture.flexspline_not_the_other", "manufacture.as_built_order_2",
                   "manufacture.circular_spline_order_4"}),
-                ("gear.wave_amplitude=0.33e-3", ["teeth"], {"teeth.no_interference_double_arc"})):
-            with self.subTest(assignment):
+                (("gear.wave_amplitude=0.33e-3",), ["teeth"], {"teeth.no_interference_double_arc"})):
+            with self.subTest(assignments):
                 chosen = [word for section in sections for word in ("--section", section)]
-                code, failing, text = validate("--set", assignment, *chosen)
+                chosen += [word for assignment in assignments for word in ("--set", assignment)]
+                code, failing, text = validate(*chosen)
                 self.assertEqual(code, 1, text)
                 self.assertLessEqual(rows, failing, text)
 
