@@ -271,7 +271,8 @@ constexpr Case BAD_VALUES[] = {
   { "overlays: [joints/base.yaml, recorded_load.yaml, beside_robot.yaml]", "overlays: joints/base.yaml",
     "arm.yaml:29: joints.0.overlays = 'joints/base.yaml' must be a list of configuration files" },
   { "payload:\n", "payload:\n  mass: 1.0\n", "payload.mass occurs twice in this file (first at" },
-  { "ur5.urdf", "/dev/zero", "arm.yaml:5: description: /dev/zero cannot be read: it is a directory, a device or a pipe" },
+  { "ur5.urdf", "/dev/zero",
+    "arm.yaml:5: description: /dev/zero cannot be read: it is a directory, a device or a pipe" },
 };
 
 TEST(ArmDescription, WhatIsWrongIsNamedWithLineKeyValueUnitAndRange)
