@@ -6,6 +6,7 @@
 
 #include "arm/unit_loads.hpp"
 #include "base/statistics.hpp"
+#include "identification/torque_fit.hpp"
 #include "test/core/arm_support.hpp"
 #include "test/support/seeded_random.hpp"
 
