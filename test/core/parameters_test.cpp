@@ -111,7 +111,7 @@ TEST(ShippedConfiguration, EveryOverlayIsValidOverTheDefaults)
 
 TEST(ShippedConfiguration, TellsUnitAndRangeOfEveryKeyAboveIt)
 {
-  std::string text;
+  std::string text = "\n";
   std::ifstream stages(CONFIG / "stages");
   for (std::string stage; std::getline(stages, stage);)
   {
@@ -143,9 +143,9 @@ TEST(ShippedConfiguration, TellsUnitAndRangeOfEveryKeyAboveIt)
                 { return "[" + std::string(unit) + "]; " + rangeText(range); };
                 if constexpr (sizeof...(rest) == 4)
                 {
-                  const std::size_t line = text.find(key + " ");
+                  const std::size_t line = text.find("\n" + key + " ");
                   ASSERT_NE(line, std::string::npos) << key;
-                  EXPECT_THAT(text.substr(line, text.find('\n', line) - line), HasSubstr(expected(rest...))) << key;
+                  EXPECT_THAT(text.substr(line, text.find('\n', line + 1) - line), HasSubstr(expected(rest...))) << key;
                 }
               });
 }
