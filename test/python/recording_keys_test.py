@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Each parameter acts in the commands on recordings that docs/parameters.md names it for, and in no other."""
+"""Each parameter acts in the commands on recordings that docs/parameters_recordings.csv marks, and in no other."""
 import os
 import unittest
 import warnings
@@ -58,7 +58,7 @@ def compared(document):
 
 
 class Recordings(keys_test.Keys):
-    HEADING = "## What acts on a recording"
+    TABLE = "parameters_recordings.csv"
     DRIVES = DRIVES
 
     @classmethod
