@@ -20,6 +20,7 @@ APART = {
     "bound": [("health_bound.csv", None)],
     "cycle": [("performance.csv", "100 rad/s|reversing")],
     "motions": [("health_motions.csv", "all of them|another model|a further model")],
+    "options": [("performance_options.csv", None)],
     "others": [("faults_others.csv", r"\| none|0\.02 N|\b1 counts|1 mrad|\b5 %")],
     "read": [("life_read.csv", "all check-ups|line through lost motion")],
     "series": [("health_series.csv", r"^\| all ")],
