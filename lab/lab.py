@@ -18,7 +18,7 @@ from drawing import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, STYLE, plt  # noqa: 
 APART = {
     "arm_faults": [("arm_faults_worst.csv", "interface|lubricant|tooth_wear|wave|pitting|ratcheting")],
     "bound": [("health_bound.csv", None)],
-    "cycle": [("performance.csv", "100 rad/s|reversing")],
+    "cycle": [("performance.csv", "reversing")],
     "motions": [("health_motions.csv", "all of them|another model|a further model")],
     "options": [("performance_options.csv", None)],
     "others": [("faults_others.csv", r"\| none|0\.02 N|\b1 counts|1 mrad|\b5 %")],
