@@ -19,7 +19,7 @@ CLAIM = "model.md, *Dynamic ring*: the ring is quasi-static to well below 1 %"
 # On the bearing's balls, a seventeenth as stiff as the springs of Table 6.1, modes of the rim come into reach of the
 # tooth frequency: the forces and places of single teeth ring at full speed under load.
 RINGS = {"317rad_100Nm_contact_force", "317rad_100Nm_mesh_force", "sweep_position", "sweep_mesh_force"}
-RINGING = "the ring vibrates where the tooth frequency, 200 a turn, meets one of its natural modes"
+RINGING = "the ring vibrates where the tooth frequency, 200 per turn of the motor, meets one of its natural modes"
 LABELS = {"rk4": "Runge-Kutta 4, explicit", "esdirk4": "ESDIRK 4, structured", "tr_bdf2": "TR-BDF2, structured",
           "implicit_euler": "implicit Euler"}
 
