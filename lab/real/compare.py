@@ -17,15 +17,16 @@ HEAD = """# Beside a real robot
 
 `lab/run compare_real` writes this page; do not edit it.
 
-How to use it: this page shows how far the twin differs from a sound robot. A smaller difference on your robot means
-nothing. The page also counts the right verdicts on recordings of sound joints and of raised friction.
+This page shows how far the twin differs from a sound robot. If the twin differs less from your robot, the difference
+tells nothing about your robot. The page also counts the right verdicts on recordings of sound joints and on recordings
+with raised friction.
 
-How far to trust it: the recordings come from one UR5, one UR10e and one drive of another maker, all sound. They are
-not part of this project. The shipped friction of the UR5 and the widths of the verdict's interval come from these
-recordings. Another arm may repeat less well.
+The recordings come from one UR5, one UR10e and one drive of another maker, all sound. They are not part of this
+project. The shipped friction of the UR5 and the widths of the verdict's interval come from these recordings. The
+friction of another arm may repeat less well.
 
-Method: the twins are identified on one recording and judged on the others. [real_robot_runs.txt](real_robot_runs.txt)
-has the commands behind the figures.
+The program identifies the twins on one recording and compares them with the other recordings.
+[real_robot_runs.txt](real_robot_runs.txt) has the commands behind the figures.
 """
 WIDTH = 150  # of a line of the page
 

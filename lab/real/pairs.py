@@ -26,8 +26,8 @@ def pairs_text(arms, groups):
                        f"% rms, "
                        f"and by {100.0 * rms(np.array(left)):.1f} % relative to the median of these joints.")
     return f"""
-Each recording was also judged beside each other one as its reference, in {len(arms)} pairs. Of {len(judged)} judged
-joints {alarms} are WARN or worse. In some pairs all three joints of a group are judged: {" ".join(spreads)} The widths
-of the [interval](compare.md#interval-of-the-friction) were taken from these pairs, so the pairs are no test for
-another arm.
+The program also judged each recording with each other recording as reference, in {len(arms)} pairs. Of {len(judged)}
+judged joints {alarms} are WARN or worse. In some pairs the program judged all three joints of a group.
+{" ".join(spreads)} The widths of the [interval](compare.md#interval-of-the-friction) come from these pairs, so the
+pairs are no test for another arm.
 """

@@ -13,8 +13,8 @@ FIGURES = ["catalogue_torsion", "catalogue_efficiency", "drives_ur5e", "quasi_st
 
 HEAD = """# Validation
 
-`lab/run validate` writes this page; do not edit it. The page compares the twin with three kinds of sources. The first is
-the thesis that the twin grew from (C. Costantino, *Sviluppo di un modello multibody di un harmonic drive a fini
+`lab/run validate` writes this page; do not edit it. The page compares the twin with three kinds of sources. The first
+is the thesis that the twin grew from (C. Costantino, *Sviluppo di un modello multibody di un harmonic drive a fini
 diagnostici e prognostici*, Politecnico di Torino, 2021). The second are the catalogues of two makers (Harmonic Drive
 HFUS-25 for stiffness and ratings, Schaeffler RT1-H-CS-25 for friction and efficiency). The third are recordings of real
 drives. A row is one comparison. It has a source, an expected value, the twin's value, and a tolerance with its reason.
