@@ -14,10 +14,10 @@ from lab import BLUE, GREY, ORANGE, RED, STYLE, plt  # noqa: E402  (its folder i
 
 HEAD = """# Stability
 
-`lab/run stress` writes this page; do not edit it. The page shows how the twin behaves far from its usual range. A cell is
-a combination of parameters and inputs. The program changes one factor (parameter or input) at a time, then two factors
-at a time, then all factors at random. For each cell it runs the twin of the Python module, and compares this run with a
-converged run of the same cell.
+`lab/run stress` writes this page; do not edit it. The page shows how the twin behaves far from its usual range. A cell
+is a combination of parameters and inputs. The program changes one factor (parameter or input) at a time, then two
+factors at a time, then all factors at random. For each cell it runs the twin of the Python module, and compares this
+run with a converged run of the same cell.
 
 ```sh
 lab/run stress                # every cell: all results in out/stability/cells.csv
@@ -36,13 +36,12 @@ The exit code is 1 if a run gives a NaN, crashes, takes more than {timeout:.0f} 
 
 MEANING = """## What is compared
 
-The **error** is the largest difference from the converged run within {duration:g} s. The program compares
-joint torque, output angle and motor angle, and divides each difference by a scale. The scale of the torque is the
-largest torque, and at least {torque:g} N·m, where the first slope of the cup ends. The scale of an angle is the
-travel, and at least {angle:.2f} mrad, the torsion at {torque:g} N·m. The **converged run** computes the same cell
-with a shorter step. A period of the joint's fastest natural mode has at least 600 of these steps, and the step is at
-most a tenth of the step of the cell. The **drift** is the largest energy residual, divided by the work of motor and
-load.
+The **error** is the largest difference from the converged run within {duration:g} s. The program compares joint torque,
+output angle and motor angle, and divides each difference by a scale. The scale of the torque is the largest torque, and
+at least {torque:g} N·m, where the first slope of the cup ends. The scale of an angle is the travel, and at least
+{angle:.2f} mrad, the torsion at {torque:g} N·m. The **converged run** computes the same cell with a shorter step. A
+period of the joint's fastest natural mode has at least 600 of these steps, and the step is at most a tenth of the step
+of the cell. The **drift** is the largest energy residual, divided by the work of motor and load.
 
 ## What the solver reports
 
@@ -107,8 +106,8 @@ def boundary(judged):
     if not quiet:
         return "No cell is accurate."
     return (f"With the shipped parameters the longest accurate step is {steps('step, load steps of 100 N.m')} under "
-            f"load steps. Under reversals, in which the motor gives 12 N·m (four times its limit), the longest accurate "
-            f"step is {steps('step, reversal at 3030 rpm')}. The solver reported nothing in {len(quiet)} cells. In "
+            f"load steps. Under reversals, in which the motor gives 12 N·m (four times its limit), the longest "
+            f"accurate step is {steps('step, reversal at 3030 rpm')}. The solver reported nothing in {len(quiet)} cells. In "
             f"these cells the largest error is {percent(max(j.error for j in quiet))}, and the largest energy drift "
             f"{percent(max(j.drift for j in quiet))}. Of the {len(flagged)} degraded cells "
             f"{sum(j.error <= judge.ACCURACY for j in flagged)} are accurate, so the solver warns rather early than "
@@ -144,8 +143,8 @@ def write(docs, judged, table):
         lines += [f"![{name[5:].capitalize()}: the error in each square (blue: accurate; orange: degraded, "
                   f"reported; grey: refused)](images/stability/{file}.png)", ""]
     lines += [MEANING.format(duration=cells.DURATION, torque=judge.LEAST_TORQUE, angle=1e3 * judge.LEAST_ANGLE)]
-    lines += ["[stability.csv](stability.csv) counts the cells of each group, and has the largest error of the accurate "
-              "cells of the group."]
+    lines += ["[stability.csv](stability.csv) counts the cells of each group, and has the largest error of the "
+              "accurate cells of the group."]
     with open(os.path.join(docs, "stability.md"), "w", encoding="utf-8") as file:
         file.write("\n".join(lines).rstrip() + "\n")
     with open(os.path.join(docs, "stability.csv"), "w", encoding="utf-8", newline="") as file:
