@@ -65,8 +65,9 @@ the vibration of single teeth. The best peer for these errors is Runge-Kutta 4 w
 """
 
 
-CHOICE = """Choose the full ring if you want the force on every tooth at every step, or if the gear has no table. Choose
-the table for the live node and for runs offline. Choose the table at measured angles if you follow a recording. The
+CHOICE = """[benchmark_levels.csv](benchmark_levels.csv) has the speed of each level of detail by its error. Choose the
+full ring if you want the force on every tooth at every step, or if the gear has no table. Choose the table
+for the live node and for runs offline. Choose the table at measured angles if you follow a recording. The
 runs on the table solve the tooth forces only for the hundred samples, which takes about 3 ms."""
 
 
@@ -132,17 +133,21 @@ def ratios_of(rows, quantity, apart):
 
 
 def choice(rows, quantity, apart):
-    """Table of ours alone: times real time by level of detail and error; the problem takes a second."""
-    levels = [level for level in LEVELS if level >= apart]
-    header = [f"times real time at an error of {QUANTITIES[quantity]}", *(f"{level:.0e}" for level in levels)]
-    lines = []
+    """Rows of ours alone: times real time by level of detail and error; the problem takes a second."""
     for solver in dict.fromkeys(row["solver"] for row in rows):
-        best = [fastest([row for row in rows if row["solver"] == solver], quantity, level) for level in levels]
-        if any(best):
-            lines.append([solver.replace(OURS, ""),
-                          *(f"{rounded(1.0 / row['processor_time'], 3)} ({row['setting']})" if row else "-"
-                            for row in best)])
-    return table(header, lines)
+        for level in (level for level in LEVELS if level >= apart):
+            row = fastest([row for row in rows if row["solver"] == solver], quantity, level)
+            if row:
+                yield [QUANTITIES[quantity], solver.replace(OURS, ""), f"{level:.0e}",
+                       f"{rounded(1.0 / row['processor_time'], 3)}", row["setting"]]
+
+
+def write_levels(path, reference, rows):
+    with open(path, "w", encoding="utf-8", newline="") as file:
+        table = csv.writer(file, lineterminator="\n")
+        table.writerow(["quantity", "method", "error", "times real time", "step or rate"])
+        for quantity in shown(rows):
+            table.writerows(choice(rows, quantity, reference["apart"][quantity]))
 
 
 def write_runs(path, measured):
@@ -194,17 +199,14 @@ def processor():
                     platform.machine())
 
 
-def levels_of(reference, rows):
+def levels_of(reference):
     """Lines on the levels of detail."""
-    lines = ["## " + reference["title"], "",
-             f"The reference is {reference['methods'][0]}. A second reference, {reference['methods'][1]}, differs from "
-             f"it by {reference['apart']['force']:.1e} in the forces, {reference['apart']['position']:.1e} in the "
-             f"positions and {reference['apart']['angle']:.1e} in the angles. Errors smaller than these differences "
-             "mean nothing, so the tables end there.", "",
-             f"![{reference['title']}](images/benchmark/levels.png)", "", CHOICE, ""]
-    for quantity in shown(rows):
-        lines += choice(rows, quantity, reference["apart"][quantity])
-    return lines
+    return ["## " + reference["title"], "",
+            f"The reference is {reference['methods'][0]}. A second reference, {reference['methods'][1]}, differs from "
+            f"it by {reference['apart']['force']:.1e} in the forces, {reference['apart']['position']:.1e} in the "
+            f"positions and {reference['apart']['angle']:.1e} in the angles. Errors smaller than these differences "
+            "mean nothing, so the table ends there.", "",
+            f"![{reference['title']}](images/benchmark/levels.png)", "", CHOICE, ""]
 
 
 def table_row(cells):
@@ -245,13 +247,14 @@ def write_page(options, measured):
     for name in ("drive", "levels"):
         draw(measured[name][1], measured[name][0]["title"],
              os.path.join(options.docs, "images", "benchmark", name + ".png"))
+    write_levels(os.path.join(options.docs, "benchmark_levels.csv"), *measured["levels"])
     solvers = {row["solver"] for _, rows in measured.values() for row in rows}
     absent = [f"{peer} ({package})" for peer, package in OPTIONAL.items()
               if not any(solver.startswith(peer) for solver in solvers)]
     machine = (f"{processor()}; {', '.join(installed_version(package) for package in PACKAGES)}. Each setting ran "
                f"{options.runs} times, slow settings less often. The program ended a run after {options.limit:g} s of "
                "processor time, a run of an explicit solver or of RADAU5 after twice this time.")
-    lines = [HEAD, "## Best peer against ours", "", *ratio_table(ratios), READING, *levels_of(*measured["levels"]),
+    lines = [HEAD, "## Best peer against ours", "", *ratio_table(ratios), READING, *levels_of(measured["levels"][0]),
              *parts(options.parts), "---", "", machine]
     if absent:
         lines.append(f"Not installed: {', '.join(absent)}.")

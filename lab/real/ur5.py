@@ -9,13 +9,14 @@ import numpy as np
 
 import closed_loop
 from pairs import is_alarm, pairs_text
-from runs import BLUE, GREEN, GREY, RED, figure, read, rms, save, table, write_rows
+from runs import BLUE, GREEN, GREY, RED, figure, read, rms, save, write_rows
 
 FOLDER = "ur5_cb"
 TRAIN = "no6"          # the only recording that is identified on
 RAISED_IN = ["no2", "no5", "no9"]
 SHOWN = "no2"          # in the figure of the currents
 RAISED_ROWS, LOAD_ROWS = "real_robot_raised.csv", "real_robot_load.csv"  # beside the page
+RATIO_ROWS, VERDICT_ROWS = "real_robot_ratios.csv", "real_robot_verdicts.csv"
 LEAST_SPAN = 1.0        # of a moment [N.m], from which on a share of it is stated
 RAISED = 0.2           # share of a joint's friction
 RAISED_ALONE = (0.3, 0.6)  # the same where there is no reference
@@ -29,6 +30,27 @@ WANTED_MEANS, WANTED_MOVING = 0.5, 0.7  # of the fit's error
 JOBS = 2
 COLUMNS = ["time", "velocity_measured", "current_measured", "current_predicted", "current_residual", "current_band",
            "residual_torque", "friction_torque", "load_torque"]
+CURRENT = f"""
+### Error of the predicted current
+
+The program divides the error of the twin by the error of a simple fit. [{RATIO_ROWS}]({RATIO_ROWS}) has the quotients
+for the large joints, and [real_robot_current.csv](real_robot_current.csv) the errors of all joints, moving and resting
+[A, rms]. The column *means* is for means over {MEAN:g} s around each moving row, the column *moving rows* for all
+moving rows (faster than {MOVING:g} rad/s). With the load *arm* the twin gets `/joint_states` alone. With the load
+*target_moment* the twin is identified and predicts with the recorded moment. The *fit* has gain, Coulomb friction and
+viscous friction, fitted by least squares to all rows of {TRAIN} with the recorded moment as load. The targets are
+{WANTED_MEANS:g} for means and {WANTED_MOVING:g} for moving rows.
+
+![Error of means over 0.1 s](images/real_robot/means.png)
+
+The remaining error in moving rows is ripple with 200 periods per turn of each joint, the rate at which the two lobes
+pass a tooth of the circular spline. The arm carries this ripple into the current of every joint.
+
+At rest stiction holds the joint, and any current within a band gives the same angle. Two encoder counts (9.4 µrad) are
+a quarter of the presliding angle and correspond to some 0.3 A. So the twin predicts a band at rest, not a value.
+
+![Current of the three large joints, measured and predicted](images/real_robot/current.png)
+"""
 
 
 def running_mean(time, values):
@@ -118,8 +140,8 @@ def errors_of(recording, fit):
     return errors
 
 
-def number(value, digits=3):
-    return "–" if np.isnan(value) else f"{value:.{digits}f}"
+def number(value):
+    return "" if np.isnan(value) else f"{value:.2f}"
 
 
 def load_text(recordings, path):
@@ -149,14 +171,10 @@ def share(errors, joint, kind, load="arm"):
     return getattr(errors[joint][load], kind) / getattr(errors[joint]["fit"], kind)
 
 
-def share_table(all_errors):
+def ratio_rows(all_errors):
     """The twin's error over the fit's, of the large joints."""
-    def cells(name, load):
-        return [f"{number(share(all_errors[name], joint, 'means', load), 2)}, "
-                f"{number(share(all_errors[name], joint, 'moving', load), 2)}" for joint in LARGE]
-
-    return table(["recording"] + [f"{joint}, load {load}" for load in LOADS for joint in LARGE],
-                 [[name, *cells(name, "arm"), *cells(name, "target_moment")] for name in all_errors])
+    return [[name, joint, load, *(number(share(errors, joint, kind, load)) for kind in ("means", "moving"))]
+            for name, errors in all_errors.items() for load in LOADS for joint in LARGE]
 
 
 def write_raised(runner, recording, joints, path, share):
@@ -197,7 +215,7 @@ def verdict_cell(arm):
 
 
 def ratio_cells(arm):
-    return ["–" if joint["friction_ratio"] is None else f"{joint['friction_ratio']:.2f}" for joint in arm["joints"]]
+    return ["" if joint["friction_ratio"] is None else f"{joint['friction_ratio']:.2f}" for joint in arm["joints"]]
 
 
 def is_right(arm, raised):
@@ -321,9 +339,11 @@ def section(runner, telemetry, docs, images):
                f"{worst_moving:.2f} times the fit's error.",
                judged_right]
     write_errors(os.path.join(docs, "real_robot_current.csv"), {**judged_errors, TRAIN: all_errors[TRAIN]})
-    print("\n".join([*share_table(all_errors), *map(",".join, raised_lines), *summary]))
+    write_rows(os.path.join(docs, RATIO_ROWS), ["recording", "joint", "load", "means", "moving rows"],
+               ratio_rows(all_errors))
+    print("\n".join([*map(",".join, raised_lines), *summary]))
     return [*heading, *introduction(summary, recordings, load_text(recordings, os.path.join(docs, LOAD_ROWS))),
-            *current_section(all_errors),
+            CURRENT,
             *closed_loop.section(runner, judged, fit, JOINTS, by_name.get(SHOWN, judged[0]).name,
                                  docs, TRAIN), *verdicts]
 
@@ -351,6 +371,8 @@ def verdict_section(runner, by_name, judged, docs):
     false_alarms = sum(is_alarm(joint) for runs in (alone, beside) for run in runs.values()
                        for joint in run.result()["joints"])
     of_pairs = [pairs_text([run.result() for run in pairs.values()], (LARGE, JOINTS[3:]))]
+    write_rows(os.path.join(docs, VERDICT_ROWS),
+               ["recording", "verdict alone", *JOINTS, "verdict with reference"], sound)
     raised_lines, right = raised_rows(raised)
     write_rows(os.path.join(docs, RAISED_ROWS), raised_lines[0], raised_lines[1:])
     sentence = (f"Of {2 * len(JOINTS) * len(alone)} verdicts on sound joints {false_alarms} are WARN or worse. The "
@@ -361,10 +383,10 @@ def verdict_section(runner, by_name, judged, docs):
 ### Verdicts
 
 """ + f"""`joint_twin compare --arm ur5` judges each recording alone and with the report of {TRAIN} as `--reference`
-({TRAIN} itself with that of {other}). The arm is sound in all recordings. The number of a joint is its friction divided
-by its friction in the reference, at the speeds that both recordings have, without the factor that all joints share. A
-dash says that the motion does not show the friction of the joint.
-""", *table(["recording", "verdict alone", *JOINTS, "verdict with reference"], sound), *of_pairs, f"""
+({TRAIN} itself with that of {other}). The arm is sound in all recordings.
+[{VERDICT_ROWS}]({VERDICT_ROWS}) has the verdicts, and for each joint the friction divided by the friction in the
+reference, at the speeds that both recordings have, without the factor that all joints share. A cell is empty if the motion does not show the friction of the joint.
+""", *of_pairs, f"""
 For the recordings with raised friction the program adds {100.0 * RAISED:.0f} % of the identified friction of one joint,
 or of all joints, to the recorded current. If the friction of one joint is raised, a verdict is right if it names this
 joint and no other. If the friction of all joints is raised, a verdict is right if it names no single joint. No verdict
@@ -397,28 +419,4 @@ another day.
 The program compares the load that follows from the arm's links with the controller's `target_moment`. The rms
 difference is at most this share of the range of the moment, in recordings with a range of more than {LEAST_SPAN:g} N·m:
 {loads}. [{LOAD_ROWS}]({LOAD_ROWS}) has the difference and the range for each recording.
-"""]
-
-
-def current_section(all_errors):
-    return [f"""
-### Error of the predicted current
-
-The table has the error of the twin divided by the error of a simple fit. The first number of a cell is for means over
-{MEAN:g} s around each moving row, the second for all moving rows (faster than {MOVING:g} rad/s). With *load arm* the
-twin gets `/joint_states` alone. With *load target_moment* the twin is identified and predicts with the recorded moment.
-The *fit* is a least-squares fit of gain, Coulomb friction and viscous friction to the recorded moment and current of
-all rows of {TRAIN}. The targets are {WANTED_MEANS:g} for means and {WANTED_MOVING:g} for moving rows.
-[real_robot_current.csv](real_robot_current.csv) has the errors of all joints, moving and resting [A, rms].
-""", *share_table(all_errors), """
-![Error of means over 0.1 s](images/real_robot/means.png)
-
-The remaining error in moving rows is ripple with 200 periods per turn of each joint, the rate at which the two lobes
-pass a tooth of the circular spline. The arm carries this ripple into the current of every joint.
-
-At rest stiction holds the joint, and any current within a band gives the same angle. Two encoder counts (9.4 µrad) are
-a quarter of the presliding angle and correspond to some 0.3 A. So the twin predicts a band at rest, not a value.
-
-![Current of the three large joints, measured and predicted](images/real_robot/current.png)
-
 """]

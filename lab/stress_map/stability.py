@@ -107,9 +107,9 @@ def boundary(judged):
         return "No cell is accurate."
     return (f"With the shipped parameters the longest accurate step is {steps('step, load steps of 100 N.m')} under "
             f"load steps. Under reversals, in which the motor gives 12 N·m (four times its limit), the longest "
-            f"accurate step is {steps('step, reversal at 3030 rpm')}. The solver reported nothing in {len(quiet)} cells. In "
-            f"these cells the largest error is {percent(max(j.error for j in quiet))}, and the largest energy drift "
-            f"{percent(max(j.drift for j in quiet))}. Of the {len(flagged)} degraded cells "
+            f"accurate step is {steps('step, reversal at 3030 rpm')}. The solver reported nothing in {len(quiet)} "
+            f"cells. In these cells the largest error is {percent(max(j.error for j in quiet))}, and the largest "
+            f"energy drift {percent(max(j.drift for j in quiet))}. Of the {len(flagged)} degraded cells "
             f"{sum(j.error <= judge.ACCURACY for j in flagged)} are accurate, so the solver warns rather early than "
             f"late.")
 

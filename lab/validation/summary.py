@@ -55,9 +55,11 @@ def write(docs, complete, pages, titles):
                for title, meaning in CLASSES.items()]
     holding = sum(row.holds for row in rows)
     lines = [HEAD, f"**{len(rows)} rows: {holding} hold, {len(rows) - holding} do not.**", ""]
-    lines += markdown_table(["section", "rows", "hold"],
-                            counts((titles[page.section], page.rows) for page in pages if page.rows))
-    lines += ["", "## What a row is worth", "",
+    with open(os.path.join(docs, "validation_sections.csv"), "w", encoding="utf-8", newline="") as file:
+        csv.writer(file, lineterminator="\n").writerows([["section", "rows", "hold"], *counts(
+            (titles[page.section], page.rows) for page in pages if page.rows)])
+    lines += ["[validation_sections.csv](validation_sections.csv) has these counts for each section.",
+              "", "## What a row is worth", "",
               "A row within its tolerance supports the model more or less strongly, depending on its source. "
               "[validation.csv](validation.csv) states the class of evidence of each row, and which parameter was "
               "fitted to which figure. Only the first class compares the twin with figures that nothing in the twin "
