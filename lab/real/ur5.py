@@ -382,10 +382,11 @@ def verdict_section(runner, by_name, judged, docs):
     lines = ["""
 ### Verdicts
 
-""" + f"""`joint_twin compare --arm ur5` judges each recording alone and with the report of {TRAIN} as `--reference`
-({TRAIN} itself with that of {other}). The arm is sound in all recordings.
+""" + f"""`joint_twin compare --arm ur5` judges each recording alone and with the report of {TRAIN} as
+`--reference` ({TRAIN} itself with that of {other}). The arm is sound in all recordings.
 [{VERDICT_ROWS}]({VERDICT_ROWS}) has the verdicts, and for each joint the friction divided by the friction in the
-reference, at the speeds that both recordings have, without the factor that all joints share. A cell is empty if the motion does not show the friction of the joint.
+reference, at the speeds that both recordings have, without the factor that all joints share. A cell is empty if the
+motion does not show the friction of the joint.
 """, *of_pairs, f"""
 For the recordings with raised friction the program adds {100.0 * RAISED:.0f} % of the identified friction of one joint,
 or of all joints, to the recorded current. If the friction of one joint is raised, a verdict is right if it names this
