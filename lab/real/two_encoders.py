@@ -4,10 +4,11 @@ import os
 
 import numpy as np
 
-from runs import BLUE, GREEN, GREY, RED, figure, read, regress, rms, save, table
+from runs import BLUE, GREEN, GREY, RED, figure, read, regress, rms, save, table, write_rows
 
 LOADED, UNLOADED = os.path.join("lara8", "validate.csv"), os.path.join("lara8", "unloaded_transmission_error.csv")
 RATIO = 101
+STIFFNESS_ROWS, LINE_ROWS = "real_robot_stiffness.csv", "real_robot_lines.csv"  # beside the page
 COUNTS = 2 ** 24  # a turn, of both encoders
 STEADY = 0.6      # [rad/s] the sweep's constant speed is above it
 STRIPE = 10.0     # [deg] of the sweep, in turn to identify on and to judge on
@@ -81,10 +82,11 @@ class Torsion:
         axes.legend(fontsize=8)
         save(drawing, path)
 
+    def rows(self):
+        return [[f"{load:g}", f"{1e-3 * value:.1f}", f"{1e-3 * value / self.scale:.1f}",
+                 f"{1e-3 * value * self.width / self.scale ** 2:.1f}"] for load, value in self.stiffness.items()]
+
     def page(self):
-        rows = [[f"at {load:g} N·m", f"{1e-3 * value:.1f}",
-                 f"{1e-3 * value / self.scale:.1f} ± {1e-3 * value * self.width / self.scale ** 2:.1f}"]
-                for load, value in self.stiffness.items()]
         return [f"""
 **Torsion.** The figure shows the torsion (motor angle / 101 − output angle), minus the torsion without load at the same
 angle. The abscissa is the motor's torque at the joint minus {self.friction:.1f} N·m, the twin's friction at this speed.
@@ -97,7 +99,9 @@ tested it on the stripes between.
 """, *table(["rms difference of the recorded torsion from", "stripes that were fitted [mrad]",
              "stripes between [mrad]"],
             [[name, f"{1e3 * a:.2f}", f"{1e3 * b:.2f}"] for name, (a, b) in self.errors.items()]),
-                *table(["stiffness [10³ N·m/rad]", "catalogue", "identified"], rows), f"""
+                f"""
+[{STIFFNESS_ROWS}]({STIFFNESS_ROWS}) has the stiffness by load.
+
 *Weakness:* a fit to the negative angles alone gives a factor of {self.halves[0]:.2f}, a fit to the positive angles a
 factor of {self.halves[1]:.2f}. These two factors differ by more than the interval, which is therefore too narrow. With
 a factor identified on one half of the angles the error on the other half is larger than with the catalogue's curve. The
@@ -151,10 +155,11 @@ class TransmissionError:
         axes.legend(fontsize=8)
         save(drawing, path)
 
+    def rows(self):
+        return [[f"{line}", name, *(f"{1e6 * value:.1f}" for lines in self.recorded.values() for value in lines[line]),
+                 f"{1e6 * self.lines[line]:.1f}"] for line, name in LINES.items()]
+
     def page(self):
-        rows = [[f"{line} ({name})", *(f"{1e6 * lines[line][0]:.1f} ± {1e6 * lines[line][1]:.1f}"
-                                       for lines in self.recorded.values()), f"{1e6 * self.lines[line]:.1f}"]
-                for line, name in LINES.items()]
         return [f"""
 **Transmission error without load.** The figure compares two spectra: the published error in each direction of rotation,
 and the twin's kinematic error, computed at 5 N·m. Two numbers of the twin are fitted. The line at 200 per turn of the
@@ -165,7 +170,8 @@ The lines at 400 and 404 result from the same pitch deviations. The line of the 
 that of the flexspline (202), as in the current of the UR5.
 
 ![Lines of the transmission error](images/real_robot/transmission_error.png)
-""", *table(["lines per turn of the joint [µrad]", *(f"recorded, {name}" for name in self.recorded), "twin"], rows), """
+
+[{LINE_ROWS}]({LINE_ROWS}) has the amplitudes of the lines.
 The twin has no line at 101 per turn of the joint (once per turn of the motor), because only pitch deviations were
 fitted. The two lobes share the load, and the lead of one lobe cancels the lag of the other. Other errors can make the
 line at 101. A wave generator off its axis together with run-out of the flexspline, 10 µm each, makes 10 µrad without
@@ -181,7 +187,7 @@ scatter by 0.03 mrad.
 """]
 
 
-def section(runner, telemetry, _docs, images):
+def section(runner, telemetry, docs, images):
     """Lines of the page."""
     heading = ["## A 101:1 drive with both encoders", """
 The drive is the elbow of a NEURA LARA 8, not of a UR. Its recording (A. Lucious, 2024) is the only public one of this
@@ -195,6 +201,11 @@ ratio with encoders at motor and output.
     sweeps = unloaded_error(paths[1])
     torsion = Torsion(lambda *words: runner.run(*words, "--json"), read(paths[0]), sweeps)
     torsion.draw(os.path.join(images, "torsion.png"))
+    write_rows(os.path.join(docs, STIFFNESS_ROWS), ["load [N.m]", *(f"{name} [1e3 N.m/rad]" for name in (
+        "catalogue", "identified", "half width of the identified"))], torsion.rows())
     error = TransmissionError(runner, sweeps)
     error.draw(os.path.join(images, "transmission_error.png"))
+    write_rows(os.path.join(docs, LINE_ROWS), ["lines per turn of the joint", "cause", *(
+        f"{name} [urad]" for way in error.recorded for name in (way, f"half width, {way}")), "twin [urad]"],
+               error.rows())
     return heading + torsion.page() + error.page()
