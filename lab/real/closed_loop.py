@@ -156,14 +156,15 @@ def built_section(runner, recordings, fit, joints, train, docs):
                       for joint in gains["joints"] if not joint["refusal"])
     within = np.count_nonzero((known <= 2.0) & (known >= 0.5))
     return [f"""
-**With errors of manufacture and identified gains.** These drives have the circular splines of `config/as_built.yaml`
-(7″ at {LOOP_LINES} periods per turn of the joint) and equal flexsplines, so that each drive has a table. `identify
---controller` found the controller's gains on {GAINS_FROM}: {found}. [{BUILT_ROWS}]({BUILT_ROWS}) has all figures.
+**With errors of manufacture and identified gains.** In another run the drives have the circular splines of
+`config/as_built.yaml` (7″ at {LOOP_LINES} periods per turn of the joint) and equal flexsplines, so that each drive has
+a table. `identify --controller` found the controller's gains on {GAINS_FROM}: {found}. [{BUILT_ROWS}]({BUILT_ROWS}) has
+all figures.
 
-The current has a ripple with {LOOP_LINES} periods per turn of the joint. Its amplitude in the twin is within a factor
-of two of the recorded amplitude in {within} of {len(known)} cases. The ratio of twin to recording is
-{float(np.median(known)):.2f} in the median. The twin's error of the current in moving rows is
-{float(np.nanmedian(errors)):.2f} of the simple fit's error in the median.
+The current has a ripple with {LOOP_LINES} periods per turn of the joint. The amplitude of this ripple in the twin is
+within a factor of two of the recorded amplitude in {within} of {len(known)} cases (one joint in one recording). In the
+median the amplitude in the twin is {float(np.median(known)):.2f} times the recorded amplitude. The twin's error of the
+current in moving rows is {float(np.nanmedian(errors)):.2f} of the simple fit's error in the median.
 [arm_twin.md](arm_twin.md#errors-of-manufacture) says what limits the prediction.
 """]
 
@@ -213,9 +214,9 @@ below the simple fit's error in {np.count_nonzero(currents < 1.0)} cases.
 
 Ripple limits how well the current is predicted. In the median the error of the closed loop is {loop_slow:.2f} of the
 fit's error below {SLOW:g} Hz, and {loop_fast:.2f} of it above {SLOW:g} Hz. With the prescribed motion the medians are
-{told_slow:.2f} below and {told_fast:.2f} above {SLOW:g} Hz. These drives have no errors of manufacture, so they make no
-ripple, but the prescribed motion contains the ripple of the robot. In {bound} of {len(currents)} cases the part of the
-fit's error above {SLOW:g} Hz is more than {WANTED:g} of its whole error.
+{told_slow:.2f} below and {told_fast:.2f} above {SLOW:g} Hz. The drives of the twin have no errors of manufacture, so
+they make no ripple, but the prescribed motion contains the ripple of the robot. In {bound} of {len(currents)} cases the
+part of the fit's error above {SLOW:g} Hz is more than {WANTED:g} of its whole error.
 """, *built_section(runner, recordings, fit, joints, train, docs), f"""
 ![Tracking error of three joints in {shown}, recorded and in closed loop]({PICTURE})
 """]

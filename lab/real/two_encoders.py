@@ -165,21 +165,20 @@ class TransmissionError:
 and the twin's kinematic error, computed at 5 N·m. Two numbers of the twin are fitted. The line at 200 per turn of the
 joint gives a total cumulative pitch deviation of the circular spline of {1e6 * self.pitch['circular_spline']:.1f} µm.
 The line at 202 per turn of the joint gives a deviation of the flexspline of {1e6 * self.pitch['flexspline']:.1f} µm.
-The scatter of the points nearly hides this line. ISO 1328 allows 17 µm in grade 5 and 12 µm in grade 4 at this size.
-The lines at 400 and 404 result from the same pitch deviations. The line of the circular spline (200) is larger than
-that of the flexspline (202), as in the current of the UR5.
+The scatter of the points nearly hides the line at 202. ISO 1328 allows 17 µm in grade 5 and 12 µm in grade 4 at this
+size. The lines at 400 and 404 result from the same pitch deviations. The line of the circular spline (200) is larger
+than that of the flexspline (202), as in the current of the UR5.
 
 ![Lines of the transmission error](images/real_robot/transmission_error.png)
 
-[{LINE_ROWS}]({LINE_ROWS}) has the amplitudes of the lines.
-The twin has no line at 101 per turn of the joint (once per turn of the motor), because only pitch deviations were
-fitted. The two lobes share the load, and the lead of one lobe cancels the lag of the other. Other errors can make the
-line at 101. A wave generator off its axis together with run-out of the flexspline, 10 µm each, makes 10 µrad without
-load and 7 µrad at 67 N·m (`manufacture.wave_generator_eccentricity`, `manufacture.flexspline_eccentricity`). An
-eccentric motor encoder of 1.1 mrad makes 11 µrad at the output, whatever the load. A recording without load cannot
-separate these two errors. The recorded error has 0.6 mrad once and 0.35 mrad twice per turn of the output. These
-amplitudes are more than the whole error that a gear of this kind may have (1 minute of arc), so the output encoder is
-eccentric.
+[{LINE_ROWS}]({LINE_ROWS}) has the amplitudes of the lines. The twin has no line at 101 per turn of the joint (once per
+turn of the motor), because only pitch deviations were fitted. The two lobes share the load, and the lead of one lobe
+cancels the lag of the other. Other errors can make the line at 101. A wave generator off its axis together with run-out
+of the flexspline, 10 µm each, makes 10 µrad without load and 7 µrad at 67 N·m
+(`manufacture.wave_generator_eccentricity`, `manufacture.flexspline_eccentricity`). An eccentric motor encoder of 1.1
+mrad makes 11 µrad at the output, whatever the load. A recording without load cannot separate the errors of wave
+generator and encoder. The recorded error has 0.6 mrad once and 0.35 mrad twice per turn of the output. These amplitudes
+are more than the whole error that a gear of this kind may have (1 minute of arc), so the output encoder is eccentric.
 
 *Limits of this recording:* the size of the drive is inferred from its ratio and torque. The sweep goes one way and
 takes 7 s. The torque is computed from the current. The error without load comes from a published figure, whose points
@@ -190,8 +189,8 @@ scatter by 0.03 mrad.
 def section(runner, telemetry, docs, images):
     """Lines of the page."""
     heading = ["## A 101:1 drive with both encoders", """
-The drive is the elbow of a NEURA LARA 8, not of a UR. Its recording (A. Lucious, 2024) is the only public one of this
-ratio with encoders at motor and output.
+The drive is the elbow of a NEURA LARA 8, not of a UR. Its recording (A. Lucious, 2024) is the only public recording of
+a drive with this ratio and encoders at motor and output.
 """]
     paths = [os.path.join(telemetry, name) for name in (LOADED, UNLOADED)]
     missing = [path for path in paths if not os.path.isfile(path)]

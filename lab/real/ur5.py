@@ -334,8 +334,8 @@ def section(runner, telemetry, docs, images):
     summary = [f"The page compares the twin's error of the current with the error of a simple fit. A case is one large "
                f"joint in one recording that the twins were not identified on. For means over 0.1 s the twin's error "
                f"is at most {WANTED_MEANS:g} of the fit's error in {means} of {means_of} cases. In the worst case the "
-               f"twin's error is {worst_means:.2f} times the fit's error. For single moving rows the twin's error is at most "
-               f"{WANTED_MOVING:g} of the fit's error in {moving} of {moving_of} cases. In the worst case the "
+               f"twin's error is {worst_means:.2f} times the fit's error. For single moving rows the twin's error is at "
+               f"most {WANTED_MOVING:g} of the fit's error in {moving} of {moving_of} cases. In the worst case the "
                f"twin's error is {worst_moving:.2f} times the fit's error.",
                judged_right]
     write_errors(os.path.join(docs, "real_robot_current.csv"), {**judged_errors, TRAIN: all_errors[TRAIN]})

@@ -218,14 +218,14 @@ def sweep(page):
     where = f"worst of {len(speeds)} speeds from 5 to 317 rad/s, 20 and 100 N·m"
     for key, limit, what in (("position", 0.1, "tooth points"), ("torsion", 0.2, "torsion"),
                              ("mesh_force", 1.0, "flank force per tooth")):
-        page.check(f"dynamics.sweep_{key}", f"{what}, {where}, rms", CLAIM, AtMost(limit),
+        page.check(f"dynamics.sweep_{key}", f"{what}: dynamic against quasi-static, {where}, rms", CLAIM, AtMost(limit),
                    100.0 * max(run[key]["relative_rms"] for run in every), "%",
                    "the claim" if limit == 1.0 else "well below it",
                    known=RINGING if f"sweep_{key}" in RINGS else "", evidence=SELF_CONSISTENT)
     page.check("dynamics.sweep_mean_torque", "mean wave generator torque over 5 ms, of the same speeds", CLAIM,
                AtMost(0.5), 100.0 * max(abs(mean_torque_error(run)) for run in every), "%", "half of it",
                evidence=SELF_CONSISTENT)
-    page.check("dynamics.sweep_slow", "flank force per tooth, worst of the speeds up to 60 rad/s, rms", CLAIM,
+    page.check("dynamics.sweep_slow", "flank force per tooth: dynamic against quasi-static, up to 60 rad/s, rms", CLAIM,
                AtMost(0.5),
                max(100.0 * run["mesh_force"]["relative_rms"] for run in every if run["speed"] <= HALF_SPEED), "%",
                "half of it", evidence=SELF_CONSISTENT)
