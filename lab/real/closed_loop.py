@@ -158,8 +158,8 @@ def built_section(runner, recordings, fit, joints, train, docs):
     return [f"""
 **With errors of manufacture and identified gains.** In another run the drives have the circular splines of
 `config/as_built.yaml` (7″ at {LOOP_LINES} periods per turn of the joint) and equal flexsplines, so that each drive has
-a table. `identify --controller` found the controller's gains on {GAINS_FROM}: {found}. [{BUILT_ROWS}]({BUILT_ROWS}) has
-all figures.
+a table. `identify --controller` found the controller's gains of speed [N·m·s/rad] and position [1/s] on {GAINS_FROM}:
+{found}. [{BUILT_ROWS}]({BUILT_ROWS}) has all figures.
 
 The current has a ripple with {LOOP_LINES} periods per turn of the joint. The amplitude of this ripple in the twin is
 within a factor of two of the recorded amplitude in {within} of {len(known)} cases (one joint in one recording). In the

@@ -239,8 +239,8 @@ def named_text(verdicts):
     """Of joints that were raised alone and whose friction is shown."""
     shown = [is_right(arm, raised) for arm, raised in verdicts if len(raised) == 1 and
              any(joint["joint"] == raised[0] and joint["friction_ratio"] is not None for joint in arm["joints"])]
-    return (f"In {len(shown)} of them the friction of one joint is raised and the motion shows the friction of this "
-            f"joint. The verdict names this joint and no other in {sum(shown)} of these {len(shown)}.")
+    return (f"In {len(shown)} of these recordings the friction of one joint is raised and the motion shows the "
+            f"friction of this joint. The verdict names this joint and no other in {sum(shown)} of these {len(shown)}.")
 
 
 def raised_alone(runner, verdicts, recordings):
@@ -300,7 +300,7 @@ def draw_means(path, all_errors):
 
 
 def rows_of(recordings):
-    return ", ".join(f"{recording.name} ({len(recording.data)} rows, one in {1e3 * recording.period():.0f} ms)"
+    return ", ".join(f"{recording.name} ({len(recording.data)} rows, one every {1e3 * recording.period():.0f} ms)"
                      for recording in recordings)
 
 
@@ -334,8 +334,8 @@ def section(runner, telemetry, docs, images):
     summary = [f"The page compares the twin's error of the current with the error of a simple fit. A case is one large "
                f"joint in one recording that the twins were not identified on. For means over 0.1 s the twin's error "
                f"is at most {WANTED_MEANS:g} of the fit's error in {means} of {means_of} cases. In the worst case the "
-               f"twin's error is {worst_means:.2f} times the fit's error. For single moving rows the twin's error is at "
-               f"most {WANTED_MOVING:g} of the fit's error in {moving} of {moving_of} cases. In the worst case the "
+               f"twin's error is {worst_means:.2f} times the fit's error. For single moving rows the twin's error is "
+               f"at most {WANTED_MOVING:g} of the fit's error in {moving} of {moving_of} cases. In the worst case the "
                f"twin's error is {worst_moving:.2f} times the fit's error.",
                judged_right]
     write_errors(os.path.join(docs, "real_robot_current.csv"), {**judged_errors, TRAIN: all_errors[TRAIN]})
@@ -417,7 +417,7 @@ another day.
 
 ### Load
 
-The program compares the load that follows from the arm's links with the controller's `target_moment`. The rms
-difference is at most this share of the range of the moment, in recordings with a range of more than {LEAST_SPAN:g} N·m:
+The program compares the load that follows from the arm's links with the controller's `target_moment`. In recordings in
+which the moment has a range of more than {LEAST_SPAN:g} N·m, the rms difference as a share of the range is at most
 {loads}. [{LOAD_ROWS}]({LOAD_ROWS}) has the difference and the range for each recording.
 """]
