@@ -38,7 +38,7 @@ OPTIONS = {
 ALTERNATIONS = 5
 TIME = np.arange(200) / 1000.0  # [s]
 LOAD = 10.0                     # [N.m]
-MOTIONS = {"motor torque 0.35 N·m, then 0; motion one way": 0.35 * np.sin(np.pi * TIME / TIME[-1]) ** 2,
+MOTIONS = {"motor torque from 0 to 0.35 N·m and back to 0; motion one way": 0.35 * np.sin(np.pi * TIME / TIME[-1]) ** 2,
            "motor torque ±0.45 N·m, 10 Hz; motion there and back": 0.45 * np.sin(2.0 * np.pi * 10.0 * TIME)}
 RATES, FINEST = (5000, 10000, 20000, 40000), 160000  # [Hz]
 STANDING = "standstill"
