@@ -38,8 +38,8 @@ STYLES = {
 }
 HEAD = """# Run time against error
 
-`lab/run benchmark` writes this page; do not edit it. The page compares how long the solvers of the twin and other
-programs take to reach a given error. All solvers get the same equations of motion. The problems are the dynamic ring of
+`lab/run benchmark` writes this page. The page compares how long the solvers of the twin and other programs take to
+reach a given error. All solvers get the same equations of motion. The problems are the dynamic ring of
 [model.md](model.md) (804 states: the mass of every tooth, wave generator, circular spline), the operating model (motor
 and output as masses, the ring in equilibrium), and the levels of detail that a user can choose from.
 
@@ -66,9 +66,9 @@ the vibration of single teeth. The best peer for these errors is Runge-Kutta 4 w
 
 
 CHOICE = """[benchmark_levels.csv](benchmark_levels.csv) has the speed of each level of detail by its error. Choose the
-full ring if you want the force on every tooth at every step, or if the gear has no table. Choose the table
-for the live node and for runs offline. Choose the table at measured angles if you follow a recording. The
-runs on the table solve the tooth forces only for the hundred samples, which takes about 3 ms."""
+full ring if you want the force on every tooth at every step, or if the gear has no table. Choose the table for the live
+node and for runs offline. Choose the table at measured angles if you follow a recording. The runs on the table solve
+the tooth forces only for the hundred samples, which takes about 3 ms."""
 
 
 QUANTITIES = {"angle": "angles", "position": "tooth positions", "force": "tooth forces"}
@@ -203,7 +203,7 @@ def levels_of(reference):
     """Lines on the levels of detail."""
     return ["## " + reference["title"], "",
             f"The reference is {reference['methods'][0]}. A second reference, {reference['methods'][1]}, differs from "
-            f"it by {reference['apart']['force']:.1e} in the forces, {reference['apart']['position']:.1e} in the "
+            f"the first by {reference['apart']['force']:.1e} in the forces, {reference['apart']['position']:.1e} in the "
             f"positions and {reference['apart']['angle']:.1e} in the angles. Errors smaller than these differences "
             "mean nothing, so the table ends there.", "",
             f"![{reference['title']}](images/benchmark/levels.png)", "", CHOICE, ""]

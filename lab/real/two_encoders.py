@@ -177,8 +177,8 @@ cancels the lag of the other. Other errors can make the line at 101. A wave gene
 of the flexspline, 10 µm each, makes 10 µrad without load and 7 µrad at 67 N·m
 (`manufacture.wave_generator_eccentricity`, `manufacture.flexspline_eccentricity`). An eccentric motor encoder of 1.1
 mrad makes 11 µrad at the output, whatever the load. A recording without load cannot separate the errors of wave
-generator and encoder. The recorded error has 0.6 mrad once and 0.35 mrad twice per turn of the output. These amplitudes
-are more than the whole error that a gear of this kind may have (1 minute of arc), so the output encoder is eccentric.
+generator and encoder. The recorded error has 0.6 mrad once and 0.35 mrad twice per turn of the output. A gear of this
+kind may have an error of 1 minute of arc in all. The amplitudes are larger, so the output encoder is eccentric.
 
 *Limits of this recording:* the size of the drive is inferred from its ratio and torque. The sweep goes one way and
 takes 7 s. The torque is computed from the current. The error without load comes from a published figure, whose points

@@ -14,10 +14,10 @@ from lab import BLUE, GREY, ORANGE, RED, STYLE, plt  # noqa: E402  (its folder i
 
 HEAD = """# Stability
 
-`lab/run stress` writes this page; do not edit it. The page shows how the twin behaves far from its usual range. A cell
-is a combination of parameters and inputs. The program changes one factor (parameter or input) at a time, then two
-factors at a time, then all factors at random. For each cell it runs the twin of the Python module, and compares this
-run with a converged run of the same cell.
+`lab/run stress` writes this page. The page shows how the twin behaves far from its usual range. A cell is a combination
+of parameters and inputs. The program changes one factor (parameter or input) at a time, then two factors at a time,
+then all factors at random. For each cell the program runs the twin of the Python module, and compares this run with a
+converged run of the same cell.
 
 ```sh
 lab/run stress                # every cell: all results in out/stability/cells.csv

@@ -13,11 +13,11 @@ FIGURES = ["catalogue_torsion", "catalogue_efficiency", "drives_ur5e", "quasi_st
 
 HEAD = """# Validation
 
-`lab/run validate` writes this page; do not edit it. The page compares the twin with three kinds of sources. The first
-is the thesis that the twin grew from (C. Costantino, *Sviluppo di un modello multibody di un harmonic drive a fini
-diagnostici e prognostici*, Politecnico di Torino, 2021). The second are the catalogues of two makers (Harmonic Drive
-HFUS-25 for stiffness and ratings, Schaeffler RT1-H-CS-25 for friction and efficiency). The third are recordings of real
-drives. A row is one comparison. It has a source, an expected value, the twin's value, and a tolerance with its reason.
+`lab/run validate` writes this page. The page compares the twin with three kinds of sources. The first is the thesis
+that the twin grew from (C. Costantino, *Sviluppo di un modello multibody di un harmonic drive a fini diagnostici e
+prognostici*, Politecnico di Torino, 2021). The second are the catalogues of two makers (Harmonic Drive HFUS-25 for
+stiffness and ratings, Schaeffler RT1-H-CS-25 for friction and efficiency). The third are recordings of real drives. A
+row is one comparison, with a source, an expected value, the twin's value, and a tolerance with its reason.
 
 ```sh
 lab/run validate                                     # every row, in a few minutes: the complete table in out/validation
@@ -26,9 +26,8 @@ lab/run validate --set contact.stiffness=1.1e+8      # the effect of another par
 
 The complete table is in `out/validation/validation.md`, with the commands of all runs and the errors found in the
 thesis. [validation.csv](validation.csv) has the values of all rows. The exit code is 0 if all rows hold except those in
-[What does not hold](#what-does-not-hold). Otherwise the program names the other rows that fail. The recordings of real
-drives are not part of the project. Without these recordings the program cannot recompute the sections *Real drives* and
-*Heat*.
+[What does not hold](#what-does-not-hold). If other rows fail, the program names them. The recordings of real drives are
+not part of the project. Without these recordings the program cannot recompute the sections *Real drives* and *Heat*.
 """
 
 
@@ -63,7 +62,7 @@ def write(docs, complete, pages, titles):
               "A row within its tolerance supports the model more or less strongly, depending on its source. "
               "[validation.csv](validation.csv) states the class of evidence of each row, and which parameter was "
               "fitted to which figure. Only the first class compares the twin with figures that nothing in the twin "
-              "was made from. The table does not count quantities that only a broken gear would miss; the CSV file "
+              "was made from. The table does not count quantities that only a broken gear would miss, but the CSV file "
               "shows their values. The rows of the thesis' chapters 6 and 7 are of the gear of the thesis "
               "(`config/golden.yaml`), not of the shipped gear. The thesis claims that the number of loaded teeth "
               "grows with the load. On the shipped gear this claim does not hold everywhere "
