@@ -203,8 +203,8 @@ def levels_of(reference):
     """Lines on the levels of detail."""
     return ["## " + reference["title"], "",
             f"The reference is {reference['methods'][0]}. A second reference, {reference['methods'][1]}, differs from "
-            f"the first by {reference['apart']['force']:.1e} in the forces, {reference['apart']['position']:.1e} in the "
-            f"positions and {reference['apart']['angle']:.1e} in the angles. Errors smaller than these differences "
+            f"the first by {reference['apart']['force']:.1e} in the forces, {reference['apart']['position']:.1e} in "
+            f"the positions and {reference['apart']['angle']:.1e} in the angles. Errors smaller than these differences "
             "mean nothing, so the table ends there.", "",
             f"![{reference['title']}](images/benchmark/levels.png)", "", CHOICE, ""]
 
