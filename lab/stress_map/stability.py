@@ -134,9 +134,9 @@ def write(docs, judged, table):
     lines += table(["verdict", "cells"], [[verdict, count[verdict]] for verdict in judge.VERDICTS])
     wrong = [f"{j.cell.name} (error {percent(j.error)})" for j in judged if j.verdict not in judge.GOOD]
     if wrong:
-        lines += ["", f"Cells that are wrong without a report, or without a result: {'; '.join(wrong)}. The steps of "
-                  "these cells are as long as the twin allows. The phase error of the leapfrog method adds up over a "
-                  "run."]
+        lines += ["", "These cells are wrong without a report, or have no result (group of the cell, values of its "
+                  f"factors, error): {'; '.join(wrong)}. The steps of these cells are as long as the twin allows. The "
+                  "phase error of the leapfrog method adds up over a run."]
     lines += ["", "## Where it is accurate", "", boundary(judged), ""]
     for name, (file, across, up) in MAPS.items():
         draw_map(os.path.join(docs, "images", "stability", file + ".png"), groups[name], across, up)
