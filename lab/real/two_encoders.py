@@ -180,9 +180,9 @@ mrad makes 11 µrad at the output, whatever the load. A recording without load c
 generator and encoder. The recorded error has 0.6 mrad once and 0.35 mrad twice per turn of the output. A gear of this
 kind may have an error of 1 minute of arc in all. The amplitudes are larger, so the output encoder is eccentric.
 
-*Limits of this recording:* the size of the drive is inferred from its ratio and torque. The sweep goes one way and
-takes 7 s. The torque is computed from the current. The error without load comes from a published figure, whose points
-scatter by 0.03 mrad.
+*Limits of this recording:* the size of the drive is inferred from its ratio and torque. The sweep turns in one
+direction only and takes 7 s. The torque is computed from the current. The error without load comes from a published
+figure, whose points scatter by 0.03 mrad.
 """]
 
 
