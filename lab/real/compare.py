@@ -25,7 +25,7 @@ The recordings come from one UR5, one UR10e and one drive of another maker, all 
 this project. The shipped friction of the UR5 and the widths of the verdict's interval come from these recordings. The
 friction of another arm may vary more from recording to recording.
 
-The program identifies the twins on one recording and compares them with the other recordings.
+The program identifies the twins on one recording and compares the twins with the other recordings.
 [real_robot_runs.txt](real_robot_runs.txt) has the commands behind the figures.
 """
 WIDTH = 150  # of a line of the page

@@ -406,7 +406,7 @@ def introduction(summary, recordings, loads):
 The arm is a UR5 of the CB series with six joints (K. Kufieta, *Force Estimation in Robotic Manipulators*, NTNU 2014).
 The twins get what a driver's `/joint_states` holds: angles and currents of the six joints. The twins compute the load
 of each joint from the angles of all joints ([arm.md](arm.md)). The program identifies all six twins on {TRAIN} alone
-(`joint_twin identify --arm`) and compares them with the other recordings.
+(`joint_twin identify --arm`) and compares the twins with the other recordings.
 
 {summary[0]}
 {summary[1]}
