@@ -38,36 +38,37 @@ STYLES = {
 }
 HEAD = """# Run time against error
 
-`lab/run benchmark` writes this page; do not edit it. The page compares how long the twin's solvers and other programs
-take to reach a given error. All solve the same equations of motion. The problems are the dynamic ring of
-[model.md](model.md) (804 states: every tooth's mass, wave generator, circular spline), the operating model, and the
-levels of detail that a user can choose from.
+`lab/run benchmark` writes this page. The page compares how long the solvers of the twin and other programs take to
+reach a given error. All solvers get the same equations of motion. The problems are the dynamic ring of
+[model.md](model.md) (804 states: the mass of every tooth, wave generator, circular spline), the operating model (motor
+and output as masses, the ring in equilibrium), and the levels of detail that a user can choose from.
 
 ```sh
-lab/run benchmark                    # ten minutes: installs the peers, measures; every run in out/benchmark/runs.csv
-lab/run benchmark --reuse            # writes the pages again from what was measured
+lab/run benchmark                    # ten minutes: installs peers, measures, writes every run to out/benchmark/runs.csv
+lab/run benchmark --reuse            # writes the page again from the last measurements
 ```
 
-The **error** of a run is the root mean square of its differences from the reference over all samples. It is divided by
-the standard deviation of the reference. Angles, tooth positions and tooth forces have an error each. The **time** is
-processor time of one thread, the median of the runs; the solvers take turns. The **peers** are SUNDIALS (CVODE, IDA,
-ARKODE), RADAU5 and Boost.odeint. They get the analytic sparse Jacobian with SuiteSparse's KLU and call the twin's own
-forces. Their tolerances are absolute, in units of 5 µm, 0.1 m/s, 1 mrad and 10 rad/s. Their operating model has no
-friction of the cup, which no solver of smooth equations can have. **Our solvers** are TR-BDF2 and ESDIRK4 with adaptive
-steps (`joint_twin dynamics --tolerance`).
+The **error** of a run is the root mean square of its differences from the reference over all samples, divided by the
+standard deviation of the reference. Angles, tooth positions and tooth forces have an error each. The **time** is
+processor time of one thread, the median of the runs. The solvers run in turn. The **peers** are SUNDIALS (CVODE, IDA,
+ARKODE), RADAU5 and Boost.odeint. The peers get the analytic sparse Jacobian with SuiteSparse's KLU and call the twin's
+functions for the forces. The tolerances of the peers are absolute, in units of 5 µm, 0.1 m/s, 1 mrad and 10 rad/s. The
+operating model of the peers has no friction of the cup, because a solver of smooth equations cannot compute this
+friction. **Our solvers** are TR-BDF2 and ESDIRK4 with adaptive steps (`joint_twin dynamics --tolerance`).
 """
-READING = """Above 1 our solver is faster. *ours only* and *peer only* say that the other side does not reach that
-error. A dash says that no solver reaches that error, or that the two references differ by more than the error. For
-tooth forces an error below 1e-3 needs steps of a fraction of a microsecond, which resolve the vibration of single
-teeth. The best peer for such errors is Runge-Kutta 4 with steps of equal length.
+READING = """A number above 1 means that our solver is faster. *ours only* means that no peer reaches the error, *peer
+only* that no solver of ours reaches it. A dash says that no solver reaches the error, or that the two references differ
+by more than the error. For tooth forces an error below 1e-3 needs steps of a fraction of a microsecond, which resolve
+the vibration of single teeth. The best peer for these errors is Runge-Kutta 4 with steps of equal length.
 
 ![Working drive under a load step: time against error of all solvers](images/benchmark/drive.png)
 """
 
 
-CHOICE = """Choose the full ring if you want every tooth at every step, or if the gear has no table. Choose the table
-for the live node and for runs offline. Choose the table at measured angles if you follow a recording. The runs solve
-the tooth forces for the hundred samples alone, which takes about 3 ms."""
+CHOICE = """[benchmark_levels.csv](benchmark_levels.csv) has the speed of each level of detail by its error. Choose the
+full ring if you want the force on every tooth at every step, or if the gear has no table. Choose the table for the live
+node and for runs offline. Choose the table at measured angles if you follow a recording. The runs on the table solve
+the tooth forces only for the hundred samples, which takes about 3 ms."""
 
 
 QUANTITIES = {"angle": "angles", "position": "tooth positions", "force": "tooth forces"}
@@ -132,17 +133,21 @@ def ratios_of(rows, quantity, apart):
 
 
 def choice(rows, quantity, apart):
-    """Table of ours alone: times real time by level of detail and error; the problem takes a second."""
-    levels = [level for level in LEVELS if level >= apart]
-    header = [f"times real time at an error of {QUANTITIES[quantity]}", *(f"{level:.0e}" for level in levels)]
-    lines = []
+    """Rows of ours alone: times real time by level of detail and error; the problem takes a second."""
     for solver in dict.fromkeys(row["solver"] for row in rows):
-        best = [fastest([row for row in rows if row["solver"] == solver], quantity, level) for level in levels]
-        if any(best):
-            lines.append([solver.replace(OURS, ""),
-                          *(f"{rounded(1.0 / row['processor_time'], 3)} ({row['setting']})" if row else "-"
-                            for row in best)])
-    return table(header, lines)
+        for level in (level for level in LEVELS if level >= apart):
+            row = fastest([row for row in rows if row["solver"] == solver], quantity, level)
+            if row:
+                yield [QUANTITIES[quantity], solver.replace(OURS, ""), f"{level:.0e}",
+                       f"{rounded(1.0 / row['processor_time'], 3)}", row["setting"]]
+
+
+def write_levels(path, reference, rows):
+    with open(path, "w", encoding="utf-8", newline="") as file:
+        table = csv.writer(file, lineterminator="\n")
+        table.writerow(["quantity", "method", "error", "times real time", "step or rate"])
+        for quantity in shown(rows):
+            table.writerows(choice(rows, quantity, reference["apart"][quantity]))
 
 
 def write_runs(path, measured):
@@ -194,17 +199,14 @@ def processor():
                     platform.machine())
 
 
-def levels_of(reference, rows):
+def levels_of(reference):
     """Lines on the levels of detail."""
-    lines = ["## " + reference["title"], "",
-             f"The reference is {reference['methods'][0]}. A second reference, {reference['methods'][1]}, differs from "
-             f"it by {reference['apart']['force']:.1e} in the forces, {reference['apart']['position']:.1e} in the "
-             f"positions and {reference['apart']['angle']:.1e} in the angles. Smaller errors mean nothing: the tables "
-             "end there.", "",
-             f"![{reference['title']}](images/benchmark/levels.png)", "", CHOICE, ""]
-    for quantity in shown(rows):
-        lines += choice(rows, quantity, reference["apart"][quantity])
-    return lines
+    return ["## " + reference["title"], "",
+            f"The reference is {reference['methods'][0]}. A second reference, {reference['methods'][1]}, differs from "
+            f"the first by {reference['apart']['force']:.1e} in the forces, {reference['apart']['position']:.1e} in "
+            f"the positions and {reference['apart']['angle']:.1e} in the angles. Errors smaller than these differences "
+            "mean nothing, so the table ends there.", "",
+            f"![{reference['title']}](images/benchmark/levels.png)", "", CHOICE, ""]
 
 
 def table_row(cells):
@@ -231,8 +233,8 @@ def parts(tool):
     slope = math.log(teeth[most] / teeth[least]) / math.log(most / least)
     return ["## Insertion from cold, and cost against teeth", "",
             f"The solver finds the equilibrium of the wave generator in the round ring in {cold:.2g} ms (target: at "
-            f"most 1 ms). A Newton iteration of the dynamic ring computes forces, tangent, factors and solution. Its "
-            f"time grows with the number of teeth to the power {slope:.2f} (target: at most 1.05).", "",
+            f"most 1 ms). A Newton iteration of the dynamic ring computes forces, tangent, factors and solution. The "
+            f"time of an iteration grows with the number of teeth to the power {slope:.2f} (target: at most 1.05).", "",
             *table(["teeth", "iteration [us]"],
                    [[count, f"{1e-3 * time:.3g}"] for count, time in sorted(teeth.items())])]
 
@@ -245,13 +247,14 @@ def write_page(options, measured):
     for name in ("drive", "levels"):
         draw(measured[name][1], measured[name][0]["title"],
              os.path.join(options.docs, "images", "benchmark", name + ".png"))
+    write_levels(os.path.join(options.docs, "benchmark_levels.csv"), *measured["levels"])
     solvers = {row["solver"] for _, rows in measured.values() for row in rows}
     absent = [f"{peer} ({package})" for peer, package in OPTIONAL.items()
               if not any(solver.startswith(peer) for solver in solvers)]
     machine = (f"{processor()}; {', '.join(installed_version(package) for package in PACKAGES)}. Each setting ran "
-               f"{options.runs} times, a slow one less often. A run was given up after {options.limit:g} s of "
-               "processor time, one of an explicit solver or of RADAU5 after twice that.")
-    lines = [HEAD, "## Best peer against ours", "", *ratio_table(ratios), READING, *levels_of(*measured["levels"]),
+               f"{options.runs} times, slow settings less often. The program ended a run after {options.limit:g} s of "
+               "processor time, a run of an explicit solver or of RADAU5 after twice this time.")
+    lines = [HEAD, "## Best peer against ours", "", *ratio_table(ratios), READING, *levels_of(measured["levels"][0]),
              *parts(options.parts), "---", "", machine]
     if absent:
         lines.append(f"Not installed: {', '.join(absent)}.")

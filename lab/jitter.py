@@ -180,10 +180,11 @@ def processor():
 
 def section(results, options, load):
     return [*table(results), "",
-            f"`lab/run jitter --duration {options.duration:g}` measured this on {os.cpu_count()} cores of a shared "
-            f"virtual machine ({processor()}, Linux {os.uname().release}), whose host serves others too. The load "
-            f"average before the first case was {load:.1f}. So *quiet* means only that the program ran no processor "
-            "hog. A thread of SCHED_FIFO precedes everything inside the machine, but not its host.", "",
+            f"`lab/run jitter --duration {options.duration:g}` measured these values on {os.cpu_count()} cores of a "
+            f"shared virtual machine ({processor()}, Linux {os.uname().release}). The load average before the first "
+            f"case was {load:.1f}. The host of the virtual machine also runs other machines, so *quiet* means only "
+            "that the program ran no processor hog. A thread with SCHED_FIFO precedes all other threads of the virtual "
+            "machine, but not those of the host.", "",
             "![Histograms of wake-up jitter and of lateness](images/jitter.png)"]
 
 

@@ -38,8 +38,8 @@ OPTIONS = {
 ALTERNATIONS = 5
 TIME = np.arange(200) / 1000.0  # [s]
 LOAD = 10.0                     # [N.m]
-MOTIONS = {"0.35 N·m and back to 0, one way": 0.35 * np.sin(np.pi * TIME / TIME[-1]) ** 2,
-           "0.45 N·m there and back, 10 Hz": 0.45 * np.sin(2.0 * np.pi * 10.0 * TIME)}
+MOTIONS = {"motor torque from 0 to 0.35 N·m and back to 0; motion one way": 0.35 * np.sin(np.pi * TIME / TIME[-1]) ** 2,
+           "motor torque ±0.45 N·m, 10 Hz; motion there and back": 0.45 * np.sin(2.0 * np.pi * 10.0 * TIME)}
 RATES, FINEST = (5000, 10000, 20000, 40000), 160000  # [Hz]
 STANDING = "standstill"
 
@@ -163,12 +163,13 @@ def main():
     draw(measured, options.docs / "images" / "cycle.png")
     lab.write(options.docs / "performance.md", "cycle", [
         *table(measured), "", "![Time of one step in every scene, and the target](images/cycle.png)", "",
-        f"`lab/run performance` simulates {options.duration:g} s of each scene, and twenty times that on the surface. "
+        f"`lab/run performance` simulates {options.duration:g} s of each scene on the full ring, and "
+        f"{20 * options.duration:g} s on the surface. "
         f"The load average before the run was {load:.1f}."])
     lab.write(options.docs / "performance.md", "options", [
         "| option | set | time of a step over the shipped gear's |", "|---|---|---|", *option_rows(options), "",
-        f"`lab/run performance` measures the full ring with every array, in the scenes that move. The figures are "
-        f"medians of {ALTERNATIONS} alternating runs."])
+        f"`lab/run performance` measures steps on the full ring with all tooth forces, in the scenes that move. The "
+        f"values are medians of {ALTERNATIONS} alternating runs."])
     lab.write(options.docs / "performance.md", "rates", [
         "| `solver.rate` | " + " | ".join(f"{rate / 1000:g} kHz" for rate in RATES) + " |",
         "|---" * (1 + len(RATES)) + "|", *rate_rows()])

@@ -156,14 +156,16 @@ def built_section(runner, recordings, fit, joints, train, docs):
                       for joint in gains["joints"] if not joint["refusal"])
     within = np.count_nonzero((known <= 2.0) & (known >= 0.5))
     return [f"""
-**With errors of manufacture and identified gains.** These drives have the circular splines of `config/as_built.yaml`
-(7″ at {LOOP_LINES} a turn) and equal flexsplines, so that each drive has a table. `identify --controller` found the
-controller's gains on {GAINS_FROM}: {found}. [{BUILT_ROWS}]({BUILT_ROWS}) has all figures.
+**With errors of manufacture and identified gains.** In another run the drives have the circular splines of
+`config/as_built.yaml` (7″ at {LOOP_LINES} periods per turn of the joint) and equal flexsplines, so that each drive has
+a table. `identify --controller` found the controller's gains of speed [N·m·s/rad] and position [1/s] on {GAINS_FROM}:
+{found}. [{BUILT_ROWS}]({BUILT_ROWS}) has all figures.
 
-The current has a ripple at {LOOP_LINES} periods a turn. The twin's amplitude is within a factor of two of the recorded
-one in {within} of {len(known)} cases; the median of twin over recorded is {float(np.median(known)):.2f}. The error of
-the current in moving rows is {float(np.nanmedian(errors)):.2f} of the simple fit's in the median.
-[arm_twin.md](arm_twin.md#errors-of-manufacture) says what limits it.
+The current has a ripple with {LOOP_LINES} periods per turn of the joint. The amplitude of this ripple in the twin is
+within a factor of two of the recorded amplitude in {within} of {len(known)} cases (one joint in one recording). In the
+median the amplitude in the twin is {float(np.median(known)):.2f} times the recorded amplitude. The twin's error of the
+current in moving rows is {float(np.nanmedian(errors)):.2f} of the simple fit's error in the median.
+[arm_twin.md](arm_twin.md#errors-of-manufacture) says what limits the prediction.
 """]
 
 
@@ -196,24 +198,25 @@ def section(runner, recordings, fit, joints, shown, docs, train):
     return [f"""
 ### In closed loop
 
-`joint_twin arm` follows the targets of each recording. The drives are those identified on {train}, the controller's
-gains are typical ones. The twin gets neither the measured angles nor the currents. [{LOOP_ROWS}]({LOOP_ROWS}) has for
-each recording and joint: the tracking error (actual less target angle, rms about its mean); the rms error of the
-current in moving rows for the closed loop, for the prescribed motion (`follow`) and for the simple fit; and the
-amplitude of the current at {LOOP_LINES} periods a turn, where a steady motion shows it.
+`joint_twin arm` follows the targets of each recording, with the drives identified on {train} and typical gains of the
+controller. The twin gets neither the measured angles nor the currents. [{LOOP_ROWS}]({LOOP_ROWS}) has for each
+recording and joint the tracking error (actual − target angle, rms about its mean) and the rms error of the current in
+moving rows. The error of the current is given for the closed loop, for the prescribed motion (`follow`) and for the
+simple fit. If the motion is steady, the file also has the amplitude of the current at {LOOP_LINES} periods per turn of
+the joint.
 
-The delay of the set points was taken from no6. The other motions give {len(tracked)} cases, one for each recording and
-joint. In {both_ways(tracked, 1.5)} of them the tracking error of the twin is within a factor of 1.5 of the recorded
-one, in {both_ways(tracked, 2.0)} within a factor of two. The correlation in time of both tracking errors is
-{np.median(alike):.2f} in the median and {np.min(alike):.2f} at least. The error of the current in moving rows is
-within {WANTED:g} of the simple fit's in {np.count_nonzero(currents <= WANTED)} of {len(currents)} cases, and below the
-simple fit's in {np.count_nonzero(currents < 1.0)}.
+The delay of the set points comes from no6. The other motions give {len(tracked)} cases (one joint in one recording).
+The twin's tracking error is within a factor of 1.5 of the recorded tracking error in {both_ways(tracked, 1.5)} cases,
+and within a factor of two in {both_ways(tracked, 2.0)} cases. The correlation in time of these two tracking errors is
+{np.median(alike):.2f} in the median and {np.min(alike):.2f} at least. The twin's error of the current in moving rows is
+at most {WANTED:g} of the simple fit's error in {np.count_nonzero(currents <= WANTED)} of {len(currents)} cases, and
+below the simple fit's error in {np.count_nonzero(currents < 1.0)} cases.
 
-Ripple limits how well the current is predicted. Below {SLOW:g} Hz the error of the closed loop is {loop_slow:.2f} of
-the fit's in the median, above {SLOW:g} Hz {loop_fast:.2f}. With the motion prescribed the medians are {told_slow:.2f}
-and {told_fast:.2f}. These drives have no errors of manufacture, so they make no ripple; a prescribed motion contains
-the ripple of the robot. In {bound} of {len(currents)} cases the fit's error above {SLOW:g} Hz alone is more than
-{WANTED:g} of its whole error.
+Ripple limits how well the current is predicted. In the median the error of the closed loop is {loop_slow:.2f} of the
+fit's error below {SLOW:g} Hz, and {loop_fast:.2f} of it above {SLOW:g} Hz. With the prescribed motion the medians are
+{told_slow:.2f} below and {told_fast:.2f} above {SLOW:g} Hz. The drives of the twin have no errors of manufacture, so
+they make no ripple, but the prescribed motion contains the ripple of the robot. In {bound} of {len(currents)} cases the
+part of the fit's error above {SLOW:g} Hz is more than {WANTED:g} of its whole error.
 """, *built_section(runner, recordings, fit, joints, train, docs), f"""
 ![Tracking error of three joints in {shown}, recorded and in closed loop]({PICTURE})
 """]

@@ -15,17 +15,18 @@ from runs import Runner
 
 HEAD = """# Beside a real robot
 
-`lab/run compare_real` writes this page; do not edit it.
+`lab/run compare_real` writes this page.
 
-How to use it: this page shows how far the twin differs from a sound robot. A smaller difference on your robot means
-nothing. The page also counts the right verdicts on recordings of sound joints and of raised friction.
+This page shows how far the twin differs from a sound robot. A difference on your robot that is smaller than on this
+page tells nothing about your robot. The page also counts the right verdicts on recordings of sound joints and on
+recordings with raised friction.
 
-How far to trust it: the recordings come from one UR5, one UR10e and one drive of another maker, all sound. They are
-not part of this project. The shipped friction of the UR5 and the widths of the verdict's interval come from these
-recordings. Another arm may repeat less well.
+The recordings come from one UR5, one UR10e and one drive of another maker, all sound. The recordings are not part of
+this project. The shipped friction of the UR5 and the widths of the verdict's interval come from these recordings. The
+friction of another arm may vary more from recording to recording.
 
-Method: the twins are identified on one recording and judged on the others. [real_robot_runs.txt](real_robot_runs.txt)
-has the commands behind the figures.
+The program identifies the twins on one recording and compares the twins with the other recordings.
+[real_robot_runs.txt](real_robot_runs.txt) has the commands behind the figures.
 """
 WIDTH = 150  # of a line of the page
 

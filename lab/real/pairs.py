@@ -22,12 +22,12 @@ def pairs_text(arms, groups):
                 own = [joint["friction_ratio"] * joint["friction_shared"] for joint in joints]
                 together += list(np.log(own))
                 left += list(np.log(own) - np.median(np.log(own)))
-        spreads.append(f"The friction of {group[0]} to {group[-1]} differs by {100.0 * rms(np.array(together)):.1f} "
-                       f"% rms, "
-                       f"and by {100.0 * rms(np.array(left)):.1f} % relative to the median of these joints.")
+        spreads.append(f"In these pairs the friction of {group[0]} to {group[-1]} differs between the two "
+                       f"recordings by {100.0 * rms(np.array(together)):.1f} % rms, and by "
+                       f"{100.0 * rms(np.array(left)):.1f} % rms after division by the median of the three joints.")
     return f"""
-Each recording was also judged beside each other one as its reference, in {len(arms)} pairs. Of {len(judged)} judged
-joints {alarms} are WARN or worse. In some pairs all three joints of a group are judged: {" ".join(spreads)} The widths
-of the [interval](compare.md#interval-of-the-friction) were taken from these pairs, so the pairs are no test for
-another arm.
+The program also judged each recording with each other recording as reference, in {len(arms)} pairs. Of {len(judged)}
+judged joints {alarms} are WARN or worse. In some pairs the program judged all three joints of a group.
+{" ".join(spreads)} The widths of the [interval](compare.md#interval-of-the-friction) come from these pairs, so the
+pairs are no test for another arm.
 """

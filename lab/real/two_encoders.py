@@ -4,17 +4,18 @@ import os
 
 import numpy as np
 
-from runs import BLUE, GREEN, GREY, RED, figure, read, regress, rms, save, table
+from runs import BLUE, GREEN, GREY, RED, figure, read, regress, rms, save, table, write_rows
 
 LOADED, UNLOADED = os.path.join("lara8", "validate.csv"), os.path.join("lara8", "unloaded_transmission_error.csv")
 RATIO = 101
+STIFFNESS_ROWS, LINE_ROWS = "real_robot_stiffness.csv", "real_robot_lines.csv"  # beside the page
 COUNTS = 2 ** 24  # a turn, of both encoders
 STEADY = 0.6      # [rad/s] the sweep's constant speed is above it
 STRIPE = 10.0     # [deg] of the sweep, in turn to identify on and to judge on
 # Per turn of the output: from the circular spline two and four times, from the flexspline likewise, from the motor's
 # encoder.
 LINES = {200: "circular spline, 2", 400: "circular spline, 4", 202: "flexspline, 2", 404: "flexspline, 4",
-         101: "once a motor turn"}
+         101: "once per motor turn"}
 PITCH = 1.0e-5    # [m] of the twin's trial, which the amplitudes are proportional to
 TREND = 24        # degree of the polynomial that takes in what is slower than ten waves a turn
 TURN = ("--load", 5, "--angle-range", repr(2.0 * np.pi * RATIO), "--steps", 90 * RATIO, "--json")
@@ -81,27 +82,31 @@ class Torsion:
         axes.legend(fontsize=8)
         save(drawing, path)
 
+    def rows(self):
+        return [[f"{load:g}", f"{1e-3 * value:.1f}", f"{1e-3 * value / self.scale:.1f}",
+                 f"{1e-3 * value * self.width / self.scale ** 2:.1f}"] for load, value in self.stiffness.items()]
+
     def page(self):
-        rows = [[f"at {load:g} N·m", f"{1e-3 * value:.1f}",
-                 f"{1e-3 * value / self.scale:.1f} ± {1e-3 * value * self.width / self.scale ** 2:.1f}"]
-                for load, value in self.stiffness.items()]
         return [f"""
-**Torsion.** The figure shows the torsion: motor angle / 101 less output angle, less the same without load. Its
-abscissa is the motor's torque at the joint less {self.friction:.1f} N·m, the twin's friction at this speed. The blue
-curve is the catalogue's gear. Only its origin comes from the recording, because the zeros of the encoders are
-arbitrary. The red curve has the catalogue's compliance times {self.scale:.3f} ± {self.width:.3f} (95 %). This factor
-was identified on every second stripe of {STRIPE:g}° of the sweep and tested on the stripes between.
+**Torsion.** The figure shows the torsion (motor angle / 101 − output angle), minus the torsion without load at the same
+angle. The abscissa is the motor's torque at the joint minus {self.friction:.1f} N·m, the twin's friction at this speed.
+The blue curve is the torsion of the catalogue's gear. Only the origin of this curve comes from the recording, because
+the zeros of the encoders are arbitrary. The red curve has the catalogue's compliance times {self.scale:.3f} ±
+{self.width:.3f} (95 %). The program identified this factor on every second stripe of {STRIPE:g}° of the sweep and
+tested it on the stripes between.
 
 ![Torsion against torque](images/real_robot/torsion.png)
 """, *table(["rms difference of the recorded torsion from", "stripes that were fitted [mrad]",
              "stripes between [mrad]"],
             [[name, f"{1e3 * a:.2f}", f"{1e3 * b:.2f}"] for name, (a, b) in self.errors.items()]),
-                *table(["stiffness [10³ N·m/rad]", "catalogue", "identified"], rows), f"""
-*Weakness:* a fit to the negative angles alone gives a factor of {self.halves[0]:.2f}, a fit to the positive
-angles {self.halves[1]:.2f}. These differ by more than the interval, which is therefore too narrow. A factor that was
-identified on one half is worse on the other half than the catalogue. What remains is slow waves of the transmission
-error, which depend on load and mounting. One sweep cannot separate such waves from torsion. The catalogue's curve lies
-between both fits.
+                f"""
+[{STIFFNESS_ROWS}]({STIFFNESS_ROWS}) has the stiffness by load.
+
+*Weakness:* a fit to the negative angles alone gives a factor of {self.halves[0]:.2f}, a fit to the positive angles a
+factor of {self.halves[1]:.2f}. These two factors differ by more than the interval, which is therefore too narrow. With
+a factor identified on one half of the angles the error on the other half is larger than with the catalogue's curve. The
+remaining error is slow waves of the transmission error, which depend on load and mounting. One sweep cannot separate
+these waves from torsion. The catalogue's curve lies between the two fits.
 """]
 
 
@@ -150,39 +155,42 @@ class TransmissionError:
         axes.legend(fontsize=8)
         save(drawing, path)
 
+    def rows(self):
+        return [[f"{line}", name, *(f"{1e6 * value:.1f}" for lines in self.recorded.values() for value in lines[line]),
+                 f"{1e6 * self.lines[line]:.1f}"] for line, name in LINES.items()]
+
     def page(self):
-        rows = [[f"{line} ({name})", *(f"{1e6 * lines[line][0]:.1f} ± {1e6 * lines[line][1]:.1f}"
-                                       for lines in self.recorded.values()), f"{1e6 * self.lines[line]:.1f}"]
-                for line, name in LINES.items()]
         return [f"""
-**Transmission error without load.** The figure has the spectral lines of the published error, for each direction, and
-of the twin's kinematic error at 5 N·m. Two numbers are fitted. The line at 200 gives a total cumulative pitch
-deviation of the circular spline of {1e6 * self.pitch['circular_spline']:.1f} µm. The line at 202 gives one of the
-flexspline of {1e6 * self.pitch['flexspline']:.1f} µm; the scatter of the points nearly hides this line. ISO 1328
-allows 17 µm in grade 5 and 12 µm in grade 4 at this size. The lines at 400 and 404 result from the same pitch
-deviations. The circular spline's line is the larger one, as in the current of the UR5.
+**Transmission error without load.** The figure compares two spectra: the published error in each direction of rotation,
+and the twin's kinematic error, computed at 5 N·m. Two numbers of the twin are fitted. The line at 200 per turn of the
+joint gives a total cumulative pitch deviation of the circular spline of {1e6 * self.pitch['circular_spline']:.1f} µm.
+The line at 202 per turn of the joint gives a deviation of the flexspline of {1e6 * self.pitch['flexspline']:.1f} µm.
+The scatter of the points nearly hides the line at 202. ISO 1328 allows 17 µm in grade 5 and 12 µm in grade 4 at this
+size. The lines at 400 and 404 result from the same pitch deviations. The line of the circular spline (200) is larger
+than that of the flexspline (202), as in the current of the UR5.
 
 ![Lines of the transmission error](images/real_robot/transmission_error.png)
-""", *table(["lines a turn [µrad]", *(f"recorded, {name}" for name in self.recorded), "twin"], rows), """
-The twin has no line at 101, once a motor turn, because only pitch deviations were fitted. The two lobes share the
-load, and the lead of one cancels the lag of the other. Other errors can make this line. A wave generator off its axis
-together with run-out of the flexspline, 10 µm each, makes 10 µrad without load and 7 µrad at 67 N·m
-(`manufacture.wave_generator_eccentricity`, `manufacture.flexspline_eccentricity`). An eccentric motor encoder of 1.1
-mrad makes 11 µrad at the output, whatever the load. A recording without load cannot tell these two errors apart. The
-recorded error has 0.6 mrad once and 0.35 mrad twice a turn of the output. This is more than such a gear may have in
-all (1 minute of arc), so the output encoder is eccentric.
 
-*Limits of this recording:* the drive's size is inferred from its ratio and torque. The sweep goes one way and takes 7
-s. The torque is computed from the current. The error without load was read off a published figure, whose points
-scatter by 0.03 mrad.
+[{LINE_ROWS}]({LINE_ROWS}) has the amplitudes of the lines. The twin has no line at 101 per turn of the joint (once per
+turn of the motor), because only pitch deviations were fitted. The two lobes share the load, and the lead of one lobe
+cancels the lag of the other. Other errors can make the line at 101. A wave generator off its axis together with run-out
+of the flexspline, 10 µm each, makes 10 µrad without load and 7 µrad at 67 N·m
+(`manufacture.wave_generator_eccentricity`, `manufacture.flexspline_eccentricity`). An eccentric motor encoder of 1.1
+mrad makes 11 µrad at the output, whatever the load. A recording without load cannot separate the errors of wave
+generator and encoder. The recorded error has 0.6 mrad once and 0.35 mrad twice per turn of the output. A gear of this
+kind may have an error of 1 minute of arc in all. The amplitudes are larger, so the output encoder is eccentric.
+
+*Limits of this recording:* the size of the drive is inferred from its ratio and torque. The sweep turns in one
+direction only and takes 7 s. The torque is computed from the current. The error without load comes from a published
+figure, whose points scatter by 0.03 mrad.
 """]
 
 
-def section(runner, telemetry, _docs, images):
+def section(runner, telemetry, docs, images):
     """Lines of the page."""
     heading = ["## A 101:1 drive with both encoders", """
-The drive is the elbow of a NEURA LARA 8 (A. Lucious, 2024), not of a UR. It is the only public recording of this ratio
-with encoders at motor and output.
+The drive is the elbow of a NEURA LARA 8, not of a UR. Its recording (A. Lucious, 2024) is the only public recording of
+a drive with this ratio and encoders at motor and output.
 """]
     paths = [os.path.join(telemetry, name) for name in (LOADED, UNLOADED)]
     missing = [path for path in paths if not os.path.isfile(path)]
@@ -192,6 +200,11 @@ with encoders at motor and output.
     sweeps = unloaded_error(paths[1])
     torsion = Torsion(lambda *words: runner.run(*words, "--json"), read(paths[0]), sweeps)
     torsion.draw(os.path.join(images, "torsion.png"))
+    write_rows(os.path.join(docs, STIFFNESS_ROWS), ["load [N.m]", *(f"{name} [1e3 N.m/rad]" for name in (
+        "catalogue", "identified", "half width of the identified"))], torsion.rows())
     error = TransmissionError(runner, sweeps)
     error.draw(os.path.join(images, "transmission_error.png"))
+    write_rows(os.path.join(docs, LINE_ROWS), ["lines per turn of the joint", "cause", *(
+        f"{name} [urad]" for way in error.recorded for name in (way, f"half width, {way}")), "twin [urad]"],
+               error.rows())
     return heading + torsion.page() + error.page()

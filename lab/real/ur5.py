@@ -9,13 +9,14 @@ import numpy as np
 
 import closed_loop
 from pairs import is_alarm, pairs_text
-from runs import BLUE, GREEN, GREY, RED, figure, read, rms, save, table, write_rows
+from runs import BLUE, GREEN, GREY, RED, figure, read, rms, save, write_rows
 
 FOLDER = "ur5_cb"
 TRAIN = "no6"          # the only recording that is identified on
 RAISED_IN = ["no2", "no5", "no9"]
 SHOWN = "no2"          # in the figure of the currents
 RAISED_ROWS, LOAD_ROWS = "real_robot_raised.csv", "real_robot_load.csv"  # beside the page
+RATIO_ROWS, VERDICT_ROWS = "real_robot_ratios.csv", "real_robot_verdicts.csv"
 LEAST_SPAN = 1.0        # of a moment [N.m], from which on a share of it is stated
 RAISED = 0.2           # share of a joint's friction
 RAISED_ALONE = (0.3, 0.6)  # the same where there is no reference
@@ -29,6 +30,27 @@ WANTED_MEANS, WANTED_MOVING = 0.5, 0.7  # of the fit's error
 JOBS = 2
 COLUMNS = ["time", "velocity_measured", "current_measured", "current_predicted", "current_residual", "current_band",
            "residual_torque", "friction_torque", "load_torque"]
+CURRENT = f"""
+### Error of the predicted current
+
+The program divides the error of the twin by the error of a simple fit. [{RATIO_ROWS}]({RATIO_ROWS}) has the quotients
+for the large joints, and [real_robot_current.csv](real_robot_current.csv) the errors of all joints, moving and resting
+[A, rms]. The column *means* is for means over {MEAN:g} s around each moving row, the column *moving rows* for all
+moving rows (faster than {MOVING:g} rad/s). With the load *arm* the twin gets `/joint_states` alone. With the load
+*target_moment* the program uses the recorded moment to identify the twin, and the twin uses it to predict. The *fit*
+has gain, Coulomb friction and viscous friction, fitted by least squares to all rows of {TRAIN} with the recorded moment
+as load. The targets are {WANTED_MEANS:g} for means and {WANTED_MOVING:g} for moving rows.
+
+![Error of means over 0.1 s](images/real_robot/means.png)
+
+The remaining error in moving rows is ripple with 200 periods per turn of each joint, the rate at which the two lobes
+pass a tooth of the circular spline. The arm carries this ripple into the current of every joint.
+
+At rest stiction holds the joint, and any current within a band gives the same angle. Two encoder counts (9.4 µrad) are
+a quarter of the presliding angle and correspond to some 0.3 A. So the twin predicts a band at rest, not a value.
+
+![Current of the three large joints, measured and predicted](images/real_robot/current.png)
+"""
 
 
 def running_mean(time, values):
@@ -118,8 +140,8 @@ def errors_of(recording, fit):
     return errors
 
 
-def number(value, digits=3):
-    return "–" if np.isnan(value) else f"{value:.{digits}f}"
+def number(value):
+    return "" if np.isnan(value) else f"{value:.2f}"
 
 
 def load_text(recordings, path):
@@ -149,14 +171,10 @@ def share(errors, joint, kind, load="arm"):
     return getattr(errors[joint][load], kind) / getattr(errors[joint]["fit"], kind)
 
 
-def share_table(all_errors):
+def ratio_rows(all_errors):
     """The twin's error over the fit's, of the large joints."""
-    def cells(name, load):
-        return [f"{number(share(all_errors[name], joint, 'means', load), 2)}, "
-                f"{number(share(all_errors[name], joint, 'moving', load), 2)}" for joint in LARGE]
-
-    return table(["recording"] + [f"{joint}, load {load}" for load in LOADS for joint in LARGE],
-                 [[name, *cells(name, "arm"), *cells(name, "target_moment")] for name in all_errors])
+    return [[name, joint, load, *(number(share(errors, joint, kind, load)) for kind in ("means", "moving"))]
+            for name, errors in all_errors.items() for load in LOADS for joint in LARGE]
 
 
 def write_raised(runner, recording, joints, path, share):
@@ -197,7 +215,7 @@ def verdict_cell(arm):
 
 
 def ratio_cells(arm):
-    return ["–" if joint["friction_ratio"] is None else f"{joint['friction_ratio']:.2f}" for joint in arm["joints"]]
+    return ["" if joint["friction_ratio"] is None else f"{joint['friction_ratio']:.2f}" for joint in arm["joints"]]
 
 
 def is_right(arm, raised):
@@ -221,8 +239,8 @@ def named_text(verdicts):
     """Of joints that were raised alone and whose friction is shown."""
     shown = [is_right(arm, raised) for arm, raised in verdicts if len(raised) == 1 and
              any(joint["joint"] == raised[0] and joint["friction_ratio"] is not None for joint in arm["joints"])]
-    return (f"In {len(shown)} runs the friction of one joint is raised and the motion shows that joint's friction. The "
-            f"verdict names this joint and no other in {sum(shown)} of them.")
+    return (f"In {len(shown)} of these recordings the friction of one joint is raised and the motion shows the "
+            f"friction of this joint. The verdict names this joint and no other in {sum(shown)} of these {len(shown)}.")
 
 
 def raised_alone(runner, verdicts, recordings):
@@ -240,9 +258,9 @@ def raised_alone(runner, verdicts, recordings):
         shown = sum(joint in seen for _, seen, joint in answers)
         named = sum(joint in departing for departing, _, joint in answers)
         others = sum(bool(departing - {joint}) for departing, _, joint in answers)
-        parts.append(f"With {100.0 * more:.0f} % more friction it names {named} of {shown} raised joints; in "
-                     f"{others} runs it names another joint.")
-    return f"Without a reference the verdict sees less. {' '.join(parts)}"
+        parts.append(f"With {100.0 * more:.0f} % more friction the verdict names {named} of {shown} raised joints, "
+                     f"and names another joint in {others} runs.")
+    return f"Without a reference the verdict finds fewer raised joints. {' '.join(parts)}"
 
 
 def draw_current(path, recording):
@@ -282,7 +300,7 @@ def draw_means(path, all_errors):
 
 
 def rows_of(recordings):
-    return ", ".join(f"{recording.name} ({len(recording.data)} rows, one in {1e3 * recording.period():.0f} ms)"
+    return ", ".join(f"{recording.name} ({len(recording.data)} rows, one every {1e3 * recording.period():.0f} ms)"
                      for recording in recordings)
 
 
@@ -313,16 +331,19 @@ def section(runner, telemetry, docs, images):
     draw_means(os.path.join(images, "means.png"), judged_errors)
     means, means_of, worst_means = met(judged_errors, "means", WANTED_MEANS)
     moving, moving_of, worst_moving = met(judged_errors, "moving", WANTED_MOVING)
-    summary = [f"The twin's error of the current is compared with that of a simple fit, for the large joints of the "
-               f"recordings that the twins were not identified on. In means over 0.1 s the twin's error is at most "
-               f"{WANTED_MEANS:g} of the fit's in {means} of {means_of} cases (worst {worst_means:.2f}). In moving "
-               f"rows it is at most {WANTED_MOVING:g} of the fit's in {moving} of {moving_of} cases (worst "
-               f"{worst_moving:.2f}).",
+    summary = [f"The page compares the twin's error of the current with the error of a simple fit. A case is one large "
+               f"joint in one recording that the twins were not identified on. For means over 0.1 s the twin's error "
+               f"is at most {WANTED_MEANS:g} of the fit's error in {means} of {means_of} cases. In the worst case the "
+               f"twin's error is {worst_means:.2f} times the fit's error. For single moving rows the twin's error is "
+               f"at most {WANTED_MOVING:g} of the fit's error in {moving} of {moving_of} cases. In the worst case the "
+               f"twin's error is {worst_moving:.2f} times the fit's error.",
                judged_right]
     write_errors(os.path.join(docs, "real_robot_current.csv"), {**judged_errors, TRAIN: all_errors[TRAIN]})
-    print("\n".join([*share_table(all_errors), *map(",".join, raised_lines), *summary]))
+    write_rows(os.path.join(docs, RATIO_ROWS), ["recording", "joint", "load", "means", "moving rows"],
+               ratio_rows(all_errors))
+    print("\n".join([*map(",".join, raised_lines), *summary]))
     return [*heading, *introduction(summary, recordings, load_text(recordings, os.path.join(docs, LOAD_ROWS))),
-            *current_section(all_errors),
+            CURRENT,
             *closed_loop.section(runner, judged, fit, JOINTS, by_name.get(SHOWN, judged[0]).name,
                                  docs, TRAIN), *verdicts]
 
@@ -350,29 +371,32 @@ def verdict_section(runner, by_name, judged, docs):
     false_alarms = sum(is_alarm(joint) for runs in (alone, beside) for run in runs.values()
                        for joint in run.result()["joints"])
     of_pairs = [pairs_text([run.result() for run in pairs.values()], (LARGE, JOINTS[3:]))]
+    write_rows(os.path.join(docs, VERDICT_ROWS),
+               ["recording", "verdict alone", *JOINTS, "verdict with reference"], sound)
     raised_lines, right = raised_rows(raised)
     write_rows(os.path.join(docs, RAISED_ROWS), raised_lines[0], raised_lines[1:])
-    sentence = (f"Of {2 * len(JOINTS) * len(alone)} verdicts on sound joints {false_alarms} are WARN or worse. Of "
-                f"{len(raised)} recordings with raised friction {right} are judged right. "
+    sentence = (f"Of {2 * len(JOINTS) * len(alone)} verdicts on sound joints {false_alarms} are WARN or worse. The "
+                f"verdict is right on {right} of {len(raised)} recordings with raised friction. "
                 f"{named_text(raised.values())} "
                 f"{raised_alone(runner, verdicts, list(by_name.values()))}")
     lines = ["""
 ### Verdicts
 
 """ + f"""`joint_twin compare --arm ur5` judges each recording alone and with the report of {TRAIN} as
-`--reference` ({TRAIN} itself with that of {other}). The arm is sound in all recordings. The numbers are the friction
-as a multiple of the reference's friction, at the speeds that both recordings have, without the factor that joints
-share. A dash says that the motion does not show the friction of the joint.
-""", *table(["recording", "verdict alone", *JOINTS, "verdict with reference"], sound), *of_pairs, f"""
-Then {100.0 * RAISED:.0f} % of the identified friction of one joint, or of all joints, is added to the recorded current.
-A verdict is right if it names the raised joint and no other. Where the friction of all joints is raised, a verdict is
-right if it names no single joint. A joint whose friction the motion does not show cannot be named.
-[{RAISED_ROWS}]({RAISED_ROWS}) has all runs.
+`--reference` ({TRAIN} itself with that of {other}). The arm is sound in all recordings.
+[{VERDICT_ROWS}]({VERDICT_ROWS}) has the verdicts, and for each joint the friction divided by the friction in the
+reference, at the speeds that both recordings have, without the factor that all joints share. A cell is empty if the
+motion does not show the friction of the joint.
+""", *of_pairs, f"""
+For the recordings with raised friction the program adds {100.0 * RAISED:.0f} % of the identified friction of one joint,
+or of all joints, to the recorded current. If the friction of one joint is raised, a verdict is right if it names this
+joint and no other. If the friction of all joints is raised, a verdict is right if it names no single joint. No verdict
+can name a joint whose friction the motion does not show. [{RAISED_ROWS}]({RAISED_ROWS}) has all runs.
 """, """
 ### Limits of these recordings
 
-The arm has no encoder behind the gear, so the torsion is not recorded. Temperature and payload are not recorded either.
-Some rows of no5 and no7 are missing, for up to 0.4 s.
+The arm has no encoder behind the gear, so the torsion is not recorded. The recordings do not contain temperature and
+payload. In no5 and no7 rows are missing, for up to 0.4 s.
 """]
     return lines, raised_lines, sentence
 
@@ -380,43 +404,20 @@ Some rows of no5 and no7 are missing, for up to 0.4 s.
 def introduction(summary, recordings, loads):
     return [f"""
 The arm is a UR5 of the CB series with six joints (K. Kufieta, *Force Estimation in Robotic Manipulators*, NTNU 2014).
-The twins get what a driver's `/joint_states` holds: angles and currents of the six joints. The load of each joint
-follows from the angles of all joints ([arm.md](arm.md)). All six twins are identified on {TRAIN} alone (`joint_twin
-identify --arm`) and judged on the other recordings.
+The twins get what a driver's `/joint_states` holds: angles and currents of the six joints. The twins compute the load
+of each joint from the angles of all joints ([arm.md](arm.md)). The program identifies all six twins on {TRAIN} alone
+(`joint_twin identify --arm`) and compares the twins with the other recordings.
 
 {summary[0]}
 {summary[1]}
 
-The recordings are {rows_of(recordings)}. no2 was logged at 62.5 Hz, so a mean over {MEAN:g} s has half as many rows.
-In no5_pushed a person pushes the arm; no twin predicts such a contact. no7 repeats the motion of no6 on another day.
+The recordings are {rows_of(recordings)}. A mean over {MEAN:g} s has half as many rows in no2 (62.5 Hz) as in the other
+recordings. In no5_pushed a person pushes the arm. No twin predicts this contact. no7 repeats the motion of no6 on
+another day.
 
 ### Load
 
-The load that follows from the arm's links is compared with the controller's `target_moment`. Where the range of the
-moment is more than {LEAST_SPAN:g} N·m, the rms difference of both is at most this share of the range: {loads}.
-[{LOAD_ROWS}]({LOAD_ROWS}) has the difference and the range for each recording.
-"""]
-
-
-def current_section(all_errors):
-    return [f"""
-### Error of the predicted current
-
-The table has the twin's error divided by that of a simple fit. The first number of a cell is for means over {MEAN:g} s
-around each moving row, the second for all moving rows (faster than {MOVING:g} rad/s). With *load arm* the twin gets
-`/joint_states` alone. With *load target_moment* the twin is identified and predicts with the recorded moment. The
-*fit* has gain, Coulomb friction and viscous friction, with the recorded moment: least squares over all rows of
-{TRAIN}. The targets are {WANTED_MEANS:g} and {WANTED_MOVING:g}. [real_robot_current.csv](real_robot_current.csv) has
-the errors of all joints, moving and resting [A, rms].
-""", *share_table(all_errors), """
-![Error of means over 0.1 s](images/real_robot/means.png)
-
-What remains of the error in moving rows is ripple with 200 periods a turn of each joint, the frequency of the teeth.
-The arm carries this ripple into the current of every joint.
-
-At rest stiction holds the joint: any current within a band gives the same angle. Two encoder counts, 9.4 µrad, are a
-quarter of the presliding angle, and correspond to some 0.3 A. So the twin predicts a band at rest, not a value.
-
-![Current of the three large joints, measured and predicted](images/real_robot/current.png)
-
+The program compares the load that follows from the arm's links with the controller's `target_moment`. In recordings in
+which the moment has a range of more than {LEAST_SPAN:g} N·m, the rms difference as a share of the range is at most
+{loads}. [{LOAD_ROWS}]({LOAD_ROWS}) has the difference and the range for each recording.
 """]

@@ -14,43 +14,44 @@ from lab import BLUE, GREY, ORANGE, RED, STYLE, plt  # noqa: E402  (its folder i
 
 HEAD = """# Stability
 
-`lab/run stress` writes this page; do not edit it. The page shows how the twin behaves far from its usual range. The
-program changes one factor at a time, then two at a time, then all at random. Every cell is a run of the Python module's
-twin. The program compares each run with a converged run of the same cell.
+`lab/run stress` writes this page. The page shows how the twin behaves far from its usual range. A cell is a combination
+of parameters and inputs. The program changes one factor (parameter or input) at a time, then two factors at a time,
+then all factors at random. For each cell the program runs the twin of the Python module, and compares this run with a
+converged run of the same cell.
 
 ```sh
 lab/run stress                # every cell: all results in out/stability/cells.csv
-lab/run stress --seeds 200    # more random cells; the seed makes a cell again
+lab/run stress --seeds 200    # more random cells; equal seeds give equal cells
 ```
 
-The exit code is 0 only if every cell has one of three verdicts:
+The exit code of `lab/run stress` is 0 only if each cell ends in one of three ways:
 
 - **accurate**: the solver reported nothing, and torque and angles stay within {accuracy:.0f} % of the converged run;
-- **degraded, reported**: `~health` has `solver_state` DEGRADED or FAILED, and a counter gives the cause. Such a result
-  may still be accurate;
+- **degraded, reported**: `~health` has `solver_state` DEGRADED or FAILED, and a counter gives the cause. The result of
+  a degraded cell may still be accurate;
 - **refused with a reason**: the twin does not start, and a message states the reason.
 
-The exit code is 1 if a run gives a NaN, takes more than {timeout:.0f} s, or is wrong without a report.
+The exit code is 1 if a run gives a NaN, crashes, takes more than {timeout:.0f} s, or is wrong without a report.
 """
 
 MEANING = """## What is compared
 
-The **error** is the largest difference from the converged run within {duration:g} s. Three signals are compared: the
-joint torque, the output angle and the motor angle. Each difference is divided by a scale. The scale of the torque is
-the largest torque, and at least {torque:g} N·m, where the first slope of the cup ends. The scale of an angle is the
-travel, and at least {angle:.2f} mrad, the torsion at {torque:g} N·m. The **converged run** computes the same cell
-with a shorter step: a period of the joint's fastest natural mode has at least 600 steps, and the step is at most a
-tenth of the cell's. The **drift** is the largest energy residual, divided by the work of motor and load.
+The **error** is the largest difference from the converged run within {duration:g} s. The program compares joint torque,
+output angle and motor angle, and divides each difference by a scale. The scale of the torque is the largest torque, and
+at least {torque:g} N·m, where the first slope of the cup ends. The scale of an angle is the travel, and at least
+{angle:.2f} mrad, the torsion at {torque:g} N·m. The **converged run** computes the same cell with a shorter step. A
+period of the joint's fastest natural mode has at least 600 of these steps, and the step is at most a tenth of the step
+of the cell. The **drift** is the largest energy residual, divided by the work of motor and load.
 
 ## What the solver reports
 
 | message | condition | reason |
 |---|---|---|
-| steps too long | the joint's fastest natural mode advances more than 0.1 rad of phase in a substep (the twin divides a step by itself) | the phase error of the leapfrog is phase²/24 of the phase; at 0.1 rad that makes 1 % of the amplitude after four periods |
-| with teeth jumping | a tooth changes its space below the tip circle | ratcheting, or a gear whose teeth do not fit |
-| cut | the equilibrium of the ring was found only over a shorter path, or by repeating the insertion | the state may be on another branch |
-| failed | no equilibrium was found | the last good state is held |
-| refused | the natural mode advances more than 2.48 rad a step, or the insertion finds no equilibrium | a step is divided into 31 substeps of 0.08 rad at most |
+| steps too long | the joint's fastest natural mode advances more than 0.1 rad of phase in a substep, although the twin divides long steps | the phase error of the leapfrog method is phase²/24 of the phase; at 0.1 rad this error makes 1 % of the amplitude after four periods |
+| with teeth jumping | a tooth changes its space below the tip circle | the teeth ratchet, or the teeth of the gear do not fit |
+| cut | the solver found the equilibrium only in smaller steps from the last state, or by inserting the wave generator anew | the state may be on another branch of equilibria |
+| failed | the solver found no equilibrium | the twin keeps its last good state |
+| refused | the fastest natural mode advances more than 2.48 rad in a step, or the insertion finds no equilibrium | the twin divides a step into at most 31 substeps of 0.08 rad |
 """  # noqa: E501
 
 COLOURS = {judge.ACCURATE: BLUE, judge.DEGRADED: ORANGE, judge.REFUSED: GREY}
@@ -105,12 +106,12 @@ def boundary(judged):
     if not quiet:
         return "No cell is accurate."
     return (f"With the shipped parameters the longest accurate step is {steps('step, load steps of 100 N.m')} under "
-            f"load steps. Under reversals it is {steps('step, reversal at 3030 rpm')}; there the motor gives 12 N·m, "
-            f"four times its limit. The solver reported nothing in {len(quiet)} cells. Their largest error is "
-            f"{percent(max(j.error for j in quiet))}, and their largest energy drift "
-            f"{percent(max(j.drift for j in quiet))}. Of the {len(flagged)} degraded cells "
-            f"{sum(j.error <= judge.ACCURACY for j in flagged)} are accurate all the same: the solver warns early "
-            f"rather than late.")
+            f"load steps. Under reversals, in which the motor gives 12 N·m (four times its limit), the longest "
+            f"accurate step is {steps('step, reversal at 3030 rpm')}. The solver reported nothing in {len(quiet)} "
+            f"cells. In these cells the largest error is {percent(max(j.error for j in quiet))}, and the largest "
+            f"energy drift {percent(max(j.drift for j in quiet))}. Of the {len(flagged)} degraded cells "
+            f"{sum(j.error <= judge.ACCURACY for j in flagged)} are accurate, so the solver warns rather early than "
+            f"late.")
 
 
 def group_rows(groups):
@@ -133,16 +134,17 @@ def write(docs, judged, table):
     lines += table(["verdict", "cells"], [[verdict, count[verdict]] for verdict in judge.VERDICTS])
     wrong = [f"{j.cell.name} (error {percent(j.error)})" for j in judged if j.verdict not in judge.GOOD]
     if wrong:
-        lines += ["", f"Cells that are wrong without a report, or without a result: {'; '.join(wrong)}. Their steps "
-                  "are as long as the twin allows. The phase error of the leapfrog adds up over such a run."]
+        lines += ["", "These cells are wrong without a report, or have no result (group of the cell, values of its "
+                  f"factors, error): {'; '.join(wrong)}. The steps of these cells are as long as the twin allows. The "
+                  "phase error of the leapfrog method adds up over a run."]
     lines += ["", "## Where it is accurate", "", boundary(judged), ""]
     for name, (file, across, up) in MAPS.items():
         draw_map(os.path.join(docs, "images", "stability", file + ".png"), groups[name], across, up)
         lines += [f"![{name[5:].capitalize()}: the error in each square (blue: accurate; orange: degraded, "
                   f"reported; grey: refused)](images/stability/{file}.png)", ""]
     lines += [MEANING.format(duration=cells.DURATION, torque=judge.LEAST_TORQUE, angle=1e3 * judge.LEAST_ANGLE)]
-    lines += ["The cells are counted by group in [stability.csv](stability.csv), with the largest error of the "
-              "accurate cells of each group."]
+    lines += ["[stability.csv](stability.csv) counts the cells of each group, and has the largest error of the "
+              "accurate cells of the group."]
     with open(os.path.join(docs, "stability.md"), "w", encoding="utf-8") as file:
         file.write("\n".join(lines).rstrip() + "\n")
     with open(os.path.join(docs, "stability.csv"), "w", encoding="utf-8", newline="") as file:

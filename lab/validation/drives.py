@@ -31,10 +31,10 @@ UR3E = {17: (((3.43, 3.49), (3.26, 3.36)), 35.0, ("size_17.yaml", "joints/size_2
         11: (((0.83, 0.72), (0.58, 0.53), (0.76, 0.56)), 42.0, ("size_11.yaml", "joints/size_0.yaml"))}
 UR3E_SPEEDS = (0.1, 1.0)  # rad/s at the joint
 SAME_SIZE = 1.3
-UR3E_KNOWN = {(17, 1.0): "preload and viscosity are fitted to the catalogue's gear; what motor, seals and output "
-                         "bearing add by speed is not known",
-              (14, 0.1): "preload is fitted to the catalogue's starting torque, that of a new gear; a UR3e's elbow is "
-                         "expected to rub less"}
+UR3E_KNOWN = {(17, 1.0): "preload and viscosity are fitted to the catalogue's gear. The friction that motor, seals and "
+                         "output bearing add at this speed is not known",
+              (14, 0.1): "the preload is fitted to the catalogue's starting torque of a new gear. A UR3e's elbow is "
+                         "expected to have less friction"}
 
 GAIN = 10.7  # N.m at the joint per ampere of motor current, the controller's own ratio at rest
 SPEED_BINS = (0.05, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 1.0, 1.3)  # rad/s at the joint
@@ -59,8 +59,9 @@ OWN_LOADS, OWN_SPEEDS = (20.0, 50.0, 100.0), (0.1, 0.5, 1.0)  # N.m, rad/s at th
 
 DIRECTION_GAP = 0.09e-3  # rad, between the directions of motion without load
 # Why a joint's friction does not hold.
-UR10E_KNOWN = {"base": "the twin takes the shoulder's fit and a UR5's grease; this base has 1.3 times the friction of "
-               "the shoulder at every speed, and the tilting moment explains little of it: drives of one size differ"}
+UR10E_KNOWN = {"base": "the twin has the friction fitted to the shoulder and the grease of a UR5. This base has 1.3 "
+                       "times the friction of the shoulder at every speed, and the tilting moment explains little of "
+                       "the difference. Drives of one size differ"}
 TILTED = ("ur10e_20_02_12-40sec_12harm.csv", "ur10e_20_02_19_14harm50sec.csv", "ur10e_20_02_19_14harm50secLoad.csv")
 INDEPENDENT = 40  # rows of a joint, at most: errors of a model are no noise
 

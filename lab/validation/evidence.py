@@ -30,8 +30,8 @@ SELF_CONSISTENT = Evidence("self-consistent")
 CLASSES = {
     "independent measurement": "measured or published elsewhere; nothing was fitted to the figure",
     "fitted": "a parameter was fitted to this figure, or to figures of the same runs",
-    "program of the thesis": "numbers of the thesis' own program, on its gear",
-    "second program of this project": "an independent program of the same laws: shows that the code solves them",
-    "identity": "balances, symmetries, conservation laws and closed forms, which hold in any such model",
+    "program of the thesis": "numbers of the thesis' own program, on the gear of the thesis",
+    "second program of this project": "an independent program of the same laws, which shows that the code solves them",
+    "identity": "balances, symmetries, conservation laws and closed forms, which hold in any model of this kind",
     "self-consistent": "two ways of computing the same quantity of the model",
 }

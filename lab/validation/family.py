@@ -49,7 +49,7 @@ catalogue's band.
         page.check(f"family.efficiency.{size}", f"size {size}: efficiency at {torque:g} N·m, 2000 rpm, 20 °C",
                    "catalogue (TPI 275)", Within(wanted, absolute=0.03), row["gear_efficiency"], "",
                    "the catalogue's own tolerance",
-                   known="size 14 is filled with another grease, whose viscosity is fitted to the no-load torque"
+                   known="size 14 has another grease, whose viscosity is fitted to the no-load torque"
                    if size == 14 else "",
                    evidence=measured("no-load and starting torque of the same catalogue set the bearing's friction"))
         starts = page.tool("breakaway", *AT_20_DEGREES, *overlay)

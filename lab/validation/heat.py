@@ -114,7 +114,7 @@ conductance and mean power, starts the second part at the temperature found ther
         page.check(f"heat.ur3.{joint}", f"{joint}: temperature in the second part, rms error", "recording",
                    AtMost(0.5), error, "K", "0.5 K make 1.5 % of the friction that grows with speed",
                    known="" if joint in LARGE else
-                   "the arm around a wrist warms up more slowly than the wrist; the twin has no such part",
+                   "the arm around a wrist warms up more slowly than the wrist. The twin has no part for the arm",
                    evidence=fitted("end, rise and time constant of each joint to the first part of this recording"))
     page.text("""
 In base, shoulder and elbow what 49 minutes show determines where the joint settles. The wrists settle up to 1.2 K

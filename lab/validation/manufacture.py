@@ -211,10 +211,12 @@ def as_built(page):
                "drives with both encoders, order 2", Between(3.0, 13.0), turn.line(200), "″",
                "measured: 2.8, 6.9 and 13″",
                evidence=fitted("config/as_built.yaml was set so that this line lies there"))
-    page.check("manufacture.as_built_order_4", "as built: order 4 of the motor over order 2",
+    page.check("manufacture.as_built_order_4",
+               "as built: line at 400 over line at 200 (per turn of the joint) of the position error",
                "the drive that shows both: 3.1 / 6.9", Within(3.1 / 6.9, relative=0.2), turn.line(400) / turn.line(200),
                "", "one drive; errors of no two gears are alike, and as_built.yaml's were drawn for straight flanks",
-               known="errors of no two gears are alike; `as_built.yaml` was drawn for straight flanks",
+               known="no two gears have the same errors, and the errors of `as_built.yaml` were drawn for straight "
+                     "flanks",
                evidence=fitted("config/as_built.yaml was set so that these lines lie there"))
     strongest = 150 + int(np.argmax(turn.lines[150:250]))
     page.check("manufacture.as_built_place", "as built: strongest line about order 2", "UR5 log: 200.1 ± 0.3",

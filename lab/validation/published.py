@@ -46,5 +46,5 @@ Finite elements of other gears, as the thesis quotes them. They tell the order o
                stretch[150.0] / stretch[0.0], "",
                f"{stretch[0.0]:.4f}, {stretch[67.0]:.4f}, {stretch[150.0]:.4f} % at 0, 67 and 150 N·m: the cup carries "
                "the load evenly here, so the rim alone takes the teeth's from the lobes",
-               known="the cup of the twin carries the load evenly along the rim; a real one takes more at the lobes",
+               known="the cup of the twin carries the load evenly along the rim. A real cup carries more at the lobes",
                evidence=MEASUREMENT)

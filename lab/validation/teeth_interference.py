@@ -46,7 +46,7 @@ same, and the shipped angle is free.
                "thesis 3.2.2 [51], 4 [83]",
                Within(16.0, absolute=1.0), from_gap, "°",
                "one paper, which has 16° in one place and 17° in another",
-               known="the model has plane teeth; the teeth of a whole gear also lean along their width",
+               known="the model has plane teeth. The teeth of a real gear also lean along their width",
                evidence=MEASUREMENT)
     page.check("teeth.interference_free", "flank forces at no load and no clearance, 16°",
                "thesis 4 [83]: free from 16°", AtMost(0.0),

@@ -192,8 +192,8 @@ def check_jump(page, tries, lobe, hertz, few):
                "largest torque without a jump, as shipped, rigid lobes (the search ends at 20 kN·m)",
                "catalogue, CSF-25-100", Between(CATALOGUE_JUMP, 3.0 * CATALOGUE_JUMP), shipped, "N·m",
                "a guaranteed figure: the gear holds it, and a model of the jump comes within a factor of 3",
-               known="the model is plane, with Hertzian balls on rigid lobes; lobes as soft as the circular spline "
-               f"more than halve the torque, coning of the teeth lowers it to {coned / 1e3:.1f} kN·m, and above "
+               known="the model is plane, with Hertzian balls on rigid lobes. Lobes as soft as the circular spline "
+               f"more than halve the torque. Coning of the teeth lowers the torque to {coned / 1e3:.1f} kN·m. Above "
                f"{elastic / 1e3:.2f} kN·m the most loaded ball exceeds its static rating, where Hertz's law ends",
                evidence=MEASUREMENT)
     page.value("teeth.jump_coned", coned, "N·m")

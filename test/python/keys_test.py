@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Each parameter acts in the analyses and in the commands on recordings that docs/parameters.md names it for, and in no
-other."""
+"""Each parameter acts in the analyses and in the commands on recordings that docs/parameters_*.csv name it for, and in
+no other."""
+import csv
 import fnmatch
 import os
-import re
 import shutil
 import sys
 import tempfile
@@ -97,20 +97,15 @@ def differ(one, other):
     return any(a.shape != b.shape or np.abs(a - b).max() > LEAST * np.abs(a).max() for a, b in zip(one, other))
 
 
-def acting(heading):
-    """Patterns of keys and the analyses in which they act, of the page's table below a heading."""
-    with open(os.path.join(CHECKOUT, "docs", "parameters.md"), encoding="utf-8") as file:
-        section = file.read().split("\n" + heading + "\n")[1]
-        table = re.search(r"\n(\| keys \|.*?)\n\n", section, re.DOTALL).group(1).splitlines()
-    names = [re.findall(r"`(\w+)`", cell) for cell in table[0].strip("|").split("|")[1:]]
-    for row in table[2:]:
-        cells = row.strip("|").split("|")
-        marked = [name for of, cell in zip(names, cells[1:]) if cell.strip() for name in of]
-        yield re.findall(r"`([\w.*]+)`", cells[0]), set(marked)
+def acting(table):
+    """Patterns of keys and the analyses in which they act, of a table beside docs/parameters.md."""
+    with open(os.path.join(CHECKOUT, "docs", table), encoding="utf-8", newline="") as file:
+        for row in csv.DictReader(file):
+            yield row.pop("keys").split(), {name for name, mark in row.items() if mark}
 
 
 class Keys(unittest.TestCase):
-    HEADING = "## What acts where"
+    TABLE = "parameters_analyses.csv"
     ANALYSES = ANALYSES
     DRIVES = [([overlay], faults) for overlay, faults in DRIVES + FAULTY]
 
@@ -125,7 +120,7 @@ class Keys(unittest.TestCase):
                     os.path.join(cls.folder.name, "signatures.yaml"))
         cls.fields = {field.key: field for field in hjt.parameter_fields()}
         cls.acts = {}
-        for patterns, analyses in acting(cls.HEADING):
+        for patterns, analyses in acting(cls.TABLE):
             for pattern in patterns:
                 keys = fnmatch.filter(cls.fields, pattern)
                 assert keys, pattern
@@ -242,7 +237,7 @@ def compared(document):
 
 
 class Recordings(Keys):
-    HEADING = "## What acts on a recording"
+    TABLE = "parameters_recordings.csv"
     DRIVES = RECORDED
 
     @classmethod
