@@ -205,7 +205,8 @@ moving rows. The error of the current is given for the closed loop, for the pres
 simple fit. If the motion is steady, the file also has the amplitude of the current at {LOOP_LINES} periods per turn of
 the joint.
 
-The delay of the set points comes from no6. The other motions give {len(tracked)} cases (one joint in one recording).
+The delay between a set point and the controller's reaction (`delay` in `ur5.yaml`) was estimated from no6, whose motion
+no7 and no7_pushed repeat. The other motions give {len(tracked)} cases (one joint in one recording).
 The twin's tracking error is within a factor of 1.5 of the recorded tracking error in {both_ways(tracked, 1.5)} cases,
 and within a factor of two in {both_ways(tracked, 2.0)} cases. The correlation in time of these two tracking errors is
 {np.median(alike):.2f} in the median and {np.min(alike):.2f} at least. The twin's error of the current in moving rows is

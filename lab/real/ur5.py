@@ -36,7 +36,8 @@ CURRENT = f"""
 The program divides the error of the twin by the error of a simple fit. [{RATIO_ROWS}]({RATIO_ROWS}) has the quotients
 for the large joints, and [real_robot_current.csv](real_robot_current.csv) the errors of all joints, moving and resting
 [A, rms]. The column *means* is for means over {MEAN:g} s around each moving row, the column *moving rows* for all
-moving rows (faster than {MOVING:g} rad/s). With the load *arm* the twin gets `/joint_states` alone. With the load
+moving rows (faster than {MOVING:g} rad/s). The column `load` says where the load comes from. With *arm* the program
+computes the load from the arm's links, and the twin gets only `/joint_states`. With the load
 *target_moment* the program uses the recorded moment to identify the twin, and the twin uses it to predict. The *fit*
 has gain, Coulomb friction and viscous friction, fitted by least squares to all rows of {TRAIN} with the recorded moment
 as load. The targets are {WANTED_MEANS:g} for means and {WANTED_MOVING:g} for moving rows.
