@@ -100,7 +100,7 @@ public:
   /// Forgets all answers and questions about the rows so far, because other rows follow.
   void reset();
 
-  /// Returns true if an answer has come. @throws what the making of the arms threw.
+  /// Whether the search for a likelier arm has ended since the last call. @throws any exception of MakeCandidates.
   bool look();
 
   /// The arm that is clearly likelier than the given one; empty if none is known.

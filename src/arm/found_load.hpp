@@ -26,13 +26,13 @@ struct IdentifiedPayload
 
   /// Whether the configured mass is outside the interval, and farther off than arms without a payload show.
   bool differs() const;
-  /// Whether the mass is greater than zero with certainty.
+  /// Whether the 95 % interval of the mass lies above zero.
   bool isCarried() const { return mass > mass_half_width; }
   /// Whether the payload differs, and is either a mass or none in place of a configured one.
   bool isOther() const;
   /// The payload with its centre; without mass if it is not carried.
   Payload payload() const;
-  /// "the currents look like a payload of ... in place of the configured ...", a clause.
+  /// "the currents show a payload of ... at the flange, not the configured ... kg. ...".
   std::string text() const;
 };
 
@@ -48,7 +48,7 @@ struct IdentifiedMounting
   /// Whether the configured direction is far outside the interval, farther off than arms mounted as configured show,
   /// and the size that was found is that of gravity.
   bool differs() const;
-  /// "another mounting than configured: gravity looks tilted by ...", a clause.
+  /// "the mounting differs from the configured one: gravity is tilted by ...", a clause.
   std::string text() const;
 };
 
@@ -60,7 +60,7 @@ struct FoundDrag
 
   /// Whether the interval of the force lies beyond what sound arms show.
   bool exists() const;
-  /// "the currents look like a force of ... on the tool against its motion: ...", a clause.
+  /// "the currents show a force of ... on the tool against its motion: ...", a clause.
   std::string text() const;
 };
 

@@ -395,9 +395,9 @@ std::vector<FittedFriction> LoadFit::frictionsOf(const std::vector<Hypothesis>& 
   }
   for (const auto& [found, may, cost] : all)
   {
-    const std::string cause = (found.states.empty() ? std::string() : " with another payload in some legs") +
-                              (may.drag     ? " with a drag of the tool" :
-                               may.mounting ? " with another mounting" :
+    const std::string cause = (found.states.empty() ? std::string() : " (with another payload in some legs)") +
+                              (may.drag     ? " (with a drag of the tool)" :
+                               may.mounting ? " (with another mounting)" :
                                               "");
     for (std::size_t i = 0; i < frictions.size(); ++i)
     {
@@ -406,9 +406,10 @@ std::vector<FittedFriction> LoadFit::frictionsOf(const std::vector<Hypothesis>& 
       {
         continue;
       }
-      const std::string text = "in a fit of all joints' currents" + cause + " its friction is " +
-                               fixedText(1.0 + own.value, 2) + " [" + fixedText(1.0 + own.value - own.half_width, 2) +
-                               ", " + fixedText(1.0 + own.value + own.half_width, 2) + "] times the expected one";
+      const std::string text = "a fit of all joints' currents" + cause + " gives this joint " +
+                               fixedText(1.0 + own.value, 2) + " times the expected friction (95 % interval " +
+                               fixedText(1.0 + own.value - own.half_width, 2) + " to " +
+                               fixedText(1.0 + own.value + own.half_width, 2) + ")";
       if (frictions[i].not_more.empty() && own.value < own.half_width)
       {
         frictions[i].not_more = text;

@@ -44,7 +44,7 @@ void requireRates(const std::vector<ArmSetPoint>& points, const ArmDescription& 
 class MotionLimits
 {
 public:
-  /// `drives`: parameters of the arm's drives. @throws ParameterError as ArmDynamics.
+  /// `drives`: parameters of the arm's drives. @throws ParameterError for the reasons that ArmDynamics names.
   MotionLimits(const ArmDescription& arm, const std::vector<Parameters>& drives);
 
   void setPayload(const Payload& payload) noexcept { dynamics_.setPayload(payload); }

@@ -155,7 +155,7 @@ public:
     file_.read(version.data(), static_cast<std::streamsize>(version.size()));
     if (!file_ || version != VERSION_LINE)
     {
-      throw Damage{ 0, "no bag of format 2.0" };
+      throw Damage{ 0, "a first line other than that of bag format 2.0" };
     }
   }
 

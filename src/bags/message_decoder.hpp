@@ -51,9 +51,10 @@ public:
     // A wrong sum of a recorder does not matter if the bytes are those of the message.
     if (!has_read_ && !instance.isType<sensor_msgs::JointState>())
     {
-      throw InputError(instance.getTopic() + ": its messages are of another version of " + expected +
-                       " than this one: their md5sum is " + instance.getMD5Sum() + ", expected " +
-                       ros::message_traits::md5sum<sensor_msgs::JointState>() + ", and their bytes do not fit");
+      throw InputError(instance.getTopic() +
+                       ": the messages cannot be read. They were recorded with another version of " + expected +
+                       " (md5sum " + instance.getMD5Sum() + "; this program expects " +
+                       ros::message_traits::md5sum<sensor_msgs::JointState>() + ")");
     }
     return is_whole;
   }

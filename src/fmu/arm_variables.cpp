@@ -42,12 +42,14 @@ void visitArm(Arm& arm, Fields& fields)
     const std::string place = "links." + std::to_string(i) + '.';
     auto& link = arm.links[i];
     fields(place + "motion", "-", link.motion, "kind of the joint's motion");
-    fields(place + "axis", "-", link.axis, ANY, "axis of the joint");
-    fields(place + "origin", "m", link.origin, ANY, "origin of the joint");
-    fields(place + "position", "m", link.position, ANY, "position of the link's frame");
-    fields(place + "rotation", "-", link.rotation, ANY, "rotation of the link's frame");
+    fields(place + "axis", "-", link.axis, ANY, "axis of the joint in the frame of the link before");
+    fields(place + "origin", "m", link.origin, ANY, "point of the joint's axis in the frame of the link before");
+    fields(place + "position", "m", link.position, ANY,
+           "origin of the link's frame in the frame of the link before, at a joint angle of 0");
+    fields(place + "rotation", "-", link.rotation, ANY,
+           "rotation of the link's frame in the frame of the link before, row by row");
     fields(place + "mass", "kg", link.mass, ANY, "mass of the link");
-    fields(place + "centre", "m", link.centre, ANY, "centre of the link's mass");
+    fields(place + "centre", "m", link.centre, ANY, "centre of mass in the link's frame");
     fields(place + "inertia", "kg.m^2", link.inertia, ANY, "inertia of the link about its centre of mass");
   }
 }

@@ -23,7 +23,7 @@ constexpr bool isInOrder(const Rows& rows, Key Row::*key)
   return true;
 }
 
-/// Unit of the smallest spread that the spread of a healthy indicator is assumed to have.
+/// Unit of ScalarRow::floor, the least spread that the assessment assumes for a sound drive's indicator.
 enum class FloorUnit
 {
   INDICATOR,       ///< the indicator's own
@@ -37,7 +37,7 @@ struct ScalarRow
   const char* name;
   const char* unit;
   Feature feature;  ///< group in which the indicator counts
-  double floor{};   ///< smaller spreads are not believed
+  double floor{};   ///< least spread that the assessment assumes for a sound drive, in `floor_unit`
   FloorUnit floor_unit{};
 };
 

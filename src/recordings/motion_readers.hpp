@@ -230,11 +230,11 @@ private:
 MotionCount readMessageMotion(const MotionSource& source, const std::vector<std::string>& names,
                               const VisitMotionRows& visit, const std::function<void(double)>& progress);
 
-/// Reads a table with a controller's columns, of the source's joint or of as many joints.
+/// Reads a table with a controller's columns. If `joints` is 1, reads MotionSource::csv_joint, else all six joints.
 MotionCount readTableMotion(const MotionSource& source, std::size_t joints, const VisitMotionRows& visit,
                             const std::function<void(double)>& progress);
 
-/// Reads rows in memory, MotionSource::rows, of as many joints. The times are scaled.
+/// Reads the rows in memory, MotionSource::rows, of `joints` joints. The times are scaled.
 MotionCount readArrayMotion(const MotionSource& source, std::size_t joints, const VisitMotionRows& visit,
                             const std::function<void(double)>& progress);
 

@@ -36,7 +36,7 @@ struct CheckedJoint
   FittedFactor lag;
   std::vector<RecordingFinding> findings;
   Misfit misfit;    ///< misfit of its rows
-  Verdict verdict;  ///< verdict as that of `joint_twin compare`
+  Verdict verdict;  ///< verdict on this joint, by the rules of `joint_twin compare`
 };
 
 /// A change of how the recording is read, and its effect on this recording.

@@ -473,7 +473,9 @@ void TrackerNode::tryOnArm(const std::function<void()>& act)
 /// Text on the time at which the payload changed; empty if the payload is equal in all rows.
 std::string TrackerNode::sinceText(double since) const
 {
-  return std::isinf(since) ? "" : "; since " + dateText(stream_.clock.stamp(since), "%H:%M:%S") + " UTC";
+  return std::isinf(since) ?
+             "" :
+             ". The arm has had this load since " + dateText(stream_.clock.stamp(since), "%H:%M:%S") + " UTC";
 }
 
 JudgedJoints TrackerNode::judgedJoints() const

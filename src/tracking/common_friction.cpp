@@ -169,8 +169,8 @@ ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double t
   else if (number(&MeasuredFriction::is_below_faults) >= SEVERAL)
   {
     arm.misfit = { Reason::LESS_THAN_FAULTS,
-                   "several joints show less friction than any fault leaves: the arm is led by hand or carried, or "
-                   "gains, ratios or signs are not as configured" };
+                   "several joints show less than half of the expected friction, which no fault causes. Possible "
+                   "reasons: somebody moves the arm by hand, or a gain, ratio or sign is not as configured" };
   }
   else if (number(&MeasuredFriction::is_load_wrong) + number(&MeasuredFriction::is_below_faults) >= SEVERAL)
   {

@@ -77,7 +77,7 @@ using Gap = std::pair<Reason, std::string>;  // a reason and its sentence
 /// Why the points do not show a factor of the friction.
 Gap whyNone(const std::vector<FrictionPoint>& points, const JointEvidence& evidence, bool is_to_own)
 {
-  const std::string have_rows = " have " + std::to_string(FrictionPoints::MIN_ROWS) + " rows" +
+  const std::string have_rows = " have at least " + std::to_string(FrictionPoints::MIN_ROWS) + " rows" +
                                 (evidence.reach().touched_rows > 0 ? " apart from contact" : "") +
                                 (is_to_own ? " and are in the reference too" : "");
   if (points.empty() && evidence.reach().isAtRest())
@@ -95,13 +95,13 @@ Gap whyNone(const std::vector<FrictionPoint>& points, const JointEvidence& evide
   if (!(points.front().speed < 0.0 && points.back().speed > 0.0))
   {
     return { Reason::ONE_DIRECTION,
-             "Friction and load cannot be separated, because the joint moves one way only at the speeds that" +
+             "Friction and load cannot be separated, because the joint moves in one direction only at all speeds that" +
                  have_rows + "." };
   }
   if (points.size() < MIN_POINTS)
   {
-    return { Reason::ONE_SPEED,
-             "Fewer than three speeds" + have_rows + ". The uncertainty of the joint's friction is then not known." };
+    return { Reason::ONE_SPEED, "Fewer than three speeds" + have_rows +
+                                    ". The uncertainty of the joint's friction is therefore unknown." };
   }
   if (evidence.friction().blocks().count() < MIN_POINTS)
   {

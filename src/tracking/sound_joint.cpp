@@ -25,8 +25,7 @@ YAML::Node readData(const std::string& directory, const char* name)
   const std::string path = directory + "/" + name;
   if (!std::filesystem::exists(path))
   {
-    throw InputError(directory + " holds no report of `joint_twin compare` as it is needed here: " + name +
-                     " is missing");
+    throw InputError(directory + " lacks " + name + ", a file of a report of `joint_twin compare`");
   }
   try
   {
