@@ -42,7 +42,7 @@ struct ArmCandidate
   double cost{};                   ///< cost by what is known besides the rows, as ArmFit::cost [-]
 };
 
-/// Takes a row of each joint, all of one time. The member `current` is the effort as it was received.
+/// Takes a row of each joint, all of one time. The member `current` is the effort as the recording has it.
 using VisitArmRows = std::function<void(const std::vector<MotionRow>&)>;
 /// Gives all rows to the visitor, the earliest first. Each call gives the same rows.
 using PlayArmRows = std::function<void(const VisitArmRows&)>;

@@ -95,7 +95,7 @@ public:
   ArmWatch(const ArmWatch&) = delete;
   ArmWatch& operator=(const ArmWatch&) = delete;
 
-  /// Rows of all joints at one time, `current` the effort as it comes.
+  /// Adds rows of all joints at one time. The member `current` is the received effort in its own unit.
   void add(const std::vector<MotionRow>& rows);
   /// Forgets all answers and questions about the rows so far, because other rows follow.
   void reset();
