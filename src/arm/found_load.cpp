@@ -112,9 +112,9 @@ double IdentifiedMounting::tilt() const
 
 bool IdentifiedMounting::differs() const
 {
-  constexpr double LEAST = 4.0 * DEGREE;  // least tilt; errors of the links' masses make less
-  constexpr double KNOWN = 3.0;           // least tilt in half widths; a hand on the arm makes less
-  constexpr double SIZE = 1.35;           // largest factor of the size, as a payload or errors of gains make
+  constexpr double LEAST = 4.0 * DEGREE;  // least tilt; errors of the links' masses cause a smaller one [rad]
+  constexpr double KNOWN = 3.0;           // least tilt in half widths; a hand on the arm causes a smaller one [-]
+  constexpr double SIZE = 1.35;           // largest factor of the size that a payload or errors of gains cause [-]
   return tilt() > LEAST && tilt() > KNOWN * half_width && size > 1.0 / SIZE && size < SIZE;
 }
 
@@ -129,7 +129,7 @@ std::string IdentifiedMounting::text() const
 
 bool FoundDrag::exists() const
 {
-  constexpr double LEAST = 3.0;  // [N]
+  constexpr double LEAST = 3.0;  // least force that counts as a drag [N]
   return force - half_width > LEAST;
 }
 
@@ -181,7 +181,7 @@ std::string AssumedLoad::text() const
   {
     text += sentence(payload->text()) + " ";
   }
-  return text + (isConfigured() ? "" : "The joints are judged with it. ");
+  return text + (isConfigured() ? "" : "The joints are judged with this load. ");
 }
 
 void AssumedLoad::configure(ArmDescription& arm) const

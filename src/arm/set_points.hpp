@@ -57,8 +57,8 @@ private:
   struct Joint
   {
     std::string name;
-    double torque_limit{};   // 0 without a limit [N.m]
-    double motor_limit{};    // [N.m]
+    double torque_limit{};   // largest torque of links and payload; 0 without a limit [N.m]
+    double motor_limit{};    // largest torque of the motor, seen at the output [N.m]
     double motor_inertia{};  // [kg.m^2]
   };
 

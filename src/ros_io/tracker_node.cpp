@@ -532,7 +532,7 @@ void TrackerNode::lookAtLoad()
     ROS_WARN_STREAM((stream_.mounting.empty() ? "" : sentence(stream_.mounting) + " ")
                     << (stream_.drag.empty() ? "" : sentence(stream_.drag) + " ")
                     << (stream_.payload.empty() ? "" : sentence(stream_.payload) + " ")
-                    << "The joints are judged with it");
+                    << "The joints are judged with this load");
   }
   lookAtFit();
 }
