@@ -217,7 +217,7 @@ private:
 
 void ArmMotion::goOn(double time, const std::vector<JointMotion>& joints) noexcept
 {
-  // A set point at the time of the last one replaces it.
+  // A set point at the time of the last set point replaces the last set point.
   if (goes_on_ && time > end())
   {
     std::swap(points_[0], points_[1]);

@@ -34,7 +34,7 @@ struct ArmCoupling
 ///   h_i - sum_{k != i} W_ik (tau_k - h_k) / W_ii
 ///
 /// All drives step together. Each step computes h at the predicted instant, and extrapolates tau of the other drives
-/// from the steps before. M changes with the pose alone and is computed less often. The rotors belong to the drives; the
+/// from the steps before. M changes with the pose alone and is computed rarely. The rotors belong to the drives; the
 /// casings of the motors belong to the links.
 ///
 /// A copy is at the same instant, and its later results have the same bits as those of the original. After construction

@@ -79,8 +79,9 @@ private:
 };
 
 /// Finds whether the rows are of another arm than the given one, by the law of `rankArms`, while the rows come. The
-/// class ranks the arms after 30, 60 and 120 s of motion. It begins again after eight minutes, or at once if the rows may be
-/// of another arm. A ranking takes some seconds in a thread of its own. The class keeps only rows with motion.
+/// class ranks the arms after 30, 60 and 120 s of motion. It begins again after eight minutes, or at once if the
+/// rows may be of another arm. A ranking takes some seconds in a thread of its own. The class keeps only rows with
+/// motion.
 class ArmWatch
 {
 public:

@@ -16,12 +16,12 @@ namespace hjt
 {
 enum class MessageEncoding
 {
-  ROS1,  ///< little endian, unaligned
-  CDR,   ///< of ROS 2: XCDR 1, either byte order, numbers aligned to their size
+  ROS1,  ///< encoding of ROS 1: little endian, unaligned
+  CDR,   ///< encoding of ROS 2: XCDR 1, either byte order, numbers aligned to their size
   OTHER
 };
 
-/// Encoding with the name "ros1" or "cdr".
+/// The encoding that has the name "ros1" or "cdr".
 MessageEncoding encodingOf(const std::string& name);
 
 /// @returns false if the bytes are not exactly one such message. Lengths are checked against the bytes before memory is

@@ -234,7 +234,7 @@ std::vector<ScalarOutput> healthOutputs()
   using O = const JointOutputs&;
   using S = ScalarIndicator;
   constexpr Type F = Type::FLOAT64;
-  constexpr const char* LAST_WINDOW = "value of the last window that determines it; 0: none yet";
+  constexpr const char* LAST_WINDOW = "value of the last window that determines the indicator; 0: no such window yet";
   return {
     { "transmission_ratio", "-", "transmission ratio over the last motor turn; 0: none yet", F,
       [](T t, O) { return t.health().motion.transmission_ratio.value; } },

@@ -19,7 +19,7 @@ namespace hjt
 {
 namespace
 {
-/// JSON is YAML.
+/// Reads a file of a report. JSON files are valid YAML.
 YAML::Node readData(const std::string& directory, const char* name)
 {
   const std::string path = directory + "/" + name;

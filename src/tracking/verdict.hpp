@@ -311,7 +311,7 @@ struct GainEvidence
     return { Reason::EFFORT_UNIT, "the current is " + roundedText(load.value, 2) +
                                       " times what load and inertia take, and " + roundedText(friction, 2) +
                                       " times what friction takes: not the friction but the gain "
-                                      "(telemetry.torque_per_current) or the unit is another than configured" };
+                                      "(telemetry.torque_per_current) or the unit is not as configured" };
   }
 
   FittedFactor load;
