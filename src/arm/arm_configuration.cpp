@@ -15,7 +15,8 @@ namespace fs = std::filesystem;
 
 namespace
 {
-/// The file of the arm of which `file` is another name, a link to a file beside it; none if `file` is no such link.
+/// The file that `file` is a link to, if both are in one directory: `file` is then another name of that arm. None if
+/// `file` is no such link.
 std::optional<fs::path> namesakeOf(const fs::path& file)
 {
   std::error_code error;

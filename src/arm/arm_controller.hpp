@@ -65,8 +65,8 @@ private:
   /// A set point of a joint on its way to the control.
   struct Wanted
   {
-    double position{};  // [rad]
-    double velocity{};  // [rad/s]
+    double position{};  // wanted angle [rad]
+    double velocity{};  // wanted speed [rad/s]
     double torque{};    // torque that is fed forward [N.m]
   };
 
@@ -75,7 +75,7 @@ private:
 
   ArmDynamics dynamics_;
   std::vector<JointGains> gains_;
-  std::vector<double> feedback_limit_;  // limits of the feedback torques, HUGE_VAL without a limit [N.m]
+  std::vector<double> feedback_limit_;  // limit of each joint's feedback torque, HUGE_VAL without a limit [N.m]
   std::vector<double> delay_;           // delays of the set points [periods]
   std::vector<double> speed_delay_;     // delays of the set points' speeds [periods]
   std::vector<double> unseen_;          // errors of the angle below which the integral stands [rad]

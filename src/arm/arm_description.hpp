@@ -44,11 +44,11 @@ inline constexpr Range PAYLOAD_CENTRE{ -10.0, 10.0 };  ///< allowed coordinates 
 /// Mass at the tip of an arm.
 struct Payload
 {
-  double mass{};                   ///< [kg]
+  double mass{};                   ///< mass [kg]
   std::array<double, 3> centre{};  ///< centre of mass in the frame of the tip [m]
 };
 
-/// Says which value of the payload is out of range; empty if none is.
+/// Names the value of the payload that is out of range. The text is empty if all values are in range.
 std::string payloadErrors(const Payload& payload);
 
 /// How a joint moves the link that it carries.
@@ -69,9 +69,9 @@ struct ArmLink
   std::array<double, 3>
       position{};  ///< origin of the link's frame in that of the link before, at a joint angle of 0 [m]
   std::array<double, 9> rotation{};  ///< rotation of the link's frame in that of the link before, row by row [-]
-  double mass{};                     ///< [kg]
+  double mass{};                     ///< mass of the link [kg]
   std::array<double, 3> centre{};    ///< centre of mass in the link's frame [m]
-  std::array<double, 6> inertia{};   ///< about the centre of mass: xx, yy, zz, xy, xz, yz [kg.m^2]
+  std::array<double, 6> inertia{};   ///< inertia about the centre of mass: xx, yy, zz, xy, xz, yz [kg.m^2]
 };
 
 /// An arm as its YAML file describes it, and the URDF that the file names.
@@ -85,27 +85,28 @@ struct ArmDescription
   Payload payload;
   double drag{};                 ///< size of a force on the tip against its motion [N]
   double state_rate{ 125.0 };    ///< rate of the controller's states [Hz]
-  std::vector<ArmJoint> joints;  ///< from the base on; at least one
-  std::vector<ArmLink> links;    ///< from the base on to the tip, as readLinks finds them
+  std::vector<ArmJoint> joints;  ///< joints from the base on; at least one
+  std::vector<ArmLink> links;    ///< links from the base to the tip, as readLinks finds them
 };
 
 /// Reads the file of an arm and the links of its URDF. @throws ParameterError naming file, line and key of a value that
-/// is unreadable, missing, unknown, mistyped or out of range, and as readLinks.
+/// is unreadable, missing, unknown, mistyped or out of range, and for the reasons that readLinks
+/// names.
 ArmDescription readArmDescription(const std::string& path);
 
 /// Reads from the URDF the links of the chain from base to tip and the ranges of the joints' angles.
 /// @throws ParameterError if the URDF cannot be read or has no such chain, if its joints are not those of the
-/// description, if a joint moves no mass, or if masses, inertia, places or axes are none of a robot.
+/// description, if a joint moves no mass, or if masses, inertia, places or axes are not possible for a robot.
 void readLinks(ArmDescription& arm);
 
 /// Reads the gains of a controller, SHORT_NAME.position and so on, for the joints that the file names.
-/// @throws ParameterError as readArmDescription.
+/// @throws ParameterError for the reasons that readArmDescription names.
 void readGains(const std::string& path, ArmDescription& arm);
 
 /// A payload that the arm carries from a time on.
 struct PayloadFrom
 {
-  double time{};  ///< [s]
+  double time{};  ///< time from which the arm carries the payload [s]
   Payload payload;
 };
 

@@ -15,9 +15,9 @@ namespace hjt
 /// Motion of one joint of an arm.
 struct JointMotion
 {
-  double position{};      ///< [rad]
-  double velocity{};      ///< [rad/s]
-  double acceleration{};  ///< [rad/s^2]
+  double position{};      ///< angle [rad]
+  double velocity{};      ///< speed [rad/s]
+  double acceleration{};  ///< acceleration [rad/s^2]
 };
 
 /// Force [N] and moment [N.m] on the tip, in the frame of the base.
@@ -37,8 +37,8 @@ struct ToolPose
 inline constexpr double DRAG_SPEED = 0.01;  ///< speed of the tip above which a drag has nearly all of its force [m/s]
 
 /// Rigid-body dynamics of an arm: weight, inertia, Coriolis and coupling of all links and the payload, by KDL's
-/// recursive Newton-Euler. The inertia of the motors is not part of it, but of the drives. After construction nothing
-/// but a copy throws or allocates.
+/// recursive Newton-Euler. The drives contain the inertia of the motors, so the arm does not. After construction
+/// only a copy throws or allocates.
 class ArmDynamics
 {
 public:

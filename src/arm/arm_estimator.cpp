@@ -82,7 +82,7 @@ constexpr double JOINT_OFFSET = 0.1;     // [A]
 constexpr double JOINT_LOSS = 0.02;      // loss over load [-]
 constexpr double JOINT_INERTIA = 0.3;    // change of the rotor's inertia over the inertia [-]
 
-constexpr std::size_t FEWEST = 20;  // least rows of a joint that counts
+constexpr std::size_t FEWEST = 20;  // least number of rows of a joint that counts
 
 constexpr double INDEPENDENT = 40.0;  // largest number of rows that a joint's rows count as
 constexpr double LEAST = 0.02;        // least standard deviation of the rows of a real arm [A]
@@ -486,7 +486,7 @@ void ArmEstimator::addRows(std::size_t joint, const std::vector<bool>& states, W
   {
     deviation = std::max(robustDeviation(error), LEAST);
   }
-  // A likelier standard deviation, by the weights of the last one.
+  // The weights that follow from the last standard deviation give a likelier one.
   Eigen::ArrayXd squares = (error / deviation).array().square();
   deviation = std::max(deviation * std::sqrt((squares * (STUDENT + 1.0) / (STUDENT + squares)).mean()), LEAST);
   squares = (error / deviation).array().square();

@@ -36,20 +36,20 @@ public:
   using Load = Eigen::Matrix<double, LOAD, 1>;
   using Carried = Eigen::Matrix<double, PAYLOAD, 1>;
 
-  /// Means of a joint while it moves one way [A].
+  /// Mean currents of a joint while the joint moves in one direction [A].
   struct Row
   {
     double time{};  ///< [s]
     std::size_t leg{};
     double current{};
     double predicted{};
-    double friction{};                                  ///< of the twin's friction
-    double cold{};                                      ///< by which the friction is more when it is 10 K colder
-    double torque{};                                    ///< of the load as configured
-    double inertia{};                                   ///< of the rotor's inertia
-    double rise{};                                      ///< rise of the friction per load, both by their sizes [-]
-    Load load{ Load::Zero() };                          ///< of units of mass, moments, gravity and drag
-    Eigen::Vector2d across{ Eigen::Vector2d::Zero() };  ///< of unit forces on the tip across gravity
+    double friction{};          ///< current of the twin's friction
+    double cold{};              ///< current of the additional friction when the drive is 10 K colder
+    double torque{};            ///< current of the load as configured
+    double inertia{};           ///< current of the rotor's inertia
+    double rise{};              ///< rise of the friction per load, both by their sizes [-]
+    Load load{ Load::Zero() };  ///< currents of units of mass, moments, gravity and drag
+    Eigen::Vector2d across{ Eigen::Vector2d::Zero() };  ///< currents of unit forces on the tip across gravity
   };
   using Rows = std::vector<std::vector<Row>>;  ///< rows of each joint, from the base on
 
@@ -63,10 +63,10 @@ public:
     bool isBeyond(double least) const;  ///< whether the whole interval is farther than `least` from 0
   };
 
-  /// A force on the tip that explains what the rows of a leg leave.
+  /// A force on the tip that explains the part of a leg's currents that the other causes do not explain.
   struct Push
   {
-    double size{};    ///< [N]
+    double size{};    ///< size of the force [N]
     double across{};  ///< part of the force across gravity, which no payload makes [N]
   };
 
@@ -82,7 +82,7 @@ public:
     Known gain;                    ///< factor of all gains, less 1 [-]
     std::vector<Known> gains;      ///< factor of the gain of each joint, less that of all gains [-]
     std::vector<Known> frictions;  ///< friction of each joint over the twin's, in the joint's rows [-]
-    std::vector<Known> own;        ///< part of each joint's friction that is a fault's, over the twin's friction [-]
+    std::vector<Known> own;        ///< part of each joint's friction that a fault causes, over the twin's friction [-]
     std::vector<bool> states;      ///< state of each leg; empty if all legs have one payload
     std::vector<Push> pushes;      ///< force on the tip in each leg
     double left{ 1.0 };            ///< share of the currents that is not explained, rms [-]
@@ -94,7 +94,7 @@ public:
   /// standard deviation of each joint's friction when it is sound, as a share; empty: as joints of one type differ.
   ArmEstimator(Rows rows, const Eigen::Vector3d& gravity, std::vector<double> repeats = {});
 
-  /// Causes that are considered beside a payload.
+  /// Causes that the estimator considers in addition to a payload.
   struct Freedom
   {
     bool mounting{};

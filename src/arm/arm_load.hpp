@@ -30,7 +30,7 @@ class RowTimes
 public:
   static constexpr double ANGLE = 1e-4;  ///< standard deviation of an angle's change from its velocity's integral [rad]
   static constexpr double STAMP = 4e-3;  ///< standard deviation of a stamp's interval [s]
-  static constexpr double SIGNIFICANT = 0.35;  ///< share of the interval by the stamps
+  static constexpr double SIGNIFICANT = 0.35;  ///< least error, as a share of the interval by the stamps [-]
   static constexpr double AGREES = 0.1;        ///< share by which velocities and angles may differ [-]
 
   explicit RowTimes(std::size_t joints) : last_(joints), agreements_(joints) {}
@@ -59,8 +59,8 @@ private:
     double change{ START };
     double expected{ START };
   };
-  static constexpr double MEMORY = 10.0;  // [s]
-  static constexpr double START = 0.25;   // as after 1 s at 0.5 rad/s [rad^2/s]
+  static constexpr double MEMORY = 10.0;  // time constant of the forgetting [s]
+  static constexpr double START = 0.25;   // value of both sums after 1 s at 0.5 rad/s [rad^2/s]
 
   /// Time between the last rows and these, by the motion where the motion is surer than the stamps [s].
   double interval(const std::vector<MotionRow>& rows) noexcept
@@ -110,7 +110,7 @@ struct ArmSample
   std::vector<double> torques;
 };
 
-/// Rates of all joints of an arm from a stream of rows of their angles. They do not depend on which arm it is.
+/// Rates of all joints of an arm from a stream of rows of their angles. The rates do not depend on the type of the arm.
 ///
 /// They are the slopes of parabolas through the angles within HALF_WIDTH of a row, so they need no recorded velocity
 /// and have no phase, and a row comes out at most HALF_WIDTH late. Velocities mend the rows' times (RowTimes): for load
@@ -128,8 +128,8 @@ public:
   /// Starts a new stream.
   void reset() noexcept;
 
-  /// Takes one row for each joint, all of one time. Returns false for rows that it leaves out: rows that are not later
-  /// than those before, or that no joint can have.
+  /// Takes one row for each joint, all of one time. Ignores rows that are not later than the rows before, or that no
+  /// joint can have, and then returns false.
   bool push(const std::vector<MotionRow>& rows) noexcept;
 
   /// The next sample that is ready, without torques and vibration, or nullptr. It is valid until the next call. With

@@ -15,10 +15,11 @@ namespace hjt
 {
 namespace
 {
-constexpr double ACCELERATION = 300.0 * DEGREE;  // moderate: it takes 17 N.m of a stretched UR5 [rad/s^2]
-constexpr double REST = 0.5;                     // time at rest before and after the moves [s]
-constexpr std::size_t MAX_INSTANTS = 450'000;    // instants of an hour at a controller's 125 Hz
-constexpr double LIMIT_SHARE = 5.0 / 6.0;        // largest share of the joint's speed limit in a stroke [-]
+constexpr double ACCELERATION =
+    300.0 * DEGREE;                            // moderate acceleration, which needs 17 N.m of a stretched UR5 [rad/s^2]
+constexpr double REST = 0.5;                   // time at rest before and after the moves [s]
+constexpr std::size_t MAX_INSTANTS = 450'000;  // instants of an hour at a controller's 125 Hz
+constexpr double LIMIT_SHARE = 5.0 / 6.0;      // largest share of the joint's speed limit in a stroke [-]
 
 /// A stroke of the joint to an angle about its pose.
 struct Stroke
@@ -216,7 +217,7 @@ private:
 
 void ArmMotion::goOn(double time, const std::vector<JointMotion>& joints) noexcept
 {
-  // A set point at the time of the last one replaces it.
+  // A set point at the time of the last set point replaces the last set point.
   if (goes_on_ && time > end())
   {
     std::swap(points_[0], points_[1]);

@@ -14,7 +14,7 @@ namespace hjt
 /// All joints of an arm at one time of a commanded motion.
 struct ArmSetPoint
 {
-  double time{};                    ///< [s]
+  double time{};                    ///< time of the motion [s]
   std::vector<JointMotion> joints;  ///< motion of all joints
 };
 
@@ -38,8 +38,8 @@ public:
   {
   }
 
-  double begin() const noexcept { return points_.front().time; }  ///< [s]
-  double end() const noexcept { return points_.back().time; }     ///< [s]
+  double begin() const noexcept { return points_.front().time; }  ///< time of the first set point [s]
+  double end() const noexcept { return points_.back().time; }     ///< time of the last set point [s]
   std::size_t joints() const noexcept { return points_.front().joints.size(); }
   const std::vector<ArmSetPoint>& points() const noexcept { return points_; }
 
@@ -50,14 +50,14 @@ public:
   /// Of two set points, replaces the first by the last and the last by this one. The motion need not end there at rest.
   void goOn(double time, const std::vector<JointMotion>& joints) noexcept;
 
-  /// Replaces the joints of the first set point, by as many joints.
+  /// Replaces the joints of the first set point by the same number of joints.
   void beginFrom(const std::vector<JointMotion>& joints) noexcept { points_.front().joints = joints; }
 
 private:
   std::vector<ArmSetPoint> points_;
   ArmAccelerations accelerations_;
   bool repeats_;
-  bool goes_on_{};      // set points come one by one, by goOn
+  bool goes_on_{};      // goOn adds the set points one by one
   std::size_t last_{};  // number of the set point before the time that at() was called with last
 };
 
@@ -85,7 +85,7 @@ struct ArmMove
 /// Angles of all joints [rad].
 using ArmPose = std::vector<double>;
 
-/// A set point with what it takes.
+/// A set point and the torques that its motion needs.
 struct ArmInstant : ArmSetPoint
 {
   std::vector<double> torques;  ///< torques at the outputs that make the motion [N.m]

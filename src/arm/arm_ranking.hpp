@@ -21,10 +21,12 @@ struct ArmFit
   static constexpr double ENOUGH = 120.0;       ///< time of the rows that are looked at [s]
 
   std::string arm;
-  EffortUnit unit{};   ///< unit of the efforts that fits best
-  double size{ 1.0 };  ///< factor of all currents, other than 1 if they have another unit or gain [-]
-  double left{};       ///< share of the moving joints' currents that the best payload and mounting leave, rms [-]
-  double cost{};       ///< negative logarithm of a likelihood [-]
+  EffortUnit unit{};  ///< unit of the efforts that fits best
+  /// factor that the currents of all joints have in common; 1 unless it is too large or too small for the gains of one
+  /// type [-]
+  double size{ 1.0 };
+  double left{};  ///< share of the moving joints' currents that the best payload and mounting leave, rms [-]
+  double cost{};  ///< negative logarithm of a likelihood [-]
 
   bool operator<(const ArmFit& other) const { return cost < other.cost; }
   /// Whether this arm explains the currents and is likelier than `other`, by the logarithm `by` at least.
@@ -40,7 +42,7 @@ struct ArmCandidate
   double cost{};                   ///< cost by what is known besides the rows, as ArmFit::cost [-]
 };
 
-/// Takes a row of each joint, all of one time. The member `current` is the effort as it was received.
+/// Takes a row of each joint, all of one time. The member `current` is the effort as the recording has it.
 using VisitArmRows = std::function<void(const std::vector<MotionRow>&)>;
 /// Gives all rows to the visitor, the earliest first. Each call gives the same rows.
 using PlayArmRows = std::function<void(const VisitArmRows&)>;

@@ -26,19 +26,19 @@ struct ArmCoupling
 ///
 /// where  M, h  inertia, and torques of weight, Coriolis and the wrench at the tip (ArmDynamics)  [kg.m^2], [N.m]
 ///        D     inertia of the circular splines, on the diagonal                                  [kg.m^2]
-///        tau   of gears and output friction on the links                                         [N.m]
+///        tau   torques of gears and output friction on the links                                 [N.m]
 ///
 /// The equation is solved for one joint at a time. With W the inverse of M + D a drive sees the inertia 1/W_ii and the
 /// load
 ///
 ///   h_i - sum_{k != i} W_ik (tau_k - h_k) / W_ii
 ///
-/// All drives step together. h is taken at every step, at the predicted instant; tau of the other drives is
-/// extrapolated from the steps before; M, which changes with the pose alone, is taken less often. The rotors belong to
-/// the drives: what their casings' mass is in the links counts there.
+/// All drives step together. Each step computes h at the predicted instant, and extrapolates tau of the other drives
+/// from the steps before. M changes with the pose alone and is computed rarely. The rotors belong to the drives; the
+/// casings of the motors belong to the links.
 ///
-/// A copy is at the same instant and goes on with the same bits. After construction nothing but a copy throws or
-/// allocates unless stated.
+/// A copy is at the same instant, and its later results have the same bits as those of the original. After construction
+/// only a copy throws or allocates unless stated.
 class ArmTwin
 {
 public:
@@ -87,14 +87,14 @@ private:
   void observe() noexcept;
 
   ArmDynamics dynamics_;
-  std::vector<double> pose_at_start_;  // [rad]
+  std::vector<double> pose_at_start_;  // joint angles at the start [rad]
   std::vector<double> zero_;           // joint angles less output angles of the drives [rad]
   std::vector<Twin> drives_;
-  std::vector<double> spline_inertia_;  // [kg.m^2]
+  std::vector<double> spline_inertia_;  // inertia of each circular spline [kg.m^2]
   std::int64_t mass_steps_;             // steps from one mass matrix to the next
   std::int64_t steps_{};
   std::vector<JointMotion> motion_;
-  std::vector<JointMotion> next_;  // predicted
+  std::vector<JointMotion> next_;  // predicted motion at the end of the step
   std::vector<double> bias_;       // h [N.m]
   Eigen::MatrixXd mass_;           // M + D [kg.m^2]
   Eigen::LLT<Eigen::MatrixXd> factors_;

@@ -149,7 +149,7 @@ void ArmWatch::add(const std::vector<MotionRow>& rows)
   last_time_ = rows.front().time;
   if (step > MotionDifferentiator::MAX_GAP)
   {
-    return;  // no motion is seen over a gap
+    return;  // a motion across a gap does not count
   }
   moved_ += step;
   if (moved_ >= 0.0 && moved_ <= ArmFit::ENOUGH)
@@ -206,14 +206,15 @@ bool ArmWatch::look()
   }
   if (is_stopped_)
   {
-    answer_ = {};  // the answer is on rows before the last reset
+    answer_ = {};  // the result is of rows before the last reset
     return false;
   }
   other_ = answer_.get();
   is_settled_ = true;
   if (!other_.empty())
   {
-    moved_ = std::max(moved_, 0.0);  // ask again soon: a wrong answer, as of an arm led by hand, does not last
+    moved_ = std::max(moved_,
+                      0.0);  // rank again soon: a wrong result, for example while a hand leads the arm, does not last
   }
   return true;
 }

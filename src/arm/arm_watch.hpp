@@ -19,10 +19,11 @@
 
 namespace hjt
 {
-/// Finds payload and mounting that an arm's currents show while its rows come. It looks every 30 s of motion, starts
-/// again after eight minutes, and takes the rows since a change of the payload alone. A load that was found is tried
-/// for 10 s of motion (LoadLaw). Once it is taken back, nothing is looked for in the next eight minutes. A look takes
-/// some tenths of a second in a thread of its own. The class allocates and is not for a real-time loop.
+/// Finds payload and mounting that an arm's currents show while its rows come. The class evaluates the rows every 30 s
+/// of motion, begins again after eight minutes, and uses only rows since the last change of the payload. It tries a
+/// found load for 10 s of motion (LoadLaw). If the trial fails, the class searches no load in the next eight minutes.
+/// An evaluation takes some tenths of a second in a thread of its own. The class allocates and is not for a real-time
+/// loop.
 class LoadWatch
 {
 public:
@@ -53,7 +54,7 @@ public:
   const ArmDescription& arm() const { return arm_; }
 
 private:
-  static constexpr double TRIAL = 10.0;  // motion for which a load is tried [s]
+  static constexpr double TRIAL = 10.0;  // time of motion for which a found load is tried [s]
 
   void start(double first_look);
   void begin(std::vector<bool> measured);
@@ -77,13 +78,14 @@ private:
   std::future<FoundLoad> found_;  // the last member: it is waited for before the others are destroyed
 };
 
-/// Finds whether an arm is another than given, by the law of `rankArms`, while its rows come. It asks after 30, 60 and
-/// 120 s of motion and starts again after eight minutes, or at once if the arm may be another. Each answer takes a
-/// thread of its own some seconds. Only rows with motion are kept for it.
+/// Finds whether the rows are of another arm than the given one, by the law of `rankArms`, while the rows come. The
+/// class ranks the arms after 30, 60 and 120 s of motion. It begins again after eight minutes, or at once if the
+/// rows may be of another arm. A ranking takes some seconds in a thread of its own. The class keeps only rows with
+/// motion.
 class ArmWatch
 {
 public:
-  /// Makes the arms to choose from, `own` among them. It is called in the thread that ranks them.
+  /// Makes the arms to rank, `own` among them. The thread that ranks the arms calls this function.
   using MakeCandidates = std::function<std::vector<ArmCandidate>()>;
 
   /// `unit_is_given`: efforts are of the configured unit.
@@ -95,12 +97,12 @@ public:
   ArmWatch(const ArmWatch&) = delete;
   ArmWatch& operator=(const ArmWatch&) = delete;
 
-  /// Rows of all joints at one time, `current` the effort as it comes.
+  /// Adds rows of all joints at one time. The member `current` is the received effort in its own unit.
   void add(const std::vector<MotionRow>& rows);
-  /// Forgets all answers and questions about the rows so far, because other rows follow.
+  /// Forgets the rows so far and all results of them, because rows of another motion follow.
   void reset();
 
-  /// Returns true if an answer has come. @throws what the making of the arms threw.
+  /// Whether the search for a likelier arm has ended since the last call. @throws any exception of MakeCandidates.
   bool look();
 
   /// The arm that is clearly likelier than the given one; empty if none is known.
@@ -125,7 +127,7 @@ private:
   double last_time_{ -HUGE_VAL };   // time of the last row that was kept [s]
   double moved_{};                  // motion since the last start [s]
   double next_look_{ LoadFit::FIRST_LOOK };
-  std::atomic<bool> is_stopped_{ false };  // the answer that is on its way is ignored
+  std::atomic<bool> is_stopped_{ false };  // the result of the running ranking is ignored
   std::future<std::string> answer_;        // the last member: it is waited for before the others are destroyed
 };
 }  // namespace hjt

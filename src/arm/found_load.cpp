@@ -85,14 +85,14 @@ std::string IdentifiedPayload::text() const
   const Payload found = payload();
   if (!isCarried())
   {
-    return "the currents look like no payload, " + fixedText(std::max(mass, 0.0), 1) + " +- " +
-           fixedText(mass_half_width, 1) + " kg at the flange, in place of the configured " +
-           roundedText(configured.mass, 3) + " kg: set payload in the arm's file";
+    return "the currents show no payload, " + fixedText(std::max(mass, 0.0), 1) + " +- " +
+           fixedText(mass_half_width, 1) + " kg (95 %) at the flange, but " + roundedText(configured.mass, 3) +
+           " kg is configured (set payload in the arm's file)";
   }
-  return "the currents look like a payload of " + fixedText(found.mass, 1) + " +- " + fixedText(mass_half_width, 1) +
-         " kg at the flange in place of the configured " + roundedText(configured.mass, 3) + " kg, its centre at " +
-         fixedText(found.centre[0], 2) + ", " + fixedText(found.centre[1], 2) + ", " + fixedText(found.centre[2], 2) +
-         " m: set payload in the arm's file";
+  return "the currents show a payload of " + fixedText(found.mass, 1) + " +- " + fixedText(mass_half_width, 1) +
+         " kg (95 %) at the flange, not the configured " + roundedText(configured.mass, 3) +
+         " kg (set payload in the arm's file). The payload's centre is at " + fixedText(found.centre[0], 2) + ", " +
+         fixedText(found.centre[1], 2) + ", " + fixedText(found.centre[2], 2) + " m";
 }
 
 double IdentifiedMounting::tilt() const
@@ -112,9 +112,9 @@ double IdentifiedMounting::tilt() const
 
 bool IdentifiedMounting::differs() const
 {
-  constexpr double LEAST = 4.0 * DEGREE;  // least tilt; errors of the links' masses make less
-  constexpr double KNOWN = 3.0;           // least tilt in half widths; a hand on the arm makes less
-  constexpr double SIZE = 1.35;           // largest factor of the size, as a payload or errors of gains make
+  constexpr double LEAST = 4.0 * DEGREE;  // least tilt; errors of the links' masses cause a smaller one [rad]
+  constexpr double KNOWN = 3.0;           // least tilt in half widths; a hand on the arm causes a smaller one [-]
+  constexpr double SIZE = 1.35;           // largest factor of the size that a payload or errors of gains cause [-]
   return tilt() > LEAST && tilt() > KNOWN * half_width && size > 1.0 / SIZE && size < SIZE;
 }
 
@@ -122,21 +122,21 @@ std::string IdentifiedMounting::text() const
 {
   constexpr double LEAST = 1.0;  // least half width that is printed [deg]
   const auto part = [](double value) { return fixedText(std::abs(value) < 0.05 ? 0.0 : value, 1); };  // no "-0.0"
-  return "another mounting than configured: gravity looks tilted by " + fixedText(tilt() / DEGREE, 0) + " +- " +
-         fixedText(std::max(half_width / DEGREE, LEAST), 0) + " deg: set gravity: [" + part(gravity[0]) + ", " +
-         part(gravity[1]) + ", " + part(gravity[2]) + "] in the arm's file";
+  return "the mounting differs from the configured one: gravity is tilted by " + fixedText(tilt() / DEGREE, 0) +
+         " +- " + fixedText(std::max(half_width / DEGREE, LEAST), 0) + " deg (95 %). Set gravity: [" +
+         part(gravity[0]) + ", " + part(gravity[1]) + ", " + part(gravity[2]) + "] in the arm's file";
 }
 
 bool FoundDrag::exists() const
 {
-  constexpr double LEAST = 3.0;  // [N]
+  constexpr double LEAST = 3.0;  // least force that counts as a drag [N]
   return force - half_width > LEAST;
 }
 
 std::string FoundDrag::text() const
 {
-  return "the currents look like a force of " + fixedText(force, 0) + " +- " + fixedText(half_width, 0) +
-         " N on the tool against its motion: a cable, a hose, or a tool that rubs";
+  return "the currents show a force of " + fixedText(force, 0) + " +- " + fixedText(half_width, 0) +
+         " N (95 %) on the tool against its motion: a cable, a hose, or a tool that rubs";
 }
 
 Misfit FoundLoad::misfit() const
@@ -148,8 +148,8 @@ Misfit FoundLoad::misfit() const
   }
   return { Reason::EFFORT_UNIT, "the currents of all joints are " + fixedText(1.0 + gain, 2) + " +- " +
                                     fixedText(gain_half_width, 2) +
-                                    " times what load and friction take: another gain (telemetry.torque_per_current) "
-                                    "or unit than configured" };
+                                    " times those that load and friction need (95 %). The gain "
+                                    "(telemetry.torque_per_current) or the unit is not as configured" };
 }
 
 FoundLoad FoundLoad::last() const
@@ -173,7 +173,7 @@ std::string AssumedLoad::text() const
   {
     const auto parts = std::count_if(changes.begin(), changes.end(), [](const auto& part) { return part.is_found; });
     text += "The payload changes: in " + std::to_string(parts) + " of " + std::to_string(changes.size()) +
-            " parts of the time the currents look like " + massText(*payload) + ", in the others like " +
+            " parts of the time the currents show " + massText(*payload) + ", in the others " +
             (otherwise ? massText(*otherwise) : "the configured " + roundedText(payload->configured.mass, 3) + " kg") +
             ". ";
   }
@@ -181,7 +181,7 @@ std::string AssumedLoad::text() const
   {
     text += sentence(payload->text()) + " ";
   }
-  return text + (isConfigured() ? "" : "The joints are judged with it. ");
+  return text + (isConfigured() ? "" : "The joints are judged with this load. ");
 }
 
 void AssumedLoad::configure(ArmDescription& arm) const

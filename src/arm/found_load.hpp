@@ -18,21 +18,22 @@ namespace hjt
 struct IdentifiedPayload
 {
   Payload configured;
-  double mass{};                              ///< [kg]
+  double mass{};                              ///< mass at the flange that fits best [kg]
   double mass_half_width{};                   ///< half width of the mass's 95 % interval [kg]
   std::array<double, 3> moment{};             ///< mass times centre, in the frame of the tip [kg.m]
   std::array<double, 3> moment_half_width{};  ///< half widths of the moments' 95 % intervals [kg.m]
   double least_claim{};                       ///< largest mass that sound arms of this mass show without a payload [kg]
 
-  /// Whether the configured mass is outside the interval, and farther off than arms without a payload show.
+  /// Whether the configured mass is outside the interval of the mass, and differs from the mass by more than
+  /// `least_claim`.
   bool differs() const;
-  /// Whether the mass is greater than zero with certainty.
+  /// Whether the 95 % interval of the mass lies above zero.
   bool isCarried() const { return mass > mass_half_width; }
-  /// Whether the payload differs, and is either a mass or none in place of a configured one.
+  /// Whether the payload differs from the configured one, and is either a mass, or no mass although one is configured.
   bool isOther() const;
   /// The payload with its centre; without mass if it is not carried.
   Payload payload() const;
-  /// "the currents look like a payload of ... in place of the configured ...", a clause.
+  /// "the currents show a payload of ... at the flange, not the configured ... kg. ...".
   std::string text() const;
 };
 
@@ -48,19 +49,19 @@ struct IdentifiedMounting
   /// Whether the configured direction is far outside the interval, farther off than arms mounted as configured show,
   /// and the size that was found is that of gravity.
   bool differs() const;
-  /// "another mounting than configured: gravity looks tilted by ...", a clause.
+  /// "the mounting differs from the configured one: gravity is tilted by ...", a clause.
   std::string text() const;
 };
 
-/// A force on the tip against its motion, as of a cable or of a tool that rubs.
+/// A force on the tip against the motion of the tip, for example of a cable or of a tool that rubs.
 struct FoundDrag
 {
-  double force{};       ///< [N]
+  double force{};       ///< size of the force [N]
   double half_width{};  ///< half width of the force's 95 % interval [N]
 
   /// Whether the interval of the force lies beyond what sound arms show.
   bool exists() const;
-  /// "the currents look like a force of ... on the tool against its motion: ...", a clause.
+  /// "the currents show a force of ... on the tool against its motion: ...", a clause.
   std::string text() const;
 };
 
@@ -119,11 +120,11 @@ struct JudgedJoints
 
   std::vector<Misfit> misfits;  ///< misfit of each joint, or that of all joints
   std::vector<MeasuredFriction> frictions;
-  std::vector<bool> measured;  ///< false for a joint without an effort, which says nothing of the load
+  std::vector<bool> measured;  ///< false for a joint without an effort; the load cannot be checked by such a joint
   ArmFriction common;
 };
 
-/// Gives the misfit to all joints that have none.
+/// Gives the misfit to all joints that have no misfit yet.
 void addMisfit(const Misfit& misfit, std::vector<Misfit>& misfits);
 
 /// The law by which another load than the configured one counts, for recordings and live telemetry alike. A load that
@@ -137,7 +138,7 @@ public:
   bool take(const FoundLoad& found, const JudgedJoints& joints);
 
   const AssumedLoad& counts() const { return counts_; }
-  /// Whether a load that was found is still on trial.
+  /// Whether the trial of a found load has not ended yet.
   bool isTrying() const { return is_trying_; }
 
 private:

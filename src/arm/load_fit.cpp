@@ -37,7 +37,7 @@ FoundDrag dragOf(const ArmEstimator::Estimate& estimate)
 /// to 79 N.
 std::vector<bool> pushedLegs(const std::vector<ArmEstimator::Push>& pushes)
 {
-  constexpr double LEAST = 10.0;  // [N]
+  constexpr double LEAST = 10.0;  // least force that counts as a push [N]
   constexpr double FAR_MORE = 6.0;
   std::vector<double> across;
   for (const ArmEstimator::Push& push : pushes)
@@ -87,7 +87,7 @@ LoadFit::LoadFit(const ArmDescription& arm, const std::vector<Drive>& drives)
 /// Begins a new leg where all joints stand, and after 5 s.
 void LoadFit::cutLegs(double time, double speed)
 {
-  constexpr double STOP = 0.2;  // [s]
+  constexpr double STOP = 0.2;  // least time at rest that ends a leg [s]
   constexpr double SHORTEST = 1.0;
   constexpr double LONGEST = 5.0;
   if (legs_.empty())
@@ -167,7 +167,7 @@ void LoadFit::thin()
 void LoadFit::addTo(std::size_t number, const MotionSample& sample, const MotionDriven& twin,
                     const UnitLoads::Torques& torques)
 {
-  constexpr double COLDER = 10.0;     // [K]
+  constexpr double COLDER = 10.0;     // difference of the temperature for ArmEstimator::Row::cold [K]
   constexpr double LEAST_LOAD = 0.1;  // [N.m]
   Joint& joint = joints_[number];
   const double gain = joint.drive.gain;
@@ -340,7 +340,7 @@ std::vector<LoadFit::Hypothesis> LoadFit::hypotheses(const std::vector<bool>& co
 std::vector<LoadFit::Hypothesis> LoadFit::likeliest(const std::vector<bool>& counts) const
 {
   constexpr double LEAST_JUMP = 0.1;       // least change of a mass; rising friction looks like less [kg]
-  constexpr std::size_t MOST_ROWS = 1500;  // of a joint
+  constexpr std::size_t MOST_ROWS = 1500;  // largest number of rows of a joint
   const ArmEstimator estimator(rowsOf(counts, MOST_ROWS), gravity_, repeats());
   std::vector<Hypothesis> all;
   for (const ArmEstimator::Freedom& may :
@@ -395,9 +395,9 @@ std::vector<FittedFriction> LoadFit::frictionsOf(const std::vector<Hypothesis>& 
   }
   for (const auto& [found, may, cost] : all)
   {
-    const std::string cause = (found.states.empty() ? std::string() : " with another payload in some legs") +
-                              (may.drag     ? " with a drag of the tool" :
-                               may.mounting ? " with another mounting" :
+    const std::string cause = (found.states.empty() ? std::string() : " (with another payload in some legs)") +
+                              (may.drag     ? " (with a drag of the tool)" :
+                               may.mounting ? " (with another mounting)" :
                                               "");
     for (std::size_t i = 0; i < frictions.size(); ++i)
     {
@@ -406,9 +406,10 @@ std::vector<FittedFriction> LoadFit::frictionsOf(const std::vector<Hypothesis>& 
       {
         continue;
       }
-      const std::string text = "in a fit of all joints' currents" + cause + " its friction is " +
-                               fixedText(1.0 + own.value, 2) + " [" + fixedText(1.0 + own.value - own.half_width, 2) +
-                               ", " + fixedText(1.0 + own.value + own.half_width, 2) + "] times the expected one";
+      const std::string text = "a fit of all joints' currents" + cause + " gives this joint " +
+                               fixedText(1.0 + own.value, 2) + " times the expected friction (95 % interval " +
+                               fixedText(1.0 + own.value - own.half_width, 2) + " to " +
+                               fixedText(1.0 + own.value + own.half_width, 2) + ")";
       if (frictions[i].not_more.empty() && own.value < own.half_width)
       {
         frictions[i].not_more = text;
@@ -464,7 +465,7 @@ double LoadFit::leastCost()
 
 LoadFit::Fit LoadFit::explained(const std::vector<bool>& counts)
 {
-  constexpr std::size_t MOST_ROWS = 400;  // of a joint
+  constexpr std::size_t MOST_ROWS = 400;  // largest number of rows of a joint
   constexpr double OTHER_SIZE = 20.0;     // logarithm of how much rarer another size of all currents is
   constexpr double CLEAR = 0.3;           // least logarithm of another size; payloads and gains make less
   constexpr double NO_MASS = 0.5;         // standard deviation of masses below zero, by errors of the links [kg]

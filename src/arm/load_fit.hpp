@@ -26,7 +26,7 @@ class LoadFit
 public:
   static constexpr double PERIOD = 0.02;      ///< least time between rows that count [s]
   static constexpr double FIRST_LOOK = 30.0;  ///< motion after which live rows are looked at first [s]
-  static constexpr double LAST_LOOK = 480.0;  ///< motion after which all begins again [s]
+  static constexpr double LAST_LOOK = 480.0;  ///< motion after which the fit of live rows begins again [s]
 
   /// What the fit knows of a joint's drive.
   struct Drive
@@ -36,7 +36,7 @@ public:
     /// points the twin's friction is expected.
     void setOwn(bool known, const std::vector<FrictionPoint>& friction);
 
-    double gain;             ///< [N.m/A]
+    double gain;             ///< torque per current [N.m/A]
     double rotor;            ///< inertia at the joint [kg.m^2]
     double temperature;      ///< temperature of samples that have none [degC]
     bool is_own{};           ///< whether the friction of this joint when it was sound is known
@@ -76,13 +76,13 @@ public:
   double moved() const { return moved_; }  ///< time in which a joint moved [s]
 
 private:
-  static constexpr double BLOCK = 0.1;  ///< time that a row is the mean of [s]
+  static constexpr double BLOCK = 0.1;  ///< time over which a row of the fit is averaged [s]
 
   struct Open
   {
     ArmEstimator::Row sum;
     std::size_t count{};
-    double begin{};     // [s]
+    double begin{};     // time of the first row [s]
     double velocity{};  // [rad/s]
   };
   struct Joint
@@ -93,7 +93,7 @@ private:
     Open open{};
   };
 
-  /// What may explain the currents.
+  /// Causes that may explain the currents.
   struct Hypothesis
   {
     ArmEstimator::Estimate found;
@@ -127,7 +127,7 @@ private:
   std::vector<double> legs_;  // begin of each leg [s]
   std::vector<bool> pushed_;  // legs that do not count, because something pushes the arm; empty: none
   double still_{};            // time for which all joints have stood still [s]
-  double moved_{};            // [s]
+  double moved_{};            // time in which a joint moved [s]
   double last_time_{};
   double share_{ 1.0 };  // share of the blocks that are kept
   std::vector<std::size_t> blocks_;

@@ -23,7 +23,7 @@ struct ProtectiveStop
 {
   Stamp stamp{};         ///< stamp at which the controller stopped the arm
   std::size_t joint{};   ///< number of the joint, from the base on
-  const char* reason{};  ///< reason for people
+  const char* reason{};  ///< reason in words
 };
 
 /// A twin of an arm that follows set points under its controller. After a reset the arm stands in its brakes for half
@@ -34,11 +34,11 @@ struct ProtectiveStop
 /// protective stop: the motors give no torque and the brakes engage until the arm is unlocked or reset. The two bounds
 /// are assumed, because the maker gives none.
 ///
-/// After construction nothing but a copy throws or allocates.
+/// After construction only a copy throws or allocates.
 class MovingArm
 {
 public:
-  static constexpr double CONTROL_RATE = 2000.0;  ///< [Hz]
+  static constexpr double CONTROL_RATE = 2000.0;  ///< rate of the controller [Hz]
   static constexpr double SETTLING = 0.5;         ///< settling time if no other is given [s]
   static constexpr double STOP_DEVIATION = 0.1;   ///< deviation from the set point that stops the arm [rad]
   static constexpr double STOP_SPEED = 1.1;       ///< speed over ArmJoint::speed_limit that stops the arm [-]
@@ -70,7 +70,7 @@ public:
   /// than the last one.
   void goOn(double time, const std::vector<JointMotion>& set_point) noexcept { motion_.goOn(time, set_point); }
 
-  /// Sets the payload at the tip, from the next step on. The controller knows of it.
+  /// Sets the payload at the tip, from the next step on. The controller knows the payload.
   void setPayload(const Payload& payload) noexcept;
 
   /// Gives the present set point. `motion` has an entry for each joint.
@@ -95,7 +95,7 @@ private:
   void watch() noexcept;
   void wantedAt(Stamp stamp, std::vector<JointMotion>& motion) noexcept;
 
-  double settling_;    // [s]
+  double settling_;    // settling time [s]
   ArmMotion lead_in_;  // ends where the motion begins
   ArmTwin twin_;
   ArmController controller_;

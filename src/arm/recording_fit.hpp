@@ -29,7 +29,7 @@ const char* effortUnitName(EffortUnit unit);
 /// Keyword of the unit in the configuration.
 const char* effortKeyword(EffortUnit unit);
 
-/// Something in a recording of an arm that does not fit.
+/// A contradiction in a recording of an arm.
 struct RecordingFinding
 {
   std::string kind;  ///< for documents: reading, period, stamps, ratio, angle_unit, effort_unit, gain, current_lag,
@@ -43,9 +43,9 @@ struct RecordingFinding
 struct JointReach
 {
   std::uint64_t rows{};
-  double least_angle{ std::numeric_limits<double>::infinity() };    ///< [rad]
+  double least_angle{ std::numeric_limits<double>::infinity() };    ///< least angle [rad]
   double most_angle{ -std::numeric_limits<double>::infinity() };    ///< [rad]
-  double least_speed{};                                             ///< 0 without negative motion [rad/s]
+  double least_speed{};                                             ///< least speed; 0 without negative motion [rad/s]
   double most_speed{};                                              ///< [rad/s]
   double least_current{ std::numeric_limits<double>::infinity() };  ///< least current by the effort [A]
   double most_current{ -std::numeric_limits<double>::infinity() };  ///< [A]
@@ -115,7 +115,7 @@ private:
 
   struct Joint
   {
-    double gain{};  // [N.m/A]
+    double gain{};  // torque per current [N.m/A]
     EffortUnit effort{};
     std::vector<double> current_per_effort;  // current per effort of each unit [A], [A/(N.m)]
     TimeFit time;

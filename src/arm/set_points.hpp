@@ -44,7 +44,7 @@ void requireRates(const std::vector<ArmSetPoint>& points, const ArmDescription& 
 class MotionLimits
 {
 public:
-  /// `drives`: parameters of the arm's drives. @throws ParameterError as ArmDynamics.
+  /// `drives`: parameters of the arm's drives. @throws ParameterError for the reasons that ArmDynamics names.
   MotionLimits(const ArmDescription& arm, const std::vector<Parameters>& drives);
 
   void setPayload(const Payload& payload) noexcept { dynamics_.setPayload(payload); }
@@ -57,8 +57,8 @@ private:
   struct Joint
   {
     std::string name;
-    double torque_limit{};   // 0 without a limit [N.m]
-    double motor_limit{};    // [N.m]
+    double torque_limit{};   // largest torque of links and payload; 0 without a limit [N.m]
+    double motor_limit{};    // largest torque of the motor, seen at the output [N.m]
     double motor_inertia{};  // [kg.m^2]
   };
 

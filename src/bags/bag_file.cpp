@@ -155,7 +155,7 @@ public:
     file_.read(version.data(), static_cast<std::streamsize>(version.size()));
     if (!file_ || version != VERSION_LINE)
     {
-      throw Damage{ 0, "no bag of format 2.0" };
+      throw Damage{ 0, "a first line other than that of bag format 2.0" };
     }
   }
 
@@ -213,7 +213,7 @@ private:
     const std::string_view compression = record.text(rosbag::COMPRESSION_FIELD_NAME);
     if (compression == rosbag::COMPRESSION_NONE ? size != bytes.size() : size > MAX_CHUNK)
     {
-      throw Damage{ chunk_, "a chunk of another size than it tells" };
+      throw Damage{ chunk_, "a chunk with another size than the size in its header" };
     }
     if (compression != rosbag::COMPRESSION_NONE)
     {
@@ -231,7 +231,7 @@ private:
       for (Record message; messages.read(message);)
       {
         const unsigned char kind = message.kind();
-        // the rosbag library reads on after these records
+        // after these records the rosbag library reads further records
         if (kind != rosbag::OP_CONNECTION && kind != rosbag::OP_MSG_DEF)
         {
           messages_.push_back(message.position);
@@ -286,7 +286,7 @@ private:
   {
     if (record.size != entry * std::uint64_t{ record.number<std::uint32_t>(rosbag::COUNT_FIELD_NAME) })
     {
-      throw Damage{ record.position, "an index of another length than it tells" };
+      throw Damage{ record.position, "an index with another length than the length in its header" };
     }
   }
 
@@ -294,7 +294,7 @@ private:
   std::uint64_t size_;
   rosbag::ChunkedFile unpacker_;
   std::uint64_t chunk_{};                           // position of the chunk whose index is next; 0: none
-  std::vector<std::uint64_t> messages_;             // positions of its messages in the chunk, ascending
+  std::vector<std::uint64_t> messages_;             // positions of the messages in that chunk, ascending
   std::map<std::uint64_t, std::uint64_t> indexes_;  // position of the index of each chunk, by the chunk's position
 };
 }  // namespace

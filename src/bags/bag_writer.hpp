@@ -26,8 +26,8 @@
 
 namespace hjt
 {
-/// Lock of a file against other processes that lock it in this way. It ends with the object, or with the process. The
-/// content does not change.
+/// Lock of a file against other processes that lock the file in this way. The lock ends with the object, or with the
+/// process. The content of the file does not change.
 class FileLock
 {
 public:
@@ -73,7 +73,7 @@ private:
 /// name is always readable, also after an error or an interrupt. Equal calls give equal bytes: those that rosbag::Bag
 /// would write uncompressed. Each chunk is written in one piece, whereas rosbag::Bag seeks twice for each message.
 ///
-/// If the disk is full, the bag stays as `PATH.active` without an index, and the InputError tells its content. `rosbag
+/// If the disk is full, the bag stays as `PATH.active` without an index, and the InputError states its content. `rosbag
 /// reindex` makes it readable except for the last chunk of at most 0.8 MB. After this error nothing can be written.
 ///
 /// Format: http://wiki.ros.org/Bags/Format/2.0

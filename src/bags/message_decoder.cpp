@@ -9,7 +9,7 @@ namespace hjt
 {
 namespace
 {
-/// Extracts values from a message one after the other. After one that does not fit all values are zero.
+/// Extracts values from a message one after the other. After a value that does not fit, all further values are zero.
 class Decoder
 {
 public:

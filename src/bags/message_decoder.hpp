@@ -16,12 +16,12 @@ namespace hjt
 {
 enum class MessageEncoding
 {
-  ROS1,  ///< little endian, unaligned
-  CDR,   ///< of ROS 2: XCDR 1, either byte order, numbers aligned to their size
+  ROS1,  ///< encoding of ROS 1: little endian, unaligned
+  CDR,   ///< encoding of ROS 2: XCDR 1, either byte order, numbers aligned to their size
   OTHER
 };
 
-/// Encoding with the name "ros1" or "cdr".
+/// The encoding that has the name "ros1" or "cdr".
 MessageEncoding encodingOf(const std::string& name);
 
 /// @returns false if the bytes are not exactly one such message. Lengths are checked against the bytes before memory is
@@ -51,9 +51,10 @@ public:
     // A wrong sum of a recorder does not matter if the bytes are those of the message.
     if (!has_read_ && !instance.isType<sensor_msgs::JointState>())
     {
-      throw InputError(instance.getTopic() + ": its messages are of another version of " + expected +
-                       " than this one: their md5sum is " + instance.getMD5Sum() + ", expected " +
-                       ros::message_traits::md5sum<sensor_msgs::JointState>() + ", and their bytes do not fit");
+      throw InputError(instance.getTopic() +
+                       ": the messages cannot be read. They were recorded with another version of " + expected +
+                       " (md5sum " + instance.getMD5Sum() + "; this program expects " +
+                       ros::message_traits::md5sum<sensor_msgs::JointState>() + ")");
     }
     return is_whole;
   }

@@ -45,8 +45,8 @@ struct RecordedMessage
   const std::string& topic;
   Stamp recorded{};                               ///< time of recording [ns]
   std::string publisher;                          ///< name of the publishing node; empty: not recorded
-  const sensor_msgs::JointState* state{};         ///< null: of another type, or damaged
-  const sensor_msgs::Temperature* temperature{};  ///< null: of another type, or damaged
+  const sensor_msgs::JointState* state{};         ///< null if the message has another type or is damaged
+  const sensor_msgs::Temperature* temperature{};  ///< null if the message has another type or is damaged
 
   /// Stamp of the header, or the time of recording if that is zero [ns].
   Stamp stamp() const;

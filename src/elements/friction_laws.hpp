@@ -114,7 +114,8 @@ struct JointFriction
   FrictionTerms terms;
   double presliding{};  ///< dry friction at the motor shaft that builds up over an angle and is therefore no term [N.m]
   Eigen::Matrix2d viscous{ Eigen::Matrix2d::Zero() };  ///< torque per speed, positive semi-definite [N.m.s/rad]
-  Eigen::VectorXd running;  ///< 2 N, derivatives of the ring's points by motor angle if the output follows [m/rad]
+  /// 2 N, derivatives of the ring's points by the motor angle [m/rad], while the output turns at the velocity ratio
+  Eigen::VectorXd running;
   // Data of the full ring from which the strengths of the shaft's and the flanks' terms at other speeds follow.
   double contact_force{};      ///< sum of the wave generator's forces [N]
   double ring_torque{};        ///< torque of JointModel::ringTorque [N.m]
@@ -135,17 +136,24 @@ inline double mobilised(double share, double turn, double angle) noexcept
   return end + (share - end) * std::exp(-std::abs(turn) / angle);
 }
 
-/// Friction of the wave generator's ball bearing by Palmgren (thesis eq. 7.31-7.33; both parts oppose the speed).
+/// Friction of the wave generator's ball bearing by Palmgren (thesis eq. 7.31-7.33). Both parts oppose the speed.
 ///
 ///   T0 = f0 (nu n)^(2/3) d_m^3 1e-7   for nu n >= 2000,   f0 160 d_m^3 1e-7  below   [N.mm]
 ///   T1 = f1 (F + F_race) d_m                                                         [N.mm]
-/// where nu  effective viscosity of the speed-dependent friction [mm^2/s]: with r = nu_oil(T) / nu_oil(T_0) and
-///           the temperature-independent share c it is nu^(2/3) = nu(T_0)^(2/3) (c + (1 - c) r^(2/3));
-///           the oil's viscosity by Walther (ASTM D341), T in kelvin:
-///           lg lg(nu_oil + 0.7) = lg lg(nu_oil(T_0) + 0.7) - m lg(T / T_0)
-///       n   in rpm, d_m in mm
+/// where f0  bearing.lubricant_factor, f1 bearing.load_factor [-]
+///       d_m bearing.pitch_diameter, here in mm
+///       n   motor speed [rpm]
 ///       F   sum of the contact forces between wave generator and flexspline [N]
-///       F_race  ball forces of the outer race, which is bent to the ellipse [N]
+///       F_race  bearing.race_preload: ball forces of the outer race, which is bent to the ellipse [N]
+///       nu  effective viscosity of the speed-dependent friction [mm^2/s]
+///
+/// The viscosity nu depends on the temperature T [K] of the oil in the grease:
+///
+///   nu^(2/3) = nu(T_0)^(2/3) (c + (1 - c) r^(2/3)),   r = nu_oil(T) / nu_oil(T_0)
+/// where c is bearing.constant_share, the share that does not depend on the temperature. Walther's law (ASTM D341)
+/// gives the viscosity nu_oil of the oil, with m = bearing.viscosity_slope:
+///
+///   lg lg(nu_oil + 0.7) = lg lg(nu_oil(T_0) + 0.7) - m lg(T / T_0)
 class BearingFriction
 {
 public:
@@ -168,8 +176,8 @@ public:
     return torqueAtViscosity(speed, load, viscosity(temperature));
   }
 
-  /// Friction torque for a known viscosity [m^2/s], whose computation is expensive while the temperature hardly
-  /// changes.
+  /// Friction torque for a known viscosity [m^2/s]. The caller may keep the viscosity while the temperature hardly
+  /// changes, because computing it is expensive.
   double torqueAtViscosity(double speed, double load, double viscosity) const noexcept
   {
     constexpr double LOW_SPEED = 2000.0;  // mm^2/s rpm

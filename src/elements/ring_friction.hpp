@@ -103,7 +103,7 @@ public:
   void scale(double factor) noexcept { coefficient_ *= factor; }
 
   /// Magnitude of the torque at the motor shaft, >= 0 [N.m]. `found`: result of the contact at the same shape; `rates`:
-  /// derivatives of the points by motor angle if the output follows [m/rad].
+  /// derivatives of the points by the motor angle [m/rad], while the output turns at the velocity ratio.
   double torque(const RingShape& shape, const WaveGeneratorContact::Scratch& found,
                 const Eigen::VectorXd& rates) const noexcept;
 
@@ -116,7 +116,8 @@ private:
 ///
 ///   torque at the motor shaft = (pi / 2) eta sum_i |M_i dkappa_i/dtheta|
 /// where  M_i     bending moment at tooth i [N.m]
-///       kappa_i angle between the segments on either side of it [rad]; theta = motor angle, the output follows
+///       kappa_i angle between the segments on either side of the tooth [rad]
+///       theta   motor angle, while the output turns at the velocity ratio [rad]
 ///        eta     ring.loss_factor: a cycle of amplitude M_a loses pi eta M_a^2 / k, k = stiffness at the tooth
 ///
 /// Exact for a moment that alternates about zero, as that of the wave does. A constant part counts as alternating too.

@@ -189,13 +189,13 @@ private:
     row_known_ = true;
   }
 
-  const ArmDescription& arm_;  // of the unit, which outlives this object
+  const ArmDescription& arm_;  // arm of the unit, which outlives this object
   MovingArm moving_;
   ArmRecorder recorder_;
   std::vector<DrivePart> parts_;
   std::vector<JointMotion> set_point_;
   bool controlled_;
-  Stamp settling_{};  // from the importer's time to the arm's
+  Stamp settling_{};  // time of the arm minus the importer's time [ns]
   Payload payload_;
   bool row_known_{};
 };

@@ -21,18 +21,18 @@ void visitArm(Arm& arm, Fields& fields)
 {
   fields("gravity", "m/s^2", arm.gravity, ANY, "acceleration of gravity in the frame of the base");
   fields("payload_mass", "kg", arm.payload.mass, ANY, "mass of the payload at the tip");
-  fields("payload_centre", "m", arm.payload.centre, ANY, "centre of the payload's mass");
+  fields("payload_centre", "m", arm.payload.centre, ANY, "centre of the payload's mass in the frame of the tip");
   fields("state_rate", "Hz", arm.state_rate, ANY, "rate of the controller's states");
   for (std::size_t i = 0; i < arm.joints.size(); ++i)
   {
     const std::string place = "joints." + std::to_string(i) + '.';
     auto& joint = arm.joints[i];
     fields(place + "name", joint.short_name, "prefix of the joint's variables");
-    fields(place + "speed_limit", "rad/s", joint.speed_limit, ANY, "0: none");
-    fields(place + "feedback_limit", "N.m", joint.feedback_limit, ANY, "0: none");
+    fields(place + "speed_limit", "rad/s", joint.speed_limit, ANY, "largest speed; 0: no limit");
+    fields(place + "feedback_limit", "N.m", joint.feedback_limit, ANY, "largest feedback torque; 0: no limit");
     fields(place + "delay", "s", joint.delay, ANY, "delay of the joint's set points");
-    fields(place + "position", "1/s", joint.gains->position, ANY, "gain");
-    fields(place + "speed", "N.m.s/rad", joint.gains->speed, ANY, "gain");
+    fields(place + "position", "1/s", joint.gains->position, ANY, "wanted speed per error of the angle");
+    fields(place + "speed", "N.m.s/rad", joint.gains->speed, ANY, "torque per error of the speed");
     fields(place + "integral_time", "s", joint.gains->integral_time, ANY, "integral time of the speed control");
     fields(place + "coulomb", "N.m", joint.gains->coulomb, ANY, "constant friction in the feedforward");
     fields(place + "viscous", "N.m.s/rad", joint.gains->viscous, ANY, "friction by speed in the feedforward");
@@ -42,12 +42,14 @@ void visitArm(Arm& arm, Fields& fields)
     const std::string place = "links." + std::to_string(i) + '.';
     auto& link = arm.links[i];
     fields(place + "motion", "-", link.motion, "kind of the joint's motion");
-    fields(place + "axis", "-", link.axis, ANY, "axis of the joint");
-    fields(place + "origin", "m", link.origin, ANY, "origin of the joint");
-    fields(place + "position", "m", link.position, ANY, "position of the link's frame");
-    fields(place + "rotation", "-", link.rotation, ANY, "rotation of the link's frame");
+    fields(place + "axis", "-", link.axis, ANY, "axis of the joint in the frame of the link before");
+    fields(place + "origin", "m", link.origin, ANY, "point of the joint's axis in the frame of the link before");
+    fields(place + "position", "m", link.position, ANY,
+           "origin of the link's frame in the frame of the link before, at a joint angle of 0");
+    fields(place + "rotation", "-", link.rotation, ANY,
+           "rotation of the link's frame in the frame of the link before, row by row");
     fields(place + "mass", "kg", link.mass, ANY, "mass of the link");
-    fields(place + "centre", "m", link.centre, ANY, "centre of the link's mass");
+    fields(place + "centre", "m", link.centre, ANY, "centre of mass in the link's frame");
     fields(place + "inertia", "kg.m^2", link.inertia, ANY, "inertia of the link about its centre of mass");
   }
 }

@@ -29,7 +29,7 @@ struct UnitDescription
   std::string meaning;
   std::string library;  ///< name in the unit, without its extension
   std::string token;    ///< see instantiationToken
-  double rate{};        ///< rate of its own steps [Hz]
+  double rate{};        ///< rate of the unit's own steps [Hz]
   double step{};        ///< default step of an importer [s]
   std::vector<FmuVariable> variables;
 };

@@ -72,7 +72,7 @@ public:
   /// Steps from `at` by `length` [s]. @returns false if a step had no equilibrium and the last converged state was
   /// kept.
   bool step(double at, double length);
-  double time() const noexcept { return state_.time; }  ///< [s]
+  double time() const noexcept { return state_.time; }  ///< present time [s]
 
   /// Data that determine the result of `step`.
   struct State
@@ -86,7 +86,7 @@ public:
 
     Mode mode{};
     double start{};
-    double time{};  // [s]
+    double time{};  // present time [s]
     std::optional<double> stop;
     Values values;
     Journal journal;                   // journal of the simulation

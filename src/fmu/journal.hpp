@@ -64,11 +64,11 @@ private:
 };
 
 /// Everything that a simulation got since its start: inputs, steps, and reads with effect. A repetition gives equal
-/// bits and takes the time of the simulation.
+/// bits and takes as long as the simulation.
 class Journal
 {
 public:
-  static constexpr std::size_t MOST = 64u << 20;  ///< [bytes]
+  static constexpr std::size_t MOST = 64u << 20;  ///< largest size of a serialised journal [bytes]
 
   Journal() = default;
   explicit Journal(const std::vector<FmuVariable>& variables);
@@ -87,7 +87,7 @@ public:
                                      const Notice& notice);
 
 private:
-  static constexpr std::size_t CHUNK = 64u << 10;  // [bytes]
+  static constexpr std::size_t CHUNK = 64u << 10;  // size of a chunk [bytes]
 
   template <class Put>
   void forInputs(const Values& values, const Put& put);

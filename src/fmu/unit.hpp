@@ -69,6 +69,7 @@ protected:
   std::vector<FmuVariable> variables_;
 };
 
-/// The unit of this library. `resources`: its directory. @throws InputError, also for another token.
+/// Opens the FMU's unit, a drive or an arm, from the directory `resources` of the FMU. @throws InputError if a file is
+/// invalid, or if `token` is not that of this library and these resources.
 std::unique_ptr<Unit> openUnit(const std::string& resources, const std::string& token);
 }  // namespace hjt::fmu

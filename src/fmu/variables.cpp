@@ -211,7 +211,7 @@ std::vector<ScalarOutput> driveOutputs()
     { "wave_generator_torque", "N.m", "torque of the wave generator on the flexspline", F,
       [](T, O o) { return o.wave_generator_torque; } },
     { "joint_torque", "N.m", "torque of the mesh on the circular spline", F, [](T, O o) { return o.joint_torque; } },
-    { "friction_torque", "N.m", "all friction as a torque at the motor shaft, by power", F,
+    { "friction_torque", "N.m", "torque at the motor shaft that has the power of all friction, >= 0", F,
       [](T, O o) { return o.friction_torque; } },
     { "torsional_stiffness", "N.m/rad", "local stiffness with the wave generator locked", F,
       [](T, O o) { return o.torsional_stiffness; } },
@@ -234,7 +234,7 @@ std::vector<ScalarOutput> healthOutputs()
   using O = const JointOutputs&;
   using S = ScalarIndicator;
   constexpr Type F = Type::FLOAT64;
-  constexpr const char* LAST_WINDOW = "value of the last window that determines it; 0: none yet";
+  constexpr const char* LAST_WINDOW = "value of the last window that determines the indicator; 0: no such window yet";
   return {
     { "transmission_ratio", "-", "transmission ratio over the last motor turn; 0: none yet", F,
       [](T t, O) { return t.health().motion.transmission_ratio.value; } },
@@ -258,8 +258,9 @@ std::vector<ScalarOutput> healthOutputs()
       "state of the assessment: 0 waiting, 1 learning, 2 assessed, 3 no reference, 4 too few windows", Type::INT32,
       [](T t, O) { return static_cast<double>(t.assessment().state); }, true },
     { "assessment_cause", "-",
-      "most likely cause: 0 none, then the inputs fault_* from 1 on, last a circular spline tooth", Type::INT32,
-      [](T t, O) { return static_cast<double>(t.assessment().cause); }, true },
+      "most likely cause: 0: none; 1, 2, ...: the fault of the first, second, ... input fault_*; the last number: a "
+      "tooth of the circular spline",
+      Type::INT32, [](T t, O) { return static_cast<double>(t.assessment().cause); }, true },
     { "assessment_confidence", "-", "probability of assessment_cause", F,
       [](T t, O) { return t.assessment().confidence; }, true },
     { "assessment_severity", "-", "mean severity of the fault, if assessment_cause is the cause", F,

@@ -47,8 +47,8 @@ struct FmuVariable
   Value start{};  ///< start value of inputs and parameters
   std::optional<Range> range{};
   bool is_array{};
-  bool is_discrete{};  ///< of an input of type FLOAT64: it changes at discrete times
-  bool is_clamped{};   ///< of an input: a number out of range is clamped
+  bool is_discrete{};  ///< whether an input of type FLOAT64 changes at discrete times only
+  bool is_clamped{};   ///< whether a number out of range is clamped, for an input
 };
 
 constexpr std::size_t TIME = 0;  ///< value reference of the time in every unit
@@ -72,7 +72,7 @@ struct ScalarOutput
   const char* description;
   Type type;
   double (*of)(const Twin&, const JointOutputs&);
-  bool watches{};  ///< needs Twin::watchSignals, because it belongs to indicators or assessment
+  bool watches{};  ///< the variable needs Twin::watchSignals, because it belongs to indicators or assessment
 };
 const std::vector<ScalarOutput>& scalarOutputs();
 

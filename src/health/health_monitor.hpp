@@ -18,7 +18,7 @@ namespace hjt
 struct TorsionSample
 {
   double torsion;       ///< motor angle / ratio - output angle [rad]
-  double torque;        ///< through the gear, > 0 resists positive motion [N.m]
+  double torque;        ///< torque through the gear, > 0 resists positive motion [N.m]
   double motor_angle;   ///< [rad]
   double output_angle;  ///< [rad]
 };
@@ -37,7 +37,7 @@ public:
 
   void reset() noexcept { age_ = -1.0; }
 
-  /// `seconds`: since the values before.
+  /// `seconds`: time since the values before [s].
   void update(const Values& values, double seconds) noexcept
   {
     if (age_ < 0.0)
@@ -55,7 +55,7 @@ public:
   }
 
   const Values& values() const noexcept { return second_; }
-  const Values& rates() const noexcept { return rates_; }  ///< per second, since the update before
+  const Values& rates() const noexcept { return rates_; }  ///< change per second since the update before
 
   /// Whether the values from before the first update are forgotten.
   bool settled() const noexcept { return age_ > 12.0 * TIME; }
@@ -205,15 +205,16 @@ public:
 private:
   static constexpr int COLUMNS = 8;
   using Row = Eigen::Matrix<double, COLUMNS, 1>;
-  static constexpr int SLOPE = 1;     // column of the torque
-  static constexpr int BRANCH = 2;    // of its play
-  static constexpr int BEYOND = 3;    // of the torque beyond T1
-  static constexpr int SOFTNESS = 4;  // of the torque up to T0
+  static constexpr int SLOPE = 1;     // column of the torque T
+  static constexpr int BRANCH = 2;    // column of the play of T
+  static constexpr int BEYOND = 3;    // column of the torque beyond T1
+  static constexpr int SOFTNESS = 4;  // column of the torque up to T0
   static constexpr int COSINE = 6;
   static constexpr int SINE = 7;
-  static constexpr double MAX_ERROR = 0.1;       // of the slope, standard, as a share of it [-]
-  static constexpr double MAX_INFLATION = 10.0;  // of the branch's variance: both branches at like torques [-]
-  static constexpr double DIRECTION_PLAY = 0.1;  // of the motor, far above an encoder's noise [rad]
+  static constexpr double MAX_ERROR = 0.1;  // largest standard error of the slope, as a share of the slope [-]
+  static constexpr double MAX_INFLATION =
+      10.0;  // largest inflation of the branch's variance; larger if the branches lie at different torques [-]
+  static constexpr double DIRECTION_PLAY = 0.1;  // play of the motor angle, far above an encoder's noise [rad]
   // What the law leaves of the torsion of a sound drive, 15 urad rms, over an eccentricity, 0.44 mrad
   // (config/real_sensors.yaml), squared, is 1.2e-3: what tells e must be more [-].
   static constexpr double ECCENTRICITY_LEFT = 1.5e-3;
@@ -276,17 +277,17 @@ private:
   Play direction_play_;
   TwiceSmoothed<5> smoothed_;  // a TorsionSample and the speed of psi
   RunningRegression regression_;
-  double lowest_{};   // torque in the regression [N.m]
-  double highest_{};  // [N.m]
+  double lowest_{};   // lowest torque in the regression [N.m]
+  double highest_{};  // highest torque in the regression [N.m]
 
   bool started_{};
   bool rising_{};
-  double extreme_{};   // of the torque since it turned round last [N.m]
-  double torsion_{};   // of the last sample [rad]
-  double torque_{};    // of the last sample [N.m]
-  double work_{};      // integral since the last maximum was seen [J]
-  bool past_first_{};  // a maximum has been seen, so that the present loop is a whole one
-  double area_{};      // of the loops that closed [J]
+  double extreme_{};   // extreme of the torque since its last reversal [N.m]
+  double torsion_{};   // torsion of the last sample [rad]
+  double torque_{};    // torque of the last sample [N.m]
+  double work_{};      // integral of the torque over the torsion since the last maximum of the torque [J]
+  bool past_first_{};  // the torque has had a maximum, so the present loop is complete when the next one comes
+  double area_{};      // sum of the areas of the closed loops [J]
   int loops_{};
 };
 
@@ -331,9 +332,9 @@ private:
   // Places are motor angles in marks, mirrored so that they grow in the direction of travel.
   bool started_{};
   int direction_{ 1 };
-  double place_{};              // of the last sample
-  double torsion_{};            // of the last sample
-  std::int64_t newest_mark_{};  // last mark reached
+  double place_{};              // place of the last sample
+  double torsion_{};            // torsion of the last sample [rad]
+  std::int64_t newest_mark_{};  // number of the last mark that the motor reached
   Eigen::VectorXd torsions_;    // ring of one turn and one mark, both ends included
   Eigen::Index newest_{};
   Eigen::Index count_{};
@@ -418,7 +419,7 @@ public:
 
 private:
   static constexpr double MIN_POWER = 0.1;     // [W]
-  static constexpr double STEADY_SHARE = 0.9;  // of the mean magnitude [-]
+  static constexpr double STEADY_SHARE = 0.9;  // least share of the mean magnitude [-]
   static constexpr double MAX_EFFICIENCY = 1.01;
 
   /// Mean of a power and of its magnitude.
@@ -485,7 +486,7 @@ private:
   };
 
   std::int64_t window_;
-  std::int64_t age_{};  // of the running window [ns]
+  std::int64_t age_{};  // age of the present window [ns]
   bool started_{};
   Extremes running_;
   Extremes before_;
@@ -567,7 +568,7 @@ struct HealthSample
   double output_angle{};     ///< [rad]
   double output_velocity{};  ///< [rad/s]
   double motor_torque{};     ///< applied [N.m]
-  double joint_torque{};     ///< of the mesh on the circular spline [N.m]
+  double joint_torque{};     ///< torque of the mesh on the circular spline [N.m]
 };
 
 /// Computes MotionIndicators of the joint step by step, in fixed memory. Only the constructor allocates.

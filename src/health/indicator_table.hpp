@@ -9,7 +9,7 @@
 
 namespace hjt
 {
-/// Whether a table has a row for each value of the enumeration, in its order. For static_assert.
+/// Whether a table has a row for each value of the enumeration, in the order of the enumeration. For static_assert.
 template <class Rows, class Row, class Key>
 constexpr bool isInOrder(const Rows& rows, Key Row::*key)
 {
@@ -23,10 +23,10 @@ constexpr bool isInOrder(const Rows& rows, Key Row::*key)
   return true;
 }
 
-/// Unit of the smallest spread that the spread of a healthy indicator is assumed to have.
+/// Unit of ScalarRow::floor, the least spread that the assessment assumes for a sound drive's indicator.
 enum class FloorUnit
 {
-  INDICATOR,       ///< the indicator's own
+  INDICATOR,       ///< unit of the indicator itself
   ENCODER_COUNT,   ///< one count of both encoders, as an angle of the joint [rad]
   COUNT_IN_A_TURN  ///< one count as a share of what the joint travels in a motor turn [-]
 };
@@ -37,7 +37,7 @@ struct ScalarRow
   const char* name;
   const char* unit;
   Feature feature;  ///< group in which the indicator counts
-  double floor{};   ///< smaller spreads are not believed
+  double floor{};   ///< least spread that the assessment assumes for a sound drive, in `floor_unit`
   FloorUnit floor_unit{};
 };
 
@@ -60,7 +60,7 @@ inline constexpr std::array<ScalarRow, SCALAR_COUNT> SCALARS{ {
     { ScalarIndicator::VISCOUS_FRICTION, "viscous_friction", "N.m.s/rad", Feature::VISCOUS },
     { ScalarIndicator::EFFICIENCY, "efficiency", "-", Feature::EFFICIENCY },
     { ScalarIndicator::RESIDUAL_RMS, "residual_rms", "rad", Feature::RESIDUAL, COUNT_SHARE, FloorUnit::ENCODER_COUNT },
-    // Moments of the residual are not normal quantities, so that smaller spreads are not believed.
+    // The moments of the residual are not normally distributed. The assessment therefore assumes at least this spread.
     { ScalarIndicator::RESIDUAL_KURTOSIS, "residual_kurtosis", "-", Feature::IMPULSES, 0.3, FloorUnit::INDICATOR },
     { ScalarIndicator::RESIDUAL_CREST, "residual_crest", "-", Feature::IMPULSES, 0.5, FloorUnit::INDICATOR },
     { ScalarIndicator::LOAD_FRICTION, "load_friction", "-", Feature::EFFICIENCY },

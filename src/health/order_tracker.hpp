@@ -56,7 +56,7 @@ private:
     double multiple{};
     std::size_t first{};
     std::size_t second{};
-    double sign{};  // of the second multiple; 0: this multiple is that of no other two
+    double sign{};  // sign of the second multiple; 0: this multiple is neither sum nor difference of two others
   };
 
   static Rule rule(const std::array<double, COUNT>& multiples, std::size_t k)
@@ -88,11 +88,11 @@ struct LineSample
   double motor_angle{};      ///< [rad]
   double output_angle{};     ///< [rad]
   double direction{};        ///< +1 or -1
-  double speed{};            ///< mean over about a turn, signed [rad/s]
-  double load{};             ///< at the joint, 0: not known [N.m]
+  double speed{};            ///< mean speed over about a turn of the motor, signed [rad/s]
+  double load{};             ///< load at the joint; 0 if unknown [N.m]
   double kinematic_error{};  ///< motor angle / ratio - output angle [rad]
   double motor_torque{};     ///< [N.m]
-  double ripple{};           ///< of the motor angle, see RippleFilter [rad]
+  double ripple{};           ///< ripple of the motor angle, see RippleFilter [rad]
   double weight{ 1.0 };      ///< inverse of the noise's variance, 1 where the motion is calm [-]
 };
 
@@ -137,7 +137,7 @@ public:
   {
   }
 
-  /// forgets the window, not the last fit
+  /// Forgets the window, but not the last fit.
   void reset() noexcept { regression_.reset(); }
 
   void add(const LineSample& sample) noexcept
@@ -215,9 +215,9 @@ public:
   }
 
 private:
-  static constexpr double MAX_INFLATION = 4.0;  // of a line's variance by its neighbours [-]
-  static constexpr double USED_BAND = 0.8;      // of half the samples a turn [-]
-  static constexpr double LEAST_LOAD = 0.05;    // spread of the load, of the rated torque [-]
+  static constexpr double MAX_INFLATION = 4.0;  // largest factor by which other lines may inflate a line's variance [-]
+  static constexpr double USED_BAND = 0.8;      // highest order of a line, as a share of half the samples in a turn [-]
+  static constexpr double LEAST_LOAD = 0.05;    // least spread of the load, as a share of the rated torque [-]
   static constexpr double ONE_WAY = 0.9;        // least mean direction of a motion in one direction [-]
 
   // Columns: nuisances, lines in proportion to the load, the others by their orders.
@@ -303,17 +303,17 @@ private:
     mean_lagging_load_ = lagging;
   }
 
-  const double rated_torque_;                // [N.m]
-  double mean_load_{};                       // of the window before, over the rated torque [-]
-  double mean_lagging_load_{};               // of the load times the direction, likewise [-]
-  std::array<bool, LOADED_COUNT> loaded_{};  // that were fitted
+  const double rated_torque_;   // [N.m]
+  double mean_load_{};          // mean load of the window before, over the rated torque [-]
+  double mean_lagging_load_{};  // mean of load times direction in the window before, over the rated torque [-]
+  std::array<bool, LOADED_COUNT> loaded_{};  // lines in proportion to the load that the last fit has
   PlainOrders orders_;  // the highest stand last, so that what the samples cannot show is the tail of the columns
   Places places_;       // of the lines among them
   AngleMultiples<FIRST_LOADED> rotations_;
   Row row_;
   Eigen::Vector3d targets_;
   RunningRegression regression_;
-  int used_{};  // columns of the last fit
+  int used_{};  // number of columns of the last fit
 };
 
 /// Slip of the wave generator's bearing over one window, by the lines of races and balls in the motor's ripple.

@@ -382,7 +382,8 @@ void fitSlopes(ReferenceBin& bin, const LearnedSums& learned, const std::vector<
                      slopes.dot(mapped(bin.mean_place) - mapped(learned.windows.mean_places[indicator]));
   }
   mapped(reference.slopes) = slopes;
-  // Where windows are independent, chance may make it larger than the variance, so that a mean of many is not biased.
+  // The mean of `within` over independent windows is the variance, and chance makes `within` smaller or larger. The
+  // upper bound is therefore twice the variance: a bound at the variance would bias the mean over many indicators.
   reference.within = steps.count >= MIN_STEPS && reference.variance > 0.0 ?
                          std::clamp(0.5 * squareLeft(steps, slopes) / steps.count, LEAST_LEFT * reference.variance,
                                     2.0 * reference.variance) :

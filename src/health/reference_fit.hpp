@@ -39,7 +39,7 @@ struct Persistence
 struct CommonPersistence
 {
   double mean{};
-  double variance{};  // without the error of each
+  double variance{};  // variance without the statistical error of each indicator
   int count{};
 };
 
@@ -48,7 +48,7 @@ CommonPersistence commonPersistence(const ReferenceBin& bin, std::size_t kind) n
 Persistence persistenceOf(const ReferenceBin& bin, const Reference& reference,
                           const CommonPersistence& common) noexcept;
 
-/// Additional variance of a reference that is carried to another motion, for a mean of so many windows.
+/// Additional variance of a mean of windows, if its reference was learned in another motion.
 double carriedVariance(const ReferenceBin& bin, const CarriedError& error, std::size_t indicator,
                        double windows) noexcept;
 

@@ -33,7 +33,7 @@ public:
   /// Fits with the first `used` columns. False: too few rows, or not solvable; the coefficients are then as before.
   bool fit(int used) noexcept;
 
-  double rows() const noexcept { return rows_; }  ///< number of rows, less what was forgotten [-]
+  double rows() const noexcept { return rows_; }  ///< number of rows, minus the weight of forgotten rows [-]
 
   // Results of the last fit.
   double coefficient(int column, int target) const noexcept { return coefficients_(column, target); }
@@ -43,19 +43,19 @@ public:
   double inflation(int column) const noexcept { return inverse_diagonal_[column]; }
 
 private:
-  double& moment(int column, int other) noexcept;  // of the two columns, from the lower triangle
+  double& moment(int column, int other) noexcept;  // moment of the two columns, from the lower triangle
 
   double rows_{};
   double weight_{};
   Eigen::MatrixXd normal_;   // sum x x', of which the lower triangle counts
   Eigen::MatrixXd moments_;  // sum x y'
   Eigen::VectorXd squares_;  // sum y^2
-  Eigen::VectorXd scale_;    // of the columns at the last fit
+  Eigen::VectorXd scale_;    // scales of the columns at the last fit
   Eigen::MatrixXd factor_;
   Eigen::MatrixXd inverse_;  // of the factor
   Eigen::VectorXd inverse_diagonal_;
   Eigen::MatrixXd coefficients_;
-  Eigen::VectorXd spread_;  // standard deviation of what is left, by target
+  Eigen::VectorXd spread_;  // standard deviation of each target's residuals
   double fitted_rows_{ 1.0 };
 };
 }  // namespace hjt

@@ -34,10 +34,12 @@ struct SignalSample
   double motor_angle{ NOT_MEASURED };     ///< encoder, without jumps at full turns [rad]
   double output_angle{ NOT_MEASURED };    ///< encoder, without jumps at full turns [rad]
   double motor_velocity{ NOT_MEASURED };  ///< [rad/s]
-  double motor_torque{ NOT_MEASURED };    ///< at the shaft: commanded, or current times torque constant [N.m]
-  double load_torque{ NOT_MEASURED };     ///< estimate at the output, > 0 resists positive motion [N.m]
-  double temperature{ NOT_MEASURED };     ///< [degC]
-  double target_angle{ NOT_MEASURED };    ///< set point of the output angle [rad]
+  double motor_torque{
+    NOT_MEASURED
+  };  ///< torque at the shaft: the commanded torque, or current times torque constant [N.m]
+  double load_torque{ NOT_MEASURED };   ///< estimate at the output, > 0 resists positive motion [N.m]
+  double temperature{ NOT_MEASURED };   ///< [degC]
+  double target_angle{ NOT_MEASURED };  ///< set point of the output angle [rad]
 };
 
 /// Ripple of an angle: the part of it that passes three high-pass filters in a row.
@@ -51,7 +53,7 @@ class RippleFilter
 public:
   explicit RippleFilter(double speed = 0.0) : smooth_speed_(speed) {}
 
-  /// `speed`: of the angle [rad/s]; `seconds`: since the last update.
+  /// `speed`: speed of the angle [rad/s]; `seconds`: time since the last update [s].
   void update(double speed, double seconds) noexcept
   {
     const double kept = std::exp(-seconds / TIME);

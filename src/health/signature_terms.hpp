@@ -63,12 +63,12 @@ private:
   using Causes = Eigen::Matrix<double, COMMON_CAUSES, 1>;
   using CausesSquare = Eigen::Matrix<double, COMMON_CAUSES, COMMON_CAUSES>;
 
-  /// One compared number of a window.
+  /// Difference of one indicator of a window from its reference.
   struct Term
   {
     double difference;
-    double own;
-    Causes common;
+    double own;          // variance apart from the common causes
+    Causes common;       // loadings on the common causes
     std::size_t number;  // of the signature
     std::size_t indicator;
     bool has_phase;      // one of two parts of a line

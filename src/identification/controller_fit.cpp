@@ -15,16 +15,16 @@ namespace
 constexpr int COLUMNS = 6;
 constexpr int PIECES = 10;             // number of pieces, each of which is left out in turn for the intervals
 constexpr double QUANTILE = 2.26;      // 97.5 % quantile of Student's distribution for this number of pieces
-constexpr double LONGEST_LAG = 0.016;  // [s]
-constexpr double LAG_STEP = 0.001;     // [s]
+constexpr double LONGEST_LAG = 0.016;  // longest lag that the fit tries [s]
+constexpr double LAG_STEP = 0.001;     // step from one lag to the next [s]
 constexpr double SLOWEST = 1.0;        // [s]
 constexpr double AT_REST = 0.01;       // width of the smooth change of the speed's sign [rad/s]
-constexpr double LEAST_MOTION = 5.0;   // [s]
+constexpr double LEAST_MOTION = 5.0;   // least time of motion [s]
 constexpr double LEAST_EXPLAINED = 1.0 / 3.0;
 constexpr double WIDEST_RATIO = 0.5;  // largest half width of the ratio of both gains, relative to the ratio
 // change of the set point's speed in a row that counts as a jump, beyond the changes beside it [rad/s]
 constexpr double JUMP = 0.1;
-constexpr double AT_LIMIT = 0.95;   // share of the limit
+constexpr double AT_LIMIT = 0.95;   // share of the limit from which on a current counts as limited [-]
 constexpr double TRANSIENT = 0.25;  // time that is excluded on either side of a jump or limit [s]
 
 using Column = Eigen::VectorXd;

@@ -31,7 +31,7 @@ struct ControllerFit
   /// share that the errors explain in the variance of the current minus the rigid-body torque's, for periods below 1 s
   double explained{};
   JointGains gains;
-  std::string refusal;  ///< reason why the gains were not identified; empty: they were
+  std::string refusal;  ///< reason why the gains were not identified; empty if they were identified
 };
 
 /// Least squares fit of

@@ -22,7 +22,7 @@ constexpr std::array<const char*, TorqueRipple::LINES> RIPPLE_KEYS{ "telemetry.r
                                                                     "telemetry.ripple_flexspline_2",
                                                                     "telemetry.ripple_circular_spline_4",
                                                                     "telemetry.ripple_flexspline_4" };
-constexpr std::size_t MAX_RIPPLE_ROWS = 5000;  // of one fit; a longer recording is thinned out
+constexpr std::size_t MAX_RIPPLE_ROWS = 5000;  // largest number of rows of a fit; longer recordings are thinned out
 
 bool isMoving(const MotionSample& sample)
 {
@@ -94,7 +94,7 @@ std::array<CurrentError, 2> errorsOf(const Parameters& parameters, const JudgedP
 /// The usual model, fitted to all rows: current by load, sign of the speed and speed.
 CurrentError simpleModelError(const std::vector<MotionSample>& train, const JudgedPart& judge)
 {
-  constexpr double STANDSTILL = 0.005;  // [rad/s]
+  constexpr double STANDSTILL = 0.005;  // speed below which a joint counts as standing [rad/s]
   const auto columns = [](const MotionSample& sample)
   {
     const double sign = std::abs(sample.velocity) < STANDSTILL ? 0.0 : std::copysign(1.0, sample.velocity);

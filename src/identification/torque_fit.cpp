@@ -407,7 +407,8 @@ Eigen::MatrixXd RippleFit::slopes(const Values& values) const
   return slopes;
 }
 
-/// Chooses the start: the best of a coarse grid, with the lines fitted linearly at each grid point.
+/// Chooses start values of resonance, damping and lag: the best point of a coarse grid. At each point the lines are
+/// fitted linearly.
 void RippleFit::chooseResonance(const std::function<void()>& look)
 {
   double most = -1.0;

@@ -69,7 +69,8 @@ public:
   using Values = Eigen::Matrix<double, QUANTITIES, 1>;
 
   static constexpr double MOVING = 0.01;  ///< joint speed from which a row counts as moving [rad/s]
-  static constexpr double BLOCK = 0.1;    ///< duration of a block [s]
+  /// longest time over which successive rows are averaged to one row of the fit [s]
+  static constexpr double BLOCK = 0.1;
 
   /// `look` as in identify. @throws InputError if the samples hardly move.
   FrictionFit(const Parameters& parameters, const FrictionMap& friction, const std::vector<MotionSample>& samples,

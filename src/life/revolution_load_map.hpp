@@ -41,7 +41,8 @@ public:
     double sliding{};  ///< sum of normal force times slip over the rim, for unit friction coefficient [N.m/rad]
   };
 
-  /// `running`: 2 N, derivatives of the ring's points by the motor angle if the output follows [m/rad].
+  /// `running`: 2 N, derivatives of the ring's points by the motor angle [m/rad], while the output turns at the
+  /// velocity ratio.
   Rates at(const RingEquilibrium& ring, const Eigen::VectorXd& running);
 
 private:

@@ -46,7 +46,7 @@ void fillVerdict(Stamp stamp, const Verdict& verdict, harmonic_joint_twin::Verdi
 class MeasuredDrive
 {
 public:
-  /// @throws ParameterError as MeasuredGear.
+  /// @throws ParameterError if the wave generator cannot be inserted.
   explicit MeasuredDrive(const Parameters& parameters);
 
   /// Moves to the row of a comparison, which the next `fill` publishes. @returns false, and counts, without an
@@ -124,7 +124,7 @@ template <template <class> class Sink>
 class TrackerOutputs
 {
 public:
-  /// @throws ParameterError as MeasuredGear.
+  /// @throws ParameterError if the wave generator cannot be inserted.
   template <class Context>
   TrackerOutputs(Context&& context, const Parameters& parameters)
     : drive_(parameters)

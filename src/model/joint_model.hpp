@@ -69,8 +69,8 @@ struct JointModel
     double viscosity;        ///< effective viscosity of the bearing's grease [m^2/s]
   };
 
-  /// Friction of outer race and flexing rim at the motor shaft [N.m]. `running`: derivatives of the ring's points by
-  /// motor angle if the output follows [m/rad].
+  /// Friction of outer race and flexing rim at the motor shaft [N.m]. `running`: derivatives of the ring's points
+  /// by the motor angle [m/rad], while the output turns at the velocity ratio.
   double ringTorque(const RingShape& shape, const RingForces& forces, const Eigen::VectorXd& running) const noexcept
   {
     return interface_friction.torque(shape, forces.of<WaveGeneratorContact>(), running) +

@@ -125,7 +125,8 @@ void visitContact(P& p, Visitor& visit)
   visit("contact.damping", "N.s/m", p.contact.damping, Range{ 0.0, 1e6 },
         "damping between wave generator and flexspline for each tooth");
   visit("contact.law", p.contact.law,
-        "direction of the force; normal: along the true normal of the ellipse; polar: through the thesis' polar point");
+        "direction of the contact force; normal: along the true normal of the ellipse; polar: along the normal at the "
+        "polar angle of the tooth (an approximation of the thesis)");
   visit("contact.smoothing", "m", p.contact.smoothing, Range{ 0.0, 1e-4 },
         "width of the contact's smooth (C1) onset, with contact.support = springs; 0 = exact law");
   visit("contact.friction_coefficient", "-", p.contact.friction_coefficient, Range{ 0.0, 2.0 },

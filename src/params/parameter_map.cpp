@@ -198,7 +198,8 @@ void checkFaults(const Parameters& p, Contradictions& check)
 
 void checkRates(const Parameters& p, Contradictions& check)
 {
-  // The clock of the messages counts nanoseconds. Steps of another length would drift.
+  // A step must be a whole number of nanoseconds, the unit of the messages' clock. Otherwise the times of the steps
+  // would drift from that clock.
   const double step = std::round(NANOSECONDS_PER_SECOND / p.solver.rate);
   check.require(step * p.solver.rate == NANOSECONDS_PER_SECOND, { "solver.rate" },
                 [&]

@@ -195,8 +195,8 @@ void bindAssessment(py::module& module)
       .def_readonly("windows", &Assessment::windows, "number of completed windows [-]")
       .def_property_readonly(
           "state", [](const Assessment& self) { return assessmentStateName(self.state); },
-          "'WAITING', 'LEARNING', 'ASSESSED', 'NO_REFERENCE', 'TOO_FEW_WINDOWS' or 'OTHER_PAYLOAD': level 'OK' is a "
-          "verdict in 'ASSESSED' only")
+          "state of the assessment: 'WAITING', 'LEARNING', 'ASSESSED', 'NO_REFERENCE', 'TOO_FEW_WINDOWS' or "
+          "'OTHER_PAYLOAD'. The level 'OK' means that the drive is sound only in the state 'ASSESSED'")
       .def_readonly(
           "windows_here", &Assessment::windows_here,
           "number of windows at the last operating point: in its reference while learning, then compared with it [-]")

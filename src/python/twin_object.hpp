@@ -339,7 +339,7 @@ public:
   {
   }
 
-  /// @throws std::runtime_error while another thread uses it.
+  /// The twin. @throws std::runtime_error while another thread uses the twin.
   Twin& twin()
   {
     in_use_.refuse();

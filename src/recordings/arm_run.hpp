@@ -60,7 +60,7 @@ struct ArmRunJoint
 {
   std::string name;       ///< short name
   RunErrors angle_error;  ///< actual less target [rad]
-  Rms current;            ///< [A]
+  Rms current;            ///< current of the motor [A]
 };
 
 /// A protective stop.

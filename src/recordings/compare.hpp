@@ -56,14 +56,14 @@ struct ComparedJoint
   std::uint64_t rows{};
   double current_rms{};   ///< measured current [A]
   double residual_rms{};  ///< measured current less predicted current [A]
-  Json document;          ///< the data of its page
+  Json document;          ///< data of the joint's page
 };
 
 struct ComparedRecording
 {
   bool is_arm{};
   std::string level;
-  std::string text;  ///< a sentence or two
+  std::string text;  ///< one or two sentences
   bool is_judged{};
   std::size_t not_judged{};  ///< number of joints that are not judged
   HealthLevel health{};      ///< worst level of the joints

@@ -34,9 +34,9 @@ struct FollowedJoint
   StreamTimingReport timing;
   std::optional<double> lag;         ///< delay of the measurement behind its prediction [s]
   double current_rms{};              ///< measured current [A]
-  double current_residual_rms{};     ///< [A]
-  double velocity_residual_rms{};    ///< [rad/s]
-  double position_residual_rms{};    ///< [rad]
+  double current_residual_rms{};     ///< residual of the current [A]
+  double velocity_residual_rms{};    ///< residual of the speed [rad/s]
+  double position_residual_rms{};    ///< residual of the angle [rad]
   std::optional<double> load_error;  ///< computed load less recorded load; none if one is not known [N.m]
 };
 

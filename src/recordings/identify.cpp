@@ -73,7 +73,7 @@ void writeOverlay(const IdentifyOptions& options, const std::string& joint, cons
   writeTextFile(path, text);
 }
 
-/// Whether the interval of a value does not contain zero.
+/// Whether the interval of at least one identified value or ripple line excludes zero.
 bool saysSomething(const Identification& found)
 {
   return std::any_of(found.values.begin(), found.values.end(),

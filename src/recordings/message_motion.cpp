@@ -37,7 +37,7 @@ public:
     }
   }
 
-  /// Takes rows of a part. Returns false if the visitor has had enough.
+  /// Adds rows of one part of the arm. Returns false if the visitor wants no more rows.
   bool add(std::size_t part, const std::vector<MotionRow>& rows)
   {
     waiting_[part].push_back(rows);

@@ -92,7 +92,7 @@ public:
   {
     constexpr std::uint64_t FEWEST = 10;
     constexpr std::uint64_t MOST = 5;    // rows for one that goes back
-    constexpr std::uint64_t COPIES = 9;  // most copies of one row
+    constexpr std::uint64_t COPIES = 9;  // largest number of copies of one row
     if (rows_ < FEWEST)
     {
       return {};
@@ -218,7 +218,7 @@ private:
   std::uint64_t jumps_{};
   std::vector<double> least_;  // of the joints
   std::vector<double> most_;
-  double counted_step_{ LEAST_STEP };  // step when counting began [rad]
+  double counted_step_{ LEAST_STEP };  // step with which the counting began [rad]
   std::uint64_t seen_{};
   std::uint64_t moves_{};
   std::uint64_t returns_{};
@@ -230,11 +230,11 @@ private:
 MotionCount readMessageMotion(const MotionSource& source, const std::vector<std::string>& names,
                               const VisitMotionRows& visit, const std::function<void(double)>& progress);
 
-/// Reads a table with a controller's columns, of the source's joint or of as many joints.
+/// Reads a table with a controller's columns. If `joints` is 1, reads MotionSource::csv_joint, else all six joints.
 MotionCount readTableMotion(const MotionSource& source, std::size_t joints, const VisitMotionRows& visit,
                             const std::function<void(double)>& progress);
 
-/// Reads rows in memory, MotionSource::rows, of as many joints. The times are scaled.
+/// Reads the rows in memory, MotionSource::rows, of `joints` joints. The times are scaled.
 MotionCount readArrayMotion(const MotionSource& source, std::size_t joints, const VisitMotionRows& visit,
                             const std::function<void(double)>& progress);
 

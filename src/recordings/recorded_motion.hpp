@@ -19,15 +19,15 @@ namespace hjt
 /// Number of a joint that is not in a controller's table.
 constexpr int NO_COLUMNS = -1;
 
-/// Which joint of which recording.
+/// A recording, and the joint in the recording.
 struct MotionSource
 {
   std::string path;                      ///< bag, .db3, .mcap, their directory, or CSV
   RecordingFormat format{};              ///< format of the recording
   std::string joint;                     ///< name of the joint in the messages
   int csv_joint{};                       ///< number of the joint in the columns of a CSV file
-  std::string topic{ "/joint_states" };  ///< sensor_msgs/JointState
-  std::string load_topic;                ///< sensor_msgs/JointState, effort the load [N.m]
+  std::string topic{ "/joint_states" };  ///< topic of the joint states, sensor_msgs/JointState
+  std::string load_topic;                ///< topic of the load, sensor_msgs/JointState with the load as effort [N.m]
   /// Current per torque of the motor, if the effort of NAME_motor in the messages is a torque, else 0 [A/(N.m)].
   double current_per_motor_torque{};
   double current_per_effort{ 1.0 };  ///< motor current per effort of the joint [A], [A/(N.m)]
@@ -37,7 +37,7 @@ struct MotionSource
   /// Recording in memory in place of a file: a row of each joint at each time, currents in A.
   std::shared_ptr<const std::vector<std::vector<MotionRow>>> rows;
 
-  static constexpr double FASTEST = 20.0;  ///< faster than any joint [rad/s]
+  static constexpr double FASTEST = 20.0;  ///< speed that no joint exceeds [rad/s]
 };
 
 /// Counts of a reading.
@@ -83,14 +83,14 @@ inline bool isCsv(const MotionSource& source)
 /// be read.
 bool recordsLoad(const MotionSource& source);
 
-/// Gets a row of each joint, all of one time. Returns false if it has had enough.
+/// Gets a row of each joint, all of one time. Returns false if the visitor wants no more rows.
 using VisitMotionRows = std::function<bool(const std::vector<MotionRow>& rows)>;
 
 /// Reads a recording row by row, in memory that does not grow with it beyond the bag's own index. `visit` gets a row
 /// for each of `names`, all of one time: of the source's joint alone, or of all joints of an arm, for which the source
 /// names recording and topics.
 ///
-/// All kinds go through RowFilter, which leaves out what was not measured or cannot be true.
+/// RowFilter checks the rows of all kinds of recordings and leaves out rows that were not measured or cannot be true.
 /// Times start at the first row; a loop's rounds follow each other (RowTime). Angles folded into one turn are made
 /// continuous (UnfoldedAngle).
 /// Messages: header stamps count, or the time of recording where they are zero in all messages. A load counts for rows

@@ -154,14 +154,16 @@ Names columnsOf(const std::string& place, const std::vector<std::string>& there,
   {
     if (!holds(there, names[column]))
     {
-      throw InputError(place + ": column '" + names[column] + "' is missing; name one with " + CHOICES[column].option +
-                       "; it holds " + joined(there, ", "));
+      throw InputError(place + ": column '" + names[column] + "' is missing. Name another column with " +
+                       CHOICES[column].option + ". The file has the columns " + joined(there, ", "));
     }
   }
   if (!holds(there, names[MOTOR_ANGLE]) && !holds(there, names[OUTPUT_ANGLE]))
   {
-    throw InputError(place + ": neither column '" + names[MOTOR_ANGLE] + "' nor '" + names[OUTPUT_ANGLE] +
-                     "' is there; name one with --motor-angle or --output-angle; it holds " + joined(there, ", "));
+    throw InputError(place + ": the file has neither column '" + names[MOTOR_ANGLE] + "' nor column '" +
+                     names[OUTPUT_ANGLE] +
+                     "'. Name a column of an angle with --motor-angle or --output-angle. The file has the columns " +
+                     joined(there, ", "));
   }
   return names;
 }

@@ -256,8 +256,9 @@ std::vector<CheckedArm> findArms(const RecordingOptions& options, const CheckedC
   }
   if (arms.empty() && options.rows)
   {
-    throw InputError(options.recording + " has " + std::to_string(options.rows->front().size()) +
-                     " joints, which no arm in config/arms has; give your own (docs/arm.md)");
+    throw InputError(
+        options.recording + " has " + std::to_string(options.rows->front().size()) +
+        " joints, but no arm in config/arms has this number of joints. Give the file of your own arm (docs/arm.md)");
   }
   if (arms.empty())
   {

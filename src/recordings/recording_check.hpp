@@ -27,7 +27,7 @@ struct CheckedContents
 struct CheckedJoint
 {
   std::string name;   ///< short name, for a joint of an arm
-  std::string joint;  ///< name in the messages
+  std::string joint;  ///< name of the joint in the messages
   JointReach reach;
   bool has_velocity{};
   double gain{};         ///< torque per current that counts [N.m/A]
@@ -35,8 +35,8 @@ struct CheckedJoint
   FittedFactor time_factor;
   FittedFactor lag;
   std::vector<RecordingFinding> findings;
-  Misfit misfit;    ///< misfit of its rows
-  Verdict verdict;  ///< verdict as that of `joint_twin compare`
+  Misfit misfit;    ///< misfit of the joint's rows
+  Verdict verdict;  ///< verdict on this joint, by the rules of `joint_twin compare`
 };
 
 /// A change of how the recording is read, and its effect on this recording.
@@ -44,7 +44,7 @@ struct TriedRemedy
 {
   std::string options;  ///< options to add to a command
   double before{};      ///< share of the currents that the load leaves without the change, rms [-]
-  double after{};       ///< share with the change [-]
+  double after{};       ///< share of the currents that the load leaves with the change, rms [-]
   bool helps{};
 };
 
@@ -78,7 +78,7 @@ struct RecordingCheck
 {
   RecordingOptions options;
   CheckedContents contents;
-  std::vector<CheckedArm> arms;  ///< at least one
+  std::vector<CheckedArm> arms;  ///< arms in the recording; at least one
 
   bool isUsable() const;
 };

@@ -36,7 +36,7 @@ struct RecordingOptions : ConfigurationOptions
   /// Recording in memory: a row of each joint at each time, currents in A, times from 0 on. Null if it is a file.
   std::shared_ptr<const std::vector<std::vector<MotionRow>>> rows;
   bool rows_have_load{};
-  /// Statements of the recording besides its rows; null if they have not been read.
+  /// What the recording states besides its rows: whether it has a load, gains and payload. Null if not read.
   std::shared_ptr<const RecordedStatements> stated;
   Watch watch;
 };

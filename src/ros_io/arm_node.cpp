@@ -199,8 +199,8 @@ constexpr double ARM_WARNING_PERIOD = 1.0;
 /// Time between two checks for a protective stop [s].
 constexpr double STATE_PERIOD = 0.05;
 
-/// The node waits for the surfaces of the start, because as many full rings would be too slow. The surfaces of later
-/// faults are built while the arm runs.
+/// The node waits for the response surfaces of the start, because a full ring in every drive would be too slow. The
+/// surfaces of later faults are built while the arm runs.
 SurfaceSource armSurfaces(const std::vector<Parameters>& drives)
 {
   SurfaceSource source = nodeSurfaceSource(false);
@@ -490,7 +490,7 @@ void ArmNode::give(std::vector<ArmSetPoint> points, ArmGoal& goal)
 
 void ArmNode::receiveWrench(const geometry_msgs::WrenchStamped& message)
 {
-  constexpr double MOST = 1000.0;  // [N], [N.m]
+  constexpr double MOST = 1000.0;  // largest force [N] and moment [N.m]
   const ArmWrench wrench{ valuesOf(message.wrench.force), valuesOf(message.wrench.torque) };
   std::string errors;
   for (std::size_t axis = 0; axis < wrench.force.size(); ++axis)

@@ -41,8 +41,8 @@ namespace hjt
 /// Largest deviation of a joint from its set point that a goal permits.
 struct JointTolerance
 {
-  double position{ HUGE_VAL };  ///< [rad]
-  double velocity{ HUGE_VAL };  ///< [rad/s]
+  double position{ HUGE_VAL };  ///< largest deviation of the angle [rad]
+  double velocity{ HUGE_VAL };  ///< largest deviation of the speed [rad/s]
 };
 
 /// Tolerances of a commanded motion.
@@ -149,7 +149,7 @@ private:
       const JointMotion& actual = report_.actual[i];
       const double angle = std::abs(wanted.position - actual.position);
       const double speed = std::abs(wanted.velocity - actual.velocity);
-      // Written so that NaN is beyond.
+      // This form of the comparison counts NaN as beyond the tolerance.
       report_.is_speed = angle <= tolerances[i].position;
       if (!report_.is_speed || !(speed <= tolerances[i].velocity))
       {
@@ -177,7 +177,7 @@ public:
   /// For the loop: fills the due messages that have subscribers. It neither allocates nor locks.
   void offer(MovingArm& arm) noexcept;
 
-  /// For the loop: as OutputPublishers::finishCycle.
+  /// For the loop: does the same as OutputPublishers::finishCycle.
   Stamp finishCycle(Stamp instant) noexcept;
 
   /// Number of messages that could not be published.

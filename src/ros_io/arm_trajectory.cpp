@@ -19,7 +19,7 @@ using trajectory_msgs::JointTrajectoryPoint;
 
 constexpr double SAME_PLACE = 0.01;       // largest distance of a point at time 0 from the present set point [rad]
 constexpr std::size_t MAX_SHOWN = 300;    // largest shown length of the names in a message [bytes]
-constexpr double SPEED_TOLERANCE = 1e-6;  // [-]
+constexpr double SPEED_TOLERANCE = 1e-6;  // share by which a speed may exceed its limit [-]
 
 constexpr std::size_t NOT_NAMED = static_cast<std::size_t>(-1);
 

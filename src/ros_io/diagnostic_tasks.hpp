@@ -118,7 +118,7 @@ private:
 
   const std::string name_;
   const std::string hardware_id_;
-  double period_;  // [s]
+  double period_;  // time between two reports [s]
   std::vector<Task> tasks_;
   ros::WallTime last_report_;
   ros::Publisher publisher_;

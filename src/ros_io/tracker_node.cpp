@@ -473,7 +473,9 @@ void TrackerNode::tryOnArm(const std::function<void()>& act)
 /// Text on the time at which the payload changed; empty if the payload is equal in all rows.
 std::string TrackerNode::sinceText(double since) const
 {
-  return std::isinf(since) ? "" : "; since " + dateText(stream_.clock.stamp(since), "%H:%M:%S") + " UTC";
+  return std::isinf(since) ?
+             "" :
+             ". The arm has had this load since " + dateText(stream_.clock.stamp(since), "%H:%M:%S") + " UTC";
 }
 
 JudgedJoints TrackerNode::judgedJoints() const
@@ -530,7 +532,7 @@ void TrackerNode::lookAtLoad()
     ROS_WARN_STREAM((stream_.mounting.empty() ? "" : sentence(stream_.mounting) + " ")
                     << (stream_.drag.empty() ? "" : sentence(stream_.drag) + " ")
                     << (stream_.payload.empty() ? "" : sentence(stream_.payload) + " ")
-                    << "The joints are judged with it");
+                    << "The joints are judged with this load");
   }
   lookAtFit();
 }

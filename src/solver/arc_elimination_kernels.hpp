@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// The elimination with its number type and matrix. One file for each kind of processor includes this file and is
-// compiled for that kind. Therefore all names are in an unnamed namespace and nothing is from a library: the linker
-// must not mix the kinds.
+// This file holds the elimination, its number type and its matrix. Each file for a kind of processor includes it and is
+// compiled for that kind. The linker must not mix functions of different kinds. Therefore all names are in an unnamed
+// namespace, and the file uses no library functions.
 
 #include "solver/arc_elimination.hpp"
 

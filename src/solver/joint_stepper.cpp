@@ -227,7 +227,8 @@ using namespace joint_state;
 
 namespace
 {
-// substep's phase as a share of the limit, because friction under load stiffens the joint [-]
+// phase of the joint's fastest oscillation in a substep, as a share of `phase_limit_`; below 1, because friction under
+// load stiffens the joint [-]
 constexpr double AIM = 0.8;
 }  // namespace
 

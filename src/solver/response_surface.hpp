@@ -16,8 +16,8 @@
 
 namespace hjt
 {
-/// Values of the ring in equilibrium at a node of its table. Energy and torques have double precision because of their
-/// derivatives. The bilinear values have single precision, which halves the memory traffic of a step.
+/// Values of the ring in equilibrium at a node of its table. The energy and its derivatives have double precision. All
+/// other values are interpolated bilinearly and have single precision, which halves the memory traffic of a step.
 class SurfaceNode
 {
 public:

@@ -234,7 +234,8 @@ BallDrops::Change BallDrops::ofBall(double motor_angle, double v, double place,
   const double w_v = root / table.step;  // derivative of w, in lines, by v
   const double w_vv = -v * root * root * root / table.step;
   const double u_u = table.columns;  // derivative of u, in columns, by pitches
-  // Derivative by pitches of the ball's angle relative to the wave generator in grid intervals, and of its drop.
+  // Derivatives by u in pitches: chi_u of the ball's angle relative to the wave generator, in grid intervals; h_u and
+  // h_uu of the ball's drop [m].
   const double chi_u = (bearing_.cageRate() - 1.0) * table.pitch * table.places / table.turn;
   const double h_u = drop.rate * table.pitch;
   const double h_uu = drop.second * table.pitch * table.pitch;

@@ -110,8 +110,9 @@ private:
   std::vector<Piece> pieces_;
 };
 
-/// Torsion of the gear over a course of loads with the wave generator locked. It is that of the curve, reduced by the
-/// torque of the cup's friction with a state (CupFriction). The course begins at rest without load.
+/// Torsion of the gear over a course of loads with the wave generator locked. The course begins at rest without load.
+/// If the friction of the cup has a state (CupFriction::hasState), the torsion is that of the curve at the load minus
+/// the torque of this friction.
 class TorsionCourse
 {
 public:

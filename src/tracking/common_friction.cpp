@@ -39,7 +39,7 @@ JointGroup groupOf(const std::vector<MeasuredFriction>& joints, const std::vecto
 /// received, or if it is not within COLDEST and WARMEST.
 std::optional<double> temperatureOf(const std::vector<MeasuredFriction>& joints)
 {
-  constexpr double COLDEST = 0.0;  // [degC]
+  constexpr double COLDEST = 0.0;  // lowest possible temperature of the drives [degC]
   constexpr double WARMEST = 60.0;
   constexpr int HALVINGS = 20;
   double low = COLDEST;
@@ -126,7 +126,7 @@ void take(const JointGroup& group, const std::vector<MeasuredFriction>& joints, 
   }
 }
 
-/// A joint shows as much friction as a larger joint would, apart from the factor of the whole arm.
+/// Whether a joint shows as much friction as a larger joint would, apart from the factor of the whole arm.
 bool hasFarMore(const std::vector<MeasuredFriction>& joints, const std::vector<double>& factors)
 {
   constexpr double FAR_MORE = 2.0;  // times the expected friction
@@ -169,8 +169,8 @@ ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double t
   else if (number(&MeasuredFriction::is_below_faults) >= SEVERAL)
   {
     arm.misfit = { Reason::LESS_THAN_FAULTS,
-                   "several joints show less friction than any fault leaves: the arm is led by hand or carried, or "
-                   "gains, ratios or signs are not as configured" };
+                   "several joints show less than half of the expected friction, which no fault causes. Possible "
+                   "reasons: somebody moves the arm by hand, or a gain, ratio or sign is not as configured" };
   }
   else if (number(&MeasuredFriction::is_load_wrong) + number(&MeasuredFriction::is_below_faults) >= SEVERAL)
   {
@@ -183,9 +183,11 @@ ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double t
   }
   else if (number(&MeasuredFriction::is_below_faults) > 0 && is_other)
   {
-    arm.misfit = { Reason::LESS_THAN_FAULTS,
-                   "one joint shows less friction than any fault leaves, and another more than twice the expected "
-                   "friction: the joints are in another order, or gains, ratios or signs are not as configured" };
+    arm.misfit = {
+      Reason::LESS_THAN_FAULTS,
+      "one joint shows less than half of the expected friction, and another joint more than twice the expected "
+      "friction: the joints are in another order, or gains, ratios or signs are not as configured"
+    };
   }
   return arm;
 }

@@ -17,7 +17,7 @@ constexpr double UNWITNESSED = 0.06;
 /// logarithm. Three joints of one type may have as much in common by chance [-].
 constexpr double NO_WITNESS = 0.05;
 
-/// So many joints, at least, can witness for each other.
+/// Least number of joints that can confirm a common factor.
 constexpr std::size_t MIN_WITNESSES = 3;
 
 /// Number of an arm's joints from the base to the elbow. The other joints are the wrists.

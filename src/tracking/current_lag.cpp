@@ -9,7 +9,8 @@ namespace hjt
 {
 Eigen::Matrix2d LoadRegression::left() const
 {
-  constexpr double RIDGE = 1e-9;  // of the mean square: motion one way only leaves constant and friction alike
+  constexpr double RIDGE =
+      1e-9;  // share of the mean square; motion in one direction leaves constant and friction alike [-]
   const Eigen::Matrix<double, OTHERS, OTHERS> others =
       sums_.topLeftCorner<OTHERS, OTHERS>() +
       Eigen::Matrix<double, OTHERS, OTHERS>(RIDGE * sums_.diagonal().head<OTHERS>().asDiagonal());
@@ -28,7 +29,7 @@ double LoadRegression::leftByLoad() const
 
 FittedFactor LoadRegression::slopeOf(const Eigen::Matrix2d& left, double seconds)
 {
-  constexpr double CORRELATED = 0.5;   // rows nearer to each other tell the same [s]
+  constexpr double CORRELATED = 0.5;   // rows nearer to each other in time have the same information [s]
   constexpr double MIN_CONTENT = 0.1;  // least rms of the remaining load: errors of friction and inertia leave less [A]
   FittedFactor slope;
   if (seconds < MIN_SECONDS || !(left(0, 0) > MIN_CONTENT * MIN_CONTENT * seconds))
@@ -56,21 +57,22 @@ constexpr std::size_t MIDDLE = CurrentLag::LAGS / 2;
 
 double ownLag(const std::array<double, CurrentLag::LAGS>& left)
 {
-  constexpr double CLEARLY = 0.75;  // of the rms residual without a lag
+  constexpr double CLEARLY = 0.75;  // largest residual with the lag, as a share of that without a lag, rms [-]
   std::size_t best = MIDDLE;
   for (std::size_t i = 1; i + 1 < CurrentLag::LAGS; ++i)
   {
     best = left[i] < left[best] ? i : best;
   }
   const double lag = CurrentLag::lagAt(best);
-  constexpr double LONG = 0.1;  // shorter: friction at low speed looks alike [s]
+  constexpr double LONG = 0.1;  // a shorter lag has the same effect as friction at low speed [s]
   return std::abs(lag) > LONG && std::sqrt(left[best] / left[MIDDLE]) < CLEARLY ? lag : 0.0;
 }
 
 double commonLag(const std::vector<std::array<double, CurrentLag::LAGS>>& left)
 {
-  constexpr double CLEARLY = 0.93;  // of the rms residual without a lag: sound recordings of a UR5 leave more
-  constexpr double AGREES = 0.96;   // of the rms residual, for each joint that agrees
+  constexpr double CLEARLY =
+      0.93;  // largest residual with the lag, as a share of that without a lag, rms; a sound UR5 has more [-]
+  constexpr double AGREES = 0.96;  // the same share for each joint that agrees [-]
   double best_share = CLEARLY;
   double best_lag = 0.0;
   for (std::size_t i = 0; i < CurrentLag::LAGS; ++i)

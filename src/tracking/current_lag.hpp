@@ -22,7 +22,7 @@ class LoadRegression
 public:
   void add(double step, double velocity, double acceleration, double load, double current) noexcept
   {
-    constexpr double MEMORY = 120.0;  // of motion [s]
+    constexpr double MEMORY = 120.0;  // time of motion over which rows are forgotten [s]
     Eigen::Matrix<double, OTHERS + 2, 1> row;
     row << 1.0, std::copysign(1.0, velocity), velocity, acceleration, load, current;
     sums_ = (1.0 - step / MEMORY) * sums_ + step * row * row.transpose();
@@ -53,7 +53,7 @@ private:
 class CurrentLag
 {
 public:
-  static constexpr double LONGEST = 0.4;   ///< [s]
+  static constexpr double LONGEST = 0.4;   ///< longest lag [s]
   static constexpr double SPACING = 0.04;  ///< step from one lag to the next [s]
   static constexpr std::size_t LAGS = 21;
 
@@ -94,7 +94,7 @@ public:
   const LoadRegression& now() const { return regressions_[LAGS / 2]; }
 
 private:
-  static constexpr double PERIOD = 0.019;  // of rows that count [s]
+  static constexpr double PERIOD = 0.019;  // least time between rows that count [s]
   static constexpr std::size_t ROOM = 64;  // rows: more than twice LONGEST at PERIOD
 
   struct Row
@@ -149,11 +149,11 @@ private:
   std::array<LoadRegression, LAGS> regressions_{};
 };
 
-/// Lag of an arm's currents behind its motion on which most of its joints agree [s]; 0: no lag can be told. `left`:
+/// Lag of an arm's currents behind its motion on which most of its joints agree [s]; 0: no lag is clear. `left`:
 /// CurrentLag::left of each joint.
 double commonLag(const std::vector<std::array<double, CurrentLag::LAGS>>& left);
 
-/// Lag of the current of one joint alone [s]; 0: no lag can be told. One joint must show the lag more clearly than most
+/// Lag of the current of one joint alone [s]; 0: no lag is clear. One joint must show the lag more clearly than most
 /// joints of an arm together.
 double ownLag(const std::array<double, CurrentLag::LAGS>& left);
 }  // namespace hjt

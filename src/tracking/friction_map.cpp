@@ -17,8 +17,8 @@ namespace hjt
 {
 namespace
 {
-constexpr int POSITIONS = 8;  // over a tooth pitch
-// Equally spaced in their logarithm.
+constexpr int POSITIONS = 8;  // number of positions over a tooth pitch
+// The speeds have equal distances in their logarithm.
 constexpr std::array<double, 7> SPEEDS{ 0.01, 0.06, 0.36, 2.16, 12.96, 77.76, 466.56 };  // [rad/s]
 // Shares of the largest load.
 constexpr std::array<double, 11> LOADS{ 0.0, 0.02, 0.05, 0.08, 0.12, 0.2, 0.3, 0.45, 0.6, 0.8, 1.0 };
@@ -38,13 +38,13 @@ double largestLoad(const Parameters& parameters)
   return largest;
 }
 
-/// Of a drive without errors. Joints of one arm, and of arms of one maker, have the same drives: known ones are kept.
+/// Table of a drive without errors of manufacture. Joints of one arm have equal drives, so known tables are kept.
 const std::vector<LossRow>& lossesOf(Parameters parameters, const std::vector<double>& loads)
 {
   parameters.joint = {};
-  parameters.telemetry = {};  // of its use, not of the drive
+  parameters.telemetry = {};  // the telemetry is not a property of the drive
   parameters.comparison = {};
-  constexpr std::size_t MOST = 64;  // a fit asks for ever other drives
+  constexpr std::size_t MOST = 64;  // a fit needs tables of ever new drives
   thread_local std::map<std::uint64_t, std::vector<LossRow>> known;
   if (known.size() >= MOST)
   {
@@ -82,7 +82,7 @@ FrictionMap::FrictionMap(const Parameters& parameters)
     if (!row.status.ok() && row.load_torque > parameters.output.load_torque_limit && lines_.size() > 2)
     {
       lines_.resize(i / SPEEDS);
-      break;  // the motor holds more than the gear bears
+      break;  // the motor can hold a larger load than the gear
     }
     if (!row.status.ok())
     {

@@ -52,15 +52,15 @@ private:
   static constexpr std::size_t SPEEDS = 7;
   struct Line  // at one load
   {
-    double load;                        // [N.m]
+    double load;                        // load at the output [N.m]
     double rest;                        // [N.m]
     std::array<double, SPEEDS> flanks;  // [N.m]
   };
 
   BearingFriction bearing_;
   Motor motor_;
-  double race_preload_;    // [N]
-  double viscous_;         // motor side, output's in it [N.m.s/rad]
+  double race_preload_;    // bearing.race_preload [N]
+  double viscous_;         // friction per speed of motor and output, at the motor shaft [N.m.s/rad]
   double preload_torque_;  // [N.m]
   std::vector<Line> lines_;
 };

@@ -18,12 +18,12 @@ namespace hjt
 /// Mean friction of the rows at one speed, at the joint and against the motion.
 struct FrictionPoint
 {
-  double speed{};      ///< with its sign [rad/s]
-  double measured{};   ///< [N.m]
+  double speed{};      ///< speed with its sign [rad/s]
+  double measured{};   ///< measured friction [N.m]
   double deviation{};  ///< standard deviation of the measured rows [N.m]
   double twin{};       ///< friction of the twin in the same rows [N.m]
   std::uint64_t rows{};
-  double load{};  ///< with its sign [N.m]
+  double load{};  ///< load with its sign [N.m]
 };
 
 /// Measured friction over that of a reference.
@@ -93,7 +93,7 @@ public:
 
 private:
   static constexpr std::uint64_t MIN_BLOCKS = 3;
-  // Unaligned, so that whoever holds it needs no operator new of its own.
+  // Unaligned, so that a class with this member needs no operator new of its own.
   using Vector6 = Eigen::Matrix<double, 6, 1, Eigen::DontAlign>;
   using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::DontAlign>;
 
@@ -205,7 +205,8 @@ public:
   /// Means of the points in one bin of speed, weighted by their rows, in the order of their speeds.
   static std::vector<FrictionPoint> merged(const std::vector<FrictionPoint>& points)
   {
-    std::map<double, std::vector<FrictionPoint>> at;  // by bins from standstill, with the speed's sign
+    std::map<double, std::vector<FrictionPoint>>
+        at;  // points by the number of the bin from standstill, which has the sign of the speed
     for (const FrictionPoint& point : points)
     {
       at[std::copysign(std::floor(placeOf(point.speed)) + 1.0, point.speed)].push_back(point);
@@ -287,7 +288,7 @@ private:
     double load{};
   };
   static constexpr double BINS_PER_DECADE = 10.0;
-  static constexpr std::size_t BINS = 30;  // up to 10 rad/s
+  static constexpr std::size_t BINS = 30;  // number of bins in each direction, up to 10 rad/s
 
   std::array<Bin, 2 * BINS> bins_{};  // from the fastest backward to the fastest forward
   FrictionBlocks blocks_;

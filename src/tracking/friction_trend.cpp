@@ -67,7 +67,7 @@ FrictionTrend frictionTrend(const std::vector<DatedFriction>& recordings)
   const Eigen::Matrix2d inverse = normal.inverse();
   const Eigen::Vector2d line = inverse * right;
   trend.slope = line[0];
-  double left = 0.0;  // over what the deviations allow, squared
+  double left = 0.0;  // squares of the residuals over the squares of the deviations
   double fast = 0.0;  // variance of the slope
   double slow = 0.0;
   for (std::size_t i = 0; i < recordings.size(); ++i)

@@ -15,10 +15,10 @@ namespace hjt
 /// Friction of a joint in one of several recordings.
 struct DatedFriction
 {
-  double time{};            ///< in any unit
-  double factor{};          ///< > 0, apart from common factors of the joints [-]
+  double time{};            ///< time of the recording, in any unit
+  double factor{};          ///< friction over the expected one, apart from common factors of the joints, > 0 [-]
   double deviation{};       ///< standard deviation of its logarithm, > 0 [-]
-  double slow_deviation{};  ///< the part of it that may last for a season: of the temperature [-]
+  double slow_deviation{};  ///< part of `deviation` by the temperature, which may last for a season [-]
   double common{};          ///< logarithm of common factors of the joints; 0: not known [-]
 };
 
@@ -28,12 +28,15 @@ struct DatedFriction
 /// common temperature of the joints by more or less than the others do: the fit has a term for that response.
 struct FrictionTrend
 {
-  static constexpr std::size_t MIN_RECORDINGS = 4;  ///< two determine a line, and others have to confirm it
+  static constexpr std::size_t MIN_RECORDINGS =
+      4;  ///< two recordings determine a line, and the others have to confirm the line
 
   std::size_t recordings{};
-  double span{};                                             ///< time from the first to the last recording
-  double slope{ std::numeric_limits<double>::quiet_NaN() };  ///< of the logarithm, in 1 / unit of time; NaN: not known
-  double deviation{};                                        ///< standard deviation of the slope
+  double span{};  ///< time from the first to the last recording
+  double slope{
+    std::numeric_limits<double>::quiet_NaN()
+  };                   ///< slope of the logarithm, in 1 / unit of time; NaN: not known
+  double deviation{};  ///< standard deviation of the slope
 
   bool isKnown() const { return std::isfinite(slope); }
 

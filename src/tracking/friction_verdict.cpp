@@ -20,7 +20,7 @@ namespace
 constexpr double REPEAT_SHARE = 0.03;
 constexpr double REPEAT_TORQUE = 0.22;
 
-/// The same standard deviation if the joints of its group witness their common factor.
+/// The same standard deviation if the joints of the group confirm their common factor.
 constexpr double WITNESSED_SHARE = 0.025;
 constexpr double WITNESSED_TORQUE = 0.1;
 
@@ -47,11 +47,11 @@ constexpr std::size_t MIN_POINTS = 3;
 struct ReferenceRow
 {
   const char* name;
-  const char* text;  // for sentences
+  const char* text;  // name of the reference in sentences
   Figure figure;     // friction as a multiple of this reference
 };
 
-/// In the order of FrictionReference.
+/// The references, in the order of FrictionReference.
 constexpr std::array<ReferenceRow, 3> REFERENCES{
   { { "twin", "the twin's", Figure::FRICTION_OF_TWIN },
     { "controller", "what the arm's controller expects", Figure::FRICTION_OF_CONTROLLER },
@@ -77,7 +77,7 @@ using Gap = std::pair<Reason, std::string>;  // a reason and its sentence
 /// Why the points do not show a factor of the friction.
 Gap whyNone(const std::vector<FrictionPoint>& points, const JointEvidence& evidence, bool is_to_own)
 {
-  const std::string have_rows = " have " + std::to_string(FrictionPoints::MIN_ROWS) + " rows" +
+  const std::string have_rows = " have at least " + std::to_string(FrictionPoints::MIN_ROWS) + " rows" +
                                 (evidence.reach().touched_rows > 0 ? " apart from contact" : "") +
                                 (is_to_own ? " and are in the reference too" : "");
   if (points.empty() && evidence.reach().isAtRest())
@@ -95,13 +95,13 @@ Gap whyNone(const std::vector<FrictionPoint>& points, const JointEvidence& evide
   if (!(points.front().speed < 0.0 && points.back().speed > 0.0))
   {
     return { Reason::ONE_DIRECTION,
-             "Friction and load cannot be separated, because the joint moves one way only at the speeds that" +
+             "Friction and load cannot be separated, because the joint moves in one direction only at all speeds that" +
                  have_rows + "." };
   }
   if (points.size() < MIN_POINTS)
   {
-    return { Reason::ONE_SPEED,
-             "Fewer than three speeds" + have_rows + ". The uncertainty of the joint's friction is then not known." };
+    return { Reason::ONE_SPEED, "Fewer than three speeds" + have_rows +
+                                    ". The uncertainty of the joint's friction is therefore unknown." };
   }
   if (evidence.friction().blocks().count() < MIN_POINTS)
   {
@@ -117,8 +117,8 @@ Gap whyImpossible(const FrictionFactor& factor, const std::vector<FrictionPoint>
 {
   if (factor.is_below_faults && factor.value < -LEAST_OF_FAULTS)
   {
-    return { Reason::EFFORT_NOT_CURRENT, "The friction comes out at " + fixedText(factor.value, 2) +
-                                             " times the expected one, as if it pushed the joint along: the effort or "
+    return { Reason::EFFORT_NOT_CURRENT, "The measured friction is " + fixedText(factor.value, 2) +
+                                             " times the expected one, so it would push the joint along: the effort or "
                                              "the angle of this joint has the opposite sign." };
   }
   if (factor.is_below_faults && std::abs(factor.value) < NO_FRICTION)
@@ -277,7 +277,7 @@ FrictionFactor frictionFactor(const JointEvidence& evidence, const JointContext&
   factor.value = ratio.value;
   factor.deviation = deviationOf(ratio, evidence.friction().blocks(), context, factor.reference);
   factor.scatter = ratio.deviation / std::max(std::abs(ratio.value), NO_FRICTION);
-  constexpr double SURE = 2.0;  // standard deviations
+  constexpr double SURE = 2.0;  // number of standard deviations
   factor.is_below_faults = factor.value / context.arm_friction < LEAST_OF_FAULTS &&
                            factor.value + SURE * factor.deviation * std::max(factor.value, NO_FRICTION) < 1.0;
   std::tie(factor.reason, factor.why_not) = whyImpossible(factor, ratio.points, evidence.loadOrigin());

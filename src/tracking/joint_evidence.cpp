@@ -110,7 +110,7 @@ double JointEvidence::addToReach(const MotionSample& sample) noexcept
   return step;
 }
 
-/// Rows shortly after a contact count here: where the gain is wrong, the load of the joint looks like a contact.
+/// Rows shortly after a contact count too, because with a wrong gain the load of the joint has the effect of a contact.
 void JointEvidence::addGain(const MotionSample& sample, double residual, double step) noexcept
 {
   if (std::abs(sample.velocity) > FrictionPoints::SLOWEST && predicted_.tellsFriction())

@@ -32,9 +32,9 @@ namespace hjt
 /// Mean torsion of the rows at one joint torque, with each direction of turning apart.
 struct TorsionMean
 {
-  double torque{};    ///< [N.m]
-  double forward{};   ///< NaN: the joint never turned forward under this torque [rad]
-  double backward{};  ///< NaN: the joint never turned backward under this torque [rad]
+  double torque{};    ///< torque at the joint [N.m]
+  double forward{};   ///< mean torsion while turning forward; NaN: the joint never did under this torque [rad]
+  double backward{};  ///< mean torsion while turning backward; NaN: the joint never did under this torque [rad]
 };
 
 /// Torsion of a joint with two encoders beside the torsion of the twin under the same course of loads, for torques up
@@ -215,9 +215,9 @@ public:
   /// `residual_torque`: measured less predicted torque at the joint [N.m]. `is_held`: stiction holds the joint.
   void update(const MotionSample& sample, double residual_torque, double friction_torque, bool is_held) noexcept
   {
-    constexpr double MEAN = 0.1;     // [s]
+    constexpr double MEAN = 0.1;     // time over which the residual is averaged [s]
     constexpr double SETTLED = 0.3;  // motion in one direction after which presliding and start are over [s]
-    constexpr double LASTING = 0.1;  // [s]
+    constexpr double LASTING = 0.1;  // least time for which the difference must last [s]
     constexpr double KNOWN = 2.0;    // motion in one direction after which the usual torque is known [s]
     constexpr double OF_FRICTION = 0.5;
     constexpr double OF_LOAD = 0.05;
@@ -261,7 +261,7 @@ public:
 
   bool hasSeen() const noexcept
   {
-    constexpr double OFTEN = 0.2;  // share of the motion
+    constexpr double OFTEN = 0.2;  // share of the motion from which on differences are no contact [-]
     return touched_ > 0.0 && touched_ < OFTEN * (usual_[0].time + usual_[1].time);
   }
   bool isTouching() const noexcept { return hasSeen() && time_ == last_; }  ///< in the last row
@@ -273,8 +273,8 @@ public:
 private:
   struct Usual
   {
-    double torque{};  // residual [N.m]
-    double time{};    // of motion [s]
+    double torque{};  // usual residual torque [N.m]
+    double time{};    // time of motion in this direction [s]
   };
 
   double largest_load_;
@@ -321,10 +321,10 @@ struct MotionReach
   double begin{};                    ///< time of the first row [s]
   double end{};                      ///< time of the last row [s]
   double sampled{};                  ///< sum of the steps from row to row, without gaps [s]
-  double least_load{};               ///< [N.m]
-  double most_load{};                ///< [N.m]
-  double least_angle{};              ///< [rad]
-  double most_angle{};               ///< [rad]
+  double least_load{};               ///< least load [N.m]
+  double most_load{};                ///< largest load [N.m]
+  double least_angle{};              ///< least angle [rad]
+  double most_angle{};               ///< largest angle [rad]
 };
 
 /// Where the load of the samples comes from.
@@ -357,7 +357,7 @@ struct EvidenceParameters
   TelemetryParameters telemetry;
   ComparisonParameters comparison;
   IndicatorParameters indicators;
-  double possible_current;  ///< [A]
+  double possible_current;  ///< largest current that the joint can have [A]
 };
 
 /// Evidence on a measured joint: sums over its rows beside the twin in the same motion. `hjt::judge` makes a verdict of
@@ -415,9 +415,9 @@ public:
   /// Something touches the arm, or did less than ContactWatch::HOLD ago.
   bool isTouched() const { return load_ != LoadOrigin::CONFIGURED && contact_.isRecent(); }
 
-  double currentRms() const { return rms(MEASURED); }     ///< of the measured current [A]
-  double predictedRms() const { return rms(PREDICTED); }  ///< of the predicted current [A]
-  double residualRms() const { return rms(RESIDUAL); }    ///< [A]
+  double currentRms() const { return rms(MEASURED); }     ///< root mean square of the measured current [A]
+  double predictedRms() const { return rms(PREDICTED); }  ///< root mean square of the predicted current [A]
+  double residualRms() const { return rms(RESIDUAL); }    ///< root mean square of the residual [A]
   /// Standard deviation of the residual about its mean, so that an unknown constant load does not count [A].
   double residualSpread() const;
   /// Residual less the best constant and the best multiple of the predicted friction, rms [A]. A constant load and worn
@@ -441,11 +441,11 @@ public:
   /// The last assessment that had too few windows for a verdict.
   const std::optional<Assessment>& tooFew() const { return now_.too_few; }
   double alarmTime() const { return now_.alarm_time; }  ///< time when the level first was not OK [s]
-  Cause cause() const;                                  ///< the cause that most windows in alarm name
-  double causeShare() const;                            ///< share of the windows in alarm that name the cause [-]
+  Cause cause() const;                                  ///< most frequent cause of the windows whose level is not OK
+  double causeShare() const;  ///< share of the windows with a level other than OK that have this cause [-]
 
 private:
-  static constexpr int LOAD_STEPS = 568;  // of the histogram
+  static constexpr int LOAD_STEPS = 568;  // number of steps of the histogram
   enum Product : int
   {
     ONE,
@@ -466,7 +466,7 @@ private:
     std::array<std::uint64_t, LOAD_STEPS + 2> loads{};  // histogram of magnitudes
     double temperatures{};                              // [degC]
     Products products{ Products::Zero() };              // of 1 and currents [A]
-    /// Products of 1, predicted friction, the rest of the prediction and the residual, in rows that tell friction.
+    /// Products of 1, predicted friction, the rest of the prediction and the residual, in rows that show friction.
     Eigen::Matrix4d gains{ Eigen::Matrix4d::Zero() };
     double gains_time{};  // time of the rows in `gains` [s]
     std::uint64_t assessed{};

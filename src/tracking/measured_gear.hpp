@@ -32,14 +32,17 @@ public:
   /// were.
   bool moveTo(double position, double joint_torque) noexcept;
 
-  double position() const noexcept { return position_; }       ///< of the joint [rad]
-  double motorAngle() const noexcept { return motor_angle_; }  ///< of the wave generator [rad]
+  double position() const noexcept { return position_; }       ///< angle of the joint [rad]
+  double motorAngle() const noexcept { return motor_angle_; }  ///< angle of the wave generator [rad]
   double torsion() const noexcept
   {
     return motor_angle_ / ratio_ - position_;
-  }                                                                      ///< motor angle / ratio - joint angle [rad]
-  double stiffness() const noexcept { return ring_.stiffness()(1, 1); }  ///< wave generator locked [N.m/rad]
-  double residual() const noexcept { return residual_; }                 ///< largest out-of-balance force [N]
+  }  ///< motor angle / ratio - joint angle [rad]
+  double stiffness() const noexcept
+  {
+    return ring_.stiffness()(1, 1);
+  }  ///< torsional stiffness with the wave generator locked [N.m/rad]
+  double residual() const noexcept { return residual_; }  ///< largest out-of-balance force [N]
   LobeLoads lobes() const noexcept;
 
   /// `forces` as Twin::makeToothForces makes them.
@@ -55,14 +58,14 @@ private:
   RingEquilibrium ring_;
   const FlexsplineStress stress_;
   const bool teeth_are_alike_;
-  const double pitch_;  // [rad]
+  const double pitch_;  // tooth pitch of the flexspline [rad]
   const double ratio_;
   const double torque_limit_;     // [N.m]
-  Eigen::VectorXd tooth_angles_;  // at rest [rad]
+  Eigen::VectorXd tooth_angles_;  // angles of the teeth at rest [rad]
   std::int64_t shift_{};          // number of pitches by which the ring is behind the drive
   double position_{};
   double motor_angle_{};
-  double torsion_{};  // of the ring [rad]
+  double torsion_{};  // torsion of the ring [rad]
   bool is_lost_{};    // the ring is in no equilibrium
   double residual_{};
 };

@@ -13,17 +13,19 @@ namespace hjt
 /// One row of a robot's telemetry, of one joint.
 struct MotionRow
 {
-  double time{};                                                   ///< [s]
-  double position{};                                               ///< of the joint [rad]
-  double current{};                                                ///< of the motor [A]
-  double load{};                                                   ///< at the output, > 0 resists positive motion [N.m]
-  double motor_angle{ std::numeric_limits<double>::quiet_NaN() };  ///< NaN: not measured [rad]
-  double recorded_velocity{ std::numeric_limits<double>::quiet_NaN() };  ///< NaN: not recorded [rad/s]
+  double time{};      ///< time of the row [s]
+  double position{};  ///< angle of the joint [rad]
+  double current{};   ///< current of the motor [A]
+  double load{};      ///< load at the output, > 0 resists positive motion [N.m]
+  double motor_angle{ std::numeric_limits<double>::quiet_NaN() };        ///< motor angle; NaN: not measured [rad]
+  double recorded_velocity{ std::numeric_limits<double>::quiet_NaN() };  ///< recorded speed; NaN: not recorded [rad/s]
   double received{};     ///< time of arrival, from the same zero as `time` [s]
   double stamp_error{};  ///< delay of `time` behind the motion [s]
   /// Torque of the links' vibration at the output, which `load` does not include [N.m].
   double vibration{};
-  double temperature{ std::numeric_limits<double>::quiet_NaN() };  ///< of the drive; NaN: not measured [degC]
+  double temperature{
+    std::numeric_limits<double>::quiet_NaN()
+  };  ///< temperature of the drive; NaN: not measured [degC]
   /// Motor current that the controller expects in this motion; NaN: not recorded [A].
   double target_current{ std::numeric_limits<double>::quiet_NaN() };
 
@@ -36,8 +38,8 @@ struct MotionRow
 /// A row with its rates.
 struct MotionSample : MotionRow
 {
-  double velocity{};      ///< [rad/s]
-  double acceleration{};  ///< [rad/s^2]
+  double velocity{};      ///< speed of the joint [rad/s]
+  double acceleration{};  ///< acceleration of the joint [rad/s^2]
   bool after_gap{};       ///< this sample is the first one after a gap
 };
 
@@ -53,7 +55,7 @@ public:
   static constexpr double MAX_GAP = 0.1;       ///< longer gaps cut the stream [s]
   static constexpr double MIN_STEP = 0.5e-3;   ///< rows that follow sooner are left out [s]
   static constexpr double MOVING = 0.02;       ///< slower speeds may be noise of the angles [rad/s]
-  static constexpr double SLIDING = 0.05;      ///< slower motion tells little of friction and load [rad/s]
+  static constexpr double SLIDING = 0.05;      ///< slower motion shows little of friction and load [rad/s]
 
   /// @param half_width up to 0.12 [s]
   explicit MotionDifferentiator(double half_width = HALF_WIDTH) noexcept : half_width_(half_width) {}
@@ -85,8 +87,8 @@ private:
   double half_width_;
   std::array<MotionRow, ROOM> rows_{};
   std::array<Point, ROOM> points_{};
-  std::uint64_t next_{};  // next to come out
-  std::uint64_t end_{};   // one past the last
+  std::uint64_t next_{};  // number of the next row to come out
+  std::uint64_t end_{};   // number after the last row
   std::uint64_t segment_{};
   std::uint64_t refused_{};
 };

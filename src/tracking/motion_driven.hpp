@@ -115,7 +115,7 @@ private:
   Orders orders_;
   Waves lines_;                     // cos + i sin [N.m]
   std::array<double, 3> response_;  // resonance [Hz], damping [-], lag [s]
-  double fastest_;                  // [rad/s]; below 0: there is no line
+  double fastest_;                  // largest speed with ripple; below 0: there is no line [rad/s]
 };
 
 /// Share of the friction that is mobilised, between -1 and 1. After a reversal the share builds up over a presliding
@@ -127,8 +127,8 @@ private:
 class Presliding
 {
 public:
-  static constexpr double RELAXATION = 5.0;     ///< [s]
-  static constexpr double LASTING_ANGLE = 0.4;  ///< of the motor [rad]
+  static constexpr double RELAXATION = 5.0;     ///< time constant of the decay at rest [s]
+  static constexpr double LASTING_ANGLE = 0.4;  ///< angle of the motor over which the lasting part builds up [rad]
 
   explicit Presliding(const TelemetryParameters& parameters)
     : angle_(parameters.presliding_angle), lasting_share_(parameters.lasting_share)
@@ -162,13 +162,13 @@ inline double ownTorque(const Load& load, const MotionSample& sample) noexcept
 /// Motor torque and current of a healthy joint for a motion.
 struct MotionPrediction
 {
-  double motor_torque{};     ///< at the shaft [N.m]
-  double current{};          ///< [A]
+  double motor_torque{};     ///< torque at the motor shaft [N.m]
+  double current{};          ///< current of the motor [A]
   double friction_torque{};  ///< friction of the whole drive, at the joint, with its sign [N.m]
   double friction_limit{};   ///< largest friction possible at this speed and load [N.m]
   double band{};             ///< half width of the current's band, by the share of friction that is not mobilised [A]
 
-  /// Nearly all of the friction is mobilised, so that the current tells it.
+  /// Whether nearly all of the friction is mobilised, so that the current shows it.
   bool tellsFriction() const
   {
     constexpr double LEFT = 0.05;  // largest share of the friction that is not mobilised [-]
@@ -290,7 +290,7 @@ private:
   TorqueRipple ripple_;
   Load load_;
   TelemetryParameters telemetry_;
-  double inertia_;  // of motor and wave generator, less the part in the load [kg.m^2]
+  double inertia_;  // inertia of motor and wave generator, less the part in the load [kg.m^2]
   double ratio_;
   double temperature_;  // of samples without one [degC]
   double current_per_effort_;
@@ -322,9 +322,9 @@ public:
 
   struct Motion
   {
-    double position{};         ///< of the joint, at the sample's time [rad]
-    double velocity{};         ///< [rad/s]
-    double joint_torque{};     ///< of the mesh on the output [N.m]
+    double position{};         ///< angle of the joint, at the sample's time [rad]
+    double velocity{};         ///< speed of the joint [rad/s]
+    double joint_torque{};     ///< torque of the mesh on the output [N.m]
     double friction_torque{};  ///< friction of the whole drive, at the joint, against the motion [N.m]
   };
 
@@ -366,8 +366,8 @@ private:
   TelemetryParameters telemetry_;
   double ratio_;
   double temperature_;       // of samples without one [degC]
-  double start_position_{};  // the twin's zero [rad]
+  double start_position_{};  // angle of the joint at which the twin's angle is 0 [rad]
   bool started_{};
-  std::uint64_t solver_failures_{};  // before the last start
+  std::uint64_t solver_failures_{};  // number of failures before the last start
 };
 }  // namespace hjt

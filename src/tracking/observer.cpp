@@ -14,11 +14,11 @@ namespace hjt
 {
 namespace
 {
-constexpr double DAMPING = 0.02;    // of the torsional swing, share of critical damping [-]
+constexpr double DAMPING = 0.02;    // damping of the torsional swing, as a share of critical damping [-]
 constexpr double DEVIATIONS = 3.0;  // half width of a band, in standard deviations
 // Standard deviations of the first state.
-constexpr double FIRST_TORSION = 1.0e-4;        // [rad]
-constexpr double FIRST_SPEED = 1.0;             // of the joint [rad/s]
+constexpr double FIRST_TORSION = 1.0e-4;        // deviation of the torsion [rad]
+constexpr double FIRST_SPEED = 1.0;             // deviation of the joint's speed [rad/s]
 constexpr double FIRST_DISTURBANCE_TIME = 1.0;  // the first disturbance is as large as its growth in this time [s]
 
 using Vector = ObserverPiece::Vector;

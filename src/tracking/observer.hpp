@@ -28,7 +28,7 @@ struct ObserverPiece
     DISTURBANCE
   };
 
-  double stiffness{};  ///< [N.m/rad] at the output
+  double stiffness{};  ///< stiffness at the output [N.m/rad]
   Matrix transition;
   Eigen::Matrix<double, 5, 2> input;
   Matrix process;  ///< covariance of the process noise over a step
@@ -47,27 +47,30 @@ ObserverPiece::Vector takeAngle(ObserverPiece::Matrix& covariance, ObserverPiece
 /// Measurements at one instant.
 struct Measurement
 {
-  double time{};          ///< [s]
-  double motor_torque{};  ///< estimated from the current [N.m]
-  double load_torque{};   ///< external, at the output, > 0 resists positive motion [N.m]
-  double output_angle{};  ///< [rad]
-  double motor_angle{};   ///< NaN: there is no such encoder [rad]
+  double time{};          ///< time of the measurements [s]
+  double motor_torque{};  ///< motor torque, estimated from the current [N.m]
+  double load_torque{};   ///< external torque at the output, > 0 resists positive motion [N.m]
+  double output_angle{};  ///< output angle by the encoder [rad]
+  double motor_angle{};   ///< motor angle by the encoder; NaN: there is no such encoder [rad]
   bool restarted{};       ///< first after a gap: the state before is discarded
-  double temperature{ std::numeric_limits<double>::quiet_NaN() };  ///< NaN: as configured [degC]
+  double temperature{
+    std::numeric_limits<double>::quiet_NaN()
+  };  ///< temperature of the drive; NaN: as configured [degC]
 };
 
 /// Estimate after the measurement.
 struct Observation
 {
-  double motor_angle{};      ///< its zero follows from output and load at the start [rad]
+  double motor_angle{};      ///< motor angle, whose zero follows from output and load at the start [rad]
   double motor_velocity{};   ///< [rad/s]
   double output_angle{};     ///< [rad]
   double output_velocity{};  ///< [rad/s]
-  double joint_torque{};     ///< in the gear, at the output [N.m]
-  double friction_torque{};  ///< a healthy joint's, at the motor, with its sign [N.m]
-  double residual_torque{};  ///< at the motor: torque beyond a healthy joint's that explains the measurement [N.m]
-  double residual_band{};    ///< three standard deviations for a healthy joint with the configured noise [N.m]
-  double innovation{};       ///< measured less predicted output angle [rad]
+  double joint_torque{};     ///< torque in the gear, at the output [N.m]
+  double friction_torque{};  ///< friction of a healthy joint at the motor, with its sign [N.m]
+  double
+      residual_torque{};   ///< torque at the motor, beyond that of a healthy joint, that explains the measurement [N.m]
+  double residual_band{};  ///< three standard deviations for a healthy joint with the configured noise [N.m]
+  double innovation{};     ///< measured less predicted output angle [rad]
   double innovation_band{};  ///< band of the innovation: three deviations [rad]
   bool sticking{};           ///< friction holds the motor: any torque within it fits, so the residual carries no
                              ///< information
@@ -86,7 +89,7 @@ struct Observation
 class Observer
 {
 public:
-  static constexpr double STEP = 1.0e-3;  ///< [s]
+  static constexpr double STEP = 1.0e-3;  ///< length of a step [s]
 
   /// @throws ParameterError if the ring finds no equilibrium under load.
   explicit Observer(const Parameters& parameters);
@@ -104,14 +107,14 @@ private:
   ObserverParameters noise_;
   double ratio_;
   double temperature_;       // of measurements without one [degC]
-  double presliding_angle_;  // of the motor [rad]
+  double presliding_angle_;  // presliding angle of the motor [rad]
   TorsionCurve curve_;
-  std::vector<ObserverPiece> pieces_;  // of the curve
+  std::vector<ObserverPiece> pieces_;  // linear pieces of the torsion curve
   ObserverPiece::Vector state_;
   ObserverPiece::Matrix covariance_;
   Measurement last_;
   bool started_{};
-  double now_{};           // of the state [s]
+  double now_{};           // time of the state [s]
   double motor_zero_{};    // of the motor encoder [rad]
   double friction_now_{};  // [N.m]
   double mobilised_{};     // share of the friction that is mobilised

@@ -12,19 +12,19 @@ namespace hjt
 /// Reason of a verdict, or why there is no verdict. Numbers and names are those of Verdict.msg.
 enum class Reason : std::uint8_t
 {
-  SOUND = 0,                 ///< judged: as in a sound joint
+  SOUND = 0,                 ///< judged: all results are as in a sound joint
   FRICTION = 1,              ///< judged: the friction is not that of a sound joint
   TORSION = 2,               ///< judged: the torsion is not that of a sound drive
   SIGNALS = 3,               ///< judged: the signals' indicators are not those of a sound drive
   SOLVER_FAILED = 4,         ///< the twin found no solution: its last good state is held
   NO_STEADY_MOTION = 5,      ///< the joint never moves steadily for long enough
-  ONE_DIRECTION = 6,         ///< it moves one way only: friction and load cannot be separated
-  LOAD_UNKNOWN = 7,          ///< a load is expected and none came
+  ONE_DIRECTION = 6,         ///< the joint moves in one direction only, so friction and load cannot be separated
+  LOAD_UNKNOWN = 7,          ///< a load is expected, but none was received
   LOAD_WRONG = 8,            ///< the currents do not fit the load
   CONTACT = 9,               ///< something touched the arm
   EFFORT_NOT_CURRENT = 10,   ///< the effort is not the motor's current
-  EFFORT_TOO_LARGE = 11,     ///< the effort is several times the current that the motion takes: its unit or gain
-  COMMON_FRICTION = 12,      ///< the friction of all joints differs by more than temperature makes
+  EFFORT_TOO_LARGE = 11,     ///< the effort is several times the current that the motion needs: wrong unit or gain
+  COMMON_FRICTION = 12,      ///< the friction of all joints differs by more than a temperature causes
   TELEMETRY_UNSETTLED = 13,  ///< it is not known yet whether angles and efforts fit
   ROW_RATE = 14,             ///< the rows come too rarely
   STAMPS = 15,               ///< angles, velocities or currents are of another time than the stamps
@@ -34,19 +34,19 @@ enum class Reason : std::uint8_t
   VELOCITY_SIGN = 19,        ///< angle and velocity are of opposite sign
   VELOCITY_SCALE = 20,       ///< the velocity is a multiple of the angle's change
   VELOCITY_LAG = 21,         ///< angle and velocity are of different times
-  NO_MOTOR_ANGLE = 22,       ///< torsion: one angle a joint
+  NO_MOTOR_ANGLE = 22,       ///< torsion: each joint has one angle only
   LOAD_CONSTANT = 23,        ///< torsion: the load hardly varies
-  TOO_FEW_WINDOWS = 24,      ///< signals: fewer windows than a verdict takes
+  TOO_FEW_WINDOWS = 24,      ///< signals: fewer windows than a verdict needs
   NO_REFERENCE = 25,         ///< the reference knows none of the speeds; of signals none of the operating points
   TOO_SHORT = 26,            ///< too few rows: to measure the friction, or to learn the signals without a reference
   TWO_SOURCES = 27,          ///< several sources give the same joints in turn
   GEAR_RATIO = 28,           ///< motor and joint do not turn by the configured gear's ratio
   AT_REST = 29,              ///< the joint does not move
-  ONE_SPEED = 30,            ///< it moves at one speed only: how sure its friction is cannot be told
-  NO_FRICTION = 31,          ///< the effort holds no friction: a modelled or commanded torque
-  LESS_THAN_FAULTS = 32,     ///< less friction than any fault leaves: led by hand, held, another gain or ratio
-  FRICTION_SCATTER = 33,     ///< the rows scatter too much to know the friction: the load is another
-  TORSION_NO_DRIVE = 34      ///< torsion: no fault makes it so large or small; load or angles are not this joint's
+  ONE_SPEED = 30,            ///< the joint moves at one speed only, so the uncertainty of its friction is unknown
+  NO_FRICTION = 31,          ///< the effort contains no friction: it is a modelled or commanded torque
+  LESS_THAN_FAULTS = 32,     ///< less friction than with any fault: a hand leads the arm, or gain or ratio are wrong
+  FRICTION_SCATTER = 33,     ///< the rows scatter too much to measure the friction: the load is wrong
+  TORSION_NO_DRIVE = 34      ///< no fault causes so large or small a torsion: load or angles are not of this joint
 };
 constexpr std::size_t REASON_COUNT = 35;
 
@@ -56,7 +56,7 @@ const char* reasonName(Reason reason) noexcept;  ///< "ONE_DIRECTION"
 struct Misfit
 {
   Reason reason{};
-  std::string clause;  ///< for people, without a full stop; empty: the joint is judged
+  std::string clause;  ///< reason in words, without a full stop; empty: the joint is judged
 
   bool exists() const { return !clause.empty(); }
 };

@@ -19,14 +19,13 @@ namespace hjt
 {
 namespace
 {
-/// JSON is YAML.
+/// Reads a file of a report. JSON files are valid YAML.
 YAML::Node readData(const std::string& directory, const char* name)
 {
   const std::string path = directory + "/" + name;
   if (!std::filesystem::exists(path))
   {
-    throw InputError(directory + " holds no report of `joint_twin compare` as it is needed here: " + name +
-                     " is missing");
+    throw InputError(directory + " lacks " + name + ", a file of a report of `joint_twin compare`");
   }
   try
   {

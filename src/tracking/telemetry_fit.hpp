@@ -56,7 +56,7 @@ public:
       return {};
     }
     return "its motor turns " + roundedText(found, 4) + " times as far as the joint, but the configured gear has the " +
-           "ratio " + roundedText(ratio_, 4) + ": the gear, a sign or a unit is another than configured";
+           "ratio " + roundedText(ratio_, 4) + ": the gear, a sign or a unit is not as configured";
   }
 
 private:
@@ -74,8 +74,8 @@ private:
 /// A factor with its uncertainty.
 struct FittedFactor
 {
-  double value{ std::numeric_limits<double>::quiet_NaN() };  ///< NaN: not known
-  double uncertainty{};                                      ///< standard deviation
+  double value{ std::numeric_limits<double>::quiet_NaN() };  ///< the factor; NaN: not known
+  double uncertainty{};                                      ///< standard deviation of the factor
 };
 
 /// Checks whether the recorded velocities of a joint agree with the slopes of its angles, by their stamps.

@@ -239,8 +239,8 @@ public:
   /// Share of the rows whose current lies outside its band, forgotten over OUTSIDE_MEMORY [-].
   double outsideShare() const noexcept { return outside_share_; }
 
-  /// Evidence on the measured joint, which is the same in every mode. While something touches the arm, the health is
-  /// not judged and the rows do not count as outside; afterwards the health starts again.
+  /// Evidence on the measured joint. The evidence is the same in every mode. During a contact the tracker does not
+  /// judge the health, and outsideShare does not change. After the contact the health starts again.
   const JointEvidence& evidence() const noexcept { return evidence_; }
 
   /// Clears the evidence, so that the next verdict is of later rows.

@@ -72,7 +72,8 @@ struct JointContext
   bool is_identified{};  ///< the twin's friction was identified from this joint
   bool
       has_controller{};  ///< without `own` the friction is compared with the friction that the arm's controller expects
-  /// Common factor of the friction of the joints, over that of the reference: by temperature or gain, not by a fault.
+  /// Common factor of the joints' friction divided by that of the reference [-]. Its cause is temperature or gain, not
+  /// a fault.
   double arm_friction{ 1.0 };
   Misfit misfit{};  ///< why the rows of the joint are not judged
   /// Standard deviation of the logarithm of `arm_friction`; 0: the joints of its group witness it.
@@ -310,7 +311,7 @@ struct GainEvidence
     return { Reason::EFFORT_UNIT, "the current is " + roundedText(load.value, 2) +
                                       " times what load and inertia take, and " + roundedText(friction, 2) +
                                       " times what friction takes: not the friction but the gain "
-                                      "(telemetry.torque_per_current) or the unit is another than configured" };
+                                      "(telemetry.torque_per_current) or the unit is not as configured" };
   }
 
   FittedFactor load;

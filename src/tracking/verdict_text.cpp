@@ -308,7 +308,7 @@ std::string verdictText(const Verdict& verdict)
   }
   if (!departing.empty())
   {
-    return "Not as in a sound joint: " + joined(departing, "; ") + ".";
+    return "Different from a sound joint: " + joined(departing, "; ") + ".";
   }
   return sound.empty() ? "The motion does not show whether the joint is sound. " + verdict.friction_text :
                          "As in a sound joint: " + joined(sound) + "." +

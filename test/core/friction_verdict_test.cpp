@@ -519,7 +519,7 @@ TEST(CommonFriction, SeveralJointsWithoutFrictionAreNoArmByItself)
   EXPECT_THAT(commonFriction(joints, 0.15).misfit.clause, IsEmpty()) << "one alone may have another gain";
   joints[2].is_below_faults = true;
   EXPECT_EQ(commonFriction(joints, 0.15).misfit.reason, Reason::LESS_THAN_FAULTS);
-  EXPECT_THAT(commonFriction(joints, 0.15).misfit.clause, HasSubstr("led by hand"));
+  EXPECT_THAT(commonFriction(joints, 0.15).misfit.clause, HasSubstr("moves the arm by hand"));
   joints[0].is_none = joints[2].is_none = true;
   EXPECT_EQ(commonFriction(joints, 0.15).misfit.reason, Reason::NO_FRICTION);
   EXPECT_THAT(commonFriction(joints, 0.15).misfit.clause, HasSubstr("modelled or commanded torque"));

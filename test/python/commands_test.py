@@ -269,7 +269,7 @@ class Commands(Recordings):
         for name in of_arrays:
             self.assertEqual(of_arrays[name], of_file[name], name)
         self.assertIn("reading", steps)
-        with self.assertRaisesRegex(hjt.InputError, "recording has 1 joints, which no arm in config/arms has"):
+        with self.assertRaisesRegex(hjt.InputError, "recording has 1 joints, but no arm in config/arms has"):
             hjt.check({name: column[:, 2] if column.ndim > 1 else column for name, column in columns.items()})
 
     def test_checkup_writes_its_motion(self):

@@ -131,7 +131,7 @@ class EveryWay(VerdictCases, unittest.TestCase):
         times, angles = motion(LOOKED_FOR)
         empty, loaded = (recorded(arm, times, angles)[0] for arm in ("ur5", self.loaded))
         self.play((times, angles, np.where(times[:, None] < PICKED, empty, loaded)), faster=3.0)
-        wait_until(lambda: re.search(r"look like a payload of [34]\.\d* .*; since \d\d:\d\d:\d\d UTC",
+        wait_until(lambda: re.search(r"show a payload of [34]\.\d* .* since \d\d:\d\d:\d\d UTC",
                                      self.diagnostics["base"].values("Input")["Payload that is not configured"]),
                    "the payload")
 
@@ -163,8 +163,7 @@ class EveryWay(VerdictCases, unittest.TestCase):
             file.write("{}\n")
         launch = self.launch(f"reference:={os.path.abspath('arm.json')}")
         wait_until(lambda: "FATAL" in launch.log(), "the error", LAUNCH_TIMEOUT)
-        self.assertIn(os.path.abspath("base") + " holds no report of `joint_twin compare` as it is needed here",
-                      launch.log())
+        self.assertIn(os.path.abspath("base") + " lacks comparison.json, a file of a report", launch.log())
 
 
 if __name__ == "__main__":

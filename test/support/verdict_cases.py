@@ -129,7 +129,7 @@ class VerdictCases:
         self.judge("OK", currents=currents, says="payload of ", every_way=True)
 
     def test_payload_that_is_configured_and_not_carried(self):
-        self.judge("OK", self.loaded, says="look like no payload")
+        self.judge("OK", self.loaded, says="show no payload")
 
     def test_pick_and_place(self):
         loaded, _ = recorded(self.loaded, self.times, self.angles)

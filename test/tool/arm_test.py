@@ -215,7 +215,7 @@ class Arm(ArmTest):
             os.mkdir(self.path(name))
         compare = ("compare", "arm.csv", "--arm", "ur5", "--report", "report", "--reference", "other")
         write_csv(self.path("arm.csv"), swinging(3.0))
-        self.fail_with(1, ["other", "no report", "arm.json"], *compare)
+        self.fail_with(1, ["other lacks arm.json, a file of a report"], *compare)
         with open(self.path("other/arm.json"), "w", encoding="ascii") as file:
             json.dump({"arm": "ur5e"}, file)
         self.fail_with(1, ["other", "of a ur5e, not of a ur5"], *compare)

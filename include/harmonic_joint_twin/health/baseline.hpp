@@ -48,7 +48,9 @@ double loadStep(const Parameters& parameters) noexcept;
 /// the payload, which are constant during a job and equal on any path. Those are the load's constant part, its parts
 /// over sine and cosine of the output angle, and the inertia.
 constexpr std::size_t PLACES = 7;
-constexpr std::size_t OWN_PLACES = 2;  ///< number of the first covariates, for which each class has slopes of its own
+/// The first two covariates (temperature and its square) have slopes of their own in each class. The classes share the
+/// slopes of the other covariates.
+constexpr std::size_t OWN_PLACES = 2;
 using Place = std::array<double, PLACES>;
 using PlaceSquares = std::array<Place, PLACES>;  ///< products of two covariates, by pairs
 

@@ -120,7 +120,7 @@ constexpr bool hasLine(LineSignal signal, std::size_t line)
 
 constexpr auto SCALAR_COUNT = static_cast<std::size_t>(ScalarIndicator::COUNT);
 constexpr std::size_t LINE_BLOCK = FIRST_LOADED + 2 * FIRST_LOCKED;
-/// index of the first line in proportion to the load
+/// index of the first indicator of the lines whose amplitude is proportional to the load
 constexpr std::size_t LOADED_BLOCK = SCALAR_COUNT + LINE_SIGNALS * LINE_BLOCK;
 constexpr std::size_t INDICATOR_COUNT = LOADED_BLOCK + 3 * LOADED_COUNT;
 

@@ -159,7 +159,8 @@ using Words = std::vector<std::string>;
   throw UsageError(reason + "\nRun with --help for more information.");
 }
 
-/// Finds an option; arguments have no names on the command line.
+/// Finds an option by its name. Returns null for an unknown name and for an argument, because arguments have no names
+/// on the command line.
 Option* findOption(CommandNode& command, const std::string& name)
 {
   Option* option = command.table.find(name);

@@ -42,8 +42,8 @@ std::string textOfLoad(const CheckedArm& arm)
   {
     return "unknown: no arm in config/arms has these joints; give your own by --arm (docs/arm.md)";
   }
-  return std::string("of the arm's links and payload, from all angles") +
-         (arm.found.has_load ? "; a load is recorded too" : "");
+  return std::string("computed from the angles of all joints, the arm's links and the payload") +
+         (arm.found.has_load ? "; the recording has a load too" : "");
 }
 
 std::string textOfArm(const RecordingOptions& options, const CheckedContents& contents, const CheckedArm& arm)
@@ -90,7 +90,8 @@ std::string textOfEffort(const CheckedContents& contents, const CheckedArm& arm)
   const std::string factor = roundedText(effort.factor.value, 3);
   if (!std::isfinite(effort.factor.value))
   {
-    return std::string("taken for ") + effortUnitName(arm.configured_effort) + ": the load varies too little to tell";
+    return std::string("assumed to be ") + effortUnitName(arm.configured_effort) +
+           ", as configured, because the load varies too little to determine the unit";
   }
   return effort.is_known && effort.unit == arm.configured_effort ?
              std::string(effortUnitName(effort.unit)) + "; with the load it changes " + factor +

@@ -298,7 +298,8 @@ double singleDeviation(const Eigen::VectorXd& pitch)
   return largest;
 }
 
-/// Writes the deviations in the form that the parameters of the tables need.
+/// Writes the deviations as the CSV file that manufacture.flexspline_pitch_table and
+/// manufacture.circular_spline_pitch_table name.
 void writePitch(const std::string& path, const Eigen::VectorXd& pitch)
 {
   CsvWriter csv(path, { "tooth", "deviation" });

@@ -199,7 +199,7 @@ int printTrend(const JudgedTrend& options, const Trend& found)
 
 const Subcommand TREND{ Subject::RECORDING, "trend",
                         "change of each joint's friction over recordings of months. The verdict is the "
-                        "worse one of this trend's and the latest recording's",
+                        "worst of the trends' verdicts and the verdict of the latest judged recording",
                         declareJudging<TrendOptions>, runWatched<trend, printTrend, false, JudgedTrend> };
 
 struct PrintedIdentify : Printed<IdentifyOptions>

@@ -318,14 +318,14 @@ bool jointIsChosen(const ReplayOptions& options, const ParameterMap& map)
 {
   if (!found.other_joints.empty())
   {
-    throw InputError(options.bag + " contains commands for other joints ( " + joined(found.other_joints) +
+    throw InputError(options.bag + " contains commands for other joints (" + joined(found.other_joints) +
                      ") than joint.name = " + joint +
-                     "; choose one with --set joint.name=NAME or an overlay of config/joints");
+                     ". Choose one of these joints with --set joint.name=NAME or an overlay of config/joints");
   }
   throw InputError(options.bag + " has no motor torque on an input topic (" +
                    joined(inputTopics(options.joint_namespace)) +
-                   "); --without-command replays other inputs alone, `joint_twin follow --bag` the motion of a "
-                   "robot. It holds:" +
+                   "). --without-command replays the other inputs alone. `joint_twin follow --bag` follows the "
+                   "motion of a robot. The bag holds these topics:" +
                    listTopics(bag));
 }
 
@@ -373,7 +373,7 @@ BagInputs requireInputs(const rosbag::Bag& bag, const ReplayOptions& options, co
   warn(found.refused_faults, "faults of unknown kind or out of range; ignored");
   if (!found.other_joints.empty())
   {
-    std::cerr << "joint_twin: messages for other joints ignored: " << joined(found.other_joints) << '\n';
+    std::cerr << "joint_twin: the replay ignored messages for other joints: " << joined(found.other_joints) << '\n';
   }
   return found;
 }
