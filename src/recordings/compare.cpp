@@ -96,7 +96,7 @@ std::string groupText(const JointGroup& group, const std::vector<ComparedJoint>&
     return {};
   }
   return "Friction of " + lines[group.begin].name + " to " + lines[group.end - 1].name + " together is " +
-         fixedText(group.median, 2) + " times the expected one: another " +
+         fixedText(group.median, 2) + " times the expected one. The reason is another " +
          (std::abs(std::log(group.median)) < std::log(MOST) ? "temperature or lubricant of these" :
                                                               "arm, gain or unit than given") +
          ", not a fault of one joint. ";
@@ -183,7 +183,7 @@ std::string textOf(const std::vector<ComparedJoint>& lines, const ArmFriction& a
   if (arm.median != 1.0)
   {
     text = "Friction of the whole arm is " + shortNumber(0.01 * std::round(100.0 * arm.median)) +
-           " times the reference's: another temperature or gain, not a fault of one joint. ";
+           " times the reference's. The reason is another temperature or gain, not a fault of one joint. ";
     if (arm.temperature)
     {
       text += "By the twin's law of friction this is " + shortNumber(std::round(*arm.temperature)) +
