@@ -90,7 +90,7 @@ const std::vector<Column<ComparedJoint>> ARM_COLUMNS{
 std::string groupText(const JointGroup& group, const std::vector<ComparedJoint>& lines)
 {
   constexpr double NOTEWORTHY = 0.1;
-  constexpr double MOST = 2.5;  // largest factor that temperature or lubricant makes
+  constexpr double MOST = 2.5;  // largest factor that temperature or lubricant causes [-]
   if (!group.is_known || std::abs(group.median - 1.0) < NOTEWORTHY)
   {
     return {};
@@ -106,7 +106,7 @@ std::string groupText(const JointGroup& group, const std::vector<ComparedJoint>&
 std::string departuresOf(const std::vector<ComparedJoint>& lines)
 {
   std::string text;
-  std::vector<std::pair<std::string, std::vector<std::string>>> unjudged;  // reason, joints
+  std::vector<std::pair<std::string, std::vector<std::string>>> unjudged;  // reason, and joints with this reason
   bool departs = false;
   bool judged = false;
   for (const ComparedJoint& line : lines)
@@ -157,7 +157,7 @@ std::string withoutReference(const std::vector<ComparedJoint>& lines)
 /// Sentence on factors by which the friction is divided before it is judged, if they differ from the arm's factor.
 std::string sharedText(const std::vector<ComparedJoint>& lines, double of_whole_arm)
 {
-  std::vector<std::pair<std::string, std::vector<std::string>>> shares;  // factor, joints
+  std::vector<std::pair<std::string, std::vector<std::string>>> shares;  // factor, and joints with this factor
   for (const ComparedJoint& line : lines)
   {
     constexpr double NOTEWORTHY = 0.02;

@@ -258,7 +258,7 @@ private:
     {
       bag_->offer(number_, now, tracker_);
     }
-    // The column is the torque as a controller counts it, whatever load is chosen.
+    // The column is the torque as a controller counts it, with any choice of the load.
     now.load_torque += has_arm_load_ ? motor_part : 0.0;
     current_.add(now.current.measured);
     residual_.add(now.current.residual());
