@@ -127,10 +127,10 @@ std::string departuresOf(const std::vector<ComparedJoint>& lines)
     }
     else if (!line.contact.empty())
     {
-      text += line.name + ": " + line.contact + " Judged by the rest. ";
+      text += line.name + ": " + line.contact + " The verdict is of the other rows. ";
     }
   }
-  text += judged && !departs ? "No joint departs from a sound one. " : "";
+  text += judged && !departs ? "No joint differs from a sound joint. " : "";
   for (const auto& [why, joints] : unjudged)
   {
     text += "Not judged: " + joined(joints) + ". " + why + " ";
@@ -151,7 +151,7 @@ std::string withoutReference(const std::vector<ComparedJoint>& lines)
   }
   return names.empty() ?
              std::string() :
-             "The reference did not judge the friction of " + joined(names) + "; the twin is taken in its place. ";
+             "The reference did not judge the friction of " + joined(names) + ". The twin's friction replaces it. ";
 }
 
 /// Sentence on factors by which the friction is divided before it is judged, if they differ from the arm's factor.

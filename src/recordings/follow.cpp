@@ -352,7 +352,7 @@ void noticeOfUnusedLoad(const ArmRecording& recording, const FollowOptions& opti
   {
     const std::string load = !recording.isFile() ? "load" : isCsv(source) ? "target_moment" : source.load_topic;
     options.watch.notice("the recording holds a load (" + load +
-                         "), but telemetry.load = model leaves it out; for a controller's rigid-body torque give "
+                         "), but telemetry.load = model ignores it. For a controller's rigid-body torque give "
                          "--config recorded_load.yaml after the joint's own file");
   }
 }

@@ -176,12 +176,12 @@ void identifyJoint(const IdentifyOptions& options, const Parameters& parameters,
     for (RippleLine& line : joint.found.lines)
     {
       line.torque = {};
-      line.refusal = "pieces left out are predicted no better with it";
+      line.refusal = "with this ripple the twin predicts pieces left out no better than without";
     }
   }
   if (is_arm && left_out.identified.all > left_out.configured.all)
   {
-    joint.refusal = "what was identified predicts pieces left out worse";
+    joint.refusal = "the identified parameters predict pieces left out worse than the configured ones";
   }
 }
 
