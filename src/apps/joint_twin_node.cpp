@@ -78,12 +78,13 @@ bool isKnownToMaster()
                      [&](const std::string& topic) { return hasThisNode(state[0], topic); });
 }
 
-/// Waits until the node shall end. @returns false if another master has come. That one knows nothing of the node, so
-/// that its topics cannot be found; a new start sets its parameters and registrations again.
+/// Waits until the node shall end. @returns false if another master has replaced the first one. The new master does not
+/// know the node's topics; a new start of the node sets its parameters and registrations again.
 bool waitForShutdownOrNewMaster()
 {
   constexpr int LOOKS = 100;  // number of polls for one question to the master
-  constexpr int MISSES = 2;   // successive negative answers; a single one may be due to a master that starts or ends
+  constexpr int MISSES =
+      2;  // number of successive negative answers; a starting or ending master may cause a single one
   const ros::WallDuration period(0.05);
   int misses = 0;
   for (int look = 1; ros::ok() && misses < MISSES; ++look)
@@ -97,7 +98,7 @@ bool waitForShutdownOrNewMaster()
   return !ros::ok();
 }
 
-/// The live twin: connects a `Twin` to the topics and services of a node. It only translates.
+/// The live twin: connects a `Twin` to the topics and services of a node.
 ///
 /// Threads: the loop advances the twin, a publisher sends the messages, another thread ages the drive. Callbacks,
 /// diagnostics and services run in the spinner's threads, at least two, because a reset waits for the loop.

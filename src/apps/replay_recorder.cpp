@@ -51,7 +51,8 @@ std::set<std::string> topicsToRecord(const std::string& played_bag, const std::s
 /// messages lose joint states if the machine stalls for 0.1 s. With `--all` on a simulated clock it searches for topics
 /// only once the clock runs, and misses the first messages.
 ///
-/// Received messages wait in memory for the disk, up to a number of bytes. Beyond it messages are lost and counted.
+/// Received messages wait in memory for the disk, up to a number of bytes. Beyond this number messages are lost and
+/// counted.
 class TopicRecorder
 {
 public:
@@ -61,7 +62,7 @@ public:
   {
     for (const std::string& topic : topics)
     {
-      constexpr std::uint32_t NO_BOUND = 0;  // ROS' own queue has no limit, because `receive` empties it at once
+      constexpr std::uint32_t NO_BOUND = 0;  // ROS' own queue has no limit, because `receive` empties the queue at once
       subscribers_.push_back(node_.subscribe<ShapeShifter>(
           topic, NO_BOUND, [this, topic](const ShapeShifter::ConstPtr& message) { receive(topic, message); },
           ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay()));
@@ -110,7 +111,7 @@ private:
   }
 
   /// Writes waiting messages, or waits a moment. Before the clock has started there is no time of recording. Messages
-  /// from that time get the first one, for example those of a twin that received the clock earlier.
+  /// from then get the first time of the clock, for example those of a twin that received the clock earlier.
   void writeWaiting()
   {
     constexpr std::chrono::milliseconds MOMENT{ 50 };

@@ -12,7 +12,8 @@ namespace hjt
 {
 namespace
 {
-// Windows in a mean, so that it can leave out an outlier, and means in a row for another level.
+// Number of windows in a mean, so that the mean can leave out an outlier, and number of successive means that change
+// the level.
 constexpr int LEAST_EVIDENCE = 3;
 }  // namespace
 
@@ -77,7 +78,7 @@ const Assessment& Assessor::update(const SignalIndicators& indicators, const Sig
 
 void Assessor::begin(const SignalIndicators& indicators, const SignalIndicators* model) noexcept
 {
-  advance(searchLength());  // of the window before, if it is not done
+  advance(searchLength());  // finishes the search of the window before
   judge(indicators, model);
   if (!is_searching_)
   {
@@ -85,7 +86,7 @@ void Assessor::begin(const SignalIndicators& indicators, const SignalIndicators*
   }
 }
 
-/// Judges a window, all but its cause.
+/// Judges a window, except for the cause.
 void Assessor::judge(const SignalIndicators& indicators, const SignalIndicators* model) noexcept
 {
   assessment_.stamp = indicators.stamp;
@@ -109,10 +110,12 @@ void Assessor::judge(const SignalIndicators& indicators, const SignalIndicators*
     assessment_.alternative_count = 0;
     assessment_.evidence_count = 0;
   }
-  else if (assessment_.largest_score > 1.0)  // else no evidence in this window: the causes stand until the level falls
+  else if (assessment_.largest_score >
+           1.0)  // else this window has no evidence, and the causes stay until the level falls
   {
     listEvidence(indicators, scores);
-    if (!signatures_->signatures.empty())  // else nothing is known of causes, not even that it is none of the known
+    if (!signatures_->signatures
+             .empty())  // without signatures nothing is known of causes, not even that no known cause fits
     {
       point_ = indicators.point;
       cause_search_.start();
@@ -139,7 +142,7 @@ void Assessor::setState(AssessmentState state) noexcept
   assessment_.state = state;
   if (state == AssessmentState::ASSESSED)
   {
-    assessment_.windows_needed = 2 * least_windows_ - 1;  // so many means of so many windows
+    assessment_.windows_needed = 2 * least_windows_ - 1;  // number of windows in that number of successive means
     const bool is_verdict =
         assessment_.level != HealthLevel::OK || assessment_.windows_here >= assessment_.windows_needed;
     assessment_.state = is_verdict ? state : AssessmentState::TOO_FEW_WINDOWS;
@@ -230,7 +233,7 @@ void Assessor::explain(const CausePosterior& posterior) noexcept
   }
 }
 
-/// Lists the indicators beyond the threshold, and the strongest one in any case.
+/// Lists the indicators beyond the threshold, or the indicator with the largest score if none is beyond it.
 void Assessor::listEvidence(const SignalIndicators& indicators, const FeatureScores& scores) noexcept
 {
   std::array<FeatureScore, FEATURE_COUNT> sorted = scores;

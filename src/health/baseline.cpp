@@ -23,7 +23,8 @@ constexpr std::size_t TRIMMED = 5;              // the trimmed mean leaves out o
 constexpr std::size_t LEAST_WINDOWS = 3;        // least number of windows of which one can be left out at either end
 constexpr double OTHER_PAYLOAD_WIDENING = 4.0;  // makes a spread 2.2 times as large, which would hide most faults
 constexpr double LEAST_RIDGE = 4e-4;            // square of the noise of the place, 0.02 of half a class
-constexpr std::size_t JUMPS = 2;  // steps that are no scatter: onset of a fault, newest window beside the oldest
+constexpr std::size_t JUMPS =
+    2;  // number of steps that are not scatter: the onset of a fault, and the step from the oldest to the newest window
 
 /// Mean of Baseline::Compared::along over some windows.
 template <class Window>
@@ -51,11 +52,11 @@ Deviation deviationOf(double difference, double expected, double spread, const U
   return deviation;
 }
 
-constexpr double LOAD_STEP = 0.375;           // share of the rated torque
-constexpr double TEMPERATURE_STEP = 10.0;     // [K]
-constexpr double ONE_WAY = 0.5;               // share of travel one way less the other that counts as one direction
-constexpr double REACH = 0.25;                // share of a step beyond the edge of a class
-constexpr double INERTIA_ACCELERATION = 5.0;  // [rad/s^2]
+constexpr double LOAD_STEP = 0.375;        // width of a class of load, as a share of the rated torque [-]
+constexpr double TEMPERATURE_STEP = 10.0;  // width of a class of temperature [K]
+constexpr double ONE_WAY = 0.5;            // share of travel one way less the other that counts as one direction
+constexpr double REACH = 0.25;  // distance beyond the edge of a class that still counts, as a share of a step [-]
+constexpr double INERTIA_ACCELERATION = 5.0;  // acceleration that converts the inertia to a torque [rad/s^2]
 
 int stepOf(double value, double step) noexcept
 {
@@ -169,7 +170,7 @@ ReferenceBin* Baseline::find(const OperatingPoint& point) noexcept
 {
   const OperatingBin bin = binOf(point, load_step_);
   ReferenceBin* own = nullptr;
-  ReferenceBin* near = nullptr;  // with most windows
+  ReferenceBin* near = nullptr;  // near class with the most windows
   for (ReferenceBin& known : bins_)
   {
     if (known.bin == bin)
@@ -278,7 +279,7 @@ Place Baseline::placeFrom(const ReferenceBin& bin, const OperatingPoint& point) 
   mapped(place) = mapped(here) - mapped(bin.mean_place);
   if (carried_)
   {
-    mapped(place).tail<PLACES - OWN_PLACES>().setZero();  // load and payload are the model's to follow
+    mapped(place).tail<PLACES - OWN_PLACES>().setZero();  // the model accounts for load and payload
   }
   return place;
 }
@@ -322,8 +323,8 @@ void Baseline::take(const ReferenceBin& bin, const Place& place, const SignalInd
 
 Baseline::Average Baseline::average(std::size_t first, std::size_t count, std::size_t indicator) const noexcept
 {
-  std::array<double, MAX_EVIDENCE> differences;  // of which the first `found` count
-  std::array<double, MAX_EVIDENCE> steps;        // half the square from each to the next
+  std::array<double, MAX_EVIDENCE> differences;  // differences, of which the first `found` count
+  std::array<double, MAX_EVIDENCE> steps;        // half the square of the step from each window to the next
   std::size_t found = 0;
   Average average;
   for (std::size_t i = first; i < first + count; ++i)
@@ -365,17 +366,17 @@ void Baseline::compare(const ReferenceBin& bin, std::size_t first, std::size_t c
   double causes = 0.0;
   double freedoms = 0.0;
   double compared = 0.0;
-  Eigen::Vector3d scalars = Eigen::Vector3d::Zero();  // number of those compared, sums of their Uncertainty
+  Eigen::Vector3d scalars = Eigen::Vector3d::Zero();  // number of compared scalars, sums of their Uncertainty
   const PlaceVector along = meanAlong(&compared_[first], count);
   residual_.windows = static_cast<int>(count);
   const std::array<double, INDICATOR_COUNT> alike = varianceOfAlike(bin);
   const std::array<CommonPersistence, TAILS> persistences{ commonPersistence(bin, 0), commonPersistence(bin, 1) };
   for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
   {
-    const bool sound_known = std::isfinite(residual_.sound[i]);  // else the model did not determine it in this window
+    const bool sound_known = std::isfinite(residual_.sound[i]);  // the model determined the indicator
     residual_.sound[i] = sound_known ? residual_.sound[i] : 0.0;
     const Average average = this->average(first, count, i);
-    if (average.weight == 0.0)  // too few windows determined it
+    if (average.weight == 0.0)  // too few windows determined the indicator
     {
       continue;
     }

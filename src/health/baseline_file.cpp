@@ -19,7 +19,7 @@ namespace hjt
 namespace
 {
 constexpr int FORMAT = 4;       // changes with the meaning and the stored numbers of the indicators
-constexpr int OWN_NUMBERS = 6;  // numbers of an indicator before the fitted ones
+constexpr int OWN_NUMBERS = 6;  // count of an indicator's numbers before the fitted ones
 
 std::size_t indicatorNamed(const std::string& name)
 {

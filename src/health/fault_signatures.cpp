@@ -14,9 +14,10 @@ namespace hjt
 {
 namespace
 {
-constexpr std::array TOGETHER{ causeOf(FaultKind::TOOTH_WEAR), causeOf(FaultKind::INTERFACE_WEAR),
-                               causeOf(FaultKind::LUBRICANT_DEGRADATION) };  // wear by use (docs/life.md)
-constexpr double LESS = 0.4;  // severity of a wear over that of a larger wear beside it
+constexpr std::array TOGETHER{
+  causeOf(FaultKind::TOOTH_WEAR), causeOf(FaultKind::INTERFACE_WEAR), causeOf(FaultKind::LUBRICANT_DEGRADATION)
+};                            // causes that are wear by use (docs/life.md)
+constexpr double LESS = 0.4;  // severity of a wear over the severity of a larger wear at the same time [-]
 
 /// Causes without signatures: an unknown fault of a strength S, a brake that drags, and noise of the sensors.
 struct Unknown
@@ -25,7 +26,7 @@ struct Unknown
   double drag;      // additional friction, equal at every speed, over the sound running torque: a brake
   double noise;     // additional noise of the sensors, as a share
 
-  double prior() const { return strength > 0.0 ? 1.0 : 0.1; }  // brakes and sensors fail less often than gears wear
+  double prior() const { return strength > 0.0 ? 1.0 : 0.1; }  // a brake or a sensor fails less often than a gear wears
 };
 constexpr std::array<Unknown, 12> UNKNOWNS{ { { 3.0, 0.0, 0.0 },
                                               { 10.0, 0.0, 0.0 },
@@ -113,7 +114,7 @@ FeatureScores featureScores(const Deviations& deviations) noexcept
       const std::size_t indicator = amplitudeIndex(signal, line);
       if (!isPhaseLocked(line))
       {
-        // Such a line only grows: an amplitude below the mean is no fault.
+        // A fault only makes such a line grow, so an amplitude below the mean is no fault.
         const double score = std::max(deviations[indicator].score, 0.0);
         take(row.feature, indicator, score, score == 0.0 ? 0.0 : deviations[indicator].threshold_factor);
         continue;
@@ -262,7 +263,7 @@ void CauseSearch::advance(const WindowResidual& residual, const OperatingPoint& 
       const double prior = rows_[row].prior * (OTHER_MOTION + likeness(first.motion, point));
       Sum& sum = sums_[static_cast<std::size_t>(first.cause)];
       sum.add(likelihoods_[row], prior, first.severity);
-      sum.priors += row < set_->signatures.size() ? prior : 0.0;  // what comes together adds to what comes alone
+      sum.priors += row < set_->signatures.size() ? prior : 0.0;  // combined causes add to the prior of single causes
     }
     else
     {

@@ -12,8 +12,9 @@ namespace hjt
 namespace
 {
 constexpr int MARKS_PER_TOOTH = 16;
-constexpr double MIN_TRAVEL = 1e-6;      // of the output, as a share of the nominal one [-]
-constexpr double FARTHEST_PLACE = 1e15;  // in marks; beyond it a double cannot tell one mark from the next
+constexpr double MIN_TRAVEL = 1e-6;  // least travel of the output, as a share of its nominal travel [-]
+constexpr double FARTHEST_PLACE =
+    1e15;  // farthest place in marks; beyond it a double cannot separate neighbouring marks
 }  // namespace
 
 TurnWindow::TurnWindow(const GearParameters& gear)

@@ -24,7 +24,7 @@ namespace
 {
 using Complex = std::complex<double>;
 
-constexpr double BIN = TWO_PI / 8.0;  // of the motor angle, in which a line that slips stays in phase [rad]
+constexpr double BIN = TWO_PI / 8.0;  // width in the motor angle in which a line that slips stays in phase [rad]
 constexpr std::array SEARCHED{ LineSignal::MOTOR_RIPPLE, LineSignal::KINEMATIC_ERROR };
 constexpr double NOISE_FROM = -BearingSlip::MOST;
 constexpr double NOISE_TO = 2.0 * BearingSlip::MOST;
@@ -85,7 +85,7 @@ BearingSlip::BearingSlip(const Parameters& parameters)
 /// Lines whose order slip changes by so much that the noise about them is known.
 std::vector<BearingSlip::BearingLine> BearingSlip::linesOf(const OrderTracker& fitted) const
 {
-  constexpr double MOVES = 5.0;  // orders a slip of 1
+  constexpr double MOVES = 5.0;  // least change of the order for a slip of 1 [1/turn]
   const LineOrders without = trackedOrders(gear_, bearing_);
   const LineOrders with = trackedOrders(gear_, bearing_, MOST);
   std::vector<BearingLine> lines;
@@ -103,10 +103,11 @@ std::vector<BearingSlip::BearingLine> BearingSlip::linesOf(const OrderTracker& f
 double BearingSlip::find(const OrderTracker& fitted) const
 {
   constexpr double CLEARLY = 25.0;
-  constexpr double FEWEST_TURNS = 10.0;  // fewer do not tell a line that slips from one that does not
-  constexpr double MOST_TURNS = 500.0;   // time and memory grow with them; a damaged angle has any number
-  constexpr double EVEN = 0.1;           // spread of a speed at which folded lines are sharp
-  constexpr double FINE = 0.25;          // steps of the slip, of what the fastest line resolves
+  constexpr double FEWEST_TURNS = 10.0;  // least number of turns that separate a line that slips from one that does not
+  constexpr double MOST_TURNS =
+      500.0;  // largest number of turns, because time and memory grow with it and a damaged angle may have any number
+  constexpr double EVEN = 0.1;   // spread of a speed at which folded lines are sharp
+  constexpr double FINE = 0.25;  // step of the slip, as a share of what the fastest line resolves [-]
   const std::vector<BearingLine> lines = linesOf(fitted);
   const auto [least, most] =
       std::minmax_element(samples_.begin(), samples_.end(),
@@ -145,7 +146,7 @@ double BearingSlip::find(const OrderTracker& fitted) const
   const double zero_steps = std::ceil(-NOISE_FROM * fastest * range / (FINE * TWO_PI));
   const double step = -NOISE_FROM / zero_steps;
   const auto zero = static_cast<std::size_t>(zero_steps);
-  std::array<std::vector<double>, SEARCHED.size()> all;  // by slip
+  std::array<std::vector<double>, SEARCHED.size()> all;  // squares of all lines, by slip
   for (std::size_t i = 0; i < SEARCHED.size(); ++i)
   {
     all[i].resize(static_cast<std::size_t>((NOISE_TO - NOISE_FROM) / step) + 1);

@@ -18,9 +18,9 @@ constexpr double CARRIED_WINDOWS = 10.0;  // windows in the means that CarriedEr
 constexpr double LEAST_INVERSE = 1e-6;    // 1 / degrees of freedom: beyond a million it is the normal distribution
 constexpr int MIN_COMMON = 4;             // number of indicators that a common persistence needs
 
-// Of the friction, over Repeatability::share.
-constexpr double FRICTION_SHARE = 3.0;    // [-]
-constexpr double FRICTION_TORQUE = 22.0;  // at the joint [N.m]
+// Repeatability of the friction over Repeatability::share.
+constexpr double FRICTION_SHARE = 3.0;    // part in proportion to the friction [-]
+constexpr double FRICTION_TORQUE = 22.0;  // constant part at the joint [N.m]
 
 /// Size of the difference between drive and model. For a line it is the root of the sum of squares over the lines of
 /// its signal whose phase stays, because resonances make each of them large in one motion and small in another.
@@ -176,8 +176,8 @@ constexpr double TAIL_STEP = 0.01;     // step of 1 / degrees of freedom
 // the quantile of chi square with one degree of freedom.
 constexpr double LEAST_GAIN = 1.92;
 
-/// Whether an indicator tells of the tail. Moments of a residual and amplitudes of lines whose phase is free do not:
-/// they are not normal quantities, and have spreads and a law of their own.
+/// Whether an indicator shows the tail. Moments of a residual and amplitudes of lines whose phase is free do not show
+/// the tail, because they are not normally distributed and have spreads and a law of their own.
 bool tellsTail(std::size_t indicator) noexcept
 {
   return indicator != indexOf(ScalarIndicator::RESIDUAL_KURTOSIS) &&
@@ -189,7 +189,7 @@ struct Residuals
 {
   static constexpr std::size_t CLASSES = 48;
   static constexpr double LEAST = 0.1;
-  static constexpr double PER_UNIT = 6.0;  // classes, of the natural logarithm
+  static constexpr double PER_UNIT = 6.0;  // number of classes for a unit of the natural logarithm
 
   void add(double off, double with_freedom) noexcept
   {
@@ -313,7 +313,7 @@ struct SharedPlaces
     return mapped(with).tail<SHARED>() - by_own.transpose() * mapped(with).head<OWN>();
   }
 
-  Eigen::Matrix<double, OWN, SHARED> by_own;  // slopes of the shared ones over the own ones
+  Eigen::Matrix<double, OWN, SHARED> by_own;  // slopes of the shared coordinates over the own ones
   SharedSquares squares;
 };
 
@@ -366,7 +366,7 @@ void fitSlopes(ReferenceBin& bin, const LearnedSums& learned, const std::vector<
     }
     const double repeats = repeatsWithin(repeatability, bin, indicator);
     reference.variance = sums.square / (sums.count - 1.0);
-    for (int i = 0; i < RIDGE_STEPS; ++i)  // the spread shrinks with the slopes, and the ridge with it
+    for (int i = 0; i < RIDGE_STEPS; ++i)  // with the slopes the spread shrinks, and with the spread the ridge
     {
       reference.ridge = std::max((reference.variance + repeats * repeats) / (usual * usual), PLACE_ERROR * PLACE_ERROR);
       Squares ridged = information;
@@ -417,7 +417,7 @@ void fitCommonCauses(ReferenceBin& bin, const ReferenceSums& sums, FitRoom& room
   using Mixed = Eigen::Matrix<double, PLACES, INDICATOR_COUNT>;
   Mixed slopes = Mixed::Zero();
   Mixed mixed = Mixed::Zero();
-  Vector scale = Vector::Zero();  // 0: left out
+  Vector scale = Vector::Zero();  // scale of each indicator; 0: left out
   int used = 0;
   double slopes_freedom = 0.0;
   for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
@@ -514,7 +514,7 @@ std::array<double, INDICATOR_COUNT> relativeErrors(const SignalIndicators& indic
   std::array<double, INDICATOR_COUNT> relative{};
   for (std::size_t i = SCALAR_COUNT; i < INDICATOR_COUNT; ++i)
   {
-    const double error = indicators.uncertainty[i];  // of a foreign file NaN too
+    const double error = indicators.uncertainty[i];  // also NaN in a file of another program
     relative[i] = error > 0.0 ? error / least[static_cast<std::size_t>(signalOf(i))] : 0.0;
   }
   return relative;

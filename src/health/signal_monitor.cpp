@@ -13,7 +13,7 @@ namespace hjt
 namespace
 {
 constexpr double MEAN_TRAVEL = 0.5 * TWO_PI;     // travel over which the mean speed forgets [rad]
-constexpr double MEAN_TIME = 0.5;                // time over which it forgets, for a joint that stands [s]
+constexpr double MEAN_TIME = 0.5;                // time over which the mean speed forgets while the joint stands [s]
 constexpr double LARGEST_RIPPLE = 12e-3;         // ripple of the speed as read in a calm motion [rad]
 constexpr double SETTLING_TIME = 0.1;            // time after a motion that was not calm [s]
 constexpr std::int64_t WAITING_TIME = 20000000;  // time before a motion that is not calm [ns]

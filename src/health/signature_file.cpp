@@ -62,7 +62,7 @@ public:
   }
 
 private:
-  /// `line` 0: of the file as a whole.
+  /// Refuses the file. `line`: line of the error; 0: the file as a whole.
   [[noreturn]] void fail(std::size_t line, const std::string& what) const
   {
     throw ParameterError("indicators.signatures: " + path_ + (line == 0 ? "" : ":" + std::to_string(line)) + ": " +
@@ -136,7 +136,7 @@ private:
     }
   }
 
-  /// The one of `first` to `count` that has this name. `kind`: for the message.
+  /// The value from `first` to `count` that has this name. `kind`: kind of the value, for the message.
   template <class NameOf>
   std::size_t named(const std::string& name, const NameOf& name_of, std::size_t first, std::size_t count,
                     const std::string& kind, std::size_t line) const

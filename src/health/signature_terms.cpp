@@ -82,13 +82,13 @@ SignatureTerms::SignatureTerms(const SignatureSet& set, const WindowResidual& re
 
 double SignatureTerms::logLikelihood(const SignatureParts& parts, double strength, double alike) const noexcept
 {
-  std::array<double, INDICATOR_COUNT> changes{};  // by the signature
+  std::array<double, INDICATOR_COUNT> changes{};  // changes of the indicators by the signature
   for (std::size_t i = 0; i < count_; ++i)
   {
     changes[i] = changeBy(parts, terms_[i]);
   }
   const double widening = 1.0 + strength * strength;
-  double severities = 0.0;  // squares
+  double severities = 0.0;  // sum of the squares of the severities
   for (const Signature* part : parts)
   {
     severities += part != nullptr ? part->severity * part->severity : 0.0;
@@ -276,12 +276,13 @@ SeenFrom seenFrom(const Assessor& assessor, const OperatingPoint& point)
   std::transform(rows.begin(), rows.end(), directions.begin(),
                  [&](const std::vector<std::size_t>& own) { return terms.direction(own, point); });
 
-  /// Over the signatures of one cause and severity, by how far their motion is like the window's.
+  /// Sums over the signatures of one cause and severity, weighted by the likeness of their motion to the
+  /// window's.
   struct Mean
   {
     double weight{};
-    double pattern{};  // Student's t
-    double single{};   // score of the indicator furthest off
+    double pattern{};  // score of the pattern by Student's t
+    double single{};   // largest score of a single indicator
   };
   std::map<std::pair<std::size_t, double>, Mean> means;
   for (const Signature& signature : set.signatures)

@@ -13,11 +13,11 @@ namespace hjt
 {
 namespace
 {
-/// Cost of an arm by the gains that the recording states. Stated gains are exact, and so are known gains of a type: a
-/// few that agree show which arm it is.
+/// Cost of an arm by the gains that the recording states. Stated gains and known gains of a type are exact: if a few of
+/// them agree, they show the type of the arm.
 double costOfGains(const ArmRecording& recording, const RecordingOptions& options)
 {
-  constexpr double KNOWN = 0.01;  // standard deviation of the logarithm [-]
+  constexpr double KNOWN = 0.01;  // standard deviation of a gain's logarithm [-]
   constexpr double MOST = 10.0;   // largest cost of one joint, whose type's gain may not be known [-]
   double cost = 0.0;
   for (std::size_t i = 0; i < recording.joints().size(); ++i)
@@ -33,8 +33,8 @@ double costOfGains(const ArmRecording& recording, const RecordingOptions& option
   return cost;
 }
 
-/// Holds the joints against the friction that the controller expects, if no joint has a reference of its own and the
-/// controller expects that of sound joints.
+/// Compares the joints with the friction that the controller expects, if no joint has a reference of its own and the
+/// controller expects the friction of sound joints.
 void holdAgainstController(const AssessedJoints& joints)
 {
   std::vector<const JointEvidence*> evidences;
@@ -127,7 +127,7 @@ ArmAssessment pass(const ArmRecording& recording, const AssessmentSettings& sett
 }
 
 /// Names another shipped arm with the same joints in the misfits, if that arm explains the recording so much better
-/// that it contradicts the given one. An arm of the user's own file is not doubted.
+/// that it contradicts the given one. The function does not doubt an arm of the user's own file.
 void nameOther(const ArmRecording& recording, std::vector<Misfit>& misfits)
 {
   if (!mayBeOtherArm(misfits))
@@ -209,7 +209,7 @@ ArmAssessment assess(ArmRecording& recording, const AssessmentSettings& settings
     arm = pass(recording, settings, false, false, fit);
     if (!law.isTrying())
     {
-      break;  // the load was taken back: it would be found again
+      break;  // the trial of the load failed, and another pass would find the same load
     }
   }
   arm.assumed = law.counts();

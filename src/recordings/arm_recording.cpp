@@ -39,7 +39,7 @@ Parameters parametersOf(const ArmJoint& joint, double gain, const RecordingOptio
   return parameters;
 }
 
-/// An arm of one joint.
+/// Makes an arm that has one joint.
 ArmDescription armOf(const std::string& short_name)
 {
   ArmDescription arm;
@@ -288,7 +288,7 @@ void ArmRecording::noticeOf(const MotionFindings& found) const
   {
     options_.watch.notice(source_.path + ": " + remark);
   }
-  if (!is_arm_ && found.misfit.exists())  // the misfit of an arm is one of its fit
+  if (!is_arm_ && found.misfit.exists())  // RecordingFit has the misfit of an arm
   {
     options_.watch.notice(source_.path + ": " + found.misfit.clause);
   }

@@ -30,8 +30,8 @@ namespace hjt
 {
 namespace
 {
-/// Writes the rows of an arm's motion to a file. A CSV file has one row for each; a `.bag` has the messages that the
-/// arm's driver would publish; an `.h5` file is like a run of a data set.
+/// Writes the rows of an arm's motion to a file. A CSV file has one line for each row; a `.bag` has the messages that
+/// the arm's driver would publish; an `.h5` file is like a run of a data set.
 class ArmRows
 {
 public:
@@ -117,7 +117,7 @@ private:
   std::vector<double> values_;
 };
 
-/// Sets the arm's state_rate to the rate that is next to the wanted rate of rows and divides solver.rate.
+/// Sets the arm's state_rate to a rate that divides solver.rate and is nearest to the wanted rate of rows.
 void takeRate(const ArmRunOptions& options, double solver_rate, ArmDescription& arm)
 {
   const double wanted = options.rate.value_or(arm.state_rate);

@@ -90,13 +90,13 @@ const std::vector<Column<ComparedJoint>> ARM_COLUMNS{
 std::string groupText(const JointGroup& group, const std::vector<ComparedJoint>& lines)
 {
   constexpr double NOTEWORTHY = 0.1;
-  constexpr double MOST = 2.5;  // largest factor that temperature or lubricant makes
+  constexpr double MOST = 2.5;  // largest factor that temperature or lubricant causes [-]
   if (!group.is_known || std::abs(group.median - 1.0) < NOTEWORTHY)
   {
     return {};
   }
   return "Friction of " + lines[group.begin].name + " to " + lines[group.end - 1].name + " together is " +
-         fixedText(group.median, 2) + " times the expected one: another " +
+         fixedText(group.median, 2) + " times the expected one. The reason is another " +
          (std::abs(std::log(group.median)) < std::log(MOST) ? "temperature or lubricant of these" :
                                                               "arm, gain or unit than given") +
          ", not a fault of one joint. ";
@@ -106,7 +106,7 @@ std::string groupText(const JointGroup& group, const std::vector<ComparedJoint>&
 std::string departuresOf(const std::vector<ComparedJoint>& lines)
 {
   std::string text;
-  std::vector<std::pair<std::string, std::vector<std::string>>> unjudged;  // reason, joints
+  std::vector<std::pair<std::string, std::vector<std::string>>> unjudged;  // reason, and joints with this reason
   bool departs = false;
   bool judged = false;
   for (const ComparedJoint& line : lines)
@@ -127,10 +127,10 @@ std::string departuresOf(const std::vector<ComparedJoint>& lines)
     }
     else if (!line.contact.empty())
     {
-      text += line.name + ": " + line.contact + " Judged by the rest. ";
+      text += line.name + ": " + line.contact + " The verdict is of the other rows. ";
     }
   }
-  text += judged && !departs ? "No joint departs from a sound one. " : "";
+  text += judged && !departs ? "No joint differs from a sound joint. " : "";
   for (const auto& [why, joints] : unjudged)
   {
     text += "Not judged: " + joined(joints) + ". " + why + " ";
@@ -151,13 +151,13 @@ std::string withoutReference(const std::vector<ComparedJoint>& lines)
   }
   return names.empty() ?
              std::string() :
-             "The reference did not judge the friction of " + joined(names) + "; the twin is taken in its place. ";
+             "The reference did not judge the friction of " + joined(names) + ". The twin's friction replaces it. ";
 }
 
 /// Sentence on factors by which the friction is divided before it is judged, if they differ from the arm's factor.
 std::string sharedText(const std::vector<ComparedJoint>& lines, double of_whole_arm)
 {
-  std::vector<std::pair<std::string, std::vector<std::string>>> shares;  // factor, joints
+  std::vector<std::pair<std::string, std::vector<std::string>>> shares;  // factor, and joints with this factor
   for (const ComparedJoint& line : lines)
   {
     constexpr double NOTEWORTHY = 0.02;
@@ -183,7 +183,7 @@ std::string textOf(const std::vector<ComparedJoint>& lines, const ArmFriction& a
   if (arm.median != 1.0)
   {
     text = "Friction of the whole arm is " + shortNumber(0.01 * std::round(100.0 * arm.median)) +
-           " times the reference's: another temperature or gain, not a fault of one joint. ";
+           " times the reference's. The reason is another temperature or gain, not a fault of one joint. ";
     if (arm.temperature)
     {
       text += "By the twin's law of friction this is " + shortNumber(std::round(*arm.temperature)) +

@@ -87,7 +87,7 @@ NumberTable<COLUMNS>::Names columnNames()
 /// Whether the arm is at rest, by the target speeds or, where these are not recorded, by the measured speeds.
 bool isAtRest(const std::array<double, COLUMNS>& row)
 {
-  constexpr double STILL = 1e-3;  // [rad/s]
+  constexpr double STILL = 1e-3;  // largest speed at rest [rad/s]
   for (std::size_t joint = 0; joint < JOINTS; ++joint)
   {
     const double target = row[TARGET_SPEED + joint];
@@ -121,7 +121,7 @@ double agreedRatio(std::vector<double>& ratios, std::size_t rows)
 
 std::vector<double> readStatedGains(const MotionSource& source)
 {
-  constexpr int ROWS = 50000;             // rows that are read: minutes at any rate
+  constexpr int ROWS = 50000;             // number of rows that are read, which are minutes at any rate
   constexpr double LEAST_CURRENT = 0.01;  // least current whose digits suffice [A]
   constexpr double WIDEST = 100.0;        // largest ratio of true torque and current [N.m/A]
   NumberTable<COLUMNS> table(source.path, columnNames(), COLUMNS, COLUMNS, controllerColumns);

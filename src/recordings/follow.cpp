@@ -258,7 +258,7 @@ private:
     {
       bag_->offer(number_, now, tracker_);
     }
-    // The column is the torque as a controller counts it, whatever load is chosen.
+    // The column is the torque as a controller counts it, with any choice of the load.
     now.load_torque += has_arm_load_ ? motor_part : 0.0;
     current_.add(now.current.measured);
     residual_.add(now.current.residual());
@@ -352,7 +352,7 @@ void noticeOfUnusedLoad(const ArmRecording& recording, const FollowOptions& opti
   {
     const std::string load = !recording.isFile() ? "load" : isCsv(source) ? "target_moment" : source.load_topic;
     options.watch.notice("the recording holds a load (" + load +
-                         "), but telemetry.load = model leaves it out; for a controller's rigid-body torque give "
+                         "), but telemetry.load = model ignores it. For a controller's rigid-body torque give "
                          "--config recorded_load.yaml after the joint's own file");
   }
 }

@@ -118,7 +118,7 @@ constexpr int ARM_FOLDS = 5;
 /// arm's joint is kept.
 constexpr double RIPPLE_GAIN = 0.95;
 
-/// @throws InputError if the options have a part that no recording has.
+/// @throws InputError if the options name a part that the recording cannot have.
 void requireParts(const IdentifyOptions& options)
 {
   if (!options.arm.empty() && options.judge)
@@ -176,12 +176,12 @@ void identifyJoint(const IdentifyOptions& options, const Parameters& parameters,
     for (RippleLine& line : joint.found.lines)
     {
       line.torque = {};
-      line.refusal = "pieces left out are predicted no better with it";
+      line.refusal = "with this ripple the twin predicts pieces left out no better than without";
     }
   }
   if (is_arm && left_out.identified.all > left_out.configured.all)
   {
-    joint.refusal = "what was identified predicts pieces left out worse";
+    joint.refusal = "the identified parameters predict pieces left out worse than the configured ones";
   }
 }
 
@@ -232,7 +232,8 @@ std::vector<IdentifiedJoint> identifyJoints(const IdentifyOptions& options, cons
 {
   std::vector<IdentifiedJoint> joints;
   const auto progress = options.watch.progress("identifying");
-  const std::size_t fits = 1 + static_cast<std::size_t>(foldsOf(options));  // of a joint; each takes the same time
+  const std::size_t fits =
+      1 + static_cast<std::size_t>(foldsOf(options));  // number of fits of a joint; each fit takes the same time
   for (std::size_t i = 0; i < samples.size() && !options.watch.stopped(); ++i)
   {
     IdentifiedJoint& joint = joints.emplace_back();

@@ -50,8 +50,8 @@ double ageOfSpeeds(const std::vector<ControllerRow>& rows, const std::vector<dou
   return squares > 0.0 ? std::max(products / squares, 0.0) : 0.0;
 }
 
-/// Computes the errors as the controller had them. It takes set points late, and their speeds as late as it reads the
-/// actual speeds.
+/// Computes the errors as the controller had them. The controller takes set points with a delay, and their speeds with
+/// the delay of the actual speeds.
 void takeDelays(double delay, double speed_age, double period, std::vector<ControllerRow>& rows)
 {
   const std::vector<ControllerRow> logged = rows;

@@ -24,7 +24,7 @@ namespace
 struct WindowSeries
 {
   std::vector<SignalIndicators> windows;
-  const char* origin{};  // as in WindowResult
+  const char* origin{};  // source of the windows, as in WindowResult
   const char* parameters{};
 };
 
@@ -32,8 +32,8 @@ struct WindowSeries
 /// jitter of 0.05 ms at 2 kHz changed the stiffness K1 by 0.65 %, and a gap of 1 s changed it by 1.4 %.
 void noticeSteps(std::vector<float> steps, const std::string& recording, const Watch& watch)
 {
-  constexpr double GAP = 10.0;     // least gap in usual steps; filters bridge shorter ones
-  constexpr double JITTER = 0.05;  // least jitter, rms over a usual step
+  constexpr double GAP = 10.0;     // least gap in usual steps; filters bridge shorter gaps
+  constexpr double JITTER = 0.05;  // least jitter, rms, as a share of a usual step [-]
   if (steps.size() < 2)
   {
     return;
@@ -203,7 +203,7 @@ AssessedWindows assess(const IndicatorsOptions& options, Assessor& assessor)
 void noticeOtherGear(const std::vector<WindowResult>& windows, const Assessor& assessor, const std::string& signatures,
                      const Watch& watch)
 {
-  // From size to size of a series the stiffness changes by a factor of 1.9 at least, within a size by 1.25 at most.
+  // From size to size of a series the stiffness changes by a factor of at least 1.9, within a size of at most 1.25.
   constexpr double ALIKE = 1.6;
   constexpr std::size_t K1 = indexOf(ScalarIndicator::TORSIONAL_STIFFNESS);
   const double theirs = assessor.signatures().sound[K1];

@@ -80,8 +80,8 @@ Json byIndicator(const Value& value)
   return json;
 }
 
-/// For each indicator its sound value, the difference from it, the variance of its own, and its shares of the common
-/// causes; null if it is not compared.
+/// For each indicator the sound value, the difference from the sound value, the indicator's own variance, and its
+/// shares of the common causes; null if the indicator is not compared.
 Json residualJson(const WindowResult& window)
 {
   return byIndicator(
@@ -94,7 +94,7 @@ Json residualJson(const WindowResult& window)
       });
 }
 
-/// The indicator that is furthest from its reference, with the difference of the averaged windows.
+/// The indicator with the largest difference from its reference, and the difference of the averaged windows.
 struct Strongest
 {
   std::size_t indicator{};

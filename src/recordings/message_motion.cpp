@@ -122,7 +122,7 @@ private:
   std::uint64_t dropped_{};
 };
 
-/// What the messages of a topic hold of the joints, for an error text.
+/// Values of the joints that the messages of a topic hold, for an error text.
 class SeenNames
 {
 public:
@@ -197,7 +197,7 @@ private:
   {
     bool angle{};
     bool effort{};
-    bool together{};  // angle and effort in one message
+    bool together{};  // a message has both angle and effort
     bool finite{};
   };
 

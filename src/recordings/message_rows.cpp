@@ -44,7 +44,7 @@ bool isVoid(const MotionRow& row)
 bool isVoidAfter(const std::vector<MotionRow>& before, const std::vector<MotionRow>& rows)
 {
   constexpr std::size_t MANY = 3;
-  constexpr double JUMP = 0.002;  // way of stopping for 16 ms at 16 rad/s^2 [rad]
+  constexpr double JUMP = 0.002;  // least jump: the way of a joint that stops within 16 ms at 16 rad/s^2 [rad]
   const auto is_at_zero = [](const MotionRow& row) { return row.position == 0.0; };
   const auto all_at_zero = [&](const std::vector<MotionRow>& all)
   { return all.size() >= MANY && std::all_of(all.begin(), all.end(), is_at_zero); };
@@ -136,7 +136,7 @@ TopicLayout readLayout(RecordedMessages& recording, const MotionSource& source, 
       },
       [](double) {});
   layout.silent = seen.silent();
-  // A joint that comes in several parts counts in the largest part.
+  // A joint of several parts counts in the largest part.
   std::vector<std::vector<std::size_t>> sorted(parts.begin(), parts.end());
   std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
   std::set<std::size_t> taken;

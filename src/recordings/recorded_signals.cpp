@@ -57,7 +57,7 @@ public:
   std::string doubt() const
   {
     constexpr double TURN = 2.0 * M_PI;  // least turn of the motor at which its speed is no noise [rad]
-    constexpr double FACTOR = 100.0;     // least factor; another unit of the speed makes less, milliseconds make more
+    constexpr double FACTOR = 100.0;     // least factor; a wrong unit of the speed causes less, milliseconds cause more
     if (2 * rare_ > steps_)
     {
       return "most samples come " + numberText(RARE) + " s apart or more";
@@ -69,7 +69,7 @@ public:
   }
 
 private:
-  static constexpr double RARE = 0.5;  // step that is too long to see a motion [s]
+  static constexpr double RARE = 0.5;  // least step that is too long to show a motion [s]
 
   SignalSample last_;
   std::uint64_t steps_{};
@@ -124,7 +124,7 @@ constexpr std::array<ColumnChoice, COLUMNS> CHOICES{
 struct SignalSource
 {
   Names columns;
-  // Topics of a bag.
+  // The following members are for a bag.
   std::string states_topic;
   std::string load_topic;
   bool load_topic_given{};        // whether the user named the topic, so that it must exist
@@ -348,7 +348,7 @@ void nameColumn(SignalOptions& options, const std::string& signal, const std::st
   std::vector<std::string> signals;
   for (std::size_t i = 0; i < COLUMNS; ++i)
   {
-    std::string name = CHOICES[i].option + 2;  // without its dashes
+    std::string name = CHOICES[i].option + 2;  // without the dashes of the option
     std::replace(name.begin(), name.end(), '-', '_');
     if (name == signal)
     {

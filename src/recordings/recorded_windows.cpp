@@ -37,7 +37,7 @@ bool makeSameWindows(Parameters one, const Parameters& other)
   return describeParameters(one) == describeParameters(other);
 }
 
-/// Reads a message of a bag; none if it is of another type.
+/// Reads a message of a bag; none if the message has another type.
 std::optional<harmonic_joint_twin::Indicators> readMessage(const rosbag::MessageInstance& instance)
 {
   if (instance.getMD5Sum() != MD5_WITHOUT_ERRORS)
@@ -45,7 +45,7 @@ std::optional<harmonic_joint_twin::Indicators> readMessage(const rosbag::Message
     const auto message = instance.instantiate<harmonic_joint_twin::Indicators>();
     return message ? std::make_optional(*message) : std::nullopt;
   }
-  std::vector<std::uint8_t> bytes(instance.size() + sizeof(std::uint32_t));  // with an empty list behind
+  std::vector<std::uint8_t> bytes(instance.size() + sizeof(std::uint32_t));  // with an empty list at the end
   ros::serialization::OStream out(bytes.data(), instance.size());
   instance.write(out);
   ros::serialization::IStream in(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
@@ -120,7 +120,7 @@ std::optional<std::vector<SignalIndicators>> windowsOfRun(const std::string& rec
   }
   for (std::size_t i = SCALAR_COUNT; i < INDICATOR_COUNT; ++i)
   {
-    if (columns.count(errorColumn(i)) > 0)  // files of earlier versions have none
+    if (columns.count(errorColumn(i)) > 0)  // files of earlier versions have no such column
     {
       read(errorColumn(i).c_str(), [i](W w, double value) { w.uncertainty[i] = value; });
     }

@@ -82,7 +82,7 @@ void requireNames(const std::string& topic, const std::vector<std::string>& name
 
 CheckedContents readMessageContents(const MotionSource& source)
 {
-  constexpr int MESSAGES = 1000;  // messages in which every publisher of the topic occurs
+  constexpr int MESSAGES = 1000;  // number of messages in which every publisher of the topic occurs
   CheckedContents contents;
   const std::unique_ptr<RecordedMessages> recording = RecordedMessages::open(source.path);
   recording->requireStates(source.topic);
@@ -271,7 +271,7 @@ std::vector<CheckedArm> findArms(const RecordingOptions& options, const CheckedC
   return arms;
 }
 
-/// Arm that is taken if no arm explains the currents clearly better than the others.
+/// Default arm: the joints are judged with it if no arm explains the currents clearly better than the others.
 constexpr const char* DEFAULT_ARM = "ur5";
 
 RecordingOptions optionsFor(const RecordingOptions& options, const CheckedArm& arm, const std::string& name)
@@ -458,7 +458,7 @@ bool hasFinding(const CheckedArm& arm, const std::string& kind)
                      [&](const RecordingFinding& finding) { return finding.kind == kind; });
 }
 
-/// The factor with as few digits as its uncertainty allows.
+/// The factor, rounded to the fewest digits that its uncertainty allows.
 std::string plainFactor(const FittedFactor& factor)
 {
   int digits = 1;

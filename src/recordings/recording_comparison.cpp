@@ -43,10 +43,10 @@ const std::vector<Column<JudgedWindow>> WINDOW_COLUMNS{
 /// One instant of the twin that ran when the bag was made.
 struct TwinState
 {
-  double time{};           ///< since the first row of the telemetry [s]
-  double position{};       ///< of the joint [rad]
-  double velocity{};       ///< [rad/s]
-  double motor_current{};  ///< [A]
+  double time{};           ///< time since the first row of the telemetry [s]
+  double position{};       ///< angle of the joint [rad]
+  double velocity{};       ///< speed of the joint [rad/s]
+  double motor_current{};  ///< current of the motor [A]
 };
 
 /// Contents of the recording. `twin_topic` is that of a twin that was recorded beside the robot. @throws InputError if
@@ -153,7 +153,7 @@ Json namesOf(const std::vector<WeightedCause>& causes)
   return names;
 }
 
-/// The verdict with all that a page shows of it.
+/// The verdict as a document with everything that a page shows.
 Json verdictJson(const Verdict& verdict)
 {
   const std::vector<Column<Finding>> columns{

@@ -32,7 +32,7 @@ struct RecordingOptions : ConfigurationOptions
   std::string topic{ DEFAULT_TOPIC };                ///< topic of the telemetry in a bag
   JointAffixes affixes;                              ///< prefix and suffix of an arm's joint names in the messages
   double time_scale{ 1.0 };                          ///< multiplies the times of the rows
-  bool force{};                                      ///< overwrite files
+  bool force{};                                      ///< whether existing files are overwritten
   /// Recording in memory: a row of each joint at each time, currents in A, times from 0 on. Null if it is a file.
   std::shared_ptr<const std::vector<std::vector<MotionRow>>> rows;
   bool rows_have_load{};

@@ -97,8 +97,8 @@ MotionKind kindOf(const std::map<std::string, SignalIndicators>& sound)
   return kind;
 }
 
-/// The signature of a severity, on straight lines between signatures of rising severity. Beyond the last one it is the
-/// last.
+/// The signature of a severity, interpolated linearly between signatures of rising severity. Beyond the last severity
+/// it is the last signature.
 Signature between(const std::vector<Signature>& known, double severity)
 {
   const auto after = std::find_if(known.begin() + 1, known.end() - 1,
@@ -230,7 +230,7 @@ std::string SignatureRuns::text(const std::string& gear, const SignatureSet& bas
   std::vector<std::string> motions;  // motion of each signature
   set.gear = gear;
   set.signatures.clear();
-  set.fitted.fill(true);  // the runs have all but the numbers of robots, which are those of the basis
+  set.fitted.fill(true);  // the runs give all numbers except those of robots, which come from the basis
   for (const FaultDescription& description : FAULT_DESCRIPTIONS)
   {
     for (const Motion& motion : motions_)

@@ -20,7 +20,7 @@ namespace hjt
 namespace
 {
 constexpr std::size_t JOINTS = 6;
-constexpr double LATEST = 9e9;  // largest time that a stamp holds [s]
+constexpr double LATEST = 9e9;  // largest time that a stamp can have [s]
 
 /// Quantities of a joint that have a column; the first two are required.
 enum Quantity : std::size_t
@@ -140,7 +140,7 @@ private:
   std::array<bool, COUNT> is_silent_{};
 };
 
-/// What the currents of a table are, by all of its rows.
+/// Properties of a table's currents, by all rows of the table.
 template <std::size_t COUNT>
 struct CurrentsSeen
 {
@@ -162,7 +162,7 @@ struct CurrentsSeen
     }
     if (std::all_of(is_silent.begin(), is_silent.end(), [](bool silent) { return silent; }))
     {
-      is_silent.fill(false);  // without any current nothing could be read
+      is_silent.fill(false);  // without the current of any joint no row could be read
     }
   }
 
@@ -172,7 +172,8 @@ struct CurrentsSeen
   }
 
   bool has_any{};  ///< else made up without currents, or one joint: its rows at zero are no failed reading
-  std::array<bool, COUNT> is_silent{};  ///< its effort is never a number, while those of other joints are
+  std::array<bool, COUNT>
+      is_silent{};  ///< the joint's effort is never a number, while the efforts of other joints are numbers
 };
 
 template <std::size_t COUNT>
@@ -285,7 +286,7 @@ private:
   std::vector<UnfoldedAngle> angles_;
   std::vector<MotionRow> rows_;
   std::vector<TemperatureRecord> temperatures_;
-  std::map<std::string, std::uint64_t> missing_;  // rows without a number, by column
+  std::map<std::string, std::uint64_t> missing_;  // number of rows without a number, by column
   RowTime times_;
   RowOrder order_;
   double first_{};
@@ -314,7 +315,7 @@ void remarkOnRounds(const std::vector<UnfoldedAngle>& angles, std::uint64_t roun
 
 std::string missingText(const std::map<std::string, std::uint64_t>& missing, const MotionCount& count)
 {
-  constexpr double NOTEWORTHY = 0.02;  // least share of all rows
+  constexpr double NOTEWORTHY = 0.02;  // least share of all rows that a remark needs [-]
   const auto all = static_cast<double>(count.rows + count.corrupt);
   std::vector<std::string> names;
   for (const auto& [name, rows] : missing)

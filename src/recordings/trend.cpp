@@ -74,7 +74,7 @@ std::vector<std::string> filesOf(const std::vector<std::string>& given)
     {
       std::error_code error;
       const std::string there = fs::canonical(file, error).string();
-      if (known.insert(error ? file : there).second)  // a link to nowhere is listed with the reason
+      if (known.insert(error ? file : there).second)  // a link without a target is listed with the reason
       {
         files.push_back(file);
       }
@@ -245,7 +245,7 @@ JointTrend judgeJoint(const Trend& trend, std::size_t joint, const std::string& 
 std::string textOf(const Trend& trend)
 {
   std::string text;
-  std::vector<std::pair<std::string, std::vector<std::string>>> unjudged;  // reason, joints
+  std::vector<std::pair<std::string, std::vector<std::string>>> unjudged;  // reason, and joints with this reason
   bool is_any = false;
   bool departs = false;
   for (const JointTrend& joint : trend.joints)

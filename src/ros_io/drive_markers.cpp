@@ -18,15 +18,15 @@ namespace
 using visualization_msgs::Marker;
 using Point = Eigen::Vector2d;
 
-constexpr double LINE_WIDTH = 0.2e-3;   // [m]
-constexpr double TEXT_HEIGHT = 1.8e-3;  // [m]
+constexpr double LINE_WIDTH = 0.2e-3;   // width of a line [m]
+constexpr double TEXT_HEIGHT = 1.8e-3;  // height of a letter [m]
 constexpr double ARROW_WIDTH = 0.2e-3;  // width of the shaft [m]
-constexpr double ARROW_HEAD = 0.7e-3;   // length and width [m]
+constexpr double ARROW_HEAD = 0.7e-3;   // length and width of the head [m]
 constexpr double MIN_ARROW = 0.2e-3;    // shorter arrows are not drawn [m]
 constexpr double TIP_SHARE = 0.12;      // half width of a drawn tooth at tip and root, in pitches
 constexpr double ROOT_SHARE = 0.28;
 constexpr double RING_HEIGHTS = 2.0;    // height of the circular spline behind its roots, in tooth heights
-constexpr double ROOT_CLEARANCE = 1.2;  // depth of its spaces, in tooth heights
+constexpr double ROOT_CLEARANCE = 1.2;  // depth of the circular spline's spaces, in tooth heights
 constexpr int ELLIPSE_POINTS = 180;
 
 std_msgs::ColorRGBA color(float red, float green, float blue)
@@ -117,8 +117,8 @@ Point direction(double angle)
 /// Stretches distances from a circle about the origin.
 struct Stretch
 {
-  double radius;  // of the circle [m]
-  double factor;  // [-]
+  double radius;  // radius of the circle [m]
+  double factor;  // factor of the distances [-]
 
   Point operator()(const Point& at) const
   {
@@ -147,8 +147,8 @@ struct DriveMarkers::Teeth
   Marker leading;
   Marker trailing;
   int loaded{};
-  double largest{};           // [N]
-  double largest_pressing{};  // [N]
+  double largest{};           // largest force on a flank [N]
+  double largest_pressing{};  // largest force of the wave generator on a tooth [N]
 };
 
 /// The ellipse and its major axis.

@@ -52,7 +52,7 @@ struct InputTopics
     options.md5sum = ros::message_traits::md5sum<Message>();
     options.datatype = ros::message_traits::datatype<Message>();
     options.helper = boost::make_shared<Reader<Message>>(receive, too_large);
-    // Without the transport's delay for collecting small messages.
+    // The connection has no delay for collecting small messages.
     options.transport_hints = ros::TransportHints().tcpNoDelay();
     return node.subscribe(options);
   }
@@ -99,7 +99,7 @@ public:
   {
   }
 
-  std::uint64_t refused() const noexcept { return refused_; }  ///< number since start
+  std::uint64_t refused() const noexcept { return refused_; }  ///< number of refused faults since start
 
 private:
   void receive(const harmonic_joint_twin::Fault& message)
@@ -132,10 +132,10 @@ private:
 /// Number of messages since start without a torque or fault for this joint.
 struct MessageCounters
 {
-  std::uint64_t unknown_joint{};   ///< message names neither the joint nor, for a command, its motor
-  std::uint64_t missing_effort{};  ///< message names the joint without an effort
-  std::uint64_t refused_fault{};   ///< unknown kind, or severity or place out of range
-  std::uint64_t too_large{};       ///< more bytes than InputTopics::MAX_BYTES
+  std::uint64_t unknown_joint{};   ///< messages that name neither the joint nor, for a command, its motor
+  std::uint64_t missing_effort{};  ///< messages that name the joint without an effort
+  std::uint64_t refused_fault{};   ///< faults of unknown kind, or with a severity or place out of range
+  std::uint64_t too_large{};       ///< messages with more bytes than InputTopics::MAX_BYTES
 };
 
 /// Subscribes the topics of torques and faults, and puts their content with stamps into the inbox. A message without a

@@ -79,7 +79,7 @@ public:
 private:
   static bool agree(Stamp a, Stamp b) { return std::abs(a - b) <= FAR_STAMP; }
 
-  std::optional<Stamp> zero_;            // [ns]
+  std::optional<Stamp> zero_;            // stamp of the first row [ns]
   Stamp offset_{};                       // reception minus stamp of the last accepted row [ns]
   std::optional<Stamp> refused_offset_;  // reception minus stamp of the last row, if it was refused [ns]
 };
@@ -183,7 +183,7 @@ public:
   void look(const ros::WallTime& now);
 
 private:
-  /// Number of messages without use.
+  /// Numbers of messages that the node refused.
   struct Refusals
   {
     std::uint64_t unknown_joint{};
@@ -197,14 +197,14 @@ private:
   {
     std::optional<Stamp> stamp;  // none: valid from its reception on [ns]
     Stamp received;              // [ns]
-    double temperature;          // [degC]
+    double temperature;          // received temperature [degC]
   };
 
   struct LoadAt
   {
     std::optional<Stamp> stamp;  // none: valid from its reception on [ns]
     Stamp received;              // [ns]
-    double torque;               // [N.m]
+    double torque;               // received load [N.m]
   };
 
   void receiveLoadTorque(const ros::MessageEvent<const std_msgs::Float64>& event);
@@ -233,17 +233,17 @@ private:
   const bool takes_arm_load_;
   const ThermalModel thermal_model_;
   const double ratio_;                          // motor angle over output angle
-  const double greatest_speed_;                 // [rad/s]
+  const double greatest_speed_;                 // largest possible speed of the joint [rad/s]
   const double current_per_effort_;             // [A], [A/(N.m)]
-  static constexpr std::uint64_t SILENT = 100;  // number of messages
-  std::uint64_t without_effort_{};              // successive messages
+  static constexpr std::uint64_t SILENT = 100;  // number of messages without effort, after which the current is 0
+  std::uint64_t without_effort_{};              // number of successive messages without an effort
   bool has_effort_{};                           // a message had an effort
   double arm_friction_{ 1.0 };
   Tracker tracker_;
   VerdictWatch verdict_;
   TrackerOutputs<PublishedTopic> outputs_;
   LifePublisher life_;
-  std::optional<Stamp> last_load_stamp_;            // [ns]
+  std::optional<Stamp> last_load_stamp_;            // stamp of the last load [ns]
   std::deque<LoadAt> early_loads_;                  // loads received before the start
   std::optional<TemperatureAt> early_temperature_;  // last temperature received before the start
   Refusals refusals_;
@@ -253,8 +253,8 @@ private:
   RecentEvents recent_missing_;
   RecentEvents recent_restarts_;
   RecentEvents recent_failures_;
-  std::optional<std::pair<VerdictLevel, Reason>> published_;  // last published verdict
-  double published_row_{};                                    // time of its last row [s]
+  std::optional<std::pair<VerdictLevel, Reason>> published_;  // level and reason of the last published verdict
+  double published_row_{};                                    // time of the last row of the published verdict [s]
   std::optional<std::uint8_t> logged_level_;
   DiagnosticTasks tasks_;
   ros::ServiceServer reset_service_;

@@ -282,7 +282,7 @@ public:
   }
 
 private:
-  static constexpr double PERIOD = 1.0;  // in wall clock time [s]
+  static constexpr double PERIOD = 1.0;  // time between two messages in wall clock time [s]
   static constexpr std::uint32_t QUEUE_LENGTH = 10;
 
   void publish()

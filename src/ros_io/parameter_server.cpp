@@ -32,7 +32,7 @@ T valueOf(XmlRpcValue& value)
 
 using Value = decltype(ParameterValue::value);
 
-/// Empty if `leaf` is not a boolean, a number or a text.
+/// The value as a parameter; empty if `leaf` is not a boolean, a number or a text.
 std::optional<Value> scalarValue(XmlRpcValue& leaf)
 {
   switch (leaf.getType())

@@ -86,7 +86,7 @@ struct FittedFactor
 class TimeFit
 {
 public:
-  static constexpr double PIECE = 0.1;  ///< [s]
+  static constexpr double PIECE = 0.1;  ///< length of a piece [s]
 
   void reset() noexcept { *this = TimeFit(); }
 
@@ -176,18 +176,18 @@ public:
   bool hasVelocity() const noexcept { return has_velocity_; }
 
 private:
-  static constexpr int PIECES = 8;                   // of a window
-  static constexpr std::size_t MIN_WINDOWS = 6;      // for a median
-  static constexpr std::size_t KEPT = 256;           // windows: 200 s of motion
-  static constexpr double MEMORY = 2000.0;           // pieces that the lag is made of
-  static constexpr double MIN_ACCELERATED = 20.0;    // such pieces
-  static constexpr double LEAST_ACCELERATION = 0.1;  // of the pieces that are fitted [rad/s^2]
+  static constexpr int PIECES = 8;                   // number of pieces in a window
+  static constexpr std::size_t MIN_WINDOWS = 6;      // least number of windows for a median
+  static constexpr std::size_t KEPT = 256;           // number of kept windows: 200 s of motion
+  static constexpr double MEMORY = 2000.0;           // number of pieces from which the lag is computed
+  static constexpr double MIN_ACCELERATED = 20.0;    // least number of pieces with an acceleration
+  static constexpr double LEAST_ACCELERATION = 0.1;  // least acceleration of such a piece [rad/s^2]
 
   struct Piece
   {
     double seconds{};
-    double angle{};     // its change
-    double integral{};  // of the velocity
+    double angle{};     // change of the angle [rad]
+    double integral{};  // integral of the velocity [rad]
 
     double slope() const { return angle / seconds; }
     double velocity() const { return integral / seconds; }
@@ -231,7 +231,7 @@ private:
   double velocity_{};
   bool has_velocity_{};
   Piece piece_;
-  std::uint64_t pieces_{};  // without a gap
+  std::uint64_t pieces_{};  // number of pieces without a gap
   std::array<Piece, 3> last_;
   Piece window_;
   std::array<Piece, KEPT> kept_;

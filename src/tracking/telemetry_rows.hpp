@@ -38,7 +38,7 @@ inline bool isPlausible(const MotionRow& row) noexcept
 /// Largest current that the motor of this joint can take [A].
 inline double possibleCurrent(const Parameters& parameters) noexcept
 {
-  constexpr double MARGIN = 3.0;  // of a current's peaks over the motor's continuous torque [-]
+  constexpr double MARGIN = 3.0;  // ratio of a current's peaks to the motor's continuous torque [-]
   return MARGIN * parameters.motor.torque_limit * nominalRatio(parameters.gear) /
          parameters.telemetry.torque_per_current;
 }
@@ -105,8 +105,8 @@ public:
   }
 
 private:
-  static constexpr std::size_t KEPT = 256;  // rows that medians are made of
-  static constexpr std::size_t RENEW = 32;  // rows between two updates of the period
+  static constexpr std::size_t KEPT = 256;  // number of rows from which medians are computed
+  static constexpr std::size_t RENEW = 32;  // number of rows between two updates of the period
 
   template <std::size_t N>
   static double quantile(std::array<double, N> values, std::size_t count, double part) noexcept
@@ -131,7 +131,7 @@ private:
 /// Makes the angles of a joint continuous if their source folds them into one turn. Nothing allocates.
 ///
 /// A step within MotionDifferentiator::MAX_GAP that differs from one turn by less than NEAR is a fold, because no joint
-/// turns as far in that time. A gap changes no number of turns.
+/// turns as far in that time. A gap does not change the number of turns.
 class UnfoldedAngle
 {
 public:
@@ -156,7 +156,7 @@ public:
   void reset() noexcept { *this = UnfoldedAngle(); }
 
 private:
-  static constexpr double NEAR = 1.0;  // [rad]
+  static constexpr double NEAR = 1.0;  // largest difference of a fold from one turn [rad]
 
   double last_{ std::numeric_limits<double>::quiet_NaN() };
   double time_{ std::numeric_limits<double>::quiet_NaN() };
@@ -168,7 +168,7 @@ private:
 struct LeftOutRows
 {
   std::uint64_t impossible{};   ///< a value is not finite, or beyond what a sound message holds
-  std::uint64_t unreachable{};  ///< an angle that the rows beside it contradict
+  std::uint64_t unreachable{};  ///< an angle that the rows before and after it contradict
   std::uint64_t repeated{};     ///< all values are those of the row before, while the joints move
   std::uint64_t bunched{};      ///< rows that follow the row before much sooner than by the period
 
@@ -257,12 +257,12 @@ public:
   const LeftOutRows& leftOut() const noexcept { return left_out_; }
 
 private:
-  static constexpr std::size_t ROOM = 16;       // rows that are held back, at most
+  static constexpr std::size_t ROOM = 16;       // largest number of rows that are held back
   static constexpr double MARGIN = 1.2;         // factor on the greatest speed [-]
-  static constexpr double MOVING = 0.01;        // [rad/s]
-  static constexpr double BUNCHED = 0.25;       // of the mean step
-  static constexpr double MEMORY = 64.0;        // of the mean step [rows]
-  static constexpr std::uint64_t SETTLED = 16;  // rows until it counts
+  static constexpr double MOVING = 0.01;        // least speed of a joint that moves [rad/s]
+  static constexpr double BUNCHED = 0.25;       // largest step of a bunched row, as a share of the mean step [-]
+  static constexpr double MEMORY = 64.0;        // number of rows over which the mean step is averaged
+  static constexpr std::uint64_t SETTLED = 16;  // number of rows after which the mean step counts
 
   bool canReach(const Rows& from, const Rows& to) const noexcept
   {
@@ -376,9 +376,9 @@ private:
   bool has_last_{};
   bool has_raw_{};
   bool is_confirmed_{};  // the rows in last_ have passed
-  bool moves_{};         // by the angles of the two rows before
+  bool moves_{};         // the joints move, by the angles of the two rows before
   std::uint64_t rows_{};
-  double mean_step_{};  // [s]
+  double mean_step_{};  // mean step between rows [s]
   double kept_{};       // time of the last row that was not bunched [s]
   LeftOutRows left_out_;
 };

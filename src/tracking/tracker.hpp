@@ -29,7 +29,7 @@ class Observer;
 class DelayEstimate
 {
 public:
-  static constexpr double LONGEST = 0.1;          ///< [s]
+  static constexpr double LONGEST = 0.1;          ///< longest lag [s]
   static constexpr double GRID = 0.004;           ///< step from one lag to the next [s]
   static constexpr double MEMORY = 20.0;          ///< time constant of forgetting [s]
   static constexpr double MIN_CORRELATION = 0.7;  ///< a smaller correlation gives no lag [-]
@@ -109,7 +109,7 @@ private:
   static constexpr double MIN_SECONDS = 2.0;  // shorter signals give no lag
 
   static constexpr std::size_t ROOM = 512;
-  static constexpr int HALF = 25;  // LONGEST / GRID
+  static constexpr int HALF = 25;  // number of lags to either side: LONGEST / GRID
   static constexpr std::size_t LAGS = 2 * HALF + 1;
   static constexpr double SLOWEST = 0.5;  // time constant of the high-pass [s]
 
@@ -152,18 +152,18 @@ struct Compared
 /// Comparison.msg and always finite.
 struct Comparison
 {
-  double time{};                 ///< of the row [s]
-  Compared position;             ///< of the joint [rad]
-  Compared velocity;             ///< of the joint [rad/s]
-  Compared current;              ///< of the motor [A]
+  double time{};                 ///< time of the row [s]
+  Compared position;             ///< angle of the joint [rad]
+  Compared velocity;             ///< speed of the joint [rad/s]
+  Compared current;              ///< current of the motor [A]
   double joint_torque{};         ///< torque on the arm: the motor's, less friction and the rotor's inertia [N.m]
-  double friction_torque{};      ///< of a healthy joint, at the joint, with its sign [N.m]
+  double friction_torque{};      ///< friction of a healthy joint, at the joint, with its sign [N.m]
   double load_torque{};          ///< whole load at the output in the prediction, > 0 resists positive motion [N.m]
   bool load_provided{};          ///< a load was received; else weight and inertia are as configured, without a band if
                                  ///< telemetry.load expects a load
   double temperature{};          ///< temperature of the grease in the prediction [degC]
   bool temperature_received{};   ///< that temperature follows from a received one; else it is estimated or configured
-  double housing_temperature{};  ///< thermal.model = two_nodes: beside the motor; else that of the grease [degC]
+  double housing_temperature{};  ///< temperature near the motor if thermal.model = two_nodes, else of the grease [degC]
   bool sticking{};               ///< friction holds the joint: any current within the band fits
   bool after_gap{};              ///< this row is the first one after a gap in the telemetry
 
@@ -192,7 +192,7 @@ struct TrackerCounters
 class Tracker
 {
 public:
-  static constexpr double OUTSIDE_MEMORY = 30.0;  ///< longer than a touch of the arm [s]
+  static constexpr double OUTSIDE_MEMORY = 30.0;  ///< time of forgetting, longer than a contact [s]
 
   /// @throws ParameterError where the parameters do not allow the mode; `mode` is not COMMANDS.
   Tracker(const Parameters& parameters, InputMode mode, const SurfaceSource& surface_source = {});
@@ -271,11 +271,11 @@ private:
   TelemetryParameters telemetry_;
   double ratio_;
   GreaseTemperature grease_;
-  double temperature_;                           // of the grease, at the last row [degC]
-  std::optional<double> estimated_temperature_;  // in its place where none is received [degC]
+  double temperature_;                           // temperature of the grease at the last row [degC]
+  std::optional<double> estimated_temperature_;  // estimate for rows without a received temperature [degC]
   JointEvidence evidence_;
-  std::unique_ptr<TorqueDriven> torque_driven_;  // in mode TORQUE alone
-  std::unique_ptr<Observer> observer_;           // in mode OBSERVER alone
+  std::unique_ptr<TorqueDriven> torque_driven_;  // null except in mode TORQUE
+  std::unique_ptr<Observer> observer_;           // null except in mode OBSERVER
   MotionDifferentiator smoother_;
   bool restarted_{};
   bool fits_{ true };

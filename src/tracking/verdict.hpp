@@ -36,9 +36,11 @@ const char* referenceName(FrictionReference reference) noexcept;  ///< "controll
 /// Friction of a joint as a multiple of its reference, with its uncertainty (docs/compare.md).
 struct FrictionFactor
 {
-  double value{ std::numeric_limits<double>::quiet_NaN() };  ///< NaN: the rows show none
-  double deviation{};                                        ///< standard deviation of its logarithm [-]
-  double scatter{};                                          ///< part of `deviation` by the rows' scatter [-]
+  double value{
+    std::numeric_limits<double>::quiet_NaN()
+  };                   ///< the friction factor; NaN: the rows do not show the friction
+  double deviation{};  ///< standard deviation of the factor's logarithm [-]
+  double scatter{};    ///< part of `deviation` by the rows' scatter [-]
   FrictionReference reference{ FrictionReference::TWIN };
   bool is_below_faults{};          ///< the friction is less than any fault leaves
   Reason reason{ Reason::SOUND };  ///< why the friction is not judged; SOUND: it is judged
@@ -56,9 +58,11 @@ private:
 /// Figures of the same joint when it was sound.
 struct OwnReference
 {
-  std::vector<FrictionPoint> friction;                                  ///< none: not known
+  std::vector<FrictionPoint> friction;  ///< measured friction by speed; empty: not known
   double compliance_ratio{ std::numeric_limits<double>::quiet_NaN() };  ///< NaN: not known
-  double temperature{ std::numeric_limits<double>::quiet_NaN() };       ///< of the recordings; NaN: not known [degC]
+  double temperature{
+    std::numeric_limits<double>::quiet_NaN()
+  };                              ///< temperature of the recordings; NaN: not known [degC]
   double friction_deviation{};    ///< standard deviation of the friction by its scatter, as a share [-]
   std::size_t recordings{ 1 };    ///< number of recordings of the friction
   double recordings_deviation{};  ///< standard deviation from one recording to the next, as a share [-]
@@ -76,7 +80,7 @@ struct JointContext
   /// a fault.
   double arm_friction{ 1.0 };
   Misfit misfit{};  ///< why the rows of the joint are not judged
-  /// Standard deviation of the logarithm of `arm_friction`; 0: the joints of its group witness it.
+  /// Standard deviation of the logarithm of `arm_friction`; 0 if the other joints of the group confirm the factor.
   double arm_deviation{ UNWITNESSED };
   FittedFriction fitted{};
 };
@@ -104,18 +108,18 @@ enum class Figure : std::uint8_t
   ROWS,                    ///< all rows
   TOUCHED_ROWS,            ///< rows left out because something touched the arm
   SPAN,                    ///< time from the first to the last row [s]
-  CURRENT,                 ///< measured, rms [A]
-  CURRENT_PREDICTED,       ///< rms [A]
-  CURRENT_RESIDUAL,        ///< measured less predicted, rms [A]
+  CURRENT,                 ///< measured current, rms [A]
+  CURRENT_PREDICTED,       ///< predicted current, rms [A]
+  CURRENT_RESIDUAL,        ///< measured less predicted current, rms [A]
   CURRENT_UNEXPLAINED,     ///< residual less the best constant and the best multiple of the friction, rms [A]
-  LEAST_LOAD,              ///< [N.m]
-  MOST_LOAD,               ///< [N.m]
+  LEAST_LOAD,              ///< least load [N.m]
+  MOST_LOAD,               ///< largest load [N.m]
   TEMPERATURE,             ///< mean temperature of the rows [degC]
   REFERENCE_TEMPERATURE,   ///< temperature of the joint's own reference [degC]
   HIGHEST_ORDER,           ///< order of the motor's turn that the rows resolve at the highest speed [-]
   SPEEDS,                  ///< number of speeds at which the friction was measured [-]
-  LOWEST_SPEED,            ///< with its sign [rad/s]
-  HIGHEST_SPEED,           ///< [rad/s]
+  LOWEST_SPEED,            ///< lowest of these speeds, with its sign [rad/s]
+  HIGHEST_SPEED,           ///< highest of these speeds, with its sign [rad/s]
   FRICTION_OF_TWIN,        ///< friction over the twin's [-]
   FRICTION_OF_CONTROLLER,  ///< friction over the friction that the arm's controller expects [-]
   FRICTION_OF_OWN,         ///< friction over the joint's own when it was sound [-]
@@ -127,7 +131,7 @@ enum class Figure : std::uint8_t
   TORSION_OF_OWN,          ///< torsion over the drive's own when it was sound [-]
   TORSION_TOLERANCE,       ///< deviation from 1 that the torsion of a sound drive may have [-]
   ENCODER_SHARE,           ///< part of that tolerance for the encoders' eccentricity [-]
-  ENCODER_ERROR,           ///< error of the output encoder once a turn that would look like the torsion found [rad]
+  ENCODER_ERROR,  ///< error of the output encoder once a turn that would have the effect of the found torsion [rad]
   ENCODER_ECCENTRICITY,    ///< configured eccentricity of the output encoder [rad]
   WINDOWS,                 ///< windows of the signals that were compared [-]
   WINDOWS_HERE,            ///< windows at one operating point, if they are too few [-]
@@ -170,7 +174,7 @@ struct Finding
 /// Friction of the joint as a multiple of its FrictionReference, and in an arm of the joints' common factor too.
 struct JudgedFriction
 {
-  double factor{ std::numeric_limits<double>::quiet_NaN() };  ///< NaN: not measured [-]
+  double factor{ std::numeric_limits<double>::quiet_NaN() };  ///< friction over the reference's; NaN: not measured [-]
   double lower{ std::numeric_limits<double>::quiet_NaN() };   ///< lower end of its interval [-]
   double upper{ std::numeric_limits<double>::quiet_NaN() };   ///< upper end of its interval [-]
   bool has_interval{};
@@ -183,7 +187,7 @@ struct Verdict
 
   bool isJudged() const { return level != VerdictLevel::NOT_JUDGED; }
   double operator[](Figure figure) const { return figures[static_cast<std::size_t>(figure)]; }  ///< NaN: not known
-  /// Makes it a verdict in which nothing is judged.
+  /// Changes the verdict to one in which nothing is judged.
   void dismiss(const Misfit& why_not);
   double& operator[](Figure figure) { return figures[static_cast<std::size_t>(figure)]; }
 
@@ -192,14 +196,14 @@ struct Verdict
   std::string joint;
   JudgedFriction friction;
   std::string friction_text;             ///< sentences on the friction, or why it is not judged
-  std::vector<Finding> findings;         ///< on friction, torsion and signals
-  std::vector<Evidence> evidence;        ///< of the worst window of the signals, strongest first
-  std::vector<std::string> cannot_show;  ///< by these rows, in sentences
+  std::vector<Finding> findings;         ///< findings on friction, torsion and signals
+  std::vector<Evidence> evidence;        ///< evidence of the worst window of the signals, strongest first
+  std::vector<std::string> cannot_show;  ///< sentences on what these rows cannot show
   bool may_be_gain{};                    ///< a wrong gain would show like the friction that departs
   bool fits{ true };                     ///< false: telemetry or load are why nothing is judged
   std::string misfit;                    ///< clause on why nothing is judged; empty: none
   LoadOrigin load{};
-  bool is_reference_given{};  ///< of the signals
+  bool is_reference_given{};  ///< whether the signals have a given reference
   bool has_signatures{};      ///< signatures of faults are known, so that causes can be named
   std::array<double, FIGURE_COUNT> figures{};
 };
@@ -278,10 +282,10 @@ Finding judgeFriction(const JointEvidence& evidence, const JointContext& context
 /// Adds the faults that move the indicator in the direction `way`, +1 or -1, to the finding.
 void nameCauses(const JointEvidence& evidence, ScalarIndicator indicator, double way, Finding& finding);
 
-/// Clause on a load that is not the joint's.
+/// Clause on a load that does not fit the joint.
 const char* wrongLoad(LoadOrigin load);
 
-/// Tells a wrong gain of the current from friction. With a wrong gain the current that load and inertia take departs
+/// Distinguishes a wrong gain of the current from friction. With a wrong gain the current of load and inertia departs
 /// from the prediction by the same factor as the friction does.
 struct GainEvidence
 {

@@ -298,7 +298,8 @@ std::string verdictText(const Verdict& verdict)
     if (severityOf(finding.level) != HealthLevel::OK)
     {
       departing.push_back(
-          title + " (" + (finding.causes.empty() ? "no fault in the list does this" : causeNames(finding, " or ")) +
+          title + " (" +
+          (finding.causes.empty() ? "no fault in the list causes this change" : causeNames(finding, " or ")) +
           (finding.subject == FindingSubject::FRICTION && verdict.may_be_gain ? ", or a wrong gain" : "") + ")");
     }
     else
@@ -308,10 +309,10 @@ std::string verdictText(const Verdict& verdict)
   }
   if (!departing.empty())
   {
-    return "Different from a sound joint: " + joined(departing, "; ") + ".";
+    return "These differ from a sound joint: " + joined(departing, "; ") + ".";
   }
   return sound.empty() ? "The motion does not show whether the joint is sound. " + verdict.friction_text :
-                         "As in a sound joint: " + joined(sound) + "." +
+                         "These are as in a sound joint: " + joined(sound) + "." +
                              (open.empty() ? "" : " The motion does not show: " + joined(open) + ".");
 }
 

@@ -66,7 +66,9 @@ std::string textOfArm(const RecordingOptions& options, const CheckedContents& co
   text += ": with the load that fits best it leaves " + left(*taken) + " of the currents";
   text += other == arm.ranked.end() ? "" : ", " + other->arm + " " + left(*other);
   const std::vector<std::string> alike = arm.alike();
-  return text + (alike.empty() ? "" : "; they do not tell it from " + joined(alike) + ": give yours");
+  return text + (alike.empty() ?
+                     "" :
+                     ". The currents do not distinguish this arm from " + joined(alike) + ". Name your arm with --arm");
 }
 
 std::string textOfEffort(const CheckedContents& contents, const CheckedArm& arm)
@@ -138,7 +140,7 @@ std::string textOfVelocities(const CheckedArm& arm)
                                     [](const CheckedJoint& joint) { return std::isfinite(joint.time_factor.value); });
   return !has     ? "none: the stamps cannot be checked" :
          is_known ? "do not fit the angles, see the joints" :
-                    "too little motion to hold them against the angles";
+                    "too little motion to compare them with the angles";
 }
 
 void printLine(const char* label, const std::string& text)

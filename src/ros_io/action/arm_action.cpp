@@ -29,15 +29,15 @@ using Point = trajectory_msgs::JointTrajectoryPoint;
 constexpr const char* DRIVERS_CONTROLLER = "scaled_pos_joint_traj_controller";
 constexpr const char* FOLLOW = "follow_joint_trajectory";
 // Defaults of a goal, as in ur_robot_driver, config/ur5_controllers.yaml.
-constexpr double PATH_POSITION = 0.2;  // [rad]
-constexpr double END_POSITION = 0.1;   // [rad]
-constexpr double END_SPEED = 0.05;     // [rad/s]
-constexpr double PATIENCE = 0.6;       // [s]
+constexpr double PATH_POSITION = 0.2;  // tolerance of an angle during the motion [rad]
+constexpr double END_POSITION = 0.1;   // tolerance of an angle at the end [rad]
+constexpr double END_SPEED = 0.05;     // tolerance of a speed at the end [rad/s]
+constexpr double PATIENCE = 0.6;       // time after the end of the motion by which the arm must arrive [s]
 
 constexpr double LOOK_PERIOD = 0.01;  // period of checking the report [s]
 constexpr int LOOKS_A_FEEDBACK = 5;
 
-/// As in JointTolerance.msg: 0 keeps the default, a negative value means no tolerance.
+/// Sets a tolerance as JointTolerance.msg defines it: 0 keeps the default, a negative value means no tolerance.
 void take(double given, double& tolerance)
 {
   tolerance = given < 0.0 ? HUGE_VAL : given > 0.0 ? given : tolerance;
