@@ -299,7 +299,7 @@ TEST(LoadFit, NamesAGainOfAllJoints)
   of.gain.fill(1.4);
   const Misfit misfit = fitOf(of, 1).solve(ALL).misfit();
   EXPECT_EQ(misfit.reason, Reason::EFFORT_UNIT);
-  EXPECT_THAT(misfit.clause, testing::HasSubstr("another gain"));
+  EXPECT_THAT(misfit.clause, testing::HasSubstr("is not as configured"));
 }
 
 /// Friction that differs one way and the other by less than that of a type looks like it; a raised friction of one

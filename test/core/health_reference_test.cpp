@@ -115,7 +115,7 @@ TEST_F(WithPayloads, ThoseNeverLearnedAreNotJudged)
   EXPECT_EQ(state(), AssessmentState::OTHER_PAYLOAD);
   Assessment said;
   said.state = state();
-  EXPECT_THAT(whyNotJudged(said), testing::StartsWith("payload, load or gain of the current is not in the reference"));
+  EXPECT_THAT(whyNotJudged(said), testing::StartsWith("the reference has no windows with this payload, load or gain"));
   scoreAt(35.0, 0.0, 15.0 * RISE);
   EXPECT_EQ(state(), AssessmentState::TOO_FEW_WINDOWS) << "the next one with a known payload is judged";
 }

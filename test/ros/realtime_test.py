@@ -105,7 +105,7 @@ class Realtime(unittest.TestCase):
         self.node.process.send_signal(signal.SIGCONT)
         wait_until(lambda: timing.messages()[-1].missed_deadlines > before, "a missed deadline")
         self.assertGreater(timing.messages()[-1].lateness_max, 0.2)
-        wait_until(lambda: any(status.level == WARN and "Deadlines missed" in status.message
+        wait_until(lambda: any(status.level == WARN and "Deadlines were missed" in status.message
                                for status in self.diagnostics.statuses("Timing")), "the warning")
 
 
