@@ -61,7 +61,7 @@ RecordingFinding velocityFinding(const FittedFactor& own, double of_stamps)
   constexpr double STANDS = 0.01;
   if (std::isinf(own.value))
   {
-    return { "velocity_zero", "the recorded velocity is zero, so it is computed from the angles", std::nullopt };
+    return { "velocity_zero", "velocity zero: taken from the angles", std::nullopt };
   }
   if (own.value < -STANDS)
   {
@@ -69,7 +69,7 @@ RecordingFinding velocityFinding(const FittedFactor& own, double of_stamps)
   }
   if (std::abs(own.value / DEGREE - 1.0) < FACTOR_OFF)
   {
-    return { "velocity_unit", "the recorded velocity is in deg/s, so it is computed from the angles", std::nullopt };
+    return { "velocity_unit", "velocity in deg/s: taken from angles", std::nullopt };
   }
   if (own.value < STANDS)
   {
@@ -458,7 +458,7 @@ std::vector<RecordingFinding> RecordingFit::ofJoint(std::size_t number) const
   }
   if (!joint.time.hasVelocity())
   {
-    findings.push_back({ "no_velocity", "no velocity is recorded, so it is computed from the angles", std::nullopt });
+    findings.push_back({ "no_velocity", "velocity taken from the angles", std::nullopt });
   }
   if (joint.reach.most_angle - joint.reach.least_angle < LEAST_MOTION)
   {
