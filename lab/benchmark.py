@@ -205,7 +205,7 @@ def levels_of(reference):
             f"The reference is {reference['methods'][0]}. A second reference, {reference['methods'][1]}, differs from "
             f"the first by {reference['apart']['force']:.1e} in the forces, {reference['apart']['position']:.1e} in "
             f"the positions and {reference['apart']['angle']:.1e} in the angles. Errors smaller than these differences "
-            "mean nothing, so the table ends there.", "",
+            "mean nothing, so `benchmark_levels.csv` omits them.", "",
             f"![{reference['title']}](images/benchmark/levels.png)", "", CHOICE, ""]
 
 
@@ -251,7 +251,8 @@ def write_page(options, measured):
     solvers = {row["solver"] for _, rows in measured.values() for row in rows}
     absent = [f"{peer} ({package})" for peer, package in OPTIONAL.items()
               if not any(solver.startswith(peer) for solver in solvers)]
-    machine = (f"{processor()}; {', '.join(installed_version(package) for package in PACKAGES)}. Each setting ran "
+    machine = (f"The processor of the measurements is {processor()}. The versions of the packages are: "
+               f"{', '.join(installed_version(package) for package in PACKAGES)}. Each setting ran "
                f"{options.runs} times, slow settings less often. The program ended a run after {options.limit:g} s of "
                "processor time, a run of an explicit solver or of RADAU5 after twice this time.")
     lines = [HEAD, "## Best peer against ours", "", *ratio_table(ratios), READING, *levels_of(measured["levels"][0]),

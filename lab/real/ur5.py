@@ -261,7 +261,8 @@ def raised_alone(runner, verdicts, recordings):
         others = sum(bool(departing - {joint}) for departing, _, joint in answers)
         parts.append(f"With {100.0 * more:.0f} % more friction the verdict names {named} of {shown} raised joints, "
                      f"and names another joint in {others} runs.")
-    return f"Without a reference the verdict finds fewer raised joints. {' '.join(parts)}"
+    return ("Without a reference the verdict finds fewer of the joints with raised friction (raised joints). "
+            f"{' '.join(parts)}")
 
 
 def draw_current(path, recording):
