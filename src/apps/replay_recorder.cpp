@@ -110,8 +110,8 @@ private:
     arrived_.notify_one();
   }
 
-  /// Writes waiting messages, or waits a moment. Before the clock has started there is no time of recording. Messages
-  /// from then get the first time of the clock, for example those of a twin that received the clock earlier.
+  /// Writes the waiting messages, or waits a moment if none waits. A message that arrives before the clock has started
+  /// gets the first time of the clock. A twin that received the clock earlier can send such messages.
   void writeWaiting()
   {
     constexpr std::chrono::milliseconds MOMENT{ 50 };

@@ -16,15 +16,15 @@
 
 namespace hjt
 {
-/// Errors of the stamps of an arm's rows, from the angles and the velocities recorded beside them.
+/// Estimates the errors of the stamps of an arm's rows, from the recorded angles and velocities.
 ///
-/// The time between two rows is that in which the mean velocities v make the changes of angle dq, by least squares over
-/// all joints, with the stamps' own interval d as an observation beside them:
+/// The estimate e of the time between two rows is a least-squares fit over all joints: the mean velocities v times e
+/// should give the changes of angle dq. The interval d of the stamps is one more observation:
 ///   e = (v.dq / ANGLE^2 + d / STAMP^2) / (v.v / ANGLE^2 + 1 / STAMP^2)
-/// A log that stamps its rows evenly but took them unevenly, or lost one, shows as e other than d. Differences below
-/// SIGNIFICANT are noise and passed over. A joint counts while its velocities agree with its angles and the stamps
-/// within AGREES in the mean of the last seconds: one of the wrong sign or unit does not. Only the differences
-/// between errors count, until the next gap. Nothing allocates or throws after construction.
+/// If the recorder stamped the rows evenly but took them unevenly, or lost a row, e differs from d. Differences below
+/// SIGNIFICANT are noise, and the class ignores them. The class uses a joint only while the velocities times the
+/// stamped time agree with the changes of angle within the share AGREES, in the mean of the last seconds. So it does not use a
+/// joint whose velocity has the wrong sign or unit. Nothing allocates or throws after construction.
 class RowTimes
 {
 public:

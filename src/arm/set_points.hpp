@@ -25,7 +25,7 @@ void fillRates(std::vector<ArmSetPoint>& points, bool has_velocity, bool has_acc
 /// rates of the angles, or the stamps fit them. Returns the largest change of a step, 0 without a change [s].
 double straightenTimes(std::vector<ArmSetPoint>& points);
 
-/// Remark for the user on a change of the times that is above 0 [s].
+/// Message for the user that straightenTimes() changed the times. `change`: its result, > 0 [s].
 std::string straightenedText(double change);
 
 /// Says why no arm can follow the set points; empty if nothing is wrong. The times must increase and end within a

@@ -48,7 +48,7 @@ public:
     }
     const bool is_whole = take(instance, state_);
     has_read_ = has_read_ || is_whole;
-    // A wrong sum of a recorder does not matter if the bytes are those of the message.
+    // A recorder may have stored a wrong md5sum. The message counts if its bytes decode as a JointState.
     if (!has_read_ && !instance.isType<sensor_msgs::JointState>())
     {
       throw InputError(instance.getTopic() +

@@ -69,9 +69,10 @@ private:
 /// Energy (normal):  U = sum_i k_i r(depth_i - gap_i), depth_i inside the ellipse along its normal. With springs r is
 ///                   the contact ramp, with balls Hertz' point contact. Single balls: see SingleBalls
 /// Law (polar):      F_i = k_i <depth_i>+ along atan2(a^2 y, b^2 x), depth from the point (a cos psi, b sin psi)
-///                   (thesis eq. 5.11-5.23). It has no potential and serves only the insertion of the thesis. The
+///                   (thesis eq. 5.11-5.23). It has no potential; only the thesis' insertion is computed with it. The
 ///                   tangent omits the unsymmetric part, which costs some Newton iterations.
-/// where             k_i  stiffness for each tooth, >= 0: of its spring [N/m], or Z/N times that of a ball [N/m^1.5]
+/// where             a = r0 + w, b = r0 - w; w: radial deformation; psi: angle of the tooth; Z balls, N teeth
+///                   k_i  stiffness for each tooth, >= 0: of its spring [N/m], or Z/N times that of a ball [N/m^1.5]
 ///                   gap_i  wear of rim and race at the tooth, plus the sag of a faulty bearing's outer race [m]
 class WaveGeneratorContact
 {

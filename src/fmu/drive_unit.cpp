@@ -29,7 +29,7 @@ public:
     }
     while (twin_.stamp() <= last)
     {
-      // at every instant, so that it does not time out
+      // The command is repeated at every step, so that the twin's input does not time out.
       twin_.commandMotorTorque(twin_.stamp(), part_.motorTorque(values));
       twin_.step(until);
     }

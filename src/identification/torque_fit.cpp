@@ -135,7 +135,8 @@ FrictionFit::FrictionFit(const Parameters& parameters, const FrictionMap& fricti
   {
     if (share(i) > NARROWED)
     {
-      refusal_[i] = "the motion reduces the prior deviation only to " + roundedText(100.0 * share(i), 2) + " %";
+      refusal_[i] =
+          "the motion reduces the prior standard deviation only to " + roundedText(100.0 * share(i), 2) + " %";
       asked_[i] = false;
       values_[i] = start_[i];
       half_width_[i] = 0.0;

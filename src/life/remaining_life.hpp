@@ -122,8 +122,8 @@ inline double strengthAt(std::size_t i)
 /// Use of a drive, as the ageing of the nominal drive.
 struct Usage
 {
-  double flank_wear{};      ///< wear of the nominal drive's worse side [m]
-  double mean_flank{};      ///< mean wear of both sides of the nominal drive: half of the growth of the play [m]
+  double flank_wear{};      ///< wear of the more worn flank (leading or trailing) of the nominal drive [m]
+  double mean_flank{};      ///< mean wear of its leading and trailing flanks: half of the growth of the play [m]
   double interface_wear{};  ///< wear of the nominal drive [m]
   double bearing_turns{};   ///< [turns at rated torque]
   /// Miner's sums by strength and place, because fatigue is not in proportion to that of the nominal drive.

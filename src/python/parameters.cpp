@@ -388,8 +388,8 @@ void bindField(py::module& module)
   field.def_readonly("key", &Field::key, "section.name")
       .def_readonly("type", &Field::type, "type: float, int, bool, str, or for example '3 floats'")
       .def_readonly("unit", &Field::unit, "SI unit; '-': no unit")
-      .def_readonly("minimum", &Field::minimum, "least allowed value; None: not a number")
-      .def_readonly("maximum", &Field::maximum, "largest allowed value; None: not a number")
+      .def_readonly("minimum", &Field::minimum, "least allowed value; None if the parameter is not numeric")
+      .def_readonly("maximum", &Field::maximum, "largest allowed value; None if the parameter is not numeric")
       .def_readonly("choices", &Field::choices, "allowed texts; empty: any")
       .def_readonly("meaning", &Field::meaning, "meaning of the parameter");
   addText(field);

@@ -250,9 +250,10 @@ void bindTeeth(py::module& module)
   addArray(teeth, "stress_transition", &ToothTable::stress_transition, "nominal normal stress at the transition [Pa]");
   addArray(teeth, "stress_flange", &ToothTable::stress_flange, "nominal normal stress at the flange [Pa]");
   addArray(teeth, "across", &ToothTable::across,
-           "position across its space of the circular spline; empty without one [m]");
-  addArray(teeth, "depth", &ToothTable::depth, "likewise [m]");
-  addArray(teeth, "tilt", &ToothTable::tilt, "angle against the axis of the space; empty without one [rad]");
+           "position of the tooth across its space of the circular spline; empty without circular spline [m]");
+  addArray(teeth, "depth", &ToothTable::depth, "depth of the tooth in its space; empty without circular spline [m]");
+  addArray(teeth, "tilt", &ToothTable::tilt,
+           "angle of the tooth against the axis of the space; empty without circular spline [rad]");
   addArray(teeth, "gap", &ToothTable::gap, "distance to the nearer flank; empty without circular spline [m]");
   addText(teeth);
 }
@@ -380,10 +381,12 @@ void bindSlowMotion(py::module& module)
                        housing_torque);
   PYBIND11_NUMPY_DTYPE(LossValues, motor_speed, load_torque, load_reduced, bearing, interface, flexing, mesh, cup,
                        damping, output, motor, gear_loss, gear_efficiency);
-  module.def("analyse_turn", &turn, py::arg("parameters"), py::arg("load"), py::arg("angle_range"), py::arg("steps"),
-             "Computes quasi-static turning from 0 to angle_range [rad] at a constant load [N.m], without friction.\n\n"
-             "Returns a structured array of shape (steps + 1,): wave_generator_angle, output_angle, kinematic_error "
-             "[rad], wave_generator_torque, housing_torque [N.m]. Raises NotConverged.");
+  module.def(
+      "analyse_turn", &turn, py::arg("parameters"), py::arg("load"), py::arg("angle_range"), py::arg("steps"),
+      "Turns the wave generator quasi-statically from 0 to angle_range [rad] under a constant load [N.m], without "
+      "friction.\n\n"
+      "Returns a structured array of shape (steps + 1,): wave_generator_angle, output_angle, kinematic_error "
+      "[rad], wave_generator_torque, housing_torque [N.m]. Raises NotConverged.");
   module.def(
       "analyse_losses", &losses, py::arg("parameters"), py::arg("speeds"), py::arg("loads"), py::arg("positions") = 16,
       "Computes friction and efficiency at constant motor speeds [rad/s] and loads [N.m]; positions: number of wave "

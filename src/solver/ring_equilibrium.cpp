@@ -349,7 +349,7 @@ SolveStatus turnWaveGenerator(RingEquilibrium& ring, double angle) noexcept
     return {};
   }
   target.wave_generator_angle = angle;
-  // The output follows at constant load. Free in its backlash, it moves with the teeth.
+  // Predicts the output's angle at constant load. Without stiffness (backlash) it turns by the motor's turn / ratio.
   const double stiffness = ring.stiffness()(1, 1);
   target.output_angle +=
       stiffness > 0.0 ? -turn * ring.stiffness()(1, 0) / stiffness : turn / nominalRatio(ring.model().gear);

@@ -114,7 +114,8 @@ public:
     return std::max(torque[0], torque[1] * ring_.ratio()) > ROUNDING * ring_.torqueLimit();
   }
 
-  /// Miss of a strip with `columns` columns at the nodes between them: root mean square over the tolerance [-].
+  /// Interpolation error of a strip of nodes if only `columns` intervals of it are kept: root mean square at the
+  /// omitted nodes, as a share of the tolerance [-].
   double missOfColumns(const Strip& strip, int columns, const Torques& tolerance) const
   {
     const std::size_t stride = (strip.size() - 1) / static_cast<std::size_t>(columns);

@@ -220,7 +220,7 @@ class States(Fmu):
         self.assertEqual(unit.call("step", 0, 0.0, 1e-9, 6200000), OK)
         self.assertEqual(unit.call("keep", 0, 0), OK)
         self.assertEqual(unit.call("save", 0, 0, self.path("state")), ERROR)
-        self.assertIn("more than 64 MB", unit.close())
+        self.assertIn("exceed 64 MB", unit.close())
 
     def test_a_state_of_no_start_yet_is_serialised(self):
         unit = self.unit()
