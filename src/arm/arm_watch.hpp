@@ -20,11 +20,10 @@
 namespace hjt
 {
 /// Finds payload and mounting from an arm's currents while the rows arrive. The class evaluates the rows after every
-/// 30 s of motion. After eight minutes of motion it starts with new rows, and it uses only rows since the last change of
-/// the payload. It tries a found load for 10 s of motion (LoadLaw). If the trial fails, the class searches no load
-/// during the next eight minutes of motion.
-/// An evaluation takes some tenths of a second in a thread of its own. The class allocates and is not for a real-time
-/// loop.
+/// 30 s of motion. After eight minutes of motion it starts with new rows, and it uses only rows since the last change
+/// of the payload. It tries a found load for 10 s of motion (LoadLaw). If the trial fails, the class searches no load
+/// during the next eight minutes of motion. An evaluation takes some tenths of a second in a thread of its own. The
+/// class allocates and is not for a real-time loop.
 class LoadWatch
 {
 public:

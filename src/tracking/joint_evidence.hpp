@@ -362,7 +362,8 @@ struct EvidenceParameters
 
 /// Collects the evidence on a measured joint: sums over its rows and over the twin's values in the same motion.
 /// `hjt::judge` makes a verdict of the evidence. Rows during a contact, and for ContactWatch::HOLD after the contact,
-/// do not count, unless the load is the configured one. Memory is fixed; after construction nothing allocates or throws.
+/// do not count, unless the load is the configured one. Memory is fixed; after construction nothing allocates or
+/// throws.
 class JointEvidence
 {
 public:
