@@ -24,8 +24,8 @@ namespace hjt
 /// If the recorder stamped the rows evenly but took them unevenly, or lost a row, e differs from d. Differences below
 /// SIGNIFICANT are noise, and the class ignores them. The class uses a joint only while the velocities times the
 /// stamped time agree with the changes of angle within the share AGREES, in the mean of the last seconds. So it does
-/// not use a joint whose velocity has the wrong sign or unit. Only the differences between the errors of rows are known,
-/// up to the next gap. Nothing allocates or throws after construction.
+/// not use a joint whose velocity has the wrong sign or unit. Only the differences between the errors of rows are
+/// known, up to the next gap. Nothing allocates or throws after construction.
 class RowTimes
 {
 public:
