@@ -207,7 +207,7 @@ class DataSets(unittest.TestCase):
     def test_no_recordings_are_an_error(self):
         for function in (hjt.indicators, hjt.remaining, lambda none: hjt.assess(none, "sound.yaml"),
                          lambda none: hjt.reference(none, "sound.yaml"), lambda none: hjt.trend(none, arm="ur5")):
-            with self.assertRaisesRegex(hjt.InputError, "recordings: there is none"):
+            with self.assertRaisesRegex(hjt.InputError, "recordings: at least one is required"):
                 function([])
 
     def test_runs_without_a_reference_are_one_warning_at_the_callers_line(self):

@@ -168,7 +168,7 @@ private:
     }
     if (option.is_required && !option.given)
     {
-      throw InputError(option.name + ": there is no such option");
+      throw InputError(option.name + ": at least one is required");
     }
     if (option.most == 2 && option.values.size() != 2)
     {
