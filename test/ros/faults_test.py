@@ -97,7 +97,8 @@ class FaultsOfANode(unittest.TestCase):
         self.send("tooth_wear", 0.5, -1, stamp)
         self.send("flange_crack", 1.0, -1, stamp)
         self.run_clock(STEP)
-        self.assertEqual(self.active(), [("tooth_wear", 0.5, -1), ("flange_crack", 1.0, -1)])
+        # The health of a step may arrive before its faults.
+        wait_until(lambda: self.active() == [("tooth_wear", 0.5, -1), ("flange_crack", 1.0, -1)], "both faults")
         for fault in self.faults.messages()[-1].faults:
             self.assertAlmostEqual(fault.since.to_sec(), stamp, places=6)
         self.assertAlmostEqual(self.faults.messages()[-1].header.stamp.to_sec(), stamp, places=6)

@@ -153,7 +153,7 @@ class Parameters(unittest.TestCase):
                       "telemetry/torque_per_current = 10.7. ",
                       self.warning([], left))
         many = configuration_files("elbow", ["size_11.yaml"])
-        self.assertRegex(self.warning(many, left), "shipped: arm = 'ur5', (.* = .*, ){11}[0-9]+ more[.] ")
+        self.assertRegex(self.warning(many, left), "shipped ones: arm = 'ur5', (.* = .*, ){11}[0-9]+ more[.] ")
 
     def test_what_is_wrong_in_an_arms_file_is_named(self):
         like = "like: " + package_path("config", "arms", "ur5.yaml") + "\n"
