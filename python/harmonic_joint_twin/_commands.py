@@ -228,7 +228,7 @@ def _signals(recordings: Any, columns: Optional[Mapping[str, str]]) -> Dict[str,
     listed = recordings.tolist() if is_column else recordings  # a column of a frame contains paths
     several = listed if isinstance(listed, (list, tuple)) else [listed]
     if not several:
-        raise _hjt.InputError("recordings: there is none")
+        raise _hjt.InputError("recordings: at least one is required")
     names: List[str] = []
     at_hand = {}
     for place, recording in enumerate(several):

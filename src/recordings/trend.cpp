@@ -349,7 +349,7 @@ Trend trend(const TrendOptions& options)
   const std::vector<std::string> files = filesOf(options.recordings);
   if (files.empty())
   {
-    throw InputError("recordings: there is none");
+    throw InputError("recordings: at least one is required");
   }
   const std::function<void(double)> show = options.watch.progress("recordings");
   Trend trend;
