@@ -13,8 +13,8 @@ namespace hjt
 {
 namespace
 {
-/// Cost of an arm by the gains that the recording states. Stated gains and known gains of a type are exact: if a few of
-/// them agree, they show the type of the arm.
+/// Cost by which the ranking of the arms counts the gains that the recording states against an arm [-]. Stated gains
+/// and known gains of a type are exact. So a few gains that agree show the type of the arm.
 double costOfGains(const ArmRecording& recording, const RecordingOptions& options)
 {
   constexpr double KNOWN = 0.01;  // standard deviation of a gain's logarithm [-]
@@ -55,7 +55,7 @@ void holdAgainstController(const AssessedJoints& joints)
   }
 }
 
-/// The drives of the joints with the friction that is expected of them.
+/// The drives of the joints, each with its expected friction.
 std::vector<LoadFit::Drive> drivesOf(const std::vector<Parameters>& parameters, const AssessedJoints& joints)
 {
   std::vector<LoadFit::Drive> drives(parameters.begin(), parameters.end());
@@ -66,7 +66,7 @@ std::vector<LoadFit::Drive> drivesOf(const std::vector<Parameters>& parameters, 
   return drives;
 }
 
-/// Reads the recording once and judges its joints. With `looks_for_load` it finds the load that the currents show.
+/// Reads the recording once and judges its joints. If `looks_for_load`, also finds the load that the currents show.
 ArmAssessment pass(const ArmRecording& recording, const AssessmentSettings& settings, bool looks_for_load,
                    bool gives_notice, RecordingFit& fit)
 {
@@ -126,8 +126,8 @@ ArmAssessment pass(const ArmRecording& recording, const AssessmentSettings& sett
   return arm;
 }
 
-/// Names another shipped arm with the same joints in the misfits, if that arm explains the recording so much better
-/// that it contradicts the given one. The function does not doubt an arm of the user's own file.
+/// Adds the name of another shipped arm with the same joints to the misfits, if that arm explains the recording so much
+/// better that it contradicts the given arm. An arm in a file of the user's own is not doubted.
 void nameOther(const ArmRecording& recording, std::vector<Misfit>& misfits)
 {
   if (!mayBeOtherArm(misfits))

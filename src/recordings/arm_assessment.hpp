@@ -17,13 +17,12 @@
 
 namespace hjt
 {
-/// A joint of a recording beside its twin, and what is known of it: what `check`, `compare` and `follow` have in
-/// common.
+/// A joint of a recording, its twin, and what is known of the joint. `check`, `compare` and `follow` use this class.
 class AssessedJoint
 {
 public:
-  /// `sound`: what is known of the joint in sound condition. `is_identified`: the parameters are of this very joint.
-  /// @throws ParameterError as JointEvidence.
+  /// `sound`: what is known of the joint in sound condition. `is_identified`: whether the parameters were identified on
+  /// this very joint. @throws ParameterError for the reasons that JointEvidence names.
   AssessedJoint(const Parameters& parameters, LoadOrigin load, SoundJoint sound, bool is_identified)
     : evidence_(parameters, load), own_(std::move(sound.own)), is_identified_(is_identified)
   {
@@ -39,10 +38,10 @@ public:
   const OwnReference& own() const { return own_; }
   /// Whether a reference of the joint's friction is known.
   bool hasReference() const { return is_identified_ || !own_.friction.empty(); }
-  /// Without a reference the friction is held against what the arm's controller expects.
+  /// Compares the friction with that which the arm's controller expects, unless a reference is known.
   void holdAgainstController() { has_controller_ = true; }
 
-  /// `factor` and `deviation` are of the friction that the joints of an arm have in common.
+  /// `factor` and `deviation`: common factor of the arm's joints, and the standard deviation of its logarithm [-].
   JointContext context(const Misfit& misfit, double factor = 1.0, double deviation = UNWITNESSED) const
   {
     return { own_, is_identified_, has_controller_, factor, misfit, deviation };
@@ -58,7 +57,7 @@ private:
 
 using AssessedJoints = std::vector<std::unique_ptr<AssessedJoint>>;
 
-/// The joints of a recording beside their twins after a pass through it.
+/// Joints of a recording and their twins after the program has read the recording.
 struct ArmAssessment
 {
   AssessedJoints joints;
@@ -66,8 +65,9 @@ struct ArmAssessment
   StreamTimingReport timing;
   JudgedJoints judged;
   std::optional<FoundLoad> load;
-  AssumedLoad assumed;                    ///< load that the joints are judged with
-  std::vector<FittedFriction> frictions;  ///< friction of each joint by the first pass; empty: not known
+  AssumedLoad assumed;  ///< load that the joints are judged with
+  /// Friction of each joint from the first reading of the recording. Empty: not known.
+  std::vector<FittedFriction> frictions;
 
   JointContext context(std::size_t joint) const
   {
@@ -80,19 +80,20 @@ struct ArmAssessment
 
 struct AssessmentSettings
 {
-  /// Makes a joint by its number, anew for each pass through the recording; none: a plain one.
+  /// Makes the joint of a number, anew for each reading of the recording. Null: the joint is an AssessedJoint.
   std::function<std::unique_ptr<AssessedJoint>(std::size_t)> make_joint;
-  bool beside_controller{ true };  ///< the friction that the controller expects may be the reference
-  bool looks_for_arm{ true };      ///< nothing is judged if another shipped arm explains the recording clearly better
-  bool gives_notice{};             ///< whether the user gets notices of what is wrong with the recording
+  bool beside_controller{ true };  ///< whether the friction that the controller expects may be the reference
+  /// Whether another shipped arm that explains the recording clearly better prevents verdicts.
+  bool looks_for_arm{ true };
+  bool gives_notice{};  ///< whether the user gets notices of defects of the recording
 };
 
-/// Reads and judges the recording. If its currents show another payload or mounting, the recording is read again with
-/// that load, which stays the recording's if it explains the currents. `fit` is that of the last pass.
+/// Reads and judges the recording. If its currents show another payload or mounting, the function reads it again with
+/// that load, and keeps the load if it explains the currents. `fit` gets the result of the last reading.
 /// @throws ParameterError, InputError.
 ArmAssessment assess(ArmRecording& recording, const AssessmentSettings& settings, RecordingFit& fit);
 
-/// Ranks the arms of these names, the best first, by how they explain the first two minutes of the recording and the
-/// gains that it states. @throws InputError, ParameterError.
+/// Ranks the named arms, the best first, by how well they explain the first two minutes of the recording and the gains
+/// that the recording states. @throws InputError, ParameterError.
 std::vector<ArmFit> rankArms(const RecordingOptions& options, const std::vector<std::string>& names);
 }  // namespace hjt

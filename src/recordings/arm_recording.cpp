@@ -18,8 +18,8 @@ namespace hjt
 {
 namespace
 {
-/// Parameters of a joint of an arm. `gain` is the one that the recording states, or NaN. An identified or configured
-/// gain takes precedence.
+/// Parameters of a joint of an arm. `gain` is the gain that the recording states, or NaN. An identified or configured
+/// gain takes precedence over `gain`.
 Parameters parametersOf(const ArmJoint& joint, double gain, const RecordingOptions& options)
 {
   ParameterMap map = armJointParameters(joint, configDirectory(options), options.identified);
@@ -50,7 +50,7 @@ ArmDescription armOf(const std::string& short_name)
   return arm;
 }
 
-/// Text on stamps and angles that disagree with the recorded velocities; empty if they agree.
+/// Text for the user if stamps and angles contradict the recorded velocities, else an empty text.
 std::string wrongStamps(const MotionCount& count)
 {
   constexpr double TOLERANCE = 0.03;

@@ -18,63 +18,63 @@ namespace hjt
 /// One joint of the arm at the time of a row.
 struct ArmJointRow
 {
-  MotionSample row;        ///< with the chosen load at the output; its rates are set for a joint of an arm only
-  double recorded_load{};  ///< [N.m]
-  double motor_part{};     ///< torque of the motor's inertia that a controller's torque holds [N.m]
+  MotionSample row;        ///< has the chosen load at the output; rates are set only for a joint of an arm
+  double recorded_load{};  ///< load at the joint as the recording gives it [N.m]
+  double motor_part{};     ///< torque of the motor's inertia, a part of the torque that a controller states [N.m]
 };
 
-/// The recording of an arm, or of one joint as an arm of one joint, and the parameters of the joints' twins. The load
-/// of a single joint is the recorded one.
+/// The recording of an arm or of a single joint, and the parameters of the joints' twins. A single joint is an arm of
+/// one joint, and its load is the recorded one.
 class ArmRecording
 {
 public:
   using VisitRows = std::function<void(const std::vector<ArmJointRow>&)>;
   using VisitSample = std::function<void(std::size_t, const MotionSample&)>;
 
-  /// @throws ParameterError, InputError if the recording is unreadable or has not the load that is chosen.
+  /// @throws ParameterError; InputError if the recording is unreadable or lacks the chosen load.
   explicit ArmRecording(const RecordingOptions& options);
 
   const RecordingOptions& options() const { return options_; }
   bool isArm() const { return is_arm_; }
   bool isFile() const { return !options_.rows; }
-  const ArmDescription& arm() const { return arm_; }  ///< of a single joint: an arm with that joint alone
+  const ArmDescription& arm() const { return arm_; }  ///< for a single joint, an arm that has only this joint
   const std::vector<ArmJoint>& joints() const { return arm_.joints; }
-  /// The same arm under another load, in place of the configured one.
+  /// Replaces the load of the arm. `arm` is the same arm, with the other load.
   void setLoad(ArmDescription arm, PayloadCourse course)
   {
     arm_ = std::move(arm);
     course_ = std::move(course);
   }
-  MotionSource source(std::size_t joint) const;        ///< source of that joint alone
+  MotionSource source(std::size_t joint) const;        ///< source that reads only this joint
   std::string twinNamespace(std::size_t joint) const;  ///< namespace of the twin's topics, as in arm.launch
-  /// Parameters of a joint; telemetry.inertia_in_load is that of the chosen load.
+  /// Parameters of a joint. For an arm, telemetry.inertia_in_load is 0 unless the load is the recorded one.
   const Parameters& parameters(std::size_t joint) const { return parameters_[joint]; }
   const std::vector<Parameters>& parameters() const { return parameters_; }
-  /// Torque per current of each joint that the recording states, see RecordedStatements [N.m/A]. It counts unless
-  /// another one was identified or set.
+  /// Gain of each joint that the recording states (RecordedStatements) [N.m/A], NaN if it states none. An identified or
+  /// configured gain takes precedence.
   const std::vector<double>& statedGains() const { return stated_gains_; }
   bool hasRecordedLoad() const { return has_load_; }
-  /// Whether the load is the recorded one.
+  /// Whether the joints' load is the recorded load.
   bool usesRecordedLoad() const { return uses_recorded_; }
   LoadOrigin loadOrigin() const
   {
     return uses_recorded_ ? LoadOrigin::RECORDED : is_arm_ ? LoadOrigin::ARM : LoadOrigin::CONFIGURED;
   }
 
-  /// Calls `visit` for each time with a row of each joint; `fit` gets all rows of an arm. Memory does not grow with the
-  /// recording. A row without a load has a load of 0. @throws InputError.
+  /// Calls `visit` at each time at which all joints have a row, with these rows. A row without a load has a load of 0.
+  /// `fit` gets all rows of an arm. Memory does not grow with the recording. @throws InputError.
   MotionFindings read(const VisitRows& visit, RecordingFit& fit) const;
 
   /// Calls `visit` with the rows as they are recorded. In rows of an arm `current` is the effort. @throws InputError.
   MotionCount readRows(const VisitMotionRows& visit) const;
 
-  /// Calls `visit` with the samples of each joint, with rates and loads. A joint without a recorded load carries the
-  /// configured one. @throws InputError.
+  /// Calls `visit` with the samples of each joint, including rates and load. A joint without a recorded load carries
+  /// the configured load. @throws InputError.
   MotionFindings readSamples(const VisitSample& visit, RecordingFit& fit) const;
 
-  /// Tells the user why joints of an arm cannot be judged, except for wrong stamps, which the next function tells.
+  /// Tells the user why joints of an arm cannot be judged. It does not tell of wrong stamps.
   void noticeOf(const RecordingFit& fit) const;
-  /// Tells the user what is wrong with the whole recording.
+  /// Tells the user of defects of the whole recording, including wrong stamps.
   void noticeOf(const MotionFindings& found) const;
 
 private:

@@ -30,13 +30,14 @@ namespace hjt
 {
 namespace
 {
-/// Writes the rows of an arm's motion to a file. A CSV file has one line for each row; a `.bag` has the messages that
-/// the arm's driver would publish; an `.h5` file is like a run of a data set.
+/// Writes the rows of an arm's motion to a file. A CSV file has one line for each row. A `.bag` file has the messages
+/// that the arm's driver would publish. An `.h5` file has the layout of a run of a data set.
 class ArmRows
 {
 public:
-  /// `spec` describes the run; ArmSpec::arm.state_rate is the rate of the rows and divides solver.rate. Without a
-  /// `path` no file is written. `moving` is at the first row and must live as long as this object. @throws InputError.
+  /// `spec` describes the run. ArmSpec::arm.state_rate is the rate of the rows [Hz] and divides solver.rate. If `path`
+  /// is empty, no file is written. `moving` is at the first row and must live as long as this object.
+  /// @throws InputError.
   ArmRows(const std::string& path, const RunSpec& spec, const MovingArm& moving)
     : moving_(moving), begin_(moving.twin().stamp()), end_(begin_), path_(path), spec_(spec)
   {
@@ -61,7 +62,7 @@ public:
     }
   }
 
-  /// To be called after every step of the motion. `row` is null where no row is due. @throws InputError.
+  /// The caller calls this function after every step of the motion. `row` is null if no row is due. @throws InputError.
   void take(Stamp stamp, double time, ArmRecorder& recorder, const ArmRow* row)
   {
     if (file_ && !failed_)
@@ -101,7 +102,7 @@ public:
     }
   }
 
-  /// Whether the file is that of a run: it exists only after `close`.
+  /// Whether the file holds a run. The file of a run exists only after `close`.
   bool isRun() const { return file_ != nullptr; }
 
 private:
@@ -117,7 +118,7 @@ private:
   std::vector<double> values_;
 };
 
-/// Sets the arm's state_rate to a rate that divides solver.rate and is nearest to the wanted rate of rows.
+/// Sets the arm's state_rate to the rate that divides solver.rate and is nearest to the wanted rate of rows [Hz].
 void takeRate(const ArmRunOptions& options, double solver_rate, ArmDescription& arm)
 {
   const double wanted = options.rate.value_or(arm.state_rate);
@@ -129,7 +130,6 @@ void takeRate(const ArmRunOptions& options, double solver_rate, ArmDescription& 
   }
 }
 
-/// Adds the errors of a moving arm at a row.
 void addErrors(const ArmRow& row, const ArmTwin& twin, ArmRun& run)
 {
   for (std::size_t i = 0; i < run.joints.size(); ++i)
@@ -142,7 +142,7 @@ void addErrors(const ArmRow& row, const ArmTwin& twin, ArmRun& run)
   run.tool_error.add(std::hypot(tool[0] - wanted[0], tool[1] - wanted[1], tool[2] - wanted[2]));
 }
 
-/// Description of the run for a file with labels.
+/// Description of the run, for a file with labels.
 RunSpec specOf(const ArmRunOptions& options, ArmDescription arm, std::vector<Parameters> drives,
                const ArmMotion& motion)
 {

@@ -22,24 +22,24 @@ namespace hjt
 {
 inline constexpr Range ROW_RATE{ 1e-6, 1e6 };  ///< allowed rates of an arm's rows [Hz]
 
-/// Options of a motion for the twin of a whole arm. A fault is written JOINT:KIND:SEVERITY[:PLACE[:ONSET]].
+/// Options of a motion that the twin of a whole arm makes. A fault is written JOINT:KIND:SEVERITY[:PLACE[:ONSET]].
 struct ArmRunOptions : ConfigurationOptions
 {
-  std::string motion;                   ///< file of set points (readSetPoints)
-  std::vector<ArmSetPoint> set_points;  ///< set points in memory; none: those of the file
+  std::string motion;                   ///< file of set points, as readSetPoints reads it
+  std::vector<ArmSetPoint> set_points;  ///< set points in memory; empty: the set points of the file count
   std::string arm;                      ///< name in config/arms, or a file
   std::string identified;               ///< directory of overlays, SHORT_NAME.yaml; empty: none
-  std::string out;                      ///< file of every row, CSV, bag or HDF5 by its ending; empty: none
+  std::string out;                      ///< file that gets every row: CSV, bag or HDF5, by its ending; empty: no file
   std::optional<double> rate;           ///< rate of the rows [Hz]; none: that of the arm's states
-  bool force{};                         ///< overwrite files
-  /// Gets every row and its time [s].
+  bool force{};                         ///< whether existing files are overwritten
+  /// Called with the time [s] and the row, for every row.
   std::function<void(double, const ArmRow&)> take{ [](double, const ArmRow&) {} };
   Watch watch;
 };
 
 void addOptions(OptionTable& table, ArmRunOptions& options);
 
-/// Errors at the rows of a motion.
+/// Errors over the rows of a motion.
 class RunErrors
 {
 public:
@@ -58,32 +58,32 @@ private:
 
 struct ArmRunJoint
 {
-  std::string name;       ///< short name
-  RunErrors angle_error;  ///< actual less target [rad]
+  std::string name;       ///< short name of the joint
+  RunErrors angle_error;  ///< actual angle less target angle [rad]
   Rms current;            ///< current of the motor [A]
 };
 
-/// A protective stop.
+/// Protective stop of the simulated arm.
 struct ArmRunStop
 {
-  double time{};      ///< time of the motion [s]
-  std::string joint;  ///< short name
+  double time{};      ///< time of the stop since the start of the motion [s]
+  std::string joint;  ///< short name of the joint
   std::string reason;
 };
 
 struct ArmRun
 {
-  double duration{};                 ///< simulated time, with the start in the brakes [s]
-  double wall_time{};                ///< computing time without building tables [s]
-  RunErrors tool_error;              ///< error of the tool's position [m]
-  double energy_residual{};          ///< error of the coupling [J]
+  double duration{};                 ///< simulated time, including the release of the brakes at the start [s]
+  double wall_time{};                ///< computing time, without the time for building tables [s]
+  RunErrors tool_error;              ///< error of the tool's position over the rows [m]
+  double energy_residual{};          ///< energy that the drives delivered less the change of the arm's energy [J]
   std::vector<ArmRunJoint> joints;   ///< joints from the base on; none if the run was stopped before the first step
-  std::optional<ArmRunStop> stop;    ///< protective stop; none if the motion came to its end
-  std::uint64_t feedback_limited{};  ///< number of controls with a limited feedback [-]
-  TwinCounters counters;             ///< counters of all drives
+  std::optional<ArmRunStop> stop;    ///< protective stop; none if the motion was completed
+  std::uint64_t feedback_limited{};  ///< how often a joint's feedback was at its limit while its brake was off [-]
+  TwinCounters counters;             ///< sum of the counters of all drives
 };
 
-/// Moves an arm along its set points, its drives, links and controller in closed loop (docs/arm_twin.md).
+/// Moves an arm along its set points. Drives, links and controller form a closed loop (docs/arm_twin.md).
 /// @throws ParameterError, InputError if a file cannot be read or written.
 ArmRun runArm(const ArmRunOptions& options);
 

@@ -14,7 +14,7 @@ namespace hjt
 {
 namespace
 {
-/// The text in quotes, if a shell needs them to read it as one word.
+/// The text as one word of a shell command, in quotes if the shell needs them.
 std::string shellWord(const std::string& text)
 {
   const auto is_plain = [](char c)
@@ -119,10 +119,10 @@ std::vector<std::string> nextCommands(const RecordingCheck& check, const Checked
   const RecordingOptions& options = check.options;
   if (options.rows)
   {
-    return {};  // the recording is no file
+    return {};  // a recording in memory has no file to name in a command
   }
   const bool is_mended = !arm.tried.empty() && arm.tried.front().helps;
-  // The remedy stands last, and replaces the option that it mends.
+  // The remedy is the last option, so that it overrides an option of the same name.
   const std::string remedy = is_mended ? arm.tried.front().options : "";
   std::string reading = optionsOf(arm.affixes);
   if (options.time_scale != 1.0 && remedy.find("--time-scale") == std::string::npos)

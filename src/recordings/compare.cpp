@@ -42,7 +42,8 @@ void refuseReferenceAsReport(const ComparisonOptions& options)
   }
 }
 
-/// Refuses references of another shipped arm, by the arms' names. The user's own files may be of any arm.
+/// Refuses references of another shipped arm. The arms' names decide. An arm in a file of the user's own may be any
+/// arm, so its references are not refused.
 void refuseReferenceOfOtherArm(const ComparisonOptions& options)
 {
   const auto is_name = [](const std::string& arm) { return arm.find_first_of("./") == std::string::npos; };
@@ -86,7 +87,7 @@ const std::vector<Column<ComparedJoint>> ARM_COLUMNS{
   { "current_residual_rms", &ComparedJoint::residual_rms, "less predicted [A]" }
 };
 
-/// Sentence on the common factor of a group of joints; empty if the factor is small.
+/// Sentence on the common factor of a group of joints; empty if the factor is close to 1.
 std::string groupText(const JointGroup& group, const std::vector<ComparedJoint>& lines)
 {
   constexpr double NOTEWORTHY = 0.1;
@@ -102,7 +103,7 @@ std::string groupText(const JointGroup& group, const std::vector<ComparedJoint>&
          ", not a fault of one joint. ";
 }
 
-/// Sentences on every joint that departs or is not judged.
+/// Sentences on every joint that differs from a sound joint or is not judged.
 std::string departuresOf(const std::vector<ComparedJoint>& lines)
 {
   std::string text;
@@ -138,7 +139,7 @@ std::string departuresOf(const std::vector<ComparedJoint>& lines)
   return text;
 }
 
-/// Sentence on joints that are judged, but not against the given reference.
+/// Sentence that names the joints whose friction is judged, but not with the given reference.
 std::string withoutReference(const std::vector<ComparedJoint>& lines)
 {
   std::vector<std::string> names;
@@ -154,7 +155,8 @@ std::string withoutReference(const std::vector<ComparedJoint>& lines)
              "The reference did not judge the friction of " + joined(names) + ". The twin's friction replaces it. ";
 }
 
-/// Sentence on factors by which the friction is divided before it is judged, if they differ from the arm's factor.
+/// Sentence on the common factors by which the friction of joints is divided before the verdict. It names only the
+/// factors that differ from the arm's factor.
 std::string sharedText(const std::vector<ComparedJoint>& lines, double of_whole_arm)
 {
   std::vector<std::pair<std::string, std::vector<std::string>>> shares;  // factor, and joints with this factor
@@ -176,7 +178,7 @@ std::string sharedText(const std::vector<ComparedJoint>& lines, double of_whole_
                               " times the reference's friction. ";
 }
 
-/// Sentences on common factors of the joints, and on each joint that departs or is not judged.
+/// Sentences on common factors of the joints, and on each joint that differs from a sound joint or is not judged.
 std::string textOf(const std::vector<ComparedJoint>& lines, const ArmFriction& arm, bool has_reference)
 {
   std::string text;
@@ -200,7 +202,7 @@ std::string textOf(const std::vector<ComparedJoint>& lines, const ArmFriction& a
   return text;
 }
 
-/// Sets level and text of an arm by those of its joints. `misfits` are those of the joints' rows.
+/// Sets level and text of an arm from those of its joints. `misfits` has the misfit of each joint's rows.
 void judgeArm(const std::vector<Misfit>& misfits, bool has_reference, ComparedRecording& compared)
 {
   for (const ComparedJoint& joint : compared.joints)
@@ -247,14 +249,14 @@ Json documentOfArm(const ComparisonOptions& options, const ComparedRecording& co
            { "joints", tableOf(compared).rows() } };
 }
 
-/// The directory of a joint's report or reference within that of the whole arm.
+/// Directory of a joint's report or reference. `whole` is the directory of the whole arm's.
 std::string directoryOf(const ArmRecording& recording, const std::string& whole, std::size_t joint)
 {
   return recording.isArm() && !whole.empty() ? (fs::path(whole) / recording.joints()[joint].short_name).string() :
                                                whole;
 }
 
-/// Prepares the directories of the reports. A second pass through the recording writes the same files again.
+/// Prepares the directories of the reports. The second reading of a recording overwrites the files of the first.
 void prepareReports(const ComparisonOptions& options, const ArmRecording& recording)
 {
   if (recording.isArm())
@@ -287,14 +289,14 @@ std::unique_ptr<RecordingComparison> prepareJoint(const ComparisonOptions& optio
                                                readSoundJoint(references, recording.parameters(joint)));
 }
 
-/// Compares the recording and writes the data of the pages into options.report, if that is given.
+/// Compares the recording and writes the data of the pages into options.report, unless that is empty.
 ComparedRecording compareInto(const ComparisonOptions& options)
 {
   refuseReferenceAsReport(options);
   ArmRecording recording(options);
   prepareReports(options, recording);
   ComparedRecording compared;
-  std::vector<RecordingComparison*> joints(recording.joints().size());  // joints of the last pass
+  std::vector<RecordingComparison*> joints(recording.joints().size());  // joints of the last reading
   AssessmentSettings settings;
   settings.make_joint = [&](std::size_t i)
   {

@@ -16,14 +16,14 @@ namespace hjt
 {
 struct ComparisonOptions : RecordingOptions
 {
-  bool beside_controller{ true };  ///< the friction that the controller expects may be the reference
-  /// Directory of the page, its figures and data, with a directory for each joint of an arm. Empty: nothing is written.
+  bool beside_controller{ true };  ///< whether the friction that the controller expects may be the reference
+  /// Directory for the page, its figures and data, with a folder for each joint of an arm. Empty: nothing is written.
   std::string report;
   std::vector<std::string> references;  ///< earlier reports of the joint or arm in sound condition
 };
 
 void addOptions(OptionTable& table, ComparisonOptions& options);
-/// Adds the option for earlier reports to judge by.
+/// Adds the option that names earlier reports of the sound joint or arm.
 void addReferenceOption(OptionTable& table, ComparisonOptions& options);
 
 /// A topic or column that a comparison can use.
@@ -31,31 +31,32 @@ struct ContentLine
 {
   std::string name;
   std::string gives;
-  std::uint64_t messages{};  ///< number of messages, or of rows with a value
+  std::uint64_t messages{};  ///< number of messages of the topic, or of rows with a value in the column
   bool found{};
 };
 
-/// Contents of a recording.
+/// Topics or columns and joints of a recording.
 struct RecordingContents
 {
   std::vector<ContentLine> lines;
-  std::vector<std::string> joints;        ///< named in the telemetry's first message
+  std::vector<std::string> joints;        ///< joints that are named in the telemetry's first message
   std::vector<std::string> other_topics;  ///< topics that a comparison does not use
 };
 
-/// A joint beside its twin.
+/// Result for one joint, compared with its twin.
 struct ComparedJoint
 {
-  std::string name;  ///< short name
+  std::string name;  ///< short name of the joint
   Verdict verdict;
   RecordingContents contents;
-  std::optional<FrictionFactor> friction;  ///< measured friction over the expected one; none if it is not judged
-  std::string contact;                     ///< sentence on a contact that was found; empty: none
-  double temperature{};                    ///< temperature at which the joint was judged [degC]
+  /// Measured friction over expected friction; none if the friction is not judged.
+  std::optional<FrictionFactor> friction;
+  std::string contact;   ///< sentence on a contact that was found; empty: no contact
+  double temperature{};  ///< temperature at which the joint was judged [degC]
   const char* temperature_source{};
   std::uint64_t rows{};
-  double current_rms{};   ///< measured current [A]
-  double residual_rms{};  ///< measured current less predicted current [A]
+  double current_rms{};   ///< measured current, rms [A]
+  double residual_rms{};  ///< measured current less predicted current, rms [A]
   Json document;          ///< data of the joint's page
 };
 
@@ -63,7 +64,7 @@ struct ComparedRecording
 {
   bool is_arm{};
   std::string level;
-  std::string text;  ///< one or two sentences
+  std::string text;  ///< sentences for the user on the joints that differ or are not judged
   bool is_judged{};
   std::size_t not_judged{};  ///< number of joints that are not judged
   HealthLevel health{};      ///< worst level of the joints
@@ -75,16 +76,15 @@ struct ComparedRecording
   std::string page;                   ///< path of the page; empty: none
 };
 
-/// Compares a recorded joint or arm with its twin, and makes a page of verdict, data and figures if a report is wanted.
+/// Compares a recorded joint or arm with its twin. If options.report is set, also makes a page of verdict and figures.
 /// @throws ParameterError, InputError if the recording is unreadable, or a file or page cannot be made.
 ComparedRecording compare(const ComparisonOptions& options);
 
-/// Table with a row for each joint.
 Table tableOf(const ComparedRecording& compared);
 
 constexpr const char* REPORT_PAGE = "report.html";
 
-/// Runs the script that makes a page and its pictures of the data in a directory. @throws InputError if the script
+/// Runs the script that makes a page with its pictures from the data in a directory. @throws InputError if the script
 /// fails.
 void makePage(const std::string& directory);
 }  // namespace hjt

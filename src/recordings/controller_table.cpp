@@ -26,7 +26,7 @@ bool beginsWith(const std::string& text, const std::string& begin)
   return text.compare(0, begin.size(), begin) == 0;
 }
 
-/// A controller's name for a column that is named TOPIC/NAME/quantity. Other names stay as they are.
+/// Name of a PlotJuggler column, TOPIC/NAME/quantity, in a controller's recording. Other names are not changed.
 std::string ofPlotJuggler(const std::string& column)
 {
   static const std::array<std::pair<const char*, const char*>, 3> QUANTITIES{
@@ -45,7 +45,7 @@ std::string ofPlotJuggler(const std::string& column)
       continue;
     }
     std::string name = column.substr(before + 1, last - before - 1);
-    // A driver may put a prefix before the name.
+    // A driver may put a prefix before the name of a joint.
     for (std::size_t at = 0; at != std::string::npos; at = name.find('_', at + 1))
     {
       const std::optional<UrJoint> joint = findUrJoint(at == 0 ? name : name.substr(at + 1));
@@ -61,7 +61,7 @@ std::string ofPlotJuggler(const std::string& column)
 constexpr std::size_t JOINTS = 6;
 constexpr std::size_t COLUMNS = 4 * JOINTS;
 
-/// Places of the columns: each quantity has one column for each joint.
+/// Place of each quantity's first column in a row. A quantity has one column for each joint.
 enum Column : std::size_t
 {
   CURRENT = 0,
@@ -84,7 +84,7 @@ NumberTable<COLUMNS>::Names columnNames()
   return names;
 }
 
-/// Whether the arm is at rest, by the target speeds or, where these are not recorded, by the measured speeds.
+/// Whether the arm is at rest, according to the target speeds or, if these are not recorded, to the measured speeds.
 bool isAtRest(const std::array<double, COLUMNS>& row)
 {
   constexpr double STILL = 1e-3;  // largest speed at rest [rad/s]
@@ -99,12 +99,13 @@ bool isAtRest(const std::array<double, COLUMNS>& row)
   return true;
 }
 
-/// Median of the ratios, or NaN if the ratios do not agree or are of too few of the rows at rest.
+/// Median of the ratios, or NaN if the ratios disagree or too few of the rows at rest have a ratio.
 double agreedRatio(std::vector<double>& ratios, std::size_t rows)
 {
   constexpr std::size_t LEAST = 10;
-  constexpr std::size_t SHARE = 5;  // largest number of rows at rest per ratio of a loaded joint
-  constexpr double AGREE = 0.005;   // largest deviation; a controller computes both with the same numbers [-]
+  constexpr std::size_t SHARE = 5;  // largest number of rows at rest for one row with a ratio
+  // Largest relative deviation of a ratio [-]; a controller computes torque and current with the same numbers.
+  constexpr double AGREE = 0.005;
   if (ratios.size() < std::max(LEAST, rows / SHARE))
   {
     return std::numeric_limits<double>::quiet_NaN();
@@ -121,8 +122,8 @@ double agreedRatio(std::vector<double>& ratios, std::size_t rows)
 
 std::vector<double> readStatedGains(const MotionSource& source)
 {
-  constexpr int ROWS = 50000;             // number of rows that are read, which are minutes at any rate
-  constexpr double LEAST_CURRENT = 0.01;  // least current whose digits suffice [A]
+  constexpr int ROWS = 50000;             // number of rows that are read: several minutes at any usual rate
+  constexpr double LEAST_CURRENT = 0.01;  // least current whose recorded digits are precise enough [A]
   constexpr double WIDEST = 100.0;        // largest ratio of true torque and current [N.m/A]
   NumberTable<COLUMNS> table(source.path, columnNames(), COLUMNS, COLUMNS, controllerColumns);
   if (!table.hasColumn(CURRENT) || !table.hasColumn(MOMENT))

@@ -29,13 +29,13 @@ namespace
 {
 constexpr double VERDICT_RATE = 1.0;  // rate of the verdicts [Hz]
 
-/// A bag with the topics that the node publishes beside a robot, made offline from a recording. If the recording is a
-/// bag of ROS 1, all of its messages are copied.
+/// Bag with the topics that the node publishes beside a robot, made offline from a recording. The bag also gets all
+/// messages of the recording, if that is a bag of ROS 1.
 class TrackedBag
 {
 public:
-  /// Times of a CSV file count from SIMULATION_EPOCH. `recording` must live as long as this object.
-  /// @throws InputError if a file cannot be opened, or the recording has a topic of the twin.
+  /// The times of a CSV file are counted from SIMULATION_EPOCH. `recording` must live as long as this object.
+  /// @throws InputError if a file cannot be opened, or if the recording has a topic of the twin.
   TrackedBag(const std::string& path, const ArmRecording& recording) : recording_(recording), writer_(path)
   {
     const MotionSource source = recording.source(0);
@@ -70,7 +70,7 @@ public:
     }
   }
 
-  /// Takes a comparison of a joint, by the joint's number, after copying the messages that were recorded before it.
+  /// Writes a comparison of the joint `joint`, after the messages that were recorded before the comparison.
   void offer(std::size_t joint, const Comparison& comparison, const Tracker& tracker)
   {
     const Stamp stamp = start_ + std::llround(1e9 * comparison.time);
@@ -78,7 +78,7 @@ public:
     outputs_[joint]->offer(stamp, comparison, tracker);
   }
 
-  /// Adds verdicts of the joints. `trackers` are in the order of the joints, and `arm` is the assessment of the whole
+  /// Starts the verdicts of the joints. `trackers` are in the order of the joints. `arm` is the assessment of the whole
   /// recording.
   void judge(const std::vector<Tracker*>& trackers, const ArmAssessment& arm)
   {
@@ -89,8 +89,8 @@ public:
     }
   }
 
-  /// To be called after the comparisons of a row. Writes a verdict of each joint about once a second, by the rows so
-  /// far.
+  /// The caller calls this function after the comparisons of a row. It writes a verdict of each joint about once a
+  /// second. The verdict is based on the rows up to `time` [s].
   void offerVerdicts(double time)
   {
     if (verdict_periods_.begins(start_ + std::llround(1e9 * time)))
@@ -99,7 +99,8 @@ public:
     }
   }
 
-  /// Copies the remaining messages and writes the verdicts by all rows. @throws InputError if not all could be written.
+  /// Copies the remaining messages and writes the verdicts on the whole recording. @throws InputError if the copy is
+  /// incomplete.
   void close()
   {
     judgeNow();
@@ -144,14 +145,14 @@ private:
   rosbag::View view_;   // all messages of source_
   std::optional<rosbag::View::iterator> next_;
   BagWriter writer_;
-  Stamp start_{};  // stamp of the first row [ns]
-  Stamp delay_{};  // time from the first row's stamp to its recording [ns]
+  Stamp start_{};  // stamp of the first row
+  Stamp delay_{};  // time between the first row's stamp and its recording [ns]
   std::vector<std::unique_ptr<TrackerOutputs<RecordedTopic>>> outputs_;
   std::vector<std::unique_ptr<VerdictWatch>> verdicts_;
   StampPeriods verdict_periods_{ VERDICT_RATE };
 };
 
-/// Columns with the fields of Comparison.msg.
+/// Columns of the CSV file: the fields of Comparison.msg.
 const std::vector<Column<Comparison>> COLUMNS{
   { "time", &Comparison::time },
   { "position_measured", [](const Comparison& now) { return now.position.measured; } },
@@ -177,11 +178,11 @@ const std::vector<Column<Comparison>> COLUMNS{
   { "outside_band", &Comparison::isOutside }
 };
 
-/// One joint beside its twin.
+/// Runs the twin of one joint beside the recording.
 class Follower
 {
 public:
-  /// `bag` may be null, else it gets the comparisons of the joint `number`.
+  /// `bag` gets the comparisons of the joint with this `number`, unless it is null.
   Follower(const ArmRecording& recording, const FollowOptions& options, TrackedBag* bag, std::size_t number)
     : recording_(recording)
     , options_(options)
@@ -251,14 +252,15 @@ private:
     }
   }
 
-  /// `motor_part`: part of a controller's torque that is not the arm's load [N.m].
+  /// `motor_part`: torque of the motor's inertia that a controller counts as load of the joint, but the arm's load
+  /// lacks [N.m].
   void take(Comparison now, double motor_part)
   {
     if (bag_ != nullptr)
     {
       bag_->offer(number_, now, tracker_);
     }
-    // The column is the torque as a controller counts it, with any choice of the load.
+    // The column holds the load as a controller counts it, also if the load is computed from the arm.
     now.load_torque += has_arm_load_ ? motor_part : 0.0;
     current_.add(now.current.measured);
     residual_.add(now.current.residual());
@@ -286,7 +288,7 @@ private:
   Rms load_error_;
 };
 
-/// Sets the temperature of the joints' twins once a second, by the friction that the joints have in common.
+/// Sets the temperature of the joints' twins once a second, estimated from the joints' common factor of friction.
 class CommonTemperature
 {
 public:
@@ -319,7 +321,7 @@ private:
   StampPeriods periods_{ VERDICT_RATE };
 };
 
-/// The bag of the options, or null.
+/// Makes the bag that the options name; null if they name none.
 std::unique_ptr<TrackedBag> bagOf(const ArmRecording& recording, const FollowOptions& options)
 {
   if (options.bag.empty())
@@ -333,7 +335,7 @@ std::unique_ptr<TrackedBag> bagOf(const ArmRecording& recording, const FollowOpt
   return std::make_unique<TrackedBag>(options.bag, recording);
 }
 
-/// Judges the recording as `compare` does. The load that the currents show is then that of the recording.
+/// Judges the recording as `compare` does. A load that the currents show becomes the recording's load.
 ArmAssessment assessFor(ArmRecording& recording, const FollowOptions& options)
 {
   RecordingFit fit(recording.parameters());
