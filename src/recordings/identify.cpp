@@ -18,12 +18,13 @@ namespace hjt
 {
 namespace
 {
-constexpr double PAST_THE_END = 1.0;  // time behind the last row at which parts end [s]
+// Time from the last row to the end of a part that reaches to the end of the recording [s].
+constexpr double PAST_THE_END = 1.0;
 
-/// Entries of an overlay by section.
+/// Text of the entries of an overlay, by the name of their section.
 using Sections = std::map<std::string, std::string>;
 
-/// Entries of the identified parameters, with their intervals in comments.
+/// Overlay entries of the identified parameters. Comments in the overlay state the intervals.
 Sections identifiedSections(const Identification& found)
 {
   Sections sections;
@@ -83,7 +84,7 @@ bool saysSomething(const Identification& found)
                      [](const RippleLine& line) { return line.refusal.empty() && line.half_width < line.amplitude; });
 }
 
-/// Tells the user what helps to judge the result of one joint.
+/// Warns the user if the result for one joint is poor or empty.
 void noticeOf(const IdentifiedJoint& joint, bool any, const Watch& watch)
 {
   const JudgedErrors& judged = joint.found.judged;
@@ -100,7 +101,7 @@ void noticeOf(const IdentifiedJoint& joint, bool any, const Watch& watch)
   }
 }
 
-/// Tells the user if three fitted numbers would predict the current better than the twin.
+/// Warns the user if the simple fit (gain, Coulomb and viscous friction) predicts the current better than the twin.
 void noticeOfSimpleFit(const IdentifiedJoint& joint, const Watch& watch)
 {
   const double twin = joint.left_out.identified.moving;
@@ -114,11 +115,11 @@ void noticeOfSimpleFit(const IdentifiedJoint& joint, const Watch& watch)
 }
 
 constexpr int ARM_FOLDS = 5;
-/// Largest error on pieces left out with ripple over that without ripple, both in motion, at which the ripple of an
-/// arm's joint is kept.
+/// Largest ratio at which the ripple of an arm's joint is kept [-]: error of the current with ripple over the error
+/// without ripple, in moving rows of the pieces that the fit did not use.
 constexpr double RIPPLE_GAIN = 0.95;
 
-/// @throws InputError if the options name a part that the recording cannot have.
+/// @throws InputError if the options name a part to judge for an arm, or a part that ends before its begin.
 void requireParts(const IdentifyOptions& options)
 {
   if (!options.arm.empty() && options.judge)
@@ -135,7 +136,7 @@ void requireParts(const IdentifyOptions& options)
   }
 }
 
-/// Sets the parts to identify and to judge on, as given or by default.
+/// Sets the parts of the recording for identifying and for judging, from the options or by default.
 void chooseParts(const IdentifyOptions& options, double duration, double last, IdentifiedJoint& joint)
 {
   const bool is_arm = !options.arm.empty();
@@ -145,14 +146,14 @@ void chooseParts(const IdentifyOptions& options, double duration, double last, I
   joint.judge = options.judge.value_or(is_arm ? whole : Span{ third, duration + PAST_THE_END });
 }
 
-/// Number of pieces that are left out in turn. An arm has such pieces by default, by which its parameters are judged.
+/// Number of pieces, each of which is predicted by a fit to the others. Default for an arm: ARM_FOLDS.
 int foldsOf(const IdentifyOptions& options)
 {
   return options.folds > 0 || options.arm.empty() ? options.folds : ARM_FOLDS;
 }
 
-/// Identifies a joint on its part, and then on that part without each of its pieces. `fitted` is called after each fit.
-/// @throws InputError if the joint hardly moves.
+/// Identifies a joint from its part of the recording, and then from that part without each of its pieces. `fitted` is
+/// called after each fit. @throws InputError if the joint hardly moves.
 void identifyJoint(const IdentifyOptions& options, const Parameters& parameters, bool load_recorded,
                    const std::vector<MotionSample>& samples, const std::function<void()>& fitted,
                    IdentifiedJoint& joint)
@@ -185,7 +186,8 @@ void identifyJoint(const IdentifyOptions& options, const Parameters& parameters,
   }
 }
 
-/// The payload by the currents that the configured twins predict. The result has no meaning if the user stopped.
+/// Payload that the difference between measured and predicted currents shows. The prediction is that of the configured
+/// twins. The result has no meaning if the user stopped the program.
 IdentifiedPayload payloadOf(const ArmRecording& recording, const std::vector<std::vector<MotionSample>>& samples,
                             const Watch& watch)
 {
@@ -208,7 +210,7 @@ IdentifiedPayload payloadOf(const ArmRecording& recording, const std::vector<std
   return fit.solve(std::vector<bool>(samples.size(), true)).payload;
 }
 
-/// Path of a joint's overlay. @throws InputError if the file must not be written.
+/// Path of a joint's overlay. @throws InputError if the file exists and must not be overwritten.
 std::string overlayOf(const IdentifyOptions& options, const std::string& joint)
 {
   const std::string path =

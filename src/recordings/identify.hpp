@@ -15,23 +15,23 @@ namespace hjt
 {
 struct IdentifyOptions : RecordingOptions
 {
-  std::string out;            ///< overlay to write, for an arm a directory; empty: none
-  std::optional<Span> train;  ///< part to identify on; none: the first third, for an arm all
-  std::optional<Span> judge;  ///< part to test on; none: the rest, for an arm all
-  int folds{};                ///< number of pieces that are predicted from the others, 2 to 100; 0: none, for an arm 5
+  std::string out;            ///< overlay to write, for an arm a directory of overlays; empty: no file
+  std::optional<Span> train;  ///< part to identify from; none: the first third, for an arm the whole recording
+  std::optional<Span> judge;  ///< part to test on; none: the last two thirds, for an arm the whole recording
+  int folds{};  ///< number of pieces, 2 to 100, each predicted from the others; 0: no pieces, for an arm 5
 };
 
 void addOptions(OptionTable& table, IdentifyOptions& options);
 
-/// Identified parameters of a joint, and the parts of the recording for training and judging.
+/// Identified parameters of a joint, and the parts of the recording that they are identified from and tested on.
 struct IdentifiedJoint
 {
-  std::string name;  ///< short name
+  std::string name;  ///< short name of the joint
   Span train;
   Span judge;
   Identification found;
-  JudgedErrors left_out;  ///< errors on pieces left out; empty without folds
-  std::string refusal;    ///< why the joint stays as configured; empty if it was identified
+  JudgedErrors left_out;  ///< errors on the pieces, each predicted from the others; empty without pieces
+  std::string refusal;    ///< why the joint keeps its configured parameters; empty if it was identified
 };
 
 struct Identified
@@ -39,18 +39,18 @@ struct Identified
   bool is_arm{};
   std::string load;  ///< load of an arm's joints: LOAD_OF_ARM or LOAD_RECORDED
   MotionFindings found;
-  std::vector<IdentifiedJoint> joints;       ///< joints from the base on; none if stopped
-  std::optional<IdentifiedPayload> payload;  ///< payload of an arm
-  bool any{};                                ///< whether something was identified
+  std::vector<IdentifiedJoint> joints;       ///< joints from the base on; none if the program was stopped
+  std::optional<IdentifiedPayload> payload;  ///< payload that the currents show; none for a single joint
+  bool any{};                                ///< whether at least one parameter of a joint was identified
 };
 
 /// Identifies gain, friction, inertia and ripple of a joint, or of all joints of an arm, from a recording. Writes
-/// overlays if the options name a file.
-/// @throws ParameterError, InputError if a file cannot be read or written, or a single joint hardly moves.
+/// overlays if options.out is set. @throws ParameterError, InputError if a file cannot be read or written, or if a
+/// single joint hardly moves.
 Identified identify(const IdentifyOptions& options);
 
-/// Report of an identification. The lines `errors` are a block of their own for people. `refused` has a line for each
-/// value that is not identifiable.
+/// Report of an identification. `errors`: lines on the errors, printed as a separate block. `refused`: one line for
+/// each value that is not identifiable.
 struct IdentifyReport
 {
   Report values;

@@ -10,18 +10,18 @@
 
 namespace hjt
 {
-/// The identified controller of a joint.
+/// Identified gains of a joint's controller.
 struct IdentifiedController
 {
-  std::string name;  ///< short name
+  std::string name;  ///< short name of the joint
   ControllerFit fit;
-  bool is_limited{};  ///< whether the speed gain was limited to what the twin's loop bears
+  bool is_limited{};  ///< whether the speed gain was limited to what the twin's control loop bears
 };
 
-/// Identifies the gains of the controller of all joints of an arm (fitController). The recording is a table with the
-/// columns target_q_0, target_qd_0, target_current_0, target_moment_0, actual_q_0, actual_qd_0, actual_current_0 and so
-/// on. The gains are written as GAINS_FILE into the directory `out`, unless that is empty. @throws ParameterError,
-/// InputError if a file cannot be read or written, or a column is missing.
+/// Identifies the gains of the controller for all joints of an arm (fitController). The recording is a table with the
+/// columns target_q_N, target_qd_N, target_current_N, target_moment_N, actual_q_N, actual_qd_N and actual_current_N of
+/// each joint N. The gains are written as GAINS_FILE into the directory `out`, unless `out` is empty.
+/// @throws ParameterError, InputError if a file cannot be read or written, or a column is missing.
 std::vector<IdentifiedController> identifyController(const RecordingOptions& options, const std::string& out);
 
 Report reportOf(const std::vector<IdentifiedController>& joints);

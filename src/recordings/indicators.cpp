@@ -20,7 +20,7 @@ namespace hjt
 {
 namespace
 {
-/// Windows of a recording, with their source and that of the parameters.
+/// Windows of a recording, with the source of the windows and of the parameters.
 struct WindowSeries
 {
   std::vector<SignalIndicators> windows;
@@ -28,12 +28,12 @@ struct WindowSeries
   const char* parameters{};
 };
 
-/// Tells the user about stamps that make indicators wrong, because rates and accelerations come from the stamps. A
-/// jitter of 0.05 ms at 2 kHz changed the stiffness K1 by 0.65 %, and a gap of 1 s changed it by 1.4 %.
+/// Warns the user of uneven stamps. They make indicators wrong, because rates and accelerations are computed from the
+/// stamps. A jitter of 0.05 ms at 2 kHz changed the stiffness K1 by 0.65 %, and a gap of 1 s changed K1 by 1.4 %.
 void noticeSteps(std::vector<float> steps, const std::string& recording, const Watch& watch)
 {
-  constexpr double GAP = 10.0;     // least gap in usual steps; filters bridge shorter gaps
-  constexpr double JITTER = 0.05;  // least jitter, rms, as a share of a usual step [-]
+  constexpr double GAP = 10.0;     // least gap, in usual steps; filters bridge shorter gaps [-]
+  constexpr double JITTER = 0.05;  // least rms jitter as a share of a usual step [-]
   if (steps.size() < 2)
   {
     return;
@@ -64,7 +64,7 @@ void noticeSteps(std::vector<float> steps, const std::string& recording, const W
   }
 }
 
-/// All windows of a recording of signals.
+/// Computes all windows of a recording of signals.
 std::vector<SignalIndicators> readWindows(const std::string& recording, const SignalOptions& options,
                                           const Parameters& parameters, const Watch& watch)
 {
@@ -96,7 +96,7 @@ std::vector<SignalIndicators> readWindows(const std::string& recording, const Si
   return windows;
 }
 
-/// All windows of one recording, of the joint or of its model.
+/// All windows of one recording, which may be that of the joint or of its twin.
 WindowSeries readOne(const std::string& path, const SignalOptions& signals, const IndicatorsOptions& options)
 {
   if (options.windows)
@@ -112,7 +112,8 @@ WindowSeries readOne(const std::string& path, const SignalOptions& signals, cons
   return { readWindows(path, signals, parameters.values, options.watch), "signals", parameters.origin };
 }
 
-/// All windows of the recording `index`, less those of its model, if it has one. `model` gets the windows of the model.
+/// All windows of the recording with this `index`. If the recording has a model, that is, a recording of the twin, the
+/// model's indicators are subtracted, and `model` gets the windows of the model.
 WindowSeries readRecording(std::size_t index, const IndicatorsOptions& options, std::vector<SignalIndicators>& model)
 {
   WindowSeries measured = readOne(options.recordings[index], options, options);
@@ -137,7 +138,7 @@ bool isSound(const Assessment& assessment)
   return assessment.state == AssessmentState::ASSESSED && assessment.level == HealthLevel::OK;
 }
 
-/// Tells the user which recordings cannot be read. @throws InputError if none can be read.
+/// Tells the user which recordings cannot be read. @throws InputError if no recording can be read.
 void throwIfNoneIsRead(const AssessedWindows& found, const IndicatorsOptions& options)
 {
   const std::size_t recordings = options.recordings.size();
@@ -153,7 +154,7 @@ void throwIfNoneIsRead(const AssessedWindows& found, const IndicatorsOptions& op
   }
 }
 
-/// Assesses every window of the recordings that can be read. @throws InputError if none can be read.
+/// Assesses every window of the readable recordings. @throws InputError if no recording can be read.
 AssessedWindows assess(const IndicatorsOptions& options, Assessor& assessor)
 {
   AssessedWindows found;
@@ -198,12 +199,11 @@ AssessedWindows assess(const IndicatorsOptions& options, Assessor& assessor)
   return found;
 }
 
-/// Tells the user if a cause was sought with signatures of a gear that is much stiffer or softer than that of the
-/// reference.
+/// Warns the user if a cause was sought with signatures of another gear, much stiffer or softer than the reference's.
 void noticeOtherGear(const std::vector<WindowResult>& windows, const Assessor& assessor, const std::string& signatures,
                      const Watch& watch)
 {
-  // From size to size of a series the stiffness changes by a factor of at least 1.9, within a size of at most 1.25.
+  // Stiffness differs by a factor of at least 1.9 from one gear size to the next, and of at most 1.25 within a size.
   constexpr double ALIKE = 1.6;
   constexpr std::size_t K1 = indexOf(ScalarIndicator::TORSIONAL_STIFFNESS);
   const double theirs = assessor.signatures().sound[K1];
@@ -231,7 +231,7 @@ void refuseWrongModels(const IndicatorsOptions& options)
   }
 }
 
-/// Parameters of the first recording that can be read.
+/// Parameters of the first readable recording.
 Parameters parametersOf(const IndicatorsOptions& options)
 {
   for (auto recording = options.recordings.begin();; ++recording)

@@ -16,13 +16,14 @@ namespace hjt
 struct WindowResult
 {
   std::string recording;
-  const char* origin;      ///< source of the window, in words
-  const char* parameters;  ///< source of the parameters, in words
+  const char* origin;      ///< source of the window, as words for the report
+  const char* parameters;  ///< source of the parameters, as words for the report
   SignalIndicators indicators;
   Deviations deviations;
   WindowResidual residual;
   Assessment assessment;
-  std::optional<SeenFrom> seen_from{};  ///< severities that would show; for the last window, if it is OK
+  /// Severities at which faults would have raised an alarm. Only the last window has them, and only if its level is OK.
+  std::optional<SeenFrom> seen_from{};
 };
 
 struct UnreadRecording
@@ -31,41 +32,39 @@ struct UnreadRecording
   std::string why;
 };
 
-/// The windows of all recordings.
+/// Assessed windows of all recordings.
 struct AssessedWindows
 {
-  std::vector<WindowResult> windows;    ///< none if stopped before the first window
-  double threshold{};                   ///< threshold of the scores
+  std::vector<WindowResult> windows;    ///< none if the program was stopped before the first window
+  double threshold{};                   ///< threshold of the scores, beyond which a score is an alarm [-]
   bool is_judged{};                     ///< whether at least one window is judged
   std::vector<UnreadRecording> unread;  ///< recordings that could not be read
 };
 
-/// Severity from which on each cause with signatures would show; null if it would show at none.
+/// Severity from which each cause with signatures would have raised an alarm; null if it would have at no severity.
 Json seenFromJson(const SeenFrom& seen_from);
 
 /// Writes a CSV file with a row for each window, unless the path is empty.
 void writeWindows(const std::string& path, const std::vector<WindowResult>& windows);
 
-/// Report with every window.
 Report reportOf(const AssessedWindows& found);
 
-/// Prints the last window for people.
 void printSummary(const std::vector<WindowResult>& windows);
 
 struct IndicatorsOptions : SignalOptions
 {
-  std::vector<std::string> models;  ///< recordings of the twin, none or one for each recording
-  std::string baseline;             ///< file of the reference; empty: it is learned from the first windows
-  std::string save_baseline;        ///< file for the learned reference; empty: none
-  std::string out;                  ///< CSV file with a row for each window; empty: none
-  bool carry{};                     ///< the reference is of another motion
-  bool windows{};                   ///< the recordings hold the windows' indicators, not the signals
+  std::vector<std::string> models;  ///< recordings of the twin: none, or one for each recording
+  std::string baseline;             ///< file of the reference; empty: the first windows become the reference
+  std::string save_baseline;        ///< file that the learned reference is written to; empty: no file
+  std::string out;                  ///< CSV file with a row for each window; empty: no file
+  bool carry{};                     ///< whether the reference is from another motion
+  bool windows{};                   ///< whether the recordings hold indicators of windows in place of signals
 };
 
 void addOptions(OptionTable& table, IndicatorsOptions& options);
 
-/// Computes and assesses health indicators of recordings from encoders and torque or current, and writes the files of
-/// the options. A recording that cannot be read is left out, and a notice names it.
-/// @throws ParameterError, InputError if no recording can be read or has a whole window, or a model is missing.
+/// Computes and assesses indicators from recordings of encoders and of torque or current, and writes the files that the
+/// options name. A notice names each recording that cannot be read. @throws ParameterError, InputError if no recording
+/// can be read or has a whole window, or a model is missing.
 AssessedWindows indicators(const IndicatorsOptions& options);
 }  // namespace hjt

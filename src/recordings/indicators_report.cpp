@@ -54,7 +54,7 @@ Json toJson(const Assessment& assessment)
            { "evidence", Table(columns, evidence).rows() } };
 }
 
-/// Columns of a window for documents and files.
+/// Columns with the operating point of a window, for documents and CSV files.
 const std::vector<Column<WindowResult>> POINT_COLUMNS{
   { "time", [](const WindowResult& window) { return toSeconds(window.indicators.stamp); } },
   { "turns", [](const WindowResult& window) { return window.indicators.turns; } },
@@ -68,7 +68,7 @@ const std::vector<Column<WindowResult>> POINT_COLUMNS{
   { "temperature", [](const WindowResult& window) { return window.indicators.point.temperature; } }
 };
 
-/// The result of `value` for each indicator, by the indicator's name.
+/// JSON object with the result of `value` for each indicator, under the indicator's name.
 template <class Value>
 Json byIndicator(const Value& value)
 {
@@ -80,8 +80,8 @@ Json byIndicator(const Value& value)
   return json;
 }
 
-/// For each indicator the sound value, the difference from the sound value, the indicator's own variance, and its
-/// shares of the common causes; null if the indicator is not compared.
+/// Four kinds of numbers for each indicator: sound value, difference from the sound value, the indicator's own
+/// variance, and its loadings on the common causes. Null if the indicator is not compared.
 Json residualJson(const WindowResult& window)
 {
   return byIndicator(
@@ -94,12 +94,12 @@ Json residualJson(const WindowResult& window)
       });
 }
 
-/// The indicator with the largest difference from its reference, and the difference of the averaged windows.
+/// The indicator with the largest score, and the difference between its mean over recent windows and its reference.
 struct Strongest
 {
   std::size_t indicator{};
   double score{};
-  double spreads{};  // difference over the spread [-]
+  double spreads{};  // difference over the indicator's spread [-]
   double percent{};  // difference over the reference [%]; NaN if the reference is smaller than the spread
 };
 
@@ -220,7 +220,7 @@ Report reportOf(const AssessedWindows& found)
            {} };
 }
 
-/// A probability or severity in hundredths. Further digits would change with the last count of an encoder.
+/// A probability or severity, rounded to hundredths. Further digits would change with the last count of an encoder.
 double hundredths(double value)
 {
   return std::round(100.0 * value) / 100.0;

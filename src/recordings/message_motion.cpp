@@ -20,7 +20,7 @@ namespace hjt
 {
 namespace
 {
-/// Puts rows of an arm that comes in several parts side by side, at the times of the first part.
+/// Combines rows that hold parts of an arm's joints into rows of all joints, at the times of the first part.
 class SideBySide
 {
 public:
@@ -37,7 +37,7 @@ public:
     }
   }
 
-  /// Adds rows of one part of the arm. Returns false if the visitor wants no more rows.
+  /// Adds rows of the joints of one part. Returns false if the visitor wants no more rows.
   bool add(std::size_t part, const std::vector<MotionRow>& rows)
   {
     waiting_[part].push_back(rows);
@@ -64,7 +64,7 @@ public:
   std::uint64_t dropped() const { return dropped_; }
 
 private:
-  /// Whether all other parts have a row that is not before `time`.
+  /// Whether every other part has a row at `time` or later.
   bool areReady(double time) const
   {
     return std::all_of(waiting_.begin() + 1, waiting_.end(),
@@ -79,7 +79,7 @@ private:
     }
   }
 
-  /// Places rows of `part` on the line between its rows before and after. Returns false if these are too far apart.
+  /// Interpolates the rows of `part` linearly at the time of `base`. Returns false if the rows are too far apart.
   bool placeAt(std::size_t part, const MotionRow& base)
   {
     auto& rows = waiting_[part];
@@ -122,7 +122,7 @@ private:
   std::uint64_t dropped_{};
 };
 
-/// Values of the joints that the messages of a topic hold, for an error text.
+/// Names and fields of the joints that the messages of a topic hold, for the text of an error.
 class SeenNames
 {
 public:
@@ -206,7 +206,7 @@ private:
   std::vector<Incomplete> incomplete_;
 };
 
-/// Text with the number of rows; empty if that is 0.
+/// Text with the number of rows; empty if the number is 0.
 std::string counted(std::uint64_t rows, const std::string& text)
 {
   return rows == 0 ? "" : std::to_string(rows) + (rows == 1 ? " row " : " rows ") + text;

@@ -15,10 +15,10 @@ namespace hjt
 {
 namespace
 {
-constexpr double CLOCK_STEP = 1.0;  // largest difference of the delays of neighbouring messages [s]
+constexpr double CLOCK_STEP = 1.0;  // largest difference between the delays of neighbouring messages [s]
 
-/// Whether a message is no measurement: the efforts of all these joints are exactly zero, or all values of a single
-/// joint.
+/// Whether a message holds no measurement: the efforts of all `names` are exactly zero, or for a single name, all of
+/// its values are exactly zero.
 bool isWithoutEffort(const sensor_msgs::JointState& message, const std::vector<std::string>& names)
 {
   const auto is_zero = [&](const std::vector<double>& values, const std::string& name)
@@ -39,8 +39,8 @@ bool isVoid(const MotionRow& row)
   return row.position == 0.0 && row.current == 0.0 && !(std::abs(row.recorded_velocity) > 0.0);
 }
 
-/// Whether all values of a joint, or the angles of all joints, changed to exactly zero, as from a source without
-/// values. Without a jump of the angle the joint came to rest at zero and bears nothing there, as the wrist of a twin.
+/// Whether a joint's values, or the angles of all joints, changed to exactly zero, as from a source without values. A
+/// joint whose angle does not jump has come to rest at zero, perhaps without a load, as a wrist of a twin.
 bool isVoidAfter(const std::vector<MotionRow>& before, const std::vector<MotionRow>& rows)
 {
   constexpr std::size_t MANY = 3;
@@ -56,7 +56,7 @@ bool isVoidAfter(const std::vector<MotionRow>& before, const std::vector<MotionR
   return is_void;
 }
 
-/// Names of joints without an effort, because there are fewer efforts than names. Names of motors are not among them.
+/// Joints of a message without an effort, because it has fewer efforts than names. Motors are not counted as joints.
 std::vector<std::string> beyondEfforts(const sensor_msgs::JointState& message)
 {
   return message.effort.size() < message.name.size() ?
@@ -65,7 +65,7 @@ std::vector<std::string> beyondEfforts(const sensor_msgs::JointState& message)
              std::vector<std::string>();
 }
 
-/// The joints whose angles, and whose efforts, have been numbers.
+/// Joints with at least one numeric angle, and joints with at least one numeric effort.
 struct JointsSeen
 {
   void add(const sensor_msgs::JointState& message, const std::vector<std::string>& names)
@@ -136,7 +136,7 @@ TopicLayout readLayout(RecordedMessages& recording, const MotionSource& source, 
       },
       [](double) {});
   layout.silent = seen.silent();
-  // A joint of several parts counts in the largest part.
+  // A joint that is in several parts belongs to the largest of these parts.
   std::vector<std::vector<std::size_t>> sorted(parts.begin(), parts.end());
   std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
   std::set<std::size_t> taken;
@@ -224,8 +224,8 @@ bool MessageRows::agree(const StampedRows& a, const StampedRows& b) const
   return agrees;
 }
 
-/// Whether it is known which joints the efforts belong to. If a message has fewer efforts than names, it is not known
-/// unless the names without an effort are of another arm.
+/// Whether the message shows which joints its efforts belong to. With fewer efforts than names it does not, unless the
+/// names without an effort are joints of another arm.
 bool MessageRows::tellsWhose(const sensor_msgs::JointState& message) const
 {
   const std::vector<std::string> beyond = beyondEfforts(message);
@@ -235,7 +235,7 @@ bool MessageRows::tellsWhose(const sensor_msgs::JointState& message) const
          std::none_of(beyond.begin(), beyond.end(), is_sibling);
 }
 
-/// Makes rows of a message. Returns false if a joint lacks a value, or has one that cannot be true.
+/// Makes rows from a message. Returns false if a value of a joint is missing or impossible.
 bool MessageRows::readRows(const sensor_msgs::JointState& message, std::vector<MotionRow>& rows)
 {
   if (!tellsWhose(message))

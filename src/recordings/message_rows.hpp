@@ -18,34 +18,35 @@
 
 namespace hjt
 {
-/// Rows of some joints at one time.
+/// Rows of some joints at one instant.
 struct StampedRows
 {
   std::vector<MotionRow> rows;
   Stamp stamp{};
   Stamp recorded{};
   std::string publisher;
-  bool agrees{};  // with the row before or after
+  bool agrees{};  // whether the angles are consistent with those of the row before or after
 
   double delay() const { return toSeconds(recorded - stamp); }
 };
 
-/// How the messages of a topic hold the joints of an arm.
+/// Contents of the messages of a topic, as far as they concern the joints of an arm.
 struct TopicLayout
 {
-  bool has_stamps{};   ///< at least one message has a stamp
-  bool has_efforts{};  ///< at least one message has an effort other than zero
-  /// Joints whose effort is never a number, while other joints' efforts are. Their current counts as 0.
+  bool has_stamps{};   ///< whether at least one message has a stamp
+  bool has_efforts{};  ///< whether at least one message has an effort other than zero
+  /// Joints whose effort is never a number, while efforts of other joints are numbers. Their current counts as 0.
   std::set<std::string> silent;
-  /// Lists of the joints that share a message, by their numbers. A single list: each message holds all joints.
+  /// Groups of joints that share a message, each joint by its number. One group: each message holds all joints.
   std::vector<std::vector<std::size_t>> parts;
 };
 
-/// Finds the layout of a topic. It reads only as many messages as are needed.
+/// Finds the layout of a topic. The function reads only as many messages as it needs.
 TopicLayout readLayout(RecordedMessages& recording, const MotionSource& source, const std::vector<std::string>& names);
 
-/// Makes rows of the messages that name the joints of one part, and leaves out rows that cannot be true. A row waits
-/// for the next one, which shows whether it can be true; a load with an own stamp can reach the row until then.
+/// Makes rows from the messages that name one group of joints, and omits impossible rows. Each row waits for the next
+/// row, because only the next row shows whether the waiting row is possible. A load with a stamp of its own is still
+/// added to the waiting row.
 class MessageRows
 {
 public:
@@ -54,20 +55,20 @@ public:
   MessageRows(const MotionSource& source, const std::vector<std::string>& names, const TopicLayout& layout,
               Visit visit);
 
-  /// Takes a message. Returns false if the visitor has had enough.
+  /// Reads a message. Returns false if the visitor wants no more rows.
   bool read(const RecordedMessage& message);
-  /// Gives the row that waits to the visitor, if the row can be true.
+  /// Gives the waiting row to the visitor, unless the row is impossible.
   bool flush();
 
   std::uint64_t corrupt() const { return corrupt_; }
   std::uint64_t withoutTime() const { return without_time_; }
   std::uint64_t withoutEffort() const { return without_effort_; }
-  /// Number of messages in which angle or effort of a joint is no number, by joint.
+  /// Number of messages in which the angle or effort of a joint is not a number, by the joint's name.
   const std::map<std::string, std::uint64_t>& missing() const { return missing_; }
   bool hasShortEfforts() const { return has_short_efforts_; }
   const std::vector<UnfoldedAngle>& angles() const { return angles_; }
   std::uint64_t refusedTemperatures() const;
-  /// Whether several sources give the joints, by all rows.
+  /// Evidence from all rows on whether several sources publish the joints.
   const SourceWatch& sources() const { return sources_; }
 
 private:
@@ -86,8 +87,8 @@ private:
   std::vector<double> loads_;
   std::vector<TemperatureRecord> temperatures_;
   std::optional<StampedRows> waiting_;
-  std::optional<StampedRows> last_;  // last row, whether it can be true or not
-  std::uint64_t seen_{};             // number of rows; a single row cannot disagree with another one
+  std::optional<StampedRows> last_;  // the last row, also if it is impossible
+  std::uint64_t seen_{};             // number of rows; the first row has no other row to disagree with
   std::uint64_t corrupt_{};
   std::uint64_t without_time_{};
   std::uint64_t without_effort_{};

@@ -18,16 +18,18 @@
 
 namespace hjt
 {
-/// Times of a recording's rows from its first row on [s].
+/// Converts the stamps of a recording's rows to times since its first row [s].
 ///
-/// Another round begins where a stamp jumps back, as in a recording played in a loop, or ahead by more than a day, as
-/// after stamps of a clock that was not set. A round begins BETWEEN after the round before: a gap that cuts the stream.
-/// A round also begins where a clock was set back by less: after MOST_BEHIND rows in order that are all earlier than a
-/// row before. Rows that are days apart one after the other have stamps of another unit, and no rounds.
+/// A recording that was played in a loop has several rounds. A new round begins BETWEEN after the end of the last
+/// round, a gap that divides the recording. It begins if a stamp jumps back by more than BACK, or ahead by more than
+/// AHEAD, as after stamps of a clock that was not set. It also begins if more than MOST_BEHIND rows in order are
+/// earlier than a row before, as after a clock was set back by less than BACK. More than MOST_AHEAD jumps ahead mean
+/// that the stamps have another unit; then no round begins.
 class RowTime
 {
 public:
-  static constexpr double BACK = 1.0;       ///< jump back that begins a round; a smaller one is a row out of order [s]
+  /// Jump back that begins a round; a row that jumps back by less is out of order [s].
+  static constexpr double BACK = 1.0;
   static constexpr double AHEAD = 86400.0;  ///< jump ahead that begins a round [s]
   static constexpr double BETWEEN = 1.0;    ///< time from one round to the next [s]
   static constexpr std::uint64_t MOST_AHEAD = 10;
@@ -56,7 +58,7 @@ public:
     return time;
   }
 
-  /// Time at which the row was received whose stamp was given to `at` last [s].
+  /// Time at which the row of the last call of `at` was received, from the stamp of its reception [s].
   double received(Stamp recorded) const { return offset_ + toSeconds(recorded - zero_); }
 
   std::uint64_t rounds() const { return rounds_; }
@@ -87,11 +89,11 @@ public:
     last_ = stamp;
   }
 
-  /// Clause on what is wrong with the order; empty if nearly all rows are in order.
+  /// Clause on the wrong order of the rows; empty if nearly all rows are in order.
   std::string text() const
   {
     constexpr std::uint64_t FEWEST = 10;
-    constexpr std::uint64_t MOST = 5;    // rows for one that goes back
+    constexpr std::uint64_t MOST = 5;    // least number of rows for one row that goes back
     constexpr std::uint64_t COPIES = 9;  // largest number of copies of one row
     if (rows_ < FEWEST)
     {
@@ -118,11 +120,12 @@ private:
   std::uint64_t same_{};
 };
 
-/// Checks whether several sources give the same joints in turn.
+/// Detects several sources that publish the same joints in turn.
 ///
-/// Sources differ by the names of their nodes, where these are recorded. Else they are seen in the angles: in more than
-/// LEAST_SHARE of the rows a row is far from its neighbours, which are near to each other, and near to another such row
-/// shortly before. A damaged row comes once, and noise is small beside the motion.
+/// Sources differ by the names of their nodes, if the recording has these names. The angles show several sources if, in
+/// more than LEAST_SHARE of the moving rows, a row is far from its two neighbours, these are near to each other, and
+/// the row is near to another such row shortly before. A damaged row occurs only once, and noise is small compared with
+/// the motion.
 class SourceWatch
 {
 public:
@@ -135,7 +138,7 @@ public:
       last_publisher_ = publisher;
     }
     const double step = std::max(LEAST_STEP, LEAST_OF_RANGE * rangeWith(rows));
-    if (step > GROWN * counted_step_)  // the motion before was noise
+    if (step > GROWN * counted_step_)  // the motion that was counted before was noise
     {
       counted_step_ = step;
       moves_ = returns_ = 0;
@@ -157,7 +160,7 @@ public:
     last_[seen_++ % 2] = rows;
   }
 
-  /// Clause on several sources; empty if there is one source.
+  /// Clause on several sources; empty if the recording has one source.
   std::string text() const
   {
     if (publishers_.size() > 1 && switches_ >= LEAST_RETURNS)
@@ -177,10 +180,12 @@ public:
   }
 
 private:
-  static constexpr double LEAST_STEP = 5e-3;      // beyond the noise of an angle [rad]
-  static constexpr double LEAST_OF_RANGE = 1e-3;  // share of the sum of the joints' ranges: angles may be in degrees
+  // Least distance between rows of different sources: larger than the noise of an angle [rad].
+  static constexpr double LEAST_STEP = 5e-3;
+  // Least such distance as a share of the sum of the joints' ranges, because angles may be in degrees [-].
+  static constexpr double LEAST_OF_RANGE = 1e-3;
   static constexpr double GROWN = 5.0;
-  static constexpr double NEARER = 0.3;  // [-]
+  static constexpr double NEARER = 0.3;  // largest ratio of a near to a far distance [-]
   static constexpr double LEAST_SHARE = 0.05;
   static constexpr std::uint64_t LEAST_RETURNS = 20;
 
@@ -194,7 +199,7 @@ private:
     return sum;
   }
 
-  /// Range of the angles of all joints together, with these rows.
+  /// Sum of the ranges of the joints' angles, including these rows.
   double rangeWith(const std::vector<MotionRow>& rows)
   {
     constexpr double NONE = std::numeric_limits<double>::infinity();
@@ -214,40 +219,38 @@ private:
   std::string last_publisher_;
   std::uint64_t switches_{};
   std::array<std::vector<MotionRow>, 2> last_;
-  std::array<std::vector<MotionRow>, 2> apart_;  // rows far from their neighbours
+  std::array<std::vector<MotionRow>, 2> apart_;  // last rows that were far from their neighbours
   std::uint64_t jumps_{};
-  std::vector<double> least_;  // of the joints
+  std::vector<double> least_;  // least angle of each joint
   std::vector<double> most_;
-  double counted_step_{ LEAST_STEP };  // step with which the counting began [rad]
+  double counted_step_{ LEAST_STEP };  // least distance that counted when the counting began [rad]
   std::uint64_t seen_{};
   std::uint64_t moves_{};
   std::uint64_t returns_{};
 };
 
-// Readers for the kinds of recordings behind readMotion. Times are as they are recorded.
+// Each of these functions reads one kind of recording for readMotion. The times are as recorded, unless stated.
 
-/// Reads messages. The visitor gets one row for each of `names`, all of one time.
+/// Reads messages. `visit` gets one row for each of `names` at a time; all of these rows have the same time.
 MotionCount readMessageMotion(const MotionSource& source, const std::vector<std::string>& names,
                               const VisitMotionRows& visit, const std::function<void(double)>& progress);
 
-/// Reads a table with a controller's columns. If `joints` is 1, reads MotionSource::csv_joint, else all six joints.
+/// Reads a table with a controller's columns. If `joints` is 1, reads only joint MotionSource::csv_joint, else all six.
 MotionCount readTableMotion(const MotionSource& source, std::size_t joints, const VisitMotionRows& visit,
                             const std::function<void(double)>& progress);
 
-/// Reads the rows in memory, MotionSource::rows, of `joints` joints. The times are scaled.
+/// Reads rows of `joints` joints from MotionSource::rows. Times are scaled by MotionSource::time_scale.
 MotionCount readArrayMotion(const MotionSource& source, std::size_t joints, const VisitMotionRows& visit,
                             const std::function<void(double)>& progress);
-
-// Remarks on a reading.
 
 /// Adds remarks on angles that were folded into one turn, and on a recording that was played in a loop.
 void remarkOnRounds(const std::vector<UnfoldedAngle>& angles, std::uint64_t rounds, MotionCount& count);
 
-/// Remark on joints whose effort is never a number; empty without such joints.
+/// Remark on joints whose effort is never a number; empty if there are no such joints.
 std::string silentText(const std::vector<std::string>& joints);
 
-/// Remark on values that are no number in more than a few rows; empty without such values. `missing` has the number of
-/// rows by the name of the value.
+/// Remark on values that are not a number in many rows; empty if there are none. `missing` has the number of these rows
+/// for each name of a value.
 std::string missingText(const std::map<std::string, std::uint64_t>& missing, const MotionCount& count);
 
 /// Whether the table has a load of the source's joint.

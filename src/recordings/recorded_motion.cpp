@@ -25,7 +25,7 @@ bool recordsLoad(const MotionSource& source)
 MotionCount readMotion(const MotionSource& source, const std::vector<std::string>& names, const VisitMotionRows& visit,
                        const std::function<void(double)>& progress)
 {
-  // Times of a table or of arrays are scaled while they are read, because their unit decides what a jump is.
+  // Times of a table or of arrays are scaled during reading, because the size of a jump in seconds decides on rounds.
   const double scale = isCsv(source) ? 1.0 : source.time_scale;
   std::vector<double> speeds = source.speeds;
   speeds.resize(names.size(), MotionSource::FASTEST);
