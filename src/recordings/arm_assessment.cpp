@@ -13,8 +13,8 @@ namespace hjt
 {
 namespace
 {
-/// Cost by which the ranking of the arms counts the gains that the recording states against an arm [-]. Stated gains
-/// and known gains of a type are exact. So a few gains that agree show the type of the arm.
+/// Cost of an arm from the gains that the recording states, as ArmFit::cost [-]. Stated gains and known gains of a type
+/// are exact, so a few gains that agree show the type of the arm.
 double costOfGains(const ArmRecording& recording, const RecordingOptions& options)
 {
   constexpr double KNOWN = 0.01;  // standard deviation of a gain's logarithm [-]

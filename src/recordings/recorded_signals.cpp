@@ -28,7 +28,7 @@ namespace hjt
 {
 namespace
 {
-/// Recognises times that are not in seconds, by how rarely samples come and by the motor's speed, if that is recorded.
+/// Detects times that are not in seconds, from rare samples and, if the motor's speed is recorded, from that speed.
 class SecondsCheck
 {
 public:
@@ -53,11 +53,13 @@ public:
     last_ = sample;
   }
 
-  /// Why the times are not in seconds; empty if they seem to be.
+  /// Clause on why the times are probably not in seconds; empty if they seem to be in seconds.
   std::string doubt() const
   {
-    constexpr double TURN = 2.0 * M_PI;  // least turn of the motor at which its speed is no noise [rad]
-    constexpr double FACTOR = 100.0;     // least factor; a wrong unit of the speed causes less, milliseconds cause more
+    constexpr double TURN = 2.0 * M_PI;  // least motion of the motor at which its speed is more than noise [rad]
+    // Least ratio of the angle by the speed and the time to the recorded angle [-]. A wrong unit of the speed causes
+    // less; milliseconds cause more.
+    constexpr double FACTOR = 100.0;
     if (2 * rare_ > steps_)
     {
       return "most samples come " + numberText(RARE) + " s apart or more";
@@ -74,8 +76,8 @@ private:
   SignalSample last_;
   std::uint64_t steps_{};
   std::uint64_t rare_{};      // number of steps of RARE or more
-  double by_angle_{};         // sum of speed times way [rad^2/s]
-  double by_speed_{};         // sum of squared speed times step [rad^2/s]
+  double by_angle_{};         // sum of speed times change of angle [rad^2/s]
+  double by_speed_{};         // sum of squared speed times time step [rad^2/s]
   double least_{ HUGE_VAL };  // least angle of the motor [rad]
   double most_{ -HUGE_VAL };  // largest angle of the motor [rad]
 };
@@ -97,14 +99,14 @@ enum Column : std::size_t
 
 using Names = std::array<std::string, COLUMNS>;
 
-/// How a column is named on the command line, and how it is named in the file by default.
+/// Option that names the column of a signal, and default names of this column in a file.
 struct ColumnChoice
 {
   const char* option;
   const char* meaning;
   double SignalSample::*field;  // null for the time
   const char* name;
-  const char* otherwise{};  // second default, if there is no column `name`
+  const char* otherwise{};  // second default, used if the file has no column `name`
 };
 constexpr std::array<ColumnChoice, COLUMNS> CHOICES{
   { { "--time", "time [s]", nullptr, "time" },
@@ -124,17 +126,17 @@ constexpr std::array<ColumnChoice, COLUMNS> CHOICES{
 struct SignalSource
 {
   Names columns;
-  // The following members are for a bag.
+  // The following members are used for a bag only.
   std::string states_topic;
   std::string load_topic;
-  bool load_topic_given{};        // whether the user named the topic, so that it must exist
-  std::string joint;              // name of the joint on both topics
-  double torque_scale{ 1.0 };     // motor torque per unit of the recorded signal
-  double velocity_window{ 0.0 };  // window of a motor speed that is computed [s]
+  bool load_topic_given{};        // whether the user named the topic; if so, the topic must exist
+  std::string joint;              // name of the joint on the topics of states and load
+  double torque_scale{ 1.0 };     // motor torque per unit of the recorded signal [N.m]
+  double velocity_window{ 0.0 };  // time window over which a motor speed is computed [s]
 };
 
-/// Names of the columns of a file in the order of the signals. `place` is file and line. @throws InputError if a column
-/// that the user named does not exist, or no column of an angle.
+/// Names of the columns of a file, in the order of the signals. `place` is the file and line for an error text.
+/// @throws InputError if a column that the user named, or a required column, does not exist.
 Names columnsOf(const std::string& place, const std::vector<std::string>& there, const Names& columns)
 {
   Names names;
@@ -180,8 +182,8 @@ SignalSample sampleOf(const std::array<double, COLUMNS>& row, double torque_scal
   return sample;
 }
 
-/// The motor's speed as the drive's own sensors compute it: the change of its angle over the window. Before the first
-/// window is over, the speed is that of the first window.
+/// Motor speed, computed as in the drive's own sensors: the change of the angle per time over `window` [s]. Samples
+/// within the first window have the speed of that window.
 std::vector<double> velocityOf(const std::vector<double>& time, const std::vector<double>& angle, double window)
 {
   std::vector<double> velocity(time.size(), NOT_MEASURED);
@@ -206,7 +208,7 @@ void readTable(const std::string& path, const SignalSource& source, const Take& 
   }
 }
 
-/// Reads columns in memory. `place` names the recording in an error text.
+/// Reads columns in memory. `place` names the recording in the text of an error.
 void readColumns(const std::string& place, Columns columns, const SignalSource& source, const Take& take)
 {
   std::vector<std::string> there;
@@ -243,7 +245,7 @@ void readRun(const std::string& path, const SignalSource& source, const Take& ta
                                                          std::vector<std::string>{ named });
   if (columns.empty())
   {
-    columns = readRunColumns(path, { CHOICES[TIME].name });  // for the error text
+    columns = readRunColumns(path, { CHOICES[TIME].name });  // for the text of an error, which lists columns
   }
   readColumns(path, std::move(columns), source, take);
 }
@@ -314,7 +316,8 @@ void readBag(const std::string& path, const SignalSource& source, const Take& ta
                      "; it holds:" + listTopics(bag));
   }
 }
-/// Columns and topics of the signals: the telemetry of a robot if a joint was named, else the topics of the twin.
+/// Columns and topics of the signals. They are those of a robot's telemetry if a joint was named, else those of the
+/// twin.
 SignalSource signalSource(const SignalOptions& options, const Parameters& parameters)
 {
   const bool robot = !options.joint.empty();

@@ -18,14 +18,15 @@ namespace hjt
 {
 namespace
 {
-constexpr const char* MD5_WITHOUT_ERRORS = "091d07ef25dd2e390a74058313d996a8";  // of Indicators.msg without errors
+// Of Indicators.msg before it had errors.
+constexpr const char* MD5_WITHOUT_ERRORS = "091d07ef25dd2e390a74058313d996a8";
 
 bool isRun(const std::string& recording)
 {
   return std::filesystem::path(recording).extension() == ".h5";
 }
 
-/// Whether two configurations make the same windows. They may differ in parameters of reference and assessment.
+/// Whether two configurations make the same windows. Parameters of reference and assessment do not affect windows.
 bool makeSameWindows(Parameters one, const Parameters& other)
 {
   one.indicators.baseline_windows = other.indicators.baseline_windows;
@@ -37,7 +38,7 @@ bool makeSameWindows(Parameters one, const Parameters& other)
   return describeParameters(one) == describeParameters(other);
 }
 
-/// Reads a message of a bag; none if the message has another type.
+/// Indicators of a message in a bag; none if the message has another type.
 std::optional<harmonic_joint_twin::Indicators> readMessage(const rosbag::MessageInstance& instance)
 {
   if (instance.getMD5Sum() != MD5_WITHOUT_ERRORS)
@@ -45,7 +46,7 @@ std::optional<harmonic_joint_twin::Indicators> readMessage(const rosbag::Message
     const auto message = instance.instantiate<harmonic_joint_twin::Indicators>();
     return message ? std::make_optional(*message) : std::nullopt;
   }
-  std::vector<std::uint8_t> bytes(instance.size() + sizeof(std::uint32_t));  // with an empty list at the end
+  std::vector<std::uint8_t> bytes(instance.size() + sizeof(std::uint32_t));  // with an empty list of errors at the end
   ros::serialization::OStream out(bytes.data(), instance.size());
   instance.write(out);
   ros::serialization::IStream in(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
@@ -120,7 +121,7 @@ std::optional<std::vector<SignalIndicators>> windowsOfRun(const std::string& rec
   }
   for (std::size_t i = SCALAR_COUNT; i < INDICATOR_COUNT; ++i)
   {
-    if (columns.count(errorColumn(i)) > 0)  // files of earlier versions have no such column
+    if (columns.count(errorColumn(i)) > 0)  // files of earlier versions lack this column
     {
       read(errorColumn(i).c_str(), [i](W w, double value) { w.uncertainty[i] = value; });
     }

@@ -11,34 +11,34 @@
 
 namespace hjt
 {
-/// Parameters that hold for a recording.
+/// Parameters for a recording.
 struct RecordingParameters
 {
-  /// The default configuration, over it the parameters of the run, if there is one, and over both those of the options.
+  /// The default configuration, overridden by the parameters of the run, if there are any, and then by the options.
   Parameters values;
-  std::optional<Parameters> run;  ///< parameters that a run of a data set was made with; none if the file holds none
-  const char* origin{};           ///< source of the parameters, in words
+  std::optional<Parameters> run;  ///< parameters that a run was simulated with; none if the file holds none
+  const char* origin{};           ///< source of the parameters, as words for the report
 };
 
-/// Finds the parameters of a recording. @throws ParameterError naming the file or option, InputError.
+/// Finds the parameters of a recording. @throws ParameterError that names the file or option, InputError.
 RecordingParameters recordingParameters(const SignalOptions& options, const std::string& recording);
 
-/// The windows that the file of a run holds. None if the file has no windows, or if the options change what windows
-/// depend on: the columns, or parameters other than those of reference and assessment.
+/// Windows that the file of a run holds. None if the file has no windows, or if the options change what windows depend
+/// on: the columns, or parameters other than those of reference and assessment.
 std::optional<std::vector<SignalIndicators>> windowsOfRun(const std::string& recording, const SignalOptions& options,
                                                           const RecordingParameters& parameters);
 
-/// The windows that a node published while a bag was recorded. Each message repeats the last window.
+/// Windows that a node published while the bag was recorded. Messages that repeat the last window are ignored.
 std::vector<SignalIndicators> publishedWindows(const std::string& path, const std::string& topic);
 
-/// The assessment of a recording that came nearest to a verdict.
+/// The assessment in a recording that was judged or, if none was, that was nearest to being judged.
 class ClosestAssessment
 {
 public:
   void take(const Assessment& assessment);
   bool isJudged() const { return closest_.state == AssessmentState::ASSESSED; }
 
-  /// Text with the recording's name, as "a.csv: too few windows: ...".
+  /// Text with the recording's name and the reason, for example "a.csv: too few windows: ...".
   std::string whyNotJudged(const std::string& recording) const;
 
 private:

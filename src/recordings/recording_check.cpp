@@ -59,7 +59,7 @@ CheckedContents contentsOf(const std::vector<std::vector<MotionRow>>& rows)
   return contents;
 }
 
-/// @throws InputError if no name is that of a joint.
+/// @throws InputError if all names are empty, or if all contain the name of a quantity.
 void requireNames(const std::string& topic, const std::vector<std::string>& names)
 {
   const auto all = [&](const auto& is) { return !names.empty() && std::all_of(names.begin(), names.end(), is); };
@@ -82,7 +82,7 @@ void requireNames(const std::string& topic, const std::vector<std::string>& name
 
 CheckedContents readMessageContents(const MotionSource& source)
 {
-  constexpr int MESSAGES = 1000;  // number of messages in which every publisher of the topic occurs
+  constexpr int MESSAGES = 1000;  // number of messages within which every publisher of the topic publishes
   CheckedContents contents;
   const std::unique_ptr<RecordedMessages> recording = RecordedMessages::open(source.path);
   recording->requireStates(source.topic);
@@ -112,7 +112,7 @@ CheckedContents readMessageContents(const MotionSource& source)
             contents.usable.push_back(state.name[i]);
           }
         }
-        // Efforts may come later than angles.
+        // A joint's effort may first appear in a later message than its angle.
         return ++read < MESSAGES || contents.usable.size() < contents.named.size();
       },
       [](double) {});
@@ -122,7 +122,7 @@ CheckedContents readMessageContents(const MotionSource& source)
   return contents;
 }
 
-/// Sorts the joints of an arm that is not complete into joints that are usable and joints that are missing.
+/// Sorts the joints of an incomplete arm into usable and missing joints.
 void takeParts(const std::vector<std::string>& names, const CheckedContents& contents, CheckedArm& arm)
 {
   for (const std::string& name : names)
@@ -149,7 +149,7 @@ CheckedArm withoutArm(const std::vector<fs::path>& files, const CheckedContents&
   return none;
 }
 
-/// Prefixes and suffixes with which the recording may name the joints of an arm.
+/// Prefixes and suffixes that the recording may use in the joint names of an arm.
 std::vector<JointAffixes> affixesOf(const ArmDescription& arm, const RecordingOptions& options,
                                     const CheckedContents& contents)
 {
@@ -170,7 +170,7 @@ CheckedArm armWith(const JointAffixes& affixes)
   return arm;
 }
 
-/// Arms of the configuration that fit, one entry for each prefix and suffix.
+/// Arms of the configuration whose joints the recording has, with one entry for each pair of prefix and suffix.
 std::vector<CheckedArm> armsOfConfiguration(const std::vector<fs::path>& files, const RecordingOptions& options,
                                             const CheckedContents& contents)
 {
@@ -197,7 +197,8 @@ std::vector<CheckedArm> armsOfConfiguration(const std::vector<fs::path>& files, 
   return arms;
 }
 
-/// The arm that the options name, one entry for each prefix and suffix. `known` has the arms that fit.
+/// The arm that the options name, with one entry for each pair of prefix and suffix. `known` has the shipped arms that
+/// fit.
 std::vector<CheckedArm> armsGiven(const std::vector<CheckedArm>& known, const RecordingOptions& options,
                                   const CheckedContents& contents)
 {
@@ -218,7 +219,7 @@ std::vector<CheckedArm> armsGiven(const std::vector<CheckedArm>& known, const Re
   return arms;
 }
 
-/// Removes an arm whose joints lack angle or effort, which cannot be read as an arm.
+/// Removes an arm if a joint lacks angle or effort, because the recording cannot be read as that arm.
 void leaveOutIncomplete(const RecordingOptions& options, const CheckedContents& contents, CheckedArm& arm)
 {
   const std::string name = arm.taken.empty() ? (arm.fitting.empty() ? "" : arm.fitting.front()) : arm.taken;
@@ -234,7 +235,7 @@ void leaveOutIncomplete(const RecordingOptions& options, const CheckedContents& 
   }
 }
 
-/// Finds the joints that the recording names, and its temperature. @throws InputError if the recording cannot be read.
+/// Finds the recording's joints and its source of temperatures. @throws InputError if the recording cannot be read.
 CheckedContents readCheckedContents(const MotionSource& source)
 {
   return source.rows   ? contentsOf(*source.rows) :
@@ -242,10 +243,9 @@ CheckedContents readCheckedContents(const MotionSource& source)
                          readMessageContents(source);
 }
 
-/// Finds the arm of the options, or the arms whose joints the recording names, one entry for each prefix and suffix.
-/// There is at least one entry, which has no arm if none fits. `ranked` is empty, and `taken` too unless the options
-/// name it.
-/// @throws InputError, ParameterError.
+/// Finds the arm of the options or, without that option, the arms whose joints the recording names. There is one entry
+/// for each pair of prefix and suffix, and at least one entry; it has no arm if none fits. `ranked` is empty; `taken`
+/// is set only if the options name the arm. @throws InputError, ParameterError.
 std::vector<CheckedArm> findArms(const RecordingOptions& options, const CheckedContents& contents)
 {
   const std::vector<fs::path> files = armFiles(configDirectory(options));
@@ -283,7 +283,7 @@ RecordingOptions optionsFor(const RecordingOptions& options, const CheckedArm& a
   return own;
 }
 
-/// The best arm of the ranking if it is clearly better than the default arm, else the default arm.
+/// The best arm of the ranking if it is clearly likelier than the default arm, else the default arm.
 std::string choice(const CheckedArm& arm)
 {
   const auto preset =
@@ -314,7 +314,7 @@ void takeFit(const RecordingFit& fit, const std::vector<Parameters>& parameters,
   }
 }
 
-/// Gives the joints the samples that their differentiators have ready.
+/// Gives each joint the samples that its differentiator has ready.
 void addReady(std::vector<MotionDifferentiator>& joints, bool at_end, AssessedJoints& twins)
 {
   for (std::size_t i = 0; i < joints.size(); ++i)
@@ -369,7 +369,7 @@ Misfit misfitOfParts(const CheckedArm& arm)
                joined(arm.missing) };
 }
 
-/// Judges each joint apart from the friction that all joints have in common.
+/// Judges each joint after division of its friction by the common factor of the joints.
 void judgeJoints(const AssessedJoints& twins, const RecordingFit& fit, const std::vector<Parameters>& parameters,
                  CheckedArm& arm)
 {
@@ -388,7 +388,7 @@ void judgeJoints(const AssessedJoints& twins, const RecordingFit& fit, const std
   }
 }
 
-/// Reads all usable joints without an arm. Their load is the configured load of a single joint.
+/// Reads all usable joints without an arm. Each joint has the load that is configured for a single joint.
 void readJoints(const RecordingOptions& options, CheckedArm& arm)
 {
   const std::vector<std::string>& names = arm.joints_at_hand;
@@ -470,7 +470,7 @@ std::string plainFactor(const FittedFactor& factor)
   return roundedText(factor.value, digits);
 }
 
-/// Reads the recording again with a change that may mend its findings.
+/// Reads the recording again with a change that may correct one of its findings, and stores the effect of the change.
 void tryRemedies(const RecordingOptions& options, CheckedArm& arm)
 {
   RecordingOptions changed = options;
@@ -506,7 +506,7 @@ void tryRemedies(const RecordingOptions& options, CheckedArm& arm)
   readArm(changed, mended);
   remedy.before = arm.rest.share();
   remedy.after = mended.rest.share();
-  // Another time scale changes the inertia only, which may be a small part of the load.
+  // Another time scale changes only the inertia, which may be a small part of the load.
   constexpr double NOT_WORSE = 1.05;
   const double bound = kind == "effort_unit" ? 1.0 : NOT_WORSE;
   const bool is_left = hasFinding(mended, kind) || (kind == "period" && hasFinding(mended, "stamps"));

@@ -13,50 +13,50 @@
 
 namespace hjt
 {
-/// Contents of a recording.
+/// Joints and temperature that a recording contains.
 struct CheckedContents
 {
   bool is_csv{};
-  bool has_angles{};                ///< at least one message has a position
-  std::vector<std::string> named;   ///< joints in the messages, without the entries of motors
-  std::vector<std::string> usable;  ///< joints with angle and effort
+  bool has_angles{};                ///< whether at least one message has a position
+  std::vector<std::string> named;   ///< names of the joints in the messages, without the entries of motors
+  std::vector<std::string> usable;  ///< names of the joints with angle and effort
   std::string temperature;          ///< topic or column of the temperature; empty: none
 };
 
-/// One joint of the recording.
+/// One joint of the recording and its verdict.
 struct CheckedJoint
 {
-  std::string name;   ///< short name, for a joint of an arm
+  std::string name;   ///< short name; for a joint without an arm, its name in the messages
   std::string joint;  ///< name of the joint in the messages
   JointReach reach;
   bool has_velocity{};
-  double gain{};         ///< torque per current that counts [N.m/A]
-  double stated_gain{};  ///< torque per current that the recording states, else NaN [N.m/A]
+  double gain{};         ///< torque per current that the program uses [N.m/A]
+  double stated_gain{};  ///< torque per current that the recording states, NaN if it states none [N.m/A]
   FittedFactor time_factor;
   FittedFactor lag;
   std::vector<RecordingFinding> findings;
-  Misfit misfit;    ///< misfit of the joint's rows
+  Misfit misfit;    ///< why the joint's rows do not allow a verdict
   Verdict verdict;  ///< verdict on this joint, by the rules of `joint_twin compare`
 };
 
-/// A change of how the recording is read, and its effect on this recording.
+/// A changed way of reading the recording, for example another time scale, and its effect.
 struct TriedRemedy
 {
-  std::string options;  ///< options to add to a command
-  double before{};      ///< share of the currents that the load leaves without the change, rms [-]
-  double after{};       ///< share of the currents that the load leaves with the change, rms [-]
+  std::string options;  ///< options to add to a command for the change
+  double before{};      ///< share of the currents that the load does not explain, without the change, rms [-]
+  double after{};       ///< share of the currents that the load does not explain, with the change, rms [-]
   bool helps{};
 };
 
-/// One arm in the recording, or joints of no known arm.
+/// An arm whose joints the recording has, or joints without a known arm.
 struct CheckedArm
 {
   JointAffixes affixes;
-  std::vector<std::string> fitting;         ///< arms of the configuration that have these joints
-  std::vector<ArmFit> ranked;               ///< the fitting arms, the best first; empty if the options name the arm
-  std::string taken;                        ///< arm that the joints are judged with; empty: none
+  std::vector<std::string> fitting;         ///< arms of the configuration whose joints the recording has
+  std::vector<ArmFit> ranked;               ///< the fitting arms, the best one first; empty if the options name the arm
+  std::string taken;                        ///< arm that the joints are judged with; empty: no arm
   std::vector<std::string> missing;         ///< joints of the arm without angle or effort
-  std::vector<std::string> joints_at_hand;  ///< joints that are read without an arm
+  std::vector<std::string> joints_at_hand;  ///< names of joints that are read without an arm
   MotionFindings found;
   StreamTimingReport timing;
   FittedFactor stamps;
@@ -70,7 +70,7 @@ struct CheckedArm
   std::vector<TriedRemedy> tried;
 
   bool isUsable() const;  ///< whether a joint is judged
-  /// Ranked arms that do not explain the currents clearly worse than the arm that was taken.
+  /// Ranked arms, other than the chosen one, that do not explain the currents clearly worse than the chosen arm.
   std::vector<std::string> alike() const;
 };
 
@@ -78,16 +78,16 @@ struct RecordingCheck
 {
   RecordingOptions options;
   CheckedContents contents;
-  std::vector<CheckedArm> arms;  ///< arms in the recording; at least one
+  std::vector<CheckedArm> arms;  ///< arms in the recording, at least one entry
 
   bool isUsable() const;
 };
 
-/// Reads the recording with every arm whose joints it names, and judges the joints as `joint_twin compare` does, with
-/// the arm of the options or the best one. Remedies are tried in memory. @throws InputError, ParameterError.
+/// Reads the recording with every arm whose joints it names, and judges the joints as `joint_twin compare` does. The
+/// arm is that of the options or else the best one. Remedies are tried in memory. @throws InputError, ParameterError.
 RecordingCheck checkRecording(const RecordingOptions& options);
 
-/// Commands to run next, ready to paste, with options that were tried only. A recording in memory has no commands.
+/// Commands to run next, complete with all options of this check. Empty for a recording in memory.
 std::vector<std::string> nextCommands(const RecordingCheck& check, const CheckedArm& arm);
 
 Json documentOf(const RecordingCheck& check);

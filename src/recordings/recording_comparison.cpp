@@ -40,7 +40,7 @@ const std::vector<Column<JudgedWindow>> WINDOW_COLUMNS{
   { "largest_score", [](const JudgedWindow& window) { return window.assessment.largest_score; } }
 };
 
-/// One instant of the twin that ran when the bag was made.
+/// One recorded state of a twin that ran while the bag was recorded.
 struct TwinState
 {
   double time{};           ///< time since the first row of the telemetry [s]
@@ -49,8 +49,8 @@ struct TwinState
   double motor_current{};  ///< current of the motor [A]
 };
 
-/// Contents of the recording. `twin_topic` is that of a twin that was recorded beside the robot. @throws InputError if
-/// the file cannot be read.
+/// Contents of the recording. `twin_topic` is the topic of a twin that ran beside the robot. @throws InputError if the
+/// file cannot be read.
 RecordingContents readContents(const MotionSource& source, const std::string& twin_topic, const MotionFindings& found,
                                const MotionReach& reach)
 {
@@ -100,7 +100,7 @@ RecordingContents readContents(const MotionSource& source, const std::string& tw
   return contents;
 }
 
-/// One indicator of the window that was judged worst.
+/// One indicator of the worst window, for the table of the page.
 struct HealthRow
 {
   std::size_t indicator{};
@@ -153,7 +153,7 @@ Json namesOf(const std::vector<WeightedCause>& causes)
   return names;
 }
 
-/// The verdict as a document with everything that a page shows.
+/// The verdict as JSON, with everything that a page shows of it.
 Json verdictJson(const Verdict& verdict)
 {
   const std::vector<Column<Finding>> columns{
@@ -169,15 +169,15 @@ Json verdictJson(const Verdict& verdict)
   return all;
 }
 
-/// Standard deviation of the friction by its scatter, as a share. NaN if the friction was not judged by the joint's own
-/// rows, which are no reference then.
+/// Standard deviation of the friction by its scatter, as a share of the friction [-]. NaN if the friction was not
+/// judged; then it is no reference.
 double frictionDeviation(const ComparedJoint& compared)
 {
   return compared.friction && compared.friction->isJudged() ? compared.friction->scatter :
                                                               std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Friction factor after division by the arm's common factor; null if it is not judged.
+/// Friction factor divided by the arm's common factor, as JSON; null if the friction is not judged.
 Json factorJson(const ComparedJoint& compared)
 {
   const Verdict& verdict = compared.verdict;
@@ -311,7 +311,7 @@ void RecordingComparison::writeTorsion() const
   writeTable(file("torsion_twin.csv"), curve, loop.points);
 }
 
-/// Writes the forces on every tooth of the twin under the recording's typical and largest load.
+/// Writes the twin's forces on every tooth under the typical and the largest load of the recording.
 void RecordingComparison::writeTeeth() const
 {
   const std::vector<StiffnessRow> rows =
@@ -328,7 +328,7 @@ void RecordingComparison::writeTeeth() const
   csv.close();
 }
 
-/// Writes the recorded states of a twin, if the recording has them on another topic than the telemetry.
+/// Writes the recorded states of a twin, if they are on another topic of the recording than the telemetry.
 void RecordingComparison::writeTwinStates(double start) const
 {
   const MotionSource source = recording_.source(joint_);

@@ -16,7 +16,7 @@
 
 namespace hjt
 {
-/// Keeps every nth row of a stream of any length: never more than MAX_ROWS, and at least MAX_ROWS / 2 of a long stream.
+/// Keeps every nth row of a stream of any length. Of a long stream it keeps MAX_ROWS / 2 to MAX_ROWS rows.
 template <class Row>
 class Decimated
 {
@@ -53,20 +53,20 @@ private:
   std::uint64_t stride_{ 1 };
 };
 
-/// One line of a spectrum by turns of the motor, for each way of turning.
+/// Amplitudes of one order, for motion forward and backward.
 struct SpectrumLine
 {
-  double order{};  ///< per turn of the motor [-]
+  double order{};  ///< cycles per turn of the motor [-]
   double forward{};
   double backward{};
 };
 
-/// Spectrum of the part of a residual that repeats with the joint's angle, in orders of the motor's turn.
+/// Spectrum of the part of a residual that repeats with the joint's angle, over orders of the motor's turn.
 ///
-/// The residual is averaged over narrow bins of the joint's angle, for each way of turning. So memory does not grow,
-/// rows need not be even in time, and what does not repeat with the angle averages out. The amplitude at order o is |2
-/// / n sum r exp(-i o theta)| over the bins that were visited; where these do not fill a turn of the joint,
-/// neighbouring orders leak into each other.
+/// The residual is averaged in narrow bins of the joint's angle, for each direction of motion. Therefore memory does
+/// not grow, rows may come at uneven times, and parts that do not repeat with the angle average out. The amplitude at
+/// order o is |2 / n sum r exp(-i o theta)| over the n visited bins, with r the mean residual and theta the angle of a
+/// bin. If the visited bins do not fill a turn of the joint, neighbouring orders leak into each other.
 class ResidualSpectrum
 {
 public:
@@ -88,8 +88,8 @@ public:
     bin.rows += 1.0;
   }
 
-  /// Lines at every whole order of the joint's turn, with amplitudes in the residual's unit. Empty if the joint passed
-  /// less than a motor turn.
+  /// Lines at every whole order of the joint's turn. Amplitudes have the unit of the residual. Empty if the joint moved
+  /// less than one turn of the motor.
   std::vector<SpectrumLine> lines() const
   {
     const int highest = static_cast<int>(MAX_ORDER * ratio_);
@@ -137,7 +137,8 @@ private:
     double residual;
   };
 
-  /// Amplitudes of the orders 1 to `highest` of the joint's turn. Each place's phasor is turned on from order to order.
+  /// Amplitudes of the orders 1 to `highest` of the joint's turn. From order to order, each phasor is turned by its
+  /// angle.
   static std::vector<double> amplitudes(const std::vector<Place>& places, int highest)
   {
     using Phasor = std::complex<double>;
@@ -173,30 +174,30 @@ private:
   std::array<std::vector<Bin>, 2> bins_;  // bins over one turn of the joint: backward, forward
 };
 
-/// One row, measured beside predicted.
+/// Measured and predicted values of one row.
 struct ComparedRow
 {
   MotionSample measured;
   MotionPrediction predicted;
 
-  double residual() const { return measured.current - predicted.current; }  ///< [A]
+  double residual() const { return measured.current - predicted.current; }  ///< measured less predicted current [A]
 };
 
-/// A recorded joint beside the twin that makes the same motion, with what is judged and what a page shows. Memory does
-/// not grow with the rows.
+/// A recorded joint and the twin that makes the same motion, with the data for the verdict and for the page. Memory
+/// does not grow with the rows.
 class RecordingComparison : public AssessedJoint
 {
 public:
-  /// `recording` must live as long as this object. `directory` is that of the joint's report; if it is empty no file is
-  /// written. `sound` comes from earlier reports.
-  /// @throws ParameterError if the ring finds no equilibrium under load, InputError.
+  /// `recording` must live as long as this object. `directory` is the directory of the joint's report; if it is empty,
+  /// no file is written. `sound` comes from earlier reports. @throws ParameterError if the ring finds no equilibrium
+  /// under load, InputError.
   RecordingComparison(const ArmRecording& recording, std::size_t joint, const std::string& directory, SoundJoint sound);
 
   JointEvidence::Row update(const MotionSample& sample) override;
 
-  /// Judges the joint, and writes COMPARISON_FILE, BASELINE_FILE and tables beside them, as CSV: course, friction,
-  /// friction_twin, spectrum, teeth, health, and where the recording has them torsion, torsion_twin, twin_states.
-  /// Solves the ring under the loads of the recording. @throws InputError if a file cannot be written.
+  /// Judges the joint, and writes COMPARISON_FILE, BASELINE_FILE and CSV tables: course, friction, friction_twin,
+  /// spectrum, teeth and health; if the recording has the data, also torsion, torsion_twin and twin_states. Solves the
+  /// ring under the loads of the recording. @throws InputError if a file cannot be written.
   ComparedJoint write(const MotionFindings& found, const JointContext& context);
 
 private:
@@ -219,7 +220,7 @@ private:
   ResidualSpectrum spectrum_;
 };
 
-/// The fields of Verdict.msg, with level and reason by name.
+/// The fields of Verdict.msg as JSON, with level and reason as names.
 Json verdictFields(const Verdict& verdict);
 
 constexpr const char* MADE_WITH = "joint_twin " HJT_VERSION;

@@ -8,7 +8,7 @@ namespace hjt
 {
 namespace
 {
-/// Short names of UR's joints and their names in the messages of UR's driver, in the order of a recording's columns.
+/// Short names of UR's joints and their names in the messages of UR's driver, in the order of the columns of a table.
 constexpr std::array<std::array<const char*, 2>, 6> UR_JOINTS{ { { "base", "shoulder_pan_joint" },
                                                                  { "shoulder", "shoulder_lift_joint" },
                                                                  { "elbow", "elbow_joint" },

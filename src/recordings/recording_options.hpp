@@ -20,30 +20,31 @@ constexpr const char* DEFAULT_TOPIC = "/joint_states";
 constexpr const char* LOAD_OF_ARM = "arm";
 constexpr const char* LOAD_RECORDED = "target_moment";
 
-/// The recording of a joint or an arm, the parameters of its twins, and how it is read.
+/// The recording of a joint or an arm, the parameters of its twins, and options for reading the recording.
 struct RecordingOptions : ConfigurationOptions
 {
-  std::string recording;                             ///< bag, .db3, .mcap, their directory, or a controller's CSV
-  std::string joint;                                 ///< base, shoulder and so on, or the name in the messages
-  std::string arm;                                   ///< name in config/arms, or a file; empty: one joint
-  std::string load{ LOAD_OF_ARM };                   ///< load of an arm's joints: LOAD_OF_ARM or LOAD_RECORDED
-  std::string identified;                            ///< directory of overlays, SHORT_NAME.yaml; empty: none
+  std::string recording;            ///< bag, .db3, .mcap, directory of ROS 2, or a controller's CSV file
+  std::string joint;                ///< short name, such as base or shoulder, or the name in the messages
+  std::string arm;                  ///< name in config/arms, or a file; empty: one joint
+  std::string load{ LOAD_OF_ARM };  ///< load of an arm's joints: LOAD_OF_ARM or LOAD_RECORDED
+  std::string identified;           ///< directory of overlays, SHORT_NAME.yaml; empty: no overlays
   std::string joint_namespace{ DEFAULT_NAMESPACE };  ///< namespace of the twin's topics
   std::string topic{ DEFAULT_TOPIC };                ///< topic of the telemetry in a bag
   JointAffixes affixes;                              ///< prefix and suffix of an arm's joint names in the messages
-  double time_scale{ 1.0 };                          ///< multiplies the times of the rows
+  double time_scale{ 1.0 };                          ///< factor by which the times of the rows are multiplied [-]
   bool force{};                                      ///< whether existing files are overwritten
-  /// Recording in memory: a row of each joint at each time, currents in A, times from 0 on. Null if it is a file.
+  /// Recording in memory; null if it is a file. It holds a row of each joint at each time, with currents in A. Times
+  /// start at 0.
   std::shared_ptr<const std::vector<std::vector<MotionRow>>> rows;
   bool rows_have_load{};
-  /// What the recording states besides its rows: whether it has a load, gains and payload. Null if not read.
+  /// What the recording states besides its rows: whether it has a load, gains and payload. Null: not yet read.
   std::shared_ptr<const RecordedStatements> stated;
   Watch watch;
 };
 
-/// Adds the options of `check`, which finds the arm by itself.
+/// Adds the options of `check`, which needs no joint and finds the arm if no option names it.
 void addOptions(OptionTable& table, RecordingOptions& options);
-// Add the argument for the recording alone; `--joint`, `--arm` and the options for reading; the namespace.
+// Each of these functions adds a part of the options: the recording; joint, arm and reading; namespace of the twin.
 void addRecordingOption(OptionTable& table, RecordingOptions& options);
 void addJointOptions(OptionTable& table, RecordingOptions& options);
 void addNamespaceOption(OptionTable& table, std::string& joint_namespace);

@@ -22,7 +22,7 @@ namespace hjt
 {
 namespace
 {
-/// Adds the samples of a recording to the drive's use. Gaps of a second and more do not count as use.
+/// Adds the samples of a recording to the drive's use. Time steps of a second or more do not count as use.
 class RecordedUse
 {
 public:
@@ -36,7 +36,7 @@ public:
 
   void add(const SignalSample& sample)
   {
-    constexpr double LONGEST = 1.0;  // longest step that counts [s]
+    constexpr double LONGEST = 1.0;  // least step that does not count as use [s]
     const double seconds = last_ ? 1e-9 * static_cast<double>(sample.stamp - last_->stamp) : 0.0;
     const double speed = last_ ? std::abs(motorAngle(sample) - motorAngle(*last_)) / seconds : 0.0;
     const double torque = jointTorque(sample);
@@ -66,13 +66,13 @@ private:
   }
 
   OutputParameters output_;
-  double temperature_;  // temperature of samples that have none [degC]
+  double temperature_;  // temperature of samples without a measured one [degC]
   double ratio_;
   UsageHistory& use_;
   std::optional<SignalSample> last_;
 };
 
-/// The same use for so many hours.
+/// The same use, scaled to last `hours` [h].
 UsageHistory lasting(const UsageHistory& use, double hours, const LifeParameters& life)
 {
   UsageHistory scaled(life);
@@ -84,7 +84,7 @@ UsageHistory lasting(const UsageHistory& use, double hours, const LifeParameters
   return scaled;
 }
 
-/// Begin of each bin and the probability that the drive's use ends within it. The last bin has no end.
+/// Begin of each bin of hours, and the probability that the drive reaches its end in that bin. The last bin is open.
 Json densityJson(const RemainingHours& remaining)
 {
   std::vector<double> hours(RemainingHours::BINS);
@@ -96,7 +96,7 @@ Json densityJson(const RemainingHours& remaining)
            { "probability", std::vector<double>(remaining.probability.begin(), remaining.probability.end()) } };
 }
 
-/// Probability of each cause of the end.
+/// Probability of each cause of the drive's end.
 Json endJson(const RemainingHours& remaining)
 {
   Json json;
@@ -107,8 +107,8 @@ Json endJson(const RemainingHours& remaining)
   return json;
 }
 
-/// Ratings of the run's gear, as a catalogue gives them, with the laws of ageing of the configuration. The laws that a
-/// simulated drive was made with do not count, because nobody knows those of a real drive.
+/// Catalogue ratings of the run's gear, combined with the laws of ageing of the configuration. The laws of ageing of a
+/// simulated drive are ignored, because nobody knows those of a real drive.
 LifeParameters assumedLife(const RemainingOptions& options, const LifeParameters& of_run)
 {
   ParameterMap map = defaultParameterMap(options);
@@ -126,7 +126,7 @@ LifeParameters assumedLife(const RemainingOptions& options, const LifeParameters
   return life;
 }
 
-/// Readings of the drive's wear from the recordings.
+/// Last assessment and readings of wear of the drive, from the recordings.
 struct Condition
 {
   void take(const Assessor& assessor, const OperatingPoint& point)
@@ -139,12 +139,12 @@ struct Condition
     seen_from = assessment.level == HealthLevel::OK ? std::make_optional(seenFrom(assessor, point)) : std::nullopt;
   }
 
-  Assessment assessment;  // last assessment that counts; its state is WAITING if there is none
+  Assessment assessment;  // last assessment that supersedes the earlier ones; its state is WAITING if there is none
   std::optional<SeenFrom> seen_from;
   ReadWear read;
 };
 
-/// Hours of use at which a recording was made [h].
+/// Hours of use that the drive had when a recording was made [h].
 double hoursOf(const RemainingOptions& options, std::size_t recording, const UsageHistory& use)
 {
   if (options.hours.empty())
@@ -154,8 +154,8 @@ double hoursOf(const RemainingOptions& options, std::size_t recording, const Usa
   return options.hours[options.hours.size() > 1 ? recording : 0];
 }
 
-/// Reads the recordings: their use, unless the options have a duty cycle, and with a reference also wear and the last
-/// assessment that counts. @throws InputError if there is a reference, but nothing can be judged.
+/// Reads the drive's use from the recordings, unless the options have a duty cycle. With a reference, also reads wear
+/// and the assessment that counts. @throws InputError if there is a reference, but no recording can be judged.
 Condition readRecordings(const RemainingOptions& options, Assessor& assessor, UsageHistory& use)
 {
   const bool is_assessed = !options.baseline.empty();
@@ -216,7 +216,7 @@ Condition readRecordings(const RemainingOptions& options, Assessor& assessor, Us
   return condition;
 }
 
-/// Names of the faults that would not show at any severity; "none" if there are none.
+/// Names of the faults that would not raise an alarm at any severity; "none" if there are none.
 std::string unseen(const SeenFrom& seen_from)
 {
   std::vector<std::string> names;

@@ -16,12 +16,13 @@ namespace hjt
 {
 struct RemainingOptions : SignalOptions
 {
-  /// Hours of use of the drive [h]: one number, or one for each recording, ascending. Empty: those of the recordings.
+  /// Hours of use of the drive [h]: one number, or one for each recording, ascending. Empty: duration of the
+  /// recordings.
   std::vector<double> hours;
-  std::string baseline;                     ///< file of the new drive's reference; empty: nothing is assessed
-  std::string duty;                         ///< duty cycle of the use so far, in place of the recordings' use
-  std::optional<double> lost_motion_limit;  ///< lost motion that ends the use of the drive [rad]
-  std::string use_record;                   ///< file to write the use to, as a duty cycle; empty: none
+  std::string baseline;  ///< file with the reference of the new drive; empty: nothing is assessed
+  std::string duty;      ///< duty cycle of the use so far, in place of the recordings' use; empty: none
+  std::optional<double> lost_motion_limit;  ///< largest lost motion of a usable drive; none: no limit [rad]
+  std::string use_record;                   ///< file that the use is written to, as a duty cycle; empty: no file
 };
 
 void addOptions(OptionTable& table, RemainingOptions& options);
@@ -29,13 +30,13 @@ void addOptions(OptionTable& table, RemainingOptions& options);
 struct Remaining
 {
   LifeEstimate estimate;
-  std::optional<Assessment> assessment;  ///< last assessment that counts; none if nothing was assessed
-  std::optional<WearReading> wear;       ///< last reading of the wear
-  std::optional<SeenFrom> seen_from;     ///< severities that would show, if no fault was found
-  const char* parameters{};              ///< source of the parameters, in words
+  std::optional<Assessment> assessment;  ///< latest assessment; none if nothing was assessed
+  std::optional<WearReading> wear;       ///< last reading of the wear; none if the wear was not read
+  std::optional<SeenFrom> seen_from;     ///< severities that would have raised an alarm; none after an alarm
+  const char* parameters{};              ///< source of the parameters, as words for the report
 };
 
-/// Estimates from recordings how a joint is used, and how long a drive lasts that is used so.
+/// Estimates from recordings how a joint is used, and how long a drive with this use lasts.
 /// @throws ParameterError, InputError if a file is unreadable, the motor does not turn, or nothing can be judged.
 Remaining remaining(const RemainingOptions& options);
 

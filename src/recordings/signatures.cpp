@@ -18,13 +18,14 @@ namespace
 {
 constexpr std::array SEVERITIES{ 0.1, 0.16, 0.25, 0.4, 0.63, 1.0 };  // severities of the signatures
 
-/// A line of a cause that follows from kinematics for every motion. Its size at severity 1 is assumed.
+/// A line of a fault that follows from kinematics for every motion. Its amplitude at severity 1 is an assumption.
 struct KinematicLine
 {
   Cause cause;
   LineSignal signal;
   Line line;
-  double size;  // size of an angle [rad]; of a torque over the rated torque at the output
+  // Amplitude at severity 1: of an angle [rad]; of a torque, as a share of the rated torque at the output [-].
+  double size;
 };
 constexpr double TORQUE_SHARE = 1e-2 / 67.0;
 constexpr std::array<KinematicLine, 9> KINEMATIC_LINES{ {
@@ -39,7 +40,7 @@ constexpr std::array<KinematicLine, 9> KINEMATIC_LINES{ {
     { Cause::CIRCULAR_SPLINE_TOOTH, LineSignal::KINEMATIC_ERROR, Line::CIRCULAR_SPLINE_2, 5e-5 },
 } };
 
-/// Conditions of a run, which the sound run that it is compared with has too.
+/// Conditions of a run apart from its fault. A faulty run is compared with the sound run of the same conditions.
 std::string conditionsOf(const RunSpec& spec)
 {
   std::string text;
@@ -69,8 +70,8 @@ SignalIndicators windowOf(const Plan& plan, const RunSpec& spec, const std::stri
   return windows.back();
 }
 
-/// Changes of the indicators. For a line with a phase it is the length of the change. A value that was not measured has
-/// changed by 0.
+/// Changes of the indicators by a fault. For a line with a phase, the change is the amplitude of the difference. An
+/// indicator that was not measured has a change of 0.
 std::array<double, SIGNATURE_SIZE> changesOf(Cause cause, const SignalIndicators& window, const SignalIndicators& sound)
 {
   const SignalIndicators change = difference(window, sound);
@@ -85,7 +86,7 @@ std::array<double, SIGNATURE_SIZE> changesOf(Cause cause, const SignalIndicators
   return found;
 }
 
-/// Mean motion of sound windows.
+/// Mean speed and direction of the sound windows.
 MotionKind kindOf(const std::map<std::string, SignalIndicators>& sound)
 {
   MotionKind kind{};
@@ -97,8 +98,8 @@ MotionKind kindOf(const std::map<std::string, SignalIndicators>& sound)
   return kind;
 }
 
-/// The signature of a severity, interpolated linearly between signatures of rising severity. Beyond the last severity
-/// it is the last signature.
+/// Signature at a severity, interpolated linearly between `known` signatures, which are in order of severity. Beyond
+/// the largest known severity, the changes stay those of the last signature.
 Signature between(const std::vector<Signature>& known, double severity)
 {
   const auto after = std::find_if(known.begin() + 1, known.end() - 1,
@@ -227,10 +228,10 @@ std::string SignatureRuns::text(const std::string& gear, const SignatureSet& bas
     throw InputError("no run found its equilibrium: there is nothing to make signatures of");
   }
   SignatureSet set = basis;
-  std::vector<std::string> motions;  // motion of each signature
+  std::vector<std::string> motions;  // name of the motion of each signature
   set.gear = gear;
   set.signatures.clear();
-  set.fitted.fill(true);  // the runs give all numbers except those of robots, which come from the basis
+  set.fitted.fill(true);  // the basis gives only the numbers of robots; the runs give all others
   for (const FaultDescription& description : FAULT_DESCRIPTIONS)
   {
     for (const Motion& motion : motions_)

@@ -12,38 +12,39 @@
 
 namespace hjt
 {
-/// @throws InputError if signatures cannot be made of the runs of this plan. Each run must be recorded as a bag and
-/// have no fault or one, which exists from the start on.
+/// @throws InputError if signatures cannot be made from the runs of this plan. Each run must be recorded as a bag and
+/// have at most one fault, which exists from the start.
 void checkSignaturePlan(const Plan& plan);
 
-/// Changes of the health indicators by faults, from the runs of plans. A change is the last window of a run with one
-/// fault, less that of the sound run under the same conditions. The mean over the conditions counts, for each motion
-/// and severity. Severities between those that were run lie on straight lines, which begin with no change at 0.
+/// Changes of the indicators by faults, computed from the runs of plans. A change is the last window of a run with one
+/// fault minus the last window of the sound run of the same conditions. For each motion and severity, the changes are
+/// averaged over the conditions. Between the simulated severities, the changes are interpolated linearly from 0 at
+/// severity 0.
 class SignatureRuns
 {
 public:
-  /// `notice` gets a text for each run that is left out because it failed.
+  /// `notice` is called with a text for each run that is skipped because it failed.
   explicit SignatureRuns(std::function<void(const std::string&)> notice) : notice_(std::move(notice)) {}
 
-  /// Adds the runs of a plan, which must be finished. @throws InputError if a run has no window, or no sound run under
-  /// the same conditions.
+  /// Adds the runs of a finished plan. @throws InputError if a run has no window, or if no sound run has the conditions
+  /// of a faulty run.
   void add(const Plan& plan, const SweepDirectory& directory);
 
-  /// Text of a file of signatures. Errors and `carried` are those of `basis`, because they take many gears to find.
-  /// Sound values are those of the first motion. `rated_torque` is that at the output [N.m].
+  /// Text of a file of signatures. Errors and `carried` are copied from `basis`, because many gears are needed to find
+  /// them. Sound values are those of the first motion. `rated_torque` is the rated torque at the output [N.m].
   std::string text(const std::string& gear, const SignatureSet& basis, double rated_torque) const;
 
 private:
   using Changes = std::array<double, SIGNATURE_SIZE>;
 
-  /// Sum of the changes over the conditions.
+  /// Sum of the changes over the conditions, and the number of conditions.
   struct Mean
   {
     Changes sum{};
     int count{};
   };
 
-  /// A motion of a plan.
+  /// Windows and changes of one motion of a plan.
   struct Motion
   {
     std::string name;

@@ -22,7 +22,7 @@ namespace
 constexpr std::size_t JOINTS = 6;
 constexpr double LATEST = 9e9;  // largest time that a stamp can have [s]
 
-/// Quantities of a joint that have a column; the first two are required.
+/// Quantities of a joint that have a column. Angle and current are required.
 enum Quantity : std::size_t
 {
   ANGLE,
@@ -37,7 +37,7 @@ enum Quantity : std::size_t
 constexpr std::array<const char*, QUANTITIES> NAMES{ "actual_q_",  "actual_current_",     "target_moment_",
                                                      "actual_qd_", "joint_temperatures_", "target_current_" };
 
-/// Columns of COUNT joints of a controller's table.
+/// Columns of COUNT joints in a controller's table.
 template <std::size_t COUNT>
 class JointTable
 {
@@ -45,7 +45,7 @@ public:
   static constexpr std::size_t COLUMNS = 1 + QUANTITIES * COUNT;
 
   explicit JointTable(const MotionSource& source)
-    // A value that is no number makes its row useless, but not the file.
+    // A value that is not a number makes its row useless, but not the file.
     : names_(names(source)), table_(source.path, names_, COLUMNS - 1 - 2 * COUNT, COLUMNS, controllerColumns)
   {
     table_.allowCutOff();
@@ -84,10 +84,10 @@ public:
     return std::all_of(values_.begin(), values_.begin() + column(VELOCITY, 0), is_finite);
   }
 
-  /// Currents of these joints are 0 from now on.
+  /// Sets the currents of these joints to 0 in all rows that are read from now on.
   void silence(const std::array<bool, COUNT>& joints) { is_silent_ = joints; }
 
-  /// Names of required columns that never held a number.
+  /// Names of required columns without a number in any row.
   std::vector<std::string> neverFinite() const
   {
     std::vector<std::string> never;
@@ -101,7 +101,7 @@ public:
     return never;
   }
 
-  /// Counts required columns that hold no number in the present row.
+  /// Counts the required columns without a number in the present row, in `missing`.
   void addMissing(std::map<std::string, std::uint64_t>& missing) const
   {
     for (std::size_t i = 0; i < column(VELOCITY, 0); ++i)
@@ -140,7 +140,7 @@ private:
   std::array<bool, COUNT> is_silent_{};
 };
 
-/// Properties of a table's currents, by all rows of the table.
+/// Properties of a table's currents, from all rows of the table.
 template <std::size_t COUNT>
 struct CurrentsSeen
 {
@@ -162,7 +162,7 @@ struct CurrentsSeen
     }
     if (std::all_of(is_silent.begin(), is_silent.end(), [](bool silent) { return silent; }))
     {
-      is_silent.fill(false);  // without the current of any joint no row could be read
+      is_silent.fill(false);  // no row is readable if no joint has a current
     }
   }
 
@@ -171,7 +171,9 @@ struct CurrentsSeen
     return std::none_of(is_silent.begin(), is_silent.end(), [](bool silent) { return silent; });
   }
 
-  bool has_any{};  ///< else made up without currents, or one joint: its rows at zero are no failed reading
+  /// Whether a row has a current other than zero. If so, a row with all currents zero is a failed reading. For a single
+  /// joint this is not checked.
+  bool has_any{};
   std::array<bool, COUNT>
       is_silent{};  ///< the joint's effort is never a number, while the efforts of other joints are numbers
 };
@@ -227,7 +229,7 @@ private:
       count_.start = stamp;
       first_ = table_.time();
     }
-    // In the first round times are differences of the numbers in the file, which are exact.
+    // In the first round, times are differences of the numbers in the file, without the rounding to nanoseconds.
     const double by_stamps = times_.at(stamp);
     const double time = times_.rounds() == 1 ? source_.time_scale * (table_.time() - first_) : by_stamps;
     order_.add(seconds);
@@ -256,7 +258,7 @@ private:
     }
     const std::vector<std::string> never = table_.neverFinite();
     const std::string uneven = table_.unevenText();
-    if (never.size() > 2 * COUNT && !uneven.empty())  // time, angles and currents
+    if (never.size() > 2 * COUNT && !uneven.empty())  // all columns of time, angle and current
     {
       return "; " + uneven;
     }
@@ -286,7 +288,7 @@ private:
   std::vector<UnfoldedAngle> angles_;
   std::vector<MotionRow> rows_;
   std::vector<TemperatureRecord> temperatures_;
-  std::map<std::string, std::uint64_t> missing_;  // number of rows without a number, by column
+  std::map<std::string, std::uint64_t> missing_;  // number of rows without a number, by the name of the column
   RowTime times_;
   RowOrder order_;
   double first_{};
@@ -393,7 +395,7 @@ MotionCount readArrayMotion(const MotionSource& source, std::size_t joints, cons
       continue;
     }
     const double by_stamps = times.at(std::llround(1e9 * seconds));
-    // In the first round times are the numbers in the array.
+    // In the first round, times are the numbers in the array, without the rounding to nanoseconds.
     const double time = times.rounds() == 1 ? seconds : by_stamps;
     order.add(seconds);
     count.duration = std::max(count.duration, time);

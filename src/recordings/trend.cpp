@@ -21,9 +21,9 @@ namespace
 {
 namespace fs = std::filesystem;
 
-/// Stamps before the year 2000 are no dates, but times since a program was started [ns].
+/// A stamp before this one, the year 2000, is not a date, but a time since the start of a program [ns].
 constexpr Stamp FIRST_DATE = 946'684'800'000'000'000;
-/// Changes within this time come from the drives' temperature and are no trend [h].
+/// Changes of friction within this time come from the drives' temperature and are not a trend [h].
 constexpr double DAY = 24.0;
 constexpr double PER_CENT = 100.0;
 
@@ -74,7 +74,7 @@ std::vector<std::string> filesOf(const std::vector<std::string>& given)
     {
       std::error_code error;
       const std::string there = fs::canonical(file, error).string();
-      if (known.insert(error ? file : there).second)  // a link without a target is listed with the reason
+      if (known.insert(error ? file : there).second)  // a broken link is kept, to be listed as not readable
       {
         files.push_back(file);
       }
@@ -83,7 +83,7 @@ std::vector<std::string> filesOf(const std::vector<std::string>& given)
   return files;
 }
 
-/// Compares one recording. `progress` gets 0 to 1 for this recording.
+/// Compares one recording. `progress` is called with the done share of this recording, 0 to 1.
 DatedRecording readRecording(const ComparisonOptions& all, const std::string& path,
                              const std::function<void(double)>& progress)
 {
@@ -92,7 +92,7 @@ DatedRecording readRecording(const ComparisonOptions& all, const std::string& pa
   ComparisonOptions options = all;
   options.recording = path;
   options.report.clear();
-  options.beside_controller = false;  // all recordings need the same reference
+  options.beside_controller = false;  // so that all recordings have the same reference
   options.watch.progress = [&progress](const std::string&) { return progress; };
   options.watch.notice = [&recording](const std::string& text) { recording.remarks.push_back(text); };
   try
@@ -119,7 +119,7 @@ DatedRecording readRecording(const ComparisonOptions& all, const std::string& pa
   return recording;
 }
 
-/// Sorts the recordings by date, if all that were read have a date, and sets their times.
+/// Sorts the recordings by date if every readable recording has a date, and sets their times.
 void putInOrder(Trend& trend)
 {
   std::vector<DatedRecording>& recordings = trend.recordings;
@@ -145,8 +145,8 @@ std::string perCent(double share)
   return fixedText(PER_CENT * share, 1);
 }
 
-/// Text on a change, as "1.31 [1.17, 1.46] times from 2026-01-03 to 2026-09-30, 4.8 % [2.9, 6.7] per 1000 h, by 10
-/// recordings."
+/// Text on a change of friction, for example "1.31 [1.17, 1.46] times from 2026-01-03 to 2026-09-30, 4.8 % [2.9, 6.7]
+/// per 1000 h, by 10 recordings."
 std::string changeText(const FrictionTrend& friction, const Trend& trend, const std::vector<Stamp>& dates)
 {
   const double unit = trendUnit(trend);
@@ -159,7 +159,7 @@ std::string changeText(const FrictionTrend& friction, const Trend& trend, const 
          std::to_string(friction.recordings) + " recordings.";
 }
 
-/// Logarithm of a joint's friction, with the factor that the arm's joints have in common; none if it is not judged.
+/// Logarithm of a joint's friction, including the common factor of the arm's joints; none if it is not judged.
 std::optional<double> logarithmOf(const DatedRecording& recording, std::size_t joint)
 {
   if (!recording.isRead() || !recording.compared.joints[joint].friction)
@@ -171,7 +171,7 @@ std::optional<double> logarithmOf(const DatedRecording& recording, std::size_t j
   return factor > 0.0 ? std::make_optional(std::log(factor)) : std::nullopt;
 }
 
-/// Sets the frictions of a group of joints, from `begin` to before `end`, in all recordings.
+/// Sets the frictions of the joints `begin` to `end` - 1, a group, in all recordings.
 void dateFrictions(std::vector<DatedRecording>& recordings, std::size_t begin, std::size_t end)
 {
   std::vector<std::vector<std::optional<double>>> logarithms(end - begin);
@@ -240,8 +240,8 @@ JointTrend judgeJoint(const Trend& trend, std::size_t joint, const std::string& 
   return judged;
 }
 
-/// Text of the trends: joints that change, joints without a trend and why, and the latest recording if it departs or no
-/// trend is judged.
+/// Text of the trends: the joints that change, the joints without a trend with the reason, and the latest recording if
+/// it is not OK or if no trend is judged.
 std::string textOf(const Trend& trend)
 {
   std::string text;
@@ -318,7 +318,7 @@ void judgeTrend(Trend& trend)
   trend.text = textOf(trend);
 }
 
-/// @throws InputError if a file of the options cannot be written.
+/// @throws InputError if a file that the options name cannot be written.
 void requireFiles(const TrendOptions& options)
 {
   requireWritable(options.out, options.force);

@@ -15,23 +15,22 @@ namespace hjt
 {
 struct TrendOptions : ComparisonOptions
 {
-  std::vector<std::string> recordings;  ///< files, or folders of them
-  std::string out;                      ///< CSV file to write, with a row for each recording; empty: none
+  std::vector<std::string> recordings;  ///< recordings, or folders that hold recordings
+  std::string out;                      ///< CSV file to write, with a row for each recording; empty: no file
 };
 
 void addOptions(OptionTable& table, TrendOptions& options);
 
-/// A recording and its comparison.
+/// A recording of a trend, with its date and its comparison with the twin.
 struct DatedRecording
 {
   std::string path;
-  std::optional<Stamp> date;         ///< date of its first row [ns since 1970]; none if its stamps are no dates
-  double time{};                     ///< hours since the first recording; without dates its place in the order
-  std::vector<std::string> remarks;  ///< remarks of the reader
-  std::string unread;                ///< why it was not compared; empty if it was
-  ComparedRecording compared;        ///< comparison without documents; it has no joints if it failed
-  /// Friction of each joint for its trend, apart from what the joints of its group have in common; none if it is not
-  /// known.
+  std::optional<Stamp> date;  ///< date of the first row [ns since 1970]; none if the stamps are not dates
+  double time{};              ///< time since the first recording [h]; without dates the place in the order, from 0
+  std::vector<std::string> remarks;  ///< remarks from reading the recording
+  std::string unread;                ///< why the recording could not be compared; empty if it was compared
+  ComparedRecording compared;  ///< comparison without documents; has no joints if the recording could not be compared
+  /// Friction of each joint for its trend, divided by the common factor of the joint's group; none if it is not known.
   std::vector<std::optional<DatedFriction>> frictions;
 
   bool isRead() const { return !compared.joints.empty(); }
@@ -39,24 +38,24 @@ struct DatedRecording
   const std::string& text() const { return isRead() ? compared.text : unread; }
 };
 
-/// A joint over all recordings.
+/// Trend of one joint's friction over all recordings.
 struct JointTrend
 {
-  std::string name;  ///< short name
+  std::string name;  ///< short name of the joint
   FrictionTrend friction;
   VerdictLevel level{ VerdictLevel::NOT_JUDGED };
-  std::string text;  ///< a sentence
+  std::string text;  ///< sentence on the trend of this joint
 };
 
 struct Trend
 {
   bool is_arm{};
-  bool has_dates{};                        ///< all recordings have a date; else their order stands for time
-  std::vector<DatedRecording> recordings;  ///< recordings by date, unread ones last; none if stopped
+  bool has_dates{};  ///< whether all readable recordings have a date; if not, their order replaces the time
+  std::vector<DatedRecording> recordings;  ///< recordings by date, unreadable ones last; none if stopped
   std::vector<JointTrend> joints;          ///< joints from the base on
   std::optional<std::size_t> latest;       ///< number of the last recording that was judged
   std::string level;
-  std::string text;          ///< a sentence or two
+  std::string text;          ///< sentences on the trends and the latest recording
   HealthLevel health{};      ///< worst level of the trends and the latest recording
   bool is_judged{};          ///< whether a trend or the latest recording is judged
   std::size_t not_judged{};  ///< number of joints without a trend and without a verdict in the latest recording
@@ -65,27 +64,27 @@ struct Trend
 
 /// Judges each recording as `compare` does, and whether the friction of a joint changes from recording to recording.
 ///
-/// Of a folder the function takes files that are named .bag, .db3, .mcap, .csv or .active, and directories of ROS 2,
-/// but no other folders. A recording that cannot be read is kept with the reason.
+/// In a folder the function reads files that end in .bag, .db3, .mcap, .csv or .active, and directories of ROS 2, but
+/// no other folders. A recording that cannot be read stays in the list, with the reason.
 /// @throws ParameterError, InputError if no recording can be read, or a file cannot be written.
 Trend trend(const TrendOptions& options);
 
-/// The date in UTC, as "2026-01-31 08:15" and "2026-01-31T08:15:00Z".
+/// A date in UTC, here for people: "2026-01-31 08:15". isoDate gives "2026-01-31T08:15:00Z".
 std::string dateText(Stamp date);
 std::string isoDate(Stamp date);
 
 constexpr const char* TREND_FILE = "trend.json";
 
-/// Unit of a slope for people: 1000 h, or without dates one recording.
+/// Time in hours for which the report states a slope: 1000 h. Without dates, one recording.
 double trendUnit(const Trend& trend);
-const char* trendUnitText(const Trend& trend);  ///< the unit in words, as "per 1000 h"
+const char* trendUnitText(const Trend& trend);  ///< unit of a slope in words, for example "per 1000 h"
 
 Json documentOf(const Trend& trend);
 
 /// CSV text with a row for each recording. Texts are in quotes, and an unknown number is empty.
 std::string csvOf(const Trend& trend);
 
-/// Table with a row for each recording and a column for each joint.
+/// Table for people, with a row for each recording and a column for each joint.
 Table recordingsOf(const Trend& trend);
 
 /// Table with a row for each joint.

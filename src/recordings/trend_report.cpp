@@ -17,13 +17,13 @@ std::optional<std::string> dateOf(const DatedRecording& recording)
   return recording.date ? std::make_optional(isoDate(*recording.date)) : std::nullopt;
 }
 
-/// Reason of the finding on the friction.
+/// Reason for the finding on the joint's friction.
 Reason reasonOf(const ComparedJoint& joint)
 {
   return joint.verdict.findings.front().reason;
 }
 
-/// A value of a joint in a recording; null if the recording was not read.
+/// Function that gets `value` of a joint from a recording, or null if the recording was not read.
 template <class Value>
 std::function<Json(const DatedRecording&)> ofJoint(std::size_t joint, const Value& value)
 {
@@ -36,7 +36,7 @@ std::optional<double> ofFriction(const ComparedJoint& joint, double JudgedFricti
   return joint.friction ? std::make_optional(joint.verdict.friction.*field) : std::nullopt;
 }
 
-/// Text of a cell: "1.02 [0.92, 1.13]" with the level if it is not OK, or why the friction is not judged.
+/// Text of a table cell: "1.02 [0.92, 1.13]" with the level if it is not OK, or why the friction is not judged.
 std::string cellOf(const ComparedJoint& joint)
 {
   if (!joint.friction)
@@ -56,7 +56,7 @@ bool hasTemperature(const ComparedJoint& joint)
   return std::string(joint.temperature_source) == "received";
 }
 
-/// Recorded temperatures of the joints, as "24 to 31"; "-" if there are none.
+/// Range of the joints' recorded temperatures [degC], for example "24 to 31"; "-" if no temperature was recorded.
 std::string temperaturesOf(const DatedRecording& recording)
 {
   double least = HUGE_VAL;
@@ -74,7 +74,7 @@ std::string temperaturesOf(const DatedRecording& recording)
   return low == high ? low : low + " to " + high;
 }
 
-/// Fields of a joint, with `before` in front of each key.
+/// Columns for the fields of one joint. Each key begins with `before`.
 std::vector<Column<DatedRecording>> fieldsOf(std::size_t i, const std::string& before)
 {
   const auto of_verdict = [](double JudgedFriction::*field)
@@ -95,7 +95,7 @@ std::vector<Column<DatedRecording>> fieldsOf(std::size_t i, const std::string& b
              ofJoint(i, [](const ComparedJoint& joint) { return joint.temperature_source; }) } };
 }
 
-/// Fields of a recording besides its joints.
+/// Columns for the fields of a recording as a whole.
 std::vector<Column<DatedRecording>> wholeFields()
 {
   return { { "recording", &DatedRecording::path },
@@ -107,7 +107,7 @@ std::vector<Column<DatedRecording>> wholeFields()
              [](const DatedRecording& recording) { return recording.compared.friction.temperature; } } };
 }
 
-/// Text of a value in a CSV file.
+/// Converts a value to the text of a cell in a CSV file.
 struct CellText
 {
   std::string operator()(std::nullptr_t) const { return {}; }
