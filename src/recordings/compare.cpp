@@ -42,8 +42,7 @@ void refuseReferenceAsReport(const ComparisonOptions& options)
   }
 }
 
-/// Refuses references of another shipped arm. The arms' names decide. An arm in a file of the user's own may be any
-/// arm, so its references are not refused.
+/// Refuses references of another shipped arm, by the arms' names. A file of the user's own may be for any arm.
 void refuseReferenceOfOtherArm(const ComparisonOptions& options)
 {
   const auto is_name = [](const std::string& arm) { return arm.find_first_of("./") == std::string::npos; };

@@ -84,7 +84,6 @@ Table tableOf(const ComparedRecording& compared);
 
 constexpr const char* REPORT_PAGE = "report.html";
 
-/// Runs the script that makes a page with its pictures from the data in a directory. @throws InputError if the script
-/// fails.
+/// Runs the script that makes a page with pictures from the data in a directory. @throws InputError if it fails.
 void makePage(const std::string& directory);
 }  // namespace hjt

@@ -10,13 +10,11 @@
 
 namespace hjt
 {
-/// Renames columns as in a controller's recording. The function knows the names `time`, `t` and `__time` of the time,
-/// and PlotJuggler's names for a JointState, such as `/joint_states/elbow_joint/position`. Other columns keep their
-/// names.
+/// Renames columns as in a controller's recording: `time`, `t` and `__time`, and PlotJuggler's names for a JointState,
+/// such as `/joint_states/elbow_joint/position`. Other columns keep their names.
 std::vector<std::string> controllerColumns(std::vector<std::string> header);
 
-/// Clause that says which program wrote a table that cannot be read, and which file to give instead; empty if the
-/// program is not known.
+/// Clause on which program wrote an unreadable table, and which file to give instead; empty for an unknown program.
 std::string foreignTable(const std::vector<std::string>& header);
 
 /// Statements of a recording besides its rows. A recording of messages states only whether it has a load.
@@ -27,8 +25,7 @@ struct RecordedStatements
   /// `target_moment_N` and `target_current_N` in the first minutes while the whole arm is at rest. At rest the current
   /// contains no friction. NaN if the joint bears no load at rest. Empty if the columns are not recorded.
   std::vector<double> gains;
-  /// Payload from the columns payload [kg] and payload_cog_0, _1 and _2 [m]; none if they are missing or their values
-  /// change.
+  /// Payload from the columns payload [kg] and payload_cog_0, _1, _2 [m]; none if they are missing or values change.
   std::optional<Payload> payload;
 };
 

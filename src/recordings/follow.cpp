@@ -78,8 +78,7 @@ public:
     outputs_[joint]->offer(stamp, comparison, tracker);
   }
 
-  /// Starts the verdicts of the joints. `trackers` are in the order of the joints. `arm` is the assessment of the whole
-  /// recording.
+  /// Starts the verdicts. `trackers` are in the order of the joints. `arm`: assessment of the whole recording.
   void judge(const std::vector<Tracker*>& trackers, const ArmAssessment& arm)
   {
     for (std::size_t i = 0; i < trackers.size(); ++i)
@@ -99,8 +98,7 @@ public:
     }
   }
 
-  /// Copies the remaining messages and writes the verdicts on the whole recording. @throws InputError if the copy is
-  /// incomplete.
+  /// Copies the remaining messages and writes the final verdicts. @throws InputError if the copy is incomplete.
   void close()
   {
     judgeNow();

@@ -17,8 +17,7 @@ namespace
 {
 constexpr double CLOCK_STEP = 1.0;  // largest difference between the delays of neighbouring messages [s]
 
-/// Whether a message holds no measurement: the efforts of all `names` are exactly zero, or for a single name, all of
-/// its values are exactly zero.
+/// Whether the efforts of all `names` are exactly zero, or for a single name, all of its values.
 bool isWithoutEffort(const sensor_msgs::JointState& message, const std::vector<std::string>& names)
 {
   const auto is_zero = [&](const std::vector<double>& values, const std::string& name)

@@ -44,9 +44,8 @@ struct TopicLayout
 /// Finds the layout of a topic. The function reads only as many messages as it needs.
 TopicLayout readLayout(RecordedMessages& recording, const MotionSource& source, const std::vector<std::string>& names);
 
-/// Makes rows from the messages that name one group of joints, and omits impossible rows. Each row waits for the next
-/// row, because only the next row shows whether the waiting row is possible. A load with a stamp of its own is still
-/// added to the waiting row.
+/// Makes rows from the messages that name one group of joints, and omits impossible rows. A row waits for the next row,
+/// which shows whether it is possible. A load with a stamp of its own is still added to the waiting row.
 class MessageRows
 {
 public:

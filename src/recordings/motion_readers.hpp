@@ -124,8 +124,7 @@ private:
 ///
 /// Sources differ by the names of their nodes, if the recording has these names. The angles show several sources if, in
 /// more than LEAST_SHARE of the moving rows, a row is far from its two neighbours, these are near to each other, and
-/// the row is near to another such row shortly before. A damaged row occurs only once, and noise is small compared with
-/// the motion.
+/// the row is near to another such row shortly before. A damaged row occurs only once, and noise is small.
 class SourceWatch
 {
 public:

@@ -57,8 +57,7 @@ public:
   std::string doubt() const
   {
     constexpr double TURN = 2.0 * M_PI;  // least motion of the motor at which its speed is more than noise [rad]
-    // Least ratio of the angle by the speed and the time to the recorded angle [-]. A wrong unit of the speed causes
-    // less; milliseconds cause more.
+    // Least ratio of angle by speed to recorded angle [-]. A wrong unit of speed causes less, milliseconds more.
     constexpr double FACTOR = 100.0;
     if (2 * rare_ > steps_)
     {
@@ -316,8 +315,7 @@ void readBag(const std::string& path, const SignalSource& source, const Take& ta
                      "; it holds:" + listTopics(bag));
   }
 }
-/// Columns and topics of the signals. They are those of a robot's telemetry if a joint was named, else those of the
-/// twin.
+/// Columns and topics of the signals: those of a robot's telemetry if a joint was named, else those of the twin.
 SignalSource signalSource(const SignalOptions& options, const Parameters& parameters)
 {
   const bool robot = !options.joint.empty();

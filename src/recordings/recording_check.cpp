@@ -197,8 +197,7 @@ std::vector<CheckedArm> armsOfConfiguration(const std::vector<fs::path>& files, 
   return arms;
 }
 
-/// The arm that the options name, with one entry for each pair of prefix and suffix. `known` has the shipped arms that
-/// fit.
+/// The arm that the options name, one entry for each pair of prefix and suffix. `known`: shipped arms that fit.
 std::vector<CheckedArm> armsGiven(const std::vector<CheckedArm>& known, const RecordingOptions& options,
                                   const CheckedContents& contents)
 {

@@ -137,8 +137,7 @@ private:
     double residual;
   };
 
-  /// Amplitudes of the orders 1 to `highest` of the joint's turn. From order to order, each phasor is turned by its
-  /// angle.
+  /// Amplitudes of the orders 1 to `highest` of the joint's turn. Each step turns a phasor by its angle.
   static std::vector<double> amplitudes(const std::vector<Place>& places, int highest)
   {
     using Phasor = std::complex<double>;
@@ -188,9 +187,9 @@ struct ComparedRow
 class RecordingComparison : public AssessedJoint
 {
 public:
-  /// `recording` must live as long as this object. `directory` is the directory of the joint's report; if it is empty,
-  /// no file is written. `sound` comes from earlier reports. @throws ParameterError if the ring finds no equilibrium
-  /// under load, InputError.
+  /// `recording` must live as long as this object. `directory`: directory of the joint's report; empty: no file is
+  /// written. `sound` comes from earlier reports. @throws ParameterError if the ring has no equilibrium under load,
+  /// InputError.
   RecordingComparison(const ArmRecording& recording, std::size_t joint, const std::string& directory, SoundJoint sound);
 
   JointEvidence::Row update(const MotionSample& sample) override;

@@ -16,8 +16,7 @@ namespace hjt
 {
 struct RemainingOptions : SignalOptions
 {
-  /// Hours of use of the drive [h]: one number, or one for each recording, ascending. Empty: duration of the
-  /// recordings.
+  /// Hours of use of the drive [h]: one number, or one for each recording, ascending. Empty: the recordings' time.
   std::vector<double> hours;
   std::string baseline;  ///< file with the reference of the new drive; empty: nothing is assessed
   std::string duty;      ///< duty cycle of the use so far, in place of the recordings' use; empty: none

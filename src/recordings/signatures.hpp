@@ -17,17 +17,15 @@ namespace hjt
 void checkSignaturePlan(const Plan& plan);
 
 /// Changes of the indicators by faults, computed from the runs of plans. A change is the last window of a run with one
-/// fault minus the last window of the sound run of the same conditions. For each motion and severity, the changes are
-/// averaged over the conditions. Between the simulated severities, the changes are interpolated linearly from 0 at
-/// severity 0.
+/// fault minus that of the sound run of the same conditions. For each motion and severity, the changes are averaged
+/// over the conditions. Between the simulated severities, they are interpolated linearly, from 0 at severity 0.
 class SignatureRuns
 {
 public:
   /// `notice` is called with a text for each run that is skipped because it failed.
   explicit SignatureRuns(std::function<void(const std::string&)> notice) : notice_(std::move(notice)) {}
 
-  /// Adds the runs of a finished plan. @throws InputError if a run has no window, or if no sound run has the conditions
-  /// of a faulty run.
+  /// Adds the runs of a finished plan. @throws InputError if a run has no window, or a faulty run no sound one.
   void add(const Plan& plan, const SweepDirectory& directory);
 
   /// Text of a file of signatures. Errors and `carried` are copied from `basis`, because many gears are needed to find

@@ -171,8 +171,7 @@ struct CurrentsSeen
     return std::none_of(is_silent.begin(), is_silent.end(), [](bool silent) { return silent; });
   }
 
-  /// Whether a row has a current other than zero. If so, a row with all currents zero is a failed reading. For a single
-  /// joint this is not checked.
+  /// Whether a row has a current other than zero; then a row without currents is a failed reading. Not for one joint.
   bool has_any{};
   std::array<bool, COUNT>
       is_silent{};  ///< the joint's effort is never a number, while the efforts of other joints are numbers
