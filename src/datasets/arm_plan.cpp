@@ -16,7 +16,7 @@ namespace
 {
 namespace fs = std::filesystem;
 
-/// The path in the plan's directory if it exists there, else unchanged. `folder`: of a directory instead of a file.
+/// Path of `name` in the plan's directory if it exists there, else `name`. `folder`: whether a directory is sought.
 std::string beside(const std::string& directory, const std::string& name, bool folder)
 {
   const fs::path path = fs::path(directory) / name;
@@ -116,7 +116,6 @@ OrderedJson ArmPlan::configuration() const
   OrderedJson json = OrderedJson::object();
   json["arm"] = arm_text_;
   json["urdf"] = arm_.urdf;
-  // name of the arm whose file this one refers to
   json["base"] = arm_.base;
   json["tip"] = arm_.tip;
   json["gravity"] = arm_.gravity;

@@ -16,47 +16,48 @@
 
 namespace hjt
 {
-/// Specification of a run of a whole arm along set points.
+/// Specification of a run in which a whole arm moves along set points.
 struct ArmSpec
 {
   ArmDescription arm;
   std::vector<Parameters> drives;
   std::shared_ptr<const std::vector<ArmSetPoint>> motion;
 
-  double motionLength() const { return motion->back().time - motion->front().time; }  ///< [s]
+  double motionLength() const { return motion->back().time - motion->front().time; }  ///< length of the motion [s]
 };
 
-/// A fault in a drive. `joint`: number of the joint from the base; 0 in a plan of one drive.
+/// A fault in the drive of a joint. `joint` is the number of the joint, counted from the base; 0 in a plan of one
+/// drive.
 struct RunFault : GrowingFault
 {
   std::size_t joint{};
 };
 
-/// Replaces all faults of a drive's configuration by these.
+/// Replaces all faults in a drive's configuration by those of `faults` that belong to the drive of this joint.
 void setFaults(const std::vector<RunFault>& faults, std::size_t joint, const std::string& origin, ParameterMap& map);
 
-/// Faults of a drive's configuration.
+/// Faults in a drive's configuration, as faults of this joint.
 std::vector<RunFault> configuredFaults(const Parameters& drive, std::size_t joint);
 
-/// Additional part of a plan with the key `arm`. All members throw ParameterError, or InputError with file, line, key,
-/// value, unit and range.
+/// The part of a plan that a whole arm needs, under the key `arm`. All members throw ParameterError, or InputError with
+/// file, line, key, value, unit and range.
 class ArmPlan
 {
 public:
-  /// `root`: the plan; `directory`: its directory; `options`: configuration of all drives.
+  /// `root`: root node of the plan; `directory`: the plan's directory; `options`: configuration of all drives.
   ArmPlan(const PlanNode& root, const std::string& directory, const ConfigurationOptions& options);
 
-  /// Number of the joint whose name or short name the fault gives.
+  /// Number of the joint that the fault names by its name or short name.
   std::size_t jointOf(const PlanNode& fault, const PlanValues& values) const;
   const std::string& jointName(std::size_t joint) const { return arm_.joints[joint].short_name; }
 
-  /// `settings`: changes of each drive's configuration. `faults` replace the configured ones; null: those stay.
+  /// `settings`: changes of each drive's configuration. `faults` replace the configured faults, unless null.
   ArmSpec read(const PlanNode& duty, const PlanValues& values, const ParameterMap& settings,
                const std::vector<RunFault>* faults, const std::string& faults_origin) const;
 
-  /// Inputs of the runs that are not in the plan.
+  /// Arm and configuration of its drives, on which the runs depend besides the plan.
   OrderedJson configuration() const;
-  OrderedJson motions() const;  ///< hash of each motion by its file
+  OrderedJson motions() const;  ///< hash of each motion, by the name of its file
 
 private:
   struct Motion

@@ -21,7 +21,7 @@ namespace hjt
 namespace
 {
 constexpr double PERIOD = 0.008;  // sampling period of a UR controller [s]
-/// Motion between the poses of two joints.
+/// The following limits apply to the motion from the check-up of one joint to that of the next.
 constexpr double TRANSFER_SPEED = 0.35;         // [rad/s]
 constexpr double TRANSFER_ACCELERATION = 0.35;  // [rad/s^2]
 constexpr const char* TOPIC = "/joint_trajectory";
@@ -107,7 +107,7 @@ void writeTrajectory(const std::string& path, const ArmDescription& arm, const s
     trajectory.points.push_back(point);
   }
   BagWriter bag(path);
-  bag.write(TOPIC, SIMULATION_EPOCH, trajectory);  // stamp 0: the motion begins on reception
+  bag.write(TOPIC, SIMULATION_EPOCH, trajectory);  // stamp 0: the motion begins when the message is received
   bag.close();
 }
 }  // namespace

@@ -19,7 +19,7 @@ namespace
 {
 constexpr std::size_t DIGITS = 16;
 
-/// A whole file, mapped into memory.
+/// A whole file, mapped to memory.
 class FileView
 {
 public:
@@ -60,7 +60,7 @@ private:
   void* start_{ MAP_FAILED };
 };
 
-/// Position of the seal's first digit; the size of the file without a seal.
+/// Position of the seal's first digit; the size of the file if there is no seal.
 std::size_t sealPlace(std::string_view bytes)
 {
   const std::string before = '"' + std::string(FILE_HASH) + "\":\"";
@@ -69,7 +69,7 @@ std::size_t sealPlace(std::string_view bytes)
   return found == std::string_view::npos || place + DIGITS > bytes.size() ? bytes.size() : place;
 }
 
-/// Hash of the bytes with zeros in the place of the seal.
+/// Hash of the bytes, computed with zeros in place of the seal's digits.
 std::string hashOf(std::string_view bytes, std::size_t seal)
 {
   const std::uint64_t before = textHash(bytes.substr(0, seal));

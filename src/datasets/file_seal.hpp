@@ -5,14 +5,14 @@
 
 namespace hjt
 {
-/// Key, in a run's record, of the file's hash (FNV-1a, 64 bits) in 16 hexadecimal digits, which count as zeros. Damage
-/// of the file is thus detected without another file.
+/// Key for the file's hash in the record of a run: FNV-1a, 64 bits, as 16 hexadecimal digits. For the computation,
+/// these digits are zeros. The hash shows damage of the file without another file.
 constexpr const char* FILE_HASH = "file_hash";
 constexpr const char* OPEN_SEAL = "0000000000000000";
 
-/// Writes the hash into a file whose record, as JSON, contains the open seal. @throws InputError.
+/// Writes the hash into a file whose record, in JSON, contains the seal without its digits. @throws InputError.
 void sealFile(const std::string& path);
 
-/// Whether the file has the hash in its seal.
+/// Whether the hash in the file's seal is that of the file.
 bool isSealed(const std::string& path);
 }  // namespace hjt

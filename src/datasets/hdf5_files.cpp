@@ -59,18 +59,18 @@ private:
   Close close_{};
 };
 
-/// Lock of the HDF5 library, which may not be used by several threads. Every use, also closing a handle, needs it.
+/// Locks the HDF5 library, which is not thread-safe. Every use of the library needs this lock, also closing a handle.
 std::unique_lock<std::mutex> lockLibrary()
 {
   static std::mutex mutex;
   std::unique_lock<std::mutex> lock(mutex);
-  // At the end of the process the library would close files that a full disk left open, and crash.
+  // Without this call, the library at the end of the process would close files that a full disk left open, and crash.
   [[maybe_unused]] static const herr_t ENDS_BY_ITSELF = H5dont_atexit();
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // exceptions report errors instead
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // exceptions report the errors
   return lock;
 }
 
-/// Creation properties without time stamps.
+/// Properties for the creation of an object without time stamps.
 Hdf5Handle withoutTimes(hid_t kind)
 {
   Hdf5Handle properties(H5Pcreate(kind), H5Pclose);
@@ -87,7 +87,7 @@ Hdf5Handle textType(std::size_t length)
   return type;
 }
 
-/// Writes an attribute of variable length, which readers return as text; those of fixed length are bytes.
+/// Writes an attribute of variable length. Readers return such an attribute as text, but one of fixed length as bytes.
 void writeText(hid_t object, const char* name, const std::string& text)
 {
   const Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
@@ -106,7 +106,7 @@ void writeNumber(hid_t object, const char* name, double value)
   H5Awrite(attribute.get(), H5T_NATIVE_DOUBLE, &value);
 }
 
-/// Writes a text as a data set, because an attribute may have at most 64 kB.
+/// Writes a text as a data set, because an attribute has at most 64 kB.
 bool writeTextDataset(hid_t file, const char* name, const std::string& text)
 {
   const Hdf5Handle type = textType(text.size());
@@ -117,7 +117,7 @@ bool writeTextDataset(hid_t file, const char* name, const std::string& text)
   return H5Dwrite(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()) >= 0;
 }
 
-/// Writes numbers as a data set. @returns the status as the library does.
+/// Writes numbers as a data set. @returns the status of the HDF5 library, negative after an error.
 herr_t writeRows(hid_t group, const char* name, const char* unit, const std::vector<double>& rows)
 {
   const hsize_t count = rows.size();
@@ -137,7 +137,7 @@ constexpr hsize_t ROWS_IN_CHUNK = 4096;
 constexpr const char* TIME = "time";
 constexpr const char* SEVERITY = "severity";
 
-/// A fault in memory and, without padding, in the file.
+/// Memory layout of a fault. The layout in the file is the same, but without padding.
 struct FaultRow
 {
   char joint[32];
@@ -148,7 +148,7 @@ struct FaultRow
   double ramp;
 };
 
-/// `arm`: empty for one drive; then the table has no column of joints.
+/// Writes the faults as a table. `arm` is empty for a single drive; then the table has no column of joints.
 bool writeFaults(hid_t file, const std::vector<RunFault>& faults, const std::optional<ArmSpec>& arm)
 {
   std::vector<FaultRow> rows(faults.size());
@@ -185,9 +185,9 @@ bool writeFaults(hid_t file, const std::vector<RunFault>& faults, const std::opt
          (rows.empty() || H5Dwrite(dataset.get(), memory.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data()) >= 0);
 }
 
-/// A run as an HDF5 file: a group for each rate with a data set for each column, time and severity, the indicators of
-/// each window, the faults, the parameters, and the record. docs/datasets.md describes the format. Equal runs give
-/// equal bytes, because no time stamps are stored.
+/// A run as an HDF5 file, in the format of docs/datasets.md: a group for each rate with a data set for each column, for
+/// time and severity; the indicators of each window; faults, parameters and record. Equal runs give equal bytes,
+/// because the file has no time stamps.
 class Hdf5RunFile : public RunFile
 {
 public:
@@ -306,7 +306,7 @@ public:
       for (ColumnData& data : group.columns)
       {
         const hsize_t extent[2] = { group.written, data.width };
-        check(H5Dset_extent(data.dataset.get(), extent));  // smaller than planned if the run stopped
+        check(H5Dset_extent(data.dataset.get(), extent));  // smaller than planned if the run was stopped
       }
     }
     {
@@ -341,13 +341,13 @@ private:
     const RunColumn* column;  // null: time or severity
     bool is_table;
     Hdf5Handle dataset;
-    std::size_t width;  // numbers in a row
+    std::size_t width;  // numbers per row
     std::vector<double> block;
   };
   struct Group
   {
     bool float32;
-    Stamp period;  // [ns]
+    Stamp period;  // period of the rows [ns]
     hsize_t rows_in_block;
     hsize_t buffered{};
     hsize_t written{};
@@ -355,7 +355,7 @@ private:
     std::vector<ColumnData> columns{};
   };
 
-  /// Writes a text or a number of the record, if it exists.
+  /// Writes an entry of the record as an attribute, if the entry is a text or a number.
   void writeAttribute(const char* key, const OrderedJson& value)
   {
     if (value.is_number())
@@ -368,7 +368,7 @@ private:
     }
   }
 
-  /// Writes the parameters; for an arm a group for each drive with the name of its joint.
+  /// Writes the parameters; for an arm, as a group with the parameters of each drive under the name of its joint.
   void writeParameters(const RunSpec& spec)
   {
     if (!spec.arm)
@@ -430,7 +430,7 @@ private:
       add(column, width, column->isTable(), { column->name, column->unit, column->meaning },
           group.float32 ? H5T_IEEE_F32LE : H5T_IEEE_F64LE);
     }
-    // After the columns, in this order.
+    // Time and severity follow after the columns of the plan.
     add(nullptr, 1, false, { TIME, "s", "time since the start of the run" }, H5T_IEEE_F64LE);
     add(nullptr, joints_, spec.arm.has_value(),
         { SEVERITY, "-", "largest severity of the drive's faults at this instant; 0: sound" }, H5T_IEEE_F32LE);
@@ -439,7 +439,7 @@ private:
 
   bool isDue(const Group& group, Stamp now) const { return now > from_ && (now - from_) % group.period == 0; }
 
-  /// Largest severity of a joint's faults at a time.
+  /// Largest severity of a joint's faults at a time [-].
   double severityAt(double time, std::size_t joint) const
   {
     double largest = 0.0;
@@ -493,7 +493,7 @@ private:
     using W = const SignalIndicators&;
     const auto end_of = [this](W w) { return toSeconds(w.stamp - begin_); };
     const double first = toSeconds(from_ - begin_);
-    write("window_start", "s",  // end of the preceding window
+    write("window_start", "s",  // end of the previous window
           [&](W w) { return w.windows > 1 ? end_of(windows_[static_cast<std::size_t>(w.windows - 2)]) : first; });
     write("window_end", "s", end_of);
     write("window_severity", "-", [&](W w) { return severityAt(end_of(w), 0); });
@@ -540,7 +540,7 @@ private:
   std::string path_;
   std::string temporary_;
   Hdf5Handle file_;
-  Stamp from_{};  // only later instants are recorded
+  Stamp from_{};  // only instants after this one are recorded
   Stamp begin_{};
   std::vector<RunFault> faults_;
   std::size_t joints_;
@@ -563,7 +563,7 @@ std::vector<std::string> namesIn(hid_t group)
   return found;
 }
 
-/// Columns with one number in a row. `place` is for error texts.
+/// Columns with one number per row. `place` is for the text of an error.
 Columns columnsOf(hid_t group, const std::string& place)
 {
   Columns columns;
@@ -573,7 +573,7 @@ Columns columnsOf(hid_t group, const std::string& place)
     const Hdf5Handle space(H5Dget_space(dataset.get()), H5Sclose);
     if (H5Sget_simple_extent_ndims(space.get()) != 1)
     {
-      continue;  // one number for each tooth
+      continue;  // a row has one number for each tooth
     }
     std::vector<double> rows(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space.get())));
     if (H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data()) < 0)

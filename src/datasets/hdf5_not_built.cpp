@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Replaces hdf5_files.cpp in builds without HDF5.
+// This file replaces hdf5_files.cpp in builds without HDF5.
 #include "datasets/run_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 

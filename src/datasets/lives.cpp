@@ -13,9 +13,10 @@ namespace hjt
 {
 namespace
 {
-constexpr std::size_t MAX_CHECK_UPS = 1'000'000;  // limit for all drives together
-constexpr int POSITIONS = 8;  // positions of the wave generator in a tooth pitch, for the loads of a turn
-/// Places of a bearing's first spall.
+constexpr std::size_t MAX_CHECK_UPS = 1'000'000;  // limit for all drives of a plan together
+// Number of positions of the wave generator within a tooth pitch at which the loads of a turn are computed.
+constexpr int POSITIONS = 8;
+/// Parts of the bearing where its first spall can occur.
 constexpr std::array SPALLED{ FaultKind::BEARING_OUTER_RACE, FaultKind::BEARING_INNER_RACE, FaultKind::BEARING_BALL };
 }  // namespace
 
@@ -25,8 +26,8 @@ Lives::Lives(const PlanNode& node, const Parameters& nominal, const std::string&
   , fault_scale_(nominal.fault_scale)
   , rim_thickness_(nominal.gear.rim_thickness)
 {
-  constexpr double LONGEST = 100'000.0;    // [h]
-  constexpr double GREASE_SEVERITY = 0.3;  // [-]
+  constexpr double LONGEST = 100'000.0;    // default limit for the length of a life [h]
+  constexpr double GREASE_SEVERITY = 0.3;  // default severity of lubricant_degradation with old grease [-]
   allowOnly(node, { "drives", "every", "longest", "duties", "grease_changes", "grease_severity", "test" });
   const PlanValues values;
   const std::int64_t drives = values.whole(node, "drives", "-", { 1, DriveSplit::MAX_DRIVES });
@@ -69,7 +70,7 @@ Lives::Lives(const PlanNode& node, const Parameters& nominal, const std::string&
       check_ups_.push_back({ i, hours, age, stressAt(load_map, duties_[drive.duty].second, age) });
     };
     drive.life = ageing[drive.duty].live(drive.variation, longest, every, grease_changes, visit);
-    check_ups_.pop_back();  // at the end itself the drive is out of use
+    check_ups_.pop_back();  // at the last instant of a life the drive is out of use
     drives_.push_back(drive);
   }
 }

@@ -14,24 +14,24 @@
 
 namespace hjt
 {
-/// Division of a plan's drives into those for training and those for the test, evenly by their numbers. More drives do
-/// not change the assignment of the first ones.
+/// Divides the drives of a plan into drives for training and drives for the test, evenly by their numbers. The
+/// assignment of the first drives does not depend on the number of drives.
 class DriveSplit
 {
 public:
   static constexpr double MAX_DRIVES = 1e6;  ///< largest number of drives in a plan
 
-  // Columns of the index.
-  static constexpr const char* DRIVE = "drive";  ///< number of the drive
-  static constexpr const char* SPLIT = "split";  ///< name of the set
+  // Names of the columns in index.csv.
+  static constexpr const char* DRIVE = "drive";  ///< column with the number of the drive
+  static constexpr const char* SPLIT = "split";  ///< column with "train" or "test"
 
-  /// `drives`: mapping of the plan, which may have the key `test` with the share of test drives. @throws InputError.
+  /// `drives`: node of the plan that may have the key `test`, the share of test drives. @throws InputError.
   explicit DriveSplit(const PlanNode& drives) : test_(PlanValues().number(drives, "test", "-", { 0.0, 1.0 }, SHARE)) {}
 
   double share() const { return test_; }
   std::uint64_t testsOf(std::uint64_t drives) const  ///< number of test drives among the first `drives`
   {
-    constexpr double ROUNDING = 1e-9;  // rounding error of the product
+    constexpr double ROUNDING = 1e-9;  // tolerance for the rounding of the product
     return static_cast<std::uint64_t>(std::floor(static_cast<double>(drives) * test_ + ROUNDING));
   }
   const char* nameOf(std::uint64_t drive) const { return testsOf(drive + 1) > testsOf(drive) ? "test" : "train"; }
@@ -42,28 +42,28 @@ private:
   double test_;
 };
 
-/// Lives of different drives from new to the end of use, with check-ups at equal intervals of use: the plan's mapping
-/// `lives`. Check-ups are numbered life by life. After construction all members are thread-safe.
+/// Lives of different drives from new to the end of their use, with check-ups at equal intervals of use, as the plan's
+/// mapping `lives` describes them. Check-ups are numbered life by life. All const members are thread-safe.
 class Lives
 {
 public:
   using Labels = std::vector<std::pair<std::string, ParameterValue>>;
 
   /// `nominal`: drive whose tooth model the laws of ageing use; `directory`: directory of the plan. The construction
-  /// takes seconds. @throws InputError, ParameterError.
+  /// takes several seconds. @throws InputError, ParameterError.
   Lives(const PlanNode& node, const Parameters& nominal, const std::string& directory, std::uint32_t seed);
 
   std::uint64_t checkUps() const { return check_ups_.size(); }
   std::uint64_t driveAt(std::uint64_t check_up) const { return check_ups_[check_up].drive; }
 
-  /// Wear of the drive at a check-up.
+  /// Faults that stand for the wear of the drive at a check-up.
   std::vector<GrowingFault> faultsAt(std::uint64_t check_up) const;
 
-  /// True state of the drive at a check-up.
+  /// True state of the drive at a check-up, as labels for the index.
   Labels labelsAt(std::uint64_t check_up) const;
   static std::vector<std::string> labelNames();
 
-  /// The duty cycles for the plan's document.
+  /// The phases of all duty cycles, for the document of the plan.
   OrderedJson duties() const;
 
 private:
@@ -71,7 +71,7 @@ private:
   {
     UnitVariation variation;
     std::size_t duty{};
-    Fault spall;  // kind and place of the bearing's spall
+    Fault spall;  // kind and place of the bearing's first spall
     int crack_place{};
     DriveAgeing::Life life;
   };
@@ -80,7 +80,7 @@ private:
     std::uint64_t drive{};
     double hours{};
     DriveAge age;
-    double stress{};  // largest amplitude of the duty cycle at the notch, at zero mean stress [Pa]
+    double stress{};  // largest stress amplitude during the duty cycle at the notch, converted to zero mean stress [Pa]
   };
   void readDuties(const PlanNode& files, const std::string& directory);
   double stressAt(const RevolutionLoadMap& load_map, const DutyCycle& duty, const DriveAge& age) const;
@@ -88,7 +88,7 @@ private:
   DriveSplit split_;
   FatigueLaw fatigue_law_;
   FaultScaleParameters fault_scale_;
-  double rim_thickness_;  // [m]
+  double rim_thickness_;  // thickness of the rim [m]
   double grease_severity_{};
   std::vector<std::pair<std::string, DutyCycle>> duties_;
   std::vector<Drive> drives_;

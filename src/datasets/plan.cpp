@@ -16,12 +16,12 @@ namespace
 using Kind = PlanNode::Kind;
 
 constexpr double MAX_RUNS = 1e9;
-/// Class of all runs in a plan without classes.
+/// Class of all runs if the plan has no classes.
 const PlanNode::Entry HEALTHY{ "healthy", PlanNode{ Kind::LIST, "classes.healthy", "", {}, {} } };
-/// Class of the runs in a plan of lives.
+/// Class of all runs in a plan of lives.
 const PlanNode::Entry LIFE{ "life", PlanNode{ Kind::LIST, "lives", "", {}, {} } };
 
-/// Adds the overlays that the plan names, from the plan's directory or that of the default configuration.
+/// Adds the overlays that the plan names. They are sought in the plan's directory, then in that of the configuration.
 ConfigurationOptions withOverlays(const PlanNode& root, const std::string& directory, ConfigurationOptions options)
 {
   if (root.find("overlays") != nullptr)
@@ -38,7 +38,7 @@ ConfigurationOptions withOverlays(const PlanNode& root, const std::string& direc
 }
 
 constexpr const char* NOISE_SEED = "sensors.noise_seed";
-constexpr const char* LIVES_SET = "set.";  // prefix of the values drawn for each drive
+constexpr const char* LIVES_SET = "set.";  // prefix of the values that are drawn for each drive
 constexpr const char* DRIVES_SET = "drives.set.";
 
 void refuseGrids(const std::vector<const Variable*>& variables, const std::string& where)
@@ -95,7 +95,7 @@ Plan::Plan(const std::string& path, const ConfigurationOptions& options)
   }
   catch (const InputError&)
   {
-    // The caller of `run` gets the error.
+    // The error is not reported here; the caller of `run` gets it.
   }
 }
 
@@ -160,7 +160,7 @@ void Plan::makeBlocks()
   runs_ = drives * period_;
 }
 
-/// @returns the number of drives.
+/// Reads the mapping `drives` of the plan. @returns the number of drives.
 std::uint64_t Plan::readDrives()
 {
   const PlanNode& node = required(root_, "drives", Kind::MAP);
@@ -224,7 +224,7 @@ void Plan::makeLives()
           "is not allowed in a plan of lives, where lives.drives gives the drives and their wear the faults");
     }
   }
-  // The laws of ageing use the drive that is common to all lives.
+  // The laws of ageing use the nominal drive, which has only the settings that are common to all lives.
   ParameterMap nominal = base_;
   if (const PlanNode* settings = root_.find("set"))
   {
@@ -287,7 +287,7 @@ OrderedJson Plan::snapshot() const
   return { { "runs", runs_ }, { "plan", jsonOf(root_) }, { "tables", tables }, { "configuration", base } };
 }
 
-/// Values of all variables in a run, which are also stored in the run.
+/// Values of all variables in a run. They are also stored in `spec`.
 PlanValues Plan::valuesOf(const Block& block, std::uint64_t number, RunSpec& spec) const
 {
   std::uint64_t rest = number % period_ - block.first;
@@ -309,7 +309,7 @@ PlanValues Plan::valuesOf(const Block& block, std::uint64_t number, RunSpec& spe
   return values;
 }
 
-/// Labels of a run's drive that are not variables.
+/// Labels of a run's drive that are not variables of the plan.
 Lives::Labels Plan::labelsOf(std::uint64_t number) const
 {
   const std::uint64_t period = number / period_;
@@ -382,7 +382,7 @@ std::vector<RunFault> Plan::faultsOf(const PlanNode& list, const PlanValues& val
   return faults;
 }
 
-/// Sets duty, faults and parameters of a run of one drive.
+/// Sets duty, faults and parameters for a run of one drive.
 void Plan::takeDrive(const Block& block, const PlanValues& values, RunSpec& spec) const
 {
   spec.duty = duties_.read(*block.duty, values);
@@ -412,7 +412,7 @@ void Plan::takeDrive(const Block& block, const PlanValues& values, RunSpec& spec
   }
 }
 
-/// Sets motion, faults and drives of a run of a whole arm.
+/// Sets motion, faults and drives for a run of a whole arm.
 void Plan::takeArm(const Block& block, const PlanValues& values, RunSpec& spec) const
 {
   const bool given = root_.find("classes") != nullptr;
@@ -449,8 +449,8 @@ ParameterMap Plan::settingsOf(const PlanValues& values, std::uint64_t number) co
   return map;
 }
 
-/// Applies the settings of a run to the parameters of the first one, which sets the same keys. If there is an error,
-/// everything is read again for the text of the error.
+/// Parameters of the first run, changed by the settings of a run; both set the same keys. After an error, all
+/// parameters are read again, so that the error has its full text.
 Parameters Plan::parametersOf(const ParameterMap& settings, bool faults_given) const
 {
   const auto first_fault = settings.lower_bound(FAULTS);

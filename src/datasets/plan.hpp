@@ -20,31 +20,32 @@
 
 namespace hjt
 {
-/// Complete specification of one run of a plan.
+/// Complete specification of a run, one simulation of a plan.
 struct RunSpec
 {
   std::uint64_t run{};
   std::string fault_class;
   std::string duty_name;
   std::uint64_t repeat{};
-  double duration{};      ///< [s]
-  Parameters parameters;  ///< growing faults are approximated by steps; for an arm the parameters of its first drive
+  double duration{};      ///< simulated time of the run [s]
+  Parameters parameters;  ///< parameters, for an arm of its first drive; steps approximate growing faults
   std::vector<RunFault> faults;
   RunDuty duty;
-  std::optional<ArmSpec> arm;                                     ///< only in a plan of whole arms
-  std::vector<std::pair<std::string, ParameterValue>> variables;  ///< path in the plan and value in this run
+  std::optional<ArmSpec> arm;  ///< arm and its motion, only in a plan of whole arms
+  /// Path of each variable in the plan, and its value in this run.
+  std::vector<std::pair<std::string, ParameterValue>> variables;
 };
 
-/// A plan of many runs with constant values, grids and random draws.
+/// A plan of simulations with constant values, grids and random draws.
 ///
-/// Runs are numbered by class, then by duty cycle, then by grid with the last one fastest, then by repeat. A plan with
-/// `drives` is numbered by drive first. A plan of lives is numbered by life, check-up and duty cycle, and `set` is
-/// drawn for each drive. In a plan of whole arms duty cycles are motions, and `set` is that of all drives. After
-/// construction all members are thread-safe.
+/// Runs are numbered by class, then by duty cycle, then by grid with the last grid fastest, then by repeat. In a plan
+/// with `drives`, they are numbered by drive first. In a plan of lives, they are numbered by life, check-up and duty
+/// cycle, and `set` is drawn for each drive. In a plan of whole arms, the duty cycles are motions, and `set` applies to
+/// all drives. All const members are thread-safe.
 class Plan
 {
 public:
-  /// `options`: configuration that the plan's settings change. @throws InputError with file and line.
+  /// `options`: configuration that the plan's settings change. @throws InputError that names file and line.
   Plan(const std::string& path, const ConfigurationOptions& options);
   Plan(const Plan&) = delete;
   Plan& operator=(const Plan&) = delete;
@@ -53,32 +54,32 @@ public:
   std::uint64_t runs() const { return runs_; }
   const Recording& recording() const { return recording_; }
 
-  /// @throws InputError with file, line, key, value, unit and range.
+  /// Specification of a run. @throws InputError with file, line, key, value, unit and range.
   RunSpec run(std::uint64_t number) const;
 
-  /// The runs of one class and duty cycle.
+  /// The runs of a plan that have the same class and duty cycle.
   struct Block
   {
     const PlanNode::Entry* fault_class;
     const PlanNode* duty;
     std::vector<const Variable*> variables;
-    std::uint64_t first;     ///< number of the first run
-    std::uint64_t together;  ///< number of successive runs in each period
-    std::uint64_t period{};  ///< period of the plan
-    std::uint64_t size{};    ///< number of runs in all periods
+    std::uint64_t first;     ///< number of the first run of the block
+    std::uint64_t together;  ///< number of successive runs of the block in each period
+    std::uint64_t period{};  ///< number of runs from one period of the plan to the next
+    std::uint64_t size{};    ///< number of runs of the block in all periods
 
     std::uint64_t run(std::uint64_t i) const { return first + i / together * period + i % together; }
   };
   const std::vector<Block>& blocks() const { return blocks_; }
 
-  const Lives* lives() const { return lives_.get(); }  ///< null for other plans than those of lives
+  const Lives* lives() const { return lives_.get(); }  ///< null unless the plan is one of lives
   bool isOfArms() const { return arm_.has_value(); }
   std::string jointName(std::size_t joint) const { return arm_ ? arm_->jointName(joint) : std::string(); }
 
-  /// Paths of all variables, in the order of the plan.
+  /// Paths of all variables, in the order of the plan's file.
   std::vector<std::string> variableNames() const;
 
-  /// Document with everything that the runs depend on.
+  /// JSON document with all data that the runs depend on.
   OrderedJson snapshot() const;
 
 private:
@@ -103,11 +104,11 @@ private:
   std::uint32_t seed_{};
   std::uint64_t repeats_{};
   std::uint64_t runs_{};
-  std::uint64_t period_{};  // number of runs of a drive, of a check-up of lives, or all
+  std::uint64_t period_{};  // number of runs of each drive, of each check-up of a life, or of the plan
   Recording recording_;
   DutyReader duties_;
   std::unique_ptr<const Lives> lives_;
-  std::optional<DriveSplit> split_;  // only for a plan with drives
+  std::optional<DriveSplit> split_;  // only in a plan with drives
   std::optional<ArmPlan> arm_;
   std::vector<std::unique_ptr<const Variable>> variables_;
   std::vector<Block> blocks_;

@@ -19,7 +19,7 @@ namespace hjt
 {
 namespace
 {
-// An alias can refer to itself, or multiply copies of others.
+// An alias in YAML can refer to itself, or multiply copies of other nodes. Therefore depth and size are limited.
 constexpr int DEEPEST = 32;
 constexpr std::size_t MAX_NODES = 100'000;
 
@@ -209,7 +209,7 @@ double PlanValues::number(const PlanNode& map, const std::string& key, const cha
   {
     refuse(node, found, "must be a number " + with_unit + ", " + rangeText(range));
   }
-  // This form of the comparison rejects NaN.
+  // The negated comparison also rejects NaN.
   if (!(*number >= range.min && *number <= range.max))
   {
     refuse(node, found, with_unit + " is out of range, allowed: " + rangeText(range) + " " + with_unit);
@@ -295,11 +295,11 @@ PhiloxStream wordsOf(std::uint32_t seed, const std::string& name, std::uint64_t 
                       { seed ^ static_cast<std::uint32_t>(hash), static_cast<std::uint32_t>(hash >> 32) });
 }
 
-// least probability of a normal distribution within its limits, because values outside are redrawn
+// Least probability of a normal distribution within its limits [-]. Values outside of the limits are drawn again.
 constexpr double MIN_SHARE = 1e-3;
 constexpr double MAX_WHOLE = 1e15;  // largest whole number that a double represents exactly
 
-/// Probability within the limits of a normal distribution {mean, standard deviation, lowest, highest}.
+/// Probability that a normal distribution {mean, standard deviation, lowest, highest} gives a value within its limits.
 double shareWithin(const std::array<double, 4>& normal)
 {
   const auto [mean, deviation, lowest, highest] = normal;

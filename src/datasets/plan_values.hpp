@@ -16,7 +16,7 @@
 
 namespace hjt
 {
-/// A node of a plan's file. After reading it is constant and thread-safe.
+/// A node of a plan's file. It is constant and thread-safe once the file was read.
 struct PlanNode
 {
   enum class Kind
@@ -28,73 +28,74 @@ struct PlanNode
   using Entry = std::pair<std::string, PlanNode>;
 
   Kind kind{};
-  std::string path;            ///< keys from the root, joined by dots
-  std::string origin;          ///< file and line
-  ParameterValue scalar;       ///< value of a SCALAR
-  std::vector<Entry> entries;  ///< entries of a MAP, or of a LIST with the keys "0", "1", ...
+  std::string path;            ///< keys from the root to this node, joined by dots
+  std::string origin;          ///< file and line of the node
+  ParameterValue scalar;       ///< value of a node of kind SCALAR
+  std::vector<Entry> entries;  ///< entries of a MAP or a LIST; the keys of a LIST are "0", "1", ...
 
   const PlanNode* find(std::string_view key) const;
 
-  /// @throws InputError that names this node.
+  /// @throws InputError that names this node. `what` says what is wrong with it.
   [[noreturn]] void refuse(const std::string& what) const;
 };
 
-/// The value as a number; empty if it is no number.
+/// The value as a number; empty if it is not a number.
 std::optional<double> numberIn(const ParameterValue& value);
 
 OrderedJson jsonOf(const ParameterValue& value);
 OrderedJson jsonOf(const PlanNode& node);
 
-/// Reads a plan. @throws InputError with file and line.
+/// Reads a plan from its file. @throws InputError with file and line.
 PlanNode readPlanFile(const std::string& path);
 
-/// The values of the plan in one run, with a value for each variable. All members throw InputError with file, line,
-/// key, value, unit and range.
+/// Reads the values of the plan for one run, including the values of its variables in this run. All members throw
+/// InputError with file, line, key, value, unit and range.
 class PlanValues
 {
 public:
   void set(const PlanNode& variable, ParameterValue value) { drawn_[&variable] = std::move(value); }
 
-  // `otherwise`: default if the key is missing; without it the key is required.
+  // `otherwise`: default if the key is missing. If no default is given, the key is required.
   double number(const PlanNode& map, const std::string& key, const char* unit, const Range& range,
                 std::optional<double> otherwise = std::nullopt) const;
   std::int64_t whole(const PlanNode& map, const std::string& key, const char* unit, const Range& range,
                      std::optional<std::int64_t> otherwise = std::nullopt) const;
   std::string text(const PlanNode& map, const std::string& key,
                    const std::optional<std::string>& otherwise = std::nullopt) const;
-  bool flag(const PlanNode& map, const std::string& key) const;  ///< false if the key is missing
+  bool flag(const PlanNode& map, const std::string& key) const;  ///< a flag is false if its key is missing
 
-  /// A plain value, the value of a variable, or a list of numbers.
+  /// Value of a node: a plain value, the value of a variable in this run, or a list of numbers.
   ParameterValue value(const PlanNode& node) const;
 
 private:
   std::map<const PlanNode*, ParameterValue> drawn_;
 };
 
-/// @throws InputError if the key is missing.
+/// The node with this key. @throws InputError if the key is missing.
 const PlanNode& required(const PlanNode& map, std::string_view key);
 const PlanNode& required(const PlanNode& map, std::string_view key, PlanNode::Kind kind);
 
-/// @throws InputError if the node is not a mapping, or has another key than these.
+/// @throws InputError if the node is not a mapping, or if it has a key that is not among `keys`.
 void allowOnly(const PlanNode& map, const std::vector<std::string>& keys);
 
-/// A value of the plan that differs between runs: from a grid, or drawn at random.
+/// A value of a plan that differs from run to run: taken from a grid, or drawn at random.
 ///
-/// A draw depends only on the plan's seed, the variable's name and the number of the run, but not on other variables,
-/// the order of the runs or the number of workers. Philox4x32-10 gives the random words, Boost.Random the distribution.
+/// A draw depends only on the plan's seed, the variable's name and the number of the run. It does not depend on other
+/// variables, the order of the runs or the number of threads. Philox4x32-10 gives the random words, and Boost.Random
+/// the distribution.
 class Variable
 {
 public:
   /// Whether a node is a variable: a mapping with the single key grid, uniform, log_uniform, normal, integer or choice.
   static bool stands(const PlanNode& node);
 
-  /// @throws InputError if the list of numbers is invalid.
+  /// @throws InputError if the variable's list of numbers is invalid.
   explicit Variable(const PlanNode& node);
 
   const PlanNode& node() const { return *node_; }
   std::size_t gridSize() const { return distribution_ == Distribution::GRID ? choices_.size() : 1; }
 
-  /// `digit`: index of a grid's value; draws do not depend on it.
+  /// Value in a run. `digit` is the index in a grid; draws do not depend on it.
   ParameterValue value(std::uint32_t seed, std::uint64_t run, std::size_t digit) const;
 
 private:
@@ -117,9 +118,9 @@ private:
   std::vector<ParameterValue> choices_;
 };
 
-/// Possible texts of a key over all runs. @throws InputError.
+/// All texts that a key can have in the runs. @throws InputError.
 std::vector<std::string> textsOf(const PlanNode& map, const std::string& key);
 
-/// A different random word for each run, as a seed of random quantities in it.
+/// A random word that differs from run to run, as a seed for random quantities of the run.
 std::uint32_t drawnWord(std::uint32_t seed, const std::string& name, std::uint64_t run);
 }  // namespace hjt

@@ -9,7 +9,7 @@ namespace hjt
 {
 namespace
 {
-/// Columns of a group, which must be among `known`. @throws InputError with file and line.
+/// The columns that a group names, which must be among `known`. @throws InputError with file and line.
 std::vector<const RunColumn*> readColumns(const PlanNode& group, const std::vector<RunColumn>& known)
 {
   std::vector<const RunColumn*> columns;
@@ -38,7 +38,7 @@ const std::vector<RunColumn>& driveColumns()
 {
   using I = const Instant&;
   static const std::vector<RunColumn> COLUMNS{
-    // Columns of a robot's controller.
+    // Quantities that a robot's controller can measure.
     { "motor_angle_encoder", "rad", "angle by the motor encoder", [](I i) { return i.encoders.motor_angle; } },
     { "motor_velocity_encoder", "rad/s", "speed by the motor encoder over sensors.velocity_window",
       [](I i) { return i.encoders.motor_velocity; } },
@@ -49,7 +49,7 @@ const std::vector<RunColumn>& driveColumns()
     { "motor_torque_reading", "N.m", "motor torque estimated from the current",
       [](I i) { return i.motor_torque_reading; } },
     { "speed_reference", "rad/s", "reference of the joint speed", [](I i) { return i.speed_reference; } },
-    // Columns of true values, which only the twin knows.
+    // True values, which only the twin knows.
     { "motor_angle", "rad", "true angle of the motor", [](I i) { return i.outputs.motor_angle; } },
     { "motor_velocity", "rad/s", "true speed of the motor", [](I i) { return i.outputs.motor_velocity; } },
     { "output_angle", "rad", "true angle of the output", [](I i) { return i.outputs.output_angle; } },

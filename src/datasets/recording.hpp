@@ -10,26 +10,26 @@
 
 namespace hjt
 {
-/// State of the joint at one instant, for the columns of a data set.
+/// State of the drive at one instant, for the columns of a data set.
 struct Instant
 {
   JointOutputs outputs;
   EncoderReadings encoders;
-  double motor_torque_reading{};  ///< [N.m]
-  double speed_reference{};       ///< [rad/s]
+  double motor_torque_reading{};  ///< motor torque as estimated from the current [N.m]
+  double speed_reference{};       ///< reference of the joint's speed [rad/s]
 };
 
-/// A quantity that can be recorded.
+/// A quantity that can be a column of a data set.
 struct RunColumn
 {
   const char* name;
   const char* unit;
   const char* meaning;
-  double (*value)(const Instant&);                ///< null: a column for each tooth, or of an arm
-  std::vector<double> ToothForces::*per_tooth{};  ///< null: one number
-  const ArmQuantity* of_arm{};                    ///< null: a quantity of one drive
+  double (*value)(const Instant&);  ///< function for a single number; null for a quantity of teeth or of an arm
+  std::vector<double> ToothForces::*per_tooth{};  ///< vector with a number for each tooth; null for other quantities
+  const ArmQuantity* of_arm{};                    ///< quantity of an arm; null for a quantity of one drive
 
-  /// Number of values in a row, in a run of a drive with `teeth` or of an arm with `joints`.
+  /// Number of values in a row, for a run of a drive with `teeth` teeth or of an arm with `joints` joints.
   std::size_t width(int teeth, std::size_t joints) const
   {
     return of_arm != nullptr ? of_arm->width(joints) : per_tooth != nullptr ? static_cast<std::size_t>(teeth) : 1;
@@ -39,14 +39,14 @@ struct RunColumn
 
 const std::vector<RunColumn>& driveColumns();
 
-const std::vector<RunColumn>& armColumns();  ///< in the order of ARM_QUANTITIES
+const std::vector<RunColumn>& armColumns();  ///< columns for an arm, in the order of ARM_QUANTITIES
 
-/// Columns that are recorded at the same rate.
+/// Columns of a data set that are recorded at the same rate.
 struct RecordingGroup
 {
   std::string name;
-  double rate{};   // [Hz]
-  bool float32{};  // otherwise float64
+  double rate{};   // rate of the rows [Hz]
+  bool float32{};  // false: float64
   std::vector<const RunColumn*> columns;
 };
 
@@ -62,12 +62,13 @@ enum class RunFormat
 struct Recording
 {
   RunFormat format{};
-  double start{};     ///< start of the recording; in the first half of this time the inputs increase gradually [s]
-  int deflate{};      ///< compression level 0 ... 9; 0: none
-  bool indicators{};  ///< record the indicators of docs/indicators.md, one row for each window
+  double start{};     ///< time before the first row; in its first half the inputs increase gradually [s]
+  int deflate{};      ///< compression level from 0 to 9; 0: no compression
+  bool indicators{};  ///< whether the indicators of docs/indicators.md are recorded, with one row for each window
   std::vector<RecordingGroup> groups;
 };
 
-/// Reads the plan's mapping `record`; `of_arms`: in a plan of whole arms. @throws InputError with file and line.
+/// Reads the plan's mapping `record`. `of_arms`: whether the plan is one of whole arms. @throws InputError with file
+/// and line.
 Recording readRecording(const PlanNode& record, bool of_arms);
 }  // namespace hjt

@@ -14,9 +14,9 @@ namespace hjt
 namespace
 {
 constexpr Range LARGE{ -1e6, 1e6 };  // allowed values of a waveform
-constexpr double BANDWIDTH = 8.0;    // bandwidth of the speed control [Hz]
+constexpr double BANDWIDTH = 8.0;    // default bandwidth of the speed control [Hz]
 
-/// Unit of the values of a duty cycle's key.
+/// Unit of the values of this key in a duty cycle.
 const char* unitOf(const std::string& key)
 {
   return key == "speed" ? "rad/s" : key == "temperature" ? "degC" : "N.m";

@@ -23,9 +23,9 @@ class Waveform
 {
 public:
   virtual ~Waveform() = default;
-  virtual double value(double time) const = 0;  ///< `time` >= 0 [s]
-  virtual double slope(double time) const = 0;  ///< in the quantity's unit over seconds
-  virtual Range range() const = 0;              ///< bounds of all values
+  virtual double value(double time) const = 0;  ///< value of the quantity at `time` >= 0 [s]
+  virtual double slope(double time) const = 0;  ///< slope of the quantity at `time`, in its unit per second
+  virtual Range range() const = 0;              ///< range that contains all values
 };
 
 class ConstantWaveform : public Waveform
@@ -40,7 +40,7 @@ private:
   double value_;
 };
 
-/// mean + amplitude sin(2 pi frequency t + phase): phase [rad], frequency [Hz].
+/// Waveform mean + amplitude sin(2 pi frequency t + phase), with the frequency in [Hz] and the phase in [rad].
 class SinusWaveform : public Waveform
 {
 public:
@@ -53,38 +53,38 @@ private:
   double mean_, amplitude_, angular_frequency_, phase_;
 };
 
-/// Periodic waveform: constant slope to the peak, `hold`, constant slope to zero, `pause`; then the same with opposite
-/// sign. Without a peak all times may be zero, and the value is constant.
+/// Periodic waveform. It rises to the peak with a constant slope, stays there for `hold`, returns to zero with the same
+/// slope, stays there for `pause`, and repeats this with the opposite sign. If the peak is zero, the value is constant.
 class TrapezoidWaveform : public Waveform
 {
 public:
   static constexpr double SHORTEST = 1e-9;  ///< shortest half period of a waveform with a peak [s]
 
-  /// `slope`: in the quantity's unit over seconds, > 0; `hold`, `pause` [s].
+  /// `slope` > 0: in the quantity's unit per second; `hold` and `pause` [s].
   TrapezoidWaveform(double peak, double slope, double hold, double pause);
   double value(double time) const override;
   double slope(double time) const override;
   Range range() const override { return { -std::abs(peak_), std::abs(peak_) }; }
-  double halfPeriod() const { return half_period_; }  ///< [s]
+  double halfPeriod() const { return half_period_; }  ///< half of the waveform's period [s]
 
 private:
   struct Place
   {
     double sign;
-    double time;  // since the beginning of the half period [s]
+    double time;  // time since the beginning of the half period [s]
   };
   Place place(double time) const;
 
   double peak_, slope_, rise_, hold_, half_period_;
 };
 
-/// Linear interpolation between the rows of a table; constant before the first and after the last row.
+/// Linear interpolation between the rows of a table. The value is constant before the first and after the last row.
 class TableWaveform : public Waveform
 {
 public:
   using Rows = std::vector<std::pair<double, double>>;
 
-  /// Reads a column and the column `time` [s] of a CSV file. @throws InputError with line and column.
+  /// Reads a column of a CSV file and its column `time` [s]. @throws InputError with line and column.
   static std::shared_ptr<const Rows> read(const std::string& path, const std::string& column, const Range& range,
                                           const std::string& unit);
 
@@ -99,26 +99,26 @@ private:
   std::shared_ptr<const Rows> rows_;
 };
 
-/// Duty of a run: motor torque or controlled speed, load and temperature.
+/// Inputs of a drive in a run: motor torque or controlled speed, load and temperature.
 struct RunDuty
 {
   std::shared_ptr<const Waveform> torque;       ///< torque of the motor [N.m]; null: the speed is controlled
-  std::shared_ptr<const Waveform> speed;        ///< speed of the joint [rad/s]
+  std::shared_ptr<const Waveform> speed;        ///< speed of the joint [rad/s]; null: the torque is given
   double bandwidth{};                           ///< bandwidth of the speed control [Hz]
-  std::shared_ptr<const Waveform> load;         ///< external torque at the output [N.m]; null: none
+  std::shared_ptr<const Waveform> load;         ///< external torque at the output [N.m]; null: no load
   std::shared_ptr<const Waveform> temperature;  ///< temperature of the drive [degC]; null: input.temperature
-  /// time in which torque, speed and load increase as half a cosine, because a step would excite vibration for seconds
-  /// [s]
+  /// Time in which torque, speed and load increase from zero along half a cosine [s]. A step of these inputs would
+  /// excite vibration for seconds.
   double easing{};
 };
 
-/// Commands a twin along a duty cycle, step by step.
+/// Feeds the inputs of a duty cycle to a twin, step by step.
 ///
-/// The speed control is that of a drive, with readings of the motor encoder:
+/// The speed control is that of a real drive. From readings of the motor encoder it computes the motor torque T [N.m]:
 ///        T = J a + 2 w J_m (v_r - v) + w^2 J_m (x_r - x)
 /// where  J    inertia of motor and joint at the motor             [kg.m^2]
-///        J_m  inertia of the motor alone: above the drive's resonance the joint does not follow, so that a gain for
-///             both would be too high                                  [kg.m^2]
+///        J_m  inertia of the motor alone: above the drive's resonance the joint does not follow, so a gain for motor
+///             and joint would be too high                               [kg.m^2]
 ///        w    2 pi times the bandwidth                           [rad/s]
 ///        a, v_r, x_r   references of acceleration, speed, angle; v, x readings   [rad/s^2], [rad/s], [rad], at the
 ///                      motor
@@ -132,7 +132,7 @@ public:
     inertia_ = motor_inertia_ + (p.output.circular_spline_inertia + p.output.load_inertia) / (ratio_ * ratio_);
   }
 
-  /// Must be called before the step that ends `time` [s] after the start.
+  /// The caller calls this function before the step that ends `time` [s] after the start of the run.
   void feed(Twin& twin, double time)
   {
     const Stamp begin = twin.stamp();
@@ -154,7 +154,7 @@ public:
     }
   }
 
-  /// reference of the joint's speed [rad/s]; zero with a given torque
+  /// Reference of the joint's speed [rad/s]; zero if the torque is given.
   double speedReference() const { return speed_reference_; }
 
 private:
@@ -183,29 +183,29 @@ private:
 
   RunDuty duty_;
   double ratio_;
-  double motor_inertia_;  // inertia of the motor [kg.m^2]
-  double inertia_;        // inertia of motor and joint at the motor [kg.m^2]
+  double motor_inertia_;  // inertia of rotor and wave generator [kg.m^2]
+  double inertia_;        // inertia of motor and joint, as seen by the motor [kg.m^2]
   double last_load_{};
   double last_time_{};
   double angle_reference_{};  // reference of the joint's angle [rad]
   double speed_reference_{};
 };
 
-/// Reader of the duty cycles of a plan for one run. All members throw InputError with file, line, key, value, unit and
+/// Reads the duty cycles of a plan for one run. All members throw InputError with file, line, key, value, unit and
 /// range.
 class DutyReader
 {
 public:
-  /// Reads all tables that a run of the plan's list `duty` may use. `directory`: directory of the plan.
+  /// Reads all tables that the list `duty` of a plan may use. `directory`: directory of the plan.
   void readTables(const PlanNode& duties, const std::string& directory);
 
   RunDuty read(const PlanNode& duty, const PlanValues& values) const;
 
-  /// Rows of the tables, for the plan's document.
+  /// Rows of all tables, for the document of the plan.
   OrderedJson tables() const;
 
 private:
-  using Table = std::pair<std::string, std::string>;  // file and column
+  using Table = std::pair<std::string, std::string>;  // path of the file, and name of the column
 
   std::shared_ptr<const Waveform> waveform(const PlanNode& map, const std::string& key, const PlanValues& values) const;
 

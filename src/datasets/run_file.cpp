@@ -30,10 +30,10 @@ namespace hjt
 {
 namespace
 {
-/// Lock for opening and closing, which search for plugins (compression, encryption) and are not thread-safe.
+/// Lock for opening and closing a bag, which search for plugins (compression, encryption) and are not thread-safe.
 std::mutex g_opening;
 
-/// Writes a run. If that fails, the file is removed, so that the error need not tell how to read an incomplete one.
+/// Writes a run. If this fails, the file is removed, so the error omits how to read an incomplete file.
 template <class Action>
 void writeOrRefuse(const Action& action)
 {
@@ -48,8 +48,8 @@ void writeOrRefuse(const Action& action)
   }
 }
 
-/// A run as a bag: the topics of the node at their rates, for an arm /joint_states as its driver publishes it. At the
-/// end the record is a text on RECORD_TOPIC.
+/// A run as a bag: the topics of the node at their rates; for an arm, /joint_states as the arm's driver publishes it.
+/// The last message is the record, a text on RECORD_TOPIC.
 class BagRunFile : public RunFile
 {
 public:
@@ -120,7 +120,7 @@ public:
     bringToDisk(temporary_, path_);
   }
 
-  /// Empty without a record.
+  /// Text of the record; empty if the bag has no record.
   static std::string readRecord(const std::string& path)
   {
     const std::lock_guard<std::mutex> lock(g_opening);
@@ -137,7 +137,7 @@ public:
     }
     catch (const std::exception&)
     {
-      // A file that is not a bag, or is damaged, counts as missing.
+      // A damaged file, or a file that is not a bag, counts as missing.
     }
     return {};
   }
@@ -147,10 +147,10 @@ private:
   std::string temporary_;
   std::optional<BagWriter> bag_;
   std::optional<BagRecorder> recorder_;
-  std::vector<std::size_t> order_;  // indices of an arm's joints in its states
+  std::vector<std::size_t> order_;  // index of the joint for each entry of the arm's states
   sensor_msgs::JointState states_;
-  Stamp period_{};  // period of the states [ns]
-  Stamp begin_{};   // epoch of that period [ns]
+  Stamp period_{};  // period of the arm's states [ns]
+  Stamp begin_{};   // stamp from which this period is counted [ns]
   Stamp last_;
 };
 

@@ -13,69 +13,70 @@
 
 namespace hjt
 {
-/// Key of a run's record: number of rows whose tooth forces are NaN, because the teeth had no equilibrium.
+/// Key in the record of a run: number of rows whose tooth forces are NaN, because the teeth had no equilibrium.
 constexpr const char* ROWS_WITHOUT_FORCES = "rows_without_forces";
 
-/// Key of an arm's record: joint, reason and time of a protective stop; empty without one.
+/// Key in the record of an arm's run: joint, reason and time of a protective stop; empty if there was none.
 constexpr const char* PROTECTIVE_STOP = "protective_stop";
 
-/// Column, in the windows of a run's file, of a line's standard error, which also holds for the parts of the line.
+/// Name of the column with the standard error of a line's amplitude in the windows of a run's file. The error of the
+/// line's cosine and sine parts is the same.
 std::string errorColumn(std::size_t indicator);
 
-/// File of one run. `finish` gives it its final name.
+/// Writes the file of one run. The file gets its final name in `finish`.
 class RunFile
 {
 public:
   virtual ~RunFile() = default;
 
-  /// Must be called after every step of a drive. @throws InputError if it cannot be written.
+  /// The caller calls this function after every step of a drive. @throws InputError if the file cannot be written.
   virtual void record(Twin& twin, const DutyFeeder& feeder) = 0;
 
-  /// Must be called after every step of an arm at `now`, and before the first one. @throws InputError if it cannot be
-  /// written.
+  /// The caller calls this function before the first step of an arm, and after every step, which ends at `now`.
+  /// @throws InputError if the file cannot be written.
   virtual void record(Stamp now, ArmRecorder& arm) = 0;
 
-  /// Writes the rest, seals the file, flushes it to the disk and renames it. `record`: row of the index for this run,
-  /// with an open seal. @throws InputError.
+  /// Writes the remaining data, seals the file, flushes it to the disk and renames it. `record`: row of the index for
+  /// this run; its seal has no digits yet. @throws InputError.
   virtual void finish(OrderedJson record) = 0;
 };
 
-/// `twin`: at the start of the recording; for an arm that of its first drive. Null for a run without a twin, whose file
-/// has only the record. @throws InputError.
+/// Makes the file of a run. `twin`: the twin at the start of the recording, for an arm its first drive. It is null for
+/// a run without a twin, whose file contains only the record. @throws InputError.
 std::unique_ptr<RunFile> makeRunFile(const Recording& recording, const RunSpec& spec, const Twin* twin,
                                      const std::string& path);
 
-/// Adds the outcome of a run's steps to its record. `on_surface`: number of steps on the response surface; `end`: time
-/// of the last step [s].
+/// Adds the outcome of a run to its record. `on_surface`: number of steps on the response surface; `end`: time of the
+/// last step since the start of the run [s].
 void addOutcome(const TwinCounters& counters, std::uint64_t on_surface, double end, OrderedJson& record);
 
 /// Adds an arm's protective stop to the record of its run.
 void addProtectiveStop(const ArmDescription& arm, const MovingArm& moving, OrderedJson& record);
 
-/// File name extension of the format, with the dot.
+/// Extension of the file's name for a format, including the dot.
 const char* runFileExtension(RunFormat format);
 
-/// The record of a finished run; empty if there is no readable file.
+/// Reads the record of a finished run; empty if there is no readable file.
 OrderedJson readRunRecord(RunFormat format, const std::string& path);
 
-/// Parameters of a run's HDF5 file as a text of describeParameters; empty if it has none.
+/// Reads the parameters of a run's HDF5 file, as text in the format of describeParameters; empty if there are none.
 std::string readRunParameters(const std::string& path);
 
-/// Numbers by the name of their column, one for each row.
+/// Numbers of each column, one for each row, by the name of the column.
 using Columns = std::map<std::string, std::vector<double>>;
 
-/// Columns of the first group in a run's HDF5 file that has one of `holding`; empty if no group has.
-/// @throws InputError if the file cannot be read.
+/// Reads the columns of the first group in a run's HDF5 file that contains a column of `holding`; empty if there is no
+/// such group. @throws InputError if the file cannot be read.
 Columns readRunColumns(const std::string& path, const std::vector<std::string>& holding);
 
-/// Size of the numbers of a run [byte].
+/// Size of the recorded numbers of a run without compression [byte].
 double dataSize(const Recording& recording, const RunSpec& spec);
 
-/// See makeRunFile. The functions below throw InputError if hasHdf5() is false.
+/// HDF5 version of makeRunFile. This and the following functions throw InputError if hasHdf5() is false.
 std::unique_ptr<RunFile> makeHdf5RunFile(const Recording& recording, const RunSpec& spec, const Twin* twin,
                                          const std::string& path);
-/// Text of a data set; empty if it is missing.
+/// Text of a data set in an HDF5 file; empty if the data set is missing.
 std::string readHdf5Text(const std::string& path, const char* name);
-/// See readRunColumns.
+/// HDF5 version of readRunColumns.
 Columns readHdf5Columns(const std::string& path, const std::vector<std::string>& holding);
 }  // namespace hjt

@@ -18,7 +18,7 @@ public:
   Drive(const RunSpec& spec, const Recording& recording, const SurfaceSource& source)
     : recording_(recording), twin_(spec.parameters, source), feeder_(spec.duty, twin_)
   {
-    twin_.watchSignals(recording.format == RunFormat::BAG);  // a bag contains the indicators from the start
+    twin_.watchSignals(recording.format == RunFormat::BAG);  // a bag contains the indicators from its start
     twin_.seekBearingSlip();
     twin_.reset(SIMULATION_EPOCH);
   }
@@ -28,7 +28,7 @@ public:
     feeder_.feed(twin_, time);
     if (recording_.indicators && time > recording_.start)
     {
-      twin_.watchSignals(true);  // a window with the start would differ from all others
+      twin_.watchSignals(true);  // earlier, the first window would contain the start and differ from all others
     }
     return twin_.step(end);
   }
@@ -44,7 +44,7 @@ private:
   DutyFeeder feeder_;
 };
 
-/// An arm. The run begins with its motion, after the drives have settled.
+/// Simulates an arm. The run begins with the arm's motion, after its drives have settled.
 class RunSimulation::Arm : public Subject
 {
 public:
@@ -119,7 +119,7 @@ RunCost RunSimulation::sample(std::uint64_t number, double seconds)
   const std::string path = folder.path() + "/run" + runFileExtension(plan_.recording().format);
   RunCost cost;
   const Clock::time_point first_begin = Clock::now();
-  begin(spec);  // builds the surfaces, once for all runs
+  begin(spec);  // builds the response surfaces, which then exist for all runs
   cost.surfaces = since(first_begin);
   const Clock::time_point again = Clock::now();
   const std::unique_ptr<Subject> subject = begin(spec);
@@ -136,7 +136,7 @@ RunCost RunSimulation::sample(std::uint64_t number, double seconds)
   return cost;
 }
 
-/// @returns false if the run was stopped.
+/// Simulates the run step by step. @returns false if the run was stopped.
 bool RunSimulation::march(Subject& subject, const RunSpec& spec, RunFile& file, Clock::time_point until)
 {
   constexpr std::uint64_t STEPS_PER_LOOK = 1024;

@@ -26,7 +26,7 @@ namespace hjt
 {
 namespace
 {
-/// I and N of a text "I/N" with 0 <= I < N; empty for another text.
+/// The numbers I and N of a text "I/N" with 0 <= I < N; empty if the text has another form.
 std::optional<std::pair<std::uint64_t, std::uint64_t>> shardOf(const std::string& text)
 {
   std::pair<std::uint64_t, std::uint64_t> shard;
@@ -37,7 +37,7 @@ std::optional<std::pair<std::uint64_t, std::uint64_t>> shardOf(const std::string
                                                                                       std::nullopt;
 }
 
-/// Messages of a sweep's threads to the caller's thread.
+/// Passes notices and progress from the threads of a sweep to the caller's thread.
 class Told
 {
 public:
@@ -50,14 +50,14 @@ public:
     }
   }
 
-  /// Notices since the last call.
+  /// The notices since the last call of this function.
   std::vector<std::string> notices()
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     return std::exchange(notices_, {});
   }
 
-  std::atomic<double> built{};  ///< built fraction of a response surface, 0 ... 1
+  std::atomic<double> built{};  ///< completed share of a response surface, 0 to 1
 
 private:
   std::mutex mutex_;
@@ -65,7 +65,7 @@ private:
   std::vector<std::string> notices_;
 };
 
-/// Threads that take the remaining runs one by one.
+/// Threads, each of which takes the next remaining run when it has finished one.
 class Workers
 {
 public:
@@ -122,7 +122,7 @@ private:
     }
   }
 
-  /// Starts the threads, or as many as the system allows. @throws InputError if it allows none.
+  /// Starts the threads, or as many of them as the system allows. @throws InputError if the system allows none.
   std::vector<std::thread> start()
   {
     std::vector<std::thread> threads;
@@ -179,7 +179,7 @@ private:
   const std::vector<std::uint64_t> todo_;
   const unsigned jobs_;
   Told told_;
-  RunCourse course_;  // progress of all remaining runs
+  RunCourse course_;  // progress of all runs that the threads simulate
   std::atomic<std::size_t> next_{};
   std::atomic<std::uint64_t> done_{};
   std::atomic<unsigned> running_{};
@@ -281,7 +281,7 @@ SweepResult runSweep(const Plan& plan, SweepDirectory& directory, const SweepOpt
       todo.push_back(run);
     }
   }
-  directory.claim(todo);  // Claims all runs before any work, so that one of two sweeps fails at once.
+  directory.claim(todo);  // claims all runs before any work, so that one of two sweeps fails at once
   if (!todo.empty() && !options.watch.stopped())
   {
     Workers workers(plan, directory, todo, options.jobs);

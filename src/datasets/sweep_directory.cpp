@@ -25,14 +25,14 @@ namespace hjt
 namespace
 {
 namespace fs = std::filesystem;
-/// Version and hash of the code, because runs of another code are not extended.
+/// Version of the software and hash of its code. A data set from other code is not extended.
 std::string softwareVersion()
 {
   return std::string(HJT_VERSION "+") + sourceHash();
 }
 
 constexpr const char* FORMAT = "harmonic_joint_twin data set 1";
-/// Byte of plan.json that is locked while the file is written; run N locks byte N.
+/// Byte of plan.json that is locked while this file is written. Byte N is locked while run N is simulated.
 constexpr std::uint64_t PLAN_LOCK = 1ull << 62;
 
 std::string hexadecimal(std::uint64_t number)
@@ -42,7 +42,7 @@ std::string hexadecimal(std::uint64_t number)
   return text.str();
 }
 
-/// Text of a cell in the index: texts in quotes, empty for a missing value.
+/// Text of a value in a cell of the index: texts are in quotes, and a missing value is empty.
 std::string cell(const OrderedJson& value)
 {
   if (value.is_null())
@@ -65,7 +65,7 @@ std::string cell(const OrderedJson& value)
   return "\"" + text + "\"";
 }
 
-/// Hash of the parameters of all drives.
+/// Hash of the parameters of all drives in a run.
 std::uint64_t hashOf(const RunSpec& spec)
 {
   if (!spec.arm)
@@ -80,7 +80,7 @@ std::uint64_t hashOf(const RunSpec& spec)
   return hash;
 }
 
-/// Columns of each fault in a row of the index.
+/// Names of the columns that describe a fault in the index.
 std::vector<std::string> faultKeys(const Plan& plan)
 {
   std::vector<std::string> keys{ "kind", "severity", "place", "onset", "ramp" };
@@ -91,7 +91,7 @@ std::vector<std::string> faultKeys(const Plan& plan)
   return keys;
 }
 
-/// Row of the index for a run without a file.
+/// Row of the index for a run that has no file.
 OrderedJson missingRun(std::uint64_t run)
 {
   return {
@@ -99,7 +99,7 @@ OrderedJson missingRun(std::uint64_t run)
   };
 }
 
-/// Difference between the document of a directory and that of a plan.
+/// Words for the first part in which the document of a directory differs from that of a plan.
 std::string otherThan(const OrderedJson& found, const OrderedJson& wanted)
 {
   const std::array<std::pair<const char*, const char*>, 5> parts{ { { "format", "another format" },
@@ -117,8 +117,8 @@ std::string otherThan(const OrderedJson& found, const OrderedJson& wanted)
   return "something else";
 }
 
-/// Locks or unlocks one byte, which need not exist. @returns false if another process has locked it. A file system
-/// without locks accepts all.
+/// Locks or unlocks one byte of a file; the byte need not exist. @returns false if another process has locked the byte.
+/// A file system without locks accepts every lock.
 bool lockByte(int file, std::uint64_t place, int command, short kind)
 {
   struct flock lock
@@ -152,7 +152,7 @@ void SweepDirectory::open()
   OrderedJson document{ { "format", FORMAT }, { "version", softwareVersion() } };
   document.update(plan_.snapshot());
   const std::string text = document.dump(1) + '\n';
-  // The plan is written before any run, perhaps by another shard now; therefore it is checked in the opposite order.
+  // A sweep writes the plan before any run, perhaps another shard does so now. So the runs are checked before the plan.
   const bool empty = fs::is_empty(path_ + "/runs");
   plan_file_ = ::open(name.c_str(), O_RDWR | O_CLOEXEC | (empty ? O_CREAT : 0), 0666);
   if (plan_file_ < 0)
@@ -170,7 +170,7 @@ void SweepDirectory::open()
     throw InputError(
         path_ + "/index.csv belongs to something else, because there is no plan.json beside it; give another --out");
   }
-  // The file does not exist, or a killed process left it incomplete.
+  // The file is new, or a process that was killed has left it incomplete.
   if (found.size() < text.size() && text.compare(0, found.size(), found) == 0)
   {
     if (pwrite(plan_file_, text.data(), text.size(), 0) != static_cast<ssize_t>(text.size()) || fsync(plan_file_) != 0)
@@ -201,7 +201,7 @@ void SweepDirectory::claim(const std::vector<std::uint64_t>& runs) const
   std::vector<fs::path> leftovers;
   for (const fs::directory_entry& entry : fs::directory_iterator(path_ + "/runs"))
   {
-    // Files RUN.NUMBER.part of makeFileBeside.
+    // Incomplete files of makeFileBeside have names RUN.NUMBER.part.
     if (entry.path().extension() == ".part" && names.count(entry.path().stem().stem().string()) > 0)
     {
       leftovers.push_back(entry.path());
@@ -297,7 +297,7 @@ std::string SweepDirectory::index() const
 
 void SweepDirectory::writeIndex() const
 {
-  // Another shard may end while this one reads. The last writer has then read all runs.
+  // If another shard ends during the loop, the loop repeats. So the last writer of the index has read all runs.
   for (std::uint64_t seen = 0, now = finishedRuns(); seen != now; now = finishedRuns())
   {
     seen = now;

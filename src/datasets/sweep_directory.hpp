@@ -11,7 +11,7 @@
 
 namespace hjt
 {
-/// Directory of a plan's runs: plan.json, index.csv, runs/.
+/// Directory with the runs of a plan: plan.json, index.csv and the folder runs.
 class SweepDirectory
 {
 public:
@@ -20,25 +20,24 @@ public:
   SweepDirectory(const SweepDirectory&) = delete;
   SweepDirectory& operator=(const SweepDirectory&) = delete;
 
-  /// Makes the directory, or opens an existing one. @throws InputError if it contains other things than runs of this
-  /// plan.
+  /// Makes the directory or opens an existing one. @throws InputError if it contains anything but runs of this plan.
   void open();
 
-  /// Claims these runs for this process until it ends, and removes incomplete files of killed processes. @throws
-  /// InputError if another process has claimed one of them.
+  /// Claims these runs for this process until the process ends, and removes incomplete files of killed processes.
+  /// @throws InputError if another process has claimed one of the runs.
   void claim(const std::vector<std::uint64_t>& runs) const;
 
-  /// Whether the run's file exists and is complete and undamaged.
+  /// Whether the file of the run exists, is complete and undamaged.
   bool isFinished(std::uint64_t run) const;
 
-  std::string runFile(std::uint64_t run) const;      ///< path of the file
-  std::string runFileName(std::uint64_t run) const;  ///< path of the file relative to the directory
-  OrderedJson record(std::uint64_t run) const;       ///< empty if the run is not finished
+  std::string runFile(std::uint64_t run) const;      ///< path of the run's file
+  std::string runFileName(std::uint64_t run) const;  ///< path of the run's file, relative to the directory
+  OrderedJson record(std::uint64_t run) const;       ///< record of the run; empty if the run is not finished
 
   std::string index() const;  ///< path of index.csv
   void writeIndex() const;
 
-  /// Line of the index: of a finished run from its record, else with the given status. There is no line end.
+  /// Header and rows of the index, without line ends. The row of a finished run comes from the run's record.
   std::string indexHeader() const;
   std::string indexRow(const OrderedJson& record) const;
 
@@ -50,6 +49,6 @@ private:
   int plan_file_{ -1 };
 };
 
-/// Beginning of a run's row in the index: labels, variables, seeds.
+/// First part of a run's row in the index: labels, variables and seeds.
 OrderedJson recordOf(const RunSpec& spec, const std::string& file);
 }  // namespace hjt

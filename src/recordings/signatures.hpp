@@ -25,7 +25,7 @@ public:
   /// `notice` is called with a text for each run that is skipped because it failed.
   explicit SignatureRuns(std::function<void(const std::string&)> notice) : notice_(std::move(notice)) {}
 
-  /// Adds the runs of a finished plan. @throws InputError if a run has no window, or a faulty run no sound one.
+  /// Adds the runs of a finished plan. @throws InputError if a run lacks a window or a sound run of its conditions.
   void add(const Plan& plan, const SweepDirectory& directory);
 
   /// Text of a file of signatures. Errors and `carried` are copied from `basis`, because many gears are needed to find

@@ -171,7 +171,8 @@ struct CurrentsSeen
     return std::none_of(is_silent.begin(), is_silent.end(), [](bool silent) { return silent; });
   }
 
-  /// Whether a row has a current other than zero; then a row without currents is a failed reading. Not for one joint.
+  /// Whether a row has a current other than zero, so that rows without currents are failed readings; false for one
+  /// joint.
   bool has_any{};
   std::array<bool, COUNT>
       is_silent{};  ///< the joint's effort is never a number, while the efforts of other joints are numbers

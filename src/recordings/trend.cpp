@@ -240,7 +240,7 @@ JointTrend judgeJoint(const Trend& trend, std::size_t joint, const std::string& 
   return judged;
 }
 
-/// Text of the trends: joints that change, joints without a trend, and the latest recording if needed.
+/// Text of the trends: joints that change, joints without a trend, and the latest recording if it is not OK.
 std::string textOf(const Trend& trend)
 {
   std::string text;
