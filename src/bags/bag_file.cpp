@@ -22,16 +22,17 @@ namespace hjt
 namespace
 {
 constexpr std::string_view VERSION_LINE = "#ROSBAG V2.0\n";
-constexpr std::uint32_t MAX_CHUNK = 1U << 28;  // [byte] after decompression; rosbag's own chunks have 0.75 MB
+// Largest size of a chunk after decompression [byte]. Chunks of rosbag itself have 0.75 MB.
+constexpr std::uint32_t MAX_CHUNK = 1U << 28;
 
-/// Description of a damage with its position in the file [byte].
+/// A damage of the file and its position [byte].
 struct Damage
 {
   std::uint64_t position;
   std::string what;
 };
 
-/// Calls `visit(name, value)` for every field of a header. @returns false if a length does not fit.
+/// Calls `visit(name, value)` for every field of a header. @returns false if the length of a field is wrong.
 template <class Visitor>
 bool visitFields(std::string_view header, const Visitor& visit)
 {
@@ -57,9 +58,9 @@ bool visitFields(std::string_view header, const Visitor& visit)
 
 struct Record
 {
-  std::uint64_t position{};  // position in its stream [byte]
+  std::uint64_t position{};  // position of the record in its stream [byte]
   std::string header;
-  std::uint32_t size{};  // size of the data, which follow in the stream [byte]
+  std::uint32_t size{};  // size of the data, which follow the header in the stream [byte]
 
   std::string_view text(const std::string& name) const
   {
@@ -95,10 +96,10 @@ struct Record
 class Records
 {
 public:
-  /// Begins at the position of the stream; `end`: position after the last record [byte].
+  /// Begins at the present position of the stream. `end`: position after the last record [byte].
   Records(std::istream& stream, std::uint64_t end) : stream_(stream), next_(position()), end_(end) {}
 
-  /// Reads the next record. @returns false after the last one.
+  /// Reads the next record. @returns false if there is no further record.
   bool read(Record& record)
   {
     stream_.seekg(static_cast<std::streamoff>(next_));
@@ -128,7 +129,7 @@ public:
 private:
   std::uint64_t position() { return static_cast<std::uint64_t>(stream_.tellg()); }
 
-  /// Reads the next number, which is the count of bytes that follow it.
+  /// Reads the next number, which is the number of bytes that follow it.
   std::uint32_t length(std::uint64_t record)
   {
     std::uint32_t count = 0;
@@ -202,11 +203,11 @@ private:
     }
     else
     {
-      chunk_ = 0;  // the rosbag library expects the index of a chunk directly after it
+      chunk_ = 0;  // the rosbag library expects the index of a chunk directly after the chunk
     }
   }
 
-  /// Finds the positions of the messages in a chunk.
+  /// Finds the positions of the messages in an uncompressed or compressed chunk.
   void readChunk(const Record& record, std::string bytes)
   {
     const auto size = record.number<std::uint32_t>(rosbag::SIZE_FIELD_NAME);
@@ -231,7 +232,7 @@ private:
       for (Record message; messages.read(message);)
       {
         const unsigned char kind = message.kind();
-        // after these records the rosbag library reads further records
+        // The index may not point at these records, because the rosbag library then reads on to later records.
         if (kind != rosbag::OP_CONNECTION && kind != rosbag::OP_MSG_DEF)
         {
           messages_.push_back(message.position);
@@ -246,7 +247,7 @@ private:
 
   void checkIndex(const Record& record, const std::string& entries) const
   {
-    constexpr std::size_t ENTRY = 12;  // time [s], [ns], offset
+    constexpr std::size_t ENTRY = 12;  // time in seconds and nanoseconds, offset of the message [byte]
     constexpr std::size_t OFFSET = 8;
     requireSize(record, ENTRY);
     for (std::size_t at = 0; at < entries.size(); at += ENTRY)
@@ -260,7 +261,7 @@ private:
     }
   }
 
-  /// Checks the connections and the positions of the chunks.
+  /// Checks the lengths of the connections, and whether each chunk has its index.
   void checkSummary(Records& records, const Record& record)
   {
     if (record.kind() == rosbag::OP_CONNECTION)
@@ -272,7 +273,7 @@ private:
     }
     else if (record.kind() == rosbag::OP_CHUNK_INFO)
     {
-      constexpr std::size_t ENTRY = 8;  // connection, messages
+      constexpr std::size_t ENTRY = 8;  // numbers of a connection and of its messages in the chunk
       requireSize(record, ENTRY);
       const auto chunk = indexes_.find(record.number<std::uint64_t>(rosbag::CHUNK_POS_FIELD_NAME));
       if (chunk == indexes_.end() || chunk->second < record.size / ENTRY)
@@ -293,9 +294,9 @@ private:
   std::ifstream file_;
   std::uint64_t size_;
   rosbag::ChunkedFile unpacker_;
-  std::uint64_t chunk_{};                           // position of the chunk whose index is next; 0: none
-  std::vector<std::uint64_t> messages_;             // positions of the messages in that chunk, ascending
-  std::map<std::uint64_t, std::uint64_t> indexes_;  // position of the index of each chunk, by the chunk's position
+  std::uint64_t chunk_{};                           // position of the chunk that the next index belongs to; 0: no chunk
+  std::vector<std::uint64_t> messages_;             // positions of the messages in this chunk, ascending
+  std::map<std::uint64_t, std::uint64_t> indexes_;  // number of index records of each chunk, by the chunk's position
 };
 }  // namespace
 
@@ -319,7 +320,7 @@ void checkBagFile(const std::string& path)
 void openForReading(rosbag::Bag& bag, const std::string& path)
 {
   checkBagFile(path);
-  // The same level as in BagWriter.
+  // Sets the same log level as BagWriter.
   console_bridge::setLogLevel(console_bridge::CONSOLE_BRIDGE_LOG_WARN);
   try
   {

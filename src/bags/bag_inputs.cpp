@@ -16,7 +16,8 @@ namespace hjt
 {
 namespace
 {
-/// Largest difference between a stamp and the time of recording [s]. A larger one means that two clocks disagree.
+/// Largest difference between a stamp and the time of recording [s]. A larger difference shows that two clocks
+/// disagree.
 constexpr double MAX_DELAY = 10.0;
 
 /// Converts the messages of a bag to inputs.
@@ -28,7 +29,7 @@ public:
   {
   }
 
-  /// @throws InputError.
+  /// Converts one message. @throws InputError.
   void read(const rosbag::MessageInstance& message, const Parameters& parameters)
   {
     try

@@ -9,11 +9,11 @@
 
 namespace hjt
 {
-/// Writes the twin's topics to a bag: the messages that the node would publish, at equal simulated instants.
+/// Writes the topics of a twin to a bag, with the messages that the node would publish at the same simulated instants.
 class BagRecorder
 {
 public:
-  /// `joint_namespace`: namespace of the node, for example "/joint_twin".
+  /// `joint_namespace`: namespace of the topics, for example "/joint_twin".
   BagRecorder(const Twin& twin, const std::string& joint_namespace, BagWriter& bag)
     : context_{ bag, joint_namespace + "/" }
     , names_(twin.parameters().joint.name)
@@ -23,7 +23,7 @@ public:
   {
   }
 
-  /// Must be called after every step of the twin.
+  /// The caller calls this function after every step of the twin.
   void record(Twin& twin)
   {
     if (const FaultList& faults = twin.activeFaults(); faults.version() != recorded_faults_)
@@ -60,7 +60,7 @@ private:
 
   BagContext context_;
   JointNames names_;
-  std::uint64_t recorded_faults_;  // version of the last recorded list
+  std::uint64_t recorded_faults_;  // version of the list of faults that was recorded last
   Outputs<RecordedChannel> outputs_;
 };
 }  // namespace hjt

@@ -14,7 +14,7 @@ namespace
 using Bytes = std::vector<std::uint8_t>;
 
 constexpr char VERSION[] = "#ROSBAG V2.0\n";
-constexpr std::size_t FILE_HEADER_SIZE = 4096;       // with padding, because it is written again at the end
+constexpr std::size_t FILE_HEADER_SIZE = 4096;  // with padding, because the header is written again at the end [byte]
 constexpr std::size_t CHUNK_THRESHOLD = 768 * 1024;  // the message that exceeds this size ends a chunk [byte]
 
 enum class Operation : std::uint8_t
@@ -37,7 +37,7 @@ template <class Number>
 void put(Bytes& out, Number number)
 {
   static_assert(std::is_integral_v<Number>);
-  put(out, &number, sizeof(number));  // little endian, as in ROS messages
+  put(out, &number, sizeof(number));  // little-endian, as in ROS messages
 }
 
 void put(Bytes& out, const ros::Time& time)
@@ -56,7 +56,7 @@ void put(Bytes& out, Operation operation)
   put(out, static_cast<std::uint8_t>(operation));
 }
 
-/// Fields of a record's header, each with its length.
+/// Writes the fields of a record's header, each with its length.
 class HeaderFields
 {
 public:
@@ -74,7 +74,7 @@ public:
     return *this;
   }
 
-  /// Writes the header's length before it. @returns the length, with its own four bytes
+  /// Writes the length of the header before its fields. @returns the length including its own four bytes [byte].
   std::size_t finish()
   {
     putLength(begin_);
@@ -114,7 +114,7 @@ BagWriter::BagWriter(std::string path)
   {
     throw InputError(path_ + " cannot be written: " + std::strerror(errno));
   }
-  std::setvbuf(file_.get(), nullptr, _IONBF, 0);  // no buffer, because writes are large
+  std::setvbuf(file_.get(), nullptr, _IONBF, 0);  // without a buffer, because each write is large
   Bytes version;
   put(version, VERSION, sizeof(VERSION) - 1);
   flush(version);
@@ -133,7 +133,7 @@ BagWriter::~BagWriter()
   }
 }
 
-/// First step of writing a message. @returns the time of recording
+/// First step of writing a message. @returns the time of recording.
 ros::Time BagWriter::begin(Stamp stamp)
 {
   if (!file_)
@@ -150,7 +150,7 @@ ros::Time BagWriter::begin(Stamp stamp)
 
 void BagWriter::copy(const rosbag::MessageInstance& message)
 {
-  // Reads before writing anything: an error of reading would leave an incomplete record.
+  // First the message is read, because an error of reading would otherwise leave an incomplete record in the chunk.
   scratch_.resize(message.size());
   ros::serialization::OStream stream(scratch_.data(), static_cast<std::uint32_t>(scratch_.size()));
   message.write(stream);
@@ -159,7 +159,7 @@ void BagWriter::copy(const rosbag::MessageInstance& message)
   auto known = copied_headers_.find(header);
   if (known == copied_headers_.end())
   {
-    // Two connections may have equal headers except for the topic.
+    // The headers of two connections may be equal except for the topic.
     ros::M_string key = *header;
     key["topic"] = message.getTopic();
     auto same = copied_.find(key);
@@ -173,7 +173,7 @@ void BagWriter::copy(const rosbag::MessageInstance& message)
   end();
 }
 
-/// Makes a connection. @returns its number
+/// Makes a connection for a topic. @returns the number of the connection.
 std::uint32_t BagWriter::connect(const std::string& topic, const ros::M_string& header)
 {
   const auto number = static_cast<std::uint32_t>(connections_.size());
@@ -182,7 +182,7 @@ std::uint32_t BagWriter::connect(const std::string& topic, const ros::M_string& 
   return number;
 }
 
-/// Appends the record of a message without its data. @returns the position for the `size` bytes of the data
+/// Appends the record of a message without its data. @returns the place for the `size` bytes of the data.
 std::uint8_t* BagWriter::append(std::uint32_t connection, const ros::Time& time, std::uint32_t size)
 {
   std::vector<IndexEntry>& index = connections_[connection].index;
@@ -206,7 +206,7 @@ void BagWriter::end()
   }
 }
 
-/// Writes the present chunk and the index of its messages.
+/// Writes the present chunk and the index of the chunk's messages.
 void BagWriter::writeChunk()
 {
   running_.position = position_;
@@ -247,7 +247,7 @@ void BagWriter::writeChunk()
   chunks_.push_back(std::exchange(running_, {}));
 }
 
-/// Writes the file header at the present position. `index_position`: position after the chunks; zero: not known yet.
+/// Writes the file's header at the present position. `index_position`: position after the chunks; 0: not yet known.
 void BagWriter::writeFileHeader(std::uint64_t index_position)
 {
   Bytes out;

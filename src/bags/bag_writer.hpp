@@ -26,12 +26,12 @@
 
 namespace hjt
 {
-/// Lock of a file against other processes that lock the file in this way. The lock ends with the object, or with the
-/// process. The content of the file does not change.
+/// Lock of a file against other processes that use FileLock. The lock ends with this object or with the process. The
+/// content of the file is not changed.
 class FileLock
 {
 public:
-  /// Makes the file if it is missing, without following a link. @throws InputError if that fails, if the path is not a
+  /// Makes the file if it is missing, without following a link. @throws InputError if this fails, if the path is not a
   /// regular file, or if another process holds the lock.
   explicit FileLock(const std::string& path)
     : descriptor_(open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666))
@@ -69,12 +69,13 @@ private:
   int descriptor_;
 };
 
-/// Writes a bag as `PATH.active` and renames it when closed, as `rosbag record` does, so that a file with the final
-/// name is always readable, also after an error or an interrupt. Equal calls give equal bytes: those that rosbag::Bag
-/// would write uncompressed. Each chunk is written in one piece, whereas rosbag::Bag seeks twice for each message.
+/// Writes a bag as `PATH.active` and renames it when it is closed, as `rosbag record` does. So a file with the final
+/// name is always readable, also after an error or an interrupt. Equal calls give equal bytes, the same as those of an
+/// uncompressed bag of rosbag::Bag. Each chunk is written at once, whereas rosbag::Bag seeks twice for each message.
 ///
-/// If the disk is full, the bag stays as `PATH.active` without an index, and the InputError states its content. `rosbag
-/// reindex` makes it readable except for the last chunk of at most 0.8 MB. After this error nothing can be written.
+/// If the disk is full, `PATH.active` remains without an index, and the InputError says how much it contains. `rosbag
+/// reindex` makes it readable except for the last chunk of at most 0.8 MB. After this error, the object writes nothing
+/// more.
 ///
 /// Format: http://wiki.ros.org/Bags/Format/2.0
 class BagWriter
@@ -83,12 +84,12 @@ public:
   /// @throws InputError if the file cannot be written, or another BagWriter writes it.
   explicit BagWriter(std::string path);
 
-  /// Closes the bag and ignores errors of the disk; `close` reports them.
+  /// Closes the bag. Only `close` reports errors of the disk; the destructor ignores them.
   ~BagWriter();
   BagWriter(const BagWriter&) = delete;
   BagWriter& operator=(const BagWriter&) = delete;
 
-  /// @throws InputError if the disk is full, or the stamp is zero, which a bag cannot contain.
+  /// Writes a message. @throws InputError if the disk is full, or if the stamp is zero, which a bag cannot contain.
   template <class Message>
   void write(const std::string& topic, Stamp stamp, const Message& message)
   {
@@ -107,10 +108,10 @@ public:
     end();
   }
 
-  /// Copies a message with its bytes, time, type and connection. @throws rosbag::BagException if it cannot be read.
+  /// Copies a message with its bytes, time, type and connection. @throws rosbag::BagException if it is unreadable.
   void copy(const rosbag::MessageInstance& message);
 
-  /// Closes the bag; an empty one leaves no file. @throws InputError if not everything could be written.
+  /// Closes the bag. A bag without messages leaves no file. @throws InputError if not all data could be written.
   void close();
 
   bool isOpen() const { return file_ != nullptr; }
@@ -121,14 +122,14 @@ private:
   struct IndexEntry
   {
     ros::Time time;
-    std::uint32_t offset;  // position of the message in the chunk
+    std::uint32_t offset;  // position of the message in the chunk [byte]
   };
 
   struct Connection
   {
     std::string topic;
     ros::M_string header;
-    std::vector<IndexEntry> index;  // messages in the present chunk
+    std::vector<IndexEntry> index;  // messages of this connection in the present chunk
   };
 
   struct ChunkInfo
@@ -136,7 +137,7 @@ private:
     std::uint64_t position{};
     ros::Time first;
     ros::Time last;
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> counts;  // number of messages for each connection
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> counts;  // connection and number of its messages
   };
 
   ros::Time begin(Stamp stamp);
@@ -150,16 +151,16 @@ private:
 
   std::string path_;
   std::string active_path_;
-  FileLock lock_;                                         // lock of active_path_
-  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;  // null: closed
-  std::uint64_t position_{};                              // position in the file
+  FileLock lock_;                                         // lock of the file at active_path_
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;  // null if the bag is closed
+  std::uint64_t position_{};                              // position in the file [byte]
   std::vector<std::uint8_t> chunk_;                       // messages and new connections of the present chunk
   ChunkInfo running_;
   std::vector<ChunkInfo> chunks_;
   std::vector<Connection> connections_;
-  std::map<std::string, std::uint32_t> topics_;    // connections of `write`
-  std::map<ros::M_string, std::uint32_t> copied_;  // connections of `copy`, by header and topic
-  // connections of `copy` by pointer, for a faster search
+  std::map<std::string, std::uint32_t> topics_;    // numbers of the connections that `write` made, by topic
+  std::map<ros::M_string, std::uint32_t> copied_;  // numbers of the connections that `copy` made, by header and topic
+  // Numbers of the connections that `copy` made, by pointer to the header, for a faster search.
   std::map<boost::shared_ptr<ros::M_string>, std::uint32_t> copied_headers_;
   std::vector<std::uint8_t> scratch_;
   std::uint64_t messages_{};
@@ -169,10 +170,10 @@ struct BagContext
 {
   BagWriter& bag;
   std::string prefix;  ///< prefix of the topic names
-  Stamp delay{};       ///< time of recording minus the stamps of the messages [ns]
+  Stamp delay{};       ///< times of recording minus stamps of the messages [ns]
 };
 
-/// Sink of one topic in a bag.
+/// Writes the messages of one topic to a bag.
 template <class Message>
 class RecordedTopic
 {

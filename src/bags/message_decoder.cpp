@@ -9,7 +9,7 @@ namespace hjt
 {
 namespace
 {
-/// Extracts values from a message one after the other. After a value that does not fit, all further values are zero.
+/// Extracts values from a message one after the other. After a value with a wrong length, all further values are zero.
 class Decoder
 {
 public:
@@ -18,7 +18,7 @@ public:
   {
     if (is_cdr_)
     {
-      // Two bytes are the representation and two are options. The alignment counts from their end.
+      // The first four bytes are two for the representation and two for options. Alignment is relative to their end.
       fits_ = bytes.size() >= ORIGIN && bytes[0] == 0 && bytes[1] <= 1;
       is_big_ = fits_ && bytes[1] == 0;
       at_ = ORIGIN;
@@ -96,7 +96,7 @@ public:
     header.frame_id = text();
   }
 
-  /// Whether the message was read to its last byte. CDR may end with padding.
+  /// Whether the message was read to its last byte. A CDR message may end with padding.
   bool done() const { return fits_ && bytes_.size() - at_ < (is_cdr_ ? sizeof(double) : 1); }
 
 private:

@@ -16,29 +16,28 @@ namespace hjt
 {
 enum class MessageEncoding
 {
-  ROS1,  ///< encoding of ROS 1: little endian, unaligned
-  CDR,   ///< encoding of ROS 2: XCDR 1, either byte order, numbers aligned to their size
+  ROS1,  ///< encoding of ROS 1: little-endian, without alignment
+  CDR,   ///< encoding of ROS 2: XCDR 1 with either byte order; numbers are aligned to their size
   OTHER
 };
 
-/// The encoding that has the name "ros1" or "cdr".
+/// The encoding with the name "ros1" or "cdr"; OTHER for another name.
 MessageEncoding encodingOf(const std::string& name);
 
-/// @returns false if the bytes are not exactly one such message. Lengths are checked against the bytes before memory is
-/// allocated.
+/// @returns false if the bytes are not exactly one message of this type. Memory is allocated only after a check of the
+/// lengths against the number of bytes.
 bool decode(const std::vector<std::uint8_t>& bytes, MessageEncoding encoding, sensor_msgs::JointState& message);
 bool decode(const std::vector<std::uint8_t>& bytes, MessageEncoding encoding, sensor_msgs::Temperature& message);
 
 /// Reads JointState and Temperature messages from bags whose bytes may be damaged.
 ///
-/// A damaged length could make the generated code request much memory. Therefore all lengths are checked against the
-/// available bytes before.
+/// A damaged length could make generated code request much memory. Therefore this class first checks all lengths
+/// against the number of available bytes.
 class CheckedMessage
 {
 public:
-  /// @returns false if the bytes are not a JointState or cannot be read. @throws InputError if the topic has another
-  /// type; a wrong
-  /// md5sum alone is accepted.
+  /// Reads a JointState. @returns false if the bytes are damaged or are not a JointState. @throws InputError if the
+  /// topic has another type. A wrong md5sum alone is no reason to throw.
   bool read(const rosbag::MessageInstance& instance)
   {
     const std::string expected = ros::message_traits::datatype<sensor_msgs::JointState>();
@@ -48,7 +47,7 @@ public:
     }
     const bool is_whole = take(instance, state_);
     has_read_ = has_read_ || is_whole;
-    // A recorder may have stored a wrong md5sum. The message counts if its bytes decode as a JointState.
+    // A recorder may have stored a wrong md5sum. A message is accepted if its bytes can be decoded as a JointState.
     if (!has_read_ && !instance.isType<sensor_msgs::JointState>())
     {
       throw InputError(instance.getTopic() +
@@ -59,7 +58,7 @@ public:
     return is_whole;
   }
 
-  /// Reads a Temperature, whose type is already checked.
+  /// Reads a Temperature. The caller has checked the type.
   bool readTemperature(const rosbag::MessageInstance& instance) { return take(instance, temperature_); }
 
   const sensor_msgs::JointState& state() const noexcept { return state_; }
@@ -83,7 +82,7 @@ private:
   }
 
   std::vector<std::uint8_t> bytes_;
-  bool has_read_{};  // whether a JointState was read
+  bool has_read_{};  // whether at least one JointState was read
   sensor_msgs::JointState state_;
   sensor_msgs::Temperature temperature_;
 };

@@ -173,7 +173,7 @@ private:
   rosbag::Bag bag_;
 };
 
-/// Messages of all files in a directory of rosbag2, or of the parts of a split bag.
+/// Messages of all files in a directory of rosbag2, or of all parts of a split bag.
 class DirectoryMessages : public RecordedMessages
 {
 public:
@@ -201,7 +201,7 @@ public:
       throw InputError(path + " is a directory without .db3, .mcap and .bag files" +
                        (compressed.empty() ? "" : "; `zstd -d " + compressed + "` decompresses one of them"));
     }
-    // natural order: NAME_2 before NAME_10
+    // Natural order of the names: NAME_2 comes before NAME_10.
     std::sort(files.begin(), files.end(),
               [](const std::string& a, const std::string& b)
               { return std::make_pair(a.size(), a) < std::make_pair(b.size(), b); });

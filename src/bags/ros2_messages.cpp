@@ -21,7 +21,7 @@ namespace hjt
 {
 namespace
 {
-/// Type in the spelling of ROS 1: "sensor_msgs/msg/JointState" is "sensor_msgs/JointState".
+/// Converts a type to the spelling of ROS 1: "sensor_msgs/msg/JointState" becomes "sensor_msgs/JointState".
 std::string ros1Type(const std::string& type)
 {
   const std::string middle = "/msg/";
@@ -37,7 +37,7 @@ struct Ros2Channel
   bool is_chosen{};
 };
 
-/// Whether the channel is on a requested topic. @throws InputError if such a topic has another type than JointState.
+/// Whether a channel is on a chosen topic. @throws InputError if the type of a chosen topic is not JointState.
 bool isChosen(const Ros2Channel& channel, const std::vector<std::string>& topics, bool with_temperatures)
 {
   const bool is_named = std::find(topics.begin(), topics.end(), channel.topic) != topics.end();
@@ -48,7 +48,7 @@ bool isChosen(const Ros2Channel& channel, const std::vector<std::string>& topics
   return is_named || (with_temperatures && channel.type == TEMPERATURE_TYPE);
 }
 
-/// Decodes a message of a chosen channel and passes it on. @returns false if the visitor needs no more.
+/// Decodes a message of a chosen channel and gives it to the visitor. @returns false if the visitor wants no more.
 class Ros2Message
 {
 public:
@@ -86,7 +86,7 @@ struct EndStatement
 
 namespace fs = std::filesystem;
 
-/// The file's name in a URI for SQLite.
+/// The file's name as a URI for SQLite.
 std::string uriOf(const std::string& path)
 {
   std::string uri = "file:";
@@ -155,8 +155,8 @@ public:
   }
 
 private:
-  /// Opens the file without writing beside it. SQLite makes additional files for a recording in WAL mode (rosbag2's
-  /// resilient preset) and repairs the file of a recorder that was killed. If such files exist, a copy is read.
+  /// Opens the file without writing into its folder. SQLite writes additional files there for a recording in WAL mode
+  /// (rosbag2's resilient preset), and repairs the file of a recorder that was killed. In these cases, a copy is read.
   void openFile()
   {
     bool is_clean = true;
@@ -182,7 +182,7 @@ private:
     }
   }
 
-  /// Copies the file with the files beside it.
+  /// Copies the file with the additional files of SQLite.
   std::string copied()
   {
     const std::string copy = (fs::path(copy_.emplace().path()) / "copy.db3").string();
@@ -201,7 +201,7 @@ private:
     return copy;
   }
 
-  /// Rejects a view of this name, which may be endless.
+  /// Throws if there is no table of this name. A view of this name does not count, because its rows may have no end.
   void requireTable(const char* table) const
   {
     const auto found = prepare("SELECT type, COUNT(*) FROM sqlite_master WHERE name = ?1 COLLATE NOCASE");
@@ -247,7 +247,7 @@ private:
     return text == nullptr ? "" : reinterpret_cast<const char*>(text);
   }
 
-  std::optional<TemporaryDirectory> copy_;  // copy that is read instead of the file
+  std::optional<TemporaryDirectory> copy_;  // the copy that is read in place of the file
   std::unique_ptr<sqlite3, CloseDatabase> database_;
   std::map<std::int64_t, Ros2Channel> channels_;
 };
@@ -262,7 +262,7 @@ namespace
 {
 using Bytes = std::vector<std::uint8_t>;
 
-// https://mcap.dev/spec: a record is an opcode, a length and the content, all little endian.
+// By https://mcap.dev/spec, a record is an opcode, a length and the content, all of them little-endian.
 enum Opcode : std::uint8_t
 {
   FOOTER = 0x02,
@@ -273,18 +273,18 @@ enum Opcode : std::uint8_t
   DATA_END = 0x0F
 };
 
-constexpr std::size_t MAGIC = 8;                    // [byte]
-constexpr std::size_t RECORD_HEAD = 9;              // opcode and length [byte]
-constexpr std::uint64_t MAX_MCAP_CHUNK = 1U << 30;  // [byte] after decompression
-constexpr std::uint64_t SMALL_CHUNK = 1U << 26;     // [byte], accepted for any size of the file
-constexpr std::uint64_t MOST_PACKED = 100;          // largest size after decompression over the file's size
+constexpr std::size_t MAGIC = 8;                    // length of the first bytes that mark an MCAP file [byte]
+constexpr std::size_t RECORD_HEAD = 9;              // length of opcode and length of a record [byte]
+constexpr std::uint64_t MAX_MCAP_CHUNK = 1U << 30;  // largest size of an unpacked chunk [byte]
+constexpr std::uint64_t SMALL_CHUNK = 1U << 26;     // unpacked chunks of this size are always accepted [byte]
+constexpr std::uint64_t MOST_PACKED = 100;          // largest unpacked size of other chunks over the file's size [-]
 
 struct McapDamage
 {
   std::string what;
 };
 
-/// Extracts fields of a record. @throws McapDamage beyond its end.
+/// Extracts the fields of a record one after the other. @throws McapDamage beyond the end of the record.
 class Fields
 {
 public:
@@ -406,7 +406,7 @@ private:
   using Take = std::function<bool(const Ros2Channel&, Stamp, const std::uint8_t*, std::size_t)>;
   using Count = std::function<void(const Ros2Channel&)>;
 
-  /// Reads all records up to a damaged or truncated one.
+  /// Reads all records up to the first damaged or truncated record.
   void readAll(const Take& take, const Count& count, const Progress& progress)
   {
     std::ifstream file(path_, std::ios::binary);
@@ -447,7 +447,7 @@ private:
     }
   }
 
-  /// Rejects a chunk within a chunk, because both would be in memory at the same time.
+  /// Reads a record. A chunk within a chunk is rejected, because both chunks would be in memory at the same time.
   bool takeRecord(std::uint8_t opcode, Fields fields, bool is_in_chunk, const Take& take, const Count& count)
   {
     switch (opcode)

@@ -15,30 +15,30 @@
 
 namespace hjt
 {
-/// A topic that the twin publishes at a fixed rate. Node, recorder and diagnostics iterate over CHANNELS, so that a new
-/// topic needs a row there and a fill function.
+/// A topic that the twin publishes at a fixed rate. Node, recorder and diagnostics iterate over CHANNELS. So a new
+/// topic needs only a row in CHANNELS and a fill function.
 template <class MessageType>
 struct Channel
 {
   using Message = MessageType;
 
-  const char* name;                    ///< name of the topic, also in the diagnostics
-  double PublishParameters::*rate;     ///< rate [Hz]; divides solver.rate
-  std::size_t slots;                   ///< number of messages that can wait for the publisher's thread
-  Message (*make)(const Parameters&);  ///< makes a message with names and arrays
-  /// Fills the message at the twin's current instant without allocation or exception. @returns false if there is
+  const char* name;                    ///< name of the topic in ROS and in the diagnostics
+  double PublishParameters::*rate;     ///< rate of the messages [Hz]; divides solver.rate
+  std::size_t slots;                   ///< number of messages that can wait for the thread that publishes them
+  Message (*make)(const Parameters&);  ///< makes a message with its names and arrays
+  /// Fills the message at the present instant of the twin. Neither allocates nor throws. @returns false if there is
   /// nothing to publish.
   bool (*fill)(Twin&, const SinceMessage&, Message&);
-  bool of_signals{};  ///< the twin must watch its signals
-  bool summarises{};  ///< `fill` gets the ranges of the signals since the last message
+  bool of_signals{};  ///< whether the twin must watch its signals for this topic
+  bool summarises{};  ///< whether `fill` gets the ranges of the signals since the last message
 };
 
-/// Slots for messages with a few numbers: seconds of joint states at 1 kHz.
+/// Slots for messages with a few numbers: enough for four seconds of joint states at 1 kHz.
 constexpr std::size_t SMALL_MESSAGE_SLOTS = 4096;
-/// Slots for messages with arrays.
+/// Slots for messages with arrays, which take more memory than other messages.
 constexpr std::size_t LARGE_MESSAGE_SLOTS = 256;
 
-/// All channels, in the order in which the messages of an instant are published.
+/// All channels. The messages of an instant are published in this order.
 inline constexpr auto CHANNELS = std::make_tuple(
     Channel<sensor_msgs::JointState>{ topics::JOINT_STATES, &PublishParameters::joint_states_rate, SMALL_MESSAGE_SLOTS,
                                       makeJointStates, fillJointStates },
@@ -57,12 +57,12 @@ inline constexpr auto CHANNELS = std::make_tuple(
 
 constexpr std::size_t CHANNEL_COUNT = std::tuple_size_v<decltype(CHANNELS)>;
 
-/// All channels of one twin, each with a `Sink<Message>` for its messages. A topic is due when the instant is a
-/// multiple of its publishPeriod, counted from the epoch. Equal inputs therefore give messages at equal instants live,
-/// replayed or offline, independent of the start.
+/// All channels of one twin, each with a `Sink<Message>` for its messages. A topic is due if the instant, counted from
+/// the epoch, is a multiple of its publishPeriod. So equal inputs give messages at equal instants, live, replayed or
+/// offline, whenever the program was started.
 ///
-/// A sink is constructed from (context, channel, first message). It has `bool isWanted()` and `write(fill)`, which
-/// calls `bool fill(Message&)` and drops the message if that returns false.
+/// A sink is constructed from (context, channel, first message). Its members are `bool isWanted()` and `write(fill)`.
+/// The latter calls `bool fill(Message&)` and drops the message if `fill` returns false.
 template <template <class> class Sink>
 class Outputs
 {
@@ -77,7 +77,7 @@ public:
   {
   }
 
-  /// Must be called after every step of the twin: fills the messages that are due and wanted.
+  /// The caller calls this function after every step of the twin. It fills the messages that are due and wanted.
   void offer(Twin& twin)
   {
     forEach(
@@ -108,7 +108,7 @@ public:
         });
   }
 
-  /// Next instant after this one at which a wanted message is due [ns].
+  /// First instant after `instant` at which a wanted message is due [ns].
   Stamp nextDue(Stamp instant) const noexcept
   {
     Stamp next = std::numeric_limits<Stamp>::max() / 2;
@@ -124,7 +124,7 @@ public:
     forEach([&visit](auto& output) { visit(output.sink); });
   }
 
-  /// Results of `get` for each channel and its sink.
+  /// Calls `get` for each channel with its sink, and returns the results in an array.
   template <class Get>
   auto collect(Get&& get) const
   {
@@ -153,7 +153,7 @@ private:
     }
 
     Row channel;
-    Stamp period;  // [ns]
+    Stamp period;  // period of the messages [ns]
     SinceMessage since;
     Sink<typename Row::Message> sink;
   };

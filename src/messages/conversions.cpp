@@ -37,7 +37,7 @@ EffortStatus readEffort(const sensor_msgs::JointState& message, const std::strin
   return EffortStatus::FOUND;
 }
 
-/// A number that may be missing, which is then 0 with the flag false.
+/// Writes a value that may be missing. A missing value gives a field of 0 and a false flag.
 template <class Flag>
 void fillOptional(double value, double& field, Flag& valid) noexcept
 {
@@ -163,7 +163,7 @@ harmonic_joint_twin::Stress makeStress(const Parameters& parameters)
 {
   auto message = makeMessage<harmonic_joint_twin::Stress>(parameters);
   message.places.assign(STRESS_PLACE_NAMES.begin(), STRESS_PLACE_NAMES.end());
-  message.place.assign(std::strlen(STRESS_PLACE_NAMES[0]), ' ');  // length of the longest text
+  message.place.assign(std::strlen(STRESS_PLACE_NAMES[0]), ' ');  // space for the longest of the names
   for (auto* array : { &message.amplitudes, &message.means, &message.shears, &message.endurance_shares })
   {
     array->resize(STRESS_PLACES);
@@ -177,7 +177,7 @@ harmonic_joint_twin::Stress makeStress(const Parameters& parameters)
 
 namespace
 {
-/// `source(stress)` fills the arrays. @returns false if it could not.
+/// Fills a message. `source(stress)` fills its arrays. @returns false if `source` could not fill them.
 template <class Source>
 bool fillStress(Stamp stamp, const StressParameters& parameters, const FatigueLaw& fatigue_law,
                 harmonic_joint_twin::Stress& message, const Source& source) noexcept
@@ -331,7 +331,7 @@ std::size_t writeEvidence(const Assessment& assessment, char* text, std::size_t 
   for (std::size_t i = 0; i < assessment.evidence_count && length < size; ++i)
   {
     const Evidence& evidence = assessment.evidence[i];
-    // Short strings are not allocated.
+    // These short strings need no allocation.
     const std::string value = roundedText(evidence.value, 3);
     const std::string expected = roundedText(evidence.expected, 3);
     const std::string score = fixedText(std::min(evidence.score, 1e9), 1);

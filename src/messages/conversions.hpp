@@ -23,7 +23,7 @@
 
 namespace hjt
 {
-/// Least, mean and greatest value of a signal; all are 0 without values.
+/// Least, mean and greatest value of a signal; all three are 0 if there are no values.
 class SignalSpan
 {
 public:
@@ -49,11 +49,10 @@ private:
   std::uint64_t count_{};
 };
 
-/// Ranges of signals since the last message of a topic, over the steps in which a topic with such ranges had
-/// subscribers.
+/// Ranges of signals since the last message of a topic. They cover only steps in which the topic had subscribers.
 struct SinceMessage
 {
-  SinceMessage(Stamp last = 0) : stamp(last) {}  // most topics need only the stamp
+  SinceMessage(Stamp last = 0) : stamp(last) {}  // conversion from a stamp, because most topics need only the stamp
 
   void add(const Twin& twin) noexcept
   {
@@ -64,12 +63,12 @@ struct SinceMessage
   }
 
   Stamp stamp;              ///< stamp of the last message [ns]
-  SignalSpan torsion;       ///< [rad]
-  SignalSpan motor_torque;  ///< [N.m]
-  SignalSpan joint_torque;  ///< [N.m]
+  SignalSpan torsion;       ///< torsion of the drive [rad]
+  SignalSpan motor_torque;  ///< torque of the motor [N.m]
+  SignalSpan joint_torque;  ///< torque of the mesh on the circular spline [N.m]
 };
 
-/// Names of the joint in JointState messages.
+/// Names of a joint and of its motor in JointState messages.
 struct JointNames
 {
   explicit JointNames(const std::string& joint_name) : joint(joint_name), motor(joint_name + "_motor") {}
@@ -78,12 +77,12 @@ struct JointNames
   std::string motor;
 };
 
-/// Index of a name in the message; beyond all arrays if the name is missing.
+/// Index of a name in the message. If the name is missing, the index is beyond the end of all arrays.
 std::size_t placeOf(const sensor_msgs::JointState& message, const std::string& name) noexcept;
 
-// Functions make* return a message with names and arrays, which they allocate. Functions fill* write the values of one
-// instant and do not allocate. As members of a Channel they also get the ranges since the topic's last message, and
-// return false if there is nothing to publish.
+// Functions make* return a message whose names and arrays they allocate. Functions fill* write the values of one
+// instant into a message and do not allocate. If fill* is a member of a Channel, it also gets the ranges since the last
+// message of the topic, and returns false if there is nothing to publish.
 
 /// Makes a message without arrays.
 template <class Message>
@@ -94,14 +93,14 @@ Message makeMessage(const Parameters& parameters)
   return message;
 }
 
-/// Message with a position, a velocity and an effort for each name.
+/// Makes a message with a position, a velocity and an effort for each name.
 sensor_msgs::JointState jointStatesOf(std::vector<std::string> names);
 
-/// The entries are motor, joint.
+/// Makes a message with an entry for the motor, followed by an entry for the joint.
 sensor_msgs::JointState makeJointStates(const Parameters& parameters);
 
-/// Positions and velocities are readings of the encoders; efforts are the applied motor torque and the joint torque
-/// [N.m].
+/// Positions [rad] and velocities [rad/s] are readings of the encoders. Efforts are the applied motor torque and the
+/// joint torque [N.m].
 bool fillJointStates(Twin& twin, const SinceMessage& since, sensor_msgs::JointState& message) noexcept;
 
 bool fillEncoders(Twin& twin, const SinceMessage& since, harmonic_joint_twin::Encoders& message) noexcept;
@@ -109,7 +108,7 @@ bool fillEncoders(Twin& twin, const SinceMessage& since, harmonic_joint_twin::En
 void fillEncoders(Stamp stamp, const EncoderReadings& readings, double motor_angle, double output_angle,
                   harmonic_joint_twin::Encoders& message) noexcept;
 
-/// All arrays have one entry for each tooth.
+/// Makes a message with arrays that have one entry for each tooth.
 harmonic_joint_twin::ContactForces makeContactForces(const Parameters& parameters);
 /// @returns false if the full ring has no equilibrium.
 bool fillContactForces(Twin& twin, const SinceMessage& since, harmonic_joint_twin::ContactForces& message) noexcept;
@@ -121,7 +120,7 @@ void fillStress(Stamp stamp, const MeasuredGear& gear, const StressParameters& p
                 const FatigueLaw& fatigue_law, harmonic_joint_twin::Stress& message) noexcept;
 
 void fillSpan(const SignalSpan& span, double& least, double& mean, double& greatest) noexcept;
-/// The state of the solver and the ranges are those of the steps after `since`.
+/// State of the solver and ranges of the signals cover the steps after `since`.
 bool fillHealth(Twin& twin, const SinceMessage& since, harmonic_joint_twin::Health& message) noexcept;
 
 harmonic_joint_twin::Indicators makeIndicators(const Parameters& parameters);
@@ -131,13 +130,13 @@ inline bool fillIndicators(Twin& twin, const SinceMessage& /*since*/, harmonic_j
   fillIndicators(twin.stamp(), twin.signalIndicators(), message);
   return true;
 }
-/// Values of a message without uncertainties, which it does not contain; NaN if not valid. Unknown names are ignored.
+/// Reads the values of a message; a value that is not valid is NaN. Unknown names are ignored.
 SignalIndicators readIndicators(const harmonic_joint_twin::Indicators& message);
 
-constexpr std::size_t EVIDENCE_LENGTH = 400;  ///< largest number of characters, with the closing zero
+constexpr std::size_t EVIDENCE_LENGTH = 400;  ///< largest number of characters of a text, including the closing zero
 
-/// Writes a text such as "torque_outer 0.0041 N.m, healthy 0.0003 (score 9.1); ..." and returns its length. Empty at
-/// level OK.
+/// Writes a text such as "torque_outer 0.0041 N.m, healthy 0.0003 (score 9.1); ..." and returns its length. At level OK
+/// the text is empty.
 std::size_t writeEvidence(const Assessment& assessment, char* text, std::size_t size) noexcept;
 
 /// Writes a text such as "pitting 21 %; tooth_tip_crack 9 %" and returns its length.
@@ -151,15 +150,15 @@ inline bool fillAssessment(Twin& twin, const SinceMessage& /*since*/, harmonic_j
   return true;
 }
 
-/// Allocates the message.
+/// Makes the message about the active faults. Allocates.
 harmonic_joint_twin::Faults makeFaults(const JointNames& names, Stamp stamp, const FaultList& faults);
 
-/// Reads a fault from a message; a growing one becomes several steps. Onsets count from the stamp. @returns the error;
-/// empty if the message is valid.
+/// Reads a fault from a message. A fault that grows becomes several steps, whose onsets are counted from the stamp.
+/// @returns the error; empty if the message is valid.
 std::string readFault(const harmonic_joint_twin::Fault& message, const Parameters& parameters,
                       std::vector<Fault>& steps);
 
-/// Result of reading a torque message.
+/// Result of reading a torque from a message.
 enum class EffortStatus
 {
   FOUND,
@@ -167,9 +166,9 @@ enum class EffortStatus
   MISSING_EFFORT  ///< the message names the joint, but the effort array is too short
 };
 
-/// Reads the motor torque [N.m] of a command: the effort of the joint, or of its motor if only the motor is named.
+/// Reads the motor torque [N.m] of a command: the effort of the joint or, if the message lacks the joint, of its motor.
 EffortStatus readMotorTorque(const sensor_msgs::JointState& message, const JointNames& names, double& torque) noexcept;
 
-/// Reads the load torque [N.m]: the effort of the joint.
+/// Reads the load torque [N.m] from a message: the effort of the joint.
 EffortStatus readLoadTorque(const sensor_msgs::JointState& message, const JointNames& names, double& torque) noexcept;
 }  // namespace hjt

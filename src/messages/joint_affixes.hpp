@@ -6,7 +6,7 @@
 
 namespace hjt
 {
-/// Prefix and suffix of the joints' names in messages, for example "left_" and "".
+/// Prefix and suffix of an arm's joint names in messages, for example "left_" and "".
 struct JointAffixes
 {
   std::string prefix;
@@ -17,16 +17,16 @@ struct JointAffixes
   bool empty() const { return prefix.empty() && suffix.empty(); }
 };
 
-/// Text of the options, for example " --prefix left_ --suffix _r"; empty if none is needed.
+/// The affixes as options of a command, for example " --prefix left_ --suffix _r"; empty if both affixes are empty.
 std::string optionsOf(const JointAffixes& affixes);
 
-/// Affixes with which `names` contains all of `joints`, in the order of the names.
+/// Finds the affixes with which `names` contains all of `joints`. They are in the order of the names.
 std::vector<JointAffixes> findAffixes(const std::vector<std::string>& joints, const std::vector<std::string>& names);
 
-/// The names without motors: in messages on one joint, `NAME_motor` is the motor of joint NAME.
+/// The names without those of motors. In messages on a single joint, `NAME_motor` is the motor of joint NAME.
 std::vector<std::string> withoutMotors(const std::vector<std::string>& names);
 
-/// Clause that lists the joints that are missing in `names`, with the options that would find them; empty if none is
+/// Clause that lists the joints that `names` lacks, and options with which they would be found; empty if none is
 /// missing.
 std::string lackText(const std::vector<std::string>& joints, const std::vector<std::string>& names);
 }  // namespace hjt

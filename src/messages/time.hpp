@@ -13,12 +13,12 @@
 
 namespace hjt
 {
-// Time differences are computed from stamps, because those of ros::Time throw beyond 68 years.
+// The program computes time differences from stamps, because time differences of ros::Time throw beyond 68 years.
 
-/// Last time that ROS can represent [ns].
+/// Latest time that ROS can represent [ns].
 constexpr Stamp LAST_ROS_STAMP = 4'294'967'295'999'999'999;
 
-/// ROS time of a stamp [ns], limited to the range of ROS.
+/// Converts a stamp to ROS time, limited to the range of ROS.
 inline ros::Time toRosTime(Stamp stamp)
 {
   ros::Time time;
@@ -26,19 +26,19 @@ inline ros::Time toRosTime(Stamp stamp)
   return time;
 }
 
-/// Stamp [ns] of a ROS time, which may contain more than 1e9 nanoseconds.
+/// Converts a ROS time to a stamp [ns]. The ROS time may contain more than 1e9 nanoseconds.
 inline Stamp fromRosTime(const ros::Time& time)
 {
   return std::min(static_cast<Stamp>(time.toNSec()), LAST_ROS_STAMP);
 }
 
-/// Stamp of a header; the time of reception if the header has none [ns].
+/// The stamp of a header or, if the header has none, the time of reception [ns].
 inline Stamp stampOr(const ros::Time& header_stamp, const ros::Time& received)
 {
   return fromRosTime(header_stamp.isZero() ? received : header_stamp);
 }
 
-/// Text of a date [ns] in UTC. @param format of strftime; the text has at most 31 characters
+/// Text of a date in UTC. `format` is that of strftime; the text has at most 31 characters.
 inline std::string dateText(Stamp date, const char* format)
 {
   constexpr Stamp SECOND = 1'000'000'000;

@@ -6,8 +6,8 @@ namespace hjt
 /// Default namespace of the node.
 constexpr const char* DEFAULT_NAMESPACE = "/joint_twin";
 
-/// Names of the twin's topics, relative to the node's private namespace, live and in bags. Topics without other users
-/// are named in CHANNELS only.
+/// Names of the twin's topics, relative to the private namespace of the node, both live and in bags. A topic that only
+/// CHANNELS uses is named only there.
 namespace topics
 {
 constexpr const char* MOTOR_TORQUE_COMMAND = "motor_torque_command";  ///< in, std_msgs/Float64 [N.m]

@@ -21,73 +21,73 @@
 
 namespace hjt
 {
-/// Result of reading a joint from a robot's telemetry.
+/// Result of reading a joint from a message of a robot's telemetry.
 enum class TelemetryStatus
 {
   FOUND,
   UNKNOWN_JOINT,  ///< the message does not name this joint
-  INCOMPLETE,     ///< the message names the joint without a position or an effort
+  INCOMPLETE,     ///< the message names the joint, but lacks its position or effort
   NOT_FINITE,     ///< the position is NaN or infinite
-  WITHOUT_EFFORT  ///< the effort is NaN or infinite: the row contains everything but the current
+  WITHOUT_EFFORT  ///< the effort is NaN or infinite; the other values of the row are valid
 };
 
-/// Reads position [rad], velocity if present [rad/s] and effort, as a current, of the joint, and the position of its
-/// motor if the message names it. Times and load of the row do not change.
+/// Reads position [rad] and velocity [rad/s], if present, of the joint, its effort as a current, and the position of
+/// its motor, if the message names the motor. Times and load of the row are not changed.
 TelemetryStatus readTelemetry(const sensor_msgs::JointState& message, const JointNames& names, MotionRow& row) noexcept;
 
 /// @param stamp stamp of the row [ns].
 void fillComparison(Stamp stamp, const Comparison& comparison, harmonic_joint_twin::Comparison& message) noexcept;
 
-/// @param stamp stamp of the last judged row [ns]. Allocates.
+/// @param stamp stamp of the last judged row [ns]. The function allocates.
 void fillVerdict(Stamp stamp, const Verdict& verdict, harmonic_joint_twin::Verdict& message);
 
-/// The drive of a measured joint with the content of its messages: the gear at the measured angle and the present
-/// torque.
+/// The gear of a measured joint, computed at the measured angle under the present torque. It fills the messages on
+/// teeth, encoders, stress and health of this joint.
 class MeasuredDrive
 {
 public:
   /// @throws ParameterError if the wave generator cannot be inserted.
   explicit MeasuredDrive(const Parameters& parameters);
 
-  /// Moves to the row of a comparison, which the next `fill` publishes. @returns false, and counts, without an
-  /// equilibrium. The function neither throws nor allocates.
+  /// Moves the gear to the row of a comparison; the next calls of `fill` publish this row. @returns false if the gear
+  /// has no equilibrium there, and counts such rows. Neither throws nor allocates.
   bool moveTo(const Comparison& comparison) noexcept;
   std::uint64_t failures() const noexcept { return failures_; }
 
-  /// Adds the torques of a row to the ranges of the next Health; resets the ranges if no message is wanted.
+  /// Adds the torques of a row to the ranges in the next Health message, or clears the ranges if no message is wanted.
   void note(const Comparison& comparison, bool is_wanted) noexcept;
 
   void fill(Stamp stamp, harmonic_joint_twin::ContactForces& message) noexcept;
   void fill(Stamp stamp, harmonic_joint_twin::Stress& message) noexcept;
-  /// The sensor noise is that of the sample in the period of publish.encoders_rate that contains the stamp.
+  /// The noise of the encoders is that of the sample of publish.encoders_rate whose period contains the stamp.
   void fill(Stamp stamp, harmonic_joint_twin::Encoders& message) noexcept;
-  /// Writes values of one instant; values that need a turn of the drive are marked as not valid.
+  /// Writes the values of one instant. Values that need a whole turn of the drive are marked as not valid.
   void fill(Stamp stamp, harmonic_joint_twin::Health& message) noexcept;
 
 private:
   double motorTorque(const Comparison& comparison) const noexcept;
-  double meshForceError() const noexcept;  // expected error [N]
+  double meshForceError() const noexcept;  // expected error of the mesh forces [N]
 
   const GearParameters dimensions_;
   const RingParameters ring_;
   const StressParameters stress_;
   const FatigueLaw fatigue_law_;
   const TelemetryParameters telemetry_;
-  const Stamp encoders_period_;  // [ns]
+  const Stamp encoders_period_;  // period of the encoders' samples [ns]
   const double ratio_;
   MeasuredGear gear_;
   JointSensors sensors_;
   Comparison now_;
-  double motor_torque_{};  // [N.m]
-  SinceMessage since_;     // ranges for Health
+  double motor_torque_{};  // torque of the motor in the present row [N.m]
+  SinceMessage since_;     // ranges for the next Health message
   std::uint64_t failures_{};
 };
 
-/// Periods of a topic, counted from the epoch: equal stamps begin equal periods, live and replayed.
+/// Periods of a topic, counted from the epoch. So equal stamps begin equal periods, both live and replayed.
 class StampPeriods
 {
 public:
-  explicit StampPeriods(double rate) : length_(toStampLength(1.0 / rate)) {}  ///< [Hz]
+  explicit StampPeriods(double rate) : length_(toStampLength(1.0 / rate)) {}  ///< rate in [Hz]
 
   /// Whether the stamp is the first one in its period.
   bool begins(Stamp stamp)
@@ -96,14 +96,14 @@ public:
     return std::exchange(number_, number) != number;
   }
 
-  std::int64_t number() const { return number_; }  ///< number of the last stamp's period
+  std::int64_t number() const { return number_; }  ///< number of the period that contains the last stamp
 
 private:
-  Stamp length_;  // [ns]
+  Stamp length_;  // length of a period [ns]
   std::int64_t number_{};
 };
 
-/// Names of the topics of TrackerOutputs in `joint_namespace`.
+/// Names of all topics of TrackerOutputs in `joint_namespace`.
 inline std::vector<std::string> trackerTopics(const std::string& joint_namespace)
 {
   std::vector<std::string> names;
@@ -115,11 +115,11 @@ inline std::vector<std::string> trackerTopics(const std::string& joint_namespace
   return names;
 }
 
-/// The topics of one joint beside a robot, each with a `Sink<Message>` for its messages. The ring is solved only for
-/// messages that are due and wanted.
+/// The topics of one joint beside a robot, each with a `Sink<Message>` for its messages. The ring is solved only if a
+/// message that needs it is due and wanted.
 ///
-/// A sink is constructed from (context, topic name, first message). It has `bool isWanted()`, `Message& message()` to
-/// be filled, and `send()`.
+/// A sink is constructed from (context, topic name, first message). Its members are `bool isWanted()`, `Message&
+/// message()`, which the caller fills, and `send()`.
 template <template <class> class Sink>
 class TrackerOutputs
 {
@@ -147,7 +147,7 @@ public:
   {
   }
 
-  /// Must be called after each comparison of the tracker.
+  /// The caller calls this function after each comparison of the tracker.
   void offer(Stamp stamp, const Comparison& comparison, const Tracker& tracker)
   {
     if (comparison_.isWanted())
@@ -185,17 +185,17 @@ public:
     std::apply([&](auto&... topic) { (send(topic), ...); }, ring_topics_);
   }
 
-  /// `stamp`: stamp of the last judged row.
+  /// `stamp`: stamp of the last judged row [ns].
   void offer(Stamp stamp, const Verdict& verdict)
   {
     fillVerdict(stamp, verdict, verdict_.message());
     verdict_.send();
   }
 
-  std::uint64_t failures() const { return drive_.failures(); }  ///< number of instants without an equilibrium
+  std::uint64_t failures() const { return drive_.failures(); }  ///< number of rows without an equilibrium
 
 private:
-  /// A topic whose messages need a solved ring.
+  /// A topic whose messages need the solved ring.
   template <class Message>
   struct RingTopic
   {
