@@ -16,8 +16,7 @@ namespace hjt
 {
 namespace
 {
-/// Largest difference between a stamp and the time of recording [s]. A larger difference shows that two clocks
-/// disagree.
+/// Largest difference between a stamp and the time of recording [s]. If it is larger, two clocks disagree.
 constexpr double MAX_DELAY = 10.0;
 
 /// Converts the messages of a bag to inputs.

@@ -26,8 +26,7 @@
 
 namespace hjt
 {
-/// Lock of a file against other processes that use FileLock. The lock ends with this object or with the process. The
-/// content of the file is not changed.
+/// Lock of a file against other processes that use FileLock. It ends with this object or with the process.
 class FileLock
 {
 public:

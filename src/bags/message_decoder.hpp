@@ -24,15 +24,13 @@ enum class MessageEncoding
 /// The encoding with the name "ros1" or "cdr"; OTHER for another name.
 MessageEncoding encodingOf(const std::string& name);
 
-/// @returns false if the bytes are not exactly one message of this type. Memory is allocated only after a check of the
-/// lengths against the number of bytes.
+/// @returns false if the bytes are not exactly one message. Lengths are checked before memory is allocated.
 bool decode(const std::vector<std::uint8_t>& bytes, MessageEncoding encoding, sensor_msgs::JointState& message);
 bool decode(const std::vector<std::uint8_t>& bytes, MessageEncoding encoding, sensor_msgs::Temperature& message);
 
 /// Reads JointState and Temperature messages from bags whose bytes may be damaged.
 ///
-/// A damaged length could make generated code request much memory. Therefore this class first checks all lengths
-/// against the number of available bytes.
+/// A damaged length could make generated code request much memory. This class first checks all lengths.
 class CheckedMessage
 {
 public:

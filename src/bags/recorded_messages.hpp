@@ -25,8 +25,7 @@ enum class RecordingFormat
   TABLE       ///< text table: a CSV file
 };
 
-/// Finds the format of a file. @throws InputError if the file cannot be read or has another format. The text names this
-/// format and a command that converts the file.
+/// @throws InputError if the file is unreadable or has another format. The text names a command that converts it.
 RecordingFormat formatOfRecording(const std::string& path);
 
 /// @throws InputError if the file contains messages, because messages have no set points; the text ends with `wanted`.
@@ -58,7 +57,6 @@ struct TopicMessages
 };
 
 /// Messages of types JointState and Temperature in a bag, a .db3 or .mcap file of ROS 2, or a directory of such files.
-/// files.
 class RecordedMessages
 {
 public:

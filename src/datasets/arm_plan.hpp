@@ -26,8 +26,7 @@ struct ArmSpec
   double motionLength() const { return motion->back().time - motion->front().time; }  ///< length of the motion [s]
 };
 
-/// A fault in the drive of a joint. `joint` is the number of the joint, counted from the base; 0 in a plan of one
-/// drive.
+/// A fault in the drive of a joint. `joint`: number of the joint from the base on; 0 in a plan of one drive.
 struct RunFault : GrowingFault
 {
   std::size_t joint{};

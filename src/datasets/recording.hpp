@@ -68,7 +68,6 @@ struct Recording
   std::vector<RecordingGroup> groups;
 };
 
-/// Reads the plan's mapping `record`. `of_arms`: whether the plan is one of whole arms. @throws InputError with file
-/// and line.
+/// Reads the plan's mapping `record`. `of_arms`: whether it is a plan of arms. @throws InputError with file and line.
 Recording readRecording(const PlanNode& record, bool of_arms);
 }  // namespace hjt

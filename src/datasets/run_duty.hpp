@@ -107,8 +107,7 @@ struct RunDuty
   double bandwidth{};                           ///< bandwidth of the speed control [Hz]
   std::shared_ptr<const Waveform> load;         ///< external torque at the output [N.m]; null: no load
   std::shared_ptr<const Waveform> temperature;  ///< temperature of the drive [degC]; null: input.temperature
-  /// Time in which torque, speed and load increase from zero along half a cosine [s]. A step of these inputs would
-  /// excite vibration for seconds.
+  /// Time in which torque, speed and load rise along half a cosine [s], because a step would excite vibration.
   double easing{};
 };
 

@@ -43,7 +43,7 @@ public:
   /// @throws InputError if the file cannot be written.
   bool simulate(std::uint64_t number);
 
-  /// Simulates a run for at most `seconds` of computing time, and removes its file. @throws InputError; ParameterError
+  /// Simulates a run for at most `seconds` of computing time, and removes its file. @throws InputError, ParameterError
   /// if a drive of the run has no equilibrium.
   RunCost sample(std::uint64_t number, double seconds);
 

@@ -65,8 +65,7 @@ SurfaceSource runSurfaces(const Plan& plan, unsigned jobs);
 /// @throws InputError unless the plan is one of lives.
 void requireLives(const Plan& plan, const std::string& path);
 
-/// Specification of one run, checked before any run starts. @throws InputError as Plan::run, with the number of the
-/// run.
+/// Specification of one run. @throws InputError as Plan::run, with the number of the run, before any run starts.
 RunSpec checkedRun(const Plan& plan, std::uint64_t run);
 
 /// Checks the specifications of all runs, until `watch` demands a stop.

@@ -13,23 +13,23 @@ namespace hjt
 namespace
 {
 constexpr int COLUMNS = 6;
-constexpr int PIECES = 10;             // number of pieces, each of which is left out in turn for the intervals
-constexpr double QUANTILE = 2.26;      // 97.5 % quantile of Student's distribution for this number of pieces
+constexpr int PIECES = 10;             // number of pieces; for the intervals, the fit omits one piece at a time
+constexpr double QUANTILE = 2.26;      // 97.5 % quantile of Student's distribution for PIECES pieces
 constexpr double LONGEST_LAG = 0.016;  // longest lag that the fit tries [s]
 constexpr double LAG_STEP = 0.001;     // step from one lag to the next [s]
-constexpr double SLOWEST = 1.0;        // [s]
-constexpr double AT_REST = 0.01;       // width of the smooth change of the speed's sign [rad/s]
-constexpr double LEAST_MOTION = 5.0;   // least time of motion [s]
+constexpr double SLOWEST = 1.0;        // width of the moving mean that is subtracted from each column [s]
+constexpr double AT_REST = 0.01;      // speed over which the smooth sign of the speed changes; faster is motion [rad/s]
+constexpr double LEAST_MOTION = 5.0;  // least time in motion [s]
 constexpr double LEAST_EXPLAINED = 1.0 / 3.0;
-constexpr double WIDEST_RATIO = 0.5;  // largest half width of the ratio of both gains, relative to the ratio
-// change of the set point's speed in a row that counts as a jump, beyond the changes beside it [rad/s]
+constexpr double WIDEST_RATIO = 0.5;  // largest half width of angle_current / speed_current over this ratio [-]
+// Least change of the set point's speed from row to row that counts as a jump, beyond the neighbouring changes [rad/s].
 constexpr double JUMP = 0.1;
-constexpr double AT_LIMIT = 0.95;   // share of the limit from which on a current counts as limited [-]
-constexpr double TRANSIENT = 0.25;  // time that is excluded on either side of a jump or limit [s]
+constexpr double AT_LIMIT = 0.95;   // share of the limit above which a current counts as limited [-]
+constexpr double TRANSIENT = 0.25;  // time before and after a jump or a limited current that the fit excludes [s]
 
 using Column = Eigen::VectorXd;
 
-/// Values minus their moving mean over `width` rows.
+/// The values minus their moving mean over `width` rows.
 Column withoutSlow(const Column& values, Eigen::Index width)
 {
   Column sums(values.size() + 1);
@@ -48,7 +48,7 @@ Column withoutSlow(const Column& values, Eigen::Index width)
   return fast;
 }
 
-/// Values `rows` earlier, by interpolation.
+/// The values delayed by a number of `rows`, which may be a fraction, by linear interpolation.
 Column delayed(const Column& values, double rows)
 {
   Column before(values.size());
@@ -97,7 +97,7 @@ struct Record
   Column current;
 };
 
-/// 1 for rows in which the control is linear, else 0. `limit`: of the current minus the target's; 0: none [A].
+/// 1 for rows in which the control is linear, else 0. `limit`: largest actual minus target current; 0: no limit [A].
 Column linearRows(const std::vector<ControllerRow>& rows, double period, double limit)
 {
   const auto count = static_cast<Eigen::Index>(rows.size());
@@ -118,7 +118,7 @@ Column linearRows(const std::vector<ControllerRow>& rows, double period, double 
   return linear;
 }
 
-/// Half widths of the first two coefficients and of their ratio, by leaving out each piece in turn (jackknife).
+/// Half widths of the first two coefficients and of their ratio, from fits without one piece each (jackknife).
 Eigen::Vector3d halfWidths(const Eigen::MatrixXd& columns, const Column& values)
 {
   Eigen::Matrix<double, 3, PIECES> found;
@@ -139,7 +139,7 @@ Eigen::Vector3d halfWidths(const Eigen::MatrixXd& columns, const Column& values)
          ((PIECES - 1.0) / PIECES * (found.colwise() - mean).rowwise().squaredNorm()).array().sqrt().matrix();
 }
 
-/// Friction in the feedforward: constant part and part by speed [A], [A.s/rad].
+/// Friction in the fed-forward current: its constant part [A], and its part per speed [A.s/rad].
 Eigen::Vector2d fedForward(const std::vector<ControllerRow>& rows)
 {
   Eigen::MatrixXd columns(rows.size(), 4);
@@ -191,7 +191,7 @@ ControllerFit fitController(const std::vector<ControllerRow>& rows, double perio
   fit.speed_half_width = half_widths[1];
   fit.position_half_width = half_widths[2];
   fit.explained = 1.0 - least / values.squaredNorm();
-  // This form of the comparison rejects NaN.
+  // The negated comparison also rejects NaN.
   if (!(fit.angle_half_width < fit.angle_current && fit.speed_half_width < fit.speed_current))
   {
     fit.refusal = "its interval contains zero";

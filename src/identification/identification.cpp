@@ -17,19 +17,19 @@ namespace hjt
 {
 namespace
 {
-/// Keys in the order of TorqueRipple's lines.
+/// Keys of the parameters, in the order of TorqueRipple's lines.
 constexpr std::array<const char*, TorqueRipple::LINES> RIPPLE_KEYS{ "telemetry.ripple_circular_spline_2",
                                                                     "telemetry.ripple_flexspline_2",
                                                                     "telemetry.ripple_circular_spline_4",
                                                                     "telemetry.ripple_flexspline_4" };
-constexpr std::size_t MAX_RIPPLE_ROWS = 5000;  // largest number of rows of a fit; longer recordings are thinned out
+constexpr std::size_t MAX_RIPPLE_ROWS = 5000;  // largest number of rows in the fit; more rows are thinned out
 
 bool isMoving(const MotionSample& sample)
 {
   return std::abs(sample.velocity) > FrictionFit::MOVING;
 }
 
-/// Sums squares of an error over all, moving and resting rows.
+/// Sums the squared error of the current over moving rows and over resting rows.
 class ErrorSum
 {
 public:
@@ -68,7 +68,7 @@ Parameters withoutRipple(Parameters parameters)
   return parameters;
 }
 
-/// Errors of the motion-driven twin with these parameters: without ripple, with ripple.
+/// Errors of the motion-driven twin with these parameters, first without ripple, then with ripple.
 std::array<CurrentError, 2> errorsOf(const Parameters& parameters, const JudgedPart& judge,
                                      const std::function<void()>& look)
 {
@@ -91,10 +91,10 @@ std::array<CurrentError, 2> errorsOf(const Parameters& parameters, const JudgedP
   return { sums[0].result(), sums[1].result() };
 }
 
-/// The usual model, fitted to all rows: current by load, sign of the speed and speed.
+/// Error of the simple fit, which gives the current as a function of load, sign of the speed and speed.
 CurrentError simpleModelError(const std::vector<MotionSample>& train, const JudgedPart& judge)
 {
-  constexpr double STANDSTILL = 0.005;  // speed below which a joint counts as standing [rad/s]
+  constexpr double STANDSTILL = 0.005;  // largest speed of a joint at rest [rad/s]
   const auto columns = [](const MotionSample& sample)
   {
     const double sign = std::abs(sample.velocity) < STANDSTILL ? 0.0 : std::copysign(1.0, sample.velocity);
@@ -120,8 +120,7 @@ CurrentError simpleModelError(const std::vector<MotionSample>& train, const Judg
   return sum.result();
 }
 
-/// Stores the inertia. If the load contains no separate inertia, all of it is in the load. Neither part can be
-/// negative.
+/// Stores the inertia that is not negative: that in the load if the load was recorded, else that of the rotor.
 void storeInertia(const FrictionFit& fit, bool load_recorded, Identification& result)
 {
   constexpr double LEAST = 1e-9;
@@ -137,7 +136,7 @@ void storeInertia(const FrictionFit& fit, bool load_recorded, Identification& re
   };
   if (value < 0.0)
   {
-    // The motion contradicts the configured value; the nearest possible one is the least.
+    // The interval lies below the configured inertia, so the motion contradicts it. The least inertia is then stored.
     const bool contradicted = found.refusal.empty() && value + found.half_width < parameter && !load_recorded;
     found.value = contradicted ? LEAST : parameter;
     if (!contradicted)
@@ -150,7 +149,7 @@ void storeInertia(const FrictionFit& fit, bool load_recorded, Identification& re
   result.values.push_back(found);
 }
 
-/// Stores the results of the friction fit as parameters of the twin.
+/// Stores the results of the friction fit as parameters of the twin, and with their intervals.
 void storeFriction(const FrictionFit& fit, bool load_recorded, Identification& result)
 {
   const auto add = [&](FrictionFit::Quantity quantity, const char* name, const char* key, const char* unit,
@@ -172,7 +171,7 @@ void storeFriction(const FrictionFit& fit, bool load_recorded, Identification& r
   add(FrictionFit::PRELOAD, "Coulomb friction (bearing preload)", "bearing.race_preload", "N", p.bearing.race_preload,
       found(FrictionFit::PRELOAD), width(FrictionFit::PRELOAD));
   p.bearing.race_preload = found(FrictionFit::PRELOAD);
-  // The friction of the grease is in proportion to the power 2/3 of the viscosity.
+  // The friction of the grease is proportional to the viscosity to the power of 2/3.
   const double grease = found(FrictionFit::GREASE);
   const double viscosity = p.bearing.viscosity * std::pow(grease, 1.5);
   add(FrictionFit::GREASE, "friction by speed to the power 2/3 (viscosity)", "bearing.viscosity", "m^2/s",
@@ -190,7 +189,7 @@ void storeFriction(const FrictionFit& fit, bool load_recorded, Identification& r
       found(FrictionFit::STRIBECK), width(FrictionFit::STRIBECK));
 }
 
-/// Median time between two rows [s].
+/// Median time between two successive rows [s].
 double rowPeriod(const std::vector<MotionSample>& samples)
 {
   std::vector<double> steps;
@@ -201,12 +200,12 @@ double rowPeriod(const std::vector<MotionSample>& samples)
   return upperMedian(steps.begin(), steps.end());
 }
 
-/// Differences of the motion-driven twin without ripple from the recording.
+/// Differences between the recording and the motion-driven twin without ripple.
 struct Lacking
 {
   std::vector<double> friction;   // upper bound of the friction in each row [A]
   std::vector<double> missing;    // measured current minus the predicted one without friction, in each row [A]
-  std::vector<RippleRow> moving;  // rows of measured minus predicted torque
+  std::vector<RippleRow> moving;  // moving rows, with the measured minus the predicted torque
 };
 
 Lacking lackingOf(const Parameters& parameters, const std::vector<MotionSample>& samples)
@@ -234,7 +233,7 @@ Lacking lackingOf(const Parameters& parameters, const std::vector<MotionSample>&
   return lacking;
 }
 
-/// Fit of presliding angle and lasting share over all rows, resting ones included, with the other values known.
+/// Fits presliding angle and lasting share to all rows, moving or at rest. All other values are fixed.
 class PreslidingFit
 {
 public:
@@ -278,18 +277,18 @@ public:
   }
 
 private:
-  static constexpr double WIDEST_SHARE = 0.25;  // largest half width of its interval
-  static constexpr double WIDEST = 0.5;         // largest half width of the angle's interval over the angle
+  static constexpr double WIDEST_SHARE = 0.25;  // largest half width of the share's interval [-]
+  static constexpr double WIDEST = 0.5;         // largest half width of the angle's interval over the angle [-]
 
   struct Trial
   {
     double angle;
     double share;
-    double squares;  // sum of squared errors
-    double size;     // sum of squares of the effect of a share of 1
+    double squares;  // sum of the squared errors of the current [A^2]
+    double size;     // sum of the squared effects of a lasting share of 1 [A^2]
   };
 
-  /// Visits each row with the effect of a lasting share of 1 and the residual at 0, for these angles.
+  /// For each row and presliding angle, gives the effect of a lasting share of 1, and the error for a share of 0 [A].
   template <class Visit>
   void walk(const Eigen::ArrayXd& angles, const Visit& visit) const
   {
@@ -305,7 +304,7 @@ private:
       }
       else
       {
-        // As in Presliding::move.
+        // These equations are those of Presliding::move.
         const double turn = ratio_ * (samples_[i].position - samples_[i - 1].position);
         const double end = std::copysign(1.0, turn);
         const double kept = std::exp((samples_[i - 1].time - samples_[i].time) / Presliding::RELAXATION);
@@ -316,7 +315,7 @@ private:
     }
   }
 
-  /// Best lasting share at each presliding angle; the error is linear in it.
+  /// Best lasting share at each presliding angle. It is found directly, because the error is linear in the share.
   std::vector<Trial> fitted(const Eigen::ArrayXd& angles) const
   {
     Eigen::ArrayXd columns = Eigen::ArrayXd::Zero(angles.size());
@@ -339,7 +338,7 @@ private:
     return trials;
   }
 
-  /// Number of correlated rows of the error that count as one.
+  /// Number of correlated rows that count as one independent row, from the autocorrelation of the error.
   double correlation(const Trial& trial) const
   {
     Eigen::VectorXd error(static_cast<Eigen::Index>(samples_.size()));
@@ -369,7 +368,7 @@ private:
     {
       return value;
     }
-    // Vertex of the parabola through the best point and its neighbours, in the logarithm.
+    // Vertex of the parabola through the best trial and its two neighbours, over the logarithm of the angle.
     const double below = (best - 1)->squares;
     const double above = (best + 1)->squares;
     const double curvature = (above - 2.0 * best->squares + below) / (step * step);
@@ -388,8 +387,8 @@ private:
   TelemetryParameters telemetry_;
   double ratio_;
   const std::vector<MotionSample>& samples_;
-  std::vector<double> friction_;  // see Lacking
-  std::vector<double> missing_;   // see Lacking, with the ripple
+  std::vector<double> friction_;  // as in Lacking [A]
+  std::vector<double> missing_;   // as in Lacking, minus the ripple [A]
 };
 }  // namespace
 
@@ -430,7 +429,7 @@ Identification identify(const Parameters& parameters, const std::vector<MotionSa
 
 namespace
 {
-/// Pools the errors of several judged parts.
+/// Pools the errors of a part with the errors of the parts before it.
 void addError(const CurrentError& part, CurrentError& sum)
 {
   const auto rms = [](double a, std::size_t n, double b, std::size_t m)
@@ -447,10 +446,11 @@ void addError(const CurrentError& part, CurrentError& sum)
   sum.moving_rows += part.moving_rows;
 }
 
-/// Times that divide the motion into pieces of equal travel, because the joints of a check-up move one after the other.
+/// Times that divide the motion into pieces of equal travel. Pieces of equal time would differ too much, because the
+/// joints of a check-up move one after the other.
 std::vector<double> endsOfPieces(const std::vector<MotionSample>& samples, const Span& train, int pieces)
 {
-  std::vector<double> ways(1, 0.0);  // travel up to each sample but the first [rad]
+  std::vector<double> ways(1, 0.0);  // travel up to each sample after the first [rad]
   for (std::size_t i = 1; i < samples.size(); ++i)
   {
     ways.push_back(ways.back() + std::abs(samples[i].position - samples[i - 1].position));

@@ -26,14 +26,14 @@ double correlationRows(const Eigen::VectorXd& residuals)
   {
     size *= 2;
   }
-  // Padded by zeros, else the end of the rows would meet their begin.
+  // Zeros follow the rows, because the transform would otherwise join the end of the rows to their begin.
   Eigen::VectorXd padded = Eigen::VectorXd::Zero(size);
   padded.head(rows) = residuals;
   Eigen::FFT<double> transform;
   Eigen::VectorXcd spectrum;
   transform.fwd(spectrum, padded);
   spectrum = spectrum.cwiseAbs2().cast<std::complex<double>>();
-  Eigen::VectorXd products;  // of rows that lie so far apart
+  Eigen::VectorXd products;  // sums of the products of two rows, by the distance of the rows
   transform.inv(products, spectrum, size);
   double length = 1.0;
   for (Eigen::Index lag = 1; lag < rows / 4 && products[lag] > 0.0; ++lag)
@@ -61,7 +61,7 @@ Eigen::VectorXd leastCost(const Eigen::VectorXd& start, const Eigen::VectorXd& l
                           const std::function<NormalEquations(const Eigen::VectorXd& values)>& equations)
 {
   constexpr int MOST_STEPS = 100;
-  constexpr double SMALL = 1e-9;  // change of the cost relative to the cost
+  constexpr double SMALL = 1e-9;  // least relative change of the cost for another step [-]
   Eigen::VectorXd values = start.cwiseMax(lowest).cwiseMin(highest);
   NormalEquations here = equations(values);
   double damping = 1e-4;
@@ -70,7 +70,7 @@ Eigen::VectorXd leastCost(const Eigen::VectorXd& start, const Eigen::VectorXd& l
   {
     for (Eigen::Index i = 0; i < values.size(); ++i)
     {
-      // A value at its bound stays there while the cost decreases beyond the bound.
+      // A value stays at its bound if the cost would decrease beyond the bound.
       if (here.gradient[i] > 0.0 ? values[i] <= lowest[i] : values[i] >= highest[i])
       {
         here.normal.row(i).setZero();
@@ -110,9 +110,9 @@ Eigen::VectorXd halfWidths(const Eigen::VectorXd& errors, const Eigen::MatrixXd&
 
 namespace
 {
-constexpr double OUTLIER = 3.0;        // in deviations; blocks further off have less weight
-constexpr double LEAST_GREASE = 0.05;  // least share of the configured viscosity
-constexpr double NARROWED = 0.5;       // deviation after the motion over that before
+constexpr double OUTLIER = 3.0;        // error beyond which a block has less weight, in standard deviations [-]
+constexpr double LEAST_GREASE = 0.05;  // least friction of the grease over the configured one [-]
+constexpr double NARROWED = 0.5;       // largest standard deviation after the fit over that of the prior [-]
 constexpr Eigen::Index MIN_BLOCKS = 12;
 }  // namespace
 
@@ -144,8 +144,8 @@ FrictionFit::FrictionFit(const Parameters& parameters, const FrictionMap& fricti
   }
   solve(look);
 
-  // Reported with the result, but not used: it made the prediction of wrist_3 in other motions of a recorded arm 50 %
-  // worse.
+  // The result contains this term, but the overlay does not. With the term, the prediction of wrist_3 in other motions
+  // of a recorded arm was 50 % worse.
   const Values found = values_;
   const Values width = half_width_;
   asked_[STRIBECK] = true;
@@ -160,8 +160,9 @@ FrictionFit::FrictionFit(const Parameters& parameters, const FrictionMap& fricti
   refusal_[STRIBECK] = is_there ? "" : "its 95 % interval contains zero";
 }
 
-/// Sets the prior for a joint of this type, as standard deviations: gain 10 %, offset 0.03 A, inertia of the motor 50
-/// %, parts of its friction 50 % of the whole friction at 1 rad/s of the joint without load.
+/// Sets standard deviations of the prior for a joint of this type. They are 10 % for the gain, 0.03 A for the offset,
+/// 50 % for the inertia of the motor, and for each part of the friction 50 % of the whole friction at 1 rad/s of the
+/// joint without load.
 void FrictionFit::setKnown(const Parameters& parameters, const FrictionMap& friction)
 {
   const double inertia = Motor(parameters.motor).inertia();
@@ -207,7 +208,7 @@ void FrictionFit::addBlocks(const Parameters& parameters, const FrictionMap& fri
   std::vector<Row> blocks;
   for (auto from = samples.begin(); from != samples.end();)
   {
-    // Takes successive rows with motion in one direction that fit into a block.
+    // A block consists of successive rows with motion in one direction, over a time of at most BLOCK.
     auto to = from + 1;
     while (to != samples.end() && !to->after_gap && moving(*to) && to->velocity * from->velocity > 0.0 &&
            to->time < from->time + BLOCK)
@@ -240,7 +241,7 @@ FrictionFit::Row FrictionFit::factors(const Values& values)
   return factors;
 }
 
-/// Derivatives of the factors by the values.
+/// Derivatives of the `factors` by the values.
 Eigen::Matrix<double, FrictionFit::QUANTITIES + 1, FrictionFit::QUANTITIES> FrictionFit::slopes(const Values& values)
 {
   Eigen::Matrix<double, QUANTITIES + 1, QUANTITIES> slopes = Eigen::Matrix<double, QUANTITIES + 1, QUANTITIES>::Zero();
@@ -251,7 +252,7 @@ Eigen::Matrix<double, FrictionFit::QUANTITIES + 1, FrictionFit::QUANTITIES> Fric
   return slopes;
 }
 
-/// Fits the values, then their deviation and correlation, and the values again with these.
+/// Fits the values, then standard deviation and correlation of the errors. Repeats the fit with these.
 void FrictionFit::solve(const std::function<void()>& look)
 {
   double correlation_rows = 1.0;
@@ -266,11 +267,11 @@ void FrictionFit::solve(const std::function<void()>& look)
   }
 }
 
-/// @param deviation of the blocks without outliers [A]
+/// @param deviation standard deviation of the blocks' errors, estimated without outliers [A]
 void FrictionFit::solveOnce(double deviation, double correlation_rows)
 {
   const double weight = 1.0 / (deviation * deviation * correlation_rows);
-  const Values prior = known_.cwiseAbs2().cwiseInverse();  // weight of the prior
+  const Values prior = known_.cwiseAbs2().cwiseInverse();  // weights of the prior
   Values lowest = values_;
   Values highest = values_;
   for (int i = 0; i < QUANTITIES; ++i)
@@ -295,7 +296,7 @@ void FrictionFit::solveOnce(double deviation, double correlation_rows)
                         all.normal.diagonal() += prior;
                         return all;
                       });
-  // Combines the prior and the blocks by their weights.
+  // The half widths follow from the information of the prior and of the blocks together.
   Values scale = known_;
   for (int i = 0; i < QUANTITIES; ++i)
   {
@@ -307,7 +308,7 @@ void FrictionFit::solveOnce(double deviation, double correlation_rows)
   half_width_ = NORMAL_95 * scale.cwiseProduct(information.ldlt().solve(Normal::Identity()).diagonal().cwiseSqrt());
 }
 
-/// Share of the prior deviation that remains after the motion.
+/// Standard deviation after the fit over the standard deviation of the prior [-].
 double FrictionFit::share(std::size_t quantity) const
 {
   return half_width_[quantity] / (NORMAL_95 * known_[quantity]);
@@ -315,8 +316,8 @@ double FrictionFit::share(std::size_t quantity) const
 
 namespace
 {
-constexpr double WIDEST = 0.5;  // largest half width of an interval over the amplitude
-// Least resonance [Hz], damping [-] and lag [s].
+constexpr double WIDEST = 0.5;  // largest half width of a line's interval over its amplitude [-]
+// Least and largest resonance [Hz], damping [-] and lag [s].
 const Eigen::Vector3d LOWEST(2.0, 0.05, -0.02);
 const Eigen::Vector3d HIGHEST(100.0, 1.0, 0.02);
 }  // namespace
@@ -367,7 +368,7 @@ bool RippleFit::anyLine() const
   return std::any_of(present_.begin(), present_.end(), [](bool present) { return present; });
 }
 
-/// Real and imaginary part of each line in each row, as in TorqueRipple; 0 if the line is not present.
+/// Real and imaginary part of each line of TorqueRipple in each row; 0 for a line that was refused.
 Eigen::MatrixXd RippleFit::waves(const double* response) const
 {
   Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(torque_.size(), RESONANCE);
@@ -384,7 +385,7 @@ Eigen::MatrixXd RippleFit::waves(const double* response) const
   return columns;
 }
 
-/// Derivative of the torque in each row by each value.
+/// Derivative of the ripple torque in each row by each value.
 Eigen::MatrixXd RippleFit::slopes(const Values& values) const
 {
   const double* response = values.data() + RESONANCE;
@@ -408,7 +409,7 @@ Eigen::MatrixXd RippleFit::slopes(const Values& values) const
   return slopes;
 }
 
-/// Chooses start values of resonance, damping and lag: the best point of a coarse grid. At each point the lines are
+/// Chooses start values of resonance, damping and lag, as the best point of a coarse grid. At each point, the lines are
 /// fitted linearly.
 void RippleFit::chooseResonance(const std::function<void()>& look)
 {
@@ -455,7 +456,7 @@ void RippleFit::solve()
   half_width_ = halfWidths(errors(columns, values_), columns);
 }
 
-/// @returns true if a line was dropped, so that the others must be fitted again.
+/// Refuses the line with the widest interval, if too wide. @returns true if so; then the others need another fit.
 bool RippleFit::refuseWorst()
 {
   double worst = WIDEST;

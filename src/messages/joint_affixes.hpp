@@ -26,7 +26,6 @@ std::vector<JointAffixes> findAffixes(const std::vector<std::string>& joints, co
 /// The names without those of motors. In messages on a single joint, `NAME_motor` is the motor of joint NAME.
 std::vector<std::string> withoutMotors(const std::vector<std::string>& names);
 
-/// Clause that lists the joints that `names` lacks, and options with which they would be found; empty if none is
-/// missing.
+/// Clause that lists the joints that `names` lacks, and options that would find them; empty if none is missing.
 std::string lackText(const std::vector<std::string>& joints, const std::vector<std::string>& names);
 }  // namespace hjt

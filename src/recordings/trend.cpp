@@ -145,8 +145,8 @@ std::string perCent(double share)
   return fixedText(PER_CENT * share, 1);
 }
 
-/// Text on a change of friction: "1.31 [1.17, 1.46] times from .. to .., 4.8 % [2.9, 6.7] per 1000 h, by 10
-/// recordings."
+/// Text on a change of friction, for example "1.31 [1.17, 1.46] times from 2026-01-03 to 2026-09-30, 4.8 % [2.9, 6.7]
+/// per 1000 h, by 10 recordings."
 std::string changeText(const FrictionTrend& friction, const Trend& trend, const std::vector<Stamp>& dates)
 {
   const double unit = trendUnit(trend);
