@@ -21,7 +21,7 @@ bool isBlank(char c)
   return c == ' ' || c == '\t';
 }
 
-/// Removes blanks and then quotes from both ends of the text, and terminates it with a zero.
+/// Removes blanks, then quotes, from both ends of the text. Writes a zero after the end of the text.
 char* trimmed(char* begin, char* end)
 {
   begin = std::find_if_not(begin, end, isBlank);
@@ -38,7 +38,7 @@ char* trimmed(char* begin, char* end)
   return begin;
 }
 
-/// Name of a column without a unit in brackets at its end.
+/// Name of a column, without a unit in brackets at the end of the name.
 std::string withoutUnit(const std::string& name)
 {
   static const std::set<std::string> UNITS{ "s", "rad", "rad/s", "A", "N.m", "Nm", "N*m", "degC", "C" };
@@ -52,7 +52,7 @@ std::string withoutUnit(const std::string& name)
   return last == std::string::npos ? name : name.substr(0, last + 1);
 }
 
-/// End of the quoted text at the beginning of the text; `begin` if there are no quotes.
+/// End of the quoted text with which the text begins; `begin` if the text does not begin with quotes.
 char* endOfQuotes(char* begin, char* end)
 {
   char* const first = std::find_if_not(begin, end, isBlank);
@@ -75,12 +75,12 @@ CsvRows::CsvRows(const std::string& path) : path_(path), file_(path, std::ios::b
   readHeader();
 }
 
-/// Files with a lone carriage return before the first line feed have lines that end with a carriage return.
+/// Finds how lines end. If a carriage return without a line feed comes first, lines end with a carriage return.
 void CsvRows::findLineEnd()
 {
   if (file_.tellg() == std::ifstream::pos_type(-1))
   {
-    return;  // the file is read once
+    return;  // no look ahead in a pipe, which can be read only once
   }
   file_.read(line_.data(), static_cast<std::streamsize>(line_.size()));
   const auto end = line_.cbegin() + file_.gcount();
@@ -90,8 +90,8 @@ void CsvRows::findLineEnd()
   file_.seekg(0);
 }
 
-/// A line that begins with # is the header if the next line has as many columns, or as one column if that line is a
-/// number. Otherwise the line is a comment.
+/// Finds the header. A line that begins with # is the header if the next line has as many columns. With one column, the
+/// next line must also be a number. Otherwise the line with # is a comment.
 void CsvRows::readHeader()
 {
   bool is_header = false;
@@ -117,7 +117,7 @@ void CsvRows::readHeader()
     const std::size_t line_number = line_number_;
     is_header = !readLine() || (texts_.size() == header_.size() && texts_.front()[0] != '#' &&
                                 (header_.size() > 1 || decimalNumber(texts_.front()).has_value()));
-    if (place != std::ifstream::pos_type(-1))  // otherwise this was the last line
+    if (place != std::ifstream::pos_type(-1))  // not at the end of the file
     {
       file_.clear();
       file_.seekg(place);
@@ -220,7 +220,7 @@ bool CsvRows::readLine()
   return true;
 }
 
-/// Finds the separator outside quotes in the header.
+/// Finds the separator of the columns: the first of comma, semicolon, tab and blank that occurs in the header.
 void CsvRows::findSeparator()
 {
   const auto stands = [this](char c)

@@ -17,41 +17,41 @@
 
 namespace hjt
 {
-/// Rows of a text table with a header. The separators are commas, semicolons, tabs or blanks, as in the header. Blanks
-/// and quotes around a text, a byte order mark, a carriage return at the end of a line and a # before the header are
-/// skipped. Within quotes, or with another separator, a comma is a decimal comma. The reader skips empty lines, lines
-/// that begin with #, and empty texts beyond the columns of the header.
+/// Reads the rows of a text table with a header. The header shows whether commas, semicolons, tabs or blanks separate
+/// the columns. The reader skips blanks and quotes around a text, a byte order mark, a carriage return at the end of a
+/// line, and a # before the header. A comma within quotes, or in a table with another separator, is a decimal comma.
+/// The reader also skips empty lines, lines that begin with #, and empty texts beyond the columns of the header.
 class CsvRows
 {
 public:
-  /// Reads the header. @throws InputError if the file is empty or not readable.
+  /// Reads the header. @throws InputError if the file is empty or unreadable.
   explicit CsvRows(const std::string& path);
 
   const std::vector<std::string>& header() const { return header_; }
 
-  /// Reads the next row. @returns false at the end. @throws InputError with the line if its number of columns differs
-  /// from the header's.
+  /// Reads the next row. @returns false at the end. @throws InputError that names a line with a wrong number of
+  /// columns.
   bool next();
 
-  /// Accepts a last line with too few columns as the end of the file, because its writer was interrupted.
+  /// Accepts a last line with too few columns, which an interrupted writer leaves, as the end of the file.
   void allowCutOff() { allows_cut_off_ = true; }
-  /// Whether the last line was incomplete and therefore skipped.
+  /// Whether the last line had too few columns and was skipped for this reason.
   bool wasCutOff() const { return was_cut_off_; }
 
-  /// Accepts other lines with a wrong number of columns; such a row has empty texts.
+  /// Accepts a wrong number of columns in other lines too. The texts of such a row are empty.
   void allowUneven() { allows_uneven_ = true; }
-  /// Column counts of the header and of the last line with a wrong number, as a clause; empty: all rows are right.
+  /// Clause on the numbers of columns in the header and in the last wrong line; empty if all lines are right.
   std::string unevenText() const;
 
-  /// Name of the separators, for example "commas".
+  /// Plural of the separator's name, for example "commas".
   const char* separatorName() const;
 
-  /// Text of the last row; valid until the next row is read.
+  /// Text in a column of the last row. It is valid until the next row is read.
   const char* text(std::size_t column) const { return texts_[column]; }
-  /// The number that the text is. @throws InputError naming the line if it is no finite number.
+  /// Number in a column of the last row. @throws InputError that names the line if the text is not a finite number.
   double number(std::size_t column) const;
 
-  /// File and line of the last row.
+  /// File and line of the last row, as FILE:LINE.
   std::string place() const { return path_ + ":" + std::to_string(line_number_); }
 
 private:
@@ -65,31 +65,31 @@ private:
   std::string path_;
   std::ifstream file_;
   std::vector<char> line_;
-  std::size_t length_ = 0;  // length of the line
+  std::size_t length_ = 0;  // length of the last line [byte]
   std::size_t line_number_ = 0;
   char line_end_ = '\n';
   char separator_ = ',';
   bool allows_cut_off_ = false;
   bool allows_uneven_ = false;
   bool was_cut_off_ = false;
-  std::size_t uneven_columns_ = 0;  // of the last row with a wrong number of columns
+  std::size_t uneven_columns_ = 0;  // number of columns in the last wrong line
   std::vector<std::string> header_;
   std::vector<const char*> texts_;
 };
 
-/// Reader of N named columns with finite numbers from a table with a header. It skips other columns. Texts of the last
-/// `lenient` columns that are no finite number become NaN.
+/// Reads N named columns with finite numbers from a table with a header. Other columns are skipped. In the last
+/// `lenient` columns, a text that is not a finite number becomes NaN.
 template <std::size_t N>
 class NumberTable
 {
 public:
   using Names = std::array<std::string, N>;
 
-  /// Function that translates other names of the same columns.
+  /// Function that replaces other names of the columns by the names that the reader knows.
   using Translate = std::vector<std::string> (*)(std::vector<std::string> header);
 
-  /// Reads the header. The last `optional` columns may be missing. @throws InputError if the file is not readable or
-  /// the header lacks columns; the text names all of them.
+  /// Reads the header. The last `optional` columns may be missing. @throws InputError if the file is unreadable or the
+  /// header lacks columns; the text names all missing columns.
   NumberTable(const std::string& path, const Names& names, std::size_t optional = 0, std::size_t lenient = 0,
               Translate translate = nullptr)
     : names_(names), strict_(N - lenient), rows_(path)
@@ -117,8 +117,8 @@ public:
 
   bool hasColumn(std::size_t column) const { return places_[column] < rows_.header().size(); }
 
-  /// Reads the next row, in the order of the names; a missing column keeps its value. @returns false at the end.
-  /// @throws InputError with line and column.
+  /// Reads the next row, in the order of the names. The value of a missing column is not changed. @returns false at the
+  /// end. @throws InputError with line and column.
   bool read(std::array<double, N>& row)
   {
     if (!rows_.next())
@@ -135,7 +135,7 @@ public:
     return true;
   }
 
-  /// @throws InputError with line, column, value, unit and range.
+  /// Checks a value of the last row. @throws InputError with line, column, value, unit and range.
   void requireRange(std::size_t column, double value, const Range& range, const std::string& unit) const
   {
     if (!isWithin(value, range))
@@ -185,8 +185,9 @@ private:
   }
 
   Names names_;
-  std::size_t strict_;  // columns
+  std::size_t strict_;  // number of columns that must hold finite numbers
   CsvRows rows_;
-  std::array<std::size_t, N> places_{};  // index in the header; its size if the column is missing
+  // Place of each column in the header; size of the header if the column is missing.
+  std::array<std::size_t, N> places_{};
 };
 }  // namespace hjt

@@ -6,8 +6,8 @@
 
 namespace hjt
 {
-/// FNV-1a hash with 64 bits. It distinguishes texts, but does not protect against deliberate collisions. `hash`
-/// continues from the hash of a preceding text.
+/// FNV-1a hash with 64 bits, which distinguishes texts but does not protect against deliberate collisions. `hash` is
+/// the hash of a preceding text, which is continued.
 constexpr std::uint64_t textHash(std::string_view text, std::uint64_t hash = 14695981039346656037ull)
 {
   for (const char c : text)
@@ -17,8 +17,8 @@ constexpr std::uint64_t textHash(std::string_view text, std::uint64_t hash = 146
   return hash;
 }
 
-/// Hashes of the source code, the compiler and its options, which the build computes (cmake/source_hash.cmake). Stored
-/// files contain the hash of the code that made them.
+/// The build computes these hashes from source code, compiler and its options (cmake/source_hash.cmake). A stored file
+/// contains the hash of the code that made the file.
 const char* surfaceSourceHash();  ///< hash of the code that computes response surfaces
 const char* sourceHash();         ///< hash of all files in src, include and msg
 }  // namespace hjt

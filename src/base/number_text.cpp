@@ -19,8 +19,8 @@ namespace hjt
 {
 namespace
 {
-/// During its lifetime the C library reads and writes the numbers of this thread with a decimal point, in any locale of
-/// the program. It does not allocate.
+/// While this object exists, the C library reads and writes numbers of this thread with a decimal point, whatever the
+/// locale of the program is. The object does not allocate.
 class DecimalPoint
 {
 public:
@@ -39,16 +39,16 @@ private:
   locale_t before_;
 };
 
-/// A decimal number, digits times 10^exponent. With at most 15 digits and a small exponent both factors are exact in a
-/// double, so that one rounding gives the nearest double (Clinger 1990), as the C library does.
+/// A decimal number: digits times 10^exponent. If it has at most 15 digits and a small exponent, both factors are exact
+/// as a double. Then one rounding gives the nearest double (Clinger 1990), as in the C library.
 struct Decimal
 {
-  static constexpr int FAR = 100000;  // an exponent that is not small
+  static constexpr int FAR = 100000;  // stands for any larger exponent
   static constexpr std::array<double, 23> POWERS{ 1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
                                                   1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
                                                   1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22 };
 
-  /// Appends the digits of the text to the number. @returns the position after the digits.
+  /// Appends the digits at the begin of the text to the number. @returns the position after the digits.
   const char* take(const char* text) noexcept
   {
     for (; *text >= '0' && *text <= '9'; ++text)
@@ -74,11 +74,11 @@ struct Decimal
 
   bool is_negative{};
   std::uint64_t value{};
-  int digits{};  // without leading zeros
+  int digits{};  // number of digits without leading zeros
   int exponent{};
 
 private:
-  static constexpr int DIGITS = 15;  // less than 2^53
+  static constexpr int DIGITS = 15;  // every number with this many digits is less than 2^53
 };
 }  // namespace
 
@@ -102,12 +102,12 @@ std::string numberText(double value)
       break;
     }
   }
-  // 200 is easier to read than 2e+02.
+  // An integer gets all of its digits, because 200 is easier to read than 2e+02.
   if (value == std::floor(value) && std::abs(value) < 1e6)
   {
     std::snprintf(buffer.data(), buffer.size(), "%.0f", value);
   }
-  // printf writes 31000 and 1e-07, but rosparam needs 31000.0 and 1.0e-7.
+  // printf writes 31000 and 1e-07, but rosparam reads only 31000.0 and 1.0e-7 as numbers with a fraction.
   const std::string text(buffer.data());
   const std::size_t exponent = text.find('e');
   std::string mantissa = text.substr(0, exponent);
@@ -131,7 +131,7 @@ std::string roundedText(double value, int digits)
 std::string fixedText(double value, int digits)
 {
   const DecimalPoint decimal_point;
-  char text[400];  // the largest number has 309 digits
+  char text[400];  // because the largest double has 309 digits before the point
   std::snprintf(text, sizeof(text), "%.*f", digits, value);
   return text;
 }
@@ -179,7 +179,7 @@ std::optional<double> decimalNumber(const char* text)
     return number.quick();
   }
   const DecimalPoint decimal_point;
-  return std::strtod(text, nullptr);  // infinite beyond the largest number
+  return std::strtod(text, nullptr);  // infinite if the number is larger than the largest double
 }
 
 std::optional<double> nonFiniteNumber(const std::string& text)

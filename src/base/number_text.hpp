@@ -13,26 +13,26 @@ class Node;
 
 namespace hjt
 {
-/// Shortest text that reads back as the same number, in a form that rosparam reads as a number: 1.0e-5, 31000.0.
+/// Shortest text from which the same number is read, in a form that rosparam reads as a number: 1.0e-5, 31000.0.
 std::string numberText(double value);
 
-/// The number with a number of significant digits.
+/// Text of the number with this number of significant digits.
 std::string roundedText(double value, int digits);
 
-/// The number with a number of digits after the decimal point.
+/// Text of the number with this number of digits after the decimal point.
 std::string fixedText(double value, int digits);
 
-/// The number in a text of decimal digits, as Python or C++ write it (5, -.5, 1e-06, 1.0E+3); nothing for another text.
+/// Number in a text of decimal digits as in Python or C++ (5, -.5, 1e-06, 1.0E+3); none for another text.
 std::optional<double> decimalNumber(const std::string& text);
 std::optional<double> decimalNumber(const char* text);
 
-/// Infinity or not-a-number in YAML's spelling (.inf, -.Inf, .NAN); nothing for another text.
+/// Infinity or not-a-number in the spelling of YAML (.inf, -.Inf, .NAN); none for another text.
 std::optional<double> nonFiniteNumber(const std::string& text);
 
-/// The number in a YAML node. as<double>() of yaml-cpp depends on the program's locale. @throws YAML::Exception.
+/// Number in a YAML node, in any locale; as<double>() of yaml-cpp depends on the locale. @throws YAML::Exception.
 double yamlNumber(const YAML::Node& node);
 
-/// A string stream whose numbers have a decimal point and no separators in any locale of the program.
+/// String stream that writes numbers with a decimal point and without separators, in any locale of the program.
 class TextStream : public std::ostringstream
 {
 public:

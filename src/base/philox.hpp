@@ -23,14 +23,14 @@ constexpr std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> count
   return counter;
 }
 
-/// Sequence of the words for one counter and key, for distributions of the standard library and Boost. It ends after
-/// 2^34 words.
+/// Sequence of random words for one counter and key, for distributions of the standard library and Boost. The sequence
+/// ends after 2^34 words.
 class PhiloxStream
 {
 public:
   using result_type = std::uint32_t;
 
-  /// The stream counts with the last word of the counter.
+  /// The last word of the counter, which is not an argument, counts the blocks of the sequence.
   PhiloxStream(const std::array<std::uint32_t, 3>& counter, const std::array<std::uint32_t, 2>& key)
     : counter_{ counter[0], counter[1], counter[2], 0 }, key_(key)
   {

@@ -8,7 +8,7 @@
 
 namespace hjt
 {
-/// Number of solver steps between two rows or messages, at least 1; both rates in Hz.
+/// Number of solver steps between two rows or messages, at least 1. Both rates are in [Hz].
 inline long long publishSteps(double publish_rate, double solver_rate)
 {
   return std::max(std::llround(solver_rate / publish_rate), 1LL);

@@ -11,14 +11,14 @@
 
 namespace hjt
 {
-/// Closed interval of allowed values.
+/// Closed interval of the allowed values of a quantity.
 struct Range
 {
   double min;
   double max;
 };
 
-/// Text of a range: "8 ... 4000", or ">= 0.001" without an upper limit.
+/// Text of a range, for example "8 ... 4000", or ">= 0.001" if the range has no upper limit.
 inline std::string rangeText(const Range& range)
 {
   const auto bound = [](double value)
@@ -33,13 +33,13 @@ inline std::string rangeText(const Range& range)
   return bound(range.min) + " ... " + bound(range.max);
 }
 
-/// Whether the value is in the range; NaN never is.
+/// Whether the value is in the range. NaN is in no range.
 inline bool isWithin(double value, const Range& range)
 {
   return value >= range.min && value <= range.max;
 }
 
-/// Checks an argument that is a count. @throws InputError.
+/// Checks that an argument, which is a count, is at least `least`. @throws InputError.
 inline void requireAtLeast(const char* name, std::int64_t value, std::int64_t least)
 {
   if (value < least)
@@ -56,7 +56,7 @@ inline std::string outOfRangeText(const std::string& name, double value, const s
   return name + " = " + numberText(value) + in_unit + " is out of range, allowed: " + rangeText(range) + in_unit;
 }
 
-/// Error text of a value out of range; empty if the value is in range.
+/// Error text for a value out of range; empty if the value is within the range.
 inline std::string rangeErrors(const std::string& name, double value, const std::string& unit, const Range& range)
 {
   return isWithin(value, range) ? std::string() : outOfRangeText(name, value, unit, range);

@@ -9,11 +9,11 @@
 
 namespace hjt
 {
-// Quantiles of a normal distribution, in standard deviations.
-constexpr double NORMAL_95 = 1.96;        ///< half width of the 95 % interval
-constexpr double NORMAL_MEDIAN = 0.6745;  ///< median of the magnitude
+// Quantiles of a normal distribution, in units of its standard deviation.
+constexpr double NORMAL_95 = 1.96;        ///< half width of the interval with 95 % of the values
+constexpr double NORMAL_MEDIAN = 0.6745;  ///< median of the magnitudes
 
-/// Median of at least one value; of an even number the upper of the middle two. Reorders the values, allocates nothing.
+/// Median of one or more values, the upper of the middle two if their number is even. Reorders them; no allocation.
 template <typename Iterator>
 auto upperMedian(Iterator first, Iterator last)
 {
@@ -22,7 +22,7 @@ auto upperMedian(Iterator first, Iterator last)
   return *middle;
 }
 
-/// Median of at least one value; of an even number the mean of the middle two.
+/// Median of one or more values; of an even number of values, the mean of the middle two.
 inline double medianOf(std::vector<double> values)
 {
   std::sort(values.begin(), values.end());
@@ -30,7 +30,7 @@ inline double medianOf(std::vector<double> values)
   return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
-/// Robust standard deviation of residuals: from their median size, as of a normal distribution.
+/// Robust standard deviation of residuals. The median of their magnitudes is scaled as for a normal distribution.
 template <class Vector>
 double robustDeviation(const Vector& residuals)
 {

@@ -11,7 +11,7 @@
 
 namespace hjt
 {
-/// A temporary directory. The destructor removes it.
+/// A temporary directory, which the destructor removes with its content.
 class TemporaryDirectory
 {
 public:

@@ -35,7 +35,7 @@ inline bool holds(const std::vector<std::string>& texts, const std::string& text
   return std::find(texts.begin(), texts.end(), text) != texts.end();
 }
 
-/// Number of single edits (insert, delete, replace) between two texts (Levenshtein).
+/// Least number of edits (insert, delete or replace a character) from one text to the other (Levenshtein distance).
 inline std::size_t editDistance(const std::string& from, const std::string& to)
 {
   std::vector<std::size_t> row(to.size() + 1);
@@ -54,7 +54,7 @@ inline std::size_t editDistance(const std::string& from, const std::string& to)
   return row.back();
 }
 
-/// The known name that is most similar to an unknown one; empty if none is similar.
+/// Known name that is most similar to an unknown name; empty if no known name is similar.
 inline std::string nearestName(const std::string& unknown, const std::vector<std::string>& known)
 {
   std::string nearest;
@@ -70,15 +70,15 @@ inline std::string nearestName(const std::string& unknown, const std::vector<std
   return nearest;
 }
 
-/// Suggestion " (did you mean speed?)" with the most similar name; empty if none is similar.
+/// Suggestion with the most similar known name, for example " (did you mean speed?)"; empty if no name is similar.
 inline std::string didYouMean(const std::string& unknown, const std::vector<std::string>& known)
 {
   const std::string nearest = nearestName(unknown, known);
   return nearest.empty() ? "" : " (did you mean " + nearest + "?)";
 }
 
-/// Makes a text safe for a line of a log: control characters become '?', and "..." replaces what exceeds `longest`
-/// bytes.
+/// Makes a text safe for one line of a log. A '?' replaces each control character, and "..." replaces all that follows
+/// after `longest` bytes.
 inline std::string printable(std::string text, std::size_t longest = 60)
 {
   if (text.size() > longest)
@@ -91,7 +91,7 @@ inline std::string printable(std::string text, std::size_t longest = 60)
   return text;
 }
 
-/// Escapes a text for an element or attribute of XML.
+/// Text with the special characters replaced, for an element or attribute of XML.
 inline std::string xmlText(const std::string& text)
 {
   std::string escaped;

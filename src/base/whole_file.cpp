@@ -55,7 +55,7 @@ void synchronise(const std::string& path)
   }
 }
 
-/// Writes to an open file and closes it. The error names `path`. @throws InputError.
+/// Writes to an open file and closes it. @throws InputError that names `path`.
 void writeAll(int descriptor, const std::string& bytes, const std::string& path)
 {
   bool good = descriptor >= 0;
@@ -73,8 +73,7 @@ void writeAll(int descriptor, const std::string& bytes, const std::string& path)
   }
 }
 
-/// Opens a new file beside `target` for writing. The error names `path`, the user's name of the file. @throws
-/// InputError.
+/// Opens a new file beside `target` for writing. @throws InputError that names `path`, as the user wrote it.
 int openBeside(const std::string& target, const std::string& path, mode_t mode, std::string& name)
 {
   // Several processes may write the same file at once, so each needs a temporary file of its own.
@@ -96,7 +95,7 @@ int openBeside(const std::string& target, const std::string& path, mode_t mode, 
   throw InputError(path + " cannot be written: " + std::strerror(errno));
 }
 
-/// Renames a new file to `target`. The error names `path`, the user's name of the file.
+/// Renames a new file with these bytes to `target`. @throws InputError that names `path`, as the user wrote it.
 void replaceFile(const std::string& path, const std::string& target, const std::string& bytes, mode_t mode)
 {
   std::string temporary;
@@ -113,7 +112,7 @@ void replaceFile(const std::string& path, const std::string& target, const std::
   }
 }
 
-constexpr mode_t READABLE = 0666;  // limited by the user's umask
+constexpr mode_t READABLE = 0666;  // the user's umask limits these rights
 }  // namespace
 
 std::optional<std::string> wholeFile(const std::string& path, std::size_t most, std::string* reason)
@@ -178,8 +177,8 @@ void writeTextFile(const std::string& path, const std::string& text)
   namespace fs = std::filesystem;
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
-  const fs::path there = fs::canonical(path, error);  // after resolving links
-  // Targets of links in /proc/self/fd may have no path.
+  const fs::path there = fs::canonical(path, error);  // path after all links
+  // The target of a link in /proc/self/fd may have no path.
   if (fs::exists(status) && (error || !fs::is_regular_file(status)))
   {
     const int descriptor = open(path.c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC);

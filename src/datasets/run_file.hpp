@@ -19,7 +19,7 @@ constexpr const char* ROWS_WITHOUT_FORCES = "rows_without_forces";
 /// Key in the record of an arm's run: joint, reason and time of a protective stop; empty if there was none.
 constexpr const char* PROTECTIVE_STOP = "protective_stop";
 
-/// Column with the standard error of a line's amplitude, in the windows of a run. It is that of its two parts too.
+/// Column with the standard error of a line's amplitude and of its cosine and sine, in the windows of a run's file.
 std::string errorColumn(std::size_t indicator);
 
 /// Writes the file of one run. The file gets its final name in `finish`.

@@ -120,7 +120,7 @@ CurrentError simpleModelError(const std::vector<MotionSample>& train, const Judg
   return sum.result();
 }
 
-/// Stores the inertia that is not negative: that in the load if the load was recorded, else that of the rotor.
+/// Stores the inertia: the part in the load if the load was recorded, else the rotor's. It cannot be negative.
 void storeInertia(const FrictionFit& fit, bool load_recorded, Identification& result)
 {
   constexpr double LEAST = 1e-9;

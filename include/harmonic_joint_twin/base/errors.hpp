@@ -6,15 +6,15 @@
 
 namespace hjt
 {
-/// The package's only exception: invalid user input. It is thrown at construction or while a file is read.
-/// The text names the key, the value, the unit and the range, or the file and the line.
+/// Exception for invalid input of the user. It is thrown at construction or while a file is read. The text names key,
+/// value, unit and range, or file and line.
 class InputError : public std::runtime_error
 {
 public:
   explicit InputError(const std::string& what) : std::runtime_error(what) {}
 };
 
-/// A parameter that is missing, misspelt, mistyped or out of range.
+/// Exception for a parameter that is missing, misspelt, out of range or of a wrong type.
 class ParameterError : public InputError
 {
 public:
