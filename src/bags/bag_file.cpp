@@ -83,7 +83,7 @@ struct Record
     Number value{};
     if (found.size() != sizeof(value))
     {
-      throw Damage{ position, "a record without a proper field '" + name + "'" };
+      throw Damage{ position, "a record without a valid field '" + name + "'" };
     }
     std::memcpy(&value, found.data(), sizeof(value));
     return value;
@@ -179,7 +179,7 @@ public:
     }
     if (record.position != index)
     {
-      throw Damage{ index, "no index where it should begin" };
+      throw Damage{ index, "no index at the position that the header names" };
     }
     do
     {

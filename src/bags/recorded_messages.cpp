@@ -103,7 +103,7 @@ RecordingFormat formatOfRecording(const std::string& path)
     throw InputError(path +
                      (is_named_bag ? " cannot be read as a bag: it has no bag header of format 2.0 at byte 0" :
                                      " is neither a recording of ROS nor a text table") +
-                     "; readable are a bag, a .db3 or .mcap file of ROS 2, and CSV");
+                     ". Give a bag, a .db3 or .mcap file of ROS 2, or CSV");
   }
   return RecordingFormat::TABLE;
 }

@@ -132,7 +132,7 @@ double CsvRows::number(std::size_t column) const
   const std::optional<double> value = decimalNumber(text(column));
   if (!value || !std::isfinite(*value))
   {
-    throw InputError(place() + ": column '" + header_[column] + "' is no finite number");
+    throw InputError(place() + ": column '" + header_[column] + "' is not a finite number");
   }
   return *value;
 }
@@ -213,7 +213,7 @@ bool CsvRows::readLine()
     length_ = file_.eof() ? taken : taken - 1;
     if (std::memchr(line_.data(), '\0', length_) != nullptr)
     {
-      throw InputError(place() + ": the file contains a zero byte and is therefore no text");
+      throw InputError(place() + ": the file contains a zero byte and is therefore not a text");
     }
   } while (std::all_of(line_.data(), line_.data() + length_, is_line_end));
   split();

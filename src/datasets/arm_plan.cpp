@@ -56,7 +56,7 @@ ArmPlan::ArmPlan(const PlanNode& root, const std::string& directory, const Confi
 {
   if (root.find("lives") != nullptr)
   {
-    root.find("lives")->refuse("is not allowed in a plan of arms, because a life is that of one drive");
+    root.find("lives")->refuse("is not allowed in a plan of arms, because each life is simulated for a single drive");
   }
   const PlanValues values;
   const std::string identified = values.text(root, "identified", "");

@@ -181,7 +181,7 @@ std::uint64_t Plan::readDrives()
   {
     if (common != nullptr && common->find(key) != nullptr)
     {
-      setting.refuse("is also in set; use only one of them");
+      setting.refuse("is also in the mapping 'set'; use only one of the two");
     }
   }
   std::vector<const Variable*> drawn;
@@ -221,7 +221,7 @@ void Plan::makeLives()
     if (root_.find(other) != nullptr)
     {
       root_.find(other)->refuse(
-          "is not allowed in a plan of lives, where lives.drives gives the drives and their wear the faults");
+          "is not allowed in a plan of lives, where lives.drives gives the drives, and their wear gives the faults");
     }
   }
   // The laws of ageing use the nominal drive, which has only the settings that are common to all lives.

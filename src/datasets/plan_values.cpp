@@ -275,7 +275,7 @@ void allowOnly(const PlanNode& map, const std::vector<std::string>& keys)
 {
   if (map.kind != PlanNode::Kind::MAP)
   {
-    map.refuse("must be a mapping with keys of: " + joined(keys));
+    map.refuse("must be a mapping with some of these keys: " + joined(keys));
   }
   for (const auto& [key, node] : map.entries)
   {
@@ -358,7 +358,7 @@ Variable::Variable(const PlanNode& node) : node_(&node)
       if (shareWithin(numbers_) < MIN_SHARE)
       {
         list.refuse("must contain at least " + numberText(MIN_SHARE) +
-                    " of the distribution between lowest and highest; write a single value as a number");
+                    " of the distribution between lowest and highest; for a constant value, write a number");
       }
       break;
     default:
@@ -402,7 +402,7 @@ void Variable::readChoices(const PlanNode& list)
   {
     if (element.kind != PlanNode::Kind::SCALAR)
     {
-      element.refuse("must be a plain value");
+      element.refuse("must be a value, not a list or mapping");
     }
     choices_.push_back(element.scalar);
   }

@@ -62,7 +62,7 @@ const std::vector<RunColumn>& driveColumns()
     { "wave_generator_torque", "N.m", "torque of the wave generator on the flexspline",
       [](I i) { return i.outputs.wave_generator_torque; } },
     { "joint_torque", "N.m", "torque of the mesh on the circular spline", [](I i) { return i.outputs.joint_torque; } },
-    { "friction_torque", "N.m", "all friction as a torque at the motor, by power",
+    { "friction_torque", "N.m", "torque at the motor that has the power of all friction",
       [](I i) { return i.outputs.friction_torque; } },
     { "torsional_stiffness", "N.m/rad", "local stiffness with the wave generator locked",
       [](I i) { return i.outputs.torsional_stiffness; } },
@@ -75,8 +75,8 @@ const std::vector<RunColumn>& driveColumns()
       &ToothForces::bending_force },
     { "mesh_force", "N", "normal force on the flank of each tooth; > 0 leading, < 0 trailing flank", nullptr,
       &ToothForces::mesh_force },
-    { "tooth_x", "m", "x of each tooth point", nullptr, &ToothForces::tooth_x },
-    { "tooth_y", "m", "y of each tooth point", nullptr, &ToothForces::tooth_y },
+    { "tooth_x", "m", "x coordinate of each tooth point", nullptr, &ToothForces::tooth_x },
+    { "tooth_y", "m", "y coordinate of each tooth point", nullptr, &ToothForces::tooth_y },
   };
   return COLUMNS;
 }

@@ -171,7 +171,7 @@ void addOutcome(const TwinCounters& counters, std::uint64_t on_surface, double e
   if (counters.solver_failures > 0)
   {
     record["status"] = "failed";
-    record["error"] = "the solver found no equilibrium at " + numberText(end) + " s; the record ends there";
+    record["error"] = "the solver found no equilibrium at " + numberText(end) + " s; the record ends at this time";
   }
   record["steps"] = counters.steps;
   record["steps_on_surface"] = on_surface;

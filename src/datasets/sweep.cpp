@@ -144,7 +144,7 @@ private:
       {
         throw InputError(found);
       }
-      told_.notice(found + "; they do all the runs");
+      told_.notice(found + "; these threads simulate all runs");
     }
     return threads;
   }
@@ -226,7 +226,7 @@ RunSpec checkedRun(const Plan& plan, std::uint64_t run)
   catch (const InputError& error)
   {
     throw InputError(std::string(error.what()) + " (run " + std::to_string(run) + " of " + std::to_string(plan.runs()) +
-                     "; nothing has been run)");
+                     "; no run was started)");
   }
 }
 

@@ -56,7 +56,7 @@ Json documentOf(const SweepResult& result);
 
 /// Rest of a notice that begins with the number of rows without tooth forces.
 inline constexpr const char* WITHOUT_FORCES =
-    "rows have no tooth forces (NaN), because the teeth had no equilibrium; index.csv names the runs";
+    "rows have no tooth forces (NaN), because the teeth had no equilibrium; index.csv counts them for each run";
 
 /// Response surfaces for `jobs` simultaneous runs. Each surface is in memory once. The cache of the user stores the
 /// surfaces, except those of drives with individual wear, which only one run uses.

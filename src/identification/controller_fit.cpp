@@ -163,7 +163,7 @@ ControllerFit fitController(const std::vector<ControllerRow>& rows, double perio
       std::count_if(rows.begin(), rows.end(), [](const ControllerRow& row) { return std::abs(row.speed) > AT_REST; });
   if (static_cast<double>(moving) * period < LEAST_MOTION)
   {
-    fit.refusal = "moves for less than 5 s";
+    fit.refusal = "the joint moves for less than 5 s";
     return fit;
   }
   const Record record(rows, period);
@@ -194,18 +194,18 @@ ControllerFit fitController(const std::vector<ControllerRow>& rows, double perio
   // The negated comparison also rejects NaN.
   if (!(fit.angle_half_width < fit.angle_current && fit.speed_half_width < fit.speed_current))
   {
-    fit.refusal = "its interval contains zero";
+    fit.refusal = "the interval of a gain contains zero";
   }
   else if (!(fit.explained > LEAST_EXPLAINED))
   {
-    fit.refusal = "the errors explain less than a third of its current";
+    fit.refusal = "the errors of angle and speed explain less than a third of the current";
   }
   else if (const double sum = fit.angle_current / fit.speed_current;
            !(fit.position_half_width < std::min(WIDEST_RATIO * sum, sum - 1.0 / usual.integral_time)))
   {
-    fit.refusal = "the recording does not determine the gain of its angle. With the integral's gain it is " +
+    fit.refusal = "the recording does not determine the position gain. Together with 1 / integral time it is " +
                   roundedText(sum, 3) + " +- " + roundedText(fit.position_half_width, 3) +
-                  " 1/s, and the integral's gain alone is " + roundedText(1.0 / usual.integral_time, 3);
+                  " 1/s, and 1 / integral time alone is " + roundedText(1.0 / usual.integral_time, 3);
   }
   else
   {

@@ -126,7 +126,7 @@ void storeInertia(const FrictionFit& fit, bool load_recorded, Identification& re
   constexpr double LEAST = 1e-9;
   Parameters& p = result.parameters;
   const double inertia = fit.value(FrictionFit::INERTIA);
-  const char* name = load_recorded ? "motor's inertia that the load holds" : "rotor inertia";
+  const char* name = load_recorded ? "motor's inertia in the recorded load" : "rotor inertia";
   const char* key = load_recorded ? "telemetry.inertia_in_load" : "motor.rotor_inertia";
   double& parameter = load_recorded ? p.telemetry.inertia_in_load : p.motor.rotor_inertia;
   const double value = load_recorded ? Motor(p.motor).inertia() - inertia :
@@ -174,7 +174,7 @@ void storeFriction(const FrictionFit& fit, bool load_recorded, Identification& r
   // The friction of the grease is proportional to the viscosity to the power of 2/3.
   const double grease = found(FrictionFit::GREASE);
   const double viscosity = p.bearing.viscosity * std::pow(grease, 1.5);
-  add(FrictionFit::GREASE, "friction by speed to the power 2/3 (viscosity)", "bearing.viscosity", "m^2/s",
+  add(FrictionFit::GREASE, "friction that rises with speed to the power 2/3 (viscosity)", "bearing.viscosity", "m^2/s",
       p.bearing.viscosity, viscosity, 1.5 * p.bearing.viscosity * std::sqrt(grease) * width(FrictionFit::GREASE));
   p.bearing.viscosity = viscosity;
   const double flanks = found(FrictionFit::FLANKS);
@@ -270,7 +270,7 @@ public:
     {
       share.value = share.configured;
       share.half_width = 0.0;
-      share.refusal = trial.share <= 0.0 ? "its estimate is zero" : "the joint does not rest long enough to show it";
+      share.refusal = trial.share <= 0.0 ? "its estimate is zero" : "the joint rests too briefly to show this share";
     }
     result.values.push_back(share);
     result.parameters.telemetry.lasting_share = share.value;
@@ -356,7 +356,7 @@ private:
                            configured,
                            configured,
                            0.0,
-                           "no reversal of this motion shows it" };
+                           "no reversal of the motion shows this angle" };
     constexpr int POINTS = 17;
     const Eigen::ArrayXd logarithms = Eigen::ArrayXd::LinSpaced(POINTS, std::log(1e-4), std::log(0.3));
     const double step = logarithms[1] - logarithms[0];
@@ -414,7 +414,7 @@ Identification identify(const Parameters& parameters, const std::vector<MotionSa
   result.values.push_back(
       { "temperature of the friction", "bearing.viscosity_slope", "-", parameters.bearing.viscosity_slope,
         parameters.bearing.viscosity_slope, 0.0,
-        is_warmed ? "not identified; the slope of the oil is used" : "the recording has no temperature" });
+        is_warmed ? "not identified; the configured slope of the oil is used" : "the recording has no temperature" });
   result.values.push_back({ "torsional stiffness", "cup.torsion_stiffness", "N.m/rad",
                             parameters.cup.torsion_stiffness[0], parameters.cup.torsion_stiffness[0], 0.0,
                             "not identified; `joint_twin compare` measures it if both angles are recorded" });

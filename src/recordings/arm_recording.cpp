@@ -59,9 +59,9 @@ std::string wrongStamps(const MotionCount& count)
     return {};
   }
   const std::string factor = roundedText(count.velocity_ratio, 3);
-  return "by their stamps the angles change " + factor +
-         " times as fast as the recorded velocities say: one of the two is wrong, and with the stamps all results" +
-         (count.velocity_ratio > 0.0 ? "; --time-scale " + factor + " makes them agree" : "");
+  return "by the stamps, the angles change " + factor +
+         " times as fast as the recorded velocities say; with wrong stamps, all results are wrong" +
+         (count.velocity_ratio > 0.0 ? "; --time-scale " + factor + " makes stamps and velocities agree" : "");
 }
 }  // namespace
 
@@ -98,7 +98,7 @@ ArmRecording::ArmRecording(const RecordingOptions& options)
   uses_recorded_ = is_arm_ ? options.load == LOAD_RECORDED : has_load_;
   if (uses_recorded_ && !has_load_)
   {
-    throw InputError(source_.path + " holds no load; the option --load arm needs none");
+    throw InputError(source_.path + " holds no load of the joints; with --load arm the program computes the load");
   }
   for (Parameters& parameters : parameters_)
   {

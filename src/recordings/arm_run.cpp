@@ -232,7 +232,7 @@ try
   addIdentifiedGains(options.identified, arm);
   if (options.set_points.empty())
   {
-    requireTable(options.motion, "set points are a table, or a program of moves");
+    requireTable(options.motion, "give a table of set points or a YAML program of moves");
   }
   std::vector<ArmSetPoint> points =
       options.set_points.empty() ? readSetPoints(options.motion, arm) : options.set_points;

@@ -51,7 +51,7 @@ void refuseReferenceOfOtherArm(const ComparisonOptions& options)
     const std::string arm = armOfReport(reference);
     if (is_name(arm) && is_name(options.arm) && arm != options.arm)
     {
-      throw InputError("--reference " + reference + " is of another arm: of a " + arm + ", not of a " + options.arm);
+      throw InputError("--reference " + reference + " is a report on the arm " + arm + ", not on " + options.arm);
     }
   }
 }
@@ -95,9 +95,9 @@ std::string groupText(const JointGroup& group, const std::vector<ComparedJoint>&
   {
     return {};
   }
-  return "Friction of " + lines[group.begin].name + " to " + lines[group.end - 1].name + " together is " +
-         fixedText(group.median, 2) + " times the expected one. The reason is another " +
-         (std::abs(std::log(group.median)) < std::log(MOST) ? "temperature or lubricant of these" :
+  return "The friction of " + lines[group.begin].name + " to " + lines[group.end - 1].name + " together is " +
+         fixedText(group.median, 2) + " times the expected friction. The reason is another " +
+         (std::abs(std::log(group.median)) < std::log(MOST) ? "temperature or lubricant of these joints" :
                                                               "arm, gain or unit than given") +
          ", not a fault of one joint. ";
 }
@@ -127,7 +127,7 @@ std::string departuresOf(const std::vector<ComparedJoint>& lines)
     }
     else if (!line.contact.empty())
     {
-      text += line.name + ": " + line.contact + " The verdict is of the other rows. ";
+      text += line.name + ": " + line.contact + " The verdict uses only the other rows. ";
     }
   }
   text += judged && !departs ? "No joint differs from a sound joint. " : "";
@@ -173,8 +173,8 @@ std::string sharedText(const std::vector<ComparedJoint>& lines, double of_whole_
   }
   const auto one = [](const auto& share) { return share.first + " (" + joined(share.second) + ")"; };
   return shares.empty() ? std::string() :
-                          "The joints are judged apart from what they share: " + joined(shares, ", ", one) +
-                              " times the reference's friction. ";
+                          "Before the verdict, the friction of joints is divided by their common factor: " +
+                              joined(shares, ", ", one) + " times the reference's friction. ";
 }
 
 /// Sentences on common factors of the joints, and on each joint that differs from a sound joint or is not judged.
@@ -183,11 +183,11 @@ std::string textOf(const std::vector<ComparedJoint>& lines, const ArmFriction& a
   std::string text;
   if (arm.median != 1.0)
   {
-    text = "Friction of the whole arm is " + shortNumber(0.01 * std::round(100.0 * arm.median)) +
-           " times the reference's. The reason is another temperature or gain, not a fault of one joint. ";
+    text = "The friction of the whole arm is " + shortNumber(0.01 * std::round(100.0 * arm.median)) +
+           " times that of the reference. The reason is another temperature or gain, not a fault of one joint. ";
     if (arm.temperature)
     {
-      text += "By the twin's law of friction this is " + shortNumber(std::round(*arm.temperature)) +
+      text += "By the twin's law of friction, this factor means " + shortNumber(std::round(*arm.temperature)) +
               " degC in place of " + shortNumber(std::round(lines.front().temperature)) + " degC. ";
     }
   }
@@ -349,7 +349,7 @@ void addOptions(OptionTable& table, ComparisonOptions& options)
   addJointOptions(table, options);
   table
       .add("--report", options.report,
-           "directory of the page, its figures and data; of an arm a directory for each joint; without it none is made")
+           "directory for the page, its figures and data, with a folder for each joint of an arm; default: no page")
       .type("DIR");
   addReferenceOption(table, options);
 }
@@ -381,10 +381,10 @@ void makePage(const std::string& directory)
   }
   if (refused != 0 || status != 0)
   {
-    throw InputError("the page was not made" +
+    throw InputError("the script that makes the page failed" +
                      (refused != 0 ? ": " + std::string(PYTHON) + ": " + std::strerror(refused) : std::string()) +
                      "; the data are in " + directory + ", and `" + python + " " + script + " " + directory +
-                     "` makes the page of them");
+                     "` makes the page from the data");
   }
 }
 

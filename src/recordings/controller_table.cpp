@@ -208,7 +208,7 @@ std::string foreignTable(const std::vector<std::string>& header)
 {
   if (std::any_of(header.begin(), header.end(), [](const std::string& name) { return beginsWith(name, "field."); }))
   {
-    return "it is a table of `rostopic echo -p`, which the joints' names and the unit of the time leave unclear; give "
+    return "it is a table of `rostopic echo -p`, which lacks the joints' names and the unit of the time; give "
            "the bag itself, or record one: `rosbag record /joint_states`";
   }
   if (holds(header, "header.seq") || holds(header, "header.stamp.secs") || holds(header, "header.stamp.sec"))
@@ -217,7 +217,7 @@ std::string foreignTable(const std::vector<std::string>& header)
   }
   if (holds(header, "position") && holds(header, "effort"))
   {
-    return "it has lists in its cells; each joint needs columns of its own, or give the bag that it was made of";
+    return "it has lists in its cells; give a table with columns for each joint, or the bag that it was made from";
   }
   return {};
 }

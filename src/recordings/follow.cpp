@@ -120,7 +120,7 @@ private:
     catch (const rosbag::BagException& error)
     {
       throw InputError(recording_.options().recording + " cannot be copied: " + error.what() + "; " + writer_.path() +
-                       " is readable and holds what came before");
+                       " is readable and holds all earlier messages");
     }
   }
 
@@ -328,7 +328,7 @@ std::unique_ptr<TrackedBag> bagOf(const ArmRecording& recording, const FollowOpt
   }
   if (!recording.isFile())
   {
-    throw InputError("bag = '" + options.bag + "' needs a recording in a file, whose times it keeps");
+    throw InputError("bag = '" + options.bag + "' needs a recording in a file, whose times the bag keeps");
   }
   return std::make_unique<TrackedBag>(options.bag, recording);
 }
@@ -417,14 +417,16 @@ void addOptions(OptionTable& table, FollowOptions& options)
       options.mode = text == name ? mode : options.mode;
     }
   };
-  table.add("--mode", Option::Kind::TEXT, take, "input of the twin: the recorded current, motion, or both")
+  table.add("--mode", Option::Kind::TEXT, take, "input of the twin: the recorded current, the motion, or both")
       .choice({ "motion", "observer", "torque" })
       .default_text = "motion";
-  table.add("--out", options.out, "every row, measured and predicted; of an arm a directory, a file for each joint")
+  table
+      .add("--out", options.out,
+           "file of measured and predicted values of every row; for an arm, a directory with a file for each joint")
       .type("FILE.csv|DIR");
   table
       .add("--bag", options.bag,
-           "the topics of the node beside a robot, with the forces on every tooth; of a bag its own messages too")
+           "topics of the node beside a robot, with the forces on every tooth, and all messages of a recorded bag")
       .type("OUT.bag")
       .endsIn({ ".bag" });
 }

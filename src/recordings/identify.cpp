@@ -50,9 +50,9 @@ Sections identifiedSections(const Identification& found)
   for (const RippleLine& line : found.lines)
   {
     add(line.key, "[" + numberText(line.torque[0]) + ", " + numberText(line.torque[1]) + "]",
-        line.refusal.empty() ? "Ripple, " + shortNumber(line.order) + " a joint turn [N.m]; 95 %: +-" +
+        line.refusal.empty() ? "Ripple, " + shortNumber(line.order) + " per joint turn [N.m]; 95 %: +-" +
                                    shortNumber(line.half_width) + ". Identified." :
-                               "Ripple, " + shortNumber(line.order) + " a joint turn [N.m]: " + line.refusal + ".");
+                               "Ripple, " + shortNumber(line.order) + " per joint turn [N.m]: " + line.refusal + ".");
   }
   add("telemetry.ripple_resonance", numberText(telemetry.ripple_resonance), "Resonance of the load [Hz].");
   add("telemetry.ripple_damping", numberText(telemetry.ripple_damping), "Damping ratio of the resonance [-].");
@@ -90,9 +90,9 @@ void noticeOf(const IdentifiedJoint& joint, bool any, const Watch& watch)
   const JudgedErrors& judged = joint.found.judged;
   if (any && judged.identified.all > judged.configured.all)
   {
-    watch.notice("on the judged part the identified parameters predict the current worse (" +
+    watch.notice("in the part for judging, the identified parameters predict the current worse (" +
                  shortNumber(judged.identified.all) + " A) than the configured ones (" +
-                 shortNumber(judged.configured.all) + " A); identify on more motion with --train");
+                 shortNumber(judged.configured.all) + " A); identify from a longer part with --train");
   }
   if (!any)
   {
@@ -109,8 +109,9 @@ void noticeOfSimpleFit(const IdentifiedJoint& joint, const Watch& watch)
   if (joint.refusal.empty() && twin > simple)
   {
     watch.notice(joint.name +
-                 ": moving, gain, Coulomb and viscous friction fitted alike predict pieces left out better (" +
-                 roundedText(simple, 3) + " A) than what was identified (" + roundedText(twin, 3) + " A)");
+                 ": in moving rows that a fit did not use, the simple fit of gain, Coulomb and viscous friction "
+                 "predicts the current better (" +
+                 roundedText(simple, 3) + " A) than the identified parameters (" + roundedText(twin, 3) + " A)");
   }
 }
 
@@ -124,7 +125,7 @@ void requireParts(const IdentifyOptions& options)
 {
   if (!options.arm.empty() && options.judge)
   {
-    throw InputError("judge: of one joint alone; those of an arm are judged on pieces left out in turn (folds)");
+    throw InputError("judge: only for a single joint; an arm is judged by pieces that the fit did not use (folds)");
   }
   for (const std::optional<Span>& part : { options.train, options.judge })
   {
@@ -177,12 +178,12 @@ void identifyJoint(const IdentifyOptions& options, const Parameters& parameters,
     for (RippleLine& line : joint.found.lines)
     {
       line.torque = {};
-      line.refusal = "with this ripple the twin predicts pieces left out no better than without";
+      line.refusal = "with this ripple the twin does not predict pieces that the fit did not use better than without";
     }
   }
   if (is_arm && left_out.identified.all > left_out.configured.all)
   {
-    joint.refusal = "the identified parameters predict pieces left out worse than the configured ones";
+    joint.refusal = "the identified parameters predict pieces that the fit did not use worse than the configured ones";
   }
 }
 
@@ -308,7 +309,7 @@ void addErrors(const std::string& key, const JudgedErrors& judged, bool shown, s
   add("configured", "as configured", judged.configured);
   add("without_ripple", "identified, without ripple", judged.without_ripple);
   add("identified", "identified", judged.identified);
-  add("gain_coulomb_viscous", "gain, Coulomb and viscous fitted alike", judged.gain_coulomb_viscous);
+  add("gain_coulomb_viscous", "simple fit of gain, Coulomb and viscous friction", judged.gain_coulomb_viscous);
 }
 
 Report valuesOf(const IdentifiedJoint& joint, std::vector<std::string>& refused)
@@ -353,12 +354,12 @@ Report valuesOf(const IdentifiedJoint& joint, std::vector<std::string>& refused)
 std::vector<ReportLine> errorsOf(const IdentifiedJoint& joint)
 {
   std::vector<ReportLine> errors{ { "", "the current itself, rms", joint.found.judged.identified.signal, "A" },
-                                  { "", "error of the current on the judged part, rms", "" } };
+                                  { "", "error of the current in the part for judging, rms", "" } };
   addErrors("judged", joint.found.judged, true, errors);
   const bool folded = joint.left_out.identified.rows > 0;
   if (folded)
   {
-    errors.push_back({ "", "on pieces left out in turn", "" });
+    errors.push_back({ "", "on pieces that the fit did not use", "" });
   }
   addErrors("left_out", joint.left_out, folded, errors);
   return errors;
@@ -371,7 +372,7 @@ std::vector<ReportLine> linesOf(const IdentifiedPayload& found)
   constexpr double KNOWN = 5.0;  // largest half width of a mass that is known [kg]
   const std::string mass = found.mass_half_width < KNOWN ?
                                shortNumber(found.mass) + " +- " + shortNumber(found.mass_half_width) + " kg" :
-                               "not known: the arm hardly moves, or is in too few poses";
+                               "not known: the arm hardly moves, or takes too few poses";
   std::vector<ReportLine> lines{ { "payload.configured", "", found.configured.mass },
                                  { "payload.mass", "", found.mass },
                                  { "payload.mass_half_width", "", found.mass_half_width },
@@ -388,7 +389,7 @@ std::vector<ReportLine> linesOf(const IdentifiedPayload& found)
                 shortNumber(found.moment_half_width[axis] / found.mass);
     }
     lines.push_back({ "", "its centre in the frame of the tip", centre, "m" });
-    lines.push_back({ "", "if the arm carries it", "set payload in the arm's file, identify again" });
+    lines.push_back({ "", "if the arm carries it", "set payload in the arm's file and identify again" });
   }
   return lines;
 }
@@ -411,13 +412,13 @@ void addOptions(OptionTable& table, IdentifyOptions& options)
 {
   addRecordingOption(table, options);
   addJointOptions(table, options);
-  table.add("--out", options.out, "the overlay; of an arm a directory, an overlay for each joint")
-      .type("FILE.yaml|DIR");
-  addSpan(table, "--train", options.train, "from,to: part to identify on; default: the first third, of an arm all [s]");
-  addSpan(table, "--judge", options.judge, "of one joint, from,to: part to test on; default: the rest [s]");
+  table.add("--out", options.out, "file for the overlay; for an arm, a directory of overlays").type("FILE.yaml|DIR");
+  addSpan(table, "--train", options.train,
+          "from,to: part to identify from [s]; default: the first third, of an arm all");
+  addSpan(table, "--judge", options.judge, "from,to: part to test on [s]; default: the rest; not for an arm");
   table
       .add("--folds", options.folds,
-           "cuts the part to identify on into this many pieces and predicts each from the others; of an arm 5 by "
+           "divides the part to identify from into this many pieces and predicts each from the others; for an arm 5 by "
            "default")
       .range(2, 100);
 }
@@ -468,7 +469,7 @@ Identified identify(const IdentifyOptions& options)
     if (!recording.hasRecordedLoad())
     {
       options.watch.notice(
-          "the recording holds no load of the joint; weight and inertia are taken as configured, and "
+          "the recording holds no load of the joint; the program uses the configured weight and inertia, and "
           "their error hides the friction");
     }
     noticeOf(identified.joints.front(), identified.any, options.watch);

@@ -65,7 +65,7 @@ void takeDelays(double delay, double speed_age, double period, std::vector<Contr
 
 Recorded readController(const std::string& path, std::size_t joints)
 {
-  requireTable(path, "the controller's gains need a table with target and actual of all joints");
+  requireTable(path, "give a table with target and actual values of all joints");
   CsvRows rows(path);
   const std::vector<std::string>& header = rows.header();
   const auto column = [&](const std::string& name)
@@ -73,7 +73,8 @@ Recorded readController(const std::string& path, std::size_t joints)
     const auto found = std::find(header.begin(), header.end(), name);
     if (found == header.end())
     {
-      throw InputError(path + ": no column " + name + "; the controller's gains need target and actual of all joints");
+      throw InputError(path + ": no column " + name +
+                       "; the controller's gains need target and actual values of all joints");
     }
     return static_cast<std::size_t>(found - header.begin());
   };
@@ -110,7 +111,7 @@ Recorded readController(const std::string& path, std::size_t joints)
   recorded.period = steps.empty() ? 0.0 : upperMedian(steps.begin(), steps.end());
   if (!(recorded.period > 0.0))
   {
-    throw InputError(path + ": the times of its rows do not increase");
+    throw InputError(path + ": the times of the rows do not increase");
   }
   return recorded;
 }
@@ -130,10 +131,10 @@ std::string textOf(const RecordingOptions& options, const std::vector<Identified
   {
     const ControllerFit& fit = joint.fit;
     text +=
-        "\n" + joint.name + ":\n  # Wanted speed per error of the angle [1/s]" +
+        "\n" + joint.name + ":\n  # Demanded speed per error of the angle [1/s]" +
         (fit.refusal.empty() ? halfWidthText(fit.position_half_width) : "; as configured: " + fit.refusal) +
         ".\n  position: " + numberText(fit.gains.position) + "\n  # Torque per error of the speed [N.m.s/rad]" +
-        (joint.is_limited    ? "; identified more, beyond what this loop bears" :
+        (joint.is_limited    ? "; limited, because the twin's loop is unstable with the identified value" :
          fit.refusal.empty() ? halfWidthText(joint.fit.gains.speed / fit.speed_current * fit.speed_half_width) :
                                "") +
         ".\n  speed: " + numberText(fit.gains.speed) +

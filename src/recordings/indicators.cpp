@@ -60,7 +60,7 @@ void noticeSteps(std::vector<float> steps, const std::string& recording, const W
   {
     watch.notice(recording + ": samples come " + shortNumber(std::round(1e5 * jitter) / 100.0) +
                  " ms rms off even steps of " + shortNumber(1e3 * usual) +
-                 " ms: give the stamps of the measurement, not of its reception");
+                 " ms: give stamps of the measurement, not of the reception");
   }
 }
 
@@ -215,7 +215,7 @@ void noticeOtherGear(const std::vector<WindowResult>& windows, const Assessor& a
     {
       watch.notice("the cause is sought with signatures of another gear: torsional_stiffness is " +
                    shortNumber(std::round(theirs)) + " N.m/rad in " + signatures + ", " + shortNumber(std::round(own)) +
-                   " in the reference; joint_twin signatures makes those of yours");
+                   " in the reference; `joint_twin signatures` makes signatures of your gear");
       return;
     }
   }
@@ -227,7 +227,7 @@ void refuseWrongModels(const IndicatorsOptions& options)
   {
     throw InputError("--model was given " + std::to_string(options.models.size()) + " times for " +
                      std::to_string(options.recordings.size()) +
-                     " recordings; it takes the twin's own recording of each, in their order");
+                     " recordings; give a recording of the twin for each recording, in the same order");
   }
 }
 
@@ -256,22 +256,22 @@ void addOptions(OptionTable& table, IndicatorsOptions& options)
   addSignalOptions(table, options);
   table
       .add("--model", options.models,
-           "the twin's own recording of the same run, whose indicators are subtracted; once for each recording, in "
-           "their order")
+           "recording of the twin on the same path, whose indicators are subtracted; once for each recording, in "
+           "the same order")
       .type("FILE.csv|FILE.bag|FILE.h5")
       .check(wrongSignalFile);
   table.flag("--windows", options.windows,
-             "the recordings are bags with NAMESPACE/indicators: windows that were published, not signals");
-  table.add("--baseline", options.baseline, "healthy reference; default: learned from the first windows")
+             "read published windows from the topic NAMESPACE/indicators of bags, in place of signals");
+  table.add("--baseline", options.baseline, "reference of the sound drive; default: from the first windows")
       .type("FILE.yaml");
   table
       .flag("--carry", options.carry,
-            "the reference is of another motion to and fro, best a check-up; the recordings of --model carry it to "
-            "this one")
+            "carry a reference over from another motion to and fro, best a check-up, by the recordings of "
+            "--model")
       .needs("--baseline")
       .needs("--model");
-  table.add("--save-baseline", options.save_baseline, "writes the reference that was learned").type("FILE.yaml");
-  table.add("--out", options.out, "CSV with a row per window").type("FILE.csv");
+  table.add("--save-baseline", options.save_baseline, "file for the learned reference").type("FILE.yaml");
+  table.add("--out", options.out, "CSV file with a row for each window").type("FILE.csv");
   addOptions(table, options, options.force);
 }
 

@@ -236,7 +236,7 @@ void printSummary(const std::vector<WindowResult>& windows)
                                  { "", "turns in the last window", last.indicators.turns },
                                  { "", "motor speed in the last window", last.indicators.point.speed, "rad/s" },
                                  { "", "made of", last.origin },
-                                 { "", "with the parameters of the", last.parameters },
+                                 { "", "source of the parameters", last.parameters },
                                  { "", "state", stateName(assessment.state) },
                                  { "", "level", judged ? levelName(assessment.level) : "not judged" } };
   if (const std::optional<Strongest> strongest = strongestOf(last))
@@ -244,7 +244,7 @@ void printSummary(const std::vector<WindowResult>& windows)
     lines.push_back({ "", "largest score over threshold", assessment.largest_score });
     if (assessment.pattern != Cause::NONE)
     {
-      lines.push_back({ "", "that of the pattern of", causeName(assessment.pattern) });
+      lines.push_back({ "", "pattern of this score", causeName(assessment.pattern) });
     }
     lines.push_back(
         { "", assessment.pattern == Cause::NONE ? "that of" : "furthest off", indicatorName(strongest->indicator) });

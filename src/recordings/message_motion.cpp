@@ -155,9 +155,9 @@ public:
   std::string text(const std::string& topic) const
   {
     static constexpr std::array WHY{ "", "; their position is empty",
-                                     "; their effort is empty: the motors' currents have to be recorded as effort",
-                                     "; position and effort are never in the same message, where they have to be",
-                                     "; what they give is not finite (NaN)" };
+                                     "; their effort is empty, but must hold the motors' currents",
+                                     "; position and effort of a joint are never in the same message, but must be",
+                                     "; the values of these joints are not finite (NaN)" };
     std::array<std::vector<std::string>, WHY.size()> joints;
     for (std::size_t i = 0; i < joints_.size(); ++i)
     {
@@ -264,15 +264,16 @@ public:
     {
       const bool are_short =
           std::any_of(parts_.begin(), parts_.end(), [](const auto& part) { return part->hasShortEfforts(); });
-      throw InputError(are_short ? source_.topic +
-                                       ": the messages have fewer efforts than names, so whose they are is "
-                                       "not known; all joints that a message names need one" :
-                                   seen_.text(source_.topic));
+      throw InputError(
+          are_short ? source_.topic +
+                          ": the messages have fewer efforts than names, so it is not "
+                          "known which joint an effort belongs to; each joint that a message names needs an effort" :
+                      seen_.text(source_.topic));
     }
     finish();
     if (count_.rows == 0)
     {
-      throw InputError(source_.topic + ": the messages that name a part of the joints each are never less than " +
+      throw InputError(source_.topic + ": the joints come in several messages, which are never less than " +
                        numberText(MotionDifferentiator::MAX_GAP) + " s apart: " + joined(names_));
     }
     return count_;
@@ -337,9 +338,9 @@ private:
     count_.rows = side_by_side_.complete();
     count_.corrupt += side_by_side_.dropped() + without_effort;
     count_.remark(recording_.remark());
-    count_.remark(counted(without_time, "without a time (stamp 0, before there was one) left out"));
+    count_.remark(counted(without_time, "without a time were skipped, because their stamp is 0"));
     count_.remark(
-        counted(without_effort, "with effort 0 left out: a second source gives no values, or the source had none"));
+        counted(without_effort, "with effort 0 were skipped: a second source gives no values, or the source had none"));
     count_.remark(silentText({ layout_.silent.begin(), layout_.silent.end() }));
     count_.remark(missingText(missing, count_));
     remarkOnRounds(angles, time_.rounds(), count_);

@@ -174,7 +174,7 @@ public:
     const bool returns =
         returns_ >= LEAST_RETURNS && static_cast<double>(returns_) > LEAST_SHARE * static_cast<double>(moves_);
     return returns ? "two sources give these joints in turn on this topic: in " + std::to_string(returns_) + " of " +
-                         std::to_string(seen_) + " rows the angles jump to and fro" :
+                         std::to_string(seen_) + " rows the angles jump from one source to the other" :
                      std::string();
   }
 

@@ -61,7 +61,7 @@ MotionCount readMotion(const MotionSource& source, const std::vector<std::string
   count.rows -= count.left_out.all();
   count.corrupt += count.left_out.impossible + count.left_out.unreachable;
   count.remark(
-      leftOutText(count.left_out.unreachable, "angles that the joints cannot have reached from the rows beside them"));
+      leftOutText(count.left_out.unreachable, "the joints cannot reach these angles from the neighbouring rows"));
   count.remark(leftOutText(count.left_out.repeated,
                            "they repeat the values of the row before while the joints move (held by a driver, or a "
                            "recorder was stuck)"));

@@ -109,11 +109,11 @@ struct ColumnChoice
 };
 constexpr std::array<ColumnChoice, COLUMNS> CHOICES{
   { { "--time", "time [s]", nullptr, "time" },
-    { "--motor-torque", "motor torque, or current with --torque-scale", &SignalSample::motor_torque,
+    { "--motor-torque", "motor torque [N.m], or motor current [A] with --torque-scale", &SignalSample::motor_torque,
       "motor_torque_reading", "motor_torque" },
     { "--motor-angle", "motor encoder [rad]", &SignalSample::motor_angle, "motor_angle_encoder" },
     { "--output-angle", "output encoder [rad]", &SignalSample::output_angle, "output_angle_encoder" },
-    { "--motor-velocity", "motor speed, else differences of the angle [rad/s]", &SignalSample::motor_velocity,
+    { "--motor-velocity", "motor speed [rad/s]; if missing, from the motor angle", &SignalSample::motor_velocity,
       "motor_velocity_encoder" },
     { "--load-torque", "load torque at the output, > 0 resists positive motion [N.m]", &SignalSample::load_torque,
       "load_torque" },
@@ -366,15 +366,15 @@ void addSignalOptions(OptionTable& table, SignalOptions& options)
 {
   table
       .add("recordings", options.recordings,
-           "one recording, or several of the same joint; a run of a data set (HDF5) is read with the parameters in its "
-           "file, over them those of --config and --set")
+           "one recording, or several of the same joint; a run of a data set (HDF5) has its own parameters, which "
+           "--config and --set override")
       .required()
       .type("IN.csv|IN.bag|IN.h5")
       .check([&options](const std::string& path)
              { return options.at_hand.count(path) > 0 ? std::string() : wrongSignalFile(path); });
   table.add("--joint", options.joint,
-            "bag: a robot's joint on /joint_states, effort in A, by telemetry.torque_per_current: base, shoulder, "
-            "elbow, wrist_1 ..., or its name in the messages; default: the twin's own");
+            "bag: joint of a robot on /joint_states, whose effort is the current in A: base, shoulder, "
+            "elbow, wrist_1 ..., or its name in the messages; default: the joint of the twin");
   for (std::size_t i = 0; i < COLUMNS; ++i)
   {
     const ColumnChoice& choice = CHOICES[i];
@@ -383,7 +383,7 @@ void addSignalOptions(OptionTable& table, SignalOptions& options)
     table.add(choice.option, options.columns[i], help).type("COLUMN");
   }
   table.add("--torque-scale", options.torque_scale,
-            "motor torque per unit of the recorded signal [N.m]; default: 1, and with --joint "
+            "motor torque per unit of the recorded signal [N.m]; default: 1, but with --joint "
             "telemetry.torque_per_current / ratio [N.m/A]");
   table
       .add("--states-topic", options.states_topic,

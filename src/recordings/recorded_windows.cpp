@@ -91,7 +91,7 @@ std::optional<std::vector<SignalIndicators>> windowsOfRun(const std::string& rec
     const auto found = columns.find(name);
     if (found == columns.end() || found->second.size() != columns.at("window_end").size())
     {
-      throw InputError(recording + ": its group indicators has no column '" + name + "' as long as window_end");
+      throw InputError(recording + ": the group indicators has no column '" + name + "' as long as window_end");
     }
     return found->second;
   };

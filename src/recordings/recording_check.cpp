@@ -65,7 +65,8 @@ void requireNames(const std::string& topic, const std::vector<std::string>& name
   const auto all = [&](const auto& is) { return !names.empty() && std::all_of(names.begin(), names.end(), is); };
   if (all([](const std::string& name) { return name.empty(); }))
   {
-    throw InputError(topic + ": the joints have no names (each name is empty), so whose the values are is not known");
+    throw InputError(
+        topic + ": the joints have no names (each name is empty), so it is not known which joint a value belongs to");
   }
   const auto names_quantity = [](const std::string& name)
   {
@@ -364,7 +365,7 @@ Misfit misfitOfParts(const CheckedArm& arm)
     return arm.found.misfit;
   }
   return { Reason::LOAD_UNKNOWN,
-           "an arm's load takes the angles of all its joints, and there is no angle or no effort of " +
+           "the load of an arm depends on the angles of all its joints, and there is no angle or no effort of " +
                joined(arm.missing) };
 }
 

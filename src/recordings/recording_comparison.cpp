@@ -23,9 +23,9 @@ namespace hjt
 namespace
 {
 constexpr const char* ANGLE_AND_CURRENT = "angle and current of the joint";
-constexpr const char* MOTOR_ANGLE = "angle of the motor: torsion, stiffness, kinematic error";
-constexpr const char* LOAD = "load at the output; else weight and inertia as configured";
-constexpr const char* TEMPERATURE = "temperature of the drive; else as configured";
+constexpr const char* MOTOR_ANGLE = "angle of the motor, for torsion, stiffness and kinematic error";
+constexpr const char* LOAD = "load at the output; if missing, weight and inertia as configured";
+constexpr const char* TEMPERATURE = "temperature of the drive; if missing, as configured";
 constexpr const char* TWIN = "angle and speed of a twin that ran beside the robot";
 
 const auto NO_PROGRESS = [](double) {};

@@ -21,11 +21,11 @@ void addReadingOptions(OptionTable& table, RecordingOptions& options)
   table.add("--topic", options.topic,
             "topic of the telemetry in a bag, sensor_msgs/JointState with the effort that telemetry.effort names");
   table.add("--prefix", options.affixes.prefix,
-            "prefix of the arm's joint names in the messages, as left_; `joint_twin check` finds it");
+            "prefix of the arm's joint names in the messages, for example left_; `joint_twin check` finds it");
   table.add("--suffix", options.affixes.suffix, "suffix of the arm's joint names in the messages");
   table
       .add("--time-scale", options.time_scale,
-           "multiplies the times of the rows where the stamps are wrong; `joint_twin check` finds it")
+           "factor that corrects the times of the rows if the stamps are wrong; `joint_twin check` finds it")
       .positive();
   addNamespaceOption(table, options.joint_namespace);
   addOptions(table, options, options.force);
@@ -35,8 +35,8 @@ void addArmOption(OptionTable& table, RecordingOptions& options)
 {
   table
       .add("--arm", options.arm,
-           "all joints of an arm in place of one: ur3, ur3e, ur5, ur5e (ur7e), ur8long, ur10, ur10e (ur12e), ur15, "
-           "ur16e, ur18, or a file as config/arms/ur5.yaml")
+           "arm, all of whose joints are read: ur3, ur3e, ur5, ur5e (ur7e), ur8long, ur10, ur10e (ur12e), ur15, "
+           "ur16e, ur18, or a file such as config/arms/ur5.yaml")
       .type("NAME|FILE.yaml");
 }
 }  // namespace
@@ -45,7 +45,7 @@ void addRecordingOption(OptionTable& table, RecordingOptions& options)
 {
   table
       .add("recording", options.recording,
-           "a bag, a .db3 or .mcap file of ROS 2 or their directory, or a UR controller's CSV recording")
+           "a bag, a .db3 or .mcap file of ROS 2, a directory of such files, or a UR controller's CSV recording")
       .required()
       .type("IN.bag|IN.db3|IN.mcap|DIR|IN.csv");
 }
@@ -60,17 +60,17 @@ void addOptions(OptionTable& table, RecordingOptions& options)
 void addJointOptions(OptionTable& table, RecordingOptions& options)
 {
   table.add("--joint", options.joint,
-            "base, shoulder, elbow, wrist_1 ..., its number from 0, or its name in the messages");
+            "base, shoulder, elbow, wrist_1 ..., the joint's number from 0, or its name in the messages");
   addReadingOptions(table, options);
   addArmOption(table, options);
   table
       .add("--load", options.load,
-           "load of an arm's joints: of its links and payload by rigid-body dynamics, or as recorded")
+           "load of an arm's joints: computed from links and payload by rigid-body dynamics, or as recorded")
       .choice({ LOAD_OF_ARM, LOAD_RECORDED })
       .needs("--arm");
   table
       .add("--identified", options.identified,
-           "overlays of an arm's joints, as `joint_twin identify --arm` writes them, over the arm's own")
+           "overlays from `joint_twin identify --arm`, whose values replace those of the arm's joints")
       .type("DIR")
       .existingDirectory()
       .needs("--arm");

@@ -238,7 +238,7 @@ void requireRanges(const RemainingOptions& options)
   {
     throw InputError("--hours has " + std::to_string(hours.size()) + " values for " +
                      std::to_string(options.recordings.size()) +
-                     " recordings: one in all, or one for each recording, ascending");
+                     " recordings: give one value, or one for each recording, ascending");
   }
   for (const double value : hours)
   {
@@ -252,23 +252,23 @@ void addOptions(OptionTable& table, RemainingOptions& options)
 {
   addSignalOptions(table, options);
   table.add("--hours", options.hours,
-            "hours of use behind the drive, all as in the recordings [h]; default: those of the recordings. A list, "
+            "hours that the drive was used like in the recordings [h]; default: their duration. A list, "
             "ascending: the hours at which each recording was made");
   table
       .add("--baseline", options.baseline,
-           "reference of the new drive, from `indicators`: verdicts and readings by it tell of wear")
+           "reference of the new drive, from `indicators`, to assess the recordings and read the wear")
       .type("FILE.yaml");
   table
       .add("--duty", options.duty,
-           "use so far, as a duty cycle that `life age` reads; the recordings are then assessed only")
+           "use so far, as a duty cycle that `life age` reads; the recordings then serve only for the assessment")
       .type("FILE.csv")
       .existingFile()
       .needs("--baseline");
   table
       .add("--lost-motion-limit", options.lost_motion_limit,
-           "lost motion at which the drive is at its end, beside the limits of wear [rad]; 1e-6 ... 0.1")
+           "lost motion at which the drive is at its end, in addition to the limits of wear [rad]; 1e-6 ... 0.1")
       .needs("--baseline");
-  table.add("--use-record", options.use_record, "writes the use as a duty cycle, for `life` and life.use_record")
+  table.add("--use-record", options.use_record, "file for the use as a duty cycle, for `life` and life.use_record")
       .type("FILE.csv");
   addOptions(table, options, options.force);
 }
@@ -304,7 +304,7 @@ Remaining remaining(const RemainingOptions& options)
   if (options.lost_motion_limit && condition.read.readings.empty())
   {
     throw InputError("lost_motion_limit: no recording shows the lost motion beside " + options.baseline +
-                     ": the load must go both ways, in the reference too");
+                     ": the load must have both signs, in the reference too");
   }
   condition.read.lost_motion_limit = options.lost_motion_limit.value_or(HUGE_VAL);
   if (!options.use_record.empty())
@@ -330,12 +330,12 @@ Report reportOf(const Remaining& found)
   std::vector<ReportLine> lines{
     { "hours", "hours of use so far", estimate.hours, "h" },
     { "turns", "turns of the motor so far", estimate.turns },
-    { "remaining_q10", "remaining, of 90 % of such drives at least", remaining.quantile[1], "h" },
-    { "remaining_q50", "remaining, of 50 % of such drives at least", remaining.quantile[2], "h" },
-    { "remaining_q90", "remaining, of 10 % of such drives at least", remaining.quantile[3], "h" },
+    { "remaining_q10", "remaining hours that 90 % of such drives reach", remaining.quantile[1], "h" },
+    { "remaining_q50", "remaining hours that 50 % of such drives reach", remaining.quantile[2], "h" },
+    { "remaining_q90", "remaining hours that 10 % of such drives reach", remaining.quantile[3], "h" },
     { "nearest", "nearest limit of the nominal drive", nameOf(estimate.nearest()) },
     { "used", "used of it", 100.0 * estimate.usedOf(estimate.nearest()), "%" },
-    { "parameters", "with the parameters of the", found.parameters },
+    { "parameters", "source of the parameters", found.parameters },
   };
   if (found.assessment)
   {
@@ -350,8 +350,8 @@ Report reportOf(const Remaining& found)
   }
   if (found.wear)
   {
-    lines.push_back({ "wear_flank", "wear read, as a severity of tooth_wear", found.wear->flank });
-    lines.push_back({ "wear_interface", "wear read, as a severity of interface_wear", found.wear->interface });
+    lines.push_back({ "wear_flank", "estimated wear, as a severity of tooth_wear", found.wear->flank });
+    lines.push_back({ "wear_interface", "estimated wear, as a severity of interface_wear", found.wear->interface });
     lines.push_back({ "lost_motion", "lost motion", found.wear->lost_motion, "rad" });
   }
   lines.push_back({ "density", "", densityJson(remaining) });

@@ -64,8 +64,8 @@ SignalIndicators windowOf(const Plan& plan, const RunSpec& spec, const std::stri
   if (windows.empty())
   {
     refuse(plan, spec,
-           "a run without a whole window of the indicators; its duration, indicators.window_turns, "
-           "indicators.window_time and publish.indicators_rate must go together");
+           "a run without a whole window of the indicators; adapt its duration, indicators.window_turns, "
+           "indicators.window_time or publish.indicators_rate");
   }
   return windows.back();
 }
@@ -134,18 +134,18 @@ void checkSignaturePlan(const Plan& plan)
 {
   if (plan.isOfArms())
   {
-    throw InputError("plan " + plan.name() + ": signatures are of one drive, not of an arm");
+    throw InputError("plan " + plan.name() + ": signatures are made from runs of one drive, not of an arm");
   }
   if (plan.recording().format != RunFormat::BAG)
   {
-    throw InputError("plan " + plan.name() + ": signatures are made of bags: record: {format: bag}");
+    throw InputError("plan " + plan.name() + ": signatures are made from bags; give record: {format: bag}");
   }
   for (std::uint64_t run = 0; run < plan.runs(); ++run)
   {
     const RunSpec spec = checkedRun(plan, run);
     if (spec.faults.size() > 1)
     {
-      refuse(plan, spec, std::to_string(spec.faults.size()) + " faults; a signature is of one");
+      refuse(plan, spec, std::to_string(spec.faults.size()) + " faults; a signature needs one");
     }
     if (!spec.faults.empty() && (spec.faults[0].fault.onset > 0.0 || spec.faults[0].ramp > 0.0))
     {
@@ -161,7 +161,7 @@ void SignatureRuns::addFaulty(const Plan& plan, const RunSpec& spec, const Signa
   {
     refuse(plan, spec,
            "no sound run under the same conditions; a plan of signatures has a class without faults before "
-           "all others, and grids in place of what is drawn");
+           "all others, and grids in place of random draws");
   }
   const Fault& fault = spec.faults[0].fault;
   Mean& mean = motion.faulty[{ fault.kind, fault.severity }];
@@ -225,7 +225,7 @@ std::string SignatureRuns::text(const std::string& gear, const SignatureSet& bas
 {
   if (motions_.empty())
   {
-    throw InputError("no run found its equilibrium: there is nothing to make signatures of");
+    throw InputError("no run found its equilibrium, so signatures cannot be made");
   }
   SignatureSet set = basis;
   std::vector<std::string> motions;  // name of the motion of each signature

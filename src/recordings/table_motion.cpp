@@ -276,7 +276,7 @@ private:
     }
     if (table_.wasCutOff())
     {
-      count_.remark("the last line is cut off and left out (" + table_.place() + ")");
+      count_.remark("the last line is cut off and was skipped (" + table_.place() + ")");
     }
     count_.remark(missingText(missing_, count_));
     remarkOnRounds(angles_, times_.rounds(), count_);
@@ -309,9 +309,9 @@ void remarkOnRounds(const std::vector<UnfoldedAngle>& angles, std::uint64_t roun
   }
   if (rounds > 1)
   {
-    count.remark("stamps jump back or by days " + std::to_string(rounds - 1) +
-                 " times, as of a recording played in a loop: each of " + std::to_string(rounds) +
-                 " rounds is read for itself");
+    count.remark("stamps jump back, or ahead by days, " + std::to_string(rounds - 1) +
+                 " times, as in a recording that was played in a loop; the " + std::to_string(rounds) +
+                 " rounds are read one after the other");
   }
 }
 
@@ -328,7 +328,7 @@ std::string missingText(const std::map<std::string, std::uint64_t>& missing, con
     }
   }
   return names.empty() ? std::string() :
-                         "rows without a number are left out: " + joined(names) + " of " +
+                         "rows without a number were skipped: " + joined(names) + " of " +
                              std::to_string(count.rows + count.corrupt) + " rows";
 }
 
@@ -336,7 +336,7 @@ std::string silentText(const std::vector<std::string>& joints)
 {
   return joints.empty() ? std::string() :
                           "the effort of " + joined(joints) +
-                              " is never a number: it counts as 0 and its joint is not judged; the other joints are";
+                              " is never a number: it counts as 0, and only the other joints are judged";
 }
 
 MotionCount readTableMotion(const MotionSource& source, std::size_t joints, const VisitMotionRows& visit,

@@ -226,7 +226,7 @@ JointTrend judgeJoint(const Trend& trend, std::size_t joint, const std::string& 
   {
     judged.friction.slope = std::nan("");
     judged.text = "All recordings of its friction are of " + fixedText(friction.span, 1) +
-                  " h, less than a day: what changes then is the temperature.";
+                  " h, less than a day; within a day, the friction changes by temperature.";
   }
   else
   {
@@ -263,14 +263,14 @@ std::string textOf(const Trend& trend)
           .second.push_back(joint.name);
     }
   }
-  text += is_any && !departs ? "The friction of no joint changes by more than a sound one's does. " : "";
+  text += is_any && !departs ? "The friction of no joint changes more than that of a sound joint. " : "";
   for (const auto& [why, joints] : unjudged)
   {
     text += "No trend of " + joined(joints) + ": " + why + " ";
   }
   if (!trend.has_dates)
   {
-    text += "Not all recordings have a date: their order stands for time. ";
+    text += "Not all recordings have a date, so their order stands for time. ";
   }
   if (trend.latest && (!is_any || trend.recordings[*trend.latest].compared.health != HealthLevel::OK))
   {
@@ -333,12 +333,12 @@ void addOptions(OptionTable& table, TrendOptions& options)
 {
   table
       .add("recordings", options.recordings,
-           "recordings as of compare, or folders of them, of one joint or arm over months")
+           "recordings, as for `compare`, or folders of recordings, of one joint or arm over months")
       .required()
       .type("IN|DIR");
   addJointOptions(table, options);
   table.add("--out", options.out, "CSV with a row for each recording").type("FILE.csv");
-  table.add("--report", options.report, "directory of a page with the figure, and its data").type("DIR");
+  table.add("--report", options.report, "directory for a page with the figure, and for its data").type("DIR");
   addReferenceOption(table, options);
 }
 

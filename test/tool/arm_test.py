@@ -99,7 +99,7 @@ class Arm(ArmTest):
     def identify(self, *changes):
         """Identifies a robot that is the twin with these changes: robot.csv, found/."""
         write_csv(self.path("robot.csv"), sound(self, 20.0, changes=changes))
-        self.fail_with(1, ["judge: of one joint alone"], "identify", "robot.csv", "--arm", "ur5", "--judge", "0,9")
+        self.fail_with(1, ["judge: only for a single joint"], "identify", "robot.csv", "--arm", "ur5", "--judge", "0,9")
         self.succeed("identify", "robot.csv", "--arm", "ur5", "--out", "found")
 
     def test_no_overlay_is_out_of_range(self):

@@ -148,7 +148,7 @@ class Options(tool.ToolTest):
                                       "\nPositionals:\n  DUTY TEXT:FILE REQUIRED     CSV file",
                                       "\n  --hours FLOAT=1e+06         longest duration of use [h]\n"]),
                 (["remaining"], ["Usage: joint_twin remaining [OPTIONS] recordings...\n"]),
-                (["identify"], ["\n  --train FLOAT x 2           from,to: part to identify on",
+                (["identify"], ["\n  --train FLOAT x 2           from,to: part to identify from",
                                 f"\n  --load TEXT:{{arm,target_moment}}=arm Needs: --arm{column}load of",
                                 "\nExactly one of these is required:\n  --joint TEXT                base"]),
                 (["life"], ["Usage: joint_twin life [OPTIONS] SUBCOMMAND\n",
