@@ -80,7 +80,7 @@ private:
 class BagWriter
 {
 public:
-  /// @throws InputError if the file cannot be written, or another BagWriter writes it.
+  /// @throws InputError if the file cannot be written, or if another BagWriter is writing it.
   explicit BagWriter(std::string path);
 
   /// Closes the bag. Only `close` reports errors of the disk; the destructor ignores them.

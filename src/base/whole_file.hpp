@@ -18,8 +18,8 @@ std::optional<std::string> wholeFile(const std::string& path, std::size_t most =
 /// Content of the file. @throws InputError with the reason if wholeFile fails.
 std::string readFile(const std::string& path, std::size_t most = MAX_TEXT);
 
-/// Writes a text file atomically and flushes it to the disk; follows links; writes to a device or pipe directly.
-/// @throws InputError.
+/// Writes a text file atomically and flushes it to the disk. The function follows links. To a device or a pipe it
+/// writes directly. @throws InputError.
 void writeTextFile(const std::string& path, const std::string& text);
 
 /// Writes a new file atomically, with access for this user only, and flushes it to the disk. The new file replaces any

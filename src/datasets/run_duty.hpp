@@ -60,7 +60,7 @@ class TrapezoidWaveform : public Waveform
 public:
   static constexpr double SHORTEST = 1e-9;  ///< shortest half period of a waveform with a peak [s]
 
-  /// `slope` > 0: in the quantity's unit per second; `hold` and `pause` [s].
+  /// `slope`, > 0, is in the quantity's unit per second; `hold` and `pause` are in [s].
   TrapezoidWaveform(double peak, double slope, double hold, double pause);
   double value(double time) const override;
   double slope(double time) const override;

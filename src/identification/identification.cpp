@@ -149,7 +149,7 @@ void storeInertia(const FrictionFit& fit, bool load_recorded, Identification& re
   result.values.push_back(found);
 }
 
-/// Stores the results of the friction fit as parameters of the twin, and with their intervals.
+/// Stores the results of the friction fit as parameters of the twin, and as values with intervals.
 void storeFriction(const FrictionFit& fit, bool load_recorded, Identification& result)
 {
   const auto add = [&](FrictionFit::Quantity quantity, const char* name, const char* key, const char* unit,

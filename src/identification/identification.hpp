@@ -15,11 +15,11 @@ namespace hjt
 struct IdentifiedValue
 {
   std::string name;
-  std::string key;  ///< key of the parameter; empty: the twin has no parameter for it
+  std::string key;  ///< key of the twin's parameter; empty if the twin has none
   std::string unit;
   double configured{};    ///< configured value
   double value{};         ///< identified value, or the configured value if there is a `refusal`
-  double half_width{};    ///< half width of the 95 % confidence interval; 0 if refused
+  double half_width{};    ///< half width of the 95 % confidence interval; 0 if the value is refused
   std::string refusal{};  ///< why the value was not identified; empty if it was identified
 };
 

@@ -26,7 +26,8 @@ struct Channel
   double PublishParameters::*rate;     ///< rate of the messages [Hz]; divides solver.rate
   std::size_t slots;                   ///< number of messages that can wait for the thread that publishes them
   Message (*make)(const Parameters&);  ///< makes a message with its names and arrays
-  /// Fills the message at the twin's present instant, without allocation or exception. @returns false for no message.
+  /// Fills the message at the twin's present instant, without allocation or exception. @returns false if there is
+  /// nothing to publish.
   bool (*fill)(Twin&, const SinceMessage&, Message&);
   bool of_signals{};  ///< whether the twin must watch its signals for this topic
   bool summarises{};  ///< whether `fill` gets the ranges of the signals since the last message

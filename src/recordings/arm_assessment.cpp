@@ -127,7 +127,7 @@ ArmAssessment pass(const ArmRecording& recording, const AssessmentSettings& sett
 }
 
 /// Adds the name of another shipped arm with the same joints to the misfits, if that arm explains the recording so much
-/// better that it contradicts the given arm. An arm in a file of the user's own is not doubted.
+/// better that it contradicts the given arm. If the given arm is a file of the user's own, no name is added.
 void nameOther(const ArmRecording& recording, std::vector<Misfit>& misfits)
 {
   if (!mayBeOtherArm(misfits))

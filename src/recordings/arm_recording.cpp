@@ -39,7 +39,6 @@ Parameters parametersOf(const ArmJoint& joint, double gain, const RecordingOptio
   return parameters;
 }
 
-/// Makes an arm that has one joint.
 ArmDescription armOf(const std::string& short_name)
 {
   ArmDescription arm;

@@ -142,7 +142,6 @@ void addErrors(const ArmRow& row, const ArmTwin& twin, ArmRun& run)
   run.tool_error.add(std::hypot(tool[0] - wanted[0], tool[1] - wanted[1], tool[2] - wanted[2]));
 }
 
-/// Description of the run, for a file with labels.
 RunSpec specOf(const ArmRunOptions& options, ArmDescription arm, std::vector<Parameters> drives,
                const ArmMotion& motion)
 {

@@ -27,8 +27,8 @@ struct ArmRunOptions : ConfigurationOptions
 {
   std::string motion;                   ///< file of set points, as readSetPoints reads it
   std::vector<ArmSetPoint> set_points;  ///< set points in memory; empty: the set points of the file count
-  std::string arm;                      ///< name in config/arms, or a file
-  std::string identified;               ///< directory of overlays, SHORT_NAME.yaml; empty: none
+  std::string arm;                      ///< name of an arm in config/arms, or path of its file
+  std::string identified;               ///< directory of overlays, SHORT_NAME.yaml; empty: no overlays
   std::string out;                      ///< file that gets every row: CSV, bag or HDF5, by its ending; empty: no file
   std::optional<double> rate;           ///< rate of the rows [Hz]; none: that of the arm's states
   bool force{};                         ///< whether existing files are overwritten
@@ -63,7 +63,6 @@ struct ArmRunJoint
   Rms current;            ///< current of the motor [A]
 };
 
-/// Protective stop of the simulated arm.
 struct ArmRunStop
 {
   double time{};      ///< time of the stop since the start of the motion [s]

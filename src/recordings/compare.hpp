@@ -35,7 +35,7 @@ struct ContentLine
   bool found{};
 };
 
-/// Topics or columns and joints of a recording.
+/// What a recording contains: topics or columns, and joints.
 struct RecordingContents
 {
   std::vector<ContentLine> lines;

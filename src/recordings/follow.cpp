@@ -258,7 +258,7 @@ private:
     {
       bag_->offer(number_, now, tracker_);
     }
-    // The column holds the load as a controller counts it, also if the load is computed from the arm.
+    // The column holds the load as a controller counts it, with a part of the motor's inertia.
     now.load_torque += has_arm_load_ ? motor_part : 0.0;
     current_.add(now.current.measured);
     residual_.add(now.current.residual());

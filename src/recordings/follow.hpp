@@ -32,7 +32,7 @@ struct FollowedJoint
   std::string name;  ///< short name of the joint
   TrackerCounters counters;
   StreamTimingReport timing;
-  std::optional<double> lag;       ///< delay of the measurement behind its prediction [s]
+  std::optional<double> lag;       ///< delay of the measurement relative to its prediction [s]
   double current_rms{};            ///< measured current, rms [A]
   double current_residual_rms{};   ///< residual of the current, rms [A]
   double velocity_residual_rms{};  ///< residual of the speed, rms [rad/s]

@@ -10,7 +10,6 @@
 
 namespace hjt
 {
-/// Identified gains of a joint's controller.
 struct IdentifiedController
 {
   std::string name;  ///< short name of the joint

@@ -32,7 +32,6 @@ struct UnreadRecording
   std::string why;
 };
 
-/// Assessed windows of all recordings.
 struct AssessedWindows
 {
   std::vector<WindowResult> windows;    ///< none if the program was stopped before the first window

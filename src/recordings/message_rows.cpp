@@ -17,7 +17,7 @@ namespace
 {
 constexpr double CLOCK_STEP = 1.0;  // largest difference between the delays of neighbouring messages [s]
 
-/// Whether the efforts of all `names` are exactly zero, or for a single name, all of its values.
+/// Whether the efforts of all `names` are exactly zero. For a single name, all of its values must be zero.
 bool isWithoutEffort(const sensor_msgs::JointState& message, const std::vector<std::string>& names)
 {
   const auto is_zero = [&](const std::vector<double>& values, const std::string& name)
@@ -39,7 +39,7 @@ bool isVoid(const MotionRow& row)
 }
 
 /// Whether a joint's values, or the angles of all joints, changed to exactly zero, as from a source without values. A
-/// joint whose angle does not jump has come to rest at zero, perhaps without a load, as a wrist of a twin.
+/// joint whose angle does not jump has come to rest at zero, perhaps without a load, like a wrist of a twin.
 bool isVoidAfter(const std::vector<MotionRow>& before, const std::vector<MotionRow>& rows)
 {
   constexpr std::size_t MANY = 3;

@@ -181,7 +181,7 @@ public:
 private:
   // Least distance between rows of different sources: larger than the noise of an angle [rad].
   static constexpr double LEAST_STEP = 5e-3;
-  // Least such distance as a share of the sum of the joints' ranges, because angles may be in degrees [-].
+  // Least distance between rows of two sources over the sum of the joints' ranges [-]. Angles may be in degrees.
   static constexpr double LEAST_OF_RANGE = 1e-3;
   static constexpr double GROWN = 5.0;
   static constexpr double NEARER = 0.3;  // largest ratio of a near to a far distance [-]

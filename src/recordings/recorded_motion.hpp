@@ -51,14 +51,13 @@ struct MotionCount
   Stamp start{};            ///< stamp of the first row [ns]
   double least_delay{};     ///< shortest time from the stamp of a message to its recording [s]
   double most_delay{};      ///< longest time from the stamp of a message to its recording [s]
-  std::uint64_t refused_temperatures{};  ///< temperatures that are not finite or that no drive can have
+  std::uint64_t refused_temperatures{};  ///< number of temperatures that are not finite or impossible
   /// Factor between the first joint's angle rates, by the stamps, and its recorded velocities: 1 if both agree [-]. NaN
   /// if it is not known.
   double velocity_ratio{ std::numeric_limits<double>::quiet_NaN() };
   std::vector<std::string> remarks;  ///< clauses on repaired or omitted data, without a full stop
   Misfit misfit;                     ///< why no joint can be judged; empty if joints can be judged
 
-  /// Adds a remark, unless it is empty.
   void remark(const std::string& text)
   {
     if (!text.empty())
@@ -71,9 +70,9 @@ struct MotionCount
 /// Counts and remarks from reading a recording, and counts of the rows after differentiation.
 struct MotionFindings : MotionCount
 {
-  std::uint64_t refused{};  ///< number of rows that are repeated or out of order
+  std::uint64_t refused{};  ///< number of rows that were refused, because they are repeated or out of order
   std::uint64_t gaps{};     ///< number of gaps longer than MotionDifferentiator::MAX_GAP
-  bool has_load{};          ///< whether the recording gives the load
+  bool has_load{};          ///< whether the recording contains the load
 };
 
 inline bool isCsv(const MotionSource& source)

@@ -57,7 +57,8 @@ public:
   std::string doubt() const
   {
     constexpr double TURN = 2.0 * M_PI;  // least motion of the motor at which its speed is more than noise [rad]
-    // Least ratio of angle by speed to recorded angle [-]. A wrong unit of speed causes less, milliseconds more.
+    // Least ratio of the angle that follows from speed and time to the recorded angle [-]. A wrong unit of the speed
+    // causes a smaller ratio, times in milliseconds a larger one.
     constexpr double FACTOR = 100.0;
     if (2 * rare_ > steps_)
     {
@@ -235,7 +236,6 @@ void readColumns(const std::string& place, Columns columns, const SignalSource& 
   }
 }
 
-/// Reads a run of a data set.
 void readRun(const std::string& path, const SignalSource& source, const Take& take)
 {
   const ColumnChoice& torque = CHOICES[MOTOR_TORQUE];

@@ -18,7 +18,7 @@ namespace hjt
 {
 namespace
 {
-// Of Indicators.msg before it had errors.
+// MD5 sum of Indicators.msg in versions without the field `errors`.
 constexpr const char* MD5_WITHOUT_ERRORS = "091d07ef25dd2e390a74058313d996a8";
 
 bool isRun(const std::string& recording)

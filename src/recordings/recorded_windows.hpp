@@ -11,7 +11,6 @@
 
 namespace hjt
 {
-/// Parameters for a recording.
 struct RecordingParameters
 {
   /// The default configuration, overridden by the parameters of the run, if there are any, and then by the options.

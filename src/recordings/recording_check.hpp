@@ -55,7 +55,7 @@ struct CheckedArm
   std::vector<std::string> fitting;         ///< arms of the configuration whose joints the recording has
   std::vector<ArmFit> ranked;               ///< the fitting arms, the best one first; empty if the options name the arm
   std::string taken;                        ///< arm that the joints are judged with; empty: no arm
-  std::vector<std::string> missing;         ///< joints of the arm without angle or effort
+  std::vector<std::string> missing;         ///< names of the arm's joints without angle or effort
   std::vector<std::string> joints_at_hand;  ///< names of joints that are read without an arm
   MotionFindings found;
   StreamTimingReport timing;
@@ -69,7 +69,7 @@ struct CheckedArm
   std::vector<CheckedJoint> joints;
   std::vector<TriedRemedy> tried;
 
-  bool isUsable() const;  ///< whether a joint is judged
+  bool isUsable() const;  ///< whether at least one joint is judged
   /// Ranked arms, other than the chosen one, that do not explain the currents clearly worse than the chosen arm.
   std::vector<std::string> alike() const;
 };

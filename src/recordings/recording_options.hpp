@@ -25,7 +25,7 @@ struct RecordingOptions : ConfigurationOptions
 {
   std::string recording;            ///< bag, .db3, .mcap, directory of ROS 2, or a controller's CSV file
   std::string joint;                ///< short name, such as base or shoulder, or the name in the messages
-  std::string arm;                  ///< name in config/arms, or a file; empty: one joint
+  std::string arm;                  ///< name of an arm in config/arms, or path of its file; empty: one joint
   std::string load{ LOAD_OF_ARM };  ///< load of an arm's joints: LOAD_OF_ARM or LOAD_RECORDED
   std::string identified;           ///< directory of overlays, SHORT_NAME.yaml; empty: no overlays
   std::string joint_namespace{ DEFAULT_NAMESPACE };  ///< namespace of the twin's topics
@@ -48,11 +48,10 @@ void addRecordingOption(OptionTable& table, RecordingOptions& options);
 void addJointOptions(OptionTable& table, RecordingOptions& options);
 void addNamespaceOption(OptionTable& table, std::string& joint_namespace);
 
-/// A joint of UR's robots.
 struct UrJoint
 {
-  int number{};      ///< number in the columns of a controller's recording, 0 to 5
-  std::string name;  ///< name in the messages of UR's driver
+  int number{};      ///< number of the joint in the columns of a controller's recording, 0 to 5
+  std::string name;  ///< name of the joint in the messages of UR's driver
 };
 
 /// Finds a joint by short name ("elbow"), name in the messages or number; none if it is not a joint of UR's robots.

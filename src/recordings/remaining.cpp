@@ -139,7 +139,7 @@ struct Condition
     seen_from = assessment.level == HealthLevel::OK ? std::make_optional(seenFrom(assessor, point)) : std::nullopt;
   }
 
-  Assessment assessment;  // last assessment that supersedes the earlier ones; its state is WAITING if there is none
+  Assessment assessment;  // latest assessment of a window that was compared; its state is WAITING if there is none
   std::optional<SeenFrom> seen_from;
   ReadWear read;
 };
@@ -154,8 +154,8 @@ double hoursOf(const RemainingOptions& options, std::size_t recording, const Usa
   return options.hours[options.hours.size() > 1 ? recording : 0];
 }
 
-/// Reads the drive's use from the recordings, unless the options have a duty cycle. With a reference, also reads wear
-/// and the assessment that counts. @throws InputError if there is a reference, but no recording can be judged.
+/// Reads the drive's use from the recordings, unless the options have a duty cycle. With a reference, also reads the
+/// wear and the latest assessment. @throws InputError if there is a reference, but no recording can be judged.
 Condition readRecordings(const RemainingOptions& options, Assessor& assessor, UsageHistory& use)
 {
   const bool is_assessed = !options.baseline.empty();

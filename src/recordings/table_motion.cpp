@@ -175,7 +175,7 @@ struct CurrentsSeen
   /// joint.
   bool has_any{};
   std::array<bool, COUNT>
-      is_silent{};  ///< the joint's effort is never a number, while the efforts of other joints are numbers
+      is_silent{};  ///< whether the joint's effort is never a number, while the efforts of other joints are numbers
 };
 
 template <std::size_t COUNT>

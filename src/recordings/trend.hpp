@@ -52,7 +52,7 @@ struct Trend
   bool is_arm{};
   bool has_dates{};  ///< whether all readable recordings have a date; if not, their order replaces the time
   std::vector<DatedRecording> recordings;  ///< recordings by date, unreadable ones last; none if stopped
-  std::vector<JointTrend> joints;          ///< joints from the base on
+  std::vector<JointTrend> joints;          ///< trends of the joints, from the base on
   std::optional<std::size_t> latest;       ///< number of the last recording that was judged
   std::string level;
   std::string text;          ///< sentences on the trends and the latest recording
@@ -69,13 +69,13 @@ struct Trend
 /// @throws ParameterError, InputError if no recording can be read, or a file cannot be written.
 Trend trend(const TrendOptions& options);
 
-/// A date in UTC, here for people: "2026-01-31 08:15". isoDate gives "2026-01-31T08:15:00Z".
+/// Text of a date in UTC: "2026-01-31 08:15" for people, and "2026-01-31T08:15:00Z" from isoDate.
 std::string dateText(Stamp date);
 std::string isoDate(Stamp date);
 
 constexpr const char* TREND_FILE = "trend.json";
 
-/// Time in hours for which the report states a slope: 1000 h. Without dates, one recording.
+/// Time to which the slope in a report refers: 1000 h, or the step to the next recording if there are no dates.
 double trendUnit(const Trend& trend);
 const char* trendUnitText(const Trend& trend);  ///< unit of a slope in words, for example "per 1000 h"
 
@@ -87,6 +87,5 @@ std::string csvOf(const Trend& trend);
 /// Table for people, with a row for each recording and a column for each joint.
 Table recordingsOf(const Trend& trend);
 
-/// Table with a row for each joint.
 Table jointsOf(const Trend& trend);
 }  // namespace hjt

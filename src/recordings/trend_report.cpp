@@ -95,7 +95,7 @@ std::vector<Column<DatedRecording>> fieldsOf(std::size_t i, const std::string& b
              ofJoint(i, [](const ComparedJoint& joint) { return joint.temperature_source; }) } };
 }
 
-/// Columns for the fields of a recording as a whole.
+/// Columns for the values of a whole recording, apart from those of its joints.
 std::vector<Column<DatedRecording>> wholeFields()
 {
   return { { "recording", &DatedRecording::path },
