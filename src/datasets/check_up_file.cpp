@@ -114,7 +114,7 @@ void writeTrajectory(const std::string& path, const ArmDescription& arm, const s
 
 void addOptions(OptionTable& table, CheckUpOptions& options)
 {
-  table.add("--arm", options.arm, "name in config/arms, or a file").required().type("NAME|FILE.yaml");
+  table.add("--arm", options.arm, "name of an arm in config/arms, or a file").required().type("NAME|FILE.yaml");
   table
       .add("--joint", options.joint,
            "a single joint, for example base or shoulder; default: all joints, one after the other")

@@ -77,7 +77,7 @@ std::string lackText(const std::vector<std::string>& joints, const std::vector<s
   for (const JointAffixes& affixes : findAffixes(joints, names))
   {
     text += "; with" + (affixes.prefix.empty() ? std::string() : " prefix " + affixes.prefix) +
-            (affixes.suffix.empty() ? std::string() : " suffix " + affixes.suffix) + " all of them are found";
+            (affixes.suffix.empty() ? std::string() : " suffix " + affixes.suffix) + " all joints are found";
   }
   return text;
 }

@@ -207,13 +207,13 @@ void addOptions(OptionTable& table, ArmRunOptions& options)
            "target_q_0 ..., optional target_qd_0 ..., target_qdd_0 ...; or a YAML program of moves")
       .required()
       .type("FILE.csv|FILE.yaml");
-  table.add("--arm", options.arm, "name in config/arms, or a file").required().type("NAME|FILE.yaml");
+  table.add("--arm", options.arm, "name of an arm in config/arms, or a file").required().type("NAME|FILE.yaml");
   table.add("--identified", options.identified, "overlays of the joints, as `joint_twin identify --arm` writes them")
       .type("DIR")
       .existingDirectory();
   table
       .add("--out", options.out,
-           "targets and actual angles, speeds, currents in a controller's columns, and the tool's position [m]; .bag: "
+           "every row; CSV: targets and actual values in a controller's columns, and the tool's position [m]; .bag: "
            "/joint_states as the arm's driver publishes it; .h5: as a run of `joint_twin sweep`")
       .type("FILE.csv|FILE.bag|FILE.h5");
   table.add("--rate", options.rate, "rate of the rows [Hz]; default: the rate of the arm's states")

@@ -208,7 +208,7 @@ std::string foreignTable(const std::vector<std::string>& header)
 {
   if (std::any_of(header.begin(), header.end(), [](const std::string& name) { return beginsWith(name, "field."); }))
   {
-    return "it is a table of `rostopic echo -p`, which lacks the joints' names and the unit of the time; give "
+    return "it is a table of `rostopic echo -p`, in which joint names and the unit of the time are unclear; give "
            "the bag itself, or record one: `rosbag record /joint_states`";
   }
   if (holds(header, "header.seq") || holds(header, "header.stamp.secs") || holds(header, "header.stamp.sec"))

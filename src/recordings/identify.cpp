@@ -178,12 +178,12 @@ void identifyJoint(const IdentifyOptions& options, const Parameters& parameters,
     for (RippleLine& line : joint.found.lines)
     {
       line.torque = {};
-      line.refusal = "with this ripple the twin does not predict pieces that the fit did not use better than without";
+      line.refusal = "this ripple does not improve the prediction of pieces that the fit did not use";
     }
   }
   if (is_arm && left_out.identified.all > left_out.configured.all)
   {
-    joint.refusal = "the identified parameters predict pieces that the fit did not use worse than the configured ones";
+    joint.refusal = "on pieces that the fit did not use, the identified parameters are worse than the configured ones";
   }
 }
 

@@ -65,8 +65,8 @@ public:
       return "most samples come " + numberText(RARE) + " s apart or more";
     }
     return most_ - least_ > TURN && by_angle_ > 0.0 && by_speed_ > FACTOR * by_angle_ ?
-               "by its speed and time the motor turns " + fixedText(by_speed_ / by_angle_, 0) +
-                   " times as far as by its angle" :
+               "by speed and time, the motor turns " + fixedText(by_speed_ / by_angle_, 0) +
+                   " times as far as by its recorded angle" :
                "";
   }
 
@@ -387,9 +387,9 @@ void addSignalOptions(OptionTable& table, SignalOptions& options)
             "telemetry.torque_per_current / ratio [N.m/A]");
   table
       .add("--states-topic", options.states_topic,
-           "bag: JointState messages; default: NAMESPACE/joint_states, and with --joint /joint_states")
+           "bag: topic of JointState messages; default: NAMESPACE/joint_states, and with --joint /joint_states")
       .type("TOPIC");
-  table.add("--load-topic", options.load_topic, "bag: load torque; default: NAMESPACE/load").type("TOPIC");
+  table.add("--load-topic", options.load_topic, "bag: topic of the load torque; default: NAMESPACE/load").type("TOPIC");
   addNamespaceOption(table, options.joint_namespace);
 }
 
