@@ -207,7 +207,7 @@ private:
     }
   }
 
-  /// Finds the positions of the messages in an uncompressed or compressed chunk.
+  /// Finds the positions of the messages in a chunk.
   void readChunk(const Record& record, std::string bytes)
   {
     const auto size = record.number<std::uint32_t>(rosbag::SIZE_FIELD_NAME);

@@ -6,8 +6,8 @@
 
 namespace hjt
 {
-/// FNV-1a hash with 64 bits, which distinguishes texts but does not protect against deliberate collisions. `hash` is
-/// the hash of a preceding text, which is continued.
+/// FNV-1a hash with 64 bits, which distinguishes texts but does not protect against deliberate collisions. `hash`: hash
+/// of a preceding text, to hash both texts as one.
 constexpr std::uint64_t textHash(std::string_view text, std::uint64_t hash = 14695981039346656037ull)
 {
   for (const char c : text)

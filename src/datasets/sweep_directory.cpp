@@ -152,7 +152,7 @@ void SweepDirectory::open()
   OrderedJson document{ { "format", FORMAT }, { "version", softwareVersion() } };
   document.update(plan_.snapshot());
   const std::string text = document.dump(1) + '\n';
-  // A sweep writes the plan before any run, perhaps another shard does so now. So the runs are checked before the plan.
+  // A sweep writes the plan before any run, perhaps in another shard now. So this function checks the runs first.
   const bool empty = fs::is_empty(path_ + "/runs");
   plan_file_ = ::open(name.c_str(), O_RDWR | O_CLOEXEC | (empty ? O_CREAT : 0), 0666);
   if (plan_file_ < 0)

@@ -14,7 +14,7 @@ struct ControllerRow
   double angle_error{};     ///< error of the angle [rad]
   double speed_error{};     ///< error of the speed [rad/s]
   double speed{};           ///< target speed [rad/s]
-  double rigid_current{};   ///< current of the rigid-body torque, by the gain of the motor current [A]
+  double rigid_current{};   ///< rigid-body torque divided by the torque per current [A]
   double target_current{};  ///< target current, including the current for the fed-forward friction [A]
   double current{};         ///< actual current [A]
 };

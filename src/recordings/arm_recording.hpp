@@ -24,7 +24,7 @@ struct ArmJointRow
 };
 
 /// The recording of an arm or of a single joint, and the parameters of the joints' twins. A single joint is an arm of
-/// one joint, and its load is the recorded one.
+/// one joint; its load is the recorded load if there is one.
 class ArmRecording
 {
 public:

@@ -65,14 +65,14 @@ struct ArmRunJoint
 
 struct ArmRunStop
 {
-  double time{};      ///< time of the stop since the start of the motion [s]
+  double time{};      ///< time of the stop, on the time axis of the motion [s]
   std::string joint;  ///< short name of the joint
   std::string reason;
 };
 
 struct ArmRun
 {
-  double duration{};                 ///< simulated time, including the release of the brakes at the start [s]
+  double duration{};                 ///< simulated time, including the start while the brakes hold [s]
   double wall_time{};                ///< computing time, without the time for building tables [s]
   RunErrors tool_error;              ///< error of the tool's position over the rows [m]
   double energy_residual{};          ///< energy that the drives delivered less the change of the arm's energy [J]

@@ -40,7 +40,7 @@ struct AssessedWindows
   std::vector<UnreadRecording> unread;  ///< recordings that could not be read
 };
 
-/// Severity from which each cause with signatures would have raised an alarm; null if it would have at no severity.
+/// Severity from which each fault with signatures would have raised an alarm; null for a fault without any alarm.
 Json seenFromJson(const SeenFrom& seen_from);
 
 /// Writes a CSV file with a row for each window, unless the path is empty.

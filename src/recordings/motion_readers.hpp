@@ -58,7 +58,7 @@ public:
     return time;
   }
 
-  /// Time at which the row of the last call of `at` was received, from the stamp of its reception [s].
+  /// Time at which the row that was last given to `at` was received [s]. `recorded`: stamp of the reception.
   double received(Stamp recorded) const { return offset_ + toSeconds(recorded - zero_); }
 
   std::uint64_t rounds() const { return rounds_; }

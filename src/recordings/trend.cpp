@@ -83,7 +83,7 @@ std::vector<std::string> filesOf(const std::vector<std::string>& given)
   return files;
 }
 
-/// Compares one recording. `progress` is called with the done share of this recording, 0 to 1.
+/// Compares one recording. `progress` is called with the share of this recording that is done, 0 to 1.
 DatedRecording readRecording(const ComparisonOptions& all, const std::string& path,
                              const std::function<void(double)>& progress)
 {

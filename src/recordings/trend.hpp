@@ -75,7 +75,7 @@ std::string isoDate(Stamp date);
 
 constexpr const char* TREND_FILE = "trend.json";
 
-/// Time to which the slope in a report refers: 1000 h, or the step to the next recording if there are no dates.
+/// Time to which a slope in the report refers: 1000 [h], or 1 recording if the recordings have no dates.
 double trendUnit(const Trend& trend);
 const char* trendUnitText(const Trend& trend);  ///< unit of a slope in words, for example "per 1000 h"
 
