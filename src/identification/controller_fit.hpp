@@ -38,13 +38,13 @@ struct ControllerFit
 ///
 ///   i - i_rigid = a e(t - lag) + b de(t - lag) + c integral e + d sign v + f v + g i_rigid
 ///
-/// with i the actual current, i_rigid that of the rigid-body torque, e and de the errors of angle and speed, and v the
-/// target speed. A moving mean over a second is subtracted from each term. The lag with the smallest residual counts.
-/// With k_v = b K and K the torque per current, a / b = k_p + 1 / T_i of ArmController. Slow motion does not separate
-/// the integral from friction. So T_i is that of `usual`, or 2 b / a if a / b is less than 2 / T_i. The fed-forward
-/// friction is the target current minus i_rigid. The fit excludes a quarter of a second before and after each jump of
-/// the target speed and each current at the `feedback_limit` (ArmJoint). There the control is not linear, and large
-/// errors would dominate the fit. `period`: time between two rows [s].
+/// with a to g the fitted coefficients, i the actual current, i_rigid that of the rigid-body torque, e and de the
+/// errors of angle and speed, and v the target speed. A moving mean over a second is subtracted from each term. The lag
+/// with the smallest residual counts. With k_v = b K and K the torque per current, a / b = k_p + 1 / T_i of
+/// ArmController. Slow motion does not separate the integral from friction. So T_i is that of `usual`, or 2 b / a if a
+/// / b is less than 2 / T_i. The fed-forward friction is the target current minus i_rigid. The fit excludes a quarter
+/// of a second before and after each jump of the target speed and each current at the `feedback_limit` (ArmJoint).
+/// There the control is not linear, and large errors would dominate. `period`: time between two rows [s].
 ControllerFit fitController(const std::vector<ControllerRow>& rows, double period, double torque_per_current,
                             const JointGains& usual, double feedback_limit);
 }  // namespace hjt

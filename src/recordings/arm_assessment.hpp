@@ -80,8 +80,7 @@ struct ArmAssessment
 
 struct AssessmentSettings
 {
-  /// Makes the joint with a number. The function is called for each reading of the recording. Null: a plain
-  /// AssessedJoint.
+  /// Makes the joint with a number. It is called for each reading of the recording. Null: a plain AssessedJoint.
   std::function<std::unique_ptr<AssessedJoint>(std::size_t)> make_joint;
   bool beside_controller{ true };  ///< whether the friction that the controller expects may be the reference
   /// Whether another shipped arm that explains the recording clearly better prevents verdicts.
