@@ -15,8 +15,8 @@ namespace fs = std::filesystem;
 
 namespace
 {
-/// The file that `file` is a link to, if both are in one directory: `file` is then another name of that arm. None if
-/// `file` is no such link.
+/// Returns the file that the link `file` leads to, if both are in one directory: `file` is then another name of that
+/// arm. Returns none if `file` is not such a link.
 std::optional<fs::path> namesakeOf(const fs::path& file)
 {
   std::error_code error;
@@ -49,7 +49,7 @@ std::string findArm(const std::string& name, const fs::path& directory)
 std::vector<fs::path> armFiles(const fs::path& directory)
 {
   std::vector<fs::path> files;
-  std::error_code error;  // the user's own configuration may have no arms
+  std::error_code error;  // prevents an exception if `directory` has no folder arms
   for (const fs::directory_entry& entry : fs::directory_iterator(directory / "arms", error))
   {
     if (entry.path().extension() == ".yaml" && !namesakeOf(entry.path()))
@@ -180,8 +180,8 @@ std::vector<std::string> driverNames(const ArmDescription& arm)
 
 void giveOwnSeeds(std::vector<Parameters>& drives)
 {
-  constexpr int SEEDS = 100'000;                   // range of the parameter pitch seed
-  constexpr std::int64_t NOISE_SEEDS = 1LL << 31;  // range of the parameter noise_seed
+  constexpr int SEEDS = 100'000;                   // number of values of the parameter pitch seed
+  constexpr std::int64_t NOISE_SEEDS = 1LL << 31;  // number of values of the parameter noise_seed
   for (std::size_t i = 0; i < drives.size(); ++i)
   {
     int& noise = drives[i].sensors.noise_seed;
@@ -189,7 +189,8 @@ void giveOwnSeeds(std::vector<Parameters>& drives)
     ManufactureParameters& errors = drives[i].manufacture;
     for (PitchParameters* pitch : { &errors.flexspline_pitch, &errors.circular_spline_pitch })
     {
-      // Without a deviation the seed does not change the gear, and equal joints can share a table.
+      // Without a pitch deviation the seed does not change the gear. The seed then stays, so that equal joints can
+      // share a response surface.
       if (pitch->deviation > 0.0)
       {
         pitch->seed = (pitch->seed + 2 * static_cast<int>(i)) % SEEDS;

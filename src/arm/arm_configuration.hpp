@@ -14,17 +14,17 @@
 
 namespace hjt
 {
-/// The main name of a shipped arm that has several names: the one that armsLike() gives. Other names are returned as
-/// they are.
+/// Returns the main name of a shipped arm that has several names. The main name is the one that armsLike() returns.
+/// Returns any other name unchanged.
 std::string mainName(const std::string& name, const std::filesystem::path& directory);
 
-/// The file of an arm: `name` itself if it is a file, else arms/NAME.yaml in the directory of the default
+/// Returns the file of an arm: `name` itself if it is a file, otherwise arms/NAME.yaml in the directory of the default
 /// configuration.
 /// @throws ParameterError if neither file exists.
 std::string findArm(const std::string& name, const std::filesystem::path& directory);
 
-/// The files of the arms in a directory of configurations, sorted by name. Further names of an arm, which are links
-/// beside its file, are not in the list.
+/// Files of the arms in a directory of configurations, sorted by name. The list has no links beside an arm's file,
+/// which are further names of this arm.
 std::vector<std::filesystem::path> armFiles(const std::filesystem::path& directory);
 
 /// The names of the joints, from the base on.
@@ -37,47 +37,47 @@ std::vector<std::string> armsLike(const ArmDescription& arm, const std::filesyst
 /// Number of the joint that has this name or short name; none if the arm has no such joint.
 std::optional<std::size_t> findJoint(const ArmDescription& arm, const std::string& name);
 
-/// Short names of the joints, for error texts.
+/// Short names of the joints, as a list for error texts.
 std::string shortNames(const ArmDescription& arm);
 
-/// Parameters of the drive of a joint: the default configuration, over it the joint's overlays and parameters, and over
-/// them the file SHORT_NAME.yaml of the directory `identified`, if that is not empty. The load of the drive is that of
-/// the arm. @throws ParameterError.
+/// Parameters of the drive of a joint. The default configuration comes first. The joint's overlays and parameters
+/// replace its values. The file SHORT_NAME.yaml of the directory `identified`, if this is not empty, replaces values
+/// last. The load of the drive comes from the arm. @throws ParameterError.
 ParameterMap armJointParameters(const ArmJoint& joint, const std::filesystem::path& directory,
                                 const std::string& identified);
 
-/// As armJointParameters, for a drive that turns in a closed loop. The currents of a recording can show a rotor's
-/// inertia that is too small: an identified inertia below the configured one is ignored. @throws ParameterError.
+/// armJointParameters() for a drive in a closed loop: ignores an identified inertia below the configured one, because
+/// the currents of a recording can show too small an inertia of the rotor. @throws ParameterError.
 ParameterMap armDriveParameters(const ArmJoint& joint, const std::filesystem::path& directory,
                                 const std::string& identified);
 
-/// The parameters of all drives of the arm. solver.scene is `auto` unless the joint's files or the options set it.
+/// Parameters of all drives of the arm. solver.scene is `auto` unless the joint's files or the options set it.
 std::vector<ParameterMap> armDriveMaps(const ArmDescription& arm, const ConfigurationOptions& options,
                                        const std::string& identified);
 
-/// Gives the joints the gains of the arm's controller, if the directory `identified` has a file of them. An empty name
-/// is no directory. @throws ParameterError.
+/// Gives the joints the gains of the arm's controller, if the directory `identified` holds a file of gains. An empty
+/// `identified` means that there is no directory. @throws ParameterError.
 void addIdentifiedGains(const std::string& identified, ArmDescription& arm);
 constexpr const char* GAINS_FILE = "controller.yaml";
 
-/// Numbers of the joints in the order in which UR's driver publishes their states: sorted by name.
+/// Numbers of the joints in the order in which UR's driver publishes them, by name.
 std::vector<std::size_t> driverOrder(const ArmDescription& arm);
 std::vector<std::string> driverNames(const ArmDescription& arm);
 
-/// Makes the drives of an arm differ, as drives of one series do. The seeds of a joint's pitch deviations are raised by
-/// twice the joint's number from the base on, and the seed of its sensors' noise by that number.
+/// Gives each drive of an arm its own seeds, as drives of one series differ. The seeds of a joint's pitch deviations
+/// grow by twice the joint's number, counted from the base. The seed of its sensors' noise grows by this number.
 void giveOwnSeeds(std::vector<Parameters>& drives);
 
 /// Adds faults to the drives. A fault is written JOINT:KIND:SEVERITY[:PLACE[:ONSET]], where JOINT is the name or the
 /// short name of a joint. @throws ParameterError naming the fault.
 void addArmFaults(const ArmDescription& arm, const std::vector<std::string>& faults, std::vector<Parameters>& drives);
 
-/// Parameters of the drives of all joints, with seeds of their own and with `faults`. @throws ParameterError.
+/// Parameters of the drives of all joints, with different seeds and with `faults`. @throws ParameterError.
 std::vector<Parameters> armDrives(const ArmDescription& arm, const ConfigurationOptions& options,
                                   const std::string& identified, const std::vector<std::string>& faults);
 
-/// Sets telemetry.inertia_in_load of a drive to 0, for a load that is computed from the links alone. Returns the
-/// inertia that was set there, seen from the joint [kg.m^2].
+/// Sets telemetry.inertia_in_load of a drive to 0, because a load that is computed from the links contains no inertia
+/// of the motor. Returns the inertia that was set before, at the joint [kg.m^2].
 inline double takeInertiaInLoad(Parameters& parameters)
 {
   const double ratio = nominalRatio(parameters.gear);

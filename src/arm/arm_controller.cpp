@@ -26,7 +26,7 @@ double ArmController::motorInertia(const Parameters& drive)
 
 JointGains ArmController::defaultGains(const Parameters& drive)
 {
-  constexpr double SPEED_BANDWIDTH = 25.0;  // bandwidth with the motor's inertia alone [Hz]
+  constexpr double SPEED_BANDWIDTH = 25.0;  // bandwidth of the speed control if the motor has no load [Hz]
   JointGains gains;
   gains.position = 20.0;
   gains.speed = TWO_PI * SPEED_BANDWIDTH * motorInertia(drive);
@@ -82,7 +82,8 @@ double ArmController::speed(const ArmTwin& twin, std::size_t joint) const noexce
   return twin.stamp() == controlled_ ? before_[joint] : speed_[joint];
 }
 
-/// Puts the set point into the delay lines of the joints. The first set point after a reset fills the lines.
+/// Puts the set point into the delay lines of the joints. The first set point after a reset fills all places of the
+/// lines.
 void ArmController::take(const ArmTwin& twin, const std::vector<JointMotion>& set_point) noexcept
 {
   dynamics_.torques(set_point, rigid_);
@@ -104,7 +105,7 @@ void ArmController::take(const ArmTwin& twin, const std::vector<JointMotion>& se
   }
 }
 
-/// The set point of `periods` before now, interpolated linearly.
+/// The set point of a joint that is `periods` of the control old, by linear interpolation.
 ArmController::Wanted ArmController::delayed(std::size_t joint, double periods) const noexcept
 {
   const std::vector<Wanted>& line = line_[joint];

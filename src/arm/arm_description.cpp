@@ -21,7 +21,7 @@ namespace hjt
 {
 namespace
 {
-constexpr double LARGEST_ANGLE = 6.283185307179586;  // a turn either way, as the joints of UR's arms have [rad]
+constexpr double LARGEST_ANGLE = 6.283185307179586;  // one turn to each side, the range of a UR's joints [rad]
 
 /// Whether the map has `key` or a key below it.
 bool holds(const ParameterMap& map, const std::string& key)
@@ -30,7 +30,7 @@ bool holds(const ParameterMap& map, const std::string& key)
   return map.count(key) != 0 || (below != map.end() && below->first.rfind(key + ".", 0) == 0);
 }
 
-/// Moves the entries below `key` out of the map. Their new keys lack the prefix `key`.
+/// Moves the entries below `key` from the map to the result. Their keys in the result lack the prefix `key`.
 ParameterMap takeBelow(ParameterMap& map, const std::string& key)
 {
   const std::string prefix = key + ".";
@@ -43,7 +43,7 @@ ParameterMap takeBelow(ParameterMap& map, const std::string& key)
   return taken;
 }
 
-/// Whether ROS allows the name, which is neither a path nor anonymous.
+/// Whether ROS allows the name as that of a node or a namespace without a parent: letters, digits and underscores.
 bool isBaseName(const std::string& name)
 {
   const auto is_letter = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; };
@@ -55,12 +55,15 @@ bool isBaseName(const std::string& name)
 
 void readGains(const std::string& place, FieldReader& fields, JointGains& gains)
 {
-  fields(place + ".position", "1/s", gains.position, Range{ 0.0, 1e3 }, "wanted speed per error of the angle");
-  fields(place + ".speed", "N.m.s/rad", gains.speed, Range{ 0.0, 1e6 }, "torque per error of the speed");
+  fields(place + ".position", "1/s", gains.position, Range{ 0.0, 1e3 },
+         "speed that the controller demands per error of the angle");
+  fields(place + ".speed", "N.m.s/rad", gains.speed, Range{ 0.0, 1e6 },
+         "torque of the controller per error of the speed");
   fields(place + ".integral_time", "s", gains.integral_time, Range{ 1e-3, 1e6 }, "integral time of the speed control");
   fields(place + ".coulomb", "N.m", gains.coulomb, Range{ -1e4, 1e4 },
-         "constant part of the friction that is fed forward");
-  fields(place + ".viscous", "N.m.s/rad", gains.viscous, Range{ -1e4, 1e4 }, "fed-forward friction per speed");
+         "constant part of the friction that the controller feeds forward");
+  fields(place + ".viscous", "N.m.s/rad", gains.viscous, Range{ -1e4, 1e4 },
+         "friction that the controller feeds forward, per speed");
 }
 
 /// Reads the joints one after the other.
@@ -85,7 +88,7 @@ public:
       if (holds(map_, place + ".limits.feedback"))
       {
         fields_(place + ".limits.feedback", "N.m", joint.feedback_limit, Range{ 1e-3, 1e6 },
-                "greatest torque of the controller beyond what it feeds forward");
+                "largest torque that the controller adds to the torque that it feeds forward");
       }
     }
     if (holds(map_, place + ".delay"))
@@ -101,7 +104,7 @@ public:
     {
       joint.check_up.resize(joints);
       fields_(place + ".check_up", "rad", joint.check_up, Range{ -LARGEST_ANGLE, LARGEST_ANGLE },
-              "angles of all joints where its check-up begins");
+              "angles of all joints at the start of this joint's check-up");
     }
   }
 
@@ -145,7 +148,7 @@ private:
     }
   }
 
-  /// Returns true if `key` has no value of its own. A value is refused and taken out of the map.
+  /// Returns true if `key` has no value of its own. Otherwise refuses the value and removes it from the map.
   bool isMapOrNone(const std::string& key)
   {
     if (map_.count(key) == 0)
@@ -159,10 +162,10 @@ private:
 
   ParameterMap& map_;
   FieldReader& fields_;
-  std::vector<std::pair<std::string, std::string>> short_names_;  // key and name of the joints so far
+  std::vector<std::pair<std::string, std::string>> short_names_;  // key and short name of each joint read so far
 };
 
-/// Place of the '>' that ends a tag, which is not in an attribute.
+/// Position of the '>' that ends the tag. A '>' within an attribute does not end the tag.
 std::size_t endOfTag(const std::string& xml, std::size_t at)
 {
   constexpr const char* ENDS = ">\"'";
@@ -175,7 +178,7 @@ std::size_t endOfTag(const std::string& xml, std::size_t at)
   return at;
 }
 
-/// Largest depth of elements within elements. The time of an XML parser may grow with the square of the depth.
+/// Largest depth to which elements are nested. The time of an XML parser may grow with the square of the depth.
 std::size_t depthOf(const std::string& xml)
 {
   std::size_t depth = 0;
@@ -199,7 +202,8 @@ std::size_t depthOf(const std::string& xml)
   return deepest;
 }
 
-/// Collects what the URDF parser reports while this object exists. The parser skips numbers that it cannot read.
+/// Keeps the first error that the URDF parser reports while this object exists. The parser only reports numbers that it
+/// cannot read, and goes on.
 class ParserErrors : public console_bridge::OutputHandler
 {
 public:
@@ -218,10 +222,10 @@ public:
     }
   }
 
-  const std::string& first() const { return first_; }  ///< empty: none
+  const std::string& first() const { return first_; }  ///< first error; empty: no error
 
 private:
-  /// The parser's handler is one for the whole process.
+  /// The lock is needed because the whole process has one handler of the parser's reports.
   static std::mutex& mutex()
   {
     static std::mutex of_handler;
@@ -248,8 +252,8 @@ void parse(const ArmDescription& arm, urdf::Model& model, KDL::Tree& tree)
   }
 }
 
-/// Requires that each joint moves a mass, that of its own link or of one fixed to it. Without a mass the loads and
-/// limits of all joints before would be wrong. @throws ParameterError.
+/// Requires that each joint moves a mass, on its own link or on a link that is fixed to it. Otherwise the loads and
+/// limits of all joints nearer to the base would be wrong. @throws ParameterError.
 void requireMasses(const ArmDescription& arm, const KDL::Chain& chain)
 {
   const KDL::Segment* moved = nullptr;
@@ -285,7 +289,7 @@ Range angleRange(const urdf::Model& model, const std::string& joint)
   return is_limited ? Range{ found->limits->lower, found->limits->upper } : ArmJoint{}.angles;
 }
 
-/// @throws ParameterError if no robot can have such a link or such a place of a link.
+/// @throws ParameterError if no robot can have a link of this mass, inertia or size.
 void requirePlausible(const ArmDescription& arm, const KDL::Segment& segment)
 {
   const KDL::Joint& joint = segment.getJoint();
@@ -297,7 +301,7 @@ void requirePlausible(const ArmDescription& arm, const KDL::Segment& segment)
                            "': " + what);
     }
   };
-  // The comparisons are written so that NaN fails.
+  // The comparisons are false for NaN, so the function refuses NaN.
   const auto require_range = [&](const char* what, double value, const char* unit, const Range& range)
   {
     require(value >= range.min && value <= range.max, std::string(what) + " = " + numberText(value) + " [" + unit +
@@ -307,7 +311,7 @@ void requirePlausible(const ArmDescription& arm, const KDL::Segment& segment)
   const KDL::Vector axis = joint.JointAxis();
   require(joint.getType() == KDL::Joint::None || std::abs(KDL::dot(axis, axis) - 1.0) < 1e-6,
           "its axis has no direction");
-  KDL::RigidBodyInertia body = segment.getInertia();  // RefPoint() is not const
+  KDL::RigidBodyInertia body = segment.getInertia();  // a copy, because RefPoint() is not const
   const KDL::RotationalInertia inertia = body.RefPoint(body.getCOG()).getRotationalInertia();
   require_range("mass", body.getMass(), "kg", Range{ 0.0, 1e4 });
   for (int i = 0; i < 3; ++i)
@@ -322,14 +326,14 @@ void requirePlausible(const ArmDescription& arm, const KDL::Segment& segment)
   }
 }
 
-/// The chain of the arm's links, which are checked. The joints get their ranges.
+/// Checks the links of the arm, sets the ranges of the joints' angles, and returns the chain of the links.
 KDL::Chain chainOf(ArmDescription& arm)
 {
   constexpr std::size_t MAX_DEPTH = 100;
   if (depthOf(arm.urdf) > MAX_DEPTH)
   {
     throw ParameterError(arm.origin + ": its URDF has more than " + std::to_string(MAX_DEPTH) +
-                         " elements within each other");
+                         " levels of nested elements");
   }
   urdf::Model model;
   KDL::Tree tree;
@@ -373,7 +377,7 @@ ArmLink linkOf(const KDL::Segment& segment)
 {
   const KDL::Joint& joint = segment.getJoint();
   const KDL::Frame frame = segment.getFrameToTip();
-  KDL::RigidBodyInertia body = segment.getInertia();  // RefPoint() is not const
+  KDL::RigidBodyInertia body = segment.getInertia();  // a copy, because RefPoint() is not const
   const KDL::RotationalInertia inertia = body.RefPoint(body.getCOG()).getRotationalInertia();
   ArmLink link;
   switch (joint.getType())
@@ -408,7 +412,7 @@ ArmLink linkOf(const KDL::Segment& segment)
 
 std::string payloadErrors(const Payload& payload)
 {
-  // The comparisons are written so that NaN is outside of every range.
+  // The comparisons are false for NaN, so NaN is outside of every range.
   const auto is_within = [](double value, const Range& range) { return value >= range.min && value <= range.max; };
   if (!is_within(payload.mass, PAYLOAD_MASS))
   {
@@ -434,7 +438,7 @@ ArmDescription readArmDescription(const std::string& path)
   fields("description", description, "URDF beside the file");
   fields("base", arm.base, "link that stands still");
   fields("tip", arm.tip, "link that carries the payload");
-  fields("gravity", "m/s^2", arm.gravity, Range{ -100.0, 100.0 }, "gravity in the frame of the base");
+  fields("gravity", "m/s^2", arm.gravity, Range{ -100.0, 100.0 }, "acceleration of gravity in the frame of the base");
   fields("payload.mass", "kg", arm.payload.mass, PAYLOAD_MASS, "mass of the payload at the tip");
   fields("payload.centre", "m", arm.payload.centre, PAYLOAD_CENTRE,
          "centre of mass of the payload in the frame of the tip");

@@ -15,11 +15,11 @@ namespace hjt
 /// Gains of the control of one joint, all seen from the joint.
 struct JointGains
 {
-  double position{};       ///< wanted speed per error of the angle [1/s]
-  double speed{};          ///< torque per error of the speed [N.m.s/rad]
-  double integral_time{};  ///< integral time of the speed control [s]
-  double coulomb{};        ///< constant part of the friction that is fed forward [N.m]
-  double viscous{};        ///< fed-forward friction per speed [N.m.s/rad]
+  double position{};       ///< speed that the controller demands per error of the joint angle [1/s]
+  double speed{};          ///< torque of the controller per error of the joint speed [N.m.s/rad]
+  double integral_time{};  ///< integral time of the control of the joint speed [s]
+  double coulomb{};        ///< constant part of the friction that the controller feeds forward [N.m]
+  double viscous{};        ///< friction that the controller feeds forward, per joint speed [N.m.s/rad]
 };
 
 /// One joint of an arm and the drive in it.
@@ -29,17 +29,17 @@ struct ArmJoint
   std::string short_name;             ///< unique name of the joint in files and namespaces
   std::vector<std::string> overlays;  ///< configuration files of the drive; later files win
   ParameterMap parameters;            ///< parameters of the drive that win over the overlays
-  Range angles{ -100.0, 100.0 };      ///< range of the URDF; without limits 16 turns either way [rad]
-  double speed_limit{};               ///< largest speed, 0 if it is not given [rad/s]
-  double torque_limit{};              ///< largest torque at the output, 0 if it is not given [N.m]
-  double feedback_limit{};            ///< largest feedback torque of the controller, 0 without a limit [N.m]
+  Range angles{ -100.0, 100.0 };      ///< range of the angle in the URDF; 16 turns to each side without limits [rad]
+  double speed_limit{};               ///< largest speed of the joint; 0: not given [rad/s]
+  double torque_limit{};              ///< largest torque at the output; 0: not given [N.m]
+  double feedback_limit{};            ///< largest feedback torque of the controller; 0: no limit [N.m]
   double delay{};                     ///< time from a set point until the controller acts on it [s]
-  std::vector<double> check_up;       ///< angles of all joints where the check-up begins; empty: unknown [rad]
-  std::optional<JointGains> gains;    ///< gains of the controller; none: ArmController::defaultGains
+  std::vector<double> check_up;  ///< angles of all joints at the start of this joint's check-up; empty: not known [rad]
+  std::optional<JointGains> gains;  ///< gains of the joint's controller; none: ArmController::defaultGains
 };
 
 inline constexpr Range PAYLOAD_MASS{ 0.0, 1e4 };       ///< allowed masses of a payload [kg]
-inline constexpr Range PAYLOAD_CENTRE{ -10.0, 10.0 };  ///< allowed coordinates of its centre of mass [m]
+inline constexpr Range PAYLOAD_CENTRE{ -10.0, 10.0 };  ///< allowed coordinates of a payload's centre of mass [m]
 
 /// Mass at the tip of an arm.
 struct Payload
@@ -48,10 +48,10 @@ struct Payload
   std::array<double, 3> centre{};  ///< centre of mass in the frame of the tip [m]
 };
 
-/// Names the value of the payload that is out of range. The text is empty if all values are in range.
+/// Says which value of the payload is out of range. The text is empty if all values are in range.
 std::string payloadErrors(const Payload& payload);
 
-/// How a joint moves the link that it carries.
+/// The way in which a joint moves the link that it carries.
 enum class LinkMotion : std::uint8_t
 {
   FIXED,
@@ -59,34 +59,34 @@ enum class LinkMotion : std::uint8_t
   SLIDES
 };
 
-/// A link of an arm and the joint that carries it, as numbers.
+/// Numbers that describe a link of an arm and the joint that carries it.
 struct ArmLink
 {
   LinkMotion motion{};
   std::array<double, 3>
-      axis{};  ///< unit vector of the joint's axis in the frame of the link before; 0 if it is fixed [-]
+      axis{};  ///< unit vector of the joint's axis in the frame of the link before; 0 for a fixed joint [-]
   std::array<double, 3> origin{};  ///< a point of the joint's axis in the frame of the link before [m]
   std::array<double, 3>
-      position{};  ///< origin of the link's frame in that of the link before, at a joint angle of 0 [m]
-  std::array<double, 9> rotation{};  ///< rotation of the link's frame in that of the link before, row by row [-]
+      position{};  ///< origin of the link's frame in the frame of the link before, at a joint angle of 0 [m]
+  std::array<double, 9> rotation{};  ///< rotation of the link's frame in the frame of the link before, by rows [-]
   double mass{};                     ///< mass of the link [kg]
-  std::array<double, 3> centre{};    ///< centre of mass in the link's frame [m]
-  std::array<double, 6> inertia{};   ///< inertia about the centre of mass: xx, yy, zz, xy, xz, yz [kg.m^2]
+  std::array<double, 3> centre{};    ///< centre of mass of the link in the link's frame [m]
+  std::array<double, 6> inertia{};   ///< inertia of the link about its centre of mass: xx, yy, zz, xy, xz, yz [kg.m^2]
 };
 
 /// An arm as its YAML file describes it, and the URDF that the file names.
 struct ArmDescription
 {
   std::string origin;               ///< path of the YAML file, for error texts
-  std::string urdf;                 ///< text of the description
-  std::string base;                 ///< link that stands still
-  std::string tip;                  ///< link that carries the payload
-  std::array<double, 3> gravity{};  ///< gravity in the frame of the base [m/s^2]
+  std::string urdf;                 ///< text of the URDF
+  std::string base;                 ///< name of the link that stands still
+  std::string tip;                  ///< name of the link that carries the payload
+  std::array<double, 3> gravity{};  ///< acceleration of gravity in the frame of the base [m/s^2]
   Payload payload;
-  double drag{};                 ///< size of a force on the tip against its motion [N]
-  double state_rate{ 125.0 };    ///< rate of the controller's states [Hz]
-  std::vector<ArmJoint> joints;  ///< joints from the base on; at least one
-  std::vector<ArmLink> links;    ///< links from the base to the tip, as readLinks finds them
+  double drag{};                 ///< size of the drag: a force on the tip against the tip's motion [N]
+  double state_rate{ 125.0 };    ///< rate at which the arm's controller publishes its states [Hz]
+  std::vector<ArmJoint> joints;  ///< joints of the arm from the base on, at least one
+  std::vector<ArmLink> links;    ///< links from the base to the tip, by readLinks
 };
 
 /// Reads the file of an arm and the links of its URDF. @throws ParameterError naming file, line and key of a value that
@@ -103,18 +103,19 @@ void readLinks(ArmDescription& arm);
 /// @throws ParameterError for the reasons that readArmDescription names.
 void readGains(const std::string& path, ArmDescription& arm);
 
-/// A payload that the arm carries from a time on.
+/// A payload and the time from which on an arm carries it.
 struct PayloadFrom
 {
   double time{};  ///< time from which the arm carries the payload [s]
   Payload payload;
 };
 
-/// Payloads of an arm in order of time; empty: the configured one.
+/// Payloads of an arm in the order of their times. Without entries the arm carries the configured payload.
 using PayloadCourse = std::vector<PayloadFrom>;
 
-/// The text of a file of at most MAX_TEXT bytes (base/whole_file.hpp). `place` says in the error text where the file is
-/// named. @throws ParameterError if the file is not regular, larger, empty, or cannot be read.
+/// The text of a file of at most MAX_TEXT bytes (base/whole_file.hpp). `place` is the beginning of the error text: the
+/// place where another file names this file. @throws ParameterError if the file is not regular, larger, empty, or
+/// cannot be read.
 std::string textOf(const std::string& path, const std::string& place = "");
 
 /// The path of the file `name` in the folder of the file `path`. An absolute `name` stays as it is.

@@ -16,7 +16,7 @@ ArmTwin makeTwin(const ArmDescription& arm, const ConfigurationOptions& configur
   start.resize(start.empty() ? arm.joints.size() : start.size());
   if (start.size() != arm.joints.size())
   {
-    throw ParameterError(arm.origin + ": " + std::to_string(start.size()) + " angles to start at for " +
+    throw ParameterError(arm.origin + ": " + std::to_string(start.size()) + " start angles are given for " +
                          std::to_string(arm.joints.size()) + " joints");
   }
   const std::vector<Parameters> drives = armDrives(arm, configuration, options.identified, options.faults);

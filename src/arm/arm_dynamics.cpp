@@ -32,7 +32,7 @@ KDL::RigidBodyInertia bodyOf(const Payload& payload)
   return KDL::RigidBodyInertia(payload.mass, vectorOf(payload.centre));
 }
 
-/// The chain of the links with the payload as its last segment.
+/// Chain of the arm's links, with the payload as the last segment.
 KDL::Chain chainOf(const ArmDescription& arm)
 {
   KDL::Chain chain;
@@ -48,7 +48,7 @@ KDL::Chain chainOf(const ArmDescription& arm)
   }
   if (chain.getNrOfJoints() != arm.joints.size())
   {
-    throw ParameterError(arm.origin + ": " + std::to_string(arm.joints.size()) + " joints, but " +
+    throw ParameterError(arm.origin + ": the arm has " + std::to_string(arm.joints.size()) + " joints, but " +
                          std::to_string(chain.getNrOfJoints()) + " links that move");
   }
   chain.addSegment(KDL::Segment(KDL::Joint(KDL::Joint::None), KDL::Frame::Identity(), bodyOf(arm.payload)));
@@ -73,7 +73,7 @@ struct ArmDynamics::Solver
   {
   }
 
-  /// The solvers are made anew, because KDL's solvers refer to the chain that they were made for.
+  /// Copies make new solvers, because KDL's solvers refer to the chain with which they were made.
   Solver(const Solver& other)
     : chain(other.chain)
     , gravity(other.gravity)
@@ -98,7 +98,7 @@ struct ArmDynamics::Solver
     }
   }
 
-  /// Gives the pose of the end of each segment to `visit`, from the base on. Returns the pose of the tip.
+  /// Calls `visit` with each segment and the pose of its end, from the base on. Returns the pose of the tip.
   template <class Visit>
   KDL::Frame walk(const Visit& visit) const
   {
@@ -134,7 +134,7 @@ struct ArmDynamics::Solver
 
   KDL::Chain chain;
   KDL::Vector gravity;
-  double drag;  // force on the tip against its motion [N]
+  double drag;  // force on the tip against the tip's motion [N]
   KDL::ChainIdSolver_RNE recursion;
   KDL::ChainDynParam parameters;
   KDL::JntArray position;
@@ -142,7 +142,7 @@ struct ArmDynamics::Solver
   KDL::JntArray acceleration;
   KDL::JntArray torque;
   KDL::JntSpaceInertiaMatrix mass;
-  KDL::Wrenches forces;  // forces on each segment, in the segment's frame
+  KDL::Wrenches forces;  // force and moment on each segment, in the segment's frame [N], [N.m]
 };
 
 ArmDynamics::ArmDynamics(const ArmDescription& arm) : solver_(std::make_unique<Solver>(arm)) {}

@@ -12,7 +12,7 @@
 
 namespace hjt
 {
-/// Motion of one joint of an arm.
+/// Angle, speed and acceleration of one joint of an arm.
 struct JointMotion
 {
   double position{};      ///< angle [rad]
@@ -34,10 +34,10 @@ struct ToolPose
   std::array<double, 4> orientation{};
 };
 
-inline constexpr double DRAG_SPEED = 0.01;  ///< speed of the tip above which a drag has nearly all of its force [m/s]
+inline constexpr double DRAG_SPEED = 0.01;  ///< speed of the tip above which the drag has nearly its full force [m/s]
 
-/// Rigid-body dynamics of an arm: weight, inertia, Coriolis and coupling of all links and the payload, by KDL's
-/// recursive Newton-Euler. The drives contain the inertia of the motors, so the arm does not. After construction
+/// Rigid-body dynamics of an arm by KDL's recursive Newton-Euler: weight, inertia, Coriolis forces and coupling of all
+/// links and the payload. The inertia of the motors is not in this model but in that of the drives. After construction
 /// only a copy throws or allocates.
 class ArmDynamics
 {
@@ -51,18 +51,18 @@ public:
   std::size_t joints() const noexcept;
   double mass() const noexcept;  ///< mass of all links and of the payload [kg]
 
-  /// Gives the torque at the output of each joint that makes the motion; a positive torque resists positive motion
-  /// [N.m]. Both vectors have an entry for each joint.
+  /// Computes the torque [N.m] at the output of each joint that makes the motion. A positive torque resists positive
+  /// motion. Both vectors have an entry for each joint.
   void torques(const std::vector<JointMotion>& motion, std::vector<double>& torques) noexcept;
 
   /// Sets the force [N] and the moment about the tip [N.m] that act on the tip from outside, in the frame of the base.
-  /// The torques take them into account.
+  /// torques() contains their effect from then on.
   void setWrench(const ArmWrench& wrench) noexcept { wrench_ = wrench; }
 
-  void setPayload(const Payload& payload) noexcept;  ///< replaces the payload of the description
+  void setPayload(const Payload& payload) noexcept;  ///< replaces the payload of the arm's description
 
-  /// Gives the symmetric mass matrix of links and payload in joint coordinates [kg.m^2]. `mass` has a row and a column
-  /// for each joint.
+  /// Computes the symmetric mass matrix of links and payload in joint coordinates [kg.m^2]. `mass` has a row and a
+  /// column for each joint.
   void massMatrix(const std::vector<JointMotion>& motion, Eigen::MatrixXd& mass) noexcept;
   double potentialEnergy(const std::vector<JointMotion>& motion) noexcept;  ///< potential energy of the weight [J]
   ToolPose toolPose(const std::vector<JointMotion>& motion) noexcept;

@@ -15,7 +15,7 @@ namespace hjt
 {
 namespace
 {
-/// Places of the terms: those of the arm, of the two groups of joints (base to elbow, wrists), and of each joint.
+/// Indices of the terms: first those of the arm, then those of the two groups of joints, then those of each joint.
 enum Term : int
 {
   JUMP = ArmEstimator::LOAD,
@@ -34,11 +34,11 @@ enum OwnTerm : int
   OWN_LOSS,
   OWN_INERTIA,
   PER_JOINT,
-  USED = GROUP + 1 + PER_JOINT  // number of terms that one joint's rows depend on
+  USED = GROUP + 1 + PER_JOINT  // number of terms on which the rows of one joint depend
 };
 
-constexpr double NEVER = 1e-6;   // width of the prior of a term that is not considered
-constexpr double STUDENT = 4.0;  // degrees of freedom of the rows' errors
+constexpr double NEVER = 1e-6;   // width of the prior of a term that the estimator does not consider
+constexpr double STUDENT = 4.0;  // degrees of freedom of Student's t distribution for the errors of the rows
 constexpr int STARTS = 4;
 constexpr int HELD = -1;  // a start with all priors at full weight
 
@@ -53,8 +53,8 @@ int ownOf(std::size_t joint)
   return OWN + PER_JOINT * static_cast<int>(joint);
 }
 
-/// Place of the slope by a term. Several terms share a slope: the payload and its jump, and terms of the arm, the group
-/// and the joint. The slopes are those by the load, the gain, friction, cold friction, offset, loss and inertia.
+/// Index in Slope of the derivative by a term. Several terms share a derivative: the payload and its jump, or terms of
+/// arm, group and joint. The derivatives are those by load, gain, friction, cold friction, offset, loss and inertia.
 int slopeOf(int used)
 {
   constexpr std::array<int, USED - GAIN> OF_OTHERS{ 0, 1, 2, 1, 0, 1, 2, 3, 4, 5 };
@@ -63,7 +63,7 @@ int slopeOf(int used)
                        ArmEstimator::LOAD + OF_OTHERS[static_cast<std::size_t>(used - GAIN)];
 }
 
-// Widths of the priors, chosen on recordings of UR5 and UR10e (docs/arm.md, Payload).
+// Widths of the priors, chosen by recordings of a UR5 and a UR10e (docs/arm.md, Payload).
 constexpr double MASS = 0.3;             // [kg]
 constexpr double MOMENT = 0.05;          // [kg.m]
 constexpr double TILT = 0.2;             // [m/s^2]
@@ -75,26 +75,27 @@ constexpr double ARM_FRICTION = 0.1;     // [-]
 constexpr double ARM_COLD = 1.0;         // [10 K]
 constexpr double GROUP_FRICTION = 0.04;  // [-]
 constexpr double JOINT_GAIN = 0.03;      // [-]
-constexpr double ALIKE_GAIN = 0.003;     // gain of a joint whose load is less than its friction [-]
+constexpr double ALIKE_GAIN = 0.003;     // prior of the gain of a joint whose load is less than its friction [-]
 constexpr double JOINT_FRICTION = 0.05;  // [-]
 constexpr double JOINT_COLD = 0.3;       // [10 K]
 constexpr double JOINT_OFFSET = 0.1;     // [A]
 constexpr double JOINT_LOSS = 0.02;      // loss over load [-]
-constexpr double JOINT_INERTIA = 0.3;    // change of the rotor's inertia over the inertia [-]
+constexpr double JOINT_INERTIA = 0.3;    // relative change of the rotor's inertia [-]
 
-constexpr std::size_t FEWEST = 20;  // least number of rows of a joint that counts
+constexpr std::size_t FEWEST = 20;  // least number of rows with which a joint counts
 
-constexpr double INDEPENDENT = 40.0;  // largest number of rows that a joint's rows count as
-constexpr double LEAST = 0.02;        // least standard deviation of the rows of a real arm [A]
+constexpr double INDEPENDENT = 40.0;  // largest number of independent rows that the rows of a joint stand for
+constexpr double LEAST = 0.02;        // least standard deviation of the errors in the rows of a real arm [A]
 
-/// Logarithm of how much rarer a row is, by the square of its error in standard deviations.
+/// Negative logarithm of a row's probability, relative to a row without error. `square`: square of the error in
+/// standard deviations.
 double rarer(double square)
 {
   return 0.5 * (STUDENT + 1.0) * std::log1p(square / STUDENT);
 }
 
-/// Factor on the weight of a term's prior in the first rounds. It is small for the causes that the start sets free: 0
-/// the load, 1 all causes, 2 load and friction, 3 friction.
+/// Factor on the weight of a term's prior in the first rounds. It is small for the terms that the start leaves free:
+/// start 0 the load, start 1 all terms, start 2 load and friction, start 3 friction.
 double looseness(int start, int term)
 {
   constexpr double OF_LOAD = 0.01;
@@ -106,32 +107,32 @@ double looseness(int start, int term)
 }
 }  // namespace
 
-/// Widths of all terms.
+/// Widths of the priors of all terms.
 struct ArmEstimator::Prior
 {
   Eigen::VectorXd width;
-  std::vector<bool> normal;  // the prior is normal; else it is Cauchy's
+  std::vector<bool> normal;  // true: the prior is normal; false: it is a Cauchy distribution
 };
 
-/// Values of all terms, with their information and cost.
+/// Values of all terms, with their information matrix and cost.
 struct ArmEstimator::Point
 {
   Eigen::VectorXd at;
   Eigen::MatrixXd information;
-  Eigen::VectorXd of_prior;        // information of each term by its prior
-  std::vector<double> deviations;  // standard deviations of the rows of each joint [A]
+  Eigen::VectorXd of_prior;        // part of each term's information that comes from its prior
+  std::vector<double> deviations;  // standard deviation of the errors in the rows of each joint [A]
   double rareness{};
   double cost{ std::numeric_limits<double>::infinity() };
 };
 
-/// Errors and slopes of the rows of one joint.
+/// Errors of the rows of one joint, with their derivatives by the terms.
 struct ArmEstimator::Work
 {
   Eigen::VectorXd error;  // [A]
   std::vector<Slope> slopes;
 };
 
-/// Sums of the products of the slopes of rows of one state, with each other and with the errors.
+/// Sums over the rows of one state: products of the slopes with each other and with the errors.
 struct ArmEstimator::Products
 {
   Eigen::Matrix<double, SLOPES, SLOPES> slopes = Eigen::Matrix<double, SLOPES, SLOPES>::Zero();
@@ -195,8 +196,8 @@ ArmEstimator::Prior ArmEstimator::priorOf(const Freedom& may) const
   return prior;
 }
 
-/// Error of a row: measured current less explained current [A]. `state` is that of the row's leg. The slopes are
-/// ordered as by slopeOf.
+/// Error of a row: measured - explained current [A]. `state`: state of the row's leg. `slope`: derivatives of the
+/// explained current, in the order of slopeOf.
 double ArmEstimator::errorOf(std::size_t joint, const Row& of, bool state, const Eigen::VectorXd& at, Slope* slope)
 {
   const int own = ownOf(joint);
@@ -220,7 +221,7 @@ double ArmEstimator::errorOf(std::size_t joint, const Row& of, bool state, const
   return of.current - gain * inner - at[own + OWN_OFFSET];
 }
 
-/// Factor of the measured currents over the predicted ones.
+/// Measured over predicted currents of all rows, by least squares [-].
 double ArmEstimator::multiple() const
 {
   double both = 0.0;
@@ -236,7 +237,8 @@ double ArmEstimator::multiple() const
   return both / squares;
 }
 
-/// The likeliest point that the starts lead to. The last start is that all currents have another factor.
+/// The likeliest point of all starts. The last start assumes that all currents differ from the predicted ones by one
+/// factor.
 ArmEstimator::Point ArmEstimator::best(const Prior& prior, const std::vector<bool>& states) const
 {
   Point best;
@@ -253,10 +255,11 @@ ArmEstimator::Point ArmEstimator::best(const Prior& prior, const std::vector<boo
   return best;
 }
 
-/// States of the legs: 1 for legs whose mass beside that of a point is in the upper half of all masses.
+/// States of the legs by their masses, less the mass of a point. A leg has state 1 if its mass is above the middle
+/// between the smallest and the largest mass.
 std::vector<bool> ArmEstimator::parted(const Point& by) const
 {
-  constexpr double NOISE = 0.05;  // least standard deviation [A]
+  constexpr double NOISE = 0.05;  // least standard deviation of the errors of a joint [A]
   Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(legs_), 2);
   for (std::size_t i = 0; i < rows_.size(); ++i)
   {
@@ -278,10 +281,10 @@ std::vector<bool> ArmEstimator::parted(const Point& by) const
   return states;
 }
 
-/// States of the legs: for each leg the state that its rows fit better.
+/// The state of each leg that its rows fit better.
 std::vector<bool> ArmEstimator::likelier(const Point& by) const
 {
-  std::vector<double> costs(legs_);  // cost of state 1 less that of state 0, of each leg
+  std::vector<double> costs(legs_);  // cost of state 1 - cost of state 0, for each leg
   for (const bool state : { false, true })
   {
     for (std::size_t i = 0; i < rows_.size(); ++i)
@@ -298,9 +301,9 @@ std::vector<bool> ArmEstimator::likelier(const Point& by) const
   return states;
 }
 
-/// The likeliest point with a payload that changes from leg to leg between two states. `states` stays empty if all legs
-/// are alike. The search begins with the legs as they differ from one payload, and as they differ from the configured
-/// arm.
+/// The likeliest point with a payload that changes between two states from leg to leg. `states` stays empty if all legs
+/// have the same state. The search begins twice: with states by the difference of each leg from the point `without`,
+/// and by its difference from the configured arm.
 ArmEstimator::Point ArmEstimator::withJump(const Freedom& may, const Point& without, std::vector<bool>& states) const
 {
   constexpr int TURNS = 6;
@@ -335,8 +338,8 @@ ArmEstimator::Point ArmEstimator::withJump(const Freedom& may, const Point& with
 
 std::vector<ArmEstimator::Push> ArmEstimator::pushesOf(const Point& point, const std::vector<bool>& states) const
 {
-  constexpr double USUAL_MASS = 3.0;  // standard deviation of the mass a priori [kg]
-  constexpr double USUAL = 50.0;      // standard deviation of the forces a priori [N]
+  constexpr double USUAL_MASS = 3.0;  // prior standard deviation of a push along gravity, as a mass [kg]
+  constexpr double USUAL = 50.0;      // prior standard deviation of a push across gravity [N]
   struct Leg
   {
     Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
@@ -406,7 +409,7 @@ ArmEstimator::Estimate ArmEstimator::estimateOf(const Point& point, const std::v
       all += row.current * row.current;
     }
     found.gains.push_back(known(Eigen::VectorXd::Unit(size_, own + OWN_GAIN)));
-    // The part of the other terms that is in proportion to the friction.
+    // The terms for cold and loss count with the part that is proportional to the friction.
     Eigen::VectorXd terms = Eigen::VectorXd::Zero(size_);
     terms[groupOf(i)] = terms[own + OWN_FRICTION] = 1.0;
     terms[own + OWN_COLD] = cold / power;
@@ -454,9 +457,9 @@ void ArmEstimator::addPrior(const Prior& prior, int start, Point& point, Eigen::
     right[k] -= weight * point.at[k];
     point.rareness += is_normal ? 0.5 * t * t : std::log1p(t * t);
   }
-  // The size of gravity is known up to the errors of the links' masses, which look like it. In the first rounds gravity
-  // may turn over. Without configured gravity there is no direction to find.
-  constexpr double LINKS = 0.02;  // uncertainty of the links' masses, as a share
+  // This prior holds the size of gravity, up to errors of the links' masses, which have the same effect. In the first
+  // rounds gravity may turn over. Without configured gravity the estimator has no direction to find.
+  constexpr double LINKS = 0.02;  // standard deviation of the links' masses, as a share [-]
   const Eigen::Vector3d total = gravity_ + point.at.segment<GRAVITY>(PAYLOAD);
   if (looseness(start, PAYLOAD) < 1.0 || !(prior.width[PAYLOAD] > NEVER) || gravity_.isZero() || total.isZero())
   {
@@ -486,7 +489,7 @@ void ArmEstimator::addRows(std::size_t joint, const std::vector<bool>& states, W
   {
     deviation = std::max(robustDeviation(error), LEAST);
   }
-  // The weights that follow from the last standard deviation give a likelier one.
+  // A standard deviation from rows with the weights by the last standard deviation is likelier.
   Eigen::ArrayXd squares = (error / deviation).array().square();
   deviation = std::max(deviation * std::sqrt((squares * (STUDENT + 1.0) / (STUDENT + squares)).mean()), LEAST);
   squares = (error / deviation).array().square();
@@ -516,24 +519,24 @@ void ArmEstimator::addRows(std::size_t joint, const std::vector<bool>& states, W
   }
 }
 
-/// Whether the point is near `other`.
 bool ArmEstimator::isNear(const Point& point, const Point& other)
 {
-  constexpr double NEAR = 0.1;  // distance in standard deviations a posteriori
+  constexpr double NEAR = 0.1;  // largest distance of near points, in posterior standard deviations [-]
   return other.at.size() == point.at.size() &&
          ((point.at - other.at).array().square() * point.information.diagonal().array()).maxCoeff() < NEAR * NEAR;
 }
 
-/// Refines the values by Gauss and Newton until the likelihood changes no more, or until they are near `best`, which
-/// another start has led to. `start` is that of looseness(). Weights of rows, standard deviations and priors follow the
-/// values (expectation and maximisation), so that no single step makes the values less likely.
+/// Refines the values by Gauss-Newton steps until the likelihood stays constant, or until the point is near `best`, the
+/// result of another start. `start`: as in looseness(). Each step computes the weights of the rows, the standard
+/// deviations and the priors from the last values (expectation and maximisation). So no single step makes the values
+/// less likely.
 ArmEstimator::Point ArmEstimator::refine(const Prior& prior, const std::vector<bool>& states, Eigen::VectorXd at,
                                          int start, const Point& best) const
 {
   constexpr int ROUNDS = 60;
   constexpr int LOOSE_ROUNDS = 5;
   constexpr double NOTHING = 1e-3;
-  constexpr double MOST = 0.8;  // largest ratio of a step to the last one
+  constexpr double MOST = 0.8;  // largest assumed ratio of a step to the step before [-]
   Point point;
   point.at = std::move(at);
   point.deviations.resize(rows_.size());
@@ -561,8 +564,8 @@ ArmEstimator::Point ArmEstimator::refine(const Prior& prior, const std::vector<b
       break;
     }
     cost = point.cost;
-    // Steps shrink by nearly the same ratio from round to round. So every second step goes as far as all later steps
-    // would.
+    // Steps shrink by nearly the same ratio from round to round. So every second step is extended to the sum of this
+    // and all later steps.
     const Eigen::VectorXd step = point.information.ldlt().solve(right);
     const Eigen::VectorXd weighted = point.information.diagonal().cwiseProduct(last_step);
     const double size = last_step.dot(weighted);

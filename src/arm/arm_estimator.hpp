@@ -9,23 +9,22 @@
 
 namespace hjt
 {
-/// Finds what explains the currents of an arm beside those that its twins predict: the most likely causes a posteriori.
+/// Finds the most probable causes of the difference between the currents of an arm and those that its twins predict.
 ///
 ///   current = (1 + g + g_i) (predicted + L_i + F_i (friction + rise_i U_i) - friction + (c + c_i) cold
 ///             + l_i |T_i + L_i| + j_i inertia) + o_i
-///   L_i = Y_i . x + jump_i     x      mass and moments of a payload, the change of gravity, and a drag: a force on the
-///                                     tip against its motion
-///                              jump   of another payload, in the legs of state 1
-///   F_i = 1 + f + f_group + f_i, of the twin's friction;  c, c_i  the same by temperature
-///   U_i = |T_i + L_i| - |T_i|  T_i    load as configured
-///                              rise_i how much friction rises with it
-///   g, o gains and offsets;  l_i  loss in proportion to the load;  j_i  of the rotor's inertia
+/// where words are fields of a Row of joint i, T_i is its `torque` and Y_i its `load`. The causes are:
+///   L_i = Y_i . x + jump_i        x: mass and moments of a payload, change of gravity, drag; jump_i: the change to
+///                                 another payload in the legs of state 1
+///   F_i = 1 + f + f_group + f_i   factors on the twin's friction;  c, c_i: colder drives [10 K]
+///   U_i = |T_i + L_i| - |T_i|     change of the load's magnitude by these causes
+///   g, g_i gains;  o_i offset;  l_i loss per load;  j_i change of the rotor's inertia, as a share
 ///
-/// Friction, rise and loss have the sign of the motion. Few arms carry another payload than configured, are mounted
-/// otherwise, or have a joint of another gain or friction: these causes have Cauchy priors. The other causes have
-/// normal priors. A row is of one joint that moves one way. Outliers of the rows, as of contact, count as by Student's
-/// t of 4 degrees of freedom. All rows of a joint count as at most INDEPENDENT rows, because errors of a model are no
-/// noise. A joint's gain is free only where its load is at least its friction: elsewhere both look alike.
+/// Friction, rise and loss have the sign of the motion. Payload, mounting, gain and friction are rarely other than
+/// configured, but then by any amount: these causes have Cauchy priors. The other causes have normal priors. The errors
+/// of the rows have Student's t distribution of 4 degrees of freedom, because contacts cause outliers. All rows of a
+/// joint count as at most INDEPENDENT rows, because errors of a model are no noise. A joint's gain is free only if its
+/// load is at least as large as its friction: with a smaller load gain and friction have the same effect.
 class ArmEstimator
 {
 public:
@@ -45,15 +44,15 @@ public:
     double predicted{};
     double friction{};          ///< current of the twin's friction
     double cold{};              ///< current of the additional friction when the drive is 10 K colder
-    double torque{};            ///< current of the load as configured
+    double torque{};            ///< current of the configured load
     double inertia{};           ///< current of the rotor's inertia
-    double rise{};              ///< rise of the friction per load, both by their sizes [-]
-    Load load{ Load::Zero() };  ///< currents of units of mass, moments, gravity and drag
-    Eigen::Vector2d across{ Eigen::Vector2d::Zero() };  ///< currents of unit forces on the tip across gravity
+    double rise{};              ///< rise of the friction's magnitude per magnitude of the load [-]
+    Load load{ Load::Zero() };  ///< current that each unit of mass, moment, gravity and drag takes
+    Eigen::Vector2d across{ Eigen::Vector2d::Zero() };  ///< currents of two forces of 1 N on the tip across gravity
   };
   using Rows = std::vector<std::vector<Row>>;  ///< rows of each joint, from the base on
 
-  /// Value and half width of its 95 % interval.
+  /// A value with the half width of its 95 % interval.
   struct Known
   {
     double value{};
@@ -67,31 +66,32 @@ public:
   struct Push
   {
     double size{};    ///< size of the force [N]
-    double across{};  ///< part of the force across gravity, which no payload makes [N]
+    double across{};  ///< part of the force across gravity; a payload has no such part [N]
   };
 
   struct Estimate
   {
-    Carried payload{ Carried::Zero() };  ///< payload of the legs of state 0, less the configured one
+    Carried payload{ Carried::Zero() };  ///< payload in the legs of state 0 - configured payload [kg], [kg.m]
     Carried payload_half_width{ Carried::Zero() };
-    Carried jump{ Carried::Zero() };  ///< payload of the legs of state 1, less that of state 0
+    Carried jump{ Carried::Zero() };  ///< payload in the legs of state 1 - payload in the legs of state 0 [kg], [kg.m]
     Carried jump_half_width{ Carried::Zero() };
-    Eigen::Vector3d gravity{ Eigen::Vector3d::Zero() };  ///< gravity less the configured one
+    Eigen::Vector3d gravity{ Eigen::Vector3d::Zero() };  ///< found gravity - configured gravity [m/s^2]
     Eigen::Vector3d gravity_half_width{ Eigen::Vector3d::Zero() };
-    Known drag;                    ///< drag less the configured one [N]
-    Known gain;                    ///< factor of all gains, less 1 [-]
-    std::vector<Known> gains;      ///< factor of the gain of each joint, less that of all gains [-]
-    std::vector<Known> frictions;  ///< friction of each joint over the twin's, in the joint's rows [-]
+    Known drag;                    ///< found drag - configured drag [N]
+    Known gain;                    ///< common factor of all gains - 1 [-]
+    std::vector<Known> gains;      ///< factor of each joint's gain - common factor of all gains [-]
+    std::vector<Known> frictions;  ///< friction of each joint over the twin's friction [-]
     std::vector<Known> own;        ///< part of each joint's friction that a fault causes, over the twin's friction [-]
     std::vector<bool> states;      ///< state of each leg; empty if all legs have one payload
-    std::vector<Push> pushes;      ///< force on the tip in each leg
-    double left{ 1.0 };            ///< share of the currents that is not explained, rms [-]
-    double rareness{};             ///< logarithm of how rare the found causes are [-]
-    double cost{};                 ///< negative logarithm of the likelihood a posteriori [-]
+    std::vector<Push> pushes;      ///< force that pushes the tip in each leg
+    double left{ 1.0 };            ///< share of the currents that the estimate does not explain, rms [-]
+    double rareness{};             ///< negative logarithm of the prior probability of the found causes [-]
+    double cost{};                 ///< negative logarithm of the posterior probability of the estimate [-]
   };
 
-  /// `gravity`: as configured, in the frame of the base [m/s^2]; another mounting does not change its size. `repeats`:
-  /// standard deviation of each joint's friction when it is sound, as a share; empty: as joints of one type differ.
+  /// `gravity`: configured gravity in the frame of the base [m/s^2]. Another mounting changes its direction, not its
+  /// size. `repeats`: standard deviation of each joint's friction when it is sound, as a share [-]. Empty: that of
+  /// joints of one type.
   ArmEstimator(Rows rows, const Eigen::Vector3d& gravity, std::vector<double> repeats = {});
 
   /// Causes that the estimator considers in addition to a payload.
@@ -101,8 +101,8 @@ public:
     bool jump{};  ///< the payload may change between legs
     bool drag{};
   };
-  /// The likeliest estimate with one payload. Where the payload may change and some legs have another one, the
-  /// likeliest estimate with two payloads follows.
+  /// Returns the likeliest estimate with one payload. If the payload may change, and some legs have another payload,
+  /// the likeliest estimate with two payloads follows in the list.
   std::vector<Estimate> solve(const Freedom& may) const;
 
 private:

@@ -17,8 +17,8 @@ namespace
 {
 constexpr const char* LIKE = "like";
 constexpr const char* DESCRIPTION = "description";
-constexpr int MAX_FILES = 8;  // largest chain of files, each of which is like the next
-// Limits, because an alias of YAML can contain itself or many copies of other values.
+constexpr int MAX_FILES = 8;  // largest number of files in a chain in which each file is like the next
+// Limits are needed because an alias of YAML can contain itself or many copies of other values.
 constexpr int MAX_DEPTH = 32;
 constexpr std::size_t MAX_VALUES = 100'000;
 
@@ -28,7 +28,7 @@ class Reading
 public:
   explicit Reading(std::string file) : file_(std::move(file)) {}
 
-  /// `place` says in an error text where the file is named.
+  /// `place` begins an error text: it is the place where another file names this file.
   ParameterMap read(const std::string& place)
   {
     try
@@ -36,7 +36,7 @@ public:
       const YAML::Node root = YAML::Load(textOf(file_, place));
       if (!root.IsMap())
       {
-        throw ParameterError(file_ + ": keys and values expected");
+        throw ParameterError(file_ + ": the file must hold keys with values");
       }
       take(root, "", 0);
     }
@@ -54,7 +54,7 @@ private:
     if (depth > MAX_DEPTH || ++count_ > MAX_VALUES)
     {
       throw ParameterError(origin + ": " + key + " makes the file too large: at most " + std::to_string(MAX_DEPTH) +
-                           " levels and " + std::to_string(MAX_VALUES) + " values, aliases counted each time");
+                           " levels and " + std::to_string(MAX_VALUES) + " values; each use of an alias counts");
     }
     if (node.IsMap())
     {
@@ -87,7 +87,7 @@ private:
     return key.empty() ? name : key + "." + name;
   }
 
-  /// Whether a list is one of numbers, by its first element. An empty list is one.
+  /// Whether a list is a list of numbers, judged by its first element. An empty list is a list of numbers.
   static bool holdsNumbers(const YAML::Node& list, const std::string& origin)
   {
     return list.size() == 0 || (list[0].IsScalar() && numberIn(list[0], "", origin));
@@ -100,7 +100,7 @@ private:
 
   static ParameterValue scalarOf(const YAML::Node& node, const std::string& key, const std::string& origin)
   {
-    // yaml-cpp tags a quoted text "!", a plain one "?".
+    // yaml-cpp gives a quoted text the tag "!", and a plain text the tag "?".
     return parseScalar(node.Scalar(), node.Tag() == "!", key, origin);
   }
 
@@ -158,7 +158,7 @@ ParameterMap readLike(const std::string& path, const std::string& place, int fil
   }
   if (files == MAX_FILES)
   {
-    throw ParameterError(own[LIKE].origin + ": like: more than " + std::to_string(MAX_FILES) + " files in a row");
+    throw ParameterError(own[LIKE].origin + ": like: a chain of more than " + std::to_string(MAX_FILES) + " files");
   }
   const ParameterMap other = readLike(beside(path, fileName(own, LIKE)), own[LIKE].origin + ": like: ", files + 1);
   own.erase(LIKE);

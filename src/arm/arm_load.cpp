@@ -36,7 +36,8 @@ bool ArmRates::push(const std::vector<MotionRow>& rows) noexcept
   {
     reset();
   }
-  // Rows that are refused for one joint are refused for all, so that the joints' rows stay side by side.
+  // If the row of one joint is impossible, the rows of all joints are refused, so that all joints have rows of the same
+  // times.
   const bool is_plausible = std::all_of(
       rows.begin(), rows.end(), [](const MotionRow& row) { return isPlausible(row) && std::isfinite(row.load); });
   if (!is_plausible || time < last_time_ + MotionDifferentiator::MIN_STEP)
@@ -61,7 +62,7 @@ bool ArmRates::push(const std::vector<MotionRow>& rows) noexcept
   return true;
 }
 
-/// Gives rows_ to the differentiators for the vibration, with mended times.
+/// Gives the rows in rows_, with their stamp errors, to the differentiators for the vibration.
 void ArmRates::pushFast() noexcept
 {
   const double stamp_error = times_.stampError(rows_);
@@ -125,7 +126,7 @@ LinkTorques::LinkTorques(const ArmDescription& arm, PayloadCourse course)
 {
 }
 
-/// Sets the payload of that time. Before the course begins it is the first payload.
+/// Sets the payload that the arm carries at `time`. Before the first entry of course_ it is the payload of this entry.
 void LinkTorques::carry(double time) noexcept
 {
   const auto next = std::find_if(course_.begin(), course_.end(), [time](const auto& from) { return from.time > time; });

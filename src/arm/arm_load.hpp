@@ -31,12 +31,13 @@ class RowTimes
 public:
   static constexpr double ANGLE = 1e-4;  ///< standard deviation of an angle's change from its velocity's integral [rad]
   static constexpr double STAMP = 4e-3;  ///< standard deviation of a stamp's interval [s]
-  static constexpr double SIGNIFICANT = 0.35;  ///< least error, as a share of the interval by the stamps [-]
-  static constexpr double AGREES = 0.1;        ///< share by which velocities and angles may differ [-]
+  static constexpr double SIGNIFICANT = 0.35;  ///< least error that counts, as a share of the stamps' interval [-]
+  static constexpr double AGREES = 0.1;  ///< largest share by which velocities and changes of angle may differ [-]
 
   explicit RowTimes(std::size_t joints) : last_(joints), agreements_(joints) {}
 
-  /// Returns how late the stamp of these rows is [s]. There is one row of each joint, later than the rows before.
+  /// Returns by how much the stamp of the rows is late [s]. `rows`: one row of each joint, later than those of the last
+  /// call.
   double stampError(const std::vector<MotionRow>& rows) noexcept
   {
     const double step = started_ ? rows.front().time - last_.front().time : HUGE_VAL;
@@ -54,16 +55,17 @@ public:
   }
 
 private:
-  /// Sums of v dq and of v v d of one joint, which are forgotten over MEMORY. Both sums begin in agreement.
+  /// Sums of v dq and of v v d of one joint, which forget old rows over MEMORY. Both sums begin at the same value.
   struct Agreement
   {
     double change{ START };
     double expected{ START };
   };
   static constexpr double MEMORY = 10.0;  // time constant of the forgetting [s]
-  static constexpr double START = 0.25;   // value of both sums after 1 s at 0.5 rad/s [rad^2/s]
+  static constexpr double START = 0.25;   // first value of both sums: that of 1 s at 0.5 rad/s [rad^2/s]
 
-  /// Time between the last rows and these, by the motion where the motion is surer than the stamps [s].
+  /// Time from the last rows to `rows` [s]: by the motion if it clearly contradicts the stamps, otherwise by the
+  /// stamps.
   double interval(const std::vector<MotionRow>& rows) noexcept
   {
     const double by_stamps = rows.front().time - last_.front().time;
@@ -89,7 +91,7 @@ private:
     }
     const double by_motion = weighted / weight;
     const double difference = std::abs(by_motion - by_stamps);
-    constexpr double MOST = 4.0;  // a damaged angle
+    constexpr double MOST = 4.0;  // larger factors come from damaged angles
     const bool is_usable = by_motion > by_stamps / MOST && by_motion < by_stamps * MOST;
     return is_usable && difference > SIGNIFICANT * by_stamps ? by_motion : by_stamps;
   }
@@ -103,69 +105,71 @@ private:
 /// All joints of an arm at the time of one row.
 struct ArmSample
 {
-  std::vector<MotionSample> joints;  ///< samples with rates within ArmRates::HALF_WIDTH, for the load
-  /// Samples with a joint's own rates, within MotionDifferentiator::HALF_WIDTH, with stamp errors and vibration.
+  std::vector<MotionSample> joints;  ///< samples whose rates use the rows within ArmRates::HALF_WIDTH, for the load
+  /// Samples whose rates use the rows within MotionDifferentiator::HALF_WIDTH, with stamp errors and vibration.
   std::vector<MotionSample> own;
   /// Torque of links and payload at the output of each joint, without the motor's own inertia. A positive torque
   /// resists positive motion [N.m].
   std::vector<double> torques;
 };
 
-/// Rates of all joints of an arm from a stream of rows of their angles. The rates do not depend on the type of the arm.
+/// Speeds and accelerations of all joints of an arm from a stream of rows of their angles, for any type of arm.
 ///
-/// They are the slopes of parabolas through the angles within HALF_WIDTH of a row, so they need no recorded velocity
-/// and have no phase, and a row comes out at most HALF_WIDTH late. Velocities mend the rows' times (RowTimes): for load
-/// and vibration if they are recorded, else, from the slow rates, for the vibration alone, and a row comes out later by
+/// The rates are slopes of parabolas through the angles within HALF_WIDTH of a row. So they need no recorded velocity
+/// and have no phase lag, and a sample is ready at most HALF_WIDTH after its row. Velocities correct the times of the
+/// rows (RowTimes): recorded velocities for load and vibration; if there are none, the slow rates for the vibration
+/// alone, and a sample is ready later by MotionDifferentiator::HALF_WIDTH. Live and offline rates are equal. After
+/// construction nothing throws or allocates.
 /// MotionDifferentiator::HALF_WIDTH. Live and offline alike. After construction nothing throws; nothing allocates.
 class ArmRates
 {
 public:
-  /// Half width of the rates for the load. It is wider than that of a joint's own rates, because the load is that of
-  /// the commanded motion without vibration [s].
+  /// Half width of the rates for the load [s]. It is wider than MotionDifferentiator::HALF_WIDTH, because the load is
+  /// that of the commanded motion without vibration.
   static constexpr double HALF_WIDTH = 0.1;
 
   explicit ArmRates(std::size_t joints);
 
-  /// Starts a new stream.
+  /// Forgets all rows, because those of another stream follow.
   void reset() noexcept;
 
-  /// Takes one row for each joint, all of one time. Ignores rows that are not later than the rows before, or that no
-  /// joint can have, and then returns false.
+  /// Takes one row of each joint, all of one time. Returns false and ignores the rows if they are not later than the
+  /// rows before, or if their values are impossible.
   bool push(const std::vector<MotionRow>& rows) noexcept;
 
-  /// The next sample that is ready, without torques and vibration, or nullptr. It is valid until the next call. With
-  /// `at_end` also samples are ready that wait for later rows.
+  /// The next sample that is ready, without torques and vibration; nullptr if none is ready. It is valid until the next
+  /// call. With `at_end` the function also returns samples that wait for later rows.
   ArmSample* pop(bool at_end = false) noexcept;
 
 private:
-  /// Rows that wait for their fast rates, at most.
+  /// Largest number of rows that wait for their fast rates.
   static constexpr std::size_t ROOM = 256;
 
   static bool take(std::vector<MotionDifferentiator>& from, bool at_end, std::vector<MotionSample>& samples) noexcept;
   void pushFast() noexcept;
 
   RowTimes times_;
-  // Differentiators of each joint, for load (slow) and vibration (fast); all have rows of the same times.
+  // Differentiators of each joint: slow_ for the load, fast_ for the vibration. Both get rows of the same times.
   std::vector<MotionDifferentiator> slow_;
   std::vector<MotionDifferentiator> fast_;
-  std::vector<ArmSample> waiting_;  // ring of samples with slow rates, from first_waiting_ to end_waiting_
+  std::vector<ArmSample> waiting_;  // ring buffer of samples with slow rates, from first_waiting_ to end_waiting_
   std::uint64_t first_waiting_{};
   std::uint64_t end_waiting_{};
   std::vector<MotionRow> rows_;
-  bool has_velocities_{};  // the first row has velocities of all joints
+  bool has_velocities_{};  // whether the first rows of the stream have velocities of all joints
   double last_time_{ -std::numeric_limits<double>::infinity() };
 };
 
-/// Torques at the joints of an arm in the motion of a sample. The rates within a joint's own half width take more
-/// torque than the load: the difference is the torque of the arm's vibration, mostly its answer to the drives' ripple.
-/// After construction nothing throws or allocates.
+/// Torques that an arm needs at its joints in the motion of a sample. ArmSample::own contains the vibration of the arm,
+/// mostly its response to the drives' ripple. So the torque for `own` - the torque for `joints` is that of the
+/// vibration. After construction nothing throws or allocates.
 class LinkTorques
 {
 public:
-  /// @throws ParameterError as ArmDynamics.
+  /// @throws ParameterError for the reasons that ArmDynamics names.
   explicit LinkTorques(const ArmDescription& arm, PayloadCourse course = {});
 
-  /// Adds torques and vibration to `sample`.
+  /// Adds the torques of `joints` and the vibration of `own` to `sample`.
   void addTo(ArmSample& sample) noexcept;
 
   std::size_t joints() const noexcept { return motion_.size(); }
@@ -178,16 +182,16 @@ private:
 
   UnitLoads links_;
   const PayloadCourse course_;
-  std::size_t carried_{ NONE };  // place of the present payload in the course
+  std::size_t carried_{ NONE };  // index of the present payload in course_
   std::vector<JointMotion> motion_;
   std::vector<double> fast_torques_;
 };
 
-/// Load of each joint of an arm from a stream of the angles of all, by ArmRates.
+/// Load of each joint of an arm, from a stream of the angles of all joints (ArmRates).
 class ArmLoad
 {
 public:
-  /// @throws ParameterError as ArmDynamics.
+  /// @throws ParameterError for the reasons that ArmDynamics names.
   explicit ArmLoad(const ArmDescription& arm, PayloadCourse course = {})
     : torques_(arm, std::move(course)), rates_(torques_.joints())
   {
@@ -196,7 +200,7 @@ public:
   void reset() noexcept { rates_.reset(); }                                             ///< as ArmRates
   bool push(const std::vector<MotionRow>& rows) noexcept { return rates_.push(rows); }  ///< as ArmRates
 
-  /// As ArmRates, with torques and vibration.
+  /// As ArmRates::pop(), but with torques and vibration.
   const ArmSample* pop(bool at_end = false) noexcept
   {
     ArmSample* sample = rates_.pop(at_end);

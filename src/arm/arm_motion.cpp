@@ -15,24 +15,23 @@ namespace hjt
 {
 namespace
 {
-constexpr double ACCELERATION =
-    300.0 * DEGREE;                            // moderate acceleration, which needs 17 N.m of a stretched UR5 [rad/s^2]
-constexpr double REST = 0.5;                   // time at rest before and after the moves [s]
-constexpr std::size_t MAX_INSTANTS = 450'000;  // instants of an hour at a controller's 125 Hz
-constexpr double LIMIT_SHARE = 5.0 / 6.0;      // largest share of the joint's speed limit in a stroke [-]
+constexpr double ACCELERATION = 300.0 * DEGREE;  // moderate acceleration: a stretched UR5 needs 17 N.m for it [rad/s^2]
+constexpr double REST = 0.5;                     // time at rest before and after the moves [s]
+constexpr std::size_t MAX_INSTANTS = 450'000;    // number of instants in an hour at 125 Hz
+constexpr double LIMIT_SHARE = 5.0 / 6.0;        // largest share of the joint's speed limit in a stroke [-]
 
-/// A stroke of the joint to an angle about its pose.
+/// A stroke moves the joint to an angle, relative to the pose in which its check-up begins.
 struct Stroke
 {
   double angle;  // [deg]
   double speed;  // [deg/s]
 };
 constexpr std::array<Stroke, 16> STROKES{ {
-    // Slow strokes over all of the load's range, 42 motor turns each way.
+    // Slow strokes over the whole range of the load, 42 turns of the motor in each direction.
     { 75.0, 20.0 },
     { -75.0, 20.0 },
     { 0.0, 20.0 },
-    // Reversals about no load.
+    // Strokes with reversals where the load is near zero.
     { 20.0, 60.0 },
     { -20.0, 60.0 },
     { 20.0, 60.0 },
@@ -49,8 +48,8 @@ constexpr std::array<Stroke, 16> STROKES{ {
     { 0.0, 150.0 },
 } };
 
-/// Share of a distance over time. The speed is a trapezoid, or its moving mean over the time in which the acceleration
-/// rises.
+/// Share of a distance that a move has covered, over time. The speed over time is a trapezoid. With a limit of the jerk
+/// it is the moving mean of this trapezoid over the time in which the acceleration rises.
 class Profile
 {
 public:
@@ -62,7 +61,8 @@ public:
   {
     if (move.jerk > 0.0)
     {
-      // Without a time between the two accelerations the moving mean goes directly from one to the other.
+      // Without a phase of constant speed the moving mean goes directly from acceleration to deceleration, in twice the
+      // time.
       const double once = acceleration_ / move.jerk;
       mean_ = end_ - 2.0 * rise_ >= once ? once : 2.0 * once;
     }
@@ -102,7 +102,7 @@ private:
     return { (time - 0.5 * rise_) * peak, peak, 0.0 };
   }
 
-  /// Integral of the trapezoid's position, which is odd about its middle.
+  /// Integral over time of the position on the trapezoid. The position is point-symmetric about the middle of the move.
   double travelled(double time) const
   {
     const auto risen = [&](double t) { return acceleration_ * t * t * t / 6.0; };
@@ -117,8 +117,8 @@ private:
   double distance_;
   double acceleration_;
   double rise_;
-  double end_;     // end of the trapezoid [s]
-  double mean_{};  // time over which the mean is taken [s]
+  double end_;     // time at which the trapezoid ends [s]
+  double mean_{};  // time over which the moving mean is taken; 0: no mean [s]
 };
 
 void requireWithin(const ArmDescription& arm, const ArmInstant& instant)
@@ -128,7 +128,7 @@ void requireWithin(const ArmDescription& arm, const ArmInstant& instant)
     const ArmJoint& joint = arm.joints[i];
     const auto refuse = [&](const char* what, double value, double limit, const char* unit)
     {
-      // Written so that NaN fails.
+      // The negated comparison is true for NaN, so NaN is refused.
       if (limit != 0.0 && !(std::abs(value) <= limit * (1.0 + 1e-9)))
       {
         throw ParameterError(arm.origin + ": " + joint.name + " would have a " + what + " of " +
@@ -178,7 +178,7 @@ private:
   void addUntil(double end, const std::string& what, const ArmPose& target, const Share& share)
   {
     const double longest = static_cast<double>(MAX_INSTANTS) * period_;
-    // Written so that NaN fails.
+    // The negated comparison is true for NaN, so NaN is refused.
     if (!(end < longest))
     {
       throw ParameterError(arm_.origin + ": the motion would take more than " + roundedText(longest, 4) +
@@ -210,7 +210,7 @@ private:
   ArmDynamics dynamics_;
   ArmPose from_;
   double period_;
-  double begin_{};  // begin of the next piece [s]
+  double begin_{};  // time at which the next move or rest begins [s]
   std::vector<ArmInstant> instants_;
 };
 }  // namespace
@@ -257,7 +257,7 @@ void ArmMotion::at(double time, std::vector<JointMotion>& motion) noexcept
     const JointMotion& a = from.joints[i];
     const JointMotion& b = to.joints[i];
     const double way = b.position - a.position;
-    // Hermite's cubic by the derivatives at its ends.
+    // Hermite's cubic, which has the angles and speeds of both set points at its ends.
     const double c2 = 3.0 * way - length * (2.0 * a.velocity + b.velocity);
     const double c3 = length * (a.velocity + b.velocity) - 2.0 * way;
     motion[i].position = a.position + s * (length * a.velocity + s * (c2 + s * c3));
@@ -287,7 +287,8 @@ std::vector<ArmSetPoint> fromRest(const ArmSetPoint& point)
   std::vector<ArmSetPoint> points(STEPS + 1, point);
   for (std::size_t k = 0; k < STEPS; ++k)
   {
-    // The speed is a cubic of the share s of the time: 0 without acceleration at s = 0, that of the point at s = 1.
+    // The speed is a cubic of the share s of the time. Speed and acceleration are 0 at s = 0, and those of `point` at s
+    // = 1.
     const double s = static_cast<double>(k) / static_cast<double>(STEPS);
     points[k].time = point.time - (1.0 - s) * length;
     for (std::size_t i = 0; i < point.joints.size(); ++i)
@@ -306,7 +307,7 @@ std::vector<ArmSetPoint> fromRest(const ArmSetPoint& point)
 
 std::vector<ArmSetPoint> toRest(const ArmSetPoint& point)
 {
-  // The way to rest is that from rest, backwards in time.
+  // The path to rest is the path from rest, backwards in time.
   const auto turned = [&](ArmSetPoint at)
   {
     at.time = 2.0 * point.time - at.time;
@@ -325,8 +326,8 @@ std::vector<ArmSetPoint> toRest(const ArmSetPoint& point)
 ArmMotion gentleMotion(const ArmDescription& arm)
 {
   constexpr double ACCELERATION = 2.0;                           // [rad/s^2]
-  constexpr std::array SPEEDS{ 0.35, 0.7, 1.05 };                // speeds of the joint that goes farthest [rad/s]
-  constexpr std::array WAYS{ 0.6, 0.4, -0.6, 0.5, -0.55, 0.6 };  // ways of the joints from the middle pose [rad]
+  constexpr std::array SPEEDS{ 0.35, 0.7, 1.05 };                // speed of the joint that moves farthest [rad/s]
+  constexpr std::array WAYS{ 0.6, 0.4, -0.6, 0.5, -0.55, 0.6 };  // way of each joint from the middle pose [rad]
   constexpr double PERIOD = 0.008;                               // time between set points [s]
   const std::size_t joints = arm.joints.size();
   const bool is_known =
@@ -358,13 +359,15 @@ std::vector<ArmMove> checkUpMoves(const ArmDescription& arm, std::size_t joint)
   const ArmJoint& own = arm.joints[joint];
   if (own.check_up.empty())
   {
-    throw ParameterError(arm.origin + ": joint " + own.name + " has no check_up, the angles where it begins");
+    throw ParameterError(arm.origin + ": joint " + own.name +
+                         " has no check_up: the angles of all joints at the start of its check-up");
   }
   for (const ArmJoint& each : arm.joints)
   {
     if (each.speed_limit == 0.0 || each.torque_limit == 0.0)
     {
-      throw ParameterError(arm.origin + ": joint " + each.name + " has no limits, within which a check-up stays");
+      throw ParameterError(arm.origin + ": joint " + each.name +
+                           " has no limits of speed and torque, which a check-up must respect");
     }
   }
   std::vector<ArmMove> moves;

@@ -15,7 +15,7 @@ namespace hjt
 {
 namespace
 {
-/// The joints with efforts of that unit.
+/// The parameters of the joints, with `unit` as the unit of their efforts.
 std::vector<Parameters> withUnit(std::vector<Parameters> joints, EffortUnit unit)
 {
   for (Parameters& joint : joints)
@@ -25,13 +25,14 @@ std::vector<Parameters> withUnit(std::vector<Parameters> joints, EffortUnit unit
   return joints;
 }
 
-/// The currents of an arm's rows beside those of its twins.
+/// Compares the currents in the rows of an arm with those of the twins of one candidate.
 class ArmTrial
 {
 public:
   ArmTrial(const ArmCandidate& candidate, EffortUnit unit) : ArmTrial(candidate, withUnit(candidate.joints, unit)) {}
 
-  /// Adds a sample whose currents are efforts and which has no torques. `counts`: the fit of the load takes it too.
+  /// Adds a sample without torques, whose currents are efforts. `counts`: whether the fit of the load takes the sample
+  /// too.
   void add(const ArmSample& sample, bool counts)
   {
     sample_ = sample;
@@ -62,7 +63,8 @@ public:
     return { name_, unit_, fit.size, fit.left, fit.cost + cost_ };
   }
 
-  /// The unit of the efforts with which the load leaves clearly less of the currents than with the configured unit.
+  /// The unit of the efforts with which the load explains clearly more of the currents than with the configured unit;
+  /// if there is no such unit, the configured unit.
   EffortUnit likeliestUnit() const
   {
     constexpr double CLEARLY = 0.5;
@@ -182,7 +184,7 @@ std::string betterArm(const std::string& own, std::vector<std::string> names, co
 
 std::string otherArmText(const std::string& other)
 {
-  return "the arm may be a " + other + ": it explains the currents clearly better";
+  return "the arm may be a " + other + ", which explains the currents clearly better than the given arm";
 }
 
 void nameOtherArm(const std::string& other, std::vector<Misfit>& misfits)

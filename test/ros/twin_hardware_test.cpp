@@ -177,7 +177,7 @@ TEST(TwinHardware, AnArmWithOtherAnglesThanJointsIsRefused)
   }
   catch (const ParameterError& error)
   {
-    EXPECT_THAT(error.what(), testing::HasSubstr("2 angles to start at for 6 joints"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("2 start angles are given for 6 joints"));
   }
 }
 }  // namespace

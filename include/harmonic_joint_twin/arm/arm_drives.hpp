@@ -34,7 +34,7 @@ public:
 
   const std::vector<std::string>& names() const noexcept;  ///< names of the joints, as in the messages
   std::size_t joints() const noexcept { return names().size(); }
-  /// drive of one joint; the caller commands and reads it, but must not step it
+  /// Drive of one joint. The caller commands and reads the drive, but must not step it.
   Twin& drive(std::size_t joint) noexcept;
   double startAngle(std::size_t joint) const noexcept;  ///< joint angle at which the drive's encoders read 0 [rad]
 
